@@ -1,0 +1,55 @@
+#include "base/error.h"
+
+#include "base/format.h"
+
+#include <utility>
+
+namespace sprung {
+namespace {
+
+std::string join_lines(const std::vector<Problem>& problems) {
+  std::string text;
+  for (const Problem& problem : problems) {
+    if (!text.empty()) text += '\n';
+    text += to_string(problem);
+  }
+  return text;
+}
+
+std::string describe(const StepFailure& failure) {
+  std::string text = "the simulation diverged at step " + std::to_string(failure.step) + ", time " + format_number(failure.time) +
+                     " s: " + failure.cause;
+  std::string place;
+  if (!failure.body.empty()) place += "body \"" + failure.body + "\"";
+  if (failure.particle != kNone) place += (place.empty() ? "" : ", ") + ("particle " + std::to_string(failure.particle));
+  if (failure.spring != kNone) place += (place.empty() ? "" : ", ") + ("spring " + std::to_string(failure.spring));
+  if (!place.empty()) text += " (" + place + ")";
+  if (!failure.remedy.empty()) text += "; " + failure.remedy;
+  return text;
+}
+
+}  // namespace
+
+std::string to_string(const Problem& problem) {
+  std::string place = problem.key;
+  if (!problem.value.empty()) place += (place.empty() ? "" : " = ") + problem.value;
+  std::string text;
+  for (const std::string& part : {problem.file, place, problem.rule}) {
+    if (part.empty()) continue;
+    if (!text.empty()) text += ": ";
+    text += part;
+  }
+  if (!problem.remedy.empty()) text += "; " + problem.remedy;
+  return text;
+}
+
+InputError::InputError(Problem problem) : InputError(std::vector<Problem>{std::move(problem)}) {}
+
+InputError::InputError(std::vector<Problem> problems) : std::runtime_error(join_lines(problems)), problems_(std::move(problems)) {}
+
+FileError::FileError(const std::string& action, const std::string& path, const std::string& reason)
+    : std::runtime_error(path + ": cannot " + action + ": " + reason) {}
+
+StepError::StepError(StepFailure failure) : std::runtime_error(describe(failure)), failure_(std::move(failure)) {}
+
+}  // namespace sprung

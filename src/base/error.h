@@ -1,0 +1,65 @@
+// The errors that Sprung throws. Each says what is wrong, where, and what to do about it.
+#pragma once
+
+#include "base/types.h"
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// One broken rule of an input: which file, which key, which value, which rule, which remedy. Empty fields are left out.
+struct Problem {
+  std::string file;
+  std::string key;     ///< path of the key or place in the file: `bodies.banner.mass`, `line 12`
+  std::string value;   ///< the offending value as the user wrote it
+  std::string rule;    ///< what must hold: `must be greater than 0`
+  std::string remedy;  ///< what to change: `did you mean "stiffness"?`
+};
+
+/// One line: `file: key = value: rule; remedy`.
+[[nodiscard]] std::string to_string(const Problem& problem);
+
+/// Invalid scene, mesh or argument; holds every problem found. Requires at least one problem.
+class InputError : public std::runtime_error {
+ public:
+  explicit InputError(Problem problem);
+  explicit InputError(std::vector<Problem> problems);
+
+  [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+/// A scene file that cannot be read, or an output that cannot be written.
+class FileError : public std::runtime_error {
+ public:
+  /// `action` completes "cannot ...": `write`, `create the folder`.
+  FileError(const std::string& action, const std::string& path, const std::string& reason);
+};
+
+/// Where a simulation diverged. `spring` is counted within its body, as is `particle`; kNone when no spring is concerned.
+struct StepFailure {
+  std::int64_t step = 0;
+  double time = 0.0;  ///< [s]
+  std::string body;
+  Index particle = kNone;
+  Index spring = kNone;
+  std::string cause;   ///< what was seen: `a position is not finite`
+  std::string remedy;  ///< what to change
+};
+
+/// The simulation diverged; the state it left behind must not be used.
+class StepError : public std::runtime_error {
+ public:
+  explicit StepError(StepFailure failure);
+
+  [[nodiscard]] const StepFailure& failure() const { return failure_; }
+
+ private:
+  StepFailure failure_;
+};
+
+}  // namespace sprung

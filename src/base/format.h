@@ -1,0 +1,13 @@
+// Numbers as text: the shortest that reads back to the same double.
+#pragma once
+
+#include <string>
+
+namespace sprung {
+
+/// Appends the shortest text that reads back to the same double; `nan`, `inf`, `-inf` for what is not finite.
+void append_number(std::string& text, double value);
+
+[[nodiscard]] std::string format_number(double value);
+
+}  // namespace sprung

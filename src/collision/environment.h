@@ -1,0 +1,74 @@
+// Obstacles in an FCL broad phase, and the contacts of particles with them.
+#pragma once
+
+#include "collision/obstacle.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// A particle near an obstacle, in the world at the end of the step. Its plane is where the particle may not fall below:
+/// normal . x >= normal . point + gap.
+struct Contact {
+  Index particle = kNone;
+  Index obstacle = kNone;
+  Vector3 point;          ///< on the surface [m]
+  Vector3 normal;         ///< unit length, towards the free side
+  double distance = 0.0;  ///< of the particle from the surface [m], negative behind it
+};
+
+/// Particles on their way through one step.
+struct ParticlePaths {
+  const Points& before;      ///< where they were at t [m]; outside all obstacles
+  const Points& after;       ///< where they are about to be at t + dt [m]
+  const Scalars& thickness;  ///< of each particle [m]; the obstacle's own is added
+  double margin = 0.0;       ///< contacts are found this much [m] beyond the gap
+};
+
+class Environment {
+ public:
+  /// Throws InputError for shapes that cannot be used.
+  explicit Environment(std::vector<Obstacle> obstacles = {});
+  ~Environment();
+  Environment(Environment&&) noexcept;
+  Environment& operator=(Environment&&) noexcept;
+
+  [[nodiscard]] const std::vector<Obstacle>& obstacles() const;
+  [[nodiscard]] bool moves() const;
+
+  /// The next queries are for a step from time t to t + dt [s]. Not thread-safe; the queries below are.
+  void set_interval(double t, double t_end);
+
+  /// Poses at the interval's begin and end.
+  [[nodiscard]] const RigidTransform& pose_before(Index obstacle) const;
+  [[nodiscard]] const RigidTransform& pose_after(Index obstacle) const;
+
+  /// Contacts of particles whose path comes within gap + margin of an obstacle, sorted by particle, then obstacle. Where a path
+  /// crosses a surface the contact is at the crossing, facing where the particle came from. Same result for any number of threads.
+  [[nodiscard]] std::vector<Contact> contacts(const ParticlePaths& paths) const;
+
+  /// Cuts paths short that end behind a surface: `after` is moved back to the side where the particle came from. Particles for
+  /// which `held` is not 0 are left alone. Returns the particles that were moved; sets `squeezed` to the number that found no free
+  /// place and were left where the nearest obstacle carried them.
+  std::vector<Index> truncate(const Points& before, Points& after, const std::vector<char>& held, Index& squeezed) const;
+
+  /// Particles inside a closed obstacle at pose_after, with the obstacle, sorted by particle.
+  struct Inside {
+    Index particle;
+    Index obstacle;
+    double depth;
+  };
+  [[nodiscard]] std::vector<Inside> inside(const Points& positions) const;
+
+  /// Smallest distance [m] of any particle from any obstacle at pose_after, if within `radius`; negative inside.
+  [[nodiscard]] std::optional<double> min_distance(const Points& positions, double radius) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace sprung

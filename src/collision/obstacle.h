@@ -1,0 +1,62 @@
+// What the environment consists of: a shape, its motion, its surface. Plain data; `environment.h` makes FCL geometries of it.
+#pragma once
+
+#include "geometry/motion.h"
+#include "geometry/triangle_mesh.h"
+#include "network/spring_network.h"
+
+#include <memory>
+#include <string>
+#include <variant>
+
+namespace sprung {
+
+/// A triangle mesh as `import_mesh` leaves it. Closed meshes have an inside; open ones keep each particle on its side.
+struct MeshGeometry {
+  std::shared_ptr<const TriangleMesh> mesh;
+  bool closed = false;
+};
+
+// Primitives are centred on their origin; capsule, cylinder and cone stand along y. All lengths [m], > 0.
+struct SphereGeometry {
+  double radius = 0.0;
+};
+struct BoxGeometry {
+  Vector3 size = Vector3::Zero();
+};
+struct CapsuleGeometry {
+  double radius = 0.0;
+  double length = 0.0;
+};  ///< length between the centres of its caps
+struct CylinderGeometry {
+  double radius = 0.0;
+  double height = 0.0;
+};
+struct ConeGeometry {
+  double radius = 0.0;
+  double height = 0.0;
+};  ///< its tip at +height / 2
+struct EllipsoidGeometry {
+  Vector3 radii = Vector3::Zero();
+};
+struct HalfSpaceGeometry {
+  Vector3 normal = Vector3::UnitY();
+  double offset = 0.0;
+};  ///< solid where normal . x <= offset; unit normal
+
+using ObstacleGeometry = std::variant<MeshGeometry, SphereGeometry, BoxGeometry, CapsuleGeometry, CylinderGeometry, ConeGeometry,
+                                      EllipsoidGeometry, HalfSpaceGeometry>;
+
+struct Obstacle {
+  std::string name;
+  ObstacleGeometry geometry;  ///< scaled already
+  RigidTransform placed = RigidTransform::Identity();
+  Motion motion;
+  ContactMaterial material;
+};
+
+/// The obstacle's surface as triangles in its own frame, for export: a mesh as it is, a primitive tessellated, a half-space as
+/// a square of side 2 * `extent` [m].
+[[nodiscard]] TriangleMesh obstacle_mesh(const ObstacleGeometry& geometry, double extent = 10.0);
+
+}  // namespace sprung

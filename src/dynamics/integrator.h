@@ -1,0 +1,47 @@
+// Time integration: advances all free particles by one step. Pinned particles (inverse mass 0) are left to the caller.
+#pragma once
+
+#include "dynamics/force.h"
+
+#include <memory>
+#include <variant>
+
+namespace sprung {
+
+/// Explicit Euler, exactly as eq. 1: p += v(t) dt with the old velocity, then v += F(t) / m dt.
+struct ExplicitEulerSettings {};
+
+/// Semi-implicit Euler, the manual's code: v += F / m dt, then p += v dt with the new velocity.
+struct SymplecticEulerSettings {};
+
+/// x(t + dt) = x + (1 - damping) (x - x(t - dt)) + a dt^2. Forces that need a velocity see (x - x(t - dt)) / dt, at the start v(0).
+struct VerletSettings {
+  double damping = 0.0;        ///< per step, in [0, 1], as printed
+  double damping_rate = 0.0;   ///< [1/s]; when > 0 the damping per step is 1 - exp(-rate dt) instead
+  bool start_at_rest = false;  ///< x(-dt) = x(0), as the web page, instead of x(0) - v(0) dt + a(0) dt^2 / 2
+};
+
+using IntegratorSettings = std::variant<ExplicitEulerSettings, SymplecticEulerSettings, VerletSettings>;
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// Sets what the scheme keeps between steps. Call once, before the first step.
+  virtual void start(SimulationState& state, const Forces& forces, double dt) const;
+
+  /// Advances x and v of free particles from t to t + dt. `scratch` holds forces, 3 x n.
+  virtual void advance(SimulationState& state, const Forces& forces, double dt, Points& scratch) const = 0;
+
+  /// Velocities after constraints moved `advanced` (what `advance` made) to state.x; `before` are the positions at t. Default:
+  /// v += (x - advanced) / dt.
+  virtual void recover_velocities(SimulationState& state, const Points& before, const Points& advanced, double dt) const;
+
+  /// Called after contact changed velocities of a particle. Verlet: x_previous = x - v dt.
+  virtual void velocity_changed(SimulationState& state, Index particle, double dt) const;
+};
+
+/// Keeps a reference to the network.
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings, const SpringNetwork& network);
+
+}  // namespace sprung

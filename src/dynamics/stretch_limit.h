@@ -1,0 +1,47 @@
+// Projection-based limits on how far springs stretch or shrink (Provot 1995; Jakobsen 2001; Mueller et al. 2007).
+#pragma once
+
+#include "network/spring_network.h"
+
+#include <memory>
+#include <vector>
+
+namespace sprung {
+
+struct StretchLimitSettings {
+  double max_stretch = 0.02;                              ///< >= 0: lengths stay below d (1 + max_stretch)
+  double max_compression = 1.0;                           ///< in [0, 1]: and above d (1 - max_compression)
+  std::vector<SpringKind> kinds{SpringKind::structural};  ///< which springs it holds
+  int iterations = 32;                                    ///< most passes a step, >= 1
+  double tolerance = 0.001;                               ///< excess over the limit, as a part of d, at which passes end, >= 0
+};
+
+class StretchLimit {
+ public:
+  /// Keeps a reference to the network. Springs of rest length 0 cannot be measured in parts of it and are left out.
+  StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings);
+  ~StretchLimit();
+
+  /// One Gauss-Seidel pass in batches without shared particles: each spring beyond its limits is projected onto them, both ends
+  /// weighted by inverse mass; pinned particles do not move. Same bits for any number of threads. Returns the largest excess it
+  /// met, as a part of the rest length.
+  double project(Points& positions) const;
+
+  /// The largest excess over the limits, as a part of the rest length; changes nothing.
+  [[nodiscard]] double excess(const Points& positions) const;
+
+  [[nodiscard]] const StretchLimitSettings& settings() const;
+
+  /// The step [s] at which `iterations` passes a step hold the limit when the network hangs at rest under `acceleration` [m/s^2]:
+  /// in each step gravity adds g dt^2 per carried particle, and the passes must pass it on to the pins. Infinity when nothing is
+  /// limited.
+  [[nodiscard]] double suggested_step(double acceleration) const;
+
+ private:
+  struct Batches;
+  const SpringNetwork& network_;
+  StretchLimitSettings settings_;
+  std::unique_ptr<const Batches> batches_;
+};
+
+}  // namespace sprung

@@ -1,0 +1,31 @@
+// Edges of a triangle mesh and the triangles beside them.
+#pragma once
+
+#include "base/types.h"
+
+#include <array>
+#include <vector>
+
+namespace sprung {
+
+/// An edge and the (at most two) triangles that it joins.
+struct MeshEdge {
+  std::array<Index, 2> vertices{};               ///< lower index first
+  std::array<Index, 2> triangles{kNone, kNone};  ///< kNone: the edge is on a border
+  std::array<Index, 2> opposite{kNone, kNone};   ///< the third vertex of each triangle
+  Index uses = 0;                                ///< how many triangles share it; more than two: not a manifold
+};
+
+/// Unique edges, sorted by their vertices.
+[[nodiscard]] std::vector<MeshEdge> mesh_edges(const Triangles& triangles);
+
+/// Each edge is shared by exactly two triangles that run along it in opposite directions.
+[[nodiscard]] bool is_closed(const Triangles& triangles);
+
+/// Unique edges of triangles, 2 x m, lower index first, sorted.
+[[nodiscard]] Edges unique_edges(const Triangles& triangles);
+
+/// Number of connected components of the triangles (joined by shared vertices), and the component of each triangle.
+[[nodiscard]] Index connected_components(const Triangles& triangles, std::vector<Index>* component_of_triangle = nullptr);
+
+}  // namespace sprung

@@ -1,0 +1,22 @@
+// A triangle mesh: positions and indices, nothing else.
+#pragma once
+
+#include "base/types.h"
+
+namespace sprung {
+
+struct TriangleMesh {
+  Points vertices;      ///< positions [m], 3 x n
+  Triangles triangles;  ///< vertex indices, 3 x m
+};
+
+/// Smallest axis-aligned box around the points [m]; empty for no points.
+[[nodiscard]] Box3 bounds(const Points& points);
+
+/// (b - a) x (c - a): twice the area [m^2], along the normal.
+[[nodiscard]] Vector3 area_normal(const TriangleMesh& mesh, Index triangle);
+
+/// Enclosed volume [m^3] by the divergence theorem; meaningful for closed meshes only, negative when turned inside out.
+[[nodiscard]] double signed_volume(const TriangleMesh& mesh);
+
+}  // namespace sprung

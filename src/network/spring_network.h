@@ -1,0 +1,80 @@
+// The network: masses, springs, bodies and pins. Constant once built; what a step changes is in `simulation_state.h`.
+#pragma once
+
+#include "base/types.h"
+#include "geometry/motion.h"
+#include "geometry/polygon_mesh.h"
+
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+enum class SpringKind : std::uint8_t { structural, shear, bend };
+
+/// Springs as arrays; entry s of each belongs to spring s. Within a body they are sorted by (second - first, first), so that
+/// neighbours in a lattice make contiguous runs.
+struct Springs {
+  std::vector<Index> first;         ///< particle at one end, the lower index
+  std::vector<Index> second;        ///< particle at the other end
+  std::vector<double> rest_length;  ///< d [m], >= 0
+  std::vector<double> stiffness;    ///< k_s [N/m], >= 0
+  std::vector<double> damping;      ///< k_d [N s/m], >= 0
+  std::vector<SpringKind> kind;
+
+  [[nodiscard]] Index count() const { return static_cast<Index>(first.size()); }
+  void append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind);
+};
+
+/// What of a body collides and is exported. Vertex i is the body's particle i.
+struct Surface {
+  PolygonFaces faces;   ///< as exported
+  Triangles triangles;  ///< the faces, fanned
+  Edges segments;       ///< of ropes: the edges that no triangle has
+};
+
+/// How a body or an obstacle meets others. A pair keeps the gap `thickness + thickness`, rubs with the geometric means of the
+/// frictions and bounces with the larger restitution.
+struct ContactMaterial {
+  double thickness = 0.0;        ///< [m], >= 0
+  double friction = 0.0;         ///< kinetic coefficient, >= 0
+  double static_friction = 0.0;  ///< >= friction
+  double restitution = 0.0;      ///< in [0, 1]
+};
+
+/// A named range of particles and springs.
+struct Body {
+  std::string name;
+  Index first_particle = 0;
+  Index particle_count = 0;
+  Index first_spring = 0;
+  Index spring_count = 0;
+  Surface surface;
+  ContactMaterial material;
+};
+
+/// Particles held where their motion takes them. With the default motion they stay where they began.
+struct Pin {
+  std::vector<Index> particles;      ///< of the network
+  Vector3 origin = Vector3::Zero();  ///< what the motion turns about [m]
+  Motion motion;
+};
+
+/// The const model of a network. Made by NetworkBuilder.
+struct SpringNetwork {
+  Points positions;        ///< at time 0 [m], 3 x n
+  Points velocities;       ///< at time 0 [m/s], 3 x n
+  Scalars masses;          ///< [kg], > 0
+  Scalars inverse_masses;  ///< [1/kg]; 0 for pinned particles
+  Scalars drag_areas;      ///< what air drag multiplies: 1 for a rope's particles, a share of the area [m^2] for surfaces
+  Springs springs;
+  std::vector<Body> bodies;
+  std::vector<Pin> pins;
+
+  [[nodiscard]] Index particle_count() const { return static_cast<Index>(masses.size()); }
+  [[nodiscard]] bool is_pinned(Index particle) const { return inverse_masses[particle] == 0.0; }
+  /// The body that holds a particle.
+  [[nodiscard]] const Body& body_of(Index particle) const;
+};
+
+}  // namespace sprung

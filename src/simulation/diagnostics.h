@@ -1,0 +1,44 @@
+// What a frame is measured by.
+#pragma once
+
+#include "simulation/simulator.h"
+
+#include <optional>
+
+namespace sprung {
+
+struct FrameDiagnostics {
+  int frame = 1;                ///< frame 1 is the state at time 0
+  double time = 0.0;            ///< [s]
+  double kinetic_energy = 0.0;  ///< [J]
+  double elastic_energy = 0.0;  ///< [J]
+  double gravity_energy = 0.0;  ///< [J]
+  double max_stretch = 0.0;     ///< largest (|s| - d) / d of structural springs
+  double stretch_excess = 0.0;  ///< largest in the frame's steps beyond the stretch limit
+  Index contacts = 0;           ///< particles in contact in the frame's last step
+  std::optional<double>
+      min_distance;       ///< smallest distance of a particle from an obstacle [m]; none when all are farther than `contact_range`
+  Index truncated = 0;    ///< in all of the frame's steps
+  Index squeezed = 0;     ///< in all of the frame's steps
+  double frame_ms = 0.0;  ///< wall time of computing the frame
+};
+
+/// Runs a simulator frame by frame. Keeps a reference to it.
+class FrameRunner {
+ public:
+  /// Requires steps_per_frame >= 1.
+  FrameRunner(Simulator& simulator, int steps_per_frame);
+
+  /// Diagnostics of the state at time 0.
+  [[nodiscard]] FrameDiagnostics first_frame() const;
+
+  /// Runs the steps of the next frame. Throws StepError.
+  FrameDiagnostics next_frame();
+
+ private:
+  Simulator& simulator_;
+  int steps_per_frame_;
+  int frame_ = 1;
+};
+
+}  // namespace sprung

@@ -1,0 +1,84 @@
+// The simulator: a network, its forces, its environment, and the step.
+#pragma once
+
+#include "collision/environment.h"
+#include "dynamics/force.h"
+#include "dynamics/integrator.h"
+#include "dynamics/stable_step.h"
+#include "dynamics/stretch_limit.h"
+#include "network/simulation_state.h"
+#include "network/spring_network.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+struct ContactSettings {
+  enum class Response : std::uint8_t {
+    projection,  ///< particles are moved out of obstacles
+    penalty      ///< f_coll: a spring and damper push them out
+  };
+  Response response = Response::projection;
+  double stiffness = 0.0;  ///< of the penalty [N/m]
+  double damping = 0.0;    ///< of the penalty [N s/m]
+};
+
+enum class StabilityCheck : std::uint8_t { refuse, warn };
+
+struct SimulatorSettings {
+  double step = 1.0e-3;              ///< dt [s]
+  Vector3 gravity{0.0, -9.81, 0.0};  ///< [m/s^2]
+  double air_drag = 0.0;             ///< [kg/s] per particle of a rope, [kg/(m^2 s)] for surfaces
+  Vector3 wind = Vector3::Zero();    ///< [m/s]
+  IntegratorSettings integrator = VerletSettings{};
+  std::optional<StretchLimitSettings> stretch_limit;
+  ContactSettings contact;
+  StabilityCheck stability = StabilityCheck::refuse;
+};
+
+/// What one step did.
+struct StepReport {
+  int iterations = 0;           ///< passes of stretch limit and contact
+  double stretch_excess = 0.0;  ///< beyond the stretch limit at the end, as a part of the rest length
+  Index contacts = 0;           ///< particles pushed by obstacles
+  Index truncated = 0;          ///< particles stopped at a surface
+  Index squeezed = 0;           ///< particles that found no free place between obstacles
+};
+
+class Simulator {
+ public:
+  /// Throws InputError when the step is not positive or beyond the largest stable one (unless `stability` is warn: then `warnings`
+  /// says so), or when particles start inside an obstacle.
+  explicit Simulator(SpringNetwork network, SimulatorSettings settings = {}, std::vector<Obstacle> obstacles = {});
+  ~Simulator();
+  Simulator(Simulator&&) noexcept;
+  Simulator& operator=(Simulator&&) noexcept;
+
+  /// Advances by one step. Throws StepError when the network diverged; the state is then the one before the step.
+  StepReport step();
+
+  [[nodiscard]] const SpringNetwork& network() const;
+  [[nodiscard]] const SimulatorSettings& settings() const;
+  [[nodiscard]] const SimulationState& state() const;
+  [[nodiscard]] const Environment& environment() const;
+  [[nodiscard]] const std::vector<std::string>& warnings() const;
+
+  /// state().step * settings().step [s]
+  [[nodiscard]] double time() const;
+
+  /// Positions [m], 3 x n.
+  [[nodiscard]] const Points& positions() const { return state().x; }
+
+  /// Elastic energy [J], sum 1/2 k_s (|s| - d)^2, and -m g . x.
+  [[nodiscard]] double elastic_energy() const;
+  [[nodiscard]] double gravity_energy() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace sprung
