@@ -1,9 +1,9 @@
 // What the environment consists of: a shape, its motion, its surface. Plain data; `environment.h` makes FCL geometries of it.
 #pragma once
 
+#include "base/contact_material.h"
 #include "geometry/motion.h"
 #include "geometry/triangle_mesh.h"
-#include "network/spring_network.h"
 
 #include <memory>
 #include <string>

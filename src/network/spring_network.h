@@ -1,6 +1,7 @@
 // The network: masses, springs, bodies and pins. Constant once built; what a step changes is in `simulation_state.h`.
 #pragma once
 
+#include "base/contact_material.h"
 #include "base/types.h"
 #include "geometry/motion.h"
 #include "geometry/polygon_mesh.h"
@@ -31,15 +32,6 @@ struct Surface {
   PolygonFaces faces;   ///< as exported
   Triangles triangles;  ///< the faces, fanned
   Edges segments;       ///< of ropes: the edges that no triangle has
-};
-
-/// How a body or an obstacle meets others. A pair keeps the gap `thickness + thickness`, rubs with the geometric means of the
-/// frictions and bounces with the larger restitution.
-struct ContactMaterial {
-  double thickness = 0.0;        ///< [m], >= 0
-  double friction = 0.0;         ///< kinetic coefficient, >= 0
-  double static_friction = 0.0;  ///< >= friction
-  double restitution = 0.0;      ///< in [0, 1]
 };
 
 /// A named range of particles and springs.
