@@ -7,7 +7,7 @@
 
 namespace sprung {
 
-/// Rotation by angles [degrees] about the fixed axes x, then y, then z.
+/// Rotation by angles [degrees] about the fixed axes x, then y, then z; exact for multiples of 90.
 [[nodiscard]] Matrix3 rotation_from_degrees(const Vector3& degrees);
 
 struct Keyframe {
@@ -23,7 +23,7 @@ enum class Interpolation : std::uint8_t { linear, smooth };
 struct Motion {
   std::vector<Keyframe> keyframes;                      ///< times strictly increasing
   Interpolation interpolation = Interpolation::linear;  ///< smooth: 3 s^2 - 2 s^3 between two keyframes
-  Vector3 spin = Vector3::Zero();                       ///< angular velocity [degrees/s] about fixed axes through the placed origin
+  Vector3 spin = Vector3::Zero();                       ///< angular velocity vector [degrees/s], through the placed origin
 
   /// False when the pose is the same at all times.
   [[nodiscard]] bool moves() const;

@@ -13,13 +13,14 @@ struct MeshEdge {
   std::array<Index, 2> vertices{};               ///< lower index first
   std::array<Index, 2> triangles{kNone, kNone};  ///< kNone: the edge is on a border
   std::array<Index, 2> opposite{kNone, kNone};   ///< the third vertex of each triangle
+  std::array<bool, 2> forward{};                 ///< whether each triangle runs from the lower vertex to the higher
   Index uses = 0;                                ///< how many triangles share it; more than two: not a manifold
 };
 
-/// Unique edges, sorted by their vertices.
+/// Unique edges, sorted by their vertices; the triangles of an edge by their numbers. Requires three different vertices a triangle.
 [[nodiscard]] std::vector<MeshEdge> mesh_edges(const Triangles& triangles);
 
-/// Each edge is shared by exactly two triangles that run along it in opposite directions.
+/// Each edge is shared by exactly two triangles that run along it in opposite directions; false for no triangles.
 [[nodiscard]] bool is_closed(const Triangles& triangles);
 
 /// Unique edges of triangles, 2 x m, lower index first, sorted.
