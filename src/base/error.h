@@ -11,11 +11,11 @@ namespace sprung {
 
 /// One broken rule of an input: which file, which key, which value, which rule, which remedy. Empty fields are left out.
 struct Problem {
-  std::string file;
-  std::string key;     ///< path of the key or place in the file: `bodies.banner.mass`, `line 12`
-  std::string value;   ///< the offending value as the user wrote it
-  std::string rule;    ///< what must hold: `must be greater than 0`
-  std::string remedy;  ///< what to change: `did you mean "stiffness"?`
+  std::string file{};
+  std::string key{};     ///< path of the key or place in the file: `bodies.banner.mass`, `line 12`
+  std::string value{};   ///< the offending value as the user wrote it
+  std::string rule{};    ///< what must hold: `must be greater than 0`
+  std::string remedy{};  ///< what to change: `did you mean "stiffness"?`
 };
 
 /// One line: `file: key = value: rule; remedy`.

@@ -17,4 +17,10 @@ std::string format_number(double value) {
   return text;
 }
 
+std::string format_number(double value, int digits) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
+  return {buffer.data(), end.ptr};
+}
+
 }  // namespace sprung

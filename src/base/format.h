@@ -10,4 +10,7 @@ void append_number(std::string& text, double value);
 
 [[nodiscard]] std::string format_number(double value);
 
+/// Rounded to so many significant digits: for people. Requires 1 <= digits <= 17.
+[[nodiscard]] std::string format_number(double value, int digits);
+
 }  // namespace sprung
