@@ -1,6 +1,11 @@
-// Contact response: particles are projected out of obstacles, with Coulomb friction; restitution is settled on velocities.
+// Contact response by projection: particles are moved out of obstacles, with Coulomb friction; restitution is settled on
+// velocities.
+//
+// Friction is a displacement, not a velocity: what it takes from the motion along the surface it takes from the position too, so
+// that a particle at rest on a slope does not creep by g sin(angle) dt^2 each step. The velocity follows from the position.
 #pragma once
 
+#include "base/contact_material.h"
 #include "collision/environment.h"
 #include "dynamics/integrator.h"
 #include "network/spring_network.h"
@@ -14,46 +19,48 @@ class ContactProjection {
   /// Keeps references to the network and the environment.
   ContactProjection(const SpringNetwork& network, const Environment& environment);
 
-  /// Finds the contacts of a step whose forces alone would take particles from `before` to `advanced` [m]. The environment's
-  /// interval must be the step's. `v_before` [m/s] are the velocities at its begin, `v_advanced` those that forces alone make of
-  /// them.
-  void find(const Points& before, const Points& advanced, const Points& v_before, const Points& v_advanced);
+  /// Finds the contacts of a step of `dt` [s] that began with `before` [m] and `v_before` [m/s] and that the forces alone would end
+  /// in `advanced`. Requires that the environment's interval is the step's.
+  void find(const Points& before, const Points& v_before, const SimulationState& advanced, double dt);
 
-  /// Moves particles out to their gap along each contact's normal, and holds or slows their motion along the surface, relative to
-  /// the point that the obstacle carries: wholly while it is at most static friction times the push, else by kinetic friction times
-  /// the push (Coulomb). Pinned particles do not move.
-  void project(Points& positions);
+  /// Moves particles out to the gap of their contacts, and holds or slows their motion along the surface relative to the point that
+  /// the obstacle carries: holds it while it is at most static friction times the push, else takes kinetic friction times the
+  /// push from it (Coulomb). Pinned particles do not move. Returns the largest push of this pass, as a part of the gap.
+  double project(Points& positions);
 
-  /// Moves particles that ended behind a surface back in front of it: the last word on positions.
-  void truncate(Points& positions);
+  /// Moves particles that ended behind a surface back to the side where they were at `before` [m]: the last word on positions.
+  void truncate(const Points& before, Points& positions);
 
-  /// Velocities of particles that were pushed: the part along the normal becomes restitution times the approach (none when the
-  /// approach is what one step of the forces makes: rest), and never leaves faster than that because of the push.
-  void settle_velocities(SimulationState& state, const Integrator& integrator, double dt) const;
+  /// Velocities of particles that touch: the part along the normal, relative to the obstacle, becomes restitution times the
+  /// approach, or none when the approach is no more than what the forces make in a step or two (rest). A push out of the gap never
+  /// speeds a particle up.
+  void settle_velocities(SimulationState& state, const Integrator& integrator) const;
 
-  [[nodiscard]] Index contact_count() const;  ///< contacts that pushed in this step
+  [[nodiscard]] Index contact_count() const;  ///< particles that an obstacle pushed in this step
   [[nodiscard]] Index truncated_count() const { return truncated_; }
   [[nodiscard]] Index squeezed_count() const { return squeezed_; }
 
  private:
   struct Active {
-    Contact contact;
-    double gap = 0.0;
-    double friction = 0.0;
-    double static_friction = 0.0;
-    double restitution = 0.0;
-    double push = 0.0;            ///< so far in this step [m]
-    Vector3 carried;              ///< where the obstacle would take the particle's old position [m]
-    double approach = 0.0;        ///< speed towards the obstacle at the step's begin, relative to it [m/s]
-    double force_approach = 0.0;  ///< what the forces of this step added to it [m/s]
+    Contact contact{};
+    ContactMaterial pair{};
+    double push = 0.0;                           ///< along the normal, so far in this step [m]
+    double held = 0.0;                           ///< what friction has taken from the motion so far [m]
+    Vector3 carried = Vector3::Zero();           ///< where the obstacle takes the particle's old position [m]
+    Vector3 surface_velocity = Vector3::Zero();  ///< [m/s]
+    double approach = 0.0;                       ///< speed towards the obstacle at the step's begin [m/s]
+    double leaving = 0.0;                        ///< speed away from it that the forces alone would make [m/s]
   };
+
+  void rub(Active& active, Eigen::Ref<Vector3> position) const;
+  [[nodiscard]] double settled_speed(const Active& active, double speed) const;
 
   const SpringNetwork& network_;
   const Environment& environment_;
-  Scalars thickness_;           ///< of each particle
-  std::vector<Index> body_of_;  ///< of each particle
+  Scalars thickness_;    ///< of each particle [m]
+  double margin_ = 0.0;  ///< beyond the gap, for what the passes of a step may move [m]
   std::vector<char> pinned_;
-  const Points* before_ = nullptr;
+  double dt_ = 0.0;
   std::vector<Active> active_;
   Index truncated_ = 0;
   Index squeezed_ = 0;

@@ -8,19 +8,19 @@
 namespace sprung {
 
 struct FrameDiagnostics {
-  int frame = 1;                ///< frame 1 is the state at time 0
-  double time = 0.0;            ///< [s]
-  double kinetic_energy = 0.0;  ///< [J]
-  double elastic_energy = 0.0;  ///< [J]
-  double gravity_energy = 0.0;  ///< [J]
-  double max_stretch = 0.0;     ///< largest (|s| - d) / d of structural springs
-  double stretch_excess = 0.0;  ///< largest in the frame's steps beyond the stretch limit
-  Index contacts = 0;           ///< particles in contact in the frame's last step
-  std::optional<double>
-      min_distance;       ///< smallest distance of a particle from an obstacle [m]; none when all are farther than `contact_range`
-  Index truncated = 0;    ///< in all of the frame's steps
-  Index squeezed = 0;     ///< in all of the frame's steps
-  double frame_ms = 0.0;  ///< wall time of computing the frame
+  int frame = 1;                       ///< frame 1 is the state at time 0
+  double time = 0.0;                   ///< [s]
+  double kinetic_energy = 0.0;         ///< [J]
+  double elastic_energy = 0.0;         ///< [J]
+  double gravity_energy = 0.0;         ///< [J]
+  double max_stretch = 0.0;            ///< largest (|s| - d) / d of structural springs
+  double stretch_excess = 0.0;         ///< largest in the frame's steps beyond the stretch limit
+  Index contacts = 0;                  ///< particles in contact in the frame's last step
+  std::optional<double> min_distance;  ///< smallest distance of a particle from an obstacle [m]; none without obstacles, or when
+                                       ///< all are farther than the network is large
+  Index truncated = 0;                 ///< in all of the frame's steps
+  Index squeezed = 0;                  ///< in all of the frame's steps
+  double frame_ms = 0.0;               ///< wall time of computing the frame
 };
 
 /// Runs a simulator frame by frame. Keeps a reference to it.

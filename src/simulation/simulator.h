@@ -57,7 +57,7 @@ class Simulator {
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
-  /// Advances by one step. Throws StepError when the network diverged; the state is then the one before the step.
+  /// Advances by one step. Throws StepError when the network diverged; its state is of no use then.
   StepReport step();
 
   [[nodiscard]] const SpringNetwork& network() const;

@@ -1,0 +1,116 @@
+#include "dynamics/contact_projection.h"
+
+#include "dynamics/contact_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+// Contacts are looked for this part of the thickness beyond the gap: the passes of a step move resting particles less.
+constexpr double kMargin = 0.5;
+
+// A particle touches when it is this close to its gap: what rounding leaves of a projection onto it.
+constexpr double kTouch = 1.0 + 1.0e-9;
+
+// An approach slower than this many times what the forces add in one step is rest, not an impact.
+constexpr double kRestSteps = 2.0;
+
+}  // namespace
+
+ContactProjection::ContactProjection(const SpringNetwork& network, const Environment& environment)
+    : network_(network),
+      environment_(environment),
+      thickness_(particle_thickness(network)),
+      margin_(kMargin * thickness_.maxCoeff()),
+      pinned_(static_cast<std::size_t>(network.particle_count())) {
+  for (Index i = 0; i < network.particle_count(); ++i) pinned_[static_cast<std::size_t>(i)] = network.is_pinned(i) ? 1 : 0;
+}
+
+void ContactProjection::find(const Points& before, const Points& v_before, const SimulationState& advanced, double dt) {
+  dt_ = dt;
+  active_.clear();
+  for (const Contact& contact : environment_.contacts({before, advanced.x, thickness_, margin_})) {
+    const Index i = contact.particle;
+    if (pinned_[static_cast<std::size_t>(i)] != 0) continue;
+    const Obstacle& obstacle = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)];
+    Active active{.contact = contact, .pair = combine(network_.body_of(i).material, obstacle.material)};
+    const RigidTransform& end = environment_.pose_after(contact.obstacle);
+    active.carried = obstacle.motion.moves() ? Vector3(end * (environment_.pose_before(contact.obstacle).inverse() * before.col(i)))
+                                             : Vector3(before.col(i));
+    active.surface_velocity = (active.carried - before.col(i)) / dt;
+    active.approach = contact.normal.dot(active.surface_velocity - v_before.col(i));
+    active.leaving = contact.normal.dot(advanced.v.col(i) - active.surface_velocity);
+    active_.push_back(active);
+  }
+}
+
+double ContactProjection::project(Points& positions) {
+  double largest = 0.0;
+  for (Active& active : active_) {
+    const Contact& contact = active.contact;
+    auto position = positions.col(contact.particle);
+    const double depth = active.pair.thickness - contact.normal.dot(position - contact.point);
+    if (depth > 0.0) {
+      position += depth * contact.normal;
+      active.push += depth;
+      if (active.pair.thickness > 0.0) largest = std::max(largest, depth / active.pair.thickness);
+    }
+    if (active.push > 0.0) rub(active, position);
+  }
+  return largest;
+}
+
+void ContactProjection::rub(Active& active, Eigen::Ref<Vector3> position) const {
+  const Vector3& normal = active.contact.normal;
+  const Vector3 moved = position - active.carried;
+  const Vector3 along = moved - normal.dot(moved) * normal;
+  const double length = along.norm();
+  if (length == 0.0) return;
+  const double hold = active.pair.static_friction * active.push - active.held;
+  const double slow = active.pair.friction * active.push - active.held;
+  const double taken = length <= hold ? length : std::clamp(slow, 0.0, length);
+  position -= (taken / length) * along;
+  active.held += taken;
+}
+
+void ContactProjection::truncate(const Points& before, Points& positions) {
+  squeezed_ = 0;
+  truncated_ = static_cast<Index>(environment_.truncate(before, positions, pinned_, squeezed_).size());
+}
+
+void ContactProjection::settle_velocities(SimulationState& state, const Integrator& integrator) const {
+  for (const Active& active : active_) {
+    const Contact& contact = active.contact;
+    const double distance = contact.normal.dot(state.x.col(contact.particle) - contact.point);
+    if (active.push == 0.0 && distance > kTouch * active.pair.thickness) continue;
+    auto velocity = state.v.col(contact.particle);
+    const Vector3 relative = velocity - active.surface_velocity;
+    const double speed = contact.normal.dot(relative);
+    const double settled = settled_speed(active, speed);
+    if (settled == speed) continue;
+    velocity += (settled - speed) * contact.normal;
+    integrator.velocity_changed(state, contact.particle, dt_);
+  }
+}
+
+double ContactProjection::settled_speed(const Active& active, double speed) const {
+  const double made_by_forces = std::abs(active.leaving + active.approach);
+  const bool impact = active.approach > kRestSteps * made_by_forces;
+  const double bounce = impact ? active.pair.restitution * active.approach : 0.0;
+  return std::clamp(speed, bounce, std::max(bounce, active.leaving));
+}
+
+Index ContactProjection::contact_count() const {
+  Index count = 0;
+  Index last = kNone;  // contacts are sorted by particle
+  for (const Active& active : active_) {
+    if (active.push == 0.0 || active.contact.particle == last) continue;
+    last = active.contact.particle;
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace sprung

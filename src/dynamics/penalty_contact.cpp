@@ -1,0 +1,43 @@
+#include "dynamics/penalty_contact.h"
+
+#include "dynamics/contact_pair.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+PenaltyContact::PenaltyContact(const SpringNetwork& network, const Environment& environment, double stiffness, double damping,
+                               double dt)
+    : network_(network),
+      environment_(environment),
+      stiffness_(stiffness),
+      damping_(damping),
+      dt_(dt),
+      thickness_(particle_thickness(network)) {}
+
+void PenaltyContact::add(const Kinematics& at, Points& forces) const {
+  for (const Contact& contact : environment_.contacts({at.x, at.x, thickness_})) {
+    const Index i = contact.particle;
+    const Obstacle& obstacle = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)];
+    const ContactMaterial pair = combine(network_.body_of(i).material, obstacle.material);
+    const Vector3 relative = at.v.col(i) - surface_velocity(obstacle, at.x.col(i), at.time);
+    const double speed = contact.normal.dot(relative);
+    const double push = std::max(0.0, stiffness_ * (pair.thickness - contact.distance) - damping_ * speed);
+    forces.col(i) += push * contact.normal;
+
+    const Vector3 along = relative - speed * contact.normal;
+    const double slip = along.norm();
+    if (slip == 0.0) continue;
+    const double stopping = network_.masses[i] * slip / dt_;
+    forces.col(i) -= std::min(pair.friction * push, stopping) / slip * along;
+  }
+}
+
+Vector3 PenaltyContact::surface_velocity(const Obstacle& obstacle, const Vector3& point, double time) const {
+  if (!obstacle.motion.moves()) return Vector3::Zero();
+  const RigidTransform now = obstacle.motion.pose(obstacle.placed, time);
+  const RigidTransform next = obstacle.motion.pose(obstacle.placed, time + dt_);
+  return (next * (now.inverse() * point) - point) / dt_;
+}
+
+}  // namespace sprung

@@ -1,0 +1,31 @@
+// Penalty contact, the OpenGL page's f_coll in f = f_g + f_coll + sum of spring forces.
+#pragma once
+
+#include "collision/environment.h"
+#include "dynamics/force.h"
+#include "network/spring_network.h"
+
+namespace sprung {
+
+/// A particle deeper than its gap by p feels k p - c v_n along the surface's normal (never a pull), and Coulomb friction of at most
+/// friction times that, and at most what stops it within a step.
+class PenaltyContact final : public Force {
+ public:
+  /// `stiffness` k [N/m] > 0, `damping` c [N s/m] >= 0, `dt` [s] the step. Keeps references to the network and to the environment,
+  /// whose interval must be empty and stand at the time of evaluation: `set_interval(t, t)`.
+  PenaltyContact(const SpringNetwork& network, const Environment& environment, double stiffness, double damping, double dt);
+
+  void add(const Kinematics& at, Points& forces) const override;
+
+ private:
+  [[nodiscard]] Vector3 surface_velocity(const Obstacle& obstacle, const Vector3& point, double time) const;
+
+  const SpringNetwork& network_;
+  const Environment& environment_;
+  double stiffness_;
+  double damping_;
+  double dt_;
+  Scalars thickness_;
+};
+
+}  // namespace sprung

@@ -1,0 +1,69 @@
+#include "simulation/diagnostics.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace sprung {
+namespace {
+
+double kinetic_energy(const Simulator& simulator) {
+  return 0.5 * simulator.network().masses.dot(simulator.state().v.colwise().squaredNorm().transpose());
+}
+
+double max_stretch(const Simulator& simulator) {
+  const Springs& springs = simulator.network().springs;
+  const Points& x = simulator.positions();
+  double most = 0.0;
+  for (std::size_t s = 0; s < springs.first.size(); ++s) {
+    if (springs.kind[s] != SpringKind::structural || springs.rest_length[s] == 0.0) continue;
+    const double length = (x.col(springs.first[s]) - x.col(springs.second[s])).norm();
+    most = std::max(most, length / springs.rest_length[s] - 1.0);
+  }
+  return most;
+}
+
+// The farthest that a distance from the environment is worth its search: the size of the network.
+double distance_range(const Points& positions) { return bounds(positions).diagonal().norm(); }
+
+FrameDiagnostics measure(const Simulator& simulator, int frame) {
+  FrameDiagnostics diagnostics;
+  diagnostics.frame = frame;
+  diagnostics.time = simulator.time();
+  diagnostics.kinetic_energy = kinetic_energy(simulator);
+  diagnostics.elastic_energy = simulator.elastic_energy();
+  diagnostics.gravity_energy = simulator.gravity_energy();
+  diagnostics.max_stretch = max_stretch(simulator);
+  diagnostics.min_distance = simulator.environment().min_distance(simulator.positions(), distance_range(simulator.positions()));
+  return diagnostics;
+}
+
+}  // namespace
+
+FrameRunner::FrameRunner(Simulator& simulator, int steps_per_frame) : simulator_(simulator), steps_per_frame_(steps_per_frame) {}
+
+FrameDiagnostics FrameRunner::first_frame() const { return measure(simulator_, 1); }
+
+FrameDiagnostics FrameRunner::next_frame() {
+  const auto begin = std::chrono::steady_clock::now();
+  StepReport last;
+  double excess = 0.0;
+  Index truncated = 0;
+  Index squeezed = 0;
+  for (int step = 0; step < steps_per_frame_; ++step) {
+    last = simulator_.step();
+    excess = std::max(excess, last.stretch_excess);
+    truncated += last.truncated;
+    squeezed += last.squeezed;
+  }
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
+
+  FrameDiagnostics diagnostics = measure(simulator_, ++frame_);
+  diagnostics.stretch_excess = excess;
+  diagnostics.contacts = last.contacts;
+  diagnostics.truncated = truncated;
+  diagnostics.squeezed = squeezed;
+  diagnostics.frame_ms = elapsed.count();
+  return diagnostics;
+}
+
+}  // namespace sprung

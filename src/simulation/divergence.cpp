@@ -1,0 +1,87 @@
+#include "simulation/divergence.h"
+
+#include "base/format.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+constexpr double kOverstretched = 1000.0;
+
+double length(const Points& positions, Index a, Index b) { return (positions.col(a) - positions.col(b)).norm(); }
+
+}  // namespace
+
+DivergenceCheck::DivergenceCheck(const SpringNetwork& network) : network_(network) {
+  const Springs& springs = network.springs;
+  double longest_rest = 0.0;  // stands in for springs of no length at all
+  for (const double rest : springs.rest_length) longest_rest = std::max(longest_rest, rest);
+  longest_squared_.reserve(static_cast<std::size_t>(springs.count()));
+  for (std::size_t s = 0; s < springs.first.size(); ++s) {
+    const double start = std::max(springs.rest_length[s], length(network.positions, springs.first[s], springs.second[s]));
+    const double longest = kOverstretched * (start > 0.0 ? start : longest_rest);
+    longest_squared_.push_back(longest > 0.0 ? longest * longest : HUGE_VAL);
+  }
+}
+
+std::optional<StepFailure> DivergenceCheck::not_finite(const SimulationState& state, const Points& before) const {
+  if (state.x.allFinite() && state.v.allFinite()) return std::nullopt;
+  Index particle = 0;
+  while (state.x.col(particle).allFinite() && state.v.col(particle).allFinite()) ++particle;
+  StepFailure failure = blame(particle, worst_spring_at(particle, before), before);
+  failure.cause =
+      "a position or velocity is no longer a finite number" + (failure.cause.empty() ? "" : "; before, " + failure.cause);
+  return failure;
+}
+
+std::optional<StepFailure> DivergenceCheck::overstretched(const Points& positions) const {
+  const Springs& springs = network_.springs;
+  Index worst = kNone;
+  double most = 1.0;
+  for (Index s = 0; s < springs.count(); ++s) {
+    const auto i = static_cast<std::size_t>(s);
+    const double ratio = (positions.col(springs.first[i]) - positions.col(springs.second[i])).squaredNorm() / longest_squared_[i];
+    if (ratio <= most) continue;
+    most = ratio;
+    worst = s;
+  }
+  if (worst == kNone) return std::nullopt;
+  const Index a = springs.first[static_cast<std::size_t>(worst)];
+  const Index b = springs.second[static_cast<std::size_t>(worst)];
+  return blame(network_.is_pinned(a) ? b : a, worst, positions);
+}
+
+StepFailure DivergenceCheck::blame(Index particle, Index spring, const Points& positions) const {
+  const Body& body = network_.body_of(particle);
+  StepFailure failure;
+  failure.body = body.name;
+  failure.particle = particle - body.first_particle;
+  if (spring == kNone) return failure;
+  const auto s = static_cast<std::size_t>(spring);
+  const Index a = network_.springs.first[s];
+  const Index b = network_.springs.second[s];
+  failure.spring = spring - body.first_spring;
+  failure.cause = "the spring between particles " + std::to_string(a - body.first_particle) + " and " +
+                  std::to_string(b - body.first_particle) + " was " + format_number(length(positions, a, b)) + " m long, " +
+                  format_number(network_.springs.rest_length[s]) + " m at rest";
+  return failure;
+}
+
+Index DivergenceCheck::worst_spring_at(Index particle, const Points& positions) const {
+  const Springs& springs = network_.springs;
+  Index worst = kNone;
+  double most = -1.0;
+  for (Index s = 0; s < springs.count(); ++s) {
+    const auto i = static_cast<std::size_t>(s);
+    if (springs.first[i] != particle && springs.second[i] != particle) continue;
+    const double ratio = (positions.col(springs.first[i]) - positions.col(springs.second[i])).squaredNorm() / longest_squared_[i];
+    if (worst != kNone && !(ratio > most)) continue;
+    most = ratio;
+    worst = s;
+  }
+  return worst;
+}
+
+}  // namespace sprung

@@ -1,0 +1,87 @@
+#include "simulation/step_check.h"
+
+#include "base/error.h"
+#include "base/format.h"
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+// A step that is advised leaves this part of the largest stable one, as "auto" does.
+constexpr double kAdvisedPart = 0.9;
+
+}  // namespace
+
+SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {
+  SpectralBounds bounds = spectral_bounds(network, settings.air_drag);
+  if (has_obstacles && settings.contact.response == ContactSettings::Response::penalty) {
+    // A penalty ties a particle to the ground: it adds to the Laplacian's diagonal, and so at most this much to its eigenvalues.
+    const double largest_inverse_mass = network.inverse_masses.maxCoeff();
+    bounds.elastic += settings.contact.stiffness * largest_inverse_mass;
+    bounds.damping += settings.contact.damping * largest_inverse_mass;
+  }
+  return bounds;
+}
+
+std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds) {
+  const double step = settings.step;
+  if (!(step > 0.0) || !std::isfinite(step)) {
+    throw InputError({.key = "step", .value = format_number(step), .rule = "must be a positive number of seconds"});
+  }
+  const double largest = largest_stable_step(settings.integrator, bounds);
+  if (step > largest) {
+    const std::string rule = "is beyond the largest stable step, " + format_number(largest) + " s";
+    if (settings.stability == StabilityCheck::refuse) {
+      throw InputError({.key = "step",
+                        .value = format_number(step),
+                        .rule = rule,
+                        .remedy = "use at most that, or \"auto\"; \"stability\": \"warn\" lets it run all the same"});
+    }
+    return {"step = " + format_number(step) + " " + rule + ": expect the simulation to diverge"};
+  }
+  const double growth = growth_time(settings.integrator, bounds, step);
+  if (!std::isfinite(growth)) return {};
+  return {"explicit Euler gains energy at any step: the fastest motion of these springs grows by a factor of e every " +
+          format_number(growth) + " s; \"symplectic_euler\" does not"};
+}
+
+void refuse_inside(const SpringNetwork& network, const Environment& environment, const Points& positions) {
+  struct Found {
+    Index count = 0;
+    Index first = kNone;
+    double deepest = 0.0;
+  };
+  std::map<std::pair<std::string, std::string>, Found> found;
+  for (const Environment::Inside& inside : environment.inside(positions)) {
+    if (network.is_pinned(inside.particle)) continue;
+    const Body& body = network.body_of(inside.particle);
+    Found& entry = found[{body.name, environment.obstacles()[static_cast<std::size_t>(inside.obstacle)].name}];
+    if (entry.count == 0) entry.first = inside.particle - body.first_particle;
+    ++entry.count;
+    entry.deepest = std::max(entry.deepest, inside.depth);
+  }
+  std::vector<Problem> problems;
+  for (const auto& [names, entry] : found) {
+    problems.push_back({.key = "bodies." + names.first,
+                        .value = std::to_string(entry.count) + " particles, the first " + std::to_string(entry.first),
+                        .rule = "start inside obstacle \"" + names.second + "\", up to " + format_number(entry.deepest) + " m deep",
+                        .remedy = "move the body or the obstacle, so that they do not overlap at time 0"});
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+std::string divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds) {
+  const double largest = largest_stable_step(settings.integrator, bounds);
+  if (settings.step > kAdvisedPart * largest)
+    return "use a step of at most " + format_number(kAdvisedPart * largest, 2) + " s, or \"auto\"";
+  if (std::isfinite(growth_time(settings.integrator, bounds, settings.step))) {
+    return "explicit Euler gains energy at any step; use \"symplectic_euler\" or a step below " +
+           format_number(0.1 * settings.step, 2) + " s";
+  }
+  return "use a step below " + format_number(0.5 * settings.step, 2) + " s, less stiffness, or slower motion";
+}
+
+}  // namespace sprung

@@ -1,0 +1,24 @@
+// What a simulation is checked for before it begins, and what is advised when it diverged all the same.
+#pragma once
+
+#include "simulation/simulator.h"
+
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// `spectral_bounds` of the network with its air drag and, when there are obstacles, its penalty contact.
+[[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
+
+/// Throws InputError for a step that is not positive, or beyond the largest stable one unless `settings.stability` is warn. Returns
+/// what the user should be warned of.
+std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds);
+
+/// Throws InputError naming each body with particles inside an obstacle at the environment's present poses.
+void refuse_inside(const SpringNetwork& network, const Environment& environment, const Points& positions);
+
+/// What to change when a simulation with these settings diverged.
+[[nodiscard]] std::string divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds);
+
+}  // namespace sprung
