@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Installs what is missing of the named sections of packages.txt: install_packages.sh run test
+set -euo pipefail
+
+list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
+
+packages_of() {
+  awk -v wanted="[$1]" '/^\[/ { inside = $0 == wanted; next } inside && NF && !/^#/' "$list"
+}
+
+is_installed() {
+  [[ "$(dpkg-query --show --showformat '${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
+}
+
+missing=()
+for section in "$@"; do
+  for package in $(packages_of "$section"); do
+    is_installed "$package" || missing+=("$package")
+  done
+done
+((${#missing[@]})) || exit 0
+
+echo "Installing ${missing[*]}"
+as_root=()
+if ((EUID != 0)); then
+  if ! command -v sudo >/dev/null; then
+    echo "These Debian packages are missing and only root can install them. As root, run:" >&2
+    echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+apt() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get --quiet --yes "$@"; }
+apt update
+apt install --no-install-recommends "${missing[@]}"
