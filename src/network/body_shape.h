@@ -9,7 +9,8 @@
 
 namespace sprung {
 
-/// Particles, springs and surface of one body; indices count from 0 within the body.
+/// Particles, springs and surface of one body; indices count from 0 within the body. What the make_ functions return has
+/// masses of 0: `set_total_mass` gives them.
 struct BodyShape {
   std::vector<Vector3> positions;   ///< [m]
   std::vector<Vector3> velocities;  ///< [m/s]
@@ -24,7 +25,10 @@ struct BodyShape {
 struct SpringMaterial {
   enum class Measure : std::uint8_t {
     stiffness,  ///< k_s [N/m] of each spring
-    modulus     ///< rope EA [N], cloth [N/m], solid [Pa]: k_s = modulus * (share of the cross-section) / rest length
+    /// Rope EA [N], cloth and mesh [N/m], solid [Pa]: k_s = modulus * cross-section / rest length, where a spring's cross-section
+    /// is the distance (solid: distances) to its parallel neighbours, on a border half of it. Stretched by a strain along its
+    /// structural springs, a body pulls back with modulus * whole cross-section * strain at any resolution.
+    modulus
   };
   double value = 0.0;  ///< >= 0
   Measure measure = Measure::stiffness;
@@ -38,23 +42,25 @@ struct SpringMaterials {
   std::optional<SpringMaterial> bend;
 };
 
+/// Most particles of a body: 2^27, so that the numbers of its springs (up to 16 a particle) fit an Index.
+inline constexpr Index kMaxBodyParticles = Index{1} << 27;
+
 /// A polyline of at least 2 points [m]: `particles` >= 2 at equal distances along it, or one at each point when not given.
-/// Structural springs join neighbours, bend springs skip one. `length` [m] is the rest length of the whole when it is not the
-/// polyline's own.
+/// Structural springs join neighbours, bend springs skip one; rest lengths are measured along the polyline, so a rope laid around
+/// a corner wants to be straight. `length` [m] > 0 is the rest length of the whole when it is not the polyline's own.
 struct RopeShape {
   std::vector<Vector3> points;
   std::optional<Index> particles;
   std::optional<double> length;
 };
-[[nodiscard]] BodyShape make_rope(const RopeShape& rope, const SpringMaterials& materials);
 
 /// A rectangle in the x-y plane, centred; particles x fastest. Structural springs along the sides of the cells, shear along both
-/// diagonals, bend along the sides and skipping one particle (Provot 1995).
+/// diagonals, bend along the sides and skipping one particle (Provot 1995). Its triangles face +z, and the diagonals that cut the
+/// cells alternate like the squares of a chessboard.
 struct ClothShape {
   std::array<double, 2> size{1.0, 1.0};   ///< [m], > 0
   std::array<Index, 2> resolution{2, 2};  ///< particles per side, >= 2
 };
-[[nodiscard]] BodyShape make_cloth(const ClothShape& cloth, const SpringMaterials& materials);
 
 /// A box, centred; particles x fastest, then y, then z. Structural springs along the edges of the cells, shear along their face and
 /// space diagonals, bend along the edges and skipping one particle. Its surface is the boundary.
@@ -62,16 +68,24 @@ struct SolidShape {
   Vector3 size = Vector3::Ones();            ///< [m], > 0
   std::array<Index, 3> resolution{2, 2, 2};  ///< particles per side, >= 2
 };
+
+/// The make_ functions throw InputError with every broken rule of the shape (keys as in a scene: `size[0]`, `points[3]`) and of
+/// the materials (`springs.bend.damping`).
+[[nodiscard]] BodyShape make_rope(const RopeShape& rope, const SpringMaterials& materials);
+[[nodiscard]] BodyShape make_cloth(const ClothShape& cloth, const SpringMaterials& materials);
 [[nodiscard]] BodyShape make_solid(const SolidShape& solid, const SpringMaterials& materials);
 
-/// A particle per vertex, in its order. Structural springs along edges, shear along the diagonals of polygons, bend across the
-/// edges that two faces share. Rest lengths are the distances in the mesh.
+/// A particle per vertex, in its order; faces, groups and UVs as given. Structural springs along edges and lines, shear along the
+/// diagonals of polygons that skip one corner, bend across the edges that two faces share, joining what lies in line beyond them
+/// (of two triangles the opposite corners). No two particles are joined twice: structural comes before shear, shear before bend.
+/// Rest lengths are the distances in the mesh.
 [[nodiscard]] BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materials);
 
-/// Gives each particle the same share of `total` [kg].
+/// Gives each particle the same share of `total` [kg]. Throws InputError unless it is positive and finite.
 void set_total_mass(BodyShape& shape, double total);
 
-/// Scales (lengths, rest lengths, areas), then rotates, then moves a body, and adds a velocity [m/s].
-void place(BodyShape& shape, double scale, const RigidTransform& pose, const Vector3& velocity);
+/// Rotates, then moves a body, and adds a velocity [m/s]. There is no scale here: give the make_ functions sizes, points and
+/// vertices as large as the body shall be.
+void place(BodyShape& shape, const RigidTransform& pose, const Vector3& velocity = Vector3::Zero());
 
 }  // namespace sprung

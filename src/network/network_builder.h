@@ -9,29 +9,31 @@
 
 namespace sprung {
 
+class ProblemList;
+
 class NetworkBuilder {
  public:
   /// Adds a particle of `mass` [kg] > 0 at `position` [m] and returns its number. Particles and springs added one by one belong
   /// to a body named "network" unless `begin_body` named another.
   Index add_particle(const Vector3& position, double mass, const Vector3& velocity = Vector3::Zero());
 
-  /// Joins two particles of the current body by a spring with k_s [N/m], rest length [m] and k_d [N s/m], all >= 0.
+  /// Joins two particles of one body by a spring with k_s [N/m], rest length [m] and k_d [N s/m], all >= 0.
   void add_spring(Index i, Index j, double stiffness, double rest_length, double damping = 0.0,
                   SpringKind kind = SpringKind::structural);
 
   /// Particles and springs that follow belong to a new body of this name.
   void begin_body(const std::string& name, const ContactMaterial& material = {});
 
-  /// Adds a whole body, placed: scale and pose are applied already. Returns the number of its first particle.
+  /// Adds a whole body, placed already. Returns the number of its first particle.
   Index add_body(const std::string& name, const BodyShape& shape, const ContactMaterial& material = {});
 
   /// Holds a particle where it is, or moves it along `motion`, which turns about `origin` [m].
   void pin(Index particle, const Motion& motion = {}, const Vector3& origin = Vector3::Zero());
   void pin(std::vector<Index> particles, const Motion& motion = {}, const Vector3& origin = Vector3::Zero());
 
-  /// The network. Throws InputError, naming every problem, for masses that are not positive, springs that join a particle to
-  /// itself, to another body or to none, negative or non-finite quantities, pins of particles that are not there, and a particle
-  /// pinned twice.
+  /// The network. Throws InputError, naming every problem, for a network or body without particles, bodies of one name, masses that
+  /// are not positive, springs that join a particle to itself, to another body or to none, negative or non-finite quantities,
+  /// contact materials out of range, pins of particles that are not there, and a particle pinned twice.
   [[nodiscard]] SpringNetwork build() const;
 
  private:
@@ -40,10 +42,14 @@ class NetworkBuilder {
     BodyShape shape;
     ContactMaterial material;
     Index first_particle = 0;
+    bool whole = false;  ///< added as a whole body: takes no more particles
   };
-  Draft& current();
+  Draft& open_draft();
+  /// The drafts with the springs that were added one by one; those that no body can hold are problems.
+  [[nodiscard]] std::vector<Draft> complete_drafts(ProblemList& problems) const;
 
   std::vector<Draft> drafts_;
+  Springs springs_;  ///< those added one by one, in the network's numbering
   std::vector<Pin> pins_;
   Index particle_count_ = 0;
 };

@@ -24,6 +24,7 @@ struct Springs {
   std::vector<SpringKind> kind;
 
   [[nodiscard]] Index count() const { return static_cast<Index>(first.size()); }
+  /// Adds a spring, whichever end has the lower index.
   void append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind);
 };
 
@@ -58,14 +59,15 @@ struct SpringNetwork {
   Points velocities;       ///< at time 0 [m/s], 3 x n
   Scalars masses;          ///< [kg], > 0
   Scalars inverse_masses;  ///< [1/kg]; 0 for pinned particles
-  Scalars drag_areas;      ///< what air drag multiplies: 1 for a rope's particles, a share of the area [m^2] for surfaces
+  Scalars drag_areas;      ///< what air drag multiplies: a third of the area [m^2] of the surface triangles around a
+                           ///< particle, 0 within a solid; 1 for particles of ropes and those without a surface
   Springs springs;
   std::vector<Body> bodies;
   std::vector<Pin> pins;
 
   [[nodiscard]] Index particle_count() const { return static_cast<Index>(masses.size()); }
   [[nodiscard]] bool is_pinned(Index particle) const { return inverse_masses[particle] == 0.0; }
-  /// The body that holds a particle.
+  /// The body that holds a particle. Requires a particle of the network.
   [[nodiscard]] const Body& body_of(Index particle) const;
 };
 

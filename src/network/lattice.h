@@ -1,0 +1,33 @@
+// The regular grid of particles under cloths and solids. Internal to network/.
+#pragma once
+
+#include "network/body_shape.h"
+
+#include <array>
+#include <vector>
+
+namespace sprung {
+
+/// A centred grid, x fastest, then y, then z. A cloth is a grid of resolution 1 along z, with size 1 there.
+struct Lattice {
+  Vector3 size = Vector3::Ones();  ///< [m]
+  std::array<Index, 3> resolution{1, 1, 1};
+
+  using Node = std::array<Index, 3>;
+  [[nodiscard]] Index number(const Node& node) const { return node[0] + resolution[0] * (node[1] + resolution[1] * node[2]); }
+  [[nodiscard]] std::vector<Vector3> positions() const;
+
+  /// Distances of neighbours [m]; the size itself along an axis of resolution 1.
+  [[nodiscard]] Vector3 spacing() const;
+};
+
+/// Structural springs along the axes, shear along face and space diagonals, bend along the axes and skipping one.
+void add_lattice_springs(const Lattice& lattice, const SpringMaterials& materials, Springs& springs);
+
+/// Appends two triangles for each cell of the layer of nodes whose index along `axis` is `layer`; they face along the axis when
+/// `along` is true, else against it. The diagonals alternate from cell to cell.
+void add_layer_triangles(const Lattice& lattice, int axis, Index layer, bool along, std::vector<std::array<Index, 3>>& triangles);
+
+[[nodiscard]] Triangles to_triangles(const std::vector<std::array<Index, 3>>& triangles);
+
+}  // namespace sprung

@@ -1,0 +1,143 @@
+#include "network/network_builder.h"
+
+#include "network/network_check.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+void append_spring(Springs& springs, const Springs& from, std::size_t s, Index offset) {
+  springs.append(from.first[s] + offset, from.second[s] + offset, from.rest_length[s], from.stiffness[s], from.damping[s],
+                 from.kind[s]);
+}
+
+// Appends a body's springs sorted by (second - first, first). Springs between the same two particles keep their order.
+void append_sorted(Springs& springs, const Springs& body, Index offset) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  order.reserve(body.first.size());
+  for (std::size_t s = 0; s < body.first.size(); ++s) {
+    const Index lower = std::min(body.first[s], body.second[s]);
+    const auto apart = static_cast<std::uint64_t>(std::max(body.first[s], body.second[s]) - lower);
+    order.emplace_back(apart << 32U | static_cast<std::uint64_t>(lower), s);
+  }
+  std::sort(order.begin(), order.end());
+  for (const auto& entry : order) append_spring(springs, body, entry.second, offset);
+}
+
+void copy_particles(const BodyShape& shape, Index begin, SpringNetwork& network) {
+  for (std::size_t i = 0; i < shape.positions.size(); ++i) {
+    const Eigen::Index particle = begin + static_cast<Eigen::Index>(i);
+    network.positions.col(particle) = shape.positions[i];
+    network.velocities.col(particle) = shape.velocities[i];
+    network.masses[particle] = shape.masses[i];
+    network.drag_areas[particle] = shape.drag_areas[i];
+  }
+}
+
+SpringNetwork network_of_size(Index particles) {
+  SpringNetwork network;
+  network.positions.resize(3, particles);
+  network.velocities.resize(3, particles);
+  network.masses.resize(particles);
+  network.drag_areas.resize(particles);
+  return network;
+}
+
+void require_unique(const std::string& key, const std::string& name, std::map<std::string, int>& seen, ProblemList& problems) {
+  if (name.empty()) problems.add(key, "\"\"", "must have a name", "name the body");
+  if (++seen[name] != 2) return;
+  problems.add(key, "", "must be the only body of this name",
+               "give each body a name of its own; particles that follow a whole body begin a new one, which begin_body names");
+}
+
+}  // namespace
+
+Index NetworkBuilder::add_particle(const Vector3& position, double mass, const Vector3& velocity) {
+  BodyShape& shape = open_draft().shape;
+  shape.positions.push_back(position);
+  shape.velocities.push_back(velocity);
+  shape.masses.push_back(mass);
+  shape.drag_areas.push_back(1.0);
+  return particle_count_++;
+}
+
+void NetworkBuilder::add_spring(Index i, Index j, double stiffness, double rest_length, double damping, SpringKind kind) {
+  springs_.append(i, j, rest_length, stiffness, damping, kind);
+}
+
+void NetworkBuilder::begin_body(const std::string& name, const ContactMaterial& material) {
+  drafts_.push_back({name, {}, material, particle_count_, false});
+}
+
+Index NetworkBuilder::add_body(const std::string& name, const BodyShape& shape, const ContactMaterial& material) {
+  drafts_.push_back({name, shape, material, particle_count_, true});
+  particle_count_ += static_cast<Index>(shape.positions.size());
+  return drafts_.back().first_particle;
+}
+
+void NetworkBuilder::pin(Index particle, const Motion& motion, const Vector3& origin) {
+  pin(std::vector<Index>{particle}, motion, origin);
+}
+
+void NetworkBuilder::pin(std::vector<Index> particles, const Motion& motion, const Vector3& origin) {
+  pins_.push_back({std::move(particles), origin, motion});
+}
+
+NetworkBuilder::Draft& NetworkBuilder::open_draft() {
+  if (drafts_.empty() || drafts_.back().whole) begin_body("network");
+  return drafts_.back();
+}
+
+std::vector<NetworkBuilder::Draft> NetworkBuilder::complete_drafts(ProblemList& problems) const {
+  std::vector<Draft> drafts = drafts_;
+  const auto holds = [](const Draft& draft, Index particle) {
+    return particle >= draft.first_particle && particle - draft.first_particle < static_cast<Index>(draft.shape.positions.size());
+  };
+  for (std::size_t s = 0; s < springs_.first.size(); ++s) {
+    const Index first = springs_.first[s];
+    const Index second = springs_.second[s];
+    const auto owner =
+        std::find_if(drafts.begin(), drafts.end(), [&](const Draft& draft) { return holds(draft, first) && holds(draft, second); });
+    if (owner != drafts.end()) {
+      append_spring(owner->shape.springs, springs_, s, -owner->first_particle);
+    } else {
+      problems.add(entry_key("springs", s), "joins " + std::to_string(first) + " and " + std::to_string(second),
+                   "must join two particles of one body", "use numbers that add_particle returned for the same body");
+    }
+  }
+  return drafts;
+}
+
+SpringNetwork NetworkBuilder::build() const {
+  ProblemList problems;
+  if (particle_count_ == 0) problems.add("particles", "0", "must be at least 1", "add a particle or a body");
+  const std::vector<Draft> drafts = complete_drafts(problems);
+  std::map<std::string, int> names;
+  for (const Draft& draft : drafts) {
+    require_unique("bodies." + draft.name, draft.name, names, problems);
+    check_body("bodies." + draft.name, draft.shape, draft.material, problems);
+  }
+  check_pins(pins_, particle_count_, problems);
+  problems.throw_if_any();
+
+  SpringNetwork network = network_of_size(particle_count_);
+  for (const Draft& draft : drafts) {
+    copy_particles(draft.shape, draft.first_particle, network);
+    const Index first_spring = network.springs.count();
+    append_sorted(network.springs, draft.shape.springs, draft.first_particle);
+    network.bodies.push_back({draft.name, draft.first_particle, static_cast<Index>(draft.shape.positions.size()), first_spring,
+                              network.springs.count() - first_spring, draft.shape.surface, draft.material});
+  }
+  network.inverse_masses = network.masses.cwiseInverse();
+  network.pins = pins_;
+  for (const Pin& pin : pins_) {
+    for (const Index particle : pin.particles) network.inverse_masses[particle] = 0.0;
+  }
+  return network;
+}
+
+}  // namespace sprung

@@ -1,0 +1,147 @@
+#include "network/network_check.h"
+
+namespace sprung {
+namespace {
+
+bool is_quantity(double value) { return value >= 0.0 && std::isfinite(value); }
+
+struct Rule {
+  std::string key;
+  std::string text;
+  std::string remedy;
+};
+
+// Reports the first of `count` entries that is not `good`, and how many more there are.
+template <class Good, class Text>
+void require_each(std::size_t count, const Good& good, const Text& text, const Rule& rule, ProblemList& problems) {
+  std::size_t first = count;
+  std::size_t broken = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (good(i)) continue;
+    if (broken++ == 0) first = i;
+  }
+  if (broken == 0) return;
+  const std::string more = broken > 1 ? " (and " + std::to_string(broken - 1) + " more)" : "";
+  problems.add(entry_key(rule.key, first), text(first) + more, rule.text, rule.remedy);
+}
+
+void require_quantities(const std::vector<double>& values, const Rule& rule, ProblemList& problems) {
+  require_each(
+      values.size(), [&](std::size_t i) { return is_quantity(values[i]); }, [&](std::size_t i) { return format_number(values[i]); },
+      rule, problems);
+}
+
+void require_finite(const std::vector<Vector3>& vectors, const Rule& rule, ProblemList& problems) {
+  require_each(
+      vectors.size(), [&](std::size_t i) { return vectors[i].allFinite(); }, [&](std::size_t i) { return vector_text(vectors[i]); },
+      rule, problems);
+}
+
+void check_particles(const std::string& key, const BodyShape& shape, ProblemList& problems) {
+  require_finite(shape.positions, {key + ".positions", "must be finite", "give three numbers in m"}, problems);
+  require_finite(shape.velocities, {key + ".velocities", "must be finite", "give three numbers in m/s"}, problems);
+  require_each(
+      shape.masses.size(), [&](std::size_t i) { return shape.masses[i] > 0.0 && std::isfinite(shape.masses[i]); },
+      [&](std::size_t i) { return format_number(shape.masses[i]); },
+      Rule{key + ".masses", "must be a finite number greater than 0", "give a mass in kg, and pin what shall not move"}, problems);
+  require_quantities(shape.drag_areas, {key + ".drag_areas", "must be a finite number not less than 0", "use 0 for no air drag"},
+                     problems);
+}
+
+void check_springs(const std::string& key, const BodyShape& shape, ProblemList& problems) {
+  const Springs& springs = shape.springs;
+  const auto count = static_cast<std::size_t>(springs.count());
+  const auto text = [&](std::size_t s) {
+    return "joins " + std::to_string(springs.first[s]) + " and " + std::to_string(springs.second[s]);
+  };
+  const auto exists = [&](Index particle) { return particle >= 0 && static_cast<std::size_t>(particle) < shape.positions.size(); };
+  require_each(
+      count, [&](std::size_t s) { return exists(springs.first[s]) && exists(springs.second[s]); }, text,
+      Rule{key + ".springs", "must join particles of the body, which has " + std::to_string(shape.positions.size()),
+           "use the numbers of the body's particles, counted from 0"},
+      problems);
+  require_each(
+      count, [&](std::size_t s) { return springs.first[s] != springs.second[s]; }, text,
+      Rule{key + ".springs", "must join two different particles", "leave the spring out"}, problems);
+  const std::string rule = "must be a finite number not less than 0";
+  require_quantities(springs.rest_length, {key + ".springs.rest_length", rule, "give a length in m"}, problems);
+  require_quantities(springs.stiffness, {key + ".springs.stiffness", rule, "give k_s in N/m"}, problems);
+  require_quantities(springs.damping, {key + ".springs.damping", rule, "give k_d in N s/m"}, problems);
+}
+
+void check_material(const std::string& key, const ContactMaterial& material, ProblemList& problems) {
+  problems.require_not_negative(key + ".thickness", material.thickness, "give a gap in m");
+  problems.require_not_negative(key + ".friction", material.friction, "use 0 for no friction");
+  problems.require_not_negative(key + ".static_friction", material.static_friction, "use the value of friction");
+  if (material.static_friction < material.friction) {
+    problems.add(key + ".static_friction", format_number(material.static_friction),
+                 "must not be less than friction, which is " + format_number(material.friction), "use the value of friction");
+  }
+  if (!(material.restitution >= 0.0 && material.restitution <= 1.0)) {
+    problems.add(key + ".restitution", format_number(material.restitution), "must be in [0, 1]", "use 0 for no bounce");
+  }
+}
+
+bool same_sizes(const BodyShape& shape) {
+  const Springs& springs = shape.springs;
+  const std::size_t particles = shape.positions.size();
+  const auto count = static_cast<std::size_t>(springs.count());
+  return shape.velocities.size() == particles && shape.masses.size() == particles && shape.drag_areas.size() == particles &&
+         springs.second.size() == count && springs.rest_length.size() == count && springs.stiffness.size() == count &&
+         springs.damping.size() == count && springs.kind.size() == count;
+}
+
+void check_motion(const std::string& key, const Motion& motion, ProblemList& problems) {
+  require_each(
+      motion.keyframes.size(),
+      [&](std::size_t k) {
+        const Keyframe& frame = motion.keyframes[k];
+        return std::isfinite(frame.time) && frame.position.allFinite() && frame.rotation.allFinite();
+      },
+      [&](std::size_t k) { return "time " + format_number(motion.keyframes[k].time); },
+      Rule{key + ".keyframes", "must hold finite numbers", "give times in s, positions in m and rotations in degrees"}, problems);
+  require_each(
+      motion.keyframes.size(), [&](std::size_t k) { return k == 0 || !(motion.keyframes[k].time <= motion.keyframes[k - 1].time); },
+      [&](std::size_t k) { return "time " + format_number(motion.keyframes[k].time); },
+      Rule{key + ".keyframes", "must be later than the keyframe before it", "sort the keyframes by time"}, problems);
+  if (!motion.spin.allFinite()) problems.add(key + ".spin", vector_text(motion.spin), "must be finite", "give degrees per second");
+}
+
+}  // namespace
+
+void check_body(const std::string& key, const BodyShape& shape, const ContactMaterial& material, ProblemList& problems) {
+  if (shape.positions.empty())
+    problems.add(key, "0 particles", "must have at least one particle", "add a particle or leave the body out");
+  if (!same_sizes(shape)) {
+    problems.add(key, "", "must have one velocity, mass and drag area per particle, and one entry per spring in each of its arrays",
+                 "make the shape with make_rope, make_cloth, make_solid or make_mesh_body");
+    return;
+  }
+  check_particles(key, shape, problems);
+  check_springs(key, shape, problems);
+  check_material(key, material, problems);
+}
+
+void check_pins(const std::vector<Pin>& pins, Index particle_count, ProblemList& problems) {
+  std::vector<bool> pinned(static_cast<std::size_t>(particle_count), false);
+  for (std::size_t p = 0; p < pins.size(); ++p) {
+    const std::string key = entry_key("pins", p);
+    if (pins[p].particles.empty()) problems.add(key, "", "must hold at least one particle", "name a particle or leave the pin out");
+    if (!pins[p].origin.allFinite())
+      problems.add(key + ".origin", vector_text(pins[p].origin), "must be finite", "give a point in m");
+    check_motion(key + ".motion", pins[p].motion, problems);
+    for (const Index particle : pins[p].particles) {
+      if (particle < 0 || particle >= particle_count) {
+        problems.add(key, "particle " + std::to_string(particle),
+                     "must be a particle of the network, which has " + std::to_string(particle_count),
+                     "use a number that add_particle or add_body returned");
+      } else if (pinned[particle]) {
+        problems.add(key, "particle " + std::to_string(particle), "must be pinned only once", "leave it out of one of its pins");
+      } else {
+        pinned[particle] = true;
+      }
+    }
+  }
+}
+
+}  // namespace sprung

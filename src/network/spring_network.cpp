@@ -1,0 +1,22 @@
+#include "network/spring_network.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+void Springs::append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind) {
+  first.push_back(std::min(a, b));
+  second.push_back(std::max(a, b));
+  rest_length.push_back(rest);
+  stiffness.push_back(k_s);
+  damping.push_back(k_d);
+  kind.push_back(spring_kind);
+}
+
+const Body& SpringNetwork::body_of(Index particle) const {
+  const auto after =
+      std::upper_bound(bodies.begin(), bodies.end(), particle, [](Index p, const Body& body) { return p < body.first_particle; });
+  return *std::prev(after);
+}
+
+}  // namespace sprung
