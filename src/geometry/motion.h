@@ -21,7 +21,7 @@ enum class Interpolation : std::uint8_t { linear, smooth };
 /// Keyframes, whose components interpolate linearly or smoothly and hold outside their range, and a spin that turns for ever
 /// after them. Default: no motion.
 struct Motion {
-  std::vector<Keyframe> keyframes;                      ///< times strictly increasing
+  std::vector<Keyframe> keyframes{};                    ///< times strictly increasing
   Interpolation interpolation = Interpolation::linear;  ///< smooth: 3 s^2 - 2 s^3 between two keyframes
   Vector3 spin = Vector3::Zero();                       ///< angular velocity vector [degrees/s], through the placed origin
 

@@ -1,5 +1,5 @@
-// Meshes whose vertex order, polygons, UVs, normals and groups must survive: what simulated bodies are read from and written
-// to (OBJ; read by tinyobjloader).
+// Meshes whose vertex order, polygons, UVs and groups must survive: what simulated bodies are read from and written to (OBJ).
+// Normals are left out: a body deforms.
 #pragma once
 
 #include "base/types.h"
@@ -35,11 +35,13 @@ struct PolygonMesh {
   Edges lines;  ///< `l` elements, as edges
 };
 
-/// Reads an OBJ file, keeping the order of vertices and faces. Throws InputError naming the file when it is missing, cannot be
-/// read, has no vertices, or holds a position that is not finite or an index out of range.
+/// Reads an OBJ file, keeping the order of vertices and faces; numbers are the nearest doubles. Throws InputError naming the file
+/// when it is missing, cannot be read or has no vertices, and each line or face that holds a number that is not finite, an index
+/// out of range, fewer than three corners or a corner twice.
 [[nodiscard]] PolygonMesh read_obj(const std::filesystem::path& file);
 
-/// OBJ text: `v` lines in order, then `vt`, then `f` (with groups) and `l` lines. Numbers are the shortest that read back equal.
+/// OBJ text: `v` lines in order, then `vt`, then `f` (with groups) and `l` lines. Numbers are the shortest that read back equal, so
+/// `read_obj` gives back the same mesh, bit for bit.
 [[nodiscard]] std::string obj_text(const Points& vertices, const PolygonFaces& faces, const Edges& lines);
 
 }  // namespace sprung
