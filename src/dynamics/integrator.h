@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dynamics/force.h"
+#include "network/spring_network.h"
 
 #include <memory>
 #include <variant>
@@ -21,10 +22,15 @@ struct VerletSettings {
   bool start_at_rest = false;  ///< x(-dt) = x(0), as the web page, instead of x(0) - v(0) dt + a(0) dt^2 / 2
 };
 
+/// The part of a step's movement that Verlet takes away, in [0, 1].
+[[nodiscard]] double damping_per_step(const VerletSettings& settings, double dt);
+
 using IntegratorSettings = std::variant<ExplicitEulerSettings, SymplecticEulerSettings, VerletSettings>;
 
 class Integrator {
  public:
+  /// Keeps a reference to the network.
+  explicit Integrator(const SpringNetwork& network) : network_(network) {}
   virtual ~Integrator() = default;
 
   /// Sets what the scheme keeps between steps. Call once, before the first step.
@@ -39,6 +45,12 @@ class Integrator {
 
   /// Called after contact changed velocities of a particle. Verlet: x_previous = x - v dt.
   virtual void velocity_changed(SimulationState& state, Index particle, double dt) const;
+
+ protected:
+  [[nodiscard]] const SpringNetwork& network() const { return network_; }
+
+ private:
+  const SpringNetwork& network_;
 };
 
 /// Keeps a reference to the network.

@@ -1,0 +1,34 @@
+#include "dynamics/body_forces.h"
+
+#include "base/parallel.h"
+
+namespace sprung {
+namespace {
+
+constexpr Index kParticleChunk = 8192;
+
+}  // namespace
+
+Gravity::Gravity(const SpringNetwork& network, const Vector3& acceleration) : network_(network), acceleration_(acceleration) {}
+
+void Gravity::add(const Kinematics&, Points& forces) const {
+  parallel_chunks(network_.particle_count(), kParticleChunk, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) forces.col(i) += network_.masses[i] * acceleration_;
+  });
+}
+
+double Gravity::energy(const Points& positions) const {
+  double energy = 0.0;
+  for (Index i = 0; i < network_.particle_count(); ++i) energy -= network_.masses[i] * acceleration_.dot(positions.col(i));
+  return energy;
+}
+
+AirDrag::AirDrag(const SpringNetwork& network, double drag, const Vector3& wind) : network_(network), drag_(drag), wind_(wind) {}
+
+void AirDrag::add(const Kinematics& at, Points& forces) const {
+  parallel_chunks(network_.particle_count(), kParticleChunk, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) forces.col(i) -= drag_ * network_.drag_areas[i] * (at.v.col(i) - wind_);
+  });
+}
+
+}  // namespace sprung

@@ -1,0 +1,168 @@
+#include "dynamics/stable_step.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Lanczos ends when the residual, which bounds how far the estimate is from an eigenvalue, is this part of it.
+constexpr double kResidual = 0.01;
+constexpr int kMostIterations = 100;
+
+// The residual of a start vector without any part in the fastest mode would mislead; this much is added whatever it says.
+constexpr double kMargin = 1.005;
+
+/// M^-1/2 L M^-1/2, which has the eigenvalues of M^-1 L, of the springs whose weight is not 0. Pinned particles are left out.
+class Laplacian {
+ public:
+  Laplacian(const SpringNetwork& network, const std::vector<double>& weights)
+      : springs_(network.springs), weights_(weights), root_(network.inverse_masses.cwiseSqrt()) {}
+
+  Scalars operator*(const Scalars& y) const {
+    Scalars result = Scalars::Zero(y.size());
+    for (std::size_t s = 0; s < weights_.size(); ++s) {
+      const Index a = springs_.first[s];
+      const Index b = springs_.second[s];
+      const double pull = weights_[s] * (root_[a] * y[a] - root_[b] * y[b]);
+      result[a] += root_[a] * pull;
+      result[b] -= root_[b] * pull;
+    }
+    return result;
+  }
+
+  /// An upper bound: the largest row sum of the matrix that acts on springs instead of particles, K B^T M^-1 B.
+  [[nodiscard]] double row_sum_bound() const {
+    Scalars diagonal = Scalars::Zero(root_.size());
+    for (std::size_t s = 0; s < weights_.size(); ++s) {
+      diagonal[springs_.first[s]] += weights_[s];
+      diagonal[springs_.second[s]] += weights_[s];
+    }
+    diagonal.array() *= root_.array().square();
+    double bound = 0.0;
+    for (std::size_t s = 0; s < weights_.size(); ++s) {
+      if (weights_[s] > 0.0) bound = std::max(bound, diagonal[springs_.first[s]] + diagonal[springs_.second[s]]);
+    }
+    return bound;
+  }
+
+  /// The same vector in every run. Zero where particles are pinned, so that it stays among the free ones.
+  [[nodiscard]] Scalars start() const {
+    std::mt19937 random;  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same bits in every run are what is wanted
+    Scalars y(root_.size());
+    for (Index i = 0; i < y.size(); ++i) {
+      const double uniform = static_cast<double>(random()) / static_cast<double>(std::mt19937::max());
+      y[i] = root_[i] > 0.0 ? 2.0 * uniform - 1.0 : 0.0;
+    }
+    return y;
+  }
+
+ private:
+  const Springs& springs_;
+  const std::vector<double>& weights_;
+  Scalars root_;
+};
+
+/// Power iteration that keeps what it saw: Lanczos' tridiagonal matrix.
+double largest_eigenvalue(const Laplacian& matrix) {
+  const double bound = matrix.row_sum_bound();
+  Scalars y = matrix.start();
+  if (bound == 0.0 || y.isZero(0.0)) return 0.0;
+  y.normalize();
+  Scalars previous = Scalars::Zero(y.size());
+  Scalars diagonal(kMostIterations);
+  Scalars beside(kMostIterations);
+  double estimate = 0.0;
+  for (int k = 0; k < kMostIterations; ++k) {
+    Scalars next = matrix * y;
+    diagonal[k] = y.dot(next);
+    next -= diagonal[k] * y;
+    if (k > 0) next -= beside[k - 1] * previous;
+    beside[k] = next.norm();
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+    solver.computeFromTridiagonal(diagonal.head(k + 1), beside.head(k));
+    const double residual = beside[k] * std::abs(solver.eigenvectors()(k, k));
+    estimate = solver.eigenvalues()[k] + residual;
+    if (residual <= kResidual * estimate || beside[k] <= std::numeric_limits<double>::epsilon() * bound) break;
+    previous = std::exchange(y, next / beside[k]);
+  }
+  return std::min(bound, kMargin * estimate);
+}
+
+/// The positive root of k dt^2 + 2 c dt = limit.
+double positive_root(double k, double c, double limit) {
+  const double divisor = c + std::sqrt(c * c + k * limit);
+  return divisor > 0.0 ? limit / divisor : kInfinity;
+}
+
+struct LargestStep {
+  double elastic;
+  double damping;
+
+  // Undamped modes leave the circle of radius sqrt(5) beyond 2 / omega; overdamped ones are unstable beyond 2 / |s| with s the
+  // faster root of s^2 + c s + k.
+  double operator()(const ExplicitEulerSettings&) const {
+    const double overdamped = damping * damping - 4.0 * elastic;
+    if (overdamped >= 0.0) return damping > 0.0 ? 4.0 / (damping + std::sqrt(overdamped)) : kInfinity;
+    return 2.0 / std::sqrt(elastic);
+  }
+
+  // z^2 - (2 - c dt - k dt^2) z + 1 - c dt is stable while its value at z = -1 is positive.
+  double operator()(const SymplecticEulerSettings&) const { return positive_root(elastic, damping, 4.0); }
+
+  // The same with z^2 - (2 - d - c dt - k dt^2) z + 1 - d - c dt, where d itself may depend on the step: 4 - 2 d falls with it, so
+  // the bound is where the two curves meet.
+  double operator()(const VerletSettings& verlet) const {
+    double unstable = positive_root(elastic, damping, 4.0 - 2.0 * damping_per_step(verlet, 0.0));
+    if (!(verlet.damping_rate > 0.0) || unstable == kInfinity) return unstable;
+    double stable = positive_root(elastic, damping, 4.0 - 2.0 * damping_per_step(verlet, unstable));
+    for (int halving = 0; halving < std::numeric_limits<double>::digits; ++halving) {
+      const double middle = 0.5 * (stable + unstable);
+      const double limit = positive_root(elastic, damping, 4.0 - 2.0 * damping_per_step(verlet, middle));
+      (middle < limit ? stable : unstable) = middle;
+    }
+    return stable;
+  }
+};
+
+}  // namespace
+
+SpectralBounds spectral_bounds(const SpringNetwork& network, double drag) {
+  const Springs& springs = network.springs;
+  SpectralBounds bounds{.elastic = largest_eigenvalue(Laplacian(network, springs.stiffness)),
+                        .damping = largest_eigenvalue(Laplacian(network, springs.damping))};
+  bounds.damping_time = kInfinity;
+  for (std::size_t s = 0; s < springs.stiffness.size(); ++s) {
+    if (springs.stiffness[s] > 0.0) bounds.damping_time = std::min(bounds.damping_time, springs.damping[s] / springs.stiffness[s]);
+  }
+  if (bounds.damping_time == kInfinity) bounds.damping_time = 0.0;
+  bounds.least_drag = kInfinity;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (network.is_pinned(i)) continue;
+    const double rate = drag * network.drag_areas[i] * network.inverse_masses[i];
+    bounds.drag = std::max(bounds.drag, rate);
+    bounds.least_drag = std::min(bounds.least_drag, rate);
+  }
+  if (bounds.least_drag == kInfinity) bounds.least_drag = 0.0;
+  return bounds;
+}
+
+double largest_stable_step(const IntegratorSettings& settings, const SpectralBounds& bounds) {
+  return std::visit(LargestStep{bounds.elastic, bounds.damping + bounds.drag}, settings);
+}
+
+// |1 + s dt|^2 = 1 - c dt + k dt^2 for the roots s of s^2 + c s + k. Dampers give the fastest mode at least c = damping_time k.
+double growth_time(const IntegratorSettings& settings, const SpectralBounds& bounds, double step) {
+  if (!std::holds_alternative<ExplicitEulerSettings>(settings)) return kInfinity;
+  const double rate = bounds.elastic * (step - bounds.damping_time) - bounds.least_drag;
+  return rate > 0.0 ? 2.0 / rate : kInfinity;
+}
+
+}  // namespace sprung
