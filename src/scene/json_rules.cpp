@@ -1,0 +1,169 @@
+#include "scene/json_rules.h"
+
+#include "base/format.h"
+#include "scene/nearest_name.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+std::string describe(const Range& range) {
+  const std::string lower = format_number(range.lower);
+  if (range.upper < kLargestNumber) return "must be between " + lower + " and " + format_number(range.upper);
+  return (range.without_lower ? "must be greater than " : "must be at least ") + lower;
+}
+
+bool is_whole(const Json& json) { return json.is_number() && std::floor(json.get<double>()) == json.get<double>(); }
+
+}  // namespace
+
+void JsonPlace::report(const Json& value, const std::string& rule, const std::string& remedy) const {
+  problems->push_back({file, path, shortened(value), rule, remedy});
+}
+
+void JsonPlace::report_key(const std::string& rule, const std::string& remedy) const {
+  problems->push_back({file, path, "", rule, remedy});
+}
+
+Rule<double> number(Range range) {
+  return [=](Json& json, const JsonPlace& place) -> std::optional<double> {
+    if (!json.is_number()) {
+      place.report(json, "must be a number");
+      return std::nullopt;
+    }
+    const double value = json.get<double>();
+    if (std::abs(value) > kLargestNumber) {
+      place.report(json, "must be at most " + format_number(kLargestNumber) + " in size");
+      return std::nullopt;
+    }
+    if (value < range.lower || value > range.upper || (range.without_lower && value == range.lower)) {
+      place.report(json, describe(range));
+      return std::nullopt;
+    }
+    return value;
+  };
+}
+
+Rule<Index> integer(Index lower, Index upper) {
+  return [=](Json& json, const JsonPlace& place) -> std::optional<Index> {
+    if (!is_whole(json)) {
+      place.report(json, "must be a whole number");
+      return std::nullopt;
+    }
+    const double value = json.get<double>();
+    if (value < lower) {
+      place.report(json, "must be at least " + std::to_string(lower));
+      return std::nullopt;
+    }
+    if (value > upper) {
+      place.report(json, "must be at most " + std::to_string(upper));
+      return std::nullopt;
+    }
+    json = static_cast<Index>(value);
+    return json.get<Index>();
+  };
+}
+
+Rule<bool> boolean() {
+  return [](Json& json, const JsonPlace& place) -> std::optional<bool> {
+    if (json.is_boolean()) return json.get<bool>();
+    place.report(json, "must be true or false");
+    return std::nullopt;
+  };
+}
+
+Rule<std::string> text() {
+  return [](Json& json, const JsonPlace& place) -> std::optional<std::string> {
+    if (json.is_string() && !json.get_ref<const std::string&>().empty()) return json.get<std::string>();
+    place.report(json, json.is_string() ? "must not be empty" : "must be a string");
+    return std::nullopt;
+  };
+}
+
+Rule<std::size_t> word_of(std::vector<std::string> words) {
+  return [words = std::move(words)](Json& json, const JsonPlace& place) -> std::optional<std::size_t> {
+    const std::string rule = words.size() == 1 ? "must be \"" + words.front() + "\"" : "must be one of " + joined(words);
+    if (!json.is_string()) {
+      place.report(json, rule);
+      return std::nullopt;
+    }
+    const auto& word = json.get_ref<const std::string&>();
+    const auto found = std::find(words.begin(), words.end(), word);
+    if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+    const auto near = nearest_name(word, words);
+    place.report(json, rule, near ? "did you mean \"" + *near + "\"?" : "");
+    return std::nullopt;
+  };
+}
+
+Rule<Vector3> vector3(Range range) {
+  return [rule = array_of<3>(number(range))](Json& json, const JsonPlace& place) -> std::optional<Vector3> {
+    const auto values = rule(json, place);
+    if (!values) return std::nullopt;
+    return Vector3((*values)[0], (*values)[1], (*values)[2]);
+  };
+}
+
+namespace detail {
+
+bool check_list(const Json& json, const JsonPlace& place, std::size_t least, std::size_t most) {
+  if (!json.is_array()) {
+    place.report(json, "must be a list, written in [ ]");
+    return false;
+  }
+  if (json.size() >= least && json.size() <= most) return true;
+  const std::string entries = least == 1 ? " entry" : " entries";
+  const std::string count = (least == most ? "must have " : "must have at least ") + std::to_string(least) + entries;
+  place.report(json, count, "it has " + std::to_string(json.size()));
+  return false;
+}
+
+bool check_object(const Json& json, const JsonPlace& place) {
+  if (json.is_object()) return true;
+  place.report(json, "must be an object, written in { }");
+  return false;
+}
+
+}  // namespace detail
+
+std::optional<std::string> Fields::one_of(const std::vector<std::string>& keys, bool or_nothing) {
+  std::vector<std::string> written;
+  for (const std::string& key : keys) {
+    if (has(key)) written.push_back(key);
+  }
+  if (written.size() == 1) return written.front();
+  if (written.empty() && !or_nothing) place_.report_key("must have one of " + joined(keys), "add one of them");
+  if (written.size() > 1) {
+    place_.report_key("may have only one of " + joined(keys), "it has " + joined(written) + ": remove all but one");
+  }
+  return std::nullopt;
+}
+
+std::optional<std::size_t> Fields::kind(const std::string& key, const std::vector<std::string>& kinds) {
+  const auto kind = required(key, word_of(kinds));
+  kind_is_known_ = kind.has_value();
+  return kind;
+}
+
+void Fields::accept(const std::string& key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
+}
+
+bool Fields::has(const std::string& key) {
+  accept(key);
+  return json_.contains(key);
+}
+
+void Fields::report_missing(const std::string& key) const { place_.at(key).report_key("is missing", "it is required: add it"); }
+
+void Fields::reject_unknown_keys() const {
+  if (!kind_is_known_) return;
+  for (const auto& [key, value] : json_.items()) {
+    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    place_.at(key).report_key("is not a known key", suggestion(key, known_));
+  }
+}
+
+}  // namespace sprung

@@ -1,0 +1,149 @@
+// Rules that turn JSON values into C++ ones: each names type, bounds and default of a key, and reports what breaks them. Defaults
+// are written into the document, so that it ends up complete.
+#pragma once
+
+#include "base/types.h"
+#include "scene/json_text.h"
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace sprung {
+
+/// Where in which file, and who is told of problems.
+struct JsonPlace {
+  std::string file;
+  std::string path;
+  std::vector<Problem>* problems = nullptr;
+
+  [[nodiscard]] JsonPlace at(const std::string& key) const { return {file, join_path(path, key), problems}; }
+  [[nodiscard]] JsonPlace at(std::size_t index) const { return {file, join_path(path, index), problems}; }
+  void report(const Json& value, const std::string& rule, const std::string& remedy = {}) const;
+  /// When there is no value to show, or too much of it.
+  void report_key(const std::string& rule, const std::string& remedy = {}) const;
+};
+
+/// Reads a value, or reports why it cannot and returns none.
+template <class T>
+using Rule = std::function<std::optional<T>(Json&, const JsonPlace&)>;
+
+/// Beyond this a number's square or cube is no longer of use, whatever its unit.
+inline constexpr double kLargestNumber = 1e30;
+
+struct Range {
+  double lower = -kLargestNumber;
+  double upper = kLargestNumber;
+  bool without_lower = false;
+};
+inline constexpr Range kPositive{0.0, kLargestNumber, true};
+inline constexpr Range kNotNegative{0.0};
+inline constexpr Range kFraction{0.0, 1.0};
+
+[[nodiscard]] Rule<double> number(Range range = {});
+/// Whole numbers; 64.0 is one.
+[[nodiscard]] Rule<Index> integer(Index lower, Index upper);
+[[nodiscard]] Rule<bool> boolean();
+/// A string that is not empty.
+[[nodiscard]] Rule<std::string> text();
+/// One of the words, as its number in the list.
+[[nodiscard]] Rule<std::size_t> word_of(std::vector<std::string> words);
+[[nodiscard]] Rule<Vector3> vector3(Range range = {});
+
+namespace detail {
+[[nodiscard]] bool check_list(const Json& json, const JsonPlace& place, std::size_t least, std::size_t most);
+[[nodiscard]] bool check_object(const Json& json, const JsonPlace& place);
+}  // namespace detail
+
+/// An array of `least` to `most` entries.
+template <class T>
+[[nodiscard]] Rule<std::vector<T>> list_of(Rule<T> rule, std::size_t least, std::size_t most = 100'000'000) {
+  return [=](Json& json, const JsonPlace& place) -> std::optional<std::vector<T>> {
+    if (!detail::check_list(json, place, least, most)) return std::nullopt;
+    std::vector<T> values;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      if (auto value = rule(json[i], place.at(i))) values.push_back(std::move(*value));
+    }
+    if (values.size() != json.size()) return std::nullopt;
+    return values;
+  };
+}
+
+/// An array of exactly n entries.
+template <std::size_t n, class T>
+[[nodiscard]] Rule<std::array<T, n>> array_of(Rule<T> rule) {
+  return [list = list_of<T>(std::move(rule), n, n)](Json& json, const JsonPlace& place) -> std::optional<std::array<T, n>> {
+    const auto values = list(json, place);
+    if (!values) return std::nullopt;
+    std::array<T, n> result{};
+    std::copy(values->begin(), values->end(), result.begin());
+    return result;
+  };
+}
+
+/// The keys of one object. A key is known once it was asked for; `reject_unknown_keys` reports the others.
+class Fields {
+ public:
+  Fields(Json& json, JsonPlace place) : json_(json), place_(std::move(place)) {}
+
+  /// The value, or none when it is missing (which is reported) or broken.
+  template <class T>
+  std::optional<T> required(const std::string& key, const Rule<T>& rule) {
+    if (!has(key)) report_missing(key);
+    return optional(key, rule);
+  }
+
+  /// The value, `fallback` when it is missing, or none when it is broken.
+  template <class T>
+  std::optional<T> value(const std::string& key, const Rule<T>& rule, const Json& fallback) {
+    if (!has(key)) json_[key] = fallback;
+    return optional(key, rule);
+  }
+
+  /// The value, or none when it is missing or broken.
+  template <class T>
+  std::optional<T> optional(const std::string& key, const Rule<T>& rule) {
+    if (!has(key)) return std::nullopt;
+    return rule(json_[key], place_.at(key));
+  }
+
+  /// Which of the keys is written: reports none or several, and then returns none. `or_nothing`: none may be written.
+  std::optional<std::string> one_of(const std::vector<std::string>& keys, bool or_nothing = false);
+
+  /// The required key that says what kind of object it is, as a number in the list. When it is broken no key counts as unknown.
+  std::optional<std::size_t> kind(const std::string& key, const std::vector<std::string>& kinds);
+
+  /// Makes a key known without reading it.
+  void accept(const std::string& key);
+
+  [[nodiscard]] bool has(const std::string& key);
+  [[nodiscard]] const Json& json() const { return json_; }
+  [[nodiscard]] const JsonPlace& place() const { return place_; }
+  void reject_unknown_keys() const;
+
+ private:
+  void report_missing(const std::string& key) const;
+
+  Json& json_;
+  JsonPlace place_;
+  std::vector<std::string> known_;
+  bool kind_is_known_ = true;
+};
+
+/// An object whose keys `read` asks for.
+template <class T, class Read>
+[[nodiscard]] Rule<T> object_of(Read read) {
+  return [=](Json& json, const JsonPlace& place) -> std::optional<T> {
+    if (!detail::check_object(json, place)) return std::nullopt;
+    Fields fields(json, place);
+    T value = read(fields);
+    fields.reject_unknown_keys();
+    return value;
+  };
+}
+
+}  // namespace sprung

@@ -1,0 +1,126 @@
+#include "scene/overrides.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <optional>
+#include <utility>
+#include <variant>
+
+namespace sprung {
+namespace {
+
+using PathPart = std::variant<std::string, std::size_t>;
+
+constexpr const char* kForm = "write key.path=value, for example bodies.rope.pins[0].nearest=[0,1,0]";
+
+std::optional<std::size_t> index_in_brackets(std::string_view text) {
+  std::size_t index = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (text.empty() || end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
+  return index;
+}
+
+/// Splits `pins[0][1]` into `pins`, 0, 1.
+bool append_parts(std::string_view text, std::vector<PathPart>& parts) {
+  const std::size_t name_end = std::min(text.find('['), text.size());
+  if (name_end == 0) return false;
+  parts.emplace_back(std::string(text.substr(0, name_end)));
+  for (text.remove_prefix(name_end); !text.empty();) {
+    const std::size_t close = text.find(']');
+    if (text.front() != '[' || close == std::string_view::npos) return false;
+    const auto index = index_in_brackets(text.substr(1, close - 1));
+    if (!index) return false;
+    parts.emplace_back(*index);
+    text.remove_prefix(close + 1);
+  }
+  return true;
+}
+
+std::optional<std::vector<PathPart>> split_path(std::string_view path) {
+  std::vector<PathPart> parts;
+  while (true) {
+    const std::size_t dot = path.find('.');
+    if (!append_parts(path.substr(0, dot), parts)) return std::nullopt;
+    if (dot == std::string_view::npos) return parts;
+    path.remove_prefix(dot + 1);
+  }
+}
+
+bool is_bare_word(std::string_view text) {
+  const auto allowed = [](unsigned char letter) {
+    return letter > ' ' && std::string_view("{}[]\",:'").find(static_cast<char>(letter)) == std::string_view::npos;
+  };
+  return !text.empty() && std::all_of(text.begin(), text.end(), allowed);
+}
+
+std::optional<Json> read_value(const std::string& text) {
+  JsonText json = parse_json(text, "");
+  if (json.problems.empty()) return std::move(json.document);
+  if (is_bare_word(text)) return Json(text);
+  return std::nullopt;
+}
+
+/// The value at `part` of `json`, which becomes a container when it is nothing yet; null when `json` has no such place.
+Json* descend(Json& json, const PathPart& part, std::string& problem) {
+  if (const auto* name = std::get_if<std::string>(&part)) {
+    if (json.is_null()) json = Json::object();
+    if (json.is_object()) return &json[*name];
+    problem = "has no keys: it is not an object";
+    return nullptr;
+  }
+  const std::size_t index = std::get<std::size_t>(part);
+  if (json.is_null()) json = Json::array();
+  if (!json.is_array()) {
+    problem = "has no entries: it is not a list";
+    return nullptr;
+  }
+  if (index > json.size()) {
+    problem = "has " + std::to_string(json.size()) + " entries, so there is no entry " + std::to_string(index);
+    return nullptr;
+  }
+  if (index == json.size()) json.push_back(nullptr);
+  return &json[index];
+}
+
+std::string join_part(const std::string& path, const PathPart& part) {
+  return std::visit([&](const auto& value) { return join_path(path, value); }, part);
+}
+
+/// Sets the value, or says what is in the way.
+std::string assign(Json& document, const std::vector<PathPart>& parts, Json value) {
+  Json* at = &document;
+  Json* parent = nullptr;
+  std::string path;
+  for (const PathPart& part : parts) {
+    std::string problem;
+    parent = at;
+    at = descend(*parent, part, problem);
+    if (at == nullptr) return (path.empty() ? "the scene" : path) + " " + problem;
+    path = join_part(path, part);
+  }
+  const auto* name = std::get_if<std::string>(&parts.back());
+  if (value.is_null() && name != nullptr) {
+    parent->erase(*name);
+  } else {
+    *at = std::move(value);
+  }
+  return "";
+}
+
+}  // namespace
+
+void apply_override(const std::string& override_text, Json& document, std::vector<Problem>& problems) {
+  const auto report = [&](const std::string& rule, const std::string& remedy) {
+    problems.push_back({"", "--set", override_text, rule, remedy});
+  };
+  const std::size_t equals = override_text.find('=');
+  const auto parts = equals == std::string::npos ? std::nullopt : split_path(std::string_view(override_text).substr(0, equals));
+  if (!parts) return report("is not of the form key.path=value", kForm);
+  auto value = read_value(override_text.substr(equals + 1));
+  if (!value) return report("what follows the = is neither JSON nor a single word", kForm);
+  const std::string problem = assign(document, *parts, std::move(*value));
+  if (!problem.empty()) report(problem, "check the path");
+}
+
+}  // namespace sprung

@@ -1,0 +1,133 @@
+// Scenes for tests: written to a folder of their own, read with overrides.
+#pragma once
+
+#include "base/error.h"
+#include "scene/scene_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// A folder that lives as long as the test.
+class SceneFolder {
+ public:
+  SceneFolder() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    std::string name = std::string(test->test_suite_name()) + "." + test->name();
+    for (char& letter : name) {
+      if (letter == '/') letter = '.';
+    }
+    folder_ = std::filesystem::path(testing::TempDir()) / ("sprung_scene_" + name);
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~SceneFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  SceneFolder(const SceneFolder&) = delete;
+  SceneFolder& operator=(const SceneFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    const std::filesystem::path file = folder_ / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << text;
+    return file;
+  }
+
+  [[nodiscard]] Scene read(const std::string& text, const std::vector<std::string>& overrides = {}) const {
+    return read_scene(write("scene.json", text), overrides);
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// The problems that `call` throws; none when it throws nothing.
+template <class Call>
+[[nodiscard]] std::vector<Problem> problems_of(Call&& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.problems();
+  }
+  return {};
+}
+
+/// A cloth and a ball over the floor: the smallest scene with every kind of object.
+inline constexpr const char* kPlainScene = R"({
+  "version": 1,
+  "duration": 1.0,
+  "frame_rate": 30,
+  "step": "auto",
+  "bodies": {
+    "banner": {
+      "shape": { "type": "cloth", "size": [1, 1], "resolution": [3, 3] },
+      "mass": 0.2,
+      "springs": { "structural": { "stiffness": 400, "damping": 0.01 } },
+      "pins": [ { "at": "corner", "which": ["min_min"] } ]
+    }
+  },
+  "obstacles": { "floor": { "shape": { "type": "half_space", "normal": [0, 1, 0], "offset": -5 } } }
+})";
+
+/// The example of the format's description, and the keys it leaves out.
+inline constexpr const char* kFullScene = R"({
+  "version": 1,
+  "duration": 4.0,
+  "frame_rate": 30,
+  "step": 0.0003333333333333333,
+  "gravity": [0, -9.81, 0.5],
+  "air": { "drag": 0.25, "wind": [1, 0, -2] },
+  "integrator": { "type": "verlet", "damping": 0.001, "start_at_rest": true },
+  "stretch_limit": { "max_stretch": 0.03, "max_compression": 0.9, "kinds": ["structural", "bend"], "iterations": 16,
+                     "tolerance": 0.002 },
+  "contact": { "response": "penalty", "stiffness": 1000, "damping": 0.5 },
+  "stability": "warn",
+  "bodies": {
+    "zebra": {
+      "shape": { "type": "cloth", "size": [1.0, 2.0], "resolution": [64, 32] },
+      "mass": 0.2,
+      "springs": {
+        "structural": { "stiffness": 400, "damping": 0.01 },
+        "shear": { "modulus": 200, "damping": 0.005 },
+        "bend": { "stiffness": 5 }
+      },
+      "place": { "position": [0, 2, 0], "rotation": [90, 0, 0], "scale": 1.5 },
+      "pins": [ { "at": "corner", "which": ["min_min", "max_min"] }, { "nearest": [0, 2, 0] },
+                { "box": [[-1, 1, -1], [1, 3, 1]], "motion": { "spin": [0, 90, 0] } },
+                { "indices": [3, 5], "motion": { "keyframes": [ { "time": 0 }, { "time": 1, "position": [0, 1, 0] } ],
+                                                 "interpolation": "smooth" } } ],
+      "velocity": [1, 2, 3],
+      "thickness": 0.005, "friction": 0.3, "static_friction": 0.4, "restitution": 0.1
+    },
+    "rope": { "shape": { "type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 5, "length": 1.25 }, "particle_mass": 0.5,
+              "pins": [ { "at": "corner", "which": ["from", "to"] } ] },
+    "line": { "shape": { "type": "rope", "points": [[0, 0, 0], [1, 0, 0], [1, 1, 0]] }, "density": 0.1 },
+    "jelly": { "shape": { "type": "solid", "size": [1, 2, 3], "resolution": [4, 5, 6] }, "density": 1000,
+               "pins": [ { "at": "corner", "which": ["max_min_max"] } ] },
+    "shirt": { "shape": { "type": "mesh", "file": "shirt.obj" }, "mass": 0.3 }
+  },
+  "obstacles": {
+    "bunny": { "shape": { "type": "mesh", "file": "bunny.obj" }, "place": { "position": [0, 0, 1], "scale": 0.6 },
+               "friction": 0.4, "restitution": 0.2,
+               "motion": { "keyframes": [ { "time": 0, "position": [0, 0, 0] },
+                                          { "time": 1, "position": [0, 0.2, 0], "rotation": [0, 90, 0] } ] } },
+    "floor": { "shape": { "type": "half_space", "normal": [0, 2, 0], "offset": 0.25 } },
+    "ball": { "shape": { "type": "sphere", "radius": 0.5 } },
+    "crate": { "shape": { "type": "box", "size": [1, 2, 3] } },
+    "pill": { "shape": { "type": "capsule", "radius": 0.1, "length": 2 } },
+    "can": { "shape": { "type": "cylinder", "radius": 0.2, "height": 3 } },
+    "hat": { "shape": { "type": "cone", "radius": 0.3, "height": 4 } },
+    "egg": { "shape": { "type": "ellipsoid", "radii": [1, 2, 3] } }
+  }
+})";
+
+}  // namespace sprung
