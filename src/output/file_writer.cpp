@@ -1,0 +1,113 @@
+#include "output/file_writer.h"
+
+#include "base/error.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+namespace sprung {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const std::string& action, const fs::path& file, int error) {
+  throw FileError(action, file.string(), std::generic_category().message(error));
+}
+
+/// An open file; closed at the latest when it goes out of scope.
+class OpenFile {
+ public:
+  OpenFile(const fs::path& file, int flags)
+      : file_(file), descriptor_(::open(file.c_str(), flags | O_CREAT | O_WRONLY | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) fail("write", file_, errno);
+  }
+  ~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  void write(std::string_view text) {
+    while (!text.empty()) {
+      const ssize_t written = ::write(descriptor_, text.data(), text.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail("write", file_, errno);
+      text.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+
+  // A file system may report a full disk only now.
+  void close() {
+    const int result = ::close(descriptor_);
+    descriptor_ = -1;
+    if (result != 0 && errno != EINTR) fail("write", file_, errno);
+  }
+
+  [[nodiscard]] off_t size() const {
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0) fail("read the size of", file_, errno);
+    return status.st_size;
+  }
+
+  void shorten(off_t size) noexcept { [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, size); }
+
+ private:
+  const fs::path& file_;
+  int descriptor_;
+};
+
+void remove_quietly(const fs::path& path) {
+  std::error_code ignored;
+  fs::remove(path, ignored);
+}
+
+}  // namespace
+
+fs::path temporary_path(const fs::path& file) {
+  fs::path name = ".";
+  name += file.filename();
+  name += ".tmp";
+  return file.parent_path() / name;
+}
+
+void write_file(const fs::path& file, std::string_view text) {
+  const fs::path folder = file.parent_path();
+  const fs::path temporary = temporary_path(file);
+  const bool new_folder = !folder.empty() && !fs::exists(folder);
+  if (new_folder) make_folder(folder);
+  try {
+    OpenFile open(temporary, O_TRUNC);
+    open.write(text);
+    open.close();
+    if (::rename(temporary.c_str(), file.c_str()) != 0) fail("write", file, errno);
+  } catch (...) {
+    remove_quietly(temporary);
+    if (new_folder) remove_quietly(folder);
+    throw;
+  }
+}
+
+void append_to_file(const fs::path& file, std::string_view text) {
+  OpenFile open(file, O_APPEND);
+  const off_t before = open.size();
+  try {
+    open.write(text);
+  } catch (...) {
+    open.shorten(before);
+    throw;
+  }
+  open.close();
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error && !fs::is_directory(folder, error) && !error) error = std::make_error_code(std::errc::not_a_directory);
+  if (error) throw FileError("make the folder", folder.string(), error.message());
+}
+
+}  // namespace sprung

@@ -1,0 +1,121 @@
+#include "output/obj_sequence.h"
+
+#include "base/error.h"
+#include "base/format.h"
+#include "base/parallel.h"
+#include "output/file_pattern.h"
+#include "output/scene_extent.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+constexpr Index kVerticesPerChunk = 4096;
+constexpr std::size_t kBytesPerVertex = 64;
+const std::string kObstacleFolder = "obstacles";
+
+std::string chunk_lines(const Points& vertices, Index begin, Index end) {
+  std::string text;
+  text.reserve(static_cast<std::size_t>(end - begin) * kBytesPerVertex);
+  for (Index i = begin; i < end; ++i) {
+    text += 'v';
+    for (int axis = 0; axis < 3; ++axis) {
+      text += ' ';
+      append_number(text, vertices(axis, i));
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+bool is_folder_name(const std::string& name) {
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !name.empty() && std::all_of(name.begin(), name.end(), allowed);
+}
+
+void check_names(const char* key, const std::vector<std::string>& names, std::vector<Problem>& problems) {
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (!is_folder_name(name)) {
+      problems.push_back({"", key, '"' + name + '"', "must be letters, digits, _ and -, as it names a folder", "rename it"});
+    } else if (!seen.insert(name).second) {
+      problems.push_back({"", key, '"' + name + '"', "must not be used twice, as it names a folder", "rename one of them"});
+    }
+  }
+}
+
+void check_names(const Simulator& simulator) {
+  std::vector<std::string> bodies;
+  std::vector<std::string> obstacles;
+  for (const Body& body : simulator.network().bodies) bodies.push_back(body.name);
+  for (const Obstacle& obstacle : simulator.environment().obstacles()) obstacles.push_back(obstacle.name);
+  std::vector<Problem> problems;
+  check_names("body", bodies, problems);
+  check_names("obstacle", obstacles, problems);
+  if (std::find(bodies.begin(), bodies.end(), kObstacleFolder) != bodies.end()) {
+    problems.push_back({"", "body", '"' + kObstacleFolder + '"', "is the folder of the obstacles", "rename it"});
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+ObjSequence body_sequence(const Body& body, int frames) {
+  const auto vertices = [first = body.first_particle, count = body.particle_count](const Simulator& simulator) -> Points {
+    return simulator.positions().middleCols(first, count);
+  };
+  return {sequence_pattern(body.name + "/" + body.name, frames), vertices, body.surface.faces, body.surface.segments};
+}
+
+TriangleMesh surface_mesh(const Obstacle& obstacle, const Box3& scene) {
+  const bool endless = std::holds_alternative<HalfSpaceGeometry>(obstacle.geometry);
+  return endless ? obstacle_mesh(obstacle.geometry, half_space_extent(scene, obstacle)) : obstacle_mesh(obstacle.geometry);
+}
+
+ObjSequence obstacle_sequence(const Obstacle& obstacle, Index number, const Box3& scene, int frames) {
+  const TriangleMesh mesh = surface_mesh(obstacle, scene);
+  const auto vertices = [number, local = mesh.vertices](const Simulator& simulator) -> Points {
+    const Obstacle& moved = simulator.environment().obstacles()[static_cast<std::size_t>(number)];
+    return moved.motion.pose(moved.placed, simulator.time()) * local;
+  };
+  const std::string name = kObstacleFolder + "/" + obstacle.name;
+  const std::string pattern = obstacle.motion.moves() ? sequence_pattern(name + "/" + obstacle.name, frames) : name + ".obj";
+  return {pattern, vertices, to_polygons(mesh.triangles), Edges(2, 0)};
+}
+
+}  // namespace
+
+ObjSequence::ObjSequence(std::string pattern, std::function<Points(const Simulator&)> vertices, const PolygonFaces& faces,
+                         const Edges& lines)
+    : pattern_(std::move(pattern)), vertices_(std::move(vertices)), elements_(obj_text(Points(3, 0), faces, lines)) {}
+
+bool ObjSequence::changes() const { return pattern_.find('#') != std::string::npos; }
+
+std::string ObjSequence::text(const Simulator& simulator) const { return vertex_lines(vertices_(simulator)) + elements_; }
+
+std::string vertex_lines(const Points& vertices) {
+  const Index count = static_cast<Index>(vertices.cols());
+  std::vector<std::string> chunks(static_cast<std::size_t>((count + kVerticesPerChunk - 1) / kVerticesPerChunk));
+  parallel_chunks(count, kVerticesPerChunk, [&](Index begin, Index end) {
+    chunks[static_cast<std::size_t>(begin / kVerticesPerChunk)] = chunk_lines(vertices, begin, end);
+  });
+  return std::accumulate(chunks.begin(), chunks.end(), std::string());
+}
+
+std::vector<ObjSequence> obj_sequences(const Simulator& simulator, int frames) {
+  check_names(simulator);
+  std::vector<ObjSequence> sequences;
+  for (const Body& body : simulator.network().bodies) sequences.push_back(body_sequence(body, frames));
+  const std::vector<Obstacle>& obstacles = simulator.environment().obstacles();
+  const Box3 scene = scene_bounds(simulator);
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    sequences.push_back(obstacle_sequence(obstacles[i], static_cast<Index>(i), scene, frames));
+  }
+  return sequences;
+}
+
+}  // namespace sprung

@@ -1,0 +1,83 @@
+#include "output/output_folder.h"
+
+#include "base/error.h"
+#include "output/file_pattern.h"
+#include "output/file_writer.h"
+#include "output/run_record.h"
+
+#include <algorithm>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A run that was killed while it wrote its first file leaves no more than this, which is ours by its name.
+void remove_unfinished_record(const fs::path& folder) { fs::remove(temporary_path(folder / kRunRecordFile)); }
+
+void remove_files_of_run(const fs::path& folder, const std::vector<std::string>& patterns) {
+  for (const std::string& pattern : patterns) {
+    if (!stays_inside(pattern)) continue;
+    for (const std::string& name : {pattern, temporary_path(pattern).string()}) {
+      for (const fs::path& file : matching_files(folder, name)) fs::remove(file);
+    }
+    std::error_code not_empty;
+    for (fs::path part = fs::path(pattern).parent_path(); !part.empty(); part = part.parent_path()) {
+      fs::remove(folder / part, not_empty);
+    }
+  }
+}
+
+void remove_earlier_run(const fs::path& folder) {
+  std::optional<std::vector<std::string>> patterns = files_of_run(folder / kRunRecordFile);
+  if (!patterns) {
+    throw FileError("overwrite the folder", folder.string(),
+                    "it holds files but no run of sprung's; choose another folder, or empty this one yourself");
+  }
+  std::erase(*patterns, kRunRecordFile);
+  remove_files_of_run(folder, *patterns);
+  fs::remove(folder / kRunRecordFile);
+}
+
+void prepare(const fs::path& folder, bool overwrite) {
+  make_folder(folder);
+  remove_unfinished_record(folder);
+  if (fs::is_empty(folder)) return;
+  if (!overwrite) {
+    throw FileError("write into the folder", folder.string(),
+                    "it is not empty; choose another folder, or replace the run in it with --overwrite");
+  }
+  remove_earlier_run(folder);
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(fs::path folder, bool overwrite) : folder_(std::move(folder)) {
+  try {
+    prepare(folder_, overwrite);
+  } catch (const fs::filesystem_error& error) {
+    throw FileError("use the folder", folder_.string(), error.path1().string() + ": " + error.code().message());
+  }
+}
+
+void OutputFolder::expect_free(const std::vector<std::string>& patterns) const {
+  for (const std::string& pattern : patterns) {
+    const std::vector<fs::path> files = matching_files(folder_, pattern);
+    if (!files.empty())
+      throw FileError("write", files.front().string(), "it is there already and not of an earlier run; move it away");
+  }
+}
+
+void OutputFolder::write(const fs::path& file, const std::string& text) const { write_file(folder_ / file, text); }
+
+void OutputFolder::append(const fs::path& file, const std::string& text) const { append_to_file(folder_ / file, text); }
+
+void OutputFolder::remove(const fs::path& file) const noexcept {
+  std::error_code ignored;
+  fs::remove(folder_ / file, ignored);
+}
+
+}  // namespace sprung

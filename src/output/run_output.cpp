@@ -1,0 +1,60 @@
+#include "output/run_output.h"
+
+#include "output/diagnostics_csv.h"
+#include "output/file_pattern.h"
+
+#include <utility>
+
+namespace sprung {
+namespace {
+
+constexpr const char* kDiagnosticsFile = "diagnostics.csv";
+
+std::vector<std::string> patterns_of(const std::vector<ObjSequence>& sequences) {
+  std::vector<std::string> patterns{kRunRecordFile, kDiagnosticsFile};
+  for (const ObjSequence& sequence : sequences) patterns.push_back(sequence.pattern());
+  return patterns;
+}
+
+}  // namespace
+
+RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator)
+    : folder_(std::move(folder)),
+      sequences_(obj_sequences(simulator, facts.frames)),
+      record_(facts, simulator.settings().step, patterns_of(sequences_)) {
+  folder_.expect_free(patterns_of(sequences_));
+  write_record();
+  folder_.write(kDiagnosticsFile, csv_head());
+}
+
+void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics) {
+  const bool first = progress_.frames_written == 0;
+  std::vector<std::string> written;
+  try {
+    for (const ObjSequence& sequence : sequences_) {
+      if (!first && !sequence.changes()) continue;
+      const std::string file = fill_pattern(sequence.pattern(), progress_.frames_written + 1);
+      folder_.write(file, sequence.text(simulator));
+      written.push_back(file);
+    }
+    folder_.append(kDiagnosticsFile, csv_row(diagnostics));
+  } catch (...) {
+    for (const std::string& file : written) folder_.remove(file);
+    throw;
+  }
+  ++progress_.frames_written;
+  progress_.steps = simulator.state().step;
+  write_record();
+}
+
+void RunOutput::finish(const std::string& outcome) {
+  progress_.outcome = outcome;
+  write_record();
+}
+
+void RunOutput::write_record() {
+  progress_.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  folder_.write(kRunRecordFile, record_.text(progress_));
+}
+
+}  // namespace sprung

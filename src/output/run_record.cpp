@@ -1,0 +1,63 @@
+#include "output/run_record.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace sprung {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::string kProgram = "sprung";
+
+bool is_run_record(const Json& json) {
+  if (!json.is_object() || json.value("program", Json()) != kProgram || !json.contains("files")) return false;
+  const Json& files = json["files"];
+  return files.is_array() && std::all_of(files.begin(), files.end(), [](const Json& file) { return file.is_string(); });
+}
+
+}  // namespace
+
+struct RunRecord::Document {
+  Json json;
+};
+
+RunRecord::RunRecord(const RunFacts& facts, double step, const std::vector<std::string>& files)
+    : document_(std::make_unique<Document>()) {
+  document_->json = {{"program", kProgram},
+                     {"version", SPRUNG_VERSION},
+                     {"outcome", ""},
+                     {"frames", facts.frames},
+                     {"frames_written", 0},
+                     {"frame_rate", facts.frame_rate},
+                     {"step", step},
+                     {"steps_per_frame", facts.steps_per_frame},
+                     {"steps", 0},
+                     {"seed", facts.seed},
+                     {"threads", facts.threads},
+                     {"wall_seconds", 0.0},
+                     {"warnings", facts.warnings},
+                     {"files", files},
+                     {"scene", facts.scene.empty() ? Json() : Json::parse(facts.scene)}};
+}
+
+RunRecord::~RunRecord() = default;
+
+std::string RunRecord::text(const RunProgress& progress) const {
+  Json& json = document_->json;
+  json["outcome"] = progress.outcome;
+  json["frames_written"] = progress.frames_written;
+  json["steps"] = progress.steps;
+  json["wall_seconds"] = progress.wall_seconds;
+  // A warning may quote a file name that is not UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::optional<std::vector<std::string>> files_of_run(const std::filesystem::path& run_record) {
+  std::ifstream stream(run_record);
+  const Json json = Json::parse(stream, nullptr, false);
+  if (!is_run_record(json)) return std::nullopt;
+  return json["files"].get<std::vector<std::string>>();
+}
+
+}  // namespace sprung

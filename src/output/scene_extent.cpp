@@ -1,0 +1,31 @@
+#include "output/scene_extent.h"
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+constexpr double kRoomToMove = 2.0;
+constexpr double kExtentOfNothing = 1.0;
+
+}  // namespace
+
+Box3 scene_bounds(const Simulator& simulator) {
+  Box3 box = bounds(simulator.positions());
+  for (const Obstacle& obstacle : simulator.environment().obstacles()) {
+    if (std::holds_alternative<HalfSpaceGeometry>(obstacle.geometry)) continue;
+    const RigidTransform pose = obstacle.motion.pose(obstacle.placed, simulator.time());
+    box.extend(bounds(pose * obstacle_mesh(obstacle.geometry).vertices));
+  }
+  return box;
+}
+
+double half_space_extent(const Box3& scene, const Obstacle& half_space) {
+  if (scene.isEmpty()) return kExtentOfNothing;
+  const auto& geometry = std::get<HalfSpaceGeometry>(half_space.geometry);
+  const Vector3 middle = half_space.placed * Vector3(geometry.offset * geometry.normal);
+  const double reach = (scene.center() - middle).norm() + 0.5 * scene.diagonal().norm();
+  return reach > 0.0 ? kRoomToMove * reach : kExtentOfNothing;
+}
+
+}  // namespace sprung

@@ -1,0 +1,37 @@
+#include "output/diagnostics_csv.h"
+
+#include <gtest/gtest.h>
+
+namespace sprung {
+namespace {
+
+TEST(DiagnosticsCsv, ColumnsAreThoseOfTheContract) {
+  EXPECT_EQ(csv_head(),
+            "frame,time,kinetic_energy,elastic_energy,gravity_energy,max_stretch,contacts,min_distance,frame_ms,"
+            "stretch_excess,truncated,squeezed\n");
+}
+
+TEST(DiagnosticsCsv, RowHoldsTheShortestNumbersInTheColumnsOrder) {
+  const FrameDiagnostics frame{.frame = 12,
+                               .time = 0.1,
+                               .kinetic_energy = 1.0 / 3.0,
+                               .elastic_energy = 2.0,
+                               .gravity_energy = -3.5,
+                               .max_stretch = 1e-20,
+                               .stretch_excess = 0.25,
+                               .contacts = 4,
+                               .min_distance = 0.005,
+                               .truncated = 6,
+                               .squeezed = 7,
+                               .frame_ms = 8.5};
+  EXPECT_EQ(csv_row(frame), "12,0.1,0.3333333333333333,2,-3.5,1e-20,4,0.005,8.5,0.25,6,7\n");
+}
+
+TEST(DiagnosticsCsv, DistanceThatIsNotKnownIsEmpty) {
+  FrameDiagnostics frame;
+  frame.time = 0.5;
+  EXPECT_EQ(csv_row(frame), "1,0.5,0,0,0,0,0,,0,0,0,0\n");
+}
+
+}  // namespace
+}  // namespace sprung
