@@ -28,18 +28,27 @@ class ObstacleShape {
   virtual ~ObstacleShape() = default;
 
   /// The surface nearest to p, if nearer than `radius` [m] or, for primitives, if p is inside. Deep inside a closed mesh (farther
-  /// than radius) nothing is found: use `contains`.
+  /// than radius) nothing is found: use `contains`. Where p is on the surface the normal is that of the face found there.
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const = 0;
 
   /// The first crossing of the path from a to b. A path that starts outside and meets the surface is never missed, edges and
-  /// vertices between triangles included.
+  /// vertices between triangles included. Of closed shapes only the way in counts, so that what was caught inside can leave; a path
+  /// that begins on the surface crosses it when it goes in. A path that begins on an open mesh has no side and does not cross it
+  /// there. No path, no crossing: a == b.
   [[nodiscard]] virtual std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const = 0;
 
   /// Whether p is inside; always false for open meshes.
   [[nodiscard]] virtual bool contains(const Vector3& p) const = 0;
+
+  /// A box around the shape [m]; infinite for a half-space.
+  [[nodiscard]] virtual Box3 bounds() const = 0;
+
+  /// What rounding may do to distances measured from p [m].
+  [[nodiscard]] virtual double rounding(const Vector3& p) const = 0;
 };
 
-/// Throws InputError for a mesh without triangles or sizes that are not positive.
+/// Throws InputError, naming every problem, for a mesh without triangles, with positions that are not finite or indices out of
+/// range, and for sizes that are not positive.
 [[nodiscard]] std::unique_ptr<ObstacleShape> make_shape(const ObstacleGeometry& geometry);
 
 }  // namespace sprung

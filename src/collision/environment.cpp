@@ -1,0 +1,138 @@
+#include "collision/environment.h"
+
+#include "collision/obstacle_set.h"
+#include "collision/particle_blocks.h"
+#include "collision/truncation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+
+namespace {
+
+/// The contact of one path with one shape, in the shape's frame.
+struct LocalContact {
+  Vector3 point;
+  Vector3 normal;
+};
+
+LocalContact at(const Crossing& crossing) { return {crossing.point, crossing.normal}; }
+LocalContact at(const SurfacePoint& surface) { return {surface.point, surface.normal}; }
+
+/// A path shorter than the distance of its end from the surface cannot have crossed it, so that a particle at rest costs one walk
+/// through the tree.
+std::optional<LocalContact> find_contact(const ObstacleShape& shape, const LocalPath& path, double reach) {
+  const double length = (path.end - path.begin).norm();
+  const bool surface_first = length <= reach;
+  std::optional<SurfacePoint> surface;
+  if (surface_first) {
+    surface = shape.nearest(path.end, reach);
+    if (!surface) return std::nullopt;
+    if (std::abs(surface->distance) > length + shape.rounding(path.end)) return at(*surface);
+  }
+  if (const auto crossing = shape.first_crossing(path.begin, path.end)) return at(*crossing);
+  if (!surface_first) surface = shape.nearest(path.end, reach);
+  if (!surface) return std::nullopt;
+  return at(*surface);
+}
+
+}  // namespace
+
+struct Environment::Implementation {
+  ObstacleSet set;
+};
+
+Environment::Environment(std::vector<Obstacle> obstacles)
+    : implementation_(new Implementation{ObstacleSet(std::move(obstacles))}) {}
+
+Environment::~Environment() = default;
+Environment::Environment(Environment&&) noexcept = default;
+Environment& Environment::operator=(Environment&&) noexcept = default;
+
+const std::vector<Obstacle>& Environment::obstacles() const { return implementation_->set.obstacles(); }
+
+bool Environment::moves() const {
+  return std::any_of(obstacles().begin(), obstacles().end(), [](const Obstacle& obstacle) { return obstacle.motion.moves(); });
+}
+
+void Environment::set_interval(double t, double t_end) { implementation_->set.set_interval(t, t_end); }
+
+const RigidTransform& Environment::pose_before(Index obstacle) const { return implementation_->set.before(obstacle); }
+const RigidTransform& Environment::pose_after(Index obstacle) const { return implementation_->set.after(obstacle); }
+
+std::vector<Contact> Environment::contacts(const ParticlePaths& paths) const {
+  const ObstacleSet& set = implementation_->set;
+  const auto count = static_cast<Index>(paths.after.cols());
+  if (set.obstacles().empty()) return {};
+  const double carried = set.carries_at_most(finite_bounds(paths.before, 0, count));
+
+  return collect_from_blocks<Contact>(count, [&](Index begin, Index end, std::vector<Contact>& contacts) {
+    const double reach = paths.thickness.segment(begin, end - begin).maxCoeff() + set.max_thickness() + paths.margin;
+    const Box3 box = finite_bounds(paths.before, begin, end).merged(finite_bounds(paths.after, begin, end));
+    if (box.isEmpty()) return;
+    std::vector<Index> near;
+    set.find_near(grown(box, reach + carried), near);
+    if (near.empty()) return;
+    for (Index i = begin; i < end; ++i) {
+      const Vector3 before = paths.before.col(i);
+      const Vector3 after = paths.after.col(i);
+      if (!before.allFinite() || !after.allFinite()) continue;
+      for (const Index k : near) {
+        const double gap = paths.thickness[i] + set.obstacle(k).material.thickness;
+        const auto found = find_contact(set.shape(k), set.local_path(k, before, after), gap + paths.margin);
+        if (!found) continue;
+        const Vector3 point = set.after(k) * found->point;
+        const Vector3 normal = set.after(k).linear() * found->normal;
+        contacts.push_back({i, k, point, normal, normal.dot(after - point)});
+      }
+    }
+  });
+}
+
+std::vector<Index> Environment::truncate(const Points& before, Points& after, const std::vector<char>& held,
+                                         Index& squeezed) const {
+  return truncate_paths(implementation_->set, before, after, held, squeezed);
+}
+
+std::vector<Environment::Inside> Environment::inside(const Points& positions) const {
+  const ObstacleSet& set = implementation_->set;
+  return collect_from_blocks<Inside>(static_cast<Index>(positions.cols()), [&](Index begin, Index end, std::vector<Inside>& found) {
+    const Box3 box = finite_bounds(positions, begin, end);
+    if (box.isEmpty()) return;
+    std::vector<Index> near;
+    set.find_near(grown(box, 0.0), near);
+    for (Index i = begin; i < end; ++i) {
+      for (const Index k : near) {
+        const Vector3 p = set.local(k, positions.col(i));
+        if (!p.allFinite() || !set.shape(k).contains(p)) continue;
+        const auto surface = set.shape(k).nearest(p, std::numeric_limits<double>::infinity());
+        found.push_back({i, k, -surface->distance});
+      }
+    }
+  });
+}
+
+std::optional<double> Environment::min_distance(const Points& positions, double radius) const {
+  const ObstacleSet& set = implementation_->set;
+  const std::vector<double> distances =
+      collect_from_blocks<double>(static_cast<Index>(positions.cols()), [&](Index begin, Index end, std::vector<double>& found) {
+        const Box3 box = finite_bounds(positions, begin, end);
+        if (box.isEmpty()) return;
+        std::vector<Index> near;
+        set.find_near(grown(box, radius), near);
+        double smallest = radius;
+        for (Index i = begin; i < end; ++i) {
+          for (const Index k : near) {
+            const Vector3 p = set.local(k, positions.col(i));
+            if (!p.allFinite()) continue;
+            if (const auto surface = set.shape(k).nearest(p, radius)) smallest = std::min(smallest, surface->distance);
+          }
+        }
+        if (smallest < radius) found.push_back(smallest);
+      });
+  if (distances.empty()) return std::nullopt;
+  return *std::min_element(distances.begin(), distances.end());
+}
+
+}  // namespace sprung

@@ -1,0 +1,66 @@
+// FCL's bounding volume tree of a mesh, and the walks that contact needs: nearest triangle, first triangle on a path.
+#pragma once
+
+#include "collision/segment_triangle.h"
+#include "geometry/closest_point.h"
+#include "geometry/triangle_mesh.h"
+
+#include <fcl/geometry/bvh/BVH_model.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace sprung {
+
+/// FCL builds the tree of AABBs; a copy of it with up to eight children a node and single-precision boxes, rounded outward, is what
+/// the walks read. Requires a valid mesh: at least one triangle, indices in range, finite positions.
+class MeshTree {
+ public:
+  explicit MeshTree(const TriangleMesh& mesh);
+
+  struct Nearest {
+    Index triangle = kNone;
+    ClosestPoint closest;
+  };
+  /// The triangle nearest to p, if nearer than `radius` [m]. Of equally near ones always the same.
+  [[nodiscard]] std::optional<Nearest> nearest(const Vector3& p, double radius) const;
+
+  struct Hit {
+    Index triangle = kNone;
+    double fraction = 0.0;  ///< of the path, in [0, 1]
+  };
+  /// The first triangle that the path from a to b meets, judged by exact predicates: none is missed, edges and vertices belong to
+  /// all their triangles. Of triangles met at the same fraction the lowest index.
+  [[nodiscard]] std::optional<Hit> first_hit(const Vector3& a, const Vector3& b, CrossingSides sides) const;
+
+  /// FCL's model, for its broad phase.
+  [[nodiscard]] const std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>>& model() const { return model_; }
+
+  static constexpr int kLanes = 8;
+
+  /// Children: a node's number, or ~i for the i-th leaf. Lanes without a child have an empty box.
+  struct alignas(64) Node {
+    float min[3][kLanes];
+    float max[3][kLanes];
+    std::int32_t child[kLanes];
+  };
+
+  struct Leaf {
+    Vector3 a;
+    Vector3 b;
+    Vector3 c;
+    Index triangle;
+  };
+
+ private:
+  std::int32_t add_node(const std::vector<int>& children, int depth);
+
+  std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> model_;
+  std::vector<Node> nodes_;
+  std::vector<Leaf> leaves_;
+  int stack_size_ = 0;
+  double magnitude_ = 0.0;  ///< largest absolute coordinate [m]
+};
+
+}  // namespace sprung

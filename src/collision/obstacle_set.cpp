@@ -1,0 +1,67 @@
+#include "collision/obstacle_set.h"
+
+#include "base/error.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+namespace {
+
+std::vector<std::unique_ptr<ObstacleShape>> make_shapes(const std::vector<Obstacle>& obstacles) {
+  std::vector<std::unique_ptr<ObstacleShape>> shapes;
+  std::vector<Problem> problems;
+  for (const Obstacle& obstacle : obstacles) {
+    try {
+      shapes.push_back(make_shape(obstacle.geometry));
+    } catch (const InputError& error) {
+      for (Problem problem : error.problems()) {
+        problem.key = "obstacles." + obstacle.name + ".shape." + problem.key;
+        problems.push_back(std::move(problem));
+      }
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return shapes;
+}
+
+}  // namespace
+
+ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move(obstacles)), shapes_(make_shapes(obstacles_)) {
+  for (const Obstacle& obstacle : obstacles_) {
+    before_.push_back(obstacle.motion.pose(obstacle.placed, 0.0));
+    into_before_.push_back(before_.back().inverse());
+    max_thickness_ = std::max(max_thickness_, obstacle.material.thickness);
+  }
+  after_ = before_;
+  into_after_ = into_before_;
+  broad_phase_ = std::make_unique<BroadPhase>(obstacles_, shapes_, after_);
+}
+
+void ObstacleSet::set_interval(double t, double t_end) {
+  bool moved = false;
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    if (!obstacles_[k].motion.moves()) continue;
+    before_[k] = obstacles_[k].motion.pose(obstacles_[k].placed, t);
+    after_[k] = obstacles_[k].motion.pose(obstacles_[k].placed, t_end);
+    into_before_[k] = before_[k].inverse();
+    into_after_[k] = after_[k].inverse();
+    moved = true;
+  }
+  if (moved) broad_phase_->move(after_);
+}
+
+double ObstacleSet::carries_at_most(const Box3& box) const {
+  if (box.isEmpty()) return 0.0;
+  double farthest = 0.0;
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    if (!obstacles_[k].motion.moves()) continue;
+    const RigidTransform carry = after_[k] * into_before_[k];
+    const double at_centre = (carry * box.center() - box.center()).norm();
+    const double around = (carry.linear() - Matrix3::Identity()).norm() * 0.5 * box.diagonal().norm();
+    farthest = std::max(farthest, at_centre + around);
+  }
+  return farthest;
+}
+
+}  // namespace sprung

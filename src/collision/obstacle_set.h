@@ -1,0 +1,60 @@
+// The obstacles of one interval: their shapes, where they are at its begin and end, and which are near a box.
+#pragma once
+
+#include "collision/broad_phase.h"
+
+#include <memory>
+#include <vector>
+
+namespace sprung {
+
+/// A particle's path in an obstacle's own frame, straight from where it was to where it is about to be. A moving obstacle is met in
+/// its own frame, where it rests: at the interval's ends this path is exact, so the side on which a particle ends one step is the
+/// side on which it begins the next, whatever way the obstacle took between. Rounding is no gap either: the next step computes the
+/// same begin from the same position and pose.
+struct LocalPath {
+  Vector3 begin;
+  Vector3 end;
+};
+
+class ObstacleSet {
+ public:
+  /// Throws InputError, naming every obstacle with a shape that cannot be used.
+  explicit ObstacleSet(std::vector<Obstacle> obstacles);
+
+  void set_interval(double t, double t_end);
+
+  [[nodiscard]] const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  [[nodiscard]] const Obstacle& obstacle(Index k) const { return obstacles_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] const ObstacleShape& shape(Index k) const { return *shapes_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] const RigidTransform& before(Index k) const { return before_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] const RigidTransform& after(Index k) const { return after_[static_cast<std::size_t>(k)]; }
+
+  [[nodiscard]] LocalPath local_path(Index k, const Vector3& from, const Vector3& to) const {
+    return {into_before_[static_cast<std::size_t>(k)] * from, local(k, to)};
+  }
+  /// A position at the interval's end in the frame of obstacle k.
+  [[nodiscard]] Vector3 local(Index k, const Vector3& position) const {
+    return into_after_[static_cast<std::size_t>(k)] * position;
+  }
+
+  /// Replaces `found` by the obstacles that may be within the box at the interval's end, ascending.
+  void find_near(const Box3& box, std::vector<Index>& found) const { broad_phase_->find_near(box, found); }
+
+  /// The farthest [m] that any obstacle carries a point of the box in this interval.
+  [[nodiscard]] double carries_at_most(const Box3& box) const;
+
+  [[nodiscard]] double max_thickness() const { return max_thickness_; }
+
+ private:
+  std::vector<Obstacle> obstacles_;
+  std::vector<std::unique_ptr<ObstacleShape>> shapes_;
+  std::vector<RigidTransform> before_;
+  std::vector<RigidTransform> after_;
+  std::vector<RigidTransform> into_before_;
+  std::vector<RigidTransform> into_after_;
+  std::unique_ptr<BroadPhase> broad_phase_;
+  double max_thickness_ = 0.0;
+};
+
+}  // namespace sprung
