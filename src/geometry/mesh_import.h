@@ -22,7 +22,7 @@ struct MeshReport {
   Index non_manifold_edges = 0;  ///< shared by more than two faces
   Index border_edges = 0;        ///< used by one face only
   Index components = 0;
-  bool closed = false;             ///< every component encloses a volume: inside and outside are defined
+  bool closed = false;             ///< every edge has two faces that agree: inside and outside are defined
   Box3 bounds;                     ///< [m]
   std::vector<std::string> notes;  ///< what a person should know: suspicious units, parts that could not be oriented
 };
@@ -32,12 +32,16 @@ struct ImportedMesh {
   MeshReport report;
 };
 
-/// Welds vertices at the same position (exactly equal after rounding to `weld_distance` [m]; 0: bitwise), drops degenerate and
-/// duplicate faces and unused vertices, and orients faces: neighbours agree, and closed components face outward.
+/// Welds vertices at the same position (exactly equal after rounding to `weld_distance` [m]; 0: equal coordinates), drops
+/// degenerate and duplicate faces (whatever their winding) and unused vertices, and orients faces: neighbours agree, and closed
+/// parts face outward, or into the cavity that they wall. What is left keeps the order it had.
+/// Requires finite positions and indices in range.
 [[nodiscard]] ImportedMesh clean_mesh(const TriangleMesh& raw, double weld_distance = 0.0);
 
-/// Reads a mesh with all its node transforms applied, and cleans it. Throws InputError naming the file when it is missing,
-/// unreadable, has no triangles, or holds a position that is not finite or an index out of range.
+/// Reads a mesh in any format that assimp knows, with all node transforms applied and axes as the format has them (glTF: Y up; OBJ,
+/// STL, PLY, OFF and 3DS: as stored), and cleans it. Positions have the precision of a float. Throws InputError naming the file
+/// when it is missing, unreadable, truncated, of an unknown format, has no triangle with an area, or holds a position that is not
+/// finite or an index out of range.
 [[nodiscard]] ImportedMesh import_mesh(const std::filesystem::path& file);
 
 }  // namespace sprung

@@ -1,9 +1,8 @@
 #include "geometry/obj_numbers.h"
 
 #include "geometry/mesh_file.h"
+#include "geometry/text_words.h"
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -11,39 +10,13 @@
 namespace sprung {
 namespace {
 
-using Words = std::vector<std::string_view>;
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
-void split(std::string_view line, Words& words) {
-  words.clear();
-  for (std::size_t i = 0; i < line.size();) {
-    if (is_blank(line[i])) {
-      ++i;
-      continue;
-    }
-    const std::size_t begin = i;
-    while (i < line.size() && !is_blank(line[i])) ++i;
-    words.push_back(line.substr(begin, i - begin));
-  }
-}
-
-template <class Number>
-std::optional<Number> parse(std::string_view word) {
-  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
-  Number number{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return number;
-}
-
 class Scanner {
  public:
   explicit Scanner(const std::filesystem::path& file) : problems_(file) {}
 
   void scan(std::string_view line) {
     ++line_number_;
-    split(line, words_);
+    split_words(line, words_);
     if (words_.empty()) return;
     if (words_[0] == "v") scan_position();
     if (words_[0] == "vt") scan_texcoord();
@@ -74,7 +47,7 @@ class Scanner {
   }
 
   double number(std::size_t word) {
-    const std::optional<double> value = parse<double>(words_[word]);
+    const std::optional<double> value = parse_number<double>(words_[word]);
     if (!value || !std::isfinite(*value)) report(words_[word], "must be a finite number");
     return value.value_or(0.0);
   }
@@ -101,7 +74,7 @@ class Scanner {
       const std::size_t slash = rest.find('/');
       const std::string_view part = rest.substr(0, slash);
       const bool left_out = part.empty() && !first;
-      if (!left_out && parse<Index>(part).value_or(0) == 0) return report(corner, "must be vertex numbers counted from 1");
+      if (!left_out && parse_number<Index>(part).value_or(0) == 0) return report(corner, "must be vertex numbers counted from 1");
       if (slash == std::string_view::npos) return;
       rest.remove_prefix(slash + 1);
     }
@@ -112,7 +85,7 @@ class Scanner {
     Index previous = kNone;
     for (std::size_t word = 1; word < words_.size(); ++word) {
       const std::string_view text = words_[word].substr(0, words_[word].find('/'));
-      const Index written = parse<Index>(text).value_or(0);
+      const Index written = parse_number<Index>(text).value_or(0);
       if (written == 0) return report(words_[word], "must be vertex numbers counted from 1");
       const std::int64_t vertex = written > 0 ? written - std::int64_t{1} : written + std::ssize(numbers_.positions);
       line_vertices_.push_back({vertex, written, line_number_});
@@ -124,7 +97,7 @@ class Scanner {
   FileProblems problems_;
   ObjNumbers numbers_;
   std::vector<LineVertex> line_vertices_;
-  Words words_;
+  std::vector<std::string_view> words_;
   std::size_t line_number_ = 0;
 };
 
@@ -158,12 +131,7 @@ std::string plain_obj_text(const std::string& text) {
 
 ObjNumbers read_obj_numbers(const std::filesystem::path& file, const std::string& plain_text) {
   Scanner scanner(file);
-  const std::string_view text = plain_text;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    scanner.scan(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
+  for (std::string_view rest = plain_text; !rest.empty();) scanner.scan(take_line(rest));
   return scanner.finish();
 }
 

@@ -15,8 +15,10 @@ struct TriangleMesh {
 
 /// (b - a) x (c - a): twice the area [m^2], along the normal.
 [[nodiscard]] Vector3 area_normal(const TriangleMesh& mesh, Index triangle);
+[[nodiscard]] Vector3 area_normal(const Vector3& a, const Vector3& b, const Vector3& c);
 
 /// Enclosed volume [m^3] by the divergence theorem; meaningful for closed meshes only, negative when turned inside out.
 [[nodiscard]] double signed_volume(const TriangleMesh& mesh);
+[[nodiscard]] double signed_volume(const Points& vertices, const Triangles& triangles);
 
 }  // namespace sprung

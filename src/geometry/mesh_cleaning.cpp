@@ -1,0 +1,139 @@
+#include "base/format.h"
+#include "geometry/mesh_import.h"
+#include "geometry/mesh_orientation.h"
+#include "geometry/topology.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace sprung {
+namespace {
+
+// A triangle this flat, height over longest side, is a line: its normal would be rounding noise.
+constexpr double kFlat = 1e-12;
+
+// Beyond these a file in metres is improbable.
+constexpr double kLargestUsual = 1000.0;
+constexpr double kSmallestUsual = 0.001;
+
+Vector3 weld_key(const Vector3& position, double weld_distance) {
+  const Vector3 key = weld_distance > 0.0 ? (position / weld_distance).array().round().matrix().eval() : position;
+  return key.array() + 0.0;  // -0 becomes 0
+}
+
+// For each vertex, the first one with the same key.
+std::vector<Index> first_alike(const Points& vertices, double weld_distance) {
+  Points keys(3, vertices.cols());
+  for (Index i = 0; i < vertices.cols(); ++i) keys.col(i) = weld_key(vertices.col(i), weld_distance);
+  const auto key = [&](Index i) { return std::array{keys(0, i), keys(1, i), keys(2, i)}; };
+  std::vector<Index> order(vertices.cols());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+  std::vector<Index> first(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool alike = k > 0 && key(order[k - 1]) == key(order[k]);
+    first[order[k]] = alike ? first[order[k - 1]] : order[k];
+  }
+  return first;
+}
+
+void weld(TriangleMesh& mesh, double weld_distance, MeshReport& report) {
+  const std::vector<Index> first = first_alike(mesh.vertices, weld_distance);
+  for (Index& vertex : mesh.triangles.reshaped()) vertex = first[vertex];
+  for (Index i = 0; i < std::ssize(first); ++i) report.welded_vertices += first[i] != i ? 1 : 0;
+}
+
+bool is_degenerate(const TriangleMesh& mesh, Index triangle) {
+  const auto corner = [&](Index k) { return Vector3(mesh.vertices.col(mesh.triangles(k % 3, triangle))); };
+  double longest = 0.0;  // squared
+  for (Index k = 0; k < 3; ++k) longest = std::max(longest, (corner(k + 1) - corner(k)).squaredNorm());
+  return area_normal(mesh, triangle).norm() <= kFlat * longest;
+}
+
+void keep_faces(TriangleMesh& mesh, const std::vector<Index>& kept) {
+  mesh.triangles = Triangles(mesh.triangles(Eigen::all, kept));
+}
+
+void drop_degenerate_faces(TriangleMesh& mesh, MeshReport& report) {
+  std::vector<Index> kept;
+  for (Index t = 0; t < mesh.triangles.cols(); ++t) {
+    if (!is_degenerate(mesh, t)) kept.push_back(t);
+  }
+  report.degenerate_faces = static_cast<Index>(mesh.triangles.cols() - std::ssize(kept));
+  keep_faces(mesh, kept);
+}
+
+void drop_duplicate_faces(TriangleMesh& mesh, MeshReport& report) {
+  using Face = std::pair<std::array<Index, 3>, Index>;
+  std::vector<Face> faces;
+  for (Index t = 0; t < mesh.triangles.cols(); ++t) {
+    std::array<Index, 3> corners{mesh.triangles(0, t), mesh.triangles(1, t), mesh.triangles(2, t)};
+    std::sort(corners.begin(), corners.end());
+    faces.emplace_back(corners, t);
+  }
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.first == b.first; }),
+              faces.end());
+  report.duplicate_faces = static_cast<Index>(mesh.triangles.cols() - std::ssize(faces));
+  std::vector<Index> kept;
+  for (const Face& face : faces) kept.push_back(face.second);
+  std::sort(kept.begin(), kept.end());
+  keep_faces(mesh, kept);
+}
+
+void drop_unused_vertices(TriangleMesh& mesh, MeshReport& report) {
+  std::vector<Index> number(mesh.vertices.cols(), kNone);
+  for (const Index vertex : mesh.triangles.reshaped()) number[vertex] = 0;
+  std::vector<Index> used;
+  for (Index i = 0; i < std::ssize(number); ++i) {
+    if (number[i] == kNone) continue;
+    number[i] = static_cast<Index>(used.size());
+    used.push_back(i);
+  }
+  for (Index& vertex : mesh.triangles.reshaped()) vertex = number[vertex];
+  report.unused_vertices = static_cast<Index>(mesh.vertices.cols() - report.welded_vertices - std::ssize(used));
+  mesh.vertices = Points(mesh.vertices(Eigen::all, used));
+}
+
+void orient(TriangleMesh& mesh, MeshReport& report) {
+  const OrientationReport orientation = orient_faces(mesh);
+  report.flipped_faces = orientation.flipped_faces;
+  if (orientation.one_sided_parts == 0) return;
+  report.notes.push_back(std::to_string(orientation.one_sided_parts) +
+                         " part(s) have one side only, like a Moebius strip, and could not be oriented");
+}
+
+void describe(const TriangleMesh& mesh, MeshReport& report) {
+  for (const MeshEdge& edge : mesh_edges(mesh.triangles)) {
+    report.border_edges += edge.uses == 1 ? 1 : 0;
+    report.non_manifold_edges += edge.uses > 2 ? 1 : 0;
+  }
+  report.components = connected_components(mesh.triangles);
+  report.closed = is_closed(mesh.triangles);
+  report.bounds = bounds(mesh.vertices);
+  if (mesh.vertices.cols() == 0) return;
+  const double extent = report.bounds.sizes().maxCoeff();
+  if (kSmallestUsual <= extent && extent <= kLargestUsual) return;
+  report.notes.push_back("its largest extent is " + format_number(extent, 4) +
+                         " m: if the file is not in metres, place it with a \"scale\"" +
+                         (extent > kLargestUsual ? ", 0.001 for millimetres" : ""));
+}
+
+}  // namespace
+
+ImportedMesh clean_mesh(const TriangleMesh& raw, double weld_distance) {
+  ImportedMesh result{.mesh = raw, .report = {}};
+  result.report.vertices_read = static_cast<Index>(raw.vertices.cols());
+  result.report.faces_read = static_cast<Index>(raw.triangles.cols());
+  weld(result.mesh, weld_distance, result.report);
+  drop_degenerate_faces(result.mesh, result.report);
+  drop_duplicate_faces(result.mesh, result.report);
+  drop_unused_vertices(result.mesh, result.report);
+  orient(result.mesh, result.report);
+  describe(result.mesh, result.report);
+  return result;
+}
+
+}  // namespace sprung

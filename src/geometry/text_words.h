@@ -1,0 +1,31 @@
+// Words and numbers of text formats.
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace sprung {
+
+[[nodiscard]] inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+/// Cuts a line into the words between blanks. Writes to `words` to spare its memory.
+void split_words(std::string_view line, std::vector<std::string_view>& words);
+
+/// The number that the whole word spells, in C notation with an optional plus; none when it is no number or has no double or
+/// integer near it. `nan` and `inf` are numbers.
+template <class Number>
+[[nodiscard]] std::optional<Number> parse_number(std::string_view word) {
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  Number number{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return number;
+}
+
+/// Takes the next line off the front of `text`, without its end.
+[[nodiscard]] std::string_view take_line(std::string_view& text);
+
+}  // namespace sprung
