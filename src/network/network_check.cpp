@@ -5,45 +5,25 @@ namespace {
 
 bool is_quantity(double value) { return value >= 0.0 && std::isfinite(value); }
 
-struct Rule {
-  std::string key;
-  std::string text;
-  std::string remedy;
-};
-
-// Reports the first of `count` entries that is not `good`, and how many more there are.
-template <class Good, class Text>
-void require_each(std::size_t count, const Good& good, const Text& text, const Rule& rule, ProblemList& problems) {
-  std::size_t first = count;
-  std::size_t broken = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (good(i)) continue;
-    if (broken++ == 0) first = i;
-  }
-  if (broken == 0) return;
-  const std::string more = broken > 1 ? " (and " + std::to_string(broken - 1) + " more)" : "";
-  problems.add(entry_key(rule.key, first), text(first) + more, rule.text, rule.remedy);
-}
-
-void require_quantities(const std::vector<double>& values, const Rule& rule, ProblemList& problems) {
-  require_each(
+void require_quantities(const std::vector<double>& values, const EntryRule& rule, ProblemList& problems) {
+  problems.require_each(
       values.size(), [&](std::size_t i) { return is_quantity(values[i]); }, [&](std::size_t i) { return format_number(values[i]); },
-      rule, problems);
+      rule);
 }
 
-void require_finite(const std::vector<Vector3>& vectors, const Rule& rule, ProblemList& problems) {
-  require_each(
+void require_finite(const std::vector<Vector3>& vectors, const EntryRule& rule, ProblemList& problems) {
+  problems.require_each(
       vectors.size(), [&](std::size_t i) { return vectors[i].allFinite(); }, [&](std::size_t i) { return vector_text(vectors[i]); },
-      rule, problems);
+      rule);
 }
 
 void check_particles(const std::string& key, const BodyShape& shape, ProblemList& problems) {
   require_finite(shape.positions, {key + ".positions", "must be finite", "give three numbers in m"}, problems);
   require_finite(shape.velocities, {key + ".velocities", "must be finite", "give three numbers in m/s"}, problems);
-  require_each(
+  problems.require_each(
       shape.masses.size(), [&](std::size_t i) { return shape.masses[i] > 0.0 && std::isfinite(shape.masses[i]); },
       [&](std::size_t i) { return format_number(shape.masses[i]); },
-      Rule{key + ".masses", "must be a finite number greater than 0", "give a mass in kg, and pin what shall not move"}, problems);
+      EntryRule{key + ".masses", "must be a finite number greater than 0", "give a mass in kg, and pin what shall not move"});
   require_quantities(shape.drag_areas, {key + ".drag_areas", "must be a finite number not less than 0", "use 0 for no air drag"},
                      problems);
 }
@@ -55,14 +35,13 @@ void check_springs(const std::string& key, const BodyShape& shape, ProblemList& 
     return "joins " + std::to_string(springs.first[s]) + " and " + std::to_string(springs.second[s]);
   };
   const auto exists = [&](Index particle) { return particle >= 0 && static_cast<std::size_t>(particle) < shape.positions.size(); };
-  require_each(
+  problems.require_each(
       count, [&](std::size_t s) { return exists(springs.first[s]) && exists(springs.second[s]); }, text,
-      Rule{key + ".springs", "must join particles of the body, which has " + std::to_string(shape.positions.size()),
-           "use the numbers of the body's particles, counted from 0"},
-      problems);
-  require_each(
+      EntryRule{key + ".springs", "must join particles of the body, which has " + std::to_string(shape.positions.size()),
+                "use the numbers of the body's particles, counted from 0"});
+  problems.require_each(
       count, [&](std::size_t s) { return springs.first[s] != springs.second[s]; }, text,
-      Rule{key + ".springs", "must join two different particles", "leave the spring out"}, problems);
+      EntryRule{key + ".springs", "must join two different particles", "leave the spring out"});
   const std::string rule = "must be a finite number not less than 0";
   require_quantities(springs.rest_length, {key + ".springs.rest_length", rule, "give a length in m"}, problems);
   require_quantities(springs.stiffness, {key + ".springs.stiffness", rule, "give k_s in N/m"}, problems);
@@ -82,6 +61,18 @@ void check_material(const std::string& key, const ContactMaterial& material, Pro
   }
 }
 
+template <class Elements>
+bool names_particles(const Elements& elements, std::size_t particles) {
+  return elements.size() == 0 || (elements.minCoeff() >= 0 && static_cast<std::size_t>(elements.maxCoeff()) < particles);
+}
+
+void check_surface(const std::string& key, const BodyShape& shape, ProblemList& problems) {
+  const std::size_t particles = shape.positions.size();
+  if (names_particles(shape.surface.triangles, particles) && names_particles(shape.surface.segments, particles)) return;
+  problems.add(key + ".surface", "", "must name particles of the body, which has " + std::to_string(particles),
+               "use the numbers of the body's particles, counted from 0");
+}
+
 bool same_sizes(const BodyShape& shape) {
   const Springs& springs = shape.springs;
   const std::size_t particles = shape.positions.size();
@@ -92,18 +83,18 @@ bool same_sizes(const BodyShape& shape) {
 }
 
 void check_motion(const std::string& key, const Motion& motion, ProblemList& problems) {
-  require_each(
+  problems.require_each(
       motion.keyframes.size(),
       [&](std::size_t k) {
         const Keyframe& frame = motion.keyframes[k];
         return std::isfinite(frame.time) && frame.position.allFinite() && frame.rotation.allFinite();
       },
       [&](std::size_t k) { return "time " + format_number(motion.keyframes[k].time); },
-      Rule{key + ".keyframes", "must hold finite numbers", "give times in s, positions in m and rotations in degrees"}, problems);
-  require_each(
+      EntryRule{key + ".keyframes", "must hold finite numbers", "give times in s, positions in m and rotations in degrees"});
+  problems.require_each(
       motion.keyframes.size(), [&](std::size_t k) { return k == 0 || !(motion.keyframes[k].time <= motion.keyframes[k - 1].time); },
       [&](std::size_t k) { return "time " + format_number(motion.keyframes[k].time); },
-      Rule{key + ".keyframes", "must be later than the keyframe before it", "sort the keyframes by time"}, problems);
+      EntryRule{key + ".keyframes", "must be later than the keyframe before it", "sort the keyframes by time"});
   if (!motion.spin.allFinite()) problems.add(key + ".spin", vector_text(motion.spin), "must be finite", "give degrees per second");
 }
 
@@ -119,6 +110,7 @@ void check_body(const std::string& key, const BodyShape& shape, const ContactMat
   }
   check_particles(key, shape, problems);
   check_springs(key, shape, problems);
+  check_surface(key, shape, problems);
   check_material(key, material, problems);
 }
 

@@ -14,6 +14,13 @@
 
 namespace sprung {
 
+/// A rule for each entry of an array, whose key is `key`.
+struct EntryRule {
+  std::string key;
+  std::string text;
+  std::string remedy;
+};
+
 class ProblemList {
  public:
   void add(std::string key, std::string value, std::string rule, std::string remedy) {
@@ -28,6 +35,10 @@ class ProblemList {
 
   /// A particle count beyond kMaxBodyParticles.
   void require_affordable(const std::string& key, const std::string& value, double particles);
+
+  /// Names the first of `count` entries that is not `good(entry)`, by `text(entry)`, and counts the others.
+  template <class Good, class Text>
+  void require_each(std::size_t count, const Good& good, const Text& text, const EntryRule& rule);
 
   /// Stiffness, modulus and damping of all kinds.
   void require_materials(const SpringMaterials& materials);
@@ -51,5 +62,19 @@ class ProblemList {
 
 /// `[64, 64]`
 [[nodiscard]] std::string counts_text(std::span<const Index> counts);
+
+template <class Good, class Text>
+void ProblemList::require_each(std::size_t count, const Good& good, const Text& text, const EntryRule& rule) {
+  std::size_t first = count;
+  std::size_t broken = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (good(i)) continue;
+    if (broken++ == 0) first = i;
+  }
+  if (broken == 0) return;
+  std::string value = text(first);
+  if (broken > 1) value += " (and " + std::to_string(broken - 1) + " more)";
+  add(entry_key(rule.key, first), value, rule.text, rule.remedy);
+}
 
 }  // namespace sprung

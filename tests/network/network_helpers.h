@@ -1,0 +1,68 @@
+// What the tests of networks share.
+#pragma once
+
+#include "base/error.h"
+#include "network/body_shape.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sprung::testing {
+
+/// Keys of the problems that `make` throws; empty when it throws none.
+template <class Make>
+std::vector<std::string> problem_keys(const Make& make) {
+  std::vector<std::string> keys;
+  try {
+    static_cast<void>(make());
+  } catch (const InputError& error) {
+    for (const Problem& problem : error.problems()) {
+      keys.push_back(problem.rule.empty() || problem.remedy.empty() ? "no rule or remedy" : problem.key);
+    }
+  }
+  return keys;
+}
+
+inline SpringMaterial stiff(double stiffness) { return {stiffness, SpringMaterial::Measure::stiffness, 0.0}; }
+inline SpringMaterial modular(double modulus) { return {modulus, SpringMaterial::Measure::modulus, 0.0}; }
+inline SpringMaterials every_kind(const SpringMaterial& material) { return {material, material, material}; }
+
+inline std::int64_t count(const BodyShape& shape, SpringKind kind) {
+  return std::count(shape.springs.kind.begin(), shape.springs.kind.end(), kind);
+}
+
+using Pair = std::pair<Index, Index>;
+
+/// Ends of the springs of a kind, sorted.
+inline std::vector<Pair> pairs(const BodyShape& shape, SpringKind kind) {
+  std::vector<Pair> result;
+  for (Index s = 0; s < shape.springs.count(); ++s) {
+    if (shape.springs.kind[s] == kind) result.emplace_back(shape.springs.first[s], shape.springs.second[s]);
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+/// Force [N] with which springs pull back across the plane `axis = place` when the body is stretched by `strain` along the axis:
+/// the sum over the springs that cross the plane of k_s (l - d) times their direction along the axis.
+inline double stretching_force(const BodyShape& shape, int axis, double place, double strain) {
+  const auto stretched = [&](Index i) {
+    Vector3 x = shape.positions[i];
+    x[axis] *= 1.0 + strain;
+    return x;
+  };
+  double force = 0.0;
+  for (Index s = 0; s < shape.springs.count(); ++s) {
+    const Index a = shape.springs.first[s];
+    const Index b = shape.springs.second[s];
+    if ((shape.positions[a][axis] < place) == (shape.positions[b][axis] < place)) continue;
+    const Vector3 span = stretched(b) - stretched(a);
+    const double length = span.norm();
+    force += shape.springs.stiffness[s] * (length - shape.springs.rest_length[s]) * std::abs(span[axis]) / length;
+  }
+  return force;
+}
+
+}  // namespace sprung::testing
