@@ -1,0 +1,39 @@
+// The shapes of the generated environments, in metres, Y up.
+#pragma once
+
+#include "geometry/polygon_mesh.h"
+#include "geometry/triangle_mesh.h"
+
+#include <vector>
+
+namespace sprung::meshes {
+
+/// A point of a profile that turns about the Y axis.
+struct ProfilePoint {
+  double radius = 0.0;
+  double height = 0.0;
+};
+
+/// The solid that a closed profile sweeps about the Y axis. Requires the profile counter-clockwise, radius to the right and height
+/// up.
+[[nodiscard]] TriangleMesh revolve(const std::vector<ProfilePoint>& profile, Index segments);
+
+/// A closed ring of tube.
+[[nodiscard]] TriangleMesh torus();
+
+/// A closed cone with a wall and a hole, standing on its neck.
+[[nodiscard]] TriangleMesh funnel();
+
+/// A closed disc with a needle in its middle.
+[[nodiscard]] TriangleMesh spike();
+
+/// Hills over the unit square in x and z, heights in [-1, 1]: an open sheet.
+[[nodiscard]] TriangleMesh hills();
+
+/// A closed flight of steps that goes down along x, in quads.
+[[nodiscard]] PolygonMesh stairs();
+
+/// An open, level sheet of one layer, in quads.
+[[nodiscard]] PolygonMesh thin_sheet();
+
+}  // namespace sprung::meshes
