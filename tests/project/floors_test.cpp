@@ -1,0 +1,139 @@
+// A folder of src/ includes only folders on lower floors, and a third-party library stays in the folders that own it.
+#include "project/source_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace sprung::project {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const std::map<std::string, int> kFloors = {{"base", 0},       {"geometry", 1}, {"network", 2}, {"collision", 2}, {"dynamics", 3},
+                                            {"simulation", 4}, {"scene", 5},    {"output", 5},  {"app", 6}};
+
+struct Library {
+  std::string prefix;             ///< of its includes
+  std::set<std::string> folders;  ///< that may include it
+  bool in_one_source = false;     ///< a single .cpp may include it
+};
+
+const std::vector<Library> kLibraries = {
+    {"oneapi/tbb/", {"base"}},
+    {"assimp/", {"geometry"}, true},
+    {"tiny_obj_loader.h", {"geometry"}, true},
+    {"fcl/", {"collision"}},
+    {"ccd/", {"collision"}},
+    {"nlohmann/", {"scene", "output"}},
+    {"valijson/", {"scene"}},
+    {"CLI/", {"app"}},
+    {"fmt/", {"app"}},
+    {"unistd.h", {"app", "output"}},
+    {"sys/", {"app", "output"}},
+};
+
+/// Standard headers have neither a dot nor a slash.
+bool is_standard(const Include& include) { return include.path.find_first_of("./") == std::string::npos; }
+
+void check_own(const SourceFile& file, const Include& include, std::vector<std::string>& problems) {
+  const std::string folder = include.path.substr(0, include.path.find('/'));
+  if (folder == file.folder) return;
+  const auto theirs = kFloors.find(folder);
+  if (theirs == kFloors.end()) {
+    problems.push_back(file.path + " includes \"" + include.path + "\", which starts with no folder of src/");
+  } else if (theirs->second >= kFloors.at(file.folder)) {
+    problems.push_back(file.path + " includes \"" + include.path + "\", which is not on a lower floor");
+  }
+}
+
+void check_library(const SourceFile& file, const Include& include, std::vector<std::string>& problems) {
+  if (is_standard(include) || include.path.starts_with("Eigen/")) return;
+  const auto library = std::find_if(kLibraries.begin(), kLibraries.end(),
+                                    [&](const Library& candidate) { return include.path.starts_with(candidate.prefix); });
+  if (library == kLibraries.end()) {
+    problems.push_back(file.path + " includes <" + include.path + ">, which no folder owns");
+  } else if (!library->folders.contains(file.folder)) {
+    problems.push_back(file.path + " includes <" + include.path + ">, which belongs to another folder");
+  } else if (library->in_one_source && file.is_header()) {
+    problems.push_back(file.path + " includes <" + include.path + "> in a header");
+  }
+}
+
+std::vector<std::string> problems_of(const SourceFile& file) {
+  if (!kFloors.contains(file.folder)) return {file.path + " is in a folder that has no floor"};
+  std::vector<std::string> problems;
+  for (const Include& include : file.includes) (include.quoted ? check_own : check_library)(file, include, problems);
+  return problems;
+}
+
+std::vector<SourceFile> sprung_sources() { return read_sources(std::filesystem::path(SPRUNG_SOURCE_DIR) / "src"); }
+
+TEST(Floors, EveryFileIncludesOnlyLowerFloorsAndItsOwnLibraries) {
+  const std::vector<SourceFile> files = sprung_sources();
+  ASSERT_GT(files.size(), 50u) << "the sources were not found";
+  for (const SourceFile& file : files) EXPECT_THAT(problems_of(file), IsEmpty());
+}
+
+TEST(Floors, AssimpAndTinyobjloaderEachLiveInOneSource) {
+  for (const Library& library : kLibraries) {
+    if (!library.in_one_source) continue;
+    std::set<std::string> users;
+    for (const SourceFile& file : sprung_sources()) {
+      for (const Include& include : file.includes) {
+        if (include.path.starts_with(library.prefix)) users.insert(file.path);
+      }
+    }
+    EXPECT_EQ(users.size(), 1u) << library.prefix << " is included by " << ::testing::PrintToString(users);
+  }
+}
+
+TEST(Floors, EveryOwnIncludeStartsAtTheSourceFolder) {
+  for (const SourceFile& file : sprung_sources()) {
+    for (const Include& include : file.includes) {
+      if (!include.quoted) continue;
+      EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(SPRUNG_SOURCE_DIR) / "src" / include.path))
+          << file.path << " includes \"" << include.path << "\"";
+    }
+  }
+}
+
+TEST(Floors, LowerFloorsAndOwnedLibrariesAreAllowed) {
+  const SourceFile file = parse_source("collision/obstacle.cpp",
+                                       "#include \"collision/obstacle.h\"\n#include \"base/types.h\"\n"
+                                       "#include <vector>\n#include <Eigen/Core>\n#include <fcl/geometry/shape/box.h>\n");
+  EXPECT_EQ(file.includes.size(), 5u);
+  EXPECT_THAT(problems_of(file), IsEmpty());
+}
+
+TEST(Floors, AHigherFloorIsReported) {
+  EXPECT_THAT(problems_of(parse_source("network/a.h", "#pragma once\n  #  include \"simulation/simulator.h\"\n")),
+              ElementsAre(HasSubstr("not on a lower floor")));
+}
+
+TEST(Floors, TheSameFloorIsReported) {
+  EXPECT_THAT(problems_of(parse_source("network/a.cpp", "#include \"collision/obstacle.h\"\n")),
+              ElementsAre(HasSubstr("not on a lower floor")));
+}
+
+TEST(Floors, AFolderWithoutFloorIsReported) {
+  EXPECT_THAT(problems_of(parse_source("helpers/a.h", "")), ElementsAre(HasSubstr("no floor")));
+  EXPECT_THAT(problems_of(parse_source("app/a.h", "#include \"a.h\"\n")), ElementsAre(HasSubstr("no folder")));
+}
+
+TEST(Floors, ALibraryOutsideItsFolderIsReported) {
+  EXPECT_THAT(problems_of(parse_source("dynamics/a.cpp", "#include <fcl/math/bv/AABB.h>\n")),
+              ElementsAre(HasSubstr("belongs to another folder")));
+  EXPECT_THAT(problems_of(parse_source("geometry/a.h", "#include <assimp/scene.h>\n")), ElementsAre(HasSubstr("in a header")));
+  EXPECT_THAT(problems_of(parse_source("app/a.cpp", "#include <boost/asio.hpp>\n")), ElementsAre(HasSubstr("no folder owns")));
+}
+
+}  // namespace
+}  // namespace sprung::project
