@@ -12,11 +12,11 @@ namespace {
 
 using Vector2 = Eigen::Vector2d;
 
-/// The surface of a ball around `centre`.
-SurfacePoint ball_surface(const Vector3& centre, double radius, const Vector3& p) {
+/// The surface of a ball around `centre`, whose own nearest point is in the direction `from_centre`.
+SurfacePoint ball_surface(const Vector3& centre, double radius, const Vector3& p, const Vector3& from_centre) {
   const Vector3 away = p - centre;
   const double length = away.norm();
-  const Vector3 normal = length > 0.0 ? Vector3(away / length) : Vector3::UnitY();
+  const Vector3 normal = length > 0.0 ? Vector3(away / length) : from_centre;
   return {centre + radius * normal, normal, length - radius};
 }
 
@@ -63,18 +63,12 @@ Box3 centred_box(double x, double y, double z) { return {Vector3(-x, -y, -z), Ve
 }  // namespace
 
 SurfacePoint surface_point(const SphereGeometry& sphere, const Vector3& p) {
-  return ball_surface(Vector3::Zero(), sphere.radius, p);
+  return ball_surface(Vector3::Zero(), sphere.radius, p, Vector3::UnitY());
 }
 
 SurfacePoint surface_point(const CapsuleGeometry& capsule, const Vector3& p) {
   const double half = 0.5 * capsule.length;
-  const double height = std::clamp(p.y(), -half, half);
-  SurfacePoint found = ball_surface(height * Vector3::UnitY(), capsule.radius, p);
-  // On the axis of the straight part every direction across is as near, and along the axis is not.
-  if (p.x() == 0.0 && p.z() == 0.0 && std::abs(p.y()) < half) {
-    found = {height * Vector3::UnitY() + capsule.radius * Vector3::UnitX(), Vector3::UnitX(), -capsule.radius};
-  }
-  return found;
+  return ball_surface(std::clamp(p.y(), -half, half) * Vector3::UnitY(), capsule.radius, p, Vector3::UnitX());
 }
 
 SurfacePoint surface_point(const BoxGeometry& box, const Vector3& p) {
