@@ -19,16 +19,19 @@
 namespace sprung {
 namespace {
 
-// What assimp logs and then reads on as if nothing had happened. Errors are always losses, warnings if they say so.
+// Geometry that assimp loses, tells its log, and reads on as if nothing had happened. Most of what it logs is harmless: materials
+// that are not there, hierarchies that are flat.
 class LossCollector : public Assimp::LogStream {
  public:
-  LossCollector(std::vector<std::string>& losses, bool warnings) : losses_(losses), warnings_(warnings) {}
+  explicit LossCollector(std::vector<std::string>& losses) : losses_(losses) {}
 
   void write(const char* message) override {
-    constexpr std::array<std::string_view, 3> kSignsOfLoss{"out-of-range", "dropped", "unexpected EOF"};
+    constexpr std::array<std::string_view, 8> kSignsOfLoss{
+        "out-of-range",  "dropped",         "nexpected EOF",        "nexpected end of file",
+        "invalid index", "nvalid vertex i", "nvalid vertex refere", "to triangulate polygon"};
     const std::string_view text = message;
     const auto tells = [&](std::string_view sign) { return text.find(sign) != std::string_view::npos; };
-    if (!warnings_ || std::any_of(kSignsOfLoss.begin(), kSignsOfLoss.end(), tells)) losses_.push_back(without_prefix(text));
+    if (std::any_of(kSignsOfLoss.begin(), kSignsOfLoss.end(), tells)) losses_.push_back(without_prefix(text));
   }
 
  private:
@@ -40,7 +43,6 @@ class LossCollector : public Assimp::LogStream {
   }
 
   std::vector<std::string>& losses_;
-  bool warnings_;
 };
 
 // assimp has one log for the whole process.
@@ -48,8 +50,7 @@ class LogScope {
  public:
   explicit LogScope(std::vector<std::string>& losses) : lock_(mutex()) {
     Assimp::Logger* log = Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
-    log->attachStream(new LossCollector(losses, false), Assimp::Logger::Err);
-    log->attachStream(new LossCollector(losses, true), Assimp::Logger::Warn);
+    log->attachStream(new LossCollector(losses), Assimp::Logger::Err | Assimp::Logger::Warn);
   }
   ~LogScope() { Assimp::DefaultLogger::kill(); }
   LogScope(const LogScope&) = delete;

@@ -1,0 +1,109 @@
+// The meshes of Debian's glmark2-data, and the environments of this repository.
+#include "geometry/fixtures.h"
+#include "geometry/mesh_import.h"
+#include "geometry/topology.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <random>
+#include <string>
+
+namespace sprung {
+namespace {
+
+class RealMesh : public testing::Test {
+ protected:
+  // Empty, and the test skipped, when the package is not installed.
+  static std::filesystem::path find(const std::string& name) {
+    const std::filesystem::path file = std::filesystem::path(SPRUNG_TEST_MESHES) / name;
+    return std::filesystem::exists(file) ? file : std::filesystem::path();
+  }
+};
+
+#define SPRUNG_NEED(file) \
+  if ((file).empty()) GTEST_SKIP() << "install glmark2-data, or set SPRUNG_TEST_MESHES"
+
+TEST_F(RealMesh, BunnyIsOneClosedSurface) {
+  const std::filesystem::path file = find("bunny.obj");
+  SPRUNG_NEED(file);
+  const auto [mesh, report] = import_mesh(file);
+  EXPECT_EQ(mesh.vertices.cols(), 34835);
+  EXPECT_EQ(mesh.triangles.cols(), 69666);
+  EXPECT_EQ(report.components, 1);
+  EXPECT_EQ(report.flipped_faces, 0);
+  EXPECT_TRUE(report.closed);
+}
+
+TEST_F(RealMesh, BunnyWithHalfItsFacesFlippedIsTurnedBack) {
+  const std::filesystem::path file = find("bunny.obj");
+  SPRUNG_NEED(file);
+  const TriangleMesh bunny = import_mesh(file).mesh;
+  TriangleMesh damaged = bunny;
+  std::mt19937 random(2);
+  Index flipped = 0;
+  for (Index t = 0; t < damaged.triangles.cols(); ++t) {
+    if (random() % 2 == 0) continue;
+    std::swap(damaged.triangles(1, t), damaged.triangles(2, t));
+    ++flipped;
+  }
+  const auto [mesh, report] = clean_mesh(damaged);
+  EXPECT_EQ(mesh.triangles, bunny.triangles);
+  EXPECT_EQ(report.flipped_faces, flipped);
+  EXPECT_GT(signed_volume(mesh), 0.0);
+}
+
+TEST_F(RealMesh, CatIsReadFrom3ds) {
+  const std::filesystem::path file = find("cat.3ds");
+  SPRUNG_NEED(file);
+  const auto [mesh, report] = import_mesh(file);
+  EXPECT_EQ(mesh.triangles.cols(), 14348);
+  EXPECT_EQ(mesh.vertices.cols(), 7340);
+  EXPECT_EQ(report.components, 3);
+  EXPECT_EQ(report.border_edges, 330);
+}
+
+TEST_F(RealMesh, HorseIsReadFrom3ds) {
+  const std::filesystem::path file = find("horse.3ds");
+  SPRUNG_NEED(file);
+  const auto [mesh, report] = import_mesh(file);
+  EXPECT_EQ(mesh.vertices.cols(), 3582);
+  EXPECT_EQ(report.components, 1);
+  EXPECT_EQ(report.border_edges, 0);
+  EXPECT_GT(signed_volume(mesh), 0.0);
+}
+
+struct Environment {
+  const char* file;
+  Index triangles;
+  bool closed;
+  Vector3 size;  // [m]
+};
+
+class EnvironmentMesh : public testing::TestWithParam<Environment> {};
+
+TEST_P(EnvironmentMesh, ImportsAsTheReadmeSays) {
+  const Environment& environment = GetParam();
+  const auto [mesh, report] = import_mesh(std::filesystem::path(SPRUNG_SOURCE_DIR) / "meshes" / environment.file);
+  EXPECT_EQ(mesh.triangles.cols(), environment.triangles);
+  EXPECT_EQ(report.closed, environment.closed);
+  EXPECT_EQ(report.components, 1);
+  EXPECT_EQ(report.degenerate_faces + report.duplicate_faces + report.flipped_faces + report.unused_vertices, 0);
+  EXPECT_LE((report.bounds.sizes() - environment.size).cwiseAbs().maxCoeff(), 1e-3);  // the README gives millimetres at most
+  EXPECT_TRUE(report.notes.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EnvironmentMesh,
+                         testing::Values(Environment{"stairs.obj", 272, true, {2.4, 1.44, 1.5}},
+                                         Environment{"funnel.stl", 1536, true, {1.2, 1.0, 1.2}},
+                                         Environment{"torus.ply", 1920, true, {1.3, 0.3, 1.3}},
+                                         Environment{"terrain.gltf", 3200, false, {4.0, 0.554, 4.0}},
+                                         Environment{"spike.off", 576, true, {1.0, 0.55, 1.0}},
+                                         Environment{"thin_sheet.obj", 512, false, {1.0, 0.0, 1.0}}),
+                         [](const auto& parameter) {
+                           const std::string name = parameter.param.file;
+                           return name.substr(0, name.find('.'));
+                         });
+
+}  // namespace
+}  // namespace sprung
