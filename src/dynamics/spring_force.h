@@ -9,9 +9,11 @@
 #include "dynamics/force.h"
 #include "network/spring_network.h"
 
-#include <vector>
+#include <memory>
 
 namespace sprung {
+
+struct SpringPlan;
 
 class SpringForce final : public Force {
  public:
@@ -25,9 +27,8 @@ class SpringForce final : public Force {
   [[nodiscard]] double energy(const Points& positions) const override;
 
  private:
-  struct Plan;
   const SpringNetwork& network_;
-  std::unique_ptr<const Plan> plan_;
+  std::unique_ptr<const SpringPlan> plan_;
 };
 
 }  // namespace sprung

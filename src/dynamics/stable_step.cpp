@@ -106,12 +106,10 @@ struct LargestStep {
   double elastic;
   double damping;
 
-  // Undamped modes leave the circle of radius sqrt(5) beyond 2 / omega; overdamped ones are unstable beyond 2 / |s| with s the
-  // faster root of s^2 + c s + k.
+  // z^2 - (2 - c dt) z + 1 - c dt + k dt^2 is positive at z = -1, whatever part of the stiffness the damped mode has, below 2 / c.
   double operator()(const ExplicitEulerSettings&) const {
-    const double overdamped = damping * damping - 4.0 * elastic;
-    if (overdamped >= 0.0) return damping > 0.0 ? 4.0 / (damping + std::sqrt(overdamped)) : kInfinity;
-    return 2.0 / std::sqrt(elastic);
+    const double rate = std::max(std::sqrt(elastic), damping);
+    return rate > 0.0 ? 2.0 / rate : kInfinity;
   }
 
   // z^2 - (2 - c dt - k dt^2) z + 1 - c dt is stable while its value at z = -1 is positive.

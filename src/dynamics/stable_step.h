@@ -21,8 +21,8 @@ struct SpectralBounds {
 [[nodiscard]] SpectralBounds spectral_bounds(const SpringNetwork& network, double drag = 0.0);
 
 /// Symplectic Euler: dt^2 l_K + 2 dt l_D < 4. Verlet: the same with 4 - 2 d, d the damping per step. Drag counts as damping.
-/// Explicit Euler: 2 / omega or, overdamped, 4 / (l_D + sqrt(l_D^2 - 4 l_K)); no mode is stable beyond, most not below
-/// either: see growth_time. Infinity without springs and drag.
+/// Explicit Euler: the smaller of 2 / omega and 2 / l_D; below it modes may still grow, if slowly: see growth_time. Infinity
+/// without springs and drag.
 [[nodiscard]] double largest_stable_step(const IntegratorSettings& settings, const SpectralBounds& bounds);
 
 /// Explicit Euler has no stable step for an undamped mode: its fastest grows by e within 2 / (omega^2 dt) [s], or 2 / (omega^2 dt -
