@@ -1,0 +1,139 @@
+// Laws of contact that have closed forms, for each integrator: rest, sliding, bouncing, carrying.
+#include "simulation/diagnostics.h"
+#include "simulation/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace sprung {
+namespace {
+
+using testing::all_integrators;
+using testing::ground;
+using testing::kGravity;
+using testing::one_particle;
+using testing::run;
+
+class ContactResponse : public ::testing::TestWithParam<std::size_t> {
+ protected:
+  [[nodiscard]] SimulatorSettings settings(double step) const {
+    return {.step = step, .integrator = all_integrators()[GetParam()]};
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Integrators, ContactResponse, ::testing::Range(std::size_t{0}, std::size_t{3}));
+
+TEST_P(ContactResponse, ParticleComesToRestAtItsThickness) {
+  Simulator simulator(one_particle({0.0, 0.3, 0.0}, {.thickness = 0.01}), settings(1e-3), {ground({.thickness = 0.002})});
+  run(simulator, 2.0);
+  // A step of free fall from rest is g dt^2 = 1e-5 m, and explicit Euler is one step behind.
+  EXPECT_NEAR(simulator.positions()(1, 0), 0.012, 1.1e-5);
+  EXPECT_LE(simulator.state().v.col(0).norm(), 1.01 * kGravity * 1e-3);
+}
+
+TEST_P(ContactResponse, FrictionHoldsBelowTheCriticalAngleAndLetsGoAboveIt) {
+  const double mu = 0.3;
+  const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
+  for (const double factor : {0.99, 1.01}) {
+    const double angle = std::atan(mu * factor);
+    const Vector3 start = 0.01 * Vector3(-std::sin(angle), std::cos(angle), 0.0);
+    Simulator simulator(one_particle(start, rough), settings(1e-3), {ground({.friction = mu, .static_friction = mu}, angle)});
+    run(simulator, 1.0);
+    const double slid = (simulator.positions().col(0) - start).norm();
+    // Beyond the critical angle: 1/2 g (sin - mu cos) t^2 = 0.5 * 9.81 * 0.00287 = 1.4 cm. Below it, nothing but the first step.
+    if (factor < 1.0) {
+      EXPECT_LT(slid, 2e-5);
+    } else {
+      EXPECT_NEAR(slid, 0.5 * kGravity * (std::sin(angle) - mu * std::cos(angle)), 0.02 * slid);
+    }
+  }
+}
+
+TEST_P(ContactResponse, SlidingParticleStopsAfterItsStoppingDistance) {
+  const double mu = 0.4;
+  const double speed = 2.0;
+  const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
+  Simulator simulator(one_particle({0.0, 0.01, 0.0}, rough, {speed, 0.0, 0.0}), settings(1e-3),
+                      {ground({.friction = mu, .static_friction = mu})});
+  run(simulator, 1.0);
+  const double distance = speed * speed / (2.0 * mu * kGravity);
+  // Friction begins and ends within a step: v dt at most at each end.
+  EXPECT_NEAR(simulator.positions()(0, 0), distance, 2.0 * speed * 1e-3);
+}
+
+TEST_P(ContactResponse, BounceReachesTheSquareOfRestitutionTimesTheHeight) {
+  const double e = 0.8;
+  const double height = 1.0;
+  Simulator simulator(one_particle({0.0, height + 0.01, 0.0}, {.thickness = 0.01, .restitution = e}), settings(2.5e-4), {ground()});
+  while (simulator.state().v(1, 0) <= 0.0) simulator.step();
+  double highest = 0.0;
+  while (simulator.state().v(1, 0) > 0.0) {
+    simulator.step();
+    highest = std::max(highest, simulator.positions()(1, 0) - 0.01);
+  }
+  // The speed at impact, 4.43 m/s, is known to within two steps of gravity: 2 g dt / v = 0.11 %, twice that for the height.
+  EXPECT_NEAR(highest, e * e * height, 0.004 * height);
+}
+
+TEST_P(ContactResponse, RestingParticleDoesNotBounce) {
+  Simulator simulator(one_particle({0.0, 0.01, 0.0}, {.thickness = 0.01, .restitution = 1.0}), settings(1e-3), {ground()});
+  for (int i = 0; i < 500; ++i) {
+    simulator.step();
+    ASSERT_NEAR(simulator.positions()(1, 0), 0.01, 1.1e-5) << "step " << i;
+  }
+}
+
+TEST_P(ContactResponse, MovingPlateCarriesAParticleByFriction) {
+  const double mu = 0.5;
+  const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
+  Obstacle plate{
+      .name = "plate", .geometry = BoxGeometry{.size = {4.0, 0.2, 4.0}}, .material = {.friction = mu, .static_friction = mu}};
+  plate.placed.translation() = Vector3(0.0, -0.1, 0.0);
+  plate.motion.keyframes = {{.time = 0.0}, {.time = 10.0, .position = {5.0, 5.0, 0.0}}};  // 0.5 m/s sideways and up
+  Simulator simulator(one_particle({0.0, 0.011, 0.0}, rough), settings(1e-3), {plate});
+  run(simulator, 1.0);
+  // Friction needs v / (mu g) = 0.1 s to bring it to the plate's speed, over which it lags v^2 / (2 mu g).
+  EXPECT_NEAR(simulator.positions()(0, 0), 0.5 - 0.25 / (2.0 * mu * kGravity), 2.5e-3);
+  EXPECT_NEAR(simulator.positions()(1, 0), 0.51, 1e-3);
+}
+
+TEST_P(ContactResponse, NothingPassesAThinSheetAtAnySpeed) {
+  TriangleMesh sheet;
+  sheet.vertices = (Points(3, 4) << -1, 1, 1, -1, 0, 0, 0, 0, -1, -1, 1, 1).finished();
+  sheet.triangles = (Triangles(3, 2) << 0, 0, 1, 2, 2, 3).finished();
+  for (const double side : {1.0, -1.0}) {
+    for (const double speed : {0.0, 5.0, 50.0, 500.0}) {
+      const Obstacle obstacle{.name = "sheet", .geometry = MeshGeometry{.mesh = std::make_shared<TriangleMesh>(sheet)}};
+      SimulatorSettings chosen = settings(1e-3);
+      chosen.gravity *= side;
+      // Straight at the diagonal that both triangles share.
+      Simulator simulator(one_particle({0.25, side * 0.1, 0.25}, {.thickness = 0.002}, {0.0, -side * speed, 0.0}), chosen,
+                          {obstacle});
+      for (int i = 0; i < 400; ++i) {
+        simulator.step();
+        ASSERT_GT(side * simulator.positions()(1, 0), 0.0) << "speed " << speed << ", step " << i;
+      }
+      EXPECT_NEAR(side * simulator.positions()(1, 0), 0.002, 1.1e-5);
+    }
+  }
+}
+
+TEST_P(ContactResponse, PenaltyHoldsTheWeightAtItsStaticDepth) {
+  SimulatorSettings chosen = settings(1e-4);
+  chosen.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1000.0, .damping = 5.0};
+  Simulator simulator(one_particle({0.0, 0.02, 0.0}, {.thickness = 0.01}), chosen, {ground()});
+  run(simulator, 1.0);
+  // k (h - y) = m g; c / m = 50 1/s has taken e^-25 of the motion.
+  EXPECT_NEAR(simulator.positions()(1, 0), 0.01 - 0.1 * kGravity / 1000.0, 1e-9);
+}
+
+TEST(ContactCount, CountsParticlesThatAreHeldUp) {
+  Simulator simulator(testing::cloth(5, 0.005, {.thickness = 0.005}), {.step = 2.5e-4}, {ground()});
+  FrameRunner frames(simulator, 100);
+  EXPECT_EQ(frames.next_frame().contacts, 25);
+  const FrameDiagnostics frame = frames.next_frame();
+  ASSERT_TRUE(frame.min_distance.has_value());
+  EXPECT_NEAR(*frame.min_distance, 0.005, 1e-6);
+}
+
+}  // namespace
+}  // namespace sprung

@@ -1,0 +1,58 @@
+// Small networks and obstacles that the tests of this folder share.
+#pragma once
+
+#include "network/network_builder.h"
+#include "simulation/simulator.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace sprung::testing {
+
+inline constexpr double kGravity = 9.81;  // [m/s^2]
+
+/// A particle of 0.1 kg on its own.
+inline SpringNetwork one_particle(const Vector3& position, const ContactMaterial& material = {},
+                                  const Vector3& velocity = Vector3::Zero()) {
+  NetworkBuilder builder;
+  builder.begin_body("ball", material);
+  builder.add_particle(position, 0.1, velocity);
+  return builder.build();
+}
+
+/// Solid below the plane through the origin, tilted by `angle` [rad] about z: it falls towards -x.
+inline Obstacle ground(const ContactMaterial& material = {}, double angle = 0.0) {
+  return {.name = "ground",
+          .geometry = HalfSpaceGeometry{.normal = {-std::sin(angle), std::cos(angle), 0.0}, .offset = 0.0},
+          .material = material};
+}
+
+/// A cloth of 1 m and n x n particles, horizontal at `height` [m].
+inline SpringNetwork cloth(Index n, double height, const ContactMaterial& material = {}) {
+  BodyShape shape =
+      make_cloth({.size = {1.0, 1.0}, .resolution = {n, n}}, {.structural = SpringMaterial{.value = 200.0, .damping = 0.01},
+                                                              .shear = SpringMaterial{.value = 100.0, .damping = 0.01},
+                                                              .bend = SpringMaterial{.value = 2.0}});
+  set_total_mass(shape, 0.2);
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = rotation_from_degrees({-90.0, 0.0, 0.0});
+  pose.translation() = Vector3(0.0, height, 0.0);
+  place(shape, pose, Vector3::Zero());
+  NetworkBuilder builder;
+  builder.add_body("cloth", shape, material);
+  return builder.build();
+}
+
+inline void run(Simulator& simulator, double seconds) {
+  const auto steps = static_cast<int>(std::lround(seconds / simulator.settings().step));
+  for (int i = 0; i < steps; ++i) simulator.step();
+}
+
+/// The three schemes, each undamped.
+inline std::vector<IntegratorSettings> all_integrators() {
+  return {ExplicitEulerSettings{}, SymplecticEulerSettings{}, VerletSettings{}};
+}
+
+}  // namespace sprung::testing

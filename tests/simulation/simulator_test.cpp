@@ -1,0 +1,184 @@
+// Laws of the step as a whole: pins, stability, divergence, determinism, stretch.
+#include "base/error.h"
+#include "base/parallel.h"
+#include "simulation/diagnostics.h"
+#include "simulation/scenes.h"
+#include "simulation/step_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace sprung {
+namespace {
+
+using testing::cloth;
+using testing::ground;
+using ::testing::HasSubstr;
+using testing::one_particle;
+using testing::run;
+
+SpringNetwork two_masses(double stiffness, double damping = 0.0) {
+  NetworkBuilder builder;
+  const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+  const Index bob = builder.add_particle({0.0, -1.0, 0.0}, 1.0);
+  builder.add_spring(hook, bob, stiffness, 1.0, damping);
+  builder.pin(hook);
+  return builder.build();
+}
+
+TEST(Simulator, FreeParticleFallsAsTheSchemesOwnSum) {
+  const double dt = 1e-2;
+  const double n = 100.0;
+  const std::vector<double> steps_of_gravity{n * (n - 1.0) / 2.0, n * (n + 1.0) / 2.0, n * n / 2.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    Simulator simulator(one_particle({0.0, 0.0, 0.0}), {.step = dt, .integrator = testing::all_integrators()[i]});
+    run(simulator, n * dt);
+    EXPECT_NEAR(simulator.positions()(1, 0), -testing::kGravity * dt * dt * steps_of_gravity[i], 1e-12) << i;
+  }
+}
+
+TEST(Simulator, PinsFollowTheirKeyframesExactly) {
+  NetworkBuilder builder;
+  const Index hook = builder.add_particle({1.0, 0.0, 0.0}, 1.0);
+  const Index bob = builder.add_particle({1.0, -1.0, 0.0}, 1.0);
+  builder.add_spring(hook, bob, 100.0, 1.0, 0.5);
+  builder.pin(hook, {.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {0.0, 2.0, 0.0}, .rotation = {0.0, 0.0, 90.0}}}});
+  for (const IntegratorSettings& integrator : testing::all_integrators()) {
+    Simulator simulator(builder.build(), {.step = 1e-3, .integrator = integrator});
+    run(simulator, 0.5);
+    // Half of the turn about the origin: (1, 0) goes to (cos 45, sin 45); half of the way up.
+    const Vector3 expected(std::sqrt(0.5), std::sqrt(0.5) + 1.0, 0.0);
+    EXPECT_LT((simulator.positions().col(hook) - expected).norm(), 1e-12);
+    // Its velocity is the one of the step to come, as its neighbours' dampers see it; d/dt of cos is off by dt/2 omega^2.
+    const double omega = std::numbers::pi / 2.0;
+    const Vector3 velocity = Vector3(-std::sqrt(0.5), std::sqrt(0.5), 0.0) * omega + Vector3(0.0, 2.0, 0.0);
+    EXPECT_LT((simulator.state().v.col(hook) - velocity).norm(), 1e-3 * omega * omega);
+  }
+}
+
+TEST(Simulator, StepBeyondTheStableOneIsRefusedAndTheLargestIsNamed) {
+  // omega = sqrt(k / m) = 100 1/s, largest step 2 / omega = 0.02 s, found from below and named with a margin of some percent.
+  try {
+    Simulator simulator(two_masses(1e4), {.step = 0.021});
+    FAIL() << "was accepted";
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.problems().size(), 1U);
+    EXPECT_EQ(error.problems()[0].key, "step");
+    EXPECT_THAT(error.what(), HasSubstr("0.021"));
+    EXPECT_THAT(error.what(), HasSubstr("largest stable step, 0.01"));
+  }
+  EXPECT_NO_THROW(Simulator(two_masses(1e4), {.step = 0.018}));
+}
+
+TEST(Simulator, WarnedStepDivergesWithTheCulpritNamed) {
+  NetworkBuilder builder;
+  const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+  const Index bob = builder.add_particle({0.0, -1.1, 0.0}, 1.0);
+  builder.add_spring(hook, bob, 1e4, 1.0);
+  builder.pin(hook);
+  Simulator simulator(builder.build(), {.step = 0.03, .stability = StabilityCheck::warn});
+  ASSERT_EQ(simulator.warnings().size(), 1U);
+  try {
+    run(simulator, 1000.0);
+    FAIL() << "did not diverge";
+  } catch (const StepError& error) {
+    EXPECT_EQ(error.failure().body, "network");
+    EXPECT_EQ(error.failure().particle, 1);
+    EXPECT_EQ(error.failure().spring, 0);
+    EXPECT_GT(error.failure().step, 0);
+    EXPECT_DOUBLE_EQ(error.failure().time, static_cast<double>(error.failure().step) * 0.03);
+    EXPECT_THAT(error.what(), HasSubstr("use a step of at most 0.01"));
+  }
+}
+
+TEST(Simulator, ExplicitEulerOnUndampedSpringsIsWarnedOf) {
+  const Simulator simulator(two_masses(100.0), {.step = 1e-3, .integrator = ExplicitEulerSettings{}});
+  ASSERT_EQ(simulator.warnings().size(), 1U);
+  EXPECT_THAT(simulator.warnings()[0], HasSubstr("symplectic_euler"));
+}
+
+TEST(Simulator, PenaltyStiffnessCountsForTheStableStep) {
+  // k / m = 1e6 / 0.1: omega = 3162 1/s, largest step 0.63 ms.
+  SimulatorSettings settings{.step = 1e-3};
+  settings.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1e6};
+  EXPECT_THROW(Simulator(one_particle({0.0, 1.0, 0.0}), settings, {ground()}), InputError);
+  EXPECT_NO_THROW(Simulator(one_particle({0.0, 1.0, 0.0}), settings));
+}
+
+TEST(Simulator, NonsenseStepIsRefused) {
+  for (const double step : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+    EXPECT_THROW(Simulator(one_particle({0.0, 0.0, 0.0}), {.step = step}), InputError) << step;
+  }
+}
+
+TEST(Simulator, ParticlesInsideAnObstacleAtTheStartAreRefused) {
+  try {
+    Simulator simulator(one_particle({0.0, -0.5, 0.0}), {}, {ground()});
+    FAIL() << "was accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems()[0].key, "bodies.ball");
+    EXPECT_THAT(error.what(), HasSubstr("0.5 m deep"));
+  }
+}
+
+TEST(Simulator, SameBitsForAnyNumberOfThreads) {
+  std::vector<Points> results;
+  for (const int threads : {1, 2, 2}) {
+    const ThreadLimit limit(threads);
+    Obstacle sphere{
+        .name = "sphere", .geometry = SphereGeometry{.radius = 0.3}, .material = {.friction = 0.3, .static_friction = 0.3}};
+    Simulator simulator(cloth(80, 0.32, {.thickness = 0.005, .friction = 0.3, .static_friction = 0.3}),
+                        {.step = 1.0 / 8000, .stretch_limit = StretchLimitSettings{}}, {sphere, ground()});
+    run(simulator, 0.05);
+    results.push_back(simulator.positions());
+  }
+  EXPECT_TRUE(results[0] == results[1]);
+  EXPECT_TRUE(results[1] == results[2]);
+}
+
+TEST(Simulator, StretchLimitHoldsAHangingChainOfSpringsWithoutStiffness) {
+  NetworkBuilder builder;
+  for (int i = 0; i < 10; ++i) builder.add_particle({0.0, -0.1 * i, 0.0}, 0.01);
+  for (int i = 0; i + 1 < 10; ++i) builder.add_spring(i, i + 1, 0.0, 0.1);
+  builder.pin(0);
+  const StretchLimitSettings limit{.max_stretch = 0.02, .iterations = 64, .tolerance = 1e-3};
+  Simulator simulator(builder.build(), {.step = 1e-3, .integrator = VerletSettings{.damping = 0.002}, .stretch_limit = limit});
+  FrameRunner frames(simulator, 1000);
+  frames.next_frame();
+  const FrameDiagnostics frame = frames.next_frame();
+  EXPECT_LE(frame.stretch_excess, 2e-3);
+  EXPECT_LE(frame.max_stretch, 0.02 + 2e-3);
+  EXPECT_GE(frame.max_stretch, 0.019);  // gravity pulls it to the limit
+}
+
+TEST(Simulator, EnergyOfAnUndampedSpringStaysBounded) {
+  NetworkBuilder builder;
+  const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+  const Index bob = builder.add_particle({1.2, 0.0, 0.0}, 1.0);
+  builder.add_spring(hook, bob, 100.0, 1.0);
+  builder.pin(hook);
+  Simulator simulator(builder.build(), {.step = 1e-3, .integrator = SymplecticEulerSettings{}});
+  FrameRunner frames(simulator, 100);
+  const auto total = [](const FrameDiagnostics& frame) {
+    return frame.kinetic_energy + frame.elastic_energy + frame.gravity_energy;
+  };
+  const double start = total(frames.first_frame());
+  for (int i = 0; i < 200; ++i) {
+    // Its modified energy differs from the energy by dt / 2 |v . F| <= 5e-4 * 5 m/s * 30 N.
+    EXPECT_NEAR(total(frames.next_frame()), start, 0.1);
+  }
+}
+
+TEST(Simulator, OneParticleAndAZeroLengthSpringWork) {
+  NetworkBuilder builder;
+  const Index a = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+  const Index b = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+  builder.add_spring(a, b, 10.0, 0.0, 0.1);
+  Simulator simulator(builder.build(), {.step = 1e-3, .stretch_limit = StretchLimitSettings{}});
+  run(simulator, 1.0);
+  EXPECT_TRUE(simulator.positions().allFinite());
+  EXPECT_EQ(simulator.positions().col(a), simulator.positions().col(b));
+}
+
+}  // namespace
+}  // namespace sprung
