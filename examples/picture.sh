@@ -2,12 +2,12 @@
 # Makes a picture of some frames of a run, side by side: bodies red, obstacles grey, ropes and loose particles as tubes and beads.
 #   examples/picture.sh FRAMES_FOLDER PICTURE.png FRAME...
 # HIDE="floor wall" leaves obstacles out; AZIMUTH and ELEVATION turn the camera [degrees]; RADIUS is a tube's [m]; SIZE a frame's.
-# Needs f3d, xvfb-run and ImageMagick's montage: install_packages picture, see packages.sh.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 folder=$1 picture=$2
 shift 2
+"$here/install_packages.sh" picture
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
