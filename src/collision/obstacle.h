@@ -13,7 +13,7 @@ namespace sprung {
 
 /// A triangle mesh as `import_mesh` leaves it. Closed meshes have an inside; open ones keep each particle on its side.
 struct MeshGeometry {
-  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const TriangleMesh> mesh{};
   bool closed = false;
 };
 
@@ -48,11 +48,11 @@ using ObstacleGeometry = std::variant<MeshGeometry, SphereGeometry, BoxGeometry,
                                       EllipsoidGeometry, HalfSpaceGeometry>;
 
 struct Obstacle {
-  std::string name;
-  ObstacleGeometry geometry;  ///< scaled already
+  std::string name{};
+  ObstacleGeometry geometry{};  ///< scaled already
   RigidTransform placed = RigidTransform::Identity();
-  Motion motion;
-  ContactMaterial material;
+  Motion motion{};
+  ContactMaterial material{};
 };
 
 /// The obstacle's surface as triangles in its own frame, for export: a mesh as it is, a primitive tessellated, a half-space as

@@ -14,6 +14,13 @@ constexpr double kMargin = 0.5;
 // A particle touches when it is this close to its gap: what rounding leaves of a projection onto it.
 constexpr double kTouch = 1.0 + 1.0e-9;
 
+// What friction takes from a motion along the surface, for a `push` along the normal: displacements or velocities alike.
+Vector3 slip_taken(const ContactMaterial& pair, const Vector3& slip, double push) {
+  const double length = slip.norm();
+  if (push <= 0.0 || length <= pair.static_friction * push) return push <= 0.0 ? Vector3::Zero() : slip;
+  return std::min(pair.friction * push / length, 1.0) * slip;
+}
+
 // An approach slower than this many times what the forces add in one step is rest, not an impact.
 constexpr double kRestSteps = 2.0;
 
@@ -88,9 +95,9 @@ void ContactProjection::settle_velocities(SimulationState& state, const Integrat
     auto velocity = state.v.col(contact.particle);
     const Vector3 relative = velocity - active.surface_velocity;
     const double speed = contact.normal.dot(relative);
-    const double settled = settled_speed(active, speed);
-    if (settled == speed) continue;
-    velocity += (settled - speed) * contact.normal;
+    const double change = settled_speed(active, speed) - speed;
+    if (change == 0.0) continue;
+    velocity += change * contact.normal - slip_taken(active.pair, relative - speed * contact.normal, change);
     integrator.velocity_changed(state, contact.particle, dt_);
   }
 }

@@ -37,9 +37,9 @@ struct SpringMaterial {
 
 /// Which springs to make: a kind without a material is left out.
 struct SpringMaterials {
-  std::optional<SpringMaterial> structural;
-  std::optional<SpringMaterial> shear;
-  std::optional<SpringMaterial> bend;
+  std::optional<SpringMaterial> structural{};
+  std::optional<SpringMaterial> shear{};
+  std::optional<SpringMaterial> bend{};
 };
 
 /// Most particles of a body: 2^27, so that the numbers of its springs (up to 16 a particle) fit an Index.

@@ -34,8 +34,8 @@ struct SimulatorSettings {
   double air_drag = 0.0;             ///< [kg/s] per particle of a rope, [kg/(m^2 s)] for surfaces
   Vector3 wind = Vector3::Zero();    ///< [m/s]
   IntegratorSettings integrator = VerletSettings{};
-  std::optional<StretchLimitSettings> stretch_limit;
-  ContactSettings contact;
+  std::optional<StretchLimitSettings> stretch_limit{};
+  ContactSettings contact{};
   StabilityCheck stability = StabilityCheck::refuse;
 };
 
