@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -83,6 +85,41 @@ void drop_duplicate_faces(TriangleMesh& mesh, MeshReport& report) {
   keep_faces(mesh, kept);
 }
 
+// A quad that is there twice, cut along one diagonal and along the other: no face is a duplicate, yet each side of the quad has a
+// third face. (A tetrahedron is two such quads as well, but its sides have two faces.)
+void drop_doubled_quads(TriangleMesh& mesh, MeshReport& report) {
+  const std::vector<MeshEdge> edges = mesh_edges(mesh.triangles);
+  const auto uses = [&](Index a, Index b) {
+    const std::array<Index, 2> vertices{std::min(a, b), std::max(a, b)};
+    return std::lower_bound(edges.begin(), edges.end(), vertices, [](const MeshEdge& e, const auto& v) { return e.vertices < v; })
+        ->uses;
+  };
+  const auto has_crowded_sides = [&](const MeshEdge& diagonal) {
+    for (const Index a : diagonal.vertices) {
+      for (const Index b : diagonal.opposite) {
+        if (uses(a, b) < 3) return false;
+      }
+    }
+    return true;
+  };
+  std::set<std::array<Index, 4>> quads;
+  std::vector<bool> dropped(mesh.triangles.cols(), false);
+  for (const MeshEdge& diagonal : edges) {
+    if (diagonal.uses != 2 || !has_crowded_sides(diagonal)) continue;
+    std::array<Index, 4> corners{diagonal.vertices[0], diagonal.vertices[1], diagonal.opposite[0], diagonal.opposite[1]};
+    std::sort(corners.begin(), corners.end());
+    if (quads.insert(corners).second) continue;
+    for (const Index triangle : diagonal.triangles) dropped[triangle] = true;
+  }
+  if (quads.empty()) return;
+  std::vector<Index> kept;
+  for (Index t = 0; t < mesh.triangles.cols(); ++t) {
+    if (!dropped[t]) kept.push_back(t);
+  }
+  report.duplicate_faces += static_cast<Index>(mesh.triangles.cols() - std::ssize(kept));
+  keep_faces(mesh, kept);
+}
+
 void drop_unused_vertices(TriangleMesh& mesh, MeshReport& report) {
   std::vector<Index> number(mesh.vertices.cols(), kNone);
   for (const Index vertex : mesh.triangles.reshaped()) number[vertex] = 0;
@@ -113,6 +150,10 @@ void describe(const TriangleMesh& mesh, MeshReport& report) {
   report.components = connected_components(mesh.triangles);
   report.closed = is_closed(mesh.triangles);
   report.bounds = bounds(mesh.vertices);
+  if (report.non_manifold_edges > 0) {
+    report.notes.push_back(std::to_string(report.non_manifold_edges) +
+                           " edge(s) have more than two faces: it has no inside, and is treated as a sheet");
+  }
   if (mesh.vertices.cols() == 0) return;
   const double extent = report.bounds.sizes().maxCoeff();
   if (kSmallestUsual <= extent && extent <= kLargestUsual) return;
@@ -130,6 +171,7 @@ ImportedMesh clean_mesh(const TriangleMesh& raw, double weld_distance) {
   weld(result.mesh, weld_distance, result.report);
   drop_degenerate_faces(result.mesh, result.report);
   drop_duplicate_faces(result.mesh, result.report);
+  drop_doubled_quads(result.mesh, result.report);
   drop_unused_vertices(result.mesh, result.report);
   orient(result.mesh, result.report);
   describe(result.mesh, result.report);

@@ -17,7 +17,7 @@ struct MeshReport {
   Index welded_vertices = 0;     ///< merged with one at the same position
   Index unused_vertices = 0;     ///< dropped: no face uses them
   Index degenerate_faces = 0;    ///< dropped: no area
-  Index duplicate_faces = 0;     ///< dropped: the same three vertices again
+  Index duplicate_faces = 0;     ///< dropped: the same three vertices again, or the same quad cut along its other diagonal
   Index flipped_faces = 0;       ///< turned to agree with their neighbours, or to face outward
   Index non_manifold_edges = 0;  ///< shared by more than two faces
   Index border_edges = 0;        ///< used by one face only

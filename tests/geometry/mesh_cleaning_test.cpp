@@ -86,6 +86,32 @@ TEST(CleanMesh, DropsDuplicateFacesWhateverTheirWinding) {
   EXPECT_EQ(cleaned.triangles, test::make_triangles({{0, 1, 2}}));
 }
 
+TEST(CleanMesh, DropsAQuadThatIsThereWithBothDiagonals) {
+  TriangleMesh mesh = test::make_cube();
+  mesh.triangles.conservativeResize(3, 14);
+  mesh.triangles.rightCols(2) = test::make_triangles({{0, 2, 3}, {0, 3, 1}});  // the cube has 0 2 1 and 1 2 3
+  const auto [cleaned, report] = clean_mesh(mesh);
+  EXPECT_EQ(report.duplicate_faces, 2);
+  EXPECT_TRUE(report.closed);
+  EXPECT_DOUBLE_EQ(signed_volume(cleaned), 1.0);
+}
+
+TEST(CleanMesh, KeepsATetrahedron) {
+  const TriangleMesh mesh{test::make_points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}),
+                          test::make_triangles({{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}})};
+  EXPECT_EQ(clean_mesh(mesh).mesh.triangles, mesh.triangles);
+}
+
+TEST(CleanMesh, KeepsAWallBetweenTwoRooms) {
+  // Two cubes side by side with one wall between them: the wall's rim has three faces an edge, but the wall is there once.
+  TriangleMesh rooms = test::merge(test::make_cube(), test::make_cube(1.0, Vector3(1, 0, 0)));
+  const auto [mesh, report] = clean_mesh(rooms);
+  EXPECT_EQ(mesh.triangles.cols(), 22);
+  EXPECT_EQ(report.non_manifold_edges, 4);
+  EXPECT_FALSE(report.closed);
+  EXPECT_THAT(report.notes, ElementsAre(HasSubstr("4 edge(s)")));
+}
+
 TEST(CleanMesh, AccountsForEveryVertex) {
   TriangleMesh mesh = unwelded(test::make_cube());
   mesh.vertices.conservativeResize(3, 40);
