@@ -1,0 +1,36 @@
+#include "scene/mesh_finder.h"
+
+#include "scene/nearest_name.h"
+
+#include <system_error>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+bool is_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored);
+}
+
+}  // namespace
+
+MeshFinder::MeshFinder(std::filesystem::path scene_file, const std::vector<std::filesystem::path>& mesh_paths)
+    : scene_file_(std::move(scene_file)), folders_{scene_file_.parent_path()} {
+  folders_.insert(folders_.end(), mesh_paths.begin(), mesh_paths.end());
+}
+
+std::optional<std::filesystem::path> MeshFinder::find(const std::string& file, const std::string& key,
+                                                      std::vector<Problem>& problems) const {
+  std::vector<std::string> looked;
+  for (const std::filesystem::path& folder : folders_) {
+    const std::filesystem::path candidate = folder / file;  // the file alone when it is an absolute path
+    if (is_file(candidate)) return candidate;
+    if (looked.empty() || looked.back() != candidate.string()) looked.push_back(candidate.string());
+  }
+  problems.push_back({scene_file_.string(), key, "\"" + file + "\"", "no such file: looked for " + joined(looked),
+                      "put it beside the scene, or name its folder with --mesh-path or SPRUNG_MESH_PATH"});
+  return std::nullopt;
+}
+
+}  // namespace sprung

@@ -1,0 +1,95 @@
+#include "scene/scene_builder.h"
+
+#include "network/network_builder.h"
+#include "scene/body_builder.h"
+#include "scene/frame_steps.h"
+#include "scene/obstacle_builder.h"
+#include "scene/step_choice.h"
+
+#include <cstdlib>
+#include <sstream>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder, NetworkBuilder& network,
+              std::vector<Problem>& problems) {
+  const auto shape = build_body(scene, body, finder, problems);
+  if (!shape) return;
+  const std::vector<ResolvedPin> pins = resolve_pins(scene, body, *shape, problems);
+  const Index first = network.add_body(body.name, *shape, body.material);
+  for (const ResolvedPin& pin : pins) {
+    std::vector<Index> particles = pin.particles;
+    for (Index& particle : particles) particle += first;
+    network.pin(std::move(particles), pin.motion, body.place.position);
+  }
+}
+
+/// The network, or none when a body has problems.
+std::optional<SpringNetwork> build_network(const Scene& scene, const MeshFinder& finder, std::vector<Problem>& problems) {
+  NetworkBuilder network;
+  for (const BodyScene& body : scene.bodies) add_body(scene, body, finder, network, problems);
+  if (!problems.empty()) return std::nullopt;
+  try {
+    return network.build();
+  } catch (const InputError& error) {
+    for (Problem problem : error.problems()) {
+      problem.file = scene.file.string();
+      problems.push_back(std::move(problem));
+    }
+    return std::nullopt;
+  }
+}
+
+std::vector<std::string> warnings_of(const BuiltScene& built) {
+  std::vector<std::string> warnings;
+  for (const Body& body : built.network.bodies) {
+    if (body.spring_count > 0 || body.particle_count < 2) continue;
+    warnings.push_back("body \"" + body.name + "\" has no springs: its particles move on their own");
+  }
+  for (const NamedReport& mesh : built.meshes) {
+    for (const std::string& note : mesh.report.notes) warnings.push_back("obstacle \"" + mesh.obstacle + "\": " + note);
+  }
+  return warnings;
+}
+
+}  // namespace
+
+BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::path>& mesh_paths) {
+  std::vector<Problem> problems;
+  const MeshFinder finder(scene.file, mesh_paths);
+  BuiltScene built;
+  auto network = build_network(scene, finder, problems);
+
+  ObstacleBuilder obstacles(scene, finder, problems);
+  for (const ObstacleScene& obstacle : scene.obstacles) {
+    if (auto made = obstacles.build(obstacle)) built.obstacles.push_back(std::move(*made));
+  }
+  built.meshes = obstacles.reports();
+
+  built.settings = scene.settings;
+  built.frames = frame_count(scene.duration, scene.frame_rate);
+  if (network) {
+    const StepChoice choice = choose_step(scene, *network, problems);
+    built.settings.step = choice.step;
+    built.steps_per_frame = choice.steps_per_frame;
+    built.largest_stable_step = choice.largest_stable;
+    built.network = std::move(*network);
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  built.warnings = warnings_of(built);
+  return built;
+}
+
+std::vector<std::filesystem::path> mesh_paths_from_environment() {
+  const char* value = std::getenv("SPRUNG_MESH_PATH");
+  std::vector<std::filesystem::path> folders;
+  std::istringstream paths(value == nullptr ? "" : value);
+  for (std::string folder; std::getline(paths, folder, ':');) {
+    if (!folder.empty()) folders.emplace_back(folder);
+  }
+  return folders;
+}
+
+}  // namespace sprung

@@ -1,0 +1,63 @@
+#include "scene/step_choice.h"
+
+#include "base/format.h"
+#include "scene/frame_steps.h"
+#include "simulation/step_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace sprung {
+namespace {
+
+constexpr double kStablePart = 0.9;  // of the largest stable step that "auto" uses at most
+
+double largest_auto_step(const Scene& scene, const SpringNetwork& network, double largest_stable) {
+  double largest = kStablePart * largest_stable;
+  if (scene.settings.stretch_limit) {
+    const StretchLimit limit(network, *scene.settings.stretch_limit);
+    largest = std::min(largest, limit.suggested_step(scene.settings.gravity.norm()));
+  }
+  return std::isfinite(largest) ? largest : kLargestAutoStep;
+}
+
+std::string remedy_for_unstable(const Scene& scene, double largest_stable) {
+  std::string remedy = "use \"auto\"";
+  if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest_stable)) {
+    remedy = "use at most " + format_number(step_of(scene.frame_rate, *steps)) + " or \"auto\"";
+  }
+  return remedy + "; \"stability\": \"warn\" lets it run all the same";
+}
+
+}  // namespace
+
+StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems) {
+  const auto report = [&](const std::string& value, const std::string& rule, const std::string& remedy) {
+    problems.push_back({scene.file.string(), "step", value, rule, remedy});
+  };
+  const SpectralBounds bounds = simulation_bounds(network, scene.settings, !scene.obstacles.empty());
+  StepChoice choice;
+  choice.largest_stable = largest_stable_step(scene.settings.integrator, bounds);
+  if (scene.step) {
+    choice.step = *scene.step;
+    choice.steps_per_frame = steps_per_frame(scene.frame_rate, choice.step).value_or(1);
+    if (choice.step > choice.largest_stable && scene.settings.stability == StabilityCheck::refuse) {
+      report(format_number(choice.step), "is beyond the largest stable step, " + format_number(choice.largest_stable) + " s",
+             remedy_for_unstable(scene, choice.largest_stable));
+    }
+    return choice;
+  }
+  const double largest = largest_auto_step(scene, network, choice.largest_stable);
+  if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
+    choice.steps_per_frame = *steps;
+    choice.step = step_of(scene.frame_rate, *steps);
+  } else {
+    report("\"auto\"", "must be at most " + format_number(largest) + " s, which is too many steps a frame",
+           "use less stiffness, more mass, or a higher frame_rate");
+  }
+  return choice;
+}
+
+}  // namespace sprung

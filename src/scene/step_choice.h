@@ -1,0 +1,26 @@
+// Which step a scene is simulated with.
+#pragma once
+
+#include "base/error.h"
+#include "scene/scene.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// When neither stability nor a stretch limit bounds it, "auto" is at most this [s]: a fall of a second then moves a particle by
+/// 4 cm in a step.
+inline constexpr double kLargestAutoStep = 1.0 / 240.0;
+
+struct StepChoice {
+  double step = 0.0;  ///< [s]
+  int steps_per_frame = 1;
+  double largest_stable = 0.0;  ///< [s]; infinity when any is stable
+};
+
+/// The scene's step or, for "auto", 1 / (frame_rate * n) with the least n whose step is at most 0.9 of the largest stable one and
+/// at most what the stretch limit suggests. Adds a problem when the scene's step is beyond the largest stable one and `stability`
+/// is refuse, or when a frame would take too many steps.
+[[nodiscard]] StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems);
+
+}  // namespace sprung
