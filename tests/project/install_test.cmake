@@ -1,5 +1,5 @@
-# Installs Sprung into WORK_FOLDER, then configures, builds and runs a program that finds it there.
-# Needs BINARY_FOLDER, WORK_FOLDER, GENERATOR, COMPILER, BUILD_TYPE and LINK_FLAGS.
+# Installs Sprung into WORK_FOLDER, then configures, builds and runs PROGRAM in a project that finds it there.
+# Needs BINARY_FOLDER, WORK_FOLDER, PROGRAM, GENERATOR, COMPILER, BUILD_TYPE and LINK_FLAGS.
 file(REMOVE_RECURSE ${WORK_FOLDER})
 set(installed ${WORK_FOLDER}/installed)
 set(built ${WORK_FOLDER}/built)
@@ -14,7 +14,8 @@ function(run)
 endfunction()
 
 run(${CMAKE_COMMAND} --install ${BINARY_FOLDER} --prefix ${installed})
-run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${built} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${installed}
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${built} -G ${GENERATOR}
+    -DCMAKE_PREFIX_PATH=${installed} -DPROGRAM=${PROGRAM}
     -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_EXE_LINKER_FLAGS=${LINK_FLAGS})
 run(${CMAKE_COMMAND} --build ${built})
 run(${built}/hello)
