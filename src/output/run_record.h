@@ -14,13 +14,13 @@ inline constexpr const char* kRunRecordFile = "run.json";
 
 /// What is known of a run before it starts.
 struct RunFacts {
-  std::string scene;         ///< as resolved, JSON text; may be empty
+  std::string scene{};         ///< as resolved, JSON text; may be empty
   double frame_rate = 30.0;  ///< [1/s]
   int frames = 1;            ///< that the run is to write
   int steps_per_frame = 1;
   int threads = 1;
   std::uint64_t seed = 0;  ///< of what is random; nothing is yet
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings{};
 };
 
 /// How far a run has come.

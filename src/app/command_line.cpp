@@ -1,0 +1,120 @@
+#include "app/command_line.h"
+
+#include "scene/nearest_name.h"
+
+#include <CLI/CLI.hpp>
+
+namespace sprung {
+namespace {
+
+constexpr int kMostFrames = 100'000'000;
+constexpr int kMostThreads = 1'024;
+
+constexpr const char* kExamples = R"(Examples:
+  sprung run examples/cloth_on_bunny.json --out frames
+  sprung run scene.json --out frames --overwrite --frames 30 --set 'bodies.banner.shape.resolution=[128,128]'
+  sprung validate scene.json --mesh-path ~/meshes
+  sprung info bunny.obj
+
+Meshes are looked for beside the scene file, in each --mesh-path, then in the folders of SPRUNG_MESH_PATH.
+
+Exit codes: 0 done, 2 wrong usage, 3 invalid scene or mesh, 4 the simulation diverged, 5 the scene file cannot be
+read or the output cannot be written, 130 interrupted, 1 anything else.)";
+
+/// The options of all commands, and the parser that fills them.
+class Parser {
+ public:
+  Parser() {
+    app_.footer(kExamples);
+    app_.set_version_flag("--version", "sprung " SPRUNG_VERSION);
+    app_.require_subcommand(1);
+    add_run();
+    add_validate();
+    add_info();
+  }
+
+  [[nodiscard]] Command parse(int argc, const char* const* argv) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::CallForVersion& version) {
+      return PrintOptions{std::string(version.what()) + "\n"};
+    } catch (const CLI::CallForHelp&) {
+      return PrintOptions{app_.help()};
+    } catch (const CLI::ParseError& error) {
+      throw UsageError(explain(error));
+    }
+    if (app_.got_subcommand("run")) return run_;
+    if (app_.got_subcommand("validate")) return validate_;
+    return info_;
+  }
+
+ private:
+  void add_run() {
+    CLI::App* run = app_.add_subcommand("run", "Simulates a scene and writes it as OBJ sequences");
+    add_scene(run, run_.scene);
+    run->add_option("--out", run_.out, "Folder for the frames; must be empty or not there")->required()->type_name("DIR");
+    run->add_option("--frames", run_.frames, "Number of frames, instead of the scene's duration")
+        ->check(CLI::Range(1, kMostFrames))
+        ->type_name("N");
+    run->add_option("--threads", run_.threads, "Most threads to use; results do not depend on it")
+        ->check(CLI::Range(1, kMostThreads))
+        ->type_name("N");
+    run->add_flag("--quiet", run_.quiet, "Print errors only");
+    run->add_flag("--overwrite", run_.overwrite, "Remove what an earlier run wrote into the folder, and nothing else");
+  }
+
+  void add_validate() {
+    CLI::App* validate = app_.add_subcommand("validate", "Checks a scene: every problem in one go, or what follows from it");
+    add_scene(validate, validate_.scene);
+  }
+
+  void add_info() {
+    CLI::App* info = app_.add_subcommand("info", "Describes a mesh: size, closed or open, what an import would repair");
+    info->add_option("MESH", info_.mesh, "Mesh file")->required()->type_name("");
+  }
+
+  static void add_scene(CLI::App* command, SceneOptions& scene) {
+    command->add_option("SCENE", scene.file, "Scene file")->required()->type_name("");
+    command->add_option("--set", scene.overrides, "Replaces a value of the scene; may be given again")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+    command->add_option("--mesh-path", scene.mesh_paths, "Folder to look for meshes in; may be given again")
+        ->allow_extra_args(false)
+        ->type_name("DIR");
+  }
+
+  [[nodiscard]] std::string explain(const CLI::ParseError& error) const {
+    const std::vector<CLI::App*> chosen = app_.get_subcommands();
+    const CLI::App& command = chosen.empty() ? app_ : *chosen.front();
+    const std::vector<std::string> names = known_names(command);
+    std::string text;
+    for (const std::string& word : app_.remaining(true)) {
+      text += "unexpected argument " + word;
+      if (const auto name = nearest_name(word, names)) text += "; did you mean " + *name + "?";
+      text += '\n';
+    }
+    if (text.empty()) text = std::string(error.what()) + '\n';
+    const std::string help = chosen.empty() ? "sprung --help" : "sprung " + command.get_name() + " --help";
+    return text + "see " + help;
+  }
+
+  [[nodiscard]] static std::vector<std::string> known_names(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::App* subcommand : command.get_subcommands({})) names.push_back(subcommand->get_name());
+    for (const CLI::Option* option : command.get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    return names;
+  }
+
+  CLI::App app_{"Simulates spring-damper networks that collide with meshes, and writes them as OBJ sequences.", "sprung"};
+  RunOptions run_;
+  ValidateOptions validate_;
+  InfoOptions info_;
+};
+
+}  // namespace
+
+Command parse_command_line(int argc, const char* const* argv) { return Parser().parse(argc, argv); }
+
+}  // namespace sprung

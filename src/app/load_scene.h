@@ -1,0 +1,29 @@
+// From a scene file to a simulator, for all commands that need one.
+#pragma once
+
+#include "app/command_line.h"
+#include "scene/scene_builder.h"
+#include "scene/scene_reader.h"
+
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+struct LoadedScene {
+  Scene scene;
+  Simulator simulator;
+  int frames = 1;
+  int steps_per_frame = 1;
+  double largest_stable_step = 0.0;  ///< [s]; infinity when there is none
+  std::vector<NamedReport> meshes;
+  std::vector<std::string> warnings;  ///< each once
+};
+
+/// Throws FileError when the scene cannot be read, and InputError with every problem, each naming its file.
+[[nodiscard]] LoadedScene load_scene(const SceneOptions& options);
+
+/// `8 steps of 0.00416667 s (automatic)`
+[[nodiscard]] std::string describe_steps(const LoadedScene& loaded);
+
+}  // namespace sprung

@@ -1,0 +1,41 @@
+#include "app/mesh_text.h"
+
+#include "base/format.h"
+
+#include <fmt/format.h>
+
+namespace sprung {
+namespace {
+
+constexpr int kDigits = 4;
+
+}  // namespace
+
+std::string describe_size(const Box3& box) {
+  if (box.isEmpty()) return "nothing";
+  const Vector3 size = box.sizes();
+  return fmt::format("{} x {} x {} m", format_number(size.x(), kDigits), format_number(size.y(), kDigits),
+                     format_number(size.z(), kDigits));
+}
+
+std::string describe_closedness(const MeshReport& report) {
+  if (report.closed) return "closed";
+  return fmt::format("open: {} border edges, {} edges with more than two faces", report.border_edges, report.non_manifold_edges);
+}
+
+std::vector<std::string> repairs(const MeshReport& report) {
+  std::vector<std::string> done;
+  const auto add = [&](Index count, const char* what) {
+    if (count > 0) done.push_back(fmt::format("{} {}", count, what));
+  };
+  add(report.welded_vertices, "vertices welded to others at the same place");
+  add(report.unused_vertices, "vertices dropped that no face uses");
+  add(report.degenerate_faces, "faces dropped that have no area");
+  add(report.duplicate_faces, "faces dropped that were there twice");
+  add(report.flipped_faces, "faces turned around");
+  return done;
+}
+
+std::string text_row(const std::string& label, const std::string& text) { return fmt::format("{:<12}{}\n", label, text); }
+
+}  // namespace sprung

@@ -1,0 +1,23 @@
+// What a person wants to know of a mesh, as text.
+#pragma once
+
+#include "geometry/mesh_import.h"
+
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// `1.2 x 0.8 x 3 m`
+[[nodiscard]] std::string describe_size(const Box3& box);
+
+/// `closed`, or `open: 12 border edges, 0 edges with more than two faces`
+[[nodiscard]] std::string describe_closedness(const MeshReport& report);
+
+/// What cleaning did, as `3 vertices welded`; empty when there was nothing to do.
+[[nodiscard]] std::vector<std::string> repairs(const MeshReport& report);
+
+/// `label      text`, in columns.
+[[nodiscard]] std::string text_row(const std::string& label, const std::string& text);
+
+}  // namespace sprung

@@ -1,0 +1,95 @@
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/load_scene.h"
+#include "app/progress.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "output/run_output.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <exception>
+#include <thread>
+
+namespace sprung {
+namespace {
+
+int thread_count(const RunOptions& options) {
+  return options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+}
+
+RunFacts facts_of(const LoadedScene& loaded, int threads) {
+  return {.scene = loaded.scene.resolved,
+          .frame_rate = loaded.scene.frame_rate,
+          .frames = loaded.frames,
+          .steps_per_frame = loaded.steps_per_frame,
+          .threads = threads,
+          .warnings = loaded.warnings};
+}
+
+void announce(const LoadedScene& loaded) {
+  const SpringNetwork& network = loaded.simulator.network();
+  print_message(fmt::format("{}: {} {} of {}, {} particles, {} springs, {} obstacles", loaded.scene.file.string(), loaded.frames,
+                            loaded.frames == 1 ? "frame" : "frames", describe_steps(loaded), network.particle_count(),
+                            network.springs.count(), loaded.simulator.environment().obstacles().size()));
+  for (const std::string& warning : loaded.warnings) print_warning(warning);
+}
+
+// The error that ends the run matters more than one in telling of it.
+void finish_quietly(RunOutput& output, const std::string& outcome) {
+  try {
+    output.finish(outcome);
+  } catch (const FileError&) {
+    return;
+  }
+}
+
+/// Writes frames until all are done or the user interrupts; returns how many.
+int write_frames(LoadedScene& loaded, RunOutput& output, bool quiet) {
+  FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
+  Progress progress(loaded.frames, quiet);
+  for (int frame = 1;; ++frame) {
+    output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
+    progress.frame_done(frame);
+    if (frame == loaded.frames || interrupted()) return frame;
+  }
+}
+
+int write_run(LoadedScene& loaded, RunOutput& output, bool quiet) try {
+  const int frames = write_frames(loaded, output, quiet);
+  output.finish(frames == loaded.frames ? "done" : "interrupted");
+  return frames;
+} catch (const StepError& error) {
+  finish_quietly(output, std::string("diverged: ") + error.what());
+  throw;
+} catch (const std::exception& error) {
+  finish_quietly(output, std::string("failed: ") + error.what());
+  throw;
+}
+
+}  // namespace
+
+ExitCode run(const RunOptions& options) {
+  const int threads = thread_count(options);
+  const ThreadLimit limit(threads);
+  LoadedScene loaded = load_scene(options.scene);
+  loaded.frames = options.frames.value_or(loaded.frames);
+  if (interrupted()) return ExitCode::interrupted;
+
+  RunOutput output(OutputFolder(options.out, options.overwrite), facts_of(loaded, threads), loaded.simulator);
+  if (!options.quiet) announce(loaded);
+  const auto start = std::chrono::steady_clock::now();
+  const int written = write_run(loaded, output, options.quiet);
+  const std::string time = describe_duration(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+
+  if (written < loaded.frames) {
+    print_message(fmt::format("interrupted; {} of {} frames are in {}", written, loaded.frames, options.out));
+    return ExitCode::interrupted;
+  }
+  if (!options.quiet) print_message(fmt::format("{} frames in {}, written to {}", written, time, options.out));
+  return ExitCode::done;
+}
+
+}  // namespace sprung

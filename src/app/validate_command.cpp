@@ -1,0 +1,79 @@
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/load_scene.h"
+#include "app/mesh_text.h"
+#include "base/format.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace sprung {
+namespace {
+
+constexpr int kDigits = 6;
+
+std::string time_text(const LoadedScene& loaded) {
+  const std::string stable = std::isfinite(loaded.largest_stable_step)
+                                 ? "the largest stable step is " + format_number(loaded.largest_stable_step, kDigits) + " s"
+                                 : "every step is stable";
+  return text_row("frames", fmt::format("{} at {} a second", loaded.frames, format_number(loaded.scene.frame_rate, kDigits))) +
+         text_row("each", describe_steps(loaded) + "; " + stable);
+}
+
+std::string springs_text(const Springs& springs, const Body& body) {
+  std::array<Index, 3> counts{};
+  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+    ++counts[static_cast<std::size_t>(springs.kind[static_cast<std::size_t>(s)])];
+  }
+  return fmt::format("{} springs ({} structural, {} shear, {} bend)", body.spring_count, counts[0], counts[1], counts[2]);
+}
+
+std::string body_text(const SpringNetwork& network, const Body& body) {
+  Index pinned = 0;
+  for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) pinned += network.is_pinned(i) ? 1 : 0;
+  const double mass = network.masses.segment(body.first_particle, body.particle_count).sum();
+  const Box3 box = bounds(network.positions.middleCols(body.first_particle, body.particle_count));
+  return text_row("body", fmt::format("{}: {} particles ({} pinned), {}, {} kg, {}", body.name, body.particle_count, pinned,
+                                      springs_text(network.springs, body), format_number(mass, kDigits), describe_size(box)));
+}
+
+const char* shape_name(const ObstacleGeometry& geometry) {
+  constexpr std::array<const char*, std::variant_size_v<ObstacleGeometry>> kNames{"mesh",     "sphere", "box",       "capsule",
+                                                                                  "cylinder", "cone",   "ellipsoid", "half-space"};
+  return kNames[geometry.index()];
+}
+
+std::string mesh_row(const NamedReport& mesh) {
+  const MeshReport& report = mesh.report;
+  const std::vector<std::string> done = repairs(report);
+  std::string text =
+      text_row("mesh", fmt::format("{}: {}, {} triangles read, {}, {} {}, {}", mesh.obstacle, mesh.file.string(), report.faces_read,
+                                   describe_closedness(report), report.components,
+                                   report.components == 1 ? "component" : "components", describe_size(report.bounds)));
+  if (!done.empty()) text += text_row("", fmt::format("repaired: {}", fmt::join(done, ", ")));
+  return text;
+}
+
+std::string obstacle_row(const Obstacle& obstacle) {
+  return text_row("obstacle", fmt::format("{}: {}, {}", obstacle.name, shape_name(obstacle.geometry),
+                                          obstacle.motion.moves() ? "moving" : "standing still"));
+}
+
+}  // namespace
+
+ExitCode validate(const ValidateOptions& options) {
+  const LoadedScene loaded = load_scene(options.scene);
+  const SpringNetwork& network = loaded.simulator.network();
+  std::string text = text_row("scene", loaded.scene.file.string()) + time_text(loaded);
+  for (const Body& body : network.bodies) text += body_text(network, body);
+  for (const Obstacle& obstacle : loaded.simulator.environment().obstacles()) text += obstacle_row(obstacle);
+  for (const NamedReport& mesh : loaded.meshes) text += mesh_row(mesh);
+  for (const std::string& warning : loaded.warnings) text += text_row("warning", warning);
+  print_result(text + text_row("valid", "nothing is wrong with this scene"));
+  return ExitCode::done;
+}
+
+}  // namespace sprung

@@ -1,0 +1,308 @@
+// A run's files, read back as other programs read them.
+#include "output/run_output.h"
+
+#include "base/error.h"
+#include "network/network_builder.h"
+#include "output/file_size_limit.h"
+#include "output/scratch_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace sprung {
+namespace {
+
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using testing::FileSizeLimit;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::listing;
+using ::testing::Not;
+using testing::read_text;
+using testing::ScratchFolder;
+
+const SpringMaterials kSoft{SpringMaterial{.value = 10.0}, {}, {}};
+
+Obstacle still(const std::string& name, ObstacleGeometry geometry, const Vector3& position) {
+  Obstacle obstacle;
+  obstacle.name = name;
+  obstacle.geometry = std::move(geometry);
+  obstacle.placed.translation() = position;
+  return obstacle;
+}
+
+Obstacle rising(const std::string& name, ObstacleGeometry geometry, const Vector3& position) {
+  Obstacle obstacle = still(name, std::move(geometry), position);
+  obstacle.motion.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {0.0, 0.25, 0.0}}};
+  return obstacle;
+}
+
+PolygonMesh quad_with_uvs() {
+  PolygonMesh mesh;
+  mesh.vertices.resize(3, 5);
+  mesh.vertices << 0, 1, 1, 0, 0.5, 0, 0, 1, 1, 2, 0, 0, 0, 0, 0;
+  mesh.faces.corner_begin = {0, 4, 7};
+  mesh.faces.vertex = {0, 1, 2, 3, 3, 2, 4};
+  mesh.faces.texcoord = {0, 1, 2, 3, 3, 2, 4};
+  mesh.faces.texcoords = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}, {0.5, 0.1}};
+  mesh.faces.groups = {"wall", "roof"};
+  mesh.faces.group_begin = {0, 1};
+  return mesh;
+}
+
+/// A rope, a cloth and a mesh body that fall, a ball that rests, a box that rises, and a floor.
+Simulator small_world() {
+  NetworkBuilder builder;
+  const auto add = [&](const std::string& name, BodyShape shape, const Vector3& position) {
+    set_total_mass(shape, 1.0);
+    RigidTransform pose = RigidTransform::Identity();
+    pose.translation() = position;
+    place(shape, pose);
+    builder.add_body(name, shape);
+  };
+  add("rope", make_rope({{{0.0, 1.0 / 3.0, 0.0}, {1.0, 1.0, 0.1}}, 4, {}}, kSoft), {0.0, 2.0, 0.0});
+  add("cloth", make_cloth({.size = {1.0, 0.7}, .resolution = {3, 4}}, kSoft), {3.0, 2.0, 0.0});
+  add("house", make_mesh_body(quad_with_uvs(), kSoft), {6.0, 2.0, 0.0});
+  SimulatorSettings settings;
+  settings.step = 0.01;
+  return Simulator(
+      builder.build(), settings,
+      {still("ball", SphereGeometry{0.2}, {0.0, 0.3, 5.0}), rising("lift", BoxGeometry{{0.2, 0.2, 0.2}}, {3.0, 0.5, 5.0}),
+       still("floor", HalfSpaceGeometry{}, Vector3::Zero())});
+}
+
+/// The lines of an OBJ file by their first word, and its positions as a reader with strtod sees them.
+struct ObjLines {
+  std::vector<std::string> order;
+  std::vector<std::string> faces;
+  std::vector<double> positions;
+};
+
+ObjLines read_lines(const std::filesystem::path& file) {
+  ObjLines lines;
+  std::istringstream stream(read_text(file));
+  for (std::string line; std::getline(stream, line);) {
+    const std::string word = line.substr(0, line.find(' '));
+    lines.order.push_back(word);
+    if (word != "v") {
+      lines.faces.push_back(line);
+      continue;
+    }
+    const char* text = line.c_str() + 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      char* end = nullptr;
+      lines.positions.push_back(std::strtod(text, &end));
+      text = end;
+    }
+  }
+  return lines;
+}
+
+class RunOutputFiles : public ::testing::Test {
+ protected:
+  RunOutput open(int frames, const std::string& scene = "") {
+    return {
+        OutputFolder(scratch_ / "out", false), {.scene = scene, .frames = frames, .steps_per_frame = 2, .threads = 3}, simulator_};
+  }
+  void run(int frames) {
+    RunOutput output = open(frames);
+    FrameRunner runner(simulator_, 2);
+    output.write_frame(simulator_, runner.first_frame());
+    for (int frame = 2; frame <= frames; ++frame) output.write_frame(simulator_, runner.next_frame());
+    output.finish("done");
+  }
+  [[nodiscard]] std::filesystem::path file(const std::string& name) const { return scratch_ / ("out/" + name); }
+  [[nodiscard]] nlohmann::json record() const { return nlohmann::json::parse(read_text(file("run.json"))); }
+
+  ScratchFolder scratch_;
+  Simulator simulator_ = small_world();
+};
+
+TEST_F(RunOutputFiles, AreThoseOfTheContract) {
+  run(2);
+  EXPECT_THAT(listing(scratch_ / "out"),
+              ElementsAre("cloth/", "cloth/cloth.0001.obj", "cloth/cloth.0002.obj", "diagnostics.csv", "house/",
+                          "house/house.0001.obj", "house/house.0002.obj", "obstacles/", "obstacles/ball.obj", "obstacles/floor.obj",
+                          "obstacles/lift/", "obstacles/lift/lift.0001.obj", "obstacles/lift/lift.0002.obj", "rope/",
+                          "rope/rope.0001.obj", "rope/rope.0002.obj", "run.json"));
+}
+
+TEST_F(RunOutputFiles, FrameOneIsTheStateAtTimeZeroAndEachNumberReadsBackEqual) {
+  RunOutput output = open(3);
+  FrameRunner runner(simulator_, 2);
+  for (int frame = 1; frame <= 3; ++frame) {
+    output.write_frame(simulator_, frame == 1 ? runner.first_frame() : runner.next_frame());
+    for (const Body& body : simulator_.network().bodies) {
+      const std::vector<double> read =
+          read_lines(file(body.name + "/" + body.name + ".000" + std::to_string(frame) + ".obj")).positions;
+      const Points expected = (frame == 1 ? simulator_.network().positions : simulator_.positions())
+                                  .middleCols(body.first_particle, body.particle_count);
+      EXPECT_EQ(read, std::vector<double>(expected.data(), expected.data() + expected.size())) << body.name << " " << frame;
+    }
+  }
+}
+
+TEST_F(RunOutputFiles, LinesKeepTheirCountsAndOrderInEachFrame) {
+  run(3);
+  for (const Body& body : simulator_.network().bodies) {
+    const std::string name = body.name + "/" + body.name;
+    const ObjLines first = read_lines(file(name + ".0001.obj"));
+    EXPECT_EQ(first.positions.size(), 3U * body.particle_count);
+    for (const char* later : {".0002.obj", ".0003.obj"}) {
+      const ObjLines frame = read_lines(file(name + later));
+      EXPECT_EQ(frame.order, first.order);
+      EXPECT_EQ(frame.faces, first.faces);
+      EXPECT_NE(frame.positions, first.positions);
+    }
+  }
+}
+
+TEST_F(RunOutputFiles, RopesAreLines) {
+  run(1);
+  EXPECT_THAT(read_lines(file("rope/rope.0001.obj")).faces, ElementsAre("l 1 2 3 4"));
+}
+
+TEST_F(RunOutputFiles, ClothsAreTriangles) {
+  run(1);
+  const std::vector<std::string> faces = read_lines(file("cloth/cloth.0001.obj")).faces;
+  EXPECT_EQ(faces.size(), 2U * 2U * 3U);
+  EXPECT_THAT(faces, Each(::testing::MatchesRegex("f [0-9]+ [0-9]+ [0-9]+")));
+}
+
+TEST_F(RunOutputFiles, MeshBodiesKeepPolygonsGroupsAndUvs) {
+  run(1);
+  EXPECT_THAT(
+      read_lines(file("house/house.0001.obj")).faces,
+      ElementsAre("vt 0 0", "vt 1 0", "vt 1 1", "vt 0 1", "vt 0.5 0.1", "g wall", "f 1/1 2/2 3/3 4/4", "g roof", "f 4/4 3/3 5/5"));
+}
+
+TEST_F(RunOutputFiles, ObstaclesAreWhereTheyArePlacedAndWhereTheyMove) {
+  run(3);
+  const auto box_of = [&](const std::string& name) {
+    const std::vector<double> read = read_lines(file("obstacles/" + name)).positions;
+    return bounds(Eigen::Map<const Points>(read.data(), 3, static_cast<Eigen::Index>(read.size() / 3)));
+  };
+  // The poles of a tessellated sphere are vertices: exact but for rounding.
+  EXPECT_NEAR(box_of("ball.obj").min().y(), 0.1, 1e-15);
+  EXPECT_NEAR(box_of("ball.obj").max().y(), 0.5, 1e-15);
+  EXPECT_TRUE(box_of("lift/lift.0001.obj").isApprox(Box3(Vector3(2.9, 0.4, 4.9), Vector3(3.1, 0.6, 5.1)), 1e-15));
+  // Two frames of two steps of 0.01 s later it rose by 0.04 * 0.25 m.
+  EXPECT_TRUE(box_of("lift/lift.0003.obj").isApprox(Box3(Vector3(2.9, 0.41, 4.9), Vector3(3.1, 0.61, 5.1)), 1e-15));
+}
+
+TEST_F(RunOutputFiles, FloorReachesUnderTheWholeScene) {
+  run(1);
+  const std::vector<double> read = read_lines(file("obstacles/floor.obj")).positions;
+  const Box3 floor = bounds(Eigen::Map<const Points>(read.data(), 3, static_cast<Eigen::Index>(read.size() / 3)));
+  const Box3 scene = bounds(simulator_.network().positions);
+  for (const int axis : {0, 2}) {
+    EXPECT_LT(floor.min()[axis], scene.min()[axis]);
+    EXPECT_GT(floor.max()[axis], scene.max()[axis]);
+  }
+  EXPECT_EQ(floor.sizes().y(), 0.0);
+}
+
+TEST_F(RunOutputFiles, DigitsGrowWithTheNumberOfFrames) {
+  RunOutput output = open(100'000);
+  output.write_frame(simulator_, FrameRunner(simulator_, 1).first_frame());
+  EXPECT_TRUE(std::filesystem::exists(file("rope/rope.000001.obj")));
+}
+
+TEST_F(RunOutputFiles, DiagnosticsHaveARowAFrame) {
+  run(4);
+  std::istringstream stream(read_text(file("diagnostics.csv")));
+  std::vector<std::string> starts;
+  for (std::string line; std::getline(stream, line);) {
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 11);
+    starts.push_back(line.substr(0, line.find(',', line.find(',') + 1)));
+  }
+  EXPECT_THAT(starts, ElementsAre("frame,time", "1,0", "2,0.02", "3,0.04", "4,0.06"));
+}
+
+TEST_F(RunOutputFiles, RecordTellsHowFarTheRunCame) {
+  RunOutput output = open(3, R"({"duration": 0.1, "bodies": {}})");
+  EXPECT_EQ(record()["outcome"], "running");
+  EXPECT_EQ(record()["frames_written"], 0);
+  FrameRunner runner(simulator_, 2);
+  output.write_frame(simulator_, runner.first_frame());
+  output.write_frame(simulator_, runner.next_frame());
+  EXPECT_EQ(record()["outcome"], "running");
+  output.finish("interrupted");
+  const nlohmann::json json = record();
+  EXPECT_EQ(json["outcome"], "interrupted");
+  EXPECT_EQ(json["frames"], 3);
+  EXPECT_EQ(json["frames_written"], 2);
+  EXPECT_EQ(json["steps"], 2);
+  EXPECT_EQ(json["step"], 0.01);
+  EXPECT_EQ(json["threads"], 3);
+  EXPECT_EQ(json["seed"], 0);
+  EXPECT_EQ(json["scene"]["duration"], 0.1);
+  EXPECT_GE(json["wall_seconds"], 0.0);
+}
+
+TEST_F(RunOutputFiles, ThatFitNoMoreTakeTheirWholeFrameBack) {
+  RunOutput output = open(3);
+  FrameRunner runner(simulator_, 2);
+  output.write_frame(simulator_, runner.first_frame());
+  const std::vector<std::string> before = listing(scratch_ / "out");
+  const std::string rows = read_text(file("diagnostics.csv"));
+  const FrameDiagnostics next = runner.next_frame();
+  {
+    // The rope (the first body) still fits, the cloth does not.
+    const FileSizeLimit limit(std::filesystem::file_size(file("rope/rope.0001.obj")) + 100);
+    EXPECT_THROW(output.write_frame(simulator_, next), FileError);
+  }
+  EXPECT_EQ(listing(scratch_ / "out"), before);
+  EXPECT_EQ(read_text(file("diagnostics.csv")), rows);
+  output.finish("no space");
+  EXPECT_EQ(record()["frames_written"], 1);
+}
+
+TEST_F(RunOutputFiles, RunWithTheSameNamesReplacesThemWhenAsked) {
+  run(3);
+  simulator_ = small_world();
+  {
+    RunOutput output(OutputFolder(scratch_ / "out", true), {.frames = 1}, simulator_);
+    output.write_frame(simulator_, FrameRunner(simulator_, 1).first_frame());
+  }
+  EXPECT_THAT(listing(scratch_ / "out"), Not(Contains("rope/rope.0002.obj")));
+  EXPECT_THAT(listing(scratch_ / "out"), Contains("rope/rope.0001.obj"));
+}
+
+TEST(RunOutput, NamesThatCannotBeFoldersAreAllReported) {
+  NetworkBuilder builder;
+  for (const char* name : {"../up", "obstacles"}) {
+    builder.begin_body(name);
+    builder.add_particle(Vector3::Zero(), 1.0);
+  }
+  const Obstacle ball = still("ball", SphereGeometry{0.2}, {0.0, 3.0, 0.0});
+  const Simulator simulator(builder.build(), {}, {ball, ball});
+  const ScratchFolder scratch;
+  try {
+    const RunOutput output(OutputFolder(scratch.path(), false), {}, simulator);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().size(), 3U);
+    EXPECT_THAT(error.what(), HasSubstr("../up"));
+  }
+  EXPECT_THAT(listing(scratch.path()), IsEmpty());
+}
+
+TEST(VertexLines, AreTheSameForEveryNumberOfVerticesAndChunks) {
+  Points points(3, 10'000);
+  for (Eigen::Index i = 0; i < points.size(); ++i) points.data()[i] = std::sin(static_cast<double>(i)) / 3.0;
+  std::string expected;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) expected += vertex_lines(points.col(i));
+  EXPECT_EQ(vertex_lines(points), expected);
+  EXPECT_EQ(vertex_lines(Points(3, 0)), "");
+}
+
+}  // namespace
+}  // namespace sprung
