@@ -28,23 +28,24 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
 }
 
 void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics) {
-  const bool first = progress_.frames_written == 0;
+  const RunProgress before = progress_;
   std::vector<std::string> written;
+  ++progress_.frames_written;
+  progress_.steps = simulator.state().step;
   try {
     for (const ObjSequence& sequence : sequences_) {
-      if (!first && !sequence.changes()) continue;
-      const std::string file = fill_pattern(sequence.pattern(), progress_.frames_written + 1);
+      if (before.frames_written > 0 && !sequence.changes()) continue;
+      const std::string file = fill_pattern(sequence.pattern(), progress_.frames_written);
       folder_.write(file, sequence.text(simulator));
       written.push_back(file);
     }
+    write_record();
     folder_.append(kDiagnosticsFile, csv_row(diagnostics));
   } catch (...) {
     for (const std::string& file : written) folder_.remove(file);
+    progress_ = before;
     throw;
   }
-  ++progress_.frames_written;
-  progress_.steps = simulator.state().step;
-  write_record();
 }
 
 void RunOutput::finish(const std::string& outcome) {

@@ -265,6 +265,24 @@ TEST_F(RunOutputFiles, ThatFitNoMoreTakeTheirWholeFrameBack) {
   EXPECT_EQ(record()["frames_written"], 1);
 }
 
+TEST_F(RunOutputFiles, FrameWhoseRowFitsNoMoreIsTakenBack) {
+  RunOutput output = open(3);
+  FrameRunner runner(simulator_, 2);
+  output.write_frame(simulator_, runner.first_frame());
+  const std::vector<std::string> before = listing(scratch_ / "out");
+  const std::uintmax_t room = std::filesystem::file_size(file("diagnostics.csv"));
+  std::filesystem::resize_file(file("diagnostics.csv"), 100'000);
+  {
+    const FileSizeLimit limit(100'010);
+    EXPECT_THROW(output.write_frame(simulator_, runner.next_frame()), FileError);
+  }
+  EXPECT_EQ(std::filesystem::file_size(file("diagnostics.csv")), 100'000U);
+  EXPECT_EQ(listing(scratch_ / "out"), before);
+  std::filesystem::resize_file(file("diagnostics.csv"), room);
+  output.write_frame(simulator_, runner.next_frame());
+  EXPECT_EQ(record()["frames_written"], 2);
+}
+
 TEST_F(RunOutputFiles, RunWithTheSameNamesReplacesThemWhenAsked) {
   run(3);
   simulator_ = small_world();
