@@ -15,6 +15,7 @@ constexpr std::chrono::milliseconds kBarPause{100};
 constexpr std::chrono::seconds kLinePause{5};
 constexpr int kLines = 10;
 constexpr int kBarWidth = 30;
+constexpr const char* kClearToEnd = "\x1b[K";
 
 std::string bar(int frame, int frames) {
   const int filled = static_cast<int>(static_cast<double>(kBarWidth) * frame / frames);
@@ -36,8 +37,7 @@ void Progress::frame_done(int frame) {
   if (quiet_ || !is_due(frame, now)) return;
   const std::string text = line(frame, std::chrono::duration<double>(now - start_).count());
   if (terminal_) {
-    constexpr const char* kClearToEnd = "\x1b[K";
-    std::fputs(("\r" + bar(frame, frames_) + text + kClearToEnd).c_str(), stderr);
+    std::fputs(fmt::format("\r{}{}{}", bar(frame, frames_), text, kClearToEnd).c_str(), stderr);
   } else {
     print_message(text);
   }
