@@ -87,15 +87,13 @@ class Parser {
     const std::vector<CLI::App*> chosen = app_.get_subcommands();
     const CLI::App& command = chosen.empty() ? app_ : *chosen.front();
     const std::vector<std::string> names = known_names(command);
+    const std::string help = "see sprung " + (chosen.empty() ? "" : command.get_name() + " ") + "--help";
     std::string text;
     for (const std::string& word : app_.remaining(true)) {
-      text += "unexpected argument " + word;
-      if (const auto name = nearest_name(word, names)) text += "; did you mean " + *name + "?";
-      text += '\n';
+      const auto name = nearest_name(word, names);
+      text += "unexpected argument " + word + (name ? "; did you mean " + *name + "? " : "; ") + help + '\n';
     }
-    if (text.empty()) text = std::string(error.what()) + '\n';
-    const std::string help = chosen.empty() ? "sprung --help" : "sprung " + command.get_name() + " --help";
-    return text + "see " + help;
+    return text.empty() ? std::string(error.what()) + "; " + help : text;
   }
 
   [[nodiscard]] static std::vector<std::string> known_names(const CLI::App& command) {
