@@ -1,0 +1,79 @@
+// Runs the program on an example and reads what it wrote.
+#pragma once
+
+#include "base/types.h"
+#include "geometry/polygon_mesh.h"
+#include "output/scratch_folder.h"
+
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace sprung::testing {
+
+class ExampleRun {
+ public:
+  /// Runs examples/<name>.json, with more arguments of the command line if need be.
+  explicit ExampleRun(const std::string& name, const std::string& arguments = "") {
+    const std::string scene = std::string(SPRUNG_SOURCE_DIR) + "/examples/" + name + ".json";
+    const std::string command = "'" SPRUNG_PROGRAM "' run '" + scene + "' --quiet --out '" + output().string() + "' " + arguments +
+                                " 2> '" + (scratch_ / "messages").string() + "'";
+    exit_code_ = WEXITSTATUS(std::system(command.c_str()));
+    messages_ = read_text(scratch_ / "messages");
+    if (exit_code_ == 0) read_diagnostics();
+  }
+
+  [[nodiscard]] std::filesystem::path output() const { return scratch_ / "frames"; }
+  [[nodiscard]] int exit_code() const { return exit_code_; }
+  [[nodiscard]] const std::string& messages() const { return messages_; }
+
+  [[nodiscard]] int frames() const { return static_cast<int>(columns_.at("frame").size()); }
+
+  /// A column of diagnostics.csv, an entry a frame.
+  [[nodiscard]] const std::vector<double>& column(const std::string& name) const { return columns_.at(name); }
+
+  /// Positions [m] of a body in a frame, counted from 1.
+  [[nodiscard]] Points positions(const std::string& body, int frame) const {
+    char number[16];
+    std::snprintf(number, sizeof number, "%04d", frame);
+    return read_obj(output() / body / (body + "." + number + ".obj")).vertices;
+  }
+
+ private:
+  void read_diagnostics() {
+    std::istringstream lines(read_text(output() / "diagnostics.csv"));
+    std::string line;
+    std::getline(lines, line);
+    const std::vector<std::string> names = fields(line);
+    while (std::getline(lines, line)) {
+      const std::vector<std::string> values = fields(line);
+      // An empty field, such as the distance of what is far from any obstacle, reads as 0.
+      for (std::size_t i = 0; i < names.size(); ++i) columns_[names[i]].push_back(std::strtod(values.at(i).c_str(), nullptr));
+    }
+  }
+
+  static std::vector<std::string> fields(const std::string& line) {
+    std::vector<std::string> result(1);
+    for (const char c : line) {
+      if (c == ',') {
+        result.emplace_back();
+      } else {
+        result.back() += c;
+      }
+    }
+    return result;
+  }
+
+  ScratchFolder scratch_;
+  int exit_code_ = -1;
+  std::string messages_;
+  std::map<std::string, std::vector<double>> columns_;
+};
+
+}  // namespace sprung::testing
