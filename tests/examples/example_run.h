@@ -1,17 +1,15 @@
 // Runs the program on an example and reads what it wrote.
 #pragma once
 
+#include "app/program.h"
 #include "base/types.h"
 #include "geometry/polygon_mesh.h"
 #include "output/scratch_folder.h"
-
-#include <sys/wait.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,18 +18,17 @@ namespace sprung::testing {
 class ExampleRun {
  public:
   /// Runs examples/<name>.json, with more arguments of the command line if need be.
-  explicit ExampleRun(const std::string& name, const std::string& arguments = "") {
-    const std::string scene = std::string(SPRUNG_SOURCE_DIR) + "/examples/" + name + ".json";
-    const std::string command = "'" SPRUNG_PROGRAM "' run '" + scene + "' --quiet --out '" + output().string() + "' " + arguments +
-                                " 2> '" + (scratch_ / "messages").string() + "'";
-    exit_code_ = WEXITSTATUS(std::system(command.c_str()));
-    messages_ = read_text(scratch_ / "messages");
-    if (exit_code_ == 0) read_diagnostics();
+  explicit ExampleRun(const std::string& name, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"run", std::string(SPRUNG_SOURCE_DIR) + "/examples/" + name + ".json", "--quiet", "--out",
+                                       output().string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    ending_ = Program(arguments).wait();
+    if (ending_.code == 0) read_diagnostics();
   }
 
   [[nodiscard]] std::filesystem::path output() const { return scratch_ / "frames"; }
-  [[nodiscard]] int exit_code() const { return exit_code_; }
-  [[nodiscard]] const std::string& messages() const { return messages_; }
+  [[nodiscard]] int exit_code() const { return ending_.code; }
+  [[nodiscard]] const std::string& messages() const { return ending_.err; }
 
   [[nodiscard]] int frames() const { return static_cast<int>(columns_.at("frame").size()); }
 
@@ -71,8 +68,7 @@ class ExampleRun {
   }
 
   ScratchFolder scratch_;
-  int exit_code_ = -1;
-  std::string messages_;
+  Ending ending_;
   std::map<std::string, std::vector<double>> columns_;
 };
 

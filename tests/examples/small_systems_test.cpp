@@ -53,7 +53,7 @@ TEST(TooLargeStep, DivergesClearlyWhenOnlyWarnedOf) {
 }
 
 TEST(TooLargeStep, AStableStepRuns) {
-  const ExampleRun run("too_large_step", "--set step=0.0125");
+  const ExampleRun run("too_large_step", {"--set", "step=0.0125"});
   EXPECT_EQ(run.exit_code(), 0) << run.messages();
 }
 
