@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <thread>
@@ -31,9 +32,10 @@ RunFacts facts_of(const LoadedScene& loaded, int threads) {
 
 void announce(const LoadedScene& loaded) {
   const SpringNetwork& network = loaded.simulator.network();
-  print_message(fmt::format("{}: {} {} of {}, {} particles, {} springs, {} obstacles", loaded.scene.file.string(), loaded.frames,
+  const std::size_t obstacles = loaded.simulator.environment().obstacles().size();
+  print_message(fmt::format("{}: {} {} of {}, {} particles, {} springs, {} {}", loaded.scene.file.string(), loaded.frames,
                             loaded.frames == 1 ? "frame" : "frames", describe_steps(loaded), network.particle_count(),
-                            network.springs.count(), loaded.simulator.environment().obstacles().size()));
+                            network.springs.count(), obstacles, obstacles == 1 ? "obstacle" : "obstacles"));
   for (const std::string& warning : loaded.warnings) print_warning(warning);
 }
 

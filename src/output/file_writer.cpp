@@ -18,12 +18,12 @@ namespace fs = std::filesystem;
   throw FileError(action, file.string(), std::generic_category().message(error));
 }
 
-/// An open file; closed at the latest when it goes out of scope.
+/// An open file; closed at the latest when it goes out of scope. Errors name `shown`, the file that the user knows.
 class OpenFile {
  public:
-  OpenFile(const fs::path& file, int flags)
-      : file_(file), descriptor_(::open(file.c_str(), flags | O_CREAT | O_WRONLY | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) fail("write", file_, errno);
+  OpenFile(const fs::path& file, int flags, const fs::path& shown)
+      : shown_(shown), descriptor_(::open(file.c_str(), flags | O_CREAT | O_WRONLY | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) fail("write", shown_, errno);
   }
   ~OpenFile() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -35,7 +35,7 @@ class OpenFile {
     while (!text.empty()) {
       const ssize_t written = ::write(descriptor_, text.data(), text.size());
       if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail("write", file_, errno);
+      if (written < 0) fail("write", shown_, errno);
       text.remove_prefix(static_cast<std::size_t>(written));
     }
   }
@@ -44,19 +44,19 @@ class OpenFile {
   void close() {
     const int result = ::close(descriptor_);
     descriptor_ = -1;
-    if (result != 0 && errno != EINTR) fail("write", file_, errno);
+    if (result != 0 && errno != EINTR) fail("write", shown_, errno);
   }
 
   [[nodiscard]] off_t size() const {
     struct stat status {};
-    if (::fstat(descriptor_, &status) != 0) fail("read the size of", file_, errno);
+    if (::fstat(descriptor_, &status) != 0) fail("read the size of", shown_, errno);
     return status.st_size;
   }
 
   void shorten(off_t size) noexcept { [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, size); }
 
  private:
-  const fs::path& file_;
+  const fs::path& shown_;
   int descriptor_;
 };
 
@@ -80,7 +80,7 @@ void write_file(const fs::path& file, std::string_view text) {
   const bool new_folder = !folder.empty() && !fs::exists(folder);
   if (new_folder) make_folder(folder);
   try {
-    OpenFile open(temporary, O_TRUNC);
+    OpenFile open(temporary, O_TRUNC, file);
     open.write(text);
     open.close();
     if (::rename(temporary.c_str(), file.c_str()) != 0) fail("write", file, errno);
@@ -92,7 +92,7 @@ void write_file(const fs::path& file, std::string_view text) {
 }
 
 void append_to_file(const fs::path& file, std::string_view text) {
-  OpenFile open(file, O_APPEND);
+  OpenFile open(file, O_APPEND, file);
   const off_t before = open.size();
   try {
     open.write(text);

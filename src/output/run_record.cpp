@@ -1,5 +1,6 @@
 #include "output/run_record.h"
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 

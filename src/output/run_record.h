@@ -14,7 +14,7 @@ inline constexpr const char* kRunRecordFile = "run.json";
 
 /// What is known of a run before it starts.
 struct RunFacts {
-  std::string scene{};         ///< as resolved, JSON text; may be empty
+  std::string scene{};       ///< as resolved, JSON text; may be empty
   double frame_rate = 30.0;  ///< [1/s]
   int frames = 1;            ///< that the run is to write
   int steps_per_frame = 1;
