@@ -1,6 +1,7 @@
 #include "scene/json_text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <set>
 #include <utility>
@@ -83,7 +84,7 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
       fail(end - std::min(end, token.size()), token, "is too large for a number", "write a number below 1e308");
       return false;
     }
-    const std::size_t begin = start_of_token(end, token);
+    const std::size_t begin = start_of_mistake(position, token);
     const auto [rule, remedy] = explain_syntax(text_, begin);
     fail(begin, std::string(first_word(begin)), rule, remedy);
     return false;
@@ -97,11 +98,16 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
     std::string path;
   };
 
-  std::size_t start_of_token(std::size_t end, const std::string& token) const {
-    const std::size_t length = std::min(end, token.size());
-    const std::size_t begin = text_.compare(end - length, length, token.substr(0, length)) == 0 ? end - length : end - (end > 0);
-    const std::size_t visible = text_.find_first_not_of(" \t\r\n", begin);
-    return visible == std::string_view::npos ? text_.size() : visible;
+  /// The parser's `token` reaches back to the last string or number, so it counts only when it is one of them as a whole.
+  [[nodiscard]] std::size_t start_of_mistake(std::size_t position, const std::string& token) const {
+    if (position > text_.size()) return text_.size();
+    const bool is_string = token.size() > 1 && token.front() == '"' && token.back() == '"';
+    const bool is_number = !token.empty() && token.find_first_not_of("0123456789+-.eE") == std::string::npos;
+    if ((is_string || is_number) && text_.substr(0, position).ends_with(token)) return position - token.size();
+    std::size_t begin = position > 0 ? position - 1 : 0;
+    const auto is_letter = [&](std::size_t offset) { return std::isalpha(static_cast<unsigned char>(text_[offset])) != 0; };
+    while (begin > 0 && begin < text_.size() && is_letter(begin) && (is_letter(begin - 1) || text_[begin - 1] == '-')) --begin;
+    return begin;
   }
 
   std::string_view first_word(std::size_t begin) const {

@@ -31,6 +31,13 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return previous[b.size()];
 }
 
+std::size_t distance_of(const std::string& word, const std::string& name) {
+  constexpr std::size_t kShortestBeginning = 3;
+  const bool one_begins_the_other = word.starts_with(name) || name.starts_with(word);
+  if (one_begins_the_other && std::min(word.size(), name.size()) >= kShortestBeginning && word != name) return 1;
+  return edit_distance(word, name);
+}
+
 }  // namespace
 
 std::optional<std::string> nearest_name(std::string_view word, const std::vector<std::string>& names) {
@@ -40,7 +47,7 @@ std::optional<std::string> nearest_name(std::string_view word, const std::vector
   std::optional<std::string> best;
   std::size_t best_distance = most + 1;
   for (const std::string& name : names) {
-    const std::size_t distance = edit_distance(lower_case(word), lower_case(name));
+    const std::size_t distance = distance_of(lower_case(word), lower_case(name));
     if (distance < best_distance && distance < std::max(name.size(), word.size())) {
       best = name;
       best_distance = distance;

@@ -8,10 +8,14 @@
 
 #include <filesystem>
 #include <fstream>
+#include <ostream>
 #include <string>
 #include <vector>
 
 namespace sprung {
+
+/// So that a failing test shows the problem's line.
+inline void PrintTo(const Problem& problem, std::ostream* stream) { *stream << to_string(problem); }
 
 /// A folder that lives as long as the test.
 class SceneFolder {

@@ -1,0 +1,93 @@
+#include "scene/step_choice.h"
+#include "scene/scene_builder.h"
+#include "scene_text.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+
+// Two particles of 1 kg, 1 m apart, one held: the free one swings with omega^2 = k / m, so symplectic Euler is stable up to
+// 2 / sqrt(k).
+BuiltScene build(double stiffness, const std::vector<std::string>& changes = {}) {
+  const SceneFolder folder;
+  const std::string text = R"({"duration": 1, "frame_rate": 10, "integrator": {"type": "symplectic_euler"}, "bodies": {"pair": {
+      "shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 2}, "particle_mass": 1,
+      "springs": {"structural": {"stiffness": )" +
+                           std::to_string(stiffness) + R"(}}, "pins": [{"indices": [0]}]}}})";
+  return build_scene(folder.read(text, changes));
+}
+
+// The bounds come from an iteration that converges from below, and add at most 1.5 % to the eigenvalue: 0.75 % off the step.
+constexpr double kBoundSlack = 0.0075;
+
+TEST(StepChoice, LargestStableStepIsTheClosedForm) {
+  const BuiltScene built = build(100.0);
+  EXPECT_LE(built.largest_stable_step, 0.2);
+  EXPECT_GE(built.largest_stable_step, 0.2 * (1.0 - kBoundSlack));
+}
+
+TEST(StepChoice, AutoIsTheFewestStepsWithinNineTenthsOfTheStableStep) {
+  for (const double stiffness : {100.0, 1000.0, 54321.0, 1e6}) {
+    const BuiltScene built = build(stiffness);
+    const int n = built.steps_per_frame;
+    EXPECT_EQ(built.settings.step, 1.0 / (10.0 * n));
+    EXPECT_LE(built.settings.step, 0.9 * built.largest_stable_step);
+    if (n > 1) {
+      EXPECT_GT(1.0 / (10.0 * (n - 1)), 0.9 * built.largest_stable_step);
+    }
+  }
+}
+
+TEST(StepChoice, AutoHeedsTheStretchLimit) {
+  const BuiltScene free = build(0.0);
+  const BuiltScene limited = build(0.0, {"stretch_limit={\"iterations\":1,\"tolerance\":1e-6,\"max_stretch\":0}"});
+  EXPECT_LT(limited.settings.step, free.settings.step);
+  const StretchLimit limit(limited.network, *limited.settings.stretch_limit);
+  EXPECT_LE(limited.settings.step, limit.suggested_step(9.81));
+  EXPECT_GT(1.0 / (10.0 * (limited.steps_per_frame - 1)), limit.suggested_step(9.81));
+}
+
+TEST(StepChoice, WithoutAnyBoundAutoIsAtMostTheDocumentedStep) {
+  const BuiltScene built = build(0.0);
+  EXPECT_TRUE(std::isinf(built.largest_stable_step));
+  EXPECT_EQ(built.steps_per_frame, 24);  // 10 frames a second of 24 steps: 1/240 s
+}
+
+TEST(StepChoice, StepBeyondTheStableOneIsRefusedNamingTheLargestThatCanBe) {
+  const auto problems = problems_of([] { (void)build(1000.0, {"step=0.1"}); });
+  // 2 / sqrt(1000) = 0.0632: the largest that divides a frame of 0.1 s is 0.05.
+  EXPECT_THAT(problems, ElementsAre(AllOf(Field(&Problem::key, "step"), Field(&Problem::value, "0.1"),
+                                          Field(&Problem::rule, HasSubstr("is beyond the largest stable step, 0.06")),
+                                          Field(&Problem::remedy, AllOf(HasSubstr("use at most 0.05 or \"auto\""),
+                                                                        HasSubstr("\"stability\": \"warn\""))))));
+  EXPECT_EQ(build(1000.0, {"step=0.05"}).steps_per_frame, 2);
+}
+
+TEST(StepChoice, StepBeyondTheStableOneRunsWhenOnlyWarnedOf) {
+  const BuiltScene built = build(1000.0, {"step=0.1", "stability=warn"});
+  EXPECT_EQ(built.settings.step, 0.1);
+  EXPECT_EQ(built.steps_per_frame, 1);
+}
+
+TEST(StepChoice, PenaltyContactCountsAsASpringToTheGround) {
+  const std::vector<std::string> penalty{"contact={\"response\":\"penalty\",\"stiffness\":300,\"damping\":0}",
+                                         "obstacles.floor.shape={\"type\":\"half_space\",\"offset\":-5}"};
+  EXPECT_NEAR(build(100.0, penalty).largest_stable_step, 2.0 / std::sqrt(400.0), kBoundSlack * 0.1);
+  EXPECT_NEAR(build(100.0, {penalty[0]}).largest_stable_step, 0.2, kBoundSlack * 0.2) << "nothing to touch";
+}
+
+TEST(StepChoice, TooManyStepsAFrameAreRefused) {
+  EXPECT_THAT(problems_of([] { (void)build(1e20); }),
+              ElementsAre(AllOf(Field(&Problem::key, "step"), Field(&Problem::rule, HasSubstr("too many steps a frame")))));
+}
+
+}  // namespace
+}  // namespace sprung
