@@ -1,16 +1,13 @@
 #include "dynamics/spring_kernel.h"
 
 #include "base/kernel.h"
+#include "dynamics/lanes.h"
 
-#include <cmath>
-
-// The compiler turns vectors of four doubles into what the machine has. It vectorises loops over x, y, z by itself too, but
-// shuffles three times as much, and shuffles are what such loops wait for.
 namespace sprung {
 namespace {
 
-using Lanes = double __attribute__((vector_size(kSpringLanes * sizeof(double))));
-using StoredLanes = double __attribute__((vector_size(kSpringLanes * sizeof(double)), aligned(alignof(double)), may_alias));
+// The compiler vectorises loops over x, y, z by itself too, but shuffles three times as much, and shuffles are what such loops wait
+// for.
 
 /// Four vectors as they lie in memory.
 struct Packed {
@@ -19,19 +16,16 @@ struct Packed {
   Lanes high;    ///< z2 x3 y3 z3
 };
 
-[[gnu::always_inline]] inline void load(const double* from, Lanes& to) { to = *reinterpret_cast<const StoredLanes*>(from); }
-[[gnu::always_inline]] inline void store(const Lanes& from, double* to) { *reinterpret_cast<StoredLanes*>(to) = from; }
-
 [[gnu::always_inline]] inline void load(const double* from, Packed& to) {
-  load(from, to.low);
-  load(from + kSpringLanes, to.middle);
-  load(from + 2 * kSpringLanes, to.high);
+  load_lanes(from, to.low);
+  load_lanes(from + kLanes, to.middle);
+  load_lanes(from + 2 * kLanes, to.high);
 }
 
 [[gnu::always_inline]] inline void store(const Packed& from, double* to) {
-  store(from.low, to);
-  store(from.middle, to + kSpringLanes);
-  store(from.high, to + 2 * kSpringLanes);
+  store_lanes(from.low, to);
+  store_lanes(from.middle, to + kLanes);
+  store_lanes(from.high, to + 2 * kLanes);
 }
 
 [[gnu::always_inline]] inline void load_difference(const double* a, const double* b, Packed& to) {
@@ -58,19 +52,15 @@ struct Packed {
   vectors.high *= __builtin_shufflevector(scale, scale, 2, 3, 3, 3);
 }
 
-[[gnu::always_inline]] inline void square_root(Lanes& of) {
-  for (Index lane = 0; lane < kSpringLanes; ++lane) of[lane] = std::sqrt(of[lane]);
-}
-
 // F = scale * s, which is eq. 10 with one division: scale = -(k_s (|s| - d) + k_d (s . v) / |s|) / |s|. Where |s| = 0 any finite
 // scale gives no force.
 [[gnu::always_inline]] inline void to_force(Packed& difference, const Packed& velocity, const SpringConstants& constants, Index i) {
   Lanes x, y, z, v_x, v_y, v_z, rest_length, stiffness, damping;
   unpack(difference, x, y, z);
   unpack(velocity, v_x, v_y, v_z);
-  load(constants.rest_length.at(i), rest_length);
-  load(constants.stiffness.at(i), stiffness);
-  load(constants.damping.at(i), damping);
+  load_lanes(constants.rest_length.at(i), rest_length);
+  load_lanes(constants.stiffness.at(i), stiffness);
+  load_lanes(constants.damping.at(i), damping);
   Lanes length = x * x + y * y + z * z;
   square_root(length);
   const Lanes quotient = 1.0 / length;
@@ -87,8 +77,8 @@ struct Packed {
 SPRUNG_KERNEL
 void add_run_forces(const SpringRun& run, const SpringConstants& constants) {
   double force[3 * kSpringBatch];
-  for (Index next = 0; next < run.count; next += kSpringLanes) {
-    const Index i = next + kSpringLanes <= run.count ? next : run.count - kSpringLanes;
+  for (Index next = 0; next < run.count; next += kLanes) {
+    const Index i = next + kLanes <= run.count ? next : run.count - kLanes;
     Packed difference;
     Packed velocity;
     load_difference(run.x_a + 3 * i, run.x_b + 3 * i, difference);
@@ -107,7 +97,7 @@ void add_run_forces(const SpringRun& run, const SpringConstants& constants) {
 
 SPRUNG_KERNEL
 void differences_to_forces(double* difference, const double* velocity, Index count, const SpringConstants& constants) {
-  for (Index i = 0; i < count; i += kSpringLanes) {
+  for (Index i = 0; i < count; i += kLanes) {
     Packed s;
     Packed v;
     load(difference + 3 * i, s);

@@ -8,6 +8,8 @@
 
 namespace sprung {
 
+struct StretchBatches;
+
 struct StretchLimitSettings {
   double max_stretch = 0.02;                              ///< >= 0: lengths stay below d (1 + max_stretch)
   double max_compression = 1.0;                           ///< in [0, 1]: and above d (1 - max_compression)
@@ -32,16 +34,15 @@ class StretchLimit {
 
   [[nodiscard]] const StretchLimitSettings& settings() const;
 
-  /// The step [s] at which `iterations` passes a step hold the limit when the network hangs at rest under `acceleration` [m/s^2]:
-  /// in each step gravity adds g dt^2 per carried particle, and the passes must pass it on to the pins. Infinity when nothing is
-  /// limited.
+  /// The step [s] at which `iterations` passes a step keep the excess at about half of `max_stretch` plus `tolerance` when each
+  /// body hangs at rest under `acceleration` [m/s^2] by its pins, or over an obstacle: in each step gravity adds g dt^2 per carried
+  /// particle, and the passes must hand it on. Infinity when nothing is limited.
   [[nodiscard]] double suggested_step(double acceleration) const;
 
  private:
-  struct Batches;
   const SpringNetwork& network_;
   StretchLimitSettings settings_;
-  std::unique_ptr<const Batches> batches_;
+  std::unique_ptr<const StretchBatches> batches_;
 };
 
 }  // namespace sprung

@@ -1,0 +1,10 @@
+// How many springs the kernels compute at a time.
+#pragma once
+
+#include "base/types.h"
+
+namespace sprung {
+
+inline constexpr Index kLanes = 4;
+
+}  // namespace sprung

@@ -1,0 +1,24 @@
+// The springs that a stretch limit holds, in batches without shared particles.
+#pragma once
+
+#include "network/spring_network.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// Entry s of each array belongs to limited spring s. Each batch is filled to a multiple of kLanes by its last spring.
+struct StretchBatches {
+  std::vector<Index> first;
+  std::vector<Index> second;
+  std::vector<double> rest_length;  ///< d [m], > 0
+  std::vector<double> first_share;  ///< part of a correction that the first end takes: w_1 / (w_1 + w_2) with inverse masses w
+  std::vector<Index> begin{0};      ///< batch b holds springs [begin[b], begin[b + 1])
+
+  /// Springs of the given kinds that have a rest length and at least one free end.
+  StretchBatches(const SpringNetwork& network, const std::vector<SpringKind>& kinds);
+
+  [[nodiscard]] Index count() const { return static_cast<Index>(first.size()); }
+};
+
+}  // namespace sprung

@@ -1,0 +1,21 @@
+// Projection of springs onto their limits: the hot loop of StretchLimit.
+#pragma once
+
+#include "dynamics/stretch_batches.h"
+
+namespace sprung {
+
+/// Allowed lengths as parts of the rest length.
+struct LengthRange {
+  double least;
+  double most;
+};
+
+/// Moves the ends of springs [begin, end) of one batch so that their lengths lie in `range`; `positions` holds 3 numbers a particle
+/// [m]. Returns the largest excess before, as a part of the rest length. Requires multiples of kLanes.
+double project_springs(const StretchBatches& batches, Index begin, Index end, const LengthRange& range, double* positions);
+
+/// The same excess; moves nothing.
+double measure_springs(const StretchBatches& batches, Index begin, Index end, const LengthRange& range, const double* positions);
+
+}  // namespace sprung

@@ -1,0 +1,266 @@
+#include "dynamics/stretch_limit.h"
+
+#include "base/parallel.h"
+#include "dynamics/body_forces.h"
+#include "dynamics/integrator.h"
+#include "dynamics/networks.h"
+#include "network/simulation_state.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+const std::vector<SpringKind> kAllKinds{SpringKind::structural, SpringKind::shear, SpringKind::bend};
+
+double length_of(const Points& x, Index a, Index b) { return (x.col(a) - x.col(b)).norm(); }
+
+/// The largest excess, spring by spring.
+double excess_by_hand(const SpringNetwork& network, const StretchLimitSettings& settings, const Points& x) {
+  double excess = 0.0;
+  const Springs& springs = network.springs;
+  for (Index k = 0; k < springs.count(); ++k) {
+    if (std::ranges::find(settings.kinds, springs.kind[k]) == settings.kinds.end()) continue;
+    if (network.is_pinned(springs.first[k]) && network.is_pinned(springs.second[k])) continue;
+    const double part = length_of(x, springs.first[k], springs.second[k]) / springs.rest_length[k];
+    excess = std::max({excess, part - 1.0 - settings.max_stretch, 1.0 - settings.max_compression - part});
+  }
+  return excess;
+}
+
+TEST(StretchLimit, ProjectsOneSpringOntoItsLimit) {
+  const SpringNetwork network = make_pair(3.0, 0.0, 2.0);
+  const StretchLimit limit(network, {.max_stretch = 0.1});
+  Points x = network.positions;
+  EXPECT_NEAR(limit.project(x), 3.0 / 2.0 - 1.1, 8 * kEpsilon);
+  EXPECT_NEAR(length_of(x, 0, 1), 2.2, 8 * kEpsilon);
+  EXPECT_NEAR(x(0, 0), 0.4, 8 * kEpsilon) << "equal masses share the correction";
+}
+
+TEST(StretchLimit, ProjectsACompressedSpringOntoItsLimit) {
+  const SpringNetwork network = make_pair(1.0, 0.0, 2.0);
+  const StretchLimit limit(network, {.max_stretch = 0.1, .max_compression = 0.25});
+  Points x = network.positions;
+  EXPECT_NEAR(limit.project(x), 0.25, 8 * kEpsilon);
+  EXPECT_NEAR(length_of(x, 0, 1), 1.5, 8 * kEpsilon);
+}
+
+TEST(StretchLimit, LeavesSpringsWithinTheirLimitsAlone) {
+  const SpringNetwork network = make_pair(2.1, 0.0, 2.0);
+  const StretchLimit limit(network, {.max_stretch = 0.1});
+  Points x = network.positions;
+  EXPECT_EQ(limit.project(x), 0.0);
+  EXPECT_EQ(x, network.positions);
+}
+
+TEST(StretchLimit, WeighsEndsByInverseMass) {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 3.0);
+  builder.add_particle(Vector3(2.0, 0.0, 0.0), 1.0);
+  builder.add_spring(0, 1, 0.0, 1.0);
+  const SpringNetwork network = builder.build();
+  Points x = network.positions;
+  StretchLimit(network, {.max_stretch = 0.0}).project(x);
+  EXPECT_NEAR(x(0, 0), 0.25, 4 * kEpsilon);
+  EXPECT_NEAR(x(0, 1), 1.25, 4 * kEpsilon);
+}
+
+// sum of m dx = 0: also shows that no batch moves a particle twice, which would lose one of the two moves.
+TEST(StretchLimit, KeepsTheCentreOfMass) {
+  SpringNetwork cloth = make_test_cloth(33, 0.0, 0.0, false);
+  cloth.positions *= 1.3;
+  for (const SpringNetwork& network : {cloth, make_random_network(200, 3000)}) {
+    const StretchLimit limit(network, {.max_stretch = 0.0, .max_compression = 0.0, .kinds = kAllKinds});
+    Points x = network.positions;
+    const double moved = limit.project(x);
+    EXPECT_GT(moved, 0.1);
+    const Vector3 shift = (x - network.positions) * network.masses;
+    // Each of the springs' corrections, of at most some metres, is rounded a few times.
+    EXPECT_LT(shift.norm(), 8 * kEpsilon * network.springs.count() * network.masses.maxCoeff());
+  }
+}
+
+TEST(StretchLimit, NeverMovesPins) {
+  SpringNetwork network = make_test_cloth(20, 0.0, 0.0);
+  network.positions *= 1.5;
+  const StretchLimit limit(network, {});
+  Points x = network.positions;
+  for (int pass = 0; pass < 50; ++pass) limit.project(x);
+  for (const Index pinned : network.pins[0].particles) EXPECT_EQ(x.col(pinned), network.positions.col(pinned));
+}
+
+TEST(StretchLimit, LeavesSpringsBetweenPinsOut) {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 1.0);
+  builder.add_particle(Vector3(2.0, 0.0, 0.0), 1.0);
+  builder.add_spring(0, 1, 0.0, 1.0);
+  builder.pin({0, 1});
+  const SpringNetwork network = builder.build();
+  const StretchLimit limit(network, {});
+  Points x = network.positions;
+  EXPECT_EQ(limit.project(x), 0.0);
+  EXPECT_EQ(limit.excess(x), 0.0);
+  EXPECT_EQ(x, network.positions);
+}
+
+TEST(StretchLimit, HoldsOnlyTheKindsItIsGiven) {
+  SpringNetwork network = make_test_cloth(5, 0.0, 0.0);
+  // Sheared by 45 degrees at constant side lengths: only the diagonals change.
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    const double y = network.positions(1, i);
+    network.positions(0, i) += y * std::sqrt(0.5);
+    network.positions(1, i) = y * std::sqrt(0.5);
+  }
+  EXPECT_LT(StretchLimit(network, {.max_stretch = 0.0}).excess(network.positions), 1e-14);
+  EXPECT_GT(StretchLimit(network, {.max_stretch = 0.0, .kinds = kAllKinds}).excess(network.positions), 0.3);
+}
+
+TEST(StretchLimit, ReachesItsLimit) {
+  // A free cloth stretched by a half in one direction: passes converge, and then nothing is left beyond the tolerance.
+  SpringNetwork network = make_test_cloth(12, 0.0, 0.0, false);
+  network.positions.row(0) *= 1.5;
+  const StretchLimit limit(network, {.max_stretch = 0.02});
+  Points x = network.positions;
+  for (int pass = 0; pass < 2000; ++pass) limit.project(x);
+  EXPECT_LT(limit.excess(x), 1.0e-6);
+  EXPECT_LT(excess_by_hand(network, limit.settings(), x), 1.0e-6);
+}
+
+TEST(StretchLimit, MeasuresTheLargestExcess) {
+  SpringNetwork network = make_random_network(100, 777);
+  for (const StretchLimitSettings& settings :
+       {StretchLimitSettings{.max_stretch = 0.1}, StretchLimitSettings{.max_stretch = 50.0, .max_compression = 0.1}}) {
+    const StretchLimit limit(network, settings);
+    const double expected = excess_by_hand(network, settings, network.positions);
+    EXPECT_NEAR(limit.excess(network.positions), expected, 16 * kEpsilon * (1.0 + expected));
+  }
+}
+
+TEST(StretchLimit, TakesParticlesWithManySprings) {
+  // A hub with 300 spokes: more than one round of colours.
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 1.0);
+  for (Index i = 1; i <= 300; ++i) {
+    builder.add_particle(Vector3(2.0 * std::cos(0.1 * i), 2.0 * std::sin(0.1 * i), 0.01 * i), 1.0);
+    builder.add_spring(0, i, 0.0, 1.0);
+  }
+  builder.pin(0);
+  const SpringNetwork network = builder.build();
+  const StretchLimit limit(network, {.max_stretch = 0.0});
+  Points x = network.positions;
+  limit.project(x);
+  EXPECT_LT(excess_by_hand(network, limit.settings(), x), 4 * kEpsilon) << "one pass suffices: the spokes share only the pin";
+}
+
+TEST(StretchLimit, LeavesASpringWithoutLengthWhereItIs) {
+  SpringNetwork network = make_pair(1.0, 0.0, 1.0);
+  network.positions.col(1) = network.positions.col(0);
+  const StretchLimit limit(network, {.max_compression = 0.5});
+  Points x = network.positions;
+  EXPECT_EQ(limit.project(x), 0.5);
+  EXPECT_EQ(x, network.positions);
+}
+
+TEST(StretchLimit, HasTheSameBitsForAnyNumberOfThreads) {
+  SpringNetwork network = make_test_cloth(150, 0.0, 0.0);
+  for (Index i = 0; i < network.particle_count(); ++i) network.positions.col(i) *= 1.1 + 0.1 * std::sin(i);
+  const StretchLimit limit(network, {.kinds = kAllKinds});
+  const auto passes = [&](int threads) {
+    const ThreadLimit at_most(threads);
+    Points x = network.positions;
+    for (int pass = 0; pass < 5; ++pass) limit.project(x);
+    return x;
+  };
+  const Points alone = passes(1);
+  EXPECT_EQ(passes(2), alone);
+  EXPECT_EQ(passes(3), alone);
+}
+
+TEST(StretchLimit, TakesNetworksWithoutSprings) {
+  const SpringNetwork network = make_random_network(3, 0);
+  const StretchLimit limit(network, {});
+  Points x = network.positions;
+  EXPECT_EQ(limit.project(x), 0.0);
+  EXPECT_EQ(limit.suggested_step(9.81), std::numeric_limits<double>::infinity());
+}
+
+/// Excess of a network that hangs by its pins, carried by the limit alone, after it has come to rest.
+double excess_hanging(const SpringNetwork& network, const StretchLimitSettings& settings, double dt, double seconds) {
+  const StretchLimit limit(network, settings);
+  Forces forces;
+  forces.push_back(std::make_unique<Gravity>(network, Vector3(0.0, -9.81, 0.0)));
+  const auto integrator = make_integrator(VerletSettings{.damping_rate = 10.0}, network);
+  SimulationState state = initial_state(network);
+  integrator->start(state, forces, dt);
+  Points scratch;
+  for (; static_cast<double>(state.step) * dt < seconds; ++state.step) {
+    const Points before = state.x;
+    integrator->advance(state, forces, dt, scratch);
+    const Points advanced = state.x;
+    for (int pass = 0; pass < settings.iterations; ++pass) {
+      if (limit.project(state.x) <= settings.tolerance) break;
+    }
+    integrator->recover_velocities(state, before, advanced, dt);
+  }
+  return limit.excess(state.x);
+}
+
+/// A rope that hangs straight down from its first particle.
+SpringNetwork hanging_rope(Index particles) {
+  SpringNetwork network = make_test_rope(particles, 0.0);
+  network.positions.row(1) = -network.positions.row(0);
+  network.positions.row(0).setZero();
+  return network;
+}
+
+/// A cloth that hangs straight down from the whole of its upper side.
+SpringNetwork curtain(Index side) {
+  SpringNetwork network = make_test_cloth(side, 0.0, 0.0);
+  for (Index i = side * (side - 1); i < side * side; ++i) network.inverse_masses[i] = 0.0;
+  return network;
+}
+
+// The promise, with a tenth for what has not come to rest; and with twice the step the limit is lost, so the step is not idly
+// small.
+TEST(SuggestedStep, HoldsTheLimitOfWhatHangs) {
+  const StretchLimitSettings settings;
+  for (const SpringNetwork& network : {hanging_rope(50), hanging_rope(200), curtain(24), make_test_cloth(24, 0.0, 0.0)}) {
+    const double dt = StretchLimit(network, settings).suggested_step(9.81);
+    const double promised = 0.5 * settings.max_stretch + settings.tolerance;
+    EXPECT_LT(excess_hanging(network, settings, dt, 1.0), 1.3 * promised) << network.particle_count();
+    EXPECT_GT(excess_hanging(network, settings, 2.0 * dt, 1.0), promised) << network.particle_count();
+  }
+}
+
+TEST(SuggestedStep, IsThatOfTheBodyThatNeedsTheSmallest) {
+  const auto rope = [](Index particles) {
+    BodyShape shape = make_rope({.points = {Vector3::Zero(), Vector3::UnitX()}, .particles = particles, .length = {}},
+                                {.structural = SpringMaterial{}, .shear = {}, .bend = {}});
+    set_total_mass(shape, 1.0);
+    return shape;
+  };
+  NetworkBuilder both;
+  both.add_body("short", rope(10));
+  both.pin(both.add_body("long", rope(90)));
+  NetworkBuilder alone;
+  alone.pin(alone.add_body("long", rope(90)));
+  EXPECT_EQ(StretchLimit(both.build(), {}).suggested_step(9.81), StretchLimit(alone.build(), {}).suggested_step(9.81));
+}
+
+TEST(SuggestedStep, OfAnUnpinnedRopeIsThatOfItsHalf) {
+  // n springs over an obstacle by the middle: n / 2 particles hang from it. Here as many as a rope of half the length, pinned.
+  NetworkBuilder builder;
+  for (Index i = 0; i < 101; ++i) builder.add_particle(Vector3(0.01 * i, 0.0, 0.0), 1.0);
+  for (Index i = 0; i < 100; ++i) builder.add_spring(i, i + 1, 0.0, 0.01);
+  const double unpinned = StretchLimit(builder.build(), {}).suggested_step(9.81);
+  builder.pin(50);  // 100 free particles at one pin
+  const double pinned = StretchLimit(builder.build(), {}).suggested_step(9.81);
+  EXPECT_NEAR(unpinned / pinned, std::sqrt(2.0), 1e-12);
+}
+
+}  // namespace
+}  // namespace sprung
