@@ -21,6 +21,8 @@ namespace {
 using PlainJson = nlohmann::json;  // valijson has no adapter for the ordered kind
 using Violations = std::vector<SchemaViolation>;
 
+constexpr std::size_t kMostViolations = 1000;  // enough for any person to read; they are compared with each other
+
 const valijson::Schema& parsed_schema() {
   static const auto schema = [] {
     const PlainJson text = PlainJson::parse(scene_schema());
@@ -88,7 +90,10 @@ std::vector<SchemaViolation> schema_violations(const Json& document) {
   valijson::ValidationResults results;
   valijson::Validator().validate(parsed_schema(), valijson::adapters::NlohmannJsonAdapter(plain), &results);
   Violations violations;
-  for (const auto& error : results) violations.push_back({path_of(error.context, plain), error.description});
+  for (const auto& error : results) {
+    if (violations.size() == kMostViolations) break;
+    violations.push_back({path_of(error.context, plain), error.description});
+  }
   return innermost(violations);
 }
 

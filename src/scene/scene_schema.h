@@ -18,7 +18,7 @@ struct SchemaViolation {
   std::string rule;
 };
 
-/// The innermost places of the document that the schema refuses.
+/// The innermost places of the document that the schema refuses, of the first thousand.
 [[nodiscard]] std::vector<SchemaViolation> schema_violations(const Json& document);
 
 }  // namespace sprung

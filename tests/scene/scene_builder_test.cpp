@@ -106,12 +106,13 @@ TEST(SceneBuilder, PinsFindTheirParticles) {
 
 TEST(SceneBuilder, FlatBoxHoldsARowWhateverTheRoundingOfItsPlace) {
   const SceneFolder folder;
-  for (const char* angle : {"17", "45", "123.4"}) {
-    const BuiltScene built = build(folder, {std::string("bodies.banner.place.rotation=[0,0,0]"), "bodies.banner.place.scale=0.7",
-                                            std::string("bodies.banner.place.position=[0,") + angle + ",0]",
-                                            std::string("bodies.banner.pins=[{\"nearest\":[0,") + angle + ",0]}]"});
-    const double top = built.network.positions.row(1).maxCoeff();
-    EXPECT_NEAR(top, std::stod(angle) + 0.35, 1e-12);
+  // 0.35 above each height, in decimals: what placing the row leaves of it differs in the last bits.
+  for (const auto& [height, top] : {std::pair{"0.1", "0.45"}, {"17.3", "17.65"}, {"123.4", "123.75"}}) {
+    const std::string y = std::string(",") + top + ",";
+    const std::string box = "[[-9" + y + "-9],[9" + y + "9]]";
+    const BuiltScene built = build(folder, {"bodies.banner.place.scale=0.7", "bodies.banner.pins=[{\"box\":" + box + "}]",
+                                            std::string("bodies.banner.place.position=[0,") + height + ",0]"});
+    EXPECT_THAT(pinned(built.network), ElementsAre(6, 7, 8)) << height;
   }
 }
 
