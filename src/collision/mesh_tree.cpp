@@ -62,7 +62,8 @@ std::int32_t MeshTree::add_node(const std::vector<int>& roots, int depth) {
 
   const auto number = static_cast<std::int32_t>(nodes_.size());
   nodes_.emplace_back();
-  stack_size_ = std::max(stack_size_, depth * kLanes);
+  // Each level leaves all but one lane behind; appending writes one past the last kept.
+  stack_size_ = std::max(stack_size_, static_cast<std::size_t>((depth + 1) * kLanes));
   for (int lane = 0; lane < kLanes; ++lane) {
     const bool used = lane < static_cast<int>(children.size());
     for (int axis = 0; axis < 3; ++axis) {

@@ -1,6 +1,7 @@
 // FCL's bounding volume tree of a mesh, and the walks that contact needs: nearest triangle, first triangle on a path.
 #pragma once
 
+#include "collision/lanes.h"
 #include "collision/segment_triangle.h"
 #include "geometry/closest_point.h"
 #include "geometry/triangle_mesh.h"
@@ -14,7 +15,8 @@
 namespace sprung {
 
 /// FCL builds the tree of AABBs; a copy of it with up to eight children a node and single-precision boxes, rounded outward, is what
-/// the walks read. Requires a valid mesh: at least one triangle, indices in range, finite positions.
+/// the walks read. Requires a valid mesh: at least one
+/// triangle, indices in range, positions below 1e18 [m] (squares of single precision).
 class MeshTree {
  public:
   explicit MeshTree(const TriangleMesh& mesh);
@@ -37,12 +39,10 @@ class MeshTree {
   /// FCL's model, for its broad phase.
   [[nodiscard]] const std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>>& model() const { return model_; }
 
-  static constexpr int kLanes = 8;
-
   /// Children: a node's number, or ~i for the i-th leaf. Lanes without a child have an empty box.
   struct alignas(64) Node {
-    float min[3][kLanes];
-    float max[3][kLanes];
+    Lanes min[3];
+    Lanes max[3];
     std::int32_t child[kLanes];
   };
 
@@ -59,8 +59,8 @@ class MeshTree {
   std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> model_;
   std::vector<Node> nodes_;
   std::vector<Leaf> leaves_;
-  int stack_size_ = 0;
-  double magnitude_ = 0.0;  ///< largest absolute coordinate [m]
+  std::size_t stack_size_ = 0;  ///< that no walk outgrows
+  double magnitude_ = 0.0;      ///< largest absolute coordinate [m]
 };
 
 }  // namespace sprung

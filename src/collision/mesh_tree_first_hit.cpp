@@ -40,31 +40,32 @@ FloatPath float_path(const Vector3& a, const Vector3& b, double magnitude) {
   return path;
 }
 
-/// For each box that the path may meet (no axis separates them; Gottschalk et al. 1996) a lower bound of the fraction at which it
-/// does; infinity for the others.
-SPRUNG_KERNEL void entry_fractions(const MeshTree::Node& node, const FloatPath& path, float* result) {
-  const float* main_min = node.min[path.main_axis];
-  const float* main_max = node.max[path.main_axis];
+/// Appends the children whose box the path may meet (no axis separates them; Gottschalk et al. 1996) before the fraction `bound`,
+/// the first last.
+SPRUNG_KERNEL void push_children(const MeshTree::Node& node, const FloatPath& path, float bound, WalkStack& stack) {
+  const Lanes never = Lanes{} + std::numeric_limits<float>::infinity();
   const bool forward = path.direction[path.main_axis] > 0.0F;
-  for (int lane = 0; lane < MeshTree::kLanes; ++lane) {
-    float offset[3];
-    float extent[3];
-    bool apart = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      offset[axis] = path.middle[axis] - 0.5F * (node.min[axis][lane] + node.max[axis][lane]);
-      extent[axis] = 0.5F * (node.max[axis][lane] - node.min[axis][lane]) + path.rounding;
-      apart |= !(std::abs(offset[axis]) <= extent[axis] + path.half[axis]);
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      const int u = (axis + 1) % 3;
-      const int v = (axis + 2) % 3;
-      const float across = offset[u] * path.direction[v] - offset[v] * path.direction[u];
-      apart |= std::abs(across) > extent[u] * std::abs(path.direction[v]) + extent[v] * std::abs(path.direction[u]);
-    }
-    const float ahead = forward ? main_min[lane] - path.begin : path.begin - main_max[lane];
-    const float fraction = std::max((ahead - path.rounding) * path.per_length, 0.0F);
-    result[lane] = apart ? std::numeric_limits<float>::infinity() : fraction;
+  const Lanes ahead = forward ? node.min[path.main_axis] - path.begin : path.begin - node.max[path.main_axis];
+  Lanes fraction = (ahead - path.rounding) * path.per_length;
+  fraction = fraction > 0.0F ? fraction : Lanes{};
+
+  Lanes offset[3];
+  Lanes extent[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    offset[axis] = path.middle[axis] - 0.5F * (node.min[axis] + node.max[axis]);
+    extent[axis] = 0.5F * (node.max[axis] - node.min[axis]) + path.rounding;
+    const Lanes distance = offset[axis] < 0.0F ? -offset[axis] : offset[axis];
+    fraction = distance <= extent[axis] + path.half[axis] ? fraction : never;
   }
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    const Lanes across = offset[u] * path.direction[v] - offset[v] * path.direction[u];
+    const Lanes distance = across < 0.0F ? -across : across;
+    const Lanes reach = extent[u] * std::abs(path.direction[v]) + extent[v] * std::abs(path.direction[u]);
+    fraction = distance <= reach ? fraction : never;
+  }
+  stack.push_within(fraction, node.child, bound);
 }
 
 }  // namespace
@@ -74,7 +75,7 @@ std::optional<MeshTree::Hit> MeshTree::first_hit(const Vector3& a, const Vector3
   const FloatPath path = float_path(a, b, magnitude_);
   std::optional<Hit> best;
   float bound = 1.0F;
-  WalkStack stack(static_cast<std::size_t>(stack_size_));
+  WalkStack stack(stack_size_);
   stack.push({0.0F, 0});
   while (!stack.empty()) {
     const WalkEntry entry = stack.pop();
@@ -88,13 +89,7 @@ std::optional<MeshTree::Hit> MeshTree::first_hit(const Vector3& a, const Vector3
       }
       continue;
     }
-    const Node& node = nodes_[static_cast<std::size_t>(entry.child)];
-    alignas(32) float fractions[kLanes];
-    entry_fractions(node, path, fractions);
-    const std::size_t base = stack.size();
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if (fractions[lane] <= bound) stack.push_sorted({fractions[lane], node.child[lane]}, base);
-    }
+    push_children(nodes_[static_cast<std::size_t>(entry.child)], path, bound, stack);
   }
   return best;
 }

@@ -4,19 +4,19 @@
 #include "base/kernel.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace sprung {
 
 namespace {
 
+constexpr float kFloatMin = std::numeric_limits<float>::min();
 constexpr float kFloatMax = std::numeric_limits<float>::max();
 
-/// The smallest float that is not below value; finite, so that empty boxes, which are infinitely far, are never within it.
-float rounded_up(double value) {
-  if (!(value < static_cast<double>(kFloatMax))) return kFloatMax;
-  const auto nearest = static_cast<float>(value);
-  return static_cast<double>(nearest) < value ? std::nextafter(nearest, kFloatMax) : nearest;
+/// A float somewhat above the square of a distance; finite, so that empty boxes, which are infinitely far, are never within it.
+float bound_of(double squared) {
+  return std::min(static_cast<float>(std::min(squared, 1e38)) * (1.0F + 0x1p-22F) + kFloatMin, kFloatMax);
 }
 
 /// A position between two floats a coordinate.
@@ -28,26 +28,26 @@ struct FloatRange {
 FloatRange float_range(const Vector3& p) {
   FloatRange range;
   for (int axis = 0; axis < 3; ++axis) {
-    range.high[axis] = rounded_up(p[axis]);
-    range.low[axis] = -rounded_up(-p[axis]);
+    const auto nearest = static_cast<float>(p[axis]);
+    const float rounding = std::abs(nearest) * 0x1p-23F + kFloatMin;
+    range.low[axis] = nearest - rounding;
+    range.high[axis] = nearest + rounding;
   }
   return range;
 }
 
-/// Lower bounds of the squared distances from p to a node's boxes. Each is at most 6 roundings of 2^-24 too large, which the factor
-/// takes back.
-SPRUNG_KERNEL void squared_distances(const MeshTree::Node& node, const FloatRange& p, float* result) {
-  constexpr float kShrink = 1.0F - 0x1p-20F;
-  for (int lane = 0; lane < MeshTree::kLanes; ++lane) {
-    float sum = 0.0F;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float below = node.min[axis][lane] - p.high[axis];
-      const float above = p.low[axis] - node.max[axis][lane];
-      const float outside = std::max(std::max(below, above), 0.0F);
-      sum += outside * outside;
-    }
-    result[lane] = sum * kShrink;
+/// Appends the children whose box is within the bound, the nearest last. A box's squared distance is at most 6 roundings of 2^-24
+/// too large, which the factor takes back.
+SPRUNG_KERNEL void push_children(const MeshTree::Node& node, const FloatRange& p, float bound, WalkStack& stack) {
+  Lanes sum = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Lanes below = node.min[axis] - p.high[axis];
+    const Lanes above = p.low[axis] - node.max[axis];
+    const Lanes farther = below > above ? below : above;
+    const Lanes outside = farther > 0.0F ? farther : Lanes{};
+    sum += outside * outside;
   }
+  stack.push_within(sum * (1.0F - 0x1p-20F), node.child, bound);
 }
 
 }  // namespace
@@ -56,9 +56,9 @@ std::optional<MeshTree::Nearest> MeshTree::nearest(const Vector3& p, double radi
   if (!(radius > 0.0)) return std::nullopt;
   const FloatRange range = float_range(p);
   double best2 = radius * radius;
-  float bound = rounded_up(best2);
+  float bound = bound_of(best2);
   Nearest best;
-  WalkStack stack(static_cast<std::size_t>(stack_size_));
+  WalkStack stack(stack_size_);
   stack.push({0.0F, 0});
   while (!stack.empty()) {
     const WalkEntry entry = stack.pop();
@@ -69,17 +69,11 @@ std::optional<MeshTree::Nearest> MeshTree::nearest(const Vector3& p, double radi
       if (closest.squared_distance < best2) {
         best = {leaf.triangle, closest};
         best2 = closest.squared_distance;
-        bound = rounded_up(best2);
+        bound = bound_of(best2);
       }
       continue;
     }
-    const Node& node = nodes_[static_cast<std::size_t>(entry.child)];
-    alignas(32) float distances[kLanes];
-    squared_distances(node, range, distances);
-    const std::size_t base = stack.size();
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if (distances[lane] <= bound) stack.push_sorted({distances[lane], node.child[lane]}, base);
-    }
+    push_children(nodes_[static_cast<std::size_t>(entry.child)], range, bound, stack);
   }
   if (best.triangle == kNone) return std::nullopt;
   return best;

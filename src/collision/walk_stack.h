@@ -1,6 +1,8 @@
 // The stack of a walk through a tree: on the call stack for trees of usual depth, on the heap for hostile ones.
 #pragma once
 
+#include "collision/lanes.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -29,13 +31,20 @@ class WalkStack {
   void push(WalkEntry entry) { entries_[size_++] = entry; }
   WalkEntry pop() { return entries_[--size_]; }
 
-  /// Pushes an entry below those pushed since `base` whose bound is smaller, so that the smallest is popped first.
-  void push_sorted(WalkEntry entry, std::size_t base) {
-    std::size_t place = size_++;
-    for (; place > base && entries_[place - 1].bound < entry.bound; --place) entries_[place] = entries_[place - 1];
-    entries_[place] = entry;
+  /// Pushes the children whose bound is at most `limit`, the smallest last. Writes up to kLanes entries past the top.
+  void push_within(const Lanes& bounds, const std::int32_t* children, float limit) {
+    const std::size_t base = size_;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      entries_[size_] = {bounds[lane], children[lane]};
+      size_ += bounds[lane] <= limit ? 1 : 0;
+    }
+    for (std::size_t i = base + 1; i < size_; ++i) {
+      const WalkEntry entry = entries_[i];
+      std::size_t place = i;
+      for (; place > base && entries_[place - 1].bound < entry.bound; --place) entries_[place] = entries_[place - 1];
+      entries_[place] = entry;
+    }
   }
-  [[nodiscard]] std::size_t size() const { return size_; }
 
  private:
   std::array<WalkEntry, 256> local_;
