@@ -52,9 +52,7 @@ Environment& Environment::operator=(Environment&&) noexcept = default;
 
 const std::vector<Obstacle>& Environment::obstacles() const { return implementation_->set.obstacles(); }
 
-bool Environment::moves() const {
-  return std::any_of(obstacles().begin(), obstacles().end(), [](const Obstacle& obstacle) { return obstacle.motion.moves(); });
-}
+bool Environment::moves() const { return implementation_->set.moves(); }
 
 void Environment::set_interval(double t, double t_end) { implementation_->set.set_interval(t, t_end); }
 
@@ -65,7 +63,7 @@ std::vector<Contact> Environment::contacts(const ParticlePaths& paths) const {
   const ObstacleSet& set = implementation_->set;
   const auto count = static_cast<Index>(paths.after.cols());
   if (set.obstacles().empty()) return {};
-  const double carried = set.carries_at_most(finite_bounds(paths.before, 0, count));
+  const double carried = set.carries_at_most(paths.before);
 
   return collect_from_blocks<Contact>(count, [&](Index begin, Index end, std::vector<Contact>& contacts) {
     const double reach = paths.thickness.segment(begin, end - begin).maxCoeff() + set.max_thickness() + paths.margin;

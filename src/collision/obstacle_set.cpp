@@ -1,6 +1,7 @@
 #include "collision/obstacle_set.h"
 
 #include "base/error.h"
+#include "collision/particle_blocks.h"
 
 #include <algorithm>
 
@@ -31,6 +32,7 @@ ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move
   for (const Obstacle& obstacle : obstacles_) {
     before_.push_back(obstacle.motion.pose(obstacle.placed, 0.0));
     into_before_.push_back(before_.back().inverse());
+    moves_ = moves_ || obstacle.motion.moves();
     max_thickness_ = std::max(max_thickness_, obstacle.material.thickness);
   }
   after_ = before_;
@@ -39,19 +41,20 @@ ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move
 }
 
 void ObstacleSet::set_interval(double t, double t_end) {
-  bool moved = false;
+  if (!moves_) return;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     if (!obstacles_[k].motion.moves()) continue;
     before_[k] = obstacles_[k].motion.pose(obstacles_[k].placed, t);
     after_[k] = obstacles_[k].motion.pose(obstacles_[k].placed, t_end);
     into_before_[k] = before_[k].inverse();
     into_after_[k] = after_[k].inverse();
-    moved = true;
   }
-  if (moved) broad_phase_->move(after_);
+  broad_phase_->move(after_);
 }
 
-double ObstacleSet::carries_at_most(const Box3& box) const {
+double ObstacleSet::carries_at_most(const Points& positions) const {
+  if (!moves_) return 0.0;
+  const Box3 box = finite_bounds(positions, 0, static_cast<Index>(positions.cols()));
   if (box.isEmpty()) return 0.0;
   double farthest = 0.0;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {

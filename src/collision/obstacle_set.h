@@ -41,8 +41,10 @@ class ObstacleSet {
   /// Replaces `found` by the obstacles that may be within the box at the interval's end, ascending.
   void find_near(const Box3& box, std::vector<Index>& found) const { broad_phase_->find_near(box, found); }
 
-  /// The farthest [m] that any obstacle carries a point of the box in this interval.
-  [[nodiscard]] double carries_at_most(const Box3& box) const;
+  /// The farthest [m] that any obstacle carries one of the positions in this interval.
+  [[nodiscard]] double carries_at_most(const Points& positions) const;
+
+  [[nodiscard]] bool moves() const { return moves_; }
 
   [[nodiscard]] double max_thickness() const { return max_thickness_; }
 
@@ -55,6 +57,7 @@ class ObstacleSet {
   std::vector<RigidTransform> into_after_;
   std::unique_ptr<BroadPhase> broad_phase_;
   double max_thickness_ = 0.0;
+  bool moves_ = false;
 };
 
 }  // namespace sprung

@@ -81,7 +81,7 @@ std::vector<Index> truncate_paths(const ObstacleSet& set, const Points& before, 
   squeezed = 0;
   if (set.obstacles().empty()) return {};
   const auto count = static_cast<Index>(before.cols());
-  const double carried = set.carries_at_most(finite_bounds(before, 0, count));
+  const double carried = set.carries_at_most(before);
 
   const auto moved = collect_from_blocks<Moved>(count, [&](Index begin, Index end, std::vector<Moved>& results) {
     const Box3 box = finite_bounds(before, begin, end).merged(finite_bounds(after, begin, end));
