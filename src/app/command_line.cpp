@@ -87,7 +87,9 @@ class Parser {
     const std::vector<CLI::App*> chosen = app_.get_subcommands();
     const CLI::App& command = chosen.empty() ? app_ : *chosen.front();
     const std::vector<std::string> names = known_names(command);
-    const std::string help = "see sprung " + (chosen.empty() ? "" : command.get_name() + " ") + "--help";
+    std::string help = "see sprung ";
+    if (!chosen.empty()) help += command.get_name() + " ";
+    help += "--help";
     std::string text;
     for (const std::string& word : app_.remaining(true)) {
       const auto name = nearest_name(word, names);

@@ -1,0 +1,189 @@
+// How the program ends when it cannot do what it was asked, and what it leaves behind.
+#include "app/command_line_fixture.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace sprung {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using testing::cloth_scene;
+using testing::CommandLine;
+using testing::diverging_scene;
+using ::testing::ElementsAre;
+using testing::Ending;
+using ::testing::HasSubstr;
+using testing::listing;
+using ::testing::Not;
+using testing::Program;
+using testing::read_text;
+using testing::rope_scene;
+using ::testing::StartsWith;
+using testing::write_text;
+
+TEST_F(CommandLine, WrongUsageEndsWithTwoAndSuggests) {
+  const std::string scene = save(rope_scene());
+  const auto refused = [&](const std::vector<std::string>& words, const std::string& text) {
+    const Ending ending = run(words);
+    EXPECT_EQ(ending.code, 2) << text;
+    EXPECT_EQ(ending.out, "");
+    EXPECT_THAT(ending.err, AllOf(StartsWith("sprung: error: "), HasSubstr(text), HasSubstr("--help")));
+    EXPECT_FALSE(wrote_something());
+  };
+  refused({}, "subcommand");
+  refused({"rum", scene}, "did you mean run?");
+  refused({"run", scene}, "--out");
+  refused({"run", "--out", out()}, "SCENE");
+  refused({"run", scene, "--out", out(), "--overwite"}, "did you mean --overwrite?");
+  refused({"run", scene, "other.json", "--out", out()}, "other.json");
+  refused({"run", scene, "--out", out(), "--frames", "0"}, "--frames");
+  refused({"run", scene, "--out", out(), "--frames", "many"}, "--frames");
+  refused({"run", scene, "--out", out(), "--threads", "-1"}, "--threads");
+}
+
+TEST_F(CommandLine, InvalidSceneEndsWithThreeNamesEveryProblemAndWritesNothing) {
+  json scene = rope_scene();
+  scene["bodies"]["rope"]["mass"] = -1.0;
+  scene["bodies"]["rope"]["springs"]["structural"]["stifness"] = 3;
+  const std::string file = save(scene);
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"run", file, "--out", out()}, {"validate", file}}) {
+    const Ending ending = run(words);
+    EXPECT_EQ(ending.code, 3);
+    EXPECT_EQ(ending.out, "");
+    EXPECT_THAT(ending.err, AllOf(HasSubstr("bodies.rope.mass = -1"), HasSubstr("stifness"), HasSubstr("stiffness")));
+    std::istringstream lines(ending.err);
+    for (std::string line; std::getline(lines, line);) EXPECT_THAT(line, StartsWith("sprung: error: " + file));
+    EXPECT_FALSE(wrote_something());
+  }
+}
+
+TEST_F(CommandLine, MeshThatIsMissingOrBrokenEndsWithThree) {
+  json scene = rope_scene();
+  scene["obstacles"]["thing"]["shape"] = {{"type", "mesh"}, {"file", "thing.obj"}};
+  const std::string file = save(scene);
+  EXPECT_EQ(run({"run", file, "--out", out()}).code, 3);
+  write_text(scratch_ / "thing.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Ending broken = run({"run", file, "--out", out()});
+  EXPECT_EQ(broken.code, 3);
+  EXPECT_THAT(broken.err, HasSubstr("thing.obj"));
+  EXPECT_FALSE(wrote_something());
+  EXPECT_EQ(run({"info", (scratch_ / "thing.obj").string()}).code, 3);
+  EXPECT_EQ(run({"info", (scratch_ / "missing.obj").string()}).code, 3);
+}
+
+TEST_F(CommandLine, StepThatIsTooLargeIsRefusedBeforeAnythingIsWritten) {
+  const Ending ending = run({"run", save(diverging_scene()), "--out", out()});
+  EXPECT_EQ(ending.code, 3);
+  EXPECT_THAT(ending.err, HasSubstr("stable"));
+  EXPECT_FALSE(wrote_something());
+}
+
+TEST_F(CommandLine, DivergenceEndsWithFourAndKeepsTheGoodFrames) {
+  const Ending ending = run({"run", save(diverging_scene()), "--out", out(), "--set", "stability=\"warn\""});
+  EXPECT_EQ(ending.code, 4) << ending.err;
+  EXPECT_THAT(ending.err, AllOf(HasSubstr("warning"), HasSubstr("diverged at step"), HasSubstr("time"), HasSubstr("body \"rope\""),
+                                HasSubstr("particle"), HasSubstr("spring")));
+  EXPECT_THAT(record()["outcome"].get<std::string>(), StartsWith("diverged: "));
+  const int frames = record()["frames_written"];
+  EXPECT_GE(frames, 1);
+  const std::string rows = read_text(scratch_ / "out/diagnostics.csv");
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), frames + 1);
+  EXPECT_EQ(listing(scratch_ / "out/rope").size(), static_cast<std::size_t>(frames));
+  EXPECT_THAT(read_text(scratch_ / ("out/rope/" + listing(scratch_ / "out/rope").back())), Not(HasSubstr("n")));
+}
+
+TEST_F(CommandLine, SceneThatCannotBeReadEndsWithFive) {
+  for (const std::string& scene : {out("missing.json"), scratch_.path().string(), out("a\nb")}) {
+    const Ending ending = run({"run", scene, "--out", out()});
+    EXPECT_EQ(ending.code, 5) << ending.err;
+    EXPECT_FALSE(wrote_something());
+  }
+}
+
+TEST_F(CommandLine, OutputThatCannotBeWrittenEndsWithFive) {
+  const std::string scene = save(rope_scene());
+  for (const std::string& folder : {scene, scene + "/below", std::string("/proc/nothing/here"), std::string()}) {
+    const Ending ending = run({"run", scene, "--out", folder});
+    EXPECT_EQ(ending.code, 5) << folder;
+    EXPECT_THAT(ending.err, StartsWith("sprung: error: "));
+  }
+  EXPECT_THAT(listing(scratch_.path()), ElementsAre("scene.json"));
+}
+
+TEST_F(CommandLine, FullDiskEndsWithFiveAndLeavesNoHalfFrame) {
+  // run.json takes about 2 kB and fits, a frame of 70 x 70 particles does not.
+  const Ending ending = Program({"run", save(cloth_scene()), "--out", out()}, {.file_size = 20'000}).wait();
+  EXPECT_EQ(ending.code, 5) << ending.err;
+  EXPECT_THAT(ending.err, HasSubstr("/cloth.0001.obj: cannot write"));
+  EXPECT_THAT(listing(out()), ElementsAre("diagnostics.csv", "run.json"));
+  EXPECT_EQ(record()["frames_written"], 0);
+  EXPECT_THAT(record()["outcome"].get<std::string>(), StartsWith("failed: "));
+}
+
+TEST_F(CommandLine, ResultThatCannotBePrintedEndsWithFive) {
+  EXPECT_EQ(Program({"--help"}, {.output = "/dev/full"}).wait().code, 5);
+}
+
+TEST_F(CommandLine, FolderThatIsNotEmptyIsOverwrittenOnlyWhenAsked) {
+  const std::string scene = save(rope_scene());
+  ASSERT_EQ(run({"run", scene, "--out", out(), "--quiet"}).code, 0);
+  write_text(scratch_ / "out/rope/notes.txt", "mine");
+  const std::vector<std::string> before = listing(out());
+
+  const Ending refused = run({"run", scene, "--out", out()});
+  EXPECT_EQ(refused.code, 5);
+  EXPECT_THAT(refused.err, HasSubstr("--overwrite"));
+  EXPECT_EQ(listing(out()), before);
+
+  EXPECT_EQ(run({"run", scene, "--out", out(), "--overwrite", "--frames", "1"}).code, 0);
+  EXPECT_THAT(listing(out()), ElementsAre("diagnostics.csv", "rope/", "rope/notes.txt", "rope/rope.0001.obj", "run.json"));
+}
+
+TEST_F(CommandLine, InvalidSceneDoesNotOverwrite) {
+  ASSERT_EQ(run({"run", save(rope_scene()), "--out", out()}).code, 0);
+  const std::vector<std::string> before = listing(out());
+  EXPECT_EQ(run({"run", save(rope_scene()), "--out", out(), "--overwrite", "--set", "bodies.rope.mass=0"}).code, 3);
+  EXPECT_EQ(listing(out()), before);
+}
+
+class Interrupted : public CommandLine, public ::testing::WithParamInterface<int> {};
+
+TEST_P(Interrupted, RunFinishesItsFrameAndKeepsAll) {
+  Program program({"run", save(rope_scene()), "--out", out(), "--frames", "1000000"});
+  ASSERT_TRUE(wait_for(scratch_ / "out/rope/rope.0000020.obj"));
+  program.send(GetParam());
+  const Ending ending = program.wait();
+  EXPECT_EQ(ending.code, 130) << ending.err;
+  EXPECT_THAT(ending.err, HasSubstr("interrupted"));
+  EXPECT_EQ(record()["outcome"], "interrupted");
+  const std::size_t frames = record()["frames_written"];
+  EXPECT_GE(frames, 20U);
+  EXPECT_EQ(listing(scratch_ / "out/rope").size(), frames);
+  const std::string rows = read_text(scratch_ / "out/diagnostics.csv");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(rows.begin(), rows.end(), '\n')), frames + 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, ::testing::Values(SIGINT, SIGTERM));
+
+TEST_F(CommandLine, KilledRunCanBeOverwritten) {
+  const std::string scene = save(rope_scene());
+  {
+    Program program({"run", scene, "--out", out(), "--frames", "1000000"});
+    ASSERT_TRUE(wait_for(scratch_ / "out/rope/rope.0000020.obj"));
+    program.send(SIGKILL);
+    EXPECT_EQ(program.wait().signal, SIGKILL);
+  }
+  EXPECT_EQ(record()["outcome"], "running");
+  EXPECT_EQ(run({"run", scene, "--out", out(), "--overwrite"}).code, 0);
+  EXPECT_EQ(listing(scratch_ / "out/rope").size(), 7U);
+  EXPECT_EQ(listing(out()).size(), 7U + 3U);
+}
+
+}  // namespace
+}  // namespace sprung
