@@ -62,7 +62,7 @@ TEST(JellyOnStairs, TumblesDownAndStaysOutside) {
     ASSERT_GE(positions.row(1).minCoeff(), 0.0) << "frame " << frame;
   }
   const Points end = run.positions("jelly", run.frames());
-  EXPECT_LT(end.row(0).mean(), run.positions("jelly", 1).row(0).mean() - 0.5) << "it went down some steps";
+  EXPECT_GT(end.row(0).mean(), run.positions("jelly", 1).row(0).mean() + 0.5) << "it went down some steps";
   EXPECT_GT((end.rowwise().maxCoeff() - end.rowwise().minCoeff()).prod(), 0.5 * 0.4 * 0.4 * 0.4) << "it is still a jelly";
 }
 
