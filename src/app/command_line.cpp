@@ -2,6 +2,8 @@
 
 #include "scene/nearest_name.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 namespace sprung {
@@ -93,7 +95,8 @@ class Parser {
     std::string text;
     for (const std::string& word : app_.remaining(true)) {
       const auto name = nearest_name(word, names);
-      text += "unexpected argument " + word + (name ? "; did you mean " + *name + "? " : "; ") + help + '\n';
+      const std::string hint = name ? fmt::format("did you mean {}? ", *name) : "";
+      text += fmt::format("unexpected argument {}; {}{}\n", word, hint, help);
     }
     return text.empty() ? std::string(error.what()) + "; " + help : text;
   }
