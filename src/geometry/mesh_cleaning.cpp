@@ -21,11 +21,11 @@ constexpr double kLargestUsual = 1000.0;
 constexpr double kSmallestUsual = 0.001;
 
 Vector3 weld_key(const Vector3& position, double weld_distance) {
-  const Vector3 key = weld_distance > 0.0 ? (position / weld_distance).array().round().matrix().eval() : position;
-  return key.array() + 0.0;  // -0 becomes 0
+  if (weld_distance > 0.0) return (position / weld_distance).array().round();
+  return position;
 }
 
-// For each vertex, the first one with the same key.
+// For each vertex, the first one with an equal key; keys are compared as numbers, so -0 equals 0.
 std::vector<Index> first_alike(const Points& vertices, double weld_distance) {
   Points keys(3, vertices.cols());
   for (Index i = 0; i < vertices.cols(); ++i) keys.col(i) = weld_key(vertices.col(i), weld_distance);
