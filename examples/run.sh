@@ -18,9 +18,11 @@ cmake --build --preset release --target sprung
 
 build/release/bin/sprung run "examples/$scene.json" --out "$frames" --overwrite --mesh-path /usr/share/glmark2/models
 
+last="$(find "$frames" -mindepth 2 -maxdepth 2 -name '*.obj' -not -path '*/obstacles/*' | sort | tail -n 1)"
 cat <<END
 
-The frames are in $frames, one folder a body, one OBJ a frame, beside the obstacles as placed.
-To look at one:           f3d --up=+Y \$(ls -d "$frames"/*/*.0001.obj | head -n 1) (Debian's package f3d)
-To play them in Blender:  import the sequence with the add-on Stop-motion-OBJ, obstacles with File > Import > Wavefront.
+The frames are in $frames: a folder a body, an OBJ file a frame; beside them the obstacles as placed.
+  The last frame:  f3d --up=+Y "$last"    (from Debian's package f3d)
+  A picture:       examples/picture.sh "$frames" picture.png 1 $(find "$(dirname "$last")" -name '*.obj' | wc -l)
+  The animation:   in Blender, import the sequence with the add-on Stop-motion-OBJ and the obstacles as Wavefront (.obj).
 END
