@@ -46,13 +46,16 @@ class Environment {
   [[nodiscard]] const RigidTransform& pose_before(Index obstacle) const;
   [[nodiscard]] const RigidTransform& pose_after(Index obstacle) const;
 
-  /// Contacts of particles whose path comes within gap + margin of an obstacle, sorted by particle, then obstacle. Where a path
-  /// crosses a surface the contact is at the crossing, facing where the particle came from. Same result for any number of threads.
+  /// Contacts of particles whose path comes within gap + margin of an obstacle, sorted by particle, then obstacle; at most one a
+  /// pair. Where a path crosses a surface (exactly judged, in the obstacle's own frame) the contact is at the crossing, facing
+  /// where the particle came from; else it is at the surface nearest to `after`. A particle that began inside a closed obstacle is
+  /// faced outward. Positions that are not finite have no contacts. Same result for any number of threads.
   [[nodiscard]] std::vector<Contact> contacts(const ParticlePaths& paths) const;
 
-  /// Cuts paths short that end behind a surface: `after` is moved back to the side where the particle came from. Particles for
-  /// which `held` is not 0 are left alone. Returns the particles that were moved; sets `squeezed` to the number that found no free
-  /// place and were left where the nearest obstacle carried them.
+  /// Cuts paths short that cross a surface: `after` is moved back along the path (in the obstacle's own frame, so that a moving
+  /// obstacle carries the particle) to the side where the particle came from, so that no path crosses any more; free paths keep
+  /// every bit. Particles for which `held` is not 0 are left alone. Returns the particles that were moved; sets `squeezed` to the
+  /// number that found no free place and were left where the nearest obstacle carried them.
   std::vector<Index> truncate(const Points& before, Points& after, const std::vector<char>& held, Index& squeezed) const;
 
   /// Particles inside a closed obstacle at pose_after, with the obstacle, sorted by particle.
