@@ -1,7 +1,8 @@
 # Joins OBJ files that follow one another after `usemtl` lines into one: indices shifted, UVs dropped, `l` elements drawn as prisms and
-# beads of `radius`.
+# beads of `radius`. `shift X` moves all that follows X further along x.
+$1 == "shift" { moved += $2; next }
 $1 == "usemtl" { offset = total; print; next }
-$1 == "v" { ++total; x[total] = $2; y[total] = $3; z[total] = $4; number[total] = ++written; print; next }
+$1 == "v" { ++total; x[total] = $2 + moved; y[total] = $3; z[total] = $4; number[total] = vertex(x[total], y[total], z[total]); next }
 $1 == "f" {
   printf "f"
   for (i = 2; i <= NF; ++i) { split($i, corner, "/"); printf " %d", number[corner[1] + offset] }

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Makes a picture of some frames of a run, side by side: bodies red, obstacles grey, ropes and loose particles as tubes and beads.
+# Makes a picture of some frames of a run, side by side: bodies red, obstacles grey, ropes as tubes and beads.
 #   examples/picture.sh FRAMES_FOLDER PICTURE.png FRAME...
-# HIDE="floor wall" leaves obstacles out; AZIMUTH and ELEVATION turn the camera [degrees]; RADIUS is a tube's [m]; SIZE a frame's.
+# SHIFT sets the frames that far apart [m] in one view, at one scale; without it each is a view of its own. HIDE="floor wall" leaves
+# obstacles out; AZIMUTH and ELEVATION turn the camera [degrees]; RADIUS is a tube's [m]; SIZE a view's in pixels.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -23,28 +24,34 @@ hidden() { case " ${HIDE:-} " in *" $1 "*) return 0 ;; *) return 1 ;; esac; }
 # The file of a body's or a moving obstacle's folder that holds a frame, whatever the number of its digits.
 frame_file() { find "$1" -name "$(basename "$1").*.obj" | grep -E "\.0*$2\.obj$"; }
 
-tiles=()
-for frame in "$@"; do
-  files=()
-  for body in "$folder"/*/; do
-    body=${body%/}
-    [ "$(basename "$body")" = obstacles ] || files+=("body=$(frame_file "$body" "$frame")")
+# All that a frame shows, for picture.awk.
+frame_parts() {
+  local frame=$1 path name
+  for path in "$folder"/*/ "$folder"/obstacles/*; do
+    [ -e "$path" ] || continue
+    name=$(basename "$path" .obj)
+    if [ "$name" = obstacles ] || hidden "$name"; then continue; fi
+    case $path in "$folder"/obstacles/*) echo "usemtl obstacle" ;; *) echo "usemtl body" ;; esac
+    if [ -d "$path" ]; then path=$(frame_file "${path%/}" "$frame"); fi
+    cat "$path"
   done
-  for obstacle in "$folder"/obstacles/*; do
-    [ -e "$obstacle" ] || continue
-    hidden "$(basename "$obstacle" .obj)" && continue
-    if [ -d "$obstacle" ]; then obstacle=$(frame_file "$obstacle" "$frame"); fi
-    files+=("obstacle=$obstacle")
-  done
-  { echo "mtllib scene.mtl"
-    for file in "${files[@]}"; do
-      echo "usemtl ${file%%=*}"
-      cat "${file#*=}"
-    done | awk -v radius="${RADIUS:-0.01}" -f "$here/picture.awk"
-  } > "$work/scene.obj"
-  tile="$work/$frame.png"
-  xvfb-run -a f3d --output="$tile" --resolution="${SIZE:-480,420}" --up=+Y --bg-color=1,1,1 --fxaa --ssao --tone-mapping --quiet \
+}
+
+# Standard input to a picture.
+render() {
+  { echo "mtllib scene.mtl"; awk -v radius="${RADIUS:-0.01}" -f "$here/picture.awk"; } > "$work/scene.obj"
+  xvfb-run -a f3d --output="$1" --resolution="${SIZE:-360,320}" --up=+Y --bg-color=1,1,1 --fxaa --ssao --tone-mapping --quiet \
     --camera-azimuth-angle="${AZIMUTH:--30}" --camera-elevation-angle="${ELEVATION:-15}" "$work/scene.obj"
-  tiles+=("$tile")
-done
-montage "${tiles[@]}" -tile "x1" -geometry +0+0 -colors 64 "$picture"
+}
+
+views=()
+if [ -n "${SHIFT:-}" ]; then
+  views=("$work/all.png")
+  for frame in "$@"; do frame_parts "$frame"; echo "shift $SHIFT"; done | render "${views[0]}"
+else
+  for frame in "$@"; do
+    frame_parts "$frame" | render "$work/$frame.png"
+    views+=("$work/$frame.png")
+  done
+fi
+montage "${views[@]}" -tile "x1" -geometry +0+0 -colors 64 - | convert - -trim -bordercolor white -border 10 "$picture"

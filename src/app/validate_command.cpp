@@ -17,7 +17,7 @@ constexpr int kDigits = 6;
 
 std::string time_text(const LoadedScene& loaded) {
   const std::string stable = std::isfinite(loaded.largest_stable_step)
-                                 ? "the largest stable step is " + format_number(loaded.largest_stable_step, kDigits) + " s"
+                                 ? "the largest stable step is " + format_upper_bound(loaded.largest_stable_step) + " s"
                                  : "every step is stable";
   return text_row("frames", fmt::format("{} at {} a second", loaded.frames, format_number(loaded.scene.frame_rate, kDigits))) +
          text_row("each", describe_steps(loaded) + "; " + stable);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 namespace sprung {
 
@@ -21,6 +22,14 @@ std::string format_number(double value, int digits) {
   std::array<char, 32> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
   return {buffer.data(), end.ptr};
+}
+
+std::string format_upper_bound(double bound) {
+  constexpr int kDigits = 6;
+  if (!std::isfinite(bound)) return format_number(bound);
+  const double unit = std::pow(10.0, std::floor(std::log10(bound)) - (kDigits - 1));
+  constexpr double kRounding = 1.0 + 1.0e-12;
+  return format_number(std::floor(bound / unit * kRounding) * unit, kDigits);
 }
 
 }  // namespace sprung

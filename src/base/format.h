@@ -13,4 +13,8 @@ void append_number(std::string& text, double value);
 /// Rounded to so many significant digits: for people. Requires 1 <= digits <= 17.
 [[nodiscard]] std::string format_number(double value, int digits);
 
+/// A bound that people may type: rounded to six significant digits, but never above `bound` by more than rounding. Requires bound >
+/// 0.
+[[nodiscard]] std::string format_upper_bound(double bound);
+
 }  // namespace sprung

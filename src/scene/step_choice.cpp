@@ -43,8 +43,8 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
   if (scene.step) {
     choice.step = *scene.step;
     choice.steps_per_frame = steps_per_frame(scene.frame_rate, choice.step).value_or(1);
-    if (choice.step > choice.largest_stable && scene.settings.stability == StabilityCheck::refuse) {
-      report(format_number(choice.step), "is beyond the largest stable step, " + format_number(choice.largest_stable) + " s",
+    if (is_unstable(choice.step, choice.largest_stable) && scene.settings.stability == StabilityCheck::refuse) {
+      report(format_number(choice.step), "is beyond the largest stable step, " + format_upper_bound(choice.largest_stable) + " s",
              remedy_for_unstable(scene, choice.largest_stable));
     }
     return choice;
@@ -54,7 +54,7 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
     choice.steps_per_frame = *steps;
     choice.step = step_of(scene.frame_rate, *steps);
   } else {
-    report("\"auto\"", "must be at most " + format_number(largest) + " s, which is too many steps a frame",
+    report("\"auto\"", "must be at most " + format_upper_bound(largest) + " s, which is too many steps a frame",
            "use less stiffness, more mass, or a higher frame_rate");
   }
   return choice;

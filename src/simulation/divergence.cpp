@@ -64,8 +64,8 @@ StepFailure DivergenceCheck::blame(Index particle, Index spring, const Points& p
   const Index b = network_.springs.second[s];
   failure.spring = spring - body.first_spring;
   failure.cause = "the spring between particles " + std::to_string(a - body.first_particle) + " and " +
-                  std::to_string(b - body.first_particle) + " was " + format_number(length(positions, a, b)) + " m long, " +
-                  format_number(network_.springs.rest_length[s]) + " m at rest";
+                  std::to_string(b - body.first_particle) + " was " + format_number(length(positions, a, b), 3) + " m long, " +
+                  format_number(network_.springs.rest_length[s], 3) + " m at rest";
   return failure;
 }
 

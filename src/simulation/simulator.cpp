@@ -18,8 +18,8 @@ constexpr int kContactPasses = 8;
 // Passes end when none pushes a particle by more than this part of its gap.
 constexpr double kContactTolerance = 1.0e-3;
 
-// Every so many steps springs are looked at for one that gave way; a blow-up grows for longer than that before it is not finite.
-constexpr std::int64_t kStretchCheckInterval = 16;
+// Springs are looked at for one that gave way each step, large networks less often: about so many springs a step.
+constexpr Index kSpringsCheckedPerStep = 8192;
 
 }  // namespace
 
@@ -137,7 +137,8 @@ void Simulator::Implementation::settle(StepReport& report) {
 
 void Simulator::Implementation::check() const {
   std::optional<StepFailure> failure = divergence.not_finite(state, before);
-  if (!failure && state.step % kStretchCheckInterval == 0) failure = divergence.overstretched(state.x);
+  const Index check_interval = 1 + network.springs.count() / kSpringsCheckedPerStep;
+  if (!failure && state.step % check_interval == 0) failure = divergence.overstretched(state.x);
   if (!failure) return;
   failure->step = state.step;
   failure->time = static_cast<double>(state.step) * settings.step;

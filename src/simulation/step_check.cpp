@@ -26,14 +26,19 @@ SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSe
   return bounds;
 }
 
+bool is_unstable(double step, double largest_stable) {
+  constexpr double kRounding = 1.0 + 1.0e-9;  // the bound itself keeps a larger margin
+  return step > kRounding * largest_stable;
+}
+
 std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds) {
   const double step = settings.step;
   if (!(step > 0.0) || !std::isfinite(step)) {
     throw InputError({.key = "step", .value = format_number(step), .rule = "must be a positive number of seconds"});
   }
   const double largest = largest_stable_step(settings.integrator, bounds);
-  if (step > largest) {
-    const std::string rule = "is beyond the largest stable step, " + format_number(largest) + " s";
+  if (is_unstable(step, largest)) {
+    const std::string rule = "is beyond the largest stable step, " + format_upper_bound(largest) + " s";
     if (settings.stability == StabilityCheck::refuse) {
       throw InputError({.key = "step",
                         .value = format_number(step),
@@ -45,7 +50,7 @@ std::vector<std::string> check_step(const SimulatorSettings& settings, const Spe
   const double growth = growth_time(settings.integrator, bounds, step);
   if (!std::isfinite(growth)) return {};
   return {"explicit Euler gains energy at any step: the fastest motion of these springs grows by a factor of e every " +
-          format_number(growth) + " s; \"symplectic_euler\" does not"};
+          format_number(growth, 2) + " s; \"symplectic_euler\" does not"};
 }
 
 void refuse_inside(const SpringNetwork& network, const Environment& environment, const Points& positions) {
@@ -65,10 +70,11 @@ void refuse_inside(const SpringNetwork& network, const Environment& environment,
   }
   std::vector<Problem> problems;
   for (const auto& [names, entry] : found) {
-    problems.push_back({.key = "bodies." + names.first,
-                        .value = std::to_string(entry.count) + " particles, the first " + std::to_string(entry.first),
-                        .rule = "start inside obstacle \"" + names.second + "\", up to " + format_number(entry.deepest) + " m deep",
-                        .remedy = "move the body or the obstacle, so that they do not overlap at time 0"});
+    problems.push_back(
+        {.key = "bodies." + names.first,
+         .value = std::to_string(entry.count) + " particles, the first " + std::to_string(entry.first),
+         .rule = "start inside obstacle \"" + names.second + "\", up to " + format_number(entry.deepest, 3) + " m deep",
+         .remedy = "move the body or the obstacle, so that they do not overlap at time 0"});
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }

@@ -11,6 +11,9 @@ namespace sprung {
 /// `spectral_bounds` of the network with its air drag and, when there are obstacles, its penalty contact.
 [[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
 
+/// Whether a step is beyond the largest stable one by more than rounding.
+[[nodiscard]] bool is_unstable(double step, double largest_stable);
+
 /// Throws InputError for a step that is not positive, or beyond the largest stable one unless `settings.stability` is warn. Returns
 /// what the user should be warned of.
 std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds);

@@ -46,6 +46,12 @@ TEST(FormatNumber, RoundsForPeople) {
   EXPECT_EQ(format_number(2.0 / 3.0, 2), "0.67");
 }
 
+TEST(FormatUpperBound, IsNeverAboveTheBoundByMoreThanRounding) {
+  EXPECT_EQ(format_upper_bound(0.019999999999999997), "0.02");
+  EXPECT_EQ(format_upper_bound(0.0123456789), "0.0123456");
+  EXPECT_EQ(format_upper_bound(1234567.9), "1.23456e+06");
+}
+
 TEST(AppendNumber, KeepsWhatWasThere) {
   std::string text = "x = ";
   append_number(text, 1.5);

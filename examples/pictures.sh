@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Runs the examples and makes README's pictures of them: pictures.sh [SCENE...]
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+declare -A frames=(
+  [cloth_on_bunny]="1 12 121"
+  [jelly_on_stairs]="1 25 45 121"
+  [hanging_cloth]="1 12 24 121"
+  [rope_over_torus]="1 10 20 91"
+  [lab_rope]="1 12 38 76 151"
+  [two_masses]="1 8 15 301"
+  [heavy_mass]="1 14 27 301"
+  [five_node_rope]="1 100 300 601"
+  [too_large_step_warned]="1 2"
+)
+declare -A look=(
+  [cloth_on_bunny]="HIDE=floor SIZE=600,460"
+  [jelly_on_stairs]="HIDE=floor"
+  [hanging_cloth]="AZIMUTH=25"
+  [rope_over_torus]="HIDE=floor RADIUS=0.012 ELEVATION=30"
+  [lab_rope]="AZIMUTH=0 ELEVATION=0 RADIUS=0.03 SHIFT=5 SIZE=1400,500"
+  [two_masses]="AZIMUTH=0 ELEVATION=0 RADIUS=0.04 SHIFT=0.6 SIZE=400,400"
+  [heavy_mass]="AZIMUTH=0 ELEVATION=0 RADIUS=0.04 SHIFT=0.6 SIZE=400,400"
+  [five_node_rope]="AZIMUTH=0 ELEVATION=0 RADIUS=0.12 SHIFT=14 SIZE=1400,400"
+  [too_large_step_warned]="AZIMUTH=0 ELEVATION=0 RADIUS=0.04 SHIFT=0.6 SIZE=400,400"
+)
+
+mkdir -p examples/pictures
+(($#)) || set -- "${!frames[@]}"
+for scene in "$@"; do
+  output="build/frames/$scene"
+  # A scene that diverges, as too_large_step_warned must, leaves its good frames.
+  build/release/bin/sprung run "examples/$scene.json" --out "$output" --overwrite --mesh-path /usr/share/glmark2/models || (($? == 4))
+  # shellcheck disable=SC2086
+  env ${look[$scene]} examples/picture.sh "$output" "examples/pictures/$scene.png" ${frames[$scene]}
+done
