@@ -163,4 +163,9 @@ double growth_time(const IntegratorSettings& settings, const SpectralBounds& bou
   return rate > 0.0 ? 2.0 / rate : kInfinity;
 }
 
+double step_for_growth_time(const IntegratorSettings& settings, const SpectralBounds& bounds, double time) {
+  if (!std::holds_alternative<ExplicitEulerSettings>(settings) || bounds.elastic == 0.0) return kInfinity;
+  return bounds.damping_time + (2.0 / time + bounds.least_drag) / bounds.elastic;
+}
+
 }  // namespace sprung

@@ -30,4 +30,7 @@ struct SpectralBounds {
 /// themselves only: sideways swings of taut springs grow all the same, if slower.
 [[nodiscard]] double growth_time(const IntegratorSettings& settings, const SpectralBounds& bounds, double step);
 
+/// The largest step at which growth_time is at least `time` [s]; infinity for schemes that do not gain energy, and without springs.
+[[nodiscard]] double step_for_growth_time(const IntegratorSettings& settings, const SpectralBounds& bounds, double time);
+
 }  // namespace sprung

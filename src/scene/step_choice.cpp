@@ -14,13 +14,12 @@ namespace {
 
 constexpr double kStablePart = 0.9;  // of the largest stable step that "auto" uses at most
 
-double largest_auto_step(const Scene& scene, const SpringNetwork& network, double largest_stable) {
-  double largest = kStablePart * largest_stable;
-  if (scene.settings.stretch_limit) {
-    const StretchLimit limit(network, *scene.settings.stretch_limit);
-    largest = std::min(largest, limit.suggested_step(scene.settings.gravity.norm()));
-  }
-  return std::isfinite(largest) ? largest : kLargestAutoStep;
+double largest_auto_step(const Scene& scene, const SpringNetwork& network, const SpectralBounds& bounds, double largest_stable) {
+  double largest = std::min(kStablePart * largest_stable, step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
+  if (!std::isfinite(largest)) largest = kLargestAutoStep;
+  if (!scene.settings.stretch_limit) return largest;
+  const StretchLimit limit(network, *scene.settings.stretch_limit);
+  return std::min(largest, limit.suggested_step(scene.settings.gravity.norm()));
 }
 
 std::string remedy_for_unstable(const Scene& scene, double largest_stable) {
@@ -49,7 +48,7 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
     }
     return choice;
   }
-  const double largest = largest_auto_step(scene, network, choice.largest_stable);
+  const double largest = largest_auto_step(scene, network, bounds, choice.largest_stable);
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
     choice.steps_per_frame = *steps;
     choice.step = step_of(scene.frame_rate, *steps);

@@ -8,7 +8,7 @@
 
 namespace sprung {
 
-/// When neither stability nor a stretch limit bounds it, "auto" is at most this [s]: a fall of a second then moves a particle by
+/// When stability does not bound it, "auto" is at most this [s]: a fall of a second then moves a particle by
 /// 4 cm in a step.
 inline constexpr double kLargestAutoStep = 1.0 / 240.0;
 
@@ -19,7 +19,8 @@ struct StepChoice {
 };
 
 /// The scene's step or, for "auto", 1 / (frame_rate * n) with the least n whose step is at most 0.9 of the largest stable one and
-/// at most what the stretch limit suggests. Adds a problem when the scene's step is beyond the largest stable one and `stability`
+/// at most what the stretch limit suggests; with explicit Euler, also one at which the fastest motion grows by no more than a factor
+/// of e in the whole scene. Adds a problem when the scene's step is beyond the largest stable one and `stability`
 /// is refuse, or when a frame would take too many steps.
 [[nodiscard]] StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems);
 

@@ -1,0 +1,32 @@
+// The main job: time of a frame of examples/cloth_on_bunny.json while the cloth drapes.
+#include "base/parallel.h"
+#include "scene/scene_builder.h"
+#include "scene/scene_reader.h"
+#include "simulation/diagnostics.h"
+
+#include <benchmark/benchmark.h>
+
+namespace sprung {
+namespace {
+
+// The cloth meets the ears in frame 5 and is folded over the back by frame 20.
+constexpr int kFirstFrame = 15;
+constexpr int kFrames = 15;
+
+void cloth_on_bunny(benchmark::State& state) {
+  const ThreadLimit limit(static_cast<int>(state.range(0)));
+  const Scene scene = read_scene(SPRUNG_SOURCE_DIR "/examples/cloth_on_bunny.json");
+  BuiltScene built = build_scene(scene, {SPRUNG_TEST_MESHES});
+  Simulator simulator(std::move(built.network), built.settings, std::move(built.obstacles));
+  FrameRunner frames(simulator, built.steps_per_frame);
+  for (int frame = 0; frame < kFirstFrame; ++frame) frames.next_frame();
+  double contacts = 0.0;
+  for (auto _ : state) contacts += frames.next_frame().contacts;
+  state.counters["steps_per_frame"] = built.steps_per_frame;
+  state.counters["contacts"] = contacts / static_cast<double>(state.iterations());
+}
+
+BENCHMARK(cloth_on_bunny)->ArgName("threads")->Arg(1)->Arg(2)->Iterations(kFrames)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace sprung
