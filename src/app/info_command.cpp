@@ -26,7 +26,8 @@ std::string obstacle_text(const ImportedMesh& imported) {
   std::string text = "as an obstacle (vertices welded, faces as triangles)\n";
   text += text_row("size", describe_size(report.bounds) + ", from " + point_text(report.bounds.min()) + " to " +
                                point_text(report.bounds.max()));
-  text += text_row("vertices", fmt::format("{} ({} as read)", imported.mesh.vertices.cols(), report.vertices_read));
+  text +=
+      text_row("vertices", fmt::format("{} (welded from {} corners as read)", imported.mesh.vertices.cols(), report.vertices_read));
   text += text_row("triangles", fmt::format("{} ({} as read)", imported.mesh.triangles.cols(), report.faces_read));
   text += text_row("surface", describe_closedness(report));
   if (report.closed) text += text_row("volume", format_number(signed_volume(imported.mesh), kDigits) + " m^3");

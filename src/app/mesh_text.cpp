@@ -28,7 +28,6 @@ std::vector<std::string> repairs(const MeshReport& report) {
   const auto add = [&](Index count, const char* what) {
     if (count > 0) done.push_back(fmt::format("{} {}", count, what));
   };
-  add(report.welded_vertices, "vertices welded to others at the same place");
   add(report.unused_vertices, "vertices dropped that no face uses");
   add(report.degenerate_faces, "faces dropped that have no area");
   add(report.duplicate_faces, "faces dropped that were there twice");

@@ -14,7 +14,8 @@ namespace sprung {
 /// `closed`, or `open: 12 border edges, 0 edges with more than two faces`
 [[nodiscard]] std::string describe_closedness(const MeshReport& report);
 
-/// What cleaning did, as `3 vertices welded`; empty when there was nothing to do.
+/// What cleaning had to mend, as `3 faces turned around`; empty when there was nothing. Welding is no repair: most formats, or
+/// their readers, give every face corners of its own.
 [[nodiscard]] std::vector<std::string> repairs(const MeshReport& report);
 
 /// `label      text`, in columns.
