@@ -66,9 +66,10 @@ std::vector<Contact> Environment::contacts(const ParticlePaths& paths) const {
   const double carried = set.carries_at_most(paths.before);
 
   return collect_from_blocks<Contact>(count, [&](Index begin, Index end, std::vector<Contact>& contacts) {
-    const double reach = paths.thickness.segment(begin, end - begin).maxCoeff() + set.max_thickness() + paths.margin;
     const Box3 box = finite_bounds(paths.before, begin, end).merged(finite_bounds(paths.after, begin, end));
     if (box.isEmpty()) return;
+    const double gap = paths.thickness.segment(begin, end - begin).maxCoeff() + set.max_thickness();
+    const double reach = std::max(gap, set.max_clearance(box)) + paths.margin;
     std::vector<Index> near;
     set.find_near(grown(box, reach + carried), near);
     if (near.empty()) return;
@@ -77,12 +78,14 @@ std::vector<Contact> Environment::contacts(const ParticlePaths& paths) const {
       const Vector3 after = paths.after.col(i);
       if (!before.allFinite() || !after.allFinite()) continue;
       for (const Index k : near) {
-        const double gap = paths.thickness[i] + set.obstacle(k).material.thickness;
-        const auto found = find_contact(set.shape(k), set.local_path(k, before, after), gap + paths.margin);
+        const double gap_of_pair = paths.thickness[i] + set.obstacle(k).material.thickness;
+        const double clearance = set.clearance(k, before, after);
+        const double reach_of_pair = std::max(gap_of_pair, clearance) + paths.margin;
+        const auto found = find_contact(set.shape(k), set.local_path(k, before, after), reach_of_pair);
         if (!found) continue;
         const Vector3 point = set.after(k) * found->point;
         const Vector3 normal = set.after(k).linear() * found->normal;
-        contacts.push_back({i, k, point, normal, normal.dot(after - point)});
+        contacts.push_back({i, k, point, normal, normal.dot(after - point), clearance});
       }
     }
   });

@@ -11,13 +11,14 @@
 namespace sprung {
 
 /// A particle near an obstacle, in the world at the end of the step. Its plane is where the particle may not fall below:
-/// normal . x >= normal . point + gap.
+/// normal . x >= normal . point + max(gap, clearance).
 struct Contact {
   Index particle = kNone;
   Index obstacle = kNone;
-  Vector3 point;          ///< on the surface [m]
-  Vector3 normal;         ///< unit length, towards the free side
-  double distance = 0.0;  ///< of the particle from the surface [m], negative behind it
+  Vector3 point;           ///< on the surface [m]
+  Vector3 normal;          ///< unit length, towards the free side
+  double distance = 0.0;   ///< of the particle from the surface [m], negative behind it
+  double clearance = 0.0;  ///< the least gap that is kept, whatever the thickness: above rounding [m]
 };
 
 /// Particles on their way through one step.
@@ -25,7 +26,7 @@ struct ParticlePaths {
   const Points& before;      ///< where they were at t [m]; outside all obstacles
   const Points& after;       ///< where they are about to be at t + dt [m]
   const Scalars& thickness;  ///< of each particle [m]; the obstacle's own is added
-  double margin = 0.0;       ///< contacts are found this much [m] beyond the gap
+  double margin = 0.0;       ///< contacts are found this much [m] beyond max(gap, clearance)
 };
 
 class Environment {
@@ -46,16 +47,18 @@ class Environment {
   [[nodiscard]] const RigidTransform& pose_before(Index obstacle) const;
   [[nodiscard]] const RigidTransform& pose_after(Index obstacle) const;
 
-  /// Contacts of particles whose path comes within gap + margin of an obstacle, sorted by particle, then obstacle; at most one a
-  /// pair. Where a path crosses a surface (exactly judged, in the obstacle's own frame) the contact is at the crossing, facing
-  /// where the particle came from; else it is at the surface nearest to `after`. A particle that began inside a closed obstacle is
-  /// faced outward. Positions that are not finite have no contacts. Same result for any number of threads.
+  /// Contacts of particles whose path crosses an obstacle's surface or ends within max(gap, clearance) + margin of it, sorted by
+  /// particle, then obstacle; at most one a pair. Where a path crosses the surface (exactly judged, in the obstacle's own frame)
+  /// the contact is at the crossing, facing where the particle came from; else it is at the surface nearest to `after`, facing
+  /// outward, so that a particle that began inside a closed obstacle and ends within reach of its surface (anywhere in a primitive)
+  /// is led out. Positions that are not finite have no contacts. Same result for any number of threads.
   [[nodiscard]] std::vector<Contact> contacts(const ParticlePaths& paths) const;
 
   /// Cuts paths short that cross a surface: `after` is moved back along the path (in the obstacle's own frame, so that a moving
-  /// obstacle carries the particle) to the side where the particle came from, so that no path crosses any more; free paths keep
-  /// every bit. Particles for which `held` is not 0 are left alone. Returns the particles that were moved; sets `squeezed` to the
-  /// number that found no free place and were left where the nearest obstacle carried them.
+  /// obstacle carries the particle) to the side where the particle came from, by no more than up to its clearance, so that no path
+  /// crosses any more; free paths keep every bit. A particle that is nearer already stays where it is, or where the obstacle
+  /// carries it. Particles for which `held` is not 0 are left alone. Returns the particles that were moved; sets `squeezed` to the
+  /// number that found no free place and were left where the last obstacle they met carried them.
   std::vector<Index> truncate(const Points& before, Points& after, const std::vector<char>& held, Index& squeezed) const;
 
   /// Particles inside a closed obstacle at pose_after, with the obstacle, sorted by particle.

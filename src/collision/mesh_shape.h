@@ -17,6 +17,7 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override;
   [[nodiscard]] bool contains(const Vector3& p) const override;
   [[nodiscard]] Box3 bounds() const override { return bounds_; }
+  [[nodiscard]] double magnitude() const override { return magnitude_; }
   [[nodiscard]] double rounding(const Vector3& p) const override;
 
   [[nodiscard]] const MeshTree& tree() const { return *tree_; }

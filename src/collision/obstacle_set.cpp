@@ -9,6 +9,10 @@ namespace sprung {
 
 namespace {
 
+constexpr double kClearance = 0x1p-30;
+
+double largest(const Vector3& p) { return p.cwiseAbs().maxCoeff(); }
+
 std::vector<std::unique_ptr<ObstacleShape>> make_shapes(const std::vector<Obstacle>& obstacles) {
   std::vector<std::unique_ptr<ObstacleShape>> shapes;
   std::vector<Problem> problems;
@@ -37,6 +41,8 @@ ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move
   }
   after_ = before_;
   into_after_ = into_before_;
+  magnitude_.resize(obstacles_.size());
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) measure(k);
   broad_phase_ = std::make_unique<BroadPhase>(obstacles_, shapes_, after_);
 }
 
@@ -48,8 +54,27 @@ void ObstacleSet::set_interval(double t, double t_end) {
     after_[k] = obstacles_[k].motion.pose(obstacles_[k].placed, t_end);
     into_before_[k] = before_[k].inverse();
     into_after_[k] = after_[k].inverse();
+    measure(k);
   }
   broad_phase_->move(after_);
+}
+
+void ObstacleSet::measure(std::size_t k) {
+  magnitude_[k] = shapes_[k]->magnitude() + std::max(largest(before_[k].translation()), largest(after_[k].translation()));
+}
+
+double ObstacleSet::clearance(Index k, const Vector3& from, const Vector3& to) const {
+  return kClearance * std::max({magnitude_[static_cast<std::size_t>(k)], largest(from), largest(to)});
+}
+
+double ObstacleSet::max_clearance(const Box3& box) const {
+  const double of_obstacles = magnitude_.empty() ? 0.0 : *std::max_element(magnitude_.begin(), magnitude_.end());
+  return kClearance * std::max({of_obstacles, largest(box.min()), largest(box.max())});
+}
+
+Vector3 ObstacleSet::carried(Index k, const Vector3& from) const {
+  if (rests(k)) return from;
+  return after(k) * (into_before_[static_cast<std::size_t>(k)] * from);
 }
 
 double ObstacleSet::carries_at_most(const Points& positions) const {

@@ -41,6 +41,16 @@ class ObstacleSet {
   /// Replaces `found` by the obstacles that may be within the box at the interval's end, ascending.
   void find_near(const Box3& box, std::vector<Index>& found) const { broad_phase_->find_near(box, found); }
 
+  /// The least height [m] above obstacle k that a path is to end with: far above what rounding does to the path's coordinates and
+  /// the obstacle's (1e-16 of the largest), far below anything seen.
+  [[nodiscard]] double clearance(Index k, const Vector3& from, const Vector3& to) const;
+  /// No path within the box has a larger clearance from any obstacle.
+  [[nodiscard]] double max_clearance(const Box3& box) const;
+
+  /// Where obstacle k carries a position in this interval: to the last bit where it was, if the obstacle rests.
+  [[nodiscard]] Vector3 carried(Index k, const Vector3& from) const;
+  [[nodiscard]] bool rests(Index k) const { return before(k).matrix() == after(k).matrix(); }
+
   /// The farthest [m] that any obstacle carries one of the positions in this interval.
   [[nodiscard]] double carries_at_most(const Points& positions) const;
 
@@ -49,6 +59,8 @@ class ObstacleSet {
   [[nodiscard]] double max_thickness() const { return max_thickness_; }
 
  private:
+  void measure(std::size_t k);
+
   std::vector<Obstacle> obstacles_;
   std::vector<std::unique_ptr<ObstacleShape>> shapes_;
   std::vector<RigidTransform> before_;
@@ -56,6 +68,7 @@ class ObstacleSet {
   std::vector<RigidTransform> into_before_;
   std::vector<RigidTransform> into_after_;
   std::unique_ptr<BroadPhase> broad_phase_;
+  std::vector<double> magnitude_;  ///< of an obstacle's coordinates in this interval [m]
   double max_thickness_ = 0.0;
   bool moves_ = false;
 };

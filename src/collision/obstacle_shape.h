@@ -43,6 +43,9 @@ class ObstacleShape {
   /// A box around the shape [m]; infinite for a half-space.
   [[nodiscard]] virtual Box3 bounds() const = 0;
 
+  /// The largest coordinate on the shape [m]; of a half-space, whose coordinates have no end, its offset.
+  [[nodiscard]] virtual double magnitude() const = 0;
+
   /// What rounding may do to distances measured from p [m].
   [[nodiscard]] virtual double rounding(const Vector3& p) const = 0;
 };

@@ -35,10 +35,7 @@ class PrimitiveShape final : public ObstacleShape {
 
   [[nodiscard]] Box3 bounds() const override { return sprung::bounds(geometry_); }
 
-  [[nodiscard]] double rounding(const Vector3& p) const override { return 1e-14 * (magnitude() + p.cwiseAbs().maxCoeff()); }
-
- private:
-  [[nodiscard]] double magnitude() const {
+  [[nodiscard]] double magnitude() const override {
     if constexpr (std::is_same_v<Geometry, HalfSpaceGeometry>) {
       return std::abs(geometry_.offset);
     } else {
@@ -46,6 +43,9 @@ class PrimitiveShape final : public ObstacleShape {
     }
   }
 
+  [[nodiscard]] double rounding(const Vector3& p) const override { return 1e-14 * (magnitude() + p.cwiseAbs().maxCoeff()); }
+
+ private:
   Geometry geometry_;
 };
 

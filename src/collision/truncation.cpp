@@ -8,12 +8,8 @@ namespace sprung {
 
 namespace {
 
-// A cut path keeps this part of its begin's distance from the plane that it would have crossed ...
+// A cut path keeps this part of its begin's distance from the plane that it would have crossed, but at least its clearance.
 constexpr double kKeptDistance = 0.125;
-
-// ... but at least this part of the coordinates' magnitude: far above rounding (1e-16), far below anything seen. A particle that is
-// nearer already stays where the obstacle carries it.
-constexpr double kClearance = 0x1p-30;
 
 // Cuts by one obstacle may run into another: each round makes the path shorter.
 constexpr int kRounds = 8;
@@ -22,6 +18,7 @@ struct Blocked {
   Index obstacle = kNone;
   Crossing crossing;
   LocalPath path;
+  double clearance = 0.0;
 };
 
 /// The first of the near obstacles that the path to `target` crosses.
@@ -29,17 +26,22 @@ std::optional<Blocked> find_blocked(const ObstacleSet& set, const std::vector<In
                                     const Vector3& target) {
   for (const Index k : near) {
     const LocalPath path = set.local_path(k, from, target);
-    if (const auto crossing = set.shape(k).first_crossing(path.begin, path.end)) return Blocked{k, *crossing, path};
+    if (const auto crossing = set.shape(k).first_crossing(path.begin, path.end)) {
+      return Blocked{k, *crossing, path, set.clearance(k, from, target)};
+    }
   }
   return std::nullopt;
 }
 
-/// A position before the crossing, in the world at the interval's end.
-Vector3 cut(const ObstacleSet& set, const Blocked& blocked) {
-  const auto& [k, crossing, path] = blocked;
+/// A position before the crossing, in the world at the interval's end. Where the begin is so near that nothing is left to cut, it
+/// stays with the obstacle; one that moves would wear its height away, a rounding a step, and so gives back what is missing.
+Vector3 cut(const ObstacleSet& set, const Vector3& from, const Blocked& blocked) {
+  const auto& [k, crossing, path, clearance] = blocked;
   const double height = crossing.normal.dot(path.begin - crossing.point);
-  const double clearance = kClearance * (path.begin.cwiseAbs().maxCoeff() + crossing.point.cwiseAbs().maxCoeff());
-  if (height <= 2.0 * clearance) return set.after(k) * path.begin;
+  if (height <= 2.0 * clearance) {
+    if (height >= clearance || set.rests(k)) return set.carried(k, from);
+    return set.after(k) * (path.begin + (clearance - height) * crossing.normal);
+  }
   const double kept = std::max(kKeptDistance, clearance / height);
   return set.after(k) * (path.begin + (1.0 - kept) * crossing.fraction * (path.end - path.begin));
 }
@@ -57,13 +59,13 @@ Place find_place(const ObstacleSet& set, const std::vector<Index>& near, const V
   for (int round = 0; round < kRounds; ++round) {
     const auto blocked = find_blocked(set, near, from, place.position);
     if (!blocked) return place;
-    place.position = cut(set, *blocked);
+    place.position = cut(set, from, *blocked);
     place.moved = true;
     met.push_back(blocked->obstacle);
   }
   // Obstacles that close in on the particle from several sides: staying with one of them may be free of the others.
   for (const Index k : met) {
-    place.position = set.after(k) * (set.before(k).inverse() * from);
+    place.position = set.carried(k, from);
     if (!find_blocked(set, near, from, place.position)) return place;
   }
   place.free = false;
