@@ -3,12 +3,11 @@
 #include "app/mesh_text.h"
 #include "base/error.h"
 #include "base/format.h"
+#include "geometry/mesh_file.h"
 #include "geometry/polygon_mesh.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <optional>
 
 namespace sprung {
@@ -36,6 +35,7 @@ std::string obstacle_text(const ImportedMesh& imported) {
   for (const std::string& repair : done) text += text_row("repair", repair);
   if (done.empty()) text += text_row("repair", "nothing");
   for (const std::string& note : report.notes) text += text_row("note", note);
+  if (const auto note = unit_note(report.bounds)) text += text_row("note", *note);
   return text;
 }
 
@@ -62,15 +62,9 @@ std::string body_text(const PolygonMesh& mesh) {
   return text;
 }
 
-bool is_obj(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  return extension == ".obj";
-}
-
 // An OBJ of lines is no obstacle, but it can be a body.
 std::optional<std::string> body_text_of(const std::string& file) {
-  if (!is_obj(file)) return std::nullopt;
+  if (lower_case_extension(file) != ".obj") return std::nullopt;
   try {
     return body_text(read_obj(file));
   } catch (const InputError&) {

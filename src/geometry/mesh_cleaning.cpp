@@ -1,11 +1,9 @@
-#include "base/format.h"
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_orientation.h"
 #include "geometry/topology.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -16,20 +14,9 @@ namespace {
 // A triangle this flat, height over longest side, is a line: its normal would be rounding noise.
 constexpr double kFlat = 1e-12;
 
-// Beyond these a file in metres is improbable.
-constexpr double kLargestUsual = 1000.0;
-constexpr double kSmallestUsual = 0.001;
-
-Vector3 weld_key(const Vector3& position, double weld_distance) {
-  if (weld_distance > 0.0) return (position / weld_distance).array().round();
-  return position;
-}
-
-// For each vertex, the first one with an equal key; keys are compared as numbers, so -0 equals 0.
-std::vector<Index> first_alike(const Points& vertices, double weld_distance) {
-  Points keys(3, vertices.cols());
-  for (Index i = 0; i < vertices.cols(); ++i) keys.col(i) = weld_key(vertices.col(i), weld_distance);
-  const auto key = [&](Index i) { return std::array{keys(0, i), keys(1, i), keys(2, i)}; };
+// For each vertex, the first one at its position; coordinates are compared as numbers, so -0 equals 0.
+std::vector<Index> first_alike(const Points& vertices) {
+  const auto key = [&](Index i) { return std::array{vertices(0, i), vertices(1, i), vertices(2, i)}; };
   std::vector<Index> order(vertices.cols());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::pair(key(a), a) < std::pair(key(b), b); });
@@ -41,8 +28,8 @@ std::vector<Index> first_alike(const Points& vertices, double weld_distance) {
   return first;
 }
 
-void weld(TriangleMesh& mesh, double weld_distance, MeshReport& report) {
-  const std::vector<Index> first = first_alike(mesh.vertices, weld_distance);
+void weld(TriangleMesh& mesh, MeshReport& report) {
+  const std::vector<Index> first = first_alike(mesh.vertices);
   for (Index& vertex : mesh.triangles.reshaped()) vertex = first[vertex];
   for (Index i = 0; i < std::ssize(first); ++i) report.welded_vertices += first[i] != i ? 1 : 0;
 }
@@ -142,39 +129,19 @@ void orient(TriangleMesh& mesh, MeshReport& report) {
                          " part(s) have one side only, like a Moebius strip, and could not be oriented");
 }
 
-void describe(const TriangleMesh& mesh, MeshReport& report) {
-  for (const MeshEdge& edge : mesh_edges(mesh.triangles)) {
-    report.border_edges += edge.uses == 1 ? 1 : 0;
-    report.non_manifold_edges += edge.uses > 2 ? 1 : 0;
-  }
-  report.components = connected_components(mesh.triangles);
-  report.closed = is_closed(mesh.triangles);
-  report.bounds = bounds(mesh.vertices);
-  if (report.non_manifold_edges > 0) {
-    report.notes.push_back(std::to_string(report.non_manifold_edges) +
-                           " edge(s) have more than two faces: it has no inside, and is treated as a sheet");
-  }
-  if (mesh.vertices.cols() == 0) return;
-  const double extent = report.bounds.sizes().maxCoeff();
-  if (kSmallestUsual <= extent && extent <= kLargestUsual) return;
-  report.notes.push_back("its largest extent is " + format_number(extent, 4) +
-                         " m: if the file is not in metres, place it with a \"scale\"" +
-                         (extent > kLargestUsual ? ", 0.001 for millimetres" : ""));
-}
-
 }  // namespace
 
-ImportedMesh clean_mesh(const TriangleMesh& raw, double weld_distance) {
+ImportedMesh clean_mesh(const TriangleMesh& raw) {
   ImportedMesh result{.mesh = raw, .report = {}};
   result.report.vertices_read = static_cast<Index>(raw.vertices.cols());
   result.report.faces_read = static_cast<Index>(raw.triangles.cols());
-  weld(result.mesh, weld_distance, result.report);
+  weld(result.mesh, result.report);
   drop_degenerate_faces(result.mesh, result.report);
   drop_duplicate_faces(result.mesh, result.report);
   drop_doubled_quads(result.mesh, result.report);
   drop_unused_vertices(result.mesh, result.report);
   orient(result.mesh, result.report);
-  describe(result.mesh, result.report);
+  describe_surface(result.mesh, result.report);
   return result;
 }
 

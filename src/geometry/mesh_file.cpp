@@ -1,5 +1,6 @@
 #include "geometry/mesh_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -30,6 +31,13 @@ void FileProblems::throw_if_any() const {
   std::vector<Problem> all = problems_;
   if (left_out_ > 0) all.push_back({.file = file_, .rule = "has " + std::to_string(left_out_) + " more problems like these"});
   throw InputError(std::move(all));
+}
+
+std::string lower_case_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension;
 }
 
 std::string read_mesh_file(const std::filesystem::path& file) {

@@ -1,4 +1,4 @@
-// What every mesh reader needs of a file: its bytes, and a list of what is wrong with it.
+// What every mesh reader needs of a file: its format, its bytes, and a list of what is wrong with it.
 #pragma once
 
 #include "base/error.h"
@@ -24,6 +24,9 @@ class FileProblems {
   std::vector<Problem> problems_;
   std::size_t left_out_ = 0;
 };
+
+/// The file's extension with its dot, A to Z as a to z: `.obj` of `CUBE.OBJ`.
+[[nodiscard]] std::string lower_case_extension(const std::filesystem::path& file);
 
 /// The whole file. Throws InputError when it is missing, is no regular file, cannot be opened, or is empty.
 [[nodiscard]] std::string read_mesh_file(const std::filesystem::path& file);

@@ -5,17 +5,8 @@
 #include "geometry/mesh_file.h"
 #include "geometry/obj_numbers.h"
 
-#include <algorithm>
-
 namespace sprung {
 namespace {
-
-std::string lower_case_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return 'A' <= c && c <= 'Z' ? c - 'A' + 'a' : c; });
-  return extension;
-}
 
 void check_mesh_file(const std::filesystem::path& file) {
   const std::string bytes = read_mesh_file(file);

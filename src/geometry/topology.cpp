@@ -69,8 +69,7 @@ Edges unique_edges(const Triangles& triangles) {
   return result;
 }
 
-Index connected_components(const Triangles& triangles, std::vector<Index>* component_of_triangle) {
-  if (component_of_triangle != nullptr) component_of_triangle->assign(triangles.cols(), kNone);
+Index connected_components(const Triangles& triangles) {
   if (triangles.cols() == 0) return 0;
   std::vector<Index> parent(triangles.maxCoeff() + 1);
   std::iota(parent.begin(), parent.end(), 0);
@@ -79,12 +78,12 @@ Index connected_components(const Triangles& triangles, std::vector<Index>* compo
       parent[find_root(parent, triangles(corner, t))] = find_root(parent, triangles(0, t));
     }
   }
+  std::vector<bool> counted(parent.size(), false);
   Index count = 0;
-  std::vector<Index> number(parent.size(), kNone);
   for (Index t = 0; t < triangles.cols(); ++t) {
-    Index& component = number[find_root(parent, triangles(0, t))];
-    if (component == kNone) component = count++;
-    if (component_of_triangle != nullptr) (*component_of_triangle)[t] = component;
+    const Index root = find_root(parent, triangles(0, t));
+    if (!counted[root]) ++count;
+    counted[root] = true;
   }
   return count;
 }

@@ -26,7 +26,7 @@ struct MeshEdge {
 /// Unique edges of triangles, 2 x m, lower index first, sorted.
 [[nodiscard]] Edges unique_edges(const Triangles& triangles);
 
-/// Number of connected components of the triangles (joined by shared vertices), and the component of each triangle.
-[[nodiscard]] Index connected_components(const Triangles& triangles, std::vector<Index>* component_of_triangle = nullptr);
+/// Number of connected components of the triangles (joined by shared vertices).
+[[nodiscard]] Index connected_components(const Triangles& triangles);
 
 }  // namespace sprung

@@ -1,20 +1,12 @@
 #include "scene/body_builder.h"
 
 #include "base/format.h"
+#include "geometry/mesh_file.h"
 #include "geometry/polygon_mesh.h"
 #include "scene/json_text.h"
 
-#include <algorithm>
-#include <cctype>
-
 namespace sprung {
 namespace {
-
-bool is_obj(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  return extension == ".obj";
-}
 
 class ShapeMaker {
  public:
@@ -50,7 +42,7 @@ class ShapeMaker {
 
   std::optional<BodyShape> from(const MeshFile& mesh) {
     const std::string key = key_ + ".shape.file";
-    if (!is_obj(mesh.file)) {
+    if (lower_case_extension(mesh.file) != ".obj") {
       problems_.push_back({scene_.file.string(), key, "\"" + mesh.file + "\"", "a simulated body is read from an .obj file",
                            "export it as OBJ: other formats lose the order of its vertices"});
       return std::nullopt;

@@ -39,25 +39,27 @@ std::optional<Obstacle> ObstacleBuilder::build(const ObstacleScene& obstacle) {
 std::optional<ObstacleGeometry> ObstacleBuilder::geometry_of(const ObstacleScene& obstacle, const MeshFile& mesh) {
   const auto file = finder_.find(mesh.file, join_path("obstacles", obstacle.name) + ".shape.file", problems_);
   if (!file) return std::nullopt;
-  try {
-    const Import& imported = import(*file);
-    reports_.push_back({obstacle.name, *file, imported.report});
-    if (obstacle.place.scale == 1.0) return MeshGeometry{imported.mesh, imported.report.closed};
-    TriangleMesh larger = *imported.mesh;
-    larger.vertices *= obstacle.place.scale;
-    return MeshGeometry{std::make_shared<const TriangleMesh>(std::move(larger)), imported.report.closed};
-  } catch (const InputError& error) {
-    problems_.insert(problems_.end(), error.problems().begin(), error.problems().end());
-    return std::nullopt;
-  }
+  const std::optional<Import>& imported = import(*file);
+  if (!imported) return std::nullopt;
+  const double scale = obstacle.place.scale;
+  reports_.push_back({obstacle.name, *file, imported->report});
+  if (auto note = unit_note(imported->report.bounds, scale)) reports_.back().report.notes.push_back(std::move(*note));
+  if (scale == 1.0) return MeshGeometry{imported->mesh, imported->report.closed};
+  TriangleMesh larger = *imported->mesh;
+  larger.vertices *= scale;
+  return MeshGeometry{std::make_shared<const TriangleMesh>(std::move(larger)), imported->report.closed};
 }
 
-const ObstacleBuilder::Import& ObstacleBuilder::import(const std::filesystem::path& file) {
-  const auto known = imports_.find(file);
-  if (known != imports_.end()) return known->second;
-  ImportedMesh imported = import_mesh(file);
-  Import import{std::make_shared<const TriangleMesh>(std::move(imported.mesh)), std::move(imported.report)};
-  return imports_.emplace(file, std::move(import)).first->second;
+const std::optional<ObstacleBuilder::Import>& ObstacleBuilder::import(const std::filesystem::path& file) {
+  const auto [place, is_new] = imports_.try_emplace(file);
+  if (!is_new) return place->second;
+  try {
+    ImportedMesh imported = import_mesh(file);
+    place->second = Import{std::make_shared<const TriangleMesh>(std::move(imported.mesh)), std::move(imported.report)};
+  } catch (const InputError& error) {
+    problems_.insert(problems_.end(), error.problems().begin(), error.problems().end());
+  }
+  return place->second;
 }
 
 }  // namespace sprung

@@ -34,12 +34,12 @@ class ObstacleBuilder {
   [[nodiscard]] std::optional<ObstacleGeometry> geometry_of(const ObstacleScene& obstacle, const MeshFile& mesh);
   template <class Primitive>
   [[nodiscard]] std::optional<ObstacleGeometry> geometry_of(const ObstacleScene& obstacle, const Primitive& primitive) const;
-  [[nodiscard]] const Import& import(const std::filesystem::path& file);
+  [[nodiscard]] const std::optional<Import>& import(const std::filesystem::path& file);
 
   const Scene& scene_;
   const MeshFinder& finder_;
   std::vector<Problem>& problems_;
-  std::map<std::filesystem::path, Import> imports_;
+  std::map<std::filesystem::path, std::optional<Import>> imports_;  ///< none: it cannot be imported, which was reported
   std::vector<NamedReport> reports_;
 };
 

@@ -11,6 +11,7 @@
 namespace sprung {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -59,12 +60,11 @@ TEST(CleanMesh, TakesMinusZeroForZero) {
   EXPECT_EQ(clean_mesh(mesh).mesh.vertices.cols(), 4);
 }
 
-TEST(CleanMesh, KeepsNeighboursApartUnlessAskedToWeldThem) {
+TEST(CleanMesh, KeepsNeighboursApart) {
   const double next = std::nextafter(1.0, 2.0);
   const TriangleMesh mesh{test::make_points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {next, 0, 0}, {0, 0, 1}}),
                           test::make_triangles({{0, 1, 2}, {0, 3, 4}})};
   EXPECT_EQ(clean_mesh(mesh).mesh.vertices.cols(), 5);
-  EXPECT_EQ(clean_mesh(mesh, 1e-6).mesh.vertices.cols(), 4);
 }
 
 TEST(CleanMesh, DropsFacesWithoutAreaAtAnyScale) {
@@ -190,12 +190,21 @@ TEST(CleanMesh, CountsNonManifoldEdges) {
   EXPECT_DOUBLE_EQ(signed_volume(mesh), 2.0);
 }
 
-TEST(CleanMesh, SuspectsUnits) {
-  EXPECT_THAT(clean_mesh(test::make_cube(2500.0)).report.notes, ElementsAre(HasSubstr("2500 m")));
-  EXPECT_THAT(clean_mesh(test::make_cube(0.0005)).report.notes, ElementsAre(HasSubstr("0.0005 m")));
-  EXPECT_THAT(clean_mesh(test::make_cube(2500.0)).report.notes, ElementsAre(HasSubstr("\"scale\"")));
-  EXPECT_THAT(clean_mesh(test::make_cube(1000.0)).report.notes, IsEmpty());
-  EXPECT_THAT(clean_mesh(test::make_cube(0.001)).report.notes, IsEmpty());
+std::string unit_note_of_cube(double side, double scale = 1.0) {
+  return unit_note(bounds(test::make_cube(side).vertices), scale).value_or("");
+}
+
+TEST(UnitNote, AsksAboutWhatIsNotBetweenAMillimetreAndAKilometre) {
+  EXPECT_THAT(unit_note_of_cube(2500.0), AllOf(HasSubstr("2500 m"), HasSubstr("\"scale\", 0.001 for millimetres")));
+  EXPECT_THAT(unit_note_of_cube(0.0005), AllOf(HasSubstr("0.0005 m"), HasSubstr("\"scale\"")));
+  EXPECT_EQ(unit_note_of_cube(1000.0), "");
+  EXPECT_EQ(unit_note_of_cube(0.001), "");
+  EXPECT_EQ(unit_note(Box3()), std::nullopt);
+}
+
+TEST(UnitNote, JudgesTheSizeAsPlaced) {
+  EXPECT_EQ(unit_note_of_cube(18000.0, 0.001), "");
+  EXPECT_THAT(unit_note_of_cube(18.0, 1000.0), AllOf(HasSubstr("18000 m"), HasSubstr("\"scale\" of 1000")));
 }
 
 TEST(CleanMesh, OfNothingIsNothing) {

@@ -60,10 +60,7 @@ TEST(IsClosed, FailsForNothing) { EXPECT_FALSE(is_closed(Triangles(3, 0))); }
 
 TEST(ConnectedComponents, CountSeparateParts) {
   const TriangleMesh two = test::merge(test::make_cube(), test::make_cube(1.0, Vector3(3, 0, 0)));
-  std::vector<Index> component;
-  EXPECT_EQ(connected_components(two.triangles, &component), 2);
-  EXPECT_EQ(std::count(component.begin(), component.begin() + 12, 0), 12);
-  EXPECT_EQ(std::count(component.begin() + 12, component.end(), 1), 12);
+  EXPECT_EQ(connected_components(two.triangles), 2);
 }
 
 TEST(ConnectedComponents, JoinAtASharedVertex) {

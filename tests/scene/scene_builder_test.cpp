@@ -180,6 +180,14 @@ TEST(SceneBuilder, ObstacleMeshesAreScaledAndSharedOtherwise) {
   EXPECT_EQ(built.meshes.size(), 3U);
 }
 
+TEST(SceneBuilder, WarnsOfUnitsByTheSizeOfAMeshAsItIsPlaced) {
+  const SceneFolder folder;
+  folder.write("mesh.obj", "v 0 0 0\nv 18000 0 0\nv 0 18000 0\nf 1 2 3\n");
+  const std::string shape = R"(obstacles.a.shape={"type":"mesh","file":"mesh.obj"})";
+  EXPECT_THAT(build(folder, {shape, "obstacles.a.place.scale=0.001"}).warnings, IsEmpty());
+  EXPECT_THAT(build(folder, {shape}).warnings, ElementsAre(HasSubstr("obstacle \"a\": its largest extent is 18000 m")));
+}
+
 TEST(SceneBuilder, PrimitivesAreScaled) {
   const SceneFolder folder;
   const BuiltScene built = build(folder, {R"(obstacles.a={"shape":{"type":"capsule","radius":1,"length":2},"place":{"scale":3}})",
@@ -244,6 +252,17 @@ TEST_P(BrokenMeshTest, IsRefusedAsAnObstacleNamingTheFile) {
   const auto problems = problems_of([&] { (void)build(folder, {R"(obstacles.floor.shape={"type":"mesh","file":"broken.obj"})"}); });
   EXPECT_THAT(problems,
               Contains(AllOf(Field(&Problem::file, file.string()), Field(&Problem::rule, HasSubstr(GetParam().message)))));
+}
+
+TEST_P(BrokenMeshTest, IsReportedOnceWhenSeveralObstaclesUseIt) {
+  const SceneFolder folder;
+  folder.write("broken.obj", GetParam().text);
+  const std::string first = R"(obstacles.a={"shape":{"type":"mesh","file":"broken.obj"}})";
+  const std::string second = R"(obstacles.b={"shape":{"type":"mesh","file":"broken.obj"}})";
+  const auto problems_with = [&](const std::vector<std::string>& changes) {
+    return problems_of([&] { (void)build(folder, changes); }).size();
+  };
+  EXPECT_EQ(problems_with({first, second}), problems_with({first}));
 }
 
 TEST_P(BrokenMeshTest, IsRefusedAsABodyNamingTheFile) {
