@@ -14,6 +14,12 @@ constexpr double kMargin = 0.5;
 // A particle touches when it is this close to its gap: what rounding leaves of a projection onto it.
 constexpr double kTouch = 1.0 + 1.0e-9;
 
+double largest_thickness(const std::vector<Obstacle>& obstacles) {
+  double largest = 0.0;
+  for (const Obstacle& obstacle : obstacles) largest = std::max(largest, obstacle.material.thickness);
+  return largest;
+}
+
 // What friction takes from a motion along the surface, for a `push` along the normal: displacements or velocities alike.
 Vector3 slip_taken(const ContactMaterial& pair, const Vector3& slip, double push) {
   const double length = slip.norm();
@@ -30,7 +36,7 @@ ContactProjection::ContactProjection(const SpringNetwork& network, const Environ
     : network_(network),
       environment_(environment),
       thickness_(particle_thickness(network)),
-      margin_(kMargin * thickness_.maxCoeff()),
+      margin_(kMargin * (thickness_.maxCoeff() + largest_thickness(environment.obstacles()))),
       pinned_(static_cast<std::size_t>(network.particle_count())) {
   for (Index i = 0; i < network.particle_count(); ++i) pinned_[static_cast<std::size_t>(i)] = network.is_pinned(i) ? 1 : 0;
 }
@@ -43,6 +49,7 @@ void ContactProjection::find(const Points& before, const Points& v_before, const
     if (pinned_[static_cast<std::size_t>(i)] != 0) continue;
     const Obstacle& obstacle = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)];
     Active active{.contact = contact, .pair = combine(network_.body_of(i).material, obstacle.material)};
+    active.gap = std::max(active.pair.thickness, contact.clearance);
     const RigidTransform& end = environment_.pose_after(contact.obstacle);
     active.carried = obstacle.motion.moves() ? Vector3(end * (environment_.pose_before(contact.obstacle).inverse() * before.col(i)))
                                              : Vector3(before.col(i));
@@ -53,17 +60,18 @@ void ContactProjection::find(const Points& before, const Points& v_before, const
   }
 }
 
+// The push is a Lagrange multiplier in the sense of sequential impulses: what another constraint makes needless is taken back, but
+// never more than was given.
 double ContactProjection::project(Points& positions) {
   double largest = 0.0;
   for (Active& active : active_) {
     const Contact& contact = active.contact;
     auto position = positions.col(contact.particle);
-    const double depth = active.pair.thickness - contact.normal.dot(position - contact.point);
-    if (depth > 0.0) {
-      position += depth * contact.normal;
-      active.push += depth;
-      if (active.pair.thickness > 0.0) largest = std::max(largest, depth / active.pair.thickness);
-    }
+    const double depth = active.gap - contact.normal.dot(position - contact.point);
+    const double change = std::max(depth, -active.push);
+    position += change * contact.normal;
+    active.push += change;
+    largest = std::max(largest, std::abs(change) / active.gap);
     if (active.push > 0.0) rub(active, position);
   }
   return largest;
@@ -78,6 +86,7 @@ void ContactProjection::rub(Active& active, Eigen::Ref<Vector3> position) const 
   const double hold = active.pair.static_friction * active.push - active.held;
   const double slow = active.pair.friction * active.push - active.held;
   const double taken = length <= hold ? length : std::clamp(slow, 0.0, length);
+  if (taken == 0.0) return;
   position -= (taken / length) * along;
   active.held += taken;
 }
@@ -91,7 +100,7 @@ void ContactProjection::settle_velocities(SimulationState& state, const Integrat
   for (const Active& active : active_) {
     const Contact& contact = active.contact;
     const double distance = contact.normal.dot(state.x.col(contact.particle) - contact.point);
-    if (active.push == 0.0 && distance > kTouch * active.pair.thickness) continue;
+    if (active.push == 0.0 && distance > kTouch * active.gap) continue;
     auto velocity = state.v.col(contact.particle);
     const Vector3 relative = velocity - active.surface_velocity;
     const double speed = contact.normal.dot(relative);

@@ -44,6 +44,7 @@ class ContactProjection {
   struct Active {
     Contact contact{};
     ContactMaterial pair{};
+    double gap = 0.0;                            ///< kept between particle and surface [m], > 0
     double push = 0.0;                           ///< along the normal, so far in this step [m]
     double held = 0.0;                           ///< what friction has taken from the motion so far [m]
     Vector3 carried = Vector3::Zero();           ///< where the obstacle takes the particle's old position [m]

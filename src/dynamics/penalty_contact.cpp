@@ -33,6 +33,16 @@ void PenaltyContact::add(const Kinematics& at, Points& forces) const {
   }
 }
 
+Index PenaltyContact::contact_count(const Points& positions) const {
+  Index count = 0;
+  Index last = kNone;  // contacts are sorted by particle
+  for (const Contact& contact : environment_.contacts({positions, positions, thickness_})) {
+    if (contact.particle != last) ++count;
+    last = contact.particle;
+  }
+  return count;
+}
+
 Vector3 PenaltyContact::surface_velocity(const Obstacle& obstacle, const Vector3& point, double time) const {
   if (!obstacle.motion.moves()) return Vector3::Zero();
   const RigidTransform now = obstacle.motion.pose(obstacle.placed, time);

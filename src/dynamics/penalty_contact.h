@@ -17,6 +17,9 @@ class PenaltyContact final : public Force {
 
   void add(const Kinematics& at, Points& forces) const override;
 
+  /// How many particles are nearer to an obstacle than their gap.
+  [[nodiscard]] Index contact_count(const Points& positions) const;
+
  private:
   [[nodiscard]] Vector3 surface_velocity(const Obstacle& obstacle, const Vector3& point, double time) const;
 

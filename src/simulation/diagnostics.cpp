@@ -22,8 +22,14 @@ double max_stretch(const Simulator& simulator) {
   return most;
 }
 
-// The farthest that a distance from the environment is worth its search: the size of the network.
-double distance_range(const Points& positions) { return bounds(positions).diagonal().norm(); }
+// The farthest that a distance from the environment is worth its search: what the network measures and has moved, and some gaps.
+double distance_range(const Simulator& simulator) {
+  double thickest = 0.0;
+  for (const Body& body : simulator.network().bodies) thickest = std::max(thickest, body.material.thickness);
+  for (const Obstacle& obstacle : simulator.environment().obstacles()) thickest = std::max(thickest, obstacle.material.thickness);
+  const Box3 covered = bounds(simulator.positions()).merged(bounds(simulator.network().positions));
+  return covered.diagonal().norm() + 10.0 * thickest;
+}
 
 FrameDiagnostics measure(const Simulator& simulator, int frame) {
   FrameDiagnostics diagnostics;
@@ -33,7 +39,8 @@ FrameDiagnostics measure(const Simulator& simulator, int frame) {
   diagnostics.elastic_energy = simulator.elastic_energy();
   diagnostics.gravity_energy = simulator.gravity_energy();
   diagnostics.max_stretch = max_stretch(simulator);
-  diagnostics.min_distance = simulator.environment().min_distance(simulator.positions(), distance_range(simulator.positions()));
+  diagnostics.contacts = simulator.contact_count();
+  diagnostics.min_distance = simulator.environment().min_distance(simulator.positions(), distance_range(simulator));
   return diagnostics;
 }
 
@@ -45,21 +52,20 @@ FrameDiagnostics FrameRunner::first_frame() const { return measure(simulator_, 1
 
 FrameDiagnostics FrameRunner::next_frame() {
   const auto begin = std::chrono::steady_clock::now();
-  StepReport last;
   double excess = 0.0;
   Index truncated = 0;
   Index squeezed = 0;
   for (int step = 0; step < steps_per_frame_; ++step) {
-    last = simulator_.step();
-    excess = std::max(excess, last.stretch_excess);
-    truncated += last.truncated;
-    squeezed += last.squeezed;
+    const StepReport report = simulator_.step();
+    excess = std::max(excess, report.stretch_excess);
+    truncated += report.truncated;
+    squeezed += report.squeezed;
   }
+  simulator_.check();
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
 
   FrameDiagnostics diagnostics = measure(simulator_, ++frame_);
   diagnostics.stretch_excess = excess;
-  diagnostics.contacts = last.contacts;
   diagnostics.truncated = truncated;
   diagnostics.squeezed = squeezed;
   diagnostics.frame_ms = elapsed.count();

@@ -15,7 +15,7 @@ struct FrameDiagnostics {
   double gravity_energy = 0.0;         ///< [J]
   double max_stretch = 0.0;            ///< largest (|s| - d) / d of structural springs
   double stretch_excess = 0.0;         ///< largest in the frame's steps beyond the stretch limit
-  Index contacts = 0;                  ///< particles in contact in the frame's last step
+  Index contacts = 0;                  ///< particles that obstacles push at the end
   std::optional<double> min_distance;  ///< smallest distance of a particle from an obstacle [m]; none without obstacles, or when
                                        ///< all are farther than the network is large
   Index truncated = 0;                 ///< in all of the frame's steps

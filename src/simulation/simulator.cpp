@@ -5,8 +5,10 @@
 #include "dynamics/penalty_contact.h"
 #include "dynamics/spring_force.h"
 #include "simulation/divergence.h"
+#include "simulation/settings_check.h"
 #include "simulation/step_check.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace sprung {
@@ -26,11 +28,21 @@ constexpr Index kSpringsCheckedPerStep = 8192;
 struct Simulator::Implementation {
   Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles);
 
+  template <class F, class... Arguments>
+  const F* add_force(Arguments&&... arguments) {
+    auto force = std::make_unique<F>(network, std::forward<Arguments>(arguments)...);
+    const F* kept = force.get();
+    forces.push_back(std::move(force));
+    return kept;
+  }
+
   StepReport step();
   void move_pins(double time);
   void constrain(StepReport& report);
   void settle(StepReport& report);
-  void check() const;
+  void check_step() const;
+  void fail(StepFailure failure) const;
+  [[nodiscard]] bool projects_contacts() const;
 
   SpringNetwork network;
   SimulatorSettings settings;
@@ -38,6 +50,9 @@ struct Simulator::Implementation {
   SpectralBounds bounds;
   std::vector<std::string> warnings;
   Forces forces;
+  const Gravity* gravity = nullptr;
+  const SpringForce* springs = nullptr;
+  const PenaltyContact* penalty = nullptr;  ///< when contact answers by forces
   std::unique_ptr<Integrator> integrator;
   std::optional<StretchLimit> limit;
   ContactProjection contacts;
@@ -61,12 +76,12 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       contacts(network, environment),
       divergence(network),
       state(initial_state(network)) {
-  forces.push_back(std::make_unique<Gravity>(network, settings.gravity));
-  forces.push_back(std::make_unique<SpringForce>(network));
-  if (settings.air_drag > 0.0) forces.push_back(std::make_unique<AirDrag>(network, settings.air_drag, settings.wind));
+  check_settings(settings);
+  gravity = add_force<Gravity>(settings.gravity);
+  springs = add_force<SpringForce>();
+  if (settings.air_drag > 0.0) add_force<AirDrag>(settings.air_drag, settings.wind);
   if (settings.contact.response == ContactSettings::Response::penalty && !environment.obstacles().empty()) {
-    forces.push_back(std::make_unique<PenaltyContact>(network, environment, settings.contact.stiffness, settings.contact.damping,
-                                                      settings.step));
+    penalty = add_force<PenaltyContact>(environment, settings.contact.stiffness, settings.contact.damping, settings.step);
   }
   if (settings.stretch_limit) limit.emplace(network, *settings.stretch_limit);
   environment.set_interval(0.0, 0.0);
@@ -81,7 +96,6 @@ StepReport Simulator::Implementation::step() {
   before = state.x;
   v_before = state.v;
 
-  environment.set_interval(t, t);
   integrator->advance(state, forces, settings.step, scratch);
   environment.set_interval(t, t_end);
   move_pins(t_end);
@@ -91,7 +105,8 @@ StepReport Simulator::Implementation::step() {
   constrain(report);
   settle(report);
   ++state.step;
-  check();
+  if (penalty != nullptr) environment.set_interval(t_end, t_end);
+  check_step();
   return report;
 }
 
@@ -111,13 +126,14 @@ void Simulator::Implementation::move_pins(double time) {
 }
 
 void Simulator::Implementation::constrain(StepReport& report) {
-  const bool projects = settings.contact.response == ContactSettings::Response::projection && !environment.obstacles().empty();
+  const bool projects = projects_contacts();
   if (!projects && !limit) return;
   if (projects) contacts.find(before, v_before, state, settings.step);
-  const int passes = limit ? limit->settings().iterations : kContactPasses;
+  const int limit_passes = limit ? limit->settings().iterations : 0;
+  const int passes = projects ? std::max(limit_passes, kContactPasses) : limit_passes;
   bool settled = false;
   while (!settled && report.iterations < passes) {
-    const double excess = limit ? limit->project(state.x) : 0.0;
+    const double excess = report.iterations < limit_passes ? limit->project(state.x) : 0.0;
     const double push = projects ? contacts.project(state.x) : 0.0;
     settled = (!limit || excess <= limit->settings().tolerance) && push <= kContactTolerance;
     ++report.iterations;
@@ -130,20 +146,26 @@ void Simulator::Implementation::settle(StepReport& report) {
   integrator->recover_velocities(state, before, advanced, settings.step);
   if (!environment.obstacles().empty()) contacts.settle_velocities(state, *integrator);
   report.stretch_excess = limit ? limit->excess(state.x) : 0.0;
-  report.contacts = contacts.contact_count();
   report.truncated = contacts.truncated_count();
   report.squeezed = contacts.squeezed_count();
 }
 
-void Simulator::Implementation::check() const {
-  std::optional<StepFailure> failure = divergence.not_finite(state, before);
+void Simulator::Implementation::check_step() const {
+  if (const auto failure = divergence.not_finite(state, before)) fail(*failure);
   const Index check_interval = 1 + network.springs.count() / kSpringsCheckedPerStep;
-  if (!failure && state.step % check_interval == 0) failure = divergence.overstretched(state.x);
-  if (!failure) return;
-  failure->step = state.step;
-  failure->time = static_cast<double>(state.step) * settings.step;
-  failure->remedy = divergence_remedy(settings, bounds);
-  throw StepError(std::move(*failure));
+  if (state.step % check_interval != 0) return;
+  if (const auto failure = divergence.overstretched(state.x)) fail(*failure);
+}
+
+void Simulator::Implementation::fail(StepFailure failure) const {
+  failure.step = state.step;
+  failure.time = static_cast<double>(state.step) * settings.step;
+  failure.remedy = divergence_remedy(settings, bounds);
+  throw StepError(std::move(failure));
+}
+
+bool Simulator::Implementation::projects_contacts() const {
+  return settings.contact.response == ContactSettings::Response::projection && !environment.obstacles().empty();
 }
 
 Simulator::Simulator(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles)
@@ -159,7 +181,16 @@ const SimulationState& Simulator::state() const { return implementation_->state;
 const Environment& Simulator::environment() const { return implementation_->environment; }
 const std::vector<std::string>& Simulator::warnings() const { return implementation_->warnings; }
 double Simulator::time() const { return static_cast<double>(state().step) * settings().step; }
-double Simulator::elastic_energy() const { return implementation_->forces[1]->energy(state().x); }
-double Simulator::gravity_energy() const { return implementation_->forces[0]->energy(state().x); }
+double Simulator::elastic_energy() const { return implementation_->springs->energy(state().x); }
+double Simulator::gravity_energy() const { return implementation_->gravity->energy(state().x); }
+
+Index Simulator::contact_count() const {
+  return implementation_->penalty != nullptr ? implementation_->penalty->contact_count(state().x)
+                                             : implementation_->contacts.contact_count();
+}
+
+void Simulator::check() const {
+  if (const auto failure = implementation_->divergence.overstretched(state().x)) implementation_->fail(*failure);
+}
 
 }  // namespace sprung

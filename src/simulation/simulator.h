@@ -43,15 +43,14 @@ struct SimulatorSettings {
 struct StepReport {
   int iterations = 0;           ///< passes of stretch limit and contact
   double stretch_excess = 0.0;  ///< beyond the stretch limit at the end, as a part of the rest length
-  Index contacts = 0;           ///< particles pushed by obstacles
   Index truncated = 0;          ///< particles stopped at a surface
   Index squeezed = 0;           ///< particles that found no free place between obstacles
 };
 
 class Simulator {
  public:
-  /// Throws InputError when the step is not positive or beyond the largest stable one (unless `stability` is warn: then `warnings`
-  /// says so), or when particles start inside an obstacle.
+  /// Throws InputError when settings are out of their bounds, the step is not positive or beyond the largest stable one (unless
+  /// `stability` is warn: then `warnings` says so), or when particles start inside an obstacle.
   explicit Simulator(SpringNetwork network, SimulatorSettings settings = {}, std::vector<Obstacle> obstacles = {});
   ~Simulator();
   Simulator(Simulator&&) noexcept;
@@ -71,6 +70,13 @@ class Simulator {
 
   /// Positions [m], 3 x n.
   [[nodiscard]] const Points& positions() const { return state().x; }
+
+  /// Particles that obstacles push at present.
+  [[nodiscard]] Index contact_count() const;
+
+  /// Throws StepError when a spring gave way that the check of the steps, which looks at large networks only now and then, has not
+  /// seen yet.
+  void check() const;
 
   /// Elastic energy [J], sum 1/2 k_s (|s| - d)^2, and -m g . x.
   [[nodiscard]] double elastic_energy() const;

@@ -111,6 +111,19 @@ TEST(Simulator, NonsenseStepIsRefused) {
   }
 }
 
+TEST(Simulator, EverySettingOutOfItsBoundsIsNamed) {
+  SimulatorSettings settings{.air_drag = -1.0, .integrator = VerletSettings{.damping = 2.0}};
+  settings.gravity.y() = std::nan("");
+  settings.stretch_limit = StretchLimitSettings{.max_stretch = -0.1, .max_compression = 2.0, .iterations = 0, .tolerance = -1.0};
+  settings.contact = {.stiffness = -1.0, .damping = HUGE_VAL};
+  try {
+    Simulator simulator(one_particle({0.0, 0.0, 0.0}), settings);
+    FAIL() << "was accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().size(), 9U);
+  }
+}
+
 TEST(Simulator, ParticlesInsideAnObstacleAtTheStartAreRefused) {
   try {
     Simulator simulator(one_particle({0.0, -0.5, 0.0}), {}, {ground()});

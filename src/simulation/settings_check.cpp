@@ -1,0 +1,59 @@
+#include "simulation/settings_check.h"
+
+#include "base/error.h"
+#include "base/format.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class Rules {
+ public:
+  void require_between(const std::string& key, double value, double least, double most) {
+    if (std::isfinite(value) && value >= least && value <= most) return;
+    const std::string rule = most == kInfinity ? "must be a finite number, at least " + format_number(least)
+                                               : "must be from " + format_number(least) + " to " + format_number(most);
+    problems_.push_back({.key = key, .value = format_number(value), .rule = rule});
+  }
+
+  void require_finite(const std::string& key, const Vector3& value) {
+    if (value.allFinite()) return;
+    problems_.push_back({.key = key, .rule = "must have three finite components"});
+  }
+
+  void throw_if_broken() {
+    if (!problems_.empty()) throw InputError(std::move(problems_));
+  }
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+}  // namespace
+
+void check_settings(const SimulatorSettings& settings) {
+  Rules rules;
+  rules.require_finite("gravity", settings.gravity);
+  rules.require_between("air_drag", settings.air_drag, 0.0, kInfinity);
+  rules.require_finite("wind", settings.wind);
+  if (const auto* verlet = std::get_if<VerletSettings>(&settings.integrator)) {
+    rules.require_between("integrator.damping", verlet->damping, 0.0, 1.0);
+    rules.require_between("integrator.damping_rate", verlet->damping_rate, 0.0, kInfinity);
+  }
+  if (const auto& limit = settings.stretch_limit) {
+    rules.require_between("stretch_limit.max_stretch", limit->max_stretch, 0.0, kInfinity);
+    rules.require_between("stretch_limit.max_compression", limit->max_compression, 0.0, 1.0);
+    rules.require_between("stretch_limit.iterations", limit->iterations, 1.0, kInfinity);
+    rules.require_between("stretch_limit.tolerance", limit->tolerance, 0.0, kInfinity);
+  }
+  rules.require_between("contact.stiffness", settings.contact.stiffness, 0.0, kInfinity);
+  rules.require_between("contact.damping", settings.contact.damping, 0.0, kInfinity);
+  rules.throw_if_broken();
+}
+
+}  // namespace sprung
