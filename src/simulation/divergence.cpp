@@ -22,7 +22,8 @@ DivergenceCheck::DivergenceCheck(const SpringNetwork& network) : network_(networ
   for (std::size_t s = 0; s < springs.first.size(); ++s) {
     const double start = std::max(springs.rest_length[s], length(network.positions, springs.first[s], springs.second[s]));
     const double longest = kOverstretched * (start > 0.0 ? start : longest_rest);
-    longest_squared_.push_back(longest > 0.0 ? longest * longest : HUGE_VAL);
+    const bool pulls = springs.stiffness[s] > 0.0;  // one without stiffness may be as long as it likes
+    longest_squared_.push_back(pulls && longest > 0.0 ? longest * longest : HUGE_VAL);
   }
 }
 

@@ -19,8 +19,8 @@ class DivergenceCheck {
   /// which the spring to blame is found. Step, time and remedy are left to the caller.
   [[nodiscard]] std::optional<StepFailure> not_finite(const SimulationState& state, const Points& before) const;
 
-  /// A spring that is more than 1,000 times as long as at rest and as at time 0: no material holds that, a step that is too large
-  /// makes it.
+  /// A spring with stiffness that is more than 1,000 times as long as at rest and as at time 0: no material holds that, a step that
+  /// is too large makes it.
   [[nodiscard]] std::optional<StepFailure> overstretched(const Points& positions) const;
 
  private:

@@ -40,7 +40,7 @@ struct Simulator::Implementation {
   void move_pins(double time);
   void constrain(StepReport& report);
   void settle(StepReport& report);
-  void check_step() const;
+  void check_state() const;
   void fail(StepFailure failure) const;
   [[nodiscard]] bool projects_contacts() const;
 
@@ -106,7 +106,7 @@ StepReport Simulator::Implementation::step() {
   settle(report);
   ++state.step;
   if (penalty != nullptr) environment.set_interval(t_end, t_end);
-  check_step();
+  check_state();
   return report;
 }
 
@@ -150,7 +150,7 @@ void Simulator::Implementation::settle(StepReport& report) {
   report.squeezed = contacts.squeezed_count();
 }
 
-void Simulator::Implementation::check_step() const {
+void Simulator::Implementation::check_state() const {
   if (const auto failure = divergence.not_finite(state, before)) fail(*failure);
   const Index check_interval = 1 + network.springs.count() / kSpringsCheckedPerStep;
   if (state.step % check_interval != 0) return;

@@ -182,6 +182,16 @@ TEST(Simulator, EnergyOfAnUndampedSpringStaysBounded) {
   }
 }
 
+TEST(Simulator, ASpringWithoutStiffnessMayBeAsLongAsItLikes) {
+  NetworkBuilder builder;
+  const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+  const Index bob = builder.add_particle({0.0, -1e-3, 0.0}, 1.0);
+  builder.add_spring(hook, bob, 0.0, 1e-3);
+  builder.pin(hook);
+  Simulator simulator(builder.build(), {.step = 1e-2});
+  EXPECT_NO_THROW(run(simulator, 1.0));  // 4.9 m of free fall
+}
+
 TEST(Simulator, OneParticleAndAZeroLengthSpringWork) {
   NetworkBuilder builder;
   const Index a = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
