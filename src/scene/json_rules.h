@@ -1,15 +1,14 @@
-// Rules that turn JSON values into C++ ones: each names type, bounds and default of a key, and reports what breaks them. Defaults
-// are written into the document, so that it ends up complete.
+// Rules that turn JSON values into C++ ones: each names type and bounds of a value, and reports what breaks them.
 #pragma once
 
 #include "base/types.h"
 #include "scene/json_text.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -56,7 +55,6 @@ inline constexpr Range kFraction{0.0, 1.0};
 
 namespace detail {
 [[nodiscard]] bool check_list(const Json& json, const JsonPlace& place, std::size_t least, std::size_t most);
-[[nodiscard]] bool check_object(const Json& json, const JsonPlace& place);
 }  // namespace detail
 
 /// An array of `least` to `most` entries.
@@ -82,67 +80,6 @@ template <std::size_t n, class T>
     std::array<T, n> result{};
     std::copy(values->begin(), values->end(), result.begin());
     return result;
-  };
-}
-
-/// The keys of one object. A key is known once it was asked for; `reject_unknown_keys` reports the others.
-class Fields {
- public:
-  Fields(Json& json, JsonPlace place) : json_(json), place_(std::move(place)) {}
-
-  /// The value, or none when it is missing (which is reported) or broken.
-  template <class T>
-  std::optional<T> required(const std::string& key, const Rule<T>& rule) {
-    if (!has(key)) report_missing(key);
-    return optional(key, rule);
-  }
-
-  /// The value, `fallback` when it is missing, or none when it is broken.
-  template <class T>
-  std::optional<T> value(const std::string& key, const Rule<T>& rule, const Json& fallback) {
-    if (!has(key)) json_[key] = fallback;
-    return optional(key, rule);
-  }
-
-  /// The value, or none when it is missing or broken.
-  template <class T>
-  std::optional<T> optional(const std::string& key, const Rule<T>& rule) {
-    if (!has(key)) return std::nullopt;
-    return rule(json_[key], place_.at(key));
-  }
-
-  /// Which of the keys is written: reports none or several, and then returns none. `or_nothing`: none may be written.
-  std::optional<std::string> one_of(const std::vector<std::string>& keys, bool or_nothing = false);
-
-  /// The required key that says what kind of object it is, as a number in the list. When it is broken no key counts as unknown.
-  std::optional<std::size_t> kind(const std::string& key, const std::vector<std::string>& kinds);
-
-  /// Makes a key known without reading it.
-  void accept(const std::string& key);
-
-  [[nodiscard]] bool has(const std::string& key);
-  [[nodiscard]] const Json& json() const { return json_; }
-  [[nodiscard]] const JsonPlace& place() const { return place_; }
-  void reject_unknown_keys() const;
-
- private:
-  void report_missing(const std::string& key) const;
-
-  Json& json_;
-  JsonPlace place_;
-  std::vector<std::string> known_;
-  bool kind_is_known_ = true;
-};
-
-/// An object whose keys `read` asks for.
-template <class T, class Read>
-[[nodiscard]] Rule<T> object_of(Read read) {
-  return [=](Json& json, const JsonPlace& place) -> std::optional<T> {
-    if (!detail::check_object(json, place)) return std::nullopt;
-    Fields fields(json, place);
-    T value = read(fields);
-    fields.reject_unknown_keys();
-    return value;
   };
 }
 

@@ -1,7 +1,7 @@
 #include "scene/json_text.h"
 
-#include <algorithm>
-#include <cctype>
+#include "scene/json_mistake.h"
+
 #include <cstddef>
 #include <set>
 #include <utility>
@@ -10,44 +10,6 @@ namespace sprung {
 namespace {
 
 constexpr std::size_t kDeepest = 64;  // no scene is deeper, and recursive readers must not run out of stack
-
-struct TextPlace {
-  std::size_t line = 1;
-  std::size_t column = 1;
-};
-
-TextPlace place_of(std::string_view text, std::size_t offset) {
-  const std::string_view head = text.substr(0, std::min(offset, text.size()));
-  const std::size_t line_begin = head.rfind('\n') == std::string_view::npos ? 0 : head.rfind('\n') + 1;
-  return {1 + static_cast<std::size_t>(std::count(head.begin(), head.end(), '\n')), 1 + head.size() - line_begin};
-}
-
-std::string_view trimmed_right(std::string_view text) {
-  const std::size_t last = text.find_last_not_of(" \t\r\n");
-  return last == std::string_view::npos ? std::string_view{} : text.substr(0, last + 1);
-}
-
-bool is_literal_of_no_number(std::string_view rest) {
-  for (const std::string_view word : {"NaN", "nan", "-NaN", "-nan", "Infinity", "-Infinity", "inf", "-inf"}) {
-    if (rest.starts_with(word)) return true;
-  }
-  return false;
-}
-
-/// What most often is wrong at `offset`, the first character that does not fit, and what to do about it.
-std::pair<std::string, std::string> explain_syntax(std::string_view text, std::size_t offset) {
-  if (trimmed_right(text).empty()) return {"is empty", "write a scene, beginning with {"};
-  const std::string_view rest = text.substr(std::min(offset, text.size()));
-  const std::string_view before = trimmed_right(text.substr(0, std::min(offset, text.size())));
-  if (trimmed_right(rest).empty()) return {"ends too early: brackets or quotes are not closed", "is the file complete?"};
-  if (rest.starts_with("//") || rest.starts_with("/*") || rest.starts_with("#")) return {"JSON has no comments", "remove it"};
-  if (is_literal_of_no_number(rest)) return {"is not a number that JSON knows", "write a finite number"};
-  if (before.ends_with(',') && (rest.front() == '}' || rest.front() == ']')) {
-    return {"nothing follows the comma", "remove the comma before it"};
-  }
-  if (rest.front() == '\'') return {"is not JSON", "put strings and keys in double quotes"};
-  return {"is not JSON", "check for a missing comma, quote or bracket just before it"};
-}
 
 /// Builds the document from parser events, because the library's own builder silently keeps the last of duplicate keys.
 class DocumentBuilder final : public nlohmann::json_sax<Json> {
@@ -78,15 +40,9 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
 
   bool parse_error(std::size_t position, const std::string& token, const nlohmann::detail::exception& error) override {
     constexpr int kNumberOverflow = 406;
-    // The parser counts the characters it has read, the last of them the one that ended the offending token.
-    const std::size_t end = std::min(position, text_.size());
-    if (error.id == kNumberOverflow) {
-      fail(end - std::min(end, token.size()), token, "is too large for a number", "write a number below 1e308");
-      return false;
-    }
-    const std::size_t begin = start_of_mistake(position, token);
-    const auto [rule, remedy] = explain_syntax(text_, begin);
-    fail(begin, std::string(first_word(begin)), rule, remedy);
+    result_.problems.push_back(error.id == kNumberOverflow ? overflow_problem(text_, position, token)
+                                                           : syntax_problem(text_, position, token));
+    result_.problems.back().file = file_;
     return false;
   }
 
@@ -97,24 +53,6 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
     std::set<std::string> keys;
     std::string path;
   };
-
-  /// The parser's `token` reaches back to the last string or number, so it counts only when it is one of them as a whole.
-  [[nodiscard]] std::size_t start_of_mistake(std::size_t position, const std::string& token) const {
-    if (position > text_.size()) return text_.size();
-    const bool is_string = token.size() > 1 && token.front() == '"' && token.back() == '"';
-    const bool is_number = !token.empty() && token.find_first_not_of("0123456789+-.eE") == std::string::npos;
-    if ((is_string || is_number) && text_.substr(0, position).ends_with(token)) return position - token.size();
-    std::size_t begin = position > 0 ? position - 1 : 0;
-    const auto is_letter = [&](std::size_t offset) { return std::isalpha(static_cast<unsigned char>(text_[offset])) != 0; };
-    while (begin > 0 && begin < text_.size() && is_letter(begin) && (is_letter(begin - 1) || text_[begin - 1] == '-')) --begin;
-    return begin;
-  }
-
-  std::string_view first_word(std::size_t begin) const {
-    constexpr std::size_t kLongest = 20;
-    const std::string_view rest = text_.substr(begin, kLongest);
-    return rest.substr(0, rest.find_first_of(" \t\r\n,"));
-  }
 
   std::string path_of_next() const {
     if (levels_.empty()) return "";
@@ -146,12 +84,6 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
     Json value = std::move(levels_.back().value);
     levels_.pop_back();
     return add(std::move(value));
-  }
-
-  void fail(std::size_t offset, const std::string& value, const std::string& rule, const std::string& remedy) {
-    const TextPlace place = place_of(text_, offset);
-    const std::string key = "line " + std::to_string(place.line) + ", column " + std::to_string(place.column);
-    result_.problems.push_back({file_, key, value, rule, remedy});
   }
 
   std::string_view text_;

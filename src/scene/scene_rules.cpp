@@ -28,7 +28,7 @@ void check_name(const std::string& name, const JsonPlace& place) {
 template <class T>
 Rule<std::vector<T>> named(Rule<T> rule, bool may_be_empty) {
   return [=](Json& json, const JsonPlace& place) -> std::optional<std::vector<T>> {
-    if (!detail::check_object(json, place)) return std::nullopt;
+    if (!check_object(json, place)) return std::nullopt;
     if (json.empty() && !may_be_empty) place.report(json, "must hold at least one entry");
     std::vector<T> entries;
     for (const auto& item : json.items()) {

@@ -1,7 +1,7 @@
 // The rules of a scene's objects, as a table each: key, type, bounds, default. What they mean stands in scene.schema.json.
 #pragma once
 
-#include "scene/json_rules.h"
+#include "scene/json_fields.h"
 #include "scene/scene.h"
 
 namespace sprung {
