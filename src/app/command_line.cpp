@@ -1,5 +1,6 @@
 #include "app/command_line.h"
 
+#include "scene/frame_steps.h"
 #include "scene/nearest_name.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,6 @@
 namespace sprung {
 namespace {
 
-constexpr int kMostFrames = 100'000'000;
 constexpr int kMostThreads = 1'024;
 
 constexpr const char* kExamples = R"(Examples:

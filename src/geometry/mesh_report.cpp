@@ -6,6 +6,8 @@
 namespace sprung {
 namespace {
 
+constexpr int kDigits = 6;
+
 // Beyond these a mesh in metres is improbable.
 constexpr double kLargestUsual = 1000.0;
 constexpr double kSmallestUsual = 0.001;
@@ -29,8 +31,8 @@ std::optional<std::string> unit_note(const Box3& bounds, double scale) {
   if (bounds.isEmpty()) return std::nullopt;
   const double extent = scale * bounds.sizes().maxCoeff();
   if (kSmallestUsual <= extent && extent <= kLargestUsual) return std::nullopt;
-  const std::string size = "its largest extent is " + format_number(extent, 4) + " m";
-  if (scale != 1.0) return size + " with its \"scale\" of " + format_number(scale, 4) + ": is that meant?";
+  const std::string size = "its largest extent is " + format_number(extent, kDigits) + " m";
+  if (scale != 1.0) return size + " with its \"scale\" of " + format_number(scale, kDigits) + ": is that meant?";
   return size + ": if the file is not in metres, place it with a \"scale\"" +
          (extent > kLargestUsual ? ", 0.001 for millimetres" : "");
 }

@@ -5,7 +5,8 @@
 
 namespace sprung {
 
-inline constexpr double kMostFrames = 1e7;
+/// A scene, or a command line, may ask for no more.
+inline constexpr int kMostFrames = 10'000'000;
 inline constexpr double kMostStepsPerFrame = 1e8;
 
 /// floor(duration * frame_rate + 1e-9) + 1: frame 1 is the state at time 0.

@@ -12,8 +12,6 @@
 namespace sprung {
 namespace {
 
-constexpr double kStablePart = 0.9;  // of the largest stable step that "auto" uses at most
-
 double largest_auto_step(const Scene& scene, const SpringNetwork& network, const SpectralBounds& bounds, double largest_stable) {
   double largest = std::min(kStablePart * largest_stable, step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
   if (!std::isfinite(largest)) largest = kLargestAutoStep;
@@ -22,20 +20,16 @@ double largest_auto_step(const Scene& scene, const SpringNetwork& network, const
   return std::min(largest, limit.suggested_step(scene.settings.gravity.norm()));
 }
 
-std::string remedy_for_unstable(const Scene& scene, double largest_stable) {
-  std::string remedy = "use \"auto\"";
+std::string advice_for_unstable(const Scene& scene, double largest_stable) {
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest_stable)) {
-    remedy = "use at most " + format_number(step_of(scene.frame_rate, *steps)) + " or \"auto\"";
+    return "use at most " + format_number(step_of(scene.frame_rate, *steps)) + " or \"auto\"";
   }
-  return remedy + "; \"stability\": \"warn\" lets it run all the same";
+  return "use \"auto\"";
 }
 
 }  // namespace
 
 StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems) {
-  const auto report = [&](const std::string& value, const std::string& rule, const std::string& remedy) {
-    problems.push_back({scene.file.string(), "step", value, rule, remedy});
-  };
   const SpectralBounds bounds = simulation_bounds(network, scene.settings, !scene.obstacles.empty());
   StepChoice choice;
   choice.largest_stable = largest_stable_step(scene.settings.integrator, bounds);
@@ -43,8 +37,8 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
     choice.step = *scene.step;
     choice.steps_per_frame = steps_per_frame(scene.frame_rate, choice.step).value_or(1);
     if (is_unstable(choice.step, choice.largest_stable) && scene.settings.stability == StabilityCheck::refuse) {
-      report(format_number(choice.step), "is beyond the largest stable step, " + format_upper_bound(choice.largest_stable) + " s",
-             remedy_for_unstable(scene, choice.largest_stable));
+      problems.push_back(unstable_step(choice.step, choice.largest_stable, advice_for_unstable(scene, choice.largest_stable)));
+      problems.back().file = scene.file.string();
     }
     return choice;
   }
@@ -53,8 +47,9 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
     choice.steps_per_frame = *steps;
     choice.step = step_of(scene.frame_rate, *steps);
   } else {
-    report("\"auto\"", "must be at most " + format_upper_bound(largest) + " s, which is too many steps a frame",
-           "use less stiffness, more mass, or a higher frame_rate");
+    problems.push_back({scene.file.string(), "step", "\"auto\"",
+                        "must be at most " + format_upper_bound(largest) + " s, which is too many steps a frame",
+                        "use less stiffness, more mass, or a higher frame_rate"});
   }
   return choice;
 }

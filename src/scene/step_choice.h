@@ -18,10 +18,10 @@ struct StepChoice {
   double largest_stable = 0.0;  ///< [s]; infinity when any is stable
 };
 
-/// The scene's step or, for "auto", 1 / (frame_rate * n) with the least n whose step is at most 0.9 of the largest stable one and
-/// at most what the stretch limit suggests; with explicit Euler, also one at which the fastest motion grows by no more than a factor
-/// of e in the whole scene. Adds a problem when the scene's step is beyond the largest stable one and `stability`
-/// is refuse, or when a frame would take too many steps.
+/// The scene's step or, for "auto", 1 / (frame_rate * n) with the least n whose step is at most `kStablePart` of the largest stable
+/// one and at most what the stretch limit suggests; with explicit Euler, also one at which the fastest motion grows by no more than
+/// a factor of e in the whole scene. Adds a problem when the scene's step is beyond the largest stable one and `stability` is
+/// refuse, or when a frame would take too many steps.
 [[nodiscard]] StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems);
 
 }  // namespace sprung

@@ -1,6 +1,5 @@
 #include "simulation/step_check.h"
 
-#include "base/error.h"
 #include "base/format.h"
 
 #include <cmath>
@@ -8,12 +7,6 @@
 #include <utility>
 
 namespace sprung {
-namespace {
-
-// A step that is advised leaves this part of the largest stable one, as "auto" does.
-constexpr double kAdvisedPart = 0.9;
-
-}  // namespace
 
 SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {
   SpectralBounds bounds = spectral_bounds(network, settings.air_drag);
@@ -31,6 +24,13 @@ bool is_unstable(double step, double largest_stable) {
   return step > kRounding * largest_stable;
 }
 
+Problem unstable_step(double step, double largest_stable, const std::string& advice) {
+  return {.key = "step",
+          .value = format_number(step),
+          .rule = "is beyond the largest stable step, " + format_upper_bound(largest_stable) + " s",
+          .remedy = advice + "; \"stability\": \"warn\" lets it run all the same"};
+}
+
 std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds) {
   const double step = settings.step;
   if (!(step > 0.0) || !std::isfinite(step)) {
@@ -38,14 +38,9 @@ std::vector<std::string> check_step(const SimulatorSettings& settings, const Spe
   }
   const double largest = largest_stable_step(settings.integrator, bounds);
   if (is_unstable(step, largest)) {
-    const std::string rule = "is beyond the largest stable step, " + format_upper_bound(largest) + " s";
-    if (settings.stability == StabilityCheck::refuse) {
-      throw InputError({.key = "step",
-                        .value = format_number(step),
-                        .rule = rule,
-                        .remedy = "use at most that, or \"auto\"; \"stability\": \"warn\" lets it run all the same"});
-    }
-    return {"step = " + format_number(step) + " " + rule + ": expect the simulation to diverge"};
+    const Problem problem = unstable_step(step, largest, "use at most that, or \"auto\"");
+    if (settings.stability == StabilityCheck::refuse) throw InputError(problem);
+    return {"step = " + problem.value + " " + problem.rule + ": expect the simulation to diverge"};
   }
   const double growth = growth_time(settings.integrator, bounds, step);
   if (!std::isfinite(growth)) return {};
@@ -81,8 +76,8 @@ void refuse_inside(const SpringNetwork& network, const Environment& environment,
 
 std::string divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds) {
   const double largest = largest_stable_step(settings.integrator, bounds);
-  if (settings.step > kAdvisedPart * largest)
-    return "use a step of at most " + format_number(kAdvisedPart * largest, 2) + " s, or \"auto\"";
+  if (settings.step > kStablePart * largest)
+    return "use a step of at most " + format_number(kStablePart * largest, 2) + " s, or \"auto\"";
   if (std::isfinite(growth_time(settings.integrator, bounds, settings.step))) {
     return "explicit Euler gains energy at any step; use \"symplectic_euler\" or a step below " +
            format_number(0.1 * settings.step, 2) + " s";

@@ -1,6 +1,7 @@
 // What a simulation is checked for before it begins, and what is advised when it diverged all the same.
 #pragma once
 
+#include "base/error.h"
 #include "simulation/simulator.h"
 
 #include <string>
@@ -11,8 +12,14 @@ namespace sprung {
 /// `spectral_bounds` of the network with its air drag and, when there are obstacles, its penalty contact.
 [[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
 
+/// The part of the largest stable step that is advised, and that "auto" uses at most.
+inline constexpr double kStablePart = 0.9;
+
 /// Whether a step is beyond the largest stable one by more than rounding.
 [[nodiscard]] bool is_unstable(double step, double largest_stable);
+
+/// The problem of a step that is beyond the largest stable one; `advice` is what to use instead.
+[[nodiscard]] Problem unstable_step(double step, double largest_stable, const std::string& advice);
 
 /// Throws InputError for a step that is not positive, or beyond the largest stable one unless `settings.stability` is warn. Returns
 /// what the user should be warned of.

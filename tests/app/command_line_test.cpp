@@ -120,6 +120,12 @@ TEST_F(CommandLine, InfoOfARopeTellsThatItIsNoObstacle) {
   EXPECT_THAT(ending.out, AllOf(HasSubstr("not an obstacle"), HasSubstr("particles   3"), HasSubstr("lines       2")));
 }
 
+TEST_F(CommandLine, MoreFramesThanASceneMayHaveAreRefused) {
+  const Ending ending = run({"run", save(rope_scene()), "--out", out(), "--frames", "10000001"});
+  EXPECT_EQ(ending.code, 2);
+  EXPECT_THAT(ending.err, AllOf(HasSubstr("--frames"), HasSubstr("10000000")));
+}
+
 TEST_F(CommandLine, HelpAndVersionGoToStandardOutput) {
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{"--help"}, {"run", "--help"}, {"--version"}}) {
