@@ -12,22 +12,16 @@
 namespace sprung {
 namespace {
 
-class RealMesh : public testing::Test {
- protected:
-  // Empty, and the test skipped, when the package is not installed.
-  static std::filesystem::path find(const std::string& name) {
-    const std::filesystem::path file = std::filesystem::path(SPRUNG_TEST_MESHES) / name;
-    return std::filesystem::exists(file) ? file : std::filesystem::path();
+ImportedMesh import_real(const std::string& name) {
+  const std::filesystem::path file = std::filesystem::path(SPRUNG_TEST_MESHES) / name;
+  if (!std::filesystem::exists(file)) {
+    ADD_FAILURE() << file << " is missing: install glmark2-data (tests/run.sh does), or set SPRUNG_TEST_MESHES";
   }
-};
+  return import_mesh(file);
+}
 
-#define SPRUNG_NEED(file) \
-  if ((file).empty()) GTEST_SKIP() << "install glmark2-data, or set SPRUNG_TEST_MESHES"
-
-TEST_F(RealMesh, BunnyIsOneClosedSurface) {
-  const std::filesystem::path file = find("bunny.obj");
-  SPRUNG_NEED(file);
-  const auto [mesh, report] = import_mesh(file);
+TEST(RealMesh, BunnyIsOneClosedSurface) {
+  const auto [mesh, report] = import_real("bunny.obj");
   EXPECT_EQ(mesh.vertices.cols(), 34835);
   EXPECT_EQ(mesh.triangles.cols(), 69666);
   EXPECT_EQ(report.components, 1);
@@ -35,10 +29,8 @@ TEST_F(RealMesh, BunnyIsOneClosedSurface) {
   EXPECT_TRUE(report.closed);
 }
 
-TEST_F(RealMesh, BunnyWithHalfItsFacesFlippedIsTurnedBack) {
-  const std::filesystem::path file = find("bunny.obj");
-  SPRUNG_NEED(file);
-  const TriangleMesh bunny = import_mesh(file).mesh;
+TEST(RealMesh, BunnyWithHalfItsFacesFlippedIsTurnedBack) {
+  const TriangleMesh bunny = import_real("bunny.obj").mesh;
   TriangleMesh damaged = bunny;
   std::mt19937 random(2);
   Index flipped = 0;
@@ -53,20 +45,16 @@ TEST_F(RealMesh, BunnyWithHalfItsFacesFlippedIsTurnedBack) {
   EXPECT_GT(signed_volume(mesh), 0.0);
 }
 
-TEST_F(RealMesh, CatIsReadFrom3ds) {
-  const std::filesystem::path file = find("cat.3ds");
-  SPRUNG_NEED(file);
-  const auto [mesh, report] = import_mesh(file);
+TEST(RealMesh, CatIsReadFrom3ds) {
+  const auto [mesh, report] = import_real("cat.3ds");
   EXPECT_EQ(mesh.triangles.cols(), 14348);
   EXPECT_EQ(mesh.vertices.cols(), 7340);
   EXPECT_EQ(report.components, 3);
   EXPECT_EQ(report.border_edges, 330);
 }
 
-TEST_F(RealMesh, HorseIsReadFrom3ds) {
-  const std::filesystem::path file = find("horse.3ds");
-  SPRUNG_NEED(file);
-  const auto [mesh, report] = import_mesh(file);
+TEST(RealMesh, HorseIsReadFrom3ds) {
+  const auto [mesh, report] = import_real("horse.3ds");
   EXPECT_EQ(mesh.vertices.cols(), 3582);
   EXPECT_EQ(report.components, 1);
   EXPECT_EQ(report.duplicate_faces, 12);  // six quads are there with both diagonals

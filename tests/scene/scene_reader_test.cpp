@@ -1,5 +1,6 @@
 #include "scene/scene_reader.h"
 
+#include "base/as_nobody.h"
 #include "scene_text.h"
 
 #include <gmock/gmock.h>
@@ -164,6 +165,15 @@ TEST(SceneReader, FileThatCannotBeReadIsAFileError) {
   EXPECT_THAT([&] { (void)read_scene(folder.path() / "none.json"); },
               testing::ThrowsMessage<FileError>(testing::AllOf(HasSubstr("none.json"), HasSubstr("No such file"))));
   EXPECT_THAT([&] { (void)read_scene(folder.path()); }, testing::ThrowsMessage<FileError>(HasSubstr("Is a directory")));
+}
+
+TEST(SceneReader, FileThatMayNotBeReadIsAFileError) {
+  const SceneFolder folder;
+  const std::filesystem::path file = folder.write("secret.json", kPlainScene);
+  std::filesystem::permissions(file, std::filesystem::perms::none);
+  const test::AsNobody nobody;
+  EXPECT_THAT([&] { (void)read_scene(file); },
+              testing::ThrowsMessage<FileError>(testing::AllOf(HasSubstr("secret.json"), HasSubstr("Permission denied"))));
 }
 
 TEST(SceneReader, OverridesReplaceAddAppendAndRemove) {
