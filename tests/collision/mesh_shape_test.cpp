@@ -51,10 +51,7 @@ TEST(MeshShape, OneTriangleIsAMesh) {
   expect_nearest_is_nearest(mesh, false, 100, 0.5);
 }
 
-TEST(MeshShape, BunnyNearestIsTheNearestOfAllTriangles) {
-  if (!std::filesystem::exists(test::bunny_file())) GTEST_SKIP() << "the bunny is not installed";
-  expect_nearest_is_nearest(test::bunny(), true, 40, 0.01);
-}
+TEST(MeshShape, BunnyNearestIsTheNearestOfAllTriangles) { expect_nearest_is_nearest(test::bunny(), true, 40, 0.01); }
 
 void expect_signs_by_winding_number(const TriangleMesh& mesh, int points, double reach) {
   const auto shape = shape_of(mesh, true);
@@ -73,10 +70,7 @@ TEST(MeshShape, InsideIsWhereTheMeshWindsAroundAPoint) {
   expect_signs_by_winding_number(test::needles(24), 4000, 0.05);
 }
 
-TEST(MeshShape, BunnyInsideIsWhereTheMeshWindsAroundAPoint) {
-  if (!std::filesystem::exists(test::bunny_file())) GTEST_SKIP() << "the bunny is not installed";
-  expect_signs_by_winding_number(test::bunny(), 200, 0.01);
-}
+TEST(MeshShape, BunnyInsideIsWhereTheMeshWindsAroundAPoint) { expect_signs_by_winding_number(test::bunny(), 200, 0.01); }
 
 TEST(MeshShape, OpenMeshHasNoInsideAndFacesTheParticle) {
   const auto shape = shape_of(test::flat_sheet(4), false);

@@ -108,11 +108,9 @@ inline TriangleMesh needles(Index around) {
   return star;
 }
 
-inline std::filesystem::path bunny_file() { return std::filesystem::path(SPRUNG_TEST_MESHES) / "bunny.obj"; }
-
-/// The bunny, about 1.5 m high and closed; its file must exist.
+/// The bunny, about 1.5 m high and closed; throws InputError when it is not installed.
 inline TriangleMesh bunny() {
-  const PolygonMesh mesh = read_obj(bunny_file());
+  const PolygonMesh mesh = read_obj(std::filesystem::path(SPRUNG_TEST_MESHES) / "bunny.obj");
   return {mesh.vertices, triangulate(mesh.faces)};
 }
 
