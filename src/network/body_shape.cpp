@@ -1,6 +1,6 @@
 #include "network/body_shape.h"
 
-#include "network/problem_list.h"
+#include "base/problem_list.h"
 #include "network/shape_parts.h"
 
 #include <utility>

@@ -1,6 +1,6 @@
+#include "network/body_rules.h"
 #include "network/body_shape.h"
 #include "network/lattice.h"
-#include "network/problem_list.h"
 #include "network/shape_parts.h"
 
 namespace sprung {
@@ -12,9 +12,9 @@ void check(const ClothShape& cloth, const SpringMaterials& materials) {
     problems.require_positive(entry_key("size", axis), cloth.size[axis], "give the length of the side in m");
     problems.require_count(entry_key("resolution", axis), cloth.resolution[axis], 2);
   }
-  problems.require_affordable("resolution", counts_text(cloth.resolution),
-                              static_cast<double>(cloth.resolution[0]) * cloth.resolution[1]);
-  problems.require_materials(materials);
+  require_affordable("resolution", counts_text(cloth.resolution), static_cast<double>(cloth.resolution[0]) * cloth.resolution[1],
+                     problems);
+  require_materials(materials, problems);
   problems.throw_if_any();
 }
 

@@ -1,7 +1,7 @@
 #include "geometry/topology.h"
+#include "network/body_rules.h"
 #include "network/body_shape.h"
 #include "network/mesh_springs.h"
-#include "network/problem_list.h"
 #include "network/shape_parts.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ Corners ends_of_line(const PolygonMesh& mesh, std::size_t line) {
 void check_vertices(const PolygonMesh& mesh, ProblemList& problems) {
   const auto count = static_cast<std::size_t>(mesh.vertices.cols());
   if (count == 0) problems.add("vertices", "0", "must be at least 1", kExport);
-  problems.require_affordable("vertices", std::to_string(count), static_cast<double>(count));
+  require_affordable("vertices", std::to_string(count), static_cast<double>(count), problems);
   const auto vertex = [&](std::size_t v) -> Vector3 { return mesh.vertices.col(static_cast<Eigen::Index>(v)); };
   problems.require_each(
       count, [&](std::size_t v) { return vertex(v).allFinite(); }, [&](std::size_t v) { return vector_text(vertex(v)); },
@@ -77,7 +77,7 @@ void check(const PolygonMesh& mesh, const SpringMaterials& materials) {
   }
   const auto ends = [&](std::size_t line) { return ends_of_line(mesh, line); };
   check_corners("lines", static_cast<std::size_t>(mesh.lines.cols()), ends, 2, vertex_count, problems);
-  problems.require_materials(materials);
+  require_materials(materials, problems);
   problems.throw_if_any();
 }
 

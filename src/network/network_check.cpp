@@ -1,5 +1,10 @@
 #include "network/network_check.h"
 
+#include "base/format.h"
+#include "geometry/motion_check.h"
+
+#include <cmath>
+
 namespace sprung {
 namespace {
 
@@ -48,19 +53,6 @@ void check_springs(const std::string& key, const BodyShape& shape, ProblemList& 
   require_quantities(springs.damping, {key + ".springs.damping", rule, "give k_d in N s/m"}, problems);
 }
 
-void check_material(const std::string& key, const ContactMaterial& material, ProblemList& problems) {
-  problems.require_not_negative(key + ".thickness", material.thickness, "give a gap in m");
-  problems.require_not_negative(key + ".friction", material.friction, "use 0 for no friction");
-  problems.require_not_negative(key + ".static_friction", material.static_friction, "use the value of friction");
-  if (material.static_friction < material.friction) {
-    problems.add(key + ".static_friction", format_number(material.static_friction),
-                 "must not be less than friction, which is " + format_number(material.friction), "use the value of friction");
-  }
-  if (!(material.restitution >= 0.0 && material.restitution <= 1.0)) {
-    problems.add(key + ".restitution", format_number(material.restitution), "must be in [0, 1]", "use 0 for no bounce");
-  }
-}
-
 template <class Elements>
 bool names_particles(const Elements& elements, std::size_t particles) {
   return elements.size() == 0 || (elements.minCoeff() >= 0 && static_cast<std::size_t>(elements.maxCoeff()) < particles);
@@ -80,22 +72,6 @@ bool same_sizes(const BodyShape& shape) {
   return shape.velocities.size() == particles && shape.masses.size() == particles && shape.drag_areas.size() == particles &&
          springs.second.size() == count && springs.rest_length.size() == count && springs.stiffness.size() == count &&
          springs.damping.size() == count && springs.kind.size() == count;
-}
-
-void check_motion(const std::string& key, const Motion& motion, ProblemList& problems) {
-  problems.require_each(
-      motion.keyframes.size(),
-      [&](std::size_t k) {
-        const Keyframe& frame = motion.keyframes[k];
-        return std::isfinite(frame.time) && frame.position.allFinite() && frame.rotation.allFinite();
-      },
-      [&](std::size_t k) { return "time " + format_number(motion.keyframes[k].time); },
-      EntryRule{key + ".keyframes", "must hold finite numbers", "give times in s, positions in m and rotations in degrees"});
-  problems.require_each(
-      motion.keyframes.size(), [&](std::size_t k) { return k == 0 || !(motion.keyframes[k].time <= motion.keyframes[k - 1].time); },
-      [&](std::size_t k) { return "time " + format_number(motion.keyframes[k].time); },
-      EntryRule{key + ".keyframes", "must be later than the keyframe before it", "sort the keyframes by time"});
-  if (!motion.spin.allFinite()) problems.add(key + ".spin", vector_text(motion.spin), "must be finite", "give degrees per second");
 }
 
 }  // namespace

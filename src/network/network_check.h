@@ -1,7 +1,8 @@
 // The rules that bodies, springs and pins must keep before they become a network. Internal to network/.
 #pragma once
 
-#include "network/problem_list.h"
+#include "base/problem_list.h"
+#include "network/body_shape.h"
 #include "network/spring_network.h"
 
 #include <string>

@@ -1,5 +1,6 @@
+#include "base/format.h"
+#include "network/body_rules.h"
 #include "network/body_shape.h"
-#include "network/problem_list.h"
 #include "network/shape_parts.h"
 
 #include <numeric>
@@ -50,11 +51,11 @@ void check(const RopeShape& rope, const SpringMaterials& materials) {
   check_points(rope, problems);
   if (rope.particles) problems.require_count("particles", *rope.particles, 2);
   const double particles = rope.particles ? *rope.particles : static_cast<double>(rope.points.size());
-  problems.require_affordable(rope.particles ? "particles" : "points", format_number(particles), particles);
+  require_affordable(rope.particles ? "particles" : "points", format_number(particles), particles, problems);
   if (rope.length)
     problems.require_positive("length", *rope.length, "give the rest length of the whole rope in m, or leave it out");
   check_modulus(rope, materials, problems);
-  problems.require_materials(materials);
+  require_materials(materials, problems);
   problems.throw_if_any();
 }
 

@@ -1,6 +1,6 @@
+#include "network/body_rules.h"
 #include "network/body_shape.h"
 #include "network/lattice.h"
-#include "network/problem_list.h"
 #include "network/shape_parts.h"
 
 namespace sprung {
@@ -13,8 +13,8 @@ void check(const SolidShape& solid, const SpringMaterials& materials) {
     problems.require_count(entry_key("resolution", axis), solid.resolution[axis], 2);
   }
   const auto& [x, y, z] = solid.resolution;
-  problems.require_affordable("resolution", counts_text(solid.resolution), static_cast<double>(x) * y * z);
-  problems.require_materials(materials);
+  require_affordable("resolution", counts_text(solid.resolution), static_cast<double>(x) * y * z, problems);
+  require_materials(materials, problems);
   problems.throw_if_any();
 }
 

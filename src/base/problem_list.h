@@ -1,11 +1,8 @@
-// Collects the broken rules of an input, so that all are reported in one go. Internal to network/.
+// Collects the broken rules of an input, so that all are reported in one go.
 #pragma once
 
 #include "base/error.h"
-#include "base/format.h"
-#include "network/body_shape.h"
 
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -27,21 +24,17 @@ class ProblemList {
     problems_.push_back({{}, std::move(key), std::move(value), std::move(rule), std::move(remedy)});
   }
 
+  /// Greater than 0 and finite.
   void require_positive(const std::string& key, double value, const std::string& remedy);
 
+  /// Not less than 0 and finite.
   void require_not_negative(const std::string& key, double value, const std::string& remedy);
 
   void require_count(const std::string& key, std::int64_t value, std::int64_t least);
 
-  /// A particle count beyond kMaxBodyParticles.
-  void require_affordable(const std::string& key, const std::string& value, double particles);
-
   /// Names the first of `count` entries that is not `good(entry)`, by `text(entry)`, and counts the others.
   template <class Good, class Text>
   void require_each(std::size_t count, const Good& good, const Text& text, const EntryRule& rule);
-
-  /// Stiffness, modulus and damping of all kinds.
-  void require_materials(const SpringMaterials& materials);
 
   [[nodiscard]] bool empty() const { return problems_.empty(); }
 

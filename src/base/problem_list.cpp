@@ -1,4 +1,8 @@
-#include "network/problem_list.h"
+#include "base/problem_list.h"
+
+#include "base/format.h"
+
+#include <cmath>
 
 namespace sprung {
 
@@ -15,26 +19,6 @@ void ProblemList::require_not_negative(const std::string& key, double value, con
 void ProblemList::require_count(const std::string& key, std::int64_t value, std::int64_t least) {
   if (value >= least) return;
   add(key, std::to_string(value), "must be at least " + std::to_string(least), "give more");
-}
-
-void ProblemList::require_affordable(const std::string& key, const std::string& value, double particles) {
-  if (particles <= static_cast<double>(kMaxBodyParticles)) return;
-  add(key, value,
-      "makes " + format_number(particles) + " particles, more than the " + std::to_string(kMaxBodyParticles) + " of a body",
-      "lower the resolution");
-}
-
-void ProblemList::require_materials(const SpringMaterials& materials) {
-  const std::pair<const char*, const std::optional<SpringMaterial>&> kinds[] = {
-      {"structural", materials.structural}, {"shear", materials.shear}, {"bend", materials.bend}};
-  for (const auto& [name, material] : kinds) {
-    if (!material) continue;
-    const std::string key = std::string("springs.") + name;
-    const bool modulus = material->measure == SpringMaterial::Measure::modulus;
-    require_not_negative(key + (modulus ? ".modulus" : ".stiffness"), material->value,
-                         "use 0 for springs that a stretch limit alone shall hold");
-    require_not_negative(key + ".damping", material->damping, "use 0 for springs without damping");
-  }
 }
 
 std::string entry_key(const std::string& key, std::size_t entry) {

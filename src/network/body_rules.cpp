@@ -1,0 +1,31 @@
+#include "network/body_rules.h"
+
+#include "base/format.h"
+
+#include <optional>
+#include <utility>
+
+namespace sprung {
+
+void require_affordable(const std::string& key, const std::string& value, double particles, ProblemList& problems) {
+  if (particles <= static_cast<double>(kMaxBodyParticles)) return;
+  problems.add(
+      key, value,
+      "makes " + format_number(particles) + " particles, more than the " + std::to_string(kMaxBodyParticles) + " of a body",
+      "lower the resolution");
+}
+
+void require_materials(const SpringMaterials& materials, ProblemList& problems) {
+  const std::pair<const char*, const std::optional<SpringMaterial>&> kinds[] = {
+      {"structural", materials.structural}, {"shear", materials.shear}, {"bend", materials.bend}};
+  for (const auto& [name, material] : kinds) {
+    if (!material) continue;
+    const std::string key = std::string("springs.") + name;
+    const bool modulus = material->measure == SpringMaterial::Measure::modulus;
+    problems.require_not_negative(key + (modulus ? ".modulus" : ".stiffness"), material->value,
+                                  "use 0 for springs that a stretch limit alone shall hold");
+    problems.require_not_negative(key + ".damping", material->damping, "use 0 for springs without damping");
+  }
+}
+
+}  // namespace sprung
