@@ -31,7 +31,8 @@ struct ParticlePaths {
 
 class Environment {
  public:
-  /// Throws InputError for shapes that cannot be used.
+  /// Throws InputError, naming all problems of all obstacles: shapes that cannot be used, places that are not finite, motions whose
+  /// keyframes are not sorted or not finite, materials that break the rules of ContactMaterial.
   explicit Environment(std::vector<Obstacle> obstacles = {});
   ~Environment();
   Environment(Environment&&) noexcept;

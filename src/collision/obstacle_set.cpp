@@ -1,7 +1,9 @@
 #include "collision/obstacle_set.h"
 
 #include "base/error.h"
+#include "base/problem_list.h"
 #include "collision/particle_blocks.h"
+#include "geometry/motion_check.h"
 
 #include <algorithm>
 
@@ -13,26 +15,37 @@ constexpr double kClearance = 0x1p-30;
 
 double largest(const Vector3& p) { return p.cwiseAbs().maxCoeff(); }
 
-std::vector<std::unique_ptr<ObstacleShape>> make_shapes(const std::vector<Obstacle>& obstacles) {
-  std::vector<std::unique_ptr<ObstacleShape>> shapes;
-  std::vector<Problem> problems;
-  for (const Obstacle& obstacle : obstacles) {
-    try {
-      shapes.push_back(make_shape(obstacle.geometry));
-    } catch (const InputError& error) {
-      for (Problem problem : error.problems()) {
-        problem.key = "obstacles." + obstacle.name + ".shape." + problem.key;
-        problems.push_back(std::move(problem));
-      }
+/// The obstacle's shape; where there is none its problems are added.
+std::unique_ptr<ObstacleShape> checked_shape(const std::string& key, const ObstacleGeometry& geometry, ProblemList& problems) {
+  try {
+    return make_shape(geometry);
+  } catch (const InputError& error) {
+    for (const Problem& problem : error.problems()) {
+      problems.add(key + "." + problem.key, problem.value, problem.rule, problem.remedy);
     }
+    return nullptr;
   }
-  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+std::vector<std::unique_ptr<ObstacleShape>> checked_shapes(const std::vector<Obstacle>& obstacles) {
+  std::vector<std::unique_ptr<ObstacleShape>> shapes;
+  ProblemList problems;
+  for (const Obstacle& obstacle : obstacles) {
+    const std::string key = "obstacles." + obstacle.name;
+    shapes.push_back(checked_shape(key + ".shape", obstacle.geometry, problems));
+    if (!obstacle.placed.matrix().allFinite()) {
+      problems.add(key + ".place", "", "must be finite", "give a position in m and a rotation in degrees");
+    }
+    check_motion(key + ".motion", obstacle.motion, problems);
+    check_material(key, obstacle.material, problems);
+  }
+  problems.throw_if_any();
   return shapes;
 }
 
 }  // namespace
 
-ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move(obstacles)), shapes_(make_shapes(obstacles_)) {
+ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move(obstacles)), shapes_(checked_shapes(obstacles_)) {
   for (const Obstacle& obstacle : obstacles_) {
     before_.push_back(obstacle.motion.pose(obstacle.placed, 0.0));
     into_before_.push_back(before_.back().inverse());

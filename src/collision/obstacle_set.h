@@ -19,7 +19,7 @@ struct LocalPath {
 
 class ObstacleSet {
  public:
-  /// Throws InputError, naming every obstacle with a shape that cannot be used.
+  /// Throws InputError, naming every obstacle's shape, place, motion and material that cannot be used.
   explicit ObstacleSet(std::vector<Obstacle> obstacles);
 
   void set_interval(double t, double t_end);
