@@ -10,8 +10,6 @@
 #include <fcl/geometry/shape/sphere.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 namespace sprung {
 

@@ -3,7 +3,7 @@
 
 namespace sprung {
 
-inline constexpr int kLanes = 8;
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
+inline constexpr int kTreeLanes = 8;
+using TreeLanes = float __attribute__((vector_size(kTreeLanes * sizeof(float))));
 
 }  // namespace sprung

@@ -49,7 +49,7 @@ std::int32_t MeshTree::add_node(const std::vector<int>& roots, int depth) {
   const auto& tree = *model_;
   const auto opens = [&](int bv) { return tree.getBV(bv).first_child >= 0; };
   std::vector<int> children = roots;
-  while (children.size() < kLanes) {
+  while (children.size() < kTreeLanes) {
     const auto largest = std::max_element(children.begin(), children.end(), [&](int x, int y) {
       const auto rank = [&](int bv) { return opens(bv) ? half_area(tree.getBV(bv).bv) : -1.0; };
       return rank(x) < rank(y);
@@ -63,8 +63,8 @@ std::int32_t MeshTree::add_node(const std::vector<int>& roots, int depth) {
   const auto number = static_cast<std::int32_t>(nodes_.size());
   nodes_.emplace_back();
   // Each level leaves all but one lane behind; appending writes one past the last kept.
-  stack_size_ = std::max(stack_size_, static_cast<std::size_t>((depth + 1) * kLanes));
-  for (int lane = 0; lane < kLanes; ++lane) {
+  stack_size_ = std::max(stack_size_, static_cast<std::size_t>((depth + 1) * kTreeLanes));
+  for (int lane = 0; lane < kTreeLanes; ++lane) {
     const bool used = lane < static_cast<int>(children.size());
     for (int axis = 0; axis < 3; ++axis) {
       nodes_[number].min[axis][lane] = used ? rounded_down(tree.getBV(children[lane]).bv.min_[axis]) : kInfinity;

@@ -15,8 +15,8 @@
 namespace sprung {
 
 /// FCL builds the tree of AABBs; a copy of it with up to eight children a node and single-precision boxes, rounded outward, is what
-/// the walks read. Requires a valid mesh: at least one
-/// triangle, indices in range, positions below 1e18 [m] (squares of single precision).
+/// the walks read. Requires a valid mesh: at least one triangle, indices in range, positions below 1e18 [m] (squares of single
+/// precision).
 class MeshTree {
  public:
   explicit MeshTree(const TriangleMesh& mesh);
@@ -41,9 +41,9 @@ class MeshTree {
 
   /// Children: a node's number, or ~i for the i-th leaf. Lanes without a child have an empty box.
   struct alignas(64) Node {
-    Lanes min[3];
-    Lanes max[3];
-    std::int32_t child[kLanes];
+    TreeLanes min[3];
+    TreeLanes max[3];
+    std::int32_t child[kTreeLanes];
   };
 
   struct Leaf {

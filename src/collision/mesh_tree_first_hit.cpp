@@ -43,26 +43,26 @@ FloatPath float_path(const Vector3& a, const Vector3& b, double magnitude) {
 /// Appends the children whose box the path may meet (no axis separates them; Gottschalk et al. 1996) before the fraction `bound`,
 /// the first last.
 SPRUNG_KERNEL void push_children(const MeshTree::Node& node, const FloatPath& path, float bound, WalkStack& stack) {
-  const Lanes never = Lanes{} + std::numeric_limits<float>::infinity();
+  const TreeLanes never = TreeLanes{} + std::numeric_limits<float>::infinity();
   const bool forward = path.direction[path.main_axis] > 0.0F;
-  const Lanes ahead = forward ? node.min[path.main_axis] - path.begin : path.begin - node.max[path.main_axis];
-  Lanes fraction = (ahead - path.rounding) * path.per_length;
-  fraction = fraction > 0.0F ? fraction : Lanes{};
+  const TreeLanes ahead = forward ? node.min[path.main_axis] - path.begin : path.begin - node.max[path.main_axis];
+  TreeLanes fraction = (ahead - path.rounding) * path.per_length;
+  fraction = fraction > 0.0F ? fraction : TreeLanes{};
 
-  Lanes offset[3];
-  Lanes extent[3];
+  TreeLanes offset[3];
+  TreeLanes extent[3];
   for (int axis = 0; axis < 3; ++axis) {
     offset[axis] = path.middle[axis] - 0.5F * (node.min[axis] + node.max[axis]);
     extent[axis] = 0.5F * (node.max[axis] - node.min[axis]) + path.rounding;
-    const Lanes distance = offset[axis] < 0.0F ? -offset[axis] : offset[axis];
+    const TreeLanes distance = offset[axis] < 0.0F ? -offset[axis] : offset[axis];
     fraction = distance <= extent[axis] + path.half[axis] ? fraction : never;
   }
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3;
     const int v = (axis + 2) % 3;
-    const Lanes across = offset[u] * path.direction[v] - offset[v] * path.direction[u];
-    const Lanes distance = across < 0.0F ? -across : across;
-    const Lanes reach = extent[u] * std::abs(path.direction[v]) + extent[v] * std::abs(path.direction[u]);
+    const TreeLanes across = offset[u] * path.direction[v] - offset[v] * path.direction[u];
+    const TreeLanes distance = across < 0.0F ? -across : across;
+    const TreeLanes reach = extent[u] * std::abs(path.direction[v]) + extent[v] * std::abs(path.direction[u]);
     fraction = distance <= reach ? fraction : never;
   }
   stack.push_within(fraction, node.child, bound);

@@ -39,12 +39,12 @@ FloatRange float_range(const Vector3& p) {
 /// Appends the children whose box is within the bound, the nearest last. A box's squared distance is at most 6 roundings of 2^-24
 /// too large, which the factor takes back.
 SPRUNG_KERNEL void push_children(const MeshTree::Node& node, const FloatRange& p, float bound, WalkStack& stack) {
-  Lanes sum = {};
+  TreeLanes sum = {};
   for (int axis = 0; axis < 3; ++axis) {
-    const Lanes below = node.min[axis] - p.high[axis];
-    const Lanes above = p.low[axis] - node.max[axis];
-    const Lanes farther = below > above ? below : above;
-    const Lanes outside = farther > 0.0F ? farther : Lanes{};
+    const TreeLanes below = node.min[axis] - p.high[axis];
+    const TreeLanes above = p.low[axis] - node.max[axis];
+    const TreeLanes farther = below > above ? below : above;
+    const TreeLanes outside = farther > 0.0F ? farther : TreeLanes{};
     sum += outside * outside;
   }
   stack.push_within(sum * (1.0F - 0x1p-20F), node.child, bound);

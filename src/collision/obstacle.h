@@ -55,8 +55,8 @@ struct Obstacle {
   ContactMaterial material{};
 };
 
-/// The obstacle's surface as triangles in its own frame, for export: a mesh as it is, a primitive tessellated, a half-space as
-/// a square of side 2 * `extent` [m].
-[[nodiscard]] TriangleMesh obstacle_mesh(const ObstacleGeometry& geometry, double extent = 10.0);
+/// The obstacle's surface as triangles in its own frame, for export: a mesh as it is, a primitive tessellated, a half-space,
+/// and it alone, as a square of side 2 * `extent` [m].
+[[nodiscard]] TriangleMesh obstacle_mesh(const ObstacleGeometry& geometry, double extent);
 
 }  // namespace sprung

@@ -31,10 +31,10 @@ class WalkStack {
   void push(WalkEntry entry) { entries_[size_++] = entry; }
   WalkEntry pop() { return entries_[--size_]; }
 
-  /// Pushes the children whose bound is at most `limit`, the smallest last. Writes up to kLanes entries past the top.
-  void push_within(const Lanes& bounds, const std::int32_t* children, float limit) {
+  /// Pushes the children whose bound is at most `limit`, the smallest last. Writes up to kTreeLanes entries past the top.
+  void push_within(const TreeLanes& bounds, const std::int32_t* children, float limit) {
     const std::size_t base = size_;
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (int lane = 0; lane < kTreeLanes; ++lane) {
       entries_[size_] = {bounds[lane], children[lane]};
       size_ += bounds[lane] <= limit ? 1 : 0;
     }

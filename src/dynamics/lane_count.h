@@ -5,6 +5,6 @@
 
 namespace sprung {
 
-inline constexpr Index kLanes = 4;
+inline constexpr Index kSpringLanes = 4;
 
 }  // namespace sprung

@@ -8,14 +8,18 @@
 
 namespace sprung {
 
-using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
-using StoredLanes = double __attribute__((vector_size(kLanes * sizeof(double)), aligned(alignof(double)), may_alias));
+using SpringLanes = double __attribute__((vector_size(kSpringLanes * sizeof(double))));
+using StoredSpringLanes = double __attribute__((vector_size(kSpringLanes * sizeof(double)), aligned(alignof(double)), may_alias));
 
-[[gnu::always_inline]] inline void load_lanes(const double* from, Lanes& to) { to = *reinterpret_cast<const StoredLanes*>(from); }
-[[gnu::always_inline]] inline void store_lanes(const Lanes& from, double* to) { *reinterpret_cast<StoredLanes*>(to) = from; }
+[[gnu::always_inline]] inline void load_lanes(const double* from, SpringLanes& to) {
+  to = *reinterpret_cast<const StoredSpringLanes*>(from);
+}
+[[gnu::always_inline]] inline void store_lanes(const SpringLanes& from, double* to) {
+  *reinterpret_cast<StoredSpringLanes*>(to) = from;
+}
 
-[[gnu::always_inline]] inline void square_root(Lanes& of) {
-  for (Index lane = 0; lane < kLanes; ++lane) of[lane] = std::sqrt(of[lane]);
+[[gnu::always_inline]] inline void square_root(SpringLanes& of) {
+  for (Index lane = 0; lane < kSpringLanes; ++lane) of[lane] = std::sqrt(of[lane]);
 }
 
 }  // namespace sprung

@@ -10,7 +10,7 @@
 namespace sprung {
 namespace {
 
-using Repeated = std::array<double, kLanes>;
+using Repeated = std::array<double, kSpringLanes>;
 
 /// A constant of a run: read from the network's array, or once when all are the same.
 SpringConstant constant_of(const std::vector<double>& values, Index spring, bool same, Repeated& repeated) {
@@ -69,7 +69,7 @@ void add_singles(const SpringPlan::Block& block, const Springs& springs, const K
     const std::size_t count = std::min<std::size_t>(kSpringBatch, block.singles.size() - begin);
     const std::span<const SpringPlan::Single> singles(&block.singles[begin], count);
     batch.gather(singles, springs, at);
-    const auto lanes = static_cast<Index>((count + kLanes - 1) / kLanes * kLanes);
+    const auto lanes = static_cast<Index>((count + kSpringLanes - 1) / kSpringLanes * kSpringLanes);
     differences_to_forces(batch.difference.data(), batch.velocity.data(), lanes,
                           {{batch.rest_length.data(), false}, {batch.stiffness.data(), false}, {batch.damping.data(), false}});
     batch.scatter(singles, forces);

@@ -8,7 +8,7 @@ namespace sprung {
 /// Springs a batch holds at most: few enough for its buffers to stay in the first-level cache.
 inline constexpr Index kSpringBatch = 64;
 
-/// A constant of the springs of a batch: an entry a spring, or kLanes equal ones for all.
+/// A constant of the springs of a batch: an entry a spring, or kSpringLanes equal ones for all.
 struct SpringConstant {
   const double* values;
   bool same;
@@ -30,14 +30,14 @@ struct SpringRun {
   const double* v_b;
   double* force_a;  ///< null when not wanted
   double* force_b;  ///< null when not wanted
-  Index count;      ///< kLanes <= count <= kSpringBatch
+  Index count;      ///< kSpringLanes <= count <= kSpringBatch
 };
 
 /// Adds the springs' forces to `force_a` and subtracts them from `force_b`.
 void add_run_forces(const SpringRun& run, const SpringConstants& constants);
 
 /// Forces on the first ends of springs whose differences first - second of positions [m] and velocities [m/s] are given, 3 numbers
-/// a spring; written over `difference`. Requires a count that is a multiple of kLanes.
+/// a spring; written over `difference`. Requires a count that is a multiple of kSpringLanes.
 void differences_to_forces(double* difference, const double* velocity, Index count, const SpringConstants& constants);
 
 }  // namespace sprung

@@ -13,7 +13,7 @@ constexpr Index kWantedBlocks = 16;
 
 // Shorter runs cost more than gathering their particles one by one.
 constexpr Index kShortestRun = 8;
-static_assert(kShortestRun >= kLanes && kSpringBatch >= 2 * kLanes);
+static_assert(kShortestRun >= kSpringLanes && kSpringBatch >= 2 * kSpringLanes);
 
 /// A power of two, from the number of particles alone.
 Index block_size(Index particles) {
@@ -81,7 +81,7 @@ class Planner {
   // What is left over must fill the kernel's lanes too.
   static Index batch_size(Index springs) {
     if (springs <= kSpringBatch) return springs;
-    return std::min(kSpringBatch, springs - kLanes);
+    return std::min(kSpringBatch, springs - kSpringLanes);
   }
 
   static bool all_same(const std::vector<double>& values, Index begin, Index count) {

@@ -62,7 +62,7 @@ StretchBatches::StretchBatches(const SpringNetwork& network, const std::vector<S
     for (const std::vector<Index>& batch : colours) {
       if (batch.empty()) break;
       for (const Index s : batch) append(s);
-      while (count() % kLanes != 0) append(batch.back());
+      while (count() % kSpringLanes != 0) append(batch.back());
       begin.push_back(count());
     }
   }

@@ -7,7 +7,7 @@
 
 namespace sprung {
 
-/// Entry s of each array belongs to limited spring s. Each batch is filled to a multiple of kLanes by its last spring.
+/// Entry s of each array belongs to limited spring s. Each batch is filled to a multiple of kSpringLanes by its last spring.
 struct StretchBatches {
   std::vector<Index> first;
   std::vector<Index> second;

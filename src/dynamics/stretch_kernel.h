@@ -12,7 +12,7 @@ struct LengthRange {
 };
 
 /// Moves the ends of springs [begin, end) of one batch so that their lengths lie in `range`; `positions` holds 3 numbers a particle
-/// [m]. Returns the largest excess before, as a part of the rest length. Requires multiples of kLanes.
+/// [m]. Returns the largest excess before, as a part of the rest length. Requires multiples of kSpringLanes.
 double project_springs(const StretchBatches& batches, Index begin, Index end, const LengthRange& range, double* positions);
 
 /// The same excess; moves nothing.

@@ -14,7 +14,7 @@ namespace {
 
 // Cut by size alone; a thread is worth waking for some 10 us of work.
 constexpr Index kSpringChunk = 4096;
-static_assert(kSpringChunk % kLanes == 0);
+static_assert(kSpringChunk % kSpringLanes == 0);
 
 // A limit without play and without tolerance is never held quite: this is what steps are chosen for then.
 constexpr double kLeastExcess = 1.0e-3;

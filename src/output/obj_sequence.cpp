@@ -73,7 +73,7 @@ ObjSequence body_sequence(const Body& body, int frames) {
 
 TriangleMesh surface_mesh(const Obstacle& obstacle, const Box3& scene) {
   const bool endless = std::holds_alternative<HalfSpaceGeometry>(obstacle.geometry);
-  return endless ? obstacle_mesh(obstacle.geometry, half_space_extent(scene, obstacle)) : obstacle_mesh(obstacle.geometry);
+  return obstacle_mesh(obstacle.geometry, endless ? half_space_extent(scene, obstacle) : 0.0);
 }
 
 ObjSequence obstacle_sequence(const Obstacle& obstacle, Index number, const Box3& scene, int frames) {

@@ -237,5 +237,27 @@ TEST(Environment, NamesEveryObstacleThatCannotBe) {
   }
 }
 
+TEST(Environment, NamesEveryMaterialMotionAndPlaceThatCannotBe) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Obstacle rough = obstacle("rough", SphereGeometry{1.0});
+  rough.material = {.thickness = -0.1, .friction = -0.2, .static_friction = 0.1, .restitution = 1.5};
+  Obstacle slick = obstacle("slick", SphereGeometry{1.0}, Vector3(0.0, kNan, 0.0));
+  slick.material = {.thickness = std::numeric_limits<double>::infinity(), .friction = 0.3, .static_friction = 0.2};
+  Obstacle late = obstacle("late", SphereGeometry{-1.0});
+  late.motion.keyframes = {{1.0}, {0.5}, {2.0, Vector3(kNan, 0.0, 0.0)}};
+  late.motion.spin.z() = kNan;
+  std::vector<std::string> keys;
+  try {
+    const Environment environment({rough, slick, late});
+    FAIL();
+  } catch (const InputError& error) {
+    for (const Problem& problem : error.problems()) keys.push_back(problem.key);
+  }
+  EXPECT_THAT(keys, testing::ElementsAre("obstacles.rough.thickness", "obstacles.rough.friction", "obstacles.rough.restitution",
+                                         "obstacles.slick.place", "obstacles.slick.thickness", "obstacles.slick.static_friction",
+                                         "obstacles.late.shape.radius", "obstacles.late.motion.keyframes[2]",
+                                         "obstacles.late.motion.keyframes[1]", "obstacles.late.motion.spin"));
+}
+
 }  // namespace
 }  // namespace sprung
