@@ -48,12 +48,27 @@ void finish_quietly(RunOutput& output, const std::string& outcome) {
   }
 }
 
+/// Tells once, as it happens, that particles had to yield: contact could not keep them outside of all obstacles.
+void warn_of_squeezing(const FrameDiagnostics& frame, RunOutput& output, bool& warned) {
+  if (warned || frame.squeezed == 0) return;
+  warned = true;
+  const std::string warning = fmt::format(
+      "frame {}: particles found no free place between obstacles {} times and may end inside one; the column squeezed of "
+      "diagnostics.csv counts them",
+      frame.frame, frame.squeezed);
+  output.add_warning(warning);
+  print_warning(warning);
+}
+
 /// Writes frames until all are done or the user interrupts; returns how many.
 int write_frames(LoadedScene& loaded, RunOutput& output, bool quiet) {
   FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
   Progress progress(loaded.frames, quiet);
+  bool warned = false;
   for (int frame = 1;; ++frame) {
-    output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
+    const FrameDiagnostics diagnostics = frame == 1 ? runner.first_frame() : runner.next_frame();
+    output.write_frame(loaded.simulator, diagnostics);
+    warn_of_squeezing(diagnostics, output, warned);
     progress.frame_done(frame);
     if (frame == loaded.frames || interrupted()) return frame;
   }

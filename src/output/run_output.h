@@ -25,6 +25,9 @@ class RunOutput {
   /// the frame remains.
   void write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics);
 
+  /// Adds a warning that the run gave rise to; the next frame, or `finish`, writes it into run.json.
+  void add_warning(const std::string& warning) { record_.add_warning(warning); }
+
   /// Writes how the run ended into run.json: `done`, `interrupted`, `diverged: ...`. Throws FileError.
   void finish(const std::string& outcome);
 

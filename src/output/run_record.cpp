@@ -44,6 +44,8 @@ RunRecord::RunRecord(const RunFacts& facts, double step, const std::vector<std::
 
 RunRecord::~RunRecord() = default;
 
+void RunRecord::add_warning(const std::string& warning) { document_->json["warnings"].push_back(warning); }
+
 std::string RunRecord::text(const RunProgress& progress) const {
   Json& json = document_->json;
   json["outcome"] = progress.outcome;

@@ -38,6 +38,9 @@ class RunRecord {
   RunRecord(const RunFacts& facts, double step, const std::vector<std::string>& files);
   ~RunRecord();
 
+  /// Adds to the warnings that the facts brought.
+  void add_warning(const std::string& warning);
+
   [[nodiscard]] std::string text(const RunProgress& progress) const;
 
  private:

@@ -18,6 +18,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using testing::Ending;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 using testing::listing;
 using testing::Program;
 using testing::read_text;
@@ -95,6 +96,22 @@ TEST_F(CommandLine, SameBitsForAnyNumberOfThreadsAndEachRun) {
     EXPECT_TRUE(text == read_text(scratch_ / ("again/" + name))) << name;
   }
   EXPECT_THAT(listing(out("one")), Contains("cloth/cloth.0007.obj"));
+}
+
+TEST_F(CommandLine, RunWarnsOnceOfWhatIsSqueezedBetweenObstacles) {
+  json scene = rope_scene();
+  scene["bodies"]["rope"].erase("pins");
+  scene["bodies"]["rope"]["place"]["position"] = {0, -1.9, 0};  // 0.1 m above the anvil
+  scene["obstacles"]["anvil"]["shape"] = {{"type", "half_space"}};
+  scene["obstacles"]["hammer"] = {
+      {"shape", {{"type", "box"}, {"size", {4, 1, 4}}}},
+      {"place", {{"position", {0, 0.7, 0}}}},
+      {"motion", {{"keyframes", {{{"time", 0}, {"position", {0, 0, 0}}}, {{"time", 0.1}, {"position", {0, -0.5, 0}}}}}}}};
+  const Ending ending = run({"run", save(scene), "--out", out()});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.err, HasSubstr("found no free place between obstacles"));
+  ASSERT_EQ(record()["warnings"].size(), 1U);
+  EXPECT_THAT(record()["warnings"][0].get<std::string>(), StartsWith("frame "));
 }
 
 TEST_F(CommandLine, ValidatePrintsWhatFollowsFromTheScene) {
