@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace sprung {
 namespace {
 
@@ -38,17 +40,20 @@ TEST(ClothOnBunny, EndsDrapedWithNoParticleInside) {
   ASSERT_EQ(run.frames(), 121);
   const TriangleMesh bunny = import_mesh(run.output() / "obstacles" / "bunny.obj").mesh;
   const Parity parity(bunny);
-  for (int frame = 1; frame <= run.frames(); frame += 4) {
+  for (int frame = 1; frame <= run.frames(); ++frame) {
     ASSERT_EQ(count_inside(parity, run.positions("cloth", frame)), 0) << "frame " << frame;
   }
 
-  // Draped: it lies on the bunny, hangs down its sides to below its back, and has come to rest.
   const Points end = run.positions("cloth", run.frames());
+  EXPECT_GT(end.row(1).maxCoeff(), bounds(bunny.vertices).max().y()) << "it lies over the tips of the ears";
+  // Measured values, and bounds that leave a factor of two: 421 contacts, and -0.42 m, where the bunny's middle is at 0.
   EXPECT_GT(run.column("contacts").back(), 200);
-  EXPECT_GT(end.row(1).maxCoeff(), 0.49);  // the tip of the ears is at 0.4956 m
-  EXPECT_LT(end.row(1).minCoeff(), -0.1);
-  EXPECT_LT(run.column("kinetic_energy").back(), 1e-3 * run.column("kinetic_energy")[10]);
-  EXPECT_LT(run.column("max_stretch").back(), 0.025);  // the limit of 2 %, its tolerance, and what contact left of it
+  EXPECT_LT(end.row(1).minCoeff(), -0.2) << "it hangs down the sides";
+  // Measured: 2.1e-4 of the most, which is that of the fall.
+  const std::vector<double>& kinetic = run.column("kinetic_energy");
+  EXPECT_LT(kinetic.back(), 1e-3 * *std::max_element(kinetic.begin(), kinetic.end())) << "it has come to rest";
+  // The limit of 2 %, its tolerance of 0.2 %, and as much again as that for what contact undid after it. Measured: 2.1 %.
+  EXPECT_LT(run.column("max_stretch").back(), 0.024);
 }
 
 TEST(JellyOnStairs, TumblesDownAndStaysOutside) {
@@ -62,8 +67,11 @@ TEST(JellyOnStairs, TumblesDownAndStaysOutside) {
     ASSERT_GE(positions.row(1).minCoeff(), 0.0) << "frame " << frame;
   }
   const Points end = run.positions("jelly", run.frames());
-  EXPECT_GT(end.row(0).mean(), run.positions("jelly", 1).row(0).mean() + 0.5) << "it went down some steps";
-  EXPECT_GT((end.rowwise().maxCoeff() - end.rowwise().minCoeff()).prod(), 0.5 * 0.4 * 0.4 * 0.4) << "it is still a jelly";
+  // A step is 0.3 m deep. Measured: 2.2 m.
+  EXPECT_GT(end.row(0).mean(), run.positions("jelly", 1).row(0).mean() + 2 * 0.3) << "it went down some steps";
+  // However a cube is turned, the box around it is no smaller. Its weight presses it flatter by at most the part
+  // density g side / modulus = 1000 * 9.81 * 0.4 / 150000 = 2.6 %. Measured: 2.2 cubes.
+  EXPECT_GT((end.rowwise().maxCoeff() - end.rowwise().minCoeff()).prod(), 0.97 * 0.4 * 0.4 * 0.4) << "it is still a jelly";
 }
 
 }  // namespace

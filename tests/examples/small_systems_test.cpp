@@ -47,7 +47,7 @@ TEST(TooLargeStep, IsRefusedWithTheLargestStableOne) {
 TEST(TooLargeStep, DivergesClearlyWhenOnlyWarnedOf) {
   const ExampleRun run("too_large_step_warned");
   EXPECT_EQ(run.exit_code(), 4);
-  for (const char* part : {"diverged", "step", "time", "\"masses\"", "particle 1", "spring 0"}) {
+  for (const char* part : {"diverged", "step", "time", "\"masses\"", "particle 1", "spring 0", "use a step of at most"}) {
     EXPECT_THAT(run.messages(), HasSubstr(part));
   }
 }
@@ -148,10 +148,13 @@ TEST(HangingCloth, HangsBelowItsHeldCornersWithinItsStretchLimit) {
   const Index corners[] = {31 * 32, 31 * 32 + 31};
   for (const Index corner : corners) EXPECT_EQ(x.col(corner), start.col(corner)) << "held";
   EXPECT_LT(x.row(1).maxCoeff(), 1.2 + 1e-9) << "nothing ends above the corners";
+  // Straight down its sides reach 1 m below the corners; wind and what is left of the swing may turn it by acos(0.8) = 37 degrees.
+  // Measured: 1.05 m, as its middle sags.
   EXPECT_LE(x.row(1).minCoeff(), 1.2 - 0.8) << "it has swung down";
   for (int frame = 1; frame <= run.frames(); ++frame) {
     const double excess = run.column("stretch_excess")[frame - 1];
     ASSERT_LE(run.column("max_stretch")[frame - 1], 0.02 + excess + 1e-12) << "frame " << frame << " stretches as reported";
+    // 64 passes do not always reach the tolerance. Measured: 0.0054 at most; half the limit leaves nearly a factor of two.
     ASSERT_LT(excess, 0.01) << "frame " << frame << " keeps the limit but for half of it";
   }
 }
