@@ -28,7 +28,7 @@ struct ProfilePoint {
 };
 
 /// The nearest point of a convex profile, given as the corners of its rim from the axis round to the axis, solid on the left.
-/// Lengths below `rounding` have no direction.
+/// Beside a corner, directions of lengths below `rounding` may leave the range between the corner's sides.
 ProfilePoint profile_surface(std::span<const Vector2> rim, const Vector2& p, double rounding) {
   ProfilePoint plane{.distance = -std::numeric_limits<double>::infinity()};
   ProfilePoint nearest{.distance = std::numeric_limits<double>::infinity()};
@@ -41,7 +41,10 @@ ProfilePoint profile_surface(std::span<const Vector2> rim, const Vector2& p, dou
     const double t = along.dot(p - rim[k]) / along.squaredNorm();
     const Vector2 point = t <= 0.0 ? rim[k] : t >= 1.0 ? rim[k + 1] : Vector2(rim[k] + t * along);
     const double distance = (p - point).norm();
-    if (distance < nearest.distance) nearest = {point, (p - point) / distance, distance};
+    // Beside a side, not a corner, the direction is the side's own, which close to it is far better than that of a short
+    // difference.
+    const bool beside = t > 0.0 && t < 1.0;
+    if (distance < nearest.distance) nearest = {point, beside ? normal : Vector2((p - point) / distance), distance};
   }
   if (plane.distance <= 0.0) return plane;
   if (nearest.distance <= rounding) nearest.normal = plane.normal;
@@ -52,7 +55,7 @@ ProfilePoint profile_surface(std::span<const Vector2> rim, const Vector2& p, dou
 SurfacePoint revolved_surface(std::span<const Vector2> rim, const Vector3& p) {
   const double radius = std::hypot(p.x(), p.z());
   const Vector3 outward = radius > 0.0 ? Vector3(p.x() / radius, 0.0, p.z() / radius) : Vector3::UnitX();
-  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * p.norm();
+  const double rounding = 1e-12 * p.norm();
   const ProfilePoint found = profile_surface(rim, Vector2(radius, p.y()), rounding);
   const auto in_space = [&](const Vector2& q) { return Vector3(q.x() * outward + q.y() * Vector3::UnitY()); };
   return {in_space(found.point), in_space(found.normal), found.distance};
