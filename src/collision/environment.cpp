@@ -37,6 +37,11 @@ std::optional<LocalContact> find_contact(const ObstacleShape& shape, const Local
   return at(*surface);
 }
 
+bool is_open(const Obstacle& obstacle) {
+  const auto* mesh = std::get_if<MeshGeometry>(&obstacle.geometry);
+  return mesh != nullptr && !mesh->closed;
+}
+
 }  // namespace
 
 struct Environment::Implementation {
@@ -102,13 +107,17 @@ std::vector<Environment::Inside> Environment::inside(const Points& positions) co
     const Box3 box = finite_bounds(positions, begin, end);
     if (box.isEmpty()) return;
     std::vector<Index> near;
-    set.find_near(grown(box, 0.0), near);
+    set.find_near(grown(box, set.max_clearance(box)), near);
     for (Index i = begin; i < end; ++i) {
       for (const Index k : near) {
         const Vector3 p = set.local(k, positions.col(i));
-        if (!p.allFinite() || !set.shape(k).contains(p)) continue;
-        const auto surface = set.shape(k).nearest(p, std::numeric_limits<double>::infinity());
-        found.push_back({i, k, -surface->distance});
+        if (!p.allFinite()) continue;
+        if (set.shape(k).contains(p)) {
+          const auto surface = set.shape(k).nearest(p, std::numeric_limits<double>::infinity());
+          found.push_back({i, k, -surface->distance});
+        } else if (is_open(set.obstacle(k)) && set.shape(k).nearest(p, set.clearance(k, positions.col(i), positions.col(i)))) {
+          found.push_back({i, k, 0.0});
+        }
       }
     }
   });
@@ -127,7 +136,7 @@ std::optional<double> Environment::min_distance(const Points& positions, double 
           for (const Index k : near) {
             const Vector3 p = set.local(k, positions.col(i));
             if (!p.allFinite()) continue;
-            if (const auto surface = set.shape(k).nearest(p, radius)) smallest = std::min(smallest, surface->distance);
+            if (const auto surface = set.shape(k).nearest(p, smallest)) smallest = std::min(smallest, surface->distance);
           }
         }
         if (smallest < radius) found.push_back(smallest);

@@ -62,11 +62,12 @@ class Environment {
   /// number that found no free place and were left where the last obstacle they met carried them.
   std::vector<Index> truncate(const Points& before, Points& after, const std::vector<char>& held, Index& squeezed) const;
 
-  /// Particles inside a closed obstacle at pose_after, with the obstacle, sorted by particle.
+  /// Particles that are on no free side of an obstacle at pose_after, sorted by particle: inside a closed one, or within clearance
+  /// of an open mesh, where a particle that comes from nowhere has no side.
   struct Inside {
     Index particle;
     Index obstacle;
-    double depth;
+    double depth;  ///< [m]; 0 on an open mesh
   };
   [[nodiscard]] std::vector<Inside> inside(const Points& positions) const;
 

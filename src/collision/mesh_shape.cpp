@@ -1,6 +1,7 @@
 #include "collision/mesh_shape.h"
 
 #include "base/error.h"
+#include "base/format.h"
 #include "geometry/side_of_plane.h"
 
 #include <algorithm>
@@ -14,13 +15,20 @@ namespace {
 // Closest points are off by some tens of roundings of the largest coordinate that they are computed from.
 constexpr double kRounding = 1e-14;
 
+// Distances are first bounded in single precision, in which the square of a larger coordinate would not be finite.
+constexpr double kLargestCoordinate = 1e15;
+
 void require_usable(const TriangleMesh& mesh) {
   std::vector<Problem> problems;
   if (mesh.triangles.cols() == 0) problems.push_back({.key = "mesh", .rule = "must have triangles"});
   for (Index i = 0; i < mesh.vertices.cols(); ++i) {
-    if (mesh.vertices.col(i).allFinite()) continue;
+    if ((mesh.vertices.col(i).array().abs() <= kLargestCoordinate).all()) continue;
+    const bool finite = mesh.vertices.col(i).allFinite();
     problems.push_back(
-        {.key = "mesh: vertex " + std::to_string(i), .rule = "must be finite", .remedy = "import and clean the mesh"});
+        {.key = "mesh: vertex " + std::to_string(i),
+         .rule = finite ? "must be within " + format_number(kLargestCoordinate) + " m of the origin" : "must be finite",
+         .remedy = finite ? "use a smaller scale" : "import and clean the mesh"});
+    break;  // the first stands for all
   }
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
     const auto corners = mesh.triangles.col(t);

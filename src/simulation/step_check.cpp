@@ -65,11 +65,15 @@ void refuse_inside(const SpringNetwork& network, const Environment& environment,
   }
   std::vector<Problem> problems;
   for (const auto& [names, entry] : found) {
-    problems.push_back(
-        {.key = "bodies." + names.first,
-         .value = std::to_string(entry.count) + " particles, the first " + std::to_string(entry.first),
-         .rule = "start inside obstacle \"" + names.second + "\", up to " + format_number(entry.deepest, 3) + " m deep",
-         .remedy = "move the body or the obstacle, so that they do not overlap at time 0"});
+    const bool inside = entry.deepest > 0.0;
+    const std::string where =
+        inside ? "start inside obstacle \"" + names.second + "\", up to " + format_number(entry.deepest, 3) + " m deep"
+               : "start on the open surface of obstacle \"" + names.second + "\", where they are on neither side";
+    problems.push_back({.key = "bodies." + names.first,
+                        .value = std::to_string(entry.count) + " particles, the first " + std::to_string(entry.first),
+                        .rule = where,
+                        .remedy = inside ? "move the body or the obstacle, so that they do not overlap at time 0"
+                                         : "move the body a little to the side where it should stay"});
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }

@@ -18,11 +18,11 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using testing::Ending;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 using testing::listing;
 using testing::Program;
 using testing::read_text;
 using testing::rope_scene;
+using ::testing::StartsWith;
 using testing::write_text;
 
 TEST_F(CommandLine, RunWritesTheFramesAndSaysSoOnStandardErrorOnly) {

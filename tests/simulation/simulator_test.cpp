@@ -134,6 +134,28 @@ TEST(Simulator, ParticlesInsideAnObstacleAtTheStartAreRefused) {
   }
 }
 
+TEST(Simulator, ParticlesOnAnOpenSurfaceAtTheStartAreRefused) {
+  TriangleMesh sheet;
+  sheet.vertices = (Points(3, 3) << 0, 1, 0, 0, 0, 0, 0, 0, 1).finished();
+  sheet.triangles = (Triangles(3, 1) << 0, 2, 1).finished();
+  const Obstacle obstacle{.name = "sheet", .geometry = MeshGeometry{.mesh = std::make_shared<TriangleMesh>(sheet)}};
+  try {
+    Simulator simulator(one_particle({0.25, 0.0, 0.25}), {}, {obstacle});
+    FAIL() << "was accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("on neither side"));
+  }
+  EXPECT_NO_THROW(Simulator(one_particle({0.25, 1e-6, 0.25}), {}, {obstacle}));
+}
+
+TEST(Simulator, AMeshTooLargeForItsTreeIsRefused) {
+  TriangleMesh sheet;
+  sheet.vertices = 1e28 * (Points(3, 3) << 0, 1, 0, 0, 0, 0, 0, 0, 1).finished();
+  sheet.triangles = (Triangles(3, 1) << 0, 2, 1).finished();
+  const Obstacle obstacle{.name = "sheet", .geometry = MeshGeometry{.mesh = std::make_shared<TriangleMesh>(sheet)}};
+  EXPECT_THROW(Simulator(one_particle({0.25, 1.0, 0.25}), {}, {obstacle}), InputError);
+}
+
 TEST(Simulator, SameBitsForAnyNumberOfThreads) {
   std::vector<Points> results;
   for (const int threads : {1, 2, 2}) {
