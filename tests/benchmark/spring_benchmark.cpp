@@ -37,7 +37,7 @@ void disturb(SpringNetwork& network) {
 
 void count_springs(benchmark::State& state, Index springs) {
   state.SetItemsProcessed(state.iterations() * springs);
-  state.counters["ns_per_spring"] =
+  state.counters["per_spring"] =
       benchmark::Counter(static_cast<double>(springs), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
