@@ -24,13 +24,13 @@ using Violations = std::vector<SchemaViolation>;
 constexpr std::size_t kMostViolations = 1000;  // enough for any person to read; they are compared with each other
 
 const valijson::Schema& parsed_schema() {
-  static const auto schema = [] {
+  static const auto kSchema = [] {
     const PlainJson text = PlainJson::parse(scene_schema());
     auto parsed = std::make_unique<valijson::Schema>();
     valijson::SchemaParser(valijson::SchemaParser::kDraft7).populateSchema(valijson::adapters::NlohmannJsonAdapter(text), *parsed);
     return parsed;
   }();
-  return *schema;
+  return *kSchema;
 }
 
 /// JSON has one kind of number, where 64.0 is a whole one; valijson goes by how it was written.

@@ -19,7 +19,7 @@ inline std::ostream& operator<<(std::ostream& stream, const BrokenScene& scene) 
 
 // clang-format off
 inline const std::vector<BrokenScene>& broken_scenes() {
-  static const std::vector<BrokenScene> scenes{
+  static const std::vector<BrokenScene> kScenes{
       {"UnknownKeyOfTheScene", {"duraton=1"}, "duraton", "is not a known key; did you mean \"duration\"?"},
       {"UnknownKeyOfASpring", {"bodies.banner.springs.structural.stifness=1"}, "bodies.banner.springs.structural.stifness", "did you mean \"stiffness\"?"},
       {"UnknownKeyOfAPin", {"bodies.banner.pins[0].wich=[]"}, "bodies.banner.pins[0].wich", "did you mean \"which\"?"},
@@ -109,7 +109,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"NameWithASlash", {"bodies.a/b.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}", "bodies.a/b.mass=1"}, "bodies.a/b", "letters, digits, _ and -"},
       {"NameIsTaken", {"bodies.obstacles.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}", "bodies.obstacles.mass=1"}, "bodies.obstacles", "the name is taken"},
   };
-  return scenes;
+  return kScenes;
 }
 // clang-format on
 
