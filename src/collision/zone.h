@@ -1,0 +1,49 @@
+// Convex free space around an element of the network, in an obstacle's own frame: while each corner of the element stays inside,
+// nothing of the element crosses the obstacle, whatever the corners do, because what is convex holds their hull.
+#pragma once
+
+#include "base/types.h"
+
+#include <array>
+#include <limits>
+
+namespace sprung {
+
+/// normal . x >= offset; unit normal.
+struct HalfSpace {
+  Vector3 normal = Vector3::Zero();
+  double offset = 0.0;  ///< [m]
+};
+
+/// The corners of an element in the obstacle's frame [m].
+struct ElementCorners {
+  std::array<Vector3, 3> x{};
+  int count = 0;
+};
+
+/// What a zone is asked to be.
+struct ZoneRequest {
+  double reach = 0.0;  ///< the box is the element's, this much [m] larger on each side, where the obstacle lets it; > 0
+  double gap = 0.0;    ///< what contact keeps between element and obstacle [m]: planes stand off by at most half of it
+  double clearance =
+      0.0;  ///< planes stand off the obstacle at least this much [m], above rounding, where the element does too; > 0
+};
+
+/// The box and the half-spaces together hold the element and, at the end of the interval, nothing of the obstacle.
+struct Zone {
+  static constexpr int kMostPlanes = 4;
+
+  Box3 box;
+  std::array<HalfSpace, kMostPlanes> planes{};
+  int plane_count = 0;
+  bool broken = false;  ///< element and obstacle touch or cross: there is no such zone, nothing is promised
+
+  /// The nearest points of element and obstacle, where the obstacle comes within the box; else distance is infinite.
+  double distance = std::numeric_limits<double>::infinity();  ///< [m]
+  Vector3 point = Vector3::Zero();                            ///< on the obstacle
+  Vector3 normal = Vector3::Zero();                           ///< from it to the element, unit length
+  Vector3 weights = Vector3::Zero();                          ///< of the element's corners; their sum is 1
+  Index triangle = kNone;                                     ///< of the obstacle; where the next search may begin
+};
+
+}  // namespace sprung
