@@ -2,7 +2,7 @@
 // nothing of the element crosses the obstacle, whatever the corners do, because what is convex holds their hull.
 #pragma once
 
-#include "base/types.h"
+#include "geometry/closest_pair.h"
 
 #include <array>
 #include <limits>
@@ -15,18 +15,14 @@ struct HalfSpace {
   double offset = 0.0;  ///< [m]
 };
 
-/// The corners of an element in the obstacle's frame [m].
-struct ElementCorners {
-  std::array<Vector3, 3> x{};
-  int count = 0;
-};
+/// The corners of an element in the obstacle's frame.
+using ElementCorners = Simplex;
 
-/// What a zone is asked to be.
+/// What a zone is asked to be. All lengths [m], > 0.
 struct ZoneRequest {
-  double reach = 0.0;  ///< the box is the element's, this much [m] larger on each side, where the obstacle lets it; > 0
-  double gap = 0.0;    ///< what contact keeps between element and obstacle [m]: planes stand off by at most half of it
-  double clearance =
-      0.0;  ///< planes stand off the obstacle at least this much [m], above rounding, where the element does too; > 0
+  double reach = 0.0;      ///< the box is the element's, this much larger on each side, where the obstacle lets it
+  double gap = 0.0;        ///< what contact keeps between element and obstacle: planes stand off by at most half of it
+  double clearance = 0.0;  ///< planes stand off at least this much, above rounding, where the element does too
 };
 
 /// The box and the half-spaces together hold the element and, at the end of the interval, nothing of the obstacle.

@@ -1,0 +1,43 @@
+// Closest points of two simplices: what two surfaces are to each other.
+#pragma once
+
+#include "geometry/closest_point.h"
+
+#include <array>
+
+namespace sprung {
+
+/// The point of segment (a0, a1) at `s` and that of (b0, b1) at `t`, both in [0, 1], that are nearest to each other.
+struct SegmentPair {
+  double s = 0.0;
+  double t = 0.0;
+  double squared_distance = 0.0;  ///< [m^2]
+};
+
+/// Ericson 2005, section 5.1.9. Segments may be parallel or have no length.
+[[nodiscard]] SegmentPair closest_points_of_segments(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1);
+
+/// Weights of the corners whose sum is the point that `closest` names on triangle (a, b, c); they are not negative, their sum is 1.
+[[nodiscard]] Vector3 barycentric(const ClosestPoint& closest, const Vector3& a, const Vector3& b, const Vector3& c);
+
+/// A point, a segment or a triangle: the convex hull of its corners [m].
+struct Simplex {
+  std::array<Vector3, 3> x{};
+  int count = 0;  ///< of the corners used, 1 to 3
+};
+
+/// The points of a simplex and of a triangle that are nearest to each other.
+struct ClosestPair {
+  Vector3 on_simplex = Vector3::Zero();
+  Vector3 on_triangle = Vector3::Zero();
+  Vector3 weights = Vector3::Zero();  ///< of the simplex's corners; their sum is 1
+  double squared_distance = 0.0;      ///< [m^2]
+};
+
+/// The nearest pair among corner and face, face and corner, edge and edge: right for simplices that do not cross. Where they do,
+/// the distance has no meaning, and no plane separates them along the line between the points. With `slack` > 0 edges are not
+/// looked at once corners and faces give a pair whose plane separates by (1 - slack) of its distance, which then is at most 1 / (1
+/// - slack) of the true one.
+[[nodiscard]] ClosestPair closest_pair(const Simplex& simplex, const std::array<Vector3, 3>& triangle, double slack = 0.0);
+
+}  // namespace sprung
