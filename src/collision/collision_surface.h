@@ -35,6 +35,7 @@ struct CollisionSurface {
   Scalars thickness;                 ///< each particle's share of the gap [m]
   std::vector<char> pinned;          ///< 1 for particles that follow their pin, whatever is in the way
   std::vector<char> self;            ///< by body: whether its elements collide with each other
+  std::vector<char> others;          ///< by body: whether they collide with those of other bodies that do so too
   std::vector<double> element_size;  ///< by body: the mean length [m] of its elements' edges; 0 for single particles
 
   /// The patches that hold a particle: slots [first_slot[i], first_slot[i + 1]).
@@ -44,8 +45,9 @@ struct CollisionSurface {
 
 /// Cuts the elements, which are sorted by body, into patches of neighbours by bisecting their middles at `positions` [m], 3 x n;
 /// particles without an element get one of their own. `body_of` names each particle's body. Sizes are measured at `positions`.
+/// The other arguments become the members of the same name.
 [[nodiscard]] CollisionSurface make_collision_surface(std::vector<Element> elements, const Points& positions,
                                                       const std::vector<Index>& body_of, Scalars thickness,
-                                                      std::vector<char> pinned, std::vector<char> self);
+                                                      std::vector<char> pinned, std::vector<char> self, std::vector<char> others);
 
 }  // namespace sprung

@@ -69,12 +69,13 @@ void NetworkBuilder::add_spring(Index i, Index j, double stiffness, double rest_
   springs_.append(i, j, rest_length, stiffness, damping, kind);
 }
 
-void NetworkBuilder::begin_body(const std::string& name, const ContactMaterial& material) {
-  drafts_.push_back({name, {}, material, particle_count_, false});
+void NetworkBuilder::begin_body(const std::string& name, const ContactMaterial& material, const BodyContact& contact) {
+  drafts_.push_back({name, {}, material, contact, particle_count_, false});
 }
 
-Index NetworkBuilder::add_body(const std::string& name, const BodyShape& shape, const ContactMaterial& material) {
-  drafts_.push_back({name, shape, material, particle_count_, true});
+Index NetworkBuilder::add_body(const std::string& name, const BodyShape& shape, const ContactMaterial& material,
+                               const BodyContact& contact) {
+  drafts_.push_back({name, shape, material, contact, particle_count_, true});
   particle_count_ += static_cast<Index>(shape.positions.size());
   return drafts_.back().first_particle;
 }
@@ -130,7 +131,7 @@ SpringNetwork NetworkBuilder::build() const {
     const Index first_spring = network.springs.count();
     append_sorted(network.springs, draft.shape.springs, draft.first_particle);
     network.bodies.push_back({draft.name, draft.first_particle, static_cast<Index>(draft.shape.positions.size()), first_spring,
-                              network.springs.count() - first_spring, draft.shape.surface, draft.material});
+                              network.springs.count() - first_spring, draft.shape.surface, draft.material, draft.contact});
   }
   network.inverse_masses = network.masses.cwiseInverse();
   network.pins = pins_;

@@ -22,10 +22,11 @@ class NetworkBuilder {
                   SpringKind kind = SpringKind::structural);
 
   /// Particles and springs that follow belong to a new body of this name.
-  void begin_body(const std::string& name, const ContactMaterial& material = {});
+  void begin_body(const std::string& name, const ContactMaterial& material = {}, const BodyContact& contact = {});
 
   /// Adds a whole body, placed already. Returns the number of its first particle.
-  Index add_body(const std::string& name, const BodyShape& shape, const ContactMaterial& material = {});
+  Index add_body(const std::string& name, const BodyShape& shape, const ContactMaterial& material = {},
+                 const BodyContact& contact = {});
 
   /// Holds a particle where it is, or moves it along `motion`, which turns about `origin` [m].
   void pin(Index particle, const Motion& motion = {}, const Vector3& origin = Vector3::Zero());
@@ -41,6 +42,7 @@ class NetworkBuilder {
     std::string name;
     BodyShape shape;
     ContactMaterial material;
+    BodyContact contact;
     Index first_particle = 0;
     bool whole = false;  ///< added as a whole body: takes no more particles
   };

@@ -35,6 +35,12 @@ struct Surface {
   Edges segments;       ///< of ropes: the edges that no triangle has
 };
 
+/// What of the network a body collides with.
+struct BodyContact {
+  bool self = false;   ///< its own elements, as in a cloth that folds onto itself
+  bool others = true;  ///< other bodies that have this set too
+};
+
 /// A named range of particles and springs.
 struct Body {
   std::string name;
@@ -44,6 +50,7 @@ struct Body {
   Index spring_count = 0;
   Surface surface;
   ContactMaterial material;
+  BodyContact contact;
 };
 
 /// Particles held where their motion takes them. With the default motion they stay where they began.
