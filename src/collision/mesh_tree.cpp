@@ -45,6 +45,11 @@ MeshTree::MeshTree(const TriangleMesh& mesh) : model_(build_model(mesh)), magnit
   add_node({0}, 1);
 }
 
+std::array<Vector3, 3> MeshTree::corners(Index triangle) const {
+  const fcl::Triangle& corner = model_->tri_indices[triangle];
+  return {model_->vertices[corner[0]], model_->vertices[corner[1]], model_->vertices[corner[2]]};
+}
+
 std::int32_t MeshTree::add_node(const std::vector<int>& roots, int depth) {
   const auto& tree = *model_;
   const auto opens = [&](int bv) { return tree.getBV(bv).first_child >= 0; };

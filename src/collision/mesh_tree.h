@@ -8,6 +8,7 @@
 
 #include <fcl/geometry/bvh/BVH_model.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -52,6 +53,13 @@ class MeshTree {
     Vector3 c;
     Index triangle;
   };
+
+  // What walks read: the root is node 0.
+  [[nodiscard]] const Node& node(std::int32_t i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const Leaf& leaf(std::int32_t i) const { return leaves_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] std::size_t stack_size() const { return stack_size_; }
+  [[nodiscard]] double magnitude() const { return magnitude_; }
+  [[nodiscard]] std::array<Vector3, 3> corners(Index triangle) const;
 
  private:
   std::int32_t add_node(const std::vector<int>& children, int depth);

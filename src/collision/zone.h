@@ -23,18 +23,23 @@ struct ZoneRequest {
   double reach = 0.0;      ///< the box is the element's, this much larger on each side, where the obstacle lets it
   double gap = 0.0;        ///< what contact keeps between element and obstacle: planes stand off by at most half of it
   double clearance = 0.0;  ///< planes stand off at least this much, above rounding, where the element does too
+  double exact = 0.0;      ///< nearest points are to be the true ones where they are nearer than this; may be 0
 };
 
-/// The box and the half-spaces together hold the element and, at the end of the interval, nothing of the obstacle.
+/// What the box and the half-spaces have in common holds the element and, at the end of the interval, nothing of the obstacle.
 struct Zone {
   static constexpr int kMostPlanes = 4;
 
   Box3 box;
   std::array<HalfSpace, kMostPlanes> planes{};
   int plane_count = 0;
+  double free_radius = std::numeric_limits<double>::infinity();  ///< besides, no corner may move farther than this [m]
   bool broken = false;  ///< element and obstacle touch or cross: there is no such zone, nothing is promised
 
-  /// The nearest points of element and obstacle, where the obstacle comes within the box; else distance is infinite.
+  double clear = 0.0;  ///< nothing of the obstacle was nearer to the element than this [m]
+
+  /// The nearest points of element and obstacle (near enough to them, where farther apart than `exact`), if the obstacle comes
+  /// within the box; else distance is infinite.
   double distance = std::numeric_limits<double>::infinity();  ///< [m]
   Vector3 point = Vector3::Zero();                            ///< on the obstacle
   Vector3 normal = Vector3::Zero();                           ///< from it to the element, unit length

@@ -1,0 +1,136 @@
+#include "collision/mesh_zone.h"
+
+#include "base/kernel.h"
+#include "collision/walk_stack.h"
+#include "collision/zone_builder.h"
+
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Sums of three products of single precision are right to this part of the largest coordinate.
+constexpr float kPlaneRounding = 0x1p-20F;
+
+float below(double value) { return std::nextafter(static_cast<float>(value), -kInfinity); }
+float above(double value) { return std::nextafter(static_cast<float>(value), kInfinity); }
+
+/// A box whose sides are rounded outward, as the nodes' are.
+struct FloatBox {
+  float min[3];
+  float max[3];
+};
+
+FloatBox float_box(const Box3& box) {
+  FloatBox rounded;
+  for (int axis = 0; axis < 3; ++axis) {
+    rounded.min[axis] = below(box.min()[axis]);
+    rounded.max[axis] = above(box.max()[axis]);
+  }
+  return rounded;
+}
+
+/// What is not to be visited any more, in single precision.
+struct Search {
+  FloatBox element{};
+  FloatBox box{};
+  float normal[Zone::kMostPlanes][3]{};
+  float limit[Zone::kMostPlanes]{};
+  int planes = 0;
+};
+
+void update(const ZoneBuilder& zone, float rounding, Search& search) {
+  search.box = float_box(zone.box());
+  for (; search.planes < zone.plane_count(); ++search.planes) {
+    const Vector3& normal = zone.normal(search.planes);
+    for (int axis = 0; axis < 3; ++axis) search.normal[search.planes][axis] = static_cast<float>(normal[axis]);
+    search.limit[search.planes] = below(zone.limit(search.planes)) - rounding;
+  }
+}
+
+/// Squared distances of a node's children from the element; infinite for those outside the box or behind a plane.
+SPRUNG_KERNEL void bound_children(const MeshTree::Node& node, const Search& search, TreeLanes& bounds) {
+  TreeLanes sum = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    const TreeLanes before = node.min[axis] - search.element.max[axis];
+    const TreeLanes behind = search.element.min[axis] - node.max[axis];
+    const TreeLanes farther = before > behind ? before : behind;
+    const TreeLanes outside = farther > 0.0F ? farther : TreeLanes{};
+    sum += outside * outside;
+    sum = (node.min[axis] > search.box.max[axis]) | (node.max[axis] < search.box.min[axis]) ? TreeLanes{} + kInfinity : sum;
+  }
+  for (int k = 0; k < search.planes; ++k) {
+    TreeLanes highest = {};
+    for (int axis = 0; axis < 3; ++axis) {
+      const float n = search.normal[k][axis];
+      highest += n * (n > 0.0F ? node.max[axis] : node.min[axis]);
+    }
+    sum = highest < search.limit[k] ? TreeLanes{} + kInfinity : sum;
+  }
+  bounds = sum;
+}
+
+/// Visits the leaves that may come within the zone, the nearest first as far as the tree knows.
+void carve(const MeshTree& tree, Index skipped, ZoneBuilder& zone) {
+  const double magnitude = std::max(tree.magnitude(), zone.box().max().cwiseAbs().cwiseMax(zone.box().min().cwiseAbs()).maxCoeff());
+  const float rounding = kPlaneRounding * static_cast<float>(magnitude);
+  Search search{.element = float_box(zone.element_box())};
+  update(zone, rounding, search);
+  WalkStack stack(tree.stack_size());
+  stack.push({0.0F, 0});
+  while (!stack.empty()) {
+    const WalkEntry entry = stack.pop();
+    if (entry.child < 0) {
+      const MeshTree::Leaf& leaf = tree.leaf(~entry.child);
+      if (leaf.triangle == skipped) continue;
+      zone.meet(leaf.triangle, {leaf.a, leaf.b, leaf.c});
+      update(zone, rounding, search);
+      continue;
+    }
+    TreeLanes bounds;
+    bound_children(tree.node(entry.child), search, bounds);
+    stack.push_within(bounds, tree.node(entry.child).child, std::numeric_limits<float>::max());
+  }
+}
+
+/// Visits the leaves that may be nearer than the nearest pair so far, and than `radius`.
+void find_nearest(const MeshTree& tree, const ElementCorners& element, double radius, const Zone& zone, ZoneBuilder& builder) {
+  const double reach = std::min(zone.distance, radius);
+  Search search{.element = float_box(builder.element_box())};
+  search.box = float_box({builder.element_box().min().array() - reach, builder.element_box().max().array() + reach});
+  const auto limit = [&] {
+    const double nearest = std::min(zone.distance, radius);
+    return static_cast<float>(std::min(nearest * nearest, 1e38)) * (1.0F + 0x1p-20F);
+  };
+  WalkStack stack(tree.stack_size());
+  stack.push({0.0F, 0});
+  while (!stack.empty()) {
+    const WalkEntry entry = stack.pop();
+    if (entry.bound > limit()) continue;
+    if (entry.child < 0) {
+      const MeshTree::Leaf& leaf = tree.leaf(~entry.child);
+      builder.keep_nearest(leaf.triangle, closest_pair(element, {leaf.a, leaf.b, leaf.c}));
+      continue;
+    }
+    TreeLanes bounds;
+    bound_children(tree.node(entry.child), search, bounds);
+    stack.push_within(bounds, tree.node(entry.child).child, limit());
+  }
+}
+
+}  // namespace
+
+void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone) {
+  const Index last = zone.triangle;
+  ZoneBuilder builder(element, request, zone);
+  if (last != kNone) builder.meet(last, tree.corners(last));
+  carve(tree, last, builder);
+  builder.finish();
+  if (!zone.broken && zone.clear < request.exact) find_nearest(tree, element, request.exact, zone, builder);
+}
+
+}  // namespace sprung

@@ -1,0 +1,14 @@
+// Free space around an element of the network between a mesh's triangles.
+#pragma once
+
+#include "collision/mesh_tree.h"
+#include "collision/zone.h"
+
+namespace sprung {
+
+/// Makes the zone of an element in the mesh's frame: triangles are met nearest first, and each one that comes within the box and is
+/// not behind a plane already gives a plane halfway to it, a smaller box, or, where there are many, a radius. `zone.triangle`,
+/// left from the element's last zone, is met before all others.
+void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone);
+
+}  // namespace sprung

@@ -1,0 +1,129 @@
+#include "collision/zone_builder.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+
+namespace {
+
+// A plane stands off the obstacle by this part of the gap: the rest is free for the element.
+constexpr double kStandOff = 0.3;
+
+// Edges are not looked at when corners and faces give a plane that separates by all but this part of the distance.
+constexpr double kPairSlack = 0.005;
+
+// The box ends this far before a triangle, as a part of what lies between, so that rounding does not bring them together.
+constexpr double kBoxMargin = 0.02;
+
+// Boxes are cut down to this part of the reach; what is nearer than that needs a plane.
+constexpr double kSmallestReach = 0.25;
+
+// Corners that move less than this part of the distance cannot bring the element to the triangle.
+constexpr double kFreePart = 0.9;
+
+// Below this part of the clearance, which is 2^-42 of the coordinates, a gap is not told from rounding.
+constexpr double kTouching = 0x1p-12;
+
+double highest_corner(const Vector3& normal, const TriangleCorners& corners) {
+  return std::max({normal.dot(corners[0]), normal.dot(corners[1]), normal.dot(corners[2])});
+}
+
+Box3 grown_by(const Box3& box, double reach) {
+  return {box.min() - Vector3::Constant(reach), box.max() + Vector3::Constant(reach)};
+}
+
+}  // namespace
+
+ZoneBuilder::ZoneBuilder(const ElementCorners& element, const ZoneRequest& request, Zone& zone)
+    : element_(element), request_(request), zone_(zone) {
+  zone_ = Zone{};
+  for (int i = 0; i < element.count; ++i) element_box_.extend(element.x[static_cast<std::size_t>(i)]);
+  zone_.box = grown_by(element_box_, request.reach);
+}
+
+void ZoneBuilder::meet(Index triangle, const TriangleCorners& corners) {
+  if (ruled_out(corners)) return;
+  if (zone_.plane_count == Zone::kMostPlanes && shrink_past(corners)) return;
+  separate(triangle, corners);
+}
+
+bool ZoneBuilder::ruled_out(const TriangleCorners& corners) const {
+  const Vector3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
+  const Vector3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
+  if ((low.array() > zone_.box.max().array()).any() || (high.array() < zone_.box.min().array()).any()) return true;
+  for (int k = 0; k < zone_.plane_count; ++k) {
+    if (highest_corner(normal(k), corners) <= limit(k)) return true;
+  }
+  return false;
+}
+
+bool ZoneBuilder::shrink_past(const TriangleCorners& corners) {
+  const Vector3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
+  const Vector3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
+  int axis = 0;
+  int axis_below = 0;
+  const double above = (low - element_box_.max()).maxCoeff(&axis);
+  const double below = (element_box_.min() - high).maxCoeff(&axis_below);
+  if (std::max(above, below) < kSmallestReach * request_.reach) return false;
+  if (above >= below) {
+    zone_.box.max()[axis] = element_box_.max()[axis] + (1.0 - kBoxMargin) * above;
+  } else {
+    zone_.box.min()[axis_below] = element_box_.min()[axis_below] - (1.0 - kBoxMargin) * below;
+  }
+  return true;
+}
+
+void ZoneBuilder::separate(Index triangle, const TriangleCorners& corners) {
+  const ClosestPair pair = closest_pair(element_, corners, kPairSlack);
+  keep_nearest(triangle, pair);
+  const Vector3 away = pair.on_simplex - pair.on_triangle;
+  const double distance = std::sqrt(pair.squared_distance);
+  const Vector3 normal = distance > 0.0 ? Vector3(away / distance) : Vector3::Zero();
+  const double highest = highest_corner(normal, corners);
+  const double gap = lowest_corner(normal) - highest;
+  if (!(gap > kTouching * request_.clearance)) {
+    zone_.broken = true;
+    return;
+  }
+  if (zone_.plane_count == Zone::kMostPlanes) {
+    zone_.free_radius = std::min(zone_.free_radius, kFreePart * gap);
+    return;
+  }
+  // Half of the gap that contact keeps is left to contact, and no element is asked to come nearer than it is.
+  const double stand_off = std::min(gap, std::max(request_.clearance, std::min(kStandOff * gap, 0.5 * request_.gap)));
+  const auto plane = static_cast<std::size_t>(zone_.plane_count++);
+  zone_.planes[plane] = {normal, highest + stand_off};
+  limits_[plane] = highest + 0.5 * std::min(stand_off, request_.clearance);
+}
+
+void ZoneBuilder::keep_nearest(Index triangle, const ClosestPair& pair) {
+  const double distance = std::sqrt(pair.squared_distance);
+  if (!(distance < zone_.distance)) return;
+  zone_.distance = distance;
+  zone_.point = pair.on_triangle;
+  zone_.normal = distance > 0.0 ? Vector3((pair.on_simplex - pair.on_triangle) / distance) : Vector3::Zero();
+  zone_.weights = pair.weights;
+  zone_.triangle = triangle;
+}
+
+void ZoneBuilder::finish() {
+  if (zone_.broken) {
+    zone_.plane_count = 0;
+    zone_.clear = 0.0;
+    return;
+  }
+  const Vector3 above = zone_.box.max() - element_box_.max();
+  const Vector3 below = element_box_.min() - zone_.box.min();
+  zone_.clear = std::min(above.minCoeff(), below.minCoeff());
+  zone_.clear = std::min(zone_.clear, zone_.free_radius);
+  for (int k = 0; k < zone_.plane_count; ++k) zone_.clear = std::min(zone_.clear, lowest_corner(normal(k)) - limit(k));
+}
+
+double ZoneBuilder::lowest_corner(const Vector3& normal) const {
+  double lowest = normal.dot(element_.x[0]);
+  for (int i = 1; i < element_.count; ++i) lowest = std::min(lowest, normal.dot(element_.x[static_cast<std::size_t>(i)]));
+  return lowest;
+}
+
+}  // namespace sprung

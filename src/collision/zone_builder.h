@@ -1,0 +1,46 @@
+// Makes a zone of the triangles that it is shown.
+#pragma once
+
+#include "collision/zone.h"
+
+#include <array>
+
+namespace sprung {
+
+using TriangleCorners = std::array<Vector3, 3>;
+
+class ZoneBuilder {
+ public:
+  /// Empties the zone. The zone keeps a reference to element, request and zone.
+  ZoneBuilder(const ElementCorners& element, const ZoneRequest& request, Zone& zone);
+
+  /// Makes the zone keep off the triangle, if it does not yet.
+  void meet(Index triangle, const TriangleCorners& corners);
+
+  /// Takes the pair as the nearest, if it is.
+  void keep_nearest(Index triangle, const ClosestPair& pair);
+
+  /// Tells how near the obstacle may be, after the last triangle.
+  void finish();
+
+  [[nodiscard]] const Box3& box() const { return zone_.box; }
+  [[nodiscard]] const Box3& element_box() const { return element_box_; }
+  [[nodiscard]] int plane_count() const { return zone_.plane_count; }
+  [[nodiscard]] const Vector3& normal(int plane) const { return zone_.planes[static_cast<std::size_t>(plane)].normal; }
+  /// What lies wholly below this is ruled out by the plane already.
+  [[nodiscard]] double limit(int plane) const { return limits_[static_cast<std::size_t>(plane)]; }
+
+ private:
+  [[nodiscard]] bool ruled_out(const TriangleCorners& corners) const;
+  [[nodiscard]] bool shrink_past(const TriangleCorners& corners);
+  void separate(Index triangle, const TriangleCorners& corners);
+  [[nodiscard]] double lowest_corner(const Vector3& normal) const;
+
+  const ElementCorners& element_;
+  const ZoneRequest& request_;
+  Zone& zone_;
+  Box3 element_box_;
+  std::array<double, Zone::kMostPlanes> limits_{};
+};
+
+}  // namespace sprung

@@ -1,0 +1,153 @@
+#include "collision/mesh_zone.h"
+
+#include "collision/segment_triangle.h"
+#include "collision/zone_builder.h"
+#include "sample_meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+using test::Random;
+
+Box3 box_of(const ElementCorners& element) {
+  Box3 box;
+  for (int i = 0; i < element.count; ++i) box.extend(element.x[static_cast<std::size_t>(i)]);
+  return box;
+}
+
+bool meets(const Vector3& a, const Vector3& b, const TriangleCorners& t) {
+  return crossing_fraction(a, b, t[0], t[1], t[2], CrossingSides::both).has_value();
+}
+
+/// Whether an edge of the one crosses the other, by exact signs, over all triangles.
+bool crosses(const ElementCorners& element, const MeshTree& tree, Index triangles) {
+  const Box3 box = box_of(element);
+  for (Index t = 0; t < triangles; ++t) {
+    const TriangleCorners corners = tree.corners(t);
+    Box3 around;
+    for (const Vector3& corner : corners) around.extend(corner);
+    if (!around.intersects(box)) continue;
+    for (int i = 0; i + 1 < element.count || (element.count == 3 && i < 3); ++i) {
+      if (meets(element.x[static_cast<std::size_t>(i)], element.x[static_cast<std::size_t>((i + 1) % element.count)], corners)) {
+        return true;
+      }
+    }
+    for (std::size_t i = 0; element.count == 3 && i < 3; ++i) {
+      if (meets(corners[i], corners[(i + 1) % 3], element.x)) return true;
+    }
+  }
+  return false;
+}
+
+bool holds(const Zone& zone, const Vector3& corner, const Vector3& p) {
+  // Rounding of coordinates up to 2: what the zone's clearance is far above.
+  constexpr double kRounding = 1e-15;
+  if ((p - corner).norm() > zone.free_radius) return false;
+  if (!Box3(zone.box.min().array() - kRounding, zone.box.max().array() + kRounding).contains(p)) return false;
+  for (int k = 0; k < zone.plane_count; ++k) {
+    const HalfSpace& plane = zone.planes[static_cast<std::size_t>(k)];
+    if (plane.normal.dot(p) < plane.offset - kRounding) return false;
+  }
+  return true;
+}
+
+ElementCorners random_element(const TriangleMesh& mesh, Random& random, int corners, double size, double height) {
+  ElementCorners element{.count = corners};
+  const Vector3 middle = test::near_surface(mesh, random, random.between(0.0, height));
+  for (int i = 0; i < corners; ++i) {
+    element.x[static_cast<std::size_t>(i)] = middle + random.between(0.2, 1.0) * size * random.direction();
+  }
+  return element;
+}
+
+/// An extreme place for a corner: far out, then brought back to where the zone ends.
+Vector3 moved_within(const Zone& zone, const Vector3& corner, double reach, Random& random) {
+  Vector3 step = random.between(0.5, 3.0) * reach * random.direction();
+  for (int halving = 0; halving < 60; ++halving, step *= 0.8) {
+    if (holds(zone, corner, corner + step)) return corner + step;
+  }
+  return corner;
+}
+
+/// The law of zones, for elements of `size` at up to `height` from the mesh.
+void expect_no_crossing(const TriangleMesh& mesh, double size, double height, int trials) {
+  const MeshTree tree(mesh);
+  const auto triangles = static_cast<Index>(mesh.triangles.cols());
+  Random random(3);
+  int zones = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    const ElementCorners element = random_element(mesh, random, 1 + trial % 3, size, height);
+    const ZoneRequest request{
+        .reach = random.between(0.2, 2.0) * size, .gap = random.between(0.0, 0.5) * size, .clearance = 1e-9, .exact = size};
+    Zone zone;
+    zone.triangle = trial % 2 == 0 ? kNone : random.below(triangles);
+    find_zone(tree, element, request, zone);
+    ASSERT_EQ(zone.broken, crosses(element, tree, triangles)) << "trial " << trial;
+    if (zone.broken) continue;
+    ++zones;
+    for (int i = 0; i < element.count; ++i) {
+      const Vector3& corner = element.x[static_cast<std::size_t>(i)];
+      ASSERT_TRUE(holds(zone, corner, corner)) << "trial " << trial;
+    }
+    for (int move = 0; move < 8; ++move) {
+      ElementCorners moved = element;
+      for (int i = 0; i < element.count; ++i) {
+        auto& corner = moved.x[static_cast<std::size_t>(i)];
+        corner = moved_within(zone, corner, request.reach, random);
+      }
+      ASSERT_FALSE(crosses(moved, tree, triangles)) << "trial " << trial << " with " << zone.plane_count << " planes";
+    }
+  }
+  EXPECT_GT(zones, trials / 5);
+}
+
+TEST(MeshZone, NothingCrossesWhileCornersStayInside) {
+  expect_no_crossing(test::torus(1.0, 0.4, 24, 12), 0.3, 0.3, 600);
+  expect_no_crossing(test::needles(12), 0.3, 0.5, 600);
+  expect_no_crossing(test::terrain(8, [](Index i, Index j) { return 0.7 * ((i * 7 + j * 3) % 4); }), 0.6, 1.0, 600);
+}
+
+TEST(MeshZone, NothingCrossesOnTheBunny) { expect_no_crossing(test::bunny(), 0.02, 0.02, 150); }
+
+TEST(MeshZone, NearestPairIsTheNearestOfAll) {
+  const TriangleMesh mesh = test::needles(12);
+  const MeshTree tree(mesh);
+  Random random(5);
+  int compared = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    const ElementCorners element = random_element(mesh, random, 3, 0.2, 0.4);
+    Zone zone;
+    find_zone(tree, element, {.reach = 0.3, .gap = 0.05, .clearance = 1e-9, .exact = 0.2}, zone);
+    if (zone.broken) continue;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (Index t = 0; t < mesh.triangles.cols(); ++t) {
+      nearest = std::min(nearest, std::sqrt(closest_pair(element, tree.corners(t)).squared_distance));
+    }
+    EXPECT_LE(zone.clear, nearest);
+    if (zone.distance >= 0.2) continue;
+    ++compared;
+    EXPECT_DOUBLE_EQ(zone.distance, nearest);
+    const Vector3 on_element = zone.weights[0] * element.x[0] + zone.weights[1] * element.x[1] + zone.weights[2] * element.x[2];
+    EXPECT_NEAR((zone.point + zone.distance * zone.normal - on_element).norm(), 0.0, 1e-14);
+  }
+  EXPECT_GT(compared, 100);
+}
+
+TEST(MeshZone, FarElementIsFreeInAllOfItsBox) {
+  const MeshTree tree(test::torus(1.0, 0.4, 24, 12));
+  const ElementCorners element{.x = {Vector3(5, 0, 0), Vector3(5, 1, 0), Vector3(5, 0, 1)}, .count = 3};
+  Zone zone;
+  find_zone(tree, element, {.reach = 0.5, .gap = 0.1, .clearance = 1e-9, .exact = 0.2}, zone);
+  EXPECT_EQ(zone.plane_count, 0);
+  EXPECT_EQ(zone.distance, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(zone.clear, 0.5);
+  EXPECT_EQ(zone.box.max(), Vector3(5.5, 1.5, 1.5));
+}
+
+}  // namespace
+}  // namespace sprung
