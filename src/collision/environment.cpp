@@ -88,9 +88,10 @@ std::vector<Contact> Environment::contacts(const ParticlePaths& paths) const {
         const double reach_of_pair = std::max(gap_of_pair, clearance) + paths.margin;
         const auto found = find_contact(set.shape(k), set.local_path(k, before, after), reach_of_pair);
         if (!found) continue;
-        const Vector3 point = set.after(k) * found->point;
-        const Vector3 normal = set.after(k).linear() * found->normal;
-        contacts.push_back({i, k, point, normal, normal.dot(after - point), clearance});
+        Contact& contact =
+            contacts.emplace_back(particle_contact(i, k, set.after(k) * found->point, set.after(k).linear() * found->normal));
+        contact.distance = contact.normal.dot(after - contact.point);
+        contact.clearance = clearance;
       }
     }
   });

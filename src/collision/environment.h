@@ -1,6 +1,7 @@
 // Obstacles in an FCL broad phase, and the contacts of particles with them.
 #pragma once
 
+#include "collision/contact.h"
 #include "collision/obstacle.h"
 
 #include <memory>
@@ -9,17 +10,6 @@
 #include <vector>
 
 namespace sprung {
-
-/// A particle near an obstacle, in the world at the end of the step. Its plane is where the particle may not fall below:
-/// normal . x >= normal . point + max(gap, clearance).
-struct Contact {
-  Index particle = kNone;
-  Index obstacle = kNone;
-  Vector3 point;           ///< on the surface [m]
-  Vector3 normal;          ///< unit length, towards the free side
-  double distance = 0.0;   ///< of the particle from the surface [m], negative behind it
-  double clearance = 0.0;  ///< the least gap that is kept, whatever the thickness: above rounding [m]
-};
 
 /// Particles on their way through one step.
 struct ParticlePaths {

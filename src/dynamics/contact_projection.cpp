@@ -45,7 +45,7 @@ void ContactProjection::find(const Points& before, const Points& v_before, const
   dt_ = dt;
   active_.clear();
   for (const Contact& contact : environment_.contacts({before, advanced.x, thickness_, margin_})) {
-    const Index i = contact.particle;
+    const Index i = contact.particles[0];
     if (pinned_[static_cast<std::size_t>(i)] != 0) continue;
     const Obstacle& obstacle = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)];
     Active active{.contact = contact, .pair = combine(network_.body_of(i).material, obstacle.material)};
@@ -66,7 +66,7 @@ double ContactProjection::project(Points& positions) {
   double largest = 0.0;
   for (Active& active : active_) {
     const Contact& contact = active.contact;
-    auto position = positions.col(contact.particle);
+    auto position = positions.col(contact.particles[0]);
     const double depth = active.gap - contact.normal.dot(position - contact.point);
     const double change = std::max(depth, -active.push);
     position += change * contact.normal;
@@ -99,15 +99,15 @@ void ContactProjection::truncate(const Points& before, Points& positions) {
 void ContactProjection::settle_velocities(SimulationState& state, const Integrator& integrator) const {
   for (const Active& active : active_) {
     const Contact& contact = active.contact;
-    const double distance = contact.normal.dot(state.x.col(contact.particle) - contact.point);
+    const double distance = contact.normal.dot(state.x.col(contact.particles[0]) - contact.point);
     if (active.push == 0.0 && distance > kTouch * active.gap) continue;
-    auto velocity = state.v.col(contact.particle);
+    auto velocity = state.v.col(contact.particles[0]);
     const Vector3 relative = velocity - active.surface_velocity;
     const double speed = contact.normal.dot(relative);
     const double change = settled_speed(active, speed) - speed;
     if (change == 0.0) continue;
     velocity += change * contact.normal - slip_taken(active.pair, relative - speed * contact.normal, change);
-    integrator.velocity_changed(state, contact.particle, dt_);
+    integrator.velocity_changed(state, contact.particles[0], dt_);
   }
 }
 
@@ -122,8 +122,8 @@ Index ContactProjection::contact_count() const {
   Index count = 0;
   Index last = kNone;  // contacts are sorted by particle
   for (const Active& active : active_) {
-    if (active.push == 0.0 || active.contact.particle == last) continue;
-    last = active.contact.particle;
+    if (active.push == 0.0 || active.contact.particles[0] == last) continue;
+    last = active.contact.particles[0];
     ++count;
   }
   return count;

@@ -17,7 +17,7 @@ PenaltyContact::PenaltyContact(const SpringNetwork& network, const Environment& 
 
 void PenaltyContact::add(const Kinematics& at, Points& forces) const {
   for (const Contact& contact : environment_.contacts({at.x, at.x, thickness_})) {
-    const Index i = contact.particle;
+    const Index i = contact.particles[0];
     const Obstacle& obstacle = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)];
     const ContactMaterial pair = combine(network_.body_of(i).material, obstacle.material);
     const Vector3 relative = at.v.col(i) - surface_velocity(obstacle, at.x.col(i), at.time);
@@ -37,8 +37,8 @@ Index PenaltyContact::contact_count(const Points& positions) const {
   Index count = 0;
   Index last = kNone;  // contacts are sorted by particle
   for (const Contact& contact : environment_.contacts({positions, positions, thickness_})) {
-    if (contact.particle != last) ++count;
-    last = contact.particle;
+    if (contact.particles[0] != last) ++count;
+    last = contact.particles[0];
   }
   return count;
 }

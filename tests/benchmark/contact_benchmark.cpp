@@ -40,7 +40,7 @@ Cloth cloth_on(const TriangleMesh& mesh) {
     cloth.before.col(i) = above.col(i) - Vector3(0.0, 3.0 * box.sizes().y(), 0.0);
   }
   for (const Contact& contact : environment.contacts({above, cloth.before, cloth.thickness, 0.0})) {
-    cloth.before.col(contact.particle) = contact.point + random.between(0.5, 1.5) * kThickness * contact.normal;
+    cloth.before.col(contact.particles[0]) = contact.point + random.between(0.5, 1.5) * kThickness * contact.normal;
   }
   cloth.after = cloth.before;
   for (Index i = 0; i < kParticles; ++i) cloth.after.col(i) += 1e-5 * random.direction();

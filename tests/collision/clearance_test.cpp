@@ -35,7 +35,7 @@ ObstacleGeometry mesh_of(const ObstacleGeometry& primitive) { return mesh_of(obs
 std::size_t step_to(const Environment& environment, Points& x, const Points& wanted) {
   Points after = wanted;
   for (const Contact& contact : environment.contacts({x, wanted, Scalars::Zero(x.cols()), 0.0})) {
-    auto position = after.col(contact.particle);
+    auto position = after.col(contact.particles[0]);
     const double depth = contact.clearance - contact.normal.dot(position - contact.point);
     if (depth > 0.0) position += depth * contact.normal;
   }

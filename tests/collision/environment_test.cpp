@@ -80,7 +80,7 @@ TEST(Environment, BroadPhaseLosesNoContact) {
   const auto contacts = environment.contacts({particles.before, particles.after, particles.thickness, 0.05});
 
   std::vector<std::pair<Index, Index>> found;
-  for (const Contact& contact : contacts) found.emplace_back(contact.particle, contact.obstacle);
+  for (const Contact& contact : contacts) found.emplace_back(contact.particles[0], contact.obstacle);
   EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
 
   std::vector<std::pair<Index, Index>> expected;
@@ -109,10 +109,10 @@ TEST(Environment, ContactsAreOnTheSurfaceAndFaceTheBeginning) {
     const auto surface = shape->nearest(local, 1e-9);
     ASSERT_TRUE(surface);
     ASSERT_NEAR(contact.normal.norm(), 1.0, 1e-12);
-    ASSERT_NEAR(contact.distance, contact.normal.dot(particles.after.col(contact.particle) - contact.point), 1e-12);
+    ASSERT_NEAR(contact.distance, contact.normal.dot(particles.after.col(contact.particles[0]) - contact.point), 1e-12);
     // Where the path crosses, the contact's plane has its begin in front and its end behind.
-    const Vector3 from = environment.pose_before(contact.obstacle).inverse() * particles.before.col(contact.particle);
-    const Vector3 to = environment.pose_after(contact.obstacle).inverse() * particles.after.col(contact.particle);
+    const Vector3 from = environment.pose_before(contact.obstacle).inverse() * particles.before.col(contact.particles[0]);
+    const Vector3 to = environment.pose_after(contact.obstacle).inverse() * particles.after.col(contact.particles[0]);
     if (!shape->first_crossing(from, to)) continue;
     ASSERT_GE(contact.normal.dot(environment.pose_after(contact.obstacle) * from - contact.point), -1e-12);
     ASSERT_LE(contact.distance, 1e-12);
@@ -146,7 +146,7 @@ TEST(Environment, SameBitsForAnyNumberOfThreads) {
   const Run two = run(2);
   ASSERT_EQ(one.contacts.size(), two.contacts.size());
   for (std::size_t i = 0; i < one.contacts.size(); ++i) {
-    ASSERT_EQ(one.contacts[i].particle, two.contacts[i].particle);
+    ASSERT_EQ(one.contacts[i].particles[0], two.contacts[i].particles[0]);
     ASSERT_EQ(one.contacts[i].obstacle, two.contacts[i].obstacle);
     ASSERT_EQ(one.contacts[i].point, two.contacts[i].point);
     ASSERT_EQ(one.contacts[i].normal, two.contacts[i].normal);
@@ -220,7 +220,7 @@ TEST(Environment, PositionsThatAreNotFiniteAreLeftAlone) {
   after(1, 1) = -std::numeric_limits<double>::infinity();
   const auto contacts = environment.contacts({before, after, Scalars::Constant(3, 0.005), 0.0});
   ASSERT_EQ(contacts.size(), 2U);
-  EXPECT_EQ(contacts[0].particle, 2);
+  EXPECT_EQ(contacts[0].particles[0], 2);
   Index squeezed = 0;
   EXPECT_TRUE(environment.truncate(before, after, {0, 0, 0}, squeezed).empty());
 }
