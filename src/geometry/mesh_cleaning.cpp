@@ -1,5 +1,6 @@
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_orientation.h"
+#include "geometry/mesh_sequence.h"
 #include "geometry/topology.h"
 
 #include <algorithm>
@@ -14,38 +15,57 @@ namespace {
 // A triangle this flat, height over longest side, is a line: its normal would be rounding noise.
 constexpr double kFlat = 1e-12;
 
-// For each vertex, the first one at its position; coordinates are compared as numbers, so -0 equals 0.
-std::vector<Index> first_alike(const Points& vertices) {
-  const auto key = [&](Index i) { return std::array{vertices(0, i), vertices(1, i), vertices(2, i)}; };
-  std::vector<Index> order(vertices.cols());
+Index vertex_count(const MeshSequence& mesh) { return static_cast<Index>(mesh.frames.front().cols()); }
+
+// -1, 0 or 1 in the order of the coordinates in the first frame where two vertices are apart, compared as numbers: -0 equals 0.
+int compare(const std::vector<Points>& frames, Index a, Index b) {
+  for (const Points& frame : frames) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (frame(axis, a) != frame(axis, b)) return frame(axis, a) < frame(axis, b) ? -1 : 1;
+    }
+  }
+  return 0;
+}
+
+// For each vertex, the first one that is at its position in all frames.
+std::vector<Index> first_alike(const std::vector<Points>& frames) {
+  std::vector<Index> order(frames.front().cols());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    const int way = compare(frames, a, b);
+    return way != 0 ? way < 0 : a < b;
+  });
   std::vector<Index> first(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool alike = k > 0 && key(order[k - 1]) == key(order[k]);
+    const bool alike = k > 0 && compare(frames, order[k - 1], order[k]) == 0;
     first[order[k]] = alike ? first[order[k - 1]] : order[k];
   }
   return first;
 }
 
-void weld(TriangleMesh& mesh, MeshReport& report) {
-  const std::vector<Index> first = first_alike(mesh.vertices);
+void weld(MeshSequence& mesh, MeshReport& report) {
+  const std::vector<Index> first = first_alike(mesh.frames);
   for (Index& vertex : mesh.triangles.reshaped()) vertex = first[vertex];
   for (Index i = 0; i < std::ssize(first); ++i) report.welded_vertices += first[i] != i ? 1 : 0;
 }
 
-bool is_degenerate(const TriangleMesh& mesh, Index triangle) {
-  const auto corner = [&](Index k) { return Vector3(mesh.vertices.col(mesh.triangles(k % 3, triangle))); };
-  double longest = 0.0;  // squared
-  for (Index k = 0; k < 3; ++k) longest = std::max(longest, (corner(k + 1) - corner(k)).squaredNorm());
-  return area_normal(mesh, triangle).norm() <= kFlat * longest;
+bool is_flat(const Vector3& a, const Vector3& b, const Vector3& c) {
+  const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+  return area_normal(a, b, c).norm() <= kFlat * longest2;
 }
 
-void keep_faces(TriangleMesh& mesh, const std::vector<Index>& kept) {
+bool is_degenerate(const MeshSequence& mesh, Index triangle) {
+  const auto corner = mesh.triangles.col(triangle);
+  return std::all_of(mesh.frames.begin(), mesh.frames.end(), [&](const Points& frame) {
+    return is_flat(frame.col(corner[0]), frame.col(corner[1]), frame.col(corner[2]));
+  });
+}
+
+void keep_faces(MeshSequence& mesh, const std::vector<Index>& kept) {
   mesh.triangles = Triangles(mesh.triangles(Eigen::all, kept));
 }
 
-void drop_degenerate_faces(TriangleMesh& mesh, MeshReport& report) {
+void drop_degenerate_faces(MeshSequence& mesh, MeshReport& report) {
   std::vector<Index> kept;
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
     if (!is_degenerate(mesh, t)) kept.push_back(t);
@@ -54,7 +74,7 @@ void drop_degenerate_faces(TriangleMesh& mesh, MeshReport& report) {
   keep_faces(mesh, kept);
 }
 
-void drop_duplicate_faces(TriangleMesh& mesh, MeshReport& report) {
+void drop_duplicate_faces(MeshSequence& mesh, MeshReport& report) {
   using Face = std::pair<std::array<Index, 3>, Index>;
   std::vector<Face> faces;
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -74,7 +94,7 @@ void drop_duplicate_faces(TriangleMesh& mesh, MeshReport& report) {
 
 // A quad that is there twice, cut along one diagonal and along the other: no face is a duplicate, yet each side of the quad has a
 // third face. (A tetrahedron is two such quads as well, but its sides have two faces.)
-void drop_doubled_quads(TriangleMesh& mesh, MeshReport& report) {
+void drop_doubled_quads(MeshSequence& mesh, MeshReport& report) {
   const std::vector<MeshEdge> edges = mesh_edges(mesh.triangles);
   const auto uses = [&](Index a, Index b) {
     const std::array<Index, 2> vertices{std::min(a, b), std::max(a, b)};
@@ -107,8 +127,8 @@ void drop_doubled_quads(TriangleMesh& mesh, MeshReport& report) {
   keep_faces(mesh, kept);
 }
 
-void drop_unused_vertices(TriangleMesh& mesh, MeshReport& report) {
-  std::vector<Index> number(mesh.vertices.cols(), kNone);
+void drop_unused_vertices(MeshSequence& mesh, MeshReport& report) {
+  std::vector<Index> number(vertex_count(mesh), kNone);
   for (const Index vertex : mesh.triangles.reshaped()) number[vertex] = 0;
   std::vector<Index> used;
   for (Index i = 0; i < std::ssize(number); ++i) {
@@ -117,8 +137,8 @@ void drop_unused_vertices(TriangleMesh& mesh, MeshReport& report) {
     used.push_back(i);
   }
   for (Index& vertex : mesh.triangles.reshaped()) vertex = number[vertex];
-  report.unused_vertices = static_cast<Index>(mesh.vertices.cols() - report.welded_vertices - std::ssize(used));
-  mesh.vertices = Points(mesh.vertices(Eigen::all, used));
+  report.unused_vertices = static_cast<Index>(vertex_count(mesh) - report.welded_vertices - std::ssize(used));
+  for (Points& frame : mesh.frames) frame = Points(frame(Eigen::all, used));
 }
 
 void orient(TriangleMesh& mesh, MeshReport& report) {
@@ -129,20 +149,35 @@ void orient(TriangleMesh& mesh, MeshReport& report) {
                          " part(s) have one side only, like a Moebius strip, and could not be oriented");
 }
 
+// By the first frame: a deformation that tears nothing keeps what is closed closed, and what is outside outside.
+void orient_and_describe(MeshSequence& mesh, MeshReport& report) {
+  TriangleMesh first{std::move(mesh.frames.front()), std::move(mesh.triangles)};
+  orient(first, report);
+  describe_surface(first, report);
+  mesh.frames.front() = std::move(first.vertices);
+  mesh.triangles = std::move(first.triangles);
+  for (const Points& frame : mesh.frames) report.bounds.extend(bounds(frame));
+}
+
 }  // namespace
 
-ImportedMesh clean_mesh(const TriangleMesh& raw) {
-  ImportedMesh result{.mesh = raw, .report = {}};
-  result.report.vertices_read = static_cast<Index>(raw.vertices.cols());
-  result.report.faces_read = static_cast<Index>(raw.triangles.cols());
-  weld(result.mesh, result.report);
-  drop_degenerate_faces(result.mesh, result.report);
-  drop_duplicate_faces(result.mesh, result.report);
-  drop_doubled_quads(result.mesh, result.report);
-  drop_unused_vertices(result.mesh, result.report);
-  orient(result.mesh, result.report);
-  describe_surface(result.mesh, result.report);
+ImportedSequence clean_sequence(MeshSequence raw) {
+  ImportedSequence result{.sequence = std::move(raw), .report = {}};
+  auto& [mesh, report] = result;
+  report.vertices_read = vertex_count(mesh);
+  report.faces_read = static_cast<Index>(mesh.triangles.cols());
+  weld(mesh, report);
+  drop_degenerate_faces(mesh, report);
+  drop_duplicate_faces(mesh, report);
+  drop_doubled_quads(mesh, report);
+  drop_unused_vertices(mesh, report);
+  orient_and_describe(mesh, report);
   return result;
+}
+
+ImportedMesh clean_mesh(const TriangleMesh& raw) {
+  auto [sequence, report] = clean_sequence({.triangles = raw.triangles, .frames = {raw.vertices}});
+  return {{std::move(sequence.frames.front()), std::move(sequence.triangles)}, std::move(report)};
 }
 
 }  // namespace sprung
