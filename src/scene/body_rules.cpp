@@ -99,6 +99,12 @@ SpringMaterials read_springs(Fields& fields) {
   return materials;
 }
 
+BodyContact read_body_contact(Fields& fields) {
+  const BodyContact fallback;
+  return {.self = fields.value("self_contact", boolean(), fallback.self).value_or(fallback.self),
+          .others = fields.value("body_contact", boolean(), fallback.others).value_or(fallback.others)};
+}
+
 BodyScene read_body(Fields& fields) {
   BodyScene body;
   const auto shape = fields.required("shape", object_of<BodyShapeScene>(read_shape));
@@ -110,6 +116,7 @@ BodyScene read_body(Fields& fields) {
   body.pins = pins.value_or(std::vector<PinScene>{});
   body.velocity = fields.value("velocity", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
   body.material = read_material(fields);
+  body.contact = read_body_contact(fields);
   return body;
 }
 

@@ -64,6 +64,7 @@ struct BodyScene {
   std::vector<PinScene> pins;
   Vector3 velocity = Vector3::Zero();
   ContactMaterial material;
+  BodyContact contact;
 };
 
 struct ObstacleScene {

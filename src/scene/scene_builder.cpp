@@ -18,7 +18,7 @@ void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finde
   const auto shape = build_body(scene, body, finder, problems);
   if (!shape) return;
   const std::vector<ResolvedPin> pins = resolve_pins(scene, body, *shape, problems);
-  const Index first = network.add_body(body.name, *shape, body.material);
+  const Index first = network.add_body(body.name, *shape, body.material, body.contact);
   for (const ResolvedPin& pin : pins) {
     std::vector<Index> particles = pin.particles;
     for (Index& particle : particles) particle += first;

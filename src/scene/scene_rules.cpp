@@ -82,12 +82,25 @@ void read_time(Fields& fields, Scene& scene) {
   if (frame_rate && scene.step) check_step_divides_frame(*scene.step, *frame_rate, fields.place().at("step"));
 }
 
+// A penalty answers only to obstacles.
+void check_self_contact(const Scene& scene, const JsonPlace& place) {
+  if (scene.settings.contact.response != ContactSettings::Response::penalty) return;
+  for (const BodyScene& body : scene.bodies) {
+    if (!body.contact.self) continue;
+    place.at("bodies")
+        .at(body.name)
+        .at("self_contact")
+        .report(Json(true), "needs contact.response \"projection\"", "use that, or set it to false");
+  }
+}
+
 Scene read_scene_fields(Fields& fields) {
   Scene scene;
   fields.value("version", integer(1, 1), 1);
   read_time(fields, scene);
   scene.settings = read_settings(fields);
   scene.bodies = fields.required("bodies", named(body_rule(), false)).value_or(std::vector<BodyScene>{});
+  check_self_contact(scene, fields.place());
   const auto obstacles = fields.value("obstacles", named(obstacle_rule(), true), Json::object());
   scene.obstacles = obstacles.value_or(std::vector<ObstacleScene>{});
   return scene;

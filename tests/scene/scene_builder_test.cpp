@@ -63,6 +63,13 @@ TEST(SceneBuilder, BuiltSceneRuns) {
   EXPECT_NEAR(simulator.time(), 1.0 / 30.0, 1e-15);
 }
 
+TEST(SceneBuilder, WhatABodyCollidesWithArrives) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {"bodies.banner.self_contact=true", "bodies.banner.body_contact=false"});
+  EXPECT_TRUE(built.network.bodies[0].contact.self);
+  EXPECT_FALSE(built.network.bodies[0].contact.others);
+}
+
 TEST(SceneBuilder, MassIsOfTheBodyOfAParticleOrOfTheMeasure) {
   const SceneFolder folder;
   const auto total = [&](const std::string& mass) {

@@ -71,6 +71,7 @@ TEST(SceneReader, FieldsOfABodyArrive) {
   EXPECT_EQ(body.material.friction, 0.3);
   EXPECT_EQ(body.material.static_friction, 0.4);
   EXPECT_EQ(body.material.restitution, 0.1);
+  EXPECT_FALSE(body.contact.others);
 }
 
 TEST(SceneReader, PinsArrive) {
@@ -142,6 +143,8 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(scene.settings.stability, StabilityCheck::refuse);
   EXPECT_EQ(scene.bodies[0].place.scale, 1.0);
   EXPECT_EQ(scene.bodies[0].velocity, Vector3(0, 0, 0));
+  EXPECT_FALSE(scene.bodies[0].contact.self);
+  EXPECT_TRUE(scene.bodies[0].contact.others);
   EXPECT_TRUE(scene.obstacles.empty());
 }
 

@@ -110,7 +110,8 @@ inline constexpr const char* kFullScene = R"({
                 { "indices": [3, 5], "motion": { "keyframes": [ { "time": 0 }, { "time": 1, "position": [0, 1, 0] } ],
                                                  "interpolation": "smooth" } } ],
       "velocity": [1, 2, 3],
-      "thickness": 0.005, "friction": 0.3, "static_friction": 0.4, "restitution": 0.1
+      "thickness": 0.005, "friction": 0.3, "static_friction": 0.4, "restitution": 0.1,
+      "self_contact": false, "body_contact": false
     },
     "rope": { "shape": { "type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 5, "length": 1.25 }, "particle_mass": 0.5,
               "pins": [ { "at": "corner", "which": ["from", "to"] } ] },
