@@ -1,10 +1,8 @@
 #include "collision/primitive_distance.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 
 namespace sprung {
 
@@ -27,37 +25,50 @@ struct ProfilePoint {
   double distance = 0.0;
 };
 
-/// The nearest point of a convex profile, given as the corners of its rim from the axis round to the axis, solid on the left.
-/// Beside a corner, directions of lengths below `rounding` may leave the range between the corner's sides.
-ProfilePoint profile_surface(std::span<const Vector2> rim, const Vector2& p, double rounding) {
-  ProfilePoint plane{.distance = -std::numeric_limits<double>::infinity()};
-  ProfilePoint nearest{.distance = std::numeric_limits<double>::infinity()};
-  for (std::size_t k = 0; k + 1 < rim.size(); ++k) {
-    const Vector2 along = rim[k + 1] - rim[k];
-    const Vector2 normal = Vector2(along.y(), -along.x()).normalized();
-    const double height = normal.dot(p - rim[k]);
-    if (height > plane.distance) plane = {p - height * normal, normal, height};
+/// A corner of the profile seen from outside. Directions of lengths below `rounding` may leave the range between the corner's
+/// sides; then `side` is the normal.
+ProfilePoint at_corner(const Vector2& corner, const Vector2& p, const Vector2& side, double rounding) {
+  const double distance = (p - corner).norm();
+  return {corner, distance > rounding ? Vector2((p - corner) / distance) : side, distance};
+}
 
-    const double t = along.dot(p - rim[k]) / along.squaredNorm();
-    const Vector2 point = t <= 0.0 ? rim[k] : t >= 1.0 ? rim[k + 1] : Vector2(rim[k] + t * along);
-    const double distance = (p - point).norm();
-    // Beside a side, not a corner, the direction is the side's own, which close to it is far better than that of a short
-    // difference.
-    const bool beside = t > 0.0 && t < 1.0;
-    if (distance < nearest.distance) nearest = {point, beside ? normal : Vector2((p - point) / distance), distance};
+ProfilePoint profile_surface(const CylinderGeometry& cylinder, const Vector2& p, double rounding) {
+  const double cap = std::copysign(0.5 * cylinder.height, p.y());
+  const double beyond_wall = p.x() - cylinder.radius;
+  const double beyond_cap = std::abs(p.y()) - 0.5 * cylinder.height;
+  const Vector2 up(0.0, std::copysign(1.0, p.y()));
+  if (beyond_wall > 0.0 && beyond_cap > 0.0) {
+    return at_corner(Vector2(cylinder.radius, cap), p, beyond_wall > beyond_cap ? Vector2::UnitX() : up, rounding);
   }
-  if (plane.distance <= 0.0) return plane;
-  if (nearest.distance <= rounding) nearest.normal = plane.normal;
-  return nearest;
+  if (beyond_wall > beyond_cap) return {Vector2(cylinder.radius, p.y()), Vector2::UnitX(), beyond_wall};
+  return {Vector2(p.x(), cap), up, beyond_cap};
+}
+
+ProfilePoint profile_surface(const ConeGeometry& cone, const Vector2& p, double rounding) {
+  const Vector2 rim(cone.radius, -0.5 * cone.height);
+  const Vector2 tip(0.0, 0.5 * cone.height);
+  const double slant = (tip - rim).norm();
+  const Vector2 along = (tip - rim) / slant;
+  const Vector2 outward(along.y(), -along.x());
+  const Vector2 down(0.0, -1.0);
+  const double above_side = outward.dot(p - rim);
+  const double below_base = rim.y() - p.y();
+  const double way = along.dot(p - rim);
+  const bool outside = above_side > 0.0 || below_base > 0.0;
+  if (outside && way <= 0.0 && p.x() >= rim.x()) return at_corner(rim, p, above_side > below_base ? outward : down, rounding);
+  if (outside && way >= slant) return at_corner(tip, p, outward, rounding);
+  if (outside ? below_base > 0.0 && p.x() < rim.x() : below_base >= above_side) return {Vector2(p.x(), rim.y()), down, below_base};
+  return {p - above_side * outward, outward, above_side};
 }
 
 /// The profile's answer for a point in space, turned about the y axis.
-SurfacePoint revolved_surface(std::span<const Vector2> rim, const Vector3& p) {
-  const double radius = std::hypot(p.x(), p.z());
+template <class Solid>
+SurfacePoint revolved_surface(const Solid& solid, const Vector3& p) {
+  const double radius = std::sqrt(p.x() * p.x() + p.z() * p.z());
   const Vector3 outward = radius > 0.0 ? Vector3(p.x() / radius, 0.0, p.z() / radius) : Vector3::UnitX();
   const double rounding = 1e-12 * p.norm();
-  const ProfilePoint found = profile_surface(rim, Vector2(radius, p.y()), rounding);
-  const auto in_space = [&](const Vector2& q) { return Vector3(q.x() * outward + q.y() * Vector3::UnitY()); };
+  const ProfilePoint found = profile_surface(solid, Vector2(radius, p.y()), rounding);
+  const auto in_space = [&](const Vector2& q) { return Vector3(q.x() * outward.x(), q.y(), q.x() * outward.z()); };
   return {in_space(found.point), in_space(found.normal), found.distance};
 }
 
@@ -76,32 +87,20 @@ SurfacePoint surface_point(const CapsuleGeometry& capsule, const Vector3& p) {
 
 SurfacePoint surface_point(const BoxGeometry& box, const Vector3& p) {
   const Vector3 half = 0.5 * box.size;
-  const Vector3 beyond = p.cwiseAbs() - half;
+  const Vector3 nearest = p.cwiseMax(-half).cwiseMin(half);
+  const double outside = (p - nearest).norm();
+  if (outside > 0.0) return {nearest, (p - nearest) / outside, outside};
   Index axis = 0;
-  const double highest = beyond.maxCoeff(&axis);
+  const double highest = (p.cwiseAbs() - half).maxCoeff(&axis);
   const Vector3 face = (p[axis] < 0.0 ? -1.0 : 1.0) * Vector3::Unit(axis);
-  if (highest <= 0.0) {
-    Vector3 point = p;
-    point[axis] = face[axis] * half[axis];
-    return {point, face, highest};
-  }
-  const Vector3 point = p.cwiseMax(-half).cwiseMin(half);
-  const double distance = (p - point).norm();
-  return {point, (p - point) / distance, distance};
+  Vector3 point = p;
+  point[axis] = face[axis] * half[axis];
+  return {point, face, highest};
 }
 
-SurfacePoint surface_point(const CylinderGeometry& cylinder, const Vector3& p) {
-  const double half = 0.5 * cylinder.height;
-  const std::array<Vector2, 4> rim{Vector2(0.0, -half), Vector2(cylinder.radius, -half), Vector2(cylinder.radius, half),
-                                   Vector2(0.0, half)};
-  return revolved_surface(rim, p);
-}
+SurfacePoint surface_point(const CylinderGeometry& cylinder, const Vector3& p) { return revolved_surface(cylinder, p); }
 
-SurfacePoint surface_point(const ConeGeometry& cone, const Vector3& p) {
-  const double half = 0.5 * cone.height;
-  const std::array<Vector2, 3> rim{Vector2(0.0, -half), Vector2(cone.radius, -half), Vector2(0.0, half)};
-  return revolved_surface(rim, p);
-}
+SurfacePoint surface_point(const ConeGeometry& cone, const Vector3& p) { return revolved_surface(cone, p); }
 
 SurfacePoint surface_point(const HalfSpaceGeometry& half_space, const Vector3& p) {
   const double height = half_space.normal.dot(p) - half_space.offset;
