@@ -9,39 +9,23 @@ namespace sprung {
 
 namespace {
 
-// A plane stands off the obstacle by this part of the gap: the rest is free for the element.
-constexpr double kStandOff = 0.3;
-
-// Below this part of the clearance, which is 2^-42 of the coordinates, a gap is not told from rounding.
-constexpr double kTouching = 0x1p-12;
-
-Box3 box_around(const ElementCorners& element, double reach) {
-  Box3 box;
-  for (int i = 0; i < element.count; ++i) box.extend(element.x[static_cast<std::size_t>(i)]);
-  return {box.min() - Vector3::Constant(reach), box.max() + Vector3::Constant(reach)};
-}
-
-/// No element is asked to come nearer than it is, and half of the gap that contact keeps is left to contact.
-double stand_off(double gap, const ZoneRequest& request) {
-  return std::min(gap, std::max(request.clearance, std::min(kStandOff * gap, 0.5 * request.gap)));
-}
-
 template <class Shape>
 Zone zone_against(const Shape& shape, const ElementCorners& element, const ZoneRequest& request) {
-  Zone zone;
-  zone.box = box_around(element, request.reach);
+  Zone zone{.box = box_around(element, request.reach), .clear = request.reach};
   if (!zone.box.intersects(bounds(shape))) return zone;
   const Separation best = separation(shape, element, zone.box);
-  if (lowest(zone.box, best.normal) > best.height + kTouching * request.clearance) return zone;
+  if (!is_touching(lowest(zone.box, best.normal) - best.height, request)) return zone;
 
   zone.normal = best.normal;
-  if (!(best.gap > kTouching * request.clearance)) {
+  if (is_touching(best.gap, request)) {
     zone.broken = true;
+    zone.clear = 0.0;
     zone.distance = best.gap;
     zone.weights = Vector3::Unit(best.lowest_corner);
     zone.point = element.x[static_cast<std::size_t>(best.lowest_corner)] - best.gap * best.normal;
     return zone;
   }
+  zone.clear = best.gap;
   zone.distance = best.distance;
   zone.point = best.point;
   zone.weights = best.weights;

@@ -30,7 +30,7 @@ struct ZoneRequest {
 struct Zone {
   static constexpr int kMostPlanes = 4;
 
-  Box3 box;
+  Box3 box{};
   std::array<HalfSpace, kMostPlanes> planes{};
   int plane_count = 0;
   double free_radius = std::numeric_limits<double>::infinity();  ///< besides, no corner may move farther than this [m]
@@ -46,5 +46,15 @@ struct Zone {
   Vector3 weights = Vector3::Zero();                          ///< of the element's corners; their sum is 1
   Index triangle = kNone;                                     ///< of the obstacle; where the next search may begin
 };
+
+/// The box around the element, `reach` [m] larger on each side.
+[[nodiscard]] Box3 box_around(const ElementCorners& element, double reach);
+
+/// How far a plane stands off an obstacle that is `gap` [m] away: the rest is free for the element. Half of the gap that contact
+/// keeps is left to contact, and no element is asked to come nearer than it is.
+[[nodiscard]] double stand_off(double gap, const ZoneRequest& request);
+
+/// Whether the gap [m] is not told from touching, by rounding.
+[[nodiscard]] bool is_touching(double gap, const ZoneRequest& request);
 
 }  // namespace sprung

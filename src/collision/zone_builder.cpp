@@ -7,9 +7,6 @@ namespace sprung {
 
 namespace {
 
-// A plane stands off the obstacle by this part of the gap: the rest is free for the element.
-constexpr double kStandOff = 0.3;
-
 // Edges are not looked at when corners and faces give a plane that separates by all but this part of the distance.
 constexpr double kPairSlack = 0.005;
 
@@ -22,24 +19,16 @@ constexpr double kSmallestReach = 0.25;
 // Corners that move less than this part of the distance cannot bring the element to the triangle.
 constexpr double kFreePart = 0.9;
 
-// Below this part of the clearance, which is 2^-42 of the coordinates, a gap is not told from rounding.
-constexpr double kTouching = 0x1p-12;
-
 double highest_corner(const Vector3& normal, const TriangleCorners& corners) {
   return std::max({normal.dot(corners[0]), normal.dot(corners[1]), normal.dot(corners[2])});
-}
-
-Box3 grown_by(const Box3& box, double reach) {
-  return {box.min() - Vector3::Constant(reach), box.max() + Vector3::Constant(reach)};
 }
 
 }  // namespace
 
 ZoneBuilder::ZoneBuilder(const ElementCorners& element, const ZoneRequest& request, Zone& zone)
-    : element_(element), request_(request), zone_(zone) {
+    : element_(element), request_(request), zone_(zone), element_box_(box_around(element, 0.0)) {
   zone_ = Zone{};
-  for (int i = 0; i < element.count; ++i) element_box_.extend(element.x[static_cast<std::size_t>(i)]);
-  zone_.box = grown_by(element_box_, request.reach);
+  zone_.box = box_around(element, request.reach);
 }
 
 void ZoneBuilder::meet(Index triangle, const TriangleCorners& corners) {
@@ -82,7 +71,7 @@ void ZoneBuilder::separate(Index triangle, const TriangleCorners& corners) {
   const Vector3 normal = distance > 0.0 ? Vector3(away / distance) : Vector3::Zero();
   const double highest = highest_corner(normal, corners);
   const double gap = lowest_corner(normal) - highest;
-  if (!(gap > kTouching * request_.clearance)) {
+  if (is_touching(gap, request_)) {
     zone_.broken = true;
     return;
   }
@@ -90,11 +79,10 @@ void ZoneBuilder::separate(Index triangle, const TriangleCorners& corners) {
     zone_.free_radius = std::min(zone_.free_radius, kFreePart * gap);
     return;
   }
-  // Half of the gap that contact keeps is left to contact, and no element is asked to come nearer than it is.
-  const double stand_off = std::min(gap, std::max(request_.clearance, std::min(kStandOff * gap, 0.5 * request_.gap)));
+  const double height = stand_off(gap, request_);
   const auto plane = static_cast<std::size_t>(zone_.plane_count++);
-  zone_.planes[plane] = {normal, highest + stand_off};
-  limits_[plane] = highest + 0.5 * std::min(stand_off, request_.clearance);
+  zone_.planes[plane] = {normal, highest + height};
+  limits_[plane] = highest + 0.5 * std::min(height, request_.clearance);
 }
 
 void ZoneBuilder::keep_nearest(Index triangle, const ClosestPair& pair) {

@@ -147,6 +147,8 @@ TEST(ConvexZone, DistanceIsTheSmallestOverTheElement) {
         ASSERT_EQ(zone.broken, exact <= 0.0) << name << " element " << i << " distance " << exact;
         if (zone.broken) continue;
         ++apart;
+        ASSERT_LE(zone.clear, exact + 1e-15 * scale) << name;
+        ASSERT_GE(zone.clear, (1.0 - 5e-3) * exact) << name;
         // The search may stop 0.2 % too high; the oracle's own error is 4e-9 of sizes up to 4.
         ASSERT_NEAR(zone.distance, exact, 2.1e-3 * exact + 2e-8 * scale) << name << " element " << i;
         ASSERT_NEAR((weighted(element, zone.weights) - zone.point).norm(), zone.distance, 1e-14 * scale)
@@ -207,6 +209,7 @@ TEST(ConvexZone, BoxIsFreeWithoutPlanes) {
         }
         ++free;
         ASSERT_EQ(zone.distance, kEverything) << name;
+        ASSERT_LE(zone.clear, least_distance(*shape, element)) << name;
         for (const Vector3& point : surface) ASSERT_FALSE(zone.box.contains(point)) << name << " element " << i;
       }
       ASSERT_GT(free, 100) << name;

@@ -1,0 +1,28 @@
+#include "collision/zone.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+namespace {
+
+constexpr double kStandOff = 0.3;
+
+// This part of the clearance is 2^-42 of the coordinates.
+constexpr double kTouching = 0x1p-12;
+
+}  // namespace
+
+Box3 box_around(const ElementCorners& element, double reach) {
+  Box3 box;
+  for (int i = 0; i < element.count; ++i) box.extend(element.x[static_cast<std::size_t>(i)]);
+  return {box.min() - Vector3::Constant(reach), box.max() + Vector3::Constant(reach)};
+}
+
+double stand_off(double gap, const ZoneRequest& request) {
+  return std::min(gap, std::max(request.clearance, std::min(kStandOff * gap, 0.5 * request.gap)));
+}
+
+bool is_touching(double gap, const ZoneRequest& request) { return !(gap > kTouching * request.clearance); }
+
+}  // namespace sprung
