@@ -128,7 +128,7 @@ void Simulator::Implementation::move_pins(double time) {
 void Simulator::Implementation::constrain(StepReport& report) {
   const bool projects = projects_contacts();
   if (!projects && !limit) return;
-  if (projects) contacts.find(before, v_before, state, settings.step);
+  if (projects) contacts.find({before, v_before, state, settings.step});
   const int limit_passes = limit ? limit->settings().iterations : 0;
   const int passes = projects ? std::max(limit_passes, kContactPasses) : limit_passes;
   bool settled = false;

@@ -29,6 +29,14 @@ inline Obstacle ground(const ContactMaterial& material = {}, double angle = 0.0)
           .material = material};
 }
 
+/// An open mesh of two triangles: the square of half side `half` [m] around the origin in the plane y = 0.
+inline Obstacle sheet(double half, const ContactMaterial& material = {}) {
+  TriangleMesh mesh;
+  mesh.vertices = half * (Points(3, 4) << -1, 1, 1, -1, 0, 0, 0, 0, -1, -1, 1, 1).finished();
+  mesh.triangles = (Triangles(3, 2) << 0, 0, 2, 3, 1, 2).finished();
+  return {.name = "sheet", .geometry = MeshGeometry{.mesh = std::make_shared<TriangleMesh>(mesh)}, .material = material};
+}
+
 /// A cloth of 1 m and n x n particles, horizontal at `height` [m].
 inline SpringNetwork cloth(Index n, double height, const ContactMaterial& material = {}) {
   BodyShape shape =

@@ -1,0 +1,63 @@
+// The response to contacts of every kind: of particles, of points of segments and triangles, of pairs of elements.
+//
+// Friction is a displacement, not a velocity: what it takes from the motion along the surface it takes from the position too, so
+// that a particle at rest on a slope does not creep by g sin(angle) dt^2 each step. The velocity follows from the position.
+#pragma once
+
+#include "collision/contact.h"
+#include "collision/environment.h"
+#include "dynamics/contact_pair.h"
+#include "dynamics/contact_set.h"
+#include "dynamics/integrator.h"
+#include "network/spring_network.h"
+
+#include <tuple>
+#include <vector>
+
+namespace sprung {
+
+/// A step of `dt` [s] that began with `before` [m] and `v_before` [m/s] and that the forces alone would end in `advanced`.
+struct StepMotion {
+  const Points& before;
+  const Points& v_before;
+  const SimulationState& advanced;
+  double dt = 0.0;
+};
+
+class ContactResponse {
+ public:
+  /// Keeps references to the network and the environment.
+  ContactResponse(const SpringNetwork& network, const Environment& environment);
+
+  /// Begins a step with these contacts. Those of few particles are answered first, and those of as many in the order given; those
+  /// of pinned particles alone never. Requires that the environment's interval is the step's.
+  void start(const std::vector<Contact>& contacts, const StepMotion& motion);
+
+  /// One Gauss-Seidel pass: each contact moves its particles, weighted by inverse mass, out to its gap, and friction holds or slows
+  /// their motion along the surface, relative to the point that the obstacle or the other element carries: holds it while it is at
+  /// most static friction times the push, else takes kinetic friction times the push from it (Coulomb). Pinned particles do not
+  /// move. Returns the largest change of a push in this pass, as a part of the gap.
+  double project(Points& positions);
+
+  /// Velocities of what touches, by impulses, which keep the momentum of two elements that meet: along the normal, relative to what
+  /// is met, it leaves with restitution times the speed of the impact, or rests (see `settled_speeds`). A push out of the gap never
+  /// speeds anything up.
+  void settle_velocities(SimulationState& state, const Integrator& integrator);
+
+  /// Particles that were pushed in this step.
+  [[nodiscard]] Index pushed_count() const;
+
+ private:
+  template <std::size_t n>
+  void add(const Contact& contact, const StepMotion& motion);
+  [[nodiscard]] Vector3 carried(const Contact& contact, const Vector3& from) const;
+
+  const SpringNetwork& network_;
+  const Environment& environment_;
+  PairMaterials materials_;
+  std::vector<RigidTransform> carry_;  ///< of each obstacle, from the step's begin to its end
+  std::tuple<ContactSet<1>, ContactSet<2>, ContactSet<3>, ContactSet<4>> sets_;
+  double dt_ = 0.0;
+};
+
+}  // namespace sprung
