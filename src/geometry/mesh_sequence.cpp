@@ -33,11 +33,12 @@ MeshSequence::Moment MeshSequence::at(double time) const {
   return {static_cast<Index>(frame), static_cast<Index>(next), place - frame};
 }
 
-// a + part (b - a) has a's bits where the frames agree; rounding may take it past b.
+// a + part (b - a) has a's bits where the frames agree, and never passes b: part < 1 takes at least as much off as rounding of
+// b - a may have added.
 Vector3 MeshSequence::position(Index vertex, const Moment& moment) const {
   const Vector3 a = frames[moment.frame].col(vertex);
   const Vector3 b = frames[moment.next].col(vertex);
-  return (a + moment.part * (b - a)).cwiseMax(a.cwiseMin(b)).cwiseMin(a.cwiseMax(b));
+  return a + moment.part * (b - a);
 }
 
 void MeshSequence::positions(const Moment& moment, Points& positions) const {
@@ -46,7 +47,7 @@ void MeshSequence::positions(const Moment& moment, Points& positions) const {
   if (moment.part == 0.0) {
     positions = a;
   } else {
-    positions = (a + moment.part * (b - a)).cwiseMax(a.cwiseMin(b)).cwiseMin(a.cwiseMax(b));
+    positions = a + moment.part * (b - a);
   }
 }
 
