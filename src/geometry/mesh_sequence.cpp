@@ -44,11 +44,7 @@ Vector3 MeshSequence::position(Index vertex, const Moment& moment) const {
 void MeshSequence::positions(const Moment& moment, Points& positions) const {
   const Points& a = frames[moment.frame];
   const Points& b = frames[moment.next];
-  if (moment.part == 0.0) {
-    positions = a;
-  } else {
-    positions = a + moment.part * (b - a);
-  }
+  positions = a + moment.part * (b - a);
 }
 
 }  // namespace sprung
