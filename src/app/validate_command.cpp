@@ -41,8 +41,8 @@ std::string body_text(const SpringNetwork& network, const Body& body) {
 }
 
 const char* shape_name(const ObstacleGeometry& geometry) {
-  constexpr std::array<const char*, std::variant_size_v<ObstacleGeometry>> kNames{"mesh",     "sphere", "box",       "capsule",
-                                                                                  "cylinder", "cone",   "ellipsoid", "half-space"};
+  constexpr std::array<const char*, std::variant_size_v<ObstacleGeometry>> kNames{
+      "mesh", "sequence", "sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "half-space"};
   return kNames[geometry.index()];
 }
 

@@ -20,6 +20,9 @@ using FclGeometry = std::shared_ptr<fcl::CollisionGeometry<double>>;
 FclGeometry fcl_geometry(const MeshGeometry& /*mesh*/, const ObstacleShape& shape) {
   return static_cast<const MeshShape&>(shape).tree().model();
 }
+FclGeometry fcl_geometry(const SequenceGeometry& /*sequence*/, const ObstacleShape& shape) {
+  return static_cast<const MeshShape&>(shape).tree().model();
+}
 FclGeometry fcl_geometry(const SphereGeometry& sphere, const ObstacleShape& /*shape*/) {
   return std::make_shared<fcl::Sphere<double>>(sphere.radius);
 }

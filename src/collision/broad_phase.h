@@ -19,7 +19,7 @@ class BroadPhase {
   BroadPhase(const std::vector<Obstacle>& obstacles, const std::vector<std::unique_ptr<ObstacleShape>>& shapes,
              const std::vector<RigidTransform>& poses);
 
-  /// Where the obstacles are from now on. Not thread-safe.
+  /// Where the obstacles are from now on, as large as their shapes are now. Not thread-safe.
   void move(const std::vector<RigidTransform>& poses);
 
   /// Replaces `found` by the obstacles whose box meets `box`, ascending. May name more, never fewer. Thread-safe.

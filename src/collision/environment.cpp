@@ -39,7 +39,8 @@ std::optional<LocalContact> find_contact(const ObstacleShape& shape, const Local
 
 bool is_open(const Obstacle& obstacle) {
   const auto* mesh = std::get_if<MeshGeometry>(&obstacle.geometry);
-  return mesh != nullptr && !mesh->closed;
+  const auto* sequence = std::get_if<SequenceGeometry>(&obstacle.geometry);
+  return (mesh != nullptr && !mesh->closed) || (sequence != nullptr && !sequence->closed);
 }
 
 }  // namespace
@@ -63,6 +64,14 @@ void Environment::set_interval(double t, double t_end) { implementation_->set.se
 
 const RigidTransform& Environment::pose_before(Index obstacle) const { return implementation_->set.before(obstacle); }
 const RigidTransform& Environment::pose_after(Index obstacle) const { return implementation_->set.after(obstacle); }
+
+Vector3 Environment::surface_velocity(Index obstacle, const Vector3& position, double time, double dt) const {
+  const ObstacleSet& set = implementation_->set;
+  const auto& [name, geometry, placed, motion, material] = set.obstacle(obstacle);
+  if (!motion.moves() && !set.shape(obstacle).deforms()) return Vector3::Zero();
+  const Vector3 carried = motion.pose(placed, time + dt) * (motion.pose(placed, time).inverse() * position);
+  return (carried - position + set.drift(obstacle, position, time, time + dt)) / dt;
+}
 
 std::vector<Contact> Environment::contacts(const ParticlePaths& paths) const {
   const ObstacleSet& set = implementation_->set;
@@ -90,6 +99,7 @@ std::vector<Contact> Environment::contacts(const ParticlePaths& paths) const {
         if (!found) continue;
         Contact& contact =
             contacts.emplace_back(particle_contact(i, k, set.after(k) * found->point, set.after(k).linear() * found->normal));
+        contact.drift = set.drift(k, contact.point);
         contact.distance = contact.normal.dot(after - contact.point);
         contact.clearance = clearance;
       }

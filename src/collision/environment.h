@@ -29,6 +29,8 @@ class Environment {
   Environment& operator=(Environment&&) noexcept;
 
   [[nodiscard]] const std::vector<Obstacle>& obstacles() const;
+
+  /// Whether any obstacle is ever moved or deforms.
   [[nodiscard]] bool moves() const;
 
   /// The next queries are for a step from time t to t + dt [s]. Not thread-safe; the queries below are.
@@ -37,6 +39,10 @@ class Environment {
   /// Poses at the interval's begin and end.
   [[nodiscard]] const RigidTransform& pose_before(Index obstacle) const;
   [[nodiscard]] const RigidTransform& pose_after(Index obstacle) const;
+
+  /// The velocity [m/s] with which the obstacle carries a position that is near its surface at the interval's end, over the `dt`
+  /// [s] that follow `time`: by its motion, and by its deforming where the surface is nearest.
+  [[nodiscard]] Vector3 surface_velocity(Index obstacle, const Vector3& position, double time, double dt) const;
 
   /// Contacts of particles whose path crosses an obstacle's surface or ends within max(gap, clearance) + margin of it, sorted by
   /// particle, then obstacle; at most one a pair. Where a path crosses the surface (exactly judged, in the obstacle's own frame)

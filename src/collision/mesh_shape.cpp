@@ -1,7 +1,8 @@
 #include "collision/mesh_shape.h"
 
 #include "base/error.h"
-#include "base/format.h"
+#include "collision/usable_mesh.h"
+#include "geometry/closest_pair.h"
 #include "geometry/side_of_plane.h"
 
 #include <algorithm>
@@ -15,40 +16,46 @@ namespace {
 // Closest points are off by some tens of roundings of the largest coordinate that they are computed from.
 constexpr double kRounding = 1e-14;
 
-// Distances are first bounded in single precision, in which the square of a larger coordinate would not be finite.
-constexpr double kLargestCoordinate = 1e15;
-
-void require_usable(const TriangleMesh& mesh) {
-  std::vector<Problem> problems;
-  if (mesh.triangles.cols() == 0) problems.push_back({.key = "mesh", .rule = "must have triangles"});
-  for (Index i = 0; i < mesh.vertices.cols(); ++i) {
-    if ((mesh.vertices.col(i).array().abs() <= kLargestCoordinate).all()) continue;
-    const bool finite = mesh.vertices.col(i).allFinite();
-    problems.push_back(
-        {.key = "mesh: vertex " + std::to_string(i),
-         .rule = finite ? "must be within " + format_number(kLargestCoordinate) + " m of the origin" : "must be finite",
-         .remedy = finite ? "use a smaller scale" : "import and clean the mesh"});
-    break;  // the first stands for all
-  }
-  for (Index t = 0; t < mesh.triangles.cols(); ++t) {
-    const auto corners = mesh.triangles.col(t);
-    if (corners.minCoeff() >= 0 && corners.maxCoeff() < mesh.vertices.cols()) continue;
-    problems.push_back({.key = "mesh: triangle " + std::to_string(t),
-                        .rule = "must use vertices from 0 to " + std::to_string(mesh.vertices.cols() - 1),
-                        .remedy = "import and clean the mesh"});
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
-}
+double largest_coordinate(const Points& vertices) { return vertices.cwiseAbs().maxCoeff(); }
 
 }  // namespace
 
-MeshShape::MeshShape(const MeshGeometry& geometry) : mesh_(geometry.mesh), closed_(geometry.closed) {
-  if (!mesh_) throw InputError(Problem{.key = "mesh", .rule = "must be given"});
-  require_usable(*mesh_);
-  bounds_ = sprung::bounds(mesh_->vertices);
-  magnitude_ = mesh_->vertices.cwiseAbs().maxCoeff();
-  tree_.emplace(*mesh_);
-  pseudonormals_ = pseudonormals(*mesh_);
+MeshShape::MeshShape(const MeshGeometry& geometry) : rigid_(geometry.mesh), closed_(geometry.closed) {
+  if (!rigid_) throw InputError(Problem{.key = "mesh", .rule = "must be given"});
+  require_usable(*rigid_);
+  magnitude_ = largest_coordinate(rigid_->vertices);
+  tree_.emplace(*rigid_);
+  bounds_ = tree_->bounds();
+  pseudonormals_ = pseudonormals(*rigid_);
+}
+
+// The tree is that of the first frame whatever the time, so that a simulation that begins later meets the same tree.
+MeshShape::MeshShape(const SequenceGeometry& geometry) : closed_(geometry.closed) {
+  if (!geometry.sequence) throw InputError(Problem{.key = "sequence", .rule = "must be given"});
+  const MeshSequence& sequence = *geometry.sequence;
+  require_usable(sequence);
+  for (const Points& frame : sequence.frames) magnitude_ = std::max(magnitude_, largest_coordinate(frame));
+  tree_.emplace(TriangleMesh{sequence.frames.front(), sequence.triangles});
+  deforming_.emplace(geometry.sequence);
+  deforms_ = sequence.deforms();
+  set_interval(0.0, 0.0);
+}
+
+void MeshShape::set_interval(double t, double t_end) {
+  if (!deforming_) return;
+  deforming_->set_interval(t, t_end);
+  const auto [from, to] = deforming_->sweep();
+  if (deforming_->sweep_is_new()) tree_->refit(from, to);
+  tree_->set_positions(deforming_->after().vertices);
+  bounds_ = tree_->bounds();
+}
+
+Vector3 MeshShape::displacement(const Vector3& p, double t, double t_end) const {
+  if (!deforms_) return Vector3::Zero();
+  const auto found = tree_->nearest(p, std::numeric_limits<double>::infinity());
+  if (!found) return Vector3::Zero();
+  const auto [a, b, c] = tree_->corners(found->triangle);
+  return deforming_->displacement(found->triangle, barycentric(found->closest, a, b, c), t, t_end);
 }
 
 std::optional<SurfacePoint> MeshShape::nearest(const Vector3& p, double radius) const {
@@ -61,27 +68,27 @@ SurfacePoint MeshShape::surface_point(const Vector3& p, const MeshTree::Nearest&
   const auto& [triangle, closest] = found;
   const Vector3 away = p - closest.point;
   const double length = std::sqrt(closest.squared_distance);
-  const auto corner = mesh_->triangles.col(triangle);
-  const Points& x = mesh_->vertices;
+  const auto corner = mesh().triangles.col(triangle);
+  const Points& x = mesh().vertices;
   const double reach = std::max({x.col(corner[0]).cwiseAbs().maxCoeff(), x.col(corner[1]).cwiseAbs().maxCoeff(),
                                  x.col(corner[2]).cwiseAbs().maxCoeff(), p.cwiseAbs().maxCoeff()});
 
   // Above a face, and everywhere within rounding of the surface, the face's normal is better than the direction to the particle,
   // and the exact side better than that direction's.
   if (closest.feature == TriangleFeature::face || length <= kRounding * reach) {
-    const Vector3 face = pseudonormals_.face.col(triangle);
+    const Vector3 face = face_normal(triangle);
     const bool back = side_of_plane(x.col(corner[0]), x.col(corner[1]), x.col(corner[2]), p) < 0.0;
     if (!closed_) return {closest.point, back ? Vector3(-face) : face, length};
     return {closest.point, face, back ? -length : length};
   }
-  const bool inside = closed_ && pseudonormals_.at(mesh_->triangles, triangle, closest.feature).dot(away) < 0.0;
+  const bool inside = closed_ && pseudonormal(triangle, closest.feature).dot(away) < 0.0;
   return {closest.point, (inside ? -away : away) / length, inside ? -length : length};
 }
 
 std::optional<Crossing> MeshShape::first_crossing(const Vector3& a, const Vector3& b) const {
   const auto hit = tree_->first_hit(a, b, closed_ ? CrossingSides::front : CrossingSides::both);
   if (!hit) return std::nullopt;
-  const Vector3 face = pseudonormals_.face.col(hit->triangle);
+  const Vector3 face = face_normal(hit->triangle);
   return Crossing{hit->fraction, a + hit->fraction * (b - a), face.dot(b - a) > 0.0 ? Vector3(-face) : face};
 }
 
@@ -92,5 +99,13 @@ bool MeshShape::contains(const Vector3& p) const {
 }
 
 double MeshShape::rounding(const Vector3& p) const { return kRounding * (magnitude_ + p.cwiseAbs().maxCoeff()); }
+
+Vector3 MeshShape::face_normal(Index triangle) const {
+  return deforming_ ? deforming_->face_normal(triangle) : Vector3(pseudonormals_.face.col(triangle));
+}
+
+Vector3 MeshShape::pseudonormal(Index triangle, TriangleFeature feature) const {
+  return deforming_ ? deforming_->normal_at(triangle, feature) : pseudonormals_.at(rigid_->triangles, triangle, feature);
+}
 
 }  // namespace sprung

@@ -1,6 +1,7 @@
-// A triangle mesh as an obstacle's shape.
+// A triangle mesh as an obstacle's shape: one that is rigid, or one that deforms.
 #pragma once
 
+#include "collision/deforming_mesh.h"
 #include "collision/mesh_tree.h"
 #include "collision/obstacle_shape.h"
 #include "geometry/pseudonormal.h"
@@ -12,6 +13,13 @@ class MeshShape final : public ObstacleShape {
   /// Throws InputError, naming every problem, for a mesh that FCL must not see: none, without triangles, with a position that is
   /// not finite or with an index out of range.
   explicit MeshShape(const MeshGeometry& geometry);
+  /// The same for a sequence: none, without frames, or with a frame that is such a mesh or has not as many vertices as the first.
+  explicit MeshShape(const SequenceGeometry& geometry);
+
+  [[nodiscard]] bool deforms() const override { return deforms_; }
+  void set_interval(double t, double t_end) override;
+  [[nodiscard]] double largest_displacement() const override { return deforms_ ? deforming_->largest_displacement() : 0.0; }
+  [[nodiscard]] Vector3 displacement(const Vector3& p, double t, double t_end) const override;
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override;
@@ -23,14 +31,19 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] const MeshTree& tree() const { return *tree_; }
 
  private:
+  [[nodiscard]] const TriangleMesh& mesh() const { return deforming_ ? deforming_->after() : *rigid_; }
+  [[nodiscard]] Vector3 face_normal(Index triangle) const;
+  [[nodiscard]] Vector3 pseudonormal(Index triangle, TriangleFeature feature) const;
   [[nodiscard]] SurfacePoint surface_point(const Vector3& p, const MeshTree::Nearest& found) const;
 
-  std::shared_ptr<const TriangleMesh> mesh_;
+  std::shared_ptr<const TriangleMesh> rigid_;  ///< none where it is a sequence
+  std::optional<DeformingMesh> deforming_;
+  bool deforms_ = false;
   bool closed_;
   Box3 bounds_;
   double magnitude_ = 0.0;
   std::optional<MeshTree> tree_;
-  Pseudonormals pseudonormals_;
+  Pseudonormals pseudonormals_;  ///< of the rigid mesh
 };
 
 }  // namespace sprung

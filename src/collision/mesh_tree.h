@@ -17,10 +17,20 @@ namespace sprung {
 
 /// FCL builds the tree of AABBs; a copy of it with up to eight children a node and single-precision boxes, rounded outward, is what
 /// the walks read. Requires a valid mesh: at least one triangle, indices in range, positions below 1e18 [m] (squares of single
-/// precision).
+/// precision). A mesh that deforms keeps the tree of its first positions; only its boxes and triangles follow.
 class MeshTree {
  public:
   explicit MeshTree(const TriangleMesh& mesh);
+
+  /// Refits all boxes, FCL's and the copy's, so that each holds its triangles while every vertex is between `from` and `to` [m].
+  /// Not thread-safe.
+  void refit(const Points& from, const Points& to);
+
+  /// Where the vertices are from now on [m], within the boxes. Not thread-safe.
+  void set_positions(const Points& positions);
+
+  /// The box around all boxes [m].
+  [[nodiscard]] Box3 bounds() const;
 
   struct Nearest {
     Index triangle = kNone;
@@ -37,7 +47,7 @@ class MeshTree {
   /// all their triangles. Of triangles met at the same fraction the lowest index.
   [[nodiscard]] std::optional<Hit> first_hit(const Vector3& a, const Vector3& b, CrossingSides sides) const;
 
-  /// FCL's model, for its broad phase.
+  /// FCL's model, for its broad phase; the box that it knows itself by is `bounds`.
   [[nodiscard]] const std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>>& model() const { return model_; }
 
   /// Children: a node's number, or ~i for the i-th leaf. Lanes without a child have an empty box.
@@ -62,13 +72,19 @@ class MeshTree {
   [[nodiscard]] std::array<Vector3, 3> corners(Index triangle) const;
 
  private:
+  /// For each lane of a node FCL's number of its bounding volume; kNone where there is none.
+  using Volumes = std::array<Index, kTreeLanes>;
+
   std::int32_t add_node(const std::vector<int>& children, int depth);
+  void fit_boxes(std::size_t node);
 
   std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> model_;
   std::vector<Node> nodes_;
+  std::vector<Volumes> volumes_;  ///< of each node
   std::vector<Leaf> leaves_;
-  std::size_t stack_size_ = 0;  ///< that no walk outgrows
-  double magnitude_ = 0.0;      ///< largest absolute coordinate [m]
+  std::vector<std::int32_t> leaf_of_;  ///< by triangle
+  std::size_t stack_size_ = 0;         ///< that no walk outgrows
+  double magnitude_ = 0.0;             ///< largest absolute coordinate [m]
 };
 
 }  // namespace sprung

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/contact_material.h"
+#include "geometry/mesh_sequence.h"
 #include "geometry/motion.h"
 #include "geometry/triangle_mesh.h"
 
@@ -14,6 +15,12 @@ namespace sprung {
 /// A triangle mesh as `import_mesh` leaves it. Closed meshes have an inside; open ones keep each particle on its side.
 struct MeshGeometry {
   std::shared_ptr<const TriangleMesh> mesh{};
+  bool closed = false;
+};
+
+/// A mesh that deforms, as `import_sequence` leaves it. What closed means is judged once, for all frames.
+struct SequenceGeometry {
+  std::shared_ptr<const MeshSequence> sequence{};
   bool closed = false;
 };
 
@@ -44,8 +51,8 @@ struct HalfSpaceGeometry {
   double offset = 0.0;
 };  ///< solid where normal . x <= offset; unit normal
 
-using ObstacleGeometry = std::variant<MeshGeometry, SphereGeometry, BoxGeometry, CapsuleGeometry, CylinderGeometry, ConeGeometry,
-                                      EllipsoidGeometry, HalfSpaceGeometry>;
+using ObstacleGeometry = std::variant<MeshGeometry, SequenceGeometry, SphereGeometry, BoxGeometry, CapsuleGeometry,
+                                      CylinderGeometry, ConeGeometry, EllipsoidGeometry, HalfSpaceGeometry>;
 
 struct Obstacle {
   std::string name{};
@@ -53,10 +60,13 @@ struct Obstacle {
   RigidTransform placed = RigidTransform::Identity();
   Motion motion{};
   ContactMaterial material{};
+
+  /// Whether its surface is ever elsewhere than at another time: it is moved, or deforms.
+  [[nodiscard]] bool changes() const;
 };
 
-/// The obstacle's surface as triangles in its own frame, for export: a mesh as it is, a primitive tessellated, a half-space,
-/// and it alone, as a square of side 2 * `extent` [m].
-[[nodiscard]] TriangleMesh obstacle_mesh(const ObstacleGeometry& geometry, double extent);
+/// The obstacle's surface at a time [s] as triangles in its own frame, for export: a mesh as it is, a primitive tessellated, a
+/// half-space, and it alone, as a square of side 2 * `extent` [m]. Vertices keep their numbers at all times.
+[[nodiscard]] TriangleMesh obstacle_mesh(const ObstacleGeometry& geometry, double extent, double time = 0.0);
 
 }  // namespace sprung

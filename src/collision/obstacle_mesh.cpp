@@ -56,31 +56,39 @@ std::vector<Vector2> half_circle(double radius, double length) {
   return profile;
 }
 
-TriangleMesh tessellate(const MeshGeometry& geometry, double /*extent*/) { return *geometry.mesh; }
+TriangleMesh tessellate(const MeshGeometry& geometry, double /*extent*/, double /*time*/) { return *geometry.mesh; }
 
-TriangleMesh tessellate(const SphereGeometry& sphere, double /*extent*/) { return revolve(half_circle(sphere.radius, 0.0)); }
+TriangleMesh tessellate(const SequenceGeometry& geometry, double /*extent*/, double time) {
+  TriangleMesh mesh{{}, geometry.sequence->triangles};
+  geometry.sequence->positions(geometry.sequence->at(time), mesh.vertices);
+  return mesh;
+}
 
-TriangleMesh tessellate(const CapsuleGeometry& capsule, double /*extent*/) {
+TriangleMesh tessellate(const SphereGeometry& sphere, double /*extent*/, double /*time*/) {
+  return revolve(half_circle(sphere.radius, 0.0));
+}
+
+TriangleMesh tessellate(const CapsuleGeometry& capsule, double /*extent*/, double /*time*/) {
   return revolve(half_circle(capsule.radius, capsule.length));
 }
 
-TriangleMesh tessellate(const CylinderGeometry& cylinder, double /*extent*/) {
+TriangleMesh tessellate(const CylinderGeometry& cylinder, double /*extent*/, double /*time*/) {
   const double half = 0.5 * cylinder.height;
   return revolve({{0.0, -half}, {cylinder.radius, -half}, {cylinder.radius, half}, {0.0, half}});
 }
 
-TriangleMesh tessellate(const ConeGeometry& cone, double /*extent*/) {
+TriangleMesh tessellate(const ConeGeometry& cone, double /*extent*/, double /*time*/) {
   const double half = 0.5 * cone.height;
   return revolve({{0.0, -half}, {cone.radius, -half}, {0.0, half}});
 }
 
-TriangleMesh tessellate(const EllipsoidGeometry& ellipsoid, double /*extent*/) {
+TriangleMesh tessellate(const EllipsoidGeometry& ellipsoid, double /*extent*/, double /*time*/) {
   TriangleMesh mesh = revolve(half_circle(1.0, 0.0));
   mesh.vertices = ellipsoid.radii.asDiagonal() * mesh.vertices;
   return mesh;
 }
 
-TriangleMesh tessellate(const BoxGeometry& box, double /*extent*/) {
+TriangleMesh tessellate(const BoxGeometry& box, double /*extent*/, double /*time*/) {
   TriangleMesh mesh{Points(3, 8), Triangles(3, 12)};
   for (int i = 0; i < 8; ++i) {
     const Vector3 corner((i & 1) != 0 ? 0.5 : -0.5, (i & 2) != 0 ? 0.5 : -0.5, (i & 4) != 0 ? 0.5 : -0.5);
@@ -96,7 +104,7 @@ TriangleMesh tessellate(const BoxGeometry& box, double /*extent*/) {
   return mesh;
 }
 
-TriangleMesh tessellate(const HalfSpaceGeometry& half_space, double extent) {
+TriangleMesh tessellate(const HalfSpaceGeometry& half_space, double extent, double /*time*/) {
   const Vector3 u = half_space.normal.unitOrthogonal();
   const Vector3 v = half_space.normal.cross(u);
   const Vector3 centre = half_space.offset * half_space.normal;
@@ -108,8 +116,8 @@ TriangleMesh tessellate(const HalfSpaceGeometry& half_space, double extent) {
 
 }  // namespace
 
-TriangleMesh obstacle_mesh(const ObstacleGeometry& geometry, double extent) {
-  return std::visit([extent](const auto& of_kind) { return tessellate(of_kind, extent); }, geometry);
+TriangleMesh obstacle_mesh(const ObstacleGeometry& geometry, double extent, double time) {
+  return std::visit([=](const auto& of_kind) { return tessellate(of_kind, extent, time); }, geometry);
 }
 
 }  // namespace sprung

@@ -49,19 +49,24 @@ ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move
   for (const Obstacle& obstacle : obstacles_) {
     before_.push_back(obstacle.motion.pose(obstacle.placed, 0.0));
     into_before_.push_back(before_.back().inverse());
-    moves_ = moves_ || obstacle.motion.moves();
     max_thickness_ = std::max(max_thickness_, obstacle.material.thickness);
   }
   after_ = before_;
   into_after_ = into_before_;
   magnitude_.resize(obstacles_.size());
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) measure(k);
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    moves_ = moves_ || changes(k);
+    measure(k);
+  }
   broad_phase_ = std::make_unique<BroadPhase>(obstacles_, shapes_, after_);
 }
 
 void ObstacleSet::set_interval(double t, double t_end) {
+  begin_ = t;
+  end_ = t_end;
   if (!moves_) return;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    if (shapes_[k]->deforms()) shapes_[k]->set_interval(t, t_end);
     if (!obstacles_[k].motion.moves()) continue;
     before_[k] = obstacles_[k].motion.pose(obstacles_[k].placed, t);
     after_[k] = obstacles_[k].motion.pose(obstacles_[k].placed, t_end);
@@ -87,7 +92,18 @@ double ObstacleSet::max_clearance(const Box3& box) const {
 
 Vector3 ObstacleSet::carried(Index k, const Vector3& from) const {
   if (rests(k)) return from;
-  return after(k) * (into_before_[static_cast<std::size_t>(k)] * from);
+  return after(k) * local_begin(k, from);
+}
+
+Vector3 ObstacleSet::drift(Index k, const Vector3& position, double t, double t_end) const {
+  if (!shape(k).deforms()) return Vector3::Zero();
+  return after(k).linear() * shape(k).displacement(local(k, position), t, t_end);
+}
+
+Vector3 ObstacleSet::local_begin(Index k, const Vector3& from) const {
+  const Vector3 begin = into_before_[static_cast<std::size_t>(k)] * from;
+  if (shape(k).largest_displacement() == 0.0) return begin;
+  return begin + shape(k).displacement(begin, begin_, end_);
 }
 
 double ObstacleSet::carries_at_most(const Points& positions) const {
@@ -96,11 +112,11 @@ double ObstacleSet::carries_at_most(const Points& positions) const {
   if (box.isEmpty()) return 0.0;
   double farthest = 0.0;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    if (!obstacles_[k].motion.moves()) continue;
+    if (!changes(k)) continue;
     const RigidTransform carry = after_[k] * into_before_[k];
     const double at_centre = (carry * box.center() - box.center()).norm();
     const double around = (carry.linear() - Matrix3::Identity()).norm() * 0.5 * box.diagonal().norm();
-    farthest = std::max(farthest, at_centre + around);
+    farthest = std::max(farthest, at_centre + around + shapes_[k]->largest_displacement());
   }
   return farthest;
 }

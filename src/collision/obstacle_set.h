@@ -11,7 +11,8 @@ namespace sprung {
 /// A particle's path in an obstacle's own frame, straight from where it was to where it is about to be. A moving obstacle is met in
 /// its own frame, where it rests: at the interval's ends this path is exact, so the side on which a particle ends one step is the
 /// side on which it begins the next, whatever way the obstacle took between. Rounding is no gap either: the next step computes the
-/// same begin from the same position and pose.
+/// same begin from the same position and pose. What deforms in its own frame takes the begin with it, as far as it takes the
+/// surface nearest to it.
 struct LocalPath {
   Vector3 begin;
   Vector3 end;
@@ -31,7 +32,7 @@ class ObstacleSet {
   [[nodiscard]] const RigidTransform& after(Index k) const { return after_[static_cast<std::size_t>(k)]; }
 
   [[nodiscard]] LocalPath local_path(Index k, const Vector3& from, const Vector3& to) const {
-    return {into_before_[static_cast<std::size_t>(k)] * from, local(k, to)};
+    return {local_begin(k, from), local(k, to)};
   }
   /// A position at the interval's end in the frame of obstacle k.
   [[nodiscard]] Vector3 local(Index k, const Vector3& position) const {
@@ -49,7 +50,14 @@ class ObstacleSet {
 
   /// Where obstacle k carries a position in this interval: to the last bit where it was, if the obstacle rests.
   [[nodiscard]] Vector3 carried(Index k, const Vector3& from) const;
-  [[nodiscard]] bool rests(Index k) const { return before(k).matrix() == after(k).matrix(); }
+  [[nodiscard]] bool rests(Index k) const {
+    return before(k).matrix() == after(k).matrix() && shape(k).largest_displacement() == 0.0;
+  }
+
+  /// How far deforming takes the surface of obstacle k that is nearest to a position at the interval's end, beside the pose, from
+  /// time t to t_end; by default in the interval [m].
+  [[nodiscard]] Vector3 drift(Index k, const Vector3& position, double t, double t_end) const;
+  [[nodiscard]] Vector3 drift(Index k, const Vector3& position) const { return drift(k, position, begin_, end_); }
 
   /// The farthest [m] that any obstacle carries one of the positions in this interval.
   [[nodiscard]] double carries_at_most(const Points& positions) const;
@@ -60,6 +68,8 @@ class ObstacleSet {
 
  private:
   void measure(std::size_t k);
+  [[nodiscard]] bool changes(std::size_t k) const { return obstacles_[k].motion.moves() || shapes_[k]->deforms(); }
+  [[nodiscard]] Vector3 local_begin(Index k, const Vector3& from) const;
 
   std::vector<Obstacle> obstacles_;
   std::vector<std::unique_ptr<ObstacleShape>> shapes_;
@@ -69,6 +79,8 @@ class ObstacleSet {
   std::vector<RigidTransform> into_after_;
   std::unique_ptr<BroadPhase> broad_phase_;
   std::vector<double> magnitude_;  ///< of an obstacle's coordinates in this interval [m]
+  double begin_ = 0.0;             ///< of the interval [s]
+  double end_ = 0.0;
   double max_thickness_ = 0.0;
   bool moves_ = false;
 };

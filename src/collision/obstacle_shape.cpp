@@ -72,6 +72,7 @@ class SizeCheck {
 };
 
 std::unique_ptr<ObstacleShape> make(const MeshGeometry& mesh) { return std::make_unique<MeshShape>(mesh); }
+std::unique_ptr<ObstacleShape> make(const SequenceGeometry& sequence) { return std::make_unique<MeshShape>(sequence); }
 
 template <class Geometry>
 std::unique_ptr<ObstacleShape> make(const Geometry& geometry) {

@@ -27,6 +27,18 @@ class ObstacleShape {
  public:
   virtual ~ObstacleShape() = default;
 
+  /// Whether the surface ever moves within its own frame.
+  [[nodiscard]] virtual bool deforms() const { return false; }
+
+  /// The step from time t to t_end [s]: what is asked below is answered for its end. Not thread-safe.
+  virtual void set_interval(double /*t*/, double /*t_end*/) {}
+
+  /// The farthest that a point of the surface moves in the interval, in the shape's frame [m].
+  [[nodiscard]] virtual double largest_displacement() const { return 0.0; }
+
+  /// How far the point of the surface that is nearest to p moves from time t to t_end, in the shape's frame [m].
+  [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/, double /*t*/, double /*t_end*/) const { return Vector3::Zero(); }
+
   /// The surface nearest to p, if nearer than `radius` [m] or, for primitives, if p is inside. Deep inside a closed mesh (farther
   /// than radius) nothing is found: use `contains`. Where p is on the surface the normal is that of the face found there.
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const = 0;
@@ -40,10 +52,10 @@ class ObstacleShape {
   /// Whether p is inside; always false for open meshes.
   [[nodiscard]] virtual bool contains(const Vector3& p) const = 0;
 
-  /// A box around the shape [m]; infinite for a half-space.
+  /// A box around the shape throughout the interval [m]; infinite for a half-space.
   [[nodiscard]] virtual Box3 bounds() const = 0;
 
-  /// The largest coordinate on the shape [m]; of a half-space, whose coordinates have no end, its offset.
+  /// The largest coordinate on the shape at any time [m]; of a half-space, whose coordinates have no end, its offset.
   [[nodiscard]] virtual double magnitude() const = 0;
 
   /// What rounding may do to distances measured from p [m].
@@ -51,7 +63,7 @@ class ObstacleShape {
 };
 
 /// Throws InputError, naming every problem, for a mesh without triangles, with positions that are not finite or indices out of
-/// range, and for sizes that are not positive.
+/// range, for frames that do not fit their triangles or each other, and for sizes that are not positive.
 [[nodiscard]] std::unique_ptr<ObstacleShape> make_shape(const ObstacleGeometry& geometry);
 
 }  // namespace sprung

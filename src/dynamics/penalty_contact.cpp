@@ -20,7 +20,7 @@ void PenaltyContact::add(const Kinematics& at, Points& forces) const {
     const Index i = contact.particles[0];
     const Obstacle& obstacle = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)];
     const ContactMaterial pair = combine(network_.body_of(i).material, obstacle.material);
-    const Vector3 relative = at.v.col(i) - surface_velocity(obstacle, at.x.col(i), at.time);
+    const Vector3 relative = at.v.col(i) - environment_.surface_velocity(contact.obstacle, at.x.col(i), at.time, dt_);
     const double speed = contact.normal.dot(relative);
     const double push = std::max(0.0, stiffness_ * (pair.thickness - contact.distance) - damping_ * speed);
     forces.col(i) += push * contact.normal;
@@ -41,13 +41,6 @@ Index PenaltyContact::contact_count(const Points& positions) const {
     last = contact.particles[0];
   }
   return count;
-}
-
-Vector3 PenaltyContact::surface_velocity(const Obstacle& obstacle, const Vector3& point, double time) const {
-  if (!obstacle.motion.moves()) return Vector3::Zero();
-  const RigidTransform now = obstacle.motion.pose(obstacle.placed, time);
-  const RigidTransform next = obstacle.motion.pose(obstacle.placed, time + dt_);
-  return (next * (now.inverse() * point) - point) / dt_;
 }
 
 }  // namespace sprung

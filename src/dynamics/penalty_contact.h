@@ -21,8 +21,6 @@ class PenaltyContact final : public Force {
   [[nodiscard]] Index contact_count(const Points& positions) const;
 
  private:
-  [[nodiscard]] Vector3 surface_velocity(const Obstacle& obstacle, const Vector3& point, double time) const;
-
   const SpringNetwork& network_;
   const Environment& environment_;
   double stiffness_;

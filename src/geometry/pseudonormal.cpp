@@ -44,6 +44,15 @@ void add_edge_normals(const Triangles& triangles, const Points& face, Points& ed
   }
 }
 
+Vector3 face_normal(const TriangleMesh& mesh, Index triangle) { return area_normal(mesh, triangle).normalized(); }
+
+/// The corner of the triangle that is the vertex; 3 when none is.
+int corner_at(const TriangleMesh& mesh, Index triangle, Index vertex) {
+  int corner = 0;
+  while (corner < 3 && mesh.triangles(corner, triangle) != vertex) ++corner;
+  return corner;
+}
+
 }  // namespace
 
 Vector3 Pseudonormals::at(const Triangles& triangles, Index triangle, TriangleFeature feature) const {
@@ -57,11 +66,25 @@ Pseudonormals pseudonormals(const TriangleMesh& mesh) {
   const auto count = mesh.triangles.cols();
   Pseudonormals normals{Points(3, count), Points(3, 3 * count), Points::Zero(3, mesh.vertices.cols())};
   for (Index t = 0; t < count; ++t) {
-    normals.face.col(t) = area_normal(mesh, t).normalized();
+    normals.face.col(t) = face_normal(mesh, t);
     for (int k = 0; k < 3; ++k) normals.vertex.col(mesh.triangles(k, t)) += corner_angle(mesh, t, k) * normals.face.col(t);
   }
   add_edge_normals(mesh.triangles, normals.face, normals.edge);
   return normals;
+}
+
+Vector3 pseudonormal(const TriangleMesh& mesh, const VertexTriangles& around, Index triangle, TriangleFeature feature) {
+  const int number = static_cast<int>(feature);
+  if (feature == TriangleFeature::face) return face_normal(mesh, triangle);
+  const Index vertex = mesh.triangles(number % 3, triangle);
+  const Index other = number < 3 ? kNone : mesh.triangles((number + 1) % 3, triangle);
+  Vector3 sum = Vector3::Zero();
+  for (Index i = around.first[vertex]; i < around.first[vertex + 1]; ++i) {
+    const Index t = around.triangle[i];
+    if (other == kNone) sum += corner_angle(mesh, t, corner_at(mesh, t, vertex)) * face_normal(mesh, t);
+    if (other != kNone && corner_at(mesh, t, other) < 3) sum += face_normal(mesh, t);
+  }
+  return sum;
 }
 
 }  // namespace sprung

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/closest_point.h"
+#include "geometry/topology.h"
 #include "geometry/triangle_mesh.h"
 
 namespace sprung {
@@ -17,5 +18,10 @@ struct Pseudonormals {
 
 /// Requires consistently oriented faces without degenerate ones, as `clean_mesh` leaves them.
 [[nodiscard]] Pseudonormals pseudonormals(const TriangleMesh& mesh);
+
+/// One of them, with the same bits: for a mesh that deforms, of which few are asked for before it is another. `around` is that of
+/// the mesh. Triangles without area count nothing: where no other is, the result is zero.
+[[nodiscard]] Vector3 pseudonormal(const TriangleMesh& mesh, const VertexTriangles& around, Index triangle,
+                                   TriangleFeature feature);
 
 }  // namespace sprung

@@ -69,6 +69,17 @@ Edges unique_edges(const Triangles& triangles) {
   return result;
 }
 
+VertexTriangles triangles_around_vertices(const Triangles& triangles, Index vertices) {
+  VertexTriangles around{std::vector<Index>(vertices + 1, 0), std::vector<Index>(triangles.size())};
+  for (const Index vertex : triangles.reshaped()) ++around.first[vertex + 1];
+  std::partial_sum(around.first.begin(), around.first.end(), around.first.begin());
+  std::vector<Index> next(around.first.begin(), around.first.end() - 1);
+  for (Index t = 0; t < triangles.cols(); ++t) {
+    for (Index corner = 0; corner < 3; ++corner) around.triangle[next[triangles(corner, t)]++] = t;
+  }
+  return around;
+}
+
 Index connected_components(const Triangles& triangles) {
   if (triangles.cols() == 0) return 0;
   std::vector<Index> parent(triangles.maxCoeff() + 1);

@@ -26,6 +26,13 @@ struct MeshEdge {
 /// Unique edges of triangles, 2 x m, lower index first, sorted.
 [[nodiscard]] Edges unique_edges(const Triangles& triangles);
 
+/// Which triangles use each vertex: those of vertex i are triangle[first[i]] to triangle[first[i + 1] - 1], ascending.
+struct VertexTriangles {
+  std::vector<Index> first;
+  std::vector<Index> triangle;
+};
+[[nodiscard]] VertexTriangles triangles_around_vertices(const Triangles& triangles, Index vertices);
+
 /// Number of connected components of the triangles (joined by shared vertices).
 [[nodiscard]] Index connected_components(const Triangles& triangles);
 

@@ -79,11 +79,13 @@ TriangleMesh surface_mesh(const Obstacle& obstacle, const Box3& scene) {
 ObjSequence obstacle_sequence(const Obstacle& obstacle, Index number, const Box3& scene, int frames) {
   const TriangleMesh mesh = surface_mesh(obstacle, scene);
   const auto vertices = [number, local = mesh.vertices](const Simulator& simulator) -> Points {
-    const Obstacle& moved = simulator.environment().obstacles()[static_cast<std::size_t>(number)];
-    return moved.motion.pose(moved.placed, simulator.time()) * local;
+    const Obstacle& present = simulator.environment().obstacles()[static_cast<std::size_t>(number)];
+    const RigidTransform pose = present.motion.pose(present.placed, simulator.time());
+    if (!std::holds_alternative<SequenceGeometry>(present.geometry)) return pose * local;
+    return pose * obstacle_mesh(present.geometry, 0.0, simulator.time()).vertices;
   };
   const std::string name = kObstacleFolder + "/" + obstacle.name;
-  const std::string pattern = obstacle.motion.moves() ? sequence_pattern(name + "/" + obstacle.name, frames) : name + ".obj";
+  const std::string pattern = obstacle.changes() ? sequence_pattern(name + "/" + obstacle.name, frames) : name + ".obj";
   return {pattern, vertices, to_polygons(mesh.triangles), Edges(2, 0)};
 }
 

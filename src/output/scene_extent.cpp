@@ -15,7 +15,7 @@ Box3 scene_bounds(const Simulator& simulator) {
   for (const Obstacle& obstacle : simulator.environment().obstacles()) {
     if (std::holds_alternative<HalfSpaceGeometry>(obstacle.geometry)) continue;
     const RigidTransform pose = obstacle.motion.pose(obstacle.placed, simulator.time());
-    box.extend(bounds(pose * obstacle_mesh(obstacle.geometry, 0.0).vertices));
+    box.extend(bounds(pose * obstacle_mesh(obstacle.geometry, 0.0, simulator.time()).vertices));
   }
   return box;
 }

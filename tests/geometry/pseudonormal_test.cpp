@@ -45,5 +45,19 @@ TEST(Pseudonormal, DoNotDependOnHowASideIsCut) {
   EXPECT_LT((pyramid(false).vertex - pyramid(true).vertex).cwiseAbs().maxCoeff(), 1e-15);
 }
 
+TEST(Pseudonormal, OneAloneHasTheBitsOfAll) {
+  TriangleMesh mesh = test::merge(test::make_cube(), test::make_cube(0.3, Vector3(0.1, 0.7, 2.0)));
+  for (Index i = 0; i < mesh.vertices.cols(); ++i)
+    mesh.vertices.col(i) += 0.1 * Vector3(std::sin(i), std::cos(3 * i), std::sin(5 * i));
+  const Pseudonormals all = pseudonormals(mesh);
+  const VertexTriangles around = triangles_around_vertices(mesh.triangles, 16);
+  for (Index t = 0; t < mesh.triangles.cols(); ++t) {
+    for (int k = 0; k < 7; ++k) {
+      const auto feature = static_cast<TriangleFeature>(k);
+      EXPECT_EQ(pseudonormal(mesh, around, t, feature), all.at(mesh.triangles, t, feature)) << t << ' ' << k;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sprung

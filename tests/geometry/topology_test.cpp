@@ -58,6 +58,12 @@ TEST(IsClosed, FailsWhenAFaceIsTurned) {
 
 TEST(IsClosed, FailsForNothing) { EXPECT_FALSE(is_closed(Triangles(3, 0))); }
 
+TEST(TrianglesAroundVertices, AreThoseThatUseThem) {
+  const VertexTriangles around = triangles_around_vertices(test::make_triangles({{0, 1, 2}, {4, 2, 1}, {2, 0, 4}}), 6);
+  EXPECT_THAT(around.first, ElementsAre(0, 2, 4, 7, 7, 9, 9));
+  EXPECT_THAT(around.triangle, ElementsAre(0, 2, 0, 1, 0, 1, 2, 1, 2));
+}
+
 TEST(ConnectedComponents, CountSeparateParts) {
   const TriangleMesh two = test::merge(test::make_cube(), test::make_cube(1.0, Vector3(3, 0, 0)));
   EXPECT_EQ(connected_components(two.triangles), 2);
