@@ -94,6 +94,21 @@ TEST_P(ContactResponse, BounceReachesTheSquareOfRestitutionTimesTheHeightAtAnySt
   }
 }
 
+TEST_P(ContactResponse, ClothDroppedFlatBouncesAsAParticleDoes) {
+  const double e = 0.6;
+  const double height = 0.4;
+  for (const Obstacle& obstacle : {ground(), testing::sheet(3.0)}) {
+    for (const double step : {5e-4, 2e-3}) {
+      Simulator simulator(testing::cloth(9, height + 0.01, {.thickness = 0.01, .restitution = e}), settings(step), {obstacle});
+      const Points flat = simulator.positions();
+      EXPECT_NEAR(height_of_bounce(simulator), 0.01 + e * e * height, kGravity * step * step / 8.0 + 1e-12);
+      // All of it falls and bounces at once: nothing is stretched.
+      const Points moved = simulator.positions() - flat;
+      EXPECT_LT((moved.colwise() - moved.col(0)).cwiseAbs().maxCoeff(), 1e-9) << obstacle.name << ", step " << step;
+    }
+  }
+}
+
 TEST_P(ContactResponse, RestingParticleDoesNotBounce) {
   Simulator simulator(one_particle({0.0, 0.01, 0.0}, {.thickness = 0.01, .restitution = 1.0}), settings(1e-3), {ground()});
   for (int i = 0; i < 500; ++i) {
