@@ -1,6 +1,7 @@
 #include "collision/mesh_shape.h"
 
 #include "base/error.h"
+#include "collision/mesh_inside.h"
 #include "collision/usable_mesh.h"
 #include "geometry/closest_pair.h"
 #include "geometry/side_of_plane.h"
@@ -92,11 +93,7 @@ std::optional<Crossing> MeshShape::first_crossing(const Vector3& a, const Vector
   return Crossing{hit->fraction, a + hit->fraction * (b - a), face.dot(b - a) > 0.0 ? Vector3(-face) : face};
 }
 
-bool MeshShape::contains(const Vector3& p) const {
-  if (!closed_ || !bounds_.contains(p)) return false;
-  const auto found = tree_->nearest(p, std::numeric_limits<double>::infinity());
-  return surface_point(p, *found).distance < 0.0;
-}
+bool MeshShape::contains(const Vector3& p) const { return closed_ && bounds_.contains(p) && winding_number(*tree_, p) > 0; }
 
 double MeshShape::rounding(const Vector3& p) const { return kRounding * (magnitude_ + p.cwiseAbs().maxCoeff()); }
 

@@ -104,4 +104,18 @@ double side_of_plane(const Vector3& a, const Vector3& b, const Vector3& c, const
   return exact_side_of_plane(a, b, c, p);
 }
 
+double side_of_line(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p) {
+  const Eigen::Vector2d u = a - p;
+  const Eigen::Vector2d v = b - p;
+  const double left = u[0] * v[1];
+  const double right = u[1] * v[0];
+  // Four roundings lie on the way of each product into the difference.
+  constexpr double kBound = 4.0 * std::numeric_limits<double>::epsilon();
+  if (std::abs(left - right) > kBound * (std::abs(left) + std::abs(right))) return left - right;
+  Minor determinant;
+  determinant.add_product(difference(a[0], p[0]), difference(b[1], p[1]));
+  determinant.add_product(difference(a[1], p[1]), difference(b[0], p[0]), -1.0);
+  return determinant.value();
+}
+
 }  // namespace sprung

@@ -83,5 +83,29 @@ TEST(SideOfPlane, SwappingTwoCornersNegatesEveryBit) {
   }
 }
 
+TEST(SideOfLine, SignIsThatOfExactArithmeticNextToTheLine) {
+  std::mt19937_64 random(2);
+  const auto coordinate = [&] { return static_cast<std::int64_t>(random() >> 28) - (std::int64_t{1} << 35); };
+  int zeros = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const std::int64_t a[2] = {coordinate(), coordinate()};
+    const std::int64_t b[2] = {coordinate(), coordinate()};
+    const auto part = static_cast<std::int64_t>(random() % 17) - 8;
+    std::int64_t p[2] = {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])};
+    if (i % 2 == 0) p[i / 2 % 2] += static_cast<std::int64_t>(random() % 3) - 1;
+    const Wide area = static_cast<Wide>(b[0] - a[0]) * (p[1] - a[1]) - static_cast<Wide>(b[1] - a[1]) * (p[0] - a[0]);
+    const int expected = area > 0 ? 1 : area < 0 ? -1 : 0;
+    zeros += expected == 0;
+    for (const int exponent : {-60, -36, 0}) {
+      const auto scaled_point = [&](const std::int64_t* q) {
+        return Eigen::Vector2d(std::ldexp(static_cast<double>(q[0]), exponent), std::ldexp(static_cast<double>(q[1]), exponent));
+      };
+      ASSERT_EQ(sign(side_of_line(scaled_point(a), scaled_point(b), scaled_point(p))), expected);
+    }
+  }
+  EXPECT_GT(zeros, 10000);
+  EXPECT_GT(side_of_line({0, 0}, {1, 0}, {0.5, 1e-30}), 0.0);
+}
+
 }  // namespace
 }  // namespace sprung

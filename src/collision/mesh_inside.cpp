@@ -1,0 +1,94 @@
+#include "collision/mesh_inside.h"
+
+#include "base/kernel.h"
+#include "collision/walk_stack.h"
+#include "geometry/side_of_plane.h"
+
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+
+namespace {
+
+using Vector2 = Eigen::Vector2d;
+
+struct FloatBox {
+  float min[3];
+  float max[3];
+};
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+float below(double value) { return std::nextafter(static_cast<float>(value), -kInfinity); }
+float above(double value) { return std::nextafter(static_cast<float>(value), kInfinity); }
+
+FloatBox rounded_outward(const Box3& box) {
+  FloatBox rounded;
+  for (int axis = 0; axis < 3; ++axis) {
+    rounded.min[axis] = below(box.min()[axis]);
+    rounded.max[axis] = above(box.max()[axis]);
+  }
+  return rounded;
+}
+
+/// 0 for children that meet the box, 1 for the others.
+SPRUNG_KERNEL void push_meeting(const MeshTree::Node& node, const FloatBox& box, WalkStack& stack) {
+  TreeLanes apart = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    apart = (node.min[axis] > box.max[axis]) | (node.max[axis] < box.min[axis]) ? TreeLanes{} + 1.0F : apart;
+  }
+  stack.push_within(apart, node.child, 0.0F);
+}
+
+template <class Visit>
+void visit_box(const MeshTree& tree, const Box3& box, const Visit& visit) {
+  const FloatBox bounds = rounded_outward(box);
+  WalkStack stack(tree.stack_size());
+  stack.push({0.0F, 0});
+  while (!stack.empty()) {
+    const WalkEntry entry = stack.pop();
+    if (entry.child < 0) {
+      visit(tree.leaf(~entry.child));
+    } else {
+      push_meeting(tree.node(entry.child), bounds, stack);
+    }
+  }
+}
+
+/// What the edge from a to b adds to the winding around p in the plane, p moved a little off every line and point.
+int winding_of_edge(const Vector2& a, const Vector2& b, const Vector2& p) {
+  if (a.y() <= p.y() && b.y() > p.y()) return side_of_line(a, b, p) > 0.0 ? 1 : 0;
+  if (b.y() <= p.y() && a.y() > p.y()) return side_of_line(b, a, p) > 0.0 ? -1 : 0;
+  return 0;
+}
+
+/// 1 where the ray from p along x leaves through the triangle, -1 where it enters, 0 where it misses.
+int passing(const MeshTree::Leaf& leaf, const Vector3& p) {
+  const auto along_x = [](const Vector3& q) { return Vector2(q.y(), q.z()); };
+  const Vector2 a = along_x(leaf.a);
+  const Vector2 b = along_x(leaf.b);
+  const Vector2 c = along_x(leaf.c);
+  const Vector2 q = along_x(p);
+  const int winding = winding_of_edge(a, b, q) + winding_of_edge(b, c, q) + winding_of_edge(c, a, q);
+  if (winding == 0) return 0;
+  const bool ahead = winding * side_of_plane(leaf.a, leaf.b, leaf.c, p) < 0.0;
+  return ahead ? winding : 0;
+}
+
+}  // namespace
+
+int winding_number(const MeshTree& tree, const Vector3& p) {
+  Box3 ray(p, p);
+  ray.max().x() = std::numeric_limits<double>::infinity();
+  int winding = 0;
+  visit_box(tree, ray, [&](const MeshTree::Leaf& leaf) { winding += passing(leaf, p); });
+  return winding;
+}
+
+void find_in_box(const MeshTree& tree, const Box3& box, std::vector<Index>& found) {
+  found.clear();
+  visit_box(tree, box, [&](const MeshTree::Leaf& leaf) { found.push_back(leaf.triangle); });
+}
+
+}  // namespace sprung
