@@ -45,10 +45,10 @@ std::vector<Sample> primitives(double scale) {
 Zone zone_against(const ObstacleGeometry& geometry, const ElementCorners& element, const ZoneRequest& request) {
   return std::visit(
       [&](const auto& shape) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, MeshGeometry>) {
-          return Zone{};
-        } else {
+        if constexpr (requires { find_zone(shape, element, request); }) {
           return find_zone(shape, element, request);
+        } else {
+          return Zone{};  // meshes are no primitives
         }
       },
       geometry);
