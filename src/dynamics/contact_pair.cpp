@@ -38,14 +38,15 @@ PairMaterials::PairMaterials(const SpringNetwork& network, const std::vector<Obs
   }
 }
 
-const ContactMaterial& PairMaterials::of(const Contact& contact) {
+const ContactMaterial& PairMaterials::of(const Contact& contact, Last& last) const {
   const Pair pair = pair_of(contact);
-  if (pair == last_) return material_;
-  last_ = pair;
+  if (pair == last.pair) return last.material;
+  last.pair = pair;
   const ContactMaterial& body = network_.bodies[static_cast<std::size_t>(pair.body)].material;
-  material_ = pair.obstacle != kNone ? combine(body, obstacles_[static_cast<std::size_t>(pair.obstacle)].material)
-                                     : combine_bodies(body, network_.bodies[static_cast<std::size_t>(pair.other_body)].material);
-  return material_;
+  last.material = pair.obstacle != kNone
+                      ? combine(body, obstacles_[static_cast<std::size_t>(pair.obstacle)].material)
+                      : combine_bodies(body, network_.bodies[static_cast<std::size_t>(pair.other_body)].material);
+  return last.material;
 }
 
 // A corner of weight 0 tells nothing of its side.

@@ -19,16 +19,12 @@ namespace sprung {
 /// Each particle's share of the gap [m]: the thickness of its body.
 [[nodiscard]] Scalars particle_thickness(const SpringNetwork& network);
 
-/// The materials of contacts, which mostly come one after another of the same pair.
+/// The materials of contacts.
 class PairMaterials {
  public:
   /// Keeps references to both.
   PairMaterials(const SpringNetwork& network, const std::vector<Obstacle>& obstacles);
 
-  /// Valid until the next call.
-  [[nodiscard]] const ContactMaterial& of(const Contact& contact);
-
- private:
   /// A body and what it meets: an obstacle, or else the other body.
   struct Pair {
     Index body = kNone;
@@ -36,13 +32,21 @@ class PairMaterials {
     Index other_body = kNone;
     bool operator==(const Pair&) const = default;
   };
+  /// The pair that was asked for last: contacts mostly come one after another of the same.
+  struct Last {
+    Pair pair{};
+    ContactMaterial material{};
+  };
+
+  /// Valid until `last` is used again.
+  [[nodiscard]] const ContactMaterial& of(const Contact& contact, Last& last) const;
+
+ private:
   [[nodiscard]] Pair pair_of(const Contact& contact) const;
 
   const SpringNetwork& network_;
   const std::vector<Obstacle>& obstacles_;
   std::vector<Index> body_of_;
-  Pair last_;
-  ContactMaterial material_;
 };
 
 }  // namespace sprung

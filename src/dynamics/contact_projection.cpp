@@ -28,7 +28,7 @@ ContactProjection::ContactProjection(const SpringNetwork& network, const Environ
 }
 
 void ContactProjection::find(const StepMotion& motion) {
-  response_.start(environment_.contacts({motion.before, motion.advanced.x, thickness_, margin_}), motion);
+  response_.start(environment_.contacts({motion.before, motion.advanced, thickness_, margin_}), motion);
 }
 
 void ContactProjection::truncate(const Points& before, Points& positions) {

@@ -20,7 +20,9 @@ class ContactProjection {
 
   /// See ContactResponse.
   double project(Points& positions) { return response_.project(positions); }
-  void settle_velocities(SimulationState& state, const Integrator& integrator) { response_.settle_velocities(state, integrator); }
+  void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {
+    response_.settle_velocities(motion, state, integrator);
+  }
   [[nodiscard]] Index contact_count() const { return response_.pushed_count(); }
 
   /// Moves particles that ended behind a surface back to the side where they were at `before` [m]: the last word on positions.

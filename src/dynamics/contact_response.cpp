@@ -1,6 +1,9 @@
 #include "dynamics/contact_response.h"
 
+#include "base/parallel.h"
+
 #include <algorithm>
+#include <limits>
 
 namespace sprung {
 namespace {
@@ -11,12 +14,21 @@ constexpr int kVelocityPasses = 8;
 // Passes end when none changes a velocity by more than this part of what the first one did.
 constexpr double kVelocityTolerance = 1.0e-3;
 
+// A touching contact is this part of its gap above it at most: what rounding leaves of a projection.
+constexpr double kTouch = 1.0e-9;
+
+// The least of contacts that only pinned particles have.
+constexpr double kNothingToDo = -std::numeric_limits<double>::infinity();
+
+// Contacts that one task sets up.
+constexpr Index kContactChunk = 1024;
+
 template <class Sets, class Visit>
 void for_each_set(Sets& sets, const Visit& visit) {
   std::apply([&](auto&... set) { (visit(set), ...); }, sets);
 }
 
-/// The contact's particles, weights and shares; none when all of them are pinned.
+/// Sets the contact's particles, weights and shares; shares of 0 when all of them are pinned.
 template <std::size_t n>
 bool set_particles(const Contact& contact, const Scalars& inverse_masses, ContactRow<n>& row) {
   double mobility = 0.0;
@@ -37,50 +49,45 @@ ContactResponse::ContactResponse(const SpringNetwork& network, const Environment
     : network_(network), environment_(environment), materials_(network, environment.obstacles()) {}
 
 void ContactResponse::start(const std::vector<Contact>& contacts, const StepMotion& motion) {
-  dt_ = motion.dt;
   carry_.clear();
   for (std::size_t k = 0; k < environment_.obstacles().size(); ++k) {
     const auto obstacle = static_cast<Index>(k);
     carry_.push_back(environment_.pose_after(obstacle) * environment_.pose_before(obstacle).inverse());
   }
-  for_each_set(sets_, [](auto& set) { set.clear(); });
-  for (const Contact& contact : contacts) {
-    switch (contact.count) {
-      case 1:
-        add<1>(contact, motion);
-        break;
-      case 2:
-        add<2>(contact, motion);
-        break;
-      case 3:
-        add<3>(contact, motion);
-        break;
-      default:
-        add<4>(contact, motion);
-    }
-  }
+  for_each_set(sets_, [&](auto& set) { fill(set, contacts, motion); });
 }
 
 template <std::size_t n>
-void ContactResponse::add(const Contact& contact, const StepMotion& motion) {
-  ContactRow<n> row;
-  if (!set_particles(contact, network_.inverse_masses, row)) return;
-  const ContactMaterial& pair = materials_.of(contact);
-  const double gap = std::max(pair.thickness, contact.clearance);
-  const Vector3 from = row.sum(motion.before);
+void ContactResponse::fill(ContactSet<n>& set, const std::vector<Contact>& contacts, const StepMotion& motion) {
+  order_.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (static_cast<std::size_t>(contacts[c].count) == n) order_.push_back(static_cast<Index>(c));
+  }
+  set.resize(order_.size());
+  parallel_chunks(static_cast<Index>(order_.size()), kContactChunk, [&](Index begin, Index end) {
+    PairMaterials::Last last;
+    for (Index slot = begin; slot < end; ++slot) {
+      const Contact& contact = contacts[static_cast<std::size_t>(order_[static_cast<std::size_t>(slot)])];
+      fill_one(contact, materials_.of(contact, last), motion, set, static_cast<std::size_t>(slot));
+    }
+  });
+}
+
+template <std::size_t n>
+void ContactResponse::fill_one(const Contact& contact, const ContactMaterial& pair, const StepMotion& motion, ContactSet<n>& set,
+                               std::size_t slot) {
+  ContactRow<n>& row = set.row(slot);
+  const bool moves = set_particles(contact, network_.inverse_masses, row);
   row.normal = contact.normal;
-  row.origin = carried(contact, from);
-  row.least = gap - contact.normal.dot(row.origin - contact.point);
   row.static_friction = pair.static_friction;
   row.friction = pair.friction;
+  row.restitution = pair.restitution;
 
-  const Vector3 carrier = (row.origin - from) / motion.dt;
-  const FreeFlight flight{.height = -row.least,
-                          .moved = row.normal.dot(row.sum(motion.advanced.x) - row.origin),
-                          .v_before = row.normal.dot(row.sum(motion.v_before) - carrier),
-                          .v_after = row.normal.dot(row.sum(motion.advanced.v) - carrier),
-                          .dt = motion.dt};
-  std::get<ContactSet<n>>(sets_).add(row, gap, {carrier, settled_speeds(flight, pair.restitution)});
+  const double gap = std::max(pair.thickness, contact.clearance);
+  set.gap(slot) = gap;
+  ContactGoal& goal = set.goal(slot);
+  goal = {.origin = carried(contact, row.sum(motion.before)), .touch = kTouch * gap};
+  goal.least = moves ? gap - contact.normal.dot(goal.origin - contact.point) : kNothingToDo;
 }
 
 // An obstacle that rests, and what another element is relative to, carries a position to the last bit where it was.
@@ -97,8 +104,8 @@ double ContactResponse::project(Points& positions) {
   return largest;
 }
 
-void ContactResponse::settle_velocities(SimulationState& state, const Integrator& integrator) {
-  for_each_set(sets_, [&](auto& set) { set.begin_settling(state.x, state.v); });
+void ContactResponse::settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {
+  for_each_set(sets_, [&](auto& set) { set.begin_settling(motion, state.x, state.v); });
   double first = 0.0;
   for (int pass = 0; pass < kVelocityPasses; ++pass) {
     double largest = 0.0;
@@ -106,8 +113,9 @@ void ContactResponse::settle_velocities(SimulationState& state, const Integrator
     if (pass == 0) first = largest;
     if (largest <= kVelocityTolerance * first) break;
   }
-  for_each_set(sets_,
-               [&](auto& set) { set.for_touching([&](Index particle) { integrator.velocity_changed(state, particle, dt_); }); });
+  for_each_set(sets_, [&](auto& set) {
+    set.for_touching([&](Index particle) { integrator.velocity_changed(state, particle, motion.dt); });
+  });
 }
 
 Index ContactResponse::pushed_count() const {

@@ -9,20 +9,13 @@
 #include "dynamics/contact_pair.h"
 #include "dynamics/contact_set.h"
 #include "dynamics/integrator.h"
+#include "dynamics/step_motion.h"
 #include "network/spring_network.h"
 
 #include <tuple>
 #include <vector>
 
 namespace sprung {
-
-/// A step of `dt` [s] that began with `before` [m] and `v_before` [m/s] and that the forces alone would end in `advanced`.
-struct StepMotion {
-  const Points& before;
-  const Points& v_before;
-  const SimulationState& advanced;
-  double dt = 0.0;
-};
 
 class ContactResponse {
  public:
@@ -41,15 +34,18 @@ class ContactResponse {
 
   /// Velocities of what touches, by impulses, which keep the momentum of two elements that meet: along the normal, relative to what
   /// is met, it leaves with restitution times the speed of the impact, or rests (see `settled_speeds`). A push out of the gap never
-  /// speeds anything up.
-  void settle_velocities(SimulationState& state, const Integrator& integrator);
+  /// speeds anything up. Requires the motion that the step was begun with, and velocities that are recovered from positions.
+  void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator);
 
   /// Particles that were pushed in this step.
   [[nodiscard]] Index pushed_count() const;
 
  private:
   template <std::size_t n>
-  void add(const Contact& contact, const StepMotion& motion);
+  void fill(ContactSet<n>& set, const std::vector<Contact>& contacts, const StepMotion& motion);
+  template <std::size_t n>
+  void fill_one(const Contact& contact, const ContactMaterial& pair, const StepMotion& motion, ContactSet<n>& set,
+                std::size_t slot);
   [[nodiscard]] Vector3 carried(const Contact& contact, const Vector3& from) const;
 
   const SpringNetwork& network_;
@@ -57,7 +53,7 @@ class ContactResponse {
   PairMaterials materials_;
   std::vector<RigidTransform> carry_;  ///< of each obstacle, from the step's begin to its end
   std::tuple<ContactSet<1>, ContactSet<2>, ContactSet<3>, ContactSet<4>> sets_;
-  double dt_ = 0.0;
+  std::vector<Index> order_;  ///< contacts of as many particles as the set that is filled
 };
 
 }  // namespace sprung

@@ -9,24 +9,18 @@
 
 namespace sprung {
 
-/// The weighted sum of what n particles have, less the origin, may not fall below `least` along the normal:
-/// normal . (sum_i weights_i q_i - origin) >= least. Be q positions [m], then the origin is where the sum would be had it gone
-/// along with what it meets, or velocities [m/s], then it is the velocity of that: what is left of the sum, across the normal, is
-/// slip.
+/// A weighted sum of n particles that is held along a normal.
 template <std::size_t n>
 struct ContactRow {
   std::array<Index, n> particles{};
   std::array<double, n> weights{};
   std::array<double, n> shares{};  ///< what each particle changes by for a change of the sum by 1: by inverse mass
   Vector3 normal = Vector3::Zero();
-  Vector3 origin = Vector3::Zero();
-  double least = 0.0;
   double static_friction = 0.0;
   double friction = 0.0;
-  double push = 0.0;  ///< change along the normal so far, >= 0
-  double held = 0.0;  ///< what friction has taken from the slip so far, >= 0
+  double restitution = 0.0;
 
-  /// The weighted sum of the columns of q.
+  /// The weighted sum of the particles' columns of q.
   [[nodiscard]] Vector3 sum(const Points& q) const {
     Vector3 result = weights[0] * q.col(particles[0]);
     for (std::size_t k = 1; k < n; ++k) result += weights[k] * q.col(particles[k]);
@@ -39,32 +33,46 @@ struct ContactRow {
   }
 };
 
+/// What the sum of a row shall keep: normal . (sum - origin) >= least. Of positions [m] the origin is where the sum would be had it
+/// gone along with what it meets, of velocities [m/s] the velocity of that: what is left across the normal is slip.
+struct ContactGoal {
+  Vector3 origin = Vector3::Zero();
+  double least = 0.0;
+  double touch = 0.0;    ///< within this much of its least the row touches, without being pushed too
+  double push = 0.0;     ///< change along the normal so far, >= 0
+  double held = 0.0;     ///< what friction has taken from the slip so far, >= 0
+  bool touches = false;  ///< as it was found last
+};
+
 /// What friction takes next from a slip of this length: all of it while static friction holds it, else what kinetic friction has
 /// not taken yet.
 template <std::size_t n>
-[[nodiscard]] double friction_part(const ContactRow<n>& row, double slip) {
-  const double hold = row.static_friction * row.push - row.held;
-  const double slow = row.friction * row.push - row.held;
+[[nodiscard]] double friction_part(const ContactRow<n>& row, const ContactGoal& goal, double slip) {
+  const double hold = row.static_friction * goal.push - goal.held;
+  const double slow = row.friction * goal.push - goal.held;
   return slip <= hold ? slip : std::clamp(slow, 0.0, slip);
 }
 
 /// Brings the row to its least and lets friction answer to the push. The push is a Lagrange multiplier in the sense of sequential
 /// impulses: what another contact makes needless is taken back, but never more than was given. Returns the change of the push.
 template <std::size_t n>
-double answer(ContactRow<n>& row, Points& q) {
-  const Vector3 moved = row.sum(q) - row.origin;
+double answer(const ContactRow<n>& row, ContactGoal& goal, Points& q) {
+  const Vector3 moved = row.sum(q) - goal.origin;
   const double along = row.normal.dot(moved);
-  const double change = std::max(row.least - along, -row.push);
-  row.push += change;
-  if (row.push == 0.0 && change == 0.0) return 0.0;
+  const double change = std::max(goal.least - along, -goal.push);
+  // Most contacts stay apart, and nothing is written for them.
+  const bool touches = goal.push > 0.0 || along <= goal.least + goal.touch;
+  if (touches != goal.touches) goal.touches = touches;
+  if (change == 0.0 && goal.push == 0.0) return 0.0;
 
+  goal.push += change;
   Vector3 answered = change * row.normal;
-  const Vector3 across = moved - along * row.normal;
-  const double slip = across.norm();
-  const double taken = row.push > 0.0 && slip > 0.0 ? friction_part(row, slip) : 0.0;
-  if (taken > 0.0) {
-    answered -= (taken / slip) * across;
-    row.held += taken;
+  if (goal.push > 0.0 && row.static_friction > 0.0) {
+    const Vector3 across = moved - along * row.normal;
+    const double slip = across.norm();
+    const double taken = slip > 0.0 ? friction_part(row, goal, slip) : 0.0;
+    if (taken > 0.0) answered -= (taken / slip) * across;
+    goal.held += taken;
   }
   row.change_sum(answered, q);
   return change;

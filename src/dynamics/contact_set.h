@@ -3,6 +3,7 @@
 
 #include "dynamics/contact_bounce.h"
 #include "dynamics/contact_row.h"
+#include "dynamics/step_motion.h"
 
 #include <cmath>
 #include <vector>
@@ -12,75 +13,79 @@ namespace sprung {
 template <std::size_t n>
 class ContactSet {
  public:
-  /// What a contact's velocities are to become.
-  struct Settling {
-    Vector3 carrier = Vector3::Zero();  ///< velocity of what is met [m/s]
-    SpeedRange speeds{};                ///< along the normal, relative to it
-  };
-
-  void clear() {
-    rows_.clear();
-    gaps_.clear();
-    settling_.clear();
+  /// Begins a step with so many contacts, each of which `row`, `goal` and `gap` [m] > 0 are then to be set.
+  void resize(std::size_t count) {
+    rows_.resize(count);
+    goals_.resize(count);
+    gaps_.resize(count);
   }
+  [[nodiscard]] ContactRow<n>& row(std::size_t contact) { return rows_[contact]; }
+  [[nodiscard]] ContactGoal& goal(std::size_t contact) { return goals_[contact]; }
+  [[nodiscard]] double& gap(std::size_t contact) { return gaps_[contact]; }
 
-  /// `gap` [m] > 0 is kept.
-  void add(const ContactRow<n>& row, double gap, const Settling& settling) {
-    rows_.push_back(row);
-    gaps_.push_back(gap);
-    settling_.push_back(settling);
-  }
-
-  /// Returns the largest change of a push, as a part of the gap.
+  /// Answers on positions. Returns the largest change of a push, as a part of the gap.
   double project(Points& positions) {
     double largest = 0.0;
     for (std::size_t c = 0; c < rows_.size(); ++c) {
-      const double change = answer(rows_[c], positions);
-      largest = std::max(largest, std::abs(change) / gaps_[c]);
+      const double change = answer(rows_[c], goals_[c], positions);
+      if (change != 0.0) largest = std::max(largest, std::abs(change) / gaps_[c]);
     }
     return largest;
   }
 
-  /// Finds what touches at these positions and takes from its velocities what a push out of the gap has made too fast.
-  void begin_settling(const Points& positions, Points& velocities) {
-    velocity_rows_.clear();
+  /// Finds what touches, and takes from its velocities what a push out of the gap has made too fast.
+  void begin_settling(const StepMotion& motion, const Points& positions, Points& velocities) {
+    touching_.clear();
+    velocity_goals_.clear();
     for (std::size_t c = 0; c < rows_.size(); ++c) {
+      if (!goals_[c].touches) continue;
       const ContactRow<n>& row = rows_[c];
-      const double height = row.normal.dot(row.sum(positions) - row.origin) - row.least;
-      if (row.push == 0.0 && height > kTouch * gaps_[c]) continue;
-      ContactRow<n>& added = velocity_rows_.emplace_back(row);
-      added.origin = settling_[c].carrier;
-      added.least = settling_[c].speeds.least;
-      added.push = 0.0;
-      added.held = 0.0;
-      const double speed = added.normal.dot(added.sum(velocities) - added.origin);
-      const double excess = speed - settling_[c].speeds.most;
-      if (excess > 0.0) added.change_sum(-excess * added.normal, velocities);
+      const Vector3 carrier = (goals_[c].origin - row.sum(motion.before)) / motion.dt;
+      const double speed = row.normal.dot(row.sum(velocities) - carrier);
+      const double pushed = row.normal.dot(row.sum(positions) - row.sum(motion.advanced)) / motion.dt;
+      const SpeedRange range = settled_speeds(row, goals_[c], motion, carrier, speed - pushed);
+      if (speed > range.most) row.change_sum((range.most - speed) * row.normal, velocities);
+      touching_.push_back(c);
+      velocity_goals_.push_back({.origin = carrier, .least = range.least});
     }
   }
 
-  /// Returns the largest change of a velocity [m/s].
+  /// Answers on velocities. Returns the largest change of one [m/s].
   double settle(Points& velocities) {
     double largest = 0.0;
-    for (ContactRow<n>& row : velocity_rows_) largest = std::max(largest, std::abs(answer(row, velocities)));
+    for (std::size_t t = 0; t < touching_.size(); ++t) {
+      largest = std::max(largest, std::abs(answer(rows_[touching_[t]], velocity_goals_[t], velocities)));
+    }
     return largest;
   }
 
   /// Calls `visit(particle)` for each particle that what touches can move, several times for one that several do.
   template <class Visit>
   void for_touching(const Visit& visit) const {
-    for (const ContactRow<n>& row : velocity_rows_) for_moved(row, visit);
+    for (const std::size_t c : touching_) for_moved(rows_[c], visit);
   }
 
   /// The same for contacts that have pushed.
   template <class Visit>
   void for_pushed(const Visit& visit) const {
-    for (const ContactRow<n>& row : rows_) {
-      if (row.push > 0.0) for_moved(row, visit);
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      if (goals_[c].push > 0.0) for_moved(rows_[c], visit);
     }
   }
 
  private:
+  /// `v_after` is what the forces alone would have made of the speed along the normal.
+  static SpeedRange settled_speeds(const ContactRow<n>& row, const ContactGoal& goal, const StepMotion& motion,
+                                   const Vector3& carrier, double v_after) {
+    if (row.restitution == 0.0) return {.least = 0.0, .most = std::max(0.0, v_after)};
+    return sprung::settled_speeds({.height = -goal.least,
+                                   .moved = row.normal.dot(row.sum(motion.advanced) - goal.origin),
+                                   .v_before = row.normal.dot(row.sum(motion.v_before) - carrier),
+                                   .v_after = v_after,
+                                   .dt = motion.dt},
+                                  row.restitution);
+  }
+
   template <class Visit>
   static void for_moved(const ContactRow<n>& row, const Visit& visit) {
     for (std::size_t k = 0; k < n; ++k) {
@@ -88,13 +93,11 @@ class ContactSet {
     }
   }
 
-  // What rounding leaves of a projection onto the gap, as a part of it.
-  static constexpr double kTouch = 1.0e-9;
-
   std::vector<ContactRow<n>> rows_;
+  std::vector<ContactGoal> goals_;  ///< of positions
   std::vector<double> gaps_;
-  std::vector<Settling> settling_;
-  std::vector<ContactRow<n>> velocity_rows_;  ///< of those that touch
+  std::vector<std::size_t> touching_;
+  std::vector<ContactGoal> velocity_goals_;  ///< of those that touch
 };
 
 }  // namespace sprung

@@ -43,6 +43,7 @@ struct Simulator::Implementation {
   void check_state() const;
   void fail(StepFailure failure) const;
   [[nodiscard]] bool projects_contacts() const;
+  [[nodiscard]] StepMotion motion() const { return {before, v_before, advanced, settings.step}; }
 
   SpringNetwork network;
   SimulatorSettings settings;
@@ -128,7 +129,7 @@ void Simulator::Implementation::move_pins(double time) {
 void Simulator::Implementation::constrain(StepReport& report) {
   const bool projects = projects_contacts();
   if (!projects && !limit) return;
-  if (projects) contacts.find({before, v_before, state, settings.step});
+  if (projects) contacts.find(motion());
   const int limit_passes = limit ? limit->settings().iterations : 0;
   const int passes = projects ? std::max(limit_passes, kContactPasses) : limit_passes;
   bool settled = false;
@@ -144,7 +145,7 @@ void Simulator::Implementation::settle(StepReport& report) {
   if (environment.obstacles().empty() && !limit) return;
   if (!environment.obstacles().empty()) contacts.truncate(before, state.x);
   integrator->recover_velocities(state, before, advanced, settings.step);
-  if (!environment.obstacles().empty()) contacts.settle_velocities(state, *integrator);
+  if (!environment.obstacles().empty()) contacts.settle_velocities(motion(), state, *integrator);
   report.stretch_excess = limit ? limit->excess(state.x) : 0.0;
   report.truncated = contacts.truncated_count();
   report.squeezed = contacts.squeezed_count();

@@ -28,18 +28,19 @@ TEST(ContactPair, MaterialsOfContactsAreThoseOfTheirSides) {
   for (int i = 0; i < 3; ++i) builder.add_particle(Vector3::Zero(), 1.0);
   const SpringNetwork network = builder.build();
   const std::vector<Obstacle> obstacles{{.name = "floor", .geometry = HalfSpaceGeometry{}, .material = {.thickness = 0.5}}};
-  PairMaterials materials(network, obstacles);
+  const PairMaterials materials(network, obstacles);
+  PairMaterials::Last last;
 
-  EXPECT_EQ(materials.of(particle_contact(0, 0, Vector3::Zero(), Vector3::UnitY())).thickness, 0.52);
-  EXPECT_EQ(materials.of(particle_contact(2, 0, Vector3::Zero(), Vector3::UnitY())).thickness, 0.54);
+  EXPECT_EQ(materials.of(particle_contact(0, 0, Vector3::Zero(), Vector3::UnitY()), last).thickness, 0.52);
+  EXPECT_EQ(materials.of(particle_contact(2, 0, Vector3::Zero(), Vector3::UnitY()), last).thickness, 0.54);
   Contact pair;
   pair.particles = {0, 1, 2, kNone};
   pair.weights = {1.0, -0.5, -0.5, 0.0};
   pair.count = 3;
-  EXPECT_DOUBLE_EQ(materials.of(pair).thickness, 0.03);
-  EXPECT_DOUBLE_EQ(materials.of(pair).thickness, 0.03) << "again the same";
+  EXPECT_DOUBLE_EQ(materials.of(pair, last).thickness, 0.03);
+  EXPECT_DOUBLE_EQ(materials.of(pair, last).thickness, 0.03) << "again the same";
   pair.particles = {3, 1, 2, kNone};
-  EXPECT_DOUBLE_EQ(materials.of(pair).thickness, 0.04) << "a body and itself";
+  EXPECT_DOUBLE_EQ(materials.of(pair, last).thickness, 0.04) << "a body and itself";
 }
 
 }  // namespace

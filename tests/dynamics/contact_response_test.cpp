@@ -37,10 +37,11 @@ class World {
     Points scratch = Points::Zero(3, network.particle_count());
     integrator->advance(state, forces, kStep, scratch);
     const Points advanced = state.x;
-    response.start(contacts, {before, v_before, state, kStep});
+    const StepMotion motion{before, v_before, advanced, kStep};
+    response.start(contacts, motion);
     for (int pass = 0; pass < passes; ++pass) response.project(state.x);
     integrator->recover_velocities(state, before, advanced, kStep);
-    response.settle_velocities(state, *integrator);
+    response.settle_velocities(motion, state, *integrator);
     ++state.step;
   }
 
