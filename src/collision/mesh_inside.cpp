@@ -4,6 +4,7 @@
 #include "collision/walk_stack.h"
 #include "geometry/side_of_plane.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,7 @@ namespace sprung {
 namespace {
 
 using Vector2 = Eigen::Vector2d;
+using TriangleCorners = std::array<Vector3, 3>;
 
 struct FloatBox {
   float min[3];
@@ -49,7 +51,11 @@ void visit_box(const MeshTree& tree, const Box3& box, const Visit& visit) {
   while (!stack.empty()) {
     const WalkEntry entry = stack.pop();
     if (entry.child < 0) {
-      visit(tree.leaf(~entry.child));
+      const TriangleBlock& block = tree.block(~entry.child);
+      for (unsigned lanes = triangles_in_box(block, box); lanes != 0;) {
+        const int lane = take_lane(lanes);
+        visit(block.triangle[lane], block.corners(lane));
+      }
     } else {
       push_meeting(tree.node(entry.child), bounds, stack);
     }
@@ -64,15 +70,15 @@ int winding_of_edge(const Vector2& a, const Vector2& b, const Vector2& p) {
 }
 
 /// 1 where the ray from p along x leaves through the triangle, -1 where it enters, 0 where it misses.
-int passing(const MeshTree::Leaf& leaf, const Vector3& p) {
+int passing(const TriangleCorners& corners, const Vector3& p) {
   const auto along_x = [](const Vector3& q) { return Vector2(q.y(), q.z()); };
-  const Vector2 a = along_x(leaf.a);
-  const Vector2 b = along_x(leaf.b);
-  const Vector2 c = along_x(leaf.c);
+  const Vector2 a = along_x(corners[0]);
+  const Vector2 b = along_x(corners[1]);
+  const Vector2 c = along_x(corners[2]);
   const Vector2 q = along_x(p);
   const int winding = winding_of_edge(a, b, q) + winding_of_edge(b, c, q) + winding_of_edge(c, a, q);
   if (winding == 0) return 0;
-  const bool ahead = winding * side_of_plane(leaf.a, leaf.b, leaf.c, p) < 0.0;
+  const bool ahead = winding * side_of_plane(corners[0], corners[1], corners[2], p) < 0.0;
   return ahead ? winding : 0;
 }
 
@@ -82,13 +88,13 @@ int winding_number(const MeshTree& tree, const Vector3& p) {
   Box3 ray(p, p);
   ray.max().x() = std::numeric_limits<double>::infinity();
   int winding = 0;
-  visit_box(tree, ray, [&](const MeshTree::Leaf& leaf) { winding += passing(leaf, p); });
+  visit_box(tree, ray, [&](Index /*triangle*/, const TriangleCorners& corners) { winding += passing(corners, p); });
   return winding;
 }
 
 void find_in_box(const MeshTree& tree, const Box3& box, std::vector<Index>& found) {
   found.clear();
-  visit_box(tree, box, [&](const MeshTree::Leaf& leaf) { found.push_back(leaf.triangle); });
+  visit_box(tree, box, [&](Index triangle, const TriangleCorners& /*corners*/) { found.push_back(triangle); });
 }
 
 }  // namespace sprung

@@ -1,6 +1,8 @@
 #include "collision/mesh_tree.h"
 
 #include "base/parallel.h"
+#include "collision/surface_splitter.h"
+#include "collision/tree_collapse.h"
 
 #include <fcl/math/bv/utility.h>
 
@@ -13,7 +15,7 @@ namespace sprung {
 namespace {
 
 constexpr Index kNodesPerTask = 512;
-constexpr Index kLeavesPerTask = 4096;
+constexpr Index kBlocksPerTask = 1024;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -24,9 +26,17 @@ float rounded_down(double value) {
 
 float rounded_up(double value) { return -rounded_down(-value); }
 
-double half_area(const fcl::AABB<double>& box) {
-  const Vector3 size = box.max_ - box.min_;
-  return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+/// Lanes beyond `count` repeat its last triangle.
+template <class PositionOf>
+void fill_lanes(const fcl::Triangle* triangles, const PositionOf& position_of, TriangleBlock& block) {
+  for (int lane = 0; lane < kBlockLanes; ++lane) {
+    block.triangle[lane] = block.triangle[std::min(lane, block.count - 1)];
+    const fcl::Triangle& corner = triangles[block.triangle[lane]];
+    for (int k = 0; k < 3; ++k) {
+      const Vector3 position = position_of(corner[static_cast<std::size_t>(k)]);
+      for (int axis = 0; axis < 3; ++axis) block.corner[k][axis][lane] = position[axis];
+    }
+  }
 }
 
 std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> build_model(const TriangleMesh& mesh) {
@@ -39,6 +49,7 @@ std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> build_model(const TriangleMesh
     triangles.emplace_back(corner[0], corner[1], corner[2]);
   }
   auto model = std::make_shared<fcl::BVHModel<fcl::AABB<double>>>();
+  model->bv_splitter = std::make_shared<SurfaceSplitter>();
   model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
   model->addSubModel(vertices, triangles);
   model->endModel();
@@ -48,14 +59,13 @@ std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> build_model(const TriangleMesh
 }  // namespace
 
 MeshTree::MeshTree(const TriangleMesh& mesh) : model_(build_model(mesh)), magnitude_(mesh.vertices.cwiseAbs().maxCoeff()) {
-  leaves_.reserve(static_cast<std::size_t>(mesh.triangles.cols()));
-  leaf_of_.resize(leaves_.capacity());
-  add_node({0}, 1);
+  places_.resize(static_cast<std::size_t>(mesh.triangles.cols()));
+  add_node(TreeCollapse(*model_), 0, 1);
 }
 
 std::array<Vector3, 3> MeshTree::corners(Index triangle) const {
-  const Leaf& at = leaf(leaf_of_[static_cast<std::size_t>(triangle)]);
-  return {at.a, at.b, at.c};
+  const Place& place = places_[static_cast<std::size_t>(triangle)];
+  return block(place.block).corners(place.lane);
 }
 
 Box3 MeshTree::bounds() const {
@@ -82,14 +92,9 @@ void MeshTree::refit(const Points& from, const Points& to) {
 }
 
 void MeshTree::set_positions(const Points& positions) {
-  parallel_chunks(static_cast<Index>(leaves_.size()), kLeavesPerTask, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) {
-      Leaf& at = leaves_[static_cast<std::size_t>(i)];
-      const fcl::Triangle& corner = model_->tri_indices[at.triangle];
-      at.a = positions.col(static_cast<Index>(corner[0]));
-      at.b = positions.col(static_cast<Index>(corner[1]));
-      at.c = positions.col(static_cast<Index>(corner[2]));
-    }
+  const auto position_of = [&](std::size_t vertex) -> Vector3 { return positions.col(static_cast<Index>(vertex)); };
+  parallel_chunks(static_cast<Index>(blocks_.size()), kBlocksPerTask, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) fill_lanes(model_->tri_indices, position_of, blocks_[static_cast<std::size_t>(i)]);
   });
 }
 
@@ -103,42 +108,39 @@ void MeshTree::fit_boxes(std::size_t node) {
   }
 }
 
-std::int32_t MeshTree::add_node(const std::vector<int>& roots, int depth) {
-  const auto& tree = *model_;
-  const auto opens = [&](int bv) { return tree.getBV(bv).first_child >= 0; };
-  std::vector<int> children = roots;
-  while (children.size() < kTreeLanes) {
-    const auto largest = std::max_element(children.begin(), children.end(), [&](int x, int y) {
-      const auto rank = [&](int bv) { return opens(bv) ? half_area(tree.getBV(bv).bv) : -1.0; };
-      return rank(x) < rank(y);
-    });
-    if (!opens(*largest)) break;
-    const int first = tree.getBV(*largest).first_child;
-    *largest = first;
-    children.insert(largest + 1, first + 1);
-  }
-
-  const auto number = static_cast<std::int32_t>(nodes_.size());
+std::int32_t MeshTree::add_node(const TreeCollapse& collapse, int volume, int depth) {
+  const auto number = nodes_.size();
+  const std::vector<int> children = collapse.is_block(volume) ? std::vector<int>{volume} : collapse.children(volume);
   nodes_.emplace_back();
   volumes_.emplace_back().fill(kNone);
   std::copy(children.begin(), children.end(), volumes_.back().begin());
-  fit_boxes(nodes_.size() - 1);
-  // Each level leaves all but one lane behind; appending writes one past the last kept.
+  fit_boxes(number);
+  // Each level leaves all but one lane behind; appending writes up to all lanes past the last kept.
   stack_size_ = std::max(stack_size_, static_cast<std::size_t>((depth + 1) * kTreeLanes));
-  for (int lane = 0; lane < kTreeLanes; ++lane) {
-    const bool used = lane < static_cast<int>(children.size());
-    std::int32_t child = 0;
-    if (used && opens(children[lane])) {
-      child = add_node({tree.getBV(children[lane]).first_child, tree.getBV(children[lane]).first_child + 1}, depth + 1);
-    } else if (used) {
-      const Index triangle = -tree.getBV(children[lane]).first_child - 1;
-      const fcl::Triangle& corner = tree.tri_indices[triangle];
-      leaf_of_[static_cast<std::size_t>(triangle)] = static_cast<std::int32_t>(leaves_.size());
-      child = ~leaf_of_[static_cast<std::size_t>(triangle)];
-      leaves_.push_back({tree.vertices[corner[0]], tree.vertices[corner[1]], tree.vertices[corner[2]], triangle});
-    }
+  for (std::size_t lane = 0; lane < children.size(); ++lane) {
+    const int below = children[lane];
+    const std::int32_t child = collapse.is_block(below) ? ~add_block(below) : add_node(collapse, below, depth + 1);
     nodes_[number].child[lane] = child;
   }
+  return static_cast<std::int32_t>(number);
+}
+
+std::int32_t MeshTree::add_block(int volume) {
+  const auto number = static_cast<std::int32_t>(blocks_.size());
+  TriangleBlock& block = blocks_.emplace_back();
+  for (std::vector<int> waiting{volume}; !waiting.empty();) {
+    const int first_child = model_->getBV(waiting.back()).first_child;
+    waiting.pop_back();
+    if (first_child >= 0) {
+      waiting.insert(waiting.end(), {first_child + 1, first_child});
+      continue;
+    }
+    const Index triangle = -first_child - 1;
+    places_[static_cast<std::size_t>(triangle)] = {number, block.count};
+    block.triangle[block.count++] = triangle;
+  }
+  fill_lanes(
+      model_->tri_indices, [&](std::size_t vertex) { return model_->vertices[vertex]; }, block);
   return number;
 }
 

@@ -1,8 +1,8 @@
 // FCL's bounding volume tree of a mesh, and the walks that contact needs: nearest triangle, first triangle on a path.
 #pragma once
 
-#include "collision/lanes.h"
 #include "collision/segment_triangle.h"
+#include "collision/triangle_block.h"
 #include "geometry/closest_point.h"
 #include "geometry/triangle_mesh.h"
 
@@ -15,9 +15,14 @@
 
 namespace sprung {
 
+class TreeCollapse;
+
 /// FCL builds the tree of AABBs; a copy of it with up to eight children a node and single-precision boxes, rounded outward, is what
 /// the walks read. Requires a valid mesh: at least one triangle, indices in range, positions below 1e18 [m] (squares of single
 /// precision). A mesh that deforms keeps the tree of its first positions; only its boxes and triangles follow.
+///
+/// Node 0 is the root, and a node comes before its children. Each triangle is in one block; each block, and each node but the root,
+/// is the child of one node.
 class MeshTree {
  public:
   explicit MeshTree(const TriangleMesh& mesh);
@@ -50,41 +55,41 @@ class MeshTree {
   /// FCL's model, for its broad phase; the box that it knows itself by is `bounds`.
   [[nodiscard]] const std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>>& model() const { return model_; }
 
-  /// Children: a node's number, or ~i for the i-th leaf. Lanes without a child have an empty box.
+  /// Boxes around the children, a lane a child: a node's number, or ~i for block i. Lanes without a child have an empty box.
   struct alignas(64) Node {
     TreeLanes min[3];
     TreeLanes max[3];
     std::int32_t child[kTreeLanes];
   };
 
-  struct Leaf {
-    Vector3 a;
-    Vector3 b;
-    Vector3 c;
-    Index triangle;
-  };
-
-  // What walks read: the root is node 0.
+  // What walks read.
   [[nodiscard]] const Node& node(std::int32_t i) const { return nodes_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] const Leaf& leaf(std::int32_t i) const { return leaves_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] std::size_t stack_size() const { return stack_size_; }
-  [[nodiscard]] double magnitude() const { return magnitude_; }
+  [[nodiscard]] const TriangleBlock& block(std::int32_t i) const { return blocks_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] std::size_t stack_size() const { return stack_size_; }  ///< entries that no walk outgrows
+  [[nodiscard]] double magnitude() const { return magnitude_; }         ///< largest absolute coordinate [m]
   [[nodiscard]] std::array<Vector3, 3> corners(Index triangle) const;
 
  private:
   /// For each lane of a node FCL's number of its bounding volume; kNone where there is none.
   using Volumes = std::array<Index, kTreeLanes>;
 
-  std::int32_t add_node(const std::vector<int>& children, int depth);
+  /// Where a triangle is.
+  struct Place {
+    std::int32_t block;
+    int lane;
+  };
+
+  std::int32_t add_node(const TreeCollapse& collapse, int volume, int depth);
+  std::int32_t add_block(int volume);
   void fit_boxes(std::size_t node);
 
   std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> model_;
   std::vector<Node> nodes_;
   std::vector<Volumes> volumes_;  ///< of each node
-  std::vector<Leaf> leaves_;
-  std::vector<std::int32_t> leaf_of_;  ///< by triangle
-  std::size_t stack_size_ = 0;         ///< that no walk outgrows
-  double magnitude_ = 0.0;             ///< largest absolute coordinate [m]
+  std::vector<TriangleBlock> blocks_;
+  std::vector<Place> places_;  ///< of each triangle
+  std::size_t stack_size_ = 0;
+  double magnitude_ = 0.0;
 };
 
 }  // namespace sprung

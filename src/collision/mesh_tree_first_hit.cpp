@@ -73,6 +73,7 @@ SPRUNG_KERNEL void push_children(const MeshTree::Node& node, const FloatPath& pa
 std::optional<MeshTree::Hit> MeshTree::first_hit(const Vector3& a, const Vector3& b, CrossingSides sides) const {
   if (a == b) return std::nullopt;
   const FloatPath path = float_path(a, b, magnitude_);
+  const Box3 box(a.cwiseMin(b), a.cwiseMax(b));
   std::optional<Hit> best;
   float bound = 1.0F;
   WalkStack stack(stack_size_);
@@ -81,15 +82,18 @@ std::optional<MeshTree::Hit> MeshTree::first_hit(const Vector3& a, const Vector3
     const WalkEntry entry = stack.pop();
     if (entry.bound > bound) continue;
     if (entry.child < 0) {
-      const Leaf& leaf = leaves_[static_cast<std::size_t>(~entry.child)];
-      const auto fraction = crossing_fraction(a, b, leaf.a, leaf.b, leaf.c, sides);
-      if (fraction && (!best || std::tie(*fraction, leaf.triangle) < std::tie(best->fraction, best->triangle))) {
-        best = Hit{leaf.triangle, *fraction};
+      const TriangleBlock& block = this->block(~entry.child);
+      for (unsigned lanes = triangles_in_box(block, box); lanes != 0;) {
+        const int lane = take_lane(lanes);
+        const auto [u, v, w] = block.corners(lane);
+        const auto fraction = crossing_fraction(a, b, u, v, w, sides);
+        if (!fraction || (best && std::tie(*fraction, block.triangle[lane]) >= std::tie(best->fraction, best->triangle))) continue;
+        best = Hit{block.triangle[lane], *fraction};
         bound = std::nextafter(static_cast<float>(*fraction), 2.0F);
       }
       continue;
     }
-    push_children(nodes_[static_cast<std::size_t>(entry.child)], path, bound, stack);
+    push_children(node(entry.child), path, bound, stack);
   }
   return best;
 }

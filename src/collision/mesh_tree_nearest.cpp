@@ -1,4 +1,5 @@
 #include "collision/mesh_tree.h"
+#include "collision/triangle_block_distance.h"
 #include "collision/walk_stack.h"
 
 #include "base/kernel.h"
@@ -36,9 +37,9 @@ FloatRange float_range(const Vector3& p) {
   return range;
 }
 
-/// Appends the children whose box is within the bound, the nearest last. A box's squared distance is at most 6 roundings of 2^-24
-/// too large, which the factor takes back.
-SPRUNG_KERNEL void push_children(const MeshTree::Node& node, const FloatRange& p, float bound, WalkStack& stack) {
+/// Lower bounds of the children's squared distances. A box's squared distance is at most 6 roundings of 2^-24 too large, which the
+/// factor takes back.
+[[gnu::always_inline]] inline void bound_children(const MeshTree::Node& node, const FloatRange& p, TreeLanes& bounds) {
   TreeLanes sum = {};
   for (int axis = 0; axis < 3; ++axis) {
     const TreeLanes below = node.min[axis] - p.high[axis];
@@ -47,36 +48,48 @@ SPRUNG_KERNEL void push_children(const MeshTree::Node& node, const FloatRange& p
     const TreeLanes outside = farther > 0.0F ? farther : TreeLanes{};
     sum += outside * outside;
   }
-  stack.push_within(sum * (1.0F - 0x1p-20F), node.child, bound);
+  bounds = sum * (1.0F - 0x1p-20F);
+}
+
+/// The triangle with the smallest squared distance below `best2`, which becomes that.
+SPRUNG_KERNEL Index find_nearest(const MeshTree& tree, const Vector3& p, double best2) {
+  const FloatRange range = float_range(p);
+  float bound = bound_of(best2);
+  Index best = kNone;
+  WalkStack stack(tree.stack_size());
+  stack.push({0.0F, 0});
+  while (!stack.empty()) {
+    const WalkEntry entry = stack.pop();
+    if (entry.bound > bound) continue;
+    if (entry.child >= 0) {
+      const MeshTree::Node& node = tree.node(entry.child);
+      TreeLanes bounds;
+      bound_children(node, range, bounds);
+      stack.push_within(bounds, node.child, bound);
+      continue;
+    }
+    const TriangleBlock& block = tree.block(~entry.child);
+    BlockLanes squared;
+    squared_distances(p, block, squared);
+    for (unsigned lanes = lanes_that_hold(squared < best2); lanes != 0;) {
+      const int lane = take_lane(lanes);
+      if (!(squared[lane] < best2)) continue;
+      best2 = squared[lane];
+      best = block.triangle[lane];
+    }
+    bound = bound_of(best2);
+  }
+  return best;
 }
 
 }  // namespace
 
 std::optional<MeshTree::Nearest> MeshTree::nearest(const Vector3& p, double radius) const {
   if (!(radius > 0.0)) return std::nullopt;
-  const FloatRange range = float_range(p);
-  double best2 = radius * radius;
-  float bound = bound_of(best2);
-  Nearest best;
-  WalkStack stack(stack_size_);
-  stack.push({0.0F, 0});
-  while (!stack.empty()) {
-    const WalkEntry entry = stack.pop();
-    if (entry.bound > bound) continue;
-    if (entry.child < 0) {
-      const Leaf& leaf = leaves_[static_cast<std::size_t>(~entry.child)];
-      const ClosestPoint closest = closest_point_on_triangle(p, leaf.a, leaf.b, leaf.c);
-      if (closest.squared_distance < best2) {
-        best = {leaf.triangle, closest};
-        best2 = closest.squared_distance;
-        bound = bound_of(best2);
-      }
-      continue;
-    }
-    push_children(nodes_[static_cast<std::size_t>(entry.child)], range, bound, stack);
-  }
-  if (best.triangle == kNone) return std::nullopt;
-  return best;
+  const Index triangle = find_nearest(*this, p, radius * radius);
+  if (triangle == kNone) return std::nullopt;
+  const auto [a, b, c] = corners(triangle);
+  return Nearest{triangle, closest_point_on_triangle(p, a, b, c)};
 }
 
 }  // namespace sprung

@@ -74,7 +74,7 @@ SPRUNG_KERNEL void bound_children(const MeshTree::Node& node, const Search& sear
   bounds = sum;
 }
 
-/// Visits the leaves that may come within the zone, the nearest first as far as the tree knows.
+/// Visits the triangles that may come within the zone, the nearest first as far as the tree knows.
 void carve(const MeshTree& tree, Index skipped, ZoneBuilder& zone) {
   const double magnitude = std::max(tree.magnitude(), zone.box().max().cwiseAbs().cwiseMax(zone.box().min().cwiseAbs()).maxCoeff());
   const float rounding = kPlaneRounding * static_cast<float>(magnitude);
@@ -85,9 +85,13 @@ void carve(const MeshTree& tree, Index skipped, ZoneBuilder& zone) {
   while (!stack.empty()) {
     const WalkEntry entry = stack.pop();
     if (entry.child < 0) {
-      const MeshTree::Leaf& leaf = tree.leaf(~entry.child);
-      if (leaf.triangle == skipped) continue;
-      zone.meet(leaf.triangle, {leaf.a, leaf.b, leaf.c});
+      const TriangleBlock& block = tree.block(~entry.child);
+      BlockLanes distances;
+      squared_box_distances(block, zone.element_box(), distances);
+      for (unsigned lanes = triangles_in_box(block, zone.box()); lanes != 0;) {
+        const int lane = take_smallest_lane(distances, lanes);
+        if (block.triangle[lane] != skipped) zone.meet(block.triangle[lane], block.corners(lane));
+      }
       update(zone, rounding, search);
       continue;
     }
@@ -97,7 +101,7 @@ void carve(const MeshTree& tree, Index skipped, ZoneBuilder& zone) {
   }
 }
 
-/// Visits the leaves that may be nearer than the nearest pair so far, and than `radius`.
+/// Visits the triangles that may be nearer than the nearest pair so far, and than `radius`.
 void find_nearest(const MeshTree& tree, const ElementCorners& element, double radius, const Zone& zone, ZoneBuilder& builder) {
   const double reach = std::min(zone.distance, radius);
   Search search{.element = float_box(builder.element_box())};
@@ -112,8 +116,14 @@ void find_nearest(const MeshTree& tree, const ElementCorners& element, double ra
     const WalkEntry entry = stack.pop();
     if (entry.bound > limit()) continue;
     if (entry.child < 0) {
-      const MeshTree::Leaf& leaf = tree.leaf(~entry.child);
-      builder.keep_nearest(leaf.triangle, closest_pair(element, {leaf.a, leaf.b, leaf.c}));
+      const TriangleBlock& block = tree.block(~entry.child);
+      BlockLanes distances;
+      squared_box_distances(block, builder.element_box(), distances);
+      for (unsigned lanes = block.lanes(); lanes != 0;) {
+        const int lane = take_smallest_lane(distances, lanes);
+        if (distances[lane] > limit()) break;
+        builder.keep_nearest(block.triangle[lane], closest_pair(element, block.corners(lane)));
+      }
       continue;
     }
     TreeLanes bounds;

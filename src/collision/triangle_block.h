@@ -1,0 +1,56 @@
+// Up to four triangles side by side: the leaves of a mesh's tree.
+#pragma once
+
+#include "base/types.h"
+#include "collision/lanes.h"
+
+#include <array>
+
+namespace sprung {
+
+struct alignas(64) TriangleBlock {
+  BlockLanes corner[3][3];      ///< [m]: corner k along axis a, a lane a triangle; lanes beyond `count` repeat the last triangle
+  Index triangle[kBlockLanes];  ///< its number in the mesh
+  std::int32_t count;           ///< 1 to kBlockLanes
+
+  [[nodiscard]] std::array<Vector3, 3> corners(int lane) const { return {position(lane, 0), position(lane, 1), position(lane, 2)}; }
+  /// Bit i is set for each lane i that holds a triangle.
+  [[nodiscard]] unsigned lanes() const { return (1U << static_cast<unsigned>(count)) - 1U; }
+
+ private:
+  [[nodiscard]] Vector3 position(int lane, int k) const { return {corner[k][0][lane], corner[k][1][lane], corner[k][2][lane]}; }
+};
+
+/// The triangles whose own box meets `box` [m] or touches it: bit i stands for lane i.
+[[gnu::always_inline]] inline unsigned triangles_in_box(const TriangleBlock& block, const Box3& box) {
+  BlockMask outside{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = box.min()[axis];
+    const double high = box.max()[axis];
+    const BlockLanes& a = block.corner[0][axis];
+    const BlockLanes& b = block.corner[1][axis];
+    const BlockLanes& c = block.corner[2][axis];
+    outside |= (a < low) & (b < low) & (c < low);
+    outside |= (a > high) & (b > high) & (c > high);
+  }
+  return block.lanes() & ~lanes_that_hold(outside);
+}
+
+/// Squared distances [m^2] of the triangles' own boxes from `box`.
+[[gnu::always_inline]] inline void squared_box_distances(const TriangleBlock& block, const Box3& box, BlockLanes& squared) {
+  squared = BlockLanes{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const BlockLanes& a = block.corner[0][axis];
+    const BlockLanes& b = block.corner[1][axis];
+    const BlockLanes& c = block.corner[2][axis];
+    const BlockLanes low = a < b ? (a < c ? a : c) : (b < c ? b : c);
+    const BlockLanes high = a > b ? (a > c ? a : c) : (b > c ? b : c);
+    const BlockLanes before = low - box.max()[axis];
+    const BlockLanes behind = box.min()[axis] - high;
+    const BlockLanes farther = before > behind ? before : behind;
+    const BlockLanes outside = farther > 0.0 ? farther : BlockLanes{};
+    squared += outside * outside;
+  }
+}
+
+}  // namespace sprung
