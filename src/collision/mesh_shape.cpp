@@ -5,6 +5,7 @@
 #include "collision/usable_mesh.h"
 #include "geometry/closest_pair.h"
 #include "geometry/side_of_plane.h"
+#include "geometry/simplex_crossing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,6 +92,15 @@ std::optional<Crossing> MeshShape::first_crossing(const Vector3& a, const Vector
   if (!hit) return std::nullopt;
   const Vector3 face = face_normal(hit->triangle);
   return Crossing{hit->fraction, a + hit->fraction * (b - a), face.dot(b - a) > 0.0 ? Vector3(-face) : face};
+}
+
+bool MeshShape::touches(const ElementCorners& element, double tolerance) const {
+  std::vector<Index> near;
+  find_in_box(*tree_, box_around(element, tolerance), near);
+  return std::any_of(near.begin(), near.end(), [&](Index t) {
+    const auto triangle = tree_->corners(t);
+    return meets(element, triangle) || closest_pair(element, triangle).squared_distance <= tolerance * tolerance;
+  });
 }
 
 bool MeshShape::contains(const Vector3& p) const { return closed_ && bounds_.contains(p) && winding_number(*tree_, p) > 0; }

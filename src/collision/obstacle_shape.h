@@ -3,6 +3,7 @@
 #pragma once
 
 #include "collision/obstacle.h"
+#include "collision/zone.h"
 
 #include <memory>
 #include <optional>
@@ -48,6 +49,10 @@ class ObstacleShape {
   /// that begins on the surface crosses it when it goes in. A path that begins on an open mesh has no side and does not cross it
   /// there. No path, no crossing: a == b.
   [[nodiscard]] virtual std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const = 0;
+
+  /// Whether the element comes within `tolerance` [m] of the surface; an element that is wholly inside need not tell. Crossings of
+  /// meshes are judged exactly.
+  [[nodiscard]] virtual bool touches(const ElementCorners& element, double tolerance) const = 0;
 
   /// Whether p is inside; always false for open meshes.
   [[nodiscard]] virtual bool contains(const Vector3& p) const = 0;

@@ -1,6 +1,7 @@
 // A primitive as an obstacle's shape: everything follows from its signed distance.
 #pragma once
 
+#include "collision/convex_separation.h"
 #include "collision/primitive_distance.h"
 
 #include <algorithm>
@@ -29,6 +30,10 @@ class PrimitiveShape final : public ObstacleShape {
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override {
     return first_crossing_of_convex([this](const Vector3& p) { return surface_point(geometry_, p); },
                                     std::max(rounding(a), rounding(b)), a, b);
+  }
+
+  [[nodiscard]] bool touches(const ElementCorners& element, double tolerance) const override {
+    return !(separation(geometry_, element, box_around(element, tolerance)).gap > tolerance);
   }
 
   [[nodiscard]] bool contains(const Vector3& p) const override { return surface_point(geometry_, p).distance < 0.0; }

@@ -1,0 +1,95 @@
+#include "collision/intersections.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace sprung {
+
+namespace {
+
+// Of the clearance, which is 2^-30 of the coordinates: twice as much as what zones take for touching, so that they agree.
+constexpr double kTouching = 0x1p-10;
+
+ElementCorners corners_of(const Element& element, const Points& positions, const ObstacleSet& obstacles, Index k) {
+  ElementCorners corners{.x = {}, .count = element.corners};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(element.corners); ++i) {
+    corners.x[i] = obstacles.local(k, positions.col(element.particles[i]));
+  }
+  return corners;
+}
+
+double tolerance_of(const Element& element, const Points& positions, const ObstacleSet& obstacles, Index k) {
+  double clearance = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(element.corners); ++i) {
+    const Vector3 x = positions.col(element.particles[i]);
+    clearance = std::max(clearance, obstacles.clearance(k, x, x));
+  }
+  return kTouching * clearance;
+}
+
+class PatchSearch {
+ public:
+  PatchSearch(const ObstacleSet& obstacles, const CollisionSurface& surface, const Points& positions)
+      : obstacles_(obstacles), surface_(surface), positions_(positions) {}
+
+  /// Particles are looked at in the first patch that has them.
+  void search(Index patch_number, Intersections& found) const {
+    const ElementPatch& patch = surface_.patches[static_cast<std::size_t>(patch_number)];
+    Box3 box;
+    for (const Index i : patch.particles) box.extend(positions_.col(i));
+    const double margin = kTouching * obstacles_.max_clearance(box);
+    std::vector<Index> near;
+    obstacles_.find_near({box.min().array() - margin, box.max().array() + margin}, near);
+    for (const Index k : near) {
+      for (const Index i : patch.particles) {
+        const Index first_slot = surface_.first_slot[static_cast<std::size_t>(i)];
+        if (surface_.slots[static_cast<std::size_t>(first_slot)].patch == patch_number) look_inside(i, k, found);
+      }
+      for (Index e = patch.first_element; e < patch.first_element + patch.element_count; ++e) look_across(e, k, found);
+    }
+  }
+
+ private:
+  void look_inside(Index particle, Index k, Intersections& found) const {
+    const Vector3 p = obstacles_.local(k, positions_.col(particle));
+    if (!obstacles_.shape(k).contains(p)) return;
+    const auto surface = obstacles_.shape(k).nearest(p, std::numeric_limits<double>::infinity());
+    found.inside.push_back({particle, k, std::abs(surface->distance)});
+  }
+
+  void look_across(Index e, Index k, Intersections& found) const {
+    const Element& element = surface_.elements[static_cast<std::size_t>(e)];
+    const double tolerance = tolerance_of(element, positions_, obstacles_, k);
+    if (obstacles_.shape(k).touches(corners_of(element, positions_, obstacles_, k), tolerance)) found.crossings.push_back({e, k});
+  }
+
+  const ObstacleSet& obstacles_;
+  const CollisionSurface& surface_;
+  const Points& positions_;
+};
+
+}  // namespace
+
+Intersections find_intersections(const ObstacleSet& obstacles, const CollisionSurface& surface, const Points& positions) {
+  if (obstacles.obstacles().empty()) return {};
+  const PatchSearch search(obstacles, surface, positions);
+  std::vector<Intersections> parts(surface.patches.size());
+  parallel_chunks(static_cast<Index>(parts.size()), 1, [&](Index begin, Index end) {
+    for (Index patch = begin; patch < end; ++patch) search.search(patch, parts[static_cast<std::size_t>(patch)]);
+  });
+
+  Intersections all;
+  for (const Intersections& part : parts) {
+    all.inside.insert(all.inside.end(), part.inside.begin(), part.inside.end());
+    all.crossings.insert(all.crossings.end(), part.crossings.begin(), part.crossings.end());
+  }
+  std::sort(all.inside.begin(), all.inside.end(),
+            [](const auto& a, const auto& b) { return std::pair(a.particle, a.obstacle) < std::pair(b.particle, b.obstacle); });
+  std::sort(all.crossings.begin(), all.crossings.end(),
+            [](const auto& a, const auto& b) { return std::pair(a.element, a.obstacle) < std::pair(b.element, b.obstacle); });
+  return all;
+}
+
+}  // namespace sprung
