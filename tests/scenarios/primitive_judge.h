@@ -1,0 +1,19 @@
+// Judges primitives, all of which are convex, by a convex function of each.
+#pragma once
+
+#include "scenarios/judge.h"
+
+namespace sprung::testing {
+
+/// A convex function of position: negative inside the primitive, 0 on its surface, and outside at most the distance.
+struct ConvexMeasure {
+  double value = 0.0;               ///< [m]; between two points it differs by no more than the way
+  Vector3 slope = Vector3::Zero();  ///< of a plane that touches the function here and is nowhere above it
+};
+
+/// Requires a primitive.
+[[nodiscard]] ConvexMeasure convex_measure(const ObstacleGeometry& geometry, const Vector3& p);
+
+[[nodiscard]] std::unique_ptr<const ObstacleJudge> judge_of_primitive(const ObstacleGeometry& geometry);
+
+}  // namespace sprung::testing

@@ -1,0 +1,93 @@
+// What lies on the ground stays there: no jitter, no energy from nothing.
+#include "scenarios/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace sprung::testing {
+namespace {
+
+constexpr double kThickness = 0.005;  // [m] of the scenes
+
+const char* const kGrounds[] = {
+    R"(obstacles.ground={"shape": {"type": "half_space"}, "friction": 0.3})",
+    R"(obstacles.ground={"shape": {"type": "box", "size": [4, 1, 4]}, "place": {"position": [0, -0.5, 0]}, "friction": 0.3})",
+    R"(obstacles.ground={"shape": {"type": "mesh", "file": "thin_sheet.obj"}, "place": {"scale": 4}, "friction": 0.3})",
+};
+
+/// Extremes since a time [s].
+class Extremes {
+ public:
+  explicit Extremes(double since) : since_(since) {}
+
+  void operator()(const Simulator& simulator, const FrameDiagnostics& frame) {
+    const double energy = frame.kinetic_energy + frame.elastic_energy + frame.gravity_energy;
+    if (frame.frame > 1) energy_growth_ = std::max(energy_growth_, energy - least_energy_);
+    least_energy_ = std::min(least_energy_, energy);
+    if (frame.time < since_) return;
+    lowest_ = std::min(lowest_, simulator.positions().row(1).minCoeff());
+    highest_ = std::max(highest_, simulator.positions().row(1).maxCoeff());
+    fastest_ = std::max(fastest_, simulator.state().v.colwise().norm().maxCoeff());
+  }
+
+  [[nodiscard]] double lowest() const { return lowest_; }
+  [[nodiscard]] double highest() const { return highest_; }
+  [[nodiscard]] double fastest() const { return fastest_; }
+  [[nodiscard]] double energy_growth() const { return energy_growth_; }  ///< above the least so far, whenever that was
+
+ private:
+  double since_;
+  double lowest_ = std::numeric_limits<double>::infinity();
+  double highest_ = -std::numeric_limits<double>::infinity();
+  double fastest_ = 0.0;
+  double least_energy_ = std::numeric_limits<double>::infinity();
+  double energy_growth_ = 0.0;
+};
+
+class Rest : public ::testing::TestWithParam<std::tuple<const char*, double>> {
+ protected:
+  [[nodiscard]] static BuiltScene scene(std::vector<std::string> overrides) {
+    const auto& [ground, step_factor] = GetParam();
+    overrides.emplace_back(ground);
+    return load_scenario("cloth_on_ground", overrides, step_factor);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(StepFactor, Rest, ::testing::Combine(::testing::ValuesIn(kGrounds), ::testing::Values(1.0, 4.0)));
+
+TEST_P(Rest, AClothThatLiesAtItsThicknessDoesNotStir) {
+  Extremes extremes(0.0);
+  const ScenarioReport report = run_scenario(scene({"duration=5"}), std::ref(extremes));
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_NEAR(extremes.lowest(), kThickness, 1e-9 * kThickness);
+  EXPECT_NEAR(extremes.highest(), kThickness, 1e-9 * kThickness);
+  EXPECT_LT(extremes.fastest(), 1e-9);
+  EXPECT_LT(extremes.energy_growth(), 1e-15);
+}
+
+TEST_P(Rest, AClothThatFellAskewComesToRestAtItsThickness) {
+  Extremes extremes(4.0);
+  const ScenarioReport report = run_scenario(
+      scene({"duration=5", R"(bodies.cloth.place={"position": [0, 0.25, 0], "rotation": [-50, 10, 0]})"}), std::ref(extremes));
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_NEAR(extremes.lowest(), kThickness, 0.05 * kThickness);
+  EXPECT_NEAR(extremes.highest(), kThickness, 0.05 * kThickness);
+  EXPECT_LT(extremes.fastest(), 1e-3);
+  // Of 0.3 J it fell with.
+  EXPECT_LT(extremes.energy_growth(), 1e-12);
+}
+
+TEST(RestOfAJelly, ItsWeightIsCarriedAtItsThickness) {
+  for (const double step_factor : {0.25, 1.0}) {
+    Extremes extremes(2.5);
+    const ScenarioReport report = run_scenario(load_scenario("jelly_on_ground", {}, step_factor), std::ref(extremes));
+    EXPECT_TRUE(report.is_free()) << report;
+    EXPECT_NEAR(extremes.lowest(), kThickness, 0.05 * kThickness);
+    EXPECT_LT(extremes.fastest(), 1e-3);
+    EXPECT_LT(extremes.energy_growth(), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace sprung::testing

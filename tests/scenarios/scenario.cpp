@@ -1,0 +1,113 @@
+#include "scenarios/scenario.h"
+
+#include "base/format.h"
+#include "scenarios/judge.h"
+#include "scene/scene_reader.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <ostream>
+#include <utility>
+
+namespace sprung::testing {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// Positions in an obstacle's own frame.
+Points local_positions(const Obstacle& obstacle, const Simulator& simulator) {
+  return obstacle.motion.pose(obstacle.placed, simulator.time()).inverse() * simulator.positions();
+}
+
+class FrameJudge {
+ public:
+  FrameJudge(const Simulator& simulator, Judge judge)
+      : simulator_(simulator), elements_(judged_elements(simulator.network())), self_(judge == Judge::obstacles_and_self) {
+    if (judge == Judge::nothing) return;
+    for (const Obstacle& obstacle : simulator.environment().obstacles()) judges_.push_back(judge_of(obstacle.geometry));
+  }
+
+  void look(int frame, ScenarioReport& report) {
+    const auto begin = Clock::now();
+    for (std::size_t k = 0; k < judges_.size(); ++k) {
+      const Obstacle& obstacle = simulator_.environment().obstacles()[k];
+      if (std::holds_alternative<SequenceGeometry>(obstacle.geometry)) judges_[k] = judge_of(obstacle.geometry, simulator_.time());
+      const Points local = local_positions(obstacle, simulator_);
+      report.inside += judges_[k]->count_inside(local);
+      report.crossings += judges_[k]->count_crossings(elements_, local);
+    }
+    if (self_) report.self_crossings += count_self_crossings(elements_, simulator_.positions());
+    const bool wrong = report.inside + report.crossings + report.self_crossings > 0;
+    if (wrong && report.first_wrong_frame == 0) report.first_wrong_frame = frame;
+    report.judge_seconds += seconds_since(begin);
+  }
+
+ private:
+  const Simulator& simulator_;
+  std::vector<JudgedElement> elements_;
+  std::vector<std::unique_ptr<const ObstacleJudge>> judges_;
+  bool self_;
+};
+
+}  // namespace
+
+BuiltScene load_scenario(const std::string& name, const std::vector<std::string>& overrides, double step_factor) {
+  const std::filesystem::path root = SPRUNG_SOURCE_DIR;
+  const std::filesystem::path file = root / "tests" / "scenarios" / "scenes" / (name + ".json");
+  const std::vector<std::filesystem::path> meshes = {root / "meshes", SPRUNG_TEST_MESHES};
+  const Scene scene = read_scene(file, overrides);
+  BuiltScene built = build_scene(scene, meshes);
+  if (step_factor == 1.0) return built;
+  std::vector<std::string> stepped = overrides;
+  stepped.push_back("step=" + format_number(step_factor * built.settings.step));
+  stepped.push_back("frame_rate=" + format_number(scene.frame_rate / std::max(1.0, step_factor)));
+  return build_scene(read_scene(file, stepped), meshes);
+}
+
+std::ostream& operator<<(std::ostream& stream, const ScenarioReport& report) {
+  return stream << report.frames << " frames in steps of " << format_number(report.step, 4) << " s: " << report.inside
+                << " inside, " << report.crossings << " crossings, " << report.self_crossings << " self-crossings, first in frame "
+                << report.first_wrong_frame << "; stretch " << format_number(report.max_stretch, 3) << ", " << report.truncated
+                << " truncated, " << report.squeezed << " squeezed; simulated in " << format_number(report.simulation_seconds, 3)
+                << " s, judged in " << format_number(report.judge_seconds, 3) << " s";
+}
+
+ScenarioReport run_scenario(BuiltScene scene, const Watch& watch, Judge judge) {
+  Simulator simulator(std::move(scene.network), scene.settings, std::move(scene.obstacles));
+  FrameRunner runner(simulator, scene.steps_per_frame);
+  FrameJudge frame_judge(simulator, judge);
+  ScenarioReport report{.step = scene.settings.step};
+  for (int number = 1; number <= scene.frames; ++number) {
+    const FrameDiagnostics frame = number == 1 ? runner.first_frame() : runner.next_frame();
+    report.frames = number;
+    report.max_stretch = std::max(report.max_stretch, frame.max_stretch);
+    report.truncated += frame.truncated;
+    report.squeezed += frame.squeezed;
+    report.simulation_seconds += 1e-3 * frame.frame_ms;
+    frame_judge.look(number, report);
+    if (watch) watch(simulator, frame);
+  }
+  return report;
+}
+
+std::string json_text(const Vector3& v) {
+  std::string text = "[";
+  text.append(format_number(v.x())).append(",").append(format_number(v.y())).append(",").append(format_number(v.z())).append("]");
+  return text;
+}
+
+double least_distance(const Simulator& simulator) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : simulator.environment().obstacles()) {
+    const auto judge = judge_of(obstacle.geometry, simulator.time());
+    const Points local = local_positions(obstacle, simulator);
+    for (const auto& position : local.colwise()) least = std::min(least, judge->distance(position));
+  }
+  return least;
+}
+
+}  // namespace sprung::testing

@@ -1,0 +1,52 @@
+// Runs scenes with the real simulator and judges every frame.
+#pragma once
+
+#include "scene/scene_builder.h"
+#include "simulation/diagnostics.h"
+
+#include <functional>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace sprung::testing {
+
+/// The scene tests/scenarios/scenes/<name>.json (or <name>.json, when that is an absolute path) with overrides as given to --set,
+/// its step `step_factor` times the one that the scene itself leads to. Larger steps make fewer frames, not fewer steps a frame.
+[[nodiscard]] BuiltScene load_scenario(const std::string& name, const std::vector<std::string>& overrides = {},
+                                       double step_factor = 1.0);
+
+/// What the judge saw in all frames, the first included.
+struct ScenarioReport {
+  int frames = 0;
+  double step = 0.0;  ///< [s]
+  Index inside = 0;   ///< particles inside obstacles, added up over frames
+  Index crossings = 0;
+  Index self_crossings = 0;
+  int first_wrong_frame = 0;
+  double max_stretch = 0.0;
+  Index truncated = 0;
+  Index squeezed = 0;
+  double simulation_seconds = 0.0;
+  double judge_seconds = 0.0;
+
+  [[nodiscard]] bool is_free() const { return first_wrong_frame == 0; }
+};
+std::ostream& operator<<(std::ostream& stream, const ScenarioReport& report);
+
+/// What is judged in each frame.
+enum class Judge : std::uint8_t { nothing, obstacles, obstacles_and_self };
+
+/// Looks at a frame, the first included.
+using Watch = std::function<void(const Simulator& simulator, const FrameDiagnostics& frame)>;
+
+/// Throws StepError when the network diverges, InputError when it cannot start.
+ScenarioReport run_scenario(BuiltScene scene, const Watch& watch = {}, Judge judge = Judge::obstacles);
+
+/// A vector as JSON.
+[[nodiscard]] std::string json_text(const Vector3& v);
+
+/// The smallest distance [m] of a particle from an obstacle at present, by the judge's own measure.
+[[nodiscard]] double least_distance(const Simulator& simulator);
+
+}  // namespace sprung::testing
