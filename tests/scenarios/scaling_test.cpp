@@ -17,8 +17,8 @@ using Json = nlohmann::json;
 
 /// Multiplies all that is measured in metres, m/s or m/s^2. Meshes are files, so it is their scale.
 void scale_lengths(Json& json, double factor) {
-  static const std::set<std::string> lengths = {"gravity", "size",  "position", "velocity",  "radius", "height",
-                                                "length",  "radii", "offset",   "thickness", "from",   "to"};
+  static const std::set<std::string> kLengths = {"gravity", "size",  "position", "velocity",  "radius", "height",
+                                                 "length",  "radii", "offset",   "thickness", "from",   "to"};
   const auto scale_numbers = [&](Json& value) {
     if (value.is_array()) {
       for (Json& number : value) number = number.get<double>() * factor;
@@ -29,7 +29,7 @@ void scale_lengths(Json& json, double factor) {
   if (json.contains("shape") && json["shape"]["type"] == "mesh")
     json["place"]["scale"] = json["place"].value("scale", 1.0) * factor;
   for (auto& [key, value] : json.items()) {
-    if (lengths.contains(key)) {
+    if (kLengths.contains(key)) {
       scale_numbers(value);
     } else if (value.is_structured()) {
       scale_lengths(value, factor);
