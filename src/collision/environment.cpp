@@ -2,7 +2,6 @@
 
 #include "collision/obstacle_set.h"
 #include "collision/particle_blocks.h"
-#include "collision/truncation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,6 +46,7 @@ bool is_open(const Obstacle& obstacle) {
 
 struct Environment::Implementation {
   ObstacleSet set;
+  Interval interval{};
 };
 
 Environment::Environment(std::vector<Obstacle> obstacles)
@@ -58,9 +58,16 @@ Environment& Environment::operator=(Environment&&) noexcept = default;
 
 const std::vector<Obstacle>& Environment::obstacles() const { return implementation_->set.obstacles(); }
 
+const ObstacleSet& Environment::set() const { return implementation_->set; }
+
 bool Environment::moves() const { return implementation_->set.moves(); }
 
-void Environment::set_interval(double t, double t_end) { implementation_->set.set_interval(t, t_end); }
+void Environment::set_interval(double t, double t_end) {
+  implementation_->interval = {t, t_end};
+  implementation_->set.set_interval(t, t_end);
+}
+
+Environment::Interval Environment::interval() const { return implementation_->interval; }
 
 const RigidTransform& Environment::pose_before(Index obstacle) const { return implementation_->set.before(obstacle); }
 const RigidTransform& Environment::pose_after(Index obstacle) const { return implementation_->set.after(obstacle); }
@@ -105,11 +112,6 @@ std::vector<Contact> Environment::contacts(const ParticlePaths& paths) const {
       }
     }
   });
-}
-
-std::vector<Index> Environment::truncate(const Points& before, Points& after, const std::vector<char>& held,
-                                         Index& squeezed) const {
-  return truncate_paths(implementation_->set, before, after, held, squeezed);
 }
 
 std::vector<Environment::Inside> Environment::inside(const Points& positions) const {

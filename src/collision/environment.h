@@ -11,6 +11,8 @@
 
 namespace sprung {
 
+class ObstacleSet;
+
 /// Particles on their way through one step.
 struct ParticlePaths {
   const Points& before;      ///< where they were at t [m]; outside all obstacles
@@ -29,12 +31,18 @@ class Environment {
   Environment& operator=(Environment&&) noexcept;
 
   [[nodiscard]] const std::vector<Obstacle>& obstacles() const;
+  [[nodiscard]] const ObstacleSet& set() const;
 
   /// Whether any obstacle is ever moved or deforms.
   [[nodiscard]] bool moves() const;
 
   /// The next queries are for a step from time t to t + dt [s]. Not thread-safe; the queries below are.
   void set_interval(double t, double t_end);
+  struct Interval {
+    double begin = 0.0;
+    double end = 0.0;
+  };
+  [[nodiscard]] Interval interval() const;
 
   /// Poses at the interval's begin and end.
   [[nodiscard]] const RigidTransform& pose_before(Index obstacle) const;
@@ -50,13 +58,6 @@ class Environment {
   /// outward, so that a particle that began inside a closed obstacle and ends within reach of its surface (anywhere in a primitive)
   /// is led out. Positions that are not finite have no contacts. Same result for any number of threads.
   [[nodiscard]] std::vector<Contact> contacts(const ParticlePaths& paths) const;
-
-  /// Cuts paths short that cross a surface: `after` is moved back along the path (in the obstacle's own frame, so that a moving
-  /// obstacle carries the particle) to the side where the particle came from, by no more than up to its clearance, so that no path
-  /// crosses any more; free paths keep every bit. A particle that is nearer already stays where it is, or where the obstacle
-  /// carries it. Particles for which `held` is not 0 are left alone. Returns the particles that were moved; sets `squeezed` to the
-  /// number that found no free place and were left where the last obstacle they met carried them.
-  std::vector<Index> truncate(const Points& before, Points& after, const std::vector<char>& held, Index& squeezed) const;
 
   /// Particles that are on no free side of an obstacle at pose_after, sorted by particle: inside a closed one, or within clearance
   /// of an open mesh, where a particle that comes from nowhere has no side.

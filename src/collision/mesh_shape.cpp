@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "collision/mesh_inside.h"
+#include "collision/mesh_zone.h"
 #include "collision/usable_mesh.h"
 #include "geometry/closest_pair.h"
 #include "geometry/side_of_plane.h"
@@ -92,6 +93,10 @@ std::optional<Crossing> MeshShape::first_crossing(const Vector3& a, const Vector
   if (!hit) return std::nullopt;
   const Vector3 face = face_normal(hit->triangle);
   return Crossing{hit->fraction, a + hit->fraction * (b - a), face.dot(b - a) > 0.0 ? Vector3(-face) : face};
+}
+
+void MeshShape::find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const {
+  sprung::find_zone(*tree_, element, request, zone);
 }
 
 bool MeshShape::touches(const ElementCorners& element, double tolerance) const {

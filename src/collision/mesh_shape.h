@@ -23,6 +23,7 @@ class MeshShape final : public ObstacleShape {
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override;
+  void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const override;
   [[nodiscard]] bool touches(const ElementCorners& element, double tolerance) const override;
   [[nodiscard]] bool contains(const Vector3& p) const override;
   [[nodiscard]] Box3 bounds() const override { return bounds_; }

@@ -74,38 +74,10 @@ SPRUNG_KERNEL void bound_children(const MeshTree::Node& node, const Search& sear
   bounds = sum;
 }
 
-/// Visits the triangles that may come within the zone, the nearest first as far as the tree knows.
-void carve(const MeshTree& tree, Index skipped, ZoneBuilder& zone) {
-  const double magnitude = std::max(tree.magnitude(), zone.box().max().cwiseAbs().cwiseMax(zone.box().min().cwiseAbs()).maxCoeff());
-  const float rounding = kPlaneRounding * static_cast<float>(magnitude);
-  Search search{.element = float_box(zone.element_box())};
-  update(zone, rounding, search);
-  WalkStack stack(tree.stack_size());
-  stack.push({0.0F, 0});
-  while (!stack.empty()) {
-    const WalkEntry entry = stack.pop();
-    if (entry.child < 0) {
-      const TriangleBlock& block = tree.block(~entry.child);
-      BlockLanes distances;
-      squared_box_distances(block, zone.element_box(), distances);
-      for (unsigned lanes = triangles_in_box(block, zone.box()); lanes != 0;) {
-        const int lane = take_smallest_lane(distances, lanes);
-        if (block.triangle[lane] != skipped) zone.meet(block.triangle[lane], block.corners(lane));
-      }
-      update(zone, rounding, search);
-      continue;
-    }
-    TreeLanes bounds;
-    bound_children(tree.node(entry.child), search, bounds);
-    stack.push_within(bounds, tree.node(entry.child).child, std::numeric_limits<float>::max());
-  }
-}
-
-/// Visits the triangles that may be nearer than the nearest pair so far, and than `radius`.
-void find_nearest(const MeshTree& tree, const ElementCorners& element, double radius, const Zone& zone, ZoneBuilder& builder) {
-  const double reach = std::min(zone.distance, radius);
+/// Visits the leaves that may be nearer than the nearest pair so far, and than `radius`.
+void find_nearest(const MeshTree& tree, double radius, const Zone& zone, ZoneBuilder& builder) {
   Search search{.element = float_box(builder.element_box())};
-  search.box = float_box({builder.element_box().min().array() - reach, builder.element_box().max().array() + reach});
+  search.box = float_box({builder.element_box().min().array() - radius, builder.element_box().max().array() + radius});
   const auto limit = [&] {
     const double nearest = std::min(zone.distance, radius);
     return static_cast<float>(std::min(nearest * nearest, 1e38)) * (1.0F + 0x1p-20F);
@@ -122,7 +94,7 @@ void find_nearest(const MeshTree& tree, const ElementCorners& element, double ra
       for (unsigned lanes = block.lanes(); lanes != 0;) {
         const int lane = take_smallest_lane(distances, lanes);
         if (distances[lane] > limit()) break;
-        builder.keep_nearest(block.triangle[lane], closest_pair(element, block.corners(lane)));
+        builder.look_at(block.triangle[lane], block.corners(lane));
       }
       continue;
     }
@@ -132,15 +104,47 @@ void find_nearest(const MeshTree& tree, const ElementCorners& element, double ra
   }
 }
 
+/// Visits the leaves that may come within the zone.
+void carve(const MeshTree& tree, Index nearest, ZoneBuilder& zone) {
+  const double magnitude = std::max(tree.magnitude(), zone.box().max().cwiseAbs().cwiseMax(zone.box().min().cwiseAbs()).maxCoeff());
+  const float rounding = kPlaneRounding * static_cast<float>(magnitude);
+  Search search{.element = float_box(zone.element_box())};
+  update(zone, rounding, search);
+  WalkStack stack(tree.stack_size());
+  stack.push({0.0F, 0});
+  while (!stack.empty()) {
+    const WalkEntry entry = stack.pop();
+    if (entry.child < 0) {
+      const TriangleBlock& block = tree.block(~entry.child);
+      BlockLanes distances;
+      squared_box_distances(block, zone.element_box(), distances);
+      for (unsigned lanes = triangles_in_box(block, zone.box()); lanes != 0;) {
+        const int lane = take_smallest_lane(distances, lanes);
+        if (block.triangle[lane] != nearest) zone.meet(block.corners(lane));
+      }
+      update(zone, rounding, search);
+      continue;
+    }
+    TreeLanes bounds;
+    bound_children(tree.node(entry.child), search, bounds);
+    stack.push_within(bounds, tree.node(entry.child).child, std::numeric_limits<float>::max());
+  }
+}
+
 }  // namespace
 
+// The nearest triangle's plane comes first: it rules out most of the others, and lies as the surface does.
 void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone) {
   const Index last = zone.triangle;
   ZoneBuilder builder(element, request, zone);
-  if (last != kNone) builder.meet(last, tree.corners(last));
-  carve(tree, last, builder);
+  if (last != kNone) builder.look_at(last, tree.corners(last));
+  find_nearest(tree, std::sqrt(3.0) * request.reach, zone, builder);
+  const Index nearest = zone.triangle;
+  if (nearest != kNone) {
+    builder.meet(tree.corners(nearest));
+    carve(tree, nearest, builder);
+  }
   builder.finish();
-  if (!zone.broken && zone.clear < request.exact) find_nearest(tree, element, request.exact, zone, builder);
 }
 
 }  // namespace sprung

@@ -6,9 +6,9 @@
 
 namespace sprung {
 
-/// Makes the zone of an element in the mesh's frame: triangles are met nearest first, and each one that comes within the box and is
-/// not behind a plane already gives a plane halfway to it, a smaller box, or, where there are many, a radius. `zone.triangle`,
-/// left from the element's last zone, is met before all others.
+/// Makes the zone of an element in the mesh's frame: the nearest triangle, and each one that comes within the box and is not behind
+/// a plane already, gives a plane between, a smaller box, or, where there are many, a radius. The search for the nearest begins
+/// with `zone.triangle`, left from the element's last zone.
 void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone);
 
 }  // namespace sprung

@@ -34,6 +34,10 @@ class ObstacleSet {
   [[nodiscard]] LocalPath local_path(Index k, const Vector3& from, const Vector3& to) const {
     return {local_begin(k, from), local(k, to)};
   }
+  /// A position at the interval's begin in the frame of obstacle k.
+  [[nodiscard]] Vector3 local_before(Index k, const Vector3& position) const {
+    return into_before_[static_cast<std::size_t>(k)] * position;
+  }
   /// A position at the interval's end in the frame of obstacle k.
   [[nodiscard]] Vector3 local(Index k, const Vector3& position) const {
     return into_after_[static_cast<std::size_t>(k)] * position;

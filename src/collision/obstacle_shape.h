@@ -50,6 +50,9 @@ class ObstacleShape {
   /// there. No path, no crossing: a == b.
   [[nodiscard]] virtual std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const = 0;
 
+  /// Makes the zone of an element that the shape does not cross; `zone` comes as it was left by the element's last search.
+  virtual void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const = 0;
+
   /// Whether the element comes within `tolerance` [m] of the surface; an element that is wholly inside need not tell. Crossings of
   /// meshes are judged exactly.
   [[nodiscard]] virtual bool touches(const ElementCorners& element, double tolerance) const = 0;

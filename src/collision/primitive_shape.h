@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/convex_separation.h"
+#include "collision/convex_zone.h"
 #include "collision/primitive_distance.h"
 
 #include <algorithm>
@@ -30,6 +31,10 @@ class PrimitiveShape final : public ObstacleShape {
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override {
     return first_crossing_of_convex([this](const Vector3& p) { return surface_point(geometry_, p); },
                                     std::max(rounding(a), rounding(b)), a, b);
+  }
+
+  void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const override {
+    zone = sprung::find_zone(geometry_, element, request);
   }
 
   [[nodiscard]] bool touches(const ElementCorners& element, double tolerance) const override {

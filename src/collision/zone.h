@@ -2,18 +2,13 @@
 // nothing of the element crosses the obstacle, whatever the corners do, because what is convex holds their hull.
 #pragma once
 
+#include "collision/half_space.h"
 #include "geometry/closest_pair.h"
 
 #include <array>
 #include <limits>
 
 namespace sprung {
-
-/// normal . x >= offset; unit normal.
-struct HalfSpace {
-  Vector3 normal = Vector3::Zero();
-  double offset = 0.0;  ///< [m]
-};
 
 /// The corners of an element in the obstacle's frame.
 using ElementCorners = Simplex;

@@ -19,10 +19,6 @@ constexpr double kSmallestReach = 0.25;
 // Corners that move less than this part of the distance cannot bring the element to the triangle.
 constexpr double kFreePart = 0.9;
 
-double highest_corner(const Vector3& normal, const TriangleCorners& corners) {
-  return std::max({normal.dot(corners[0]), normal.dot(corners[1]), normal.dot(corners[2])});
-}
-
 }  // namespace
 
 ZoneBuilder::ZoneBuilder(const ElementCorners& element, const ZoneRequest& request, Zone& zone)
@@ -31,10 +27,23 @@ ZoneBuilder::ZoneBuilder(const ElementCorners& element, const ZoneRequest& reque
   zone_.box = box_around(element, request.reach);
 }
 
-void ZoneBuilder::meet(Index triangle, const TriangleCorners& corners) {
+void ZoneBuilder::look_at(Index triangle, const TriangleCorners& corners) {
+  const bool exact = zone_.distance < request_.exact;
+  ClosestPair pair = closest_pair(element_, corners, exact ? 0.0 : kPairSlack);
+  if (!exact && pair.squared_distance < request_.exact * request_.exact) pair = closest_pair(element_, corners);
+  const double distance = std::sqrt(pair.squared_distance);
+  if (!(distance < zone_.distance)) return;
+  zone_.distance = distance;
+  zone_.point = pair.on_triangle;
+  zone_.normal = distance > 0.0 ? Vector3((pair.on_simplex - pair.on_triangle) / distance) : Vector3::Zero();
+  zone_.weights = pair.weights;
+  zone_.triangle = triangle;
+}
+
+void ZoneBuilder::meet(const TriangleCorners& corners) {
   if (ruled_out(corners)) return;
   if (zone_.plane_count == Zone::kMostPlanes && shrink_past(corners)) return;
-  separate(triangle, corners);
+  separate(corners);
 }
 
 bool ZoneBuilder::ruled_out(const TriangleCorners& corners) const {
@@ -42,7 +51,7 @@ bool ZoneBuilder::ruled_out(const TriangleCorners& corners) const {
   const Vector3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
   if ((low.array() > zone_.box.max().array()).any() || (high.array() < zone_.box.min().array()).any()) return true;
   for (int k = 0; k < zone_.plane_count; ++k) {
-    if (highest_corner(normal(k), corners) <= limit(k)) return true;
+    if (highest_along(normal(k), corners) <= limit(k)) return true;
   }
   return false;
 }
@@ -63,14 +72,10 @@ bool ZoneBuilder::shrink_past(const TriangleCorners& corners) {
   return true;
 }
 
-void ZoneBuilder::separate(Index triangle, const TriangleCorners& corners) {
+void ZoneBuilder::separate(const TriangleCorners& corners) {
   const ClosestPair pair = closest_pair(element_, corners, kPairSlack);
-  keep_nearest(triangle, pair);
-  const Vector3 away = pair.on_simplex - pair.on_triangle;
-  const double distance = std::sqrt(pair.squared_distance);
-  const Vector3 normal = distance > 0.0 ? Vector3(away / distance) : Vector3::Zero();
-  const double highest = highest_corner(normal, corners);
-  const double gap = lowest_corner(normal) - highest;
+  const auto [normal, gap] = separation(element_, corners, pair, kPairSlack);
+  const double highest = highest_along(normal, corners);
   if (is_touching(gap, request_)) {
     zone_.broken = true;
     return;
@@ -85,16 +90,6 @@ void ZoneBuilder::separate(Index triangle, const TriangleCorners& corners) {
   limits_[plane] = highest + 0.5 * std::min(height, request_.clearance);
 }
 
-void ZoneBuilder::keep_nearest(Index triangle, const ClosestPair& pair) {
-  const double distance = std::sqrt(pair.squared_distance);
-  if (!(distance < zone_.distance)) return;
-  zone_.distance = distance;
-  zone_.point = pair.on_triangle;
-  zone_.normal = distance > 0.0 ? Vector3((pair.on_simplex - pair.on_triangle) / distance) : Vector3::Zero();
-  zone_.weights = pair.weights;
-  zone_.triangle = triangle;
-}
-
 void ZoneBuilder::finish() {
   if (zone_.broken) {
     zone_.plane_count = 0;
@@ -105,13 +100,9 @@ void ZoneBuilder::finish() {
   const Vector3 below = element_box_.min() - zone_.box.min();
   zone_.clear = std::min(above.minCoeff(), below.minCoeff());
   zone_.clear = std::min(zone_.clear, zone_.free_radius);
-  for (int k = 0; k < zone_.plane_count; ++k) zone_.clear = std::min(zone_.clear, lowest_corner(normal(k)) - limit(k));
+  for (int k = 0; k < zone_.plane_count; ++k) zone_.clear = std::min(zone_.clear, lowest(normal(k)) - limit(k));
 }
 
-double ZoneBuilder::lowest_corner(const Vector3& normal) const {
-  double lowest = normal.dot(element_.x[0]);
-  for (int i = 1; i < element_.count; ++i) lowest = std::min(lowest, normal.dot(element_.x[static_cast<std::size_t>(i)]));
-  return lowest;
-}
+double ZoneBuilder::lowest(const Vector3& normal) const { return lowest_along(normal, element_); }
 
 }  // namespace sprung

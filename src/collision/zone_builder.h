@@ -1,13 +1,11 @@
 // Makes a zone of the triangles that it is shown.
 #pragma once
 
-#include "collision/zone.h"
+#include "collision/triangle_separation.h"
 
 #include <array>
 
 namespace sprung {
-
-using TriangleCorners = std::array<Vector3, 3>;
 
 class ZoneBuilder {
  public:
@@ -15,10 +13,10 @@ class ZoneBuilder {
   ZoneBuilder(const ElementCorners& element, const ZoneRequest& request, Zone& zone);
 
   /// Makes the zone keep off the triangle, if it does not yet.
-  void meet(Index triangle, const TriangleCorners& corners);
+  void meet(const TriangleCorners& corners);
 
-  /// Takes the pair as the nearest, if it is.
-  void keep_nearest(Index triangle, const ClosestPair& pair);
+  /// Takes the triangle as the nearest so far, if it is.
+  void look_at(Index triangle, const TriangleCorners& corners);
 
   /// Tells how near the obstacle may be, after the last triangle.
   void finish();
@@ -33,8 +31,8 @@ class ZoneBuilder {
  private:
   [[nodiscard]] bool ruled_out(const TriangleCorners& corners) const;
   [[nodiscard]] bool shrink_past(const TriangleCorners& corners);
-  void separate(Index triangle, const TriangleCorners& corners);
-  [[nodiscard]] double lowest_corner(const Vector3& normal) const;
+  void separate(const TriangleCorners& corners);
+  [[nodiscard]] double lowest(const Vector3& normal) const;
 
   const ElementCorners& element_;
   const ZoneRequest& request_;

@@ -1,6 +1,7 @@
 #include "dynamics/contact_projection.h"
 
 #include "dynamics/contact_pair.h"
+#include "dynamics/contact_surface.h"
 
 #include <algorithm>
 
@@ -18,22 +19,25 @@ double largest_thickness(const std::vector<Obstacle>& obstacles) {
 
 }  // namespace
 
-ContactProjection::ContactProjection(const SpringNetwork& network, const Environment& environment)
+ContactProjection::ContactProjection(const SpringNetwork& network, Environment& environment)
     : environment_(environment),
       response_(network, environment),
       thickness_(particle_thickness(network)),
       margin_(kMargin * (thickness_.maxCoeff() + largest_thickness(environment.obstacles()))),
-      pinned_(static_cast<std::size_t>(network.particle_count())) {
-  for (Index i = 0; i < network.particle_count(); ++i) pinned_[static_cast<std::size_t>(i)] = network.is_pinned(i) ? 1 : 0;
-}
+      free_space_(environment, contact_surface(network), margin_) {}
 
 void ContactProjection::find(const StepMotion& motion) {
-  response_.start(environment_.contacts({motion.before, motion.advanced, thickness_, margin_}), motion);
+  free_space_.follow(motion.before, motion.advanced);
+  std::vector<Contact> contacts = environment_.contacts({motion.before, motion.advanced, thickness_, margin_});
+  const std::vector<Contact> of_elements = free_space_.element_contacts(motion.advanced);
+  contacts.insert(contacts.end(), of_elements.begin(), of_elements.end());
+  response_.start(contacts, motion);
 }
 
 void ContactProjection::truncate(const Points& before, Points& positions) {
-  squeezed_ = 0;
-  truncated_ = static_cast<Index>(environment_.truncate(before, positions, pinned_, squeezed_).size());
+  const FreeSpace::Truncation truncation = free_space_.truncate(before, positions);
+  truncated_ = truncation.truncated;
+  squeezed_ = truncation.squeezed;
 }
 
 }  // namespace sprung

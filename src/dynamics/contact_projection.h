@@ -2,18 +2,17 @@
 #pragma once
 
 #include "collision/environment.h"
+#include "collision/free_space.h"
 #include "dynamics/contact_response.h"
 #include "dynamics/integrator.h"
 #include "network/spring_network.h"
-
-#include <vector>
 
 namespace sprung {
 
 class ContactProjection {
  public:
   /// Keeps references to the network and the environment.
-  ContactProjection(const SpringNetwork& network, const Environment& environment);
+  ContactProjection(const SpringNetwork& network, Environment& environment);
 
   /// Finds the contacts of a step. Requires that the environment's interval is the step's.
   void find(const StepMotion& motion);
@@ -25,7 +24,8 @@ class ContactProjection {
   }
   [[nodiscard]] Index contact_count() const { return response_.pushed_count(); }
 
-  /// Moves particles that ended behind a surface back to the side where they were at `before` [m]: the last word on positions.
+  /// Stops particles before an element of the network crosses a surface, where none did at `before` [m]: the last word on
+  /// positions.
   void truncate(const Points& before, Points& positions);
 
   [[nodiscard]] Index truncated_count() const { return truncated_; }
@@ -36,7 +36,7 @@ class ContactProjection {
   ContactResponse response_;
   Scalars thickness_;    ///< of each particle [m]
   double margin_ = 0.0;  ///< beyond the gap, for what the passes of a step may move [m]
-  std::vector<char> pinned_;
+  FreeSpace free_space_;
   Index truncated_ = 0;
   Index squeezed_ = 0;
 };

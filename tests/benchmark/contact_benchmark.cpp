@@ -1,7 +1,7 @@
 // Contact search of particles near the bunny at 3,700 to 236,000 triangles, beside fcl::collide per particle in the same run.
 #include "base/parallel.h"
 #include "benchmark/bunnies.h"
-#include "collision/environment.h"
+#include "collision/free_space.h"
 #include "collision/sample_meshes.h"
 
 #include <benchmark/benchmark.h>
@@ -27,7 +27,7 @@ struct Cloth {
 };
 
 Cloth cloth_on(const TriangleMesh& mesh) {
-  const Environment environment(
+  Environment environment(
       {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
   const Box3 box = bounds(mesh.vertices);
   test::Random random(1);
@@ -58,7 +58,7 @@ void report(benchmark::State& state, std::size_t contacts) {
 void contact_search_near(benchmark::State& state) {
   const TriangleMesh& mesh = benchmarks::bunny(static_cast<Index>(state.range(0)));
   const ThreadLimit limit(static_cast<int>(state.range(1)));
-  const Environment environment(
+  Environment environment(
       {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
   const Cloth cloth = cloth_on(mesh);
   std::size_t contacts = 0;
@@ -69,23 +69,25 @@ void contact_search_near(benchmark::State& state) {
 void truncation_near(benchmark::State& state) {
   const TriangleMesh& mesh = benchmarks::bunny(static_cast<Index>(state.range(0)));
   const ThreadLimit limit(static_cast<int>(state.range(1)));
-  const Environment environment(
+  Environment environment(
       {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
   const Cloth cloth = cloth_on(mesh);
-  const std::vector<char> held(kParticles, 0);
-  std::size_t moved = 0;
+  FreeSpace space(environment,
+                  make_collision_surface({}, cloth.before, std::vector<Index>(kParticles, 0), cloth.thickness,
+                                         std::vector<char>(kParticles, 0), {0}, {0}),
+                  kMargin);
+  FreeSpace::Truncation truncation;
   for (auto _ : state) {
     Points after = cloth.after;
-    Index squeezed = 0;
-    moved = environment.truncate(cloth.before, after, held, squeezed).size();
+    truncation = space.truncate(cloth.before, after);
   }
-  report(state, moved);
+  report(state, static_cast<std::size_t>(truncation.truncated));
 }
 
 void contact_search_far(benchmark::State& state) {
   const TriangleMesh& mesh = benchmarks::bunny(static_cast<Index>(state.range(0)));
   const ThreadLimit limit(static_cast<int>(state.range(1)));
-  const Environment environment(
+  Environment environment(
       {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
   Cloth cloth = cloth_on(mesh);
   cloth.before.row(1).array() += 3.0;

@@ -1,6 +1,6 @@
 // Without any thickness a particle still keeps a clearance, slides along surfaces and over edges, and never wears it away.
-#include "collision/environment.h"
 #include "collision/sample_meshes.h"
+#include "collision/single_particles.h"
 
 #include <gtest/gtest.h>
 
@@ -32,18 +32,17 @@ ObstacleGeometry mesh_of(const TriangleMesh& mesh, bool closed) {
 ObstacleGeometry mesh_of(const ObstacleGeometry& primitive) { return mesh_of(obstacle_mesh(primitive, 0.0), true); }
 
 /// One step without thickness: each particle is led in front of its contacts' planes, then cut. Returns the number of cuts.
-std::size_t step_to(const Environment& environment, Points& x, const Points& wanted) {
+Index step_to(const Environment& environment, FreeSpace& space, Points& x, const Points& wanted) {
   Points after = wanted;
   for (const Contact& contact : environment.contacts({x, wanted, Scalars::Zero(x.cols()), 0.0})) {
     auto position = after.col(contact.particles[0]);
     const double depth = contact.clearance - contact.normal.dot(position - contact.point);
     if (depth > 0.0) position += depth * contact.normal;
   }
-  Index squeezed = 0;
-  const auto cut = environment.truncate(x, after, std::vector<char>(static_cast<std::size_t>(x.cols()), 0), squeezed);
-  EXPECT_EQ(squeezed, 0);
+  const FreeSpace::Truncation truncation = space.truncate(x, after);
+  EXPECT_EQ(truncation.squeezed, 0);
   x = after;
-  return cut.size();
+  return truncation.truncated;
 }
 
 struct Slide {
@@ -66,14 +65,15 @@ TEST(Clearance, PressedParticlesSlideAlongLevelSurfacesUncut) {
   for (const Slide& slide : level_surfaces()) {
     for (const bool away : {false, true}) {
       SCOPED_TRACE(std::string(slide.name) + (away ? ", away" : ""));
-      const Environment environment(
+      Environment environment(
           {away ? obstacle(slide.geometry, Vector3(3.7, -8.1, 5.3), Vector3(20.0, 50.0, -35.0)) : obstacle(slide.geometry)});
       const RigidTransform& pose = environment.pose_after(0);
       const Vector3 motion = pose.linear() * Vector3(0.013, -0.02, 0.007);
       const Vector3 start(-1.5, slide.top + 0.01, -1.0);
+      FreeSpace space = test::single_particles(environment, 1);
       Points x = pose * start;
       for (int step = 1; step <= 200; ++step) {
-        ASSERT_EQ(step_to(environment, x, x + motion), 0U) << step;
+        ASSERT_EQ(step_to(environment, space, x, x + motion), 0U) << step;
         const Vector3 local = pose.inverse() * x.col(0);
         // 200 sums and projections, each right to a few roundings of coordinates of 10 m.
         ASSERT_NEAR(local.x(), start.x() + 0.013 * step, 1e-11);
@@ -96,15 +96,16 @@ TEST(Clearance, PressedParticlesSlideRoundConvexBodiesUncut) {
                                      mesh_of(BoxGeometry{Vector3(1.0, 1.5, 2.0)})};
   for (std::size_t k = 0; k < std::size(bodies); ++k) {
     SCOPED_TRACE(k);
-    const Environment environment({obstacle(bodies[k], Vector3(0.7, 0.2, -0.4), Vector3(10.0, 20.0, 30.0))});
+    Environment environment({obstacle(bodies[k], Vector3(0.7, 0.2, -0.4), Vector3(10.0, 20.0, 30.0))});
     const Vector3 centre = environment.pose_after(0).translation();
     const Vector3 axis = Vector3(0.3, -0.2, 1.0).normalized();
+    FreeSpace space = test::single_particles(environment, 1);
     Points x = centre + 3.0 * Vector3::UnitY();
     double turned = 0.0;
     for (int step = 0; step < 2000; ++step) {
       const Vector3 from = x.col(0) - centre;
       const Vector3 along = axis.cross(from).normalized();
-      ASSERT_EQ(step_to(environment, x, x + 0.02 * along - 0.005 * from.normalized()), 0U) << step;
+      ASSERT_EQ(step_to(environment, space, x, x + 0.02 * along - 0.005 * from.normalized()), 0U) << step;
       const Vector3 to = x.col(0) - centre;
       turned += std::atan2(axis.dot(from.cross(to)), from.dot(to));
       ASSERT_TRUE(environment.inside(x).empty());
@@ -117,9 +118,10 @@ TEST(Clearance, PressedParticlesSlideRoundConvexBodiesUncut) {
 TEST(Clearance, AParticleOnAConvexEdgeLeavesItInFrontOfTheOtherFace) {
   for (const ObstacleGeometry& box :
        {ObstacleGeometry(BoxGeometry{Vector3(1.0, 1.0, 1.0)}), mesh_of(BoxGeometry{Vector3(1.0, 1.0, 1.0)})}) {
-    const Environment environment({obstacle(box)});
+    Environment environment({obstacle(box)});
+    FreeSpace space = test::single_particles(environment, 1);
     Points x = Vector3(0.5, 0.5, 0.1);
-    for (int step = 0; step < 10; ++step) EXPECT_EQ(step_to(environment, x, x + Vector3(0.01, -0.02, 0.0)), 0U);
+    for (int step = 0; step < 10; ++step) EXPECT_EQ(step_to(environment, space, x, x + Vector3(0.01, -0.02, 0.0)), 0U);
     EXPECT_NEAR(x(0, 0), 0.6, 1e-8);
     EXPECT_LE(x(1, 0), 0.5 - 9 * 0.02 + 1e-8);
   }
@@ -129,13 +131,13 @@ TEST(Clearance, AParticleOnAConvexEdgeLeavesItInFrontOfTheOtherFace) {
 TEST(Clearance, CutsNeverWearTheHeightAway) {
   for (const Slide& slide : level_surfaces()) {
     SCOPED_TRACE(slide.name);
-    const Environment environment({obstacle(slide.geometry)});
+    Environment environment({obstacle(slide.geometry)});
     Points x = Vector3(0.0, slide.top + 0.01, 0.0);
-    Index squeezed = 0;
+    FreeSpace space = test::single_particles(environment, 1);
     double settled = 0.0;
     for (int step = 0; step < 5000; ++step) {
       Points after = x - 0.05 * Vector3::UnitY();
-      environment.truncate(x, after, {0}, squeezed);
+      space.truncate(x, after);
       x = after;
       ASSERT_GT(x(1, 0) - slide.top, kLeast * 0.05) << step;
       if (step == 100) settled = x(1, 0);
@@ -147,18 +149,18 @@ TEST(Clearance, CutsNeverWearTheHeightAway) {
 TEST(Clearance, BesideARestingObstacleAParticleStaysToTheLastBit) {
   for (const Slide& slide : level_surfaces()) {
     SCOPED_TRACE(slide.name);
-    const Environment environment({obstacle(slide.geometry, Vector3(3.7, -8.1, 5.3), Vector3(20.0, 50.0, -35.0))});
+    Environment environment({obstacle(slide.geometry, Vector3(3.7, -8.1, 5.3), Vector3(20.0, 50.0, -35.0))});
     const RigidTransform& pose = environment.pose_after(0);
     const Vector3 down = pose.linear() * -Vector3::UnitY();
     Points x = pose * Vector3(0.2, slide.top + 0.01, 0.3);
-    Index squeezed = 0;
+    FreeSpace space = test::single_particles(environment, 1);
     for (int step = 0; step < 100; ++step) {
       Points after = x + 0.05 * down;
-      environment.truncate(x, after, {0}, squeezed);
+      space.truncate(x, after);
       x = after;
     }
     Points after = x + 0.05 * down;
-    EXPECT_EQ(environment.truncate(x, after, {0}, squeezed).size(), 1U);
+    EXPECT_EQ(space.truncate(x, after).truncated, 1);
     EXPECT_EQ(after, x);
   }
 }
@@ -170,16 +172,15 @@ TEST(Clearance, AMovingObstacleCarriesAParticleForEverAtItsClearance) {
     carousel.motion.spin = Vector3(300.0, 700.0, -500.0);
     Environment environment({carousel});
     Points x = environment.pose_after(0) * Vector3(0.2, slide.top + 0.01, 0.3);
-    Index squeezed = 0;
+    FreeSpace space = test::single_particles(environment, 1);
     for (int step = 0; step < 20000; ++step) {
       environment.set_interval(0.001 * step, 0.001 * (step + 1));
       const Vector3 carried = environment.pose_after(0) * (environment.pose_before(0).inverse() * x.col(0));
       Points after = carried - 0.05 * (environment.pose_after(0).linear() * Vector3::UnitY());
-      environment.truncate(x, after, {0}, squeezed);
+      ASSERT_EQ(space.truncate(x, after).squeezed, 0);
       x = after;
       const Vector3 local = environment.pose_after(0).inverse() * x.col(0);
       ASSERT_GT(local.y() - slide.top, kLeast * x.cwiseAbs().maxCoeff()) << step;
-      ASSERT_EQ(squeezed, 0);
     }
   }
 }
@@ -200,13 +201,14 @@ Points scaled_run(double scale) {
   obstacles.back().motion.spin = Vector3(0.0, 500.0, 100.0);
   Environment environment(obstacles);
   Random random(41);
+  FreeSpace space = test::single_particles(environment, 300);
   Points x(3, 300);
   for (Index i = 0; i < x.cols(); ++i) x.col(i) = scale * random.in_box({Vector3(-2.0, 2.5, -2.0), Vector3(2.0, 4.0, 2.0)});
   for (int step = 0; step < 60; ++step) {
     environment.set_interval(0.01 * step, 0.01 * (step + 1));
     Points wanted = x;
     for (Index i = 0; i < x.cols(); ++i) wanted.col(i) += scale * (0.1 * random.direction() - 0.08 * Vector3::UnitY());
-    step_to(environment, x, wanted);
+    step_to(environment, space, x, wanted);
   }
   return x;
 }

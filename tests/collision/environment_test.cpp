@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "collision/obstacle_shape.h"
 #include "collision/sample_meshes.h"
+#include "collision/single_particles.h"
 
 #include <gmock/gmock.h>
 
@@ -125,11 +126,10 @@ TEST(Environment, SameBitsForAnyNumberOfThreads) {
   Environment environment(zoo());
   environment.set_interval(0.3, 0.31);
   const Cloud particles = cloud(20000, 0.3);
-  const std::vector<char> held(20000, 0);
   struct Run {
     std::vector<Contact> contacts;
     Points after;
-    std::vector<Index> moved;
+    Index truncated = 0;
     Index squeezed = 0;
     std::optional<double> distance;
   };
@@ -138,7 +138,9 @@ TEST(Environment, SameBitsForAnyNumberOfThreads) {
     Run result;
     result.contacts = environment.contacts({particles.before, particles.after, particles.thickness, 0.05});
     result.after = particles.after;
-    result.moved = environment.truncate(particles.before, result.after, held, result.squeezed);
+    const FreeSpace::Truncation truncation = test::single_particles(environment, 20000).truncate(particles.before, result.after);
+    result.truncated = truncation.truncated;
+    result.squeezed = truncation.squeezed;
     result.distance = environment.min_distance(result.after, 0.5);
     return result;
   };
@@ -153,7 +155,7 @@ TEST(Environment, SameBitsForAnyNumberOfThreads) {
     ASSERT_EQ(one.contacts[i].distance, two.contacts[i].distance);
   }
   EXPECT_EQ(one.after, two.after);
-  EXPECT_EQ(one.moved, two.moved);
+  EXPECT_EQ(one.truncated, two.truncated);
   EXPECT_EQ(one.squeezed, two.squeezed);
   EXPECT_EQ(one.distance, two.distance);
 }
@@ -199,21 +201,18 @@ TEST(Environment, InsideAndDistanceAreThoseOfTheEndPose) {
 }
 
 TEST(Environment, WithoutObstaclesThereIsNothingToMeet) {
-  const Environment environment;
+  Environment environment;
   const Cloud particles = cloud(100, 0.1);
   Points after = particles.after;
-  Index squeezed = 1;
   EXPECT_TRUE(environment.contacts({particles.before, particles.after, particles.thickness, 0.1}).empty());
-  EXPECT_TRUE(environment.truncate(particles.before, after, std::vector<char>(100, 0), squeezed).empty());
-  EXPECT_EQ(squeezed, 0);
+  EXPECT_EQ(test::single_particles(environment, 100).truncate(particles.before, after).truncated, 0);
   EXPECT_TRUE(environment.inside(after).empty());
   EXPECT_FALSE(environment.min_distance(after, 1.0));
   EXPECT_FALSE(environment.moves());
 }
 
 TEST(Environment, PositionsThatAreNotFiniteAreLeftAlone) {
-  const Environment environment(
-      {obstacle("floor", HalfSpaceGeometry{}), obstacle("sheet", mesh_geometry(test::flat_sheet(4), false))});
+  Environment environment({obstacle("floor", HalfSpaceGeometry{}), obstacle("sheet", mesh_geometry(test::flat_sheet(4), false))});
   Points before = Points::Constant(3, 3, 0.001);
   Points after = before;
   after(0, 0) = std::numeric_limits<double>::quiet_NaN();
@@ -221,13 +220,12 @@ TEST(Environment, PositionsThatAreNotFiniteAreLeftAlone) {
   const auto contacts = environment.contacts({before, after, Scalars::Constant(3, 0.005), 0.0});
   ASSERT_EQ(contacts.size(), 2U);
   EXPECT_EQ(contacts[0].particles[0], 2);
-  Index squeezed = 0;
-  EXPECT_TRUE(environment.truncate(before, after, {0, 0, 0}, squeezed).empty());
+  EXPECT_EQ(test::single_particles(environment, 3).truncate(before, after).truncated, 0);
 }
 
 TEST(Environment, NamesEveryObstacleThatCannotBe) {
   try {
-    const Environment environment(
+    Environment environment(
         {obstacle("ball", SphereGeometry{-1.0}), obstacle("floor", HalfSpaceGeometry{}), obstacle("bunny", MeshGeometry{})});
     FAIL();
   } catch (const InputError& error) {
@@ -248,7 +246,7 @@ TEST(Environment, NamesEveryMaterialMotionAndPlaceThatCannotBe) {
   late.motion.spin.z() = kNan;
   std::vector<std::string> keys;
   try {
-    const Environment environment({rough, slick, late});
+    Environment environment({rough, slick, late});
     FAIL();
   } catch (const InputError& error) {
     for (const Problem& problem : error.problems()) keys.push_back(problem.key);

@@ -1,0 +1,186 @@
+#include "collision/free_space.h"
+
+#include "base/parallel.h"
+#include "collision/feasible_point.h"
+#include "collision/obstacle_zones.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+namespace {
+
+// Zones are made again where they stopped a particle short, so that it can go on, at most so often.
+constexpr int kRounds = 8;
+
+// It goes on if the last round took it this part of its way or more, and no more than that part is left: what was stopped for good
+// would be led a long way round the obstacle.
+constexpr double kWorthwhile = 0x1p-10;
+constexpr double kMostLeft = 0.5;
+
+// Obstacles that close in on a particle are taken along in parts of the interval, halved until this one.
+constexpr double kSmallestPart = 1.0 / 64.0;
+
+// A place this near to where the particle was, as a part of its coordinates, is the same but for rounding.
+constexpr double kRounding = 0x1p-46;
+
+constexpr Index kParticleChunk = 256;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+template <class Outcome>
+Index count(const std::vector<Outcome>& outcomes, Outcome wanted) {
+  return static_cast<Index>(std::count(outcomes.begin(), outcomes.end(), wanted));
+}
+
+}  // namespace
+
+struct FreeSpace::Implementation {
+  Implementation(Environment& world, CollisionSurface elements, double margin)
+      : environment(world), set(world.set()), surface(std::move(elements)), zones(set, surface, margin) {}
+
+  enum class Outcome : char { free, stopped, squeezed };
+  using Outcomes = std::vector<Outcome>;
+
+  Truncation truncate(const Points& before, Points& after);
+  [[nodiscard]] std::vector<Index> movable(const Points& before, const Points& target) const;
+  Outcomes place_in_parts(const std::vector<Index>& particles, const Points& before, const Points& target, Points& after);
+  [[nodiscard]] static bool can_go_on(Index particle, const Points& from, const Points& target, const Points& now);
+  /// Leaves in `stopped` those that may come farther yet; returns how many arrived.
+  Index go_on(std::vector<Index>& stopped, const Points& target, Points& after);
+  Outcomes place(const std::vector<Index>& particles, const Way& way, Points& positions) const;
+  Outcome place(Index particle, const Way& way, Points& positions) const;
+
+  Environment& environment;
+  const ObstacleSet& set;
+  CollisionSurface surface;
+  ObstacleZones zones;
+};
+
+FreeSpace::FreeSpace(Environment& environment, CollisionSurface surface, double margin)
+    : implementation_(std::make_unique<Implementation>(environment, std::move(surface), margin)) {}
+FreeSpace::~FreeSpace() = default;
+FreeSpace::FreeSpace(FreeSpace&&) noexcept = default;
+FreeSpace& FreeSpace::operator=(FreeSpace&&) noexcept = default;
+
+void FreeSpace::follow(const Points& before, const Points& after) { implementation_->zones.follow({before, after}); }
+
+std::vector<Contact> FreeSpace::element_contacts(const Points& after) const {
+  return implementation_->zones.element_contacts(after);
+}
+
+FreeSpace::Truncation FreeSpace::truncate(const Points& before, Points& after) {
+  return implementation_->set.obstacles().empty() ? Truncation{} : implementation_->truncate(before, after);
+}
+
+FreeSpace::Truncation FreeSpace::Implementation::truncate(const Points& before, Points& after) {
+  const Points target = after;
+  const std::vector<Index> particles = movable(before, target);
+  zones.follow({before, target});
+  Outcomes outcomes = place(particles, {before, target}, after);
+  if (set.moves() && count(outcomes, Outcome::squeezed) > 0) outcomes = place_in_parts(particles, before, target, after);
+
+  std::vector<Index> stopped;
+  for (std::size_t n = 0; n < particles.size(); ++n) {
+    if (outcomes[n] == Outcome::stopped) stopped.push_back(particles[n]);
+  }
+  Truncation truncation{.squeezed = count(outcomes, Outcome::squeezed)};
+  truncation.truncated = truncation.squeezed + static_cast<Index>(stopped.size());
+  std::erase_if(stopped, [&](Index i) { return !can_go_on(i, before, target, after); });
+  for (int round = 1; round < kRounds && !stopped.empty(); ++round) truncation.truncated -= go_on(stopped, target, after);
+  return truncation;
+}
+
+bool FreeSpace::Implementation::can_go_on(Index i, const Points& from, const Points& target, const Points& now) {
+  const double way = (target.col(i) - from.col(i)).norm();
+  return (now.col(i) - from.col(i)).norm() > kWorthwhile * way && (target.col(i) - now.col(i)).norm() <= kMostLeft * way;
+}
+
+std::vector<Index> FreeSpace::Implementation::movable(const Points& before, const Points& target) const {
+  std::vector<Index> particles;
+  for (Index i = 0; i < static_cast<Index>(target.cols()); ++i) {
+    if (surface.pinned[at(i)] == 0 && before.col(i).allFinite() && target.col(i).allFinite()) particles.push_back(i);
+  }
+  return particles;
+}
+
+// Planes that obstacles take along may leave nothing between them, where the obstacles themselves do: in smaller parts of the
+// interval their planes are made again before they meet.
+FreeSpace::Implementation::Outcomes FreeSpace::Implementation::place_in_parts(const std::vector<Index>& particles,
+                                                                              const Points& before, const Points& target,
+                                                                              Points& after) {
+  const auto [begin, end] = environment.interval();
+  const auto time = [begin = begin, end = end](double part) { return part < 1.0 ? begin + part * (end - begin) : end; };
+  Outcomes worst(particles.size(), Outcome::free);
+  Points from = before;
+  double done = 0.0;
+  double part = 0.5;
+  while (done < 1.0) {
+    const double next = std::min(1.0, done + part);
+    environment.set_interval(time(done), time(next));
+    const Points to = next < 1.0 ? Points(from + (next - done) / (1.0 - done) * (target - from)) : target;
+    zones.follow({from, to});
+    after = to;
+    const Outcomes outcomes = place(particles, {from, to}, after);
+    if (part > kSmallestPart && count(outcomes, Outcome::squeezed) > 0) {
+      part *= 0.5;
+      continue;
+    }
+    for (std::size_t n = 0; n < particles.size(); ++n) {
+      const bool last = next == 1.0;
+      if (outcomes[n] == Outcome::squeezed || (last && worst[n] == Outcome::free)) worst[n] = outcomes[n];
+    }
+    from = after;
+    done = next;
+  }
+  environment.set_interval(begin, end);
+  return worst;
+}
+
+// A zone ends where it meets the obstacle's tangent; from there a new one leads round the obstacle.
+Index FreeSpace::Implementation::go_on(std::vector<Index>& stopped, const Points& target, Points& after) {
+  const Points from = after;
+  const Way way{from, target, true};
+  zones.renew_around(stopped, way);
+  const Outcomes outcomes = place(stopped, way, after);
+  std::vector<Index> still;
+  for (std::size_t n = 0; n < stopped.size(); ++n) {
+    if (outcomes[n] != Outcome::free && can_go_on(stopped[n], from, target, after)) still.push_back(stopped[n]);
+  }
+  stopped = std::move(still);
+  return count(outcomes, Outcome::free);
+}
+
+FreeSpace::Implementation::Outcomes FreeSpace::Implementation::place(const std::vector<Index>& particles, const Way& way,
+                                                                     Points& positions) const {
+  Outcomes outcomes(particles.size());
+  parallel_chunks(static_cast<Index>(particles.size()), kParticleChunk, [&](Index begin, Index end) {
+    for (Index n = begin; n < end; ++n) outcomes[at(n)] = place(particles[at(n)], way, positions);
+  });
+  return outcomes;
+}
+
+FreeSpace::Implementation::Outcome FreeSpace::Implementation::place(Index particle, const Way& way, Points& positions) const {
+  const Vector3 target = way.to.col(particle);
+  if (zones.allow(particle, target)) {
+    positions.col(particle) = target;
+    return Outcome::free;
+  }
+  std::vector<HalfSpace> bounds;
+  zones.append_half_spaces(particle, bounds);
+  const Vector3 from = way.from.col(particle);
+  std::vector<Vector3> safe;
+  if (!way.obstacles_rest) zones.append_carried(particle, from, safe);
+  safe.push_back(from);
+  const auto found = feasible_point(bounds, target, safe);
+  if (!found) {
+    positions.col(particle) = safe.front();
+    return Outcome::squeezed;
+  }
+  // A particle that cannot move stays to the last bit: what projections round would wear its height away, step by step.
+  const bool stays = (*found - from).cwiseAbs().maxCoeff() <= kRounding * from.cwiseAbs().maxCoeff() && is_feasible(bounds, from);
+  positions.col(particle) = stays ? from : *found;
+  return Outcome::stopped;
+}
+
+}  // namespace sprung

@@ -1,0 +1,46 @@
+// What keeps the network's elements from crossing obstacles: convex free space around each of them, kept from step to step.
+//
+// An element that stays within what its zone's box and half-spaces have in common cannot cross the obstacle, because that is
+// convex and holds nothing of it. So each particle is kept, on its own, within the zones of all elements that have it as a corner.
+#pragma once
+
+#include "collision/collision_surface.h"
+#include "collision/contact.h"
+#include "collision/environment.h"
+
+#include <memory>
+#include <vector>
+
+namespace sprung {
+
+class FreeSpace {
+ public:
+  /// Finds contacts up to `margin` [m] beyond their gap. Keeps a reference to the environment.
+  FreeSpace(Environment& environment, CollisionSurface surface, double margin);
+  ~FreeSpace();
+  FreeSpace(FreeSpace&&) noexcept;
+  FreeSpace& operator=(FreeSpace&&) noexcept;
+
+  /// Makes the zones hold the elements on their way from `before`, where nothing crosses, to where they are about to be at the end
+  /// of the environment's interval [m].
+  void follow(const Points& before, const Points& after);
+
+  /// Contacts of obstacles with the inside of edges and faces, which contacts of particles do not know of: an edge over a spike, a
+  /// face over a corner. In the order of the elements, then of the obstacles. Requires follow().
+  [[nodiscard]] std::vector<Contact> element_contacts(const Points& after) const;
+
+  struct Truncation {
+    Index truncated = 0;  ///< particles stopped on their way
+    Index squeezed = 0;   ///< particles that found no free place between obstacles
+  };
+  /// The last word on positions: moves each particle that would take an element out of its zones to a place near `after` where it
+  /// does not, taking obstacles that close in on it along in smaller parts of the interval. A particle that found none stays with
+  /// an obstacle that carries it. Particles that follow their pins, and positions that are not finite, are left alone.
+  Truncation truncate(const Points& before, Points& after);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace sprung

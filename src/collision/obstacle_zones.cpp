@@ -1,0 +1,191 @@
+#include "collision/obstacle_zones.h"
+
+#include "base/parallel.h"
+#include "collision/particle_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+
+namespace {
+
+constexpr Index kPatchChunk = 4;
+
+// A nearest point this close to a corner is that particle's own contact.
+constexpr double kAtCorner = 1.0 - 1.0e-6;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+Box3 finite_bounds(const Points& positions, const std::vector<Index>& particles) {
+  Box3 box;
+  for (const Index i : particles) {
+    if (positions.col(i).allFinite()) box.extend(positions.col(i));
+  }
+  return box;
+}
+
+}  // namespace
+
+ObstacleZones::ObstacleZones(const ObstacleSet& set, const CollisionSurface& surface, double margin)
+    : set_(set), surface_(surface), margin_(margin) {
+  for (const ElementPatch& elements : surface.patches) {
+    Patch patch{.topology = PatchTopology(surface, elements)};
+    const Element& first = surface.elements[at(elements.first_element)];
+    patch.size = surface.element_size[at(first.body)];
+    for (const Index i : elements.particles) patch.thickness = std::max(patch.thickness, surface.thickness[i]);
+    patches_.push_back(std::move(patch));
+  }
+}
+
+void ObstacleZones::follow(const Way& way) {
+  if (set_.obstacles().empty()) return;
+  const double carried = way.obstacles_rest ? 0.0 : set_.carries_at_most(way.from);
+  parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
+    PatchPaths paths;
+    for (Index p = begin; p < end; ++p) {
+      find_near(p, way, carried);
+      for (PatchZones& zones : patches_[at(p)].zones) {
+        find_paths(p, zones.obstacle(), way, paths);
+        zones.follow(set_.shape(zones.obstacle()), patches_[at(p)].topology, paths, demand(p, zones.obstacle(), way));
+      }
+    }
+  });
+}
+
+void ObstacleZones::find_near(Index p, const Way& way, double carried) {
+  Patch& patch = patches_[at(p)];
+  const std::vector<Index>& particles = surface_.patches[at(p)].particles;
+  const Box3 box = finite_bounds(way.from, particles).merged(finite_bounds(way.to, particles));
+  std::vector<Index> near;
+  if (!box.isEmpty()) {
+    const double gap = std::max(patch.thickness + set_.max_thickness(), set_.max_clearance(box));
+    // Once for the way in the frame of an obstacle that comes, once more where another has carried the particle.
+    set_.find_near(grown(box, gap + margin_ + 2.0 * carried), near);
+  }
+  if (std::equal(near.begin(), near.end(), patch.zones.begin(), patch.zones.end(),
+                 [](Index k, const PatchZones& zones) { return k == zones.obstacle(); })) {
+    return;
+  }
+  std::vector<PatchZones> zones;
+  for (const Index k : near) {
+    const auto kept = std::find_if(patch.zones.begin(), patch.zones.end(), [k](const PatchZones& z) { return z.obstacle() == k; });
+    if (kept == patch.zones.end()) {
+      zones.emplace_back(k, patch.topology);
+    } else {
+      zones.push_back(std::move(*kept));
+    }
+  }
+  patch.zones = std::move(zones);
+}
+
+void ObstacleZones::find_paths(Index p, Index k, const Way& way, PatchPaths& paths) const {
+  const std::vector<Index>& particles = surface_.patches[at(p)].particles;
+  paths.from.resize(particles.size());
+  paths.to.resize(particles.size());
+  for (std::size_t slot = 0; slot < particles.size(); ++slot) {
+    const Index i = particles[slot];
+    paths.from[slot] = way.obstacles_rest ? set_.local(k, way.from.col(i)) : set_.local_before(k, way.from.col(i));
+    paths.to[slot] = set_.local(k, way.to.col(i));
+  }
+}
+
+ZoneDemand ObstacleZones::demand(Index p, Index k, const Way& way) const {
+  const Patch& patch = patches_[at(p)];
+  const std::vector<Index>& particles = surface_.patches[at(p)].particles;
+  const Box3 box = finite_bounds(way.from, particles).merged(finite_bounds(way.to, particles));
+  ZoneDemand demand{.size = patch.size, .gap = patch.thickness + set_.obstacle(k).material.thickness, .margin = margin_};
+  demand.clearance = box.isEmpty() ? 0.0 : set_.clearance(k, box.min(), box.max());
+  demand.gap = std::max(demand.gap, demand.clearance);
+  return demand;
+}
+
+void ObstacleZones::renew_around(const std::vector<Index>& particles, const Way& way) {
+  std::vector<std::vector<Index>> slots(patches_.size());
+  for (const Index i : particles) {
+    for (const PatchSlot& place : slots_of(i)) slots[at(place.patch)].push_back(place.slot);
+  }
+  parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
+    PatchPaths paths;
+    for (Index p = begin; p < end; ++p) {
+      if (slots[at(p)].empty()) continue;
+      for (PatchZones& zones : patches_[at(p)].zones) {
+        find_paths(p, zones.obstacle(), way, paths);
+        zones.renew(set_.shape(zones.obstacle()), patches_[at(p)].topology, paths, demand(p, zones.obstacle(), way), slots[at(p)]);
+      }
+    }
+  });
+}
+
+std::vector<Contact> ObstacleZones::element_contacts(const Points& positions) const {
+  std::vector<std::vector<Contact>> parts(patches_.size());
+  parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
+    for (Index p = begin; p < end; ++p) {
+      for (const PatchZones& zones : patches_[at(p)].zones) append_contacts(p, zones, positions, parts[at(p)]);
+    }
+  });
+  std::vector<Contact> contacts;
+  for (const std::vector<Contact>& part : parts) contacts.insert(contacts.end(), part.begin(), part.end());
+  return contacts;
+}
+
+void ObstacleZones::append_contacts(Index p, const PatchZones& zones, const Points& positions,
+                                    std::vector<Contact>& contacts) const {
+  const Index k = zones.obstacle();
+  const RigidTransform& pose = set_.after(k);
+  const ElementPatch& patch = surface_.patches[at(p)];
+  for (Index e = 0; e < patch.element_count; ++e) {
+    const Zone& zone = zones.zone(e);
+    if (!std::isfinite(zone.distance) || zone.broken || zone.weights.maxCoeff() > kAtCorner) continue;
+    const Element& element = surface_.elements[at(patch.first_element + e)];
+    Contact contact{.obstacle = k, .point = pose * zone.point, .normal = pose.linear() * zone.normal};
+    Vector3 sum = Vector3::Zero();
+    double thickness = 0.0;
+    for (std::size_t c = 0; c < at(element.corners); ++c) {
+      const Index i = element.particles[c];
+      thickness = std::max(thickness, surface_.thickness[i]);
+      if (zone.weights[static_cast<Index>(c)] == 0.0) continue;
+      contact.particles[at(contact.count)] = i;
+      contact.weights[at(contact.count++)] = zone.weights[static_cast<Index>(c)];
+      sum += zone.weights[static_cast<Index>(c)] * positions.col(i);
+    }
+    contact.distance = contact.normal.dot(sum - contact.point);
+    contact.clearance = set_.clearance(k, sum, sum);
+    const double gap = std::max(thickness + set_.obstacle(k).material.thickness, contact.clearance);
+    if (contact.distance < gap + margin_) contacts.push_back(contact);
+  }
+}
+
+bool ObstacleZones::allow(Index particle, const Vector3& position) const {
+  for (const auto& [p, slot] : slots_of(particle)) {
+    const Patch& patch = patches_[at(p)];
+    for (const PatchZones& zones : patch.zones) {
+      if (!zones.allow(patch.topology, slot, set_.local(zones.obstacle(), position))) return false;
+    }
+  }
+  return true;
+}
+
+void ObstacleZones::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
+  for (const auto& [p, slot] : slots_of(particle)) {
+    const Patch& patch = patches_[at(p)];
+    for (const PatchZones& zones : patch.zones) {
+      zones.append_half_spaces(patch.topology, slot, set_.after(zones.obstacle()), half_spaces);
+    }
+  }
+}
+
+void ObstacleZones::append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const {
+  for (const PatchSlot& place : slots_of(particle)) {
+    for (const PatchZones& zones : patches_[at(place.patch)].zones) {
+      if (!set_.rests(zones.obstacle())) places.push_back(set_.carried(zones.obstacle(), from));
+    }
+  }
+}
+
+std::span<const PatchSlot> ObstacleZones::slots_of(Index particle) const {
+  const auto begin = at(surface_.first_slot[at(particle)]);
+  return {surface_.slots.data() + begin, at(surface_.first_slot[at(particle) + 1]) - begin};
+}
+
+}  // namespace sprung

@@ -1,0 +1,63 @@
+// The zones of all elements before all obstacles.
+#pragma once
+
+#include "collision/collision_surface.h"
+#include "collision/contact.h"
+#include "collision/obstacle_set.h"
+#include "collision/patch_zones.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// Particles on their way [m], 3 x n.
+struct Way {
+  const Points& from;           ///< where nothing crosses
+  const Points& to;             ///< where they are about to be at the end of the obstacles' interval
+  bool obstacles_rest = false;  ///< obstacles are at the interval's end already when the way begins
+};
+
+class ObstacleZones {
+ public:
+  /// Contacts are found `margin` [m] beyond their gap. Keeps references to both.
+  ObstacleZones(const ObstacleSet& set, const CollisionSurface& surface, double margin);
+
+  /// Makes zones where elements are near obstacles and have none that holds them on their way.
+  void follow(const Way& way);
+
+  /// Makes the zones of all elements around these particles again, where they are when the way begins.
+  void renew_around(const std::vector<Index>& particles, const Way& way);
+
+  /// Contacts of obstacles with the inside of elements, from the zones' nearest points; by element, then obstacle.
+  [[nodiscard]] std::vector<Contact> element_contacts(const Points& positions) const;
+
+  /// Whether the zones of all elements around the particle hold it there, at the interval's end.
+  [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
+
+  /// Appends what bounds the particle at the interval's end.
+  void append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const;
+
+  /// Appends where the obstacles that move near the particle carry it from `from`.
+  void append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const;
+
+ private:
+  struct Patch {
+    PatchTopology topology;
+    std::vector<PatchZones> zones{};  ///< by obstacle, ascending: those that are near
+    double size = 0.0;                ///< of its elements [m]
+    double thickness = 0.0;           ///< the largest of its particles [m]
+  };
+
+  void find_near(Index patch, const Way& way, double carried);
+  void find_paths(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
+  [[nodiscard]] ZoneDemand demand(Index patch, Index obstacle, const Way& way) const;
+  void append_contacts(Index patch, const PatchZones& zones, const Points& positions, std::vector<Contact>& contacts) const;
+  [[nodiscard]] std::span<const PatchSlot> slots_of(Index particle) const;
+
+  const ObstacleSet& set_;
+  const CollisionSurface& surface_;
+  double margin_;
+  std::vector<Patch> patches_;
+};
+
+}  // namespace sprung

@@ -1,0 +1,67 @@
+// The free space of one patch's elements before one obstacle, in the obstacle's frame, kept from step to step.
+#pragma once
+
+#include "collision/obstacle_shape.h"
+#include "collision/patch_topology.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// Where the patch's particles are and where they are about to be, in the obstacle's frame [m], by slot.
+struct PatchPaths {
+  std::vector<Vector3> from;
+  std::vector<Vector3> to;
+};
+
+/// What a patch's zones are made for. All lengths [m].
+struct ZoneDemand {
+  double size = 0.0;       ///< of the elements
+  double gap = 0.0;        ///< that contact keeps, at least the clearance
+  double margin = 0.0;     ///< contacts are found this much beyond the gap
+  double clearance = 0.0;  ///< see ZoneRequest
+};
+
+class PatchZones {
+ public:
+  PatchZones(Index obstacle, const PatchTopology& topology);
+
+  [[nodiscard]] Index obstacle() const { return obstacle_; }
+  [[nodiscard]] const Zone& zone(Index element) const { return zones_[static_cast<std::size_t>(element)]; }
+
+  /// Makes the zones again, around `from`, of elements that have none, that a corner is about to leave, or that moved by a part of
+  /// the gap since their nearest points were found.
+  void follow(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
+
+  /// Makes the zones of all elements at these slots again, around `from`.
+  void renew(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand,
+             std::span<const Index> slots);
+
+  /// Whether the zones of all elements at the slot hold p.
+  [[nodiscard]] bool allow(const PatchTopology& topology, Index slot, const Vector3& p) const;
+
+  /// Appends all that bounds the slot, placed in the world by `pose`.
+  void append_half_spaces(const PatchTopology& topology, Index slot, const RigidTransform& pose,
+                          std::vector<HalfSpace>& half_spaces) const;
+
+ private:
+  struct Slot {
+    Box3 box;              ///< of all zones at it
+    Vector3 settled;       ///< where it was when its near elements were looked at last
+    bool bounded = false;  ///< by planes
+    bool near = false;     ///< an element at it has a nearest point
+    bool broken = false;
+  };
+
+  void mark(const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
+  void make_marked(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
+  void gather(const PatchTopology& topology, Index slot);
+
+  Index obstacle_;
+  std::vector<Zone> zones_;                          ///< by element
+  std::vector<std::array<Vector3, 3>> made_around_;  ///< the corners when the zone was made
+  std::vector<Slot> slots_;
+  std::vector<char> marked_;  ///< by element; 0 between calls
+};
+
+}  // namespace sprung
