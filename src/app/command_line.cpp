@@ -72,7 +72,9 @@ class Parser {
 
   void add_info() {
     CLI::App* info = app_.add_subcommand("info", "Describes a mesh: size, closed or open, what an import would repair");
-    info->add_option("MESH", info_.mesh, "Mesh file")->required()->type_name("");
+    info->add_option("MESH", info_.meshes, "Mesh file; of several, whether they are the frames of a sequence")
+        ->required()
+        ->type_name("");
   }
 
   static void add_scene(CLI::App* command, SceneOptions& scene) {

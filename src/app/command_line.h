@@ -30,7 +30,7 @@ struct ValidateOptions {
 };
 
 struct InfoOptions {
-  std::string mesh;
+  std::vector<std::string> meshes;  ///< one, or the frames of a sequence
 };
 
 /// Help or version: to be printed, and that is all.

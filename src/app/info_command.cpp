@@ -4,10 +4,12 @@
 #include "base/error.h"
 #include "base/format.h"
 #include "geometry/mesh_file.h"
+#include "geometry/mesh_sequence.h"
 #include "geometry/polygon_mesh.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 namespace sprung {
@@ -20,16 +22,15 @@ std::string point_text(const Vector3& point) {
                      format_number(point.z(), kDigits));
 }
 
-std::string obstacle_text(const ImportedMesh& imported) {
-  const MeshReport& report = imported.report;
-  std::string text = "as an obstacle (vertices welded, faces as triangles)\n";
-  text += text_row("size", describe_size(report.bounds) + ", from " + point_text(report.bounds.min()) + " to " +
-                               point_text(report.bounds.max()));
-  text +=
-      text_row("vertices", fmt::format("{} (welded from {} corners as read)", imported.mesh.vertices.cols(), report.vertices_read));
-  text += text_row("triangles", fmt::format("{} ({} as read)", imported.mesh.triangles.cols(), report.faces_read));
+std::string volume_text(double volume) { return format_number(volume, kDigits) + " m^3"; }
+
+std::string surface_text(const Points& vertices, const Triangles& triangles, const MeshReport& report, const std::string& volume) {
+  std::string text = text_row("size", describe_size(report.bounds) + ", from " + point_text(report.bounds.min()) + " to " +
+                                          point_text(report.bounds.max()));
+  text += text_row("vertices", fmt::format("{} (welded from {} corners as read)", vertices.cols(), report.vertices_read));
+  text += text_row("triangles", fmt::format("{} ({} as read)", triangles.cols(), report.faces_read));
   text += text_row("surface", describe_closedness(report));
-  if (report.closed) text += text_row("volume", format_number(signed_volume(imported.mesh), kDigits) + " m^3");
+  if (report.closed) text += text_row("volume", volume);
   text += text_row("components", std::to_string(report.components));
   const std::vector<std::string> done = repairs(report);
   for (const std::string& repair : done) text += text_row("repair", repair);
@@ -37,6 +38,28 @@ std::string obstacle_text(const ImportedMesh& imported) {
   for (const std::string& note : report.notes) text += text_row("note", note);
   if (const auto note = unit_note(report.bounds)) text += text_row("note", *note);
   return text;
+}
+
+std::string obstacle_text(const ImportedMesh& imported) {
+  const auto& [mesh, report] = imported;
+  return "as an obstacle (vertices welded, faces as triangles)\n" +
+         surface_text(mesh.vertices, mesh.triangles, report, volume_text(signed_volume(mesh)));
+}
+
+std::string sequence_text(const ImportedSequence& imported) {
+  const auto& [sequence, report] = imported;
+  std::vector<double> volumes;
+  double farthest = 0.0;
+  for (std::size_t k = 0; k < sequence.frames.size(); ++k) {
+    volumes.push_back(signed_volume(sequence.frames[k], sequence.triangles));
+    if (k == 0) continue;
+    farthest = std::max(farthest, (sequence.frames[k] - sequence.frames[k - 1]).colwise().norm().maxCoeff());
+  }
+  const auto [least, most] = std::minmax_element(volumes.begin(), volumes.end());
+  return "as a deforming obstacle (the same faces in every frame)\n" + text_row("frames", std::to_string(sequence.frames.size())) +
+         text_row("fastest", fmt::format("a vertex moves {} m from one frame to the next", format_number(farthest, kDigits))) +
+         surface_text(sequence.frames.front(), sequence.triangles, report,
+                      fmt::format("{} to {}", format_number(*least, kDigits), volume_text(*most)));
 }
 
 std::string face_sizes(const PolygonFaces& faces) {
@@ -72,18 +95,21 @@ std::optional<std::string> body_text_of(const std::string& file) {
   }
 }
 
+std::string mesh_text(const std::string& file) {
+  const std::optional<std::string> body = body_text_of(file);
+  try {
+    return obstacle_text(import_mesh(file)) + (body ? "\n" + *body : "");
+  } catch (const InputError& error) {
+    if (!body) throw;
+    return std::string("not an obstacle: ") + error.what() + "\n\n" + *body;
+  }
+}
+
 }  // namespace
 
 ExitCode info(const InfoOptions& options) {
-  const std::optional<std::string> body = body_text_of(options.mesh);
-  std::string text;
-  try {
-    text = obstacle_text(import_mesh(options.mesh)) + (body ? "\n" : "");
-  } catch (const InputError& error) {
-    if (!body) throw;
-    text = std::string("not an obstacle: ") + error.what() + "\n\n";
-  }
-  print_result(text + body.value_or(""));
+  print_result(options.meshes.size() == 1 ? mesh_text(options.meshes.front())
+                                          : sequence_text(import_sequence({options.meshes.begin(), options.meshes.end()})));
   return ExitCode::done;
 }
 

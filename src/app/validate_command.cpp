@@ -46,20 +46,34 @@ const char* shape_name(const ObstacleGeometry& geometry) {
   return kNames[geometry.index()];
 }
 
+std::string shape_text(const ObstacleGeometry& geometry) {
+  const auto* mesh = std::get_if<SequenceGeometry>(&geometry);
+  if (mesh == nullptr) return shape_name(geometry);
+  const MeshSequence& sequence = *mesh->sequence;
+  return fmt::format("sequence of {} frames, {} a second from {} s on{}", sequence.frames.size(),
+                     format_number(sequence.frame_rate, kDigits), format_number(sequence.start, kDigits),
+                     sequence.loop ? ", in a loop" : "");
+}
+
+const char* change_text(const Obstacle& obstacle) {
+  if (obstacle.deforms()) return obstacle.motion.moves() ? "moving and deforming" : "deforming";
+  return obstacle.motion.moves() ? "moving" : "standing still";
+}
+
 std::string mesh_row(const NamedReport& mesh) {
   const MeshReport& report = mesh.report;
   const std::vector<std::string> done = repairs(report);
+  const std::string more = mesh.files > 1 ? fmt::format(" and {} more", mesh.files - 1) : "";
   std::string text =
-      text_row("mesh", fmt::format("{}: {}, {} triangles read, {}, {} {}, {}", mesh.obstacle, mesh.file.string(), report.faces_read,
-                                   describe_closedness(report), report.components,
+      text_row("mesh", fmt::format("{}: {}{}, {} triangles read, {}, {} {}, {}", mesh.obstacle, mesh.file.string(), more,
+                                   report.faces_read, describe_closedness(report), report.components,
                                    report.components == 1 ? "component" : "components", describe_size(report.bounds)));
   if (!done.empty()) text += text_row("", fmt::format("repaired: {}", fmt::join(done, ", ")));
   return text;
 }
 
 std::string obstacle_row(const Obstacle& obstacle) {
-  return text_row("obstacle", fmt::format("{}: {}, {}", obstacle.name, shape_name(obstacle.geometry),
-                                          obstacle.motion.moves() ? "moving" : "standing still"));
+  return text_row("obstacle", fmt::format("{}: {}, {}", obstacle.name, shape_text(obstacle.geometry), change_text(obstacle)));
 }
 
 }  // namespace

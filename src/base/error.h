@@ -16,6 +16,8 @@ struct Problem {
   std::string value{};   ///< the offending value as the user wrote it
   std::string rule{};    ///< what must hold: `must be greater than 0`
   std::string remedy{};  ///< what to change: `did you mean "stiffness"?`
+
+  bool operator==(const Problem&) const = default;
 };
 
 /// One line: `file: key = value: rule; remedy`.

@@ -2,9 +2,9 @@
 
 namespace sprung {
 
-bool Obstacle::changes() const {
-  const auto* deforming = std::get_if<SequenceGeometry>(&geometry);
-  return motion.moves() || (deforming != nullptr && deforming->sequence->deforms());
+bool Obstacle::deforms() const {
+  const auto* mesh = std::get_if<SequenceGeometry>(&geometry);
+  return mesh != nullptr && mesh->sequence->deforms();
 }
 
 }  // namespace sprung

@@ -61,8 +61,10 @@ struct Obstacle {
   Motion motion{};
   ContactMaterial material{};
 
-  /// Whether its surface is ever elsewhere than at another time: it is moved, or deforms.
-  [[nodiscard]] bool changes() const;
+  /// Whether its shape is not the same at all times.
+  [[nodiscard]] bool deforms() const;
+  /// Whether its surface is not the same at all times: it moves or deforms.
+  [[nodiscard]] bool changes() const { return motion.moves() || deforms(); }
 };
 
 /// The obstacle's surface at a time [s] as triangles in its own frame, for export: a mesh as it is, a primitive tessellated, a

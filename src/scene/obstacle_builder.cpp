@@ -3,6 +3,7 @@
 #include "scene/body_builder.h"
 #include "scene/json_text.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace sprung {
@@ -42,8 +43,7 @@ std::optional<ObstacleGeometry> ObstacleBuilder::geometry_of(const ObstacleScene
   const std::optional<Import>& imported = import(*file);
   if (!imported) return std::nullopt;
   const double scale = obstacle.place.scale;
-  reports_.push_back({obstacle.name, *file, imported->report});
-  if (auto note = unit_note(imported->report.bounds, scale)) reports_.back().report.notes.push_back(std::move(*note));
+  add_report(obstacle, {*file}, imported->report);
   if (scale == 1.0) return MeshGeometry{imported->mesh, imported->report.closed};
   TriangleMesh larger = *imported->mesh;
   larger.vertices *= scale;
@@ -57,9 +57,52 @@ const std::optional<ObstacleBuilder::Import>& ObstacleBuilder::import(const std:
     ImportedMesh imported = import_mesh(file);
     place->second = Import{std::make_shared<const TriangleMesh>(std::move(imported.mesh)), std::move(imported.report)};
   } catch (const InputError& error) {
-    problems_.insert(problems_.end(), error.problems().begin(), error.problems().end());
+    add_new_problems(error);
   }
   return place->second;
+}
+
+std::optional<ObstacleGeometry> ObstacleBuilder::geometry_of(const ObstacleScene& obstacle, const MeshFiles& mesh) {
+  const std::vector<std::filesystem::path> files = find_files(obstacle, mesh);
+  if (files.empty()) return std::nullopt;
+  try {
+    auto [sequence, report] = import_sequence(files);
+    add_report(obstacle, files, report);
+    if (!sequence.deforms()) reports_.back().report.notes.emplace_back("its frames are all alike: it does not deform");
+    for (Points& frame : sequence.frames) frame *= obstacle.place.scale;
+    sequence.frame_rate = mesh.frame_rate;
+    sequence.start = mesh.start;
+    sequence.loop = mesh.loop;
+    return SequenceGeometry{std::make_shared<const MeshSequence>(std::move(sequence)), report.closed};
+  } catch (const InputError& error) {
+    add_new_problems(error);
+    return std::nullopt;
+  }
+}
+
+/// The files in their order; none when one is missing.
+std::vector<std::filesystem::path> ObstacleBuilder::find_files(const ObstacleScene& obstacle, const MeshFiles& mesh) const {
+  const std::string key = join_path("obstacles", obstacle.name) + ".shape.files";
+  if (const auto* pattern = std::get_if<std::string>(&mesh.files)) return finder_.find_all(*pattern, key, problems_);
+  const auto& names = std::get<std::vector<std::string>>(mesh.files);
+  std::vector<std::filesystem::path> files;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (auto file = finder_.find(names[i], join_path(key, i), problems_)) files.push_back(std::move(*file));
+  }
+  if (files.size() < names.size()) return {};
+  return files;
+}
+
+void ObstacleBuilder::add_report(const ObstacleScene& obstacle, const std::vector<std::filesystem::path>& files,
+                                 const MeshReport& report) {
+  reports_.push_back({obstacle.name, files.front(), files.size(), report});
+  if (auto note = unit_note(report.bounds, obstacle.place.scale)) reports_.back().report.notes.push_back(std::move(*note));
+}
+
+void ObstacleBuilder::add_new_problems(const InputError& error) {
+  for (const Problem& problem : error.problems()) {
+    if (std::find(problems_.begin(), problems_.end(), problem) == problems_.end()) problems_.push_back(problem);
+  }
 }
 
 }  // namespace sprung

@@ -32,8 +32,12 @@ class ObstacleBuilder {
     MeshReport report;
   };
   [[nodiscard]] std::optional<ObstacleGeometry> geometry_of(const ObstacleScene& obstacle, const MeshFile& mesh);
+  [[nodiscard]] std::optional<ObstacleGeometry> geometry_of(const ObstacleScene& obstacle, const MeshFiles& mesh);
   template <class Primitive>
   [[nodiscard]] std::optional<ObstacleGeometry> geometry_of(const ObstacleScene& obstacle, const Primitive& primitive) const;
+  [[nodiscard]] std::vector<std::filesystem::path> find_files(const ObstacleScene& obstacle, const MeshFiles& mesh) const;
+  void add_report(const ObstacleScene& obstacle, const std::vector<std::filesystem::path>& files, const MeshReport& report);
+  void add_new_problems(const InputError& error);
   [[nodiscard]] const std::optional<Import>& import(const std::filesystem::path& file);
 
   const Scene& scene_;

@@ -26,9 +26,17 @@ struct MeshFile {
   std::string file;
 };
 
+/// The OBJ files of a mesh that deforms, a frame each.
+struct MeshFiles {
+  std::variant<std::vector<std::string>, std::string> files;  ///< in order, or a pattern with one *
+  double frame_rate = 30.0;                                   ///< [1/s]
+  double start = 0.0;                                         ///< time of the first [s]
+  bool loop = false;
+};
+
 using BodyShapeScene = std::variant<RopeShape, ClothShape, SolidShape, MeshFile>;
-using ObstacleShapeScene = std::variant<MeshFile, SphereGeometry, BoxGeometry, CapsuleGeometry, CylinderGeometry, ConeGeometry,
-                                        EllipsoidGeometry, HalfSpaceGeometry>;
+using ObstacleShapeScene = std::variant<MeshFile, MeshFiles, SphereGeometry, BoxGeometry, CapsuleGeometry, CylinderGeometry,
+                                        ConeGeometry, EllipsoidGeometry, HalfSpaceGeometry>;
 
 struct PinCorners {
   std::vector<std::string> which;

@@ -12,7 +12,8 @@ namespace sprung {
 
 struct NamedReport {
   std::string obstacle;
-  std::filesystem::path file;
+  std::filesystem::path file;  ///< of a sequence the first
+  std::size_t files = 1;
   MeshReport report;
 };
 

@@ -101,7 +101,7 @@ Scene read_scene_fields(Fields& fields) {
   scene.settings = read_settings(fields);
   scene.bodies = fields.required("bodies", named(body_rule(), false)).value_or(std::vector<BodyScene>{});
   check_self_contact(scene, fields.place());
-  const auto obstacles = fields.value("obstacles", named(obstacle_rule(), true), Json::object());
+  const auto obstacles = fields.value("obstacles", named(obstacle_rule(scene.frame_rate), true), Json::object());
   scene.obstacles = obstacles.value_or(std::vector<ObstacleScene>{});
   return scene;
 }

@@ -15,9 +15,9 @@ namespace sprung {
 /// Pins of a body; `corners` are the names its shape has for corners.
 [[nodiscard]] Rule<PinScene> pin_rule(const std::vector<std::string>& corners);
 
-/// A body or an obstacle, without its name.
+/// A body or an obstacle, without its name. Sequences have the scene's frame rate where they name none.
 [[nodiscard]] Rule<BodyScene> body_rule();
-[[nodiscard]] Rule<ObstacleScene> obstacle_rule();
+[[nodiscard]] Rule<ObstacleScene> obstacle_rule(double frame_rate);
 
 /// gravity, air, integrator, stretch_limit, contact, stability.
 [[nodiscard]] SimulatorSettings read_settings(Fields& fields);

@@ -130,6 +130,34 @@ TEST_F(CommandLine, InfoDescribesAMeshAsObstacleAndAsBody) {
   EXPECT_THAT(ending.out, AllOf(HasSubstr("closed"), HasSubstr("components  1"), HasSubstr("as a body"), HasSubstr("size")));
 }
 
+TEST_F(CommandLine, ValidateDescribesWhatDeforms) {
+  json scene = rope_scene();
+  write_text(scratch_ / "lung.1.obj", "v 0 -50 0\nv 1 -50 0\nv 0 -50 1\nf 1 3 2\n");
+  write_text(scratch_ / "lung.2.obj", "v 0 -50 0\nv 2 -50 0\nv 0 -50 1\nf 1 3 2\n");
+  scene["obstacles"]["lung"]["shape"] = {{"type", "sequence"}, {"files", "lung.*.obj"}, {"frame_rate", 25}, {"loop", true}};
+  const Ending ending = run({"validate", save(scene)});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.out, AllOf(HasSubstr("lung: sequence of 2 frames, 25 a second from 0 s on, in a loop, deforming"),
+                                HasSubstr("lung.1.obj and 1 more, 1 triangles read, open")));
+  EXPECT_THAT(listing(scratch_.path()), ::testing::Not(Contains("lung/")));
+  EXPECT_EQ(run({"run", save(scene), "--frames", "2", "--out", out()}).code, 0);
+  EXPECT_THAT(listing(out()), Contains("obstacles/lung/lung.0002.obj"));
+}
+
+TEST_F(CommandLine, InfoOfSeveralMeshesTellsWhetherTheyAreFrames) {
+  const std::string a = (scratch_ / "a.obj").string();
+  const std::string b = (scratch_ / "b.obj").string();
+  write_text(a, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  write_text(b, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const Ending ending = run({"info", a, b});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.out,
+              AllOf(HasSubstr("frames      2"), HasSubstr("moves 2 m"), HasSubstr("0.1667 to 0.5 m^3"), HasSubstr("closed")));
+  const Ending other = run({"info", a, SPRUNG_SOURCE_DIR "/meshes/stairs.obj"});
+  EXPECT_EQ(other.code, 3);
+  EXPECT_THAT(other.err, HasSubstr("must be as many as in a.obj"));
+}
+
 TEST_F(CommandLine, InfoOfARopeTellsThatItIsNoObstacle) {
   write_text(scratch_ / "rope.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nl 1 2 3\n");
   const Ending ending = run({"info", (scratch_ / "rope.obj").string()});

@@ -116,6 +116,36 @@ TEST_F(RunOutputFiles, LinesKeepTheirCountsAndOrderInEachFrame) {
   }
 }
 
+/// A tetrahedron whose tip goes from 1 m to 3 m in a quarter of a second, and which is driven along x.
+Simulator world_of_a_deforming_obstacle() {
+  NetworkBuilder builder;
+  builder.begin_body("ball", {});
+  builder.add_particle({0.0, 10.0, 0.0}, 1.0);
+  MeshSequence sequence{.triangles = Triangles(3, 4), .frames = {Points(3, 4), Points(3, 4)}, .frame_rate = 4.0};
+  sequence.triangles << 0, 0, 0, 1, 1, 2, 3, 2, 3, 1, 2, 3;
+  sequence.frames[0] << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;
+  sequence.frames[1] << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 3;
+  Obstacle obstacle = still("heart", SequenceGeometry{std::make_shared<const MeshSequence>(sequence), true}, {0.0, 0.0, 0.0});
+  obstacle.motion.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {8.0, 0.0, 0.0}}};
+  return Simulator(builder.build(), {.step = 1.0 / 16.0}, {obstacle});
+}
+
+TEST(RunOutput, DeformingObstaclesAreWrittenAsTheyAreInEachFrame) {
+  const ScratchFolder scratch;
+  Simulator simulator = world_of_a_deforming_obstacle();
+  RunOutput output(OutputFolder(scratch / "out", false), {.frames = 3, .steps_per_frame = 2, .threads = 1}, simulator);
+  FrameRunner runner(simulator, 2);
+  // Eighths of a second: the tip goes 1 m and the whole 1 m in each frame, in numbers that are exact.
+  for (int frame = 1; frame <= 3; ++frame) {
+    output.write_frame(simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
+    const double moved = frame - 1.0;
+    const ObjLines lines = read_lines(scratch / ("out/obstacles/heart/heart.000" + std::to_string(frame) + ".obj"));
+    EXPECT_THAT(lines.positions, ElementsAre(moved, 0, 0, 1.0 + moved, 0, 0, moved, 1, 0, moved, 0, 1.0 + moved)) << frame;
+    EXPECT_THAT(lines.faces, ElementsAre("f 1 2 4", "f 1 3 2", "f 1 4 3", "f 2 3 4"));
+  }
+  output.finish("done");
+}
+
 TEST_F(RunOutputFiles, RopesAreLines) {
   run(1);
   EXPECT_THAT(read_lines(file("rope/rope.0001.obj")).faces, ElementsAre("l 1 2 3 4"));

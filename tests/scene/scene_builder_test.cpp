@@ -187,6 +187,80 @@ TEST(SceneBuilder, ObstacleMeshesAreScaledAndSharedOtherwise) {
   EXPECT_EQ(built.meshes.size(), 3U);
 }
 
+std::string tetrahedron(const std::string& tip) {
+  return "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 " + tip + "\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+}
+
+TEST(SceneBuilder, SequencesAreScaledAndTimed) {
+  const SceneFolder folder;
+  folder.write("a.obj", tetrahedron("1"));
+  folder.write("b.obj", tetrahedron("2"));
+  const BuiltScene built = build(folder, {R"(obstacles.heart={"shape":{"type":"sequence","files":["b.obj","a.obj","b.obj"],
+                                             "frame_rate":24,"start":0.5,"loop":true},"place":{"scale":2,"position":[0,-3,0]}})"});
+  const auto& [sequence, closed] = std::get<SequenceGeometry>(built.obstacles[1].geometry);
+  ASSERT_EQ(sequence->frames.size(), 3U);
+  EXPECT_EQ(sequence->frames[0].col(3), Vector3(0, 0, 4));
+  EXPECT_EQ(sequence->frames[1].col(3), Vector3(0, 0, 2));
+  EXPECT_EQ(sequence->frame_rate, 24.0);
+  EXPECT_EQ(sequence->start, 0.5);
+  EXPECT_TRUE(sequence->loop);
+  EXPECT_TRUE(closed);
+  EXPECT_TRUE(built.obstacles[1].changes());
+  ASSERT_EQ(built.meshes.size(), 1U);
+  EXPECT_EQ(built.meshes[0].file, folder.path() / "b.obj");
+  EXPECT_EQ(built.meshes[0].files, 3U);
+  EXPECT_EQ(built.meshes[0].report.bounds.max().z(), 2.0) << "of the files, as those of other meshes";
+}
+
+TEST(SceneBuilder, PatternsOfSequencesAreSortedByNumber) {
+  const SceneFolder folder;
+  for (const char* number : {"9", "10", "1", "100", "11"}) {
+    folder.write(std::string("breath/lung.") + number + ".obj", tetrahedron(number));
+  }
+  folder.write("breath/other.2.obj", "not a frame");
+  folder.write("breath/lung.2.obj.bak", "not a frame");
+  const BuiltScene built = build(folder, {R"(obstacles.lung={"shape":{"type":"sequence","files":"breath/lung.*.obj"}})"});
+  std::vector<double> tips;
+  for (const Points& frame : std::get<SequenceGeometry>(built.obstacles[1].geometry).sequence->frames) tips.push_back(frame(2, 3));
+  EXPECT_THAT(tips, ElementsAre(1.0, 9.0, 10.0, 11.0, 100.0));
+}
+
+TEST(SceneBuilder, PatternsLookInTheFirstFolderThatHasAny) {
+  const SceneFolder folder;
+  for (const char* name : {"paths/lung.1.obj", "paths/lung.2.obj", "paths/lung.3.obj"}) folder.write(name, tetrahedron("1"));
+  const std::vector<std::string> change{R"(obstacles.lung.shape={"type":"sequence","files":"lung.*.obj"})"};
+  EXPECT_EQ(build(folder, change, {folder.path() / "paths"}).meshes[0].files, 3U);
+  for (const char* name : {"lung.1.obj", "lung.2.obj"}) folder.write(name, tetrahedron("2"));
+  EXPECT_EQ(build(folder, change, {folder.path() / "paths"}).meshes[0].files, 2U);
+}
+
+TEST(SceneBuilder, SequencesThatCannotBeAreProblems) {
+  const SceneFolder folder;
+  folder.write("a.obj", tetrahedron("1"));
+  folder.write("one.1.obj", tetrahedron("1"));
+  const auto other = folder.write("other.obj", kTetrahedron + std::string("v 1 1 1\n"));
+  const auto problems = [&](const std::string& files) {
+    const std::string shape = R"({"shape":{"type":"sequence","files":)" + files + "}}";
+    return problems_of([&] { (void)build(folder, {"obstacles.lung=" + shape, "obstacles.heart=" + shape}); });
+  };
+  const auto both = [](const std::string& key, const std::string& rule) {
+    return ElementsAre(problem("obstacles.lung.shape." + key, rule), problem("obstacles.heart.shape." + key, rule));
+  };
+  EXPECT_THAT(problems(R"("none.*.obj")"), both("files", "no file matches: looked for "));
+  EXPECT_THAT(problems(R"("one.*.obj")"), both("files", "matches one file only"));
+  EXPECT_THAT(problems(R"(["a.obj", "none.obj"])"), both("files[1]", "no such file: looked for "));
+  EXPECT_THAT(problems(R"(["a.obj", "other.obj"])"),
+              ElementsAre(AllOf(Field(&Problem::file, other.string()), Field(&Problem::rule, HasSubstr("as many as in a.obj")))))
+      << "once, though two obstacles use them";
+}
+
+TEST(SceneBuilder, SequenceThatDoesNotDeformIsWarnedOf) {
+  const SceneFolder folder;
+  folder.write("a.obj", tetrahedron("1"));
+  EXPECT_THAT(build(folder, {R"(obstacles.lung.shape={"type":"sequence","files":["a.obj","a.obj"]})"}).warnings,
+              ElementsAre(HasSubstr("obstacle \"lung\": its frames are all alike")));
+}
+
 TEST(SceneBuilder, WarnsOfUnitsByTheSizeOfAMeshAsItIsPlaced) {
   const SceneFolder folder;
   folder.write("mesh.obj", "v 0 0 0\nv 18000 0 0\nv 0 18000 0\nf 1 2 3\n");

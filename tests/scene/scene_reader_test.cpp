@@ -47,7 +47,8 @@ TEST(SceneReader, TimeAndSettingsArrive) {
 TEST(SceneReader, BodiesArriveInTheOrderOfTheFile) {
   const Scene scene = SceneFolder().read(kFullScene);
   EXPECT_THAT(names_of(scene.bodies), ElementsAre("zebra", "rope", "line", "jelly", "shirt"));
-  EXPECT_THAT(names_of(scene.obstacles), ElementsAre("bunny", "floor", "ball", "crate", "pill", "can", "hat", "egg"));
+  EXPECT_THAT(names_of(scene.obstacles),
+              ElementsAre("bunny", "floor", "ball", "crate", "pill", "can", "hat", "egg", "heart", "lung"));
 }
 
 TEST(SceneReader, FieldsOfABodyArrive) {
@@ -128,6 +129,20 @@ TEST(SceneReader, ObstaclesArrive) {
   EXPECT_EQ(std::get<CylinderGeometry>(scene.obstacles[5].shape).height, 3.0);
   EXPECT_EQ(std::get<ConeGeometry>(scene.obstacles[6].shape).radius, 0.3);
   EXPECT_EQ(std::get<EllipsoidGeometry>(scene.obstacles[7].shape).radii, Vector3(1, 2, 3));
+}
+
+TEST(SceneReader, SequencesArriveWithTheFrameRateOfTheSceneWhereTheyHaveNone) {
+  const Scene scene = SceneFolder().read(kFullScene, {"frame_rate=50", "step=\"auto\""});
+  const auto& heart = std::get<MeshFiles>(scene.obstacles[8].shape);
+  EXPECT_THAT(std::get<std::vector<std::string>>(heart.files), ElementsAre("b.obj", "a.obj"));
+  EXPECT_EQ(heart.frame_rate, 24.0);
+  EXPECT_EQ(heart.start, -0.5);
+  EXPECT_TRUE(heart.loop);
+  const auto& lung = std::get<MeshFiles>(scene.obstacles[9].shape);
+  EXPECT_EQ(std::get<std::string>(lung.files), "breath/lung.*.obj");
+  EXPECT_EQ(lung.frame_rate, 50.0);
+  EXPECT_EQ(lung.start, 0.0);
+  EXPECT_FALSE(lung.loop);
 }
 
 TEST(SceneReader, DefaultsAreTheDocumentedOnes) {

@@ -131,7 +131,9 @@ inline constexpr const char* kFullScene = R"({
     "pill": { "shape": { "type": "capsule", "radius": 0.1, "length": 2 } },
     "can": { "shape": { "type": "cylinder", "radius": 0.2, "height": 3 } },
     "hat": { "shape": { "type": "cone", "radius": 0.3, "height": 4 } },
-    "egg": { "shape": { "type": "ellipsoid", "radii": [1, 2, 3] } }
+    "egg": { "shape": { "type": "ellipsoid", "radii": [1, 2, 3] } },
+    "heart": { "shape": { "type": "sequence", "files": ["b.obj", "a.obj"], "frame_rate": 24, "start": -0.5, "loop": true } },
+    "lung": { "shape": { "type": "sequence", "files": "breath/lung.*.obj" } }
   }
 })";
 
