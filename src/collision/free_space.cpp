@@ -48,6 +48,7 @@ struct FreeSpace::Implementation {
   [[nodiscard]] static bool can_go_on(Index particle, const Points& from, const Points& target, const Points& now);
   /// Leaves in `stopped` those that may come farther yet; returns how many arrived.
   Index go_on(std::vector<Index>& stopped, const Points& target, Points& after);
+  Outcomes place_with_fresh_zones(const std::vector<Index>& particles, const Way& way, Points& positions);
   Outcomes place(const std::vector<Index>& particles, const Way& way, Points& positions) const;
   Outcome place(Index particle, const Way& way, Points& positions) const;
 
@@ -77,7 +78,7 @@ FreeSpace::Truncation FreeSpace::Implementation::truncate(const Points& before, 
   const Points target = after;
   const std::vector<Index> particles = movable(before, target);
   zones.follow({before, target});
-  Outcomes outcomes = place(particles, {before, target}, after);
+  Outcomes outcomes = place_with_fresh_zones(particles, {before, target}, after);
   if (set.moves() && count(outcomes, Outcome::squeezed) > 0) outcomes = place_in_parts(particles, before, target, after);
 
   std::vector<Index> stopped;
@@ -121,7 +122,7 @@ FreeSpace::Implementation::Outcomes FreeSpace::Implementation::place_in_parts(co
     const Points to = next < 1.0 ? Points(from + (next - done) / (1.0 - done) * (target - from)) : target;
     zones.follow({from, to});
     after = to;
-    const Outcomes outcomes = place(particles, {from, to}, after);
+    const Outcomes outcomes = place_with_fresh_zones(particles, {from, to}, after);
     if (part > kSmallestPart && count(outcomes, Outcome::squeezed) > 0) {
       part *= 0.5;
       continue;
@@ -149,6 +150,19 @@ Index FreeSpace::Implementation::go_on(std::vector<Index>& stopped, const Points
   }
   stopped = std::move(still);
   return count(outcomes, Outcome::free);
+}
+
+// Zones that were made some steps ago may stop a particle, or leave it no place at all, where new ones would not.
+FreeSpace::Implementation::Outcomes FreeSpace::Implementation::place_with_fresh_zones(const std::vector<Index>& particles,
+                                                                                      const Way& way, Points& positions) {
+  Outcomes outcomes = place(particles, way, positions);
+  std::vector<Index> stopped;
+  for (std::size_t n = 0; n < particles.size(); ++n) {
+    if (outcomes[n] != Outcome::free) stopped.push_back(particles[n]);
+  }
+  if (stopped.empty()) return outcomes;
+  zones.renew_around(stopped, way);
+  return place(particles, way, positions);
 }
 
 FreeSpace::Implementation::Outcomes FreeSpace::Implementation::place(const std::vector<Index>& particles, const Way& way,

@@ -57,7 +57,7 @@ void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, co
     if (!leaves && !stale && !slot.broken) continue;
     for (const Index e : topology.elements_of(i)) {
       const Zone& zone = zones_[at(e)];
-      const bool near = std::isfinite(zone.distance);
+      const bool near = zone.distance < demand.gap + demand.margin;
       if (leaves || (stale && near) || zone.broken) marked_[at(e)] = 1;
     }
   }
@@ -88,12 +88,12 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
   }
   for (Index i = 0; i < topology.slot_count(); ++i) {
     const auto elements = topology.elements_of(i);
-    if (std::any_of(elements.begin(), elements.end(), [&](Index e) { return marked_[at(e)] != 0; })) gather(topology, i);
+    if (std::any_of(elements.begin(), elements.end(), [&](Index e) { return marked_[at(e)] != 0; })) gather(topology, demand, i);
   }
   std::fill(marked_.begin(), marked_.end(), 0);
 }
 
-void PatchZones::gather(const PatchTopology& topology, Index i) {
+void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand, Index i) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Slot& slot = slots_[at(i)];
   const bool was_near = slot.near;
@@ -102,7 +102,7 @@ void PatchZones::gather(const PatchTopology& topology, Index i) {
   for (const Index e : topology.elements_of(i)) {
     const Zone& zone = zones_[at(e)];
     slot.broken = slot.broken || zone.broken;
-    slot.near = slot.near || std::isfinite(zone.distance);
+    slot.near = slot.near || zone.distance < demand.gap + demand.margin;
     slot.bounded = slot.bounded || zone.plane_count > 0;
     if (zone.broken) continue;
     slot.box = slot.box.intersection(zone.box);

@@ -49,13 +49,13 @@ class PatchZones {
     Box3 box;              ///< of all zones at it
     Vector3 settled;       ///< where it was when its near elements were looked at last
     bool bounded = false;  ///< by planes
-    bool near = false;     ///< an element at it has a nearest point
+    bool near = false;     ///< an element at it may touch
     bool broken = false;
   };
 
   void mark(const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
   void make_marked(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
-  void gather(const PatchTopology& topology, Index slot);
+  void gather(const PatchTopology& topology, const ZoneDemand& demand, Index slot);
 
   Index obstacle_;
   std::vector<Zone> zones_;                          ///< by element

@@ -39,6 +39,7 @@ class ZoneBuilder {
   Zone& zone_;
   Box3 element_box_;
   std::array<double, Zone::kMostPlanes> limits_{};
+  double nearest_lowest_ = 0.0;  ///< of the element, along the normal at its nearest point
 };
 
 }  // namespace sprung
