@@ -189,6 +189,11 @@ Index count_self_crossings(const std::vector<JudgedElement>& elements, const Poi
   return count;
 }
 
+double segment_distance(const Points& positions, const std::array<Index, 2>& a, const std::array<Index, 2>& b) {
+  const auto point = [&](Index i) { return to_point(positions.col(i)); };
+  return std::sqrt(CGAL::squared_distance(Segment(point(a[0]), point(a[1])), Segment(point(b[0]), point(b[1]))));
+}
+
 std::unique_ptr<const ObstacleJudge> judge_of(const TriangleMesh& mesh, bool closed) {
   return std::make_unique<MeshJudge>(mesh, closed);
 }

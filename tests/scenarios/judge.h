@@ -25,6 +25,9 @@ struct JudgedElement {
 /// Pairs of elements that meet each other anywhere but in the particles they share.
 [[nodiscard]] Index count_self_crossings(const std::vector<JudgedElement>& elements, const Points& positions);
 
+/// The distance [m] of the segment between the particles a[0], a[1] from that between b[0], b[1].
+[[nodiscard]] double segment_distance(const Points& positions, const std::array<Index, 2>& a, const std::array<Index, 2>& b);
+
 /// One obstacle in its own frame, to which all positions [m], 3 x n, refer.
 class ObstacleJudge {
  public:

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <ostream>
@@ -59,13 +60,14 @@ BuiltScene load_scenario(const std::string& name, const std::vector<std::string>
   const std::filesystem::path root = SPRUNG_SOURCE_DIR;
   const std::filesystem::path file = root / "tests" / "scenarios" / "scenes" / (name + ".json");
   const std::vector<std::filesystem::path> meshes = {root / "meshes", SPRUNG_TEST_MESHES};
-  const Scene scene = read_scene(file, overrides);
-  BuiltScene built = build_scene(scene, meshes);
-  if (step_factor == 1.0) return built;
-  std::vector<std::string> stepped = overrides;
-  stepped.push_back("step=" + format_number(step_factor * built.settings.step));
-  stepped.push_back("frame_rate=" + format_number(scene.frame_rate / std::max(1.0, step_factor)));
-  return build_scene(read_scene(file, stepped), meshes);
+  BuiltScene built = build_scene(read_scene(file, overrides), meshes);
+  built.settings.step *= step_factor;
+  if (step_factor < 1.0) {
+    built.steps_per_frame = static_cast<int>(std::lround(built.steps_per_frame / step_factor));
+  } else {
+    built.frames = static_cast<int>((built.frames - 1) / step_factor) + 1;
+  }
+  return built;
 }
 
 std::ostream& operator<<(std::ostream& stream, const ScenarioReport& report) {

@@ -12,7 +12,8 @@
 namespace sprung::testing {
 
 /// The scene tests/scenarios/scenes/<name>.json (or <name>.json, when that is an absolute path) with overrides as given to --set,
-/// its step `step_factor` times the one that the scene itself leads to. Larger steps make fewer frames, not fewer steps a frame.
+/// its step `step_factor` times the one that the scene itself leads to. Larger steps make fewer frames, not fewer steps a frame;
+/// smaller ones more steps a frame.
 [[nodiscard]] BuiltScene load_scenario(const std::string& name, const std::vector<std::string>& overrides = {},
                                        double step_factor = 1.0);
 
