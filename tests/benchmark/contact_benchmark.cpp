@@ -27,8 +27,7 @@ struct Cloth {
 };
 
 Cloth cloth_on(const TriangleMesh& mesh) {
-  Environment environment(
-      {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  Environment environment({Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
   const Box3 box = bounds(mesh.vertices);
   test::Random random(1);
   Cloth cloth{Points(3, kParticles), Points(3, kParticles)};
@@ -58,8 +57,7 @@ void report(benchmark::State& state, std::size_t contacts) {
 void contact_search_near(benchmark::State& state) {
   const TriangleMesh& mesh = benchmarks::bunny(static_cast<Index>(state.range(0)));
   const ThreadLimit limit(static_cast<int>(state.range(1)));
-  Environment environment(
-      {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  Environment environment({Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
   const Cloth cloth = cloth_on(mesh);
   std::size_t contacts = 0;
   for (auto _ : state) contacts = environment.contacts({cloth.before, cloth.after, cloth.thickness, kMargin}).size();
@@ -69,8 +67,7 @@ void contact_search_near(benchmark::State& state) {
 void truncation_near(benchmark::State& state) {
   const TriangleMesh& mesh = benchmarks::bunny(static_cast<Index>(state.range(0)));
   const ThreadLimit limit(static_cast<int>(state.range(1)));
-  Environment environment(
-      {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  Environment environment({Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
   const Cloth cloth = cloth_on(mesh);
   FreeSpace space(environment,
                   make_collision_surface({}, cloth.before, std::vector<Index>(kParticles, 0), cloth.thickness,
@@ -87,8 +84,7 @@ void truncation_near(benchmark::State& state) {
 void contact_search_far(benchmark::State& state) {
   const TriangleMesh& mesh = benchmarks::bunny(static_cast<Index>(state.range(0)));
   const ThreadLimit limit(static_cast<int>(state.range(1)));
-  Environment environment(
-      {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  Environment environment({Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
   Cloth cloth = cloth_on(mesh);
   cloth.before.row(1).array() += 3.0;
   cloth.after.row(1).array() += 3.0;
