@@ -2,6 +2,7 @@
 
 #include "collision/obstacle_set.h"
 #include "collision/particle_blocks.h"
+#include "collision/particle_contact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,32 +10,6 @@
 namespace sprung {
 
 namespace {
-
-/// The contact of one path with one shape, in the shape's frame.
-struct LocalContact {
-  Vector3 point;
-  Vector3 normal;
-};
-
-LocalContact at(const Crossing& crossing) { return {crossing.point, crossing.normal}; }
-LocalContact at(const SurfacePoint& surface) { return {surface.point, surface.normal}; }
-
-/// A path shorter than the distance of its end from the surface cannot have crossed it, so that a particle at rest costs one walk
-/// through the tree.
-std::optional<LocalContact> find_contact(const ObstacleShape& shape, const LocalPath& path, double reach) {
-  const double length = (path.end - path.begin).norm();
-  const bool surface_first = length <= reach;
-  std::optional<SurfacePoint> surface;
-  if (surface_first) {
-    surface = shape.nearest(path.end, reach);
-    if (!surface) return std::nullopt;
-    if (std::abs(surface->distance) > length + shape.rounding(path.end)) return at(*surface);
-  }
-  if (const auto crossing = shape.first_crossing(path.begin, path.end)) return at(*crossing);
-  if (!surface_first) surface = shape.nearest(path.end, reach);
-  if (!surface) return std::nullopt;
-  return at(*surface);
-}
 
 bool is_open(const Obstacle& obstacle) {
   const auto* mesh = std::get_if<MeshGeometry>(&obstacle.geometry);
@@ -99,16 +74,8 @@ std::vector<Contact> Environment::contacts(const ParticlePaths& paths) const {
       const Vector3 after = paths.after.col(i);
       if (!before.allFinite() || !after.allFinite()) continue;
       for (const Index k : near) {
-        const double gap_of_pair = paths.thickness[i] + set.obstacle(k).material.thickness;
-        const double clearance = set.clearance(k, before, after);
-        const double reach_of_pair = std::max(gap_of_pair, clearance) + paths.margin;
-        const auto found = find_contact(set.shape(k), set.local_path(k, before, after), reach_of_pair);
-        if (!found) continue;
-        Contact& contact =
-            contacts.emplace_back(particle_contact(i, k, set.after(k) * found->point, set.after(k).linear() * found->normal));
-        contact.drift = set.drift(k, contact.point);
-        contact.distance = contact.normal.dot(after - contact.point);
-        contact.clearance = clearance;
+        const auto contact = find_contact(set, k, {i, before, after, paths.thickness[i], paths.margin});
+        if (contact) contacts.push_back(*contact);
       }
     }
   });

@@ -66,8 +66,8 @@ FreeSpace& FreeSpace::operator=(FreeSpace&&) noexcept = default;
 
 void FreeSpace::follow(const Points& before, const Points& after) { implementation_->zones.follow({before, after}); }
 
-std::vector<Contact> FreeSpace::element_contacts(const Points& after) const {
-  return implementation_->zones.element_contacts(after);
+std::vector<Contact> FreeSpace::contacts(const Points& before, const Points& after) const {
+  return implementation_->zones.contacts({before, after});
 }
 
 FreeSpace::Truncation FreeSpace::truncate(const Points& before, Points& after) {

@@ -25,9 +25,9 @@ class FreeSpace {
   /// of the environment's interval [m].
   void follow(const Points& before, const Points& after);
 
-  /// Contacts of obstacles with the inside of edges and faces, which contacts of particles do not know of: an edge over a spike, a
-  /// face over a corner. In the order of the elements, then of the obstacles. Requires follow().
-  [[nodiscard]] std::vector<Contact> element_contacts(const Points& after) const;
+  /// Contacts of particles (see Environment::contacts), and of obstacles with the inside of edges and faces: an edge over a spike,
+  /// a face over a corner. Same order for any number of threads. Requires follow() with the same positions.
+  [[nodiscard]] std::vector<Contact> contacts(const Points& before, const Points& after) const;
 
   struct Truncation {
     Index truncated = 0;  ///< particles stopped on their way

@@ -138,13 +138,15 @@ void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRe
   const Index last = zone.triangle;
   ZoneBuilder builder(element, request, zone);
   if (last != kNone) builder.look_at(last, tree.corners(last));
-  find_nearest(tree, std::sqrt(3.0) * request.reach, zone, builder);
+  // What is beyond this cannot come within the box.
+  const double radius = std::sqrt(3.0) * request.reach;
+  find_nearest(tree, radius, zone, builder);
   const Index nearest = zone.triangle;
   if (nearest != kNone) {
     builder.meet(tree.corners(nearest));
     carve(tree, nearest, builder);
   }
-  builder.finish();
+  builder.finish(radius);
 }
 
 }  // namespace sprung

@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "collision/particle_blocks.h"
+#include "collision/particle_contact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -117,11 +118,14 @@ void ObstacleZones::renew_around(const std::vector<Index>& particles, const Way&
   });
 }
 
-std::vector<Contact> ObstacleZones::element_contacts(const Points& positions) const {
+std::vector<Contact> ObstacleZones::contacts(const Way& way) const {
   std::vector<std::vector<Contact>> parts(patches_.size());
   parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
     for (Index p = begin; p < end; ++p) {
-      for (const PatchZones& zones : patches_[at(p)].zones) append_contacts(p, zones, positions, parts[at(p)]);
+      for (const PatchZones& zones : patches_[at(p)].zones) {
+        append_particle_contacts(p, zones, way, parts[at(p)]);
+        append_element_contacts(p, zones, way, parts[at(p)]);
+      }
     }
   });
   std::vector<Contact> contacts;
@@ -129,8 +133,27 @@ std::vector<Contact> ObstacleZones::element_contacts(const Points& positions) co
   return contacts;
 }
 
-void ObstacleZones::append_contacts(Index p, const PatchZones& zones, const Points& positions,
-                                    std::vector<Contact>& contacts) const {
+// A particle of several patches is looked at in its first.
+void ObstacleZones::append_particle_contacts(Index p, const PatchZones& zones, const Way& way,
+                                             std::vector<Contact>& contacts) const {
+  const Index k = zones.obstacle();
+  const std::vector<Index>& particles = surface_.patches[at(p)].particles;
+  const ZoneDemand needed = demand(p, k, way);
+  for (Index slot = 0; slot < static_cast<Index>(particles.size()); ++slot) {
+    const Index i = particles[at(slot)];
+    if (slots_of(i).front().patch != p) continue;
+    const Vector3 from = way.from.col(i);
+    const Vector3 to = way.to.col(i);
+    if (!from.allFinite() || !to.allFinite()) continue;
+    const bool known = !set_.shape(k).deforms();
+    if (known && !zones.may_touch(slot, set_.local_before(k, from), set_.local(k, to), needed.gap + needed.margin)) continue;
+    const auto contact = find_contact(set_, k, {i, from, to, surface_.thickness[i], margin_});
+    if (contact) contacts.push_back(*contact);
+  }
+}
+
+void ObstacleZones::append_element_contacts(Index p, const PatchZones& zones, const Way& way,
+                                            std::vector<Contact>& contacts) const {
   const Index k = zones.obstacle();
   const RigidTransform& pose = set_.after(k);
   const ElementPatch& patch = surface_.patches[at(p)];
@@ -147,7 +170,7 @@ void ObstacleZones::append_contacts(Index p, const PatchZones& zones, const Poin
       if (zone.weights[static_cast<Index>(c)] == 0.0) continue;
       contact.particles[at(contact.count)] = i;
       contact.weights[at(contact.count++)] = zone.weights[static_cast<Index>(c)];
-      sum += zone.weights[static_cast<Index>(c)] * positions.col(i);
+      sum += zone.weights[static_cast<Index>(c)] * way.to.col(i);
     }
     contact.distance = contact.normal.dot(sum - contact.point);
     contact.clearance = set_.clearance(k, sum, sum);

@@ -28,8 +28,9 @@ class ObstacleZones {
   /// Makes the zones of all elements around these particles again, where they are when the way begins.
   void renew_around(const std::vector<Index>& particles, const Way& way);
 
-  /// Contacts of obstacles with the inside of elements, from the zones' nearest points; by element, then obstacle.
-  [[nodiscard]] std::vector<Contact> element_contacts(const Points& positions) const;
+  /// Contacts of particles (see Environment::contacts), then those of obstacles with the inside of elements, at the zones' nearest
+  /// points; patch by patch. Requires follow() for the same way.
+  [[nodiscard]] std::vector<Contact> contacts(const Way& way) const;
 
   /// Whether the zones of all elements around the particle hold it there, at the interval's end.
   [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
@@ -51,7 +52,8 @@ class ObstacleZones {
   void find_near(Index patch, const Way& way, double carried);
   void find_paths(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
   [[nodiscard]] ZoneDemand demand(Index patch, Index obstacle, const Way& way) const;
-  void append_contacts(Index patch, const PatchZones& zones, const Points& positions, std::vector<Contact>& contacts) const;
+  void append_particle_contacts(Index patch, const PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const;
+  void append_element_contacts(Index patch, const PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const;
   [[nodiscard]] std::span<const PatchSlot> slots_of(Index particle) const;
 
   const ObstacleSet& set_;

@@ -99,6 +99,7 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
   const bool was_near = slot.near;
   slot.box = Box3(Vector3::Constant(-kInfinity), Vector3::Constant(kInfinity));
   slot.bounded = slot.near = slot.broken = false;
+  slot.quiet = 0.0;
   for (const Index e : topology.elements_of(i)) {
     const Zone& zone = zones_[at(e)];
     slot.broken = slot.broken || zone.broken;
@@ -106,12 +107,17 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
     slot.bounded = slot.bounded || zone.plane_count > 0;
     if (zone.broken) continue;
     slot.box = slot.box.intersection(zone.box);
-    if (zone.free_radius == kInfinity) continue;
     const auto& slots = topology.corners(e).slots;
     const auto corner = static_cast<std::size_t>(std::find(slots.begin(), slots.end(), i) - slots.begin());
+    const Vector3& made_at = made_around_[at(e)][corner];
+    if (zone.clear > slot.quiet) {
+      slot.quiet = zone.clear;
+      slot.centre = made_at;
+    }
+    if (zone.free_radius == kInfinity) continue;
     // The cube within the ball.
     const Vector3 radius = Vector3::Constant(zone.free_radius / std::sqrt(3.0));
-    slot.box = slot.box.intersection(Box3(made_around_[at(e)][corner] - radius, made_around_[at(e)][corner] + radius));
+    slot.box = slot.box.intersection(Box3(made_at - radius, made_at + radius));
   }
   if (slot.near && !was_near) slot.settled = slot.box.center();
 }

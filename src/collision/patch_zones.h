@@ -40,16 +40,25 @@ class PatchZones {
   /// Whether the zones of all elements at the slot hold p.
   [[nodiscard]] bool allow(const PatchTopology& topology, Index slot, const Vector3& p) const;
 
+  /// Whether a path between these ends may come within `reach` [m] of the obstacle's surface: false for most that do not.
+  [[nodiscard]] bool may_touch(Index slot, const Vector3& from, const Vector3& to, double reach) const {
+    const Slot& s = slots_[static_cast<std::size_t>(slot)];
+    const double quiet = s.quiet - reach;
+    return !(quiet > 0.0 && (to - s.centre).squaredNorm() < quiet * quiet && (from - s.centre).squaredNorm() < quiet * quiet);
+  }
+
   /// Appends all that bounds the slot, placed in the world by `pose`.
   void append_half_spaces(const PatchTopology& topology, Index slot, const RigidTransform& pose,
                           std::vector<HalfSpace>& half_spaces) const;
 
  private:
   struct Slot {
-    Box3 box;              ///< of all zones at it
-    Vector3 settled;       ///< where it was when its near elements were looked at last
-    bool bounded = false;  ///< by planes
-    bool near = false;     ///< an element at it may touch
+    Box3 box;                          ///< of all zones at it
+    Vector3 settled;                   ///< where it was when its near elements were looked at last
+    Vector3 centre = Vector3::Zero();  ///< no surface is nearer to this point ...
+    double quiet = 0.0;                ///< ... than this
+    bool bounded = false;              ///< by planes
+    bool near = false;                 ///< an element at it may touch
     bool broken = false;
   };
 

@@ -95,17 +95,13 @@ void ZoneBuilder::separate(const TriangleCorners& corners) {
   limits_[plane] = highest + 0.5 * std::min(height, request_.clearance);
 }
 
-void ZoneBuilder::finish() {
+void ZoneBuilder::finish(double searched) {
   if (zone_.broken) {
     zone_.plane_count = 0;
     zone_.clear = 0.0;
     return;
   }
-  const Vector3 above = zone_.box.max() - element_box_.max();
-  const Vector3 below = element_box_.min() - zone_.box.min();
-  zone_.clear = std::min(above.minCoeff(), below.minCoeff());
-  zone_.clear = std::min(zone_.clear, zone_.free_radius);
-  for (int k = 0; k < zone_.plane_count; ++k) zone_.clear = std::min(zone_.clear, lowest(normal(k)) - limit(k));
+  zone_.clear = std::min((1.0 - kPairSlack) * zone_.distance, searched);
 }
 
 double ZoneBuilder::lowest(const Vector3& normal) const { return lowest_along(normal, element_); }

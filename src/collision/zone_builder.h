@@ -18,8 +18,8 @@ class ZoneBuilder {
   /// Takes the triangle as the nearest so far, if it is.
   void look_at(Index triangle, const TriangleCorners& corners);
 
-  /// Tells how near the obstacle may be, after the last triangle.
-  void finish();
+  /// Tells how near the obstacle may be, after all triangles within `searched` [m] were looked at.
+  void finish(double searched);
 
   [[nodiscard]] const Box3& box() const { return zone_.box; }
   [[nodiscard]] const Box3& element_box() const { return element_box_; }

@@ -32,10 +32,7 @@ class ContactProjection {
   [[nodiscard]] Index squeezed_count() const { return squeezed_; }
 
  private:
-  const Environment& environment_;
   ContactResponse response_;
-  Scalars thickness_;    ///< of each particle [m]
-  double margin_ = 0.0;  ///< beyond the gap, for what the passes of a step may move [m]
   FreeSpace free_space_;
   Index truncated_ = 0;
   Index squeezed_ = 0;

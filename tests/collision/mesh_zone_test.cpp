@@ -145,7 +145,7 @@ TEST(MeshZone, FarElementIsFreeInAllOfItsBox) {
   find_zone(tree, element, {.reach = 0.5, .gap = 0.1, .clearance = 1e-9, .exact = 0.2}, zone);
   EXPECT_EQ(zone.plane_count, 0);
   EXPECT_EQ(zone.distance, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(zone.clear, 0.5);
+  EXPECT_DOUBLE_EQ(zone.clear, 0.5 * std::sqrt(3.0));
   EXPECT_EQ(zone.box.max(), Vector3(5.5, 1.5, 1.5));
 }
 

@@ -1,0 +1,50 @@
+#include "collision/particle_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+
+namespace {
+
+/// Where a path meets a shape, in the shape's frame.
+struct LocalContact {
+  Vector3 point;
+  Vector3 normal;
+};
+
+LocalContact at(const Crossing& crossing) { return {crossing.point, crossing.normal}; }
+LocalContact at(const SurfacePoint& surface) { return {surface.point, surface.normal}; }
+
+/// A path shorter than the distance of its end from the surface cannot have crossed it, so that a particle at rest costs one walk
+/// through the tree.
+std::optional<LocalContact> find_contact(const ObstacleShape& shape, const LocalPath& path, double reach) {
+  const double length = (path.end - path.begin).norm();
+  const bool surface_first = length <= reach;
+  std::optional<SurfacePoint> surface;
+  if (surface_first) {
+    surface = shape.nearest(path.end, reach);
+    if (!surface) return std::nullopt;
+    if (std::abs(surface->distance) > length + shape.rounding(path.end)) return at(*surface);
+  }
+  if (const auto crossing = shape.first_crossing(path.begin, path.end)) return at(*crossing);
+  if (!surface_first) surface = shape.nearest(path.end, reach);
+  if (!surface) return std::nullopt;
+  return at(*surface);
+}
+
+}  // namespace
+
+std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const ParticlePath& path) {
+  const double clearance = set.clearance(k, path.before, path.after);
+  const double gap = std::max(path.thickness + set.obstacle(k).material.thickness, clearance);
+  const auto found = find_contact(set.shape(k), set.local_path(k, path.before, path.after), gap + path.margin);
+  if (!found) return std::nullopt;
+  Contact contact = particle_contact(path.particle, k, set.after(k) * found->point, set.after(k).linear() * found->normal);
+  contact.drift = set.drift(k, contact.point);
+  contact.distance = contact.normal.dot(path.after - contact.point);
+  contact.clearance = clearance;
+  return contact;
+}
+
+}  // namespace sprung
