@@ -9,16 +9,6 @@
 
 namespace sprung {
 
-namespace {
-
-bool is_open(const Obstacle& obstacle) {
-  const auto* mesh = std::get_if<MeshGeometry>(&obstacle.geometry);
-  const auto* sequence = std::get_if<SequenceGeometry>(&obstacle.geometry);
-  return (mesh != nullptr && !mesh->closed) || (sequence != nullptr && !sequence->closed);
-}
-
-}  // namespace
-
 struct Environment::Implementation {
   ObstacleSet set;
   Interval interval{};
@@ -76,28 +66,6 @@ std::vector<Contact> Environment::contacts(const ParticlePaths& paths) const {
       for (const Index k : near) {
         const auto contact = find_contact(set, k, {i, before, after, paths.thickness[i], paths.margin});
         if (contact) contacts.push_back(*contact);
-      }
-    }
-  });
-}
-
-std::vector<Environment::Inside> Environment::inside(const Points& positions) const {
-  const ObstacleSet& set = implementation_->set;
-  return collect_from_blocks<Inside>(static_cast<Index>(positions.cols()), [&](Index begin, Index end, std::vector<Inside>& found) {
-    const Box3 box = finite_bounds(positions, begin, end);
-    if (box.isEmpty()) return;
-    std::vector<Index> near;
-    set.find_near(grown(box, set.max_clearance(box)), near);
-    for (Index i = begin; i < end; ++i) {
-      for (const Index k : near) {
-        const Vector3 p = set.local(k, positions.col(i));
-        if (!p.allFinite()) continue;
-        if (set.shape(k).contains(p)) {
-          const auto surface = set.shape(k).nearest(p, std::numeric_limits<double>::infinity());
-          found.push_back({i, k, -surface->distance});
-        } else if (is_open(set.obstacle(k)) && set.shape(k).nearest(p, set.clearance(k, positions.col(i), positions.col(i)))) {
-          found.push_back({i, k, 0.0});
-        }
       }
     }
   });

@@ -59,15 +59,6 @@ class Environment {
   /// is led out. Positions that are not finite have no contacts. Same result for any number of threads.
   [[nodiscard]] std::vector<Contact> contacts(const ParticlePaths& paths) const;
 
-  /// Particles that are on no free side of an obstacle at pose_after, sorted by particle: inside a closed one, or within clearance
-  /// of an open mesh, where a particle that comes from nowhere has no side.
-  struct Inside {
-    Index particle;
-    Index obstacle;
-    double depth;  ///< [m]; 0 on an open mesh
-  };
-  [[nodiscard]] std::vector<Inside> inside(const Points& positions) const;
-
   /// Smallest distance [m] of any particle from any obstacle at pose_after, if within `radius`; negative inside.
   [[nodiscard]] std::optional<double> min_distance(const Points& positions, double radius) const;
 

@@ -1,6 +1,7 @@
 #include "collision/intersections.h"
 
 #include "base/parallel.h"
+#include "collision/obstacle_set.h"
 
 #include <algorithm>
 #include <limits>
@@ -11,23 +12,6 @@ namespace {
 
 // Of the clearance, which is 2^-30 of the coordinates: twice as much as what zones take for touching, so that they agree.
 constexpr double kTouching = 0x1p-10;
-
-ElementCorners corners_of(const Element& element, const Points& positions, const ObstacleSet& obstacles, Index k) {
-  ElementCorners corners{.x = {}, .count = element.corners};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(element.corners); ++i) {
-    corners.x[i] = obstacles.local(k, positions.col(element.particles[i]));
-  }
-  return corners;
-}
-
-double tolerance_of(const Element& element, const Points& positions, const ObstacleSet& obstacles, Index k) {
-  double clearance = 0.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(element.corners); ++i) {
-    const Vector3 x = positions.col(element.particles[i]);
-    clearance = std::max(clearance, obstacles.clearance(k, x, x));
-  }
-  return kTouching * clearance;
-}
 
 class PatchSearch {
  public:
@@ -52,7 +36,14 @@ class PatchSearch {
   }
 
  private:
+  [[nodiscard]] bool is_pinned(Index particle) const { return surface_.pinned[static_cast<std::size_t>(particle)] != 0; }
+
+  [[nodiscard]] double tolerance(const Vector3& position, Index k) const {
+    return kTouching * obstacles_.clearance(k, position, position);
+  }
+
   void look_inside(Index particle, Index k, Intersections& found) const {
+    if (is_pinned(particle)) return;
     const Vector3 p = obstacles_.local(k, positions_.col(particle));
     if (!obstacles_.shape(k).contains(p)) return;
     const auto surface = obstacles_.shape(k).nearest(p, std::numeric_limits<double>::infinity());
@@ -61,8 +52,26 @@ class PatchSearch {
 
   void look_across(Index e, Index k, Intersections& found) const {
     const Element& element = surface_.elements[static_cast<std::size_t>(e)];
-    const double tolerance = tolerance_of(element, positions_, obstacles_, k);
-    if (obstacles_.shape(k).touches(corners_of(element, positions_, obstacles_, k), tolerance)) found.crossings.push_back({e, k});
+    ElementCorners corners{.x = {}, .count = element.corners};
+    double within = 0.0;
+    int pinned = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(element.corners); ++i) {
+      const Vector3 x = positions_.col(element.particles[i]);
+      corners.x[i] = obstacles_.local(k, x);
+      within = std::max(within, tolerance(x, k));
+      pinned += is_pinned(element.particles[i]) ? 1 : 0;
+    }
+    if (pinned == element.corners || !obstacles_.shape(k).touches(corners, within)) return;
+    if (pinned == 0 || !hangs_in(element, k)) found.crossings.push_back({e, k});
+  }
+
+  [[nodiscard]] bool hangs_in(const Element& element, Index k) const {
+    return std::any_of(element.particles.begin(), element.particles.begin() + element.corners, [&](Index i) {
+      if (!is_pinned(i)) return false;
+      const Vector3 p = obstacles_.local(k, positions_.col(i));
+      return obstacles_.shape(k).contains(p) ||
+             obstacles_.shape(k).touches({.x = {p}, .count = 1}, tolerance(positions_.col(i), k));
+    });
   }
 
   const ObstacleSet& obstacles_;

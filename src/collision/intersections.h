@@ -2,11 +2,12 @@
 #pragma once
 
 #include "collision/collision_surface.h"
-#include "collision/obstacle_set.h"
 
 #include <vector>
 
 namespace sprung {
+
+class ObstacleSet;
 
 struct Intersections {
   /// A particle inside a closed obstacle.
@@ -29,7 +30,8 @@ struct Intersections {
 
 /// What is in the obstacles at the end of their interval, with the particles at `positions` [m], which are finite. Crossings of
 /// meshes and insides are judged exactly, touching by 2^-40 of the coordinates: where nothing is found, all elements have a zone.
-/// Same result for any number of threads.
+/// Left out is what pins hold in place: pinned particles, elements of pinned particles alone, and elements that hang from a pin
+/// which is in or on the obstacle itself. Same result for any number of threads.
 [[nodiscard]] Intersections find_intersections(const ObstacleSet& obstacles, const CollisionSurface& surface,
                                                const Points& positions);
 

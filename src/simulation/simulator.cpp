@@ -6,6 +6,7 @@
 #include "dynamics/spring_force.h"
 #include "simulation/divergence.h"
 #include "simulation/settings_check.h"
+#include "simulation/start.h"
 #include "simulation/step_check.h"
 
 #include <algorithm>
@@ -86,8 +87,8 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   }
   if (settings.stretch_limit) limit.emplace(network, *settings.stretch_limit);
   environment.set_interval(0.0, 0.0);
-  refuse_inside(network, environment, state.x);
   move_pins(0.0);
+  refuse_intersections(network, environment, settings.contact, state.x);
   integrator->start(state, forces, settings.step);
 }
 

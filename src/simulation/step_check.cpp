@@ -3,8 +3,6 @@
 #include "base/format.h"
 
 #include <cmath>
-#include <map>
-#include <utility>
 
 namespace sprung {
 
@@ -46,36 +44,6 @@ std::vector<std::string> check_step(const SimulatorSettings& settings, const Spe
   if (!std::isfinite(growth)) return {};
   return {"explicit Euler gains energy at any step: the fastest motion of these springs grows by a factor of e every " +
           format_number(growth, 2) + " s; \"symplectic_euler\" does not"};
-}
-
-void refuse_inside(const SpringNetwork& network, const Environment& environment, const Points& positions) {
-  struct Found {
-    Index count = 0;
-    Index first = kNone;
-    double deepest = 0.0;
-  };
-  std::map<std::pair<std::string, std::string>, Found> found;
-  for (const Environment::Inside& inside : environment.inside(positions)) {
-    if (network.is_pinned(inside.particle)) continue;
-    const Body& body = network.body_of(inside.particle);
-    Found& entry = found[{body.name, environment.obstacles()[static_cast<std::size_t>(inside.obstacle)].name}];
-    if (entry.count == 0) entry.first = inside.particle - body.first_particle;
-    ++entry.count;
-    entry.deepest = std::max(entry.deepest, inside.depth);
-  }
-  std::vector<Problem> problems;
-  for (const auto& [names, entry] : found) {
-    const bool inside = entry.deepest > 0.0;
-    const std::string where =
-        inside ? "start inside obstacle \"" + names.second + "\", up to " + format_number(entry.deepest, 3) + " m deep"
-               : "start on the open surface of obstacle \"" + names.second + "\", where they are on neither side";
-    problems.push_back({.key = "bodies." + names.first,
-                        .value = std::to_string(entry.count) + " particles, the first " + std::to_string(entry.first),
-                        .rule = where,
-                        .remedy = inside ? "move the body or the obstacle, so that they do not overlap at time 0"
-                                         : "move the body a little to the side where it should stay"});
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
 }
 
 std::string divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds) {

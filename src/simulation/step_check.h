@@ -25,9 +25,6 @@ inline constexpr double kStablePart = 0.9;
 /// what the user should be warned of.
 std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds);
 
-/// Throws InputError naming each body with particles inside an obstacle at the environment's present poses.
-void refuse_inside(const SpringNetwork& network, const Environment& environment, const Points& positions);
-
 /// What to change when a simulation with these settings diverged.
 [[nodiscard]] std::string divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds);
 

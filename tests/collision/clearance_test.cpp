@@ -108,7 +108,7 @@ TEST(Clearance, PressedParticlesSlideRoundConvexBodiesUncut) {
       ASSERT_EQ(step_to(environment, space, x, x + 0.02 * along - 0.005 * from.normalized()), 0U) << step;
       const Vector3 to = x.col(0) - centre;
       turned += std::atan2(axis.dot(from.cross(to)), from.dot(to));
-      ASSERT_TRUE(environment.inside(x).empty());
+      ASSERT_TRUE(test::intersections(environment, x).empty());
     }
     EXPECT_GT(turned, 2.0 * std::numbers::pi);
   }

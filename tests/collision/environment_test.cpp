@@ -184,7 +184,7 @@ TEST(Environment, InsideAndDistanceAreThoseOfTheEndPose) {
   points.col(1) = Vector3(0, 3.1, 0);
   points.col(2) = Vector3(0, 3.6, 0);
   points.col(3) = Vector3(6, 0, 0);
-  const auto inside = environment.inside(points);
+  const auto inside = test::intersections(environment, points).inside;
   ASSERT_EQ(inside.size(), 2U);
   EXPECT_EQ(inside[0].particle, 1);
   EXPECT_EQ(inside[0].obstacle, 0);
@@ -206,7 +206,7 @@ TEST(Environment, WithoutObstaclesThereIsNothingToMeet) {
   Points after = particles.after;
   EXPECT_TRUE(environment.contacts({particles.before, particles.after, particles.thickness, 0.1}).empty());
   EXPECT_EQ(test::single_particles(environment, 100).truncate(particles.before, after).truncated, 0);
-  EXPECT_TRUE(environment.inside(after).empty());
+  EXPECT_TRUE(test::intersections(environment, after).empty());
   EXPECT_FALSE(environment.min_distance(after, 1.0));
   EXPECT_FALSE(environment.moves());
 }

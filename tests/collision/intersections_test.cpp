@@ -1,6 +1,7 @@
 #include "collision/intersections.h"
 
 #include "base/parallel.h"
+#include "collision/obstacle_set.h"
 #include "collision/sample_meshes.h"
 #include "collision/self_intersections.h"
 #include "geometry/simplex_crossing.h"
@@ -165,6 +166,21 @@ TEST(Intersections, SpikeThroughAFaceCrossesItWithNoParticleInside) {
     EXPECT_EQ(found.crossings[0].element, 0);
     EXPECT_EQ(found.crossings[0].obstacle, 0);
   }
+}
+
+TEST(Intersections, WhatPinsHoldInAnObstacleIsLeftOut) {
+  const ObstacleSet set({obstacle(BoxGeometry{Vector3(2, 2, 2)})});
+  Network network;
+  network.add(0, {Vector3(0, 0.5, 0), Vector3(0, 2, 0)});      // hangs from a pin inside
+  network.add(0, {Vector3(0.5, 1.0, 0), Vector3(0.5, 2, 0)});  // hangs from a pin on the surface
+  network.add(0, {Vector3(-2, 0, 0), Vector3(2, 0, 0)});       // across, its pin outside
+  network.add(0, {Vector3(-2, 0, 0), Vector3(2, 0, 0)});       // wholly pinned
+  network.add(0, {Vector3(0, 0, 0.3)});
+  CollisionSurface surface = network.surface();
+  surface.pinned = {1, 0, 1, 0, 1, 0, 1, 1, 1};
+  const Intersections found = find_intersections(set, surface, network.positions());
+  EXPECT_THAT(found.inside, IsEmpty());
+  EXPECT_THAT(crossing(found, surface), ElementsAre(4));
 }
 
 using Pairs = std::set<std::pair<Index, Index>>;

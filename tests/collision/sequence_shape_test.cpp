@@ -3,6 +3,7 @@
 #include "collision/mesh_shape.h"
 #include "collision/obstacle_shape.h"
 #include "collision/sample_meshes.h"
+#include "collision/single_particles.h"
 
 #include <gmock/gmock.h>
 
@@ -246,12 +247,12 @@ TEST(DeformingObstacle, IsFoundWhereItHasGrownTo) {
       sequence_of(test::torus(0.1, 0.03, 20, 10), 2, [](const Vector3& x, int k) { return Vector3((1.0 + 99.0 * k) * x); }),
       true)});
   const Points inside = Vector3(10.0, 0.0, 0.0);
-  EXPECT_TRUE(environment.inside(inside).empty());
+  EXPECT_TRUE(test::intersections(environment, inside).empty());
   environment.set_interval(0.0, 0.1);
-  EXPECT_EQ(environment.inside(inside).size(), 1U);
+  EXPECT_EQ(test::intersections(environment, inside).inside.size(), 1U);
   EXPECT_NEAR(*environment.min_distance(Vector3(13.5, 0.0, 0.0), 1.0), 0.5, 1e-13);
   environment.set_interval(0.1, 0.1);
-  EXPECT_EQ(environment.inside(inside).size(), 1U);
+  EXPECT_EQ(test::intersections(environment, inside).inside.size(), 1U);
 }
 
 TEST(DeformingObstacle, SurfaceVelocityAddsDeformingToMotion) {

@@ -124,30 +124,6 @@ TEST(Simulator, EverySettingOutOfItsBoundsIsNamed) {
   }
 }
 
-TEST(Simulator, ParticlesInsideAnObstacleAtTheStartAreRefused) {
-  try {
-    Simulator simulator(one_particle({0.0, -0.5, 0.0}), {}, {ground()});
-    FAIL() << "was accepted";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.problems()[0].key, "bodies.ball");
-    EXPECT_THAT(error.what(), HasSubstr("0.5 m deep"));
-  }
-}
-
-TEST(Simulator, ParticlesOnAnOpenSurfaceAtTheStartAreRefused) {
-  TriangleMesh sheet;
-  sheet.vertices = (Points(3, 3) << 0, 1, 0, 0, 0, 0, 0, 0, 1).finished();
-  sheet.triangles = (Triangles(3, 1) << 0, 2, 1).finished();
-  const Obstacle obstacle{.name = "sheet", .geometry = MeshGeometry{.mesh = std::make_shared<TriangleMesh>(sheet)}};
-  try {
-    Simulator simulator(one_particle({0.25, 0.0, 0.25}), {}, {obstacle});
-    FAIL() << "was accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("on neither side"));
-  }
-  EXPECT_NO_THROW(Simulator(one_particle({0.25, 1e-6, 0.25}), {}, {obstacle}));
-}
-
 TEST(Simulator, AMeshTooLargeForItsTreeIsRefused) {
   TriangleMesh sheet;
   sheet.vertices = 1e28 * (Points(3, 3) << 0, 1, 0, 0, 0, 0, 0, 0, 1).finished();

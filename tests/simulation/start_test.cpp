@@ -1,0 +1,104 @@
+#include "base/error.h"
+#include "simulation/scenes.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+using ::testing::AllOf;
+using testing::cloth;
+using testing::ground;
+using ::testing::HasSubstr;
+using testing::one_particle;
+using testing::sheet;
+
+Obstacle ball(double radius, const Vector3& position) {
+  Obstacle result{.name = "ball", .geometry = SphereGeometry{radius}};
+  result.placed.translation() = position;
+  return result;
+}
+
+/// What is said when the simulation is refused; empty when it is not.
+std::vector<std::string> refusal(const SpringNetwork& network, const SimulatorSettings& settings,
+                                 const std::vector<Obstacle>& obstacles) {
+  try {
+    const Simulator simulator(network, settings, obstacles);
+    return {};
+  } catch (const InputError& error) {
+    std::vector<std::string> lines;
+    for (const Problem& problem : error.problems()) lines.push_back(to_string(problem));
+    return lines;
+  }
+}
+
+TEST(Start, WhatIsInAnObstacleIsCountedMeasuredAndPlaced) {
+  // A cloth of 5 x 5 at height 0, 0.25 m apart: one particle 0.3 m inside, the four beside it 0.3 - 0.25 m.
+  const auto lines = refusal(cloth(5, 0.0), {}, {ball(0.3, Vector3::Zero())});
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0], HasSubstr("bodies.cloth = 5 particles inside, "));
+  EXPECT_THAT(lines[0],
+              AllOf(HasSubstr("triangles across: intersects obstacle \"ball\" at the start, up to 0.3 m deep: particle 7 at"),
+                    HasSubstr("particle 11 at [-0.25, 0, 0], particle 12 at [0, 0, 0] and 2 more"), HasSubstr("move one of them")));
+}
+
+TEST(Start, AnObstacleBetweenParticlesIsFound) {
+  const auto lines = refusal(cloth(2, 0.0), {}, {ball(0.1, Vector3(0.1, 0.05, 0.2))});
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0], AllOf(HasSubstr("triangle across"), HasSubstr("triangle of particles ")));
+}
+
+TEST(Start, EveryBodyAndObstacleHasALine) {
+  NetworkBuilder builder;
+  for (const char* name : {"left", "right"}) {
+    builder.begin_body(name);
+    builder.add_particle(Vector3(name[0] == 'l' ? -0.1 : 0.1, -0.2, 0.0), 0.1);
+  }
+  const auto lines = refusal(builder.build(), {}, {ground(), ball(1.0, Vector3::Zero())});
+  ASSERT_EQ(lines.size(), 4U);
+  EXPECT_THAT(lines[0],
+              AllOf(HasSubstr("bodies.left = 1 particle inside"), HasSubstr("\"ground\" at the start, up to 0.2 m deep")));
+  EXPECT_THAT(lines[3], AllOf(HasSubstr("bodies.right"), HasSubstr("\"ball\"")));
+}
+
+TEST(Start, OnAnOpenSurfaceIsAcrossIt) {
+  const auto lines = refusal(one_particle({0.25, 0.0, 0.25}), {}, {sheet(1.0)});
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0], HasSubstr("1 particle across: intersects obstacle \"sheet\" at the start: particle 0 at [0.25, 0, 0.25]"));
+  EXPECT_TRUE(refusal(one_particle({0.25, 1e-6, 0.25}), {}, {sheet(1.0)}).empty());
+}
+
+/// A rope of two particles through a triangle, as bodies of their own.
+SpringNetwork needle_and_patch(const BodyContact& contact) {
+  NetworkBuilder builder;
+  BodyShape patch = make_cloth({.size = {1.0, 1.0}, .resolution = {2, 2}}, {});
+  set_total_mass(patch, 1.0);
+  BodyShape needle = make_rope({.points = {Vector3(0.1, 0.2, -1.0), Vector3(0.1, 0.2, 1.0)}, .particles = 2, .length = {}}, {});
+  set_total_mass(needle, 1.0);
+  builder.add_body("patch", patch, {}, contact);
+  builder.add_body("needle", needle, {}, contact);
+  return builder.build();
+}
+
+TEST(Start, BodiesAcrossEachOtherAreRefusedWhereTheyCollide) {
+  const auto lines = refusal(needle_and_patch({}), {}, {});
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0], AllOf(HasSubstr("bodies.patch = 1 pair of elements: intersects body \"needle\" at the start: triangle of "),
+                              HasSubstr(" and segment of particles 0, 1 at [0.1, 0.2, 0]"), HasSubstr("body_contact")));
+  EXPECT_TRUE(refusal(needle_and_patch({.others = false}), {}, {}).empty());
+  // Penalty contact knows of obstacles alone.
+  const ContactSettings penalty{.response = ContactSettings::Response::penalty, .stiffness = 1.0};
+  EXPECT_TRUE(refusal(needle_and_patch({}), {.contact = penalty}, {}).empty());
+}
+
+TEST(Start, WhereAMotionBeginsCounts) {
+  Obstacle passing = ball(0.5, Vector3(5.0, 0.0, 0.0));
+  passing.motion.keyframes = {{0.0, Vector3(-5.0, 0.0, 0.0)}, {1.0, Vector3::Zero()}};
+  EXPECT_EQ(refusal(one_particle({0.0, 0.1, 0.0}), {}, {passing}).size(), 1U);
+  EXPECT_TRUE(refusal(one_particle({5.0, 0.1, 0.0}), {}, {passing}).empty());
+}
+
+}  // namespace
+}  // namespace sprung
