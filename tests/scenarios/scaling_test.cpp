@@ -59,6 +59,7 @@ INSTANTIATE_TEST_SUITE_P(StepFactor, Scaling, ::testing::Values(1.0, 4.0));
 
 TEST_P(Scaling, ByAPowerOfTwoScalesPositionsBitForBit) {
   const ScaledRun expected = run_scaled(1.0, GetParam(), Judge::obstacles);
+  EXPECT_TRUE(expected.report.is_free()) << expected.report;
   for (const double factor : {1.0 / 128.0, 128.0}) {
     const ScaledRun run = run_scaled(factor, GetParam(), Judge::nothing);
     ASSERT_EQ(run.report.step, expected.report.step);

@@ -11,6 +11,11 @@ namespace sprung::testing {
 namespace {
 
 constexpr const char* kAskew = R"(bodies.cloth.place={"position": [0.01, 0.4, 0.02], "rotation": [-40, 25, 0]})";
+constexpr const char* kWideBox =
+    R"(obstacles={"box": {"shape": {"type": "box", "size": [20, 0.01, 20]}, "place": {"position": [0, -0.005, 0]}}})";
+constexpr const char* kSmallBox =
+    R"(obstacles={"box": {"shape": {"type": "box", "size": [0.3, 0.01, 0.3]}, "place": {"position": [0, -0.005, 0]}}})";
+constexpr const char* kKnife = R"(obstacles={"knife": {"shape": {"type": "mesh", "file": "knife.obj"}}})";
 
 struct Throw {
   double speed;  ///< [m/s]
@@ -42,15 +47,39 @@ std::vector<Throw> all_throws() {
 }
 INSTANTIATE_TEST_SUITE_P(Throws, ThrownCloth, ::testing::ValuesIn(all_throws()));
 
-// The sheet is so large that nothing gets around it.
+/// The lowest particle of all frames [m].
+struct Lowest {
+  double y = std::numeric_limits<double>::infinity();
+  void operator()(const Simulator& simulator, const FrameDiagnostics& /*frame*/) {
+    y = std::min(y, simulator.positions().row(1).minCoeff());
+  }
+};
+
+// Sheet and box are so wide that nothing gets around them.
 TEST_P(ThrownCloth, StaysOnItsSideOfAThinSheet) {
-  double lowest = std::numeric_limits<double>::infinity();
-  const ScenarioReport report = run_scenario(scene({}), [&](const Simulator& simulator, const FrameDiagnostics&) {
-    lowest = std::min(lowest, simulator.positions().row(1).minCoeff());
-  });
+  Lowest lowest;
+  const ScenarioReport report = run_scenario(scene({}), std::ref(lowest));
   EXPECT_TRUE(report.is_free()) << report;
-  EXPECT_GT(lowest, 0.0);
-  EXPECT_LT(lowest, 0.0021) << "it got there";
+  EXPECT_GT(lowest.y, 0.0);
+  EXPECT_LT(lowest.y, 0.0021) << "it got there";
+}
+
+TEST_P(ThrownCloth, StaysOnItsSideOfAThinBox) {
+  Lowest lowest;
+  const ScenarioReport report = run_scenario(scene({kWideBox}), std::ref(lowest));
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_GT(lowest.y, 0.0);
+  EXPECT_LT(lowest.y, 0.0021) << "it got there";
+}
+
+TEST_P(ThrownCloth, WrapsAroundASmallBoxOutsideOfIt) {
+  const ScenarioReport report = run_scenario(scene({kSmallBox}));
+  EXPECT_TRUE(report.is_free()) << report;
+}
+
+TEST_P(ThrownCloth, IsNotCutByAKnife) {
+  const ScenarioReport report = run_scenario(scene({kKnife}));
+  EXPECT_TRUE(report.is_free()) << report;
 }
 
 }  // namespace

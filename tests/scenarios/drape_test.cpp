@@ -1,0 +1,43 @@
+// Cloths that fall on the bunny.
+#include "scenarios/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace sprung::testing {
+namespace {
+
+class Drape : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(StepFactor, Drape, ::testing::Values(1.0, 4.0));
+
+TEST_P(Drape, AClothFallsOnTheBunny) {
+  const ScenarioReport report = run_scenario(load_scenario("drape", {}, GetParam()));
+  EXPECT_TRUE(report.is_free()) << report;
+}
+
+TEST_P(Drape, AtRestTheGapIsTheThickness) {
+  for (const char* thickness : {"0.0005", "0.002", "0.01"}) {
+    double gap = 0.0;
+    const std::vector<std::string> overrides = {"duration=2.5", "bodies.cloth.shape.resolution=[32,32]",
+                                                std::string("bodies.cloth.thickness=").append(thickness)};
+    BuiltScene scene = load_scenario("drape", overrides, GetParam());
+    const int last = scene.frames;
+    const Watch watch = [&](const Simulator& simulator, const FrameDiagnostics& frame) {
+      if (frame.frame == last) gap = least_distance(simulator);
+    };
+    const ScenarioReport report = run_scenario(std::move(scene), watch);
+    EXPECT_TRUE(report.is_free()) << report;
+    EXPECT_NEAR(gap, std::stod(thickness), 0.05 * std::stod(thickness));
+  }
+}
+
+TEST_P(Drape, ABunnyTurnsUnderACloth) {
+  const std::vector<std::string> overrides = {"duration=3", "bodies.cloth.shape.resolution=[32,32]",
+                                              R"(obstacles.bunny.motion={"spin": [0, 180, 0]})"};
+  const ScenarioReport report = run_scenario(load_scenario("drape", overrides, GetParam()));
+  EXPECT_TRUE(report.is_free()) << report;
+}
+
+}  // namespace
+}  // namespace sprung::testing

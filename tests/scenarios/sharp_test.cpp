@@ -1,0 +1,80 @@
+// Things thinner than the network is fine: tips, edges and rings that may meet no particle at all.
+#include "scenarios/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace sprung::testing {
+namespace {
+
+class Sharp : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(StepFactor, Sharp, ::testing::Values(1.0, 4.0));
+
+/// The highest particle at the end [m].
+struct Highest {
+  double y = 0.0;
+  void operator()(const Simulator& simulator, const FrameDiagnostics& /*frame*/) { y = simulator.positions().row(1).maxCoeff(); }
+};
+
+constexpr double kTip = 0.55;  // [m] above the ground, of the spike and of the cone
+
+TEST_P(Sharp, ACoarseClothHangsOnASpike) {
+  Highest highest;
+  const ScenarioReport report = run_scenario(load_scenario("cloth_on_spike", {}, GetParam()), std::ref(highest));
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_GT(highest.y, 0.9 * kTip);
+}
+
+TEST_P(Sharp, ACoarseClothHangsOnACone) {
+  const char* const cone = R"(obstacles={"cone": {"shape": {"type": "cone", "radius": 0.08, "height": 0.5}, "friction": 0.3,
+                                                  "place": {"position": [0, 0.3, 0]}}})";
+  Highest highest;
+  const ScenarioReport report = run_scenario(load_scenario("cloth_on_spike", {cone}, GetParam()), std::ref(highest));
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_GT(highest.y, 0.9 * kTip);
+}
+
+// At 30 m/s, for 3 m.
+TEST_P(Sharp, ASpikeShotUpTakesACoarseClothAlong) {
+  const char* const shot = R"(obstacles.spike.motion={"keyframes": [{"time": 0}, {"time": 0.1, "position": [0, 3, 0]}]})";
+  Highest highest;
+  const ScenarioReport report =
+      run_scenario(load_scenario("cloth_on_spike", {shot, "duration=0.2"}, GetParam()), std::ref(highest));
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_GT(highest.y, 3.0 + 0.9 * kTip);
+}
+
+TEST_P(Sharp, ARopeHangsOverAKnife) {
+  Highest highest;
+  const ScenarioReport report = run_scenario(load_scenario("rope_on_knife", {}, GetParam()), std::ref(highest));
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_GT(highest.y, -0.05) << "the edge is at 0 m";
+}
+
+/// How often the rope passes the disc that the torus is around, from below to above less from above to below.
+int passages_through_torus(const Simulator& simulator) {
+  constexpr double kRing = 0.5;  // [m]
+  const Obstacle& torus = simulator.environment().obstacles().front();
+  const Points x = torus.motion.pose(torus.placed, simulator.time()).inverse() * simulator.positions();
+  int passages = 0;
+  for (Index i = 0; i + 1 < x.cols(); ++i) {
+    const double below = x(1, i);
+    const double above = x(1, i + 1);
+    if ((below < 0.0) == (above < 0.0)) continue;
+    const Vector3 meeting = x.col(i) + below / (below - above) * (x.col(i + 1) - x.col(i));
+    if (meeting.norm() < kRing) passages += below < 0.0 ? 1 : -1;
+  }
+  return passages;
+}
+
+TEST_P(Sharp, ARopeThroughATorusStaysThroughIt) {
+  const ScenarioReport report = run_scenario(load_scenario("rope_through_torus", {}, GetParam()),
+                                             [](const Simulator& simulator, const FrameDiagnostics& frame) {
+                                               ASSERT_EQ(passages_through_torus(simulator), -1) << "frame " << frame.frame;
+                                             });
+  EXPECT_TRUE(report.is_free()) << report;
+}
+
+}  // namespace
+}  // namespace sprung::testing
