@@ -4,6 +4,7 @@
 #include "collision/mesh_inside.h"
 #include "collision/mesh_zone.h"
 #include "collision/usable_mesh.h"
+#include "collision/zone_drift.h"
 #include "geometry/closest_pair.h"
 #include "geometry/side_of_plane.h"
 #include "geometry/simplex_crossing.h"
@@ -39,6 +40,7 @@ MeshShape::MeshShape(const SequenceGeometry& geometry) : closed_(geometry.closed
   require_usable(sequence);
   for (const Points& frame : sequence.frames) magnitude_ = std::max(magnitude_, largest_coordinate(frame));
   tree_.emplace(TriangleMesh{sequence.frames.front(), sequence.triangles});
+  tree_before_.emplace(TriangleMesh{sequence.frames.front(), sequence.triangles});
   deforming_.emplace(geometry.sequence);
   deforms_ = sequence.deforms();
   set_interval(0.0, 0.0);
@@ -47,9 +49,13 @@ MeshShape::MeshShape(const SequenceGeometry& geometry) : closed_(geometry.closed
 void MeshShape::set_interval(double t, double t_end) {
   if (!deforming_) return;
   deforming_->set_interval(t, t_end);
-  const auto [from, to] = deforming_->sweep();
-  if (deforming_->sweep_is_new()) tree_->refit(from, to);
+  if (deforming_->sweep_is_new()) {
+    const auto [from, to] = deforming_->sweep();
+    tree_->refit(from, to);
+    tree_before_->refit(from, to);
+  }
   tree_->set_positions(deforming_->after().vertices);
+  tree_before_->set_positions(deforming_->before());
   bounds_ = tree_->bounds();
 }
 
@@ -96,7 +102,29 @@ std::optional<Crossing> MeshShape::first_crossing(const Vector3& a, const Vector
 }
 
 void MeshShape::find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const {
+  if (deforms_) return find_deforming_zone(element, request, zone);
   sprung::find_zone(*tree_, element, request, zone);
+}
+
+void MeshShape::find_deforming_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const {
+  const MeshTree& present = request.at_end ? *tree_ : *tree_before_;
+  sprung::find_zone(present, element, request, zone);
+  zone.travelled = deforming_->travelled();
+  if (zone.triangle != kNone) {
+    const auto [a, b, c] = present.corners(zone.triangle);
+    zone.triangle_weights = barycentric(closest_point_on_triangle(zone.point, a, b, c), a, b, c);
+  }
+  if (request.at_end || deforming_->largest_displacement() == 0.0 || zone.broken) return;
+  if (zone.triangle != kNone) {
+    zone.drift = deforming_->position(deforming_->after().vertices, zone.triangle, zone.triangle_weights) -
+                 deforming_->position(deforming_->before(), zone.triangle, zone.triangle_weights);
+  }
+  take_along(*tree_before_, *tree_, zone);
+}
+
+void MeshShape::follow_point(Zone& zone) const {
+  if (!deforms_ || zone.triangle == kNone) return;
+  zone.point = deforming_->position(deforming_->after().vertices, zone.triangle, zone.triangle_weights);
 }
 
 bool MeshShape::touches(const ElementCorners& element, double tolerance) const {

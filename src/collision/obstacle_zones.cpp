@@ -95,7 +95,10 @@ ZoneDemand ObstacleZones::demand(Index p, Index k, const Way& way) const {
   const Patch& patch = patches_[at(p)];
   const std::vector<Index>& particles = surface_.patches[at(p)].particles;
   const Box3 box = finite_bounds(way.from, particles).merged(finite_bounds(way.to, particles));
-  ZoneDemand demand{.size = patch.size, .gap = patch.thickness + set_.obstacle(k).material.thickness, .margin = margin_};
+  ZoneDemand demand{.size = patch.size,
+                    .gap = patch.thickness + set_.obstacle(k).material.thickness,
+                    .margin = margin_,
+                    .at_end = way.obstacles_rest};
   demand.clearance = box.isEmpty() ? 0.0 : set_.clearance(k, box.min(), box.max());
   demand.gap = std::max(demand.gap, demand.clearance);
   return demand;
@@ -139,14 +142,14 @@ void ObstacleZones::append_particle_contacts(Index p, const PatchZones& zones, c
   const Index k = zones.obstacle();
   const std::vector<Index>& particles = surface_.patches[at(p)].particles;
   const ZoneDemand needed = demand(p, k, way);
+  const double reach = needed.gap + needed.margin + set_.shape(k).largest_displacement();
   for (Index slot = 0; slot < static_cast<Index>(particles.size()); ++slot) {
     const Index i = particles[at(slot)];
     if (slots_of(i).front().patch != p) continue;
     const Vector3 from = way.from.col(i);
     const Vector3 to = way.to.col(i);
     if (!from.allFinite() || !to.allFinite()) continue;
-    const bool known = !set_.shape(k).deforms();
-    if (known && !zones.may_touch(slot, set_.local_before(k, from), set_.local(k, to), needed.gap + needed.margin)) continue;
+    if (!zones.may_touch(slot, set_.local_before(k, from), set_.local(k, to), reach)) continue;
     const auto contact = find_contact(set_, k, {i, from, to, surface_.thickness[i], margin_});
     if (contact) contacts.push_back(*contact);
   }
@@ -172,6 +175,7 @@ void ObstacleZones::append_element_contacts(Index p, const PatchZones& zones, co
       contact.weights[at(contact.count++)] = zone.weights[static_cast<Index>(c)];
       sum += zone.weights[static_cast<Index>(c)] * way.to.col(i);
     }
+    contact.drift = set_.drift(k, contact.point);
     contact.distance = contact.normal.dot(sum - contact.point);
     contact.clearance = set_.clearance(k, sum, sum);
     const double gap = std::max(thickness + set_.obstacle(k).material.thickness, contact.clearance);

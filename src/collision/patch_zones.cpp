@@ -33,12 +33,36 @@ PatchZones::PatchZones(Index obstacle, const PatchTopology& topology)
 
 void PatchZones::follow(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
                         const ZoneDemand& demand) {
+  travelled_ = shape.travelled();
+  if (shape.deforms()) follow_surface(shape, topology, paths, demand);
   mark(topology, paths, demand);
   make_marked(shape, topology, paths, demand);
 }
 
+// Which way the surface came nearer is not asked: zones that it may have left too small to hold their element are made again.
+void PatchZones::follow_surface(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
+                                const ZoneDemand& demand) {
+  for (Index e = 0; e < topology.element_count(); ++e) {
+    Zone& zone = zones_[at(e)];
+    if (zone.travelled == travelled_) continue;
+    shape.follow_point(zone);
+    const auto& [slots, count] = topology.corners(e);
+    const bool held =
+        std::all_of(slots.begin(), slots.begin() + count, [&](Index i) { return planes_hold(zone, paths.to[at(i)]); });
+    const bool stale = zone.triangle != kNone && travelled_ - zone.travelled > kFreshPart * demand.gap;
+    if (stale || !held) marked_[at(e)] = 1;
+  }
+}
+
+bool PatchZones::planes_hold(const Zone& zone, const Vector3& p) const {
+  std::array<HalfSpace, Zone::kMostPlanes> planes = zone.planes;
+  for (HalfSpace& plane : planes) plane.offset += travelled_ - zone.travelled;
+  return is_feasible({planes.data(), at(zone.plane_count)}, p);
+}
+
 void PatchZones::renew(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand,
                        std::span<const Index> slots) {
+  travelled_ = shape.travelled();
   for (const Index slot : slots) {
     for (const Index e : topology.elements_of(slot)) marked_[at(e)] = 1;
   }
@@ -51,7 +75,7 @@ void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, co
   for (Index i = 0; i < topology.slot_count(); ++i) {
     Slot& slot = slots_[at(i)];
     const Vector3& to = paths.to[at(i)];
-    const bool leaves = !slot.box.contains(to);
+    const bool leaves = !present_box(slot).contains(to);
     const bool stale = slot.near && (to - slot.settled).squaredNorm() > fresh * fresh;
     if (stale) slot.settled = to;
     if (!leaves && !stale && !slot.broken) continue;
@@ -66,7 +90,8 @@ void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, co
 void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
                              const ZoneDemand& demand) {
   const double least_reach = std::max(kReachOfSize * demand.size, kReachOfGap * demand.gap);
-  ZoneRequest request{.gap = demand.gap, .clearance = demand.clearance, .exact = demand.gap + demand.margin};
+  ZoneRequest request{
+      .gap = demand.gap, .clearance = demand.clearance, .exact = demand.gap + demand.margin, .at_end = demand.at_end};
   for (Index e = 0; e < topology.element_count(); ++e) {
     if (marked_[at(e)] == 0) continue;
     const PatchTopology::Corners& corners = topology.corners(e);
@@ -84,7 +109,7 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
     } else {
       zones_[at(e)] = Zone{.broken = true};
     }
-    made_around_[at(e)] = element.x;
+    for (std::size_t k = 0; k < at(corners.count); ++k) made_around_[at(e)][k] = element.x[k] + zones_[at(e)].drift;
   }
   for (Index i = 0; i < topology.slot_count(); ++i) {
     const auto elements = topology.elements_of(i);
@@ -98,6 +123,7 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
   Slot& slot = slots_[at(i)];
   const bool was_near = slot.near;
   slot.box = Box3(Vector3::Constant(-kInfinity), Vector3::Constant(kInfinity));
+  slot.travelled = travelled_;
   slot.bounded = slot.near = slot.broken = false;
   slot.quiet = 0.0;
   for (const Index e : topology.elements_of(i)) {
@@ -106,17 +132,18 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
     slot.near = slot.near || zone.distance < demand.gap + demand.margin;
     slot.bounded = slot.bounded || zone.plane_count > 0;
     if (zone.broken) continue;
-    slot.box = slot.box.intersection(zone.box);
+    const double nearer = travelled_ - zone.travelled;
+    slot.box = slot.box.intersection(shrunk(zone.box, nearer));
     const auto& slots = topology.corners(e).slots;
     const auto corner = static_cast<std::size_t>(std::find(slots.begin(), slots.end(), i) - slots.begin());
     const Vector3& made_at = made_around_[at(e)][corner];
-    if (zone.clear > slot.quiet) {
-      slot.quiet = zone.clear;
+    if (zone.clear - nearer > slot.quiet) {
+      slot.quiet = zone.clear - nearer;
       slot.centre = made_at;
     }
     if (zone.free_radius == kInfinity) continue;
     // The cube within the ball.
-    const Vector3 radius = Vector3::Constant(zone.free_radius / std::sqrt(3.0));
+    const Vector3 radius = Vector3::Constant((zone.free_radius - nearer) / std::sqrt(3.0));
     slot.box = slot.box.intersection(Box3(made_at - radius, made_at + radius));
   }
   if (slot.near && !was_near) slot.settled = slot.box.center();
@@ -124,13 +151,10 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
 
 bool PatchZones::allow(const PatchTopology& topology, Index i, const Vector3& p) const {
   const Slot& slot = slots_[at(i)];
-  if (!slot.box.contains(p)) return false;
+  if (!present_box(slot).contains(p)) return false;
   if (!slot.bounded) return true;
   const auto elements = topology.elements_of(i);
-  return std::all_of(elements.begin(), elements.end(), [&](Index e) {
-    const Zone& zone = zones_[at(e)];
-    return is_feasible({zone.planes.data(), at(zone.plane_count)}, p);
-  });
+  return std::all_of(elements.begin(), elements.end(), [&](Index e) { return planes_hold(zones_[at(e)], p); });
 }
 
 void PatchZones::append_half_spaces(const PatchTopology& topology, Index i, const RigidTransform& pose,
@@ -139,15 +163,16 @@ void PatchZones::append_half_spaces(const PatchTopology& topology, Index i, cons
     const Vector3 turned = pose.linear() * normal;
     half_spaces.push_back({turned, offset + turned.dot(pose.translation())});
   };
-  const Slot& slot = slots_[at(i)];
+  const Box3 box = present_box(slots_[at(i)]);
   for (int axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(slot.box.min()[axis])) continue;
-    append(Vector3::Unit(axis), slot.box.min()[axis]);
-    append(-Vector3::Unit(axis), -slot.box.max()[axis]);
+    if (!std::isfinite(box.min()[axis])) continue;
+    append(Vector3::Unit(axis), box.min()[axis]);
+    append(-Vector3::Unit(axis), -box.max()[axis]);
   }
   for (const Index e : topology.elements_of(i)) {
     const Zone& zone = zones_[at(e)];
-    for (std::size_t k = 0; k < at(zone.plane_count); ++k) append(zone.planes[k].normal, zone.planes[k].offset);
+    const double nearer = travelled_ - zone.travelled;
+    for (std::size_t k = 0; k < at(zone.plane_count); ++k) append(zone.planes[k].normal, zone.planes[k].offset + nearer);
   }
 }
 

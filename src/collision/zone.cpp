@@ -13,6 +13,8 @@ constexpr double kTouching = 0x1p-12;
 
 }  // namespace
 
+Box3 shrunk(const Box3& box, double margin) { return {box.min().array() + margin, box.max().array() - margin}; }
+
 Box3 box_around(const ElementCorners& element, double reach) {
   Box3 box;
   for (int i = 0; i < element.count; ++i) box.extend(element.x[static_cast<std::size_t>(i)]);

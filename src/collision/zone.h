@@ -19,9 +19,11 @@ struct ZoneRequest {
   double gap = 0.0;        ///< what contact keeps between element and obstacle: planes stand off by at most half of it
   double clearance = 0.0;  ///< planes stand off at least this much, above rounding, where the element does too
   double exact = 0.0;      ///< nearest points are to be the true ones where they are nearer than this; may be 0
+  bool at_end = false;     ///< the element is where it is at the end of the obstacle's interval; else at its begin
 };
 
-/// What the box and the half-spaces have in common holds the element and, at the end of the interval, nothing of the obstacle.
+/// What the box and the half-spaces have in common holds the element and, at the end of the interval, nothing of the obstacle. A
+/// surface that deforms from the interval's begin, where the element is, to its end takes the zone along.
 struct Zone {
   static constexpr int kMostPlanes = 4;
 
@@ -40,7 +42,15 @@ struct Zone {
   Vector3 normal = Vector3::Zero();                           ///< from it to the element, unit length
   Vector3 weights = Vector3::Zero();                          ///< of the element's corners; their sum is 1
   Index triangle = kNone;                                     ///< of the obstacle; where the next search may begin
+
+  // Before a surface that deforms:
+  Vector3 drift = Vector3::Zero();             ///< how far it took the zone along [m]
+  Vector3 triangle_weights = Vector3::Zero();  ///< of the triangle's corners at `point`; their sum is 1
+  double travelled = 0.0;                      ///< of the surface at the end of the zone's interval [m], see ObstacleShape
 };
+
+/// The box, smaller by `margin` [m] >= 0 on each side; nothing is in it when the sides pass each other.
+[[nodiscard]] Box3 shrunk(const Box3& box, double margin);
 
 /// The box around the element, `reach` [m] larger on each side.
 [[nodiscard]] Box3 box_around(const ElementCorners& element, double reach);

@@ -1,0 +1,75 @@
+#include "collision/zone_drift.h"
+
+#include "collision/walk_stack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// 0 for the children whose boxes meet the box, infinity for the others.
+void mark_children(const MeshTree::Node& node, const Box3& box, TreeLanes& bounds) {
+  bounds = TreeLanes{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const float low = std::nextafter(static_cast<float>(box.min()[axis]), -kInfinity);
+    const float high = std::nextafter(static_cast<float>(box.max()[axis]), kInfinity);
+    bounds = (node.min[axis] > high) | (node.max[axis] < low) ? TreeLanes{} + kInfinity : bounds;
+  }
+}
+
+/// The square of the farthest that a corner of the block's triangles goes otherwise than by `drift`.
+double farthest_otherwise(const TriangleBlock& before, const TriangleBlock& after, const Vector3& drift) {
+  BlockLanes farthest{};
+  for (int k = 0; k < 3; ++k) {
+    BlockLanes squared{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const BlockLanes otherwise = after.corner[k][axis] - before.corner[k][axis] - drift[axis];
+      squared += otherwise * otherwise;
+    }
+    farthest = squared > farthest ? squared : farthest;
+  }
+  double result = 0.0;
+  for (int lane = 0; lane < kBlockLanes; ++lane) result = std::max(result, farthest[lane]);
+  return result;
+}
+
+/// The farthest that a corner of any triangle near the box goes otherwise than by `drift` [m].
+double farthest_otherwise(const MeshTree& before, const MeshTree& after, const Box3& box, const Vector3& drift) {
+  double farthest2 = 0.0;
+  WalkStack stack(after.stack_size());
+  stack.push({0.0F, 0});
+  while (!stack.empty()) {
+    const std::int32_t child = stack.pop().child;
+    if (child < 0) {
+      farthest2 = std::max(farthest2, farthest_otherwise(before.block(~child), after.block(~child), drift));
+      continue;
+    }
+    TreeLanes bounds;
+    mark_children(after.node(child), box, bounds);
+    stack.push_within(bounds, after.node(child).child, 0.0F);
+  }
+  return std::sqrt(farthest2);
+}
+
+}  // namespace
+
+void take_along(const MeshTree& before, const MeshTree& after, Zone& zone) {
+  const Vector3& drift = zone.drift;
+  const Box3 way = zone.box.merged(zone.box.translated(drift));
+  const double otherwise = farthest_otherwise(before, after, way, drift);
+  zone.box = shrunk(zone.box.translated(drift), otherwise);
+  for (int k = 0; k < zone.plane_count; ++k) {
+    HalfSpace& plane = zone.planes[static_cast<std::size_t>(k)];
+    plane.offset += plane.normal.dot(drift) + otherwise;
+  }
+  zone.free_radius -= otherwise;
+  zone.clear = std::max(0.0, zone.clear - otherwise);
+  zone.point += drift;
+}
+
+}  // namespace sprung
