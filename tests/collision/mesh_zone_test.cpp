@@ -1,6 +1,5 @@
 #include "collision/mesh_zone.h"
 
-#include "collision/segment_triangle.h"
 #include "collision/zone_builder.h"
 #include "sample_meshes.h"
 #include "zone_trials.h"
@@ -32,7 +31,7 @@ void expect_no_crossing(const TriangleMesh& mesh, double size, double height, in
     Zone zone;
     zone.triangle = trial % 2 == 0 ? kNone : random.below(triangles);
     find_zone(tree, element, request, zone);
-    ASSERT_EQ(zone.broken, crosses(element, tree, triangles)) << "trial " << trial;
+    ASSERT_EQ(zone.broken, crosses(element, mesh)) << "trial " << trial;
     if (zone.broken) continue;
     ++zones;
     for (int i = 0; i < element.count; ++i) {
@@ -45,7 +44,7 @@ void expect_no_crossing(const TriangleMesh& mesh, double size, double height, in
         auto& corner = moved.x[static_cast<std::size_t>(i)];
         corner = moved_within(zone, corner, request.reach, random);
       }
-      ASSERT_FALSE(crosses(moved, tree, triangles)) << "trial " << trial << " with " << zone.plane_count << " planes";
+      ASSERT_FALSE(crosses(moved, mesh)) << "trial " << trial << " with " << zone.plane_count << " planes";
     }
   }
   EXPECT_GT(zones, trials / 5);
