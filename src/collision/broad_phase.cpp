@@ -51,6 +51,13 @@ RigidTransform turn_of(const ObstacleGeometry& geometry) {
   return turn;
 }
 
+/// FCL would fit the box of a mesh to where its vertices are at the interval's end.
+void fit_box(const Box3& box, fcl::CollisionGeometry<double>& geometry) {
+  geometry.aabb_local = fcl::AABB<double>(box.min(), box.max());
+  geometry.aabb_center = box.center();
+  geometry.aabb_radius = 0.5 * box.diagonal().norm();
+}
+
 bool add_obstacle(fcl::CollisionObject<double>* object, fcl::CollisionObject<double>* /*query*/, void* found) {
   static_cast<std::vector<Index>*>(found)->push_back(*static_cast<const Index*>(object->getUserData()));
   return false;
@@ -69,8 +76,8 @@ BroadPhase::BroadPhase(const std::vector<Obstacle>& obstacles, const std::vector
       continue;
     }
     const auto fcl_shape = std::visit([&](const auto& of_kind) { return fcl_geometry(of_kind, *shapes[k]); }, geometry);
-    Object& added =
-        objects_.emplace_back(Object{std::make_unique<fcl::CollisionObject<double>>(fcl_shape), turn_of(geometry), number});
+    Object& added = objects_.emplace_back(
+        Object{std::make_unique<fcl::CollisionObject<double>>(fcl_shape), fcl_shape, shapes[k].get(), turn_of(geometry), number});
     added.object->setUserData(&added.obstacle);
     manager_.registerObject(added.object.get());
   }
@@ -80,6 +87,7 @@ BroadPhase::BroadPhase(const std::vector<Obstacle>& obstacles, const std::vector
 
 void BroadPhase::move(const std::vector<RigidTransform>& poses) {
   for (Object& object : objects_) {
+    if (object.shape->deforms()) fit_box(object.shape->bounds(), *object.geometry);
     object.object->setTransform(poses[object.obstacle] * object.turn);
     object.object->computeAABB();
   }

@@ -15,7 +15,7 @@ namespace sprung {
 /// largest double, overflow in its tree's sums), and are compared with the box themselves.
 class BroadPhase {
  public:
-  /// Requires one shape per obstacle, made of its geometry. Obstacles are placed at `poses`.
+  /// Requires one shape per obstacle, made of its geometry, and keeps references to them. Obstacles are placed at `poses`.
   BroadPhase(const std::vector<Obstacle>& obstacles, const std::vector<std::unique_ptr<ObstacleShape>>& shapes,
              const std::vector<RigidTransform>& poses);
 
@@ -28,6 +28,8 @@ class BroadPhase {
  private:
   struct Object {
     std::unique_ptr<fcl::CollisionObject<double>> object;
+    std::shared_ptr<fcl::CollisionGeometry<double>> geometry;
+    const ObstacleShape* shape;
     RigidTransform turn;  ///< from FCL's frame of the shape, whose axis is z, to ours
     Index obstacle;
   };

@@ -82,9 +82,6 @@ void MeshTree::refit(const Points& from, const Points& to) {
   }
   model_->endUpdateModel();
   const Box3 box = bounds();
-  model_->aabb_local = model_->getBV(0).bv;
-  model_->aabb_center = box.center();
-  model_->aabb_radius = 0.5 * box.diagonal().norm();
   magnitude_ = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
   parallel_chunks(static_cast<Index>(nodes_.size()), kNodesPerTask, [&](Index begin, Index end) {
     for (Index node = begin; node < end; ++node) fit_boxes(static_cast<std::size_t>(node));

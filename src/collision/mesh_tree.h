@@ -52,7 +52,7 @@ class MeshTree {
   /// all their triangles. Of triangles met at the same fraction the lowest index.
   [[nodiscard]] std::optional<Hit> first_hit(const Vector3& a, const Vector3& b, CrossingSides sides) const;
 
-  /// FCL's model, for its broad phase; the box that it knows itself by is `bounds`.
+  /// FCL's model, for its broad phase.
   [[nodiscard]] const std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>>& model() const { return model_; }
 
   /// Boxes around the children, a lane a child: a node's number, or ~i for block i. Lanes without a child have an empty box.

@@ -255,6 +255,16 @@ TEST(DeformingObstacle, IsFoundWhereItHasGrownTo) {
   EXPECT_EQ(test::intersections(environment, inside).inside.size(), 1U);
 }
 
+TEST(DeformingObstacle, IsFoundWhereItIsNoneOfItsFrames) {
+  Environment environment({deforming(
+      sequence_of(test::flat_sheet(4), 2, [](const Vector3& x, int k) { return Vector3(x + Vector3(0.0, 3.0 * k, 0.0)); }),
+      false)});
+  const Points above = Vector3(0.3, 1.6, 0.4);
+  EXPECT_FALSE(environment.min_distance(above, 0.2));
+  environment.set_interval(0.0, 0.05);
+  EXPECT_NEAR(*environment.min_distance(above, 0.2), 0.1, 1e-15);
+}
+
 TEST(DeformingObstacle, SurfaceVelocityAddsDeformingToMotion) {
   // Stretches to twice its length along x in 0.1 s, and is driven along z at 3 m/s.
   Obstacle sheet = deforming(

@@ -1,0 +1,115 @@
+// Obstacles that deform: what they carry, push and rub.
+#include "simulation/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace sprung {
+namespace {
+
+using testing::all_integrators;
+using testing::kGravity;
+using testing::one_particle;
+using testing::run;
+
+/// A level sheet of 8 x 8 m about the origin, two triangles a square metre.
+TriangleMesh sheet() {
+  constexpr Index kSide = 8;
+  TriangleMesh mesh{Points(3, (kSide + 1) * (kSide + 1)), Triangles(3, 2 * kSide * kSide)};
+  for (Index j = 0; j <= kSide; ++j) {
+    for (Index i = 0; i <= kSide; ++i) mesh.vertices.col(j * (kSide + 1) + i) = Vector3(i - 0.5 * kSide, 0.0, j - 0.5 * kSide);
+  }
+  for (Index j = 0; j < kSide; ++j) {
+    for (Index i = 0; i < kSide; ++i) {
+      const Index a = j * (kSide + 1) + i;
+      mesh.triangles.col(2 * (j * kSide + i)) << a, a + kSide + 1, a + 1;
+      mesh.triangles.col(2 * (j * kSide + i) + 1) << a + 1, a + kSide + 1, a + kSide + 2;
+    }
+  }
+  return mesh;
+}
+
+/// Goes from the mesh to `deform(position)` of it in one second.
+template <class Deform>
+Obstacle deforming(const TriangleMesh& mesh, const ContactMaterial& material, const Deform& deform) {
+  MeshSequence sequence{.triangles = mesh.triangles, .frames = {mesh.vertices, mesh.vertices}, .frame_rate = 1.0};
+  for (Index i = 0; i < mesh.vertices.cols(); ++i) sequence.frames[1].col(i) = deform(Vector3(mesh.vertices.col(i)));
+  return {
+      .name = "sheet", .geometry = SequenceGeometry{std::make_shared<const MeshSequence>(sequence), false}, .material = material};
+}
+
+class DeformingObstacle : public ::testing::TestWithParam<std::size_t> {
+ protected:
+  [[nodiscard]] SimulatorSettings settings() const { return {.step = 1e-3, .integrator = all_integrators()[GetParam()]}; }
+};
+
+INSTANTIATE_TEST_SUITE_P(Integrators, DeformingObstacle, ::testing::Range(std::size_t{0}, std::size_t{3}));
+
+TEST_P(DeformingObstacle, RisingSheetCarriesAParticleAtItsThickness) {
+  const Obstacle rising =
+      deforming(sheet(), {}, [](const Vector3& x) { return Vector3(x + Vector3(0.0, 0.5 + 0.1 * x.x(), 0.0)); });
+  Simulator simulator(one_particle({0.3, 0.01, 0.2}, {.thickness = 0.01}), settings(), {rising});
+  run(simulator, 0.5);
+  // The slope of 1 in 20 that it gets moves the foot of the gap by 1 % of 1/20, the height by the slope's cosine: 1e-5 m. Sliding
+  // down it, 1/2 g a t^2 with a up to 1/20 makes 1 cm, and 1 cm a twentieth of that in height.
+  EXPECT_NEAR(simulator.positions()(1, 0), 0.01 + 0.25 + 0.5 * 0.1 * simulator.positions()(0, 0), 3e-5);
+}
+
+TEST_P(DeformingObstacle, SheetThatGoesAlongRubsAsOneThatIsMoved) {
+  const double mu = 0.2;
+  const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
+  const Obstacle sliding = deforming(sheet(), rough, [](const Vector3& x) { return Vector3(x + Vector3(1.0, 0.0, 0.0)); });
+  Obstacle moved = deforming(sheet(), rough, [](const Vector3& x) { return x; });
+  moved.motion.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {1.0, 0.0, 0.0}}};
+  Simulator by_frames(one_particle({0.3, 0.02, 0.2}, rough), settings(), {sliding});
+  Simulator by_motion(one_particle({0.3, 0.02, 0.2}, rough), settings(), {moved});
+  run(by_frames, 0.9);
+  run(by_motion, 0.9);
+  // The two add up the same steps in different orders.
+  EXPECT_LT((by_frames.positions() - by_motion.positions()).norm(), 1e-9);
+  // Friction speeds the particle up to 1 m/s in 1 / (mu g) s, on half a metre less than the sheet goes.
+  const double behind = 0.5 / (mu * kGravity);
+  EXPECT_NEAR(by_frames.positions()(0, 0), 0.3 + 0.9 - behind, 2e-3);
+  EXPECT_NEAR(by_frames.state().v(0, 0), 1.0, 1e-9);
+}
+
+TEST_P(DeformingObstacle, StretchingSheetHoldsAParticleOnItsSpot) {
+  const ContactMaterial rough{.thickness = 0.01, .friction = 2.0, .static_friction = 2.0};
+  const Obstacle stretching = deforming(sheet(), rough, [](const Vector3& x) { return Vector3(2.0 * x.x(), x.y(), x.z()); });
+  Simulator simulator(one_particle({0.8, 0.02, 0.2}, rough), settings(), {stretching});
+  run(simulator, 1.0);
+  // The spot under it goes from 0.8 m to 1.6 m at 0.8 m/s. Friction takes 0.8 / (mu g) s to speed it up, and its spot is 1.6 cm
+  // away by then; what it then rests on grows as the sheet does.
+  EXPECT_NEAR(simulator.positions()(0, 0), 1.6, 2.0 * 0.5 * 0.8 * 0.8 / (2.0 * kGravity));
+  EXPECT_NEAR(simulator.state().v(0, 0), simulator.positions()(0, 0) / 2.0, 1e-3);
+}
+
+TEST_P(DeformingObstacle, PenaltyRubsAtTheSpeedOfTheSurface) {
+  const ContactMaterial rough{.thickness = 0.01, .friction = 0.5, .static_friction = 0.5};
+  SimulatorSettings chosen = settings();
+  chosen.contact = {.response = ContactSettings::Response::penalty, .stiffness = 500.0, .damping = 2.0};
+  const Obstacle sliding = deforming(sheet(), rough, [](const Vector3& x) { return Vector3(x + Vector3(1.0, 0.0, 0.0)); });
+  Simulator simulator(one_particle({0.3, 0.009, 0.2}, rough), chosen, {sliding});
+  run(simulator, 0.9);
+  EXPECT_NEAR(simulator.state().v(0, 0), 1.0, 1e-6);
+}
+
+TEST_P(DeformingObstacle, ThinSheetThatFlapsThroughAClothTakesItAlong) {
+  // It goes up 0.8 m in a sixteenth of a second: 13 m/s, 13 mm a step, each square at its own pace.
+  const Obstacle flapping = [] {
+    Obstacle obstacle = deforming(sheet(), {}, [](const Vector3& x) {
+      return Vector3(x + Vector3(0.0, 0.8 + 0.2 * std::sin(3.0 * x.x()) * std::cos(2.0 * x.z()), 0.0));
+    });
+    MeshSequence faster = *std::get<SequenceGeometry>(obstacle.geometry).sequence;
+    faster.frame_rate = 16.0;
+    for (Points& frame : faster.frames) frame.topRows(1) *= 0.25;
+    for (Points& frame : faster.frames) frame.bottomRows(1) *= 0.25;
+    std::get<SequenceGeometry>(obstacle.geometry).sequence = std::make_shared<const MeshSequence>(faster);
+    return obstacle;
+  }();
+  Simulator simulator(testing::cloth(9, 0.1, {.thickness = 0.005}), settings(), {flapping});
+  for (int step = 0; step < 62; ++step) simulator.step();
+  for (Index i = 0; i < 81; ++i) EXPECT_GT(simulator.positions()(1, i), 0.55) << i;
+}
+
+}  // namespace
+}  // namespace sprung
