@@ -48,7 +48,7 @@ void ObstacleZones::follow(const Way& way) {
       find_near(p, way, carried);
       for (PatchZones& zones : patches_[at(p)].zones) {
         find_paths(p, zones.obstacle(), way, paths);
-        zones.follow(set_.shape(zones.obstacle()), patches_[at(p)].topology, paths, demand(p, zones.obstacle(), way));
+        zones.follow(set_.shape(zones.obstacle()), patches_[at(p)].topology, paths, demand(patches_[at(p)], zones.obstacle(), way));
       }
     }
   });
@@ -57,12 +57,12 @@ void ObstacleZones::follow(const Way& way) {
 void ObstacleZones::find_near(Index p, const Way& way, double carried) {
   Patch& patch = patches_[at(p)];
   const std::vector<Index>& particles = surface_.patches[at(p)].particles;
-  const Box3 box = finite_bounds(way.from, particles).merged(finite_bounds(way.to, particles));
+  patch.box = finite_bounds(way.from, particles).merged(finite_bounds(way.to, particles));
   std::vector<Index> near;
-  if (!box.isEmpty()) {
-    const double gap = std::max(patch.thickness + set_.max_thickness(), set_.max_clearance(box));
+  if (!patch.box.isEmpty()) {
+    const double gap = std::max(patch.thickness + set_.max_thickness(), set_.max_clearance(patch.box));
     // Once for the way in the frame of an obstacle that comes, once more where another has carried the particle.
-    set_.find_near(grown(box, gap + margin_ + 2.0 * carried), near);
+    set_.find_near(grown(patch.box, gap + margin_ + 2.0 * carried), near);
   }
   if (std::equal(near.begin(), near.end(), patch.zones.begin(), patch.zones.end(),
                  [](Index k, const PatchZones& zones) { return k == zones.obstacle(); })) {
@@ -91,15 +91,12 @@ void ObstacleZones::find_paths(Index p, Index k, const Way& way, PatchPaths& pat
   }
 }
 
-ZoneDemand ObstacleZones::demand(Index p, Index k, const Way& way) const {
-  const Patch& patch = patches_[at(p)];
-  const std::vector<Index>& particles = surface_.patches[at(p)].particles;
-  const Box3 box = finite_bounds(way.from, particles).merged(finite_bounds(way.to, particles));
+ZoneDemand ObstacleZones::demand(const Patch& patch, Index k, const Way& way) const {
   ZoneDemand demand{.size = patch.size,
                     .gap = patch.thickness + set_.obstacle(k).material.thickness,
                     .margin = margin_,
                     .at_end = way.obstacles_rest};
-  demand.clearance = box.isEmpty() ? 0.0 : set_.clearance(k, box.min(), box.max());
+  demand.clearance = patch.box.isEmpty() ? 0.0 : set_.clearance(k, patch.box.min(), patch.box.max());
   demand.gap = std::max(demand.gap, demand.clearance);
   return demand;
 }
@@ -115,7 +112,8 @@ void ObstacleZones::renew_around(const std::vector<Index>& particles, const Way&
       if (slots[at(p)].empty()) continue;
       for (PatchZones& zones : patches_[at(p)].zones) {
         find_paths(p, zones.obstacle(), way, paths);
-        zones.renew(set_.shape(zones.obstacle()), patches_[at(p)].topology, paths, demand(p, zones.obstacle(), way), slots[at(p)]);
+        zones.renew(set_.shape(zones.obstacle()), patches_[at(p)].topology, paths, demand(patches_[at(p)], zones.obstacle(), way),
+                    slots[at(p)]);
       }
     }
   });
@@ -141,7 +139,7 @@ void ObstacleZones::append_particle_contacts(Index p, const PatchZones& zones, c
                                              std::vector<Contact>& contacts) const {
   const Index k = zones.obstacle();
   const std::vector<Index>& particles = surface_.patches[at(p)].particles;
-  const ZoneDemand needed = demand(p, k, way);
+  const ZoneDemand needed = demand(patches_[at(p)], k, way);
   const double reach = needed.gap + needed.margin + set_.shape(k).largest_displacement();
   for (Index slot = 0; slot < static_cast<Index>(particles.size()); ++slot) {
     const Index i = particles[at(slot)];

@@ -45,13 +45,14 @@ class ObstacleZones {
   struct Patch {
     PatchTopology topology;
     std::vector<PatchZones> zones{};  ///< by obstacle, ascending: those that are near
+    Box3 box{};                       ///< around its particles' ways
     double size = 0.0;                ///< of its elements [m]
     double thickness = 0.0;           ///< the largest of its particles [m]
   };
 
   void find_near(Index patch, const Way& way, double carried);
   void find_paths(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
-  [[nodiscard]] ZoneDemand demand(Index patch, Index obstacle, const Way& way) const;
+  [[nodiscard]] ZoneDemand demand(const Patch& patch, Index obstacle, const Way& way) const;
   void append_particle_contacts(Index patch, const PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const;
   void append_element_contacts(Index patch, const PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const;
   [[nodiscard]] std::span<const PatchSlot> slots_of(Index particle) const;
