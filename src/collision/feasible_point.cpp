@@ -13,9 +13,7 @@ constexpr int kRounds = 8;
 // distance at which zones still tell apart (2^-42).
 constexpr double kRounding = 0x1p-48;
 
-double rounding(const HalfSpace& half_space, const Vector3& p) {
-  return kRounding * std::max(std::abs(half_space.offset), p.cwiseAbs().maxCoeff());
-}
+double rounding(const HalfSpace& half_space, double largest) { return kRounding * std::max(std::abs(half_space.offset), largest); }
 
 /// The part of the way from `safe` to `target` that stays in all half-spaces.
 double free_part(std::span<const HalfSpace> half_spaces, const Vector3& safe, const Vector3& target) {
@@ -40,7 +38,7 @@ Projected project(std::span<const HalfSpace> half_spaces, const Vector3& target)
     result.converged = true;
     for (const HalfSpace& half_space : half_spaces) {
       const double missing = half_space.offset - half_space.normal.dot(result.point);
-      if (missing <= rounding(half_space, result.point)) continue;
+      if (missing <= rounding(half_space, result.point.cwiseAbs().maxCoeff())) continue;
       result.point += missing * half_space.normal;
       result.converged = false;
     }
@@ -51,9 +49,10 @@ Projected project(std::span<const HalfSpace> half_spaces, const Vector3& target)
 
 }  // namespace
 
-bool is_feasible(std::span<const HalfSpace> half_spaces, const Vector3& p) {
+bool is_feasible(std::span<const HalfSpace> half_spaces, const Vector3& p, double nearer) {
+  const double largest = p.cwiseAbs().maxCoeff();
   return std::all_of(half_spaces.begin(), half_spaces.end(), [&](const HalfSpace& half_space) {
-    return half_space.normal.dot(p) >= half_space.offset - rounding(half_space, p);
+    return half_space.normal.dot(p) >= half_space.offset + nearer - rounding(half_space, largest);
   });
 }
 

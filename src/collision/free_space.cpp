@@ -66,7 +66,7 @@ FreeSpace& FreeSpace::operator=(FreeSpace&&) noexcept = default;
 
 void FreeSpace::follow(const Points& before, const Points& after) { implementation_->zones.follow({before, after}); }
 
-std::vector<Contact> FreeSpace::contacts(const Points& before, const Points& after) const {
+std::vector<Contact> FreeSpace::contacts(const Points& before, const Points& after) {
   return implementation_->zones.contacts({before, after});
 }
 

@@ -27,7 +27,7 @@ class FreeSpace {
 
   /// Contacts of particles (see Environment::contacts), and of obstacles with the inside of edges and faces: an edge over a spike,
   /// a face over a corner. Same order for any number of threads. Requires follow() with the same positions.
-  [[nodiscard]] std::vector<Contact> contacts(const Points& before, const Points& after) const;
+  [[nodiscard]] std::vector<Contact> contacts(const Points& before, const Points& after);
 
   struct Truncation {
     Index truncated = 0;  ///< particles stopped on their way

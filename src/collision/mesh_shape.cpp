@@ -73,6 +73,26 @@ std::optional<SurfacePoint> MeshShape::nearest(const Vector3& p, double radius) 
   return surface_point(p, *found);
 }
 
+std::optional<SurfacePoint> MeshShape::nearest_again(const Vector3& p, double radius, double same, double fresh,
+                                                     SurfaceMemory& memory) const {
+  if (deforms_) return nearest(p, radius);
+  std::optional<MeshTree::Nearest> found;
+  if (memory.triangle != kNone) {
+    const auto [a, b, c] = tree_->corners(memory.triangle);
+    found = {memory.triangle, closest_point_on_triangle(p, a, b, c)};
+    const bool within = found->closest.squared_distance < radius * radius;
+    const double moved = (p - memory.asked_at).norm();
+    if (moved < same || (moved < fresh && found->closest.feature == TriangleFeature::face)) {
+      return within ? std::optional(surface_point(p, *found)) : std::nullopt;
+    }
+    if (!within) found.reset();
+  }
+  const auto nearer = tree_->nearest(p, found ? std::sqrt(found->closest.squared_distance) : radius);
+  if (nearer) found = nearer;
+  memory = {found ? found->triangle : kNone, p};
+  return found ? std::optional(surface_point(p, *found)) : std::nullopt;
+}
+
 SurfacePoint MeshShape::surface_point(const Vector3& p, const MeshTree::Nearest& found) const {
   const auto& [triangle, closest] = found;
   const Vector3 away = p - closest.point;

@@ -23,6 +23,8 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] Vector3 displacement(const Vector3& p, double t, double t_end) const override;
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;
+  [[nodiscard]] std::optional<SurfacePoint> nearest_again(const Vector3& p, double radius, double same, double fresh,
+                                                          SurfaceMemory& memory) const override;
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override;
   void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const override;
   void follow_point(Zone& zone) const override;

@@ -16,8 +16,12 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Sums of three products of single precision are right to this part of the largest coordinate.
 constexpr float kPlaneRounding = 0x1p-20F;
 
-float below(double value) { return std::nextafter(static_cast<float>(value), -kInfinity); }
-float above(double value) { return std::nextafter(static_cast<float>(value), kInfinity); }
+// A float somewhat below or above.
+float below(double value) {
+  const auto nearest = static_cast<float>(value);
+  return nearest - (std::abs(nearest) * 0x1p-23F + std::numeric_limits<float>::min());
+}
+float above(double value) { return -below(-value); }
 
 /// A box whose sides are rounded outward, as the nodes' are.
 struct FloatBox {

@@ -17,6 +17,12 @@ struct SurfacePoint {
   double distance = 0.0;  ///< [m] along the normal; negative inside a closed shape
 };
 
+/// What the search for the surface near a particle found last, where the next one may begin.
+struct SurfaceMemory {
+  Index triangle = kNone;
+  Vector3 asked_at = Vector3::Zero();  ///< [m]
+};
+
 /// Where a straight path meets the surface for the first time.
 struct Crossing {
   double fraction = 0.0;  ///< of the path, in [0, 1]
@@ -46,6 +52,13 @@ class ObstacleShape {
   /// The surface nearest to p, if nearer than `radius` [m] or, for primitives, if p is inside. Deep inside a closed mesh (farther
   /// than radius) nothing is found: use `contains`. Where p is on the surface the normal is that of the face found there.
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const = 0;
+
+  /// The same, begun with what was found last. After a motion of less than `same` [m] the surface found may be that of the same
+  /// triangle, and after one of less than `fresh` [m] above the inside of its face.
+  [[nodiscard]] virtual std::optional<SurfacePoint> nearest_again(const Vector3& p, double radius, double /*same*/,
+                                                                  double /*fresh*/, SurfaceMemory& /*memory*/) const {
+    return nearest(p, radius);
+  }
 
   /// The first crossing of the path from a to b. A path that starts outside and meets the surface is never missed, edges and
   /// vertices between triangles included. Of closed shapes only the way in counts, so that what was caught inside can leave; a path

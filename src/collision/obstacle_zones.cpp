@@ -119,11 +119,11 @@ void ObstacleZones::renew_around(const std::vector<Index>& particles, const Way&
   });
 }
 
-std::vector<Contact> ObstacleZones::contacts(const Way& way) const {
+std::vector<Contact> ObstacleZones::contacts(const Way& way) {
   std::vector<std::vector<Contact>> parts(patches_.size());
   parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
     for (Index p = begin; p < end; ++p) {
-      for (const PatchZones& zones : patches_[at(p)].zones) {
+      for (PatchZones& zones : patches_[at(p)].zones) {
         append_particle_contacts(p, zones, way, parts[at(p)]);
         append_element_contacts(p, zones, way, parts[at(p)]);
       }
@@ -135,8 +135,7 @@ std::vector<Contact> ObstacleZones::contacts(const Way& way) const {
 }
 
 // A particle of several patches is looked at in its first.
-void ObstacleZones::append_particle_contacts(Index p, const PatchZones& zones, const Way& way,
-                                             std::vector<Contact>& contacts) const {
+void ObstacleZones::append_particle_contacts(Index p, PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const {
   const Index k = zones.obstacle();
   const std::vector<Index>& particles = surface_.patches[at(p)].particles;
   const ZoneDemand needed = demand(patches_[at(p)], k, way);
@@ -148,7 +147,7 @@ void ObstacleZones::append_particle_contacts(Index p, const PatchZones& zones, c
     const Vector3 to = way.to.col(i);
     if (!from.allFinite() || !to.allFinite()) continue;
     if (!zones.may_touch(slot, set_.local_before(k, from), set_.local(k, to), reach)) continue;
-    const auto contact = find_contact(set_, k, {i, from, to, surface_.thickness[i], margin_});
+    const auto contact = find_contact(set_, k, {i, from, to, surface_.thickness[i], margin_}, zones.memory(slot));
     if (contact) contacts.push_back(*contact);
   }
 }
@@ -158,9 +157,9 @@ void ObstacleZones::append_element_contacts(Index p, const PatchZones& zones, co
   const Index k = zones.obstacle();
   const RigidTransform& pose = set_.after(k);
   const ElementPatch& patch = surface_.patches[at(p)];
-  for (Index e = 0; e < patch.element_count; ++e) {
+  for (const Index e : zones.near_elements()) {
     const Zone& zone = zones.zone(e);
-    if (!std::isfinite(zone.distance) || zone.broken || zone.weights.maxCoeff() > kAtCorner) continue;
+    if (zone.broken || zone.weights.maxCoeff() > kAtCorner) continue;
     const Element& element = surface_.elements[at(patch.first_element + e)];
     Contact contact{.obstacle = k, .point = pose * zone.point, .normal = pose.linear() * zone.normal};
     Vector3 sum = Vector3::Zero();
@@ -185,7 +184,7 @@ bool ObstacleZones::allow(Index particle, const Vector3& position) const {
   for (const auto& [p, slot] : slots_of(particle)) {
     const Patch& patch = patches_[at(p)];
     for (const PatchZones& zones : patch.zones) {
-      if (!zones.allow(patch.topology, slot, set_.local(zones.obstacle(), position))) return false;
+      if (!zones.allow(slot, set_.local(zones.obstacle(), position))) return false;
     }
   }
   return true;
@@ -195,7 +194,7 @@ void ObstacleZones::append_half_spaces(Index particle, std::vector<HalfSpace>& h
   for (const auto& [p, slot] : slots_of(particle)) {
     const Patch& patch = patches_[at(p)];
     for (const PatchZones& zones : patch.zones) {
-      zones.append_half_spaces(patch.topology, slot, set_.after(zones.obstacle()), half_spaces);
+      zones.append_half_spaces(slot, set_.after(zones.obstacle()), half_spaces);
     }
   }
 }

@@ -30,7 +30,7 @@ class ObstacleZones {
 
   /// Contacts of particles (see Environment::contacts), then those of obstacles with the inside of elements, at the zones' nearest
   /// points; patch by patch. Requires follow() for the same way.
-  [[nodiscard]] std::vector<Contact> contacts(const Way& way) const;
+  [[nodiscard]] std::vector<Contact> contacts(const Way& way);
 
   /// Whether the zones of all elements around the particle hold it there, at the interval's end.
   [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
@@ -53,7 +53,7 @@ class ObstacleZones {
   void find_near(Index patch, const Way& way, double carried);
   void find_paths(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
   [[nodiscard]] ZoneDemand demand(const Patch& patch, Index obstacle, const Way& way) const;
-  void append_particle_contacts(Index patch, const PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const;
+  void append_particle_contacts(Index patch, PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const;
   void append_element_contacts(Index patch, const PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const;
   [[nodiscard]] std::span<const PatchSlot> slots_of(Index particle) const;
 

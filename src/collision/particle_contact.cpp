@@ -7,6 +7,10 @@ namespace sprung {
 
 namespace {
 
+// A surface point is looked for again after a motion of these parts of the gap: with older ones friction is no longer the law's.
+constexpr double kSame = 0.02;
+constexpr double kFresh = 0.3;
+
 /// Where a path meets a shape, in the shape's frame.
 struct LocalContact {
   Vector3 point;
@@ -18,33 +22,46 @@ LocalContact at(const SurfacePoint& surface) { return {surface.point, surface.no
 
 /// A path shorter than the distance of its end from the surface cannot have crossed it, so that a particle at rest costs one walk
 /// through the tree.
-std::optional<LocalContact> find_contact(const ObstacleShape& shape, const LocalPath& path, double reach) {
+template <class Nearest>
+std::optional<LocalContact> find_local(const ObstacleShape& shape, const LocalPath& path, double reach, const Nearest& nearest) {
   const double length = (path.end - path.begin).norm();
   const bool surface_first = length <= reach;
   std::optional<SurfacePoint> surface;
   if (surface_first) {
-    surface = shape.nearest(path.end, reach);
+    surface = nearest(path.end, reach);
     if (!surface) return std::nullopt;
     if (std::abs(surface->distance) > length + shape.rounding(path.end)) return at(*surface);
   }
   if (const auto crossing = shape.first_crossing(path.begin, path.end)) return at(*crossing);
-  if (!surface_first) surface = shape.nearest(path.end, reach);
+  if (!surface_first) surface = nearest(path.end, reach);
   if (!surface) return std::nullopt;
   return at(*surface);
 }
 
-}  // namespace
-
-std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const ParticlePath& path) {
+template <class Nearest>
+std::optional<Contact> find_with(const ObstacleSet& set, Index k, const ParticlePath& path, const Nearest& nearest) {
   const double clearance = set.clearance(k, path.before, path.after);
   const double gap = std::max(path.thickness + set.obstacle(k).material.thickness, clearance);
-  const auto found = find_contact(set.shape(k), set.local_path(k, path.before, path.after), gap + path.margin);
+  const auto found = find_local(set.shape(k), set.local_path(k, path.before, path.after), gap + path.margin,
+                                [&](const Vector3& p, double reach) { return nearest(p, reach, gap); });
   if (!found) return std::nullopt;
   Contact contact = particle_contact(path.particle, k, set.after(k) * found->point, set.after(k).linear() * found->normal);
   contact.drift = set.drift(k, contact.point);
   contact.distance = contact.normal.dot(path.after - contact.point);
   contact.clearance = clearance;
   return contact;
+}
+
+}  // namespace
+
+std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const ParticlePath& path) {
+  return find_with(set, k, path, [&](const Vector3& p, double reach, double) { return set.shape(k).nearest(p, reach); });
+}
+
+std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const ParticlePath& path, SurfaceMemory& memory) {
+  return find_with(set, k, path, [&](const Vector3& p, double reach, double gap) {
+    return set.shape(k).nearest_again(p, reach, kSame * gap, kFresh * gap, memory);
+  });
 }
 
 }  // namespace sprung

@@ -20,4 +20,8 @@ struct ParticlePath {
 /// See Environment::contacts.
 [[nodiscard]] std::optional<Contact> find_contact(const ObstacleSet& set, Index obstacle, const ParticlePath& path);
 
+/// The same, begun with what was found for the particle last, in the obstacle's frame.
+[[nodiscard]] std::optional<Contact> find_contact(const ObstacleSet& set, Index obstacle, const ParticlePath& path,
+                                                  SurfaceMemory& memory);
+
 }  // namespace sprung

@@ -18,7 +18,7 @@ constexpr double kReachOfGap = 0.8;
 constexpr double kReachOfMotion = 2.0;
 
 // Nearest points are looked for again after a motion of this part of the gap: friction goes wrong with older ones.
-constexpr double kFreshPart = 0.3;
+constexpr double kFreshPart = 1.0;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -55,9 +55,7 @@ void PatchZones::follow_surface(const ObstacleShape& shape, const PatchTopology&
 }
 
 bool PatchZones::planes_hold(const Zone& zone, const Vector3& p) const {
-  std::array<HalfSpace, Zone::kMostPlanes> planes = zone.planes;
-  for (HalfSpace& plane : planes) plane.offset += travelled_ - zone.travelled;
-  return is_feasible({planes.data(), at(zone.plane_count)}, p);
+  return is_feasible({zone.planes.data(), at(zone.plane_count)}, p, travelled_ - zone.travelled);
 }
 
 void PatchZones::renew(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand,
@@ -89,6 +87,7 @@ void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, co
 
 void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
                              const ZoneDemand& demand) {
+  if (std::find(marked_.begin(), marked_.end(), 1) == marked_.end()) return;
   const double least_reach = std::max(kReachOfSize * demand.size, kReachOfGap * demand.gap);
   ZoneRequest request{
       .gap = demand.gap, .clearance = demand.clearance, .exact = demand.gap + demand.margin, .at_end = demand.at_end};
@@ -116,6 +115,10 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
     if (std::any_of(elements.begin(), elements.end(), [&](Index e) { return marked_[at(e)] != 0; })) gather(topology, demand, i);
   }
   std::fill(marked_.begin(), marked_.end(), 0);
+  near_elements_.clear();
+  for (Index e = 0; e < topology.element_count(); ++e) {
+    if (zones_[at(e)].distance < demand.gap + demand.margin) near_elements_.push_back(e);
+  }
 }
 
 void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand, Index i) {
@@ -124,16 +127,19 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
   const bool was_near = slot.near;
   slot.box = Box3(Vector3::Constant(-kInfinity), Vector3::Constant(kInfinity));
   slot.travelled = travelled_;
-  slot.bounded = slot.near = slot.broken = false;
+  slot.near = slot.broken = false;
+  slot.planes.clear();
   slot.quiet = 0.0;
   for (const Index e : topology.elements_of(i)) {
     const Zone& zone = zones_[at(e)];
     slot.broken = slot.broken || zone.broken;
     slot.near = slot.near || zone.distance < demand.gap + demand.margin;
-    slot.bounded = slot.bounded || zone.plane_count > 0;
     if (zone.broken) continue;
     const double nearer = travelled_ - zone.travelled;
     slot.box = slot.box.intersection(shrunk(zone.box, nearer));
+    for (std::size_t k = 0; k < at(zone.plane_count); ++k) {
+      slot.planes.push_back({zone.planes[k].normal, zone.planes[k].offset + nearer});
+    }
     const auto& slots = topology.corners(e).slots;
     const auto corner = static_cast<std::size_t>(std::find(slots.begin(), slots.end(), i) - slots.begin());
     const Vector3& made_at = made_around_[at(e)][corner];
@@ -149,16 +155,12 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
   if (slot.near && !was_near) slot.settled = slot.box.center();
 }
 
-bool PatchZones::allow(const PatchTopology& topology, Index i, const Vector3& p) const {
+bool PatchZones::allow(Index i, const Vector3& p) const {
   const Slot& slot = slots_[at(i)];
-  if (!present_box(slot).contains(p)) return false;
-  if (!slot.bounded) return true;
-  const auto elements = topology.elements_of(i);
-  return std::all_of(elements.begin(), elements.end(), [&](Index e) { return planes_hold(zones_[at(e)], p); });
+  return present_box(slot).contains(p) && is_feasible(slot.planes, p, travelled_ - slot.travelled);
 }
 
-void PatchZones::append_half_spaces(const PatchTopology& topology, Index i, const RigidTransform& pose,
-                                    std::vector<HalfSpace>& half_spaces) const {
+void PatchZones::append_half_spaces(Index i, const RigidTransform& pose, std::vector<HalfSpace>& half_spaces) const {
   const auto append = [&](const Vector3& normal, double offset) {
     const Vector3 turned = pose.linear() * normal;
     half_spaces.push_back({turned, offset + turned.dot(pose.translation())});
@@ -169,11 +171,8 @@ void PatchZones::append_half_spaces(const PatchTopology& topology, Index i, cons
     append(Vector3::Unit(axis), box.min()[axis]);
     append(-Vector3::Unit(axis), -box.max()[axis]);
   }
-  for (const Index e : topology.elements_of(i)) {
-    const Zone& zone = zones_[at(e)];
-    const double nearer = travelled_ - zone.travelled;
-    for (std::size_t k = 0; k < at(zone.plane_count); ++k) append(zone.planes[k].normal, zone.planes[k].offset + nearer);
-  }
+  const double nearer = travelled_ - slots_[at(i)].travelled;
+  for (const HalfSpace& plane : slots_[at(i)].planes) append(plane.normal, plane.offset + nearer);
 }
 
 }  // namespace sprung

@@ -40,7 +40,7 @@ class PatchZones {
              std::span<const Index> slots);
 
   /// Whether the zones of all elements at the slot hold p.
-  [[nodiscard]] bool allow(const PatchTopology& topology, Index slot, const Vector3& p) const;
+  [[nodiscard]] bool allow(Index slot, const Vector3& p) const;
 
   /// Whether a path between these ends may come within `reach` [m] of the obstacle's surface: false for most that do not.
   [[nodiscard]] bool may_touch(Index slot, const Vector3& from, const Vector3& to, double reach) const {
@@ -50,8 +50,13 @@ class PatchZones {
   }
 
   /// Appends all that bounds the slot, placed in the world by `pose`.
-  void append_half_spaces(const PatchTopology& topology, Index slot, const RigidTransform& pose,
-                          std::vector<HalfSpace>& half_spaces) const;
+  void append_half_spaces(Index slot, const RigidTransform& pose, std::vector<HalfSpace>& half_spaces) const;
+
+  /// Elements that may touch, ascending.
+  [[nodiscard]] const std::vector<Index>& near_elements() const { return near_elements_; }
+
+  /// What the last search for the surface near a particle found.
+  [[nodiscard]] SurfaceMemory& memory(Index slot) { return slots_[static_cast<std::size_t>(slot)].memory; }
 
  private:
   struct Slot {
@@ -60,9 +65,10 @@ class PatchZones {
     Vector3 centre = Vector3::Zero();  ///< no surface is nearer to this point ...
     double quiet = 0.0;                ///< ... than this
     double travelled = 0.0;            ///< of the surface when these were gathered [m]
-    bool bounded = false;              ///< by planes
+    std::vector<HalfSpace> planes{};   ///< of all zones at it
     bool near = false;                 ///< an element at it may touch
     bool broken = false;
+    SurfaceMemory memory{};
   };
 
   void follow_surface(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
@@ -77,6 +83,7 @@ class PatchZones {
   std::vector<Zone> zones_;                          ///< by element
   std::vector<std::array<Vector3, 3>> made_around_;  ///< the corners when the zone was made
   std::vector<Slot> slots_;
+  std::vector<Index> near_elements_;
   std::vector<char> marked_;  ///< by element; 0 between calls
 };
 

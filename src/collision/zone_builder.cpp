@@ -10,9 +10,6 @@ namespace {
 // Edges are not looked at when corners and faces give a plane that separates by all but this part of the distance.
 constexpr double kPairSlack = 0.005;
 
-// The same where the nearest points are to be the true ones: all but rounding.
-constexpr double kExactSlack = 1e-12;
-
 // The box ends this far before a triangle, as a part of what lies between, so that rounding does not bring them together.
 constexpr double kBoxMargin = 0.02;
 
@@ -32,9 +29,7 @@ ZoneBuilder::ZoneBuilder(const ElementCorners& element, const ZoneRequest& reque
 
 void ZoneBuilder::look_at(Index triangle, const TriangleCorners& corners) {
   if (zone_.triangle != kNone && nearest_lowest_ - highest_along(zone_.normal, corners) >= zone_.distance) return;
-  const bool exact = zone_.distance < request_.exact;
-  ClosestPair pair = closest_pair(element_, corners, exact ? kExactSlack : kPairSlack);
-  if (!exact && pair.squared_distance < request_.exact * request_.exact) pair = closest_pair(element_, corners, kExactSlack);
+  const ClosestPair pair = closest_pair(element_, corners, kPairSlack, request_.exact);
   const double distance = std::sqrt(pair.squared_distance);
   if (!(distance < zone_.distance)) return;
   zone_.distance = distance;

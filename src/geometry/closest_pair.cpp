@@ -7,6 +7,9 @@ namespace sprung {
 
 namespace {
 
+// A plane that separates by all but this part of a distance proves it to be the least.
+constexpr double kRounding = 1e-12;
+
 /// Keeps the nearest pair that it is shown.
 class NearestPair {
  public:
@@ -109,12 +112,13 @@ Vector3 barycentric(const ClosestPoint& closest, const Vector3& a, const Vector3
   return {1.0 - v - w, v, w};
 }
 
-ClosestPair closest_pair(const Simplex& simplex, const std::array<Vector3, 3>& triangle, double slack) {
+ClosestPair closest_pair(const Simplex& simplex, const std::array<Vector3, 3>& triangle, double slack, double exact) {
   NearestPair nearest(simplex, triangle);
   nearest.corners_against_face();
   if (simplex.count == 1) return nearest.best();
   if (simplex.count == 3) nearest.face_against_corners();
-  if (slack > 0.0 && nearest.separates(1.0 - slack)) return nearest.best();
+  const double allowed = nearest.best().squared_distance < exact * exact ? kRounding : std::max(slack, kRounding);
+  if (nearest.separates(1.0 - allowed)) return nearest.best();
   nearest.edges_against_edges();
   return nearest.best();
 }

@@ -35,9 +35,10 @@ struct ClosestPair {
 };
 
 /// The nearest pair among corner and face, face and corner, edge and edge: right for simplices that do not cross. Where they do,
-/// the distance has no meaning, and no plane separates them along the line between the points. With `slack` > 0 edges are not
-/// looked at once corners and faces give a pair whose plane separates by (1 - slack) of its distance, which then is at most 1 / (1
-/// - slack) of the true one.
-[[nodiscard]] ClosestPair closest_pair(const Simplex& simplex, const std::array<Vector3, 3>& triangle, double slack = 0.0);
+/// the distance has no meaning, and no plane separates them along the line between the points. Edges are not looked at once corners
+/// and faces give a pair whose plane separates by all of its distance but rounding; with `slack` > 0, and where the pair is not
+/// nearer than `exact` [m], by (1 - slack) of it: then the distance is at most 1 / (1 - slack) of the true one.
+[[nodiscard]] ClosestPair closest_pair(const Simplex& simplex, const std::array<Vector3, 3>& triangle, double slack = 0.0,
+                                       double exact = 0.0);
 
 }  // namespace sprung
