@@ -1,0 +1,167 @@
+// Scenes that nobody thought of: random networks thrown at random obstacles that move, turn and deform, at random steps.
+#include "base/error.h"
+#include "collision/sample_meshes.h"
+#include "mesh_shapes.h"
+#include "network/network_builder.h"
+#include "scenarios/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <memory>
+#include <utility>
+
+namespace sprung::testing {
+namespace {
+
+using test::Random;
+
+constexpr int kScenes = 500;
+constexpr int kSteps = 60;
+
+double one_of(Random& random, std::initializer_list<double> values) {
+  return values.begin()[random.below(static_cast<Index>(values.size()))];
+}
+
+Matrix3 random_turn(Random& random) { return rotation_from_degrees(180.0 * random.in_box({-Vector3::Ones(), Vector3::Ones()})); }
+
+/// A coarse cloth, a rope or a jelly, so thin that the limit or a few soft springs alone hold it.
+BodyShape random_shape(Random& random) {
+  const SpringMaterial limp{.value = 0.0};
+  const SpringMaterial soft{.value = 1.0, .damping = 0.01};
+  const Index n = 3 + random.below(8);
+  switch (random.below(3)) {
+    case 0:
+      return make_cloth({.size = {0.8, 0.8}, .resolution = {n, n}}, {limp, limp, limp});
+    case 1:
+      return make_rope({.points = {{-0.5, 0, 0}, {0.5, 0.1, 0}}, .particles = 2 * n, .length = {}}, {limp, {}, limp});
+    default:
+      return make_solid({.size = {0.3, 0.3, 0.3}, .resolution = {2 + n / 4, 2 + n / 4, 2 + n / 4}}, {soft, soft, {}});
+  }
+}
+
+/// Flies towards the origin.
+SpringNetwork random_network(Random& random) {
+  BodyShape shape = random_shape(random);
+  set_total_mass(shape, 1.0);
+  const Vector3 direction = random.direction();
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = random_turn(random);
+  pose.translation() = -random.between(0.3, 1.0) * direction + 0.2 * random.direction();
+  place(shape, pose, one_of(random, {0.0, 1.0, 10.0, 100.0}) * direction);
+  const double friction = one_of(random, {0.0, 0.5, 2.0});
+  NetworkBuilder builder;
+  builder.add_body("body", shape,
+                   {.thickness = one_of(random, {0.0, 0.0005, 0.005, 0.02}),
+                    .friction = friction,
+                    .static_friction = friction,
+                    .restitution = one_of(random, {0.0, 0.5})});
+  return builder.build();
+}
+
+MeshGeometry random_mesh(Random& random) {
+  const auto make = [](TriangleMesh mesh, bool closed) {
+    return MeshGeometry{.mesh = std::make_shared<const TriangleMesh>(std::move(mesh)), .closed = closed};
+  };
+  switch (random.below(5)) {
+    case 0:
+      return make(meshes::torus(), true);
+    case 1:
+      return make(meshes::funnel(), true);
+    case 2:
+      return make(meshes::spike(), true);
+    case 3: {
+      TriangleMesh needles = test::needles(18);
+      needles.vertices *= 0.5;
+      return make(std::move(needles), true);
+    }
+    default: {
+      const PolygonMesh sheet = meshes::thin_sheet();
+      return make({sheet.vertices, triangulate(sheet.faces)}, false);
+    }
+  }
+}
+
+ObstacleGeometry random_primitive(Random& random) {
+  switch (random.below(6)) {
+    case 0:
+      return SphereGeometry{.radius = 0.2};
+    case 1:
+      return BoxGeometry{.size = {0.5, 0.02, 0.4}};
+    case 2:
+      return CapsuleGeometry{.radius = 0.05, .length = 0.4};
+    case 3:
+      return CylinderGeometry{.radius = 0.1, .height = 0.3};
+    case 4:
+      return ConeGeometry{.radius = 0.1, .height = 0.5};
+    default:
+      return EllipsoidGeometry{.radii = {0.05, 0.2, 0.3}};
+  }
+}
+
+/// The mesh sheared and stretched by up to a tenth, differently in each frame.
+SequenceGeometry deforming(const MeshGeometry& rest, Random& random) {
+  MeshSequence sequence;
+  sequence.triangles = rest.mesh->triangles;
+  sequence.frame_rate = one_of(random, {2.0, 10.0});
+  sequence.loop = true;
+  for (int frame = 0; frame < 4; ++frame) {
+    Matrix3 map = Matrix3::Identity();
+    for (double& entry : map.reshaped()) entry += random.between(-0.1, 0.1);
+    sequence.frames.push_back(map * rest.mesh->vertices);
+  }
+  return {.sequence = std::make_shared<const MeshSequence>(std::move(sequence)), .closed = rest.closed};
+}
+
+ObstacleGeometry random_geometry(Random& random) {
+  switch (random.below(3)) {
+    case 0:
+      return random_primitive(random);
+    case 1:
+      return deforming(random_mesh(random), random);
+    default:
+      return random_mesh(random);
+  }
+}
+
+Obstacle random_obstacle(Random& random) {
+  Obstacle obstacle{.name = "obstacle", .geometry = random_geometry(random)};
+  obstacle.placed.linear() = random_turn(random);
+  obstacle.material = {.thickness = one_of(random, {0.0, 0.002}), .friction = 0.5, .static_friction = 0.5};
+  if (random.below(2) == 0) return obstacle;
+  obstacle.motion.keyframes = {{.time = 0.0},
+                               {.time = 1.0,
+                                .position = one_of(random, {0.3, 3.0, 30.0}) * random.direction(),
+                                .rotation = one_of(random, {0.0, 90.0, 1000.0}) * random.direction()}};
+  return obstacle;
+}
+
+BuiltScene random_scene(Random& random) {
+  BuiltScene scene;
+  scene.network = random_network(random);
+  scene.obstacles = {random_obstacle(random)};
+  scene.settings.step = one_of(random, {1.0 / 1000.0, 1.0 / 240.0, 1.0 / 60.0});
+  scene.settings.stability = StabilityCheck::warn;
+  scene.settings.stretch_limit = StretchLimitSettings{.iterations = 5 + random.below(20)};
+  scene.frames = kSteps + 1;
+  return scene;
+}
+
+TEST(RandomScenes, NothingCrossesAnyObstacleInAnyStep) {
+  int started = 0;
+  for (int number = 0; number < kScenes; ++number) {
+    Random random(static_cast<std::uint64_t>(number));
+    try {
+      const ScenarioReport report = run_scenario(random_scene(random));
+      ++started;
+      EXPECT_TRUE(report.is_free()) << "scene " << number << ": " << report;
+    } catch (const InputError&) {
+      continue;  // It begins across the obstacle.
+    }
+  }
+  EXPECT_GT(started, kScenes / 2);
+}
+
+}  // namespace
+}  // namespace sprung::testing
