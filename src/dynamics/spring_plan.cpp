@@ -30,13 +30,16 @@ struct Line {
   Index end;
 };
 
+/// Springs that only a stretch limit holds pull at nothing.
+bool pulls(const Springs& springs, Index spring) { return springs.stiffness[spring] > 0.0 || springs.damping[spring] > 0.0; }
+
 /// The longest line of springs that begins with `spring`.
 Line line_from(const Springs& springs, Index spring) {
   const Index a = springs.first[spring];
   const Index b = springs.second[spring];
   Index count = 1;
   while (spring + count < springs.count() && springs.first[spring + count] == a + count &&
-         springs.second[spring + count] == b + count) {
+         springs.second[spring + count] == b + count && pulls(springs, spring + count)) {
     ++count;
   }
   return {a, b, spring, 0, count};
@@ -101,6 +104,10 @@ SpringPlan::SpringPlan(const SpringNetwork& network) {
   blocks.resize(network.particle_count() / size + 1);
   Planner planner(network.springs, size, blocks);
   for (Index s = 0; s < network.springs.count();) {
+    if (!pulls(network.springs, s)) {
+      ++s;
+      continue;
+    }
     const Line line = line_from(network.springs, s);
     planner.add(line);
     s += line.end;

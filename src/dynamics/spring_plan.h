@@ -38,6 +38,7 @@ struct SpringPlan {
     std::vector<Single> singles;
   };
 
+  /// Springs without stiffness and damping are left out.
   explicit SpringPlan(const SpringNetwork& network);
 
   std::vector<Block> blocks;

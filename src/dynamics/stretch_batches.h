@@ -7,13 +7,26 @@
 
 namespace sprung {
 
-/// Entry s of each array belongs to limited spring s. Each batch is filled to a multiple of kSpringLanes by its last spring.
+/// Entry s of each array belongs to limited spring s. The springs of a part follow each other; a part is filled to a multiple of
+/// kSpringLanes by its last spring.
 struct StretchBatches {
   std::vector<Index> first;
   std::vector<Index> second;
   std::vector<double> rest_length;  ///< d [m], > 0
+  std::vector<double> per_length;   ///< 1 / d [1/m]
   std::vector<double> first_share;  ///< part of a correction that the first end takes: w_1 / (w_1 + w_2) with inverse masses w
-  std::vector<Index> begin{0};      ///< batch b holds springs [begin[b], begin[b + 1])
+
+  /// Springs [begin, end), at most kPartSprings. Those of a run join consecutive particles: begin + i joins first[begin] + i and
+  /// second[begin] + i.
+  struct Part {
+    Index begin;
+    Index end;
+    bool run;
+    bool same;  ///< all have the constants of the first
+  };
+  static constexpr Index kPartSprings = 64;
+  std::vector<Part> parts;
+  std::vector<Index> begin{0};  ///< batch b holds parts [begin[b], begin[b + 1])
 
   /// Springs of the given kinds that have a rest length and at least one free end.
   StretchBatches(const SpringNetwork& network, const std::vector<SpringKind>& kinds);

@@ -11,11 +11,13 @@ struct LengthRange {
   double most;
 };
 
-/// Moves the ends of springs [begin, end) of one batch so that their lengths lie in `range`; `positions` holds 3 numbers a particle
-/// [m]. Returns the largest excess before, as a part of the rest length. Requires multiples of kSpringLanes.
-double project_springs(const StretchBatches& batches, Index begin, Index end, const LengthRange& range, double* positions);
+/// Moves the ends of a part's springs so that their lengths lie in `range`; `positions` holds 3 numbers a particle [m]. Returns the
+/// largest excess before, as a part of the rest length.
+double project_springs(const StretchBatches& batches, const StretchBatches::Part& part, const LengthRange& range,
+                       double* positions);
 
 /// The same excess; moves nothing.
-double measure_springs(const StretchBatches& batches, Index begin, Index end, const LengthRange& range, const double* positions);
+double measure_springs(const StretchBatches& batches, const StretchBatches::Part& part, const LengthRange& range,
+                       const double* positions);
 
 }  // namespace sprung

@@ -1,7 +1,6 @@
 #include "dynamics/stretch_limit.h"
 
 #include "base/parallel.h"
-#include "dynamics/lane_count.h"
 #include "dynamics/stretch_kernel.h"
 #include "dynamics/stretch_load.h"
 
@@ -13,18 +12,18 @@ namespace sprung {
 namespace {
 
 // Cut by size alone; a thread is worth waking for some 10 us of work.
-constexpr Index kSpringChunk = 4096;
-static_assert(kSpringChunk % kSpringLanes == 0);
+constexpr Index kPartChunk = 4096 / StretchBatches::kPartSprings;
 
 // A limit without play and without tolerance is never held quite: this is what steps are chosen for then.
 constexpr double kLeastExcess = 1.0e-3;
 
-/// Largest of what `excess_of(begin, end)` says of chunks of [begin, end).
+/// Largest of what `excess_of` says of parts [begin, end).
 template <class ExcessOf>
-double largest_excess(Index begin, Index end, const ExcessOf& excess_of) {
-  std::vector<double> excess((end - begin + kSpringChunk - 1) / kSpringChunk, 0.0);
-  parallel_chunks(end - begin, kSpringChunk, [&](Index chunk_begin, Index chunk_end) {
-    excess[chunk_begin / kSpringChunk] = excess_of(begin + chunk_begin, begin + chunk_end);
+double largest_excess(const StretchBatches& batches, Index begin, Index end, const ExcessOf& excess_of) {
+  std::vector<double> excess((end - begin + kPartChunk - 1) / kPartChunk, 0.0);
+  parallel_chunks(end - begin, kPartChunk, [&](Index chunk_begin, Index chunk_end) {
+    double& largest = excess[chunk_begin / kPartChunk];
+    for (Index p = begin + chunk_begin; p < begin + chunk_end; ++p) largest = std::max(largest, excess_of(batches.parts[p]));
   });
   return excess.empty() ? 0.0 : *std::ranges::max_element(excess);
 }
@@ -41,20 +40,21 @@ StretchLimit::~StretchLimit() = default;
 
 double StretchLimit::project(Points& positions) const {
   const LengthRange range = length_range(settings_);
+  const auto project_part = [&](const StretchBatches::Part& part) {
+    return project_springs(*batches_, part, range, positions.data());
+  };
   double excess = 0.0;
   for (std::size_t batch = 0; batch + 1 < batches_->begin.size(); ++batch) {
-    const double of_batch = largest_excess(batches_->begin[batch], batches_->begin[batch + 1], [&](Index begin, Index end) {
-      return project_springs(*batches_, begin, end, range, positions.data());
-    });
-    excess = std::max(excess, of_batch);
+    excess = std::max(excess, largest_excess(*batches_, batches_->begin[batch], batches_->begin[batch + 1], project_part));
   }
   return excess;
 }
 
 double StretchLimit::excess(const Points& positions) const {
   const LengthRange range = length_range(settings_);
-  return largest_excess(0, batches_->count(),
-                        [&](Index begin, Index end) { return measure_springs(*batches_, begin, end, range, positions.data()); });
+  return largest_excess(*batches_, 0, batches_->begin.back(), [&](const StretchBatches::Part& part) {
+    return measure_springs(*batches_, part, range, positions.data());
+  });
 }
 
 const StretchLimitSettings& StretchLimit::settings() const { return settings_; }

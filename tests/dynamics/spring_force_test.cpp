@@ -175,6 +175,19 @@ TEST(SpringForce, RunsAndSingleSpringsAgreeWithTheBook) {
   }
 }
 
+TEST(SpringForce, SpringsWithoutStiffnessAndDampingPullAtNothing) {
+  SpringNetwork network = make_test_cloth(40, 400.0, 0.1);
+  disturb(network);
+  for (Index k = 0; k < network.springs.count(); ++k) {
+    if (k % 37 < 9) network.springs.stiffness[k] = 0.0;
+    if (k % 41 < 15) network.springs.damping[k] = 0.0;
+  }
+  const Points forces = forces_at(network, network.positions, network.velocities);
+  const Points expected = forces_by_the_book(network, network.positions, network.velocities);
+  const double per_spring = force_scale(network, network.positions, network.velocities) / network.springs.count();
+  EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(), 200 * kEpsilon * per_spring);
+}
+
 TEST(SpringForce, ConstantsThatDifferWithinARunAreEachSprings) {
   SpringNetwork network = make_test_cloth(40, 400.0, 0.1);
   disturb(network);

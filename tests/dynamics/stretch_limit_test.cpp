@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace sprung {
 namespace {
@@ -67,6 +68,38 @@ TEST(StretchLimit, WeighsEndsByInverseMass) {
   StretchLimit(network, {.max_stretch = 0.0}).project(x);
   EXPECT_NEAR(x(0, 0), 0.25, 4 * kEpsilon);
   EXPECT_NEAR(x(0, 1), 1.25, 4 * kEpsilon);
+}
+
+// Springs between two rows of particles share none: each is projected as if it were alone, whether the kernels take it in a run or
+// by itself.
+TEST(StretchLimit, ProjectsEachOfManySpringsByItsOwnConstants) {
+  constexpr Index kRow = 203;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0.1, 1.0);
+  const auto vector = [&] { return Vector3(unit(random), unit(random), unit(random)); };
+  for (const bool same : {false, true}) {
+    NetworkBuilder builder;
+    for (Index i = 0; i < 2 * kRow; ++i) {
+      const Vector3 position = vector();
+      builder.add_particle(position, same ? 1.0 : unit(random));
+    }
+    for (Index i = 0; i < kRow; ++i) builder.add_spring(i, kRow + i, 0.0, same ? 0.5 : unit(random));
+    const SpringNetwork network = builder.build();
+    const StretchLimitSettings settings{.max_stretch = 0.1, .max_compression = 0.2};
+    const StretchLimit limit(network, settings);
+    Points x = network.positions;
+    EXPECT_NEAR(limit.project(x), excess_by_hand(network, settings, network.positions), 16 * kEpsilon);
+    for (Index i = 0; i < kRow; ++i) {
+      const Vector3 between = network.positions.col(kRow + i) - network.positions.col(i);
+      const double rest_length = network.springs.rest_length[i];
+      const double wanted = std::clamp(between.norm(), 0.8 * rest_length, 1.1 * rest_length);
+      const double of_first = network.masses[kRow + i] / (network.masses[i] + network.masses[kRow + i]);
+      const Vector3 correction = (between.norm() - wanted) / between.norm() * between;
+      // Coordinates below 1 are rounded a few times.
+      EXPECT_LT((x.col(i) - network.positions.col(i) - of_first * correction).norm(), 16 * kEpsilon) << i;
+      EXPECT_LT((x.col(kRow + i) - network.positions.col(kRow + i) + (1.0 - of_first) * correction).norm(), 16 * kEpsilon) << i;
+    }
+  }
 }
 
 // sum of m dx = 0: also shows that no batch moves a particle twice, which would lose one of the two moves.
