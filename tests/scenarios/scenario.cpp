@@ -34,16 +34,23 @@ class FrameJudge {
 
   void look(int frame, ScenarioReport& report) {
     const auto begin = Clock::now();
+    Index inside = 0;
+    Index crossings = 0;
     for (std::size_t k = 0; k < judges_.size(); ++k) {
       const Obstacle& obstacle = simulator_.environment().obstacles()[k];
       if (std::holds_alternative<SequenceGeometry>(obstacle.geometry)) judges_[k] = judge_of(obstacle.geometry, simulator_.time());
       const Points local = local_positions(obstacle, simulator_);
-      report.inside += judges_[k]->count_inside(local);
-      report.crossings += judges_[k]->count_crossings(elements_, local);
+      inside += judges_[k]->count_inside(local);
+      crossings += judges_[k]->count_crossings(elements_, local);
     }
-    if (self_) report.self_crossings += count_self_crossings(elements_, simulator_.positions());
-    const bool wrong = report.inside + report.crossings + report.self_crossings > 0;
-    if (wrong && report.first_wrong_frame == 0) report.first_wrong_frame = frame;
+    const Index self_crossings = self_ ? count_self_crossings(elements_, simulator_.positions()) : 0;
+    report.inside += inside;
+    report.crossings += crossings;
+    report.self_crossings += self_crossings;
+    if (inside + crossings + self_crossings > 0) {
+      report.last_wrong_frame = frame;
+      if (report.first_wrong_frame == 0) report.first_wrong_frame = frame;
+    }
     report.judge_seconds += seconds_since(begin);
   }
 
@@ -72,10 +79,11 @@ BuiltScene load_scenario(const std::string& name, const std::vector<std::string>
 
 std::ostream& operator<<(std::ostream& stream, const ScenarioReport& report) {
   return stream << report.frames << " frames in steps of " << format_number(report.step, 4) << " s: " << report.inside
-                << " inside, " << report.crossings << " crossings, " << report.self_crossings << " self-crossings, first in frame "
-                << report.first_wrong_frame << "; stretch " << format_number(report.max_stretch, 3) << ", " << report.truncated
-                << " truncated, " << report.squeezed << " squeezed; simulated in " << format_number(report.simulation_seconds, 3)
-                << " s, judged in " << format_number(report.judge_seconds, 3) << " s";
+                << " inside, " << report.crossings << " crossings, " << report.self_crossings << " self-crossings, in frames "
+                << report.first_wrong_frame << " to " << report.last_wrong_frame << "; stretch "
+                << format_number(report.max_stretch, 3) << ", " << report.truncated << " truncated, " << report.squeezed
+                << " squeezed; simulated in " << format_number(report.simulation_seconds, 3) << " s, judged in "
+                << format_number(report.judge_seconds, 3) << " s";
 }
 
 ScenarioReport run_scenario(BuiltScene scene, const Watch& watch, Judge judge) {

@@ -24,7 +24,8 @@ struct ScenarioReport {
   Index inside = 0;   ///< particles inside obstacles, added up over frames
   Index crossings = 0;
   Index self_crossings = 0;
-  int first_wrong_frame = 0;
+  int first_wrong_frame = 0;  ///< 0: none is wrong
+  int last_wrong_frame = 0;
   double max_stretch = 0.0;
   Index truncated = 0;
   Index squeezed = 0;

@@ -3,15 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 namespace sprung::testing {
 namespace {
 
-class Squeeze : public ::testing::TestWithParam<double> {};
-
 // A jelly's step is as long as its springs allow: there is none that is four times coarser, but one that is finer.
-INSTANTIATE_TEST_SUITE_P(StepFactor, Squeeze, ::testing::Values(0.25, 1.0));
+class JellyBetweenPlates : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(StepFactor, JellyBetweenPlates, ::testing::Values(0.25, 1.0));
 
-TEST_P(Squeeze, AJellyBetweenPlatesClosingToHalfItsHeight) {
+TEST_P(JellyBetweenPlates, IsSqueezedToHalfItsHeight) {
   double height = 0.0;
   const ScenarioReport report =
       run_scenario(load_scenario("squeezed_jelly", {}, GetParam()), [&](const Simulator& simulator, const FrameDiagnostics&) {
@@ -21,6 +23,59 @@ TEST_P(Squeeze, AJellyBetweenPlatesClosingToHalfItsHeight) {
   EXPECT_EQ(report.squeezed, 0);
   // The plates end 0.11 m apart and each keeps the thickness of 5 mm.
   EXPECT_NEAR(height, 0.1, 0.05 * 0.005);
+}
+
+struct Press {
+  ScenarioReport report;
+  double fastest = 0.0;  ///< [m/s]
+};
+
+/// Plates close in on a cloth until they are `gap` [m] apart, or overlap, and open again, at 0.2 m/s.
+Press press(double gap, double step_factor) {
+  const std::string closed = json_text({0.0, gap - 0.1, 0.0});
+  std::string plate = R"(obstacles.upper={"shape": {"type": "box", "size": [1, 0.1, 1]}, "place": {"position": [0, 0.2, 0]},)";
+  plate.append(R"("motion": {"keyframes": [{"time": 0}, {"time": 0.5, "position": )").append(closed);
+  plate.append(R"(}, {"time": 0.7, "position": )").append(closed).append(R"(}, {"time": 1.2}]}})");
+  Press result;
+  const Watch watch = [&](const Simulator& simulator, const FrameDiagnostics& /*frame*/) {
+    result.fastest = std::max(result.fastest, simulator.state().v.colwise().norm().maxCoeff());
+  };
+  result.report = run_scenario(load_scenario("cloth_on_plate", {plate, "obstacles.plate.motion={}"}, step_factor), watch);
+  return result;
+}
+
+class ClothBetweenPlates : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(StepFactor, ClothBetweenPlates, ::testing::Values(1.0, 4.0));
+
+TEST_P(ClothBetweenPlates, HoldsInLessThanItsThickness) {
+  for (const double gap : {0.009, 0.005, 0.001}) {
+    const Press pressed = press(gap, GetParam());
+    EXPECT_TRUE(pressed.report.is_free()) << "plates " << gap << " m apart: " << pressed.report;
+    EXPECT_EQ(pressed.report.squeezed, 0);
+    EXPECT_LT(pressed.fastest, 0.5) << "of the order of the plate's speed";
+  }
+}
+
+TEST_P(ClothBetweenPlates, IsReportedWhereThereIsNoRoomAndFreeAgainAfterwards) {
+  const Press pressed = press(-0.01, GetParam());
+  EXPECT_FALSE(pressed.report.is_free()) << pressed.report;
+  EXPECT_GT(pressed.report.squeezed, 0);
+  EXPECT_LT(pressed.report.last_wrong_frame, 0.5 * pressed.report.frames) << pressed.report;
+  EXPECT_LT(pressed.fastest, 0.5) << "of the order of the plate's speed";
+}
+
+// The pin follows its motion, whatever is in the way.
+class PinInTheWay : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(StepFactor, PinInTheWay, ::testing::Values(1.0, 4.0));
+
+TEST_P(PinInTheWay, OfABallTheClothGetsFreeAgain) {
+  double stretch = 0.0;
+  const ScenarioReport report =
+      run_scenario(load_scenario("hanging_cloth", {"obstacles.ball.place.position=[0.5, 0.5, 1]"}, GetParam()),
+                   [&](const Simulator&, const FrameDiagnostics& frame) { stretch = frame.max_stretch; });
+  EXPECT_FALSE(report.is_free()) << report;
+  EXPECT_LT(report.last_wrong_frame, 0.2 * report.frames) << report;
+  EXPECT_LT(stretch, 0.2) << "at the end; a ball of 0.12 m that is stuck stretches a spring of 0.04 m by more than its length";
 }
 
 }  // namespace
