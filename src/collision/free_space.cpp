@@ -43,6 +43,7 @@ struct FreeSpace::Implementation {
   using Outcomes = std::vector<Outcome>;
 
   Truncation truncate(const Points& before, Points& after);
+  [[nodiscard]] Index crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const;
   [[nodiscard]] std::vector<Index> movable(const Points& before, const Points& target) const;
   Outcomes place_in_parts(const std::vector<Index>& particles, const Points& before, const Points& target, Points& after);
   [[nodiscard]] static bool can_go_on(Index particle, const Points& from, const Points& target, const Points& now);
@@ -85,8 +86,9 @@ FreeSpace::Truncation FreeSpace::Implementation::truncate(const Points& before, 
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] == Outcome::stopped) stopped.push_back(particles[n]);
   }
-  Truncation truncation{.squeezed = count(outcomes, Outcome::squeezed)};
-  truncation.truncated = truncation.squeezed + static_cast<Index>(stopped.size());
+  Truncation truncation;
+  truncation.truncated = count(outcomes, Outcome::squeezed) + static_cast<Index>(stopped.size());
+  truncation.squeezed = count(outcomes, Outcome::squeezed) + crossed(particles, outcomes);
   std::erase_if(stopped, [&](Index i) { return !can_go_on(i, before, target, after); });
   for (int round = 1; round < kRounds && !stopped.empty(); ++round) truncation.truncated -= go_on(stopped, target, after);
   return truncation;
@@ -95,6 +97,14 @@ FreeSpace::Truncation FreeSpace::Implementation::truncate(const Points& before, 
 bool FreeSpace::Implementation::can_go_on(Index i, const Points& from, const Points& target, const Points& now) {
   const double way = (target.col(i) - from.col(i)).norm();
   return (now.col(i) - from.col(i)).norm() > kWorthwhile * way && (target.col(i) - now.col(i)).norm() <= kMostLeft * way;
+}
+
+Index FreeSpace::Implementation::crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const {
+  Index found = 0;
+  for (std::size_t n = 0; n < particles.size(); ++n) {
+    if (outcomes[n] != Outcome::squeezed && zones.is_crossed(particles[n])) ++found;
+  }
+  return found;
 }
 
 std::vector<Index> FreeSpace::Implementation::movable(const Points& before, const Points& target) const {

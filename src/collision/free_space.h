@@ -31,7 +31,7 @@ class FreeSpace {
 
   struct Truncation {
     Index truncated = 0;  ///< particles stopped on their way
-    Index squeezed = 0;   ///< particles that found no free place between obstacles
+    Index squeezed = 0;   ///< particles that found no free place between obstacles, or of whose elements an obstacle crosses one
   };
   /// The last word on positions: moves each particle that would take an element out of its zones to a place near `after` where it
   /// does not, taking obstacles that close in on it along in smaller parts of the interval. A particle that found none stays with

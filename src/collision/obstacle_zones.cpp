@@ -13,6 +13,9 @@ namespace {
 
 constexpr Index kPatchChunk = 4;
 
+// Obstacles may lead particles out of the box around their patch's ways, by this part of its diagonal before they are stopped.
+constexpr double kAside = 0.125;
+
 // A nearest point this close to a corner is that particle's own contact.
 constexpr double kAtCorner = 1.0 - 1.0e-6;
 
@@ -62,7 +65,9 @@ void ObstacleZones::find_near(Index p, const Way& way, double carried) {
   if (!patch.box.isEmpty()) {
     const double gap = std::max(patch.thickness + set_.max_thickness(), set_.max_clearance(patch.box));
     // Once for the way in the frame of an obstacle that comes, once more where another has carried the particle.
-    set_.find_near(grown(patch.box, gap + margin_ + 2.0 * carried), near);
+    const double aside = kAside * patch.box.diagonal().norm();
+    patch.known = grown(patch.box, gap + margin_ + 2.0 * carried + aside);
+    set_.find_near(patch.known, near);
   }
   if (std::equal(near.begin(), near.end(), patch.zones.begin(), patch.zones.end(),
                  [](Index k, const PatchZones& zones) { return k == zones.obstacle(); })) {
@@ -183,6 +188,7 @@ void ObstacleZones::append_element_contacts(Index p, const PatchZones& zones, co
 bool ObstacleZones::allow(Index particle, const Vector3& position) const {
   for (const auto& [p, slot] : slots_of(particle)) {
     const Patch& patch = patches_[at(p)];
+    if (!patch.known.contains(position)) return false;
     for (const PatchZones& zones : patch.zones) {
       if (!zones.allow(slot, set_.local(zones.obstacle(), position))) return false;
     }
@@ -190,9 +196,21 @@ bool ObstacleZones::allow(Index particle, const Vector3& position) const {
   return true;
 }
 
+bool ObstacleZones::is_crossed(Index particle) const {
+  const auto slots = slots_of(particle);
+  return std::any_of(slots.begin(), slots.end(), [&](const PatchSlot& place) {
+    const std::vector<PatchZones>& zones = patches_[at(place.patch)].zones;
+    return std::any_of(zones.begin(), zones.end(), [&](const PatchZones& z) { return z.is_crossed(place.slot); });
+  });
+}
+
 void ObstacleZones::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
   for (const auto& [p, slot] : slots_of(particle)) {
     const Patch& patch = patches_[at(p)];
+    for (int axis = 0; axis < 3; ++axis) {
+      half_spaces.push_back({Vector3::Unit(axis), patch.known.min()[axis]});
+      half_spaces.push_back({-Vector3::Unit(axis), -patch.known.max()[axis]});
+    }
     for (const PatchZones& zones : patch.zones) {
       zones.append_half_spaces(slot, set_.after(zones.obstacle()), half_spaces);
     }

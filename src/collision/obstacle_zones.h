@@ -35,6 +35,9 @@ class ObstacleZones {
   /// Whether the zones of all elements around the particle hold it there, at the interval's end.
   [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
 
+  /// Whether an obstacle crosses an element around the particle.
+  [[nodiscard]] bool is_crossed(Index particle) const;
+
   /// Appends what bounds the particle at the interval's end.
   void append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const;
 
@@ -46,6 +49,7 @@ class ObstacleZones {
     PatchTopology topology;
     std::vector<PatchZones> zones{};  ///< by obstacle, ascending: those that are near
     Box3 box{};                       ///< around its particles' ways
+    Box3 known{};                     ///< what meets this box is in `zones`
     double size = 0.0;                ///< of its elements [m]
     double thickness = 0.0;           ///< the largest of its particles [m]
   };

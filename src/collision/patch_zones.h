@@ -49,6 +49,9 @@ class PatchZones {
     return !(quiet > 0.0 && (to - s.centre).squaredNorm() < quiet * quiet && (from - s.centre).squaredNorm() < quiet * quiet);
   }
 
+  /// Whether the obstacle crosses an element at the slot, which then has no zone.
+  [[nodiscard]] bool is_crossed(Index slot) const { return slots_[static_cast<std::size_t>(slot)].broken; }
+
   /// Appends all that bounds the slot, placed in the world by `pose`.
   void append_half_spaces(Index slot, const RigidTransform& pose, std::vector<HalfSpace>& half_spaces) const;
 

@@ -1,5 +1,7 @@
 #include "collision/zone_builder.h"
 
+#include "geometry/simplex_crossing.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,6 +20,9 @@ constexpr double kSmallestReach = 0.25;
 
 // Corners that move less than this part of the distance cannot bring the element to the triangle.
 constexpr double kFreePart = 0.9;
+
+// And less than this part where the distance itself is hardly more than rounding.
+constexpr double kStillPart = 0.5;
 
 }  // namespace
 
@@ -77,7 +82,7 @@ void ZoneBuilder::separate(const TriangleCorners& corners) {
   const auto [normal, gap] = separation(element_, corners, pair, kPairSlack);
   const double highest = highest_along(normal, corners);
   if (is_touching(gap, request_)) {
-    zone_.broken = true;
+    keep_still(corners, std::sqrt(pair.squared_distance));
     return;
   }
   if (zone_.plane_count == Zone::kMostPlanes) {
@@ -88,6 +93,15 @@ void ZoneBuilder::separate(const TriangleCorners& corners) {
   const auto plane = static_cast<std::size_t>(zone_.plane_count++);
   zone_.planes[plane] = {normal, highest + height};
   limits_[plane] = highest + 0.5 * std::min(height, request_.clearance);
+}
+
+// Rounding may leave no plane between what still does not cross: corners that move less than the distance cannot change that.
+void ZoneBuilder::keep_still(const TriangleCorners& corners, double distance) {
+  if (sprung::meets(element_, corners)) {
+    zone_.broken = true;
+  } else {
+    zone_.free_radius = std::min(zone_.free_radius, kStillPart * distance);
+  }
 }
 
 void ZoneBuilder::finish(double searched) {

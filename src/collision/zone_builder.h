@@ -32,6 +32,7 @@ class ZoneBuilder {
   [[nodiscard]] bool ruled_out(const TriangleCorners& corners) const;
   [[nodiscard]] bool shrink_past(const TriangleCorners& corners);
   void separate(const TriangleCorners& corners);
+  void keep_still(const TriangleCorners& corners, double distance);
   [[nodiscard]] double lowest(const Vector3& normal) const;
 
   const ElementCorners& element_;

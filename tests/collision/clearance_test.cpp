@@ -114,19 +114,6 @@ TEST(Clearance, PressedParticlesSlideRoundConvexBodiesUncut) {
   }
 }
 
-// A begin on the edge counts as one on both faces, so the way down is taken for a way in, once.
-TEST(Clearance, AParticleOnAConvexEdgeLeavesItInFrontOfTheOtherFace) {
-  for (const ObstacleGeometry& box :
-       {ObstacleGeometry(BoxGeometry{Vector3(1.0, 1.0, 1.0)}), mesh_of(BoxGeometry{Vector3(1.0, 1.0, 1.0)})}) {
-    Environment environment({obstacle(box)});
-    FreeSpace space = test::single_particles(environment, 1);
-    Points x = Vector3(0.5, 0.5, 0.1);
-    for (int step = 0; step < 10; ++step) EXPECT_EQ(step_to(environment, space, x, x + Vector3(0.01, -0.02, 0.0)), 0U);
-    EXPECT_NEAR(x(0, 0), 0.6, 1e-8);
-    EXPECT_LE(x(1, 0), 0.5 - 9 * 0.02 + 1e-8);
-  }
-}
-
 // Cuts alone, as when projections do not converge: what they leave must not vanish, at the origin least of all.
 TEST(Clearance, CutsNeverWearTheHeightAway) {
   for (const Slide& slide : level_surfaces()) {
