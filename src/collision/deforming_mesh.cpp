@@ -10,20 +10,14 @@ DeformingMesh::DeformingMesh(std::shared_ptr<const MeshSequence> sequence)
       around_(triangles_around_vertices(sequence_->triangles, static_cast<Index>(sequence_->frames.front().cols()))),
       after_{{}, sequence_->triangles} {}
 
-namespace {
-
-double farthest_apart(const Points& a, const Points& b) { return std::sqrt((b - a).colwise().squaredNorm().maxCoeff()); }
-
-}  // namespace
-
 void DeformingMesh::set_interval(double t, double t_end) {
+  begin_ = t;
+  end_ = t_end;
   const MeshSequence::Moment begin = sequence_->at(t);
   const MeshSequence::Moment end = sequence_->at(t_end);
   sequence_->positions(begin, before_);
-  if (after_.vertices.cols() > 0) travelled_ += farthest_apart(after_.vertices, before_);
   sequence_->positions(end, after_.vertices);
-  largest_displacement_ = farthest_apart(before_, after_.vertices);
-  travelled_ += largest_displacement_;
+  largest_displacement_ = std::sqrt((after_.vertices - before_).colwise().squaredNorm().maxCoeff());
 
   const bool between_two = end.frame == begin.frame || (end.frame == begin.next && end.part == 0.0);
   const Index first = between_two ? begin.frame : kNone;
@@ -38,9 +32,13 @@ DeformingMesh::Sweep DeformingMesh::sweep() const {
   return {sequence_->frames[first_frame_], sequence_->frames[last_frame_]};
 }
 
-Vector3 DeformingMesh::position(const Points& positions, Index triangle, const Vector3& weights) const {
-  const auto corner = after_.triangles.col(triangle);
-  return weights[0] * positions.col(corner[0]) + weights[1] * positions.col(corner[1]) + weights[2] * positions.col(corner[2]);
+Vector3 DeformingMesh::displacement(Index triangle, const Vector3& weights) const {
+  Vector3 sum = Vector3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Index vertex = after_.triangles(k, triangle);
+    sum += weights[k] * (after_.vertices.col(vertex) - before_.col(vertex));
+  }
+  return sum;
 }
 
 Vector3 DeformingMesh::displacement(Index triangle, const Vector3& weights, double t, double t_end) const {

@@ -38,13 +38,12 @@ class DeformingMesh {
   /// The farthest that a vertex moves in the interval [m].
   [[nodiscard]] double largest_displacement() const { return largest_displacement_; }
 
-  /// The farthest that a vertex can have moved through all intervals so far, and from each to the next [m].
-  [[nodiscard]] double travelled() const { return travelled_; }
+  /// The interval's begin and end [s].
+  [[nodiscard]] double begin() const { return begin_; }
+  [[nodiscard]] double end() const { return end_; }
 
-  /// Where a point of a triangle, given by the weights of its corners, is in one of the two sets of positions [m].
-  [[nodiscard]] Vector3 position(const Points& positions, Index triangle, const Vector3& weights) const;
-
-  /// How far a point of a triangle, given by the weights of its corners, moves from time t to t_end [m].
+  /// How far a point of a triangle, given by the weights of its corners, moves in the interval, or from time t to t_end [m].
+  [[nodiscard]] Vector3 displacement(Index triangle, const Vector3& weights) const;
   [[nodiscard]] Vector3 displacement(Index triangle, const Vector3& weights, double t, double t_end) const;
 
   // Normals at the interval's end.
@@ -63,7 +62,8 @@ class DeformingMesh {
   Index last_frame_ = kNone;
   bool sweep_is_new_ = false;
   double largest_displacement_ = 0.0;
-  double travelled_ = 0.0;
+  double begin_ = 0.0;
+  double end_ = 0.0;
 };
 
 }  // namespace sprung

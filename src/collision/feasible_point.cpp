@@ -49,10 +49,10 @@ Projected project(std::span<const HalfSpace> half_spaces, const Vector3& target)
 
 }  // namespace
 
-bool is_feasible(std::span<const HalfSpace> half_spaces, const Vector3& p, double nearer) {
+bool is_feasible(std::span<const HalfSpace> half_spaces, const Vector3& p) {
   const double largest = p.cwiseAbs().maxCoeff();
   return std::all_of(half_spaces.begin(), half_spaces.end(), [&](const HalfSpace& half_space) {
-    return half_space.normal.dot(p) >= half_space.offset + nearer - rounding(half_space, largest);
+    return half_space.normal.dot(p) >= half_space.offset - rounding(half_space, largest);
   });
 }
 

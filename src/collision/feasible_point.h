@@ -10,8 +10,7 @@
 namespace sprung {
 
 /// Whether p is in all half-spaces, to within the rounding of positions as large as p and the offsets.
-/// The half-spaces' planes are `nearer` [m] than they say.
-[[nodiscard]] bool is_feasible(std::span<const HalfSpace> half_spaces, const Vector3& p, double nearer = 0.0);
+[[nodiscard]] bool is_feasible(std::span<const HalfSpace> half_spaces, const Vector3& p);
 
 /// A point of what the half-spaces have in common, near `target`: found by projecting it onto each that it violates, in turn
 /// (Agmon 1954; Motzkin and Schoenberg 1954). Where a few rounds do not suffice, or lead farther from the target than the first of

@@ -122,29 +122,30 @@ std::optional<Crossing> MeshShape::first_crossing(const Vector3& a, const Vector
 }
 
 void MeshShape::find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const {
-  if (deforms_) return find_deforming_zone(element, request, zone);
-  sprung::find_zone(*tree_, element, request, zone);
-}
-
-void MeshShape::find_deforming_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const {
-  const MeshTree& present = request.at_end ? *tree_ : *tree_before_;
-  sprung::find_zone(present, element, request, zone);
-  zone.travelled = deforming_->travelled();
+  const MeshTree& tree = deforms_ && !request.at_end ? *tree_before_ : *tree_;
+  sprung::find_zone(tree, element, request, zone);
+  if (!deforms_) return;
+  zone.time = deforming_->end();
   if (zone.triangle != kNone) {
-    const auto [a, b, c] = present.corners(zone.triangle);
+    const auto [a, b, c] = tree.corners(zone.triangle);
     zone.triangle_weights = barycentric(closest_point_on_triangle(zone.point, a, b, c), a, b, c);
   }
-  if (request.at_end || deforming_->largest_displacement() == 0.0 || zone.broken) return;
-  if (zone.triangle != kNone) {
-    zone.drift = deforming_->position(deforming_->after().vertices, zone.triangle, zone.triangle_weights) -
-                 deforming_->position(deforming_->before(), zone.triangle, zone.triangle_weights);
-  }
-  take_along(*tree_before_, *tree_, zone);
+  if (!request.at_end) follow_surface(zone);
 }
 
-void MeshShape::follow_point(Zone& zone) const {
-  if (!deforms_ || zone.triangle == kNone) return;
-  zone.point = deforming_->position(deforming_->after().vertices, zone.triangle, zone.triangle_weights);
+bool MeshShape::take_along(Zone& zone) const {
+  if (!deforms_ || zone.time == deforming_->end()) return true;
+  if (zone.time != deforming_->begin()) return false;
+  zone.time = deforming_->end();
+  follow_surface(zone);
+  return true;
+}
+
+void MeshShape::follow_surface(Zone& zone) const {
+  zone.drift.setZero();
+  if (zone.broken || deforming_->largest_displacement() == 0.0) return;
+  if (zone.triangle != kNone) zone.drift = deforming_->displacement(zone.triangle, zone.triangle_weights);
+  shift(zone, *tree_before_, *tree_);
 }
 
 bool MeshShape::touches(const ElementCorners& element, double tolerance) const {

@@ -19,7 +19,6 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] bool deforms() const override { return deforms_; }
   void set_interval(double t, double t_end) override;
   [[nodiscard]] double largest_displacement() const override { return deforms_ ? deforming_->largest_displacement() : 0.0; }
-  [[nodiscard]] double travelled() const override { return deforms_ ? deforming_->travelled() : 0.0; }
   [[nodiscard]] Vector3 displacement(const Vector3& p, double t, double t_end) const override;
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;
@@ -27,7 +26,7 @@ class MeshShape final : public ObstacleShape {
                                                           SurfaceMemory& memory) const override;
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override;
   void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const override;
-  void follow_point(Zone& zone) const override;
+  bool take_along(Zone& zone) const override;
   [[nodiscard]] bool touches(const ElementCorners& element, double tolerance) const override;
   [[nodiscard]] bool contains(const Vector3& p) const override;
   [[nodiscard]] Box3 bounds() const override { return bounds_; }
@@ -37,7 +36,7 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] const MeshTree& tree() const { return *tree_; }
 
  private:
-  void find_deforming_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const;
+  void follow_surface(Zone& zone) const;
   [[nodiscard]] const TriangleMesh& mesh() const { return deforming_ ? deforming_->after() : *rigid_; }
   [[nodiscard]] Vector3 face_normal(Index triangle) const;
   [[nodiscard]] Vector3 pseudonormal(Index triangle, TriangleFeature feature) const;

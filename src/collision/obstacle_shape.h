@@ -43,9 +43,6 @@ class ObstacleShape {
   /// The farthest that a point of the surface moves in the interval, in the shape's frame [m].
   [[nodiscard]] virtual double largest_displacement() const { return 0.0; }
 
-  /// Grows as the surface deforms: between any two moments no point of it moves farther, in the shape's frame, than this grew [m].
-  [[nodiscard]] virtual double travelled() const { return 0.0; }
-
   /// How far the point of the surface that is nearest to p moves from time t to t_end, in the shape's frame [m].
   [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/, double /*t*/, double /*t_end*/) const { return Vector3::Zero(); }
 
@@ -69,8 +66,9 @@ class ObstacleShape {
   /// Makes the zone of an element that the shape does not cross; `zone` comes as it was left by the element's last search.
   virtual void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const = 0;
 
-  /// Moves the zone's nearest point on the obstacle, if it has one, to where it is at the interval's end.
-  virtual void follow_point(Zone& /*zone*/) const {}
+  /// Makes a zone that was for the end of the interval before one for the end of this: where the surface deforms, it takes the zone
+  /// along. False for a zone of another time, which cannot be taken along.
+  virtual bool take_along(Zone& /*zone*/) const { return true; }
 
   /// Whether the element comes within `tolerance` [m] of the surface; an element that is wholly inside need not tell. Crossings of
   /// meshes are judged exactly.

@@ -20,6 +20,9 @@ constexpr double kReachOfMotion = 2.0;
 // Nearest points are looked for again after a motion of this part of the gap: friction goes wrong with older ones.
 constexpr double kFreshPart = 1.0;
 
+// Zones that a surface that deforms takes along are made again when they lost this part of the gap.
+constexpr double kMostLoss = 0.3;
+
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
@@ -33,34 +36,32 @@ PatchZones::PatchZones(Index obstacle, const PatchTopology& topology)
 
 void PatchZones::follow(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
                         const ZoneDemand& demand) {
-  travelled_ = shape.travelled();
-  if (shape.deforms()) follow_surface(shape, topology, paths, demand);
+  if (shape.deforms()) take_along(shape, topology, demand);
   mark(topology, paths, demand);
   make_marked(shape, topology, paths, demand);
 }
 
-// Which way the surface came nearer is not asked: zones that it may have left too small to hold their element are made again.
-void PatchZones::follow_surface(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
-                                const ZoneDemand& demand) {
+// Zones that lost much on the way may stand in the way of their elements, or not be the nearest points' any more.
+void PatchZones::take_along(const ObstacleShape& shape, const PatchTopology& topology, const ZoneDemand& demand) {
+  bool along = false;
   for (Index e = 0; e < topology.element_count(); ++e) {
     Zone& zone = zones_[at(e)];
-    if (zone.travelled == travelled_) continue;
-    shape.follow_point(zone);
-    const auto& [slots, count] = topology.corners(e);
-    const bool held =
-        std::all_of(slots.begin(), slots.begin() + count, [&](Index i) { return planes_hold(zone, paths.to[at(i)]); });
-    const bool stale = zone.triangle != kNone && travelled_ - zone.travelled > kFreshPart * demand.gap;
-    if (stale || !held) marked_[at(e)] = 1;
+    const double time = zone.time;
+    if (!shape.take_along(zone) || (zone.triangle != kNone && zone.loss > kMostLoss * demand.gap)) marked_[at(e)] = 1;
+    if (zone.time == time || std::isnan(zone.time)) continue;
+    along = true;
+    for (Vector3& corner : made_around_[at(e)]) corner += zone.drift;
   }
-}
-
-bool PatchZones::planes_hold(const Zone& zone, const Vector3& p) const {
-  return is_feasible({zone.planes.data(), at(zone.plane_count)}, p, travelled_ - zone.travelled);
+  if (!along) return;
+  for (Index i = 0; i < topology.slot_count(); ++i) {
+    slots_[at(i)].settled += zones_[at(topology.elements_of(i).front())].drift;
+    gather(topology, demand, i);
+  }
+  find_near_elements(demand);
 }
 
 void PatchZones::renew(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand,
                        std::span<const Index> slots) {
-  travelled_ = shape.travelled();
   for (const Index slot : slots) {
     for (const Index e : topology.elements_of(slot)) marked_[at(e)] = 1;
   }
@@ -73,7 +74,7 @@ void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, co
   for (Index i = 0; i < topology.slot_count(); ++i) {
     Slot& slot = slots_[at(i)];
     const Vector3& to = paths.to[at(i)];
-    const bool leaves = !present_box(slot).contains(to);
+    const bool leaves = !slot.box.contains(to);
     const bool stale = slot.near && (to - slot.settled).squaredNorm() > fresh * fresh;
     if (stale) slot.settled = to;
     if (!leaves && !stale && !slot.broken) continue;
@@ -115,9 +116,13 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
     if (std::any_of(elements.begin(), elements.end(), [&](Index e) { return marked_[at(e)] != 0; })) gather(topology, demand, i);
   }
   std::fill(marked_.begin(), marked_.end(), 0);
+  find_near_elements(demand);
+}
+
+void PatchZones::find_near_elements(const ZoneDemand& demand) {
   near_elements_.clear();
-  for (Index e = 0; e < topology.element_count(); ++e) {
-    if (zones_[at(e)].distance < demand.gap + demand.margin) near_elements_.push_back(e);
+  for (std::size_t e = 0; e < zones_.size(); ++e) {
+    if (zones_[e].distance < demand.gap + demand.margin) near_elements_.push_back(static_cast<Index>(e));
   }
 }
 
@@ -126,7 +131,6 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
   Slot& slot = slots_[at(i)];
   const bool was_near = slot.near;
   slot.box = Box3(Vector3::Constant(-kInfinity), Vector3::Constant(kInfinity));
-  slot.travelled = travelled_;
   slot.near = slot.broken = false;
   slot.planes.clear();
   slot.quiet = 0.0;
@@ -135,21 +139,18 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
     slot.broken = slot.broken || zone.broken;
     slot.near = slot.near || zone.distance < demand.gap + demand.margin;
     if (zone.broken) continue;
-    const double nearer = travelled_ - zone.travelled;
-    slot.box = slot.box.intersection(shrunk(zone.box, nearer));
-    for (std::size_t k = 0; k < at(zone.plane_count); ++k) {
-      slot.planes.push_back({zone.planes[k].normal, zone.planes[k].offset + nearer});
-    }
+    slot.box = slot.box.intersection(zone.box);
+    slot.planes.insert(slot.planes.end(), zone.planes.begin(), zone.planes.begin() + zone.plane_count);
     const auto& slots = topology.corners(e).slots;
     const auto corner = static_cast<std::size_t>(std::find(slots.begin(), slots.end(), i) - slots.begin());
     const Vector3& made_at = made_around_[at(e)][corner];
-    if (zone.clear - nearer > slot.quiet) {
-      slot.quiet = zone.clear - nearer;
+    if (zone.clear > slot.quiet) {
+      slot.quiet = zone.clear;
       slot.centre = made_at;
     }
     if (zone.free_radius == kInfinity) continue;
     // The cube within the ball.
-    const Vector3 radius = Vector3::Constant((zone.free_radius - nearer) / std::sqrt(3.0));
+    const Vector3 radius = Vector3::Constant(zone.free_radius / std::sqrt(3.0));
     slot.box = slot.box.intersection(Box3(made_at - radius, made_at + radius));
   }
   if (slot.near && !was_near) slot.settled = slot.box.center();
@@ -157,7 +158,7 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
 
 bool PatchZones::allow(Index i, const Vector3& p) const {
   const Slot& slot = slots_[at(i)];
-  return present_box(slot).contains(p) && is_feasible(slot.planes, p, travelled_ - slot.travelled);
+  return slot.box.contains(p) && is_feasible(slot.planes, p);
 }
 
 void PatchZones::append_half_spaces(Index i, const RigidTransform& pose, std::vector<HalfSpace>& half_spaces) const {
@@ -165,14 +166,13 @@ void PatchZones::append_half_spaces(Index i, const RigidTransform& pose, std::ve
     const Vector3 turned = pose.linear() * normal;
     half_spaces.push_back({turned, offset + turned.dot(pose.translation())});
   };
-  const Box3 box = present_box(slots_[at(i)]);
+  const Box3& box = slots_[at(i)].box;
   for (int axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(box.min()[axis])) continue;
     append(Vector3::Unit(axis), box.min()[axis]);
     append(-Vector3::Unit(axis), -box.max()[axis]);
   }
-  const double nearer = travelled_ - slots_[at(i)].travelled;
-  for (const HalfSpace& plane : slots_[at(i)].planes) append(plane.normal, plane.offset + nearer);
+  for (const HalfSpace& plane : slots_[at(i)].planes) append(plane.normal, plane.offset);
 }
 
 }  // namespace sprung

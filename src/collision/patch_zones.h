@@ -31,8 +31,8 @@ class PatchZones {
   [[nodiscard]] const Zone& zone(Index element) const { return zones_[static_cast<std::size_t>(element)]; }
 
   /// Makes the zones again, around `from`, of elements that have none, that a corner is about to leave, or that moved by a part of
-  /// the gap since their nearest points were found. Before a surface that deforms zones shrink as it may have come nearer, and
-  /// their nearest points go with it.
+  /// the gap since their nearest points were found. A surface that deforms takes the zones
+  /// along.
   void follow(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
 
   /// Makes the zones of all elements at these slots again, around `from`.
@@ -45,7 +45,7 @@ class PatchZones {
   /// Whether a path between these ends may come within `reach` [m] of the obstacle's surface: false for most that do not.
   [[nodiscard]] bool may_touch(Index slot, const Vector3& from, const Vector3& to, double reach) const {
     const Slot& s = slots_[static_cast<std::size_t>(slot)];
-    const double quiet = s.quiet - (travelled_ - s.travelled) - reach;
+    const double quiet = s.quiet - reach;
     return !(quiet > 0.0 && (to - s.centre).squaredNorm() < quiet * quiet && (from - s.centre).squaredNorm() < quiet * quiet);
   }
 
@@ -67,22 +67,19 @@ class PatchZones {
     Vector3 settled;                   ///< where it was when its near elements were looked at last
     Vector3 centre = Vector3::Zero();  ///< no surface is nearer to this point ...
     double quiet = 0.0;                ///< ... than this
-    double travelled = 0.0;            ///< of the surface when these were gathered [m]
     std::vector<HalfSpace> planes{};   ///< of all zones at it
     bool near = false;                 ///< an element at it may touch
     bool broken = false;
     SurfaceMemory memory{};
   };
 
-  void follow_surface(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
+  void take_along(const ObstacleShape& shape, const PatchTopology& topology, const ZoneDemand& demand);
   void mark(const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
   void make_marked(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
   void gather(const PatchTopology& topology, const ZoneDemand& demand, Index slot);
-  [[nodiscard]] bool planes_hold(const Zone& zone, const Vector3& p) const;
-  [[nodiscard]] Box3 present_box(const Slot& slot) const { return shrunk(slot.box, travelled_ - slot.travelled); }
+  void find_near_elements(const ZoneDemand& demand);
 
   Index obstacle_;
-  double travelled_ = 0.0;                           ///< of the surface so far [m]
   std::vector<Zone> zones_;                          ///< by element
   std::vector<std::array<Vector3, 3>> made_around_;  ///< the corners when the zone was made
   std::vector<Slot> slots_;

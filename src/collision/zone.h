@@ -44,9 +44,10 @@ struct Zone {
   Index triangle = kNone;                                     ///< of the obstacle; where the next search may begin
 
   // Before a surface that deforms:
-  Vector3 drift = Vector3::Zero();             ///< how far it took the zone along [m]
-  Vector3 triangle_weights = Vector3::Zero();  ///< of the triangle's corners at `point`; their sum is 1
-  double travelled = 0.0;                      ///< of the surface at the end of the zone's interval [m], see ObstacleShape
+  double time = std::numeric_limits<double>::quiet_NaN();  ///< end of the interval that the zone is for [s]
+  Vector3 drift = Vector3::Zero();                         ///< how far the surface took the zone along in that interval [m]
+  double loss = 0.0;                                       ///< what the zone lost on each side since it was made [m]
+  Vector3 triangle_weights = Vector3::Zero();              ///< of the triangle's corners at `point`; their sum is 1
 };
 
 /// The box, smaller by `margin` [m] >= 0 on each side; nothing is in it when the sides pass each other.

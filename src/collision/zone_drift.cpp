@@ -58,7 +58,7 @@ double farthest_otherwise(const MeshTree& before, const MeshTree& after, const B
 
 }  // namespace
 
-void take_along(const MeshTree& before, const MeshTree& after, Zone& zone) {
+void shift(Zone& zone, const MeshTree& before, const MeshTree& after) {
   const Vector3& drift = zone.drift;
   const Box3 way = zone.box.merged(zone.box.translated(drift));
   const double otherwise = farthest_otherwise(before, after, way, drift);
@@ -69,6 +69,8 @@ void take_along(const MeshTree& before, const MeshTree& after, Zone& zone) {
   }
   zone.free_radius -= otherwise;
   zone.clear = std::max(0.0, zone.clear - otherwise);
+  zone.loss += otherwise;
+  zone.distance = std::max(0.0, zone.distance - otherwise);
   zone.point += drift;
 }
 

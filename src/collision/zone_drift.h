@@ -6,10 +6,10 @@
 
 namespace sprung {
 
-/// Takes a zone that was made between the triangles of `before` along to where they are in `after`: by `zone.drift`, which is how
-/// far the surface went where it was nearest, and smaller by how much otherwise any triangle went that comes near the zone on the
-/// way. While both go on straight, all corners that begin in the one zone and end in the other stay clear of all triangles.
-/// Requires trees of the same triangles, whose boxes hold both positions.
-void take_along(const MeshTree& before, const MeshTree& after, Zone& zone);
+/// Shifts a zone between the triangles of `before` to where they are in `after`: by `zone.drift`, which is how far the surface went
+/// where it was nearest, and smaller by how much otherwise any triangle went that comes near the zone on the way. While both go on
+/// straight, all corners that begin in the one zone and end in the other stay clear of all triangles. Requires trees of the same
+/// triangles, whose boxes hold both positions.
+void shift(Zone& zone, const MeshTree& before, const MeshTree& after);
 
 }  // namespace sprung

@@ -172,9 +172,12 @@ TEST(ZoneDrift, NearestPointsGoWithTheSurface) {
   shape.find_zone(element, {.reach = 0.5, .gap = 0.1, .clearance = 1e-9, .exact = 0.3}, zone);
   EXPECT_LT((zone.point - Vector3(1.5, 0.0, 0.3)).norm(), 1e-15);
   shape.set_interval(0.25, 0.5);
-  shape.follow_point(zone);
+  ASSERT_TRUE(shape.take_along(zone));
   EXPECT_LT((zone.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15);
-  EXPECT_DOUBLE_EQ(shape.travelled() - zone.travelled, 0.5);
+  ASSERT_TRUE(shape.take_along(zone));
+  EXPECT_LT((zone.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15) << "once an interval";
+  shape.set_interval(0.75, 1.0);
+  EXPECT_FALSE(shape.take_along(zone)) << "it was never told where the surface went between";
 }
 
 }  // namespace
