@@ -23,6 +23,8 @@ float below(double value) {
 }
 float above(double value) { return -below(-value); }
 
+Box3 grown(const Box3& box, double reach) { return {box.min().array() - reach, box.max().array() + reach}; }
+
 /// A box whose sides are rounded outward, as the nodes' are.
 struct FloatBox {
   float min[3];
@@ -45,19 +47,28 @@ struct Search {
   float normal[Zone::kMostPlanes][3]{};
   float limit[Zone::kMostPlanes]{};
   int planes = 0;
+  float rounding = 0.0F;  ///< of heights above planes
 };
 
-void update(const ZoneBuilder& zone, float rounding, Search& search) {
+Search search_around(const MeshTree& tree, const Box3& element, const Box3& box) {
+  const double magnitude = std::max(tree.magnitude(), box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff());
+  return {.element = float_box(element), .box = float_box(box), .rounding = kPlaneRounding * static_cast<float>(magnitude)};
+}
+
+void set_plane(int k, const Vector3& normal, double limit, Search& search) {
+  for (int axis = 0; axis < 3; ++axis) search.normal[k][axis] = static_cast<float>(normal[axis]);
+  search.limit[k] = below(limit) - search.rounding;
+}
+
+void update(const ZoneBuilder& zone, Search& search) {
   search.box = float_box(zone.box());
   for (; search.planes < zone.plane_count(); ++search.planes) {
-    const Vector3& normal = zone.normal(search.planes);
-    for (int axis = 0; axis < 3; ++axis) search.normal[search.planes][axis] = static_cast<float>(normal[axis]);
-    search.limit[search.planes] = below(zone.limit(search.planes)) - rounding;
+    set_plane(search.planes, zone.normal(search.planes), zone.limit(search.planes), search);
   }
 }
 
 /// Squared distances of a node's children from the element; infinite for those outside the box or behind a plane.
-SPRUNG_KERNEL void bound_children(const MeshTree::Node& node, const Search& search, TreeLanes& bounds) {
+[[gnu::always_inline]] inline void bound_children(const MeshTree::Node& node, const Search& search, TreeLanes& bounds) {
   TreeLanes sum = {};
   for (int axis = 0; axis < 3; ++axis) {
     const TreeLanes before = node.min[axis] - search.element.max[axis];
@@ -78,10 +89,9 @@ SPRUNG_KERNEL void bound_children(const MeshTree::Node& node, const Search& sear
   bounds = sum;
 }
 
-/// Visits the leaves that may be nearer than the nearest pair so far, and than `radius`.
-void find_nearest(const MeshTree& tree, double radius, const Zone& zone, ZoneBuilder& builder) {
-  Search search{.element = float_box(builder.element_box())};
-  search.box = float_box({builder.element_box().min().array() - radius, builder.element_box().max().array() + radius});
+/// Visits the triangles that may be nearer than the nearest so far, and than `radius`.
+SPRUNG_KERNEL void find_nearest(const MeshTree& tree, double radius, const Zone& zone, ZoneBuilder& builder) {
+  Search search = search_around(tree, builder.element_box(), grown(builder.element_box(), radius));
   const auto limit = [&] {
     const double nearest = std::min(zone.distance, radius);
     return static_cast<float>(std::min(nearest * nearest, 1e38)) * (1.0F + 0x1p-20F);
@@ -91,11 +101,17 @@ void find_nearest(const MeshTree& tree, double radius, const Zone& zone, ZoneBui
   while (!stack.empty()) {
     const WalkEntry entry = stack.pop();
     if (entry.bound > limit()) continue;
+    if (zone.triangle != kNone) {
+      set_plane(0, zone.normal, builder.nearest_limit(), search);
+      search.planes = 1;
+    }
     if (entry.child < 0) {
       const TriangleBlock& block = tree.block(~entry.child);
       BlockLanes distances;
       squared_box_distances(block, builder.element_box(), distances);
-      for (unsigned lanes = block.lanes(); lanes != 0;) {
+      unsigned lanes = block.lanes();
+      if (zone.triangle != kNone) lanes &= triangles_above(block, zone.normal, builder.nearest_limit());
+      while (lanes != 0) {
         const int lane = take_smallest_lane(distances, lanes);
         if (distances[lane] > limit()) break;
         builder.look_at(block.triangle[lane], block.corners(lane));
@@ -108,25 +124,26 @@ void find_nearest(const MeshTree& tree, double radius, const Zone& zone, ZoneBui
   }
 }
 
-/// Visits the leaves that may come within the zone.
-void carve(const MeshTree& tree, Index nearest, ZoneBuilder& zone) {
-  const double magnitude = std::max(tree.magnitude(), zone.box().max().cwiseAbs().cwiseMax(zone.box().min().cwiseAbs()).maxCoeff());
-  const float rounding = kPlaneRounding * static_cast<float>(magnitude);
-  Search search{.element = float_box(zone.element_box())};
-  update(zone, rounding, search);
+/// Visits the triangles that may come within the zone.
+SPRUNG_KERNEL void carve(const MeshTree& tree, Index nearest, ZoneBuilder& zone) {
+  Search search = search_around(tree, zone.element_box(), zone.box());
+  update(zone, search);
   WalkStack stack(tree.stack_size());
   stack.push({0.0F, 0});
   while (!stack.empty()) {
     const WalkEntry entry = stack.pop();
     if (entry.child < 0) {
       const TriangleBlock& block = tree.block(~entry.child);
+      unsigned lanes = triangles_in_box(block, zone.box());
+      for (int k = 0; k < zone.plane_count(); ++k) lanes &= triangles_above(block, zone.normal(k), zone.limit(k));
+      if (lanes == 0) continue;
       BlockLanes distances;
       squared_box_distances(block, zone.element_box(), distances);
-      for (unsigned lanes = triangles_in_box(block, zone.box()); lanes != 0;) {
+      while (lanes != 0) {
         const int lane = take_smallest_lane(distances, lanes);
         if (block.triangle[lane] != nearest) zone.meet(block.corners(lane));
       }
-      update(zone, rounding, search);
+      update(zone, search);
       continue;
     }
     TreeLanes bounds;

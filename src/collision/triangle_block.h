@@ -36,6 +36,13 @@ struct alignas(64) TriangleBlock {
   return block.lanes() & ~lanes_that_hold(outside);
 }
 
+/// The triangles that reach above the plane normal . x = limit.
+[[gnu::always_inline]] inline unsigned triangles_above(const TriangleBlock& block, const Vector3& normal, double limit) {
+  BlockMask above{};
+  for (const auto& x : block.corner) above |= x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2] > limit;
+  return block.lanes() & lanes_that_hold(above);
+}
+
 /// Squared distances [m^2] of the triangles' own boxes from `box`.
 [[gnu::always_inline]] inline void squared_box_distances(const TriangleBlock& block, const Box3& box, BlockLanes& squared) {
   squared = BlockLanes{};

@@ -33,7 +33,7 @@ ZoneBuilder::ZoneBuilder(const ElementCorners& element, const ZoneRequest& reque
 }
 
 void ZoneBuilder::look_at(Index triangle, const TriangleCorners& corners) {
-  if (zone_.triangle != kNone && nearest_lowest_ - highest_along(zone_.normal, corners) >= zone_.distance) return;
+  if (zone_.triangle != kNone && highest_along(zone_.normal, corners) <= nearest_limit()) return;
   const ClosestPair pair = closest_pair(element_, corners, kPairSlack, request_.exact);
   const double distance = std::sqrt(pair.squared_distance);
   if (!(distance < zone_.distance)) return;

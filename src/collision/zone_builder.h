@@ -21,6 +21,9 @@ class ZoneBuilder {
   /// Tells how near the obstacle may be, after all triangles within `searched` [m] were looked at.
   void finish(double searched);
 
+  /// What lies wholly below this along the nearest pair's normal is no nearer.
+  [[nodiscard]] double nearest_limit() const { return nearest_lowest_ - zone_.distance; }
+
   [[nodiscard]] const Box3& box() const { return zone_.box; }
   [[nodiscard]] const Box3& element_box() const { return element_box_; }
   [[nodiscard]] int plane_count() const { return zone_.plane_count; }

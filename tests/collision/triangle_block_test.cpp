@@ -88,5 +88,28 @@ TEST(TriangleBlock, TrianglesInABoxAreThoseWhoseOwnBoxMeetsIt) {
   EXPECT_GT(found, 2500);
 }
 
+TEST(TriangleBlock, TrianglesAboveAPlaneAreThoseWithACornerThere) {
+  Random random(4);
+  int found = 0;
+  for (int i = 0; i < 5000; ++i) {
+    std::array<Corners, kBlockLanes> triangles;
+    for (Corners& triangle : triangles) triangle = some_triangle(random);
+    TriangleBlock block = block_of(triangles);
+    block.count = 1 + random.below(kBlockLanes);
+    const Vector3 normal = random.direction();
+    const double limit = random.between(-1.0, 1.0);
+    const unsigned above = triangles_above(block, normal, limit);
+    for (int lane = 0; lane < block.count; ++lane) {
+      const auto& [a, b, c] = triangles[lane];
+      const double highest = std::max({normal.dot(a), normal.dot(b), normal.dot(c)});
+      if (std::abs(highest - limit) < 1e-15) continue;  // three products below 1, rounded
+      ASSERT_EQ((above >> lane & 1U) != 0, highest > limit);
+      found += highest > limit ? 1 : 0;
+    }
+    ASSERT_EQ(above >> block.count, 0U);
+  }
+  EXPECT_GT(found, 2500);
+}
+
 }  // namespace
 }  // namespace sprung
