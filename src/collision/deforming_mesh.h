@@ -20,13 +20,13 @@ class DeformingMesh {
 
   [[nodiscard]] const MeshSequence& sequence() const { return *sequence_; }
 
-  /// Positions at the interval's begin [m].
-  [[nodiscard]] const Points& before() const { return before_; }
-  /// The mesh at the interval's end.
+  /// The mesh at the interval's begin and end.
+  [[nodiscard]] const TriangleMesh& before() const { return before_; }
   [[nodiscard]] const TriangleMesh& after() const { return after_; }
 
-  /// Positions between which every vertex stays throughout the interval: those of the two frames around it, where there are such,
-  /// so that they seldom change.
+  /// Positions between which every vertex stays throughout the interval. Those around all of a part of the way from one frame to
+  /// the next, where the interval is within it, so that they seldom change; parts are as long as it takes to go as far as edges are
+  /// long.
   struct Sweep {
     const Points& from;
     const Points& to;
@@ -56,10 +56,27 @@ class DeformingMesh {
  private:
   std::shared_ptr<const MeshSequence> sequence_;
   VertexTriangles around_;
-  Points before_;
+  double edge_length_ = 0.0;  ///< mean, in the first frame [m]
+  TriangleMesh before_;
   TriangleMesh after_;
-  Index first_frame_ = kNone;  ///< of the two around the interval; kNone: it is not between two
-  Index last_frame_ = kNone;
+
+  /// From the part that begins at `first` to the one that ends at `last`, of so many from `frame` on to `next`; where there are no
+  /// parts, the sweep is from before_ to after_.
+  struct Span {
+    Index frame = kNone;
+    Index next = kNone;
+    int parts = 0;
+    int first = 0;
+    int last = 0;
+
+    bool operator==(const Span&) const = default;
+  };
+  void fit_span(const MeshSequence::Moment& begin, const MeshSequence::Moment& end);
+  [[nodiscard]] int parts_between(Index frame, Index next) const;
+
+  Span span_;
+  Points sweep_from_;
+  Points sweep_to_;
   bool sweep_is_new_ = false;
   double largest_displacement_ = 0.0;
   double begin_ = 0.0;

@@ -40,7 +40,7 @@ MeshShape::MeshShape(const SequenceGeometry& geometry) : closed_(geometry.closed
   require_usable(sequence);
   for (const Points& frame : sequence.frames) magnitude_ = std::max(magnitude_, largest_coordinate(frame));
   tree_.emplace(TriangleMesh{sequence.frames.front(), sequence.triangles});
-  tree_before_.emplace(TriangleMesh{sequence.frames.front(), sequence.triangles});
+  tree_before_.emplace(*tree_);
   deforming_.emplace(geometry.sequence);
   deforms_ = sequence.deforms();
   set_interval(0.0, 0.0);
@@ -52,10 +52,10 @@ void MeshShape::set_interval(double t, double t_end) {
   if (deforming_->sweep_is_new()) {
     const auto [from, to] = deforming_->sweep();
     tree_->refit(from, to);
-    tree_before_->refit(from, to);
+    tree_before_->take_boxes(*tree_);
   }
-  tree_->set_positions(deforming_->after().vertices);
-  tree_before_->set_positions(deforming_->before());
+  tree_->place(deforming_->after());
+  tree_before_->place(deforming_->before());
   bounds_ = tree_->bounds();
 }
 

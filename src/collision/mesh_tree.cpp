@@ -26,15 +26,11 @@ float rounded_down(double value) {
 
 float rounded_up(double value) { return -rounded_down(-value); }
 
-/// Lanes beyond `count` repeat its last triangle.
-template <class PositionOf>
-void fill_lanes(const fcl::Triangle* triangles, const PositionOf& position_of, TriangleBlock& block) {
+void fill_lanes(const TriangleMesh& mesh, TriangleBlock& block) {
   for (int lane = 0; lane < kBlockLanes; ++lane) {
-    block.triangle[lane] = block.triangle[std::min(lane, block.count - 1)];
-    const fcl::Triangle& corner = triangles[block.triangle[lane]];
+    const auto corner = mesh.triangles.col(block.triangle[lane]);
     for (int k = 0; k < 3; ++k) {
-      const Vector3 position = position_of(corner[static_cast<std::size_t>(k)]);
-      for (int axis = 0; axis < 3; ++axis) block.corner[k][axis][lane] = position[axis];
+      for (int axis = 0; axis < 3; ++axis) block.corner[k][axis][lane] = mesh.vertices(axis, corner[k]);
     }
   }
 }
@@ -61,6 +57,7 @@ std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> build_model(const TriangleMesh
 MeshTree::MeshTree(const TriangleMesh& mesh) : model_(build_model(mesh)), magnitude_(mesh.vertices.cwiseAbs().maxCoeff()) {
   places_.resize(static_cast<std::size_t>(mesh.triangles.cols()));
   add_node(TreeCollapse(*model_), 0, 1);
+  place(mesh);
 }
 
 std::array<Vector3, 3> MeshTree::corners(Index triangle) const {
@@ -88,10 +85,14 @@ void MeshTree::refit(const Points& from, const Points& to) {
   });
 }
 
-void MeshTree::set_positions(const Points& positions) {
-  const auto position_of = [&](std::size_t vertex) -> Vector3 { return positions.col(static_cast<Index>(vertex)); };
+void MeshTree::take_boxes(const MeshTree& refitted) {
+  nodes_ = refitted.nodes_;
+  magnitude_ = refitted.magnitude_;
+}
+
+void MeshTree::place(const TriangleMesh& mesh) {
   parallel_chunks(static_cast<Index>(blocks_.size()), kBlocksPerTask, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) fill_lanes(model_->tri_indices, position_of, blocks_[static_cast<std::size_t>(i)]);
+    for (Index i = begin; i < end; ++i) fill_lanes(mesh, blocks_[static_cast<std::size_t>(i)]);
   });
 }
 
@@ -136,8 +137,8 @@ std::int32_t MeshTree::add_block(int volume) {
     places_[static_cast<std::size_t>(triangle)] = {number, block.count};
     block.triangle[block.count++] = triangle;
   }
-  fill_lanes(
-      model_->tri_indices, [&](std::size_t vertex) { return model_->vertices[vertex]; }, block);
+  // Lanes beyond `count` repeat the last triangle.
+  for (int lane = block.count; lane < kBlockLanes; ++lane) block.triangle[lane] = block.triangle[block.count - 1];
   return number;
 }
 

@@ -31,8 +31,11 @@ class MeshTree {
   /// Not thread-safe.
   void refit(const Points& from, const Points& to);
 
-  /// Where the vertices are from now on [m], within the boxes. Not thread-safe.
-  void set_positions(const Points& positions);
+  /// Takes over the boxes of a copy that was refitted.
+  void take_boxes(const MeshTree& refitted);
+
+  /// Where the triangles are from now on, within the boxes. Requires the triangles of the tree. Not thread-safe.
+  void place(const TriangleMesh& mesh);
 
   /// The box around all boxes [m].
   [[nodiscard]] Box3 bounds() const;
