@@ -74,6 +74,7 @@ TEST_P(PinInTheWay, OfABallTheClothGetsFreeAgain) {
       run_scenario(load_scenario("hanging_cloth", {"obstacles.ball.place.position=[0.5, 0.5, 1]"}, GetParam()),
                    [&](const Simulator&, const FrameDiagnostics& frame) { stretch = frame.max_stretch; });
   EXPECT_FALSE(report.is_free()) << report;
+  EXPECT_GT(report.squeezed, 0) << "it is reported";
   EXPECT_LT(report.last_wrong_frame, 0.2 * report.frames) << report;
   EXPECT_LT(stretch, 0.2) << "at the end; a ball of 0.12 m that is stuck stretches a spring of 0.04 m by more than its length";
 }
