@@ -81,12 +81,17 @@ class PatchSearch {
 
 }  // namespace
 
-Intersections find_intersections(const ObstacleSet& obstacles, const CollisionSurface& surface, const Points& positions) {
+Intersections find_intersections(const ObstacleSet& obstacles, const CollisionSurface& surface, const Points& positions,
+                                 Index body) {
   if (obstacles.obstacles().empty()) return {};
   const PatchSearch search(obstacles, surface, positions);
   std::vector<Intersections> parts(surface.patches.size());
   parallel_chunks(static_cast<Index>(parts.size()), 1, [&](Index begin, Index end) {
-    for (Index patch = begin; patch < end; ++patch) search.search(patch, parts[static_cast<std::size_t>(patch)]);
+    for (Index p = begin; p < end; ++p) {
+      const ElementPatch& patch = surface.patches[static_cast<std::size_t>(p)];
+      const Index own = surface.elements[static_cast<std::size_t>(patch.first_element)].body;
+      if (body == kNone || body == own) search.search(p, parts[static_cast<std::size_t>(p)]);
+    }
   });
 
   Intersections all;

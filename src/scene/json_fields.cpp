@@ -31,6 +31,12 @@ std::optional<std::size_t> Fields::kind(const std::string& key, const std::vecto
   return kind;
 }
 
+std::optional<std::size_t> Fields::kind(const std::string& key, const std::vector<std::string>& kinds,
+                                        const std::string& fallback) {
+  if (!has(key)) json_[key] = fallback;
+  return kind(key, kinds);
+}
+
 void Fields::accept(const std::string& key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
 }

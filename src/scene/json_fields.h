@@ -45,6 +45,8 @@ class Fields {
 
   /// The required key that says what kind of object it is, as a number in the list. When it is broken no key counts as unknown.
   std::optional<std::size_t> kind(const std::string& key, const std::vector<std::string>& kinds);
+  /// The same for a key that may be missing.
+  std::optional<std::size_t> kind(const std::string& key, const std::vector<std::string>& kinds, const std::string& fallback);
 
   /// Makes a key known without reading it.
   void accept(const std::string& key);

@@ -50,7 +50,9 @@ StretchLimitSettings read_stretch_limit(Fields& fields) {
 
 ContactSettings read_contact(Fields& fields) {
   ContactSettings contact;
-  if (fields.kind("response", {"projection", "penalty"}) != 1) return contact;
+  const auto start = fields.value("start", word_of({"refuse", "push_out"}), "refuse");
+  contact.start = start == 1 ? ContactSettings::Start::push_out : ContactSettings::Start::refuse;
+  if (fields.kind("response", {"projection", "penalty"}, "projection") != 1) return contact;
   contact.response = ContactSettings::Response::penalty;
   contact.stiffness = fields.required("stiffness", number(kPositive)).value_or(0.0);
   contact.damping = fields.required("damping", number(kNotNegative)).value_or(0.0);
@@ -68,7 +70,7 @@ SimulatorSettings read_settings(Fields& fields) {
   const auto integrator = fields.value("integrator", object_of<IntegratorSettings>(read_integrator), {{"type", "verlet"}});
   settings.integrator = integrator.value_or(IntegratorSettings{});
   settings.stretch_limit = fields.optional("stretch_limit", object_of<StretchLimitSettings>(read_stretch_limit));
-  const auto contact = fields.value("contact", object_of<ContactSettings>(read_contact), {{"response", "projection"}});
+  const auto contact = fields.value("contact", object_of<ContactSettings>(read_contact), Json::object());
   settings.contact = contact.value_or(ContactSettings{});
   const auto stability = fields.value("stability", word_of({"refuse", "warn"}), "refuse");
   settings.stability = stability == 1 ? StabilityCheck::warn : StabilityCheck::refuse;

@@ -88,7 +88,9 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   if (settings.stretch_limit) limit.emplace(network, *settings.stretch_limit);
   environment.set_interval(0.0, 0.0);
   move_pins(0.0);
-  refuse_intersections(network, environment, settings.contact, state.x);
+  Start start = find_start(network, environment, settings.contact, state.x);
+  state.x = std::move(start.positions);
+  warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
   integrator->start(state, forces, settings.step);
 }
 

@@ -21,7 +21,12 @@ struct ContactSettings {
     projection,  ///< particles are moved out of obstacles
     penalty      ///< f_coll: a spring and damper push them out
   };
+  enum class Start : std::uint8_t {
+    refuse,   ///< what intersects at the start is refused
+    push_out  ///< what is in obstacles is led out of them before time 0
+  };
   Response response = Response::projection;
+  Start start = Start::refuse;
   double stiffness = 0.0;  ///< of the penalty [N/m]
   double damping = 0.0;    ///< of the penalty [N s/m]
 };
@@ -50,7 +55,8 @@ struct StepReport {
 class Simulator {
  public:
   /// Throws InputError when settings are out of their bounds, the step is not positive or beyond the largest stable one (unless
-  /// `stability` is warn: then `warnings` says so), or when particles start inside an obstacle.
+  /// `stability` is warn: then `warnings` says so), or when anything intersects at the start that is not pushed
+  /// out. Then `warnings` says what was.
   explicit Simulator(SpringNetwork network, SimulatorSettings settings = {}, std::vector<Obstacle> obstacles = {});
   ~Simulator();
   Simulator(Simulator&&) noexcept;

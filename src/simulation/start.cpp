@@ -1,18 +1,56 @@
 #include "simulation/start.h"
 
+#include "base/format.h"
 #include "dynamics/contact_surface.h"
+#include "simulation/push_out.h"
 #include "simulation/start_check.h"
+
+#include <algorithm>
 
 namespace sprung {
 
-void refuse_intersections(const SpringNetwork& network, const Environment& environment, const ContactSettings& contact,
-                          const Points& positions) {
-  const CollisionSurface surface = contact_surface(network);
+namespace {
+
+StartIntersections find_all(const Environment& environment, const CollisionSurface& surface, const ContactSettings& contact,
+                            const Points& positions) {
   StartIntersections found = find_start_intersections(environment, surface, positions);
+  // Bodies meet each other by projection alone.
   if (contact.response == ContactSettings::Response::penalty) found.with_each_other.clear();
-  if (found.empty()) return;
-  throw InputError(start_problems(found, network, environment, surface, positions,
-                                  "move one of them by \"place\", so that they do not overlap"));
+  return found;
+}
+
+std::vector<std::string> say_what_moved(const SpringNetwork& network, const Points& from, const Points& to) {
+  std::vector<std::string> lines;
+  for (const Body& body : network.bodies) {
+    Index count = 0;
+    double farthest = 0.0;
+    for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+      if (from.col(i) == to.col(i)) continue;
+      ++count;
+      farthest = std::max(farthest, (to.col(i) - from.col(i)).norm());
+    }
+    if (count == 0) continue;
+    lines.push_back("body \"" + body.name + "\" was pushed out of obstacles at the start: " + std::to_string(count) +
+                    (count == 1 ? " particle by " : " particles by up to ") + format_number(farthest, 3) + " m");
+  }
+  return lines;
+}
+
+}  // namespace
+
+Start find_start(const SpringNetwork& network, Environment& environment, const ContactSettings& contact, const Points& positions) {
+  const CollisionSurface surface = contact_surface(network);
+  StartIntersections found = find_all(environment, surface, contact, positions);
+  if (found.empty()) return {positions};
+  Points place = positions;
+  std::string remedy = "move one of them by \"place\", or let contact.start be \"push_out\"";
+  if (contact.start == ContactSettings::Start::push_out && !found.with_obstacles.empty()) {
+    place = push_out(network, environment, surface, positions);
+    found = find_all(environment, surface, contact, place);
+    if (found.empty()) return {place, say_what_moved(network, positions, place)};
+    remedy = "it could not be pushed out: move one of them by \"place\"";
+  }
+  throw InputError(start_problems(found, network, environment, surface, place, remedy));
 }
 
 }  // namespace sprung

@@ -41,6 +41,7 @@ TEST(SceneReader, TimeAndSettingsArrive) {
   EXPECT_EQ(scene.settings.contact.response, ContactSettings::Response::penalty);
   EXPECT_EQ(scene.settings.contact.stiffness, 1000.0);
   EXPECT_EQ(scene.settings.contact.damping, 0.5);
+  EXPECT_EQ(scene.settings.contact.start, ContactSettings::Start::push_out);
   EXPECT_EQ(scene.settings.stability, StabilityCheck::warn);
 }
 
@@ -155,12 +156,19 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_TRUE(std::holds_alternative<VerletSettings>(scene.settings.integrator));
   EXPECT_FALSE(scene.settings.stretch_limit);
   EXPECT_EQ(scene.settings.contact.response, ContactSettings::Response::projection);
+  EXPECT_EQ(scene.settings.contact.start, ContactSettings::Start::refuse);
   EXPECT_EQ(scene.settings.stability, StabilityCheck::refuse);
   EXPECT_EQ(scene.bodies[0].place.scale, 1.0);
   EXPECT_EQ(scene.bodies[0].velocity, Vector3(0, 0, 0));
   EXPECT_FALSE(scene.bodies[0].contact.self);
   EXPECT_TRUE(scene.bodies[0].contact.others);
   EXPECT_TRUE(scene.obstacles.empty());
+}
+
+TEST(SceneReader, ContactIsByProjectionUnlessItSaysOtherwise) {
+  const Scene scene = SceneFolder().read(kPlainScene, {"contact={\"start\":\"push_out\"}"});
+  EXPECT_EQ(scene.settings.contact.response, ContactSettings::Response::projection);
+  EXPECT_EQ(scene.settings.contact.start, ContactSettings::Start::push_out);
 }
 
 TEST(SceneReader, ResolvedSceneReadsBackAsItself) {

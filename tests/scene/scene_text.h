@@ -93,7 +93,7 @@ inline constexpr const char* kFullScene = R"({
   "integrator": { "type": "verlet", "damping": 0.001, "start_at_rest": true },
   "stretch_limit": { "max_stretch": 0.03, "max_compression": 0.9, "kinds": ["structural", "bend"], "iterations": 16,
                      "tolerance": 0.002 },
-  "contact": { "response": "penalty", "stiffness": 1000, "damping": 0.5 },
+  "contact": { "response": "penalty", "stiffness": 1000, "damping": 0.5, "start": "push_out" },
   "stability": "warn",
   "bodies": {
     "zebra": {

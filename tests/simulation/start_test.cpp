@@ -100,5 +100,57 @@ TEST(Start, WhereAMotionBeginsCounts) {
   EXPECT_TRUE(refusal(one_particle({5.0, 0.1, 0.0}), {}, {passing}).empty());
 }
 
+SimulatorSettings pushing_out(const IntegratorSettings& integrator = VerletSettings{}) {
+  SimulatorSettings settings{.gravity = Vector3::Zero(), .integrator = integrator};
+  settings.contact.start = ContactSettings::Start::push_out;
+  return settings;
+}
+
+TEST(Start, AParticleIsPushedToItsGapBeforeTheNearestSurface) {
+  const ContactMaterial thick{.thickness = 0.01};
+  const Simulator simulator(one_particle({0.1, 0.0, 0.0}, thick), pushing_out(), {ball(0.3, Vector3::Zero())});
+  // Passes leave a thousandth of the gap.
+  EXPECT_LT((simulator.positions().col(0) - Vector3(0.31, 0.0, 0.0)).norm(), 1e-5);
+  ASSERT_EQ(simulator.warnings().size(), 1U);
+  EXPECT_EQ(simulator.warnings()[0], "body \"ball\" was pushed out of obstacles at the start: 1 particle by 0.21 m");
+}
+
+TEST(Start, VelocitiesStayAsGivenWhereParticlesArePushedOut) {
+  const Vector3 velocity(1.0, 2.0, -0.5);
+  for (const IntegratorSettings& integrator : testing::all_integrators()) {
+    Simulator simulator(one_particle({0.1, 0.0, 0.0}, {}, velocity), pushing_out(integrator), {ball(0.3, Vector3::Zero())});
+    EXPECT_EQ(simulator.state().v.col(0), velocity);
+    const Vector3 start = simulator.positions().col(0);
+    const StepReport report = simulator.step();
+    EXPECT_EQ(report.truncated, 0);
+    // One step of a free particle: four roundings of coordinates below 1.
+    EXPECT_LT((simulator.positions().col(0) - start - simulator.settings().step * velocity).norm(), 1e-15);
+    EXPECT_LT((simulator.state().v.col(0) - velocity).norm(), 1e-12);
+  }
+}
+
+TEST(Start, WhatIsFreeIsNotPushed) {
+  SimulatorSettings settings = pushing_out();
+  settings.step = 1.0e-4;
+  const SpringNetwork network = cloth(5, 0.01, {.thickness = 0.5});
+  const Simulator simulator(network, settings, {ground()});
+  EXPECT_EQ(simulator.positions(), network.positions);
+  EXPECT_TRUE(simulator.warnings().empty());
+}
+
+TEST(Start, PushesOutForPenaltyContactToo) {
+  SimulatorSettings settings = pushing_out();
+  settings.contact.response = ContactSettings::Response::penalty;
+  settings.contact.stiffness = 10.0;
+  const Simulator simulator(one_particle({0.0, -0.1, 0.0}), settings, {ground()});
+  EXPECT_GT(simulator.positions()(1, 0), 0.0);
+  EXPECT_LT(simulator.positions()(1, 0), 1e-8);
+}
+
+TEST(Start, BodiesAcrossEachOtherAreNotPushed) {
+  SimulatorSettings settings = pushing_out();
+  EXPECT_EQ(refusal(needle_and_patch({}), settings, {}).size(), 1U);
+}
+
 }  // namespace
 }  // namespace sprung
