@@ -34,11 +34,11 @@ FloatBox rounded_outward(const Box3& box) {
   return rounded;
 }
 
-/// 0 for children that meet the box, 1 for the others.
 SPRUNG_KERNEL void push_meeting(const MeshTree::Node& node, const FloatBox& box, WalkStack& stack) {
   TreeLanes apart = {};
   for (int axis = 0; axis < 3; ++axis) {
-    apart = (node.min[axis] > box.max[axis]) | (node.max[axis] < box.min[axis]) ? TreeLanes{} + 1.0F : apart;
+    const auto outside = (node.min[axis] > box.max[axis]) | (node.max[axis] < box.min[axis]);
+    apart = outside ? TreeLanes{} + 1.0F : apart;
   }
   stack.push_within(apart, node.child, 0.0F);
 }
