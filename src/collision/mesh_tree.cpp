@@ -27,7 +27,7 @@ float rounded_down(double value) {
 float rounded_up(double value) { return -rounded_down(-value); }
 
 void fill_lanes(const TriangleMesh& mesh, TriangleBlock& block) {
-  for (int lane = 0; lane < kBlockLanes; ++lane) {
+  for (int lane = 0; lane < kLanes; ++lane) {
     const auto corner = mesh.triangles.col(block.triangle[lane]);
     for (int k = 0; k < 3; ++k) {
       for (int axis = 0; axis < 3; ++axis) block.corner[k][axis][lane] = mesh.vertices(axis, corner[k]);
@@ -138,7 +138,7 @@ std::int32_t MeshTree::add_block(int volume) {
     block.triangle[block.count++] = triangle;
   }
   // Lanes beyond `count` repeat the last triangle.
-  for (int lane = block.count; lane < kBlockLanes; ++lane) block.triangle[lane] = block.triangle[block.count - 1];
+  for (int lane = block.count; lane < kLanes; ++lane) block.triangle[lane] = block.triangle[block.count - 1];
   return number;
 }
 

@@ -69,7 +69,7 @@ SPRUNG_KERNEL Index find_nearest(const MeshTree& tree, const Vector3& p, double 
       continue;
     }
     const TriangleBlock& block = tree.block(~entry.child);
-    BlockLanes squared;
+    Lanes squared;
     squared_distances(p, block, squared);
     for (unsigned lanes = lanes_that_hold(squared < best2); lanes != 0;) {
       const int lane = take_lane(lanes);

@@ -107,7 +107,7 @@ SPRUNG_KERNEL void find_nearest(const MeshTree& tree, double radius, const Zone&
     }
     if (entry.child < 0) {
       const TriangleBlock& block = tree.block(~entry.child);
-      BlockLanes distances;
+      Lanes distances;
       squared_box_distances(block, builder.element_box(), distances);
       unsigned lanes = block.lanes();
       if (zone.triangle != kNone) lanes &= triangles_above(block, zone.normal, builder.nearest_limit());
@@ -137,7 +137,7 @@ SPRUNG_KERNEL void carve(const MeshTree& tree, Index nearest, ZoneBuilder& zone)
       unsigned lanes = triangles_in_box(block, zone.box());
       for (int k = 0; k < zone.plane_count(); ++k) lanes &= triangles_above(block, zone.normal(k), zone.limit(k));
       if (lanes == 0) continue;
-      BlockLanes distances;
+      Lanes distances;
       squared_box_distances(block, zone.element_box(), distances);
       while (lanes != 0) {
         const int lane = take_smallest_lane(distances, lanes);

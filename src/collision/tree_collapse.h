@@ -20,7 +20,7 @@ class TreeCollapse {
   explicit TreeCollapse(const Tree& tree);
 
   /// Whether so few triangles are below that they become one block.
-  [[nodiscard]] bool is_block(int bv) const { return tree_.getBV(bv).num_primitives <= kBlockLanes; }
+  [[nodiscard]] bool is_block(int bv) const { return tree_.getBV(bv).num_primitives <= kLanes; }
 
   /// The nodes below `bv`, at most kTreeLanes, that become its children. Requires that it is no block.
   [[nodiscard]] std::vector<int> children(int bv) const;

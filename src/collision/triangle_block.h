@@ -9,9 +9,9 @@
 namespace sprung {
 
 struct alignas(64) TriangleBlock {
-  BlockLanes corner[3][3];      ///< [m]: corner k along axis a, a lane a triangle; lanes beyond `count` repeat the last triangle
-  Index triangle[kBlockLanes];  ///< its number in the mesh
-  std::int32_t count;           ///< 1 to kBlockLanes
+  Lanes corner[3][3];      ///< [m]: corner k along axis a, a lane a triangle; lanes beyond `count` repeat the last triangle
+  Index triangle[kLanes];  ///< its number in the mesh
+  std::int32_t count;      ///< 1 to kLanes
 
   [[nodiscard]] std::array<Vector3, 3> corners(int lane) const { return {position(lane, 0), position(lane, 1), position(lane, 2)}; }
   /// Bit i is set for each lane i that holds a triangle.
@@ -23,13 +23,13 @@ struct alignas(64) TriangleBlock {
 
 /// The triangles whose own box meets `box` [m] or touches it: bit i stands for lane i.
 [[gnu::always_inline]] inline unsigned triangles_in_box(const TriangleBlock& block, const Box3& box) {
-  BlockMask outside{};
+  LaneMask outside{};
   for (int axis = 0; axis < 3; ++axis) {
     const double low = box.min()[axis];
     const double high = box.max()[axis];
-    const BlockLanes& a = block.corner[0][axis];
-    const BlockLanes& b = block.corner[1][axis];
-    const BlockLanes& c = block.corner[2][axis];
+    const Lanes& a = block.corner[0][axis];
+    const Lanes& b = block.corner[1][axis];
+    const Lanes& c = block.corner[2][axis];
     outside |= (a < low) & (b < low) & (c < low);
     outside |= (a > high) & (b > high) & (c > high);
   }
@@ -38,24 +38,24 @@ struct alignas(64) TriangleBlock {
 
 /// The triangles that reach above the plane normal . x = limit.
 [[gnu::always_inline]] inline unsigned triangles_above(const TriangleBlock& block, const Vector3& normal, double limit) {
-  BlockMask above{};
+  LaneMask above{};
   for (const auto& x : block.corner) above |= x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2] > limit;
   return block.lanes() & lanes_that_hold(above);
 }
 
 /// Squared distances [m^2] of the triangles' own boxes from `box`.
-[[gnu::always_inline]] inline void squared_box_distances(const TriangleBlock& block, const Box3& box, BlockLanes& squared) {
-  squared = BlockLanes{};
+[[gnu::always_inline]] inline void squared_box_distances(const TriangleBlock& block, const Box3& box, Lanes& squared) {
+  squared = Lanes{};
   for (int axis = 0; axis < 3; ++axis) {
-    const BlockLanes& a = block.corner[0][axis];
-    const BlockLanes& b = block.corner[1][axis];
-    const BlockLanes& c = block.corner[2][axis];
-    const BlockLanes low = a < b ? (a < c ? a : c) : (b < c ? b : c);
-    const BlockLanes high = a > b ? (a > c ? a : c) : (b > c ? b : c);
-    const BlockLanes before = low - box.max()[axis];
-    const BlockLanes behind = box.min()[axis] - high;
-    const BlockLanes farther = before > behind ? before : behind;
-    const BlockLanes outside = farther > 0.0 ? farther : BlockLanes{};
+    const Lanes& a = block.corner[0][axis];
+    const Lanes& b = block.corner[1][axis];
+    const Lanes& c = block.corner[2][axis];
+    const Lanes low = a < b ? (a < c ? a : c) : (b < c ? b : c);
+    const Lanes high = a > b ? (a > c ? a : c) : (b > c ? b : c);
+    const Lanes before = low - box.max()[axis];
+    const Lanes behind = box.min()[axis] - high;
+    const Lanes farther = before > behind ? before : behind;
+    const Lanes outside = farther > 0.0 ? farther : Lanes{};
     squared += outside * outside;
   }
 }

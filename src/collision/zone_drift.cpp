@@ -24,17 +24,17 @@ void mark_children(const MeshTree::Node& node, const Box3& box, TreeLanes& bound
 
 /// The square of the farthest that a corner of the block's triangles goes otherwise than by `drift`.
 double farthest_otherwise(const TriangleBlock& before, const TriangleBlock& after, const Vector3& drift) {
-  BlockLanes farthest{};
+  Lanes farthest{};
   for (int k = 0; k < 3; ++k) {
-    BlockLanes squared{};
+    Lanes squared{};
     for (int axis = 0; axis < 3; ++axis) {
-      const BlockLanes otherwise = after.corner[k][axis] - before.corner[k][axis] - drift[axis];
+      const Lanes otherwise = after.corner[k][axis] - before.corner[k][axis] - drift[axis];
       squared += otherwise * otherwise;
     }
     farthest = squared > farthest ? squared : farthest;
   }
   double result = 0.0;
-  for (int lane = 0; lane < kBlockLanes; ++lane) result = std::max(result, farthest[lane]);
+  for (int lane = 0; lane < kLanes; ++lane) result = std::max(result, farthest[lane]);
   return result;
 }
 

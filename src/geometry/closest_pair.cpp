@@ -1,5 +1,9 @@
 #include "geometry/closest_pair.h"
 
+#include "base/kernel.h"
+#include "geometry/closest_point_lanes.h"
+#include "geometry/segment_pair_lanes.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -10,42 +14,144 @@ namespace {
 // A plane that separates by all but this part of a distance proves it to be the least.
 constexpr double kRounding = 1e-12;
 
+using Corners = std::array<Vector3, 3>;
+
+constexpr int kCornerPairs = 2 * kLanes;
+constexpr int kEdgePairs = 3 * kLanes;
+
+/// Corner i of the simplex against the triangle at i, corner k of the triangle against the simplex at kLanes + k.
+struct CornerPairs {
+  std::array<double, kCornerPairs> squared_distance;
+  std::array<Vector3, kCornerPairs> point;
+  std::array<Vector3, kCornerPairs> weights;  ///< of the corners of what the point is on
+};
+
+/// Edge i of the simplex against edge k of the triangle at i kLanes + k.
+struct EdgePairs {
+  std::array<double, kEdgePairs> squared_distance;
+  std::array<double, kEdgePairs> s;
+  std::array<double, kEdgePairs> t;
+};
+
+/// Lanes beyond `count` repeat the last point.
+[[gnu::always_inline]] inline void measure(const Corners& points, int count, const Corners& triangle, std::size_t first,
+                                           CornerPairs& pairs) {
+  LaneVector p;
+  for (int lane = 0; lane < kLanes; ++lane) set_lane(lane, points[static_cast<std::size_t>(std::min(lane, count - 1))], p);
+  TriangleLanes triangles;
+  set_all_lanes(triangle[0], triangles.a);
+  set_all_lanes(triangle[1], triangles.b);
+  set_all_lanes(triangle[2], triangles.c);
+  ClosestPointLanes closest;
+  unsigned needles = closest_points(p, triangles, closest);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::size_t i = first + static_cast<std::size_t>(lane);
+    pairs.squared_distance[i] = closest.squared_distance[lane];
+    pairs.point[i] = {closest.point.x[lane], closest.point.y[lane], closest.point.z[lane]};
+    pairs.weights[i] = {closest.of_a[lane], closest.of_b[lane], closest.of_c[lane]};
+  }
+  while (needles != 0) {
+    const int lane = take_lane(needles);
+    const std::size_t i = first + static_cast<std::size_t>(lane);
+    const Vector3& point = points[static_cast<std::size_t>(std::min(lane, count - 1))];
+    const ClosestPoint found = closest_point_on_triangle(point, triangle[0], triangle[1], triangle[2]);
+    pairs.squared_distance[i] = found.squared_distance;
+    pairs.point[i] = found.point;
+    pairs.weights[i] = barycentric(found, triangle[0], triangle[1], triangle[2]);
+  }
+}
+
+SPRUNG_KERNEL void measure_corners(const Simplex& simplex, const Corners& triangle, CornerPairs& pairs) {
+  measure(simplex.x, simplex.count, triangle, 0, pairs);
+  if (simplex.count == 3) measure(triangle, 3, simplex.x, kLanes, pairs);
+}
+
+/// Lanes beyond the third repeat the first edge of the triangle.
+[[gnu::always_inline]] inline void measure(const Vector3& from, const Vector3& to, const Corners& triangle, std::size_t first,
+                                           EdgePairs& pairs) {
+  SegmentLanes segment;
+  set_all_lanes(from, segment.from);
+  set_all_lanes(to, segment.to);
+  SegmentLanes edges;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    set_lane(lane, triangle[static_cast<std::size_t>(lane % 3)], edges.from);
+    set_lane(lane, triangle[static_cast<std::size_t>((lane + 1) % 3)], edges.to);
+  }
+  SegmentPairLanes closest;
+  unsigned points = closest_points(segment, edges, closest);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::size_t i = first + static_cast<std::size_t>(lane);
+    pairs.squared_distance[i] = closest.squared_distance[lane];
+    pairs.s[i] = closest.s[lane];
+    pairs.t[i] = closest.t[lane];
+  }
+  while (points != 0) {
+    const int lane = take_lane(points);
+    const auto k = static_cast<std::size_t>(lane % 3);
+    const std::size_t i = first + static_cast<std::size_t>(lane);
+    const SegmentPair found = closest_points_of_segments(from, to, triangle[k], triangle[(k + 1) % 3]);
+    pairs.squared_distance[i] = found.squared_distance;
+    pairs.s[i] = found.s;
+    pairs.t[i] = found.t;
+  }
+}
+
+SPRUNG_KERNEL void measure_edges(const Simplex& simplex, const Corners& triangle, EdgePairs& pairs) {
+  measure(simplex.x[0], simplex.x[1], triangle, 0, pairs);
+  if (simplex.count < 3) return;
+  measure(simplex.x[1], simplex.x[2], triangle, kLanes, pairs);
+  measure(simplex.x[2], simplex.x[0], triangle, 2 * kLanes, pairs);
+}
+
+/// The least of `groups` times three distances, of which kLanes are between the first of one group and that of the next.
+template <std::size_t kSize>
+std::size_t least(const std::array<double, kSize>& squared_distance, int groups) {
+  std::size_t best = 0;
+  for (int group = 0; group < groups; ++group) {
+    for (int k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(group * kLanes + k);
+      best = squared_distance[i] < squared_distance[best] ? i : best;
+    }
+  }
+  return best;
+}
+
 /// Keeps the nearest pair that it is shown.
 class NearestPair {
  public:
-  NearestPair(const Simplex& simplex, const std::array<Vector3, 3>& triangle) : simplex_(simplex), triangle_(triangle) {}
+  NearestPair(const Simplex& simplex, const Corners& triangle) : simplex_(simplex), triangle_(triangle) {}
 
-  void corners_against_face() {
-    for (int i = 0; i < simplex_.count; ++i) {
-      const ClosestPoint found = closest_point_on_triangle(simplex_.x[i], triangle_[0], triangle_[1], triangle_[2]);
-      if (found.squared_distance >= best_.squared_distance) continue;
-      best_ = {simplex_.x[i], found.point, Vector3::Unit(i), found.squared_distance};
-    }
-  }
-
-  void face_against_corners() {
-    for (const Vector3& corner : triangle_) {
-      const ClosestPoint found = closest_point_on_triangle(corner, simplex_.x[0], simplex_.x[1], simplex_.x[2]);
-      if (found.squared_distance >= best_.squared_distance) continue;
-      best_ = {found.point, corner, barycentric(found, simplex_.x[0], simplex_.x[1], simplex_.x[2]), found.squared_distance};
+  void corners_against_faces() {
+    CornerPairs pairs;
+    measure_corners(simplex_, triangle_, pairs);
+    const std::size_t i = least(pairs.squared_distance, simplex_.count == 3 ? 2 : 1);
+    best_.squared_distance = pairs.squared_distance[i];
+    if (i < kLanes) {
+      const std::size_t corner = std::min(i, static_cast<std::size_t>(simplex_.count - 1));
+      best_.on_simplex = simplex_.x[corner];
+      best_.on_triangle = pairs.point[i];
+      best_.weights = Vector3::Unit(static_cast<Index>(corner));
+    } else {
+      best_.on_simplex = pairs.point[i];
+      best_.on_triangle = triangle_[i - kLanes];
+      best_.weights = pairs.weights[i];
     }
   }
 
   void edges_against_edges() {
-    const int edges = simplex_.count == 3 ? 3 : simplex_.count - 1;
-    for (int i = 0; i < edges; ++i) {
-      const int next = (i + 1) % simplex_.count;
-      for (std::size_t j = 0; j < 3; ++j) {
-        const Vector3& b0 = triangle_[j];
-        const Vector3& b1 = triangle_[(j + 1) % 3];
-        const SegmentPair found = closest_points_of_segments(simplex_.x[i], simplex_.x[next], b0, b1);
-        if (found.squared_distance >= best_.squared_distance) continue;
-        best_.on_simplex = simplex_.x[i] + found.s * (simplex_.x[next] - simplex_.x[i]);
-        best_.on_triangle = b0 + found.t * (b1 - b0);
-        best_.weights = (1.0 - found.s) * Vector3::Unit(i) + found.s * Vector3::Unit(next);
-        best_.squared_distance = found.squared_distance;
-      }
-    }
+    EdgePairs pairs;
+    measure_edges(simplex_, triangle_, pairs);
+    const std::size_t best = least(pairs.squared_distance, simplex_.count == 3 ? 3 : 1);
+    if (pairs.squared_distance[best] >= best_.squared_distance) return;
+    const std::size_t i = best / kLanes;
+    const std::size_t next = (i + 1) % static_cast<std::size_t>(simplex_.count);
+    const std::size_t k = best % kLanes;
+    best_.on_simplex = simplex_.x[i] + pairs.s[best] * (simplex_.x[next] - simplex_.x[i]);
+    best_.on_triangle = triangle_[k] + pairs.t[best] * (triangle_[(k + 1) % 3] - triangle_[k]);
+    best_.weights.setZero();
+    best_.weights[static_cast<Index>(i)] = 1.0 - pairs.s[best];
+    best_.weights[static_cast<Index>(next)] = pairs.s[best];
+    best_.squared_distance = pairs.squared_distance[best];
   }
 
   /// Whether the plane across the best pair separates by this part of its distance.
@@ -61,7 +167,7 @@ class NearestPair {
 
  private:
   const Simplex& simplex_;
-  const std::array<Vector3, 3>& triangle_;
+  const Corners& triangle_;
   ClosestPair best_{.squared_distance = std::numeric_limits<double>::infinity()};
 };
 
@@ -114,9 +220,8 @@ Vector3 barycentric(const ClosestPoint& closest, const Vector3& a, const Vector3
 
 ClosestPair closest_pair(const Simplex& simplex, const std::array<Vector3, 3>& triangle, double slack, double exact) {
   NearestPair nearest(simplex, triangle);
-  nearest.corners_against_face();
+  nearest.corners_against_faces();
   if (simplex.count == 1) return nearest.best();
-  if (simplex.count == 3) nearest.face_against_corners();
   const double allowed = nearest.best().squared_distance < exact * exact ? kRounding : std::max(slack, kRounding);
   if (nearest.separates(1.0 - allowed)) return nearest.best();
   nearest.edges_against_edges();

@@ -45,9 +45,9 @@ class TreeInspector {
   Box3 inspect_block(std::int32_t number) {
     const TriangleBlock& block = tree_.block(number);
     EXPECT_GE(block.count, 1);
-    EXPECT_LE(block.count, kBlockLanes);
+    EXPECT_LE(block.count, kLanes);
     Box3 all;
-    for (int lane = 0; lane < kBlockLanes; ++lane) {
+    for (int lane = 0; lane < kLanes; ++lane) {
       const Index triangle = block.triangle[lane];
       if (lane < block.count) {
         triangles_.push_back(triangle);

@@ -12,10 +12,10 @@ using test::Random;
 
 using Corners = std::array<Vector3, 3>;
 
-TriangleBlock block_of(const std::array<Corners, kBlockLanes>& triangles) {
+TriangleBlock block_of(const std::array<Corners, kLanes>& triangles) {
   TriangleBlock block{};
-  block.count = kBlockLanes;
-  for (int lane = 0; lane < kBlockLanes; ++lane) {
+  block.count = kLanes;
+  for (int lane = 0; lane < kLanes; ++lane) {
     block.triangle[lane] = lane;
     for (int k = 0; k < 3; ++k) {
       for (int axis = 0; axis < 3; ++axis) block.corner[k][axis][lane] = triangles[lane][k][axis];
@@ -46,16 +46,16 @@ TEST(TriangleBlock, DistancesAreThoseOfEachTriangleToTheLastBit) {
   Random random(2);
   std::array<int, 7> met{};
   for (int i = 0; i < 20000; ++i) {
-    std::array<Corners, kBlockLanes> triangles;
+    std::array<Corners, kLanes> triangles;
     for (Corners& triangle : triangles) triangle = some_triangle(random);
     const TriangleBlock block = block_of(triangles);
     // A third of the positions is above the inside of a triangle, a few are on a corner.
     Vector3 p = anywhere(random, 2.0);
     if (i % 3 == 0) p = (triangles[0][0] + triangles[0][1] + triangles[0][2]) / 3.0 + anywhere(random, 0.1);
     if (i % 50 == 0) p = triangles[0][random.below(3)];
-    BlockLanes squared;
+    Lanes squared;
     squared_distances(p, block, squared);
-    for (int lane = 0; lane < kBlockLanes; ++lane) {
+    for (int lane = 0; lane < kLanes; ++lane) {
       const auto& [a, b, c] = triangles[lane];
       const ClosestPoint alone = closest_point_on_triangle(p, a, b, c);
       ASSERT_EQ(squared[lane], alone.squared_distance) << "block " << i << ", lane " << lane;
@@ -69,15 +69,15 @@ TEST(TriangleBlock, TrianglesInABoxAreThoseWhoseOwnBoxMeetsIt) {
   Random random(3);
   int found = 0;
   for (int i = 0; i < 5000; ++i) {
-    std::array<Corners, kBlockLanes> triangles;
+    std::array<Corners, kLanes> triangles;
     for (Corners& triangle : triangles) triangle = some_triangle(random);
     TriangleBlock block = block_of(triangles);
-    block.count = 1 + random.below(kBlockLanes);
+    block.count = 1 + random.below(kLanes);
     Box3 box(anywhere(random, 1.0));
     // Half of the boxes touch a corner of a triangle, no more.
     box.extend(i % 2 == 0 ? triangles[0][0] : anywhere(random, 1.0));
     const unsigned inside = triangles_in_box(block, box);
-    for (int lane = 0; lane < kBlockLanes; ++lane) {
+    for (int lane = 0; lane < kLanes; ++lane) {
       Box3 own;
       for (const Vector3& corner : block.corners(lane)) own.extend(corner);
       const bool expected = lane < block.count && own.intersects(box);
@@ -92,10 +92,10 @@ TEST(TriangleBlock, TrianglesAboveAPlaneAreThoseWithACornerThere) {
   Random random(4);
   int found = 0;
   for (int i = 0; i < 5000; ++i) {
-    std::array<Corners, kBlockLanes> triangles;
+    std::array<Corners, kLanes> triangles;
     for (Corners& triangle : triangles) triangle = some_triangle(random);
     TriangleBlock block = block_of(triangles);
-    block.count = 1 + random.below(kBlockLanes);
+    block.count = 1 + random.below(kLanes);
     const Vector3 normal = random.direction();
     const double limit = random.between(-1.0, 1.0);
     const unsigned above = triangles_above(block, normal, limit);
