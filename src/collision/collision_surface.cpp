@@ -1,8 +1,8 @@
 #include "collision/collision_surface.h"
 
+#include "collision/bisection.h"
+
 #include <algorithm>
-#include <cmath>
-#include <span>
 #include <utility>
 
 namespace sprung {
@@ -10,10 +10,6 @@ namespace {
 
 // 4 x 4 squares of a cloth: larger patches have boxes too loose to reject much, smaller ones are too many to ask for.
 constexpr std::size_t kMostPatchElements = 32;
-
-std::span<const Index> corners_of(const Element& element) {
-  return {element.particles.data(), static_cast<std::size_t>(element.corners)};
-}
 
 void add_single_particles(const std::vector<Index>& body_of, std::vector<Element>& elements) {
   std::vector<char> used(body_of.size(), 0);
@@ -26,57 +22,8 @@ void add_single_particles(const std::vector<Index>& body_of, std::vector<Element
   std::stable_sort(elements.begin(), elements.end(), [](const Element& a, const Element& b) { return a.body < b.body; });
 }
 
-Points middles_of(const std::vector<Element>& elements, const Points& positions) {
-  Points middles = Points::Zero(3, static_cast<Eigen::Index>(elements.size()));
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    auto middle = middles.col(static_cast<Eigen::Index>(e));
-    for (const Index particle : corners_of(elements[e])) middle += positions.col(particle);
-    middle /= elements[e].corners;
-  }
-  return middles;
-}
-
-/// Orders elements so that patches follow each other, and says where each begins.
-class Bisection {
- public:
-  Bisection(const Points& middles, std::vector<Index>& order) : middles_(middles), order_(order) {}
-
-  /// Cuts order[begin, end) into the fewest patches that can hold it, of nearly equal size.
-  void cut(std::size_t begin, std::size_t end, std::vector<std::size_t>& starts) {
-    cut(begin, end, (end - begin + kMostPatchElements - 1) / kMostPatchElements, starts);
-  }
-
- private:
-  void cut(std::size_t begin, std::size_t end, std::size_t patches, std::vector<std::size_t>& starts) {
-    const auto at = [&](std::size_t place) { return order_.begin() + static_cast<std::ptrdiff_t>(place); };
-    if (patches == 1) {
-      std::sort(at(begin), at(end));
-      starts.push_back(begin);
-      return;
-    }
-    const std::size_t middle = begin + (end - begin) * (patches / 2) / patches;
-    const int axis = longest_axis(begin, end);
-    // Ties are broken by number: which elements come first is then the same with every standard library.
-    std::nth_element(at(begin), at(middle), at(end),
-                     [&](Index a, Index b) { return std::pair(middles_(axis, a), a) < std::pair(middles_(axis, b), b); });
-    cut(begin, middle, patches / 2, starts);
-    cut(middle, end, patches - patches / 2, starts);
-  }
-
-  [[nodiscard]] int longest_axis(std::size_t begin, std::size_t end) const {
-    Box3 box;
-    for (std::size_t place = begin; place < end; ++place) box.extend(middles_.col(order_[place]));
-    int axis = 0;
-    box.sizes().maxCoeff(&axis);
-    return axis;
-  }
-
-  const Points& middles_;
-  std::vector<Index>& order_;
-};
-
 std::vector<std::size_t> sort_into_patches(const Points& positions, std::vector<Element>& elements) {
-  const Points middles = middles_of(elements, positions);
+  const Points middles = element_middles(elements, positions);
   std::vector<Index> order(elements.size());
   for (std::size_t e = 0; e < order.size(); ++e) order[e] = static_cast<Index>(e);
 
@@ -84,7 +31,7 @@ std::vector<std::size_t> sort_into_patches(const Points& positions, std::vector<
   for (std::size_t begin = 0; begin < elements.size();) {
     std::size_t end = begin;
     while (end < elements.size() && elements[end].body == elements[begin].body) ++end;
-    Bisection(middles, order).cut(begin, end, starts);
+    bisect(middles, kMostPatchElements, order, begin, end, starts);
     begin = end;
   }
   std::vector<Element> sorted;
@@ -140,6 +87,16 @@ std::vector<double> mean_edge_lengths(const std::vector<Element>& elements, cons
 }
 
 }  // namespace
+
+Points element_middles(const std::vector<Element>& elements, const Points& positions) {
+  Points middles = Points::Zero(3, static_cast<Eigen::Index>(elements.size()));
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    auto middle = middles.col(static_cast<Eigen::Index>(e));
+    for (const Index particle : corners_of(elements[e])) middle += positions.col(particle);
+    middle /= elements[e].corners;
+  }
+  return middles;
+}
 
 CollisionSurface make_collision_surface(std::vector<Element> elements, const Points& positions, const std::vector<Index>& body_of,
                                         Scalars thickness, std::vector<char> pinned, std::vector<char> self,

@@ -4,6 +4,7 @@
 #include "base/types.h"
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace sprung {
@@ -14,6 +15,13 @@ struct Element {
   int corners = 0;                                      ///< 3: a triangle, 2: a segment, 1: a particle
   Index body = kNone;
 };
+
+[[nodiscard]] inline std::span<const Index> corners_of(const Element& element) {
+  return {element.particles.data(), static_cast<std::size_t>(element.corners)};
+}
+
+/// The mean of each element's corners [m], a column per element.
+[[nodiscard]] Points element_middles(const std::vector<Element>& elements, const Points& positions);
 
 /// Elements that are neighbours in space as the network was built: what the broad phase is asked for.
 struct ElementPatch {

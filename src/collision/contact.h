@@ -5,11 +5,12 @@
 #include "base/types.h"
 
 #include <array>
+#include <limits>
 
 namespace sprung {
 
 /// A plane below which a weighted sum of particles may not fall, in the world at the end of the step:
-/// normal . (sum_i weights_i x_i - point) >= max(gap, clearance).
+/// normal . (sum_i weights_i x_i - point) >= max(min(gap, most_gap), clearance).
 ///
 /// Against an obstacle the sum is a point of an element: the weights are at least 0 and their sum is 1. Between elements it is the
 /// point of one minus the point of the other: the weights of the one are at least 0, those of the other at most 0, their sum is
@@ -25,7 +26,8 @@ struct Contact {
   Vector3 normal = Vector3::Zero();  ///< unit length, towards the free side
   Vector3 drift = Vector3::Zero();   ///< how far deforming has taken the surface here in this step, beside the obstacle's pose [m]
   double distance = 0.0;             ///< normal . (sum_i weights_i x_i - point) where it was found [m], negative behind the plane
-  double clearance = 0.0;            ///< the least gap that is kept, whatever the thickness: above rounding [m]
+  double most_gap = std::numeric_limits<double>::infinity();  ///< neighbours in a body may be nearer than its thickness [m]
+  double clearance = 0.0;  ///< the least gap that is kept, whatever the thickness: above rounding [m]
 };
 
 /// The contact of one particle with an obstacle.

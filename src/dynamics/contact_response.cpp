@@ -83,7 +83,7 @@ void ContactResponse::fill_one(const Contact& contact, const ContactMaterial& pa
   row.friction = pair.friction;
   row.restitution = pair.restitution;
 
-  const double gap = std::max(pair.thickness, contact.clearance);
+  const double gap = std::max(std::min(pair.thickness, contact.most_gap), contact.clearance);
   set.gap(slot) = gap;
   ContactGoal& goal = set.goal(slot);
   goal = {.origin = carried(contact, row.sum(motion.before)), .touch = kTouch * gap};

@@ -1,0 +1,28 @@
+// A corner before a face, or two edges, of the network that contact keeps an eye on.
+#pragma once
+
+#include "base/types.h"
+
+#include <array>
+
+namespace sprung {
+
+struct ContactCandidate {
+  std::array<Index, 4> particles{};  ///< the corner and then the face's, or those of the edges
+  bool edges = false;                ///< two edges
+  std::array<Index, 2> elements{};   ///< that have the sides; of a corner, the one that owns it
+  std::array<int, 2> edge{};         ///< of two edges: their numbers in these elements
+  double gap = 0.0;                  ///< that contact keeps between them [m]
+  double reach = 0.0;                ///< contact looks at them when they are nearer than this [m]
+};
+
+/// The closest points of the two sides.
+struct CandidateClosest {
+  std::array<double, 4> weights{};       ///< separation = sum_i weights_i x_i; those of the second side are at most 0
+  Vector3 separation = Vector3::Zero();  ///< from the second side's point to the first's [m]
+};
+
+/// `x` are the particles' positions [m].
+[[nodiscard]] CandidateClosest closest_points(const ContactCandidate& candidate, const std::array<Vector3, 4>& x);
+
+}  // namespace sprung

@@ -1,0 +1,91 @@
+// Eight elements of the network side by side.
+#pragma once
+
+#include "collision/collision_surface.h"
+#include "collision/lanes.h"
+#include "collision/moving_balls.h"
+#include "collision/moving_bounds.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace sprung {
+
+/// A stretch of time [steps]; balls are where they say they are at `now`.
+struct WatchTimes {
+  double now = 0.0;
+  double end = 0.0;
+};
+
+/// Up to eight elements of one body, a lane each, in single precision; unused lanes are empty. At time t their balls are between
+/// min + t slowest and max + t fastest.
+struct alignas(64) ElementLeaf {
+  using IntLanes = std::int32_t __attribute__((vector_size(kTreeLanes * sizeof(std::int32_t))));
+
+  TreeLanes min[3];
+  TreeLanes max[3];
+  TreeLanes slowest[3];
+  TreeLanes fastest[3];
+  MovingBounds bounds;     ///< of all lanes
+  TreeLanes corner[3][3];  ///< by corner and axis, at time 0; of smaller elements the first corner again
+  TreeLanes motion[3][3];
+  TreeLanes radius;      ///< of the largest ball, and what rounding may lose
+  IntLanes particle[3];  ///< by corner
+  IntLanes flat[3];      ///< by corner, of triangles: -1 where those around the particle do not cross each other; else 0
+  IntLanes marked;       ///< -1 or 0
+  IntLanes is_triangle;  ///< -1 or 0
+  std::array<Index, kTreeLanes> element;
+  int count;  ///< of the lanes used
+
+  ElementLeaf();
+
+  /// Sets the lane to an element from time 0 to the end.
+  void set(int lane, Index number, const Element& element, const MovingBalls& balls, const std::vector<char>& is_flat,
+           WatchTimes times);
+
+  /// Sets the bounds of all lanes.
+  void bound();
+
+  [[nodiscard]] MovingBounds lane_bounds(int lane) const {
+    using Axes = MovingBounds::Axes;
+    return {Axes{min[0][lane], min[1][lane], min[2][lane]}, Axes{max[0][lane], max[1][lane], max[2][lane]},
+            Axes{slowest[0][lane], slowest[1][lane], slowest[2][lane]}, Axes{fastest[0][lane], fastest[1][lane], fastest[2][lane]}};
+  }
+
+  [[nodiscard]] bool any_marked() const;
+};
+
+/// Where the corners of a leaf's elements are, now and at the end.
+struct alignas(64) LeafPlaces {
+  TreeLanes now[3][3];  ///< by corner and axis
+  TreeLanes end[3][3];
+};
+
+inline void place_corners(const ElementLeaf& leaf, WatchTimes times, LeafPlaces& places) {
+  const auto now = static_cast<float>(times.now);
+  const auto end = static_cast<float>(times.end);
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      places.now[k][axis] = leaf.corner[k][axis] + now * leaf.motion[k][axis];
+      places.end[k][axis] = leaf.corner[k][axis] + end * leaf.motion[k][axis];
+    }
+  }
+}
+
+/// 255 or 0 by lane.
+using LaneMask = std::array<std::uint8_t, kTreeLanes>;
+
+inline void store(const ElementLeaf::IntLanes& lanes, LaneMask& mask) {
+  using Bytes = std::uint8_t __attribute__((vector_size(kTreeLanes)));
+  const Bytes bytes = __builtin_convertvector(lanes, Bytes);
+  __builtin_memcpy(mask.data(), &bytes, sizeof bytes);
+}
+
+[[nodiscard]] inline bool any(const LaneMask& mask) {
+  std::uint64_t all = 0;
+  __builtin_memcpy(&all, mask.data(), sizeof all);
+  return all != 0;
+}
+
+}  // namespace sprung

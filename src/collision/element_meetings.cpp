@@ -1,0 +1,176 @@
+#include "collision/element_meetings.h"
+
+#include "base/kernel.h"
+
+#include <limits>
+
+namespace sprung {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+using IntLanes = ElementLeaf::IntLanes;
+
+/// Where lanes go to a kernel by reference they are to be aligned for any instructions that it may use.
+struct alignas(kTreeLanes * sizeof(std::int32_t)) AskedLanes {
+  IntLanes lanes;
+};
+
+/// A leaf and where its corners are.
+struct PlacedLeaf {
+  const ElementLeaf& leaf;
+  LeafPlaces places;
+};
+
+// Lanes come and go by reference: by value their way would depend on the instructions that are compiled for.
+
+inline void lower(TreeLanes& a, const TreeLanes& b) { a = a < b ? a : b; }
+inline void raise(TreeLanes& a, const TreeLanes& b) { a = a > b ? a : b; }
+
+/// What lies between a lane's bounds and those of the other leaf changes linearly along an axis, so both ends of time are enough.
+inline void find_bounds_apart(const ElementLeaf& a, int lane, const ElementLeaf& b, float now, float end, IntLanes& apart) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const TreeLanes above = a.min[axis][lane] - b.max[axis];
+    const TreeLanes rising = a.slowest[axis][lane] - b.fastest[axis];
+    const TreeLanes below = b.min[axis] - a.max[axis][lane];
+    const TreeLanes falling = b.slowest[axis] - a.fastest[axis][lane];
+    apart |= (above + now * rising > 0.0F) & (above + end * rising > 0.0F);
+    apart |= (below + now * falling > 0.0F) & (below + end * falling > 0.0F);
+  }
+}
+
+/// Lanes that share a particle with a lane of the other leaf; `flat` if one whose triangles are flat.
+inline void find_sharing(const ElementLeaf& a, int lane, const ElementLeaf& b, IntLanes& shared, IntLanes& flat) {
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const IntLanes same = b.particle[k] == a.particle[i][lane];
+      shared |= same;
+      flat |= same & b.flat[k] & a.flat[i][lane];
+    }
+  }
+}
+
+/// Lanes between whose balls there is a gap along the direction, by lane, now and at the end, and so in between: with the lane of
+/// the other leaf above, or, where the direction says so, below.
+inline void find_planes_apart(const LeafPlaces& a, int lane, const LeafPlaces& b, const TreeLanes (&normal)[3],
+                              const TreeLanes& radius, IntLanes& apart) {
+  TreeLanes low_now = TreeLanes{} + kInfinity;
+  TreeLanes low_end = low_now;
+  TreeLanes high_now = -low_now;
+  TreeLanes high_end = high_now;
+  for (int k = 0; k < 3; ++k) {
+    lower(low_now, normal[0] * a.now[k][0][lane] + normal[1] * a.now[k][1][lane] + normal[2] * a.now[k][2][lane]);
+    lower(low_end, normal[0] * a.end[k][0][lane] + normal[1] * a.end[k][1][lane] + normal[2] * a.end[k][2][lane]);
+    raise(high_now, normal[0] * b.now[k][0] + normal[1] * b.now[k][1] + normal[2] * b.now[k][2]);
+    raise(high_end, normal[0] * b.end[k][0] + normal[1] * b.end[k][1] + normal[2] * b.end[k][2]);
+  }
+  TreeLanes gap = low_now - high_now;
+  lower(gap, low_end - high_end);
+  const TreeLanes length2 = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+  apart |= (gap > 0.0F) & (gap * gap > radius * radius * length2);
+}
+
+/// The line between the middles now.
+inline void find_direction(const LeafPlaces& a, int lane, const LeafPlaces& b, TreeLanes (&direction)[3]) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const TreeLanes middle = b.now[0][axis] + b.now[1][axis] + b.now[2][axis];
+    direction[axis] = a.now[0][axis][lane] + a.now[1][axis][lane] + a.now[2][axis][lane] - middle;
+  }
+}
+
+/// Twice the areas of the triangles, turned to where the direction leads.
+inline void find_normals(const TreeLanes (&x)[3][3], const TreeLanes (&direction)[3], TreeLanes (&normal)[3]) {
+  TreeLanes along[2][3];
+  for (int axis = 0; axis < 3; ++axis) {
+    along[0][axis] = x[1][axis] - x[0][axis];
+    along[1][axis] = x[2][axis] - x[0][axis];
+  }
+  TreeLanes side = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int next = (axis + 1) % 3;
+    const int last = (axis + 2) % 3;
+    normal[axis] = along[0][next] * along[1][last] - along[0][last] * along[1][next];
+    side += normal[axis] * direction[axis];
+  }
+  for (int axis = 0; axis < 3; ++axis) normal[axis] = side < 0.0F ? -normal[axis] : normal[axis];
+}
+
+/// Lanes of b, of those that are asked for, that a lane of a may touch. Returns whether there are any.
+SPRUNG_KERNEL bool find_meeting_lanes(const PlacedLeaf& a, int lane, const PlacedLeaf& b, const IntLanes& asked, float now,
+                                      float end, LaneMask& met) {
+  IntLanes apart = ~asked.lanes;
+  IntLanes shared = {};
+  find_bounds_apart(a.leaf, lane, b.leaf, now, end, apart);
+  find_sharing(a.leaf, lane, b.leaf, shared, apart);
+  store(~apart, met);
+  if (!any(met)) return false;
+
+  const TreeLanes radius = b.leaf.radius + a.leaf.radius[lane];
+  IntLanes kept_apart = {};
+  TreeLanes direction[3];
+  find_direction(a.places, lane, b.places, direction);
+  find_planes_apart(a.places, lane, b.places, direction, radius, kept_apart);
+  store(~apart & (shared | ~kept_apart), met);
+  if (!any(met)) return false;
+
+  TreeLanes normal[3];
+  find_normals(b.places.now, direction, normal);
+  find_planes_apart(a.places, lane, b.places, normal, radius, kept_apart);
+  TreeLanes own[3][3];
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) own[k][axis] = TreeLanes{} + a.places.now[k][axis][lane];
+  }
+  find_normals(own, direction, normal);
+  find_planes_apart(a.places, lane, b.places, normal, radius, kept_apart);
+  store(~apart & (shared | ~kept_apart), met);
+  return any(met);
+}
+
+/// Lanes of a that are not apart from all of b.
+SPRUNG_KERNEL void find_lanes_near(const ElementLeaf& a, const MovingBounds& b, float now, float end, LaneMask& near) {
+  IntLanes apart = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    const TreeLanes above = a.min[axis] - b.max[axis];
+    const TreeLanes rising = a.slowest[axis] - b.fastest[axis];
+    const TreeLanes below = b.min[axis] - a.max[axis];
+    const TreeLanes falling = b.slowest[axis] - a.fastest[axis];
+    apart |= (above + now * rising > 0.0F) & (above + end * rising > 0.0F);
+    apart |= (below + now * falling > 0.0F) & (below + end * falling > 0.0F);
+  }
+  store(~apart & a.marked, near);
+}
+
+}  // namespace
+
+void append_meetings(const ElementLeaf& a, const ElementLeaf& b, WatchTimes times, std::vector<ElementMeeting>& meetings) {
+  const auto now = static_cast<float>(times.now);
+  const auto end = static_cast<float>(times.end);
+  const bool same = &a == &b;
+  LaneMask near_a;
+  LaneMask near_b{};
+  find_lanes_near(a, b.bounds, now, end, near_a);
+  if (!same) find_lanes_near(b, a.bounds, now, end, near_b);
+  if (!any(near_a) && !any(near_b)) return;
+
+  PlacedLeaf first{a, {}};
+  PlacedLeaf second{b, {}};
+  place_corners(a, times, first.places);
+  place_corners(b, times, second.places);
+  const auto append = [&](const PlacedLeaf& own, int lane, const PlacedLeaf& other, const AskedLanes& asked) {
+    LaneMask met;
+    if (!find_meeting_lanes(own, lane, other, asked, now, end, met)) return;
+    for (std::size_t k = 0; k < kTreeLanes; ++k) {
+      if (met[k] != 0) meetings.push_back({own.leaf.element[static_cast<std::size_t>(lane)], other.leaf.element[k]});
+    }
+  };
+  constexpr IntLanes kLane{0, 1, 2, 3, 4, 5, 6, 7};
+  LaneMask unmarked_a;
+  store(~a.marked, unmarked_a);
+  for (int lane = 0; lane < kTreeLanes; ++lane) {
+    const auto at = static_cast<std::size_t>(lane);
+    if (near_a[at] != 0) append(first, lane, second, {same ? (kLane > lane) | ~a.marked : ~IntLanes{}});
+    if (near_b[at] != 0 && any(unmarked_a)) append(second, lane, first, {~a.marked});
+  }
+}
+
+}  // namespace sprung

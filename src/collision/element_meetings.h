@@ -1,0 +1,20 @@
+// Elements that may touch each other.
+#pragma once
+
+#include "collision/element_leaf.h"
+
+#include <vector>
+
+namespace sprung {
+
+struct ElementMeeting {
+  Index first = kNone;
+  Index second = kNone;
+};
+
+/// Appends the pairs of the leaves' elements, at least one of them marked, that may touch from now to the end: those that no plane
+/// across the line between their middles, or along one of them, keeps apart. Triangles that share a particle whose triangles are
+/// flat are left out.
+void append_meetings(const ElementLeaf& a, const ElementLeaf& b, WatchTimes times, std::vector<ElementMeeting>& meetings);
+
+}  // namespace sprung

@@ -1,0 +1,108 @@
+#include "collision/element_tree.h"
+
+#include "base/parallel.h"
+#include "collision/bisection.h"
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+constexpr Index kLeavesPerTask = 64;
+
+}  // namespace
+
+ElementTree::ElementTree(const CollisionSurface& surface, const Points& rest) : surface_(surface) {
+  const std::vector<Element>& elements = surface.elements;
+  const Points middles = element_middles(elements, rest);
+  std::vector<Index> order(elements.size());
+  for (std::size_t e = 0; e < order.size(); ++e) order[e] = static_cast<Index>(e);
+  first_leaf_.push_back(0);
+  for (std::size_t begin = 0; begin < elements.size();) {
+    std::size_t end = begin;
+    while (end < elements.size() && elements[end].body == elements[begin].body) ++end;
+    std::vector<std::size_t> starts;
+    bisect(middles, kTreeLanes, order, begin, end, starts);
+    starts.push_back(end);
+    for (std::size_t k = 0; k + 1 < starts.size(); ++k) add_leaf(order, starts[k], starts[k + 1]);
+    first_leaf_.push_back(static_cast<Index>(leaves_.size()));
+    begin = end;
+  }
+  if (!leaves_.empty()) add_bodies(0, first_leaf_.size() - 1);
+}
+
+void ElementTree::add_leaf(const std::vector<Index>& order, std::size_t begin, std::size_t end) {
+  ElementLeaf leaf;
+  std::copy(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end),
+            leaf.element.begin());
+  leaf.count = static_cast<int>(end - begin);
+  leaves_.push_back(leaf);
+}
+
+Index ElementTree::add_bodies(std::size_t begin, std::size_t end) {
+  const Index first = first_leaf_[begin];
+  if (end - begin == 1) {
+    const Index element = leaves_[static_cast<std::size_t>(first)].element[0];
+    return add_node(first, first_leaf_[end], surface_.elements[static_cast<std::size_t>(element)].body);
+  }
+  const auto number = static_cast<std::size_t>(nodes_.size());
+  nodes_.emplace_back();
+  const std::size_t middle = begin + (end - begin) / 2;
+  const Index left = add_bodies(begin, middle);
+  const Index right = add_bodies(middle, end);
+  nodes_[number].left = left;
+  nodes_[number].right = right;
+  nodes_[number].leaves = first_leaf_[end] - first;
+  return static_cast<Index>(number);
+}
+
+Index ElementTree::add_node(Index begin, Index end, Index body) {
+  const auto number = static_cast<std::size_t>(nodes_.size());
+  nodes_.emplace_back();
+  nodes_[number].leaves = end - begin;
+  nodes_[number].body = body;
+  if (end - begin == 1) {
+    nodes_[number].leaf = begin;
+  } else {
+    const Index middle = begin + (end - begin) / 2;
+    const Index left = add_node(begin, middle, body);
+    const Index right = add_node(middle, end, body);
+    nodes_[number].left = left;
+    nodes_[number].right = right;
+  }
+  return static_cast<Index>(number);
+}
+
+void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<char>& marked,
+                        WatchTimes times) {
+  parallel_chunks(static_cast<Index>(leaves_.size()), kLeavesPerTask, [&](Index begin, Index end) {
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      ElementLeaf& leaf = leaves_[k];
+      for (int lane = 0; lane < leaf.count; ++lane) {
+        const Index number = leaf.element[static_cast<std::size_t>(lane)];
+        const bool is_marked = marked[static_cast<std::size_t>(number)] != 0;
+        leaf.marked[lane] = is_marked ? -1 : 0;
+        if (is_marked) leaf.set(lane, number, surface_.elements[static_cast<std::size_t>(number)], balls, flat, times);
+      }
+      if (leaf.any_marked()) leaf.bound();
+    }
+  });
+  for (std::size_t k = nodes_.size(); k-- > 0;) bound_node(nodes_[k]);
+}
+
+void ElementTree::bound_node(Node& node) const {
+  if (node.leaf != kNone) {
+    const ElementLeaf& leaf = leaves_[static_cast<std::size_t>(node.leaf)];
+    node.marked = leaf.any_marked();
+    node.bounds = leaf.bounds;
+    return;
+  }
+  const Node& left = nodes_[static_cast<std::size_t>(node.left)];
+  const Node& right = nodes_[static_cast<std::size_t>(node.right)];
+  node.marked = left.marked || right.marked;
+  if (!node.marked) return;
+  node.bounds = left.bounds;
+  extend(node.bounds, right.bounds);
+}
+
+}  // namespace sprung

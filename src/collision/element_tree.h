@@ -1,0 +1,73 @@
+// A tree over the network's elements as they move: which of them may come near each other.
+#pragma once
+
+#include "collision/collision_surface.h"
+#include "collision/element_leaf.h"
+
+#include <vector>
+
+namespace sprung {
+
+class ElementTree {
+ public:
+  /// Elements of a body that are neighbours at `rest` [m], 3 x n, share a leaf. Keeps a reference to the surface.
+  ElementTree(const CollisionSurface& surface, const Points& rest);
+
+  /// Bounds, from time 0 to the end, the balls of the corners of each element that is marked (by element, not 0). Elements that are
+  /// not keep the bounds that they have. `flat`, by particle: see fan_stays_flat().
+  void bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<char>& marked, WatchTimes times);
+
+  [[nodiscard]] Index leaf_count() const { return static_cast<Index>(leaves_.size()); }
+  [[nodiscard]] const ElementLeaf& leaf(Index number) const { return leaves_[static_cast<std::size_t>(number)]; }
+
+  /// Two leaves, or one and itself.
+  struct LeafPair {
+    Index first = kNone;
+    Index second = kNone;
+  };
+  /// Leaves that may come within `margin` [m] of each other between now and the end and whose bodies may meet; with `marked`, only
+  /// those with an element that was marked in the last call of bound(). The same for any number of threads.
+  [[nodiscard]] std::vector<LeafPair> find_pairs(WatchTimes times, double margin, bool marked) const;
+
+ private:
+  struct Node {
+    MovingBounds bounds;
+    Index left = kNone;  ///< kNone for a leaf
+    Index right = kNone;
+    Index leaf = kNone;
+    Index leaves = 0;    ///< below it
+    Index body = kNone;  ///< kNone where there are several
+    bool marked = false;
+  };
+
+  struct NodePair {
+    Index a;
+    Index b;
+  };
+
+  /// What is asked for.
+  struct Search {
+    float now;
+    float end;
+    float margin;
+    bool marked;
+  };
+
+  void add_leaf(const std::vector<Index>& order, std::size_t begin, std::size_t end);
+  Index add_bodies(std::size_t begin, std::size_t end);
+  Index add_node(Index begin, Index end, Index body);
+  void bound_node(Node& node) const;
+  [[nodiscard]] const Node& node(Index number) const { return nodes_[static_cast<std::size_t>(number)]; }
+  [[nodiscard]] bool bodies_may_meet(Index a, Index b) const;
+  [[nodiscard]] bool may_meet(NodePair pair, const Search& search) const;
+  [[nodiscard]] std::vector<NodePair> find_tasks(const Search& search) const;
+  void open(NodePair pair, std::vector<NodePair>& pairs) const;
+  void walk(NodePair pair, const Search& search, std::vector<LeafPair>& found) const;
+
+  const CollisionSurface& surface_;
+  std::vector<ElementLeaf> leaves_;
+  std::vector<Index> first_leaf_;  ///< by body, and the end
+  std::vector<Node> nodes_;        ///< parents before their children
+};
+
+}  // namespace sprung

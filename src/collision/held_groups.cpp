@@ -1,0 +1,119 @@
+#include "collision/held_groups.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+HeldGroups::HeldGroups(const Points& before, const Points& targets, const std::vector<char>& pinned,
+                       std::span<const Carried> carried)
+    : before_(before),
+      targets_(targets),
+      pinned_(pinned),
+      carried_(carried),
+      parent_(static_cast<std::size_t>(before.cols()), kNone),
+      stopped_(parent_.size(), 0),
+      number_(parent_.size(), kNone) {}
+
+bool HeldGroups::unite(std::span<const Index> particles) {
+  Index first = kNone;
+  bool changed = false;
+  bool stopped = false;
+  for (const Index i : particles) {
+    if (pinned_[static_cast<std::size_t>(i)] != 0) continue;
+    if (!holds(i)) {
+      parent_[static_cast<std::size_t>(i)] = i;
+      held_.push_back(i);
+      changed = true;
+    }
+    const Index other = root(i);
+    stopped = stopped || stopped_[static_cast<std::size_t>(other)] != 0;
+    if (first == kNone) first = other;
+    if (other == first) continue;
+    changed = true;
+    const auto [low, high] = std::minmax(first, other);
+    parent_[static_cast<std::size_t>(high)] = low;
+    first = low;
+  }
+  if (first == kNone) return false;
+  char& stop = stopped_[static_cast<std::size_t>(first)];
+  for (const Index i : particles) {
+    if (changed && pinned_[static_cast<std::size_t>(i)] != 0) leads_.push_back({first, targets_.col(i) - before_.col(i)});
+  }
+  if (!changed && stop == 0) {
+    stop = 1;
+    return true;
+  }
+  stop = stopped ? 1 : 0;
+  return changed;
+}
+
+void HeldGroups::find_motions() {
+  struct Sum {
+    Vector3 motion = Vector3::Zero();
+    double squares = 0.0;
+    double count = 0.0;
+    int rank = 0;  ///< of those that lead
+  };
+  std::vector<Sum> sums;
+  groups_.clear();
+  for (const Index i : held_) {
+    if (parent_[static_cast<std::size_t>(i)] != i) continue;
+    number_[static_cast<std::size_t>(i)] = static_cast<Index>(groups_.size());
+    groups_.push_back({.motion = Vector3::Zero(), .fraction = stopped_[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0});
+    sums.emplace_back();
+  }
+  const auto lead = [&](Index follower, const Vector3& motion, int rank) {
+    Sum& sum = sums[static_cast<std::size_t>(group(follower))];
+    if (rank > sum.rank) sum = {.rank = rank};
+    if (rank < sum.rank) return;
+    sum.motion += motion;
+    sum.squares += motion.squaredNorm();
+    sum.count += 1.0;
+  };
+  for (const Lead& by_pin : leads_) lead(by_pin.follower, by_pin.motion, 3);
+  for (const Index i : held_) {
+    const auto found =
+        std::lower_bound(carried_.begin(), carried_.end(), i, [](const Carried& a, Index b) { return a.particle < b; });
+    if (found != carried_.end() && found->particle == i) {
+      lead(i, found->motion, 2);
+    } else {
+      lead(i, targets_.col(i) - before_.col(i), 1);
+    }
+  }
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    const Sum& sum = sums[k];
+    const Vector3 mean = sum.motion / sum.count;
+    const double common2 = mean.squaredNorm();
+    const double spread2 = sum.squares / sum.count - common2;
+    const double shared = sum.rank > 1 ? 1.0 : common2 > 0.0 ? std::max(0.0, 1.0 - spread2 / common2) : 0.0;
+    groups_[k].motion = shared * mean;
+  }
+}
+
+Index HeldGroups::group(Index particle) const {
+  return holds(particle) ? number_[static_cast<std::size_t>(root(particle))] : kNone;
+}
+
+Vector3 HeldGroups::start(Index particle) const {
+  if (!holds(particle)) return targets_.col(particle);
+  return before_.col(particle) + groups_[static_cast<std::size_t>(group(particle))].motion;
+}
+
+Vector3 HeldGroups::end(Index particle) const {
+  if (!holds(particle)) return targets_.col(particle);
+  const Vector3 from = start(particle);
+  return from + fraction(group(particle)) * (targets_.col(particle) - from);
+}
+
+void HeldGroups::limit_fraction(Index group, double fraction) {
+  double& limited = groups_[static_cast<std::size_t>(group)].fraction;
+  limited = std::min(limited, fraction);
+}
+
+Index HeldGroups::root(Index particle) const {
+  Index i = particle;
+  while (parent_[static_cast<std::size_t>(i)] != i) i = parent_[static_cast<std::size_t>(i)];
+  return i;
+}
+
+}  // namespace sprung

@@ -1,0 +1,71 @@
+// Particles that are in each other's way, in groups that move on together.
+#pragma once
+
+#include "base/types.h"
+
+#include <span>
+#include <vector>
+
+namespace sprung {
+
+/// A particle that leans on an obstacle, and how far that carries it in this step [m].
+struct Carried {
+  Index particle = kNone;
+  Vector3 motion = Vector3::Zero();
+};
+
+/// Each group has a motion that all its particles share, after which they are to each other as they were before, and a fraction of
+/// the ways from there to their targets that they may go.
+class HeldGroups {
+ public:
+  /// No particle is held yet. Pinned ones (not 0) never are. `carried` is ascending by particle. Positions [m], 3 x n. Keeps
+  /// references to all.
+  HeldGroups(const Points& before, const Points& targets, const std::vector<char>& pinned, std::span<const Carried> carried);
+
+  /// Makes these particles, and the groups that they are in, one group; pinned ones among them lead it. A group that is one already
+  /// may not leave the motion that it shares any more. Returns whether anything has changed.
+  bool unite(std::span<const Index> particles);
+
+  /// Finds the groups' motions: the mean of those of pinned particles that lead it; else of its carried particles; else what its
+  /// particles' ways have in common: their mean, less the part that their spread is of it, so that a falling cloth is not held back
+  /// and a resting one not carried away by what hits it. Fractions are 1 again, except of groups that may not leave it.
+  void find_motions();
+
+  /// A group's number from 0, or kNone for a particle that is not held.
+  [[nodiscard]] Index group(Index particle) const;
+  [[nodiscard]] bool holds(Index particle) const { return parent_[static_cast<std::size_t>(particle)] != kNone; }
+  [[nodiscard]] const std::vector<Index>& particles() const { return held_; }  ///< in the order in which they were held
+
+  /// Where a particle goes with its group's motion alone; the target of one that is not held.
+  [[nodiscard]] Vector3 start(Index particle) const;
+  /// Where a particle ends that has gone its group's fraction of the way to its target as well.
+  [[nodiscard]] Vector3 end(Index particle) const;
+
+  [[nodiscard]] double fraction(Index group) const { return groups_[static_cast<std::size_t>(group)].fraction; }
+  void limit_fraction(Index group, double fraction);
+
+ private:
+  struct Group {
+    Vector3 motion = Vector3::Zero();
+    double fraction = 1.0;
+  };
+  struct Lead {
+    Index follower;
+    Vector3 motion;
+  };
+
+  [[nodiscard]] Index root(Index particle) const;
+
+  const Points& before_;
+  const Points& targets_;
+  const std::vector<char>& pinned_;
+  std::span<const Carried> carried_;
+  std::vector<Index> parent_;  ///< by particle: another of its group or itself; kNone when it is not held
+  std::vector<Index> held_;
+  std::vector<char> stopped_;  ///< by particle that is its own parent
+  std::vector<Lead> leads_;    ///< by pinned particles
+  std::vector<Index> number_;  ///< of the group, by particle that is its own parent
+  std::vector<Group> groups_;
+};
+
+}  // namespace sprung

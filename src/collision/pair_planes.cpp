@@ -1,0 +1,108 @@
+#include "collision/pair_planes.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+// As a part of the largest coordinate: above what the rounding of heights along a normal may lose.
+constexpr double kClearance = 0x1p-30;
+
+constexpr Index kPairsPerTask = 2048;
+
+}  // namespace
+
+PairPlanes::PairPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned,
+                       std::span<const Carried> carried, double kept)
+    : before_(before),
+      targets_(targets),
+      groups_(before, targets, pinned, carried),
+      ends_(targets),
+      kept_(kept),
+      clearance_(kClearance * before.cwiseAbs().maxCoeff()) {}
+
+bool PairPlanes::hold(std::vector<ElementPair>& pairs) {
+  bool changed = false;
+  for (const Index k : find_conflicts(pairs)) {
+    const ElementPair& pair = pairs[static_cast<std::size_t>(k)];
+    changed = groups_.unite({pair.particles.data(), static_cast<std::size_t>(pair.count())}) || changed;
+  }
+  if (!changed) return false;
+  groups_.find_motions();
+  limit_groups(pairs);
+  for (const Index i : groups_.particles()) ends_.col(i) = groups_.end(i);
+  return true;
+}
+
+std::vector<Index> PairPlanes::find_conflicts(std::vector<ElementPair>& pairs) const {
+  const auto count = static_cast<Index>(pairs.size());
+  std::vector<std::vector<Index>> parts(static_cast<std::size_t>((count + kPairsPerTask - 1) / kPairsPerTask));
+  parallel_chunks(count, kPairsPerTask, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      ElementPair& pair = pairs[static_cast<std::size_t>(k)];
+      if (!(heights_at(pair, ends_).gap() < 0.5 * clearance_)) continue;
+      pair.normal = direction_between(pair, before_);
+      if (passes(pair)) parts[static_cast<std::size_t>(begin / kPairsPerTask)].push_back(k);
+    }
+  });
+  std::vector<Index> conflicts;
+  for (const std::vector<Index>& part : parts) conflicts.insert(conflicts.end(), part.begin(), part.end());
+  return conflicts;
+}
+
+/// Whether the sides end nearer than half of what they keep at least. What touched when the step began has no plane to keep.
+bool PairPlanes::passes(const ElementPair& pair) const {
+  const double begun = heights_at(pair, before_).gap();
+  return begun > 0.0 && heights_at(pair, ends_).gap() < 0.5 * std::min(begun, clearance_);
+}
+
+double PairPlanes::kept_gap(const ElementPair& pair) const {
+  const double begun = heights_at(pair, before_).gap();
+  return std::min(begun, std::max(clearance_, kept_));
+}
+
+/// Along their ways the gap of a group's pair is at least the linear function between its values at both ends.
+void PairPlanes::limit_groups(const std::vector<ElementPair>& pairs) {
+  for (const ElementPair& pair : pairs) {
+    Index group = kNone;
+    bool inner = true;
+    for (int k = 0; k < pair.count(); ++k) {
+      const Index own = groups_.group(pair.particles[static_cast<std::size_t>(k)]);
+      if (own == kNone) continue;
+      inner = inner && (group == kNone || own == group);
+      group = own;
+    }
+    if (group == kNone || !inner) continue;
+    const double at_target = heights_at(pair, targets_).gap();
+    const double kept = kept_gap(pair);
+    if (!(at_target < kept)) continue;
+    const double at_start =
+        heights_of(pair, [&](int k) { return pair.normal.dot(groups_.start(pair.particles[static_cast<std::size_t>(k)])); }).gap();
+    groups_.limit_fraction(group, std::clamp((at_start - kept) / (at_start - at_target), 0.0, 1.0));
+  }
+}
+
+std::vector<PairPlanes::Bound> PairPlanes::bounds(const std::vector<ElementPair>& pairs) const {
+  std::vector<Bound> bounds;
+  for (const ElementPair& pair : pairs) {
+    if (std::none_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return groups_.holds(i); }))
+      continue;
+    if (!(heights_at(pair, before_).gap() > 0.0)) continue;
+    const PairHeights end = heights_at(pair, ends_);
+    const PairHeights target = heights_at(pair, targets_);
+    const double middle = std::clamp(0.5 * (target.first + target.second), end.second, std::max(end.first, end.second));
+    const double room = 0.5 * kept_gap(pair);
+    const HalfSpace above{pair.normal, std::min(end.first, middle + room)};
+    const HalfSpace below{-pair.normal, -std::max(end.second, middle - room)};
+    for (int k = 0; k < pair.count(); ++k) {
+      const Index i = pair.particles[static_cast<std::size_t>(k)];
+      if (groups_.holds(i)) bounds.push_back({i, k < pair.first_count ? above : below});
+    }
+  }
+  std::stable_sort(bounds.begin(), bounds.end(), [](const Bound& a, const Bound& b) { return a.particle < b.particle; });
+  return bounds;
+}
+
+}  // namespace sprung

@@ -1,0 +1,58 @@
+// Moving planes that keep the sides of pairs apart.
+//
+// A plane with the pair's normal separates the sides while particles move straight, if it does at the step's begin and end: what
+// lies between the sides along a fixed direction is a concave function of time. So only the end of the step is looked at.
+#pragma once
+
+#include "collision/element_pair.h"
+#include "collision/held_groups.h"
+#include "collision/zone.h"
+
+#include <span>
+#include <vector>
+
+namespace sprung {
+
+/// Particles that would pass each other on their way to their targets are held: each has a place where it may always end, and half-
+/// spaces within which it may go on from there.
+class PairPlanes {
+ public:
+  /// Begins a step: nothing is held. Held sides keep `kept` [m] between them where they can; for the other arguments see
+  /// HeldGroups. Keeps references to them.
+  PairPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned, std::span<const Carried> carried,
+             double kept);
+
+  /// Holds the particles of pairs that would pass each other where they are to end now. Returns whether any end has changed: then
+  /// it is to be called again, with the pairs that these ends may touch.
+  /// Pairs whose plane does not do any more get a better one, if there is one.
+  [[nodiscard]] bool hold(std::vector<ElementPair>& pairs);
+
+  /// Where particles may end: their targets, or, for those that are held, a place on the way [m].
+  [[nodiscard]] const Points& ends() const { return ends_; }
+
+  /// In the order in which they were held.
+  [[nodiscard]] const std::vector<Index>& held() const { return groups_.particles(); }
+
+  /// What bounds a held particle at the step's end.
+  struct Bound {
+    Index particle = kNone;
+    HalfSpace half_space;
+  };
+  /// The planes of all pairs that have a held particle, as bounds of the held ones, ascending by particle. All ends are within.
+  [[nodiscard]] std::vector<Bound> bounds(const std::vector<ElementPair>& pairs) const;
+
+ private:
+  [[nodiscard]] std::vector<Index> find_conflicts(std::vector<ElementPair>& pairs) const;
+  [[nodiscard]] bool passes(const ElementPair& pair) const;
+  void limit_groups(const std::vector<ElementPair>& pairs);
+  [[nodiscard]] double kept_gap(const ElementPair& pair) const;
+
+  const Points& before_;
+  const Points& targets_;
+  HeldGroups groups_;
+  Points ends_;
+  double kept_;
+  double clearance_;  ///< below this, a gap is not told from rounding [m]
+};
+
+}  // namespace sprung

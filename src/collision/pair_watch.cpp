@@ -1,0 +1,255 @@
+#include "collision/pair_watch.h"
+
+#include "base/parallel.h"
+#include "collision/flat_fan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace sprung {
+namespace {
+
+// A ball's radius as a part of the shortest edge at its particle: larger ones last longer, but neighbours come too near each
+// other's.
+constexpr double kRadius = 0.1;
+
+// Where edges are of very different lengths, the shortest counts as at least this part of the mean.
+constexpr double kShortestEdge = 0.25;
+
+// Balls are to last until particles, seen from the middle of their body, have flown so many edges' length, and at most so many
+// steps.
+constexpr double kFlight = 0.25;
+constexpr double kMostSteps = 64.0;
+
+// Candidates of contact are looked for when balls are made for the so manieth time.
+constexpr int kCandidateTurns = 3;
+
+constexpr Index kParticlesPerTask = 1024;
+constexpr Index kFansPerTask = 128;
+constexpr Index kLeafPairsPerTask = 32;
+
+std::vector<double> ball_radii(const CollisionSurface& surface, const Points& rest) {
+  const double largest = *std::max_element(surface.element_size.begin(), surface.element_size.end());
+  std::vector<double> radii(static_cast<std::size_t>(rest.cols()), kRadius * largest);
+  for (const Element& element : surface.elements) {
+    const auto corners = corners_of(element);
+    const double mean = surface.element_size[static_cast<std::size_t>(element.body)];
+    for (std::size_t k = 0; k < corners.size() && corners.size() > 1; ++k) {
+      const Index other = corners[(k + 1) % corners.size()];
+      const double edge = (rest.col(other) - rest.col(corners[k])).norm();
+      for (const Index i : {corners[k], other}) {
+        double& radius = radii[static_cast<std::size_t>(i)];
+        radius = std::min(radius, kRadius * std::clamp(edge, kShortestEdge * mean, mean));
+      }
+    }
+  }
+  return radii;
+}
+
+}  // namespace
+
+PairWatch::PairWatch(const CollisionSurface& surface, const Points& rest, double margin)
+    : surface_(surface),
+      rest_(rest),
+      features_(surface.elements, static_cast<Index>(rest.cols())),
+      sharp_(surface, features_),
+      tree_(surface, rest),
+      balls_(ball_radii(surface, rest)),
+      pair_search_(surface, features_),
+      contact_search_(surface, features_, sharp_, tree_, rest_, margin),
+      flat_(static_cast<std::size_t>(rest.cols()), 0),
+      marked_(static_cast<std::size_t>(rest.cols()), 0),
+      marked_elements_(surface.elements.size(), 0),
+      visited_(marked_) {
+  std::vector<char> watched(marked_.size(), 0);
+  for (const Element& element : surface.elements) {
+    const auto body = static_cast<std::size_t>(element.body);
+    if (surface.self[body] == 0 && surface.others[body] == 0) continue;
+    for (const Index i : corners_of(element)) watched[static_cast<std::size_t>(i)] = 1;
+  }
+  for (std::size_t i = 0; i < watched.size(); ++i) {
+    if (watched[i] != 0) watched_.push_back(static_cast<Index>(i));
+  }
+}
+
+void PairWatch::begin_step(const Points& before, const Points& after) {
+  renewed_ = 0;
+  age_ += 1.0;
+  balls_.advance();
+  if (age_ >= horizon_) {
+    choose_horizon(before, after);
+    age_ = 0.0;
+    renew(watched_, before, after);
+    find_candidates(before);
+    return;
+  }
+  std::vector<Index> leaving = find_leaving(before, 0.0);
+  const std::vector<Index> later = find_leaving(after, 1.0);
+  leaving.insert(leaving.end(), later.begin(), later.end());
+  renew(std::move(leaving), before, after);
+}
+
+void PairWatch::find_candidates(const Points& before) {
+  if (--candidate_turns_ > 0) return;
+  candidate_turns_ = kCandidateTurns;
+  sharp_.update(before);
+  candidates_ = contact_search_.find_candidates(balls_, before, {age_, kCandidateTurns * horizon_});
+}
+
+void PairWatch::follow(const Points& before, const Points& ends) { renew(find_leaving(ends, 1.0), before, ends); }
+
+std::vector<Index> PairWatch::find_leaving(const Points& ends, double time) const {
+  const auto count = static_cast<Index>(watched_.size());
+  std::vector<std::vector<Index>> parts(static_cast<std::size_t>((count + kParticlesPerTask - 1) / kParticlesPerTask));
+  parallel_chunks(count, kParticlesPerTask, [&](Index begin, Index end) {
+    std::vector<Index>& part = parts[static_cast<std::size_t>(begin / kParticlesPerTask)];
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      if (!balls_.holds(watched_[k], ends.col(watched_[k]), time)) part.push_back(watched_[k]);
+    }
+  });
+  std::vector<Index> leaving;
+  for (const std::vector<Index>& part : parts) leaving.insert(leaving.end(), part.begin(), part.end());
+  return leaving;
+}
+
+WatchCounts PairWatch::counts() const {
+  const auto flat = std::count(flat_.begin(), flat_.end(), char{1});
+  return {static_cast<Index>(pairs_.size()), static_cast<Index>(candidates_.size()), renewed_,
+          balls_.count() - static_cast<Index>(flat)};
+}
+
+void PairWatch::choose_horizon(const Points& before, const Points& after) {
+  struct Flight {
+    Vector3 sum = Vector3::Zero();
+    double squares = 0.0;
+    double count = 0.0;
+  };
+  std::vector<Flight> flights(surface_.self.size());
+  for (const Index i : watched_) {
+    const Vector3 motion = after.col(i) - before.col(i);
+    if (!motion.allFinite()) continue;
+    const Index element = features_.elements_at(i).front();
+    Flight& flight = flights[static_cast<std::size_t>(surface_.elements[static_cast<std::size_t>(element)].body)];
+    flight.sum += motion;
+    flight.squares += motion.squaredNorm();
+    flight.count += 1.0;
+  }
+  horizon_ = kMostSteps;
+  for (std::size_t body = 0; body < flights.size(); ++body) {
+    const Flight& flight = flights[body];
+    if (flight.count == 0.0 || surface_.element_size[body] == 0.0) continue;
+    const double variance = flight.squares / flight.count - (flight.sum / flight.count).squaredNorm();
+    const double speed = std::sqrt(std::max(variance, 0.0));
+    if (speed > 0.0) horizon_ = std::min(horizon_, std::floor(kFlight * surface_.element_size[body] / speed));
+  }
+  horizon_ = std::max(horizon_, 1.0);
+}
+
+void PairWatch::renew(std::vector<Index> leaving, const Points& before, const Points& ends) {
+  if (leaving.empty()) return;
+  mark(std::move(leaving), before, ends);
+  mark_elements();
+  tree_.bound(balls_, flat_, marked_elements_, {age_, horizon_});
+  std::erase_if(pairs_, [&](const ElementPair& pair) {
+    return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(),
+                       [&](Index i) { return marked_[static_cast<std::size_t>(i)] != 0; });
+  });
+  find_pairs(before);
+  clear_marks();
+}
+
+void PairWatch::find_pairs(const Points& before) {
+  const WatchTimes times{age_, horizon_};
+  const WatchState state{before, balls_, horizon_ - age_, marked_};
+  const std::vector<ElementTree::LeafPair> leaves = tree_.find_pairs(times, 0.0, true);
+  const auto count = static_cast<Index>(leaves.size());
+  std::vector<std::vector<ElementPair>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
+  parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {
+    std::vector<ElementMeeting> meetings;
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      append_meetings(tree_.leaf(leaves[k].first), tree_.leaf(leaves[k].second), times, meetings);
+    }
+    std::vector<ElementPair>& part = parts[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
+    for (const ElementMeeting& meeting : meetings) pair_search_.append_pairs(meeting, state, part);
+  });
+  for (const std::vector<ElementPair>& part : parts) pairs_.insert(pairs_.end(), part.begin(), part.end());
+}
+
+/// A fan that is flat no more has pairs that nobody looked at: all its particles are marked too.
+void PairWatch::mark(std::vector<Index> particles, const Points& before, const Points& ends) {
+  while (!particles.empty()) {
+    std::vector<Index> marked;
+    for (const Index i : particles) {
+      if (marked_[static_cast<std::size_t>(i)] != 0) continue;
+      marked_[static_cast<std::size_t>(i)] = 1;
+      place_ball(i, before, ends);
+      marked.push_back(i);
+    }
+    marked_list_.insert(marked_list_.end(), marked.begin(), marked.end());
+    particles.clear();
+    for (const Index middle : find_folded(marked)) {
+      particles.push_back(middle);
+      const auto spokes = features_.spokes(middle);
+      particles.insert(particles.end(), spokes.begin(), spokes.end());
+    }
+  }
+}
+
+void PairWatch::place_ball(Index i, const Points& before, const Points& ends) {
+  const Vector3 begin = before.col(i);
+  const Vector3 own = ends.col(i) - begin;
+  Vector3 motion = own;
+  const auto spokes = features_.spokes(i);
+  for (const Index spoke : spokes) motion += ends.col(spoke) - before.col(spoke);
+  motion /= static_cast<double>(spokes.size() + 1);
+  if (!((motion - own).norm() < 0.5 * balls_.radius(i))) motion = own;
+  balls_.place(i, begin, begin + motion);
+}
+
+/// Looks at the fans that have these particles, and returns the middles of those that were flat and are no more.
+std::vector<Index> PairWatch::find_folded(const std::vector<Index>& particles) {
+  std::vector<Index> middles;
+  const auto visit = [&](Index i) {
+    if (visited_[static_cast<std::size_t>(i)] != 0) return;
+    visited_[static_cast<std::size_t>(i)] = 1;
+    middles.push_back(i);
+  };
+  for (const Index i : particles) {
+    visit(i);
+    for (const Index spoke : features_.spokes(i)) visit(spoke);
+  }
+  for (const Index i : middles) visited_[static_cast<std::size_t>(i)] = 0;
+
+  std::vector<char> folded(middles.size(), 0);
+  parallel_chunks(static_cast<Index>(middles.size()), kFansPerTask, [&](Index begin, Index end) {
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      char& flat = flat_[static_cast<std::size_t>(middles[k])];
+      const bool stays = fan_stays_flat(features_, middles[k], balls_, horizon_ - age_);
+      folded[k] = flat != 0 && !stays ? 1 : 0;
+      flat = stays ? 1 : 0;
+    }
+  });
+  std::vector<Index> result;
+  for (std::size_t k = 0; k < middles.size(); ++k) {
+    if (folded[k] != 0) result.push_back(middles[k]);
+  }
+  return result;
+}
+
+void PairWatch::mark_elements() {
+  for (const Index i : marked_list_) {
+    for (const Index e : features_.elements_at(i)) marked_elements_[static_cast<std::size_t>(e)] = 1;
+  }
+}
+
+void PairWatch::clear_marks() {
+  renewed_ += static_cast<Index>(marked_list_.size());
+  for (const Index i : marked_list_) {
+    marked_[static_cast<std::size_t>(i)] = 0;
+    for (const Index e : features_.elements_at(i)) marked_elements_[static_cast<std::size_t>(e)] = 0;
+  }
+  marked_list_.clear();
+}
+
+}  // namespace sprung

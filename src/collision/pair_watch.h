@@ -1,0 +1,72 @@
+// The parts of the network that may touch each other, and those that contact keeps an eye on, kept from step to step.
+#pragma once
+
+#include "collision/contact_search.h"
+#include "collision/element_tree.h"
+#include "collision/pair_search.h"
+#include "collision/sharp_edges.h"
+#include "collision/watch_counts.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// Each particle has a ball that moves on with it. A pair that is not listed cannot touch, and no candidate of contact that is not
+/// comes within its reach, while particles are in their balls; for those that leave theirs, both are looked for again. All balls
+/// are made again after as many steps as they were to last.
+class PairWatch {
+ public:
+  /// See ContactSearch. Keeps a reference to the surface.
+  PairWatch(const CollisionSurface& surface, const Points& rest, double margin);
+  PairWatch(const PairWatch&) = delete;
+  PairWatch& operator=(const PairWatch&) = delete;
+
+  /// Lists what may touch in a step from `before` to about `after` [m], 3 x n.
+  void begin_step(const Points& before, const Points& after);
+
+  /// Lists what may touch when particles end the step at `ends` [m] instead, where their balls do not hold them there. Requires
+  /// begin_step() with the same `before`.
+  void follow(const Points& before, const Points& ends);
+
+  /// The normals may be changed.
+  [[nodiscard]] std::vector<ElementPair>& pairs() { return pairs_; }
+  [[nodiscard]] const std::vector<ContactCandidate>& candidates() const { return candidates_; }
+  [[nodiscard]] const MovingBalls& balls() const { return balls_; }
+  [[nodiscard]] const SurfaceFeatures& features() const { return features_; }
+  [[nodiscard]] WatchCounts counts() const;
+
+ private:
+  void choose_horizon(const Points& before, const Points& after);
+  [[nodiscard]] std::vector<Index> find_leaving(const Points& ends, double time) const;
+  void renew(std::vector<Index> leaving, const Points& before, const Points& ends);
+  void place_ball(Index particle, const Points& before, const Points& ends);
+  void mark(std::vector<Index> particles, const Points& before, const Points& ends);
+  [[nodiscard]] std::vector<Index> find_folded(const std::vector<Index>& particles);
+  void mark_elements();
+  void find_pairs(const Points& before);
+  void find_candidates(const Points& before);
+  void clear_marks();
+
+  const CollisionSurface& surface_;
+  Points rest_;
+  SurfaceFeatures features_;
+  SharpEdges sharp_;
+  ElementTree tree_;
+  MovingBalls balls_;
+  PairSearch pair_search_;
+  ContactSearch contact_search_;
+  std::vector<ElementPair> pairs_;
+  std::vector<ContactCandidate> candidates_;
+  std::vector<Index> watched_;  ///< particles of bodies that may meet something
+  std::vector<char> flat_;      ///< by particle: see fan_stays_flat()
+  double age_ = 0.0;            ///< of the first balls, in steps
+  double horizon_ = 0.0;        ///< age at which all are made again
+  int candidate_turns_ = 0;     ///< until candidates are looked for again
+  Index renewed_ = 0;
+  std::vector<char> marked_;  ///< by particle; 0 between calls, as the marks of elements
+  std::vector<Index> marked_list_;
+  std::vector<char> marked_elements_;
+  std::vector<char> visited_;  ///< by particle; 0 between calls
+};
+
+}  // namespace sprung

@@ -1,0 +1,161 @@
+#include "collision/self_contacts.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+constexpr Index kCandidatesPerTask = 1024;
+
+// As a part of the largest coordinate: see PairPlanes.
+constexpr double kClearance = 0x1p-30;
+
+// A direction that leans over a face by no more than this sine still counts as away from it: flat neighbours lean by rounding.
+constexpr double kLean = 0x1p-10;
+
+// Edges of nearly flat neighbours hardly have a direction that leans over neither face.
+constexpr double kEdgeLean = 0.1;
+
+// What comes nearer than its gap by more than this part of it has its nearest points looked for where it passes the gap.
+constexpr double kLongWay = 0.1;
+
+class SelfContacts {
+ public:
+  SelfContacts(const CollisionSurface& surface, const SurfaceFeatures& features, const Points& before, const Points& after)
+      : surface_(surface),
+        features_(features),
+        before_(before),
+        after_(after),
+        clearance_(kClearance * before.cwiseAbs().maxCoeff()) {}
+
+  void append(const ContactCandidate& candidate, std::vector<Contact>& contacts) const {
+    std::array<Vector3, 4> x;
+    for (std::size_t k = 0; k < 4; ++k) x[k] = before_.col(candidate.particles[k]);
+    CandidateClosest closest = closest_points(candidate, x);
+    const double begin = closest.separation.norm();
+    if (!(begin > 0.0)) return;
+    const double end = lowest_gap(candidate, closest.separation / begin);
+    if (!(std::min(begin, end) < candidate.reach)) return;
+    if (begin > candidate.gap && end < (1.0 - kLongWay) * candidate.gap) {
+      const double time = (begin - candidate.gap) / (begin - end);
+      for (std::size_t k = 0; k < 4; ++k) x[k] += time * (after_.col(candidate.particles[k]) - x[k]);
+      closest = closest_points(candidate, x);
+    }
+    const double distance = closest.separation.norm();
+    if (!(distance > 0.0)) return;
+    if (!(candidate.edges ? leads_from_edges(candidate, x, closest) : leads_from_face(candidate, x, closest))) return;
+    Contact contact;
+    contact.count = 4;
+    contact.particles = candidate.particles;
+    contact.weights = closest.weights;
+    contact.normal = closest.separation / distance;
+    for (std::size_t k = 0; k < 4; ++k)
+      contact.distance += closest.weights[k] * contact.normal.dot(after_.col(candidate.particles[k]));
+    if (!(contact.distance < candidate.reach)) return;
+    contact.most_gap = candidate.gap;
+    contact.clearance = clearance_;
+    contacts.push_back(contact);
+  }
+
+ private:
+  [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
+
+  /// What lies between the sides at the end, along the normal.
+  [[nodiscard]] double lowest_gap(const ContactCandidate& candidate, const Vector3& normal) const {
+    std::array<double, 4> height;
+    for (std::size_t k = 0; k < 4; ++k) height[k] = normal.dot(after_.col(candidate.particles[k]));
+    return candidate.edges ? std::min(height[0], height[1]) - std::max(height[2], height[3])
+                           : height[0] - std::max({height[1], height[2], height[3]});
+  }
+
+  /// Whether a direction from a point of an element leans over what ends at `other` by no more than `lean`.
+  [[nodiscard]] static bool leans(const Vector3& direction, const Vector3& toward, double lean) {
+    return direction.dot(toward) > lean * direction.norm() * toward.norm();
+  }
+
+  /// Whether all that meets at a particle, which is at x, leads away from the direction.
+  [[nodiscard]] bool leads_from_corner(Index particle, const Vector3& x, const Vector3& direction) const {
+    for (const Index e : features_.elements_at(particle)) {
+      for (const Index other : corners_of(element(e))) {
+        if (other != particle && leans(direction, before_.col(other) - x, kLean)) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Of the faces that share the point, the one that owns it speaks for it.
+  [[nodiscard]] bool leads_from_face(const ContactCandidate& candidate, const std::array<Vector3, 4>& x,
+                                     const CandidateClosest& closest) const {
+    const Index face = candidate.elements[1];
+    int used = 0;
+    int corner = 0;
+    int unused = 0;
+    for (int k = 0; k < 3; ++k) {
+      const bool is_used = closest.weights[static_cast<std::size_t>(k) + 1] != 0.0;
+      used += is_used ? 1 : 0;
+      (is_used ? corner : unused) = k;
+    }
+    if (used == 3) return true;
+    if (used == 1) {
+      const auto at = static_cast<std::size_t>(corner) + 1;
+      return features_.owns_corner(face, corner) && leads_from_corner(candidate.particles[at], x[at], closest.separation);
+    }
+    const int edge = (unused + 1) % 3;
+    if (!features_.owns_edge(face, edge)) return false;
+    const Index across = features_.across(face, edge);
+    return across == kNone || !leans(closest.separation, before_.col(across) - (x[0] - closest.separation), kLean);
+  }
+
+  /// The nearest points are within both edges, or at a corner that no face speaks for.
+  [[nodiscard]] bool leads_from_edges(const ContactCandidate& candidate, const std::array<Vector3, 4>& x,
+                                      const CandidateClosest& closest) const {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Vector3 direction = side == 0 ? Vector3(-closest.separation) : closest.separation;
+      const std::size_t first = 2 * side;
+      const Element& own = element(candidate.elements[side]);
+      const Element& other = element(candidate.elements[1 - side]);
+      if (closest.weights[first] == 0.0 || closest.weights[first + 1] == 0.0) {
+        const std::size_t at = closest.weights[first] == 0.0 ? first + 1 : first;
+        const int corner = (candidate.edge[side] + (at == first ? 0 : 1)) % own.corners;
+        if (other.corners == 3 || !features_.owns_corner(candidate.elements[side], corner)) return false;
+        if (!leads_from_corner(candidate.particles[at], x[at], direction)) return false;
+        continue;
+      }
+      if (own.corners != 3) continue;
+      const double sign = side == 0 ? 1.0 : -1.0;
+      const Vector3 at = sign * (closest.weights[first] * x[first] + closest.weights[first + 1] * x[first + 1]);
+      const Index third = own.particles[static_cast<std::size_t>((candidate.edge[side] + 2) % 3)];
+      const Index across = features_.across(candidate.elements[side], candidate.edge[side]);
+      if (leans(direction, before_.col(third) - at, kEdgeLean)) return false;
+      if (across != kNone && leans(direction, before_.col(across) - at, kEdgeLean)) return false;
+    }
+    return true;
+  }
+
+  const CollisionSurface& surface_;
+  const SurfaceFeatures& features_;
+  const Points& before_;
+  const Points& after_;
+  double clearance_;
+};
+
+}  // namespace
+
+void append_self_contacts(const CollisionSurface& surface, const SurfaceFeatures& features,
+                          const std::vector<ContactCandidate>& candidates, const Points& before, const Points& after,
+                          std::vector<Contact>& contacts) {
+  const SelfContacts finder(surface, features, before, after);
+  const auto count = static_cast<Index>(candidates.size());
+  std::vector<std::vector<Contact>> parts(static_cast<std::size_t>((count + kCandidatesPerTask - 1) / kCandidatesPerTask));
+  parallel_chunks(count, kCandidatesPerTask, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      finder.append(candidates[static_cast<std::size_t>(k)], parts[static_cast<std::size_t>(begin / kCandidatesPerTask)]);
+    }
+  });
+  for (const std::vector<Contact>& part : parts) contacts.insert(contacts.end(), part.begin(), part.end());
+}
+
+}  // namespace sprung

@@ -1,0 +1,20 @@
+// Contacts between elements of the network.
+#pragma once
+
+#include "collision/collision_surface.h"
+#include "collision/contact.h"
+#include "collision/contact_candidate.h"
+#include "collision/surface_features.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// Appends a contact for each candidate that comes within its reach on the way from `before` to `after` [m], 3 x n, and whose
+/// points are as near as the surfaces around them: others, such as a corner beside a face with another face right below it, would
+/// push it aside. In the order of the candidates.
+void append_self_contacts(const CollisionSurface& surface, const SurfaceFeatures& features,
+                          const std::vector<ContactCandidate>& candidates, const Points& before, const Points& after,
+                          std::vector<Contact>& contacts);
+
+}  // namespace sprung

@@ -1,0 +1,78 @@
+#include "collision/self_zones.h"
+
+#include "collision/pair_planes.h"
+#include "collision/pair_watch.h"
+#include "collision/self_contacts.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+namespace {
+
+// Sides that are held keep this part of the least thickness between them: the rest is left to their way.
+constexpr double kKeptPart = 0.125;
+
+}  // namespace
+
+struct SelfZones::Implementation {
+  Implementation(const CollisionSurface& own, const Points& rest, double margin) : surface(own), watch(own, rest, margin) {}
+
+  [[nodiscard]] std::span<const PairPlanes::Bound> bounds_of(Index particle) const {
+    const auto range = std::equal_range(bounds.begin(), bounds.end(), PairPlanes::Bound{.particle = particle, .half_space = {}},
+                                        [](const auto& a, const auto& b) { return a.particle < b.particle; });
+    return {range.first, range.second};
+  }
+
+  const CollisionSurface& surface;
+  PairWatch watch;
+  Points ends;
+  std::vector<Index> held;
+  std::vector<PairPlanes::Bound> bounds;
+};
+
+SelfZones::SelfZones(const CollisionSurface& surface, const Points& rest, double margin)
+    : implementation_(new Implementation(surface, rest, margin)) {}
+SelfZones::~SelfZones() = default;
+SelfZones::SelfZones(SelfZones&&) noexcept = default;
+SelfZones& SelfZones::operator=(SelfZones&&) noexcept = default;
+
+void SelfZones::begin_step(const Points& before, const Points& after, std::vector<Contact>& contacts) {
+  Implementation& self = *implementation_;
+  self.watch.begin_step(before, after);
+  append_self_contacts(self.surface, self.watch.features(), self.watch.candidates(), before, after, contacts);
+}
+
+const std::vector<Index>& SelfZones::hold(const Points& before, const Points& targets, std::span<const Carried> carried) {
+  Implementation& self = *implementation_;
+  PairPlanes planes(before, targets, self.surface.pinned, carried, kKeptPart * self.surface.thickness.minCoeff());
+  self.watch.follow(before, targets);
+  while (planes.hold(self.watch.pairs())) self.watch.follow(before, planes.ends());
+  self.ends = planes.ends();
+  self.held = planes.held();
+  std::sort(self.held.begin(), self.held.end());
+  self.bounds = planes.bounds(self.watch.pairs());
+  return self.held;
+}
+
+Vector3 SelfZones::safe_place(Index particle) const { return implementation_->ends.col(particle); }
+
+void SelfZones::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
+  for (const PairPlanes::Bound& bound : implementation_->bounds_of(particle)) half_spaces.push_back(bound.half_space);
+}
+
+SelfZones::Ball SelfZones::ball(Index particle) const {
+  const MovingBalls& balls = implementation_->watch.balls();
+  return {balls.center(particle, 1.0), balls.radius(particle)};
+}
+
+bool SelfZones::allows(Index particle, const Vector3& p) const {
+  if (!implementation_->watch.balls().holds(particle, p, 1.0)) return false;
+  const auto bounds = implementation_->bounds_of(particle);
+  return std::all_of(bounds.begin(), bounds.end(),
+                     [&](const PairPlanes::Bound& bound) { return bound.half_space.normal.dot(p) >= bound.half_space.offset; });
+}
+
+WatchCounts SelfZones::counts() const { return implementation_->watch.counts(); }
+
+}  // namespace sprung

@@ -1,0 +1,59 @@
+// What keeps the elements of the network from crossing each other: bodies that collide with themselves, and bodies with one
+// another.
+//
+// Pairs of corner and face and of edge and edge that may touch in a step get a moving plane each, and particles are kept, each on
+// its own, on their side of it: what does not cross at the step's begin does not at its end, when all particles move straight.
+#pragma once
+
+#include "collision/collision_surface.h"
+#include "collision/contact.h"
+#include "collision/held_groups.h"
+#include "collision/watch_counts.h"
+#include "collision/zone.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace sprung {
+
+class SelfZones {
+ public:
+  /// Finds contacts up to `margin` [m] beyond their gap. What is near in one body at `rest` [m], 3 x n, may stay as near. Keeps a
+  /// reference to the surface.
+  SelfZones(const CollisionSurface& surface, const Points& rest, double margin);
+  ~SelfZones();
+  SelfZones(SelfZones&&) noexcept;
+  SelfZones& operator=(SelfZones&&) noexcept;
+
+  /// A step begins at `before` [m], 3 x n, where nothing crosses, and is about to end at `after`. Appends the contacts on the way:
+  /// their gap is the mean of the two thicknesses, but at most `most_gap`.
+  void begin_step(const Points& before, const Points& after, std::vector<Contact>& contacts);
+
+  /// Finds which particles would pass each other on their way to `targets` [m]; all others may go there. Pinned particles do so in
+  /// any case. `carried`, ascending by particle, names those that lean on an obstacle. Returns those that are held, ascending.
+  /// Requires begin_step() with the same `before`.
+  const std::vector<Index>& hold(const Points& before, const Points& targets, std::span<const Carried> carried = {});
+
+  /// Where a held particle may end in any case [m].
+  [[nodiscard]] Vector3 safe_place(Index particle) const;
+
+  /// Where else a held particle may end: within these half-spaces, which are appended, and this ball. Requires hold().
+  void append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const;
+  struct Ball {
+    Vector3 center;
+    double radius;
+  };
+  [[nodiscard]] Ball ball(Index particle) const;
+
+  /// Whether a held particle may end at p: it is within both.
+  [[nodiscard]] bool allows(Index particle, const Vector3& p) const;
+
+  [[nodiscard]] WatchCounts counts() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace sprung

@@ -1,0 +1,142 @@
+// Small networks that collide with themselves, what of them crosses by brute force, and the simplest truncation.
+#pragma once
+
+#include "collision/sample_meshes.h"
+#include "collision/self_zones.h"
+#include "geometry/side_of_plane.h"
+
+#include <functional>
+#include <vector>
+
+namespace sprung::test {
+
+/// Bodies, one after the other.
+struct SelfNetwork {
+  Points positions;
+  std::vector<Element> elements;
+  std::vector<Index> body_of;
+  std::vector<char> pinned;
+  Index bodies = 0;
+
+  [[nodiscard]] Index count() const { return static_cast<Index>(positions.cols()); }
+
+  /// `side` x `side` squares along u and v, cut into triangles by alternating diagonals.
+  void add_cloth(Index side, const Vector3& corner, const Vector3& u, const Vector3& v) {
+    const Index first = count();
+    for (Index j = 0; j <= side; ++j) {
+      for (Index i = 0; i <= side; ++i) add_particle(corner + i * u + j * v);
+    }
+    const auto id = [&](Index i, Index j) { return first + j * (side + 1) + i; };
+    for (Index j = 0; j < side; ++j) {
+      for (Index i = 0; i < side; ++i) {
+        const bool even = (i + j) % 2 == 0;
+        const Index a = even ? id(i, j) : id(i + 1, j);
+        const Index b = even ? id(i + 1, j) : id(i + 1, j + 1);
+        const Index c = even ? id(i + 1, j + 1) : id(i, j + 1);
+        const Index d = even ? id(i, j + 1) : id(i, j);
+        elements.push_back({{a, b, c}, 3, bodies});
+        elements.push_back({{a, c, d}, 3, bodies});
+      }
+    }
+    ++bodies;
+  }
+
+  void add_rope(Index segments, const Vector3& from, const Vector3& step) {
+    const Index first = count();
+    for (Index i = 0; i <= segments; ++i) add_particle(from + i * step);
+    for (Index i = 0; i < segments; ++i) elements.push_back({{first + i, first + i + 1, kNone}, 2, bodies});
+    ++bodies;
+  }
+
+  void add_single_particle(const Vector3& position) {
+    add_particle(position);
+    ++bodies;
+  }
+
+  /// Every body collides with itself and all others.
+  [[nodiscard]] CollisionSurface surface(double thickness) const {
+    const std::vector<char> all(static_cast<std::size_t>(bodies), 1);
+    return make_collision_surface(elements, positions, body_of, Scalars::Constant(count(), thickness), pinned, all, all);
+  }
+
+ private:
+  void add_particle(const Vector3& position) {
+    positions.conservativeResize(3, count() + 1);
+    positions.col(count() - 1) = position;
+    body_of.push_back(bodies);
+    pinned.push_back(0);
+  }
+};
+
+/// Whether the segment meets the closed triangle, by exact predicates; false when all five points are in one plane.
+inline bool segment_meets_triangle(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b, const Vector3& c) {
+  const double begin = side_of_plane(a, b, c, p);
+  const double end = side_of_plane(a, b, c, q);
+  if ((begin > 0.0 && end > 0.0) || (begin < 0.0 && end < 0.0) || (begin == 0.0 && end == 0.0)) return false;
+  const double ab = side_of_plane(p, q, a, b);
+  const double bc = side_of_plane(p, q, b, c);
+  const double ca = side_of_plane(p, q, c, a);
+  return (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
+}
+
+/// How many edges meet triangles with which they share no particle.
+inline int count_crossings(const std::vector<Element>& elements, const Points& x) {
+  int crossings = 0;
+  for (const Element& face : elements) {
+    if (face.corners != 3) continue;
+    Box3 box;
+    for (const Index i : corners_of(face)) box.extend(x.col(i));
+    for (const Element& other : elements) {
+      for (int k = 0; k < (other.corners == 3 ? 3 : other.corners - 1); ++k) {
+        const Index p = other.particles[static_cast<std::size_t>(k)];
+        const Index q = other.particles[static_cast<std::size_t>((k + 1) % other.corners)];
+        const auto& t = face.particles;
+        if (p == t[0] || p == t[1] || p == t[2] || q == t[0] || q == t[1] || q == t[2]) continue;
+        Box3 edge(x.col(p));
+        edge.extend(x.col(q));
+        if (edge.intersects(box) && segment_meets_triangle(x.col(p), x.col(q), x.col(t[0]), x.col(t[1]), x.col(t[2]))) ++crossings;
+      }
+    }
+  }
+  return crossings;
+}
+
+/// Brings held particles as near to their targets as projections onto what bounds them do; else to their safe place.
+inline Index truncate(SelfZones& zones, const Points& before, Points& targets) {
+  const std::vector<Index> held = zones.hold(before, targets);
+  std::vector<HalfSpace> half_spaces;
+  for (const Index i : held) {
+    Vector3 p = targets.col(i);
+    half_spaces.clear();
+    zones.append_half_spaces(i, half_spaces);
+    const SelfZones::Ball ball = zones.ball(i);
+    for (int sweep = 0; sweep < 8 && !zones.allows(i, p); ++sweep) {
+      for (const HalfSpace& bound : half_spaces) {
+        const double depth = bound.offset - bound.normal.dot(p);
+        if (depth > 0.0) p += 1.001 * depth * bound.normal;
+      }
+      const Vector3 out = p - ball.center;
+      if (out.norm() > ball.radius) p = ball.center + 0.999 * ball.radius / out.norm() * out;
+    }
+    targets.col(i) = zones.allows(i, p) ? p : zones.safe_place(i);
+  }
+  return static_cast<Index>(held.size());
+}
+
+/// Steps whose targets are `move(step, before)`; returns the positions at the end.
+inline Points run(const SelfNetwork& network, SelfZones& zones, int steps, const std::function<Points(int, const Points&)>& move,
+                  const std::function<void(const Points&)>& look = {}) {
+  Points x = network.positions;
+  std::vector<Contact> contacts;
+  for (int step = 0; step < steps; ++step) {
+    Points targets = move(step, x);
+    contacts.clear();
+    zones.begin_step(x, targets, contacts);
+    truncate(zones, x, targets);
+    x = targets;
+    if (look) look(x);
+  }
+  return x;
+}
+
+}  // namespace sprung::test

@@ -1,0 +1,236 @@
+// The promise of self-contact: what does not cross at a step's begin does not at its end, whatever the targets are.
+#include "base/parallel.h"
+#include "collision/self_networks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace sprung {
+namespace {
+
+using test::SelfNetwork;
+
+constexpr double kEdge = 0.01;
+constexpr double kThickness = 0.003;
+constexpr double kMargin = 0.001;
+const Vector3 kX = Vector3::UnitX();
+const Vector3 kY = Vector3::UnitY();
+const Vector3 kZ = Vector3::UnitZ();
+
+SelfNetwork cloth_of(Index side, double edge = kEdge) {
+  SelfNetwork network;
+  network.add_cloth(side, Vector3::Zero(), edge * kX, edge * kZ);
+  return network;
+}
+
+/// Every particle is thrown about by up to `speed` [m per step], and drawn to the middle.
+std::function<Points(int, const Points&)> crumpling(double speed, std::uint64_t seed) {
+  return [speed, random = test::Random(seed)](int, const Points& x) mutable {
+    Points targets = x;
+    const Vector3 middle = x.rowwise().mean();
+    for (Index i = 0; i < static_cast<Index>(x.cols()); ++i) {
+      targets.col(i) += random.between(0.0, speed) * random.direction() + 0.02 * (middle - x.col(i));
+    }
+    return targets;
+  };
+}
+
+TEST(SelfZones, ACrumplingClothNeverCrossesItself) {
+  const SelfNetwork network = cloth_of(10);
+  const CollisionSurface surface = network.surface(kThickness);
+  for (const double speed : {0.1, 0.5, 2.0, 10.0}) {
+    SelfZones zones(surface, network.positions, kMargin);
+    test::run(network, zones, 40, crumpling(speed * kEdge, 7),
+              [&](const Points& x) { ASSERT_EQ(test::count_crossings(network.elements, x), 0) << "speed " << speed; });
+  }
+}
+
+TEST(SelfZones, ACrumplingPileOfEverythingNeverCrosses) {
+  SelfNetwork network;
+  network.add_cloth(6, {0.0, 0.0, 0.0}, kEdge * kX, kEdge * kZ);
+  network.add_cloth(5, {0.0, 0.004, 0.001}, kEdge * kX, kEdge * kZ);
+  network.add_rope(12, {-0.03, 0.008, 0.02}, kEdge * kX);
+  network.add_rope(12, {0.03, 0.012, -0.03}, kEdge * kZ);
+  for (int k = 0; k < 20; ++k) network.add_single_particle({0.003 * k, 0.016, 0.002 * k});
+  const CollisionSurface surface = network.surface(kThickness);
+  SelfZones zones(surface, network.positions, kMargin);
+  test::run(network, zones, 60, crumpling(0.5 * kEdge, 3),
+            [&](const Points& x) { ASSERT_EQ(test::count_crossings(network.elements, x), 0); });
+}
+
+/// How many triangles of the first body are above a particle.
+int sheets_above(const SelfNetwork& network, const Points& x, Index particle) {
+  int count = 0;
+  for (const Element& face : network.elements) {
+    if (face.body != 0) continue;
+    const auto& t = face.particles;
+    const Vector3 far = x.col(particle) + 100.0 * kY;
+    if (test::segment_meets_triangle(x.col(particle), far, x.col(t[0]), x.col(t[1]), x.col(t[2]))) ++count;
+  }
+  return count;
+}
+
+/// Sheets are offset so that corners meet faces and edges meet edges. The step is 1/60 s.
+TEST(SelfZones, SheetsThrownAtEachOtherStayOnTheirSides) {
+  SelfNetwork network;
+  network.add_cloth(12, {0.0, 0.1, 0.0}, kEdge * kX, kEdge * kZ);
+  network.add_cloth(12, {0.003, -0.1, 0.002}, kEdge * Vector3(0.99, 0.0, 0.1), kEdge * Vector3(-0.1, 0.0, 0.99));
+  const CollisionSurface surface = network.surface(kThickness);
+  for (const double speed : {1.0, 50.0, 500.0}) {
+    SelfZones zones(surface, network.positions, kMargin);
+    const auto half = network.count() / 2;
+    const auto fly = [&](int, const Points& x) {
+      Points targets = x;
+      targets.row(1).head(half).array() -= 0.5 * speed / 60.0;
+      targets.row(1).tail(half).array() += 0.5 * speed / 60.0;
+      return targets;
+    };
+    const Points x = test::run(network, zones, 20, fly,
+                               [&](const Points& now) { ASSERT_EQ(test::count_crossings(network.elements, now), 0) << speed; });
+    // Seen from above, the middle of the lower sheet lies under the upper one; what is beside it may fly on.
+    for (Index j = 4; j <= 8; ++j) {
+      for (Index i = 4; i <= 8; ++i) EXPECT_EQ(sheets_above(network, x, half + 13 * j + i) % 2, 1) << speed << ' ' << i << ' ' << j;
+    }
+    if (speed == 1.0) {
+      EXPECT_LT(x(1, 6 * 13 + 6) - x(1, half + 6 * 13 + 6), kThickness) << "they meet";
+    }
+  }
+}
+
+TEST(SelfZones, RopesThrownAtEachOtherDoNotPass) {
+  SelfNetwork network;
+  network.add_rope(10, {-0.051, 0.05, 0.0}, kEdge * kX);
+  network.add_rope(10, {0.0, -0.05, -0.047}, kEdge * kZ);
+  const CollisionSurface surface = network.surface(kThickness);
+  for (const double speed : {1.0, 50.0, 500.0}) {
+    SelfZones zones(surface, network.positions, kMargin);
+    const auto fly = [&](int, const Points& x) {
+      Points targets = x;
+      targets.row(1).head(11).array() -= 0.5 * speed / 60.0;
+      targets.row(1).tail(11).array() += 0.5 * speed / 60.0;
+      return targets;
+    };
+    const Points x = test::run(network, zones, 20, fly);
+    // Where they cross, seen from above: the sixth segment of each.
+    EXPECT_GT(side_of_plane(x.col(5), x.col(6), x.col(16), x.col(15)), 0.0) << speed;
+  }
+}
+
+TEST(SelfZones, AParticleThrownAtASheetStaysOnItsSide) {
+  SelfNetwork network = cloth_of(4);
+  network.add_single_particle({0.0123, 0.02, 0.0171});
+  const CollisionSurface surface = network.surface(kThickness);
+  SelfZones zones(surface, network.positions, kMargin);
+  const Index last = network.count() - 1;
+  const auto fall = [&](int, const Points& x) {
+    Points targets = x;
+    targets.col(last) -= 8.0 * kY;
+    return targets;
+  };
+  const Points x = test::run(network, zones, 3, fall);
+  EXPECT_GT(x(1, last), x.row(1).head(last).maxCoeff());
+  EXPECT_LT((x - network.positions).leftCols(last).colwise().norm().maxCoeff(), kThickness) << "the sheet is not carried away";
+}
+
+TEST(SelfZones, BodiesThatDoNotCollidePass) {
+  SelfNetwork network;
+  network.add_cloth(6, {0.0, 0.02, 0.0}, kEdge * kX, kEdge * kZ);
+  network.add_cloth(6, {0.0, -0.02, 0.0}, kEdge * kX, kEdge * kZ);
+  CollisionSurface surface = network.surface(kThickness);
+  surface.others[1] = 0;
+  SelfZones zones(surface, network.positions, kMargin);
+  const auto half = network.count() / 2;
+  Points targets = network.positions;
+  targets.row(1).head(half).array() -= 0.1;
+  std::vector<Contact> contacts;
+  zones.begin_step(network.positions, targets, contacts);
+  EXPECT_THAT(zones.hold(network.positions, targets), testing::IsEmpty());
+  EXPECT_THAT(contacts, testing::IsEmpty());
+}
+
+TEST(SelfZones, AFallingClothIsNotHeldBackAndHardlyLookedAt) {
+  const SelfNetwork network = cloth_of(20);
+  const CollisionSurface surface = network.surface(kThickness);
+  SelfZones zones(surface, network.positions, kMargin);
+  Points x = network.positions;
+  std::vector<Contact> contacts;
+  Index renewed = 0;
+  const double dt = 1.0 / 1200.0;
+  for (int step = 0; step < 100; ++step) {
+    Points targets = x;
+    targets.row(1).array() -= 10.0 * dt + 9.81 * dt * dt * (step + 0.5);
+    zones.begin_step(x, targets, contacts);
+    ASSERT_THAT(zones.hold(x, targets), testing::IsEmpty());
+    if (step > 0) renewed += zones.counts().renewed;
+    x = targets;
+  }
+  EXPECT_THAT(contacts, testing::IsEmpty());
+  // Gravity alone takes a particle out of its ball, a tenth of an edge, in sqrt(0.2 edge / g) = 14 ms, 17 steps.
+  EXPECT_LE(renewed, 6 * network.count());
+}
+
+/// What is crumpled already flies on as it is: nothing in it is in the way of anything else.
+TEST(SelfZones, ACrumpledClothIsNotHeldBackByItsFlight) {
+  SelfNetwork network = cloth_of(10);
+  const CollisionSurface surface = network.surface(kThickness);
+  SelfZones zones(surface, network.positions, kMargin);
+  Points x = test::run(network, zones, 40, crumpling(kEdge, 7));
+  std::vector<Contact> contacts;
+  for (int step = 0; step < 5; ++step) {
+    Points targets = x;
+    targets.colwise() += Vector3(2.0, -1.0, 0.5);
+    zones.begin_step(x, targets, contacts);
+    EXPECT_THAT(zones.hold(x, targets), testing::IsEmpty());
+    x = targets;
+  }
+}
+
+TEST(SelfZones, PinnedParticlesReachTheirTargets) {
+  SelfNetwork network = cloth_of(6);
+  network.pinned[0] = 1;
+  const CollisionSurface surface = network.surface(kThickness);
+  SelfZones zones(surface, network.positions, kMargin);
+  const auto fold = [&](int step, const Points& x) {
+    Points targets = x;
+    targets.col(0) = network.positions.col(0) + 0.004 * step * Vector3(1.0, step < 10 ? 0.5 : -0.5, 1.0);
+    return targets;
+  };
+  Points x = network.positions;
+  std::vector<Contact> contacts;
+  for (int step = 0; step < 20; ++step) {
+    const Points wanted = fold(step, x);
+    Points targets = wanted;
+    zones.begin_step(x, targets, contacts);
+    test::truncate(zones, x, targets);
+    EXPECT_EQ(targets.col(0), wanted.col(0));
+    x = targets;
+  }
+}
+
+TEST(SelfZones, ScaledScenesGiveTheSameBits) {
+  std::vector<Points> ends;
+  for (const double scale : {1.0, 0x1p7, 0x1p-7}) {
+    SelfNetwork network = cloth_of(8);
+    network.positions *= scale;
+    const CollisionSurface surface = network.surface(scale * kThickness);
+    SelfZones zones(surface, network.positions, scale * kMargin);
+    ends.emplace_back(test::run(network, zones, 20, crumpling(scale * kEdge, 5)) / scale);
+  }
+  EXPECT_EQ(ends[0], ends[1]);
+  EXPECT_EQ(ends[0], ends[2]);
+}
+
+TEST(SelfZones, AnyNumberOfThreadsGivesTheSameBits) {
+  const SelfNetwork network = cloth_of(24);
+  const CollisionSurface surface = network.surface(kThickness);
+  std::vector<Points> ends;
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    SelfZones zones(surface, network.positions, kMargin);
+    ends.push_back(test::run(network, zones, 10, crumpling(kEdge, 5)));
+  }
+  EXPECT_EQ(ends[0], ends[1]);
+}
+
+}  // namespace
+}  // namespace sprung
