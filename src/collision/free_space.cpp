@@ -3,8 +3,11 @@
 #include "base/parallel.h"
 #include "collision/feasible_point.h"
 #include "collision/obstacle_zones.h"
+#include "collision/self_zones.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 namespace sprung {
 
@@ -28,6 +31,12 @@ constexpr Index kParticleChunk = 256;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
+/// Whether elements of one body or of two may meet.
+bool meets_itself(const CollisionSurface& surface) {
+  return std::count(surface.self.begin(), surface.self.end(), 1) > 0 ||
+         std::count(surface.others.begin(), surface.others.end(), 1) > 1;
+}
+
 template <class Outcome>
 Index count(const std::vector<Outcome>& outcomes, Outcome wanted) {
   return static_cast<Index>(std::count(outcomes.begin(), outcomes.end(), wanted));
@@ -36,13 +45,18 @@ Index count(const std::vector<Outcome>& outcomes, Outcome wanted) {
 }  // namespace
 
 struct FreeSpace::Implementation {
-  Implementation(Environment& world, CollisionSurface elements, double margin)
-      : environment(world), set(world.set()), surface(std::move(elements)), zones(set, surface, margin) {}
+  Implementation(Environment& world, CollisionSurface elements, const Points& rest, double margin)
+      : environment(world), set(world.set()), surface(std::move(elements)), zones(set, surface, margin) {
+    if (meets_itself(surface)) pairs.emplace(surface, rest, margin);
+  }
 
   enum class Outcome : char { free, stopped, squeezed };
   using Outcomes = std::vector<Outcome>;
 
+  void begin_pairs(const Points& before, const Points& after);
   Truncation truncate(const Points& before, Points& after);
+  void keep_apart(const Points& before, Points& after, Truncation& truncation);
+  [[nodiscard]] Outcome keep_apart(Index particle, const Vector3& before, const Vector3& target, Points& after) const;
   [[nodiscard]] Index crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const;
   [[nodiscard]] std::vector<Index> movable(const Points& before, const Points& target) const;
   Outcomes place_in_parts(const std::vector<Index>& particles, const Points& before, const Points& target, Points& after);
@@ -57,22 +71,36 @@ struct FreeSpace::Implementation {
   const ObstacleSet& set;
   CollisionSurface surface;
   ObstacleZones zones;
+  std::optional<SelfZones> pairs;        ///< where elements of the network may meet
+  std::vector<Contact> pair_contacts{};  ///< of the step that follow() began
+  bool pairs_began = false;
 };
 
-FreeSpace::FreeSpace(Environment& environment, CollisionSurface surface, double margin)
-    : implementation_(std::make_unique<Implementation>(environment, std::move(surface), margin)) {}
+FreeSpace::FreeSpace(Environment& environment, CollisionSurface surface, const Points& rest, double margin)
+    : implementation_(std::make_unique<Implementation>(environment, std::move(surface), rest, margin)) {}
 FreeSpace::~FreeSpace() = default;
 FreeSpace::FreeSpace(FreeSpace&&) noexcept = default;
 FreeSpace& FreeSpace::operator=(FreeSpace&&) noexcept = default;
 
-void FreeSpace::follow(const Points& before, const Points& after) { implementation_->zones.follow({before, after}); }
+bool FreeSpace::meets_anything() const { return implementation_->pairs.has_value() || !implementation_->set.obstacles().empty(); }
+
+void FreeSpace::follow(const Points& before, const Points& after) {
+  implementation_->zones.follow({before, after});
+  if (implementation_->pairs) implementation_->begin_pairs(before, after);
+}
 
 std::vector<Contact> FreeSpace::contacts(const Points& before, const Points& after) {
-  return implementation_->zones.contacts({before, after});
+  std::vector<Contact> contacts = implementation_->zones.contacts({before, after});
+  const std::vector<Contact>& of_pairs = implementation_->pair_contacts;
+  contacts.insert(contacts.end(), of_pairs.begin(), of_pairs.end());
+  return contacts;
 }
 
 FreeSpace::Truncation FreeSpace::truncate(const Points& before, Points& after) {
-  return implementation_->set.obstacles().empty() ? Truncation{} : implementation_->truncate(before, after);
+  Truncation truncation;
+  if (!implementation_->set.obstacles().empty()) truncation = implementation_->truncate(before, after);
+  if (implementation_->pairs_began) implementation_->keep_apart(before, after, truncation);
+  return truncation;
 }
 
 FreeSpace::Truncation FreeSpace::Implementation::truncate(const Points& before, Points& after) {
@@ -205,6 +233,52 @@ FreeSpace::Implementation::Outcome FreeSpace::Implementation::place(Index partic
   const bool stays = (*found - from).cwiseAbs().maxCoeff() <= kRounding * from.cwiseAbs().maxCoeff() && is_feasible(bounds, from);
   positions.col(particle) = stays ? from : *found;
   return Outcome::stopped;
+}
+
+void FreeSpace::Implementation::begin_pairs(const Points& before, const Points& after) {
+  pair_contacts.clear();
+  pairs_began = before.allFinite() && after.allFinite();
+  if (pairs_began) pairs->begin_step(before, after, pair_contacts);
+}
+
+// After obstacles, whose zones bound those too that are held here. What finds no place in both stays with its neighbours: an
+// obstacle can be left again, a knot in a cloth stays.
+void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, Truncation& truncation) {
+  pairs_began = false;
+  if (!after.allFinite()) return;
+  const Points targets = after;
+  const std::vector<Index> held = pairs->hold(before, targets, zones.carried(before));
+  Outcomes outcomes(held.size());
+  parallel_chunks(static_cast<Index>(held.size()), kParticleChunk, [&](Index begin, Index end) {
+    for (Index n = begin; n < end; ++n) {
+      const Index i = held[at(n)];
+      outcomes[at(n)] = keep_apart(i, before.col(i), targets.col(i), after);
+    }
+  });
+  truncation.truncated += static_cast<Index>(outcomes.size()) - count(outcomes, Outcome::free);
+  truncation.squeezed += count(outcomes, Outcome::squeezed);
+}
+
+FreeSpace::Implementation::Outcome FreeSpace::Implementation::keep_apart(Index particle, const Vector3& before,
+                                                                         const Vector3& target, Points& after) const {
+  if (pairs->allows(particle, target)) return Outcome::free;
+  std::vector<HalfSpace> bounds;
+  zones.append_half_spaces(particle, bounds);
+  pairs->append_half_spaces(particle, bounds);
+  const Vector3 apart = pairs->safe_place(particle);
+  const std::array<Vector3, 2> safe{apart, before};
+  auto found = feasible_point(bounds, target, safe);
+  if (found) {
+    const auto [centre, radius] = pairs->ball(particle);
+    const double distance = (*found - centre).norm();
+    if (distance > radius) *found = centre + radius / distance * (*found - centre);
+  }
+  if (found && pairs->allows(particle, *found) && zones.allow(particle, *found)) {
+    after.col(particle) = *found;
+    return Outcome::stopped;
+  }
+  after.col(particle) = apart;
+  return zones.allow(particle, apart) ? Outcome::stopped : Outcome::squeezed;
 }
 
 }  // namespace sprung

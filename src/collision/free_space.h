@@ -15,18 +15,23 @@ namespace sprung {
 
 class FreeSpace {
  public:
-  /// Finds contacts up to `margin` [m] beyond their gap. Keeps a reference to the environment.
-  FreeSpace(Environment& environment, CollisionSurface surface, double margin);
+  /// Finds contacts up to `margin` [m] beyond their gap. What is near in one body at `rest` [m], 3 x n, may stay as near. Keeps a
+  /// reference to the environment.
+  FreeSpace(Environment& environment, CollisionSurface surface, const Points& rest, double margin);
   ~FreeSpace();
   FreeSpace(FreeSpace&&) noexcept;
   FreeSpace& operator=(FreeSpace&&) noexcept;
+
+  /// Whether there is anything that the network may meet: obstacles, other bodies, itself.
+  [[nodiscard]] bool meets_anything() const;
 
   /// Makes the zones hold the elements on their way from `before`, where nothing crosses, to where they are about to be at the end
   /// of the environment's interval [m].
   void follow(const Points& before, const Points& after);
 
   /// Contacts of particles (see Environment::contacts), and of obstacles with the inside of edges and faces: an edge over a spike,
-  /// a face over a corner. Same order for any number of threads. Requires follow() with the same positions.
+  /// a face over a corner; then those of the network's elements with each other. Same order for any number of threads. Requires
+  /// follow() with the same positions.
   [[nodiscard]] std::vector<Contact> contacts(const Points& before, const Points& after);
 
   struct Truncation {

@@ -188,7 +188,7 @@ void ObstacleZones::append_element_contacts(Index p, const PatchZones& zones, co
 bool ObstacleZones::allow(Index particle, const Vector3& position) const {
   for (const auto& [p, slot] : slots_of(particle)) {
     const Patch& patch = patches_[at(p)];
-    if (!patch.known.contains(position)) return false;
+    if (!patch.known.isEmpty() && !patch.known.contains(position)) return false;
     for (const PatchZones& zones : patch.zones) {
       if (!zones.allow(slot, set_.local(zones.obstacle(), position))) return false;
     }
@@ -207,7 +207,7 @@ bool ObstacleZones::is_crossed(Index particle) const {
 void ObstacleZones::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
   for (const auto& [p, slot] : slots_of(particle)) {
     const Patch& patch = patches_[at(p)];
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 3 && !patch.known.isEmpty(); ++axis) {
       half_spaces.push_back({Vector3::Unit(axis), patch.known.min()[axis]});
       half_spaces.push_back({-Vector3::Unit(axis), -patch.known.max()[axis]});
     }
@@ -215,6 +215,25 @@ void ObstacleZones::append_half_spaces(Index particle, std::vector<HalfSpace>& h
       zones.append_half_spaces(slot, set_.after(zones.obstacle()), half_spaces);
     }
   }
+}
+
+std::vector<Carried> ObstacleZones::carried(const Points& from) const {
+  std::vector<Carried> particles;
+  if (!set_.moves()) return particles;
+  for (Index i = 0; i < static_cast<Index>(from.cols()); ++i) {
+    const Index k = leans_on(i);
+    if (k != kNone) particles.push_back({i, set_.carried(k, from.col(i)) - from.col(i)});
+  }
+  return particles;
+}
+
+Index ObstacleZones::leans_on(Index particle) const {
+  for (const PatchSlot& place : slots_of(particle)) {
+    for (const PatchZones& zones : patches_[at(place.patch)].zones) {
+      if (zones.may_lean(place.slot) && !set_.rests(zones.obstacle())) return zones.obstacle();
+    }
+  }
+  return kNone;
 }
 
 void ObstacleZones::append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const {

@@ -3,6 +3,7 @@
 
 #include "collision/collision_surface.h"
 #include "collision/contact.h"
+#include "collision/held_groups.h"
 #include "collision/obstacle_set.h"
 #include "collision/patch_zones.h"
 
@@ -41,6 +42,9 @@ class ObstacleZones {
   /// Appends what bounds the particle at the interval's end.
   void append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const;
 
+  /// Particles that lean on an obstacle that moves, ascending, and how far it carries them from there.
+  [[nodiscard]] std::vector<Carried> carried(const Points& from) const;
+
   /// Appends where the obstacles that move near the particle carry it from `from`.
   void append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const;
 
@@ -54,6 +58,8 @@ class ObstacleZones {
     double thickness = 0.0;           ///< the largest of its particles [m]
   };
 
+  /// An obstacle that moves and that an element around the particle may touch; kNone if there is none.
+  [[nodiscard]] Index leans_on(Index particle) const;
   void find_near(Index patch, const Way& way, double carried);
   void find_paths(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
   [[nodiscard]] ZoneDemand demand(const Patch& patch, Index obstacle, const Way& way) const;

@@ -49,6 +49,9 @@ class PatchZones {
     return !(quiet > 0.0 && (to - s.centre).squaredNorm() < quiet * quiet && (from - s.centre).squaredNorm() < quiet * quiet);
   }
 
+  /// Whether an element at the slot may touch.
+  [[nodiscard]] bool may_lean(Index slot) const { return slots_[static_cast<std::size_t>(slot)].near; }
+
   /// Whether the obstacle crosses an element at the slot, which then has no zone.
   [[nodiscard]] bool is_crossed(Index slot) const { return slots_[static_cast<std::size_t>(slot)].broken; }
 

@@ -22,7 +22,7 @@ double margin_of(const SpringNetwork& network, const std::vector<Obstacle>& obst
 
 ContactProjection::ContactProjection(const SpringNetwork& network, Environment& environment)
     : response_(network, environment),
-      free_space_(environment, contact_surface(network), margin_of(network, environment.obstacles())) {}
+      free_space_(environment, contact_surface(network), network.positions, margin_of(network, environment.obstacles())) {}
 
 void ContactProjection::find(const StepMotion& motion) {
   free_space_.follow(motion.before, motion.advanced);

@@ -14,6 +14,9 @@ class ContactProjection {
   /// Keeps references to the network and the environment.
   ContactProjection(const SpringNetwork& network, Environment& environment);
 
+  /// Whether there is anything that the network may meet: obstacles, other bodies, itself.
+  [[nodiscard]] bool meets_anything() const { return free_space_.meets_anything(); }
+
   /// Finds the contacts of a step. Requires that the environment's interval is the step's.
   void find(const StepMotion& motion);
 

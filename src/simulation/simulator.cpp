@@ -145,10 +145,10 @@ void Simulator::Implementation::constrain(StepReport& report) {
 }
 
 void Simulator::Implementation::settle(StepReport& report) {
-  if (environment.obstacles().empty() && !limit) return;
-  if (!environment.obstacles().empty()) contacts.truncate(before, state.x);
+  if (!contacts.meets_anything() && !limit) return;
+  if (contacts.meets_anything()) contacts.truncate(before, state.x);
   integrator->recover_velocities(state, before, advanced, settings.step);
-  if (!environment.obstacles().empty()) contacts.settle_velocities(motion(), state, *integrator);
+  if (contacts.meets_anything()) contacts.settle_velocities(motion(), state, *integrator);
   report.stretch_excess = limit ? limit->excess(state.x) : 0.0;
   report.truncated = contacts.truncated_count();
   report.squeezed = contacts.squeezed_count();
@@ -169,7 +169,7 @@ void Simulator::Implementation::fail(StepFailure failure) const {
 }
 
 bool Simulator::Implementation::projects_contacts() const {
-  return settings.contact.response == ContactSettings::Response::projection && !environment.obstacles().empty();
+  return settings.contact.response == ContactSettings::Response::projection && contacts.meets_anything();
 }
 
 Simulator::Simulator(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles)

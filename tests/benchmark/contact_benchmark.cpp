@@ -72,7 +72,7 @@ void truncation_near(benchmark::State& state) {
   FreeSpace space(environment,
                   make_collision_surface({}, cloth.before, std::vector<Index>(kParticles, 0), cloth.thickness,
                                          std::vector<char>(kParticles, 0), {0}, {0}),
-                  kMargin);
+                  cloth.before, kMargin);
   FreeSpace::Truncation truncation;
   for (auto _ : state) {
     Points after = cloth.after;

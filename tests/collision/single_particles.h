@@ -16,7 +16,7 @@ inline CollisionSurface particle_surface(const std::vector<char>& held) {
 }
 
 inline FreeSpace single_particles(Environment& environment, const std::vector<char>& held, double margin = 0.0) {
-  return FreeSpace(environment, particle_surface(held), margin);
+  return FreeSpace(environment, particle_surface(held), Points::Zero(3, static_cast<Index>(held.size())), margin);
 }
 
 inline FreeSpace single_particles(Environment& environment, Index count) {
