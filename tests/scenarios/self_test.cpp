@@ -1,0 +1,95 @@
+// Networks that meet themselves and each other.
+#include "scenarios/judge.h"
+#include "scenarios/knot.h"
+#include "scenarios/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace sprung::testing {
+namespace {
+
+class SelfContact : public ::testing::TestWithParam<double> {
+ protected:
+  static ScenarioReport run(const std::string& name, const std::vector<std::string>& overrides = {}, const Watch& watch = {}) {
+    return run_scenario(load_scenario(name, overrides, GetParam()), watch, Judge::obstacles_and_self);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(StepFactor, SelfContact, ::testing::Values(1.0, 4.0));
+
+TEST_P(SelfContact, AClothTwistedTwoTurnsDoesNotPassItself) {
+  const ScenarioReport report = run("twisted_cloth");
+  EXPECT_TRUE(report.is_free()) << report;
+}
+
+TEST_P(SelfContact, AClothSwungTwoTurnsByItsUpperCornersDoesNotPassItself) {
+  const ScenarioReport report = run("twisted_cloth", {R"(bodies.cloth.pins=[{"at": "corner", "which": ["min_max", "max_max"],
+                                "motion": {"keyframes": [{"time": 0}, {"time": 2, "rotation": [0, 720, 0]}]}}])"});
+  EXPECT_TRUE(report.is_free()) << report;
+}
+
+TEST_P(SelfContact, FiveClothsLieOnABallInOrder) {
+  const Watch watch = [](const Simulator& simulator, const FrameDiagnostics& frame) {
+    if (frame.frame % 30 != 1) return;
+    // Their middles lie over the top of the ball.
+    double below = -std::numeric_limits<double>::infinity();
+    for (const Body& body : simulator.network().bodies) {
+      const double middle = simulator.positions()(1, body.first_particle + 10 * 20 + 10);
+      EXPECT_GT(middle, below) << body.name << " in frame " << frame.frame;
+      below = middle;
+    }
+  };
+  const ScenarioReport report = run("stacked_cloths", {}, watch);
+  EXPECT_TRUE(report.is_free()) << report;
+}
+
+/// The least distance [m] of segments of one rope that are at least `apart` segments from each other along it.
+double least_distance_within(const Points& rope, Index apart) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i + 1 < rope.cols(); ++i) {
+    for (Index k = i + apart; k + 1 < rope.cols(); ++k) least = std::min(least, segment_distance(rope, {i, i + 1}, {k, k + 1}));
+  }
+  return least;
+}
+
+TEST_P(SelfContact, AnOverhandKnotPulledTightStaysAKnot) {
+  constexpr double kThickness = 0.008;  // [m] of the rope
+  double least = std::numeric_limits<double>::infinity();
+  const ScenarioReport report = run("overhand_knot", {}, [&](const Simulator& simulator, const FrameDiagnostics& frame) {
+    ASSERT_EQ(knot_determinant(closed_far_away(simulator.positions())), 3) << "frame " << frame.frame;
+    least = std::min(least, least_distance_within(simulator.positions(), 4));
+  });
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_GT(least, 0.5 * kThickness);
+}
+
+TEST_P(SelfContact, ClaspedRopesHoldEachOther) {
+  double lower = 0.0;
+  double upper = 0.0;
+  const ScenarioReport report = run("clasped_ropes", {}, [&](const Simulator& simulator, const FrameDiagnostics&) {
+    lower = simulator.positions().row(1).head(60).maxCoeff();
+    upper = simulator.positions().row(1).tail(60).minCoeff();
+  });
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_GT(lower, upper + 0.5 * 0.01);
+}
+
+class SelfContactOfAJelly : public SelfContact {};
+
+// A jelly's step is as long as its springs allow: there is none that is four times coarser, but one that is finer.
+INSTANTIATE_TEST_SUITE_P(StepFactor, SelfContactOfAJelly, ::testing::Values(0.25, 1.0));
+
+TEST_P(SelfContactOfAJelly, AClothHeldAtItsCornersCatchesIt) {
+  double lowest = 0.0;
+  const ScenarioReport report = run("jelly_on_cloth", {}, [&](const Simulator& simulator, const FrameDiagnostics&) {
+    const Body& jelly = simulator.network().bodies.back();
+    lowest = simulator.positions().row(1).segment(jelly.first_particle, jelly.particle_count).minCoeff();
+  });
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_GT(lowest, -0.5);
+}
+
+}  // namespace
+}  // namespace sprung::testing
