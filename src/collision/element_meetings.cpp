@@ -96,7 +96,7 @@ inline void find_normals(const TreeLanes (&x)[3][3], const TreeLanes (&direction
 }
 
 /// Lanes of b, of those that are asked for, that a lane of a may touch. Returns whether there are any.
-SPRUNG_KERNEL bool find_meeting_lanes(const PlacedLeaf& a, int lane, const PlacedLeaf& b, const IntLanes& asked, float now,
+SPRUNG_KERNEL bool find_meeting_lanes(const PlacedLeaf& a, int lane, const PlacedLeaf& b, const AskedLanes& asked, float now,
                                       float end, LaneMask& met) {
   IntLanes apart = ~asked.lanes;
   IntLanes shared = {};
