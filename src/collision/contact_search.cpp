@@ -89,7 +89,7 @@ void ContactSearch::append_corners(const Side& a, const Side& b, const Search& s
       corner.now[axis] = a.places.now[k][axis][lane];
       corner.end[axis] = a.places.end[k][axis][lane];
     }
-    LaneMask met;
+    LaneBytes met;
     if (!find_faces(corner, *b.leaf, b.places, met)) continue;
     for (std::size_t other = 0; other < kTreeLanes; ++other) {
       if (met[other] == 0) continue;

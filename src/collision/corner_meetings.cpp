@@ -28,7 +28,7 @@ inline void subtract(const float (&a)[3], const Vector3Lanes& b, float scale, Ve
 
 }  // namespace
 
-SPRUNG_KERNEL bool find_faces(const CornerWay& corner, const ElementLeaf& leaf, const LeafPlaces& places, LaneMask& met) {
+SPRUNG_KERNEL bool find_faces(const CornerWay& corner, const ElementLeaf& leaf, const LeafPlaces& places, LaneBytes& met) {
   // In units of `aside`, so that powers of lengths neither over- nor underflow.
   const float scale = 1.0F / corner.aside;
   const float reach = scale * corner.reach;

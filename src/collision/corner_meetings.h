@@ -17,6 +17,6 @@ struct CornerWay {
 /// Finds the leaf's triangles that the corner, which is none of theirs, comes within reach of, and does not miss by more than
 /// `aside` and what the way leads along the triangle. In single precision, for a choice of what to look at. Returns whether there
 /// are any.
-bool find_faces(const CornerWay& corner, const ElementLeaf& leaf, const LeafPlaces& places, LaneMask& met);
+bool find_faces(const CornerWay& corner, const ElementLeaf& leaf, const LeafPlaces& places, LaneBytes& met);
 
 }  // namespace sprung

@@ -61,7 +61,7 @@ void ElementLeaf::bound() {
 }
 
 bool ElementLeaf::any_marked() const {
-  LaneMask mask;
+  LaneBytes mask;
   store(marked, mask);
   return any(mask);
 }

@@ -74,15 +74,15 @@ inline void place_corners(const ElementLeaf& leaf, WatchTimes times, LeafPlaces&
 }
 
 /// 255 or 0 by lane.
-using LaneMask = std::array<std::uint8_t, kTreeLanes>;
+using LaneBytes = std::array<std::uint8_t, kTreeLanes>;
 
-inline void store(const ElementLeaf::IntLanes& lanes, LaneMask& mask) {
+inline void store(const ElementLeaf::IntLanes& lanes, LaneBytes& mask) {
   using Bytes = std::uint8_t __attribute__((vector_size(kTreeLanes)));
   const Bytes bytes = __builtin_convertvector(lanes, Bytes);
   __builtin_memcpy(mask.data(), &bytes, sizeof bytes);
 }
 
-[[nodiscard]] inline bool any(const LaneMask& mask) {
+[[nodiscard]] inline bool any(const LaneBytes& mask) {
   std::uint64_t all = 0;
   __builtin_memcpy(&all, mask.data(), sizeof all);
   return all != 0;

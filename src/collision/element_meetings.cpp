@@ -97,7 +97,7 @@ inline void find_normals(const TreeLanes (&x)[3][3], const TreeLanes (&direction
 
 /// Lanes of b, of those that are asked for, that a lane of a may touch. Returns whether there are any.
 SPRUNG_KERNEL bool find_meeting_lanes(const PlacedLeaf& a, int lane, const PlacedLeaf& b, const AskedLanes& asked, float now,
-                                      float end, LaneMask& met) {
+                                      float end, LaneBytes& met) {
   IntLanes apart = ~asked.lanes;
   IntLanes shared = {};
   find_bounds_apart(a.leaf, lane, b.leaf, now, end, apart);
@@ -127,7 +127,7 @@ SPRUNG_KERNEL bool find_meeting_lanes(const PlacedLeaf& a, int lane, const Place
 }
 
 /// Lanes of a that are not apart from all of b.
-SPRUNG_KERNEL void find_lanes_near(const ElementLeaf& a, const MovingBounds& b, float now, float end, LaneMask& near) {
+SPRUNG_KERNEL void find_lanes_near(const ElementLeaf& a, const MovingBounds& b, float now, float end, LaneBytes& near) {
   IntLanes apart = {};
   for (int axis = 0; axis < 3; ++axis) {
     const TreeLanes above = a.min[axis] - b.max[axis];
@@ -146,8 +146,8 @@ void append_meetings(const ElementLeaf& a, const ElementLeaf& b, WatchTimes time
   const auto now = static_cast<float>(times.now);
   const auto end = static_cast<float>(times.end);
   const bool same = &a == &b;
-  LaneMask near_a;
-  LaneMask near_b{};
+  LaneBytes near_a;
+  LaneBytes near_b{};
   find_lanes_near(a, b.bounds, now, end, near_a);
   if (!same) find_lanes_near(b, a.bounds, now, end, near_b);
   if (!any(near_a) && !any(near_b)) return;
@@ -157,14 +157,14 @@ void append_meetings(const ElementLeaf& a, const ElementLeaf& b, WatchTimes time
   place_corners(a, times, first.places);
   place_corners(b, times, second.places);
   const auto append = [&](const PlacedLeaf& own, int lane, const PlacedLeaf& other, const AskedLanes& asked) {
-    LaneMask met;
+    LaneBytes met;
     if (!find_meeting_lanes(own, lane, other, asked, now, end, met)) return;
     for (std::size_t k = 0; k < kTreeLanes; ++k) {
       if (met[k] != 0) meetings.push_back({own.leaf.element[static_cast<std::size_t>(lane)], other.leaf.element[k]});
     }
   };
   constexpr IntLanes kLane{0, 1, 2, 3, 4, 5, 6, 7};
-  LaneMask unmarked_a;
+  LaneBytes unmarked_a;
   store(~a.marked, unmarked_a);
   for (int lane = 0; lane < kTreeLanes; ++lane) {
     const auto at = static_cast<std::size_t>(lane);
