@@ -71,7 +71,8 @@ SPRUNG_KERNEL Index find_nearest(const MeshTree& tree, const Vector3& p, double 
     const TriangleBlock& block = tree.block(~entry.child);
     Lanes squared;
     squared_distances(p, block, squared);
-    for (unsigned lanes = lanes_that_hold(squared < best2); lanes != 0;) {
+    const LaneMask nearer = squared < best2;
+    for (unsigned lanes = lanes_that_hold(nearer); lanes != 0;) {
       const int lane = take_lane(lanes);
       if (!(squared[lane] < best2)) continue;
       best2 = squared[lane];

@@ -76,7 +76,8 @@ void update(const ZoneBuilder& zone, Search& search) {
     const TreeLanes farther = before > behind ? before : behind;
     const TreeLanes outside = farther > 0.0F ? farther : TreeLanes{};
     sum += outside * outside;
-    sum = (node.min[axis] > search.box.max[axis]) | (node.max[axis] < search.box.min[axis]) ? TreeLanes{} + kInfinity : sum;
+    const auto beside = (node.min[axis] > search.box.max[axis]) | (node.max[axis] < search.box.min[axis]);
+    sum = beside ? TreeLanes{} + kInfinity : sum;
   }
   for (int k = 0; k < search.planes; ++k) {
     TreeLanes highest = {};

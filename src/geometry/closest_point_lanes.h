@@ -88,7 +88,7 @@ template <Base kBase>
   const Lanes along_bc = d4 - d3;
   const Lanes along_cb = d5 - d6;
 
-  detail::Foot foot{a, ab, vb, vc, area2, {}, {}, zero == zero};
+  detail::Foot foot{a, ab, vb, vc, area2, {}, {}, LaneMask{-1, -1, -1, -1}};
   detail::put<Base::b>((va <= zero) & (along_bc >= zero) & (along_cb >= zero) & (along_bc + along_cb > zero), b, bc, along_bc, zero,
                        along_bc + along_cb, foot);
   detail::put<Base::a>((vb <= zero) & (d2 >= zero) & (d6 <= zero) & (d2 > d6), a, ab, zero, d2, d2 - d6, foot);
@@ -103,7 +103,7 @@ template <Base kBase>
   closest.point.y = foot.base.y + s * foot.along.y + t * ac.y;
   closest.point.z = foot.base.z + s * foot.along.z + t * ac.z;
   const Lanes rest = one - s - t;
-  closest.of_a = (foot.from_b | foot.from_c) | (rest < zero) ? zero : rest;
+  closest.of_a = (foot.from_b | foot.from_c | (rest < zero)) ? zero : rest;
   closest.of_b = foot.from_b ? one - s : foot.from_c ? zero : s;
   closest.of_c = foot.from_b ? s : foot.from_c ? one : t;
   LaneVector away;
