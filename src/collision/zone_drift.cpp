@@ -18,7 +18,7 @@ void mark_children(const MeshTree::Node& node, const Box3& box, TreeLanes& bound
   for (int axis = 0; axis < 3; ++axis) {
     const float low = std::nextafter(static_cast<float>(box.min()[axis]), -kInfinity);
     const float high = std::nextafter(static_cast<float>(box.max()[axis]), kInfinity);
-    bounds = (node.min[axis] > high) | (node.max[axis] < low) ? TreeLanes{} + kInfinity : bounds;
+    bounds = ((node.min[axis] > high) | (node.max[axis] < low)) ? TreeLanes{} + kInfinity : bounds;
   }
 }
 
