@@ -41,7 +41,7 @@ void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double
   Environment environment({obstacle});
   const TriangleMesh& mesh = *std::get<MeshGeometry>(obstacle.geometry).mesh;
   const bool closed = std::get<MeshGeometry>(obstacle.geometry).closed;
-  const auto within = [range](Vector3 p) { return Vector3(p.cwiseMax(-range).cwiseMin(range)); };
+  const auto within = [range](const Vector3& p) { return Vector3(p.cwiseMax(-range).cwiseMin(range)); };
   Random random(31);
   Points x(3, count);
   std::vector<bool> odd(static_cast<std::size_t>(count));
