@@ -1,5 +1,6 @@
 #include "collision/element_pair.h"
 
+#include "collision/triangle_separation.h"
 #include "geometry/closest_pair.h"
 
 namespace sprung {
@@ -16,18 +17,20 @@ Vector3 direction_between(const ElementPair& pair, const Points& positions) {
     const auto at = static_cast<std::size_t>(k);
     x[at] = positions.col(pair.particles[at]);
   }
-  Vector3 between;
+  const auto first = static_cast<std::size_t>(pair.first_count);
+  // An edge is a triangle of which two corners are one.
+  const TriangleCorners second{x[first], x[first + 1], x[first + static_cast<std::size_t>(pair.second_count - 1)]};
+  const Simplex sides{.x = {x[0], x[1], x[2]}, .count = pair.first_count};
+  ClosestPair closest;
   if (pair.second_count == 3) {
-    const auto first = static_cast<std::size_t>(pair.first_count);
-    const ClosestPair closest =
-        closest_pair({.x = {x[0], x[1], x[2]}, .count = pair.first_count}, {x[first], x[first + 1], x[first + 2]}, kSlack);
-    between = closest.on_simplex - closest.on_triangle;
+    closest = closest_pair(sides, second, kSlack);
   } else {
-    const SegmentPair closest = closest_points_of_segments(x[0], x[1], x[2], x[3]);
-    between = x[0] + closest.s * (x[1] - x[0]) - (x[2] + closest.t * (x[3] - x[2]));
+    const SegmentPair of_edges = closest_points_of_segments(x[0], x[1], x[2], x[3]);
+    closest.on_simplex = x[0] + of_edges.s * (x[1] - x[0]);
+    closest.on_triangle = x[2] + of_edges.t * (x[3] - x[2]);
+    closest.squared_distance = (closest.on_simplex - closest.on_triangle).squaredNorm();
   }
-  const double distance = between.norm();
-  return distance > 0.0 ? Vector3(between / distance) : Vector3::Zero();
+  return separation(sides, second, closest, kSlack).normal;
 }
 
 }  // namespace sprung

@@ -19,7 +19,8 @@ struct ElementPair {
   [[nodiscard]] int count() const { return first_count + second_count; }
 };
 
-/// The unit vector from the second side's nearest point to the first's, or zero where they touch.
+/// The unit vector from the second side towards the first in which they are farthest apart, by the nearest points or, where those
+/// are too near each other for that, by the sides' faces and edges. Where the sides touch or cross, no gap is left along it.
 [[nodiscard]] Vector3 direction_between(const ElementPair& pair, const Points& positions);
 
 /// How far down the first side reaches along the pair's normal, and how far up the second [m].

@@ -10,6 +10,9 @@ namespace {
 // As a part of the largest coordinate: above what the rounding of heights along a normal may lose.
 constexpr double kClearance = 0x1p-30;
 
+// What a step may do by rounding to a gap, as a part of the clearance.
+constexpr double kRounding = 0x1p-18;
+
 constexpr Index kPairsPerTask = 2048;
 
 }  // namespace
@@ -42,7 +45,7 @@ std::vector<Index> PairPlanes::find_conflicts(std::vector<ElementPair>& pairs) c
   parallel_chunks(count, kPairsPerTask, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       ElementPair& pair = pairs[static_cast<std::size_t>(k)];
-      if (!(heights_at(pair, ends_).gap() < 0.5 * clearance_)) continue;
+      if (!(heights_at(pair, ends_).gap() < least_gap())) continue;
       pair.normal = direction_between(pair, before_);
       if (passes(pair)) parts[static_cast<std::size_t>(begin / kPairsPerTask)].push_back(k);
     }
@@ -52,10 +55,10 @@ std::vector<Index> PairPlanes::find_conflicts(std::vector<ElementPair>& pairs) c
   return conflicts;
 }
 
-/// Whether the sides end nearer than half of what they keep at least. What touched when the step began has no plane to keep.
+/// Whether the sides end nearer than they ever may. What touched when the step began has no plane to keep.
 bool PairPlanes::passes(const ElementPair& pair) const {
   const double begun = heights_at(pair, before_).gap();
-  return begun > 0.0 && heights_at(pair, ends_).gap() < 0.5 * std::min(begun, clearance_);
+  return begun > 0.0 && heights_at(pair, ends_).gap() < std::min(begun, least_gap()) - kRounding * clearance_;
 }
 
 double PairPlanes::kept_gap(const ElementPair& pair) const {
@@ -92,7 +95,9 @@ std::vector<PairPlanes::Bound> PairPlanes::bounds(const std::vector<ElementPair>
     if (!(heights_at(pair, before_).gap() > 0.0)) continue;
     const PairHeights end = heights_at(pair, ends_);
     const PairHeights target = heights_at(pair, targets_);
-    const double middle = std::clamp(0.5 * (target.first + target.second), end.second, std::max(end.first, end.second));
+    const double least = 0.5 * std::clamp(end.gap(), 0.0, least_gap());
+    const double highest = std::max(end.first, end.second) - least;
+    const double middle = std::max(end.second + least, std::min(0.5 * (target.first + target.second), highest));
     const double room = 0.5 * kept_gap(pair);
     const HalfSpace above{pair.normal, std::min(end.first, middle + room)};
     const HalfSpace below{-pair.normal, -std::max(end.second, middle - room)};

@@ -46,6 +46,8 @@ class PairPlanes {
   [[nodiscard]] bool passes(const ElementPair& pair) const;
   void limit_groups(const std::vector<ElementPair>& pairs);
   [[nodiscard]] double kept_gap(const ElementPair& pair) const;
+  /// A gap that is larger may end as small as this, one that is smaller never smaller: else it would wear away, step by step [m].
+  [[nodiscard]] double least_gap() const { return 0.5 * clearance_; }
 
   const Points& before_;
   const Points& targets_;

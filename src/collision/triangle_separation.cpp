@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace sprung {
 
@@ -17,17 +18,32 @@ void try_axis(const Vector3& axis, const ElementCorners& element, const Triangle
   }
 }
 
-void try_features(const ElementCorners& element, const TriangleCorners& triangle, TriangleSeparation& best) {
-  const std::array<Vector3, 3> edges{triangle[1] - triangle[0], triangle[2] - triangle[1], triangle[0] - triangle[2]};
+/// The nearest points may be on two faces, or on two edges that cross, or on edges next to each other in one plane.
+void try_features(const ElementCorners& element, const TriangleCorners& triangle, const Vector3& line, TriangleSeparation& best) {
+  const auto edges_of = [](const std::array<Vector3, 3>& x) {
+    return std::array<Vector3, 3>{x[1] - x[0], x[2] - x[1], x[0] - x[2]};
+  };
+  const auto edges = edges_of(triangle);
+  const auto own_edges = edges_of(element.x);
+  const std::span<const Vector3> own(own_edges.data(), element.count == 3 ? 3 : static_cast<std::size_t>(element.count - 1));
   const Vector3 face = edges[0].cross(edges[1]);
-  try_axis(face, element, triangle, best);
-  for (const Vector3& edge : edges) try_axis(edge.cross(face), element, triangle, best);
-  const int own_edges = element.count == 3 ? 3 : element.count - 1;
-  for (int i = 0; i < own_edges; ++i) {
-    const Vector3 own = element.x[static_cast<std::size_t>((i + 1) % element.count)] - element.x[static_cast<std::size_t>(i)];
-    for (const Vector3& edge : edges) try_axis(own.cross(edge), element, triangle, best);
+  const auto try_side = [&](const Vector3& normal, std::span<const Vector3> border) {
+    try_axis(normal, element, triangle, best);
+    for (const Vector3& edge : border) {
+      try_axis(edge.cross(normal), element, triangle, best);
+      try_axis(edge.cross(line.cross(edge)), element, triangle, best);
+    }
+  };
+  try_side(face, edges);
+  if (element.count == 3) try_side(own[0].cross(own[1]), own);
+  for (const Vector3& a : own) {
+    for (const Vector3& b : edges) {
+      const Vector3 across = a.cross(b);
+      try_axis(across, element, triangle, best);
+      try_axis(a.cross(across), element, triangle, best);
+      try_axis(b.cross(across), element, triangle, best);
+    }
   }
-  if (element.count == 3) try_axis((element.x[1] - element.x[0]).cross(element.x[2] - element.x[0]), element, triangle, best);
 }
 
 }  // namespace
@@ -51,7 +67,7 @@ TriangleSeparation separation(const ElementCorners& element, const TriangleCorne
     best.gap = lowest_along(best.normal, element) - highest_along(best.normal, triangle);
     if (best.gap >= (1.0 - 2.0 * slack) * distance) return best;
   }
-  try_features(element, triangle, best);
+  try_features(element, triangle, pair.on_simplex - pair.on_triangle, best);
   return best;
 }
 

@@ -132,6 +132,22 @@ TEST(SelfZones, AParticleThrownAtASheetStaysOnItsSide) {
   EXPECT_LT((x - network.positions).leftCols(last).colwise().norm().maxCoeff(), kThickness) << "the sheet is not carried away";
 }
 
+/// Each step takes it half of the way to the sheet, but never below what rounding, 2^-53 of the coordinates, cannot take away.
+TEST(SelfZones, AParticleThatComesNearerEachStepKeepsClear) {
+  SelfNetwork network = cloth_of(4);
+  network.add_single_particle({0.0123, 0.02, 0.0171});
+  const CollisionSurface surface = network.surface(0.0);
+  SelfZones zones(surface, network.positions, kMargin);
+  const Index last = network.count() - 1;
+  const auto approach = [&](int, const Points& x) {
+    Points targets = network.positions;
+    targets.col(last) = Vector3(0.0123, 0.5 * x(1, last), 0.0171);
+    return targets;
+  };
+  const Points x = test::run(network, zones, 80, approach);
+  EXPECT_GT(x(1, last) - x.row(1).head(last).maxCoeff(), 0x1p-34 * x.cwiseAbs().maxCoeff());
+}
+
 TEST(SelfZones, BodiesThatDoNotCollidePass) {
   SelfNetwork network;
   network.add_cloth(6, {0.0, 0.02, 0.0}, kEdge * kX, kEdge * kZ);
