@@ -111,5 +111,31 @@ TEST_P(DeformingObstacle, ThinSheetThatFlapsThroughAClothTakesItAlong) {
   for (Index i = 0; i < 81; ++i) EXPECT_GT(simulator.positions()(1, i), 0.55) << i;
 }
 
+TEST(DeformingObstacle, ScalingByAPowerOfTwoScalesEveryBit) {
+  const auto simulate = [](double scale) {
+    BodyShape shape = make_cloth({.size = {scale, scale}, .resolution = {9, 9}}, {.structural = SpringMaterial{.value = 200.0}});
+    set_total_mass(shape, 0.2);
+    RigidTransform pose = RigidTransform::Identity();
+    pose.linear() = rotation_from_degrees({-90.0, 0.0, 0.0});
+    pose.translation() = Vector3(0.1 * scale, 0.02 * scale, 0.0);
+    place(shape, pose, Vector3::Zero());
+    NetworkBuilder builder;
+    builder.add_body("cloth", shape, {.thickness = 0.005 * scale, .friction = 0.4, .static_friction = 0.5});
+    TriangleMesh mesh = sheet();
+    mesh.vertices *= 0.125 * scale;
+    const Obstacle obstacle = deforming(mesh, {.friction = 0.4, .static_friction = 0.5}, [&](const Vector3& x) {
+      const Vector3 unit = x / scale;
+      return Vector3(scale * (1.2 * unit.x() + 0.3), scale * (0.5 + std::ldexp(unit.x() * unit.z(), -1)), scale * unit.z());
+    });
+    Simulator simulator(builder.build(), {.step = 1.0 / 512.0, .gravity = {0.0, -scale * kGravity, 0.0}}, {obstacle});
+    run(simulator, 0.5);
+    return Points(simulator.positions());
+  };
+  const Points positions = simulate(1.0);
+  EXPECT_EQ(simulate(128.0), 128.0 * positions);
+  EXPECT_EQ(simulate(1.0 / 128.0), positions / 128.0);
+  EXPECT_GT(positions.row(1).minCoeff(), 0.1) << "the sheet has it";
+}
+
 }  // namespace
 }  // namespace sprung
