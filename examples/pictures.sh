@@ -6,6 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 declare -A frames=(
   [cloth_on_bunny]="1 12 121"
   [jelly_on_stairs]="1 25 45 121"
+  [cloth_on_waves]="1 12 66 78"
   [hanging_cloth]="1 12 24 121"
   [rope_over_torus]="1 10 20 91"
   [lab_rope]="1 12 38 76 151"
@@ -17,6 +18,7 @@ declare -A frames=(
 declare -A look=(
   [cloth_on_bunny]="HIDE=floor SIZE=600,460"
   [jelly_on_stairs]="HIDE=floor"
+  [cloth_on_waves]="ELEVATION=30 SIZE=400,270"
   [hanging_cloth]="AZIMUTH=25"
   [rope_over_torus]="HIDE=floor RADIUS=0.012 ELEVATION=30"
   [lab_rope]="AZIMUTH=0 ELEVATION=0 RADIUS=0.03 SHIFT=5 SIZE=1400,500"

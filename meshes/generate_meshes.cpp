@@ -26,11 +26,20 @@ std::string terrain_text() {
 }
 
 std::vector<std::pair<std::string, std::string>> all_files() {
-  return {{"stairs.obj", obj_of(stairs())}, {"funnel.stl", stl_bytes(funnel())}, {"torus.ply", ply_bytes(torus())},
-          {"terrain.gltf", terrain_text()}, {"spike.off", off_text(spike())},    {"thin_sheet.obj", obj_of(thin_sheet())}};
+  std::vector<std::pair<std::string, std::string>> files{
+      {"stairs.obj", obj_of(stairs())}, {"funnel.stl", stl_bytes(funnel())}, {"torus.ply", ply_bytes(torus())},
+      {"terrain.gltf", terrain_text()}, {"spike.off", off_text(spike())},    {"thin_sheet.obj", obj_of(thin_sheet())}};
+  constexpr int kWaveFrames = 8;
+  for (int frame = 0; frame < kWaveFrames; ++frame) {
+    files.emplace_back("waves/waves." + std::to_string(frame + 1) + ".obj",
+                       obj_of(waves(static_cast<double>(frame) / kWaveFrames)));
+  }
+  return files;
 }
 
 bool write(const std::filesystem::path& file, const std::string& bytes) {
+  std::error_code ignored;  // the file cannot be written then
+  std::filesystem::create_directories(file.parent_path(), ignored);
   return static_cast<bool>(std::ofstream(file, std::ios::binary) << bytes << std::flush);
 }
 

@@ -148,6 +148,29 @@ PolygonMesh stairs() {
   return quads.take();
 }
 
+PolygonMesh waves(double part) {
+  constexpr int kHalf = 6;
+  constexpr double kLength = 0.9;
+  constexpr double kHeight = 0.08;
+  LatticeQuads quads({0.15, 0.4, 0.15});
+  for (int k = -kHalf; k < kHalf; ++k) {
+    for (int i = -kHalf; i < kHalf; ++i) {
+      quads.add({{{i, 0, k}, {i, 0, k + 1}, {i + 1, 0, k + 1}, {i + 1, 0, k}}});
+      quads.add({{{i, -1, k}, {i + 1, -1, k}, {i + 1, -1, k + 1}, {i, -1, k + 1}}});
+    }
+    quads.add({{{-kHalf, -1, k}, {-kHalf, -1, k + 1}, {-kHalf, 0, k + 1}, {-kHalf, 0, k}}});
+    quads.add({{{kHalf, -1, k}, {kHalf, 0, k}, {kHalf, 0, k + 1}, {kHalf, -1, k + 1}}});
+    quads.add({{{k, -1, -kHalf}, {k, 0, -kHalf}, {k + 1, 0, -kHalf}, {k + 1, -1, -kHalf}}});
+    quads.add({{{k, -1, kHalf}, {k + 1, -1, kHalf}, {k + 1, 0, kHalf}, {k, 0, kHalf}}});
+  }
+  PolygonMesh mesh = quads.take();
+  for (auto&& vertex : mesh.vertices.colwise()) {
+    if (vertex.y() < 0.0) continue;
+    vertex.y() = rounded(kHeight * std::sin(2.0 * std::numbers::pi * (vertex.x() / kLength - part)));
+  }
+  return mesh;
+}
+
 PolygonMesh thin_sheet() {
   constexpr int kHalf = 8;
   LatticeQuads quads({0.0625, 0.0, 0.0625});

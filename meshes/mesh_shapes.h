@@ -36,4 +36,7 @@ struct ProfilePoint {
 /// An open, level sheet of one layer, in quads.
 [[nodiscard]] PolygonMesh thin_sheet();
 
+/// A closed slab of water, in quads, whose top is a wave at `part` of its period: it goes along x for ever.
+[[nodiscard]] PolygonMesh waves(double part);
+
 }  // namespace sprung::meshes

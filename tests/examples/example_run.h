@@ -4,6 +4,7 @@
 #include "app/program.h"
 #include "base/types.h"
 #include "geometry/polygon_mesh.h"
+#include "geometry/triangle_mesh.h"
 #include "output/scratch_folder.h"
 
 #include <cstdio>
@@ -36,13 +37,21 @@ class ExampleRun {
   [[nodiscard]] const std::vector<double>& column(const std::string& name) const { return columns_.at(name); }
 
   /// Positions [m] of a body in a frame, counted from 1.
-  [[nodiscard]] Points positions(const std::string& body, int frame) const {
-    char number[16];
-    std::snprintf(number, sizeof number, "%04d", frame);
-    return read_obj(output() / body / (body + "." + number + ".obj")).vertices;
+  [[nodiscard]] Points positions(const std::string& body, int frame) const { return read_frame(output() / body, frame).vertices; }
+
+  /// An obstacle that moves, as it was in a frame.
+  [[nodiscard]] TriangleMesh obstacle(const std::string& name, int frame) const {
+    const PolygonMesh mesh = read_frame(output() / "obstacles" / name, frame);
+    return {mesh.vertices, triangulate(mesh.faces)};
   }
 
  private:
+  static PolygonMesh read_frame(const std::filesystem::path& folder, int frame) {
+    char number[16];
+    std::snprintf(number, sizeof number, "%04d", frame);
+    return read_obj(folder / (folder.filename().string() + "." + number + ".obj"));
+  }
+
   void read_diagnostics() {
     std::istringstream lines(read_text(output() / "diagnostics.csv"));
     std::string line;

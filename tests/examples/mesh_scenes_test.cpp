@@ -1,4 +1,4 @@
-// The examples on meshes: the main job, and the jelly on the stairs.
+// The examples on meshes: the main job, the jelly on the stairs, and the cloth on the waves.
 #include "example_run.h"
 #include "examples/parity.h"
 #include "geometry/mesh_import.h"
@@ -72,6 +72,26 @@ TEST(JellyOnStairs, TumblesDownAndStaysOutside) {
   // However a cube is turned, the box around it is no smaller. Its weight presses it flatter by at most the part
   // density g side / modulus = 1000 * 9.81 * 0.4 / 150000 = 2.6 %. Measured: 2.2 cubes.
   EXPECT_GT((end.rowwise().maxCoeff() - end.rowwise().minCoeff()).prod(), 0.97 * 0.4 * 0.4 * 0.4) << "it is still a jelly";
+}
+
+TEST(ClothOnWaves, RidesThemAndIsLedNowhere) {
+  const ExampleRun run("cloth_on_waves");
+  ASSERT_EQ(run.exit_code(), 0) << run.messages();
+  ASSERT_EQ(run.frames(), 91);
+  Box3 last_period;
+  for (int frame = 1; frame <= run.frames(); ++frame) {
+    const TriangleMesh waves = run.obstacle("waves", frame);
+    const Points positions = run.positions("cloth", frame);
+    ASSERT_EQ(count_inside(Parity(waves), positions), 0) << "frame " << frame;
+    if (frame > run.frames() - 30) last_period.extend(positions.col(16 * 32 + 16));
+  }
+  // Water moves up and down only, by 16 cm at each place where it has vertices, and a cloth bridges its troughs. Measured: its
+  // middle rises and falls by 14.9 cm, and wanders by 9 mm.
+  EXPECT_GT(last_period.sizes().y(), 0.12);
+  EXPECT_LT(last_period.sizes().x(), 0.03);
+  EXPECT_LT(last_period.sizes().z(), 0.03);
+  // The thickness, held to within 5 % in every frame.
+  EXPECT_GT(*std::min_element(run.column("min_distance").begin() + 30, run.column("min_distance").end()), 0.95 * 0.005);
 }
 
 }  // namespace

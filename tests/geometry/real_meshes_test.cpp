@@ -1,6 +1,7 @@
 // The meshes of Debian's glmark2-data, and the environments of this repository.
 #include "geometry/fixtures.h"
 #include "geometry/mesh_import.h"
+#include "geometry/mesh_sequence.h"
 #include "geometry/topology.h"
 
 #include <gtest/gtest.h>
@@ -93,6 +94,19 @@ INSTANTIATE_TEST_SUITE_P(All, EnvironmentMesh,
                            const std::string name = parameter.param.file;
                            return name.substr(0, name.find('.'));
                          });
+
+TEST(EnvironmentSequence, ImportsAsTheReadmeSays) {
+  std::vector<std::filesystem::path> files;
+  for (int frame = 1; frame <= 8; ++frame) {
+    files.push_back(std::filesystem::path(SPRUNG_SOURCE_DIR) / "meshes/waves" / ("waves." + std::to_string(frame) + ".obj"));
+  }
+  const auto [sequence, report] = import_sequence(files);
+  EXPECT_EQ(sequence.triangles.cols(), 672);
+  EXPECT_TRUE(report.closed);
+  EXPECT_EQ(report.welded_vertices + report.degenerate_faces + report.flipped_faces + report.unused_vertices, 0);
+  EXPECT_LE((report.bounds.sizes() - Vector3(1.8, 0.48, 1.8)).cwiseAbs().maxCoeff(), 1e-3);
+  for (const Points& frame : sequence.frames) EXPECT_GT(signed_volume(frame, sequence.triangles), 0.0);
+}
 
 }  // namespace
 }  // namespace sprung
