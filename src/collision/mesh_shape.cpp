@@ -59,12 +59,23 @@ void MeshShape::set_interval(double t, double t_end) {
   bounds_ = tree_->bounds();
 }
 
+Vector3 MeshShape::displacement(const Vector3& p) const {
+  if (!deforms_ || deforming_->largest_displacement() == 0.0) return Vector3::Zero();
+  const auto [triangle, weights] = nearest_spot(*tree_before_, p);
+  return triangle == kNone ? Vector3(Vector3::Zero()) : deforming_->displacement(triangle, weights);
+}
+
 Vector3 MeshShape::displacement(const Vector3& p, double t, double t_end) const {
   if (!deforms_) return Vector3::Zero();
-  const auto found = tree_->nearest(p, std::numeric_limits<double>::infinity());
-  if (!found) return Vector3::Zero();
-  const auto [a, b, c] = tree_->corners(found->triangle);
-  return deforming_->displacement(found->triangle, barycentric(found->closest, a, b, c), t, t_end);
+  const auto [triangle, weights] = nearest_spot(*tree_, p);
+  return triangle == kNone ? Vector3(Vector3::Zero()) : deforming_->displacement(triangle, weights, t, t_end);
+}
+
+MeshShape::Spot MeshShape::nearest_spot(const MeshTree& tree, const Vector3& p) {
+  const auto found = tree.nearest(p, std::numeric_limits<double>::infinity());
+  if (!found) return {};  // p is not finite
+  const auto [a, b, c] = tree.corners(found->triangle);
+  return {found->triangle, barycentric(found->closest, a, b, c)};
 }
 
 std::optional<SurfacePoint> MeshShape::nearest(const Vector3& p, double radius) const {

@@ -19,6 +19,7 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] bool deforms() const override { return deforms_; }
   void set_interval(double t, double t_end) override;
   [[nodiscard]] double largest_displacement() const override { return deforms_ ? deforming_->largest_displacement() : 0.0; }
+  [[nodiscard]] Vector3 displacement(const Vector3& p) const override;
   [[nodiscard]] Vector3 displacement(const Vector3& p, double t, double t_end) const override;
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;
@@ -37,6 +38,12 @@ class MeshShape final : public ObstacleShape {
 
  private:
   void follow_surface(Zone& zone) const;
+  /// A point of the surface: a triangle and the weights of its corners.
+  struct Spot {
+    Index triangle = kNone;
+    Vector3 weights = Vector3::Zero();
+  };
+  [[nodiscard]] static Spot nearest_spot(const MeshTree& tree, const Vector3& p);
   [[nodiscard]] const TriangleMesh& mesh() const { return deforming_ ? deforming_->after() : *rigid_; }
   [[nodiscard]] Vector3 face_normal(Index triangle) const;
   [[nodiscard]] Vector3 pseudonormal(Index triangle, TriangleFeature feature) const;

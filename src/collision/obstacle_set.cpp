@@ -62,8 +62,6 @@ ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move
 }
 
 void ObstacleSet::set_interval(double t, double t_end) {
-  begin_ = t;
-  end_ = t_end;
   if (!moves_) return;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     if (shapes_[k]->deforms()) shapes_[k]->set_interval(t, t_end);
@@ -92,18 +90,13 @@ double ObstacleSet::max_clearance(const Box3& box) const {
 
 Vector3 ObstacleSet::carried(Index k, const Vector3& from) const {
   if (rests(k)) return from;
-  return after(k) * local_begin(k, from);
+  const Vector3 before = local_before(k, from);
+  return after(k) * (before + shape(k).displacement(before));
 }
 
 Vector3 ObstacleSet::drift(Index k, const Vector3& position, double t, double t_end) const {
   if (!shape(k).deforms()) return Vector3::Zero();
   return after(k).linear() * shape(k).displacement(local(k, position), t, t_end);
-}
-
-Vector3 ObstacleSet::local_begin(Index k, const Vector3& from) const {
-  const Vector3 begin = into_before_[static_cast<std::size_t>(k)] * from;
-  if (shape(k).largest_displacement() == 0.0) return begin;
-  return begin + shape(k).displacement(begin, begin_, end_);
 }
 
 double ObstacleSet::carries_at_most(const Points& positions) const {

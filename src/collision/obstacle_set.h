@@ -16,6 +16,7 @@ namespace sprung {
 struct LocalPath {
   Vector3 begin;
   Vector3 end;
+  Vector3 shift = Vector3::Zero();  ///< how far deforming took the begin [m]
 };
 
 class ObstacleSet {
@@ -32,7 +33,9 @@ class ObstacleSet {
   [[nodiscard]] const RigidTransform& after(Index k) const { return after_[static_cast<std::size_t>(k)]; }
 
   [[nodiscard]] LocalPath local_path(Index k, const Vector3& from, const Vector3& to) const {
-    return {local_begin(k, from), local(k, to)};
+    const Vector3 before = local_before(k, from);
+    const Vector3 shift = shape(k).displacement(before);
+    return {before + shift, local(k, to), shift};
   }
   /// A position at the interval's begin in the frame of obstacle k.
   [[nodiscard]] Vector3 local_before(Index k, const Vector3& position) const {
@@ -59,9 +62,8 @@ class ObstacleSet {
   }
 
   /// How far deforming takes the surface of obstacle k that is nearest to a position at the interval's end, beside the pose, from
-  /// time t to t_end; by default in the interval [m].
+  /// time t to t_end [m].
   [[nodiscard]] Vector3 drift(Index k, const Vector3& position, double t, double t_end) const;
-  [[nodiscard]] Vector3 drift(Index k, const Vector3& position) const { return drift(k, position, begin_, end_); }
 
   /// The farthest [m] that any obstacle carries one of the positions in this interval.
   [[nodiscard]] double carries_at_most(const Points& positions) const;
@@ -73,7 +75,6 @@ class ObstacleSet {
  private:
   void measure(std::size_t k);
   [[nodiscard]] bool changes(std::size_t k) const { return obstacles_[k].motion.moves() || shapes_[k]->deforms(); }
-  [[nodiscard]] Vector3 local_begin(Index k, const Vector3& from) const;
 
   std::vector<Obstacle> obstacles_;
   std::vector<std::unique_ptr<ObstacleShape>> shapes_;
@@ -83,8 +84,6 @@ class ObstacleSet {
   std::vector<RigidTransform> into_after_;
   std::unique_ptr<BroadPhase> broad_phase_;
   std::vector<double> magnitude_;  ///< of an obstacle's coordinates in this interval [m]
-  double begin_ = 0.0;             ///< of the interval [s]
-  double end_ = 0.0;
   double max_thickness_ = 0.0;
   bool moves_ = false;
 };

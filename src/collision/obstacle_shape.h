@@ -43,7 +43,10 @@ class ObstacleShape {
   /// The farthest that a point of the surface moves in the interval, in the shape's frame [m].
   [[nodiscard]] virtual double largest_displacement() const { return 0.0; }
 
-  /// How far the point of the surface that is nearest to p moves from time t to t_end, in the shape's frame [m].
+  /// How far the point of the surface that is nearest to p at the interval's begin moves in it, in the shape's frame [m].
+  [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/) const { return Vector3::Zero(); }
+
+  /// How far the point of the surface that is nearest to p at the interval's end moves from time t to t_end, likewise.
   [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/, double /*t*/, double /*t_end*/) const { return Vector3::Zero(); }
 
   /// The surface nearest to p, if nearer than `radius` [m] or, for primitives, if p is inside. Deep inside a closed mesh (farther

@@ -177,7 +177,7 @@ void ObstacleZones::append_element_contacts(Index p, const PatchZones& zones, co
       contact.weights[at(contact.count++)] = zone.weights[static_cast<Index>(c)];
       sum += zone.weights[static_cast<Index>(c)] * way.to.col(i);
     }
-    contact.drift = set_.drift(k, contact.point);
+    contact.drift = pose.linear() * zone.drift;
     contact.distance = contact.normal.dot(sum - contact.point);
     contact.clearance = set_.clearance(k, sum, sum);
     const double gap = std::max(thickness + set_.obstacle(k).material.thickness, contact.clearance);

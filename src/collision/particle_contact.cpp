@@ -42,11 +42,12 @@ template <class Nearest>
 std::optional<Contact> find_with(const ObstacleSet& set, Index k, const ParticlePath& path, const Nearest& nearest) {
   const double clearance = set.clearance(k, path.before, path.after);
   const double gap = std::max(path.thickness + set.obstacle(k).material.thickness, clearance);
-  const auto found = find_local(set.shape(k), set.local_path(k, path.before, path.after), gap + path.margin,
-                                [&](const Vector3& p, double reach) { return nearest(p, reach, gap); });
+  const LocalPath local = set.local_path(k, path.before, path.after);
+  const auto found =
+      find_local(set.shape(k), local, gap + path.margin, [&](const Vector3& p, double reach) { return nearest(p, reach, gap); });
   if (!found) return std::nullopt;
   Contact contact = particle_contact(path.particle, k, set.after(k) * found->point, set.after(k).linear() * found->normal);
-  contact.drift = set.drift(k, contact.point);
+  contact.drift = set.after(k).linear() * local.shift;
   contact.distance = contact.normal.dot(path.after - contact.point);
   contact.clearance = clearance;
   return contact;

@@ -1,5 +1,6 @@
 #include "collision/zone_drift.h"
 
+#include "base/kernel.h"
 #include "collision/walk_stack.h"
 
 #include <algorithm>
@@ -12,18 +13,31 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+/// A box in single precision, rounded outward.
+struct FloatBox {
+  float low[3];
+  float high[3];
+};
+
+FloatBox float_box(const Box3& box) {
+  FloatBox rounded;
+  for (int axis = 0; axis < 3; ++axis) {
+    rounded.low[axis] = std::nextafter(static_cast<float>(box.min()[axis]), -kInfinity);
+    rounded.high[axis] = std::nextafter(static_cast<float>(box.max()[axis]), kInfinity);
+  }
+  return rounded;
+}
+
 /// 0 for the children whose boxes meet the box, infinity for the others.
-void mark_children(const MeshTree::Node& node, const Box3& box, TreeLanes& bounds) {
+SPRUNG_KERNEL void mark_children(const MeshTree::Node& node, const FloatBox& box, TreeLanes& bounds) {
   bounds = TreeLanes{};
   for (int axis = 0; axis < 3; ++axis) {
-    const float low = std::nextafter(static_cast<float>(box.min()[axis]), -kInfinity);
-    const float high = std::nextafter(static_cast<float>(box.max()[axis]), kInfinity);
-    bounds = ((node.min[axis] > high) | (node.max[axis] < low)) ? TreeLanes{} + kInfinity : bounds;
+    bounds = ((node.min[axis] > box.high[axis]) | (node.max[axis] < box.low[axis])) ? TreeLanes{} + kInfinity : bounds;
   }
 }
 
 /// The square of the farthest that a corner of the block's triangles goes otherwise than by `drift`.
-double farthest_otherwise(const TriangleBlock& before, const TriangleBlock& after, const Vector3& drift) {
+SPRUNG_KERNEL double farthest_otherwise(const TriangleBlock& before, const TriangleBlock& after, const Vector3& drift) {
   Lanes farthest{};
   for (int k = 0; k < 3; ++k) {
     Lanes squared{};
@@ -40,6 +54,7 @@ double farthest_otherwise(const TriangleBlock& before, const TriangleBlock& afte
 
 /// The farthest that a corner of any triangle near the box goes otherwise than by `drift` [m].
 double farthest_otherwise(const MeshTree& before, const MeshTree& after, const Box3& box, const Vector3& drift) {
+  const FloatBox near = float_box(box);
   double farthest2 = 0.0;
   WalkStack stack(after.stack_size());
   stack.push({0.0F, 0});
@@ -50,7 +65,7 @@ double farthest_otherwise(const MeshTree& before, const MeshTree& after, const B
       continue;
     }
     TreeLanes bounds;
-    mark_children(after.node(child), box, bounds);
+    mark_children(after.node(child), near, bounds);
     stack.push_within(bounds, after.node(child).child, 0.0F);
   }
   return std::sqrt(farthest2);

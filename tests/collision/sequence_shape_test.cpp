@@ -142,6 +142,8 @@ TEST(SequenceShape, DisplacementIsThatOfTheSurfacesPoint) {
   // At the end x is 1.5 times what it was drawn as; from 0.05 to 0.1 s it grew by 0.25 of that.
   EXPECT_LT((shape.displacement({1.8, 0.4, 0.3}, 0.05, 0.1) - Vector3(1.8 / 1.5 * 0.25, 0.05, 0.0)).norm(), 1e-15);
   EXPECT_LT((shape.displacement({1.8, -0.4, 0.3}, 0.1, 0.12) - Vector3(1.8 / 1.5 * 0.1, 0.02, 0.0)).norm(), 1e-15);
+  // At the begin x was 1.25 times what it was drawn as.
+  EXPECT_LT((shape.displacement({1.8, 0.4, 0.3}) - Vector3(1.8 / 1.25 * 0.25, 0.05, 0.0)).norm(), 1e-15);
   shape.set_interval(0.3, 0.4);
   EXPECT_EQ(shape.largest_displacement(), 0.0) << "held after the last frame";
 }
