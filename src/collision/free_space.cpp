@@ -1,12 +1,8 @@
 #include "collision/free_space.h"
 
-#include "base/parallel.h"
-#include "collision/feasible_point.h"
-#include "collision/obstacle_zones.h"
-#include "collision/self_zones.h"
+#include "collision/pair_placement.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
 namespace sprung {
@@ -24,22 +20,12 @@ constexpr double kMostLeft = 0.5;
 // Obstacles that close in on a particle are taken along in parts of the interval, halved until this one.
 constexpr double kSmallestPart = 1.0 / 64.0;
 
-// A place this near to where the particle was, as a part of its coordinates, is the same but for rounding.
-constexpr double kRounding = 0x1p-46;
-
-constexpr Index kParticleChunk = 256;
-
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Whether elements of one body or of two may meet.
 bool meets_itself(const CollisionSurface& surface) {
   return std::count(surface.self.begin(), surface.self.end(), 1) > 0 ||
          std::count(surface.others.begin(), surface.others.end(), 1) > 1;
-}
-
-template <class Outcome>
-Index count(const std::vector<Outcome>& outcomes, Outcome wanted) {
-  return static_cast<Index>(std::count(outcomes.begin(), outcomes.end(), wanted));
 }
 
 }  // namespace
@@ -50,13 +36,9 @@ struct FreeSpace::Implementation {
     if (meets_itself(surface)) pairs.emplace(surface, rest, margin);
   }
 
-  enum class Outcome : char { free, stopped, squeezed };
-  using Outcomes = std::vector<Outcome>;
-
   void begin_pairs(const Points& before, const Points& after);
   Truncation truncate(const Points& before, Points& after);
   void keep_apart(const Points& before, Points& after, Truncation& truncation);
-  [[nodiscard]] Outcome keep_apart(Index particle, const Vector3& before, const Vector3& target, Points& after) const;
   [[nodiscard]] Index crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const;
   [[nodiscard]] std::vector<Index> movable(const Points& before, const Points& target) const;
   Outcomes place_in_parts(const std::vector<Index>& particles, const Points& before, const Points& target, Points& after);
@@ -64,8 +46,6 @@ struct FreeSpace::Implementation {
   /// Leaves in `stopped` those that may come farther yet; returns how many arrived.
   Index go_on(std::vector<Index>& stopped, const Points& target, Points& after);
   Outcomes place_with_fresh_zones(const std::vector<Index>& particles, const Way& way, Points& positions);
-  Outcomes place(const std::vector<Index>& particles, const Way& way, Points& positions) const;
-  Outcome place(Index particle, const Way& way, Points& positions) const;
 
   Environment& environment;
   const ObstacleSet& set;
@@ -145,9 +125,8 @@ std::vector<Index> FreeSpace::Implementation::movable(const Points& before, cons
 
 // Planes that obstacles take along may leave nothing between them, where the obstacles themselves do: in smaller parts of the
 // interval their planes are made again before they meet.
-FreeSpace::Implementation::Outcomes FreeSpace::Implementation::place_in_parts(const std::vector<Index>& particles,
-                                                                              const Points& before, const Points& target,
-                                                                              Points& after) {
+Outcomes FreeSpace::Implementation::place_in_parts(const std::vector<Index>& particles, const Points& before, const Points& target,
+                                                   Points& after) {
   const auto [begin, end] = environment.interval();
   const auto time = [begin = begin, end = end](double part) { return part < 1.0 ? begin + part * (end - begin) : end; };
   Outcomes worst(particles.size(), Outcome::free);
@@ -181,7 +160,7 @@ Index FreeSpace::Implementation::go_on(std::vector<Index>& stopped, const Points
   const Points from = after;
   const Way way{from, target, true};
   zones.renew_around(stopped, way);
-  const Outcomes outcomes = place(stopped, way, after);
+  const Outcomes outcomes = place(zones, stopped, way, after);
   std::vector<Index> still;
   for (std::size_t n = 0; n < stopped.size(); ++n) {
     if (outcomes[n] != Outcome::free && can_go_on(stopped[n], from, target, after)) still.push_back(stopped[n]);
@@ -191,48 +170,15 @@ Index FreeSpace::Implementation::go_on(std::vector<Index>& stopped, const Points
 }
 
 // Zones that were made some steps ago may stop a particle, or leave it no place at all, where new ones would not.
-FreeSpace::Implementation::Outcomes FreeSpace::Implementation::place_with_fresh_zones(const std::vector<Index>& particles,
-                                                                                      const Way& way, Points& positions) {
-  Outcomes outcomes = place(particles, way, positions);
+Outcomes FreeSpace::Implementation::place_with_fresh_zones(const std::vector<Index>& particles, const Way& way, Points& positions) {
+  Outcomes outcomes = place(zones, particles, way, positions);
   std::vector<Index> stopped;
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] != Outcome::free) stopped.push_back(particles[n]);
   }
   if (stopped.empty()) return outcomes;
   zones.renew_around(stopped, way);
-  return place(particles, way, positions);
-}
-
-FreeSpace::Implementation::Outcomes FreeSpace::Implementation::place(const std::vector<Index>& particles, const Way& way,
-                                                                     Points& positions) const {
-  Outcomes outcomes(particles.size());
-  parallel_chunks(static_cast<Index>(particles.size()), kParticleChunk, [&](Index begin, Index end) {
-    for (Index n = begin; n < end; ++n) outcomes[at(n)] = place(particles[at(n)], way, positions);
-  });
-  return outcomes;
-}
-
-FreeSpace::Implementation::Outcome FreeSpace::Implementation::place(Index particle, const Way& way, Points& positions) const {
-  const Vector3 target = way.to.col(particle);
-  if (zones.allow(particle, target)) {
-    positions.col(particle) = target;
-    return Outcome::free;
-  }
-  std::vector<HalfSpace> bounds;
-  zones.append_half_spaces(particle, bounds);
-  const Vector3 from = way.from.col(particle);
-  std::vector<Vector3> safe;
-  if (!way.obstacles_rest) zones.append_carried(particle, from, safe);
-  safe.push_back(from);
-  const auto found = feasible_point(bounds, target, safe);
-  if (!found) {
-    positions.col(particle) = safe.front();
-    return Outcome::squeezed;
-  }
-  // A particle that cannot move stays to the last bit: what projections round would wear its height away, step by step.
-  const bool stays = (*found - from).cwiseAbs().maxCoeff() <= kRounding * from.cwiseAbs().maxCoeff() && is_feasible(bounds, from);
-  positions.col(particle) = stays ? from : *found;
-  return Outcome::stopped;
+  return place(zones, particles, way, positions);
 }
 
 void FreeSpace::Implementation::begin_pairs(const Points& before, const Points& after) {
@@ -241,44 +187,12 @@ void FreeSpace::Implementation::begin_pairs(const Points& before, const Points& 
   if (pairs_began) pairs->begin_step(before, after, pair_contacts);
 }
 
-// After obstacles, whose zones bound those too that are held here. What finds no place in both stays with its neighbours: an
-// obstacle can be left again, a knot in a cloth stays.
 void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, Truncation& truncation) {
   pairs_began = false;
   if (!after.allFinite()) return;
-  const Points targets = after;
-  const std::vector<Index> held = pairs->hold(before, targets, zones.carried(before));
-  Outcomes outcomes(held.size());
-  parallel_chunks(static_cast<Index>(held.size()), kParticleChunk, [&](Index begin, Index end) {
-    for (Index n = begin; n < end; ++n) {
-      const Index i = held[at(n)];
-      outcomes[at(n)] = keep_apart(i, before.col(i), targets.col(i), after);
-    }
-  });
+  const Outcomes outcomes = place_apart(zones, *pairs, before, after);
   truncation.truncated += static_cast<Index>(outcomes.size()) - count(outcomes, Outcome::free);
   truncation.squeezed += count(outcomes, Outcome::squeezed);
-}
-
-FreeSpace::Implementation::Outcome FreeSpace::Implementation::keep_apart(Index particle, const Vector3& before,
-                                                                         const Vector3& target, Points& after) const {
-  if (pairs->allows(particle, target)) return Outcome::free;
-  std::vector<HalfSpace> bounds;
-  zones.append_half_spaces(particle, bounds);
-  pairs->append_half_spaces(particle, bounds);
-  const Vector3 apart = pairs->safe_place(particle);
-  const std::array<Vector3, 2> safe{apart, before};
-  auto found = feasible_point(bounds, target, safe);
-  if (found) {
-    const auto [centre, radius] = pairs->ball(particle);
-    const double distance = (*found - centre).norm();
-    if (distance > radius) *found = centre + radius / distance * (*found - centre);
-  }
-  if (found && pairs->allows(particle, *found) && zones.allow(particle, *found)) {
-    after.col(particle) = *found;
-    return Outcome::stopped;
-  }
-  after.col(particle) = apart;
-  return zones.allow(particle, apart) ? Outcome::stopped : Outcome::squeezed;
 }
 
 }  // namespace sprung
