@@ -95,6 +95,23 @@ Vector3 DeformingMesh::displacement(Index triangle, const Vector3& weights, doub
   return sum;
 }
 
+DeformingMesh::CarriedPoint DeformingMesh::carried(Index triangle, const Vector3& weights, const Vector3& p) const {
+  const auto corner = after_.triangles.col(triangle);
+  const auto spot = [&](const Points& x) -> Vector3 {
+    return weights[0] * x.col(corner[0]) + weights[1] * x.col(corner[1]) + weights[2] * x.col(corner[2]);
+  };
+  const auto axes = [&](const TriangleMesh& mesh) {
+    const Points& x = mesh.vertices;
+    Matrix3 columns;
+    columns << x.col(corner[1]) - x.col(corner[0]), x.col(corner[2]) - x.col(corner[0]), area_normal(mesh, triangle).normalized();
+    return columns;
+  };
+  const Vector3 before = spot(before_.vertices);
+  const Vector3 after = spot(after_.vertices);
+  const Vector3 along = axes(after_) * axes(before_).inverse() * (p - before);
+  return {after, along.allFinite() ? Vector3(after + along) : Vector3(after + (p - before))};
+}
+
 Vector3 DeformingMesh::face_normal(Index triangle) const {
   const Vector3 own = area_normal(after_, triangle);
   if (own.squaredNorm() > 0.0) return own.normalized();

@@ -46,6 +46,14 @@ class DeformingMesh {
   [[nodiscard]] Vector3 displacement(Index triangle, const Vector3& weights) const;
   [[nodiscard]] Vector3 displacement(Index triangle, const Vector3& weights, double t, double t_end) const;
 
+  /// Where a triangle takes a point of its own and what is at p, in the interval: p as high above it as it was, and beside the
+  /// point as the triangle's edges are stretched and turned.
+  struct CarriedPoint {
+    Vector3 spot;
+    Vector3 place;
+  };
+  [[nodiscard]] CarriedPoint carried(Index triangle, const Vector3& weights, const Vector3& p) const;
+
   // Normals at the interval's end.
   [[nodiscard]] Vector3 normal_at(Index triangle, TriangleFeature feature) const {
     return pseudonormal(after_, around_, triangle, feature);

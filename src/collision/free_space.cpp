@@ -1,5 +1,6 @@
 #include "collision/free_space.h"
 
+#include "collision/carried_placement.h"
 #include "collision/pair_placement.h"
 
 #include <algorithm>
@@ -88,6 +89,7 @@ FreeSpace::Truncation FreeSpace::Implementation::truncate(const Points& before, 
   const std::vector<Index> particles = movable(before, target);
   zones.follow({before, target});
   Outcomes outcomes = place_with_fresh_zones(particles, {before, target}, after);
+  if (set.moves()) carry_squeezed(zones, particles, before, after, outcomes);
   if (set.moves() && count(outcomes, Outcome::squeezed) > 0) outcomes = place_in_parts(particles, before, target, after);
 
   std::vector<Index> stopped;
@@ -139,7 +141,8 @@ Outcomes FreeSpace::Implementation::place_in_parts(const std::vector<Index>& par
     const Points to = next < 1.0 ? Points(from + (next - done) / (1.0 - done) * (target - from)) : target;
     zones.follow({from, to});
     after = to;
-    const Outcomes outcomes = place_with_fresh_zones(particles, {from, to}, after);
+    Outcomes outcomes = place_with_fresh_zones(particles, {from, to}, after);
+    carry_squeezed(zones, particles, from, after, outcomes);
     if (part > kSmallestPart && count(outcomes, Outcome::squeezed) > 0) {
       part *= 0.5;
       continue;

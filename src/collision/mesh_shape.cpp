@@ -20,6 +20,9 @@ namespace {
 // Closest points are off by some tens of roundings of the largest coordinate that they are computed from.
 constexpr double kRounding = 1e-14;
 
+// What is met beyond this part of the way to a spot of the surface is what it shares with its neighbours.
+constexpr double kAtSpot = 1.0 - 1e-3;
+
 double largest_coordinate(const Points& vertices) { return vertices.cwiseAbs().maxCoeff(); }
 
 }  // namespace
@@ -69,6 +72,16 @@ Vector3 MeshShape::displacement(const Vector3& p, double t, double t_end) const 
   if (!deforms_) return Vector3::Zero();
   const auto [triangle, weights] = nearest_spot(*tree_, p);
   return triangle == kNone ? Vector3(Vector3::Zero()) : deforming_->displacement(triangle, weights, t, t_end);
+}
+
+std::optional<Vector3> MeshShape::carried(const Vector3& p) const {
+  if (!deforms_ || deforming_->largest_displacement() == 0.0) return p;
+  const auto [triangle, weights] = nearest_spot(*tree_before_, p);
+  if (triangle == kNone) return p;
+  const auto [spot, place] = deforming_->carried(triangle, weights, p);
+  const auto hit = tree_->first_hit(place, spot, CrossingSides::both);
+  if (hit && hit->triangle != triangle && hit->fraction < kAtSpot) return std::nullopt;
+  return place;
 }
 
 MeshShape::Spot MeshShape::nearest_spot(const MeshTree& tree, const Vector3& p) {

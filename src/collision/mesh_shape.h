@@ -21,6 +21,7 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] double largest_displacement() const override { return deforms_ ? deforming_->largest_displacement() : 0.0; }
   [[nodiscard]] Vector3 displacement(const Vector3& p) const override;
   [[nodiscard]] Vector3 displacement(const Vector3& p, double t, double t_end) const override;
+  [[nodiscard]] std::optional<Vector3> carried(const Vector3& p) const override;
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;
   [[nodiscard]] std::optional<SurfacePoint> nearest_again(const Vector3& p, double radius, double same, double fresh,

@@ -46,6 +46,10 @@ class ObstacleShape {
   /// How far the point of the surface that is nearest to p at the interval's begin moves in it, in the shape's frame [m].
   [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/) const { return Vector3::Zero(); }
 
+  /// Where a surface that deforms takes what is at p at the interval's begin: as high above the triangle that is nearest to it, in
+  /// the triangle's own axes. Nothing where another part of the surface came between.
+  [[nodiscard]] virtual std::optional<Vector3> carried(const Vector3& p) const { return p; }
+
   /// How far the point of the surface that is nearest to p at the interval's end moves from time t to t_end, likewise.
   [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/, double /*t*/, double /*t_end*/) const { return Vector3::Zero(); }
 

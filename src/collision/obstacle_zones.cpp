@@ -236,11 +236,40 @@ Index ObstacleZones::leans_on(Index particle) const {
   return kNone;
 }
 
-void ObstacleZones::append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const {
-  for (const PatchSlot& place : slots_of(particle)) {
-    for (const PatchZones& zones : patches_[at(place.patch)].zones) {
-      if (!set_.rests(zones.obstacle())) places.push_back(set_.carried(zones.obstacle(), from));
+// Before each obstacle the particle goes straight from where that one carries it.
+std::optional<Vector3> ObstacleZones::carried(Index particle, const Vector3& from) const {
+  const std::vector<Index> near = near_obstacles(particle);
+  std::vector<Vector3> local;
+  for (const Index k : near) {
+    const auto place = set_.shape(k).carried(set_.local_before(k, from));
+    if (!place) return std::nullopt;
+    local.push_back(*place);
+  }
+  for (std::size_t n = 0; n < near.size(); ++n) {
+    if (set_.rests(near[n])) continue;
+    const Vector3 place = set_.after(near[n]) * local[n];
+    bool free = true;
+    for (std::size_t m = 0; m < near.size() && free; ++m) {
+      free = m == n || !set_.shape(near[m]).first_crossing(local[m], set_.local(near[m], place));
     }
+    if (free) return place;
+  }
+  return std::nullopt;
+}
+
+std::vector<Index> ObstacleZones::near_obstacles(Index particle) const {
+  std::vector<Index> near;
+  for (const PatchSlot& place : slots_of(particle)) {
+    for (const PatchZones& zones : patches_[at(place.patch)].zones) near.push_back(zones.obstacle());
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
+}
+
+void ObstacleZones::append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const {
+  for (const Index k : near_obstacles(particle)) {
+    if (!set_.rests(k)) places.push_back(set_.carried(k, from));
   }
 }
 

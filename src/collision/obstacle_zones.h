@@ -45,6 +45,10 @@ class ObstacleZones {
   /// Particles that lean on an obstacle that moves, ascending, and how far it carries them from there.
   [[nodiscard]] std::vector<Carried> carried(const Points& from) const;
 
+  /// Where an obstacle that moves near the particle carries it from `from` without leading it through itself or another one;
+  /// nothing if none does.
+  [[nodiscard]] std::optional<Vector3> carried(Index particle, const Vector3& from) const;
+
   /// Appends where the obstacles that move near the particle carry it from `from`.
   void append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const;
 
@@ -58,6 +62,8 @@ class ObstacleZones {
     double thickness = 0.0;           ///< the largest of its particles [m]
   };
 
+  /// Those that elements around the particle may meet, ascending.
+  [[nodiscard]] std::vector<Index> near_obstacles(Index particle) const;
   /// An obstacle that moves and that an element around the particle may touch; kNone if there is none.
   [[nodiscard]] Index leans_on(Index particle) const;
   void find_near(Index patch, const Way& way, double carried);

@@ -165,6 +165,47 @@ TEST(Truncation, ObstaclesThatCloseInAreReported) {
   EXPECT_EQ(truncation.squeezed, 1);
 }
 
+/// A sheet that goes to `deform(position)` of it in one second.
+template <class Deform>
+Obstacle deforming_obstacle(const TriangleMesh& mesh, const Deform& deform) {
+  MeshSequence sequence{.triangles = mesh.triangles, .frames = {mesh.vertices, mesh.vertices}, .frame_rate = 1.0};
+  for (Index i = 0; i < mesh.vertices.cols(); ++i) sequence.frames[1].col(i) = deform(Vector3(mesh.vertices.col(i)));
+  return {.name = "mesh", .geometry = SequenceGeometry{std::make_shared<const MeshSequence>(std::move(sequence)), false}};
+}
+
+// In one step it turns by 45 degrees, so that no plane above it at the begin is above it at the end.
+TEST(Truncation, ParticlesGoWithASurfaceThatTurnsUnderThem) {
+  Environment environment(
+      {deforming_obstacle(test::flat_sheet(8), [](const Vector3& x) { return Vector3(x.x(), x.x() + 0.1 * x.z(), x.z()); })});
+  environment.set_interval(0.0, 1.0);
+  constexpr Index kCount = 100;
+  Random random(35);
+  Points rest(3, kCount);
+  for (auto&& p : rest.colwise()) {
+    p = random.in_box({Vector3(-0.9, 0.0, -0.9), Vector3(0.9, 0.0, 0.9)}) +
+        std::exp2(-20.0 * random.between(0.1, 1.0)) * Vector3::UnitY();
+  }
+  Points after = rest;
+  EXPECT_EQ(test::single_particles(environment, kCount).truncate(rest, after).squeezed, 0);
+  for (const auto& p : after.colwise()) EXPECT_GT(p.y(), p.x() + 0.1 * p.z());
+}
+
+// In one step the upper sheet comes nearer to the lower one than the particle was.
+TEST(Truncation, ParticlesStayBetweenSheetsOfOneMesh) {
+  const TriangleMesh sheet = test::flat_sheet(4);
+  const Eigen::Index vertices = sheet.vertices.cols();
+  TriangleMesh sheets{Points(3, 2 * vertices), Triangles(3, 2 * sheet.triangles.cols())};
+  sheets.vertices << sheet.vertices, sheet.vertices.colwise() + Vector3::UnitY();
+  sheets.triangles << sheet.triangles, (sheet.triangles.array() + static_cast<Index>(vertices)).matrix();
+  Environment environment({deforming_obstacle(sheets, [](const Vector3& x) { return Vector3(x.x(), 0.2 * x.y(), x.z()); })});
+  environment.set_interval(0.0, 1.0);
+  const Points rest = Vector3(0.1, 0.4, 0.2);
+  Points after = rest;
+  EXPECT_EQ(test::single_particles(environment, 1).truncate(rest, after).squeezed, 0);
+  EXPECT_GT(after(1, 0), 0.0);
+  EXPECT_LT(after(1, 0), 0.2);
+}
+
 TEST(Truncation, InAWedgeOfTwoObstaclesAParticleFindsAPlace) {
   Obstacle left = mesh_obstacle(test::flat_sheet(8), false);
   Obstacle right = left;
