@@ -4,12 +4,11 @@
 
 namespace sprung {
 
-HeldGroups::HeldGroups(const Points& before, const Points& targets, const std::vector<char>& pinned,
-                       std::span<const Carried> carried)
+HeldGroups::HeldGroups(const Points& before, const Points& targets, const std::vector<char>& pinned, const Carriers& carriers)
     : before_(before),
       targets_(targets),
       pinned_(pinned),
-      carried_(carried),
+      carriers_(carriers),
       parent_(static_cast<std::size_t>(before.cols()), kNone),
       stopped_(parent_.size(), 0),
       number_(parent_.size(), kNone) {}
@@ -48,20 +47,29 @@ bool HeldGroups::unite(std::span<const Index> particles) {
 }
 
 void HeldGroups::find_motions() {
+  number_groups();
+  std::vector<char> led_by_pins(groups_.size(), 0);
+  find_means(led_by_pins);
+  anchor_groups(led_by_pins);
+}
+
+void HeldGroups::number_groups() {
+  groups_.clear();
+  for (const Index i : held_) {
+    if (parent_[static_cast<std::size_t>(i)] != i) continue;
+    number_[static_cast<std::size_t>(i)] = static_cast<Index>(groups_.size());
+    groups_.push_back({.fraction = stopped_[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0});
+  }
+}
+
+void HeldGroups::find_means(std::vector<char>& led_by_pins) {
   struct Sum {
     Vector3 motion = Vector3::Zero();
     double squares = 0.0;
     double count = 0.0;
     int rank = 0;  ///< of those that lead
   };
-  std::vector<Sum> sums;
-  groups_.clear();
-  for (const Index i : held_) {
-    if (parent_[static_cast<std::size_t>(i)] != i) continue;
-    number_[static_cast<std::size_t>(i)] = static_cast<Index>(groups_.size());
-    groups_.push_back({.motion = Vector3::Zero(), .fraction = stopped_[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0});
-    sums.emplace_back();
-  }
+  std::vector<Sum> sums(groups_.size());
   const auto lead = [&](Index follower, const Vector3& motion, int rank) {
     Sum& sum = sums[static_cast<std::size_t>(group(follower))];
     if (rank > sum.rank) sum = {.rank = rank};
@@ -70,11 +78,15 @@ void HeldGroups::find_motions() {
     sum.squares += motion.squaredNorm();
     sum.count += 1.0;
   };
-  for (const Lead& by_pin : leads_) lead(by_pin.follower, by_pin.motion, 3);
+  for (const Lead& by_pin : leads_) {
+    lead(by_pin.follower, by_pin.motion, 3);
+    led_by_pins[static_cast<std::size_t>(group(by_pin.follower))] = 1;
+  }
+  const std::vector<Carried>& carried = carriers_.carried;
   for (const Index i : held_) {
     const auto found =
-        std::lower_bound(carried_.begin(), carried_.end(), i, [](const Carried& a, Index b) { return a.particle < b; });
-    if (found != carried_.end() && found->particle == i) {
+        std::lower_bound(carried.begin(), carried.end(), i, [](const Carried& a, Index b) { return a.particle < b; });
+    if (found != carried.end() && found->particle == i) {
       lead(i, found->motion, 2);
     } else {
       lead(i, targets_.col(i) - before_.col(i), 1);
@@ -86,7 +98,19 @@ void HeldGroups::find_motions() {
     const double common2 = mean.squaredNorm();
     const double spread2 = sum.squares / sum.count - common2;
     const double shared = sum.rank > 1 ? 1.0 : common2 > 0.0 ? std::max(0.0, 1.0 - spread2 / common2) : 0.0;
-    groups_[k].motion = shared * mean;
+    groups_[k].motion.translation() = shared * mean;
+  }
+}
+
+void HeldGroups::anchor_groups(const std::vector<char>& led_by_pins) {
+  std::vector<const Anchor*> chosen(groups_.size(), nullptr);
+  for (const Anchor& anchor : carriers_.anchors) {
+    if (!holds(anchor.particle)) continue;
+    const auto k = static_cast<std::size_t>(group(anchor.particle));
+    if (led_by_pins[k] == 0 && (chosen[k] == nullptr || (anchor.moves() && !chosen[k]->moves()))) chosen[k] = &anchor;
+  }
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    if (chosen[k] != nullptr) groups_[k] = {.motion = chosen[k]->motion, .fraction = 0.0};
   }
 }
 
@@ -96,7 +120,7 @@ Index HeldGroups::group(Index particle) const {
 
 Vector3 HeldGroups::start(Index particle) const {
   if (!holds(particle)) return targets_.col(particle);
-  return before_.col(particle) + groups_[static_cast<std::size_t>(group(particle))].motion;
+  return groups_[static_cast<std::size_t>(group(particle))].motion * before_.col(particle);
 }
 
 Vector3 HeldGroups::end(Index particle) const {

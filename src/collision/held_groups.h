@@ -14,21 +14,36 @@ struct Carried {
   Vector3 motion = Vector3::Zero();
 };
 
+/// A particle that obstacles leave no place where its group would take it, and a rigid motion that takes the whole group along with
+/// what is in its way, as if it were a part of that.
+struct Anchor {
+  Index particle = kNone;
+  RigidTransform motion = RigidTransform::Identity();
+
+  [[nodiscard]] bool moves() const { return motion.matrix() != RigidTransform::Identity().matrix(); }
+};
+
+/// Particles that lean on obstacles, and those that obstacles hold fast; both ascending by particle.
+struct Carriers {
+  std::vector<Carried> carried{};
+  std::vector<Anchor> anchors{};
+};
+
 /// Each group has a motion that all its particles share, after which they are to each other as they were before, and a fraction of
 /// the ways from there to their targets that they may go.
 class HeldGroups {
  public:
-  /// No particle is held yet. Pinned ones (not 0) never are. `carried` is ascending by particle. Positions [m], 3 x n. Keeps
-  /// references to all.
-  HeldGroups(const Points& before, const Points& targets, const std::vector<char>& pinned, std::span<const Carried> carried);
+  /// No particle is held yet. Pinned ones (not 0) never are. Positions [m], 3 x n. Keeps references to all.
+  HeldGroups(const Points& before, const Points& targets, const std::vector<char>& pinned, const Carriers& carriers);
 
   /// Makes these particles, and the groups that they are in, one group; pinned ones among them lead it. A group that is one already
   /// may not leave the motion that it shares any more. Returns whether anything has changed.
   bool unite(std::span<const Index> particles);
 
-  /// Finds the groups' motions: the mean of those of pinned particles that lead it; else of its carried particles; else what its
-  /// particles' ways have in common: their mean, less the part that their spread is of it, so that a falling cloth is not held back
-  /// and a resting one not carried away by what hits it. Fractions are 1 again, except of groups that may not leave it.
+  /// Finds the groups' motions: the mean of those of pinned particles that lead it; else that of its first anchor (the first that
+  /// moves, if one does), which it may not leave; else the mean of its carried particles; else what its particles' ways have in
+  /// common: their mean, less the part that their spread is of it, so that a falling cloth is not held back and a resting one not
+  /// carried away by what hits it. Fractions are 1 again, except of groups that may not leave it.
   void find_motions();
 
   /// A group's number from 0, or kNone for a particle that is not held.
@@ -41,12 +56,15 @@ class HeldGroups {
   /// Where a particle ends that has gone its group's fraction of the way to its target as well.
   [[nodiscard]] Vector3 end(Index particle) const;
 
+  /// How the group's motion turns directions within it.
+  [[nodiscard]] Matrix3 turn(Index group) const { return groups_[static_cast<std::size_t>(group)].motion.linear(); }
+
   [[nodiscard]] double fraction(Index group) const { return groups_[static_cast<std::size_t>(group)].fraction; }
   void limit_fraction(Index group, double fraction);
 
  private:
   struct Group {
-    Vector3 motion = Vector3::Zero();
+    RigidTransform motion = RigidTransform::Identity();
     double fraction = 1.0;
   };
   struct Lead {
@@ -55,11 +73,14 @@ class HeldGroups {
   };
 
   [[nodiscard]] Index root(Index particle) const;
+  void number_groups();
+  void find_means(std::vector<char>& led_by_pins);
+  void anchor_groups(const std::vector<char>& led_by_pins);
 
   const Points& before_;
   const Points& targets_;
   const std::vector<char>& pinned_;
-  std::span<const Carried> carried_;
+  const Carriers& carriers_;
   std::vector<Index> parent_;  ///< by particle: another of its group or itself; kNone when it is not held
   std::vector<Index> held_;
   std::vector<char> stopped_;  ///< by particle that is its own parent

@@ -236,6 +236,20 @@ Index ObstacleZones::leans_on(Index particle) const {
   return kNone;
 }
 
+Anchor ObstacleZones::anchor(Index particle, const Vector3& from, const Vector3& position) const {
+  Anchor anchor{.particle = particle};
+  for (const PatchSlot& place : slots_of(particle)) {
+    for (const PatchZones& zones : patches_[at(place.patch)].zones) {
+      const Index k = zones.obstacle();
+      if (set_.rests(k) || zones.allow(place.slot, set_.local(k, position))) continue;
+      anchor.motion = set_.after(k) * set_.before(k).inverse();
+      anchor.motion.pretranslate(set_.carried(k, from) - anchor.motion * from);
+      return anchor;
+    }
+  }
+  return anchor;
+}
+
 // Before each obstacle the particle goes straight from where that one carries it.
 std::optional<Vector3> ObstacleZones::carried(Index particle, const Vector3& from) const {
   const std::vector<Index> near = near_obstacles(particle);

@@ -49,6 +49,10 @@ class ObstacleZones {
   /// nothing if none does.
   [[nodiscard]] std::optional<Vector3> carried(Index particle, const Vector3& from) const;
 
+  /// The particle with the rigid motion of the first obstacle that moves and that does not let it be at `position`; with none if
+  /// there is no such obstacle. What deforms moves as it does where the particle was, at `from`.
+  [[nodiscard]] Anchor anchor(Index particle, const Vector3& from, const Vector3& position) const;
+
   /// Appends where the obstacles that move near the particle carry it from `from`.
   void append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const;
 

@@ -3,48 +3,111 @@
 #include "base/parallel.h"
 #include "collision/feasible_point.h"
 
+#include <algorithm>
 #include <array>
 
 namespace sprung {
 
 namespace {
 
+// Zones are made again around those that found no place, so often; then around all.
+constexpr int kLocalRounds = 4;
+
 constexpr Index kParticleChunk = 256;
 
-Outcome place_held(const ObstacleZones& zones, const SelfZones& pairs, Index particle, const Vector3& before, const Vector3& target,
-                   Points& after) {
-  if (pairs.allows(particle, target)) return Outcome::free;
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+PairPlacement::PairPlacement(ObstacleZones& zones, SelfZones& pairs, const std::vector<Index>& movable)
+    : zones_(zones), pairs_(pairs), movable_(movable) {}
+
+Outcomes PairPlacement::place(const Points& before, Points& after) {
+  const Points allowed = after;
+  Outcomes outcomes = place_held(before, after);
+  if (count(outcomes, Outcome::squeezed) == 0) return outcomes;
+  const Way way{before, allowed};
+  for (int round = 0; anchor_squeezed(outcomes, before, after); ++round) {
+    if (round == 0) zones_.follow(way);
+    zones_.renew_around(round < kLocalRounds ? squeezed(held_, outcomes) : movable_, way);
+    place_among_obstacles(way, after);
+    outcomes = place_held(before, after);
+  }
+  return outcomes;
+}
+
+/// Zones that are new for their neighbours may not hold particles any more.
+void PairPlacement::place_among_obstacles(const Way& way, Points& after) {
+  after = way.to;
+  std::vector<Index> last;
+  std::vector<Index> without = squeezed(movable_, sprung::place(zones_, movable_, way, after));
+  while (!without.empty() && without != last) {
+    zones_.renew_around(without, way);
+    last = std::move(without);
+    without = squeezed(movable_, sprung::place(zones_, movable_, way, after));
+  }
+}
+
+std::vector<Index> PairPlacement::squeezed(const std::vector<Index>& particles, const Outcomes& outcomes) {
+  std::vector<Index> found;
+  for (std::size_t n = 0; n < particles.size(); ++n) {
+    if (outcomes[n] == Outcome::squeezed) found.push_back(particles[n]);
+  }
+  return found;
+}
+
+bool PairPlacement::anchor_squeezed(const Outcomes& outcomes, const Points& before, const Points& after) {
+  bool changed = false;
+  for (const Index i : squeezed(held_, outcomes)) {
+    const Anchor anchor = zones_.anchor(i, before.col(i), after.col(i));
+    std::vector<Anchor>& anchors = carriers_.anchors;
+    const auto found = std::lower_bound(anchors.begin(), anchors.end(), i, [](const Anchor& a, Index b) { return a.particle < b; });
+    if (found == anchors.end() || found->particle != i) {
+      anchors.insert(found, anchor);
+    } else if (anchor.moves() && !found->moves()) {
+      *found = anchor;
+    } else {
+      continue;
+    }
+    changed = true;
+  }
+  return changed;
+}
+
+Outcomes PairPlacement::place_held(const Points& before, Points& after) {
+  const Points targets = after;
+  carriers_.carried = zones_.carried(before);
+  held_ = pairs_.hold(before, targets, carriers_);
+  Outcomes outcomes(held_.size());
+  parallel_chunks(static_cast<Index>(held_.size()), kParticleChunk, [&](Index begin, Index end) {
+    for (Index n = begin; n < end; ++n) {
+      const Index i = held_[at(n)];
+      outcomes[at(n)] = place_held(i, before.col(i), targets.col(i), after);
+    }
+  });
+  return outcomes;
+}
+
+Outcome PairPlacement::place_held(Index particle, const Vector3& before, const Vector3& target, Points& after) const {
+  if (pairs_.allows(particle, target) && zones_.allow(particle, target)) return Outcome::free;
   std::vector<HalfSpace> bounds;
-  zones.append_half_spaces(particle, bounds);
-  pairs.append_half_spaces(particle, bounds);
-  const Vector3 apart = pairs.safe_place(particle);
+  zones_.append_half_spaces(particle, bounds);
+  const std::size_t of_zones = bounds.size();
+  pairs_.append_half_spaces(particle, bounds);
+  const Vector3 apart = pairs_.safe_place(particle);
   const std::array<Vector3, 2> safe{apart, before};
   auto found = feasible_point(bounds, target, safe);
   if (found) {
-    const auto [centre, radius] = pairs.ball(particle);
+    const auto [centre, radius] = pairs_.ball(particle);
     const double distance = (*found - centre).norm();
     if (distance > radius) *found = centre + radius / distance * (*found - centre);
   }
-  if (found && pairs.allows(particle, *found) && zones.allow(particle, *found)) {
+  if (found && pairs_.allows(particle, *found) && zones_.allow(particle, *found)) {
     after.col(particle) = *found;
     return Outcome::stopped;
   }
   after.col(particle) = apart;
-  return zones.allow(particle, apart) ? Outcome::stopped : Outcome::squeezed;
-}
-
-}  // namespace
-
-Outcomes place_apart(const ObstacleZones& zones, SelfZones& pairs, const Points& before, Points& after) {
-  const Points targets = after;
-  const std::vector<Index> held = pairs.hold(before, targets, zones.carried(before));
-  Outcomes outcomes(held.size());
-  parallel_chunks(static_cast<Index>(held.size()), kParticleChunk, [&](Index begin, Index end) {
-    for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
-      outcomes[n] = place_held(zones, pairs, held[n], before.col(held[n]), targets.col(held[n]), after);
-    }
-  });
-  return outcomes;
+  return is_feasible({bounds.data(), of_zones}, apart) ? Outcome::stopped : Outcome::squeezed;
 }
 
 }  // namespace sprung

@@ -4,11 +4,37 @@
 #include "collision/particle_placement.h"
 #include "collision/self_zones.h"
 
+#include <vector>
+
 namespace sprung {
 
-/// Keeps the sides of pairs apart that would pass each other on the way from `before` to `after` [m], 3 x n, which obstacles allow:
-/// changes `after` to places that both do. What finds none stays with its neighbours: an obstacle can be left again, a knot in a
-/// cloth stays. Returns what became of those that were held. Requires SelfZones::begin_step() with the same `before`.
-Outcomes place_apart(const ObstacleZones& zones, SelfZones& pairs, const Points& before, Points& after);
+/// Keeps the sides of pairs apart that would pass each other on their way.
+class PairPlacement {
+ public:
+  /// Keeps references to all. `movable`, ascending, are the particles that the step may move.
+  PairPlacement(ObstacleZones& zones, SelfZones& pairs, const std::vector<Index>& movable);
+
+  /// Changes `after` [m], 3 x n, which obstacles allow, to places that those allow and the sides of all pairs. Where there are none
+  /// in the zones at hand, zones are made again where the step began and groups of particles go along with the obstacle that is in
+  /// their way, as if they were a part of it: more and more particles, until all that are next to a group have a place. Before one
+  /// obstacle that is rigid, or such that rest, they all have one, but for pins; otherwise what finds none stays with its group: an
+  /// obstacle can be left again, a knot in a cloth stays. Returns what became of particles that were held. Requires
+  /// SelfZones::begin_step() with the same `before`.
+  Outcomes place(const Points& before, Points& after);
+
+ private:
+  Outcomes place_held(const Points& before, Points& after);
+  [[nodiscard]] Outcome place_held(Index particle, const Vector3& before, const Vector3& target, Points& after) const;
+  [[nodiscard]] static std::vector<Index> squeezed(const std::vector<Index>& particles, const Outcomes& outcomes);
+  void place_among_obstacles(const Way& way, Points& after);
+  /// Whether any held particle is an anchor now that was none, or begins to move.
+  bool anchor_squeezed(const Outcomes& outcomes, const Points& before, const Points& after);
+
+  ObstacleZones& zones_;
+  SelfZones& pairs_;
+  const std::vector<Index>& movable_;
+  std::vector<Index> held_;
+  Carriers carriers_;
+};
 
 }  // namespace sprung

@@ -17,11 +17,11 @@ constexpr Index kPairsPerTask = 2048;
 
 }  // namespace
 
-PairPlanes::PairPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned,
-                       std::span<const Carried> carried, double kept)
+PairPlanes::PairPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned, const Carriers& carriers,
+                       double kept)
     : before_(before),
       targets_(targets),
-      groups_(before, targets, pinned, carried),
+      groups_(before, targets, pinned, carriers),
       ends_(targets),
       kept_(kept),
       clearance_(kClearance * before.cwiseAbs().maxCoeff()) {}
@@ -55,10 +55,19 @@ std::vector<Index> PairPlanes::find_conflicts(std::vector<ElementPair>& pairs) c
   return conflicts;
 }
 
-/// Whether the sides end nearer than they ever may. What touched when the step began has no plane to keep.
+/// Whether the sides end nearer than they ever may. What touched when the step began has no plane to keep, what moves rigidly needs
+/// none.
 bool PairPlanes::passes(const ElementPair& pair) const {
+  const Index group = group_of(pair);
+  if (group != kNone && groups_.fraction(group) == 0.0) return false;
   const double begun = heights_at(pair, before_).gap();
   return begun > 0.0 && heights_at(pair, ends_).gap() < std::min(begun, least_gap()) - kRounding * clearance_;
+}
+
+Index PairPlanes::group_of(const ElementPair& pair) const {
+  const Index group = groups_.group(pair.particles.front());
+  const auto end = pair.particles.begin() + pair.count();
+  return std::all_of(pair.particles.begin(), end, [&](Index i) { return groups_.group(i) == group; }) ? group : kNone;
 }
 
 double PairPlanes::kept_gap(const ElementPair& pair) const {
@@ -89,16 +98,18 @@ void PairPlanes::limit_groups(const std::vector<ElementPair>& pairs) {
 
 std::vector<PairPlanes::Bound> PairPlanes::bounds(const std::vector<ElementPair>& pairs) const {
   std::vector<Bound> bounds;
-  for (const ElementPair& pair : pairs) {
+  for (ElementPair pair : pairs) {
     if (std::none_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return groups_.holds(i); }))
       continue;
     if (!(heights_at(pair, before_).gap() > 0.0)) continue;
+    const double room = 0.5 * kept_gap(pair);
+    const Index group = group_of(pair);
+    if (group != kNone) pair.normal = groups_.turn(group) * pair.normal;
     const PairHeights end = heights_at(pair, ends_);
     const PairHeights target = heights_at(pair, targets_);
     const double least = 0.5 * std::clamp(end.gap(), 0.0, least_gap());
     const double highest = std::max(end.first, end.second) - least;
     const double middle = std::max(end.second + least, std::min(0.5 * (target.first + target.second), highest));
-    const double room = 0.5 * kept_gap(pair);
     const HalfSpace above{pair.normal, std::min(end.first, middle + room)};
     const HalfSpace below{-pair.normal, -std::max(end.second, middle - room)};
     for (int k = 0; k < pair.count(); ++k) {

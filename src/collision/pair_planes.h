@@ -19,8 +19,7 @@ class PairPlanes {
  public:
   /// Begins a step: nothing is held. Held sides keep `kept` [m] between them where they can; for the other arguments see
   /// HeldGroups. Keeps references to them.
-  PairPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned, std::span<const Carried> carried,
-             double kept);
+  PairPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned, const Carriers& carriers, double kept);
 
   /// Holds the particles of pairs that would pass each other where they are to end now. Returns whether any end has changed: then
   /// it is to be called again, with the pairs that these ends may touch.
@@ -44,6 +43,8 @@ class PairPlanes {
  private:
   [[nodiscard]] std::vector<Index> find_conflicts(std::vector<ElementPair>& pairs) const;
   [[nodiscard]] bool passes(const ElementPair& pair) const;
+  /// The group that all of the pair is in; kNone if there is none.
+  [[nodiscard]] Index group_of(const ElementPair& pair) const;
   void limit_groups(const std::vector<ElementPair>& pairs);
   [[nodiscard]] double kept_gap(const ElementPair& pair) const;
   /// A gap that is larger may end as small as this, one that is smaller never smaller: else it would wear away, step by step [m].

@@ -43,9 +43,9 @@ void SelfZones::begin_step(const Points& before, const Points& after, std::vecto
   append_self_contacts(self.surface, self.watch.features(), self.watch.candidates(), before, after, contacts);
 }
 
-const std::vector<Index>& SelfZones::hold(const Points& before, const Points& targets, std::span<const Carried> carried) {
+const std::vector<Index>& SelfZones::hold(const Points& before, const Points& targets, const Carriers& carriers) {
   Implementation& self = *implementation_;
-  PairPlanes planes(before, targets, self.surface.pinned, carried, kKeptPart * self.surface.thickness.minCoeff());
+  PairPlanes planes(before, targets, self.surface.pinned, carriers, kKeptPart * self.surface.thickness.minCoeff());
   self.watch.follow(before, targets);
   while (planes.hold(self.watch.pairs())) self.watch.follow(before, planes.ends());
   self.ends = planes.ends();

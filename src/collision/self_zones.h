@@ -31,9 +31,8 @@ class SelfZones {
   void begin_step(const Points& before, const Points& after, std::vector<Contact>& contacts);
 
   /// Finds which particles would pass each other on their way to `targets` [m]; all others may go there. Pinned particles do so in
-  /// any case. `carried`, ascending by particle, names those that lean on an obstacle. Returns those that are held, ascending.
-  /// Requires begin_step() with the same `before`.
-  const std::vector<Index>& hold(const Points& before, const Points& targets, std::span<const Carried> carried = {});
+  /// any case. Returns those that are held, ascending. Requires begin_step() with the same `before`.
+  const std::vector<Index>& hold(const Points& before, const Points& targets, const Carriers& carriers = {});
 
   /// Where a held particle may end in any case [m].
   [[nodiscard]] Vector3 safe_place(Index particle) const;
