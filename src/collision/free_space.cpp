@@ -38,11 +38,13 @@ struct FreeSpace::Implementation {
   }
 
   void begin_pairs(const Points& before, const Points& after);
-  Truncation truncate(const Points& before, Points& after);
+  Truncation truncate(const Points& before, Points& after, const Relax& relax);
+  Truncation place_all(const Way& way, Points& after);
+  Truncation lead_on(const std::vector<Index>& particles, const Outcomes& outcomes, const Way& way, Points& after);
   void keep_apart(const Points& before, Points& after, Truncation& truncation);
   [[nodiscard]] Index crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const;
-  [[nodiscard]] std::vector<Index> movable(const Points& before, const Points& target) const;
-  Outcomes place_in_parts(const std::vector<Index>& particles, const Points& before, const Points& target, Points& after);
+  [[nodiscard]] std::vector<Index> movable(const Way& way) const;
+  Outcomes place_in_parts(const std::vector<Index>& particles, const Way& way, Points& after);
   [[nodiscard]] static bool can_go_on(Index particle, const Points& from, const Points& target, const Points& now);
   /// Leaves in `stopped` those that may come farther yet; returns how many arrived.
   Index go_on(std::vector<Index>& stopped, const Points& target, Points& after);
@@ -77,21 +79,38 @@ std::vector<Contact> FreeSpace::contacts(const Points& before, const Points& aft
   return contacts;
 }
 
-FreeSpace::Truncation FreeSpace::truncate(const Points& before, Points& after) {
+FreeSpace::Truncation FreeSpace::truncate(const Points& before, Points& after, const Relax& relax) {
   Truncation truncation;
-  if (!implementation_->set.obstacles().empty()) truncation = implementation_->truncate(before, after);
+  if (!implementation_->set.obstacles().empty()) truncation = implementation_->truncate(before, after, relax);
   if (implementation_->pairs_began) implementation_->keep_apart(before, after, truncation);
   return truncation;
 }
 
-FreeSpace::Truncation FreeSpace::Implementation::truncate(const Points& before, Points& after) {
-  const Points target = after;
-  const std::vector<Index> particles = movable(before, target);
-  zones.follow({before, target});
-  Outcomes outcomes = place_with_fresh_zones(particles, {before, target}, after);
-  if (set.moves()) carry_squeezed(zones, particles, before, after, outcomes);
-  if (set.moves() && count(outcomes, Outcome::squeezed) > 0) outcomes = place_in_parts(particles, before, target, after);
+// What found no free place is not safe to go on from.
+FreeSpace::Truncation FreeSpace::Implementation::truncate(const Points& before, Points& after, const Relax& relax) {
+  Points target = after;
+  Truncation truncation = place_all({before, target}, after);
+  if (truncation.truncated == 0 || !relax) return truncation;
+  for (Points safe = after; truncation.squeezed == 0 && relax(after); safe = after) {
+    target = after;
+    truncation = place_all({safe, target, true}, after);
+  }
+  return truncation;
+}
 
+FreeSpace::Truncation FreeSpace::Implementation::place_all(const Way& way, Points& after) {
+  const std::vector<Index> particles = movable(way);
+  zones.follow(way);
+  Outcomes outcomes = place_with_fresh_zones(particles, way, after);
+  if (set.moves() && !way.obstacles_rest) {
+    carry_squeezed(zones, particles, way.from, after, outcomes);
+    if (count(outcomes, Outcome::squeezed) > 0) outcomes = place_in_parts(particles, way, after);
+  }
+  return lead_on(particles, outcomes, way, after);
+}
+
+FreeSpace::Truncation FreeSpace::Implementation::lead_on(const std::vector<Index>& particles, const Outcomes& outcomes,
+                                                         const Way& way, Points& after) {
   std::vector<Index> stopped;
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] == Outcome::stopped) stopped.push_back(particles[n]);
@@ -99,8 +118,8 @@ FreeSpace::Truncation FreeSpace::Implementation::truncate(const Points& before, 
   Truncation truncation;
   truncation.truncated = count(outcomes, Outcome::squeezed) + static_cast<Index>(stopped.size());
   truncation.squeezed = count(outcomes, Outcome::squeezed) + crossed(particles, outcomes);
-  std::erase_if(stopped, [&](Index i) { return !can_go_on(i, before, target, after); });
-  for (int round = 1; round < kRounds && !stopped.empty(); ++round) truncation.truncated -= go_on(stopped, target, after);
+  std::erase_if(stopped, [&](Index i) { return !can_go_on(i, way.from, way.to, after); });
+  for (int round = 1; round < kRounds && !stopped.empty(); ++round) truncation.truncated -= go_on(stopped, way.to, after);
   return truncation;
 }
 
@@ -117,28 +136,27 @@ Index FreeSpace::Implementation::crossed(const std::vector<Index>& particles, co
   return found;
 }
 
-std::vector<Index> FreeSpace::Implementation::movable(const Points& before, const Points& target) const {
+std::vector<Index> FreeSpace::Implementation::movable(const Way& way) const {
   std::vector<Index> particles;
-  for (Index i = 0; i < static_cast<Index>(target.cols()); ++i) {
-    if (surface.pinned[at(i)] == 0 && before.col(i).allFinite() && target.col(i).allFinite()) particles.push_back(i);
+  for (Index i = 0; i < static_cast<Index>(way.to.cols()); ++i) {
+    if (surface.pinned[at(i)] == 0 && way.from.col(i).allFinite() && way.to.col(i).allFinite()) particles.push_back(i);
   }
   return particles;
 }
 
 // Planes that obstacles take along may leave nothing between them, where the obstacles themselves do: in smaller parts of the
 // interval their planes are made again before they meet.
-Outcomes FreeSpace::Implementation::place_in_parts(const std::vector<Index>& particles, const Points& before, const Points& target,
-                                                   Points& after) {
+Outcomes FreeSpace::Implementation::place_in_parts(const std::vector<Index>& particles, const Way& way, Points& after) {
   const auto [begin, end] = environment.interval();
   const auto time = [begin = begin, end = end](double part) { return part < 1.0 ? begin + part * (end - begin) : end; };
   Outcomes worst(particles.size(), Outcome::free);
-  Points from = before;
+  Points from = way.from;
   double done = 0.0;
   double part = 0.5;
   while (done < 1.0) {
     const double next = std::min(1.0, done + part);
     environment.set_interval(time(done), time(next));
-    const Points to = next < 1.0 ? Points(from + (next - done) / (1.0 - done) * (target - from)) : target;
+    const Points to = next < 1.0 ? Points(from + (next - done) / (1.0 - done) * (way.to - from)) : way.to;
     zones.follow({from, to});
     after = to;
     Outcomes outcomes = place_with_fresh_zones(particles, {from, to}, after);

@@ -8,6 +8,7 @@
 #include "collision/contact.h"
 #include "collision/environment.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -38,10 +39,16 @@ class FreeSpace {
     Index truncated = 0;  ///< particles stopped on their way
     Index squeezed = 0;   ///< particles that found no free place between obstacles, or of whose elements an obstacle crosses one
   };
+  /// Moves particles once more after some were stopped [m]; returns false when it has nothing to move.
+  using Relax = std::function<bool(Points& positions)>;
+
   /// The last word on positions: moves each particle that would take an element out of its zones to a place near `after` where it
   /// does not, taking obstacles that close in on it along in smaller parts of the interval. A particle that found none stays with
   /// an obstacle that carries it. Particles that follow their pins, and positions that are not finite, are left alone.
-  Truncation truncate(const Points& before, Points& after);
+  ///
+  /// What obstacles stop, `relax` may lead elsewhere, and its neighbours after it, again and again: all go on from where they are
+  /// safe. The result tells of the last time.
+  Truncation truncate(const Points& before, Points& after, const Relax& relax = {});
 
  private:
   struct Implementation;

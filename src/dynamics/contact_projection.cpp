@@ -29,8 +29,12 @@ void ContactProjection::find(const StepMotion& motion) {
   response_.start(free_space_.contacts(motion.before, motion.advanced), motion);
 }
 
-void ContactProjection::truncate(const Points& before, Points& positions) {
-  const FreeSpace::Truncation truncation = free_space_.truncate(before, positions);
+void ContactProjection::find_again(const StepMotion& motion, const Points& positions) {
+  response_.start_again(free_space_.contacts(motion.before, positions), motion);
+}
+
+void ContactProjection::truncate(const Points& before, Points& positions, const FreeSpace::Relax& relax) {
+  const FreeSpace::Truncation truncation = free_space_.truncate(before, positions, relax);
   truncated_ = truncation.truncated;
   squeezed_ = truncation.squeezed;
 }

@@ -20,6 +20,9 @@ class ContactProjection {
   /// Finds the contacts of a step. Requires that the environment's interval is the step's.
   void find(const StepMotion& motion);
 
+  /// Finds them anew where the particles are now [m], which the zones must hold: during truncation. Pushes so far count on.
+  void find_again(const StepMotion& motion, const Points& positions);
+
   /// See ContactResponse.
   double project(Points& positions) { return response_.project(positions); }
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {
@@ -28,8 +31,8 @@ class ContactProjection {
   [[nodiscard]] Index contact_count() const { return response_.pushed_count(); }
 
   /// Stops particles before an element of the network crosses a surface, where none did at `before` [m]: the last word on
-  /// positions.
-  void truncate(const Points& before, Points& positions);
+  /// positions. What is stopped `relax` may lead on (see FreeSpace::truncate).
+  void truncate(const Points& before, Points& positions, const FreeSpace::Relax& relax = {});
 
   [[nodiscard]] Index truncated_count() const { return truncated_; }
   [[nodiscard]] Index squeezed_count() const { return squeezed_; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 namespace sprung {
 namespace {
@@ -57,6 +58,12 @@ void ContactResponse::start(const std::vector<Contact>& contacts, const StepMoti
   for_each_set(sets_, [&](auto& set) { fill(set, contacts, motion); });
 }
 
+void ContactResponse::start_again(const std::vector<Contact>& contacts, const StepMotion& motion) {
+  const auto former = sets_;
+  start(contacts, motion);
+  for_each_set(sets_, [&](auto& set) { set.count_on(std::get<std::remove_reference_t<decltype(set)>>(former)); });
+}
+
 template <std::size_t n>
 void ContactResponse::fill(ContactSet<n>& set, const std::vector<Contact>& contacts, const StepMotion& motion) {
   order_.clear();
@@ -78,6 +85,7 @@ void ContactResponse::fill_one(const Contact& contact, const ContactMaterial& pa
                                std::size_t slot) {
   ContactRow<n>& row = set.row(slot);
   const bool moves = set_particles(contact, network_.inverse_masses, row);
+  row.obstacle = contact.obstacle;
   row.normal = contact.normal;
   row.static_friction = pair.static_friction;
   row.friction = pair.friction;

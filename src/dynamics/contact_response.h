@@ -26,6 +26,9 @@ class ContactResponse {
   /// of pinned particles alone never. Requires that the environment's interval is the step's.
   void start(const std::vector<Contact>& contacts, const StepMotion& motion);
 
+  /// Goes on with these contacts in the same step: one between the same as before keeps what it has pushed and held.
+  void start_again(const std::vector<Contact>& contacts, const StepMotion& motion);
+
   /// One Gauss-Seidel pass: each contact moves its particles, weighted by inverse mass, out to its gap, and friction holds or slows
   /// their motion along the surface, relative to the point that the obstacle or the other element carries: holds it while it is at
   /// most static friction times the push, else takes kinetic friction times the push from it (Coulomb). Pinned particles do not

@@ -15,6 +15,7 @@ struct ContactRow {
   std::array<Index, n> particles{};
   std::array<double, n> weights{};
   std::array<double, n> shares{};  ///< what each particle changes by for a change of the sum by 1: by inverse mass
+  Index obstacle = kNone;          ///< kNone between elements of the network
   Vector3 normal = Vector3::Zero();
   double static_friction = 0.0;
   double friction = 0.0;

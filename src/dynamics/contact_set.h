@@ -5,7 +5,10 @@
 #include "dynamics/contact_row.h"
 #include "dynamics/step_motion.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 #include <vector>
 
 namespace sprung {
@@ -22,6 +25,20 @@ class ContactSet {
   [[nodiscard]] ContactRow<n>& row(std::size_t contact) { return rows_[contact]; }
   [[nodiscard]] ContactGoal& goal(std::size_t contact) { return goals_[contact]; }
   [[nodiscard]] double& gap(std::size_t contact) { return gaps_[contact]; }
+
+  /// Takes over what contacts of the same particles with the same obstacle have pushed and held in `former`.
+  void count_on(const ContactSet& former) {
+    const std::vector<std::size_t> order = by_what_meets();
+    auto c = order.begin();
+    for (const std::size_t f : former.by_what_meets()) {
+      while (c != order.end() && what_meets(rows_[*c]) < what_meets(former.rows_[f])) ++c;
+      if (c == order.end()) return;
+      if (what_meets(former.rows_[f]) < what_meets(rows_[*c])) continue;
+      goals_[*c].push = former.goals_[f].push;
+      goals_[*c].held = former.goals_[f].held;
+      ++c;
+    }
+  }
 
   /// Answers on positions. Returns the largest change of a push, as a part of the gap.
   double project(Points& positions) {
@@ -84,6 +101,16 @@ class ContactSet {
                                    .v_after = v_after,
                                    .dt = motion.dt},
                                   row.restitution);
+  }
+
+  static auto what_meets(const ContactRow<n>& row) { return std::tie(row.obstacle, row.particles); }
+
+  [[nodiscard]] std::vector<std::size_t> by_what_meets() const {
+    std::vector<std::size_t> order(rows_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return what_meets(rows_[a]) < what_meets(rows_[b]); });
+    return order;
   }
 
   template <class Visit>

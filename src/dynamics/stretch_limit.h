@@ -14,7 +14,7 @@ struct StretchLimitSettings {
   double max_stretch = 0.02;                              ///< >= 0: lengths stay below d (1 + max_stretch)
   double max_compression = 1.0;                           ///< in [0, 1]: and above d (1 - max_compression)
   std::vector<SpringKind> kinds{SpringKind::structural};  ///< which springs it holds
-  int iterations = 32;                                    ///< most passes a step, >= 1
+  int iterations = 32;                                    ///< most passes a step, >= 1; more where surfaces stop particles
   double tolerance = 0.001;                               ///< excess over the limit, as a part of d, at which passes end, >= 0
 };
 

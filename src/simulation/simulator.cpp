@@ -21,6 +21,11 @@ constexpr int kContactPasses = 8;
 // Passes end when none pushes a particle by more than this part of its gap.
 constexpr double kContactTolerance = 1.0e-3;
 
+// Where surfaces stop particles short of where the passes led them, springs lead them and their neighbours on, at most so often,
+// by so many passes each time: zones are made again before particles are far from where they were safe.
+constexpr int kRelaxRounds = 16;
+constexpr int kRelaxPasses = 2;
+
 // Springs are looked at for one that gave way each step, large networks less often: about so many springs a step.
 constexpr Index kSpringsCheckedPerStep = 8192;
 
@@ -41,6 +46,7 @@ struct Simulator::Implementation {
   void move_pins(double time);
   void constrain(StepReport& report);
   void settle(StepReport& report);
+  [[nodiscard]] bool relax(Points& positions);
   void check_state() const;
   void fail(StepFailure failure) const;
   [[nodiscard]] bool projects_contacts() const;
@@ -146,12 +152,25 @@ void Simulator::Implementation::constrain(StepReport& report) {
 
 void Simulator::Implementation::settle(StepReport& report) {
   if (!contacts.meets_anything() && !limit) return;
-  if (contacts.meets_anything()) contacts.truncate(before, state.x);
+  int rounds = 0;
+  const auto relax_again = [&](Points& positions) { return rounds++ < kRelaxRounds && relax(positions); };
+  if (contacts.meets_anything()) contacts.truncate(before, state.x, relax_again);
   integrator->recover_velocities(state, before, advanced, settings.step);
   if (contacts.meets_anything()) contacts.settle_velocities(motion(), state, *integrator);
   report.stretch_excess = limit ? limit->excess(state.x) : 0.0;
   report.truncated = contacts.truncated_count();
   report.squeezed = contacts.squeezed_count();
+}
+
+// What truncation stopped met something that no contact told of: those are found where it is now.
+bool Simulator::Implementation::relax(Points& positions) {
+  if (!limit || limit->excess(positions) <= limit->settings().tolerance) return false;
+  if (projects_contacts()) contacts.find_again(motion(), positions);
+  for (int pass = 0; pass < kRelaxPasses; ++pass) {
+    limit->project(positions);
+    if (projects_contacts()) contacts.project(positions);
+  }
+  return true;
 }
 
 void Simulator::Implementation::check_state() const {

@@ -122,6 +122,38 @@ TEST(Truncation, PressedForEverAParticleStaysInFront) {
   }
 }
 
+TEST(Truncation, WhatIsStoppedIsLedOnFromWhereItIsSafe) {
+  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
+  FreeSpace space = test::single_particles(environment, 2);
+  Points before(3, 2);
+  before << 0.3, -0.3, 0.01, 0.5, 0.4, 0.4;
+  Points after = before;
+  after(1, 0) = -1.0;
+  int times = 0;
+  const auto lead_on = [&](Points& x) {
+    EXPECT_GT(x(1, 0), 0.0);
+    if (times++ < 3) x.col(0) += Vector3(0.0, -1.0, 0.0);
+    if (times == 3) x.col(1) = Vector3(-0.3, -0.5, 0.4);
+    if (times == 4) x.col(0) = Vector3(0.5, 0.5, 0.4);
+    return times <= 4;
+  };
+  const FreeSpace::Truncation truncation = space.truncate(before, after, lead_on);
+  EXPECT_EQ(times, 5);
+  EXPECT_EQ(truncation.truncated, 0);
+  EXPECT_EQ(after.col(0), Vector3(0.5, 0.5, 0.4));
+  EXPECT_GT(after(1, 1), 0.0) << "it was to pass the sheet when another had been stopped";
+}
+
+TEST(Truncation, WhereNothingIsStoppedNothingIsLedOn) {
+  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
+  Points after = Vector3(0.3, 0.02, 0.4);
+  test::single_particles(environment, 1).truncate(Vector3(0.3, 0.01, 0.4), after, [](Points&) {
+    ADD_FAILURE() << "nothing was stopped";
+    return false;
+  });
+  EXPECT_EQ(after, Vector3(0.3, 0.02, 0.4));
+}
+
 TEST(Truncation, AnObstacleThatComesCarriesARestingParticle) {
   Obstacle sheet = mesh_obstacle(test::flat_sheet(4), false);
   sheet.placed.translation() = Vector3(0.0, -1.0, 0.0);
