@@ -211,7 +211,7 @@ void FreeSpace::Implementation::begin_pairs(const Points& before, const Points& 
 void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, Truncation& truncation) {
   pairs_began = false;
   if (!after.allFinite()) return;
-  const std::vector<Index> particles = movable(before, after);
+  const std::vector<Index> particles = movable({before, after});
   const Outcomes outcomes = PairPlacement(zones, *pairs, particles).place(before, after);
   truncation.truncated += static_cast<Index>(outcomes.size()) - count(outcomes, Outcome::free);
   truncation.squeezed += count(outcomes, Outcome::squeezed);
