@@ -60,6 +60,7 @@ void HeldGroups::number_groups() {
     number_[static_cast<std::size_t>(i)] = static_cast<Index>(groups_.size());
     groups_.push_back({.fraction = stopped_[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0});
   }
+  for (const Index i : held_) number_[static_cast<std::size_t>(i)] = number_[static_cast<std::size_t>(root(i))];
 }
 
 void HeldGroups::find_means(std::vector<char>& led_by_pins) {
@@ -112,10 +113,6 @@ void HeldGroups::anchor_groups(const std::vector<char>& led_by_pins) {
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     if (chosen[k] != nullptr) groups_[k] = {.motion = chosen[k]->motion, .fraction = 0.0};
   }
-}
-
-Index HeldGroups::group(Index particle) const {
-  return holds(particle) ? number_[static_cast<std::size_t>(root(particle))] : kNone;
 }
 
 Vector3 HeldGroups::start(Index particle) const {

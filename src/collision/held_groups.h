@@ -46,8 +46,8 @@ class HeldGroups {
   /// carried away by what hits it. Fractions are 1 again, except of groups that may not leave it.
   void find_motions();
 
-  /// A group's number from 0, or kNone for a particle that is not held.
-  [[nodiscard]] Index group(Index particle) const;
+  /// A group's number from 0, or kNone for a particle that is not held, as find_motions() found it.
+  [[nodiscard]] Index group(Index particle) const { return number_[static_cast<std::size_t>(particle)]; }
   [[nodiscard]] bool holds(Index particle) const { return parent_[static_cast<std::size_t>(particle)] != kNone; }
   [[nodiscard]] const std::vector<Index>& particles() const { return held_; }  ///< in the order in which they were held
 
@@ -85,7 +85,7 @@ class HeldGroups {
   std::vector<Index> held_;
   std::vector<char> stopped_;  ///< by particle that is its own parent
   std::vector<Lead> leads_;    ///< by pinned particles
-  std::vector<Index> number_;  ///< of the group, by particle that is its own parent
+  std::vector<Index> number_;  ///< of the group, by particle; kNone when it is not held
   std::vector<Group> groups_;
 };
 

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace sprung {
 namespace {
@@ -14,6 +15,15 @@ constexpr double kClearance = 0x1p-30;
 constexpr double kRounding = 0x1p-18;
 
 constexpr Index kPairsPerTask = 2048;
+
+std::vector<PairPlanes::Bound> sorted(const std::vector<PairPlanes::Bound>& bounds, Index particles) {
+  std::vector<std::size_t> next(static_cast<std::size_t>(particles) + 1, 0);
+  for (const PairPlanes::Bound& bound : bounds) ++next[static_cast<std::size_t>(bound.particle) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<PairPlanes::Bound> result(bounds.size());
+  for (const PairPlanes::Bound& bound : bounds) result[next[static_cast<std::size_t>(bound.particle)]++] = bound;
+  return result;
+}
 
 }  // namespace
 
@@ -37,6 +47,15 @@ bool PairPlanes::hold(std::vector<ElementPair>& pairs) {
   limit_groups(pairs);
   for (const Index i : groups_.particles()) ends_.col(i) = groups_.end(i);
   return true;
+}
+
+void PairPlanes::renew_normals(std::vector<ElementPair>& pairs) const {
+  parallel_chunks(static_cast<Index>(pairs.size()), kPairsPerTask, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      ElementPair& pair = pairs[static_cast<std::size_t>(k)];
+      if (!(heights_at(pair, before_).gap() > 0.0)) pair.normal = direction_between(pair, before_);
+    }
+  });
 }
 
 std::vector<Index> PairPlanes::find_conflicts(std::vector<ElementPair>& pairs) const {
@@ -97,7 +116,7 @@ void PairPlanes::limit_groups(const std::vector<ElementPair>& pairs) {
 }
 
 std::vector<PairPlanes::Bound> PairPlanes::bounds(const std::vector<ElementPair>& pairs) const {
-  std::vector<Bound> bounds;
+  std::vector<Bound> found;
   for (ElementPair pair : pairs) {
     if (std::none_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return groups_.holds(i); }))
       continue;
@@ -114,11 +133,10 @@ std::vector<PairPlanes::Bound> PairPlanes::bounds(const std::vector<ElementPair>
     const HalfSpace below{-pair.normal, -std::max(end.second, middle - room)};
     for (int k = 0; k < pair.count(); ++k) {
       const Index i = pair.particles[static_cast<std::size_t>(k)];
-      if (groups_.holds(i)) bounds.push_back({i, k < pair.first_count ? above : below});
+      if (groups_.holds(i)) found.push_back({i, k < pair.first_count ? above : below});
     }
   }
-  std::stable_sort(bounds.begin(), bounds.end(), [](const Bound& a, const Bound& b) { return a.particle < b.particle; });
-  return bounds;
+  return sorted(found, static_cast<Index>(before_.cols()));
 }
 
 }  // namespace sprung

@@ -26,6 +26,9 @@ class PairPlanes {
   /// Pairs whose plane does not do any more get a better one, if there is one.
   [[nodiscard]] bool hold(std::vector<ElementPair>& pairs);
 
+  /// Gives a new normal to those pairs whose own does not separate them where the step begins.
+  void renew_normals(std::vector<ElementPair>& pairs) const;
+
   /// Where particles may end: their targets, or, for those that are held, a place on the way [m].
   [[nodiscard]] const Points& ends() const { return ends_; }
 

@@ -29,6 +29,7 @@ struct SelfZones::Implementation {
   Points ends;
   std::vector<Index> held;
   std::vector<PairPlanes::Bound> bounds;
+  bool turned = false;  ///< groups were, and the normals of their pairs not
 };
 
 SelfZones::SelfZones(const CollisionSurface& surface, const Points& rest, double margin)
@@ -47,6 +48,8 @@ const std::vector<Index>& SelfZones::hold(const Points& before, const Points& ta
   Implementation& self = *implementation_;
   PairPlanes planes(before, targets, self.surface.pinned, carriers, kKeptPart * self.surface.thickness.minCoeff());
   self.watch.follow(before, targets);
+  if (self.turned) planes.renew_normals(self.watch.pairs());
+  self.turned = !carriers.anchors.empty();
   while (planes.hold(self.watch.pairs())) self.watch.follow(before, planes.ends());
   self.ends = planes.ends();
   self.held = planes.held();
