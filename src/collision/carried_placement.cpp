@@ -4,36 +4,41 @@ namespace sprung {
 
 namespace {
 
-// Neighbours are carried so far around.
-constexpr int kRounds = 4;
+// Elements that are crossed then are taken along as wholes, and what they meet there; if that does not free them, somewhat higher
+// each time.
+constexpr double kLifts[] = {0.0, 0.0, 1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};
 
 }  // namespace
 
 void carry_squeezed(ObstacleZones& zones, const std::vector<Index>& particles, const Points& before, Points& after,
                     Outcomes& outcomes) {
   if (count(outcomes, Outcome::squeezed) == 0) return;
+  std::vector<std::size_t> number(static_cast<std::size_t>(after.cols()), particles.size());
   std::vector<char> crossed_before(particles.size(), 0);
-  std::vector<char> tried(particles.size(), 0);
-  std::vector<std::size_t> group;
+  std::vector<Index> carried;
   for (std::size_t n = 0; n < particles.size(); ++n) {
-    if (zones.is_crossed(particles[n])) crossed_before[n] = 1;
-    if (outcomes[n] == Outcome::squeezed) group.push_back(n);
+    const Index i = particles[n];
+    number[static_cast<std::size_t>(i)] = n;
+    crossed_before[n] = zones.is_crossed(i) ? 1 : 0;
+    if (outcomes[n] != Outcome::squeezed) continue;
+    const auto place = zones.carried(i, before.col(i));
+    if (!place) continue;
+    after.col(i) = *place;
+    outcomes[n] = Outcome::stopped;
+    carried.push_back(i);
   }
-  for (int round = 0; round < kRounds && !group.empty(); ++round) {
-    std::vector<Index> carried;
-    for (const std::size_t n : group) {
-      const Index i = particles[n];
-      const auto place = zones.carried(i, before.col(i));
-      if (place) after.col(i) = *place;
-      outcomes[n] = place ? Outcome::stopped : Outcome::squeezed;
-      tried[n] = 1;
+  zones.renew_around(carried, {after, after, true});
+  for (const double lift : kLifts) {
+    if (carried.empty()) break;
+    carried.clear();
+    for (const auto& [i, distance, place] : zones.carried_with_elements(before, lift)) {
+      const std::size_t n = number[static_cast<std::size_t>(i)];
+      if (n == particles.size() || crossed_before[n] != 0) continue;
+      after.col(i) = place;
+      outcomes[n] = Outcome::stopped;
       carried.push_back(i);
     }
     zones.renew_around(carried, {after, after, true});
-    group.clear();
-    for (std::size_t n = 0; n < particles.size(); ++n) {
-      if (tried[n] == 0 && crossed_before[n] == 0 && zones.is_crossed(particles[n])) group.push_back(n);
-    }
   }
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (crossed_before[n] == 0 && zones.is_crossed(particles[n])) outcomes[n] = Outcome::squeezed;

@@ -1,5 +1,7 @@
 #include "collision/deforming_mesh.h"
 
+#include "geometry/closest_pair.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -95,21 +97,22 @@ Vector3 DeformingMesh::displacement(Index triangle, const Vector3& weights, doub
   return sum;
 }
 
-DeformingMesh::CarriedPoint DeformingMesh::carried(Index triangle, const Vector3& weights, const Vector3& p) const {
+SpotMotion DeformingMesh::motion(Index triangle, const Vector3& point) const {
   const auto corner = after_.triangles.col(triangle);
-  const auto spot = [&](const Points& x) -> Vector3 {
-    return weights[0] * x.col(corner[0]) + weights[1] * x.col(corner[1]) + weights[2] * x.col(corner[2]);
-  };
+  const Vector3 a = before_.vertices.col(corner[0]);
+  const Vector3 b = before_.vertices.col(corner[1]);
+  const Vector3 c = before_.vertices.col(corner[2]);
+  const Vector3 weights = barycentric(closest_point_on_triangle(point, a, b, c), a, b, c);
   const auto axes = [&](const TriangleMesh& mesh) {
-    const Points& x = mesh.vertices;
+    const Vector3 origin = mesh.vertices.col(corner[0]);
     Matrix3 columns;
-    columns << x.col(corner[1]) - x.col(corner[0]), x.col(corner[2]) - x.col(corner[0]), area_normal(mesh, triangle).normalized();
+    columns << mesh.vertices.col(corner[1]) - origin, mesh.vertices.col(corner[2]) - origin,
+        area_normal(mesh, triangle).normalized();
     return columns;
   };
-  const Vector3 before = spot(before_.vertices);
-  const Vector3 after = spot(after_.vertices);
-  const Vector3 along = axes(after_) * axes(before_).inverse() * (p - before);
-  return {after, along.allFinite() ? Vector3(after + along) : Vector3(after + (p - before))};
+  SpotMotion motion{.after = point + displacement(triangle, weights), .turn = axes(after_) * axes(before_).inverse()};
+  if (!motion.turn.allFinite()) motion.turn.setIdentity();  // the triangle has no area
+  return motion;
 }
 
 Vector3 DeformingMesh::face_normal(Index triangle) const {

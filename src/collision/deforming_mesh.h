@@ -9,6 +9,13 @@
 
 namespace sprung {
 
+/// Where a point of a surface goes, and what becomes of what lies around it: what is beside it is stretched and turned as the
+/// surface is, what is above it stays as high.
+struct SpotMotion {
+  Vector3 after = Vector3::Zero();
+  Matrix3 turn = Matrix3::Identity();
+};
+
 /// Within an interval each vertex moves straight from where the sequence has it at the begin to where it has it at the end.
 class DeformingMesh {
  public:
@@ -46,13 +53,8 @@ class DeformingMesh {
   [[nodiscard]] Vector3 displacement(Index triangle, const Vector3& weights) const;
   [[nodiscard]] Vector3 displacement(Index triangle, const Vector3& weights, double t, double t_end) const;
 
-  /// Where a triangle takes a point of its own and what is at p, in the interval: p as high above it as it was, and beside the
-  /// point as the triangle's edges are stretched and turned.
-  struct CarriedPoint {
-    Vector3 spot;
-    Vector3 place;
-  };
-  [[nodiscard]] CarriedPoint carried(Index triangle, const Vector3& weights, const Vector3& p) const;
+  /// How a triangle takes along what is at and around a point of its own in the interval.
+  [[nodiscard]] SpotMotion motion(Index triangle, const Vector3& point) const;
 
   // Normals at the interval's end.
   [[nodiscard]] Vector3 normal_at(Index triangle, TriangleFeature feature) const {

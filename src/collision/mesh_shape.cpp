@@ -74,14 +74,40 @@ Vector3 MeshShape::displacement(const Vector3& p, double t, double t_end) const 
   return triangle == kNone ? Vector3(Vector3::Zero()) : deforming_->displacement(triangle, weights, t, t_end);
 }
 
-std::optional<Vector3> MeshShape::carried(const Vector3& p) const {
-  if (!deforms_ || deforming_->largest_displacement() == 0.0) return p;
-  const auto [triangle, weights] = nearest_spot(*tree_before_, p);
-  if (triangle == kNone) return p;
-  const auto [spot, place] = deforming_->carried(triangle, weights, p);
-  const auto hit = tree_->first_hit(place, spot, CrossingSides::both);
-  if (hit && hit->triangle != triangle && hit->fraction < kAtSpot) return std::nullopt;
-  return place;
+std::optional<CarriedElement> MeshShape::carried(const ElementCorners& element, double lift) const {
+  if (!deforms_ || deforming_->largest_displacement() == 0.0) return {{element}};
+  const Zone zone = nearest_before(element);
+  if (zone.broken || zone.triangle == kNone) return std::nullopt;
+  CarriedElement result{element, zone.distance};
+  const SpotMotion motion = deforming_->motion(zone.triangle, zone.point);
+  const Vector3 raised = lift * deforming_->largest_displacement() * (motion.turn * zone.normal).normalized();
+  Vector3 nearest = Vector3::Zero();
+  for (int i = 0; i < element.count; ++i) {
+    Vector3& corner = result.corners.x[static_cast<std::size_t>(i)];
+    corner = motion.after + motion.turn * (corner - zone.point) + raised;
+    nearest += zone.weights[i] * corner;
+  }
+  const auto hit = tree_->first_hit(nearest, motion.after, CrossingSides::both);
+  if (hit && hit->triangle != zone.triangle && hit->fraction < kAtSpot) return std::nullopt;
+  return result;
+}
+
+// What an obstacle comes to cross in the interval is no farther from it than both go.
+Zone MeshShape::nearest_before(const ElementCorners& element) const {
+  Zone zone;
+  if (element.count > 1) {
+    const double reach = 2.0 * deforming_->largest_displacement();
+    sprung::find_zone(*tree_before_, element, {.reach = reach, .exact = reach}, zone);
+    return zone;
+  }
+  const auto found = tree_before_->nearest(element.x[0], std::numeric_limits<double>::infinity());
+  if (!found) return zone;  // the particle is not finite
+  zone.triangle = found->triangle;
+  zone.point = found->closest.point;
+  zone.distance = std::sqrt(found->closest.squared_distance);
+  zone.normal = (element.x[0] - zone.point).normalized();
+  zone.weights = Vector3::UnitX();
+  return zone;
 }
 
 MeshShape::Spot MeshShape::nearest_spot(const MeshTree& tree, const Vector3& p) {

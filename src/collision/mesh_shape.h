@@ -21,7 +21,7 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] double largest_displacement() const override { return deforms_ ? deforming_->largest_displacement() : 0.0; }
   [[nodiscard]] Vector3 displacement(const Vector3& p) const override;
   [[nodiscard]] Vector3 displacement(const Vector3& p, double t, double t_end) const override;
-  [[nodiscard]] std::optional<Vector3> carried(const Vector3& p) const override;
+  [[nodiscard]] std::optional<CarriedElement> carried(const ElementCorners& element, double lift) const override;
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;
   [[nodiscard]] std::optional<SurfacePoint> nearest_again(const Vector3& p, double radius, double same, double fresh,
@@ -45,6 +45,7 @@ class MeshShape final : public ObstacleShape {
     Vector3 weights = Vector3::Zero();
   };
   [[nodiscard]] static Spot nearest_spot(const MeshTree& tree, const Vector3& p);
+  [[nodiscard]] Zone nearest_before(const ElementCorners& element) const;
   [[nodiscard]] const TriangleMesh& mesh() const { return deforming_ ? deforming_->after() : *rigid_; }
   [[nodiscard]] Vector3 face_normal(Index triangle) const;
   [[nodiscard]] Vector3 pseudonormal(Index triangle, TriangleFeature feature) const;

@@ -91,8 +91,8 @@ double ObstacleSet::max_clearance(const Box3& box) const {
 Vector3 ObstacleSet::carried(Index k, const Vector3& from) const {
   if (rests(k)) return from;
   const Vector3 before = local_before(k, from);
-  const auto place = shape(k).carried(before);
-  return after(k) * (place ? *place : Vector3(before + shape(k).displacement(before)));
+  const auto carried = shape(k).carried({.x = {before}, .count = 1}, 0.0);
+  return after(k) * (carried ? carried->corners.x[0] : Vector3(before + shape(k).displacement(before)));
 }
 
 Vector3 ObstacleSet::drift(Index k, const Vector3& position, double t, double t_end) const {

@@ -23,6 +23,12 @@ struct SurfaceMemory {
   Vector3 asked_at = Vector3::Zero();  ///< [m]
 };
 
+/// An element that an obstacle carries.
+struct CarriedElement {
+  ElementCorners corners;
+  double distance = 0.0;  ///< from what carries it [m]; 0 for a shape that carries all alike
+};
+
 /// Where a straight path meets the surface for the first time.
 struct Crossing {
   double fraction = 0.0;  ///< of the path, in [0, 1]
@@ -46,9 +52,12 @@ class ObstacleShape {
   /// How far the point of the surface that is nearest to p at the interval's begin moves in it, in the shape's frame [m].
   [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/) const { return Vector3::Zero(); }
 
-  /// Where a surface that deforms takes what is at p at the interval's begin: as high above the triangle that is nearest to it, in
-  /// the triangle's own axes. Nothing where another part of the surface came between.
-  [[nodiscard]] virtual std::optional<Vector3> carried(const Vector3& p) const { return p; }
+  /// Where a surface that deforms takes an element along from the interval's begin: as high above the triangle that is nearest to
+  /// it, in the triangle's own axes, and higher by `lift`, a part of how far the surface goes at most. Nothing where another part
+  /// of the surface comes between, or where none is near.
+  [[nodiscard]] virtual std::optional<CarriedElement> carried(const ElementCorners& element, double /*lift*/) const {
+    return {{element}};
+  }
 
   /// How far the point of the surface that is nearest to p at the interval's end moves from time t to t_end, likewise.
   [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/, double /*t*/, double /*t_end*/) const { return Vector3::Zero(); }

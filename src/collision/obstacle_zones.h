@@ -18,6 +18,13 @@ struct Way {
   bool obstacles_rest = false;  ///< obstacles are at the interval's end already when the way begins
 };
 
+/// A particle that an obstacle carries together with an element.
+struct CarriedCorner {
+  Index particle = kNone;
+  double distance = 0.0;  ///< of the element from the obstacle [m]
+  Vector3 place = Vector3::Zero();
+};
+
 class ObstacleZones {
  public:
   /// Contacts are found `margin` [m] beyond their gap. Keeps references to both.
@@ -53,6 +60,11 @@ class ObstacleZones {
   /// there is no such obstacle. What deforms moves as it does where the particle was, at `from`.
   [[nodiscard]] Anchor anchor(Index particle, const Vector3& from, const Vector3& position) const;
 
+  /// Where obstacles that move take elements along which they would cross now, each with what was nearest to it at `from`, and
+  /// higher by `lift` (see ObstacleShape::carried): the corners' places, ascending by particle, of a corner of several elements
+  /// with the nearest of them.
+  [[nodiscard]] std::vector<CarriedCorner> carried_with_elements(const Points& from, double lift) const;
+
   /// Appends where the obstacles that move near the particle carry it from `from`.
   void append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const;
 
@@ -68,6 +80,9 @@ class ObstacleZones {
 
   /// Those that elements around the particle may meet, ascending.
   [[nodiscard]] std::vector<Index> near_obstacles(Index particle) const;
+  void append_carried_around(Index patch, const Points& from, double lift, std::vector<CarriedCorner>& corners) const;
+  /// Whether a particle that obstacle k carries to `place` would pass another one.
+  [[nodiscard]] bool leads_through_another(Index k, Index particle, const Vector3& from, const Vector3& place) const;
   /// An obstacle that moves and that an element around the particle may touch; kNone if there is none.
   [[nodiscard]] Index leans_on(Index particle) const;
   void find_near(Index patch, const Way& way, double carried);

@@ -279,5 +279,32 @@ TEST(DeformingObstacle, SurfaceVelocityAddsDeformingToMotion) {
   EXPECT_LT((velocity - Vector3(10.0, 0.0, 3.0)).norm(), 1e-12);
 }
 
+/// A sheet that is stretched, sheared and turned in a tenth of a second, and stays flat.
+TEST(SequenceShape, CarriesElementsAtTheirHeightAndAsMuchHigherAsAsked) {
+  const auto sequence = sequence_of(test::flat_sheet(8), 2, [](const Vector3& x, int k) {
+    return Vector3((1.0 + 0.5 * k) * x.x(), k * (x.x() - 0.3 * x.z() + 2.0), x.z() + 0.4 * k * x.x());
+  });
+  MeshShape shape(SequenceGeometry{sequence, false});
+  shape.set_interval(0.0, 0.1);
+  const Vector3 normal = Vector3(-(1.0 + 0.3 * 0.4), 1.5, 0.3 * 1.5).normalized();
+  Random random(36);
+  for (int trial = 0; trial < 100; ++trial) {
+    ElementCorners element{.count = 1 + trial % 3};
+    for (Vector3& corner : element.x) corner = random.in_box({Vector3(-1.0, 0.001, -1.0), Vector3(1.0, 0.5, 1.0)});
+    for (const double lift : {0.0, 0.125}) {
+      const auto carried = shape.carried(element, lift);
+      ASSERT_TRUE(carried);
+      double lowest = 1.0;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(element.count); ++i) {
+        const double raised = lift * shape.largest_displacement();
+        // Coordinates up to 10 m carry roundings of 2e-15 m, the triangle's axes some more.
+        EXPECT_NEAR(normal.dot(carried->corners.x[i] - Vector3(0.0, 2.0, 0.0)), element.x[i].y() + raised, 1e-13);
+        lowest = std::min(lowest, element.x[i].y());
+      }
+      EXPECT_NEAR(carried->distance, lowest, 1e-15);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sprung

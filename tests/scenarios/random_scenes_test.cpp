@@ -98,15 +98,16 @@ ObstacleGeometry random_primitive(Random& random) {
   }
 }
 
-/// The mesh sheared and stretched by up to a tenth, differently in each frame.
+/// The mesh sheared and stretched by up to a tenth, or three, differently in each frame.
 SequenceGeometry deforming(const MeshGeometry& rest, Random& random) {
   MeshSequence sequence;
   sequence.triangles = rest.mesh->triangles;
-  sequence.frame_rate = one_of(random, {2.0, 10.0});
+  sequence.frame_rate = one_of(random, {2.0, 10.0, 30.0});
+  const double most = one_of(random, {0.1, 0.3});
   sequence.loop = true;
   for (int frame = 0; frame < 4; ++frame) {
     Matrix3 map = Matrix3::Identity();
-    for (double& entry : map.reshaped()) entry += random.between(-0.1, 0.1);
+    for (double& entry : map.reshaped()) entry += random.between(-most, most);
     sequence.frames.push_back(map * rest.mesh->vertices);
   }
   return {.sequence = std::make_shared<const MeshSequence>(std::move(sequence)), .closed = rest.closed};

@@ -1,0 +1,113 @@
+#include "collision/obstacle_zones.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+std::vector<Carried> ObstacleZones::carried(const Points& from) const {
+  std::vector<Carried> particles;
+  if (!set_.moves()) return particles;
+  for (Index i = 0; i < static_cast<Index>(from.cols()); ++i) {
+    const Index k = leans_on(i);
+    if (k != kNone) particles.push_back({i, set_.carried(k, from.col(i)) - from.col(i)});
+  }
+  return particles;
+}
+
+Index ObstacleZones::leans_on(Index particle) const {
+  for (const PatchSlot& place : slots_of(particle)) {
+    for (const PatchZones& zones : patches_[at(place.patch)].zones) {
+      if (zones.may_lean(place.slot) && !set_.rests(zones.obstacle())) return zones.obstacle();
+    }
+  }
+  return kNone;
+}
+
+Anchor ObstacleZones::anchor(Index particle, const Vector3& from, const Vector3& position) const {
+  Anchor anchor{.particle = particle};
+  for (const PatchSlot& place : slots_of(particle)) {
+    for (const PatchZones& zones : patches_[at(place.patch)].zones) {
+      const Index k = zones.obstacle();
+      if (set_.rests(k) || zones.allow(place.slot, set_.local(k, position))) continue;
+      anchor.motion = set_.after(k) * set_.before(k).inverse();
+      anchor.motion.pretranslate(set_.carried(k, from) - anchor.motion * from);
+      return anchor;
+    }
+  }
+  return anchor;
+}
+
+std::vector<Index> ObstacleZones::near_obstacles(Index particle) const {
+  std::vector<Index> near;
+  for (const PatchSlot& place : slots_of(particle)) {
+    for (const PatchZones& zones : patches_[at(place.patch)].zones) near.push_back(zones.obstacle());
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
+}
+
+void ObstacleZones::append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const {
+  for (const Index k : near_obstacles(particle)) {
+    if (!set_.rests(k)) places.push_back(set_.carried(k, from));
+  }
+}
+
+std::optional<Vector3> ObstacleZones::carried(Index particle, const Vector3& from) const {
+  for (const Index k : near_obstacles(particle)) {
+    if (set_.rests(k)) continue;
+    const auto carried = set_.shape(k).carried({.x = {set_.local_before(k, from)}, .count = 1}, 0.0);
+    if (!carried) return std::nullopt;
+    const Vector3 place = set_.after(k) * carried->corners.x[0];
+    if (!leads_through_another(k, particle, from, place)) return place;
+  }
+  return std::nullopt;
+}
+
+// Before each obstacle a particle goes straight from where that one carries it.
+bool ObstacleZones::leads_through_another(Index k, Index particle, const Vector3& from, const Vector3& place) const {
+  const std::vector<Index> near = near_obstacles(particle);
+  return std::any_of(near.begin(), near.end(), [&](Index other) {
+    if (other == k) return false;
+    const auto carried = set_.shape(other).carried({.x = {set_.local_before(other, from)}, .count = 1}, 0.0);
+    return !carried || set_.shape(other).first_crossing(carried->corners.x[0], set_.local(other, place));
+  });
+}
+
+void ObstacleZones::append_carried_around(Index p, const Points& from, double lift, std::vector<CarriedCorner>& corners) const {
+  const ElementPatch& patch = surface_.patches[at(p)];
+  for (const PatchZones& zones : patches_[at(p)].zones) {
+    const Index k = zones.obstacle();
+    for (Index e = 0; e < patches_[at(p)].topology.element_count() && !set_.rests(k); ++e) {
+      if (!zones.zone(e).broken) continue;
+      const Element& element = surface_.elements[at(patch.first_element + e)];
+      ElementCorners local{.count = element.corners};
+      for (std::size_t c = 0; c < at(element.corners); ++c) local.x[c] = set_.local_before(k, from.col(element.particles[c]));
+      const auto carried = set_.shape(k).carried(local, lift);
+      for (std::size_t c = 0; c < at(element.corners) && carried; ++c) {
+        const Index i = element.particles[c];
+        const Vector3 place = set_.after(k) * carried->corners.x[c];
+        if (!leads_through_another(k, i, from.col(i), place)) corners.push_back({i, carried->distance, place});
+      }
+    }
+  }
+}
+
+std::vector<CarriedCorner> ObstacleZones::carried_with_elements(const Points& from, double lift) const {
+  std::vector<CarriedCorner> corners;
+  for (Index p = 0; p < static_cast<Index>(patches_.size()); ++p) append_carried_around(p, from, lift, corners);
+  std::sort(corners.begin(), corners.end(), [](const CarriedCorner& a, const CarriedCorner& b) {
+    return a.particle != b.particle ? a.particle < b.particle : a.distance < b.distance;
+  });
+  const auto same = [](const CarriedCorner& a, const CarriedCorner& b) { return a.particle == b.particle; };
+  corners.erase(std::unique(corners.begin(), corners.end(), same), corners.end());
+  return corners;
+}
+
+}  // namespace sprung
