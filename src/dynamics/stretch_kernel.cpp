@@ -50,10 +50,10 @@ struct Moves {
 };
 
 [[gnu::always_inline]] inline void find_moves(const StretchBatches& batches, Index constants, const Lengths& springs,
-                                              Moves& moves) {
+                                              double relaxation, Moves& moves) {
   SpringLanes first_share;
   load_lanes(&batches.first_share[constants], first_share);
-  const SpringLanes quotient = springs.beyond / springs.length;
+  const SpringLanes quotient = relaxation * springs.beyond / springs.length;
   const SpringLanes part = springs.length > 0.0 ? quotient : SpringLanes{};
   moves.first = first_share * part;
   moves.second = (1.0 - first_share) * part;
@@ -144,7 +144,7 @@ struct GatheredGroup {
 
 template <class Group>
 [[gnu::always_inline]] inline double project(const StretchBatches& batches, const StretchBatches::Part& part,
-                                             const LengthRange& range, double* positions) {
+                                             const LengthRange& range, double relaxation, double* positions) {
   SpringLanes excess{};
   for (Index s = part.begin; s < part.end; s += kSpringLanes) {
     const Index constants = part.same ? part.begin : s;
@@ -154,7 +154,7 @@ template <class Group>
     if (!find_beyond(batches, constants, range, springs)) continue;
     keep_largest(batches, constants, springs, excess);
     Moves moves;
-    find_moves(batches, constants, springs, moves);
+    find_moves(batches, constants, springs, relaxation, moves);
     move(batches, s, moves, group, positions);
   }
   return largest(excess);
@@ -184,9 +184,10 @@ template <class Group>
 }  // namespace
 
 SPRUNG_KERNEL
-double project_springs(const StretchBatches& batches, const StretchBatches::Part& part, const LengthRange& range,
+double project_springs(const StretchBatches& batches, const StretchBatches::Part& part, const LengthRange& range, double relaxation,
                        double* positions) {
-  return part.run ? project<RunGroup>(batches, part, range, positions) : project<GatheredGroup>(batches, part, range, positions);
+  return part.run ? project<RunGroup>(batches, part, range, relaxation, positions)
+                  : project<GatheredGroup>(batches, part, range, relaxation, positions);
 }
 
 SPRUNG_KERNEL

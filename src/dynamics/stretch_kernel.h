@@ -11,9 +11,9 @@ struct LengthRange {
   double most;
 };
 
-/// Moves the ends of a part's springs so that their lengths lie in `range`; `positions` holds 3 numbers a particle [m]. Returns the
-/// largest excess before, as a part of the rest length.
-double project_springs(const StretchBatches& batches, const StretchBatches::Part& part, const LengthRange& range,
+/// Moves the ends of a part's springs by `relaxation` times what makes their lengths lie in `range`; `positions` holds 3 numbers a
+/// particle [m]. Returns the largest excess before, as a part of the rest length.
+double project_springs(const StretchBatches& batches, const StretchBatches::Part& part, const LengthRange& range, double relaxation,
                        double* positions);
 
 /// The same excess; moves nothing.

@@ -38,10 +38,10 @@ StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSetti
     : network_(network), settings_(settings), batches_(std::make_unique<StretchBatches>(network, settings.kinds)) {}
 StretchLimit::~StretchLimit() = default;
 
-double StretchLimit::project(Points& positions) const {
+double StretchLimit::project(Points& positions, double relaxation) const {
   const LengthRange range = length_range(settings_);
   const auto project_part = [&](const StretchBatches::Part& part) {
-    return project_springs(*batches_, part, range, positions.data());
+    return project_springs(*batches_, part, range, relaxation, positions.data());
   };
   double excess = 0.0;
   for (std::size_t batch = 0; batch + 1 < batches_->begin.size(); ++batch) {

@@ -50,6 +50,33 @@ TEST(StretchLimit, ProjectsACompressedSpringOntoItsLimit) {
   EXPECT_NEAR(length_of(x, 0, 1), 1.5, 8 * kEpsilon);
 }
 
+TEST(StretchLimit, RelaxationMultipliesCorrections) {
+  const SpringNetwork network = make_pair(3.0, 0.0, 2.0);
+  const StretchLimit limit(network, {.max_stretch = 0.1});
+  for (const double relaxation : {0.5, 1.5}) {
+    Points x = network.positions;
+    EXPECT_NEAR(limit.project(x, relaxation), 3.0 / 2.0 - 1.1, 8 * kEpsilon);
+    EXPECT_NEAR(length_of(x, 0, 1), 3.0 - relaxation * (3.0 - 2.2), 8 * kEpsilon);
+  }
+}
+
+TEST(StretchLimit, RelaxationOfLessThanTwoConverges) {
+  // A free cloth stretched by a half in one direction.
+  SpringNetwork network = make_test_cloth(12, 0.0, 0.0, false);
+  network.positions.row(0) *= 1.5;
+  const StretchLimit limit(network, {.max_stretch = 0.02});
+  const auto passes_to_reach = [&](double relaxation) {
+    Points x = network.positions;
+    int passes = 0;
+    while (limit.project(x, relaxation) > 1.0e-6 && passes < 2000) ++passes;
+    return passes;
+  };
+  const int unrelaxed = passes_to_reach(1.0);
+  EXPECT_LT(unrelaxed, 2000);
+  EXPECT_LT(passes_to_reach(1.5), unrelaxed);
+  EXPECT_LT(passes_to_reach(1.9), unrelaxed);
+}
+
 TEST(StretchLimit, LeavesSpringsWithinTheirLimitsAlone) {
   const SpringNetwork network = make_pair(2.1, 0.0, 2.0);
   const StretchLimit limit(network, {.max_stretch = 0.1});

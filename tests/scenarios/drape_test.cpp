@@ -17,6 +17,12 @@ INSTANTIATE_TEST_SUITE_P(StepFactor, Drape, ::testing::Values(1.0, 4.0));
 TEST_P(Drape, AClothFallsOnTheBunny) {
   const ScenarioReport report = run_scenario(load_scenario("drape", {}, GetParam()));
   EXPECT_TRUE(report.is_free()) << report;
+  // The step is chosen for 0.011 beyond the limit of 0.02 where a cloth hangs at rest, and relaxation leaves a third of that. This
+  // one's sides come at 5 m/s and swing round the ears, 0.7 m away: they pull with 4 g and their weight, which makes 0.018. The
+  // rest is for the corners, which whip.
+  if (GetParam() == 1.0) {
+    EXPECT_LT(report.max_stretch, 0.02 + 0.03) << report;
+  }
 }
 
 TEST_P(Drape, AtRestTheGapIsTheThickness) {

@@ -76,11 +76,11 @@ TEST_P(Sharp, ARopeThroughATorusStaysThroughIt) {
   EXPECT_TRUE(report.is_free()) << report;
 }
 
-// The step is chosen for half the limit and the tolerance, 0.011, beyond the limit when the rope hangs at rest. Dragged along it
-// swings at up to 4.5 m/s in bends of 1 m: it pulls with 2 g and its weight.
+// The step is chosen for half the limit and the tolerance, 0.011, beyond the limit when the rope hangs at rest, and relaxation
+// leaves a third of that. Dragged along it swings at up to 4.5 m/s in bends of 1 m: it pulls with 2 g and its weight.
 TEST(DraggedRope, KeepsItsLength) {
   const ScenarioReport report = run_scenario(load_scenario("rope_through_torus"), {}, Judge::nothing);
-  EXPECT_LT(report.max_stretch, 0.02 + 3.0 * 0.011) << report;
+  EXPECT_LT(report.max_stretch, 0.02 + 0.011) << report;
 }
 
 }  // namespace
