@@ -4,6 +4,8 @@
 #include "collision/pair_placement.h"
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
 #include <optional>
 
 namespace sprung {
@@ -29,6 +31,17 @@ bool meets_itself(const CollisionSurface& surface) {
          std::count(surface.others.begin(), surface.others.end(), 1) > 1;
 }
 
+/// Adds those of `all`, which hold the particles, that are not among them: they arrived. All ascending.
+void add_free(std::vector<Index> all, std::vector<Index>& particles, Outcomes& outcomes) {
+  Outcomes of_all(all.size(), Outcome::free);
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < all.size() && n < particles.size(); ++k) {
+    if (all[k] == particles[n]) of_all[k] = outcomes[n++];
+  }
+  particles = std::move(all);
+  outcomes = std::move(of_all);
+}
+
 }  // namespace
 
 struct FreeSpace::Implementation {
@@ -43,12 +56,14 @@ struct FreeSpace::Implementation {
   Truncation lead_on(const std::vector<Index>& particles, const Outcomes& outcomes, const Way& way, Points& after);
   void keep_apart(const Points& before, Points& after, Truncation& truncation);
   [[nodiscard]] Index crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const;
-  [[nodiscard]] std::vector<Index> movable(const Way& way) const;
-  Outcomes place_in_parts(const std::vector<Index>& particles, const Way& way, Points& after);
+  [[nodiscard]] std::vector<Index> movable(std::vector<Index> particles, const Way& way) const;
+  [[nodiscard]] std::vector<Index> all_movable(const Way& way) const;
+  Outcomes place_in_parts(std::vector<Index>& particles, const Way& way, Points& after);
   [[nodiscard]] static bool can_go_on(Index particle, const Points& from, const Points& target, const Points& now);
   /// Leaves in `stopped` those that may come farther yet; returns how many arrived.
   Index go_on(std::vector<Index>& stopped, const Points& target, Points& after);
-  Outcomes place_with_fresh_zones(const std::vector<Index>& particles, const Way& way, Points& positions);
+  /// Particles are ascending; those that may be held back too are added.
+  Outcomes place_with_fresh_zones(std::vector<Index>& particles, const Way& way, Points& positions);
 
   Environment& environment;
   const ObstacleSet& set;
@@ -99,10 +114,11 @@ FreeSpace::Truncation FreeSpace::Implementation::truncate(const Points& before, 
 }
 
 FreeSpace::Truncation FreeSpace::Implementation::place_all(const Way& way, Points& after) {
-  const std::vector<Index> particles = movable(way);
   zones.follow(way);
+  std::vector<Index> particles = movable(zones.restless(), way);
   Outcomes outcomes = place_with_fresh_zones(particles, way, after);
-  if (set.moves() && !way.obstacles_rest) {
+  if (set.moves() && !way.obstacles_rest && count(outcomes, Outcome::squeezed) > 0) {
+    add_free(all_movable(way), particles, outcomes);
     carry_squeezed(zones, particles, way.from, after, outcomes);
     if (count(outcomes, Outcome::squeezed) > 0) outcomes = place_in_parts(particles, way, after);
   }
@@ -136,17 +152,21 @@ Index FreeSpace::Implementation::crossed(const std::vector<Index>& particles, co
   return found;
 }
 
-std::vector<Index> FreeSpace::Implementation::movable(const Way& way) const {
-  std::vector<Index> particles;
-  for (Index i = 0; i < static_cast<Index>(way.to.cols()); ++i) {
-    if (surface.pinned[at(i)] == 0 && way.from.col(i).allFinite() && way.to.col(i).allFinite()) particles.push_back(i);
-  }
+std::vector<Index> FreeSpace::Implementation::movable(std::vector<Index> particles, const Way& way) const {
+  std::erase_if(particles,
+                [&](Index i) { return surface.pinned[at(i)] != 0 || !way.from.col(i).allFinite() || !way.to.col(i).allFinite(); });
   return particles;
+}
+
+std::vector<Index> FreeSpace::Implementation::all_movable(const Way& way) const {
+  std::vector<Index> particles(at(static_cast<Index>(way.to.cols())));
+  std::iota(particles.begin(), particles.end(), 0);
+  return movable(std::move(particles), way);
 }
 
 // Planes that obstacles take along may leave nothing between them, where the obstacles themselves do: in smaller parts of the
 // interval their planes are made again before they meet.
-Outcomes FreeSpace::Implementation::place_in_parts(const std::vector<Index>& particles, const Way& way, Points& after) {
+Outcomes FreeSpace::Implementation::place_in_parts(std::vector<Index>& particles, const Way& way, Points& after) {
   const auto [begin, end] = environment.interval();
   const auto time = [begin = begin, end = end](double part) { return part < 1.0 ? begin + part * (end - begin) : end; };
   Outcomes worst(particles.size(), Outcome::free);
@@ -190,8 +210,9 @@ Index FreeSpace::Implementation::go_on(std::vector<Index>& stopped, const Points
   return count(outcomes, Outcome::free);
 }
 
-// Zones that were made some steps ago may stop a particle, or leave it no place at all, where new ones would not.
-Outcomes FreeSpace::Implementation::place_with_fresh_zones(const std::vector<Index>& particles, const Way& way, Points& positions) {
+// Zones that were made some steps ago may stop a particle, or leave it no place at all, where new ones would not. Those are their
+// neighbours' too.
+Outcomes FreeSpace::Implementation::place_with_fresh_zones(std::vector<Index>& particles, const Way& way, Points& positions) {
   Outcomes outcomes = place(zones, particles, way, positions);
   std::vector<Index> stopped;
   for (std::size_t n = 0; n < particles.size(); ++n) {
@@ -199,6 +220,10 @@ Outcomes FreeSpace::Implementation::place_with_fresh_zones(const std::vector<Ind
   }
   if (stopped.empty()) return outcomes;
   zones.renew_around(stopped, way);
+  const std::vector<Index> restless = movable(zones.restless(), way);
+  std::vector<Index> all;
+  std::set_union(particles.begin(), particles.end(), restless.begin(), restless.end(), std::back_inserter(all));
+  particles = std::move(all);
   return place(zones, particles, way, positions);
 }
 
@@ -211,7 +236,7 @@ void FreeSpace::Implementation::begin_pairs(const Points& before, const Points& 
 void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, Truncation& truncation) {
   pairs_began = false;
   if (!after.allFinite()) return;
-  const std::vector<Index> particles = movable({before, after});
+  const std::vector<Index> particles = all_movable({before, after});
   const Outcomes outcomes = PairPlacement(zones, *pairs, particles).place(before, after);
   truncation.truncated += static_cast<Index>(outcomes.size()) - count(outcomes, Outcome::free);
   truncation.squeezed += count(outcomes, Outcome::squeezed);

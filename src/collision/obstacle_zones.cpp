@@ -49,9 +49,15 @@ void ObstacleZones::follow(const Way& way) {
     PatchPaths paths;
     for (Index p = begin; p < end; ++p) {
       find_near(p, way, carried);
-      for (PatchZones& zones : patches_[at(p)].zones) {
-        find_paths(p, zones.obstacle(), way, paths);
-        zones.follow(set_.shape(zones.obstacle()), patches_[at(p)].topology, paths, demand(patches_[at(p)], zones.obstacle(), way));
+      Patch& patch = patches_[at(p)];
+      patch.restless.clear();
+      for (PatchZones& zones : patch.zones) {
+        const ObstacleShape& shape = set_.shape(zones.obstacle());
+        find_ends(p, zones.obstacle(), way, paths);
+        if (!zones.find_restless(shape, paths.to)) continue;
+        find_begins(p, zones.obstacle(), way, paths);
+        zones.follow(shape, patch.topology, paths, demand(patch, zones.obstacle(), way));
+        append_restless(p, zones);
       }
     }
   });
@@ -85,15 +91,31 @@ void ObstacleZones::find_near(Index p, const Way& way, double carried) {
   patch.zones = std::move(zones);
 }
 
-void ObstacleZones::find_paths(Index p, Index k, const Way& way, PatchPaths& paths) const {
+void ObstacleZones::append_restless(Index p, const PatchZones& zones) {
+  for (const Index slot : zones.restless()) patches_[at(p)].restless.push_back(surface_.patches[at(p)].particles[at(slot)]);
+}
+
+std::vector<Index> ObstacleZones::restless() const {
+  std::vector<Index> particles;
+  for (const Patch& patch : patches_) particles.insert(particles.end(), patch.restless.begin(), patch.restless.end());
+  std::sort(particles.begin(), particles.end());
+  particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
+  return particles;
+}
+
+void ObstacleZones::find_begins(Index p, Index k, const Way& way, PatchPaths& paths) const {
   const std::vector<Index>& particles = surface_.patches[at(p)].particles;
   paths.from.resize(particles.size());
-  paths.to.resize(particles.size());
   for (std::size_t slot = 0; slot < particles.size(); ++slot) {
-    const Index i = particles[slot];
-    paths.from[slot] = way.obstacles_rest ? set_.local(k, way.from.col(i)) : set_.local_before(k, way.from.col(i));
-    paths.to[slot] = set_.local(k, way.to.col(i));
+    const Vector3 from = way.from.col(particles[slot]);
+    paths.from[slot] = way.obstacles_rest ? set_.local(k, from) : set_.local_before(k, from);
   }
+}
+
+void ObstacleZones::find_ends(Index p, Index k, const Way& way, PatchPaths& paths) const {
+  const std::vector<Index>& particles = surface_.patches[at(p)].particles;
+  paths.to.resize(particles.size());
+  for (std::size_t slot = 0; slot < particles.size(); ++slot) paths.to[slot] = set_.local(k, way.to.col(particles[slot]));
 }
 
 ZoneDemand ObstacleZones::demand(const Patch& patch, Index k, const Way& way) const {
@@ -116,9 +138,12 @@ void ObstacleZones::renew_around(const std::vector<Index>& particles, const Way&
     for (Index p = begin; p < end; ++p) {
       if (slots[at(p)].empty()) continue;
       for (PatchZones& zones : patches_[at(p)].zones) {
-        find_paths(p, zones.obstacle(), way, paths);
-        zones.renew(set_.shape(zones.obstacle()), patches_[at(p)].topology, paths, demand(patches_[at(p)], zones.obstacle(), way),
-                    slots[at(p)]);
+        find_begins(p, zones.obstacle(), way, paths);
+        find_ends(p, zones.obstacle(), way, paths);
+        const ObstacleShape& shape = set_.shape(zones.obstacle());
+        zones.renew(shape, patches_[at(p)].topology, paths, demand(patches_[at(p)], zones.obstacle(), way), slots[at(p)]);
+        zones.find_restless(shape, paths.to);
+        append_restless(p, zones);
       }
     }
   });

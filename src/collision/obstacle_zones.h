@@ -33,6 +33,10 @@ class ObstacleZones {
   /// Makes zones where elements are near obstacles and have none that holds them on their way.
   void follow(const Way& way);
 
+  /// Particles that might not be held by their zones where they are about to be, as follow() and what came after it saw it, or
+  /// whose elements an obstacle crosses; ascending.
+  [[nodiscard]] std::vector<Index> restless() const;
+
   /// Makes the zones of all elements around these particles again, where they are when the way begins.
   void renew_around(const std::vector<Index>& particles, const Way& way);
 
@@ -72,6 +76,7 @@ class ObstacleZones {
   struct Patch {
     PatchTopology topology;
     std::vector<PatchZones> zones{};  ///< by obstacle, ascending: those that are near
+    std::vector<Index> restless{};    ///< its particles that may leave a zone
     Box3 box{};                       ///< around its particles' ways
     Box3 known{};                     ///< what meets this box is in `zones`
     double size = 0.0;                ///< of its elements [m]
@@ -86,7 +91,9 @@ class ObstacleZones {
   /// An obstacle that moves and that an element around the particle may touch; kNone if there is none.
   [[nodiscard]] Index leans_on(Index particle) const;
   void find_near(Index patch, const Way& way, double carried);
-  void find_paths(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
+  void append_restless(Index patch, const PatchZones& zones);
+  void find_begins(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
+  void find_ends(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
   [[nodiscard]] ZoneDemand demand(const Patch& patch, Index obstacle, const Way& way) const;
   void append_particle_contacts(Index patch, PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const;
   void append_element_contacts(Index patch, const PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const;

@@ -23,6 +23,9 @@ constexpr double kFreshPart = 1.0;
 // Zones that a surface that deforms takes along are made again when they lost this part of the gap.
 constexpr double kMostLoss = 0.3;
 
+// Calm balls are this part of what they could be, which is more than rounding.
+constexpr double kCalmPart = 1.0 - 0x1p-20;
+
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
@@ -32,7 +35,18 @@ PatchZones::PatchZones(Index obstacle, const PatchTopology& topology)
       zones_(at(topology.element_count())),
       made_around_(zones_.size()),
       slots_(at(topology.slot_count())),
+      calm_(slots_.size()),
+      quiet_(slots_.size()),
       marked_(zones_.size(), 0) {}
+
+bool PatchZones::find_restless(const ObstacleShape& shape, const std::vector<Vector3>& to) {
+  restless_.clear();
+  const bool all = shape.deforms();
+  for (std::size_t i = 0; i < calm_.size(); ++i) {
+    if (all || !calm_[i].holds(to[i])) restless_.push_back(static_cast<Index>(i));
+  }
+  return !restless_.empty();
+}
 
 void PatchZones::follow(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
                         const ZoneDemand& demand) {
@@ -71,13 +85,16 @@ void PatchZones::renew(const ObstacleShape& shape, const PatchTopology& topology
 // A zone that was never made has an empty box, which all its corners are about to leave.
 void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand) {
   const double fresh = kFreshPart * demand.gap;
-  for (Index i = 0; i < topology.slot_count(); ++i) {
+  for (const Index i : restless_) {
     Slot& slot = slots_[at(i)];
     const Vector3& to = paths.to[at(i)];
     const bool leaves = !slot.box.contains(to);
     const bool stale = slot.near && (to - slot.settled).squaredNorm() > fresh * fresh;
     if (stale) slot.settled = to;
-    if (!leaves && !stale && !slot.broken) continue;
+    if (!leaves && !stale && !slot.broken) {
+      calm_down(i, to, demand);
+      continue;
+    }
     for (const Index e : topology.elements_of(i)) {
       const Zone& zone = zones_[at(e)];
       const bool near = zone.distance < demand.gap + demand.margin;
@@ -113,7 +130,9 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
   }
   for (Index i = 0; i < topology.slot_count(); ++i) {
     const auto elements = topology.elements_of(i);
-    if (std::any_of(elements.begin(), elements.end(), [&](Index e) { return marked_[at(e)] != 0; })) gather(topology, demand, i);
+    if (std::none_of(elements.begin(), elements.end(), [&](Index e) { return marked_[at(e)] != 0; })) continue;
+    gather(topology, demand, i);
+    calm_down(i, paths.from[at(i)], demand);
   }
   std::fill(marked_.begin(), marked_.end(), 0);
   find_near_elements(demand);
@@ -133,7 +152,8 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
   slot.box = Box3(Vector3::Constant(-kInfinity), Vector3::Constant(kInfinity));
   slot.near = slot.broken = false;
   slot.planes.clear();
-  slot.quiet = 0.0;
+  Ball& quiet = quiet_[at(i)];
+  quiet.radius = 0.0;
   for (const Index e : topology.elements_of(i)) {
     const Zone& zone = zones_[at(e)];
     slot.broken = slot.broken || zone.broken;
@@ -144,16 +164,21 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
     const auto& slots = topology.corners(e).slots;
     const auto corner = static_cast<std::size_t>(std::find(slots.begin(), slots.end(), i) - slots.begin());
     const Vector3& made_at = made_around_[at(e)][corner];
-    if (zone.clear > slot.quiet) {
-      slot.quiet = zone.clear;
-      slot.centre = made_at;
-    }
+    if (zone.clear > quiet.radius) quiet = {made_at, zone.clear};
     if (zone.free_radius == kInfinity) continue;
     // The cube within the ball.
     const Vector3 radius = Vector3::Constant(zone.free_radius / std::sqrt(3.0));
     slot.box = slot.box.intersection(Box3(made_at - radius, made_at + radius));
   }
   if (slot.near && !was_near) slot.settled = slot.box.center();
+}
+
+void PatchZones::calm_down(Index i, const Vector3& p, const ZoneDemand& demand) {
+  const Slot& slot = slots_[at(i)];
+  double radius = slot.broken ? 0.0 : std::min((p - slot.box.min()).minCoeff(), (slot.box.max() - p).minCoeff());
+  if (slot.near) radius = std::min(radius, kFreshPart * demand.gap - (p - slot.settled).norm());
+  for (const HalfSpace& plane : slot.planes) radius = std::min(radius, plane.normal.dot(p) - plane.offset);
+  calm_[at(i)] = {p, kCalmPart * radius};
 }
 
 bool PatchZones::allow(Index i, const Vector3& p) const {

@@ -30,9 +30,14 @@ class PatchZones {
   [[nodiscard]] Index obstacle() const { return obstacle_; }
   [[nodiscard]] const Zone& zone(Index element) const { return zones_[static_cast<std::size_t>(element)]; }
 
-  /// Makes the zones again, around `from`, of elements that have none, that a corner is about to leave, or that moved by a part of
-  /// the gap since their nearest points were found. A surface that deforms takes the zones
-  /// along.
+  /// Finds the slots that follow() has to look at when their particles go to these places: most stay where nothing changes for
+  /// their zones. Returns whether there are any.
+  bool find_restless(const ObstacleShape& shape, const std::vector<Vector3>& to);
+  /// As they were found last, ascending.
+  [[nodiscard]] const std::vector<Index>& restless() const { return restless_; }
+
+  /// Makes the zones again, around `from`, of elements that have none, that a restless corner is about to leave, or that moved by a
+  /// part of the gap since their nearest points were found. A surface that deforms takes the zones along.
   void follow(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
 
   /// Makes the zones of all elements at these slots again, around `from`.
@@ -44,9 +49,8 @@ class PatchZones {
 
   /// Whether a path between these ends may come within `reach` [m] of the obstacle's surface: false for most that do not.
   [[nodiscard]] bool may_touch(Index slot, const Vector3& from, const Vector3& to, double reach) const {
-    const Slot& s = slots_[static_cast<std::size_t>(slot)];
-    const double quiet = s.quiet - reach;
-    return !(quiet > 0.0 && (to - s.centre).squaredNorm() < quiet * quiet && (from - s.centre).squaredNorm() < quiet * quiet);
+    const Ball& quiet = quiet_[static_cast<std::size_t>(slot)];
+    return !(quiet.holds(from, reach) && quiet.holds(to, reach));
   }
 
   /// Whether an element at the slot may touch.
@@ -66,26 +70,39 @@ class PatchZones {
 
  private:
   struct Slot {
-    Box3 box;                          ///< of all zones at it
-    Vector3 settled;                   ///< where it was when its near elements were looked at last
-    Vector3 centre = Vector3::Zero();  ///< no surface is nearer to this point ...
-    double quiet = 0.0;                ///< ... than this
-    std::vector<HalfSpace> planes{};   ///< of all zones at it
-    bool near = false;                 ///< an element at it may touch
+    Box3 box;                         ///< of all zones at it
+    Vector3 settled;                  ///< where it was when its near elements were looked at last
+    std::vector<HalfSpace> planes{};  ///< of all zones at it
+    bool near = false;                ///< an element at it may touch
     bool broken = false;
     SurfaceMemory memory{};
+  };
+
+  struct Ball {
+    Vector3 centre = Vector3::Zero();
+    double radius = 0.0;  ///< [m]; at most 0 for one that holds nothing
+
+    /// Whether p is in it, at least `margin` [m] from its surface.
+    [[nodiscard]] bool holds(const Vector3& p, double margin = 0.0) const {
+      const double free = radius - margin;
+      return free > 0.0 && (p - centre).squaredNorm() < free * free;
+    }
   };
 
   void take_along(const ObstacleShape& shape, const PatchTopology& topology, const ZoneDemand& demand);
   void mark(const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
   void make_marked(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
   void gather(const PatchTopology& topology, const ZoneDemand& demand, Index slot);
+  void calm_down(Index slot, const Vector3& p, const ZoneDemand& demand);
   void find_near_elements(const ZoneDemand& demand);
 
   Index obstacle_;
   std::vector<Zone> zones_;                          ///< by element
   std::vector<std::array<Vector3, 3>> made_around_;  ///< the corners when the zone was made
   std::vector<Slot> slots_;
+  std::vector<Ball> calm_;       ///< by slot: a particle in it leaves no zone and needs no new ones
+  std::vector<Ball> quiet_;      ///< by slot: holds nothing of the surface
+  std::vector<Index> restless_;  ///< slots
   std::vector<Index> near_elements_;
   std::vector<char> marked_;  ///< by element; 0 between calls
 };
