@@ -23,6 +23,12 @@ constexpr double kRounding = 1e-14;
 // What is met beyond this part of the way to a spot of the surface is what it shares with its neighbours.
 constexpr double kAtSpot = 1.0 - 1e-3;
 
+// The surface is looked for this many times farther off than asked for, since who finds nothing need not look again soon.
+constexpr double kFarther = 2.0;
+
+// Sums of distances are right to far more than this.
+constexpr double kClearPart = 1.0 - 0x1p-20;
+
 double largest_coordinate(const Points& vertices) { return vertices.cwiseAbs().maxCoeff(); }
 
 }  // namespace
@@ -126,21 +132,23 @@ std::optional<SurfacePoint> MeshShape::nearest(const Vector3& p, double radius) 
 std::optional<SurfacePoint> MeshShape::nearest_again(const Vector3& p, double radius, double same, double fresh,
                                                      SurfaceMemory& memory) const {
   if (deforms_) return nearest(p, radius);
+  const double moved = (p - memory.asked_at).norm();
+  if (moved + radius < kClearPart * memory.clear) return std::nullopt;
+  const auto if_within = [&](const MeshTree::Nearest& found) {
+    return found.closest.squared_distance < radius * radius ? std::optional(surface_point(p, found)) : std::nullopt;
+  };
+  const double farther = kFarther * radius;
   std::optional<MeshTree::Nearest> found;
   if (memory.triangle != kNone) {
     const auto [a, b, c] = tree_->corners(memory.triangle);
     found = {memory.triangle, closest_point_on_triangle(p, a, b, c)};
-    const bool within = found->closest.squared_distance < radius * radius;
-    const double moved = (p - memory.asked_at).norm();
-    if (moved < same || (moved < fresh && found->closest.feature == TriangleFeature::face)) {
-      return within ? std::optional(surface_point(p, *found)) : std::nullopt;
-    }
-    if (!within) found.reset();
+    if (moved < same || (moved < fresh && found->closest.feature == TriangleFeature::face)) return if_within(*found);
+    if (!(found->closest.squared_distance < farther * farther)) found.reset();
   }
-  const auto nearer = tree_->nearest(p, found ? std::sqrt(found->closest.squared_distance) : radius);
+  const auto nearer = tree_->nearest(p, found ? std::sqrt(found->closest.squared_distance) : farther);
   if (nearer) found = nearer;
-  memory = {found ? found->triangle : kNone, p};
-  return found ? std::optional(surface_point(p, *found)) : std::nullopt;
+  memory = {found ? found->triangle : kNone, p, found ? std::sqrt(found->closest.squared_distance) : farther};
+  return found ? if_within(*found) : std::nullopt;
 }
 
 SurfacePoint MeshShape::surface_point(const Vector3& p, const MeshTree::Nearest& found) const {

@@ -21,6 +21,7 @@ struct SurfacePoint {
 struct SurfaceMemory {
   Index triangle = kNone;
   Vector3 asked_at = Vector3::Zero();  ///< [m]
+  double clear = 0.0;                  ///< nothing of the surface is nearer to `asked_at` than this [m]
 };
 
 /// An element that an obstacle carries.
