@@ -11,7 +11,7 @@ namespace {
 
 template <class Shape>
 Zone zone_against(const Shape& shape, const ElementCorners& element, const ZoneRequest& request) {
-  Zone zone{.box = box_around(element, request.reach), .clear = request.reach};
+  Zone zone{.box = asked_box(element, request), .clear = request.reach};
   if (!zone.box.intersects(bounds(shape))) return zone;
   const Separation best = separation(shape, element, zone.box);
   if (!is_touching(lowest(zone.box, best.normal) - best.height, request)) return zone;

@@ -160,14 +160,12 @@ void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRe
   const Index last = zone.triangle;
   ZoneBuilder builder(element, request, zone);
   if (last != kNone) builder.look_at(last, tree.corners(last));
-  // What is beyond this cannot come within the box.
-  const double radius = std::sqrt(3.0) * request.reach;
+  // What is beyond this cannot come within the box of an element that stays where it is.
+  const double radius = std::max(request.exact, std::sqrt(3.0) * request.reach);
   find_nearest(tree, radius, zone, builder);
   const Index nearest = zone.triangle;
-  if (nearest != kNone) {
-    builder.meet(tree.corners(nearest));
-    carve(tree, nearest, builder);
-  }
+  if (nearest != kNone) builder.meet(tree.corners(nearest));
+  if (nearest != kNone || !request.way.isEmpty()) carve(tree, nearest, builder);
   builder.finish(radius);
 }
 

@@ -5,7 +5,9 @@
 #include "collision/particle_contact.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace sprung {
 
@@ -24,21 +26,33 @@ constexpr double kAtCorner = 1.0 - 1.0e-6;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Around where the way begins and where it ends; coordinates that are not finite are left out.
-Box3 bounds_of(const Way& way, const std::vector<Index>& particles) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  Box3 box;
+void extend_by_finite(const Points& positions, const std::vector<Index>& particles, Box3& box) {
   for (const Index i : particles) {
-    for (const Points* positions : {&way.from, &way.to}) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const double x = (*positions)(axis, i);
-        double& low = box.min()[axis];
-        double& high = box.max()[axis];
-        low = x < low && x >= -kLargest ? x : low;
-        high = x > high && x <= kLargest ? x : high;
-      }
+    if (positions.col(i).allFinite()) box.extend(positions.col(i));
+  }
+}
+
+/// Around where the way begins and where it ends, but for positions that are not finite.
+Box3 bounds_of(const Way& way, const std::vector<Index>& particles) {
+  std::array<double, 3> low;
+  std::array<double, 3> high;
+  low.fill(std::numeric_limits<double>::max());
+  high.fill(std::numeric_limits<double>::lowest());
+  for (const Index i : particles) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double from = way.from(static_cast<Index>(axis), i);
+      const double to = way.to(static_cast<Index>(axis), i);
+      low[axis] = from < low[axis] ? from : low[axis];  // what is not a number is passed over
+      low[axis] = to < low[axis] ? to : low[axis];
+      high[axis] = from > high[axis] ? from : high[axis];
+      high[axis] = to > high[axis] ? to : high[axis];
     }
   }
+  Box3 box(Vector3(low[0], low[1], low[2]), Vector3(high[0], high[1], high[2]));
+  if (box.min().allFinite() && box.max().allFinite()) return box;
+  box.setEmpty();
+  extend_by_finite(way.from, particles, box);
+  extend_by_finite(way.to, particles, box);
   return box;
 }
 

@@ -14,8 +14,8 @@ namespace {
 constexpr double kReachOfSize = 0.25;
 constexpr double kReachOfGap = 0.8;
 
-// And as much larger as its corners are about to move, twice, since constraints move them farther.
-constexpr double kReachOfMotion = 2.0;
+// It holds the corners' way too, and is larger by this part of it, since constraints lead them elsewhere.
+constexpr double kReachOfMotion = 0.5;
 
 // Nearest points are looked for again after a motion of this part of the gap: friction goes wrong with older ones.
 constexpr double kFreshPart = 1.0;
@@ -114,11 +114,13 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
     const PatchTopology::Corners& corners = topology.corners(e);
     ElementCorners element{.count = corners.count};
     double motion = 0.0;
+    request.way.setEmpty();
     for (std::size_t k = 0; k < at(corners.count); ++k) {
       const std::size_t slot = at(corners.slots[k]);
       element.x[k] = paths.from[slot];
       const double moved = (paths.to[slot] - paths.from[slot]).norm();
       motion = moved <= motion ? motion : moved;  // what is not finite stays
+      request.way.extend(paths.to[slot]);
     }
     request.reach = least_reach + kReachOfMotion * motion;
     if (std::isfinite(motion)) {

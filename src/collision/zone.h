@@ -15,7 +15,8 @@ using ElementCorners = Simplex;
 
 /// What a zone is asked to be. All lengths [m], > 0.
 struct ZoneRequest {
-  double reach = 0.0;      ///< the box is the element's, this much larger on each side, where the obstacle lets it
+  double reach = 0.0;      ///< the box is that of element and way, this much larger on each side, where the obstacle lets it
+  Box3 way{};              ///< where the corners are about to go; empty if nobody knows
   double gap = 0.0;        ///< what contact keeps between element and obstacle: planes stand off by at most half of it
   double clearance = 0.0;  ///< planes stand off at least this much, above rounding, where the element does too
   double exact = 0.0;      ///< nearest points are to be the true ones where they are nearer than this; may be 0
@@ -55,6 +56,9 @@ struct Zone {
 
 /// The box around the element, `reach` [m] larger on each side.
 [[nodiscard]] Box3 box_around(const ElementCorners& element, double reach);
+
+/// The largest box that a zone may have.
+[[nodiscard]] Box3 asked_box(const ElementCorners& element, const ZoneRequest& request);
 
 /// How far a plane stands off an obstacle that is `gap` [m] away: the rest is free for the element. Half of the gap that contact
 /// keeps is left to contact, and no element is asked to come nearer than it is.

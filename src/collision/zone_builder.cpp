@@ -29,7 +29,7 @@ constexpr double kStillPart = 0.5;
 ZoneBuilder::ZoneBuilder(const ElementCorners& element, const ZoneRequest& request, Zone& zone)
     : element_(element), request_(request), zone_(zone), element_box_(box_around(element, 0.0)) {
   zone_ = Zone{};
-  zone_.box = box_around(element, request.reach);
+  zone_.box = asked_box(element, request);
 }
 
 void ZoneBuilder::look_at(Index triangle, const TriangleCorners& corners) {
