@@ -16,6 +16,9 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Sums of three products of single precision are right to this part of the largest coordinate.
 constexpr float kPlaneRounding = 0x1p-20F;
 
+// Triangles are looked for this many times the reach away: an element that has none so near keeps its zone for longer.
+constexpr double kSearch = 4.0;
+
 // A float somewhat below or above.
 float below(double value) {
   const auto nearest = static_cast<float>(value);
@@ -24,6 +27,12 @@ float below(double value) {
 float above(double value) { return -below(-value); }
 
 Box3 grown(const Box3& box, double reach) { return {box.min().array() - reach, box.max().array() + reach}; }
+
+double box_distance(const TriangleCorners& corners, const Box3& box) {
+  Box3 of_triangle(corners[0]);
+  of_triangle.extend(corners[1]).extend(corners[2]);
+  return of_triangle.exteriorDistance(box);
+}
 
 /// A box whose sides are rounded outward, as the nodes' are.
 struct FloatBox {
@@ -90,11 +99,11 @@ void update(const ZoneBuilder& zone, Search& search) {
   bounds = sum;
 }
 
-/// Visits the triangles that may be nearer than the nearest so far, and than `radius`.
-SPRUNG_KERNEL void find_nearest(const MeshTree& tree, double radius, const Zone& zone, ZoneBuilder& builder) {
-  Search search = search_around(tree, builder.element_box(), grown(builder.element_box(), radius));
+/// Visits the triangles that may be nearer than the nearest so far, and than what is clear.
+SPRUNG_KERNEL void find_nearest(const MeshTree& tree, double exact, const Zone& zone, ZoneBuilder& builder) {
+  Search search = search_around(tree, builder.element_box(), grown(builder.element_box(), builder.clear()));
   const auto limit = [&] {
-    const double nearest = std::min(zone.distance, radius);
+    const double nearest = std::min(zone.distance, builder.clear());
     return static_cast<float>(std::min(nearest * nearest, 1e38)) * (1.0F + 0x1p-20F);
   };
   WalkStack stack(tree.stack_size());
@@ -115,6 +124,10 @@ SPRUNG_KERNEL void find_nearest(const MeshTree& tree, double radius, const Zone&
       while (lanes != 0) {
         const int lane = take_smallest_lane(distances, lanes);
         if (distances[lane] > limit()) break;
+        if (distances[lane] >= exact * exact) {
+          builder.keep_clear(std::sqrt(distances[lane]));
+          break;
+        }
         builder.look_at(block.triangle[lane], block.corners(lane));
       }
       continue;
@@ -159,14 +172,17 @@ SPRUNG_KERNEL void carve(const MeshTree& tree, Index nearest, ZoneBuilder& zone)
 void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone) {
   const Index last = zone.triangle;
   ZoneBuilder builder(element, request, zone);
-  if (last != kNone) builder.look_at(last, tree.corners(last));
-  // What is beyond this cannot come within the box of an element that stays where it is.
-  const double radius = std::max(request.exact, std::sqrt(3.0) * request.reach);
-  find_nearest(tree, radius, zone, builder);
-  const Index nearest = zone.triangle;
-  if (nearest != kNone) builder.meet(tree.corners(nearest));
-  if (nearest != kNone || !request.way.isEmpty()) carve(tree, nearest, builder);
-  builder.finish(radius);
+  builder.keep_clear(std::max(request.exact, kSearch * request.reach));
+  if (last != kNone && box_distance(tree.corners(last), builder.element_box()) < request.exact) {
+    builder.look_at(last, tree.corners(last));
+  }
+  find_nearest(tree, request.exact, zone, builder);
+  if (!builder.grow_clear()) {
+    const Index nearest = zone.triangle;
+    if (nearest != kNone) builder.meet(tree.corners(nearest));
+    carve(tree, nearest, builder);
+  }
+  builder.finish();
 }
 
 }  // namespace sprung

@@ -60,11 +60,16 @@ Box3 bounds_of(const Way& way, const std::vector<Index>& particles) {
 
 ObstacleZones::ObstacleZones(const ObstacleSet& set, const CollisionSurface& surface, double margin)
     : set_(set), surface_(surface), margin_(margin) {
-  for (const ElementPatch& elements : surface.patches) {
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    const ElementPatch& elements = surface.patches[p];
     Patch patch{.topology = PatchTopology(surface, elements)};
     const Element& first = surface.elements[at(elements.first_element)];
     patch.size = surface.element_size[at(first.body)];
-    for (const Index i : elements.particles) patch.thickness = std::max(patch.thickness, surface.thickness[i]);
+    for (std::size_t slot = 0; slot < elements.particles.size(); ++slot) {
+      const Index i = elements.particles[slot];
+      patch.thickness = std::max(patch.thickness, surface.thickness[i]);
+      if (at(slots_of(i).front().patch) == p) patch.own.push_back(static_cast<Index>(slot));
+    }
     patches_.push_back(std::move(patch));
   }
 }
@@ -193,19 +198,22 @@ std::vector<Contact> ObstacleZones::contacts(const Way& way) {
   return contacts;
 }
 
-// A particle of several patches is looked at in its first.
+// A particle of several patches is looked at in its first. A path no longer than the distance of its end from the surface cannot
+// have crossed it.
 void ObstacleZones::append_particle_contacts(Index p, PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const {
   const Index k = zones.obstacle();
   const std::vector<Index>& particles = surface_.patches[at(p)].particles;
   const ZoneDemand needed = demand(patches_[at(p)], k, way);
-  const double reach = needed.gap + needed.margin + set_.shape(k).largest_displacement();
-  for (Index slot = 0; slot < static_cast<Index>(particles.size()); ++slot) {
+  const double deformed = set_.shape(k).largest_displacement();
+  const double reach = needed.gap + needed.margin + deformed;
+  const bool rests = set_.rests(k);
+  for (const Index slot : patches_[at(p)].own) {
     const Index i = particles[at(slot)];
-    if (slots_of(i).front().patch != p) continue;
     const Vector3 from = way.from.col(i);
     const Vector3 to = way.to.col(i);
+    const double length = (rests ? Vector3(to - from) : Vector3(zones.end(slot) - set_.local_before(k, from))).norm() + deformed;
+    if (length <= reach && zones.is_far(slot, reach)) continue;
     if (!from.allFinite() || !to.allFinite()) continue;
-    if (!zones.may_touch(slot, set_.local_before(k, from), set_.local(k, to), reach)) continue;
     const auto contact = find_contact(set_, k, {i, from, to, surface_.thickness[i], margin_}, zones.memory(slot));
     if (contact) contacts.push_back(*contact);
   }

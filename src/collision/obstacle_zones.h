@@ -76,6 +76,7 @@ class ObstacleZones {
   struct Patch {
     PatchTopology topology;
     std::vector<PatchZones> zones{};  ///< by obstacle, ascending: those that are near
+    std::vector<Index> own{};         ///< slots of the particles that no patch before it has
     std::vector<Index> restless{};    ///< its particles that may leave a zone
     Box3 box{};                       ///< around its particles' ways
     Box3 known{};                     ///< what meets this box is in `zones`

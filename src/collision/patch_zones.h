@@ -30,8 +30,8 @@ class PatchZones {
   [[nodiscard]] Index obstacle() const { return obstacle_; }
   [[nodiscard]] const Zone& zone(Index element) const { return zones_[static_cast<std::size_t>(element)]; }
 
-  /// Finds the slots that follow() has to look at when their particles go to these places: most stay where nothing changes for
-  /// their zones. Returns whether there are any.
+  /// Finds the slots that follow() has to look at when their particles go to these places, in the obstacle's frame: most stay where
+  /// nothing changes for their zones. Returns whether there are any.
   bool find_restless(const ObstacleShape& shape, const std::vector<Vector3>& to);
   /// As they were found last, ascending.
   [[nodiscard]] const std::vector<Index>& restless() const { return restless_; }
@@ -47,10 +47,14 @@ class PatchZones {
   /// Whether the zones of all elements at the slot hold p.
   [[nodiscard]] bool allow(Index slot, const Vector3& p) const;
 
-  /// Whether a path between these ends may come within `reach` [m] of the obstacle's surface: false for most that do not.
-  [[nodiscard]] bool may_touch(Index slot, const Vector3& from, const Vector3& to, double reach) const {
-    const Ball& quiet = quiet_[static_cast<std::size_t>(slot)];
-    return !(quiet.holds(from, reach) && quiet.holds(to, reach));
+  /// Where the particle goes, as find_restless() was told last.
+  [[nodiscard]] const Vector3& end(Index slot) const { return ends_[static_cast<std::size_t>(slot)]; }
+
+  /// Whether nothing of the surface can be within `reach` [m] of where the particle goes: so of most where nothing is.
+  [[nodiscard]] bool is_far(Index slot, double reach) const {
+    const auto i = static_cast<std::size_t>(slot);
+    const Ball searched{memories_[i].asked_at, memories_[i].clear};
+    return quiet_[i].holds(ends_[i], reach) || searched.holds(ends_[i], reach);
   }
 
   /// Whether an element at the slot may touch.
@@ -66,7 +70,7 @@ class PatchZones {
   [[nodiscard]] const std::vector<Index>& near_elements() const { return near_elements_; }
 
   /// What the last search for the surface near a particle found.
-  [[nodiscard]] SurfaceMemory& memory(Index slot) { return slots_[static_cast<std::size_t>(slot)].memory; }
+  [[nodiscard]] SurfaceMemory& memory(Index slot) { return memories_[static_cast<std::size_t>(slot)]; }
 
  private:
   struct Slot {
@@ -75,7 +79,6 @@ class PatchZones {
     std::vector<HalfSpace> planes{};  ///< of all zones at it
     bool near = false;                ///< an element at it may touch
     bool broken = false;
-    SurfaceMemory memory{};
   };
 
   struct Ball {
@@ -100,9 +103,11 @@ class PatchZones {
   std::vector<Zone> zones_;                          ///< by element
   std::vector<std::array<Vector3, 3>> made_around_;  ///< the corners when the zone was made
   std::vector<Slot> slots_;
-  std::vector<Ball> calm_;       ///< by slot: a particle in it leaves no zone and needs no new ones
-  std::vector<Ball> quiet_;      ///< by slot: holds nothing of the surface
-  std::vector<Index> restless_;  ///< slots
+  std::vector<Vector3> ends_;            ///< by slot
+  std::vector<SurfaceMemory> memories_;  ///< by slot
+  std::vector<Ball> calm_;               ///< by slot: a particle in it leaves no zone and needs no new ones
+  std::vector<Ball> quiet_;              ///< by slot: holds nothing of the surface
+  std::vector<Index> restless_;          ///< slots
   std::vector<Index> near_elements_;
   std::vector<char> marked_;  ///< by element; 0 between calls
 };

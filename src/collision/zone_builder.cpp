@@ -104,13 +104,22 @@ void ZoneBuilder::keep_still(const TriangleCorners& corners, double distance) {
   }
 }
 
-void ZoneBuilder::finish(double searched) {
+bool ZoneBuilder::grow_clear() {
+  if (zone_.triangle != kNone) return false;
+  const Vector3 side = Vector3::Constant((1.0 - kBoxMargin) / std::sqrt(3.0) * clear_);
+  const Box3 box(element_box_.min() - side, element_box_.max() + side);
+  if (!box.contains(zone_.box)) return false;
+  zone_.box = box;
+  return true;
+}
+
+void ZoneBuilder::finish() {
   if (zone_.broken) {
     zone_.plane_count = 0;
     zone_.clear = 0.0;
     return;
   }
-  zone_.clear = std::min((1.0 - kPairSlack) * zone_.distance, searched);
+  zone_.clear = std::min((1.0 - kPairSlack) * zone_.distance, clear_);
 }
 
 double ZoneBuilder::lowest(const Vector3& normal) const { return lowest_along(normal, element_); }

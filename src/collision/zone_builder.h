@@ -3,7 +3,9 @@
 
 #include "collision/triangle_separation.h"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 
 namespace sprung {
 
@@ -18,8 +20,16 @@ class ZoneBuilder {
   /// Takes the triangle as the nearest so far, if it is.
   void look_at(Index triangle, const TriangleCorners& corners);
 
-  /// Tells how near the obstacle may be, after all triangles within `searched` [m] were looked at.
-  void finish(double searched);
+  /// No triangle whose box is nearer than this [m] to the element's is to be left out, those aside that were looked at.
+  void keep_clear(double distance) { clear_ = std::min(clear_, distance); }
+  [[nodiscard]] double clear() const { return clear_; }
+
+  /// Once all triangles were looked at or are clear: lets the zone fill what is clear, if none was looked at and that holds all
+  /// that was asked for.
+  bool grow_clear();
+
+  /// Tells how near the obstacle may be.
+  void finish();
 
   /// What lies wholly below this along the nearest pair's normal is no nearer.
   [[nodiscard]] double nearest_limit() const { return nearest_lowest_ - zone_.distance; }
@@ -43,6 +53,7 @@ class ZoneBuilder {
   Zone& zone_;
   Box3 element_box_;
   std::array<double, Zone::kMostPlanes> limits_{};
+  double clear_ = std::numeric_limits<double>::infinity();
   double nearest_lowest_ = 0.0;  ///< of the element, along the normal at its nearest point
 };
 
