@@ -28,12 +28,13 @@ constexpr double kStillPart = 0.5;
 
 ZoneBuilder::ZoneBuilder(const ElementCorners& element, const ZoneRequest& request, Zone& zone)
     : element_(element), request_(request), zone_(zone), element_box_(box_around(element, 0.0)) {
+  if (element.count == 3) element_face_ = (element.x[1] - element.x[0]).cross(element.x[2] - element.x[0]);
   zone_ = Zone{};
   zone_.box = asked_box(element, request);
 }
 
 void ZoneBuilder::look_at(Index triangle, const TriangleCorners& corners) {
-  if (zone_.triangle != kNone && highest_along(zone_.normal, corners) <= nearest_limit()) return;
+  if (zone_.triangle != kNone && !may_be_nearer(corners)) return;
   const ClosestPair pair = closest_pair(element_, corners, kPairSlack, request_.exact);
   const double distance = std::sqrt(pair.squared_distance);
   if (!(distance < zone_.distance)) return;
@@ -43,6 +44,23 @@ void ZoneBuilder::look_at(Index triangle, const TriangleCorners& corners) {
   zone_.weights = pair.weights;
   zone_.triangle = triangle;
   nearest_lowest_ = lowest(zone_.normal);
+}
+
+// The planes of the two faces tell many apart that the pair so far does not.
+bool ZoneBuilder::may_be_nearer(const TriangleCorners& corners) const {
+  if (highest_along(zone_.normal, corners) <= nearest_limit()) return false;
+  const Vector3 face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  if (element_.count == 3 && is_beyond(face, corners[0], element_.x)) return false;
+  return element_.count < 3 || !is_beyond(element_face_, element_.x[0], corners);
+}
+
+/// Whether all points are on one side of a plane, at the nearest distance or farther.
+bool ZoneBuilder::is_beyond(const Vector3& normal, const Vector3& origin, const std::array<Vector3, 3>& points) const {
+  const double first = normal.dot(points[0] - origin);
+  const double second = normal.dot(points[1] - origin);
+  const double third = normal.dot(points[2] - origin);
+  const double height = std::max(std::min({first, second, third}), -std::max({first, second, third}));
+  return height > 0.0 && height * height >= zone_.distance * zone_.distance * normal.squaredNorm();
 }
 
 void ZoneBuilder::meet(const TriangleCorners& corners) {

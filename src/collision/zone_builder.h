@@ -42,6 +42,8 @@ class ZoneBuilder {
   [[nodiscard]] double limit(int plane) const { return limits_[static_cast<std::size_t>(plane)]; }
 
  private:
+  [[nodiscard]] bool may_be_nearer(const TriangleCorners& corners) const;
+  [[nodiscard]] bool is_beyond(const Vector3& normal, const Vector3& origin, const std::array<Vector3, 3>& points) const;
   [[nodiscard]] bool ruled_out(const TriangleCorners& corners) const;
   [[nodiscard]] bool shrink_past(const TriangleCorners& corners);
   void separate(const TriangleCorners& corners);
@@ -52,6 +54,7 @@ class ZoneBuilder {
   const ZoneRequest& request_;
   Zone& zone_;
   Box3 element_box_;
+  Vector3 element_face_ = Vector3::Zero();
   std::array<double, Zone::kMostPlanes> limits_{};
   double clear_ = std::numeric_limits<double>::infinity();
   double nearest_lowest_ = 0.0;  ///< of the element, along the normal at its nearest point
