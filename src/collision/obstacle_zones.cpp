@@ -1,11 +1,12 @@
 #include "collision/obstacle_zones.h"
 
+#include "base/kernel.h"
 #include "base/parallel.h"
+#include "collision/lanes.h"
 #include "collision/particle_blocks.h"
 #include "collision/particle_contact.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -33,19 +34,16 @@ void extend_by_finite(const Points& positions, const std::vector<Index>& particl
 }
 
 /// Around where the way begins and where it ends, but for positions that are not finite.
-Box3 bounds_of(const Way& way, const std::vector<Index>& particles) {
-  std::array<double, 3> low;
-  std::array<double, 3> high;
-  low.fill(std::numeric_limits<double>::max());
-  high.fill(std::numeric_limits<double>::lowest());
+SPRUNG_KERNEL Box3 bounds_of(const Way& way, const std::vector<Index>& particles) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  Lanes low = Lanes{} + kLargest;
+  Lanes high = Lanes{} - kLargest;
   for (const Index i : particles) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double from = way.from(static_cast<Index>(axis), i);
-      const double to = way.to(static_cast<Index>(axis), i);
-      low[axis] = from < low[axis] ? from : low[axis];  // what is not a number is passed over
-      low[axis] = to < low[axis] ? to : low[axis];
-      high[axis] = from > high[axis] ? from : high[axis];
-      high[axis] = to > high[axis] ? to : high[axis];
+    for (const Points* positions : {&way.from, &way.to}) {
+      const double* p = positions->data() + 3 * static_cast<std::ptrdiff_t>(i);
+      const Lanes position = {p[0], p[1], p[2], p[0]};
+      low = position < low ? position : low;  // what is not a number is passed over
+      high = position > high ? position : high;
     }
   }
   Box3 box(Vector3(low[0], low[1], low[2]), Vector3(high[0], high[1], high[2]));
