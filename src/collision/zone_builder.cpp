@@ -12,6 +12,9 @@ namespace {
 // Edges are not looked at when corners and faces give a plane that separates by all but this part of the distance.
 constexpr double kPairSlack = 0.005;
 
+// A plane that separates by this part of the nearest triangle's distance is not improved.
+constexpr double kGoodPart = 0.9;
+
 // The box ends this far before a triangle, as a part of what lies between, so that rounding does not bring them together.
 constexpr double kBoxMargin = 0.02;
 
@@ -96,13 +99,34 @@ bool ZoneBuilder::shrink_past(const TriangleCorners& corners) {
 }
 
 void ZoneBuilder::separate(const TriangleCorners& corners) {
+  if (separate_by_face(corners)) return;
   const ClosestPair pair = closest_pair(element_, corners, kPairSlack);
-  const auto [normal, gap] = separation(element_, corners, pair, kPairSlack);
-  const double highest = highest_along(normal, corners);
-  if (is_touching(gap, request_)) {
+  const TriangleSeparation found = separation(element_, corners, pair, kPairSlack);
+  if (is_touching(found.gap, request_)) {
     keep_still(corners, std::sqrt(pair.squared_distance));
-    return;
+  } else {
+    keep_above(corners, found);
   }
+}
+
+// The triangle's own plane is as good as any where it tells them apart by hardly less than the nearest triangle is away.
+bool ZoneBuilder::separate_by_face(const TriangleCorners& corners) {
+  const Vector3 face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const double length = face.norm();
+  if (!(length > 0.0)) return false;
+  for (const double side : {1.0 / length, -1.0 / length}) {
+    const Vector3 normal = side * face;
+    const double gap = lowest(normal) - highest_along(normal, corners);
+    if (!(gap >= kGoodPart * zone_.distance) || is_touching(gap, request_)) continue;
+    keep_above(corners, {normal, gap});
+    return true;
+  }
+  return false;
+}
+
+void ZoneBuilder::keep_above(const TriangleCorners& corners, const TriangleSeparation& found) {
+  const auto& [normal, gap] = found;
+  const double highest = highest_along(normal, corners);
   if (zone_.plane_count == Zone::kMostPlanes) {
     zone_.free_radius = std::min(zone_.free_radius, kFreePart * gap);
     return;

@@ -47,6 +47,8 @@ class ZoneBuilder {
   [[nodiscard]] bool ruled_out(const TriangleCorners& corners) const;
   [[nodiscard]] bool shrink_past(const TriangleCorners& corners);
   void separate(const TriangleCorners& corners);
+  bool separate_by_face(const TriangleCorners& corners);
+  void keep_above(const TriangleCorners& corners, const TriangleSeparation& found);
   void keep_still(const TriangleCorners& corners, double distance);
   [[nodiscard]] double lowest(const Vector3& normal) const;
 
