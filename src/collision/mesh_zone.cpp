@@ -100,7 +100,7 @@ void update(const ZoneBuilder& zone, Search& search) {
 }
 
 /// Visits the triangles that may be nearer than the nearest so far, and than what is clear.
-SPRUNG_KERNEL void find_nearest(const MeshTree& tree, double exact, const Zone& zone, ZoneBuilder& builder) {
+SPRUNG_KERNEL void find_nearest(const MeshTree& tree, double near, const Zone& zone, ZoneBuilder& builder) {
   Search search = search_around(tree, builder.element_box(), grown(builder.element_box(), builder.clear()));
   const auto limit = [&] {
     const double nearest = std::min(zone.distance, builder.clear());
@@ -124,7 +124,7 @@ SPRUNG_KERNEL void find_nearest(const MeshTree& tree, double exact, const Zone& 
       while (lanes != 0) {
         const int lane = take_smallest_lane(distances, lanes);
         if (distances[lane] > limit()) break;
-        if (distances[lane] >= exact * exact) {
+        if (distances[lane] >= near * near) {
           builder.keep_clear(std::sqrt(distances[lane]));
           break;
         }
@@ -172,11 +172,12 @@ SPRUNG_KERNEL void carve(const MeshTree& tree, Index nearest, ZoneBuilder& zone)
 void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone) {
   const Index last = zone.triangle;
   ZoneBuilder builder(element, request, zone);
-  builder.keep_clear(std::max(request.exact, kSearch * request.reach));
-  if (last != kNone && box_distance(tree.corners(last), builder.element_box()) < request.exact) {
+  const double near = std::max(request.exact, std::sqrt(3.0) * request.reach);
+  builder.keep_clear(std::max(near, kSearch * request.reach));
+  if (last != kNone && box_distance(tree.corners(last), builder.element_box()) < near) {
     builder.look_at(last, tree.corners(last));
   }
-  find_nearest(tree, request.exact, zone, builder);
+  find_nearest(tree, near, zone, builder);
   if (!builder.grow_clear()) {
     const Index nearest = zone.triangle;
     if (nearest != kNone) builder.meet(tree.corners(nearest));
