@@ -209,8 +209,9 @@ void ObstacleZones::append_particle_contacts(Index p, PatchZones& zones, const W
     const Index i = particles[at(slot)];
     const Vector3 from = way.from.col(i);
     const Vector3 to = way.to.col(i);
-    const double length = (rests ? Vector3(to - from) : Vector3(zones.end(slot) - set_.local_before(k, from))).norm() + deformed;
-    if (length <= reach && zones.is_far(slot, reach)) continue;
+    const Vector3 end = set_.local(k, to);
+    const double length = (rests ? Vector3(to - from) : Vector3(end - set_.local_before(k, from))).norm() + deformed;
+    if (length <= reach && zones.is_far(slot, end, reach)) continue;
     if (!from.allFinite() || !to.allFinite()) continue;
     const auto contact = find_contact(set_, k, {i, from, to, surface_.thickness[i], margin_}, zones.memory(slot));
     if (contact) contacts.push_back(*contact);

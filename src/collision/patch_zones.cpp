@@ -35,14 +35,12 @@ PatchZones::PatchZones(Index obstacle, const PatchTopology& topology)
       zones_(at(topology.element_count())),
       made_around_(zones_.size()),
       slots_(at(topology.slot_count())),
-      ends_(slots_.size()),
       memories_(slots_.size()),
       calm_(slots_.size()),
       quiet_(slots_.size()),
       marked_(zones_.size(), 0) {}
 
 bool PatchZones::find_restless(const ObstacleShape& shape, const std::vector<Vector3>& to) {
-  ends_ = to;
   restless_.clear();
   const bool all = shape.deforms();
   for (std::size_t i = 0; i < calm_.size(); ++i) {

@@ -47,14 +47,11 @@ class PatchZones {
   /// Whether the zones of all elements at the slot hold p.
   [[nodiscard]] bool allow(Index slot, const Vector3& p) const;
 
-  /// Where the particle goes, as find_restless() was told last.
-  [[nodiscard]] const Vector3& end(Index slot) const { return ends_[static_cast<std::size_t>(slot)]; }
-
-  /// Whether nothing of the surface can be within `reach` [m] of where the particle goes: so of most where nothing is.
-  [[nodiscard]] bool is_far(Index slot, double reach) const {
+  /// Whether nothing of the surface can be within `reach` [m] of the slot's particle at p: so of most where nothing is.
+  [[nodiscard]] bool is_far(Index slot, const Vector3& p, double reach) const {
     const auto i = static_cast<std::size_t>(slot);
     const Ball searched{memories_[i].asked_at, memories_[i].clear};
-    return quiet_[i].holds(ends_[i], reach) || searched.holds(ends_[i], reach);
+    return quiet_[i].holds(p, reach) || searched.holds(p, reach);
   }
 
   /// Whether an element at the slot may touch.
@@ -103,7 +100,6 @@ class PatchZones {
   std::vector<Zone> zones_;                          ///< by element
   std::vector<std::array<Vector3, 3>> made_around_;  ///< the corners when the zone was made
   std::vector<Slot> slots_;
-  std::vector<Vector3> ends_;            ///< by slot
   std::vector<SurfaceMemory> memories_;  ///< by slot
   std::vector<Ball> calm_;               ///< by slot: a particle in it leaves no zone and needs no new ones
   std::vector<Ball> quiet_;              ///< by slot: holds nothing of the surface
