@@ -50,7 +50,7 @@ struct Simulator::Implementation {
   void move_pins(double time);
   void constrain(StepReport& report);
   void settle(StepReport& report);
-  [[nodiscard]] bool relax(Points& positions);
+  [[nodiscard]] bool relax(Points& positions, double excess_before);
   void check_state() const;
   void fail(StepFailure failure) const;
   [[nodiscard]] bool projects_contacts() const;
@@ -157,19 +157,24 @@ void Simulator::Implementation::constrain(StepReport& report) {
 
 void Simulator::Implementation::settle(StepReport& report) {
   if (!contacts.meets_anything() && !limit) return;
+  report.stretch_excess = limit ? limit->excess(state.x) : 0.0;
   int rounds = 0;
-  const auto relax_again = [&](Points& positions) { return rounds++ < kRelaxRounds && relax(positions); };
+  const auto relax_again = [&](Points& positions) {
+    return limit && rounds++ < kRelaxRounds && relax(positions, report.stretch_excess);
+  };
   if (contacts.meets_anything()) contacts.truncate(before, state.x, relax_again);
   integrator->recover_velocities(state, before, advanced, settings.step);
   if (contacts.meets_anything()) contacts.settle_velocities(motion(), state, *integrator);
-  report.stretch_excess = limit ? limit->excess(state.x) : 0.0;
   report.truncated = contacts.truncated_count();
   report.squeezed = contacts.squeezed_count();
+  if (limit && (rounds > 0 || report.truncated > 0)) report.stretch_excess = limit->excess(state.x);
 }
 
-// What truncation stopped met something that no contact told of: those are found where it is now.
-bool Simulator::Implementation::relax(Points& positions) {
-  if (!limit || limit->excess(positions) <= limit->settings().tolerance) return false;
+// What truncation stopped met something that no contact told of: those are found where it is now. What springs were too long before
+// is none of truncation's doing, unless it is more than they may be longer altogether: then passes are wanted in any case.
+bool Simulator::Implementation::relax(Points& positions, double excess_before) {
+  const StretchLimitSettings& limits = limit->settings();
+  if (limit->excess(positions) <= std::max(limits.tolerance, std::min(excess_before, limits.max_stretch))) return false;
   if (projects_contacts()) contacts.find_again(motion(), positions);
   for (int pass = 0; pass < kRelaxPasses; ++pass) {
     limit->project(positions);
