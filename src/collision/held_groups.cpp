@@ -104,15 +104,20 @@ void HeldGroups::find_means(std::vector<char>& led_by_pins) {
 }
 
 void HeldGroups::anchor_groups(const std::vector<char>& led_by_pins) {
-  std::vector<const Anchor*> chosen(groups_.size(), nullptr);
+  if (carriers_.anchors.empty()) return;
+  std::vector<std::vector<Anchor>> anchors(groups_.size());
   for (const Anchor& anchor : carriers_.anchors) {
-    if (!holds(anchor.particle)) continue;
-    const auto k = static_cast<std::size_t>(group(anchor.particle));
-    if (led_by_pins[k] == 0 && (chosen[k] == nullptr || (anchor.moves() && !chosen[k]->moves()))) chosen[k] = &anchor;
+    const Index k = group(anchor.particle);
+    if (k != kNone && led_by_pins[static_cast<std::size_t>(k)] == 0) anchors[static_cast<std::size_t>(k)].push_back(anchor);
   }
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    if (chosen[k] != nullptr) groups_[k] = {.motion = chosen[k]->motion, .fraction = 0.0};
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    if (!anchors[k].empty()) groups_[k] = {.motion = common_motion(anchors[k]), .fraction = 0.0, .anchored = true};
   }
+}
+
+Vector3 HeldGroups::turned(Index group, const Vector3& normal) const {
+  const Group& of = groups_[static_cast<std::size_t>(group)];
+  return of.anchored ? Vector3((of.motion.linear().inverse().transpose() * normal).normalized()) : normal;
 }
 
 Vector3 HeldGroups::start(Index particle) const {

@@ -1,7 +1,7 @@
 // Particles that are in each other's way, in groups that move on together.
 #pragma once
 
-#include "base/types.h"
+#include "collision/anchor.h"
 
 #include <span>
 #include <vector>
@@ -12,15 +12,6 @@ namespace sprung {
 struct Carried {
   Index particle = kNone;
   Vector3 motion = Vector3::Zero();
-};
-
-/// A particle that obstacles leave no place where its group would take it, and a rigid motion that takes the whole group along with
-/// what is in its way, as if it were a part of that.
-struct Anchor {
-  Index particle = kNone;
-  RigidTransform motion = RigidTransform::Identity();
-
-  [[nodiscard]] bool moves() const { return motion.matrix() != RigidTransform::Identity().matrix(); }
 };
 
 /// Particles that lean on obstacles, and those that obstacles hold fast; both ascending by particle.
@@ -40,8 +31,8 @@ class HeldGroups {
   /// may not leave the motion that it shares any more. Returns whether anything has changed.
   bool unite(std::span<const Index> particles);
 
-  /// Finds the groups' motions: the mean of those of pinned particles that lead it; else that of its first anchor (the first that
-  /// moves, if one does), which it may not leave; else the mean of its carried particles; else what its particles' ways have in
+  /// Finds the groups' motions: the mean of those of pinned particles that lead it; else the common motion of its anchors, which it
+  /// may not leave; else the mean of its carried particles; else what its particles' ways have in
   /// common: their mean, less the part that their spread is of it, so that a falling cloth is not held back and a resting one not
   /// carried away by what hits it. Fractions are 1 again, except of groups that may not leave it.
   void find_motions();
@@ -56,16 +47,17 @@ class HeldGroups {
   /// Where a particle ends that has gone its group's fraction of the way to its target as well.
   [[nodiscard]] Vector3 end(Index particle) const;
 
-  /// How the group's motion turns directions within it.
-  [[nodiscard]] Matrix3 turn(Index group) const { return groups_[static_cast<std::size_t>(group)].motion.linear(); }
+  /// The normal of a plane within the group after its motion.
+  [[nodiscard]] Vector3 turned(Index group, const Vector3& normal) const;
 
   [[nodiscard]] double fraction(Index group) const { return groups_[static_cast<std::size_t>(group)].fraction; }
   void limit_fraction(Index group, double fraction);
 
  private:
   struct Group {
-    RigidTransform motion = RigidTransform::Identity();
+    AffineTransform motion = AffineTransform::Identity();
     double fraction = 1.0;
+    bool anchored = false;
   };
   struct Lead {
     Index follower;

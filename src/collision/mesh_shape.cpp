@@ -116,6 +116,13 @@ Zone MeshShape::nearest_before(const ElementCorners& element) const {
   return zone;
 }
 
+std::optional<MovedTriangle> MeshShape::moved_triangle(const Vector3& p) const {
+  if (!deforms_) return std::nullopt;
+  const Index triangle = nearest_spot(*tree_before_, p).triangle;
+  if (triangle == kNone) return std::nullopt;
+  return MovedTriangle{tree_before_->corners(triangle), tree_->corners(triangle)};
+}
+
 MeshShape::Spot MeshShape::nearest_spot(const MeshTree& tree, const Vector3& p) {
   const auto found = tree.nearest(p, std::numeric_limits<double>::infinity());
   if (!found) return {};  // p is not finite

@@ -22,6 +22,7 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] Vector3 displacement(const Vector3& p) const override;
   [[nodiscard]] Vector3 displacement(const Vector3& p, double t, double t_end) const override;
   [[nodiscard]] std::optional<CarriedElement> carried(const ElementCorners& element, double lift) const override;
+  [[nodiscard]] std::optional<MovedTriangle> moved_triangle(const Vector3& p) const override;
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;
   [[nodiscard]] std::optional<SurfacePoint> nearest_again(const Vector3& p, double radius, double same, double fresh,

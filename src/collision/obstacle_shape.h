@@ -2,6 +2,7 @@
 // primitives (exact signed distances).
 #pragma once
 
+#include "collision/moved_triangle.h"
 #include "collision/obstacle.h"
 #include "collision/zone.h"
 
@@ -59,6 +60,9 @@ class ObstacleShape {
   [[nodiscard]] virtual std::optional<CarriedElement> carried(const ElementCorners& element, double /*lift*/) const {
     return {{element}};
   }
+
+  /// The triangle that is nearest to p at the interval's begin, in the shape's frame; nothing where the surface does not deform.
+  [[nodiscard]] virtual std::optional<MovedTriangle> moved_triangle(const Vector3& /*p*/) const { return std::nullopt; }
 
   /// How far the point of the surface that is nearest to p at the interval's end moves from time t to t_end, likewise.
   [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/, double /*t*/, double /*t_end*/) const { return Vector3::Zero(); }

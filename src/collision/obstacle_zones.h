@@ -60,8 +60,7 @@ class ObstacleZones {
   /// nothing if none does.
   [[nodiscard]] std::optional<Vector3> carried(Index particle, const Vector3& from) const;
 
-  /// The particle with the rigid motion of the first obstacle that moves and that does not let it be at `position`; with none if
-  /// there is no such obstacle. What deforms moves as it does where the particle was, at `from`.
+  /// The particle, held by the first obstacle that moves and that does not let it be at `position`, if there is one.
   [[nodiscard]] Anchor anchor(Index particle, const Vector3& from, const Vector3& position) const;
 
   /// Where obstacles that move take elements along which they would cross now, each with what was nearest to it at `from`, and

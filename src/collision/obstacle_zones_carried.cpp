@@ -35,8 +35,12 @@ Anchor ObstacleZones::anchor(Index particle, const Vector3& from, const Vector3&
     for (const PatchZones& zones : patches_[at(place.patch)].zones) {
       const Index k = zones.obstacle();
       if (set_.rests(k) || zones.allow(place.slot, set_.local(k, position))) continue;
+      anchor.obstacle = k;
       anchor.motion = set_.after(k) * set_.before(k).inverse();
-      anchor.motion.pretranslate(set_.carried(k, from) - anchor.motion * from);
+      anchor.surface = set_.shape(k).moved_triangle(set_.local_before(k, from));
+      if (!anchor.surface) return anchor;
+      for (Vector3& corner : anchor.surface->before) corner = set_.before(k) * corner;
+      for (Vector3& corner : anchor.surface->after) corner = set_.after(k) * corner;
       return anchor;
     }
   }

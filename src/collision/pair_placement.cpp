@@ -33,7 +33,29 @@ Outcomes PairPlacement::place(const Points& before, Points& after) {
     place_among_obstacles(way, after);
     outcomes = place_held(before, after);
   }
+  accept_carried(after, outcomes);
   return outcomes;
+}
+
+/// Zones before a surface that deforms lose what it goes otherwise than at their nearest points, which may be all of the room that
+/// there is: of particles that went with the surface, only those are squeezed of whose elements it crosses one.
+void PairPlacement::accept_carried(const Points& after, Outcomes& outcomes) {
+  std::vector<Index> carried;
+  for (const Index i : squeezed(held_, outcomes)) {
+    const auto anchor = find_anchor(i);
+    if (anchor != carriers_.anchors.end() && anchor->particle == i && anchor->surface) carried.push_back(i);
+  }
+  if (carried.empty()) return;
+  zones_.renew_around(carried, {after, after, true});
+  for (const Index i : carried) {
+    const auto n = std::lower_bound(held_.begin(), held_.end(), i) - held_.begin();
+    if (!zones_.is_crossed(i)) outcomes[static_cast<std::size_t>(n)] = Outcome::stopped;
+  }
+}
+
+std::vector<Anchor>::iterator PairPlacement::find_anchor(Index particle) {
+  std::vector<Anchor>& anchors = carriers_.anchors;
+  return std::lower_bound(anchors.begin(), anchors.end(), particle, [](const Anchor& a, Index b) { return a.particle < b; });
 }
 
 /// Zones that are new for their neighbours may not hold particles any more.
@@ -60,10 +82,9 @@ bool PairPlacement::anchor_squeezed(const Outcomes& outcomes, const Points& befo
   bool changed = false;
   for (const Index i : squeezed(held_, outcomes)) {
     const Anchor anchor = zones_.anchor(i, before.col(i), after.col(i));
-    std::vector<Anchor>& anchors = carriers_.anchors;
-    const auto found = std::lower_bound(anchors.begin(), anchors.end(), i, [](const Anchor& a, Index b) { return a.particle < b; });
-    if (found == anchors.end() || found->particle != i) {
-      anchors.insert(found, anchor);
+    const auto found = find_anchor(i);
+    if (found == carriers_.anchors.end() || found->particle != i) {
+      carriers_.anchors.insert(found, anchor);
     } else if (anchor.moves() && !found->moves()) {
       *found = anchor;
     } else {

@@ -17,9 +17,9 @@ class PairPlacement {
   /// Changes `after` [m], 3 x n, which obstacles allow, to places that those allow and the sides of all pairs. Where there are none
   /// in the zones at hand, zones are made again where the step began and groups of particles go along with the obstacle that is in
   /// their way, as if they were a part of it: more and more particles, until all that are next to a group have a place. Before one
-  /// obstacle that is rigid, or such that rest, they all have one, but for pins; otherwise what finds none stays with its group: an
-  /// obstacle can be left again, a knot in a cloth stays. Returns what became of particles that were held. Requires
-  /// SelfZones::begin_step() with the same `before`.
+  /// obstacle that is rigid, or such that rest, they all have one, but for pins, and mostly before one that deforms; otherwise what
+  /// finds none stays with its group: an obstacle can be left again, a knot in a cloth stays. Returns what became of particles that
+  /// were held. Requires SelfZones::begin_step() with the same `before`.
   Outcomes place(const Points& before, Points& after);
 
  private:
@@ -29,6 +29,10 @@ class PairPlacement {
   void place_among_obstacles(const Way& way, Points& after);
   /// Whether any held particle is an anchor now that was none, or begins to move.
   bool anchor_squeezed(const Outcomes& outcomes, const Points& before, const Points& after);
+
+  void accept_carried(const Points& after, Outcomes& outcomes);
+  /// The particle's anchor, or the first of one that comes after it.
+  [[nodiscard]] std::vector<Anchor>::iterator find_anchor(Index particle);
 
   ObstacleZones& zones_;
   SelfZones& pairs_;

@@ -123,7 +123,7 @@ std::vector<PairPlanes::Bound> PairPlanes::bounds(const std::vector<ElementPair>
     if (!(heights_at(pair, before_).gap() > 0.0)) continue;
     const double room = 0.5 * kept_gap(pair);
     const Index group = group_of(pair);
-    if (group != kNone) pair.normal = groups_.turn(group) * pair.normal;
+    if (group != kNone) pair.normal = groups_.turned(group, pair.normal);
     const PairHeights end = heights_at(pair, ends_);
     const PairHeights target = heights_at(pair, targets_);
     const double least = 0.5 * std::clamp(end.gap(), 0.0, least_gap());

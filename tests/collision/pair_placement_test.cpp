@@ -18,9 +18,24 @@ constexpr double kMargin = 0.001;
 const Vector3 kX = Vector3::UnitX();
 const Vector3 kZ = Vector3::UnitZ();
 
-Obstacle torus() {
+Obstacle torus(const Motion& motion) {
   const auto mesh = std::make_shared<const TriangleMesh>(test::torus(0.02, 0.006, 12, 8));
-  return {.name = "torus", .geometry = MeshGeometry{mesh, true}};
+  return {.name = "torus", .geometry = MeshGeometry{mesh, true}, .motion = motion};
+}
+
+/// The torus, stretched, sheared and squashed by up to `strain` at ten frames a second.
+Obstacle deforming_torus(double strain, const Motion& motion) {
+  const TriangleMesh mesh = test::torus(0.02, 0.006, 12, 8);
+  Random random(6);
+  MeshSequence sequence{.triangles = mesh.triangles, .frames = {mesh.vertices}, .frame_rate = 10.0, .loop = true};
+  for (int frame = 0; frame < 4; ++frame) {
+    Matrix3 map = Matrix3::Identity();
+    for (double& entry : map.reshaped()) entry += random.between(-strain, strain);
+    sequence.frames.push_back(map * mesh.vertices);
+  }
+  return {.name = "torus",
+          .geometry = SequenceGeometry{std::make_shared<const MeshSequence>(std::move(sequence)), true},
+          .motion = motion};
 }
 
 /// How many edges of the one meet triangles of the other, both ways.
@@ -44,15 +59,12 @@ int count_crossings(const std::vector<Element>& elements, const Points& x, const
   return crossings;
 }
 
-/// A pile over a torus, drawn into its hole and thrown about by up to `kick` [m] a step, while the torus does one of `motions`.
-void expect_free(const Motion& motion, double kick, std::uint64_t seed) {
+/// A pile over a torus, drawn into its hole and thrown about by up to `kick` [m] a step.
+void expect_free(const Obstacle& obstacle, double kick, std::uint64_t seed) {
   SelfNetwork network;
   network.add_cloth(5, {-0.025, 0.012, -0.025}, kEdge * kX, kEdge * kZ);
   network.add_cloth(5, {-0.024, 0.016, -0.026}, kEdge * kX, kEdge * kZ);
   network.add_rope(6, {-0.03, 0.02, 0.001}, kEdge * kX);
-  Obstacle obstacle = torus();
-  obstacle.motion = motion;
-  const TriangleMesh& mesh = *std::get<MeshGeometry>(obstacle.geometry).mesh;
   Environment environment({obstacle});
   environment.set_interval(0.0, 0.0);
   FreeSpace space(environment, network.surface(0.0), network.positions, kMargin);
@@ -66,7 +78,9 @@ void expect_free(const Motion& motion, double kick, std::uint64_t seed) {
     space.follow(x, after);
     EXPECT_EQ(space.truncate(x, after).squeezed, 0) << "step " << step;
     ASSERT_EQ(test::count_crossings(network.elements, after), 0) << "step " << step;
-    ASSERT_EQ(count_crossings(network.elements, pose.inverse() * after, mesh), 0) << "step " << step;
+    ASSERT_EQ(count_crossings(network.elements, pose.inverse() * after, obstacle_mesh(obstacle.geometry, 0.0, 0.01 * (step + 1))),
+              0)
+        << "step " << step;
     x = after;
   }
 }
@@ -76,16 +90,21 @@ Motion motion_to(const Vector3& position, const Vector3& rotation) {
 }
 
 TEST(PairPlacement, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatRests) {
-  for (const double kick : {0.002, 0.02}) expect_free({}, kick, 1);
+  for (const double kick : {0.002, 0.02}) expect_free(torus({}), kick, 1);
 }
 
 /// 1 m/s is an edge's length a step.
 TEST(PairPlacement, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatMoves) {
-  for (const double speed : {0.3, 30.0}) expect_free(motion_to({0.0, speed, 0.2 * speed}, Vector3::Zero()), 0.002, 2);
+  for (const double speed : {0.3, 30.0}) expect_free(torus(motion_to({0.0, speed, 0.2 * speed}, Vector3::Zero())), 0.002, 2);
 }
 
 TEST(PairPlacement, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatTurns) {
-  for (const double degrees : {100.0, 3000.0}) expect_free(motion_to({0.0, 1.0, 0.0}, {degrees, 0.0, 0.0}), 0.002, 3);
+  for (const double degrees : {100.0, 3000.0}) expect_free(torus(motion_to({0.0, 1.0, 0.0}, {degrees, 0.0, 0.0})), 0.002, 3);
+}
+
+TEST(PairPlacement, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatStretches) {
+  for (const double strain : {0.05, 0.2})
+    expect_free(deforming_torus(strain, motion_to({0.0, 0.3, 0.0}, {100.0, 0.0, 0.0})), 0.002, 4);
 }
 
 }  // namespace
