@@ -7,9 +7,10 @@ namespace sprung {
 
 namespace {
 
-// A surface point is looked for again after a motion of these parts of the gap: with older ones friction is no longer the law's.
+// A surface point is looked for again after a motion of these parts of the gap: with older ones friction is no longer the law's,
+// and in a crease a particle sinks into the gap by as much as it moved past the triangle that was nearest.
 constexpr double kSame = 0.02;
-constexpr double kFresh = 0.3;
+constexpr double kFresh = 0.05;
 
 /// Where a path meets a shape, in the shape's frame.
 struct LocalContact {
