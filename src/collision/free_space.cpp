@@ -46,15 +46,17 @@ void add_free(std::vector<Index> all, std::vector<Index>& particles, Outcomes& o
 
 struct FreeSpace::Implementation {
   Implementation(Environment& world, CollisionSurface elements, const Points& rest, double margin)
-      : environment(world), set(world.set()), surface(std::move(elements)), zones(set, surface, margin) {
+      : environment(world), set(world.set()), surface(std::move(elements)), zones(set, surface, rest, margin) {
     if (meets_itself(surface)) pairs.emplace(surface, rest, margin);
   }
 
   void begin_pairs(const Points& before, const Points& after);
   Truncation truncate(const Points& before, Points& after, const Relax& relax);
   Truncation place_all(const Way& way, Points& after);
+  void look_at_pins(const Points& after);
   Truncation lead_on(const std::vector<Index>& particles, const Outcomes& outcomes, const Way& way, Points& after);
   void keep_apart(const Points& before, Points& after, Truncation& truncation);
+  /// Particles, pinned ones too, that are not squeezed but of whose elements an obstacle crosses one.
   [[nodiscard]] Index crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const;
   [[nodiscard]] std::vector<Index> movable(std::vector<Index> particles, const Way& way) const;
   [[nodiscard]] std::vector<Index> all_movable(const Way& way) const;
@@ -84,6 +86,7 @@ bool FreeSpace::meets_anything() const { return implementation_->pairs.has_value
 
 void FreeSpace::follow(const Points& before, const Points& after) {
   implementation_->zones.follow({before, after});
+  implementation_->zones.let_through(before);
   if (implementation_->pairs) implementation_->begin_pairs(before, after);
 }
 
@@ -122,7 +125,17 @@ FreeSpace::Truncation FreeSpace::Implementation::place_all(const Way& way, Point
     carry_squeezed(zones, particles, way.from, after, outcomes);
     if (count(outcomes, Outcome::squeezed) > 0) outcomes = place_in_parts(particles, way, after);
   }
+  look_at_pins(after);
   return lead_on(particles, outcomes, way, after);
+}
+
+// Pins ask nobody: whether they took an element through an obstacle is seen where they are.
+void FreeSpace::Implementation::look_at_pins(const Points& after) {
+  std::vector<Index> leaving;
+  for (Index i = 0; i < static_cast<Index>(after.cols()); ++i) {
+    if (surface.pinned[at(i)] != 0 && after.col(i).allFinite() && !zones.allow(i, after.col(i))) leaving.push_back(i);
+  }
+  if (!leaving.empty()) zones.renew_around(leaving, {after, after, true});
 }
 
 FreeSpace::Truncation FreeSpace::Implementation::lead_on(const std::vector<Index>& particles, const Outcomes& outcomes,
@@ -145,9 +158,11 @@ bool FreeSpace::Implementation::can_go_on(Index i, const Points& from, const Poi
 }
 
 Index FreeSpace::Implementation::crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const {
+  if (!zones.crosses()) return 0;
   Index found = 0;
+  for (Index i = 0; i < static_cast<Index>(surface.pinned.size()); ++i) found += zones.is_crossed(i) ? 1 : 0;
   for (std::size_t n = 0; n < particles.size(); ++n) {
-    if (outcomes[n] != Outcome::squeezed && zones.is_crossed(particles[n])) ++found;
+    if (outcomes[n] == Outcome::squeezed && zones.is_crossed(particles[n])) --found;
   }
   return found;
 }

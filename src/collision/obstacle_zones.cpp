@@ -56,8 +56,12 @@ SPRUNG_KERNEL Box3 bounds_of(const Way& way, const std::vector<Index>& particles
 
 }  // namespace
 
-ObstacleZones::ObstacleZones(const ObstacleSet& set, const CollisionSurface& surface, double margin)
-    : set_(set), surface_(surface), margin_(margin) {
+ObstacleZones::ObstacleZones(const ObstacleSet& set, const CollisionSurface& surface, const Points& rest, double margin)
+    : set_(set),
+      surface_(surface),
+      margin_(margin),
+      rest_(rest),
+      passing_(set.obstacles().size(), std::vector<char>(surface.pinned.size(), 0)) {
   for (std::size_t p = 0; p < surface.patches.size(); ++p) {
     const ElementPatch& elements = surface.patches[p];
     Patch patch{.topology = PatchTopology(surface, elements)};
@@ -207,6 +211,7 @@ void ObstacleZones::append_particle_contacts(Index p, PatchZones& zones, const W
   const bool rests = set_.rests(k);
   for (const Index slot : patches_[at(p)].own) {
     const Index i = particles[at(slot)];
+    if (is_passing(k, i)) continue;
     const Vector3 from = way.from.col(i);
     const Vector3 to = way.to.col(i);
     const Vector3 end = set_.local(k, to);
@@ -227,6 +232,8 @@ void ObstacleZones::append_element_contacts(Index p, const PatchZones& zones, co
     const Zone& zone = zones.zone(e);
     if (zone.broken || zone.weights.maxCoeff() > kAtCorner) continue;
     const Element& element = surface_.elements[at(patch.first_element + e)];
+    const auto corners = element.particles.begin();
+    if (std::any_of(corners, corners + element.corners, [&](Index i) { return is_passing(k, i); })) continue;
     Contact contact{.obstacle = k, .point = pose * zone.point, .normal = pose.linear() * zone.normal};
     Vector3 sum = Vector3::Zero();
     double thickness = 0.0;
@@ -251,18 +258,10 @@ bool ObstacleZones::allow(Index particle, const Vector3& position) const {
     const Patch& patch = patches_[at(p)];
     if (!patch.known.isEmpty() && !patch.known.contains(position)) return false;
     for (const PatchZones& zones : patch.zones) {
-      if (!zones.allow(slot, set_.local(zones.obstacle(), position))) return false;
+      if (!is_passing(zones.obstacle(), particle) && !zones.allow(slot, set_.local(zones.obstacle(), position))) return false;
     }
   }
   return true;
-}
-
-bool ObstacleZones::is_crossed(Index particle) const {
-  const auto slots = slots_of(particle);
-  return std::any_of(slots.begin(), slots.end(), [&](const PatchSlot& place) {
-    const std::vector<PatchZones>& zones = patches_[at(place.patch)].zones;
-    return std::any_of(zones.begin(), zones.end(), [&](const PatchZones& z) { return z.is_crossed(place.slot); });
-  });
 }
 
 void ObstacleZones::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
@@ -273,6 +272,7 @@ void ObstacleZones::append_half_spaces(Index particle, std::vector<HalfSpace>& h
       half_spaces.push_back({-Vector3::Unit(axis), -patch.known.max()[axis]});
     }
     for (const PatchZones& zones : patch.zones) {
+      if (is_passing(zones.obstacle(), particle)) continue;
       zones.append_half_spaces(slot, set_.after(zones.obstacle()), half_spaces);
     }
   }

@@ -27,8 +27,9 @@ struct CarriedCorner {
 
 class ObstacleZones {
  public:
-  /// Contacts are found `margin` [m] beyond their gap. Keeps references to both.
-  ObstacleZones(const ObstacleSet& set, const CollisionSurface& surface, double margin);
+  /// Contacts are found `margin` [m] beyond their gap. The network is stretched by nothing at `rest` [m], 3 x n. Keeps references
+  /// to set and surface.
+  ObstacleZones(const ObstacleSet& set, const CollisionSurface& surface, const Points& rest, double margin);
 
   /// Makes zones where elements are near obstacles and have none that holds them on their way.
   void follow(const Way& way);
@@ -36,6 +37,10 @@ class ObstacleZones {
   /// Particles that might not be held by their zones where they are about to be, as follow() and what came after it saw it, or
   /// whose elements an obstacle crosses; ascending.
   [[nodiscard]] std::vector<Index> restless() const;
+
+  /// Lets corners of elements that an obstacle crosses and drags along through it, until they are free of it: for them there are no
+  /// zones and no contacts. Requires follow() for a way that begins at `from`.
+  void let_through(const Points& from);
 
   /// Makes the zones of all elements around these particles again, where they are when the way begins.
   void renew_around(const std::vector<Index>& particles, const Way& way);
@@ -47,6 +52,8 @@ class ObstacleZones {
   /// Whether the zones of all elements around the particle hold it there, at the interval's end.
   [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
 
+  /// Whether an obstacle crosses any element.
+  [[nodiscard]] bool crosses() const;
   /// Whether an obstacle crosses an element around the particle.
   [[nodiscard]] bool is_crossed(Index particle) const;
 
@@ -90,6 +97,16 @@ class ObstacleZones {
   [[nodiscard]] bool leads_through_another(Index k, Index particle, const Vector3& from, const Vector3& place) const;
   /// An obstacle that moves and that an element around the particle may touch; kNone if there is none.
   [[nodiscard]] Index leans_on(Index particle) const;
+  /// A corner of an element that an obstacle crosses.
+  struct CrossedCorner {
+    Index obstacle = kNone;
+    Index particle = kNone;
+  };
+  void append_passing(Index patch, const PatchZones& zones, const Points& from, std::vector<CrossedCorner>& passing) const;
+  [[nodiscard]] bool is_overstretched(const Element& element, const Points& positions) const;
+  [[nodiscard]] bool is_passing(Index k, Index particle) const {
+    return passing_[static_cast<std::size_t>(k)][static_cast<std::size_t>(particle)] != 0;
+  }
   void find_near(Index patch, const Way& way, double carried);
   void append_restless(Index patch, const PatchZones& zones);
   void find_begins(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
@@ -102,7 +119,10 @@ class ObstacleZones {
   const ObstacleSet& set_;
   const CollisionSurface& surface_;
   double margin_;
+  Points rest_;
   std::vector<Patch> patches_;
+  std::vector<CrossedCorner> let_through_;  ///< by let_through()
+  std::vector<std::vector<char>> passing_;  ///< by obstacle, by particle: whether the one lets the other through
 };
 
 }  // namespace sprung

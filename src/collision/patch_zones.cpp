@@ -143,7 +143,9 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
 
 void PatchZones::find_near_elements(const ZoneDemand& demand) {
   near_elements_.clear();
+  crosses_ = false;
   for (std::size_t e = 0; e < zones_.size(); ++e) {
+    crosses_ = crosses_ || zones_[e].broken;
     if (zones_[e].distance < demand.gap + demand.margin) near_elements_.push_back(static_cast<Index>(e));
   }
 }

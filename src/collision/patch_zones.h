@@ -60,6 +60,9 @@ class PatchZones {
   /// Whether the obstacle crosses an element at the slot, which then has no zone.
   [[nodiscard]] bool is_crossed(Index slot) const { return slots_[static_cast<std::size_t>(slot)].broken; }
 
+  /// Whether it crosses any element.
+  [[nodiscard]] bool crosses() const { return crosses_; }
+
   /// Appends all that bounds the slot, placed in the world by `pose`.
   void append_half_spaces(Index slot, const RigidTransform& pose, std::vector<HalfSpace>& half_spaces) const;
 
@@ -105,6 +108,7 @@ class PatchZones {
   std::vector<Ball> quiet_;              ///< by slot: holds nothing of the surface
   std::vector<Index> restless_;          ///< slots
   std::vector<Index> near_elements_;
+  bool crosses_ = false;
   std::vector<char> marked_;  ///< by element; 0 between calls
 };
 

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 
@@ -18,8 +19,12 @@ constexpr double kVelocityTolerance = 1.0e-3;
 // A touching contact is this part of its gap above it at most: what rounding leaves of a projection.
 constexpr double kTouch = 1.0e-9;
 
-// The least of contacts that only pinned particles have.
+// The least of contacts that are left to pins.
 constexpr double kNothingToDo = -std::numeric_limits<double>::infinity();
+
+// Beside a pin a corner would have to go far for the sum to go a little: a contact with more than this part of its weights at pins
+// is left to them.
+constexpr double kMostPinned = 0.9;
 
 // Contacts that one task sets up.
 constexpr Index kContactChunk = 1024;
@@ -29,17 +34,24 @@ void for_each_set(Sets& sets, const Visit& visit) {
   std::apply([&](auto&... set) { (visit(set), ...); }, sets);
 }
 
-/// Sets the contact's particles, weights and shares; shares of 0 when all of them are pinned.
+/// Sets the contact's particles, weights and shares; false when pins alone, or nearly, have it.
 template <std::size_t n>
 bool set_particles(const Contact& contact, const Scalars& inverse_masses, ContactRow<n>& row) {
   double mobility = 0.0;
+  double pinned = 0.0;
+  double total = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
     row.particles[k] = contact.particles[k];
     row.weights[k] = contact.weights[k];
     row.shares[k] = contact.weights[k] * inverse_masses[contact.particles[k]];
     mobility += contact.weights[k] * row.shares[k];
+    total += std::abs(row.weights[k]);
+    if (inverse_masses[row.particles[k]] == 0.0) pinned += std::abs(row.weights[k]);
   }
-  if (mobility == 0.0) return false;
+  if (pinned > kMostPinned * total) {
+    row.shares.fill(0.0);
+    return false;
+  }
   for (double& share : row.shares) share /= mobility;
   return true;
 }

@@ -1,5 +1,6 @@
 // No particle ends behind a surface in front of which it began, judged by exact predicates over all triangles.
 #include "collision/sample_meshes.h"
+#include "collision/self_networks.h"
 #include "collision/single_particles.h"
 #include "geometry/side_of_plane.h"
 
@@ -236,6 +237,28 @@ TEST(Truncation, ParticlesStayBetweenSheetsOfOneMesh) {
   EXPECT_EQ(test::single_particles(environment, 1).truncate(rest, after).squeezed, 0);
   EXPECT_GT(after(1, 0), 0.0);
   EXPECT_LT(after(1, 0), 0.2);
+}
+
+TEST(Truncation, WhatPinsTakeThroughAnObstacleIsReportedInTheSameStep) {
+  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.2}};
+  ball.placed.translation() = Vector3(-1.0, 0.0, 0.0);
+  ball.motion.keyframes = {{0.0}, {1.0, Vector3(1.0, 0.0, 0.0)}, {2.0, Vector3(1.0, 1.0, 0.0)}};
+  Environment environment({ball});
+  test::SelfNetwork segment;
+  segment.add_rope(1, Vector3::Zero(), Vector3(0.6, 0.0, 0.0));
+  segment.pinned[0] = 1;
+  FreeSpace space(
+      environment,
+      make_collision_surface(segment.elements, segment.positions, segment.body_of, Scalars::Zero(2), segment.pinned, {0}, {0}),
+      segment.positions, 0.0);
+  const auto squeezed_until = [&](double time) {
+    environment.set_interval(time - 1.0, time);
+    Points after = segment.positions;
+    return space.truncate(segment.positions, after).squeezed;
+  };
+  EXPECT_EQ(squeezed_until(1.0), 2) << "both ends of what the ball crosses";
+  squeezed_until(2.0);
+  EXPECT_EQ(squeezed_until(3.0), 0) << "the ball has left it";
 }
 
 TEST(Truncation, InAWedgeOfTwoObstaclesAParticleFindsAPlace) {

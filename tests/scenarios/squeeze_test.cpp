@@ -79,5 +79,18 @@ TEST_P(PinInTheWay, OfABallTheClothGetsFreeAgain) {
   EXPECT_LT(stretch, 0.2) << "at the end; a ball of 0.12 m that is stuck stretches a spring of 0.04 m by more than its length";
 }
 
+TEST_P(PinInTheWay, OfABallTheClothAroundItIsNotDraggedAlong) {
+  double stretch = 0.0;
+  const ScenarioReport report =
+      run_scenario(load_scenario("hanging_cloth", {R"(bodies.cloth.pins=[{"nearest": [0.03, 0.05, 0]}])"}, GetParam()),
+                   [&](const Simulator&, const FrameDiagnostics& frame) { stretch = frame.max_stretch; });
+  EXPECT_FALSE(report.is_free()) << report;
+  EXPECT_GT(report.squeezed, 0) << "it is reported";
+  EXPECT_LT(report.last_wrong_frame, 0.2 * report.frames) << report;
+  // The ball is gone in 0.1 s, in which it goes 50 times as far as springs are long. Measured: 0.11 and 0.87.
+  EXPECT_LT(report.max_stretch, 2.0) << report;
+  EXPECT_LT(stretch, 0.1) << "at the end";
+}
+
 }  // namespace
 }  // namespace sprung::testing
