@@ -26,7 +26,8 @@ constexpr double kContactTolerance = 1.0e-3;
 constexpr double kRelaxation = 1.8;
 
 // Where surfaces stop particles short of where the passes led them, springs lead them and their neighbours on, at most so often,
-// by so many passes each time: zones are made again before particles are far from where they were safe.
+// by so many passes each time, as many in all as the limit has: zones are made again before particles are far from where they were
+// safe.
 constexpr int kRelaxRounds = 16;
 constexpr int kRelaxPasses = 2;
 
@@ -158,10 +159,9 @@ void Simulator::Implementation::constrain(StepReport& report) {
 void Simulator::Implementation::settle(StepReport& report) {
   if (!contacts.meets_anything() && !limit) return;
   report.stretch_excess = limit ? limit->excess(state.x) : 0.0;
+  const int most_rounds = limit ? std::min(kRelaxRounds, limit->settings().iterations / kRelaxPasses) : 0;
   int rounds = 0;
-  const auto relax_again = [&](Points& positions) {
-    return limit && rounds++ < kRelaxRounds && relax(positions, report.stretch_excess);
-  };
+  const auto relax_again = [&](Points& positions) { return rounds++ < most_rounds && relax(positions, report.stretch_excess); };
   if (contacts.meets_anything()) contacts.truncate(before, state.x, relax_again);
   integrator->recover_velocities(state, before, advanced, settings.step);
   if (contacts.meets_anything()) contacts.settle_velocities(motion(), state, *integrator);
