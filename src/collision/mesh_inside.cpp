@@ -1,12 +1,11 @@
 #include "collision/mesh_inside.h"
 
 #include "base/kernel.h"
+#include "collision/float_box.h"
 #include "collision/walk_stack.h"
 #include "geometry/side_of_plane.h"
 
 #include <array>
-#include <cmath>
-#include <limits>
 
 namespace sprung {
 
@@ -14,25 +13,6 @@ namespace {
 
 using Vector2 = Eigen::Vector2d;
 using TriangleCorners = std::array<Vector3, 3>;
-
-struct FloatBox {
-  float min[3];
-  float max[3];
-};
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-float below(double value) { return std::nextafter(static_cast<float>(value), -kInfinity); }
-float above(double value) { return std::nextafter(static_cast<float>(value), kInfinity); }
-
-FloatBox rounded_outward(const Box3& box) {
-  FloatBox rounded;
-  for (int axis = 0; axis < 3; ++axis) {
-    rounded.min[axis] = below(box.min()[axis]);
-    rounded.max[axis] = above(box.max()[axis]);
-  }
-  return rounded;
-}
 
 SPRUNG_KERNEL void push_meeting(const MeshTree::Node& node, const FloatBox& box, WalkStack& stack) {
   TreeLanes apart = {};
@@ -45,7 +25,7 @@ SPRUNG_KERNEL void push_meeting(const MeshTree::Node& node, const FloatBox& box,
 
 template <class Visit>
 void visit_box(const MeshTree& tree, const Box3& box, const Visit& visit) {
-  const FloatBox bounds = rounded_outward(box);
+  const FloatBox bounds = float_box(box);
   WalkStack stack(tree.stack_size());
   stack.push({0.0F, 0});
   while (!stack.empty()) {

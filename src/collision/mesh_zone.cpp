@@ -1,6 +1,7 @@
 #include "collision/mesh_zone.h"
 
 #include "base/kernel.h"
+#include "collision/float_box.h"
 #include "collision/walk_stack.h"
 #include "collision/zone_builder.h"
 
@@ -19,34 +20,12 @@ constexpr float kPlaneRounding = 0x1p-20F;
 // Triangles are looked for this many times the reach away: an element that has none so near keeps its zone for longer.
 constexpr double kSearch = 4.0;
 
-// A float somewhat below or above.
-float below(double value) {
-  const auto nearest = static_cast<float>(value);
-  return nearest - (std::abs(nearest) * 0x1p-23F + std::numeric_limits<float>::min());
-}
-float above(double value) { return -below(-value); }
-
 Box3 grown(const Box3& box, double reach) { return {box.min().array() - reach, box.max().array() + reach}; }
 
 double box_distance(const TriangleCorners& corners, const Box3& box) {
   Box3 of_triangle(corners[0]);
   of_triangle.extend(corners[1]).extend(corners[2]);
   return of_triangle.exteriorDistance(box);
-}
-
-/// A box whose sides are rounded outward, as the nodes' are.
-struct FloatBox {
-  float min[3];
-  float max[3];
-};
-
-FloatBox float_box(const Box3& box) {
-  FloatBox rounded;
-  for (int axis = 0; axis < 3; ++axis) {
-    rounded.min[axis] = below(box.min()[axis]);
-    rounded.max[axis] = above(box.max()[axis]);
-  }
-  return rounded;
 }
 
 /// What is not to be visited any more, in single precision.
@@ -66,7 +45,7 @@ Search search_around(const MeshTree& tree, const Box3& element, const Box3& box)
 
 void set_plane(int k, const Vector3& normal, double limit, Search& search) {
   for (int axis = 0; axis < 3; ++axis) search.normal[k][axis] = static_cast<float>(normal[axis]);
-  search.limit[k] = below(limit) - search.rounding;
+  search.limit[k] = float_below(limit) - search.rounding;
 }
 
 void update(const ZoneBuilder& zone, Search& search) {

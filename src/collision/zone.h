@@ -36,8 +36,8 @@ struct Zone {
 
   double clear = 0.0;  ///< nothing of the obstacle was nearer to the element than this [m]
 
-  /// The nearest points of element and obstacle (near enough to them, where farther apart than `exact`), if the obstacle comes
-  /// within the box; else distance is infinite.
+  /// The nearest points of element and obstacle (near enough to them, where farther apart than `exact`), if the obstacle comes that
+  /// near or may come within `reach` of an element that stays; else distance is infinite.
   double distance = std::numeric_limits<double>::infinity();  ///< [m]
   Vector3 point = Vector3::Zero();                            ///< on the obstacle
   Vector3 normal = Vector3::Zero();                           ///< from it to the element, unit length

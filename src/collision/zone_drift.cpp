@@ -1,6 +1,7 @@
 #include "collision/zone_drift.h"
 
 #include "base/kernel.h"
+#include "collision/float_box.h"
 #include "collision/walk_stack.h"
 
 #include <algorithm>
@@ -13,26 +14,10 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// A box in single precision, rounded outward.
-struct FloatBox {
-  float low[3];
-  float high[3];
-};
-
-FloatBox float_box(const Box3& box) {
-  FloatBox rounded;
-  for (int axis = 0; axis < 3; ++axis) {
-    rounded.low[axis] = std::nextafter(static_cast<float>(box.min()[axis]), -kInfinity);
-    rounded.high[axis] = std::nextafter(static_cast<float>(box.max()[axis]), kInfinity);
-  }
-  return rounded;
-}
-
-/// 0 for the children whose boxes meet the box, infinity for the others.
 SPRUNG_KERNEL void mark_children(const MeshTree::Node& node, const FloatBox& box, TreeLanes& bounds) {
   bounds = TreeLanes{};
   for (int axis = 0; axis < 3; ++axis) {
-    bounds = ((node.min[axis] > box.high[axis]) | (node.max[axis] < box.low[axis])) ? TreeLanes{} + kInfinity : bounds;
+    bounds = ((node.min[axis] > box.max[axis]) | (node.max[axis] < box.min[axis])) ? TreeLanes{} + kInfinity : bounds;
   }
 }
 

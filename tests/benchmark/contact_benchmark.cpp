@@ -1,4 +1,4 @@
-// Contact search of particles near the bunny at 3,700 to 236,000 triangles, beside fcl::collide per particle in the same run.
+// Contact search of particles near the bunny at 3,700 to 280,000 triangles, beside fcl::collide per particle in the same run.
 #include "base/parallel.h"
 #include "benchmark/bunnies.h"
 #include "collision/free_space.h"
@@ -123,7 +123,7 @@ void fcl_collide_near(benchmark::State& state) {
   report(state, contacts);
 }
 
-const std::vector<std::int64_t> kTriangles{3700, 14700, 59000, 236000};
+const std::vector<std::int64_t> kTriangles{3700, 14700, 59000, 70000, 236000, 280000};
 
 BENCHMARK(contact_search_near)->ArgNames({"triangles", "threads"})->ArgsProduct({kTriangles, {1, 2}})->UseRealTime();
 BENCHMARK(contact_search_far)->ArgNames({"triangles", "threads"})->ArgsProduct({{59000}, {1, 2}})->UseRealTime();

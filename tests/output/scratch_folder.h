@@ -17,7 +17,8 @@ namespace sprung::testing {
 class ScratchFolder {
  public:
   ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "sprung-test-XXXXXX").string();
+    const std::string to_be_named(6, 'X');  // what mkdtemp asks for
+    std::string name = (std::filesystem::temp_directory_path() / ("sprung-test-" + to_be_named)).string();
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no scratch folder");
     path_ = name;
   }
