@@ -6,6 +6,7 @@
 #include "geometry/side_of_plane.h"
 
 #include <array>
+#include <limits>
 
 namespace sprung {
 
