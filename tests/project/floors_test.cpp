@@ -36,6 +36,7 @@ const std::vector<Library> kLibraries = {
     {"valijson/", {"scene"}},
     {"CLI/", {"app"}},
     {"fmt/", {"app"}},
+    {"sanitizer/", {"base"}},
     {"fcntl.h", {"app", "output"}},
     {"unistd.h", {"app", "output"}},
     {"sys/", {"app", "output"}},
