@@ -1,0 +1,156 @@
+// Cloths and ropes that the stretch limit alone carries: time of a frame, and how far they stretch, with Bullet's soft body of 20
+// passes in one step beside them in the same run.
+#include "base/parallel.h"
+#include "benchmark/bullet_hanging.h"
+#include "scene/scene_builder.h"
+#include "simulation/simulator.h"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <numbers>
+
+namespace sprung::benchmarks {
+namespace {
+
+constexpr int kFrames = 300;
+constexpr int kFirstFrame = 30;  // from here on the stretch counts: what hangs has settled
+constexpr double kFrameRate = 60.0;
+constexpr double kGravity = 9.81;
+constexpr int kBulletPasses = 20;
+
+enum Motion : std::uint8_t { hanging, swinging };
+
+/// What the benchmark asks of the limit: 1 % in all.
+StretchLimitSettings limit() { return {.max_stretch = 0.005, .tolerance = 0.005}; }
+
+Scene scene_of(BodyScene body) {
+  Scene scene;
+  scene.duration = kFrames / kFrameRate;
+  scene.frame_rate = kFrameRate;
+  scene.settings.gravity = {0.0, -kGravity, 0.0};
+  scene.settings.stretch_limit = limit();
+  scene.bodies.push_back(std::move(body));
+  return scene;
+}
+
+BodyScene body_of(BodyShapeScene shape, double mass, const std::vector<std::string>& pinned_corners) {
+  BodyScene body;
+  body.name = "body";
+  body.shape = std::move(shape);
+  body.mass = {.kind = MassScene::Kind::body, .value = mass};
+  body.springs.structural = SpringMaterial{};
+  body.pins.push_back({.where = PinCorners{pinned_corners}, .motion = {}});
+  return body;
+}
+
+/// A cloth of 1 m and 0.2 kg that hangs by two corners, or lies level.
+Scene cloth(Index side, Motion motion) {
+  BodyScene body = body_of(ClothShape{.resolution = {side, side}}, 0.2, {"min_max", "max_max"});
+  body.springs.shear = SpringMaterial{};
+  body.springs.bend = SpringMaterial{};
+  if (motion == swinging) body.place.rotation.x() = -90.0;
+  return scene_of(std::move(body));
+}
+
+/// A rope of 1 m and 0.1 kg that hangs by one end, or lies level.
+Scene rope(Index particles, Motion motion) {
+  const Vector3 end = motion == swinging ? Vector3(1.0, 0.0, 0.0) : Vector3(0.0, -1.0, 0.0);
+  return scene_of(body_of(RopeShape{.points = {Vector3::Zero(), end}, .particles = particles, .length = {}}, 0.1, {"from"}));
+}
+
+/// Largest stretch of structural springs.
+double stretch(const SpringNetwork& network, const Points& x) {
+  const Springs& springs = network.springs;
+  double most = 0.0;
+  for (Index s = 0; s < springs.count(); ++s) {
+    if (springs.kind[s] != SpringKind::structural) continue;
+    most = std::max(most, (x.col(springs.first[s]) - x.col(springs.second[s])).norm() / springs.rest_length[s] - 1.0);
+  }
+  return most;
+}
+
+/// Seconds of this process alone, whatever else the machine does.
+double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+struct Measured {
+  double seconds = 0.0;  ///< a frame
+  double worst = 0.0;    ///< stretch after any frame from kFirstFrame on
+  double end = 0.0;      ///< stretch after the last
+};
+
+template <class StepFrame, class Positions>
+Measured run(const SpringNetwork& network, const StepFrame& step_frame, const Positions& positions) {
+  Measured measured;
+  for (int frame = 1; frame <= kFrames; ++frame) {
+    const double begin = processor_time();
+    step_frame();
+    measured.seconds += (processor_time() - begin) / kFrames;
+    measured.end = stretch(network, positions());
+    if (frame >= kFirstFrame) measured.worst = std::max(measured.worst, measured.end);
+  }
+  return measured;
+}
+
+Measured run_sprung(const BuiltScene& built) {
+  Simulator simulator(built.network, built.settings);
+  const auto step_frame = [&] {
+    for (int step = 0; step < built.steps_per_frame; ++step) simulator.step();
+  };
+  return run(built.network, step_frame, [&]() -> const Points& { return simulator.positions(); });
+}
+
+Measured run_bullet(const SpringNetwork& network) {
+  BulletHanging bullet(network, kGravity, 1.0 / kFrameRate, kBulletPasses);
+  return run(
+      network, [&] { bullet.step_frame(); }, [&] { return bullet.positions(); });
+}
+
+/// The time is Sprung's, a frame.
+Measured report(benchmark::State& state, const BuiltScene& built) {
+  const Measured sprung = run_sprung(built);
+  state.SetIterationTime(sprung.seconds);
+  state.counters["worst_%"] = 100.0 * sprung.worst;
+  state.counters["end_%"] = 100.0 * sprung.end;
+  state.counters["steps"] = built.steps_per_frame;
+  state.counters["ns_a_particle"] = 1e9 * sprung.seconds / built.network.particle_count();
+  return sprung;
+}
+
+/// Arguments: particles along a side, motion. One thread.
+void cloth_against_bullet(benchmark::State& state) {
+  const ThreadLimit one_thread(1);
+  const BuiltScene built = build_scene(cloth(static_cast<Index>(state.range(0)), static_cast<Motion>(state.range(1))));
+  for ([[maybe_unused]] auto _ : state) {
+    const Measured sprung = report(state, built);
+    const Measured bullet = run_bullet(built.network);
+    state.counters["bullet_ms"] = 1e3 * bullet.seconds;
+    state.counters["of_bullet"] = sprung.seconds / bullet.seconds;
+    state.counters["bullet_worst_%"] = 100.0 * bullet.worst;
+  }
+}
+
+/// Arguments: particles, motion. One thread.
+void limited_rope(benchmark::State& state) {
+  const ThreadLimit one_thread(1);
+  const BuiltScene built = build_scene(rope(static_cast<Index>(state.range(0)), static_cast<Motion>(state.range(1))));
+  for ([[maybe_unused]] auto _ : state) report(state, built);
+}
+
+BENCHMARK(cloth_against_bullet)
+    ->ArgNames({"side", "swinging"})
+    ->ArgsProduct({{64, 128, 256}, {hanging, swinging}})
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(limited_rope)
+    ->ArgNames({"particles", "swinging"})
+    ->ArgsProduct({{1000, 100000}, {hanging, swinging}})
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace sprung::benchmarks
