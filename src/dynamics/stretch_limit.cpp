@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "dynamics/stretch_kernel.h"
 #include "dynamics/stretch_load.h"
+#include "dynamics/tethers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,10 +36,13 @@ LengthRange length_range(const StretchLimitSettings& settings) {
 }  // namespace
 
 StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings)
-    : network_(network), settings_(settings), batches_(std::make_unique<StretchBatches>(network, settings.kinds)) {}
+    : network_(network), settings_(settings), batches_(std::make_unique<StretchBatches>(network, settings.kinds)) {
+  if (settings.tethers) tethers_ = std::make_unique<Tethers>(network, settings.kinds, settings.max_stretch);
+}
 StretchLimit::~StretchLimit() = default;
 
 double StretchLimit::project(Points& positions, double relaxation) const {
+  if (tethers_) tethers_->project(positions);
   const LengthRange range = length_range(settings_);
   const auto project_part = [&](const StretchBatches::Part& part) {
     return project_springs(*batches_, part, range, relaxation, positions.data());

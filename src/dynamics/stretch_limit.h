@@ -9,6 +9,7 @@
 namespace sprung {
 
 struct StretchBatches;
+class Tethers;
 
 struct StretchLimitSettings {
   double max_stretch = 0.02;                              ///< >= 0: lengths stay below d (1 + max_stretch)
@@ -16,6 +17,7 @@ struct StretchLimitSettings {
   std::vector<SpringKind> kinds{SpringKind::structural};  ///< which springs it holds
   int iterations = 32;                                    ///< most passes a step, >= 1; more where surfaces stop particles
   double tolerance = 0.001;                               ///< excess over the limit, as a part of d, at which passes end, >= 0
+  bool tethers = false;                                   ///< particles stay within reach of their pins: see Tethers
 };
 
 class StretchLimit {
@@ -25,7 +27,7 @@ class StretchLimit {
   ~StretchLimit();
 
   /// One Gauss-Seidel pass in batches without shared particles: each spring beyond its limits is projected onto them, both ends
-  /// weighted by inverse mass; pinned particles do not move. Same bits for any number of threads. Returns the largest excess it
+  /// weighted by inverse mass; pinned particles do not move. Tethers come first. Same bits for any number of threads. Returns the largest excess it
   /// met, as a part of the rest length.
   ///
   /// With a `relaxation` other than 1, in (0, 2), corrections are so many times as large. Passes converge all the same, on lengths
@@ -47,6 +49,7 @@ class StretchLimit {
   const SpringNetwork& network_;
   StretchLimitSettings settings_;
   std::unique_ptr<const StretchBatches> batches_;
+  std::unique_ptr<const Tethers> tethers_;  ///< none unless the settings say so
 };
 
 }  // namespace sprung

@@ -45,6 +45,7 @@ StretchLimitSettings read_stretch_limit(Fields& fields) {
   limit.kinds = read_kinds(fields);
   limit.iterations = fields.value("iterations", integer(1, 1'000'000), limit.iterations).value_or(1);
   limit.tolerance = fields.value("tolerance", number(kNotNegative), limit.tolerance).value_or(0.0);
+  limit.tethers = fields.value("tethers", boolean(), limit.tethers).value_or(false);
   return limit;
 }
 

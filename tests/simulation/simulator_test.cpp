@@ -162,6 +162,29 @@ TEST(Simulator, StretchLimitHoldsAHangingChainOfSpringsWithoutStiffness) {
   EXPECT_GE(frame.max_stretch, 0.019);  // gravity pulls it to the limit
 }
 
+// A rope from a pin at the top of a ball over its side, and down: the way along it is longer than the straight one, so that tethers
+// leave it to contact until it hangs straight below.
+TEST(Simulator, TethersDoNotPullThroughObstacles) {
+  NetworkBuilder builder;
+  constexpr int kParticles = 40;
+  builder.begin_body("rope", {.thickness = 0.01});
+  for (int i = 0; i < kParticles; ++i) builder.add_particle({0.05 * i, 1.02, 0.0}, 0.01);
+  for (int i = 0; i + 1 < kParticles; ++i) builder.add_spring(i, i + 1, 0.0, 0.05);
+  builder.pin(0);
+  Simulator simulator(
+      builder.build(),
+      {.step = 1e-3, .integrator = VerletSettings{.damping = 0.002}, .stretch_limit = StretchLimitSettings{.tethers = true}},
+      {{.name = "ball", .geometry = SphereGeometry{.radius = 1.0}}});
+  FrameRunner frames(simulator, 50);
+  for (int frame = 0; frame < 60; ++frame) {
+    const FrameDiagnostics diagnostics = frames.next_frame();
+    ASSERT_GE(*diagnostics.min_distance, 0.0) << frame;
+    ASSERT_LE(diagnostics.max_stretch, 0.03) << frame;
+  }
+  // A quarter of the ball takes 31 of the springs; the rest hangs beside it.
+  EXPECT_NEAR(simulator.positions()(1, kParticles - 1), 0.5 * std::numbers::pi * 1.01 - 0.05 * (kParticles - 1), 0.1);
+}
+
 TEST(Simulator, EnergyOfAnUndampedSpringStaysBounded) {
   NetworkBuilder builder;
   const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);

@@ -1,0 +1,21 @@
+// Projection of particles onto the reach of their pins: the hot loop of Tethers.
+#pragma once
+
+#include "base/types.h"
+
+namespace sprung {
+
+/// Tethers of consecutive particles. Tether + i holds particle + i, by one pin or by consecutive ones.
+struct TetherRun {
+  Index particle;
+  Index pin;
+  Index tether;
+  Index count;
+  bool one_pin;  ///< otherwise by pin + i
+};
+
+/// Moves particles that are farther from their pins than `lengths` [m] allow towards them; `positions` holds 3 numbers a particle
+/// [m].
+void project_tethers(const TetherRun& run, const double* lengths, double* positions);
+
+}  // namespace sprung

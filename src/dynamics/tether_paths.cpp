@@ -1,0 +1,127 @@
+#include "dynamics/tether_paths.h"
+
+#include <algorithm>
+#include <queue>
+#include <span>
+#include <tuple>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+/// Who is joined to whom.
+class Neighbours {
+ public:
+  struct Way {
+    Index to;
+    double length;
+  };
+
+  Neighbours(const SpringNetwork& network, const std::vector<SpringKind>& kinds) : begin_(network.particle_count() + 1, 0) {
+    const Springs& springs = network.springs;
+    std::vector<Index> joining;
+    for (Index s = 0; s < springs.count(); ++s) {
+      if (springs.rest_length[s] > 0.0 && std::ranges::find(kinds, springs.kind[s]) != kinds.end()) joining.push_back(s);
+    }
+    for (const Index s : joining) {
+      ++begin_[springs.first[s] + 1];
+      ++begin_[springs.second[s] + 1];
+    }
+    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+    ways_.resize(begin_.back());
+    std::vector<Index> next(begin_.begin(), begin_.end() - 1);
+    for (const Index s : joining) {
+      ways_[next[springs.first[s]]++] = {springs.second[s], springs.rest_length[s]};
+      ways_[next[springs.second[s]]++] = {springs.first[s], springs.rest_length[s]};
+    }
+  }
+
+  [[nodiscard]] std::span<const Way> of(Index particle) const {
+    return {ways_.begin() + begin_[particle], ways_.begin() + begin_[particle + 1]};
+  }
+
+ private:
+  std::vector<Index> begin_;
+  std::vector<Way> ways_;
+};
+
+/// The group of each pinned particle; kNone for those that are not.
+std::vector<Index> pin_groups(const SpringNetwork& network, const Neighbours& neighbours) {
+  std::vector<Index> groups(network.particle_count(), kNone);
+  Index count = 0;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (!network.is_pinned(i) || groups[i] != kNone) continue;
+    std::vector<Index> reached{i};
+    groups[i] = count;
+    while (!reached.empty()) {
+      const Index pin = reached.back();
+      reached.pop_back();
+      for (const Neighbours::Way& way : neighbours.of(pin)) {
+        if (!network.is_pinned(way.to) || groups[way.to] != kNone) continue;
+        groups[way.to] = count;
+        reached.push_back(way.to);
+      }
+    }
+    ++count;
+  }
+  return groups;
+}
+
+bool is_longer(const Tether& a, const Tether& b) {
+  return std::tie(a.length, a.pin, a.particle) > std::tie(b.length, b.pin, b.particle);
+}
+
+/// The tethers of each particle, nearest first.
+class Search {
+ public:
+  Search(const SpringNetwork& network, const Neighbours& neighbours)
+      : network_(network), neighbours_(neighbours), found_(network.particle_count()) {
+    const std::vector<Index> groups = pin_groups(network, neighbours);
+    for (Index i = 0; i < network.particle_count(); ++i) {
+      if (network.is_pinned(i)) go_on_from({i, i, groups[i], 0.0});
+    }
+  }
+
+  std::vector<Tether> all() {
+    for (; !ahead_.empty();) {
+      const Tether nearest = ahead_.top();
+      ahead_.pop();
+      if (!is_wanted(nearest)) continue;
+      found_[nearest.particle].push_back(nearest);
+      go_on_from(nearest);
+    }
+    std::vector<Tether> tethers;
+    for (const auto& of_particle : found_) tethers.insert(tethers.end(), of_particle.begin(), of_particle.end());
+    return tethers;
+  }
+
+ private:
+  void go_on_from(const Tether& tether) {
+    for (const Neighbours::Way& way : neighbours_.of(tether.particle)) {
+      const Tether next{way.to, tether.pin, tether.group, tether.length + way.length};
+      if (!network_.is_pinned(way.to) && is_wanted(next)) ahead_.push(next);
+    }
+  }
+
+  [[nodiscard]] bool is_wanted(const Tether& tether) const {
+    const std::vector<Tether>& nearer = found_[tether.particle];
+    return nearer.size() < kMostTethers && std::ranges::find(nearer, tether.group, &Tether::group) == nearer.end();
+  }
+
+  const SpringNetwork& network_;
+  const Neighbours& neighbours_;
+  std::vector<std::vector<Tether>> found_;
+  std::priority_queue<Tether, std::vector<Tether>, decltype(&is_longer)> ahead_{&is_longer};
+};
+
+}  // namespace
+
+std::vector<Tether> find_tethers(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
+  if (network.pins.empty()) return {};
+  const Neighbours neighbours(network, kinds);
+  std::vector<Tether> tethers = Search(network, neighbours).all();
+  std::ranges::sort(tethers, {}, [](const Tether& tether) { return std::pair(tether.particle, tether.group); });
+  return tethers;
+}
+
+}  // namespace sprung
