@@ -1,3 +1,4 @@
+#include "app/body_text.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/load_scene.h"
@@ -21,23 +22,6 @@ std::string time_text(const LoadedScene& loaded) {
                                  : "every step is stable";
   return text_row("frames", fmt::format("{} at {} a second", loaded.frames, format_number(loaded.scene.frame_rate, kDigits))) +
          text_row("each", describe_steps(loaded) + "; " + stable);
-}
-
-std::string springs_text(const Springs& springs, const Body& body) {
-  std::array<Index, 3> counts{};
-  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
-    ++counts[static_cast<std::size_t>(springs.kind[static_cast<std::size_t>(s)])];
-  }
-  return fmt::format("{} springs ({} structural, {} shear, {} bend)", body.spring_count, counts[0], counts[1], counts[2]);
-}
-
-std::string body_text(const SpringNetwork& network, const Body& body) {
-  Index pinned = 0;
-  for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) pinned += network.is_pinned(i) ? 1 : 0;
-  const double mass = network.masses.segment(body.first_particle, body.particle_count).sum();
-  const Box3 box = bounds(network.positions.middleCols(body.first_particle, body.particle_count));
-  return text_row("body", fmt::format("{}: {} particles ({} pinned), {}, {} kg, {}", body.name, body.particle_count, pinned,
-                                      springs_text(network.springs, body), format_number(mass, kDigits), describe_size(box)));
 }
 
 const char* shape_name(const ObstacleGeometry& geometry) {
@@ -82,7 +66,7 @@ ExitCode validate(const ValidateOptions& options) {
   const LoadedScene loaded = load_scene(options.scene);
   const SpringNetwork& network = loaded.simulator.network();
   std::string text = text_row("scene", loaded.scene.file.string()) + time_text(loaded);
-  for (const Body& body : network.bodies) text += body_text(network, body);
+  for (const Body& body : network.bodies) text += body_rows(network, body);
   for (const Obstacle& obstacle : loaded.simulator.environment().obstacles()) text += obstacle_row(obstacle);
   for (const NamedReport& mesh : loaded.meshes) text += mesh_row(mesh);
   for (const std::string& warning : loaded.warnings) text += text_row("warning", warning);

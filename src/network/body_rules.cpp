@@ -25,6 +25,14 @@ void require_materials(const SpringMaterials& materials, ProblemList& problems) 
     problems.require_not_negative(key + (modulus ? ".modulus" : ".stiffness"), material->value,
                                   "use 0 for springs that a stretch limit alone shall hold");
     problems.require_not_negative(key + ".damping", material->damping, "use 0 for springs without damping");
+    if (!material->damping_ratio) continue;
+    problems.require_not_negative(key + ".damping_ratio", *material->damping_ratio, "use 0 for springs without damping");
+    if (material->damping != 0.0)
+      problems.add(key + ".damping_ratio", format_number(*material->damping_ratio), "must not be given beside damping",
+                   "remove one of them");
+    if (material->value == 0.0)
+      problems.add(key + ".damping_ratio", format_number(*material->damping_ratio),
+                   "needs springs with stiffness, as it is a part of what stops them swinging", "give damping instead");
   }
 }
 

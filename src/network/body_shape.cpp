@@ -1,18 +1,30 @@
 #include "network/body_shape.h"
 
+#include "base/format.h"
 #include "base/problem_list.h"
 #include "network/shape_parts.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace sprung {
 
-BodyShape shape_of_particles(std::vector<Vector3> positions) {
+BodyShape shape_of_particles(std::vector<Vector3> positions, const SpringMaterials& materials) {
   BodyShape shape;
   shape.positions = std::move(positions);
   shape.velocities.assign(shape.positions.size(), Vector3::Zero());
   shape.masses.assign(shape.positions.size(), 0.0);
+  const std::optional<SpringMaterial>* kinds[] = {&materials.structural, &materials.shear, &materials.bend};
+  for (std::size_t kind = 0; kind < shape.damping_ratios.size(); ++kind) {
+    if (*kinds[kind]) shape.damping_ratios[kind] = (*kinds[kind])->damping_ratio;
+  }
   return shape;
+}
+
+void add_segment_measures(const Edges& segments, const std::vector<double>& lengths, std::vector<double>& measures) {
+  for (Eigen::Index s = 0; s < segments.cols(); ++s) {
+    for (const Index end : segments.col(s)) measures[end] += lengths[s] / 2.0;
+  }
 }
 
 double stiffness_of(const SpringMaterial& material, double cross_section, double rest_length) {
@@ -41,6 +53,20 @@ void set_total_mass(BodyShape& shape, double total) {
   problems.require_positive("mass", total, "give the mass of the whole body in kg");
   problems.throw_if_any();
   shape.masses.assign(shape.positions.size(), total / static_cast<double>(shape.positions.size()));
+}
+
+void set_density(BodyShape& shape, double density) {
+  ProblemList problems;
+  problems.require_positive("density", density, "give the mass of a metre, a square metre or a cubic metre in kg");
+  const auto bare = std::find(shape.measures.begin(), shape.measures.end(), 0.0);
+  if (bare != shape.measures.end()) {
+    problems.add(
+        "density", format_number(density),
+        "gives no mass to particle " + std::to_string(bare - shape.measures.begin()) + ", which has no length, area or volume",
+        "give a mass, or remove such vertices from the mesh");
+  }
+  problems.throw_if_any();
+  for (std::size_t i = 0; i < shape.masses.size(); ++i) shape.masses[i] = density * shape.measures[i];
 }
 
 void place(BodyShape& shape, const RigidTransform& pose, const Vector3& velocity) {

@@ -10,7 +10,7 @@
 namespace sprung {
 
 /// Particles, springs and surface of one body; indices count from 0 within the body. What the make_ functions return has
-/// masses of 0: `set_total_mass` gives them.
+/// masses of 0: `set_total_mass` or `set_density` gives them.
 struct BodyShape {
   std::vector<Vector3> positions;   ///< [m]
   std::vector<Vector3> velocities;  ///< [m/s]
@@ -18,7 +18,11 @@ struct BodyShape {
   std::vector<double> drag_areas;   ///< see SpringNetwork
   Springs springs;                  ///< in any order
   Surface surface;
-  double measure = 0.0;  ///< length [m], area [m^2] or volume [m^3]: what a density multiplies
+  int dimension = 0;             ///< of what `measure` measures: 1 length, 2 area, 3 volume; 0: nothing
+  double measure = 0.0;          ///< length [m], area [m^2] or volume [m^3]
+  std::vector<double> measures;  ///< each particle's part of it: what is nearest to it, on a border half of it or less
+  /// Of each kind of spring, in the order of SpringKind: the damping ratio that NetworkBuilder turns into k_d.
+  std::array<std::optional<double>, 3> damping_ratios{};
 };
 
 /// Spring constants of one kind of spring.
@@ -33,6 +37,11 @@ struct SpringMaterial {
   double value = 0.0;  ///< >= 0
   Measure measure = Measure::stiffness;
   double damping = 0.0;  ///< k_d [N s/m], >= 0
+  /// Instead of `damping`, >= 0: k_d = 2 zeta k_s / omega, omega being the body's breathing about its pins: see
+  /// `breathing_frequency`. Breathing then dies out with this ratio (1: without swinging, when every kind has it), whatever the
+  /// resolution; a pair of particles has k_d = 2 zeta sqrt(k_s m) with its reduced mass m. Faster motion of frequency omega' is
+  /// damped by zeta omega' / omega.
+  std::optional<double> damping_ratio{};
 };
 
 /// Which springs to make: a kind without a material is left out.
@@ -83,6 +92,11 @@ struct SolidShape {
 
 /// Gives each particle the same share of `total` [kg]. Throws InputError unless it is positive and finite.
 void set_total_mass(BodyShape& shape, double total);
+
+/// Gives each particle the mass of what is nearest to it, `density` [kg/m], [kg/m^2] or [kg/m^3] times its entry of `measures`, so
+/// that motion does not depend on resolution: particles on a border are lighter. Throws InputError unless it is positive and
+/// finite, and when there are particles without a length, an area or a volume.
+void set_density(BodyShape& shape, double density);
 
 /// Rotates, then moves a body, and adds a velocity [m/s]. There is no scale here: give the make_ functions sizes, points and
 /// vertices as large as the body shall be.

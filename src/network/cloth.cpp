@@ -23,13 +23,15 @@ void check(const ClothShape& cloth, const SpringMaterials& materials) {
 BodyShape make_cloth(const ClothShape& cloth, const SpringMaterials& materials) {
   check(cloth, materials);
   const Lattice lattice{{cloth.size[0], cloth.size[1], 1.0}, {cloth.resolution[0], cloth.resolution[1], 1}};
-  BodyShape shape = shape_of_particles(lattice.positions());
+  BodyShape shape = shape_of_particles(lattice.positions(), materials);
   add_lattice_springs(lattice, materials, shape.springs);
 
   std::vector<std::array<Index, 3>> triangles;
   add_layer_triangles(lattice, 2, 0, true, triangles);
   set_surface(shape, to_triangles(triangles));
+  shape.dimension = 2;
   shape.measure = cloth.size[0] * cloth.size[1];
+  shape.measures = lattice.measures();
   return shape;
 }
 

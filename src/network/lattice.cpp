@@ -75,6 +75,22 @@ Vector3 Lattice::spacing() const {
   return spacing;
 }
 
+std::vector<double> Lattice::measures() const {
+  const Vector3 cell = spacing();
+  const auto part = [&](int axis, Index i) {
+    const bool on_border = resolution[axis] > 1 && (i == 0 || i + 1 == resolution[axis]);
+    return on_border ? cell[axis] / 2.0 : cell[axis];
+  };
+  std::vector<double> measures;
+  measures.reserve(static_cast<std::size_t>(resolution[0]) * resolution[1] * resolution[2]);
+  for (Index k = 0; k < resolution[2]; ++k) {
+    for (Index j = 0; j < resolution[1]; ++j) {
+      for (Index i = 0; i < resolution[0]; ++i) measures.push_back(part(0, i) * part(1, j) * part(2, k));
+    }
+  }
+  return measures;
+}
+
 void add_lattice_springs(const Lattice& lattice, const SpringMaterials& materials, Springs& springs) {
   for (const Direction& direction : kAxes) {
     if (materials.structural) add_family(lattice, direction, 1, *materials.structural, SpringKind::structural, springs);

@@ -19,6 +19,9 @@ struct Lattice {
 
   /// Distances of neighbours [m]; the size itself along an axis of resolution 1.
   [[nodiscard]] Vector3 spacing() const;
+
+  /// The volume [m^3] nearest to each node (cloth: area [m^2]): a cell's, on each border of the grid half of it.
+  [[nodiscard]] std::vector<double> measures() const;
 };
 
 /// Structural springs along the axes, shear along face and space diagonals, bend along the axes and skipping one.

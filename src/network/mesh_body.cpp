@@ -113,10 +113,23 @@ Edges lines_beside(const Edges& lines, const Triangles& triangles) {
   return result;
 }
 
-double length_of(const Edges& lines, const std::vector<Vector3>& positions) {
-  double length = 0.0;
-  for (const auto& line : lines.colwise()) length += (positions[line[1]] - positions[line[0]]).norm();
-  return length;
+std::vector<double> lengths_of(const Edges& lines, const std::vector<Vector3>& positions) {
+  std::vector<double> lengths;
+  for (const auto& line : lines.colwise()) lengths.push_back((positions[line[1]] - positions[line[0]]).norm());
+  return lengths;
+}
+
+void set_mesh_measures(BodyShape& shape) {
+  const Surface& surface = shape.surface;
+  if (surface.triangles.cols() > 0) {
+    shape.dimension = 2;
+    shape.measures = vertex_areas(shape.positions, surface.triangles);
+  } else {
+    shape.dimension = surface.segments.cols() > 0 ? 1 : 0;
+    shape.measures.assign(shape.positions.size(), 0.0);
+    add_segment_measures(surface.segments, lengths_of(surface.segments, shape.positions), shape.measures);
+  }
+  shape.measure = std::accumulate(shape.measures.begin(), shape.measures.end(), 0.0);
 }
 
 void set_mesh_surface(BodyShape& shape, const PolygonMesh& mesh) {
@@ -126,8 +139,6 @@ void set_mesh_surface(BodyShape& shape, const PolygonMesh& mesh) {
   surface.segments = lines_beside(mesh.lines, surface.triangles);
 
   shape.drag_areas = vertex_areas(shape.positions, surface.triangles);
-  shape.measure = surface.triangles.cols() > 0 ? std::accumulate(shape.drag_areas.begin(), shape.drag_areas.end(), 0.0)
-                                               : length_of(surface.segments, shape.positions);
   std::vector<bool> has_surface(shape.positions.size(), false);
   for (const Index vertex : mesh.faces.vertex) has_surface[vertex] = true;
   for (std::size_t v = 0; v < has_surface.size(); ++v) {
@@ -139,7 +150,7 @@ void set_mesh_surface(BodyShape& shape, const PolygonMesh& mesh) {
 
 BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materials) {
   check(mesh, materials);
-  BodyShape shape = shape_of_particles({mesh.vertices.colwise().begin(), mesh.vertices.colwise().end()});
+  BodyShape shape = shape_of_particles({mesh.vertices.colwise().begin(), mesh.vertices.colwise().end()}, materials);
   const std::vector<Joint> joints = mesh_joints(mesh);
   ProblemList problems;
   const auto add = [&](const std::optional<SpringMaterial>& material, SpringKind kind, const std::string& key) {
@@ -150,6 +161,7 @@ BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materia
   add(materials.bend, SpringKind::bend, "springs.bend.modulus");
   problems.throw_if_any();
   set_mesh_surface(shape, mesh);
+  set_mesh_measures(shape);
   return shape;
 }
 

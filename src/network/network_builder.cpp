@@ -1,5 +1,6 @@
 #include "network/network_builder.h"
 
+#include "network/damping_ratio.h"
 #include "network/network_check.h"
 
 #include <algorithm>
@@ -131,13 +132,15 @@ SpringNetwork NetworkBuilder::build() const {
     const Index first_spring = network.springs.count();
     append_sorted(network.springs, draft.shape.springs, draft.first_particle);
     network.bodies.push_back({draft.name, draft.first_particle, static_cast<Index>(draft.shape.positions.size()), first_spring,
-                              network.springs.count() - first_spring, draft.shape.surface, draft.material, draft.contact});
+                              network.springs.count() - first_spring, draft.shape.dimension, draft.shape.measure,
+                              draft.shape.surface, draft.material, draft.contact});
   }
   network.inverse_masses = network.masses.cwiseInverse();
   network.pins = pins_;
   for (const Pin& pin : pins_) {
     for (const Index particle : pin.particles) network.inverse_masses[particle] = 0.0;
   }
+  for (std::size_t b = 0; b < drafts.size(); ++b) damp_by_ratio(drafts[b].shape.damping_ratios, network.bodies[b], network);
   return network;
 }
 

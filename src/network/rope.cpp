@@ -92,7 +92,7 @@ BodyShape make_rope(const RopeShape& rope, const SpringMaterials& materials) {
   const double laid_out = sum(lengths);
   const double length = rope.length.value_or(laid_out);
 
-  BodyShape shape = shape_of_particles(rope.particles ? resample(rope.points, lengths, *rope.particles) : rope.points);
+  BodyShape shape = shape_of_particles(rope.particles ? resample(rope.points, lengths, *rope.particles) : rope.points, materials);
   const std::size_t segments = shape.positions.size() - 1;
   std::vector<double> rest_lengths(segments, length / static_cast<double>(segments));
   if (!rope.particles) {
@@ -105,7 +105,10 @@ BodyShape make_rope(const RopeShape& rope, const SpringMaterials& materials) {
   for (Eigen::Index k = 0; k < shape.surface.segments.cols(); ++k) {
     shape.surface.segments.col(k) << static_cast<Index>(k), static_cast<Index>(k) + 1;
   }
+  shape.dimension = 1;
   shape.measure = length;
+  shape.measures.assign(shape.positions.size(), 0.0);
+  add_segment_measures(shape.surface.segments, rest_lengths, shape.measures);
   return shape;
 }
 

@@ -8,7 +8,10 @@
 namespace sprung {
 
 /// A body of these particles at rest, without mass, springs, surface and drag areas.
-[[nodiscard]] BodyShape shape_of_particles(std::vector<Vector3> positions);
+[[nodiscard]] BodyShape shape_of_particles(std::vector<Vector3> positions, const SpringMaterials& materials);
+
+/// Half of each segment's length at each of its ends.
+void add_segment_measures(const Edges& segments, const std::vector<double>& lengths, std::vector<double>& measures);
 
 /// k_s [N/m] of a spring that stands for a `cross_section` (rope 1, cloth [m], solid [m^2]) of the body.
 [[nodiscard]] double stiffness_of(const SpringMaterial& material, double cross_section, double rest_length);

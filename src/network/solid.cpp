@@ -23,7 +23,7 @@ void check(const SolidShape& solid, const SpringMaterials& materials) {
 BodyShape make_solid(const SolidShape& solid, const SpringMaterials& materials) {
   check(solid, materials);
   const Lattice lattice{solid.size, solid.resolution};
-  BodyShape shape = shape_of_particles(lattice.positions());
+  BodyShape shape = shape_of_particles(lattice.positions(), materials);
   add_lattice_springs(lattice, materials, shape.springs);
 
   std::vector<std::array<Index, 3>> triangles;
@@ -32,7 +32,9 @@ BodyShape make_solid(const SolidShape& solid, const SpringMaterials& materials) 
     add_layer_triangles(lattice, axis, lattice.resolution[axis] - 1, true, triangles);
   }
   set_surface(shape, to_triangles(triangles));
+  shape.dimension = 3;
   shape.measure = solid.size.prod();
+  shape.measures = lattice.measures();
   return shape;
 }
 

@@ -48,6 +48,8 @@ struct Body {
   Index particle_count = 0;
   Index first_spring = 0;
   Index spring_count = 0;
+  int dimension = 0;     ///< of its measure, see BodyShape
+  double measure = 0.0;  ///< length [m], area [m^2] or volume [m^3]; 0 for particles added one by one
   Surface surface;
   ContactMaterial material;
   BodyContact contact;

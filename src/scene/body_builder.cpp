@@ -70,16 +70,15 @@ class ShapeMaker {
   std::string key_;
 };
 
-double total_mass(const MassScene& mass, const BodyShape& shape) {
+void set_mass(const MassScene& mass, BodyShape& shape) {
   switch (mass.kind) {
     case MassScene::Kind::body:
-      return mass.value;
+      return set_total_mass(shape, mass.value);
     case MassScene::Kind::particle:
-      return mass.value * static_cast<double>(shape.positions.size());
+      return set_total_mass(shape, mass.value * static_cast<double>(shape.positions.size()));
     case MassScene::Kind::density:
-      return mass.value * shape.measure;
+      return set_density(shape, mass.value);
   }
-  return 0.0;
 }
 
 }  // namespace
@@ -88,13 +87,16 @@ std::optional<BodyShape> build_body(const Scene& scene, const BodyScene& body, c
                                     std::vector<Problem>& problems) {
   auto shape = ShapeMaker(scene, body, finder, problems).make();
   if (!shape) return std::nullopt;
-  const double mass = total_mass(body.mass, *shape);
-  if (!(mass > 0.0)) {
-    problems.push_back({scene.file.string(), join_path("bodies", body.name) + ".density", format_number(body.mass.value),
-                        "gives no mass: the shape has no length, area or volume", "give mass or particle_mass instead"});
+  try {
+    set_mass(body.mass, *shape);
+  } catch (const InputError& error) {
+    for (Problem problem : error.problems()) {
+      problem.file = scene.file.string();
+      problem.key = join_path("bodies", body.name) + "." + problem.key;
+      problems.push_back(std::move(problem));
+    }
     return std::nullopt;
   }
-  set_total_mass(*shape, mass);
   place(*shape, pose_of(body.place), body.velocity);
   return shape;
 }

@@ -86,7 +86,17 @@ SpringMaterial read_spring(Fields& fields) {
     material.measure = *key == "modulus" ? SpringMaterial::Measure::modulus : SpringMaterial::Measure::stiffness;
     material.value = fields.optional(*key, number(kNotNegative)).value_or(0.0);
   }
-  material.damping = fields.value("damping", number(kNotNegative), 0.0).value_or(0.0);
+  if (fields.has("damping_ratio")) {
+    fields.one_of({"damping", "damping_ratio"});
+    material.damping_ratio = fields.optional("damping_ratio", number(kNotNegative));
+    if (material.value == 0.0) {
+      fields.place()
+          .at("damping_ratio")
+          .report(fields.json()["damping_ratio"], "needs springs with stiffness", "give damping instead");
+    }
+  } else {
+    material.damping = fields.value("damping", number(kNotNegative), 0.0).value_or(0.0);
+  }
   return material;
 }
 

@@ -22,6 +22,9 @@ inline const std::vector<BrokenScene>& broken_scenes() {
   static const std::vector<BrokenScene> kScenes{
       {"UnknownKeyOfTheScene", {"duraton=1"}, "duraton", "is not a known key; did you mean \"duration\"?"},
       {"UnknownKeyOfASpring", {"bodies.banner.springs.structural.stifness=1"}, "bodies.banner.springs.structural.stifness", "did you mean \"stiffness\"?"},
+      {"SpringDampedTwice", {"bodies.banner.springs.shear={\"stiffness\":1,\"damping\":0.1,\"damping_ratio\":0.1}"}, "bodies.banner.springs.shear", "may have only one of damping, damping_ratio"},
+      {"NegativeDampingRatio", {"bodies.banner.springs.shear={\"modulus\":1,\"damping_ratio\":-0.1}"}, "bodies.banner.springs.shear.damping_ratio", "must be at least 0"},
+      {"DampingRatioWithoutStiffness", {"bodies.banner.springs.shear={\"stiffness\":0,\"damping_ratio\":0.1}"}, "bodies.banner.springs.shear.damping_ratio", "needs springs with stiffness; give damping instead", false},
       {"UnknownKeyOfAPin", {"bodies.banner.pins[0].wich=[]"}, "bodies.banner.pins[0].wich", "did you mean \"which\"?"},
       {"UnknownKeyLikeNoOther", {"bodies.banner.colour=red"}, "bodies.banner.colour", "choose from shape, mass"},
       {"SolverOfALaterVersion", {"solver.type=xpbd"}, "solver", "is not a known key"},

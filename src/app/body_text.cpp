@@ -1,0 +1,93 @@
+#include "app/body_text.h"
+
+#include "app/mesh_text.h"
+#include "base/format.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+namespace {
+
+constexpr int kDigits = 6;
+constexpr std::array<const char*, 3> kKinds{"structural", "shear", "bend"};
+
+/// The smallest and the largest of some values.
+struct Extremes {
+  double smallest = std::numeric_limits<double>::infinity();
+  double largest = -std::numeric_limits<double>::infinity();
+
+  void add(double value) {
+    smallest = std::min(smallest, value);
+    largest = std::max(largest, value);
+  }
+
+  [[nodiscard]] std::string text(const char* unit) const {
+    const std::string from = format_number(smallest, kDigits);
+    const std::string to = format_number(largest, kDigits);
+    return from == to ? fmt::format("{} {}", from, unit) : fmt::format("{} to {} {}", from, to, unit);
+  }
+};
+
+struct KindOfSprings {
+  Index count = 0;
+  Extremes stiffness;
+  Extremes damping;
+  Extremes rest_length;
+};
+
+std::array<KindOfSprings, 3> kinds_of(const Springs& springs, const Body& body) {
+  std::array<KindOfSprings, 3> kinds;
+  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+    KindOfSprings& kind = kinds[static_cast<std::size_t>(springs.kind[s])];
+    ++kind.count;
+    kind.stiffness.add(springs.stiffness[s]);
+    kind.damping.add(springs.damping[s]);
+    kind.rest_length.add(springs.rest_length[s]);
+  }
+  return kinds;
+}
+
+std::string head_row(const SpringNetwork& network, const Body& body, const std::array<KindOfSprings, 3>& kinds) {
+  Index pinned = 0;
+  for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) pinned += network.is_pinned(i) ? 1 : 0;
+  const Box3 box = bounds(network.positions.middleCols(body.first_particle, body.particle_count));
+  return text_row("body", fmt::format("{}: {} particles ({} pinned), {} springs ({} structural, {} shear, {} bend), {}", body.name,
+                                      body.particle_count, pinned, body.spring_count, kinds[0].count, kinds[1].count,
+                                      kinds[2].count, describe_size(box)));
+}
+
+std::string mass_row(const SpringNetwork& network, const Body& body) {
+  const auto masses = network.masses.segment(body.first_particle, body.particle_count);
+  std::string text = format_number(masses.sum(), kDigits) + " kg";
+  if (body.measure > 0.0) {
+    constexpr std::array<const char*, 4> kUnits{"", "kg/m", "kg/m^2", "kg/m^3"};
+    text += fmt::format(", {} {}", format_number(masses.sum() / body.measure, kDigits),
+                        kUnits[static_cast<std::size_t>(body.dimension)]);
+  }
+  Extremes extremes;
+  for (const double mass : masses) extremes.add(mass);
+  return text_row("mass", text + ", a particle " + extremes.text("kg"));
+}
+
+std::string spring_row(const char* name, const KindOfSprings& kind) {
+  return text_row(name, fmt::format("k_s {}, k_d {}, rest length {}", kind.stiffness.text("N/m"), kind.damping.text("N s/m"),
+                                    kind.rest_length.text("m")));
+}
+
+}  // namespace
+
+std::string body_rows(const SpringNetwork& network, const Body& body) {
+  const std::array<KindOfSprings, 3> kinds = kinds_of(network.springs, body);
+  std::string text = head_row(network, body, kinds) + mass_row(network, body);
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    if (kinds[kind].count > 0) text += spring_row(kKinds[kind], kinds[kind]);
+  }
+  return text;
+}
+
+}  // namespace sprung
