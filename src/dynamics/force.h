@@ -19,6 +19,9 @@ class Force {
  public:
   virtual ~Force() = default;
 
+  /// Called before forces are evaluated at a `time` [s]; not thread-safe. Default: nothing.
+  virtual void prepare(double time);
+
   /// Adds the forces [N] on all particles to `forces`, 3 x n. Thread-safe; the same bits for any number of threads.
   virtual void add(const Kinematics& at, Points& forces) const = 0;
 

@@ -1,4 +1,5 @@
-// Time integration: advances all free particles by one step. Pinned particles (inverse mass 0) are left to the caller.
+// Time integration: advances all free particles by one step. Pinned particles (inverse mass 0) are left to the caller; where a
+// scheme evaluates forces within a step, they go along the straight line x + v (time since its begin).
 #pragma once
 
 #include "dynamics/force.h"
@@ -22,10 +23,19 @@ struct VerletSettings {
   bool start_at_rest = false;  ///< x(-dt) = x(0), as the web page, instead of x(0) - v(0) dt + a(0) dt^2 / 2
 };
 
+/// x(t + dt) = x + v dt + a(t) dt^2 / 2, v(t + dt) = v + (a(t) + a(t + dt)) dt / 2 (Swope et al. 1982), where a(t + dt) sees the
+/// velocity v + a(t) dt: it is wrong by no more than dt^2, so that the scheme stays of second order with dampers and drag. Two
+/// evaluations of the forces a step.
+struct VelocityVerletSettings {};
+
+/// The classic Runge-Kutta scheme of fourth order (Kutta 1901): four evaluations of the forces a step.
+struct RungeKutta4Settings {};
+
 /// The part of a step's movement that Verlet takes away, in [0, 1].
 [[nodiscard]] double damping_per_step(const VerletSettings& settings, double dt);
 
-using IntegratorSettings = std::variant<ExplicitEulerSettings, SymplecticEulerSettings, VerletSettings>;
+using IntegratorSettings =
+    std::variant<ExplicitEulerSettings, SymplecticEulerSettings, VerletSettings, VelocityVerletSettings, RungeKutta4Settings>;
 
 class Integrator {
  public:
@@ -34,10 +44,11 @@ class Integrator {
   virtual ~Integrator() = default;
 
   /// Sets what the scheme keeps between steps. Call once, before the first step.
-  virtual void start(SimulationState& state, const Forces& forces, double dt) const;
+  virtual void start(SimulationState& state, const Forces& forces, double dt);
 
-  /// Advances x and v of free particles from t to t + dt. `scratch` holds forces, 3 x n.
-  virtual void advance(SimulationState& state, const Forces& forces, double dt, Points& scratch) const = 0;
+  /// Advances x and v of free particles from t to t + dt. What an integrator keeps for itself is room to calculate in: the result
+  /// depends on the arguments alone.
+  virtual void advance(SimulationState& state, const Forces& forces, double dt) = 0;
 
   /// Velocities after constraints moved `advanced` (what `advance` made) to state.x; `before` are the positions at t. Default:
   /// v += (x - advanced) / dt.

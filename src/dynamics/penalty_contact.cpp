@@ -6,14 +6,18 @@
 
 namespace sprung {
 
-PenaltyContact::PenaltyContact(const SpringNetwork& network, const Environment& environment, double stiffness, double damping,
-                               double dt)
+PenaltyContact::PenaltyContact(const SpringNetwork& network, Environment& environment, double stiffness, double damping, double dt)
     : network_(network),
       environment_(environment),
       stiffness_(stiffness),
       damping_(damping),
       dt_(dt),
       thickness_(particle_thickness(network)) {}
+
+void PenaltyContact::prepare(double time) {
+  const Environment::Interval interval = environment_.interval();
+  if (interval.begin != time || interval.end != time) environment_.set_interval(time, time);
+}
 
 void PenaltyContact::add(const Kinematics& at, Points& forces) const {
   for (const Contact& contact : environment_.contacts({at.x, at.x, thickness_})) {

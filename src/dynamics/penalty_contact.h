@@ -11,10 +11,11 @@ namespace sprung {
 /// friction times that, and at most what stops it within a step.
 class PenaltyContact final : public Force {
  public:
-  /// `stiffness` k [N/m] > 0, `damping` c [N s/m] >= 0, `dt` [s] the step. Keeps references to the network and to the environment,
-  /// whose interval must be empty and stand at the time of evaluation: `set_interval(t, t)`.
-  PenaltyContact(const SpringNetwork& network, const Environment& environment, double stiffness, double damping, double dt);
+  /// `stiffness` k [N/m] > 0, `damping` c [N s/m] >= 0, `dt` [s] the step. Keeps references to the network and to the environment.
+  PenaltyContact(const SpringNetwork& network, Environment& environment, double stiffness, double damping, double dt);
 
+  /// Obstacles go where they are at `time`: the environment's interval becomes (time, time).
+  void prepare(double time) override;
   void add(const Kinematics& at, Points& forces) const override;
 
   /// How many particles are nearer to an obstacle than their gap.
@@ -22,7 +23,7 @@ class PenaltyContact final : public Force {
 
  private:
   const SpringNetwork& network_;
-  const Environment& environment_;
+  Environment& environment_;
   double stiffness_;
   double damping_;
   double dt_;

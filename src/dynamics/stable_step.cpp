@@ -128,6 +128,25 @@ struct LargestStep {
     }
     return stable;
   }
+
+  // With E = 1 - C/2, C = dt L_d, a mode x z^n has (z - 1)^2 E^2 (z - (1 + z) C / 4)^-1 x + (z - 1) C x + dt^2 K x = 0. For z = e^i
+  // phi the quadratic form of the first two terms has the imaginary part of sin phi throughout, whatever C does to x: a mode can
+  // leave the unit circle only at z = -1, where dt^2 k = 4 - 2 c + c^2 for some mixture of c <= dt l_D < 2; that is least at c = 1.
+  double operator()(const VelocityVerletSettings&) const {
+    if (elastic >= 3.0 * damping * damping) return positive_root(elastic - damping * damping, damping, 4.0);
+    return std::min(std::sqrt(3.0 / elastic), 2.0 / damping);
+  }
+
+  // Its modes are R(s dt), R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24, for roots s of s^2 + c s + k with some c <= l_D and k <= l_K:
+  // real ones down to -l_D, and complex ones as large as sqrt(l_K) with real parts down to -l_D / 2. |R| <= 1 holds down to -2.785
+  // on the real axis, for |z| <= 2.828 where the real part is within -0.85 and 0, and for |z| <= 2.615 in all of the left half
+  // plane.
+  double operator()(const RungeKutta4Settings&) const {
+    const double omega = std::sqrt(elastic);
+    if (omega == 0.0 && damping == 0.0) return kInfinity;
+    const double slightly_damped = std::min(2.828 / omega, 1.7 / damping);
+    return std::min(std::max(slightly_damped, 2.615 / omega), 2.785 / damping);
+  }
 };
 
 }  // namespace

@@ -76,7 +76,6 @@ struct Simulator::Implementation {
   Points before;
   Points v_before;
   Points advanced;
-  Points scratch;
 };
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles)
@@ -111,7 +110,7 @@ StepReport Simulator::Implementation::step() {
   before = state.x;
   v_before = state.v;
 
-  integrator->advance(state, forces, settings.step, scratch);
+  integrator->advance(state, forces, settings.step);
   environment.set_interval(t, t_end);
   move_pins(t_end);
   advanced = state.x;

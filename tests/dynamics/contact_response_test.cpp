@@ -1,6 +1,7 @@
 // Laws of the response to contacts that are made by hand: of particles, of points of triangles, of pairs of elements.
 #include "dynamics/contact_response.h"
 
+#include "dynamics/all_integrators.h"
 #include "dynamics/body_forces.h"
 #include "network/network_builder.h"
 
@@ -35,8 +36,7 @@ class World {
   void step(const std::vector<Contact>& contacts, int passes = 8, const std::vector<Contact>& again = {}) {
     const Points before = state.x;
     const Points v_before = state.v;
-    Points scratch = Points::Zero(3, network.particle_count());
-    integrator->advance(state, forces, kStep, scratch);
+    integrator->advance(state, forces, kStep);
     const Points advanced = state.x;
     const StepMotion motion{before, v_before, advanced, kStep};
     response.start(contacts, motion);
@@ -89,12 +89,10 @@ Contact over_triangle(const std::array<double, 3>& weights, const Vector3& norma
 
 class ContactResponseLaws : public ::testing::TestWithParam<std::size_t> {
  protected:
-  static IntegratorSettings scheme() {
-    return std::vector<IntegratorSettings>{ExplicitEulerSettings{}, SymplecticEulerSettings{}, VerletSettings{}}[GetParam()];
-  }
+  static IntegratorSettings scheme() { return all_integrators()[GetParam()]; }
 };
 
-INSTANTIATE_TEST_SUITE_P(Integrators, ContactResponseLaws, ::testing::Range(std::size_t{0}, std::size_t{3}));
+INSTANTIATE_TEST_SUITE_P(Integrators, ContactResponseLaws, ::testing::Range(std::size_t{0}, all_integrators().size()));
 
 TEST_P(ContactResponseLaws, FlatTriangleBouncesOnceHoweverManyContactsItHas) {
   const double e = 0.7;

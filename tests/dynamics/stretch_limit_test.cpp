@@ -256,10 +256,9 @@ double excess_hanging(const SpringNetwork& network, const StretchLimitSettings& 
   const auto integrator = make_integrator(VerletSettings{.damping_rate = 10.0}, network);
   SimulationState state = initial_state(network);
   integrator->start(state, forces, dt);
-  Points scratch;
   for (; static_cast<double>(state.step) * dt < seconds; ++state.step) {
     const Points before = state.x;
-    integrator->advance(state, forces, dt, scratch);
+    integrator->advance(state, forces, dt);
     const Points advanced = state.x;
     for (int pass = 0; pass < settings.iterations; ++pass) {
       if (limit.project(state.x) <= settings.tolerance) break;

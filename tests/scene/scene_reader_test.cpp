@@ -18,6 +18,17 @@ std::vector<std::string> names_of(const std::vector<T>& things) {
   return names;
 }
 
+TEST(SceneReader, EachSchemeHasItsName) {
+  const auto scheme = [](const std::string& name) {
+    return SceneFolder().read(kPlainScene, {"integrator={\"type\":\"" + name + "\"}"}).settings.integrator;
+  };
+  EXPECT_TRUE(std::holds_alternative<ExplicitEulerSettings>(scheme("explicit_euler")));
+  EXPECT_TRUE(std::holds_alternative<SymplecticEulerSettings>(scheme("symplectic_euler")));
+  EXPECT_TRUE(std::holds_alternative<VerletSettings>(scheme("verlet")));
+  EXPECT_TRUE(std::holds_alternative<VelocityVerletSettings>(scheme("velocity_verlet")));
+  EXPECT_TRUE(std::holds_alternative<RungeKutta4Settings>(scheme("rk4")));
+}
+
 TEST(SceneReader, TimeAndSettingsArrive) {
   const SceneFolder folder;
   const Scene scene = folder.read(kFullScene);

@@ -34,6 +34,11 @@ TEST(StepChoice, LargestStableStepIsTheClosedForm) {
   EXPECT_GE(built.largest_stable_step, 0.2 * (1.0 - kBoundSlack));
 }
 
+TEST(StepChoice, LargestStableStepIsThatOfTheScheme) {
+  EXPECT_NEAR(build(100.0, {R"(integrator={"type": "velocity_verlet"})"}).largest_stable_step, 0.2, kBoundSlack * 0.2);
+  EXPECT_NEAR(build(100.0, {R"(integrator={"type": "rk4"})"}).largest_stable_step, 0.2828, kBoundSlack * 0.2828);
+}
+
 TEST(StepChoice, AutoIsTheFewestStepsWithinNineTenthsOfTheStableStep) {
   for (const double stiffness : {100.0, 1000.0, 54321.0, 1e6}) {
     const BuiltScene built = build(stiffness);

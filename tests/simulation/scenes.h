@@ -1,6 +1,7 @@
 // Small networks and obstacles that the tests of this folder share.
 #pragma once
 
+#include "dynamics/all_integrators.h"
 #include "network/network_builder.h"
 #include "simulation/simulator.h"
 
@@ -56,11 +57,6 @@ inline SpringNetwork cloth(Index n, double height, const ContactMaterial& materi
 inline void run(Simulator& simulator, double seconds) {
   const auto steps = static_cast<int>(std::lround(seconds / simulator.settings().step));
   for (int i = 0; i < steps; ++i) simulator.step();
-}
-
-/// The three schemes, each undamped.
-inline std::vector<IntegratorSettings> all_integrators() {
-  return {ExplicitEulerSettings{}, SymplecticEulerSettings{}, VerletSettings{}};
 }
 
 }  // namespace sprung::testing

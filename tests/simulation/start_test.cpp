@@ -117,7 +117,7 @@ TEST(Start, AParticleIsPushedToItsGapBeforeTheNearestSurface) {
 
 TEST(Start, VelocitiesStayAsGivenWhereParticlesArePushedOut) {
   const Vector3 velocity(1.0, 2.0, -0.5);
-  for (const IntegratorSettings& integrator : testing::all_integrators()) {
+  for (const IntegratorSettings& integrator : all_integrators()) {
     Simulator simulator(one_particle({0.1, 0.0, 0.0}, {}, velocity), pushing_out(integrator), {ball(0.3, Vector3::Zero())});
     EXPECT_EQ(simulator.state().v.col(0), velocity);
     const Vector3 start = simulator.positions().col(0);

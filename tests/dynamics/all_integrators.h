@@ -1,0 +1,15 @@
+// What the laws that hold for any scheme are tested with.
+#pragma once
+
+#include "dynamics/integrator.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// All schemes, each undamped.
+inline std::vector<IntegratorSettings> all_integrators() {
+  return {ExplicitEulerSettings{}, SymplecticEulerSettings{}, VerletSettings{}, VelocityVerletSettings{}, RungeKutta4Settings{}};
+}
+
+}  // namespace sprung
