@@ -41,6 +41,15 @@ struct Packed {
   z = __builtin_shufflevector(zx, yz, 0, 5, 2, 7);
 }
 
+[[gnu::always_inline]] inline void pack(const SpringLanes& x, const SpringLanes& y, const SpringLanes& z, Packed& to) {
+  const SpringLanes xy = __builtin_shufflevector(x, y, 0, 4, 2, 6);  // x0 y0 x2 y2
+  const SpringLanes zx = __builtin_shufflevector(z, x, 0, 5, 2, 7);  // z0 x1 z2 x3
+  const SpringLanes yz = __builtin_shufflevector(y, z, 1, 5, 3, 7);  // y1 z1 y3 z3
+  to.low = __builtin_shufflevector(xy, zx, 0, 1, 4, 5);
+  to.middle = __builtin_shufflevector(yz, xy, 0, 1, 6, 7);
+  to.high = __builtin_shufflevector(zx, yz, 2, 3, 6, 7);
+}
+
 /// Each vector times its own number.
 [[gnu::always_inline]] inline void multiply(Packed& vectors, const SpringLanes& scale) {
   vectors.low *= __builtin_shufflevector(scale, scale, 0, 0, 0, 1);

@@ -82,44 +82,87 @@ std::vector<Piece> colour(const SpringNetwork& network, const std::vector<Piece>
   return left;
 }
 
-}  // namespace
+/// Whether the kSpringLanes singles from `begin` on join consecutive particles two by two.
+bool are_pairs(const Springs& springs, std::span<const Piece> singles, std::size_t begin) {
+  if (begin + kSpringLanes > singles.size()) return false;
+  const Index first = springs.first[singles[begin].begin];
+  for (Index i = 0; i < kSpringLanes; ++i) {
+    const Index s = singles[begin + i].begin;
+    if (springs.first[s] != first + 2 * i || springs.second[s] != first + 2 * i + 1) return false;
+  }
+  return true;
+}
 
-StretchBatches::StretchBatches(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
-  const auto append = [&](Index s) {
-    const Index a = network.springs.first[s];
-    const Index b = network.springs.second[s];
-    first.push_back(a);
-    second.push_back(b);
-    rest_length.push_back(network.springs.rest_length[s]);
-    per_length.push_back(1.0 / network.springs.rest_length[s]);
-    first_share.push_back(network.inverse_masses[a] / (network.inverse_masses[a] + network.inverse_masses[b]));
-  };
-  const auto add_part = [&](Index from, bool run) {
+class Filler {
+ public:
+  Filler(const SpringNetwork& network, StretchBatches& batches) : network_(network), batches_(batches) {}
+
+  void add_runs(std::span<const Piece> runs) {
+    for (const Piece& run : runs) {
+      const Index from = batches_.count();
+      for (Index s = run.begin; s < run.begin + run.count; ++s) append(s);
+      add_part(from, StretchBatches::Layout::run);
+    }
+  }
+
+  void add_singles(std::span<const Piece> singles) {
+    std::vector<Index> pairs;
+    std::vector<Index> others;
+    for (std::size_t i = 0; i < singles.size();) {
+      if (!are_pairs(network_.springs, singles, i)) {
+        others.push_back(singles[i++].begin);
+        continue;
+      }
+      for (const std::size_t k : {0, 2, 1, 3}) pairs.push_back(singles[i + k].begin);
+      i += kSpringLanes;
+    }
+    add_parts(pairs, StretchBatches::Layout::pairs);
+    add_parts(others, StretchBatches::Layout::gathered);
+  }
+
+ private:
+  void add_parts(const std::vector<Index>& springs, StretchBatches::Layout layout) {
+    for (std::size_t begin = 0; begin < springs.size(); begin += StretchBatches::kPartSprings) {
+      const Index from = batches_.count();
+      const std::size_t end = std::min(springs.size(), begin + StretchBatches::kPartSprings);
+      for (std::size_t i = begin; i < end; ++i) append(springs[i]);
+      while (batches_.count() % kSpringLanes != 0) append(springs[end - 1]);
+      add_part(from, layout);
+    }
+  }
+
+  void append(Index s) {
+    const Index a = network_.springs.first[s];
+    const Index b = network_.springs.second[s];
+    batches_.first.push_back(a);
+    batches_.second.push_back(b);
+    batches_.rest_length.push_back(network_.springs.rest_length[s]);
+    batches_.per_length.push_back(1.0 / network_.springs.rest_length[s]);
+    batches_.first_share.push_back(network_.inverse_masses[a] / (network_.inverse_masses[a] + network_.inverse_masses[b]));
+  }
+
+  void add_part(Index from, StretchBatches::Layout layout) {
     const auto same = [&](const std::vector<double>& values) {
       return std::all_of(values.begin() + from, values.end(), [&](double value) { return value == values[from]; });
     };
-    parts.push_back({from, count(), run, same(rest_length) && same(first_share)});
-  };
-  const auto append_run = [&](const Piece& run) {
-    const Index from = count();
-    for (Index s = run.begin; s < run.begin + run.count; ++s) append(s);
-    add_part(from, true);
-  };
-  const auto append_singles = [&](std::span<const Piece> singles) {
-    const Index from = count();
-    for (const Piece& single : singles) append(single.begin);
-    while (count() % kSpringLanes != 0) append(singles.back().begin);
-    add_part(from, false);
-  };
+    batches_.parts.push_back({from, batches_.count(), layout, same(batches_.rest_length) && same(batches_.first_share)});
+  }
+
+  const SpringNetwork& network_;
+  StretchBatches& batches_;
+};
+
+}  // namespace
+
+StretchBatches::StretchBatches(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
+  Filler filler(network, *this);
   for (std::vector<Piece> waiting = pieces(network.springs, limited_springs(network, kinds)); !waiting.empty();) {
     Colouring colours;
     waiting = colour(network, waiting, colours);
     for (const auto& [runs, singles] : colours) {
       if (runs.empty() && singles.empty()) break;
-      for (const Piece& run : runs) append_run(run);
-      for (std::size_t i = 0; i < singles.size(); i += kPartSprings) {
-        append_singles(std::span(singles).subspan(i, std::min<std::size_t>(kPartSprings, singles.size() - i)));
-      }
+      filler.add_runs(runs);
+      filler.add_singles(singles);
       begin.push_back(static_cast<Index>(parts.size()));
     }
   }

@@ -16,12 +16,18 @@ struct StretchBatches {
   std::vector<double> per_length;   ///< 1 / d [1/m]
   std::vector<double> first_share;  ///< part of a correction that the first end takes: w_1 / (w_1 + w_2) with inverse masses w
 
-  /// Springs [begin, end), at most kPartSprings. Those of a run join consecutive particles: begin + i joins first[begin] + i and
-  /// second[begin] + i.
+  /// How a part's springs lie in memory.
+  enum class Layout : std::uint8_t {
+    run,      ///< begin + i joins first[begin] + i and second[begin] + i
+    pairs,    ///< in each group of kSpringLanes, from s on, spring s + i joins first[s] + k and first[s] + k + 1: k = 0, 4, 2, 6
+    gathered  ///< anyhow
+  };
+
+  /// Springs [begin, end), at most kPartSprings.
   struct Part {
     Index begin;
     Index end;
-    bool run;
+    Layout layout;
     bool same;  ///< all have the constants of the first
   };
   static constexpr Index kPartSprings = 64;

@@ -27,8 +27,8 @@ class StretchLimit {
   ~StretchLimit();
 
   /// One Gauss-Seidel pass in batches without shared particles: each spring beyond its limits is projected onto them, both ends
-  /// weighted by inverse mass; pinned particles do not move. Tethers come first. Same bits for any number of threads. Returns the largest excess it
-  /// met, as a part of the rest length.
+  /// weighted by inverse mass; pinned particles do not move. Tethers come first. Same bits for any number of threads. Returns the
+  /// largest excess it met, as a part of the rest length.
   ///
   /// With a `relaxation` other than 1, in (0, 2), corrections are so many times as large. Passes converge all the same, on lengths
   /// that are not too long because these are a convex set (Agmon 1954; Motzkin and Schoenberg 1954), and hand excess on faster
