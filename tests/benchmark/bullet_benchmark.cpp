@@ -1,22 +1,19 @@
 // The drape of a cloth on the bunny, Bullet's soft body against Sprung, frame by frame in the same run.
 #include "benchmark/bullet_drape.h"
 #include "benchmark/field_drape.h"
+#include "benchmark/processor_time.h"
 
 #include "base/parallel.h"
 
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <ctime>
 
 namespace sprung::benchmarks {
 namespace {
 
 // One second: the cloth meets the bunny in frame 2 and hangs folded around it at the end.
 constexpr int kFrames = 60;
-
-/// Seconds of this process alone, whatever else the machine does.
-double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Measured {
   double seconds = 0.0;  ///< of all frames

@@ -35,7 +35,7 @@ TriangleMesh drape_mesh(Index triangles) {
   return mesh;
 }
 
-SpringNetwork drape_network(Index triangles, Index side) {
+SpringNetwork drape_network(Index triangles, Index side, bool self_contact) {
   const SpringMaterial without_force{};
   BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {side, side}}, {without_force, without_force, without_force});
   set_total_mass(shape, kMass);
@@ -44,12 +44,13 @@ SpringNetwork drape_network(Index triangles, Index side) {
   pose.rotate(Eigen::AngleAxisd(-0.5 * std::numbers::pi, Vector3::UnitX()));
   place(shape, pose);
   NetworkBuilder builder;
-  builder.add_body("cloth", shape, {.thickness = kThickness, .friction = kFriction, .static_friction = kFriction});
+  builder.add_body("cloth", shape, {.thickness = kThickness, .friction = kFriction, .static_friction = kFriction},
+                   {.self = self_contact});
   return builder.build();
 }
 
-SprungDrape::SprungDrape(Index triangles, Index side)
-    : simulator_(drape_network(triangles, side), settings(), {obstacle(triangles)}) {}
+SprungDrape::SprungDrape(Index triangles, Index side, bool self_contact)
+    : simulator_(drape_network(triangles, side, self_contact), settings(), {obstacle(triangles)}) {}
 
 void SprungDrape::step_frame() {
   for (int step = 0; step < kPasses; ++step) simulator_.step();

@@ -15,7 +15,7 @@ inline constexpr double kFriction = 0.3;
 inline constexpr int kPasses = 20;
 
 /// `side` x `side` particles with structural, shear and bend springs of stiffness 0: projection alone carries the cloth.
-[[nodiscard]] SpringNetwork drape_network(Index triangles, Index side);
+[[nodiscard]] SpringNetwork drape_network(Index triangles, Index side, bool self_contact = false);
 
 /// The bunny of 0.6 m with so many triangles.
 [[nodiscard]] TriangleMesh drape_mesh(Index triangles);
@@ -23,7 +23,7 @@ inline constexpr int kPasses = 20;
 /// Sprung's simulator of it.
 class SprungDrape {
  public:
-  SprungDrape(Index triangles, Index side);
+  SprungDrape(Index triangles, Index side, bool self_contact = false);
 
   void step_frame();
   [[nodiscard]] const Points& positions() const { return simulator_.positions(); }

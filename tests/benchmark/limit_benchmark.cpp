@@ -2,6 +2,7 @@
 // passes in one step beside them in the same run.
 #include "base/parallel.h"
 #include "benchmark/bullet_hanging.h"
+#include "benchmark/processor_time.h"
 #include "scene/scene_builder.h"
 #include "simulation/simulator.h"
 
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <numbers>
 
 namespace sprung::benchmarks {
@@ -71,9 +71,6 @@ double stretch(const SpringNetwork& network, const Points& x) {
   }
   return most;
 }
-
-/// Seconds of this process alone, whatever else the machine does.
-double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Measured {
   double seconds = 0.0;  ///< a frame

@@ -1,5 +1,6 @@
 // Cloths that fall on the bunny, fixed, turning and breathing.
 #include "benchmark/bunnies.h"
+#include "collision/sample_meshes.h"
 #include "scenarios/scenario.h"
 
 #include <gtest/gtest.h>
@@ -67,6 +68,22 @@ TEST_P(Drape, ABunnyBreathesUnderACloth) {
   scene.obstacles.front().geometry = SequenceGeometry{.sequence = breathing_bunny(), .closed = true};
   const ScenarioReport report = run_scenario(std::move(scene));
   EXPECT_TRUE(report.is_free()) << report;
+}
+
+// A step's cost hardly knows how fine the mesh is, and triangles far smaller than the cloth's cells and its thickness are met too.
+TEST(DrapeOverAMillionTriangles, AClothFallsOnARing) {
+  BuiltScene scene = load_scenario("drape", {"duration=0.6", "bodies.cloth.shape.resolution=[24,24]"});
+  const TriangleMesh ring = test::torus(0.3, 0.1, 1000, 500);
+  ASSERT_EQ(ring.triangles.cols(), 1000000);
+  scene.obstacles.front().geometry = MeshGeometry{std::make_shared<const TriangleMesh>(ring), true};
+  double gap = 1.0;
+  const int last = scene.frames;
+  const Watch watch = [&](const Simulator& simulator, const FrameDiagnostics& frame) {
+    if (frame.frame == last) gap = least_distance(simulator);
+  };
+  const ScenarioReport report = run_scenario(std::move(scene), watch);
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_NEAR(gap, 0.005, 0.05 * 0.005);
 }
 
 }  // namespace

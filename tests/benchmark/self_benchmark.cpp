@@ -1,0 +1,62 @@
+// What contact of a cloth with itself costs: the same scene with and without it, in the same run.
+#include "benchmark/field_drape.h"
+#include "benchmark/processor_time.h"
+
+#include "base/format.h"
+#include "base/parallel.h"
+#include "scene/scene_builder.h"
+#include "scene/scene_reader.h"
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+namespace sprung::benchmarks {
+namespace {
+
+// The drape's first second; the twist's three, in which the cloth is turned twice and let up.
+constexpr int kDrapeFrames = 60;
+constexpr int kTwistFrames = 180;
+
+template <class StepFrame>
+double seconds_a_frame(int frames, const StepFrame& step_frame) {
+  const double begin = processor_time();
+  for (int frame = 0; frame < frames; ++frame) step_frame();
+  return (processor_time() - begin) / frames;
+}
+
+double drape(bool self_contact) {
+  SprungDrape drape(14700, 64, self_contact);
+  return seconds_a_frame(kDrapeFrames, [&] { drape.step_frame(); });
+}
+
+/// tests/scenarios/scenes/twisted_cloth.json, of 64 x 64 particles, with the drape's passes and steps.
+double twist(bool self_contact) {
+  const Scene scene = read_scene(
+      SPRUNG_SOURCE_DIR "/tests/scenarios/scenes/twisted_cloth.json",
+      {"bodies.cloth.shape.resolution=[64,64]", std::string("bodies.cloth.self_contact=") + (self_contact ? "true" : "false")});
+  BuiltScene built = build_scene(scene, {});
+  Simulator simulator(std::move(built.network), built.settings);
+  return seconds_a_frame(kTwistFrames, [&] {
+    for (int step = 0; step < built.steps_per_frame; ++step) simulator.step();
+  });
+}
+
+/// One thread. The time is that of a frame with self-contact.
+template <double (*Scene)(bool)>
+void self_contact(benchmark::State& state) {
+  const ThreadLimit one_thread(1);
+  for ([[maybe_unused]] auto _ : state) {
+    const double without = Scene(false);
+    const double with = Scene(true);
+    state.SetIterationTime(with);
+    state.counters["ms_without"] = 1e3 * without;
+    state.counters["times_slower"] = with / without;
+  }
+}
+
+BENCHMARK(self_contact<drape>)->Name("self_contact_of_a_drape")->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(self_contact<twist>)->Name("self_contact_of_a_twist")->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace sprung::benchmarks
