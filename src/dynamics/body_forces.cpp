@@ -31,4 +31,10 @@ void AirDrag::add(const Kinematics& at, Points& forces) const {
   });
 }
 
+void AirDrag::add_derivatives(const Kinematics&, ForceDerivatives& derivatives) const {
+  for (Index i = 0; i < network_.particle_count(); ++i) {
+    derivatives.by_velocity.add(i, i, -drag_ * network_.drag_areas[i] * Matrix3::Identity());
+  }
+}
+
 }  // namespace sprung

@@ -23,6 +23,7 @@ class AirDrag final : public Force {
  public:
   AirDrag(const SpringNetwork& network, double drag, const Vector3& wind);  ///< drag >= 0, wind [m/s]
   void add(const Kinematics& at, Points& forces) const override;
+  void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
  private:
   const SpringNetwork& network_;

@@ -18,10 +18,17 @@ class PenaltyContact final : public Force {
   void prepare(double time) override;
   void add(const Kinematics& at, Points& forces) const override;
 
+  /// As if the surface were the plane that it is nearest, and without what a push does to the friction that it allows: that is not
+  /// symmetric.
+  void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
+
   /// How many particles are nearer to an obstacle than their gap.
   [[nodiscard]] Index contact_count(const Points& positions) const;
 
  private:
+  struct Touch;
+  [[nodiscard]] Touch touch(const Contact& contact, const Kinematics& at) const;
+
   const SpringNetwork& network_;
   Environment& environment_;
   double stiffness_;

@@ -76,6 +76,13 @@ void add_singles(const SpringPlan::Block& block, const Springs& springs, const K
   }
 }
 
+/// What a spring pulls back sideways, as a part of its stiffness. One of no length has no direction: it pulls back all ways alike
+/// if that is its rest length, and else not at all.
+double sideways_part(double length, double rest_length) {
+  if (length == 0.0) return rest_length == 0.0 ? 1.0 : 0.0;
+  return std::max(0.0, 1.0 - rest_length / length);
+}
+
 }  // namespace
 
 SpringForce::SpringForce(const SpringNetwork& network) : network_(network), plan_(std::make_unique<SpringPlan>(network)) {}
@@ -88,6 +95,26 @@ void SpringForce::add(const Kinematics& at, Points& forces) const {
       add_singles(plan_->blocks[b], network_.springs, at, forces);
     }
   });
+}
+
+void SpringForce::couple(std::vector<ParticlePair>& pairs) const {
+  const Springs& springs = network_.springs;
+  for (std::size_t s = 0; s < springs.first.size(); ++s) pairs.push_back({springs.first[s], springs.second[s]});
+}
+
+void SpringForce::add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const {
+  const Springs& springs = network_.springs;
+  for (std::size_t s = 0; s < springs.first.size(); ++s) {
+    const Index a = springs.first[s];
+    const Index b = springs.second[s];
+    const Vector3 difference = at.x.col(a) - at.x.col(b);
+    const double length = difference.norm();
+    const Vector3 e = length > 0.0 ? Vector3(difference / length) : Vector3(Vector3::Zero());
+    const Matrix3 along = e * e.transpose();
+    const Matrix3 across = sideways_part(length, springs.rest_length[s]) * (Matrix3::Identity() - along);
+    derivatives.by_position.add_difference(a, b, -springs.stiffness[s] * (along + across));
+    if (springs.damping[s] > 0.0) derivatives.by_velocity.add_difference(a, b, -springs.damping[s] * along);
+  }
 }
 
 double SpringForce::energy(const Points& positions) const {

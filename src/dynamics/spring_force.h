@@ -23,6 +23,13 @@ class SpringForce final : public Force {
 
   void add(const Kinematics& at, Points& forces) const override;
 
+  void couple(std::vector<ParticlePair>& pairs) const override;
+
+  /// On particle 1, by its own position -k_s (e e^T + (1 - d / |s|) (I - e e^T)), with 1 - d / |s| taken as 0 where it is less
+  /// (Baraff and Witkin 1998), and by its own velocity -k_d e e^T. How the damper turns with the spring is left out: it is not
+  /// symmetric.
+  void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
+
   /// sum 1/2 k_s (|s| - d)^2 [J]
   [[nodiscard]] double energy(const Points& positions) const override;
 
