@@ -12,6 +12,7 @@ namespace sprung {
 [[nodiscard]] std::unique_ptr<Integrator> make_verlet(const VerletSettings& settings, const SpringNetwork& network);
 [[nodiscard]] std::unique_ptr<Integrator> make_velocity_verlet(const SpringNetwork& network);
 [[nodiscard]] std::unique_ptr<Integrator> make_runge_kutta4(const SpringNetwork& network);
+[[nodiscard]] std::unique_ptr<Integrator> make_implicit_euler(const SpringNetwork& network);
 
 /// Time [s] at the begin of the step that a state is about to make.
 [[nodiscard]] inline double step_begin(const SimulationState& state, double dt) { return static_cast<double>(state.step) * dt; }

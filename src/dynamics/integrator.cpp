@@ -13,6 +13,7 @@ struct MakeIntegrator {
   std::unique_ptr<Integrator> operator()(const VerletSettings& verlet) const { return make_verlet(verlet, network); }
   std::unique_ptr<Integrator> operator()(const VelocityVerletSettings&) const { return make_velocity_verlet(network); }
   std::unique_ptr<Integrator> operator()(const RungeKutta4Settings&) const { return make_runge_kutta4(network); }
+  std::unique_ptr<Integrator> operator()(const ImplicitEulerSettings&) const { return make_implicit_euler(network); }
 };
 
 }  // namespace

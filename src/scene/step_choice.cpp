@@ -14,7 +14,8 @@ namespace {
 
 double largest_auto_step(const Scene& scene, const SpringNetwork& network, const SpectralBounds& bounds, double largest_stable) {
   double largest = std::min(kStablePart * largest_stable, step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
-  if (!std::isfinite(largest)) largest = kLargestAutoStep;
+  const bool implicit = std::holds_alternative<ImplicitEulerSettings>(scene.settings.integrator);
+  if (!std::isfinite(largest) && !implicit) largest = kLargestAutoStep;
   if (!scene.settings.stretch_limit) return largest;
   const StretchLimit limit(network, *scene.settings.stretch_limit);
   return std::min(largest, limit.suggested_step(scene.settings.gravity.norm()));

@@ -9,7 +9,7 @@
 namespace sprung {
 
 /// When stability does not bound it, "auto" is at most this [s]: a fall of a second then moves a particle by
-/// 4 cm in a step.
+/// 4 cm in a step. With implicit Euler, which is chosen for its large steps, it is a frame.
 inline constexpr double kLargestAutoStep = 1.0 / 240.0;
 
 struct StepChoice {

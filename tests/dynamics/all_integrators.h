@@ -9,7 +9,8 @@ namespace sprung {
 
 /// All schemes, each undamped.
 inline std::vector<IntegratorSettings> all_integrators() {
-  return {ExplicitEulerSettings{}, SymplecticEulerSettings{}, VerletSettings{}, VelocityVerletSettings{}, RungeKutta4Settings{}};
+  return {ExplicitEulerSettings{},  SymplecticEulerSettings{}, VerletSettings{},
+          VelocityVerletSettings{}, RungeKutta4Settings{},     ImplicitEulerSettings{}};
 }
 
 }  // namespace sprung

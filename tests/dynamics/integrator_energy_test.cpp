@@ -37,6 +37,12 @@ TEST(ExplicitEuler, GainsEnergyAtItsAnalyticRate) {
   expect_geometric(energy_ratios(ExplicitEulerSettings{}, dt, 500), 1.0 + std::pow(kFree.omega() * dt, 2));
 }
 
+// |1 - i y|^-2. Symplectic Euler, below, is the negative control.
+TEST(ImplicitEuler, LosesEnergyAtItsAnalyticRate) {
+  const double dt = 1.0e-2;
+  expect_geometric(energy_ratios(ImplicitEulerSettings{}, dt, 500), 1.0 / (1.0 + std::pow(kFree.omega() * dt, 2)));
+}
+
 // |1 + i y - y^2 / 2 - i y^3 / 6 + y^4 / 24|^2 = 1 - y^6 / 72 + y^8 / 576: the loss in a given time falls with the fifth power of
 // the step.
 TEST(RungeKutta4, LosesEnergyAtItsAnalyticRate) {

@@ -80,6 +80,11 @@ TEST(RungeKutta4, IsOfFourthOrder) {
   expect_whirl_order(4.0, RungeKutta4Settings{}, 1.0, 128);
 }
 
+TEST(ImplicitEuler, IsOfFirstOrder) {
+  expect_whirl_order(1.0, ImplicitEulerSettings{}, 0.0, 2048);
+  expect_whirl_order(1.0, ImplicitEulerSettings{}, 1.0, 2048);
+}
+
 // The reference above is a scheme of ours; an oscillator has a closed form.
 TEST(Integrators, ConvergeToTheClosedFormOfAnOscillator) {
   const Oscillator damped{.damping = 0.4, .gravity = 1.5};
@@ -96,6 +101,7 @@ TEST(Integrators, ConvergeToTheClosedFormOfAnOscillator) {
   expect_oscillator_order(1.0, VerletSettings{}, 2048);
   expect_oscillator_order(2.0, VelocityVerletSettings{}, 256);
   expect_oscillator_order(4.0, RungeKutta4Settings{}, 32);
+  expect_oscillator_order(1.0, ImplicitEulerSettings{}, 2048);
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ double runge_kutta_radius(double stiffness, double damping) {
 /// The largest radius among modes with some part of the bounds' stiffness and of their damping.
 template <class Radius>
 double largest_radius(const SpectralBounds& bounds, double dt, const Radius& radius) {
-  constexpr int kParts = 60;
+  constexpr int kParts = 40;
   double largest = 0.0;
   for (int i = 0; i <= kParts; ++i) {
     for (int j = 0; j <= kParts; ++j) {
@@ -152,7 +152,13 @@ std::vector<SpectralBounds> bounds_of_all_dampings() {
 // Roundings of a factor near 1: a double root turns 1e-16 into 1e-8.
 constexpr double kNoGrowth = 1.0 + 1.0e-7;
 
-// Modes of half of the stiffness and more may be damped by dt c = 1 exactly, which the grid misses by a part of 120.
+TEST(StableStep, OfImplicitEulerIsAny) {
+  for (const SpectralBounds& bounds : bounds_of_all_dampings()) {
+    EXPECT_EQ(largest_stable_step(ImplicitEulerSettings{}, bounds), kInfinity);
+  }
+}
+
+// Modes of half of the stiffness and more may be damped by dt c = 1 exactly, which the grid misses by a part of 80.
 TEST(StableStep, OfVelocityVerletHoldsForAllDampedModesAndIsNoSmallerThanNeeded) {
   for (const SpectralBounds& bounds : bounds_of_all_dampings()) {
     const double dt = largest_stable_step(VelocityVerletSettings{}, bounds);
@@ -231,8 +237,8 @@ TEST(StableStep, DividesRunsThatStayFromRunsThatBlowUp) {
             IntegratorSettings{VelocityVerletSettings{}}, IntegratorSettings{RungeKutta4Settings{}}}) {
         const SpringNetwork network = linear_cloth(damping);
         const double largest = largest_stable_step(settings, spectral_bounds(network, drag));
-        EXPECT_LT(size_after(network, settings, drag, 0.999 * largest, 5000), 1.0) << damping << ' ' << drag;
-        EXPECT_EQ(size_after(network, settings, drag, 1.2 * largest, 5000), kInfinity) << damping << ' ' << drag;
+        EXPECT_LT(size_after(network, settings, drag, 0.999 * largest, 2000), 1.0) << damping << ' ' << drag;
+        EXPECT_EQ(size_after(network, settings, drag, 1.2 * largest, 2000), kInfinity) << damping << ' ' << drag;
       }
     }
   }
@@ -261,6 +267,7 @@ TEST(GrowthTime, IsExplicitEulersOnly) {
   EXPECT_EQ(growth_time(VerletSettings{}, bounds, 0.01), kInfinity);
   EXPECT_EQ(growth_time(VelocityVerletSettings{}, bounds, 0.01), kInfinity);
   EXPECT_EQ(growth_time(RungeKutta4Settings{}, bounds, 0.01), kInfinity);
+  EXPECT_EQ(growth_time(ImplicitEulerSettings{}, bounds, 0.01), kInfinity);
   EXPECT_DOUBLE_EQ(growth_time(ExplicitEulerSettings{}, bounds, 0.01), 2.0);
 }
 

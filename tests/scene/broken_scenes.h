@@ -58,6 +58,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"DampingOfEuler", {"integrator={\"type\":\"explicit_euler\",\"damping\":0.1}"}, "integrator.damping", "is not a known key"},
       {"DampingOfVelocityVerlet", {"integrator={\"type\":\"velocity_verlet\",\"damping_rate\":0.1}"}, "integrator.damping_rate", "is not a known key"},
       {"StartAtRestOfRungeKutta", {"integrator={\"type\":\"rk4\",\"start_at_rest\":true}"}, "integrator.start_at_rest", "is not a known key"},
+      {"DampingOfImplicitEuler", {"integrator={\"type\":\"implicit_euler\",\"damping\":0.1}"}, "integrator.damping", "is not a known key"},
       {"VerletDampingAboveOne", {"integrator={\"type\":\"verlet\",\"damping\":1.5}"}, "integrator.damping", "must be between 0 and 1"},
       {"VerletDampedTwice", {"integrator={\"type\":\"verlet\",\"damping\":0.1,\"damping_rate\":1}"}, "integrator", "may have only one of damping, damping_rate"},
       {"StartAtRestIsANumber", {"integrator={\"type\":\"verlet\",\"start_at_rest\":1}"}, "integrator.start_at_rest", "must be true or false"},

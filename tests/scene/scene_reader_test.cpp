@@ -27,6 +27,7 @@ TEST(SceneReader, EachSchemeHasItsName) {
   EXPECT_TRUE(std::holds_alternative<VerletSettings>(scheme("verlet")));
   EXPECT_TRUE(std::holds_alternative<VelocityVerletSettings>(scheme("velocity_verlet")));
   EXPECT_TRUE(std::holds_alternative<RungeKutta4Settings>(scheme("rk4")));
+  EXPECT_TRUE(std::holds_alternative<ImplicitEulerSettings>(scheme("implicit_euler")));
 }
 
 TEST(SceneReader, TimeAndSettingsArrive) {

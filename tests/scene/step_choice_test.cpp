@@ -75,6 +75,17 @@ TEST(StepChoice, WithoutAnyBoundAutoIsAtMostTheDocumentedStep) {
   EXPECT_EQ(built.steps_per_frame, 24);  // 10 frames a second of 24 steps: 1/240 s
 }
 
+TEST(StepChoice, AutoOfImplicitEulerIsAFrameOrWhatTheStretchLimitAsksFor) {
+  const std::string implicit = R"(integrator={"type": "implicit_euler"})";
+  const BuiltScene free = build(1.0e6, {implicit});
+  EXPECT_TRUE(std::isinf(free.largest_stable_step));
+  EXPECT_EQ(free.steps_per_frame, 1);
+  EXPECT_EQ(build(1.0e6, {implicit, "step=0.1"}).steps_per_frame, 1) << "a given step is never refused";
+  const BuiltScene limited = build(0.0, {implicit, "bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1}"});
+  EXPECT_GT(limited.steps_per_frame, 1);
+  EXPECT_LE(limited.settings.step, StretchLimit(limited.network, *limited.settings.stretch_limit).suggested_step(9.81));
+}
+
 TEST(StepChoice, StepBeyondTheStableOneIsRefusedNamingTheLargestThatCanBe) {
   const auto problems = problems_of([] { (void)build(1000.0, {"step=0.1"}); });
   // 2 / sqrt(1000) = 0.0632: the largest that divides a frame of 0.1 s is 0.05.

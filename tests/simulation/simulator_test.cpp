@@ -29,7 +29,8 @@ SpringNetwork two_masses(double stiffness, double damping = 0.0) {
 TEST(Simulator, FreeParticleFallsAsTheSchemesOwnSum) {
   const double dt = 1e-2;
   const double n = 100.0;
-  const std::vector<double> steps_of_gravity{n * (n - 1.0) / 2.0, n * (n + 1.0) / 2.0, n * n / 2.0, n * n / 2.0, n * n / 2.0};
+  const std::vector<double> steps_of_gravity{n * (n - 1.0) / 2.0, n * (n + 1.0) / 2.0, n * n / 2.0,
+                                             n * n / 2.0,         n * n / 2.0,         n * (n + 1.0) / 2.0};
   for (std::size_t i = 0; i < steps_of_gravity.size(); ++i) {
     Simulator simulator(one_particle({0.0, 0.0, 0.0}), {.step = dt, .integrator = all_integrators()[i]});
     run(simulator, n * dt);

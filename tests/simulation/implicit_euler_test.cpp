@@ -1,0 +1,97 @@
+// Implicit Euler with steps that no explicit scheme survives.
+#include "base/error.h"
+#include "base/parallel.h"
+#include "simulation/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+constexpr double kStep = 1.0 / 60.0;  // [s]
+
+/// A level cloth of 1 m, 0.2 kg and n x n particles, of springs of 1e5 N/m, held by two corners.
+SpringNetwork stiff_cloth(Index n) {
+  constexpr double kStiffness = 1.0e5;
+  BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {n, n}}, {.structural = SpringMaterial{.value = kStiffness},
+                                                                            .shear = SpringMaterial{.value = 0.5 * kStiffness},
+                                                                            .bend = SpringMaterial{.value = 0.1 * kStiffness}});
+  set_total_mass(shape, 0.2);
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = rotation_from_degrees({-90.0, 0.0, 0.0});
+  place(shape, pose, Vector3::Zero());
+  NetworkBuilder builder;
+  builder.add_body("cloth", shape, {.thickness = 0.005, .friction = 0.3, .static_friction = 0.3});
+  builder.pin({n * (n - 1), n * n - 1});
+  return builder.build();
+}
+
+double largest_stretch(const Simulator& simulator) {
+  const Springs& springs = simulator.network().springs;
+  double largest = 0.0;
+  for (std::size_t s = 0; s < springs.first.size(); ++s) {
+    const Vector3 difference = simulator.positions().col(springs.first[s]) - simulator.positions().col(springs.second[s]);
+    largest = std::max(largest, difference.norm() / springs.rest_length[s] - 1.0);
+  }
+  return largest;
+}
+
+double moving_energy(const Simulator& simulator) {
+  return 0.5 * simulator.state().v.colwise().squaredNorm().dot(simulator.network().masses.transpose()) + simulator.elastic_energy();
+}
+
+TEST(ImplicitEuler, SwingsAStiffClothByTwoCornersInStepsOfASixtiethOfASecond) {
+  Simulator simulator(stiff_cloth(64), {.step = kStep, .integrator = ImplicitEulerSettings{}});
+  for (int step = 0; step < 20; ++step) {
+    simulator.step();
+    // The weight of the cloth, falling by its size, has no more to give.
+    ASSERT_LT(moving_energy(simulator), 0.2 * testing::kGravity * 1.0) << "step " << step;
+    ASSERT_LT(largest_stretch(simulator), 0.1) << "step " << step;
+  }
+  EXPECT_LT(simulator.positions().row(1).mean(), -0.15) << "it fell";
+}
+
+TEST(ImplicitEuler, LetsAStiffClothFallOnABall) {
+  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.25}};
+  ball.placed.translation() = Vector3(0.0, -0.45, -0.1);
+  Simulator simulator(stiff_cloth(24), {.step = kStep, .integrator = ImplicitEulerSettings{}}, {ball});
+  for (int step = 0; step < 60; ++step) {
+    simulator.step();
+    ASSERT_GT((simulator.positions().colwise() - ball.placed.translation()).colwise().norm().minCoeff(), 0.25);
+    ASSERT_LT(largest_stretch(simulator), 0.5) << "step " << step;
+  }
+  EXPECT_GT(simulator.contact_count(), 0);
+}
+
+TEST(ImplicitEuler, IsNeededForSuchSteps) {
+  EXPECT_THROW(Simulator(stiff_cloth(16), {.step = kStep, .integrator = SymplecticEulerSettings{}}), InputError);
+  Simulator unstable(stiff_cloth(16), {.step = kStep, .integrator = SymplecticEulerSettings{}, .stability = StabilityCheck::warn});
+  EXPECT_THROW(testing::run(unstable, 1.0), StepError);
+}
+
+// The penalty is one of its forces: a ball of 0.1 kg comes to rest where the spring carries it, m g / k below its gap, at a step
+// that is 10 / omega.
+TEST(ImplicitEuler, RestsOnAPenaltyAtAnyStep) {
+  const double stiffness = 0.1 * std::pow(10.0 / kStep, 2);
+  SimulatorSettings settings{.step = kStep, .integrator = ImplicitEulerSettings{}};
+  settings.contact = {.response = ContactSettings::Response::penalty, .stiffness = stiffness, .damping = 0.0};
+  Simulator simulator(testing::one_particle({0.0, 0.011, 0.0}, {.thickness = 0.01}), settings, {testing::ground()});
+  testing::run(simulator, 5.0);
+  EXPECT_NEAR(simulator.positions()(1, 0), 0.01 - 0.1 * testing::kGravity / stiffness, 1.0e-12);
+}
+
+TEST(ImplicitEuler, HasTheSameBitsForAnyNumberOfThreads) {
+  const auto ten_steps = [](int threads) {
+    const ThreadLimit limit(threads);
+    Simulator simulator(stiff_cloth(16), {.step = kStep, .integrator = ImplicitEulerSettings{}});
+    for (int step = 0; step < 10; ++step) simulator.step();
+    return simulator.positions();
+  };
+  EXPECT_EQ(ten_steps(1), ten_steps(2));
+}
+
+}  // namespace
+}  // namespace sprung
