@@ -1,6 +1,7 @@
 #include "dynamics/stretch_batches.h"
 
 #include "dynamics/lane_count.h"
+#include "dynamics/limited_springs.h"
 
 #include <algorithm>
 #include <array>
@@ -13,17 +14,6 @@ namespace sprung {
 namespace {
 
 constexpr int kColours = 64;
-
-std::vector<Index> limited_springs(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
-  const Springs& springs = network.springs;
-  std::vector<Index> limited;
-  for (Index s = 0; s < springs.count(); ++s) {
-    const bool held = std::ranges::find(kinds, springs.kind[s]) != kinds.end();
-    const bool movable = !network.is_pinned(springs.first[s]) || !network.is_pinned(springs.second[s]);
-    if (held && movable && springs.rest_length[s] > 0.0) limited.push_back(s);
-  }
-  return limited;
-}
 
 /// Springs [begin, begin + count) of the network: one, or a run that fills the kernel's lanes.
 struct Piece {

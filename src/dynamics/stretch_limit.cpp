@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "dynamics/stretch_kernel.h"
 #include "dynamics/stretch_load.h"
+#include "dynamics/stretch_newton.h"
 #include "dynamics/tethers.h"
 
 #include <algorithm>
@@ -38,6 +39,7 @@ LengthRange length_range(const StretchLimitSettings& settings) {
 StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings)
     : network_(network), settings_(settings), batches_(std::make_unique<StretchBatches>(network, settings.kinds)) {
   if (settings.tethers) tethers_ = std::make_unique<Tethers>(network, settings.kinds, settings.max_stretch);
+  if (settings.solver == StretchLimitSettings::Solver::newton) newton_ = std::make_unique<StretchNewton>(network, settings);
 }
 StretchLimit::~StretchLimit() = default;
 
@@ -54,6 +56,10 @@ double StretchLimit::project(Points& positions, double relaxation) const {
   return excess;
 }
 
+int StretchLimit::solve(const Points& before, Points& positions, double fall) const {
+  return newton_ ? newton_->solve(before, positions, fall) : 0;
+}
+
 double StretchLimit::excess(const Points& positions) const {
   const LengthRange range = length_range(settings_);
   return largest_excess(*batches_, 0, batches_->begin.back(), [&](const StretchBatches::Part& part) {
@@ -65,6 +71,7 @@ const StretchLimitSettings& StretchLimit::settings() const { return settings_; }
 
 // At rest each step adds g dt^2 to each particle, and each of its passes hands on a part of it.
 double StretchLimit::suggested_step(double acceleration) const {
+  if (newton_) return std::numeric_limits<double>::infinity();
   double load = 0.0;
   for (const Body& body : network_.bodies) load = std::max(load, largest_load(network_, body, *batches_));
   const double excess = std::max(0.5 * settings_.max_stretch + settings_.tolerance, kLeastExcess);

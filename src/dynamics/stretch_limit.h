@@ -9,15 +9,21 @@
 namespace sprung {
 
 struct StretchBatches;
+class StretchNewton;
 class Tethers;
 
 struct StretchLimitSettings {
+  enum class Solver : std::uint8_t {
+    gauss_seidel,  ///< passes alone
+    newton         ///< a global solve before them
+  };
   double max_stretch = 0.02;                              ///< >= 0: lengths stay below d (1 + max_stretch)
   double max_compression = 1.0;                           ///< in [0, 1]: and above d (1 - max_compression)
   std::vector<SpringKind> kinds{SpringKind::structural};  ///< which springs it holds
   int iterations = 32;                                    ///< most passes a step, >= 1; more where surfaces stop particles
   double tolerance = 0.001;                               ///< excess over the limit, as a part of d, at which passes end, >= 0
   bool tethers = false;                                   ///< particles stay within reach of their pins: see Tethers
+  Solver solver = Solver::gauss_seidel;
 };
 
 class StretchLimit {
@@ -35,6 +41,12 @@ class StretchLimit {
   /// where many springs share it.
   double project(Points& positions, double relaxation = 1.0) const;
 
+  /// Newton's method on all that is too long at once, when `solver` is newton: leads free particles to where springs are within
+  /// their limits, with as little weighted movement as that takes. What is left is for the passes: compression, and what contact
+  /// does. `before` is where the step began; `fall` [m] is |g| dt^2. Returns how many linear systems were
+  /// solved in turn.
+  int solve(const Points& before, Points& positions, double fall) const;
+
   /// The largest excess over the limits, as a part of the rest length; changes nothing.
   [[nodiscard]] double excess(const Points& positions) const;
 
@@ -42,7 +54,8 @@ class StretchLimit {
 
   /// The step [s] at which `iterations` passes a step keep the excess at about half of `max_stretch` plus `tolerance` when each
   /// body hangs at rest under `acceleration` [m/s^2] by its pins, or over an obstacle: in each step gravity adds g dt^2 per carried
-  /// particle, and the passes must hand it on. Infinity when nothing is limited.
+  /// particle, and the passes must hand it on. Infinity when nothing is limited, and with `solver` newton, which needs no small
+  /// steps.
   [[nodiscard]] double suggested_step(double acceleration) const;
 
  private:
@@ -50,6 +63,7 @@ class StretchLimit {
   StretchLimitSettings settings_;
   std::unique_ptr<const StretchBatches> batches_;
   std::unique_ptr<const Tethers> tethers_;  ///< none unless the settings say so
+  std::unique_ptr<StretchNewton> newton_;
 };
 
 }  // namespace sprung

@@ -143,12 +143,18 @@ void Simulator::Implementation::constrain(StepReport& report) {
   const bool projects = projects_contacts();
   if (!projects && !limit) return;
   if (projects) contacts.find(motion());
+  const bool solved = limit && limit->solve(before, state.x, settings.gravity.norm() * settings.step * settings.step) > 0;
   const int limit_passes = limit ? limit->settings().iterations : 0;
   const int passes = projects ? std::max(limit_passes, kContactPasses) : limit_passes;
   bool settled = false;
   while (!settled && report.iterations < passes) {
     const bool between = report.iterations > 0 && report.iterations + 1 < limit_passes;
-    const double excess = report.iterations < limit_passes ? limit->project(state.x, between ? kRelaxation : 1.0) : 0.0;
+    double excess = 0.0;
+    if (solved && report.iterations == 0) {
+      excess = limit->excess(state.x);
+    } else if (report.iterations < limit_passes) {
+      excess = limit->project(state.x, between ? kRelaxation : 1.0);
+    }
     const double push = projects ? contacts.project(state.x) : 0.0;
     settled = (!limit || excess <= limit->settings().tolerance) && push <= kContactTolerance;
     ++report.iterations;

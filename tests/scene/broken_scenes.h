@@ -68,6 +68,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"NoKinds", {"stretch_limit.kinds=[]"}, "stretch_limit.kinds", "must have at least 1 entry"},
       {"HalfAnIteration", {"stretch_limit.iterations=0.5"}, "stretch_limit.iterations", "must be a whole number"},
       {"NoIterations", {"stretch_limit.iterations=0"}, "stretch_limit.iterations", "must be at least 1"},
+      {"UnknownLimitSolver", {"stretch_limit.solver=newtom"}, "stretch_limit.solver", "did you mean \"newton\"?"},
       {"TethersByNumber", {"stretch_limit.tethers=2"}, "stretch_limit.tethers", "must be true or false"},
       {"UnknownStart", {"contact.start=push"}, "contact.start", "must be one of refuse, push_out"},
       {"StartIsTrue", {"contact.start=true"}, "contact.start", "must be one of refuse, push_out"},

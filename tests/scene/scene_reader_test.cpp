@@ -51,6 +51,7 @@ TEST(SceneReader, TimeAndSettingsArrive) {
   EXPECT_EQ(scene.settings.stretch_limit->iterations, 16);
   EXPECT_EQ(scene.settings.stretch_limit->tolerance, 0.002);
   EXPECT_TRUE(scene.settings.stretch_limit->tethers);
+  EXPECT_EQ(scene.settings.stretch_limit->solver, StretchLimitSettings::Solver::newton);
   EXPECT_EQ(scene.settings.contact.response, ContactSettings::Response::penalty);
   EXPECT_EQ(scene.settings.contact.stiffness, 1000.0);
   EXPECT_EQ(scene.settings.contact.damping, 0.5);

@@ -92,7 +92,7 @@ inline constexpr const char* kFullScene = R"({
   "air": { "drag": 0.25, "wind": [1, 0, -2] },
   "integrator": { "type": "verlet", "damping": 0.001, "start_at_rest": true },
   "stretch_limit": { "max_stretch": 0.03, "max_compression": 0.9, "kinds": ["structural", "bend"], "iterations": 16,
-                     "tolerance": 0.002, "tethers": true },
+                     "tolerance": 0.002, "tethers": true, "solver": "newton" },
   "contact": { "response": "penalty", "stiffness": 1000, "damping": 0.5, "start": "push_out" },
   "stability": "warn",
   "bodies": {

@@ -163,6 +163,19 @@ TEST(Simulator, StretchLimitHoldsAHangingChainOfSpringsWithoutStiffness) {
   EXPECT_GE(frame.max_stretch, 0.019);  // gravity pulls it to the limit
 }
 
+// From the horizontal, by its pin at one end: passes would let it become many times as long.
+TEST(Simulator, NewtonHoldsALongRopeThatSwings) {
+  NetworkBuilder builder;
+  constexpr int kParticles = 400;
+  for (int i = 0; i < kParticles; ++i) builder.add_particle({0.0025 * i, 0.0, 0.0}, 1.0e-4);
+  for (int i = 0; i + 1 < kParticles; ++i) builder.add_spring(i, i + 1, 0.0, 0.0025);
+  builder.pin(0);
+  const StretchLimitSettings limit{.max_stretch = 0.002, .solver = StretchLimitSettings::Solver::newton};
+  Simulator simulator(builder.build(), {.step = 1.0 / 240.0, .stretch_limit = limit});
+  FrameRunner frames(simulator, 4);
+  for (int frame = 0; frame < 60; ++frame) ASSERT_LE(frames.next_frame().stretch_excess, limit.tolerance) << frame;
+}
+
 // A rope from a pin at the top of a ball over its side, and down: the way along it is longer than the straight one, so that tethers
 // leave it to contact until it hangs straight below.
 TEST(Simulator, TethersDoNotPullThroughObstacles) {

@@ -1,0 +1,141 @@
+#include "dynamics/component_newton.h"
+
+#include "geometry/triangle_mesh.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+// More are needed only where a whole chain turns round within a step; what is left then is told by the excess.
+constexpr int kMostIterations = 20;
+constexpr int kMostHalvings = 10;
+
+// Iterations end when the next one would lower the energy by no more than this part of it, some thousandths of the way from
+// where forces led. None is made when the imbalance, were all of it left, amounts to no more than a hundredth of that way.
+constexpr double kConverged = 1.0e-5;
+constexpr double kBalanced = 1.0e-4;
+
+// Springs that are nearly at their limit will mostly be at it: were they left out at first, each iteration would find only the next
+// few of them.
+constexpr double kActiveAtFirst = 0.9;
+
+// The part of the tolerance that clipped links keep: they shall not be beyond it by rounding.
+constexpr double kClipPart = 0.99;
+
+Index count_ties(const StretchComponent& component) {
+  return static_cast<Index>(
+      std::ranges::count_if(component.links, [&](const StretchComponent::Link& link) { return !component.is_free(link.second); }));
+}
+
+}  // namespace
+
+ComponentNewton::ComponentNewton(StretchComponent component, const StretchLimitSettings& settings)
+    : component_(std::move(component)),
+      settings_(settings),
+      energy_(component_, settings),
+      solver_(make_system_solver(component_)),
+      clips_(component_.is_tree && count_ties(component_) == 1),
+      mass_(std::accumulate(component_.masses.begin(), component_.masses.end(), 0.0)) {}
+ComponentNewton::~ComponentNewton() = default;
+
+int ComponentNewton::solve(const Points& before, Points& positions, double fall) {
+  gather(before, positions);
+  energy_.set_weight(1.0);
+  if (energy_.value(led_, led_) == 0.0) return 0;
+  energy_.set_weight(carried_weight(fall));
+  const int iterations = minimise();
+  if (clips_) clip();
+  for (Index i = 0; i < component_.free_count; ++i) positions.col(component_.points[i]) = x_.col(i);
+  return iterations;
+}
+
+void ComponentNewton::gather(const Points& before, const Points& positions) {
+  const auto count = static_cast<Index>(component_.points.size());
+  before_.resize(Eigen::NoChange, count);
+  led_.resize(Eigen::NoChange, count);
+  for (Index i = 0; i < count; ++i) {
+    before_.col(i) = before.col(component_.points[i]);
+    led_.col(i) = positions.col(component_.points[i]);
+  }
+}
+
+/// Where the pins went, or what moves as it likes: so its momentum is right from the start.
+Vector3 ComponentNewton::common_move() const {
+  if (const Index pins = component_.pin_count(); pins > 0) return (led_ - before_).rightCols(pins).rowwise().mean();
+  Vector3 moved = Vector3::Zero();
+  for (Index i = 0; i < component_.free_count; ++i) moved += component_.masses[i] * (led_.col(i) - before_.col(i));
+  return moved / mass_;
+}
+
+// What moves by u in a step, on a circle of radius r, is pulled inwards as by an acceleration of u^2 / r.
+double ComponentNewton::carried_weight(double fall) const {
+  const double farthest = ((led_ - before_).colwise() - common_move()).colwise().squaredNorm().maxCoeff();
+  const double extent = bounds(before_).diagonal().norm();
+  const double turn = extent > 0.0 ? farthest / extent : 0.0;
+  return mass_ / std::max(component_.pin_count(), Index{1}) * std::max(fall, turn);
+}
+
+int ComponentNewton::minimise() {
+  start();
+  double energy = energy_.linearise(x_, led_, 1.0, system_);
+  if (imbalance() <= kBalanced * energy) return 0;
+  energy_.linearise(x_, led_, kActiveAtFirst, system_);
+  for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
+    solver_->solve(system_, step_);
+    const double descent = system_.residual.cwiseProduct(step_).sum();
+    if (iteration > 1 && descent <= kConverged * energy) {
+      x_.leftCols(component_.free_count) += step_;
+      return iteration;
+    }
+    if (!descend(energy)) {
+      if (iteration > 1) return iteration;
+      // What counted as if it pushed was not worth it.
+      energy_.linearise(x_, led_, 1.0, system_);
+    }
+  }
+  return kMostIterations;
+}
+
+// In motion where the step began is mostly nearer to the minimum: there springs are not too long.
+void ComponentNewton::start() {
+  x_ = before_.colwise() + common_move();
+  x_.rightCols(component_.pin_count()) = led_.rightCols(component_.pin_count());
+  if (energy_.value(led_, led_) < energy_.value(x_, led_)) x_ = led_;
+}
+
+double ComponentNewton::imbalance() const {
+  double sum = 0.0;
+  for (Index i = 0; i < component_.free_count; ++i) sum += system_.residual.col(i).squaredNorm() / component_.masses[i];
+  return sum;
+}
+
+bool ComponentNewton::descend(double& energy) {
+  double part = 1.0;
+  for (int halving = 0; halving <= kMostHalvings; ++halving, part *= 0.5) {
+    tried_ = x_;
+    tried_.leftCols(component_.free_count) += part * step_;
+    const double reached = energy_.linearise(tried_, led_, 1.0, system_);
+    if (!(reached < energy)) continue;
+    energy = reached;
+    x_.swap(tried_);
+    return true;
+  }
+  return false;
+}
+
+void ComponentNewton::clip() {
+  const double most = 1.0 + settings_.max_stretch + kClipPart * settings_.tolerance;
+  for (Index i = component_.free_count - 1; i >= 0; --i) {
+    for (Index k = component_.begin[i]; k < component_.begin[i + 1]; ++k) {
+      const StretchComponent::Link& link = component_.links[k];
+      const Vector3 between = x_.col(i) - x_.col(link.second);
+      const double longest = most * link.rest_length;
+      if (between.squaredNorm() > longest * longest) x_.col(i) = x_.col(link.second) + longest / between.norm() * between;
+    }
+  }
+}
+
+}  // namespace sprung

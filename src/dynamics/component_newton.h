@@ -1,0 +1,51 @@
+// Newton's method for the stretch limit of one component.
+#pragma once
+
+#include "dynamics/stretch_energy.h"
+#include "dynamics/stretch_system.h"
+
+#include <memory>
+
+namespace sprung {
+
+/// Minimises StretchEnergy by Newton's method with a halving line search.
+class ComponentNewton {
+ public:
+  ComponentNewton(StretchComponent component, const StretchLimitSettings& settings);
+  ~ComponentNewton();
+  ComponentNewton(const ComponentNewton&) = delete;
+  ComponentNewton& operator=(const ComponentNewton&) = delete;
+
+  /// Leads the component's free particles from where forces led them, `positions`, to the minimum; `before` is where the step
+  /// began. `fall` [m] is how far the largest steady acceleration leads a particle at rest in a step, |g| dt^2: links are made
+  /// stiff enough to carry the component against it, and against the motion it has. Of a chain or tree that hangs on one link, no
+  /// link is beyond the tolerance then. Returns how many linear systems were solved; 0 when no link was too long.
+  int solve(const Points& before, Points& positions, double fall);
+
+ private:
+  void gather(const Points& before, const Points& positions);
+  [[nodiscard]] Vector3 common_move() const;
+  [[nodiscard]] double carried_weight(double fall) const;
+  int minimise();
+  void start();
+  [[nodiscard]] double imbalance() const;
+  [[nodiscard]] bool descend(double& energy);
+  void clip();
+
+  StretchComponent component_;
+  StretchLimitSettings settings_;
+  StretchEnergy energy_;
+  std::unique_ptr<StretchSystemSolver> solver_;
+  bool clips_;
+  double mass_ = 0.0;  ///< of all free points [kg]
+
+  // Of a solve, 3 x points: where the step began, where forces led, where the solve is.
+  Points before_;
+  Points led_;
+  Points x_;
+  Points tried_;
+  Points step_;
+  StretchSystem system_;
+};
+
+}  // namespace sprung

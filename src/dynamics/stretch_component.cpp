@@ -1,0 +1,131 @@
+#include "dynamics/stretch_component.h"
+
+#include "dynamics/limited_springs.h"
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+/// The limited springs at each particle.
+class SpringsAt {
+ public:
+  SpringsAt(const SpringNetwork& network, const std::vector<Index>& limited)
+      : springs_(network.springs), begin_(network.particle_count() + 1, 0), spring_(2 * limited.size()) {
+    for (const Index s : limited) {
+      ++begin_[springs_.first[s] + 1];
+      ++begin_[springs_.second[s] + 1];
+    }
+    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+    std::vector<Index> next(begin_.begin(), begin_.end() - 1);
+    for (const Index s : limited) {
+      spring_[next[springs_.first[s]]++] = s;
+      spring_[next[springs_.second[s]]++] = s;
+    }
+  }
+
+  /// Calls `visit(spring, other end)`.
+  template <class Visit>
+  void for_each(Index particle, Visit&& visit) const {
+    for (Index k = begin_[particle]; k < begin_[particle + 1]; ++k) {
+      const Index s = spring_[k];
+      visit(s, springs_.first[s] == particle ? springs_.second[s] : springs_.first[s]);
+    }
+  }
+
+ private:
+  const Springs& springs_;
+  std::vector<Index> begin_;
+  std::vector<Index> spring_;
+};
+
+class Finder {
+ public:
+  Finder(const SpringNetwork& network, const std::vector<Index>& limited)
+      : network_(network), springs_at_(network, limited), seen_(network.particle_count(), false), point_(seen_.size(), kNone) {}
+
+  std::vector<StretchComponent> all() {
+    std::vector<StretchComponent> found;
+    for (Index i = 0; i < network_.particle_count(); ++i) {
+      if (seen_[i] || network_.is_pinned(i)) continue;
+      const std::vector<Index> particles = outward_from(i);
+      if (particles.size() > 1 || hangs_on_pin(i)) found.push_back(component(particles));
+    }
+    return found;
+  }
+
+ private:
+  /// Free particles reached from one, nearest first.
+  std::vector<Index> outward_from(Index start) {
+    std::vector<Index> queue{start};
+    seen_[start] = true;
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+      springs_at_.for_each(queue[head], [&](Index, Index other) {
+        if (seen_[other] || network_.is_pinned(other)) return;
+        seen_[other] = true;
+        queue.push_back(other);
+      });
+    }
+    return queue;
+  }
+
+  [[nodiscard]] bool hangs_on_pin(Index particle) const {
+    bool hangs = false;
+    springs_at_.for_each(particle, [&](Index, Index other) { hangs = hangs || network_.is_pinned(other); });
+    return hangs;
+  }
+
+  /// The same particles, from the tips to one that hangs on a pin.
+  std::vector<Index> inward(const std::vector<Index>& particles) {
+    const auto root = std::ranges::find_if(particles, [&](Index i) { return hangs_on_pin(i); });
+    for (const Index i : particles) seen_[i] = false;
+    std::vector<Index> order = outward_from(root == particles.end() ? particles.front() : *root);
+    std::ranges::reverse(order);
+    return order;
+  }
+
+  StretchComponent component(const std::vector<Index>& particles) {
+    StretchComponent found;
+    found.points = inward(particles);
+    found.free_count = static_cast<Index>(found.points.size());
+    for (Index i = 0; i < found.free_count; ++i) {
+      point_[found.points[i]] = i;
+      found.masses.push_back(network_.masses[found.points[i]]);
+    }
+    found.is_tree = true;
+    for (Index i = 0; i < found.free_count; ++i) add_links(found, i);
+    // A pin may belong to several components.
+    for (const Index particle : found.points) point_[particle] = kNone;
+    return found;
+  }
+
+  void add_links(StretchComponent& component, Index i) {
+    Index parent = kNone;
+    springs_at_.for_each(component.points[i], [&](Index spring, Index other) {
+      if (point_[other] == kNone) {
+        point_[other] = static_cast<Index>(component.points.size());
+        component.points.push_back(other);
+      }
+      const Index second = point_[other];
+      if (second < i) return;
+      component.links.push_back({i, second, network_.springs.rest_length[spring]});
+      if (!component.is_free(second)) return;
+      component.is_tree = component.is_tree && (parent == kNone || parent == second);
+      parent = second;
+    });
+    component.begin.push_back(static_cast<Index>(component.links.size()));
+  }
+
+  const SpringNetwork& network_;
+  SpringsAt springs_at_;
+  std::vector<bool> seen_;
+  std::vector<Index> point_;
+};
+
+}  // namespace
+
+std::vector<StretchComponent> stretch_components(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
+  return Finder(network, limited_springs(network, kinds)).all();
+}
+
+}  // namespace sprung

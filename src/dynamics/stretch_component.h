@@ -1,0 +1,34 @@
+// Free particles that limited springs join: what a global solve of a stretch limit takes at a time.
+#pragma once
+
+#include "network/spring_network.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// Particles that are joined through free ones; a pin parts them. Points are numbered from 0: the free ones first, each before the
+/// one it hangs on (the order of elimination), then the pinned ones.
+struct StretchComponent {
+  struct Link {
+    Index first;   ///< a free point
+    Index second;  ///< a point of higher number, free or pinned
+    double rest_length;
+  };
+
+  std::vector<Index> points;    ///< their particles
+  Index free_count = 0;         ///< of points
+  std::vector<double> masses;   ///< of free points [kg]
+  std::vector<Link> links;      ///< in the order of their first points
+  std::vector<Index> begin{0};  ///< the links of which free point i is first are [begin[i], begin[i + 1])
+  bool is_tree = false;         ///< each free point is first of links to one free point at most: chains and trees
+
+  [[nodiscard]] bool is_free(Index point) const { return point < free_count; }
+  [[nodiscard]] Index pin_count() const { return static_cast<Index>(points.size()) - free_count; }
+};
+
+/// The components of the springs of the given kinds, ordered by their lowest free particles. A tree is ordered from its tips to a
+/// particle that hangs on a pin, if there is one.
+[[nodiscard]] std::vector<StretchComponent> stretch_components(const SpringNetwork& network, const std::vector<SpringKind>& kinds);
+
+}  // namespace sprung

@@ -1,0 +1,73 @@
+#include "dynamics/stretch_energy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+// A link that carries its component's weight is longer than its limit by this part of the tolerance; in motion it carries a few
+// times as much.
+constexpr double kPartOfTolerance = 0.25;
+
+// Without a tolerance there is still some give: stiffer links take more iterations.
+constexpr double kLeastTolerance = 4.0e-4;
+
+}  // namespace
+
+StretchEnergy::StretchEnergy(const StretchComponent& component, const StretchLimitSettings& settings) : component_(component) {
+  const double give = kPartOfTolerance * std::max(settings.tolerance, kLeastTolerance);
+  for (const StretchComponent::Link& link : component.links) {
+    limits_.push_back({link.rest_length * (1.0 + settings.max_stretch), 1.0 / (give * link.rest_length)});
+  }
+}
+
+double StretchEnergy::value(const Points& x, const Points& y) const {
+  double inertia = 0.0;
+  for (Index i = 0; i < component_.free_count; ++i) inertia += component_.masses[i] * (x.col(i) - y.col(i)).squaredNorm();
+  double elastic = 0.0;
+  for (std::size_t s = 0; s < limits_.size(); ++s) {
+    const StretchComponent::Link& link = component_.links[s];
+    const double squared = (x.col(link.second) - x.col(link.first)).squaredNorm();
+    if (squared <= limits_[s].length * limits_[s].length) continue;
+    const double excess = std::sqrt(squared) - limits_[s].length;
+    elastic += limits_[s].stiffness * excess * excess;
+  }
+  return 0.5 * (inertia + weight_ * elastic);
+}
+
+double StretchEnergy::linearise(const Points& x, const Points& y, double active_from, StretchSystem& system) const {
+  system.blocks.resize(limits_.size());
+  system.residual.resize(Eigen::NoChange, component_.free_count);
+  double inertia = 0.0;
+  for (Index i = 0; i < component_.free_count; ++i) {
+    const Vector3 away = y.col(i) - x.col(i);
+    inertia += component_.masses[i] * away.squaredNorm();
+    system.residual.col(i) = component_.masses[i] * away;
+  }
+  double elastic = 0.0;
+  const double squared_part = active_from * active_from;
+  for (std::size_t s = 0; s < limits_.size(); ++s) {
+    const StretchComponent::Link& link = component_.links[s];
+    const Limit& limit = limits_[s];
+    const Vector3 between = x.col(link.second) - x.col(link.first);
+    const double squared = between.squaredNorm();
+    if (squared <= squared_part * limit.length * limit.length) {
+      system.blocks[s] = {};
+      continue;
+    }
+    const double length = std::sqrt(squared);
+    const Vector3 direction = between / length;
+    const double stiffness = weight_ * limit.stiffness;
+    const double excess = length - limit.length;
+    const double across = stiffness * std::max(0.0, excess / length);
+    system.blocks[s] = SymmetricMatrix3::along(across, stiffness - across, direction);
+    const Vector3 pull = stiffness * excess * direction;
+    system.residual.col(link.first) += pull;
+    if (component_.is_free(link.second)) system.residual.col(link.second) -= pull;
+    if (excess > 0.0) elastic += stiffness * excess * excess;
+  }
+  return 0.5 * (inertia + elastic);
+}
+
+}  // namespace sprung

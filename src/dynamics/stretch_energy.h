@@ -1,0 +1,38 @@
+// What a global solve of a stretch limit minimises.
+#pragma once
+
+#include "dynamics/stretch_limit.h"
+#include "dynamics/stretch_system.h"
+
+namespace sprung {
+
+/// E(x) = 1/2 sum m |x - y|^2 + 1/2 sum k max(0, |d| - L)^2 over free points and links of a component: y is where forces led, L the
+/// longest a link may be, and k = W / (e d) for what the links carry, W [kg m], the rest length d and the part of it, e, by which a
+/// link that carries all of W is longer than L. Times 1 / dt^2 these are joules.
+class StretchEnergy {
+ public:
+  /// Keeps a reference to the component.
+  StretchEnergy(const StretchComponent& component, const StretchLimitSettings& settings);
+
+  /// Requires weight > 0. [kg m]
+  void set_weight(double weight) { weight_ = weight; }
+
+  /// E at `x`; both 3 x points.
+  [[nodiscard]] double value(const Points& x, const Points& y) const;
+
+  /// E, its negative gradient as the residual, and its second derivatives, of which those are left out that would make a block
+  /// indefinite. Links that are longer than L times `active_from`, in (0, 1], count as if they pushed when they are shorter than L.
+  double linearise(const Points& x, const Points& y, double active_from, StretchSystem& system) const;
+
+ private:
+  struct Limit {
+    double length;     ///< L [m]
+    double stiffness;  ///< k for a weight of 1 [1/m]
+  };
+
+  const StretchComponent& component_;
+  std::vector<Limit> limits_;  ///< of links
+  double weight_ = 0.0;
+};
+
+}  // namespace sprung

@@ -1,0 +1,29 @@
+// A stretch limit by global solves: springs that hang together are brought within it all at once.
+#pragma once
+
+#include "dynamics/stretch_limit.h"
+
+#include <memory>
+#include <vector>
+
+namespace sprung {
+
+class ComponentNewton;
+
+/// Newton's method on each component of limited springs: chains and trees by elimination, others by a sparse factor. Only
+/// max_stretch is held, not max_compression. Same bits for any number of threads.
+class StretchNewton {
+ public:
+  StretchNewton(const SpringNetwork& network, const StretchLimitSettings& settings);
+  ~StretchNewton();
+
+  /// Leads free particles from where forces led them, `positions`, to where no limited spring is much too long, with as little
+  /// weighted movement as that takes. `before` is where the step began; pins are where they shall be in `positions`. `fall` as
+  /// ComponentNewton's. Returns the most linear systems that a component took.
+  int solve(const Points& before, Points& positions, double fall);
+
+ private:
+  std::vector<std::unique_ptr<ComponentNewton>> components_;
+};
+
+}  // namespace sprung

@@ -1,0 +1,30 @@
+// The linear equations of a Newton iteration on a stretch component, and what solves them.
+#pragma once
+
+#include "dynamics/stretch_component.h"
+#include "dynamics/symmetric_matrix3.h"
+
+#include <memory>
+#include <vector>
+
+namespace sprung {
+
+/// (M + K) dx = residual: M has the masses of free points, and K the block of each link, added at its ends and subtracted between
+/// them. Pinned points do not move.
+struct StretchSystem {
+  std::vector<SymmetricMatrix3> blocks;  ///< of links, positive semidefinite [kg]
+  Points residual;                       ///< what is out of balance at free points [kg m], 3 x free
+};
+
+class StretchSystemSolver {
+ public:
+  virtual ~StretchSystemSolver() = default;
+
+  /// Writes the free points' displacements [m] to `step`, 3 x free.
+  virtual void solve(const StretchSystem& system, Points& step) = 0;
+};
+
+/// TreeSolver for trees, else SparseSolver. Keeps a reference to the component.
+[[nodiscard]] std::unique_ptr<StretchSystemSolver> make_system_solver(const StretchComponent& component);
+
+}  // namespace sprung

@@ -1,0 +1,272 @@
+#include "dynamics/stretch_newton.h"
+
+#include "base/parallel.h"
+#include "dynamics/body_forces.h"
+#include "dynamics/component_newton.h"
+#include "dynamics/integrator.h"
+#include "dynamics/networks.h"
+#include "network/simulation_state.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <tuple>
+
+namespace sprung {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kGravity = 9.81;
+
+Scalars random_displacement(std::mt19937& random, Index size, double most) {
+  std::uniform_real_distribution<double> between(-most, most);
+  return Scalars::NullaryExpr(size, [&] { return between(random); });
+}
+
+/// M + K as a dense matrix, by the definition.
+Eigen::MatrixXd dense_matrix(const StretchComponent& component, const StretchSystem& system) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(3 * component.free_count, 3 * component.free_count);
+  for (Index i = 0; i < component.free_count; ++i) {
+    matrix.block<3, 3>(3 * i, 3 * i) += component.masses[i] * Matrix3::Identity();
+  }
+  for (std::size_t s = 0; s < component.links.size(); ++s) {
+    const auto& [a, b, rest_length] = component.links[s];
+    const SymmetricMatrix3& k = system.blocks[s];
+    Matrix3 block;
+    block << k.xx, k.xy, k.xz, k.xy, k.yy, k.yz, k.xz, k.yz, k.zz;
+    matrix.block<3, 3>(3 * a, 3 * a) += block;
+    if (!component.is_free(b)) continue;
+    matrix.block<3, 3>(3 * b, 3 * b) += block;
+    matrix.block<3, 3>(3 * a, 3 * b) -= block;
+    matrix.block<3, 3>(3 * b, 3 * a) -= block;
+  }
+  return matrix;
+}
+
+SpringNetwork tree_with_two_pins() {
+  NetworkBuilder builder;
+  std::mt19937 random(5);
+  for (Index i = 0; i < 40; ++i) {
+    const Vector3 position = random_displacement(random, 3, 1.0);
+    builder.add_particle(position, i % 3 == 0 ? 1.0 : 1000.0);
+    if (i > 0) builder.add_spring(static_cast<Index>(random() % static_cast<unsigned>(i)), i, 0.0, 0.2);
+  }
+  builder.pin(39);
+  builder.pin(38);
+  return builder.build();
+}
+
+class Solvers : public ::testing::TestWithParam<SpringNetwork> {};
+INSTANTIATE_TEST_SUITE_P(Networks, Solvers,
+                         ::testing::Values(make_test_rope(30, 0.0), tree_with_two_pins(), make_test_cloth(6, 0.0, 0.0)));
+
+// Elimination and factors are backward stable: the error is a few roundings times the condition, which M + K bounds by
+// 1 + |K| / least mass.
+TEST_P(Solvers, SolveWhatADenseSolverSolves) {
+  const SpringNetwork& network = GetParam();
+  std::mt19937 random(3);
+  for (StretchComponent& component : stretch_components(network, {SpringKind::structural})) {
+    StretchEnergy energy(component, {.max_stretch = 0.0});
+    energy.set_weight(1.0e-3 * network.masses.sum());
+    Points x(3, component.points.size());
+    for (Index i = 0; i < x.cols(); ++i) x.col(i) = network.positions.col(component.points[i]);
+    x.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
+    Points led = x;
+    led.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
+    StretchSystem system;
+    energy.linearise(x, led, 1.0, system);
+    const Eigen::MatrixXd matrix = dense_matrix(component, system);
+    const Scalars expected = matrix.ldlt().solve(Scalars(system.residual.reshaped()));
+    Points step;
+    const auto solver = make_system_solver(component);
+    solver->solve(system, step);
+    const double condition = matrix.norm() / *std::ranges::min_element(component.masses);
+    EXPECT_LT((step.reshaped() - expected).norm(), 100 * kEpsilon * condition * expected.norm());
+  }
+}
+
+// Central differences of E, whose second derivatives change by less than k / L: an error of k h^2 / L.
+TEST_P(Solvers, ResidualIsTheNegativeGradient) {
+  const SpringNetwork& network = GetParam();
+  std::mt19937 random(4);
+  const StretchComponent component = stretch_components(network, {SpringKind::structural}).front();
+  StretchEnergy energy(component, {.max_stretch = 0.0});
+  energy.set_weight(1.0e-3);
+  Points x(3, component.points.size());
+  for (Index i = 0; i < x.cols(); ++i) x.col(i) = 1.05 * network.positions.col(component.points[i]);
+  Points led = x;
+  led.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
+  StretchSystem system;
+  const double value = energy.linearise(x, led, 1.0, system);
+  EXPECT_NEAR(value, energy.value(x, led), 100 * kEpsilon * value);
+  const double h = 1.0e-6;
+  for (Index c = 0; c < 3 * component.free_count; ++c) {
+    Points ahead = x;
+    Points behind = x;
+    ahead.reshaped()[c] += h;
+    behind.reshaped()[c] -= h;
+    const double slope = (energy.value(ahead, led) - energy.value(behind, led)) / (2.0 * h);
+    EXPECT_NEAR(system.residual.reshaped()[c], -slope, 1.0e-6 * system.residual.norm()) << c;
+  }
+}
+
+/// One step of a network from rest, or from `velocities`: where forces led it.
+Points led_by_gravity(const SpringNetwork& network, const Points& before, const Points& velocities, double dt) {
+  Points led = before;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (!network.is_pinned(i)) led.col(i) += dt * velocities.col(i) - kGravity * dt * dt * Vector3::UnitY();
+  }
+  return led;
+}
+
+TEST(StretchNewton, LeavesWhatIsNotTooLongWhereForcesLedIt) {
+  const SpringNetwork network = make_test_rope(20, 0.0);
+  Points x = 0.5 * network.positions;
+  const Points led = x;
+  EXPECT_EQ(StretchNewton(network, {}).solve(network.positions, x, 1.0e-3), 0);
+  EXPECT_EQ(x, led);
+}
+
+// Internal forces cancel: sum m x is that of where forces led, whatever each iteration does, up to the rounding of each
+// particle's position in each of at most 20 iterations.
+TEST(StretchNewton, KeepsTheMomentumOfWhatFlies) {
+  for (SpringNetwork network : {make_test_cloth(8, 0.0, 0.0, false), make_random_network(60, 59), make_random_network(60, 200)}) {
+    std::mt19937 random(8);
+    Points led = network.positions;
+    led.reshaped() += random_displacement(random, static_cast<Index>(led.size()), 0.2);
+    Points x = led;
+    StretchNewton(network, {.max_stretch = 0.0}).solve(network.positions, x, 1.0e-3);
+    EXPECT_GT((x - led).norm(), 1.0e-3);
+    // The equations' rounding is that of their stiffest link, k / m = 1 / (give d) > 1e4 times coarser than the positions'.
+    EXPECT_LT(((x - led) * network.masses).norm(), 1.0e-9 * network.masses.sum());
+  }
+}
+
+TEST(StretchNewton, HoldsTheLimitOfAHangingRope) {
+  for (const Index particles : {2, 10, 100, 1000}) {
+    SpringNetwork network = make_test_rope(particles, 0.0);
+    network.positions.row(1) = -network.positions.row(0);
+    network.positions.row(0).setZero();
+    const StretchLimitSettings settings{.max_stretch = 0.001, .solver = StretchLimitSettings::Solver::newton};
+    const StretchLimit limit(network, settings);
+    const double dt = 1.0 / 60.0;
+    Points x = led_by_gravity(network, network.positions, Points::Zero(3, particles), dt);
+    EXPECT_GT(limit.excess(x), 0.0);
+    limit.solve(network.positions, x, kGravity * dt * dt);
+    EXPECT_LE(limit.excess(x), settings.tolerance) << particles;
+  }
+}
+
+// A rope of two pins farther apart than it is long: what cannot be is shared evenly, and told.
+TEST(StretchNewton, StretchesAnOverconstrainedRopeEvenly) {
+  SpringNetwork network = make_test_rope(101, 0.0);
+  network.inverse_masses[100] = 0.0;
+  const StretchLimitSettings settings{.max_stretch = 0.0, .solver = StretchLimitSettings::Solver::newton};
+  const StretchLimit limit(network, settings);
+  Points x = network.positions;
+  x(0, 100) = 1.5;
+  limit.solve(network.positions, x, 1.0e-3);
+  // Particles resist being moved as if by gravity, of which links are to carry all by a quarter of the tolerance.
+  EXPECT_NEAR(limit.excess(x), 0.5, 0.01);
+  EXPECT_TRUE(x.allFinite());
+}
+
+TEST(StretchNewton, TakesSpringsWithoutLength) {
+  SpringNetwork network = make_test_rope(3, 0.0);
+  Points x = network.positions;
+  x.col(2) = x.col(1);
+  x(1, 1) = x(1, 2) = -1.0;
+  StretchNewton(network, {}).solve(network.positions, x, 1.0e-3);
+  EXPECT_TRUE(x.allFinite());
+}
+
+TEST(StretchNewton, FollowsPinsThatMove) {
+  const SpringNetwork network = make_test_rope(50, 0.0);
+  const StretchLimitSettings settings{.solver = StretchLimitSettings::Solver::newton};
+  const StretchLimit limit(network, settings);
+  Points x = network.positions;
+  const Vector3 pin(-0.3, 0.2, 0.0);
+  x.col(0) = pin;
+  limit.solve(network.positions, x, 1.0e-3);
+  EXPECT_EQ(x.col(0), pin);
+  EXPECT_LE(limit.excess(x), settings.tolerance);
+}
+
+/// Three networks side by side, which swing for some steps.
+Points swing(double scale, int threads) {
+  const ThreadLimit at_most(threads);
+  SpringNetwork network = make_random_network(300, 450, true);
+  network.positions *= scale;
+  network.velocities *= scale;
+  for (double& rest_length : network.springs.rest_length) rest_length *= scale;
+  StretchNewton newton(network, {});
+  const double dt = 0.01;
+  Points before = network.positions;
+  Points velocities = network.velocities;
+  for (int step = 0; step < 3; ++step) {
+    Points x = before;
+    for (Index i = 0; i < network.particle_count(); ++i) {
+      if (!network.is_pinned(i)) x.col(i) += dt * velocities.col(i) - scale * kGravity * dt * dt * Vector3::UnitY();
+    }
+    newton.solve(before, x, scale * kGravity * dt * dt);
+    velocities = (x - before) / dt;
+    before = x;
+  }
+  return before;
+}
+
+TEST(StretchNewton, HasTheSameBitsForAnyNumberOfThreadsAndAnyScale) {
+  const Points expected = swing(1.0, 1);
+  EXPECT_EQ(swing(1.0, 2), expected);
+  EXPECT_EQ(Points(swing(128.0, 1) / 128.0), expected);
+  EXPECT_EQ(Points(swing(1.0 / 128.0, 1) * 128.0), expected);
+}
+
+// A stiff rod: period 2 pi sqrt(l / g) times 1 + a^2 / 16 for an amplitude a. The limit's pull is along the rod as it is at the end
+// of a step, by the angle w dt off its mean, so it takes the part 2 dt f / (m l) of the kinetic energy per second: w0^2 dt of the
+// energy, but for parts of the order of a^2.
+TEST(StretchNewton, PendulumKeepsItsPeriodAndItsEnergy) {
+  constexpr double kLength = 0.5;
+  constexpr double kAmplitude = 0.3;
+  constexpr double kStep = 1.0e-3;
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 1.0);
+  builder.add_particle(kLength * Vector3(std::sin(kAmplitude), -std::cos(kAmplitude), 0.0), 1.0);
+  builder.add_spring(0, 1, 0.0, kLength);
+  builder.pin(0);
+  const SpringNetwork network = builder.build();
+  StretchNewton newton(network, {.max_stretch = 0.0});
+  Forces forces;
+  forces.push_back(std::make_unique<Gravity>(network, Vector3(0.0, -kGravity, 0.0)));
+  const auto integrator = make_integrator(VerletSettings{}, network);
+  SimulationState state = initial_state(network);
+  integrator->start(state, forces, kStep);
+  std::vector<double> crossings;
+  while (crossings.size() < 9 && state.step < 10000) {
+    const Points before = state.x;
+    integrator->advance(state, forces, kStep);
+    const Points advanced = state.x;
+    newton.solve(before, state.x, kGravity * kStep * kStep);
+    integrator->recover_velocities(state, before, advanced, kStep);
+    if ((before(0, 1) > 0.0) != (state.x(0, 1) > 0.0)) {
+      crossings.push_back((static_cast<double>(state.step) + before(0, 1) / (before(0, 1) - state.x(0, 1))) * kStep);
+    }
+    ++state.step;
+  }
+  ASSERT_EQ(crossings.size(), 9u);
+  const double period = (crossings.back() - crossings.front()) / 4.0;
+  const double expected = 2.0 * std::numbers::pi * std::sqrt(kLength / kGravity) * (1.0 + kAmplitude * kAmplitude / 16.0);
+  // The amplitude falls by 6 % while four periods are timed, and the part of the period that depends on it by twice that.
+  EXPECT_NEAR(period, expected, 0.2 * kAmplitude * kAmplitude / 16.0 * expected);
+  const double energy = 0.5 * state.v.col(1).squaredNorm() + kGravity * (state.x(1, 1) + kLength);
+  const double at_start = kGravity * kLength * (1.0 - std::cos(kAmplitude));
+  const double lost = kGravity / kLength * kStep * crossings.back();
+  EXPECT_NEAR(std::log(at_start / energy), lost, (kAmplitude * kAmplitude + 0.03) * lost);
+}
+
+}  // namespace
+}  // namespace sprung
