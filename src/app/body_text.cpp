@@ -52,6 +52,25 @@ std::array<KindOfSprings, 3> kinds_of(const Springs& springs, const Body& body) 
   return kinds;
 }
 
+/// What angle bends of a body have.
+struct AnglesOfBody {
+  Extremes stiffness;
+  Extremes damping;
+  Extremes bond;
+};
+
+std::string angle_row(const AngleBends& bends, const Body& body) {
+  AnglesOfBody angles;
+  for (Index a = body.first_angle_bend; a < body.first_angle_bend + body.angle_bend_count; ++a) {
+    angles.stiffness.add(bends.stiffness[a]);
+    angles.damping.add(bends.damping[a]);
+    angles.bond.add(bends.length_before[a]);
+    angles.bond.add(bends.length_after[a]);
+  }
+  return text_row("bend", fmt::format("{} angles, k {}, damping {}, bonds {}", body.angle_bend_count, angles.stiffness.text("N m"),
+                                      angles.damping.text("N m s"), angles.bond.text("m")));
+}
+
 std::string head_row(const SpringNetwork& network, const Body& body, const std::array<KindOfSprings, 3>& kinds) {
   Index pinned = 0;
   for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) pinned += network.is_pinned(i) ? 1 : 0;
@@ -87,6 +106,7 @@ std::string body_rows(const SpringNetwork& network, const Body& body) {
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     if (kinds[kind].count > 0) text += spring_row(kKinds[kind], kinds[kind]);
   }
+  if (body.angle_bend_count > 0) text += angle_row(network.angle_bends, body);
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include "app/load_scene.h"
 #include "app/progress.h"
 #include "base/error.h"
+#include "base/format.h"
 #include "base/parallel.h"
 #include "output/run_output.h"
 
@@ -60,30 +61,41 @@ void warn_of_squeezing(const FrameDiagnostics& frame, RunOutput& output, bool& w
   print_warning(warning);
 }
 
-/// Writes frames until all are done or the user interrupts; returns how many.
-int write_frames(LoadedScene& loaded, RunOutput& output, bool quiet) {
+/// Writes frames until all are done or the user interrupts; `written` counts them.
+void write_frames(LoadedScene& loaded, RunOutput& output, bool quiet, int& written) {
   FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
   Progress progress(loaded.frames, quiet);
   bool warned = false;
   for (int frame = 1;; ++frame) {
     const FrameDiagnostics diagnostics = frame == 1 ? runner.first_frame() : runner.next_frame();
     output.write_frame(loaded.simulator, diagnostics);
+    written = frame;
     warn_of_squeezing(diagnostics, output, warned);
     progress.frame_done(frame);
-    if (frame == loaded.frames || interrupted()) return frame;
+    if (frame == loaded.frames || interrupted()) return;
   }
 }
 
-int write_run(LoadedScene& loaded, RunOutput& output, bool quiet) try {
-  const int frames = write_frames(loaded, output, quiet);
-  output.finish(frames == loaded.frames ? "done" : "interrupted");
+/// A simulation cannot diverge before its first frame, which is the state at time 0.
+void tell_last_good_frame(const LoadedScene& loaded, int frames, const std::string& folder) {
+  print_message(fmt::format("the last good frame is {}, at {} s; it and those before are kept in {}", frames,
+                            format_number((frames - 1) / loaded.scene.frame_rate, 6), folder));
+}
+
+int write_run(LoadedScene& loaded, RunOutput& output, const RunOptions& options) {
+  int frames = 0;
+  try {
+    write_frames(loaded, output, options.quiet, frames);
+    output.finish(frames == loaded.frames ? "done" : "interrupted");
+  } catch (const StepError& error) {
+    finish_quietly(output, std::string("diverged: ") + error.what());
+    tell_last_good_frame(loaded, frames, options.out);
+    throw;
+  } catch (const std::exception& error) {
+    finish_quietly(output, std::string("failed: ") + error.what());
+    throw;
+  }
   return frames;
-} catch (const StepError& error) {
-  finish_quietly(output, std::string("diverged: ") + error.what());
-  throw;
-} catch (const std::exception& error) {
-  finish_quietly(output, std::string("failed: ") + error.what());
-  throw;
 }
 
 }  // namespace
@@ -98,7 +110,7 @@ ExitCode run(const RunOptions& options) {
   RunOutput output(OutputFolder(options.out, options.overwrite), facts_of(loaded, threads), loaded.simulator);
   if (!options.quiet) announce(loaded);
   const auto start = std::chrono::steady_clock::now();
-  const int written = write_run(loaded, output, options.quiet);
+  const int written = write_run(loaded, output, options);
   const std::string time = describe_duration(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
   if (written < loaded.frames) {

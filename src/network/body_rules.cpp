@@ -15,6 +15,12 @@ void require_affordable(const std::string& key, const std::string& value, double
       "lower the resolution");
 }
 
+void refuse_angle_bends(const SpringMaterials& materials, const std::string& body, ProblemList& problems) {
+  if (!materials.bend || materials.bend_model != SpringMaterials::BendModel::angle) return;
+  problems.add("springs.bend.model", "\"angle\"", "is for ropes and cloths: " + body + " bends by springs",
+               "use \"spring\", or make a cloth of it");
+}
+
 void require_materials(const SpringMaterials& materials, ProblemList& problems) {
   const std::pair<const char*, const std::optional<SpringMaterial>&> kinds[] = {
       {"structural", materials.structural}, {"shear", materials.shear}, {"bend", materials.bend}};

@@ -17,6 +17,7 @@ struct BodyShape {
   std::vector<double> masses;       ///< [kg]
   std::vector<double> drag_areas;   ///< see SpringNetwork
   Springs springs;                  ///< in any order
+  AngleBends angle_bends;
   Surface surface;
   int dimension = 0;             ///< of what `measure` measures: 1 length, 2 area, 3 volume; 0: nothing
   double measure = 0.0;          ///< length [m], area [m^2] or volume [m^3]
@@ -40,15 +41,23 @@ struct SpringMaterial {
   /// Instead of `damping`, >= 0: k_d = 2 zeta k_s / omega, omega being the body's breathing about its pins: see
   /// `breathing_frequency`. Breathing then dies out with this ratio (1: without swinging, when every kind has it), whatever the
   /// resolution; a pair of particles has k_d = 2 zeta sqrt(k_s m) with its reduced mass m. Faster motion of frequency omega' is
-  /// damped by zeta omega' / omega.
+  /// damped by zeta omega' / omega. Of angle bends: the same with `bending_frequency`.
   std::optional<double> damping_ratio{};
 };
 
 /// Which springs to make: a kind without a material is left out.
 struct SpringMaterials {
+  /// How ropes and cloths resist bending: by springs that skip a particle, whose resistance to a slight bend is nothing (their
+  /// energy grows with the fourth power of the angle), or by angle bends, which converge to a beam's and a plate's linear
+  /// resistance. With angle bends `stiffness` is k [N m] of each, `damping` [N m s], and `modulus` EI [N m^2] of a rope, D [N m] of
+  /// a cloth: k = EI / l, D w / l with bonds of length l, w apart from their parallel neighbours (half of it on a border). A body
+  /// is clamped by pinning two particles in a row, half-way between them.
+  enum class BendModel : std::uint8_t { spring, angle };
+
   std::optional<SpringMaterial> structural{};
   std::optional<SpringMaterial> shear{};
   std::optional<SpringMaterial> bend{};
+  BendModel bend_model = BendModel::spring;
 };
 
 /// Most particles of a body: 2^27, so that the numbers of its springs (up to 16 a particle) fit an Index.

@@ -25,6 +25,9 @@ BodyShape make_cloth(const ClothShape& cloth, const SpringMaterials& materials) 
   const Lattice lattice{{cloth.size[0], cloth.size[1], 1.0}, {cloth.resolution[0], cloth.resolution[1], 1}};
   BodyShape shape = shape_of_particles(lattice.positions(), materials);
   add_lattice_springs(lattice, materials, shape.springs);
+  if (materials.bend && materials.bend_model == SpringMaterials::BendModel::angle) {
+    add_lattice_angle_bends(lattice, *materials.bend, shape.angle_bends);
+  }
 
   std::vector<std::array<Index, 3>> triangles;
   add_layer_triangles(lattice, 2, 0, true, triangles);

@@ -23,30 +23,57 @@ Vector3 fixed_point(const SpringNetwork& network, const Body& body) {
   return pins > 0 ? Vector3(pinned / pins) : Vector3(weighted / mass);
 }
 
+/// sum m weight(r^2) of the body's particles at distances r from its fixed point.
+template <class Weight>
+double inertia(const SpringNetwork& network, const Body& body, const Weight& weight) {
+  const Vector3 centre = fixed_point(network, body);
+  double sum = 0.0;
+  for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+    sum += network.masses[i] * weight((network.positions.col(i) - centre).squaredNorm());
+  }
+  return sum;
+}
+
+double frequency(double stiffness, double inertia) { return inertia > 0.0 ? std::sqrt(stiffness / inertia) : 0.0; }
+
+/// k_d / k [s] of a damping ratio; 0 where nothing swings.
+double damping_time(double ratio, double omega) { return omega > 0.0 ? 2.0 * ratio / omega : 0.0; }
+
 }  // namespace
 
 double breathing_frequency(const SpringNetwork& network, const Body& body) {
-  const Vector3 centre = fixed_point(network, body);
-  double inertia = 0.0;
-  for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
-    inertia += network.masses[i] * (network.positions.col(i) - centre).squaredNorm();
-  }
   const Springs& springs = network.springs;
   double stiffness = 0.0;
   for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
     stiffness += springs.stiffness[s] * springs.rest_length[s] * springs.rest_length[s];
   }
-  return inertia > 0.0 ? std::sqrt(stiffness / inertia) : 0.0;
+  return frequency(stiffness, inertia(network, body, [](double squared) { return squared; }));
+}
+
+double bending_frequency(const SpringNetwork& network, const Body& body) {
+  const AngleBends& bends = network.angle_bends;
+  double stiffness = 0.0;
+  for (Index a = body.first_angle_bend; a < body.first_angle_bend + body.angle_bend_count; ++a) {
+    const double length = (bends.length_before[a] + bends.length_after[a]) / 2.0;
+    stiffness += bends.stiffness[a] * length * length;
+  }
+  return frequency(stiffness, inertia(network, body, [](double squared) { return squared * squared / 4.0; }));
 }
 
 void damp_by_ratio(const std::array<std::optional<double>, 3>& ratios, const Body& body, SpringNetwork& network) {
   if (std::none_of(ratios.begin(), ratios.end(), [](const auto& ratio) { return ratio.has_value(); })) return;
-  const double omega = breathing_frequency(network, body);
-  if (omega == 0.0) return;
+  const double breathing = breathing_frequency(network, body);
   Springs& springs = network.springs;
   for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
     const std::optional<double>& ratio = ratios[static_cast<std::size_t>(springs.kind[s])];
-    if (ratio) springs.damping[s] = 2.0 * *ratio * springs.stiffness[s] / omega;
+    if (ratio) springs.damping[s] = damping_time(*ratio, breathing) * springs.stiffness[s];
+  }
+  const std::optional<double>& ratio = ratios[static_cast<std::size_t>(SpringKind::bend)];
+  if (!ratio) return;
+  const double bending = bending_frequency(network, body);
+  AngleBends& bends = network.angle_bends;
+  for (Index a = body.first_angle_bend; a < body.first_angle_bend + body.angle_bend_count; ++a) {
+    bends.damping[a] = damping_time(*ratio, bending) * bends.stiffness[a];
   }
 }
 

@@ -15,7 +15,12 @@ namespace sprung {
 /// without stiffness or extent.
 [[nodiscard]] double breathing_frequency(const SpringNetwork& network, const Body& body);
 
-/// Gives springs of the kinds that have a damping ratio zeta, in the order of SpringKind, their k_d = 2 zeta k_s / omega.
+/// The frequency omega [rad/s] of bending to the same curvature all along, with particles moving across by half of it times r^2:
+/// omega^2 = sum k l^2 / sum m (r^2 / 2)^2 over the body's angle bends of mean bond length l. 0 for a body without them.
+[[nodiscard]] double bending_frequency(const SpringNetwork& network, const Body& body);
+
+/// Gives springs of the kinds that have a damping ratio zeta, in the order of SpringKind, their k_d = 2 zeta k_s / omega, and angle
+/// bends theirs by the ratio of `bend`.
 void damp_by_ratio(const std::array<std::optional<double>, 3>& ratios, const Body& body, SpringNetwork& network);
 
 }  // namespace sprung

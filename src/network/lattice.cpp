@@ -98,8 +98,28 @@ void add_lattice_springs(const Lattice& lattice, const SpringMaterials& material
   for (const Direction& direction : kDiagonals) {
     if (materials.shear) add_family(lattice, direction, 1, *materials.shear, SpringKind::shear, springs);
   }
+  if (materials.bend_model == SpringMaterials::BendModel::angle) return;
   for (const Direction& direction : kAxes) {
     if (materials.bend) add_family(lattice, direction, 2, *materials.bend, SpringKind::bend, springs);
+  }
+}
+
+void add_lattice_angle_bends(const Lattice& lattice, const SpringMaterial& material, AngleBends& bends) {
+  const Vector3 spacing = lattice.spacing();
+  for (int axis = 0; axis < 2; ++axis) {
+    const int across = 1 - axis;
+    const std::array<double, 2> lengths{spacing[axis], spacing[axis]};
+    const Index stride = axis == 0 ? 1 : lattice.resolution[0];
+    for (Index j = 0; j < lattice.resolution[1] - (axis == 1 ? 2 : 0); ++j) {
+      for (Index i = 0; i < lattice.resolution[0] - (axis == 0 ? 2 : 0); ++i) {
+        const Index row = across == 0 ? i : j;
+        const bool on_border = row == 0 || row + 1 == lattice.resolution[across];
+        const double width = on_border ? spacing[across] / 2.0 : spacing[across];
+        const Index first = lattice.number({i, j, 0});
+        bends.append({first, first + stride, first + 2 * stride}, lengths, stiffness_of(material, width, spacing[axis]),
+                     material.damping);
+      }
+    }
   }
 }
 

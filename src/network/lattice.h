@@ -27,6 +27,9 @@ struct Lattice {
 /// Structural springs along the axes, shear along face and space diagonals, bend along the axes and skipping one.
 void add_lattice_springs(const Lattice& lattice, const SpringMaterials& materials, Springs& springs);
 
+/// Angle bends along the x and the y axis of a cloth.
+void add_lattice_angle_bends(const Lattice& lattice, const SpringMaterial& material, AngleBends& bends);
+
 /// Appends two triangles for each cell of the layer of nodes whose index along `axis` is `layer`; they face along the axis when
 /// `along` is true, else against it. The diagonals alternate from cell to cell.
 void add_layer_triangles(const Lattice& lattice, int axis, Index layer, bool along, std::vector<std::array<Index, 3>>& triangles);

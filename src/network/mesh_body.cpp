@@ -77,6 +77,7 @@ void check(const PolygonMesh& mesh, const SpringMaterials& materials) {
   }
   const auto ends = [&](std::size_t line) { return ends_of_line(mesh, line); };
   check_corners("lines", static_cast<std::size_t>(mesh.lines.cols()), ends, 2, vertex_count, problems);
+  refuse_angle_bends(materials, "a mesh", problems);
   require_materials(materials, problems);
   problems.throw_if_any();
 }

@@ -29,6 +29,13 @@ void append_sorted(Springs& springs, const Springs& body, Index offset) {
   for (const auto& entry : order) append_spring(springs, body, entry.second, offset);
 }
 
+void append_angle_bends(AngleBends& bends, const AngleBends& body, Index offset) {
+  for (std::size_t a = 0; a < body.middle.size(); ++a) {
+    bends.append({body.before[a] + offset, body.middle[a] + offset, body.after[a] + offset},
+                 {body.length_before[a], body.length_after[a]}, body.stiffness[a], body.damping[a]);
+  }
+}
+
 void copy_particles(const BodyShape& shape, Index begin, SpringNetwork& network) {
   for (std::size_t i = 0; i < shape.positions.size(); ++i) {
     const Eigen::Index particle = begin + static_cast<Eigen::Index>(i);
@@ -70,6 +77,10 @@ void NetworkBuilder::add_spring(Index i, Index j, double stiffness, double rest_
   springs_.append(i, j, rest_length, stiffness, damping, kind);
 }
 
+void NetworkBuilder::add_angle_bend(Index before, Index middle, Index after, double stiffness, double damping) {
+  angle_bends_.append({before, middle, after}, {0.0, 0.0}, stiffness, damping);
+}
+
 void NetworkBuilder::begin_body(const std::string& name, const ContactMaterial& material, const BodyContact& contact) {
   drafts_.push_back({name, {}, material, contact, particle_count_, false});
 }
@@ -96,9 +107,6 @@ NetworkBuilder::Draft& NetworkBuilder::open_draft() {
 
 std::vector<NetworkBuilder::Draft> NetworkBuilder::complete_drafts(ProblemList& problems) const {
   std::vector<Draft> drafts = drafts_;
-  const auto holds = [](const Draft& draft, Index particle) {
-    return particle >= draft.first_particle && particle - draft.first_particle < static_cast<Index>(draft.shape.positions.size());
-  };
   for (std::size_t s = 0; s < springs_.first.size(); ++s) {
     const Index first = springs_.first[s];
     const Index second = springs_.second[s];
@@ -111,7 +119,31 @@ std::vector<NetworkBuilder::Draft> NetworkBuilder::complete_drafts(ProblemList& 
                    "must join two particles of one body", "use numbers that add_particle returned for the same body");
     }
   }
+  complete_angle_bends(drafts, problems);
   return drafts;
+}
+
+void NetworkBuilder::complete_angle_bends(std::vector<Draft>& drafts, ProblemList& problems) const {
+  for (std::size_t a = 0; a < angle_bends_.middle.size(); ++a) {
+    const std::array<Index, 3> ends{angle_bends_.before[a], angle_bends_.middle[a], angle_bends_.after[a]};
+    const auto owner = std::find_if(drafts.begin(), drafts.end(), [&](const Draft& draft) {
+      return std::all_of(ends.begin(), ends.end(), [&](Index particle) { return holds(draft, particle); });
+    });
+    if (owner == drafts.end()) {
+      problems.add(entry_key("angle_bends", a), counts_text(ends), "must join three particles of one body",
+                   "use numbers that add_particle returned for the same body");
+      continue;
+    }
+    const Index offset = owner->first_particle;
+    const auto at = [&](Index particle) -> const Vector3& { return owner->shape.positions[particle - offset]; };
+    owner->shape.angle_bends.append({ends[0] - offset, ends[1] - offset, ends[2] - offset},
+                                    {(at(ends[1]) - at(ends[0])).norm(), (at(ends[2]) - at(ends[1])).norm()},
+                                    angle_bends_.stiffness[a], angle_bends_.damping[a]);
+  }
+}
+
+bool NetworkBuilder::holds(const Draft& draft, Index particle) {
+  return particle >= draft.first_particle && particle - draft.first_particle < static_cast<Index>(draft.shape.positions.size());
 }
 
 SpringNetwork NetworkBuilder::build() const {
@@ -131,9 +163,11 @@ SpringNetwork NetworkBuilder::build() const {
     copy_particles(draft.shape, draft.first_particle, network);
     const Index first_spring = network.springs.count();
     append_sorted(network.springs, draft.shape.springs, draft.first_particle);
+    const Index first_bend = network.angle_bends.count();
+    append_angle_bends(network.angle_bends, draft.shape.angle_bends, draft.first_particle);
     network.bodies.push_back({draft.name, draft.first_particle, static_cast<Index>(draft.shape.positions.size()), first_spring,
-                              network.springs.count() - first_spring, draft.shape.dimension, draft.shape.measure,
-                              draft.shape.surface, draft.material, draft.contact});
+                              network.springs.count() - first_spring, first_bend, network.angle_bends.count() - first_bend,
+                              draft.shape.dimension, draft.shape.measure, draft.shape.surface, draft.material, draft.contact});
   }
   network.inverse_masses = network.masses.cwiseInverse();
   network.pins = pins_;

@@ -21,6 +21,10 @@ class NetworkBuilder {
   void add_spring(Index i, Index j, double stiffness, double rest_length, double damping = 0.0,
                   SpringKind kind = SpringKind::structural);
 
+  /// Keeps three particles of one body in line, whose distances now are those at rest, by k [N m] a radian and a damping of the
+  /// angle's rate [N m s], both >= 0.
+  void add_angle_bend(Index before, Index middle, Index after, double stiffness, double damping = 0.0);
+
   /// Particles and springs that follow belong to a new body of this name.
   void begin_body(const std::string& name, const ContactMaterial& material = {}, const BodyContact& contact = {});
 
@@ -33,8 +37,8 @@ class NetworkBuilder {
   void pin(std::vector<Index> particles, const Motion& motion = {}, const Vector3& origin = Vector3::Zero());
 
   /// The network. Throws InputError, naming every problem, for a network or body without particles, bodies of one name, masses that
-  /// are not positive, springs that join a particle to itself, to another body or to none, negative or non-finite quantities,
-  /// contact materials out of range, pins of particles that are not there, and a particle pinned twice.
+  /// are not positive, springs and angle bends that join a particle to itself, to another body or to none, negative or non-finite
+  /// quantities, contact materials out of range, pins of particles that are not there, and a particle pinned twice.
   [[nodiscard]] SpringNetwork build() const;
 
  private:
@@ -47,11 +51,14 @@ class NetworkBuilder {
     bool whole = false;  ///< added as a whole body: takes no more particles
   };
   Draft& open_draft();
-  /// The drafts with the springs that were added one by one; those that no body can hold are problems.
+  static bool holds(const Draft& draft, Index particle);
+  void complete_angle_bends(std::vector<Draft>& drafts, ProblemList& problems) const;
+  /// The drafts with the springs and angle bends that were added one by one; those that no body can hold are problems.
   [[nodiscard]] std::vector<Draft> complete_drafts(ProblemList& problems) const;
 
   std::vector<Draft> drafts_;
-  Springs springs_;  ///< those added one by one, in the network's numbering
+  Springs springs_;         ///< those added one by one, in the network's numbering
+  AngleBends angle_bends_;  ///< the same, without lengths
   std::vector<Pin> pins_;
   Index particle_count_ = 0;
 };

@@ -3,6 +3,7 @@
 #include "base/format.h"
 #include "geometry/motion_check.h"
 
+#include <array>
 #include <cmath>
 
 namespace sprung {
@@ -53,6 +54,31 @@ void check_springs(const std::string& key, const BodyShape& shape, ProblemList& 
   require_quantities(springs.damping, {key + ".springs.damping", rule, "give k_d in N s/m"}, problems);
 }
 
+void check_angle_bends(const std::string& key, const BodyShape& shape, ProblemList& problems) {
+  const AngleBends& bends = shape.angle_bends;
+  const auto ends = [&](std::size_t a) { return std::array<Index, 3>{bends.before[a], bends.middle[a], bends.after[a]}; };
+  const auto text = [&](std::size_t a) { return "joins " + counts_text(ends(a)); };
+  const auto exists = [&](Index particle) { return particle >= 0 && static_cast<std::size_t>(particle) < shape.positions.size(); };
+  problems.require_each(
+      bends.middle.size(),
+      [&](std::size_t a) {
+        const auto [before, middle, after] = ends(a);
+        return exists(before) && exists(middle) && exists(after) && before != middle && middle != after && after != before;
+      },
+      text,
+      EntryRule{key + ".angle_bends", "must join three particles of the body, which has " + std::to_string(shape.positions.size()),
+                "use the numbers of the body's particles, counted from 0"});
+  const auto has_length = [](double length) { return length > 0.0 && std::isfinite(length); };
+  problems.require_each(
+      bends.middle.size(), [&](std::size_t a) { return has_length(bends.length_before[a]) && has_length(bends.length_after[a]); },
+      text,
+      EntryRule{key + ".angle_bends.length", "must be a finite number greater than 0, as an angle has none without",
+                "move the particles apart"});
+  const std::string rule = "must be a finite number not less than 0";
+  require_quantities(bends.stiffness, {key + ".angle_bends.stiffness", rule, "give k in N m"}, problems);
+  require_quantities(bends.damping, {key + ".angle_bends.damping", rule, "give a damping in N m s"}, problems);
+}
+
 template <class Elements>
 bool names_particles(const Elements& elements, std::size_t particles) {
   return elements.size() == 0 || (elements.minCoeff() >= 0 && static_cast<std::size_t>(elements.maxCoeff()) < particles);
@@ -65,13 +91,19 @@ void check_surface(const std::string& key, const BodyShape& shape, ProblemList& 
                "use the numbers of the body's particles, counted from 0");
 }
 
+bool same_sizes(const AngleBends& bends) {
+  const std::size_t count = bends.middle.size();
+  return bends.before.size() == count && bends.after.size() == count && bends.length_before.size() == count &&
+         bends.length_after.size() == count && bends.stiffness.size() == count && bends.damping.size() == count;
+}
+
 bool same_sizes(const BodyShape& shape) {
   const Springs& springs = shape.springs;
   const std::size_t particles = shape.positions.size();
   const auto count = static_cast<std::size_t>(springs.count());
   return shape.velocities.size() == particles && shape.masses.size() == particles && shape.drag_areas.size() == particles &&
          springs.second.size() == count && springs.rest_length.size() == count && springs.stiffness.size() == count &&
-         springs.damping.size() == count && springs.kind.size() == count;
+         springs.damping.size() == count && springs.kind.size() == count && same_sizes(shape.angle_bends);
 }
 
 }  // namespace
@@ -80,12 +112,15 @@ void check_body(const std::string& key, const BodyShape& shape, const ContactMat
   if (shape.positions.empty())
     problems.add(key, "0 particles", "must have at least one particle", "add a particle or leave the body out");
   if (!same_sizes(shape)) {
-    problems.add(key, "", "must have one velocity, mass and drag area per particle, and one entry per spring in each of its arrays",
-                 "make the shape with make_rope, make_cloth, make_solid or make_mesh_body");
+    problems.add(
+        key, "",
+        "must have one velocity, mass and drag area per particle, and one entry per spring and angle bend in each of their arrays",
+        "make the shape with make_rope, make_cloth, make_solid or make_mesh_body");
     return;
   }
   check_particles(key, shape, problems);
   check_springs(key, shape, problems);
+  check_angle_bends(key, shape, problems);
   check_surface(key, shape, problems);
   check_material(key, material, problems);
 }

@@ -35,14 +35,19 @@ void check_points(const RopeShape& rope, ProblemList& problems) {
   }
 }
 
-// Without `particles` each point is one, and two at the same place would need an infinite stiffness.
-void check_modulus(const RopeShape& rope, const SpringMaterials& materials, ProblemList& problems) {
-  if (rope.particles || !(uses_modulus(materials.structural) || uses_modulus(materials.bend))) return;
+bool bends_by_angle(const SpringMaterials& materials) {
+  return materials.bend && materials.bend_model == SpringMaterials::BendModel::angle;
+}
+
+// Without `particles` each point is one, and two at the same place would need an infinite stiffness, or have no direction.
+void check_lengths(const RopeShape& rope, const SpringMaterials& materials, ProblemList& problems) {
+  if (rope.particles) return;
+  if (!uses_modulus(materials.structural) && !uses_modulus(materials.bend) && !bends_by_angle(materials)) return;
   for (std::size_t k = 1; k < rope.points.size(); ++k) {
     if (rope.points[k] != rope.points[k - 1]) continue;
     problems.add(entry_key("points", k), vector_text(rope.points[k]),
-                 "must not equal the point before it, as a spring without length has no stiffness for a modulus",
-                 "leave the point out, or give `stiffness`");
+                 "must not equal the point before it, as without a length there is no stiffness for a modulus, and no angle",
+                 "leave the point out, or give `stiffness` and the model \"spring\"");
   }
 }
 
@@ -54,7 +59,7 @@ void check(const RopeShape& rope, const SpringMaterials& materials) {
   require_affordable(rope.particles ? "particles" : "points", format_number(particles), particles, problems);
   if (rope.length)
     problems.require_positive("length", *rope.length, "give the rest length of the whole rope in m, or leave it out");
-  check_modulus(rope, materials, problems);
+  check_lengths(rope, materials, problems);
   require_materials(materials, problems);
   problems.throw_if_any();
 }
@@ -81,7 +86,17 @@ void add_springs(Springs& springs, const std::vector<double>& rest_lengths, cons
   };
   const Index count = static_cast<Index>(rest_lengths.size());
   for (Index i = 0; i < count; ++i) add(i, i + 1, rest_lengths[i], materials.structural, SpringKind::structural);
+  if (bends_by_angle(materials)) return;
   for (Index i = 0; i + 1 < count; ++i) add(i, i + 2, rest_lengths[i] + rest_lengths[i + 1], materials.bend, SpringKind::bend);
+}
+
+void add_angle_bends(AngleBends& bends, const std::vector<double>& rest_lengths, const SpringMaterials& materials) {
+  if (!bends_by_angle(materials)) return;
+  for (Index i = 0; i + 1 < static_cast<Index>(rest_lengths.size()); ++i) {
+    const std::array<double, 2> lengths{rest_lengths[i], rest_lengths[i + 1]};
+    const double stiffness = stiffness_of(*materials.bend, 1.0, (lengths[0] + lengths[1]) / 2.0);
+    bends.append({i, i + 1, i + 2}, lengths, stiffness, materials.bend->damping);
+  }
 }
 
 }  // namespace
@@ -99,6 +114,7 @@ BodyShape make_rope(const RopeShape& rope, const SpringMaterials& materials) {
     for (std::size_t k = 0; k < segments; ++k) rest_lengths[k] = rope.length ? lengths[k] * (length / laid_out) : lengths[k];
   }
   add_springs(shape.springs, rest_lengths, materials);
+  add_angle_bends(shape.angle_bends, rest_lengths, materials);
 
   shape.drag_areas.assign(shape.positions.size(), 1.0);
   shape.surface.segments.resize(2, static_cast<Eigen::Index>(segments));

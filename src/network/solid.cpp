@@ -14,6 +14,7 @@ void check(const SolidShape& solid, const SpringMaterials& materials) {
   }
   const auto& [x, y, z] = solid.resolution;
   require_affordable("resolution", counts_text(solid.resolution), static_cast<double>(x) * y * z, problems);
+  refuse_angle_bends(materials, "a solid", problems);
   require_materials(materials, problems);
   problems.throw_if_any();
 }

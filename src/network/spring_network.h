@@ -6,6 +6,7 @@
 #include "geometry/motion.h"
 #include "geometry/polygon_mesh.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,22 @@ struct Springs {
   void append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind);
 };
 
+/// Elements that keep three particles in line, as arrays; entry a of each belongs to element a. The bonds before - middle and
+/// middle - after turn by theta at the middle, from 0 (in line) to pi (folded back), which costs 1/2 k theta^2 [J].
+struct AngleBends {
+  std::vector<Index> before;
+  std::vector<Index> middle;
+  std::vector<Index> after;
+  std::vector<double> length_before;  ///< of the bonds at rest [m], > 0
+  std::vector<double> length_after;
+  std::vector<double> stiffness;  ///< k [N m], a radian, >= 0
+  std::vector<double> damping;    ///< [N m s], of the rate of theta, >= 0
+
+  [[nodiscard]] Index count() const { return static_cast<Index>(middle.size()); }
+  /// Particles and bonds in the order before, middle, after.
+  void append(const std::array<Index, 3>& particles, const std::array<double, 2>& lengths, double k, double k_d);
+};
+
 /// What of a body collides and is exported. Vertex i is the body's particle i.
 struct Surface {
   PolygonFaces faces;   ///< as exported
@@ -41,13 +58,15 @@ struct BodyContact {
   bool others = true;  ///< other bodies that have this set too
 };
 
-/// A named range of particles and springs.
+/// A named range of particles, springs and angle bends.
 struct Body {
   std::string name;
   Index first_particle = 0;
   Index particle_count = 0;
   Index first_spring = 0;
   Index spring_count = 0;
+  Index first_angle_bend = 0;
+  Index angle_bend_count = 0;
   int dimension = 0;     ///< of its measure, see BodyShape
   double measure = 0.0;  ///< length [m], area [m^2] or volume [m^3]; 0 for particles added one by one
   Surface surface;
@@ -71,6 +90,7 @@ struct SpringNetwork {
   Scalars drag_areas;      ///< what air drag multiplies: a third of the area [m^2] of the surface triangles around a
                            ///< particle, 0 within a solid; 1 for particles of ropes and those without a surface
   Springs springs;
+  AngleBends angle_bends;
   std::vector<Body> bodies;
   std::vector<Pin> pins;
 

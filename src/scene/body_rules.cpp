@@ -105,7 +105,12 @@ SpringMaterials read_springs(Fields& fields) {
   SpringMaterials materials;
   materials.structural = fields.optional("structural", spring);
   materials.shear = fields.optional("shear", spring);
-  materials.bend = fields.optional("bend", spring);
+  const auto bend = object_of<SpringMaterial>([&](Fields& keys) {
+    const auto model = keys.value("model", word_of({"spring", "angle"}), "spring");
+    materials.bend_model = model == 1 ? SpringMaterials::BendModel::angle : SpringMaterials::BendModel::spring;
+    return read_spring(keys);
+  });
+  materials.bend = fields.optional("bend", bend);
   return materials;
 }
 

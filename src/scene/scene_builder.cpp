@@ -45,7 +45,7 @@ std::optional<SpringNetwork> build_network(const Scene& scene, const MeshFinder&
 std::vector<std::string> warnings_of(const BuiltScene& built) {
   std::vector<std::string> warnings;
   for (const Body& body : built.network.bodies) {
-    if (body.spring_count > 0 || body.particle_count < 2) continue;
+    if (body.spring_count > 0 || body.angle_bend_count > 0 || body.particle_count < 2) continue;
     warnings.push_back("body \"" + body.name + "\" has no springs: its particles move on their own");
   }
   for (const NamedReport& mesh : built.meshes) {

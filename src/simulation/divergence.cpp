@@ -12,6 +12,17 @@ constexpr double kOverstretched = 1000.0;
 
 double length(const Points& positions, Index a, Index b) { return (positions.col(a) - positions.col(b)).norm(); }
 
+/// `3 m long, 1 m at rest: stretched by 200 %, pulling with 20 N`
+std::string state_of_spring(const Springs& springs, std::size_t spring, double length) {
+  const double rest = springs.rest_length[spring];
+  const double stretch = length - rest;
+  const std::string part = rest > 0.0 ? " by " + format_number(100.0 * std::abs(stretch) / rest, 3) + " %" : "";
+  return format_number(length, 3) + " m long, " + format_number(rest, 3) +
+         " m at rest: " + (stretch < 0.0 ? "compressed" : "stretched") + part +
+         (stretch < 0.0 ? ", pushing with " : ", pulling with ") + format_number(springs.stiffness[spring] * std::abs(stretch), 3) +
+         " N";
+}
+
 }  // namespace
 
 DivergenceCheck::DivergenceCheck(const SpringNetwork& network) : network_(network) {
@@ -54,6 +65,12 @@ std::optional<StepFailure> DivergenceCheck::overstretched(const Points& position
   return blame(network_.is_pinned(a) ? b : a, worst, positions);
 }
 
+StepFailure DivergenceCheck::fastest(const SimulationState& state) const {
+  Index particle = 0;
+  state.v.colwise().squaredNorm().maxCoeff(&particle);
+  return blame(particle, worst_spring_at(particle, state.x), state.x);
+}
+
 StepFailure DivergenceCheck::blame(Index particle, Index spring, const Points& positions) const {
   const Body& body = network_.body_of(particle);
   StepFailure failure;
@@ -65,8 +82,7 @@ StepFailure DivergenceCheck::blame(Index particle, Index spring, const Points& p
   const Index b = network_.springs.second[s];
   failure.spring = spring - body.first_spring;
   failure.cause = "the spring between particles " + std::to_string(a - body.first_particle) + " and " +
-                  std::to_string(b - body.first_particle) + " was " + format_number(length(positions, a, b), 3) + " m long, " +
-                  format_number(network_.springs.rest_length[s], 3) + " m at rest";
+                  std::to_string(b - body.first_particle) + " was " + state_of_spring(network_.springs, s, length(positions, a, b));
   return failure;
 }
 

@@ -23,6 +23,9 @@ class DivergenceCheck {
   /// is too large makes it.
   [[nodiscard]] std::optional<StepFailure> overstretched(const Points& positions) const;
 
+  /// The fastest particle and the spring at it that is stretched most.
+  [[nodiscard]] StepFailure fastest(const SimulationState& state) const;
+
  private:
   [[nodiscard]] StepFailure blame(Index particle, Index spring, const Points& positions) const;
   [[nodiscard]] Index worst_spring_at(Index particle, const Points& positions) const;

@@ -1,10 +1,12 @@
 #include "simulation/simulator.h"
 
+#include "dynamics/angle_force.h"
 #include "dynamics/body_forces.h"
 #include "dynamics/contact_projection.h"
 #include "dynamics/penalty_contact.h"
 #include "dynamics/spring_force.h"
 #include "simulation/divergence.h"
+#include "simulation/energy_watch.h"
 #include "simulation/settings_check.h"
 #include "simulation/start.h"
 #include "simulation/step_check.h"
@@ -34,6 +36,9 @@ constexpr int kRelaxPasses = 2;
 // Springs are looked at for one that gave way each step, large networks less often: about so many springs a step.
 constexpr Index kSpringsCheckedPerStep = 8192;
 
+// Energies, which cost more and take many steps to explode, less often still.
+constexpr Index kStepsPerEnergy = 64;
+
 }  // namespace
 
 struct Simulator::Implementation {
@@ -52,7 +57,10 @@ struct Simulator::Implementation {
   void constrain(StepReport& report);
   void settle(StepReport& report);
   [[nodiscard]] bool relax(Points& positions, double excess_before);
-  void check_state() const;
+  [[nodiscard]] double elastic_energy() const;
+  [[nodiscard]] Energies energies() const;
+  void check_state();
+  void check_energy() const;
   void fail(StepFailure failure) const;
   [[nodiscard]] bool projects_contacts() const;
   [[nodiscard]] StepMotion motion() const { return {before, v_before, advanced, settings.step}; }
@@ -65,11 +73,13 @@ struct Simulator::Implementation {
   Forces forces;
   const Gravity* gravity = nullptr;
   const SpringForce* springs = nullptr;
+  const AngleForce* angles = nullptr;       ///< when the network has angle bends
   const PenaltyContact* penalty = nullptr;  ///< when contact answers by forces
   std::unique_ptr<Integrator> integrator;
   std::optional<StretchLimit> limit;
   ContactProjection contacts;
   DivergenceCheck divergence;
+  EnergyWatch energy_watch;
   SimulationState state;
 
   // Within a step: where it began, and where the forces alone would have ended it.
@@ -87,10 +97,12 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       integrator(make_integrator(settings.integrator, network)),
       contacts(network, environment),
       divergence(network),
+      energy_watch(network, settings, environment.obstacles()),
       state(initial_state(network)) {
   check_settings(settings);
   gravity = add_force<Gravity>(settings.gravity);
   springs = add_force<SpringForce>();
+  if (network.angle_bends.count() > 0) angles = add_force<AngleForce>();
   if (settings.air_drag > 0.0) add_force<AirDrag>(settings.air_drag, settings.wind);
   if (settings.contact.response == ContactSettings::Response::penalty && !environment.obstacles().empty()) {
     penalty = add_force<PenaltyContact>(environment, settings.contact.stiffness, settings.contact.damping, settings.step);
@@ -102,6 +114,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   state.x = std::move(start.positions);
   warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
   integrator->start(state, forces, settings.step);
+  energy_watch.note(0, energies());
 }
 
 StepReport Simulator::Implementation::step() {
@@ -135,6 +148,7 @@ void Simulator::Implementation::move_pins(double time) {
       const Vector3 start = network.positions.col(i);
       state.x.col(i) = now * start;
       state.v.col(i) = (next * start - state.x.col(i)) / settings.step;
+      energy_watch.note_drive(state.v.col(i).norm());
     }
   }
 }
@@ -188,11 +202,33 @@ bool Simulator::Implementation::relax(Points& positions, double excess_before) {
   return true;
 }
 
-void Simulator::Implementation::check_state() const {
+void Simulator::Implementation::check_state() {
   if (const auto failure = divergence.not_finite(state, before)) fail(*failure);
   const Index check_interval = 1 + network.springs.count() / kSpringsCheckedPerStep;
-  if (state.step % check_interval != 0) return;
-  if (const auto failure = divergence.overstretched(state.x)) fail(*failure);
+  if (state.step % check_interval == 0) {
+    if (const auto failure = divergence.overstretched(state.x)) fail(*failure);
+  }
+  if (state.step > 1 && state.step % (kStepsPerEnergy * check_interval) != 0) return;
+  energy_watch.note(state.step, energies());
+  check_energy();
+}
+
+void Simulator::Implementation::check_energy() const {
+  const auto explosion = energy_watch.explosion(energies());
+  if (!explosion) return;
+  StepFailure failure = divergence.fastest(state);
+  failure.cause = *explosion + (failure.cause.empty() ? "" : "; " + failure.cause);
+  fail(std::move(failure));
+}
+
+double Simulator::Implementation::elastic_energy() const {
+  return springs->energy(state.x) + (angles != nullptr ? angles->energy(state.x) : 0.0);
+}
+
+Energies Simulator::Implementation::energies() const {
+  return {.kinetic = 0.5 * network.masses.dot(state.v.colwise().squaredNorm().transpose()),
+          .elastic = elastic_energy(),
+          .gravity = gravity->energy(state.x)};
 }
 
 void Simulator::Implementation::fail(StepFailure failure) const {
@@ -219,8 +255,8 @@ const SimulationState& Simulator::state() const { return implementation_->state;
 const Environment& Simulator::environment() const { return implementation_->environment; }
 const std::vector<std::string>& Simulator::warnings() const { return implementation_->warnings; }
 double Simulator::time() const { return static_cast<double>(state().step) * settings().step; }
-double Simulator::elastic_energy() const { return implementation_->springs->energy(state().x); }
 double Simulator::gravity_energy() const { return implementation_->gravity->energy(state().x); }
+double Simulator::elastic_energy() const { return implementation_->elastic_energy(); }
 
 Index Simulator::contact_count() const {
   return implementation_->penalty != nullptr ? implementation_->penalty->contact_count(state().x)
@@ -229,6 +265,7 @@ Index Simulator::contact_count() const {
 
 void Simulator::check() const {
   if (const auto failure = implementation_->divergence.overstretched(state().x)) implementation_->fail(*failure);
+  implementation_->check_energy();
 }
 
 }  // namespace sprung

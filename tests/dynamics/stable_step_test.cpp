@@ -1,5 +1,6 @@
 #include "dynamics/stable_step.h"
 
+#include "dynamics/angle_force.h"
 #include "dynamics/body_forces.h"
 #include "dynamics/networks.h"
 #include "dynamics/spring_force.h"
@@ -295,6 +296,88 @@ TEST(GrowthTime, EndsWhereDampingOutweighsTheGain) {
   EXPECT_DOUBLE_EQ(bounds.damping_time, 1.0 / 400.0);
   EXPECT_EQ(growth_time(ExplicitEulerSettings{}, bounds, 0.99 / 400.0), kInfinity);
   EXPECT_LT(growth_time(ExplicitEulerSettings{}, bounds, 1.01 / 400.0), kInfinity);
+}
+
+/// A rope of 1 m whose angle bends are far stiffer than its springs.
+SpringNetwork make_test_rod(Index particles, double damping = 0.0) {
+  BodyShape shape = make_rope({.points = {Vector3::Zero(), Vector3::UnitX()}, .particles = particles, .length = {}},
+                              {.structural = SpringMaterial{.value = 1.0},
+                               .bend = SpringMaterial{.value = 4.0, .damping = damping},
+                               .bend_model = SpringMaterials::BendModel::angle});
+  set_total_mass(shape, 0.1 * particles);
+  NetworkBuilder builder;
+  builder.add_body("rod", shape);
+  return builder.build();
+}
+
+TEST(SpectralBounds, OfALongRodAreTheZigzags) {
+  // Each element turns by (1 + 2 + 1) / l, and each particle is in one in these shares: 16 k / (l^2 m). Springs add 4 k_s / m.
+  const SpringNetwork rod = make_test_rod(2000, 0.5);
+  const double length = 1.0 / 1999.0;
+  const SpectralBounds bounds = spectral_bounds(rod);
+  expect_just_above(bounds.elastic, 16.0 * 4.0 / (length * length * 0.1) + 4.0 / 0.1);
+  expect_just_above(bounds.damping, 16.0 * 0.5 / (length * length * 0.1));
+  EXPECT_EQ(bounds.damping_time, 0.0) << "of its springs";
+}
+
+/// The largest eigenvalue of M^-1 times the second derivative of the angle bends' energy, by differences of forces.
+double bent_eigenvalue(const SpringNetwork& network, const Points& x) {
+  const AngleForce force(network);
+  const Points v = Points::Zero(3, x.cols());
+  Eigen::MatrixXd stiffness(x.size(), x.size());
+  const double h = 1e-6 / static_cast<double>(x.cols());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    Points there = x;
+    Points back = x;
+    there(i) += h;
+    back(i) -= h;
+    Points change = Points::Zero(3, x.cols());
+    Points forces_back = Points::Zero(3, x.cols());
+    force.add({.x = there, .v = v}, change);
+    force.add({.x = back, .v = v}, forces_back);
+    change -= forces_back;
+    stiffness.col(i) = -change.reshaped() / (2.0 * h);
+  }
+  const Eigen::MatrixXd symmetric = 0.5 * (stiffness + stiffness.transpose()) * network.inverse_masses[0];
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+}
+
+// An arc, a zigzag and a helix. Measured: from 0.99 of the bound in line down to 0.4.
+TEST(SpectralBounds, CoverBentShapes) {
+  const SpringNetwork rod = make_test_rod(12);
+  const double length = 1.0 / 11.0;
+  const double bound = spectral_bounds(rod).elastic;
+  for (const double degrees : {0.5, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 150.0, 170.0}) {
+    for (const int shape : {0, 1, 2}) {
+      Points x = Points::Zero(3, 12);
+      Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
+      for (Index i = 1; i < 12; ++i) {
+        x.col(i) = x.col(i - 1) + length * frame.col(0);
+        const double turn = (shape == 1 && i % 2 == 1 ? -1.0 : 1.0) * degrees;
+        frame = frame * rotation_from_degrees({0, 0, turn}) * rotation_from_degrees({shape == 2 ? 70.0 : 0.0, 0, 0});
+      }
+      EXPECT_LE(bent_eigenvalue(rod, x), bound) << degrees << " degrees, shape " << shape;
+    }
+  }
+}
+
+// Just below it an amplitude keeps its size, just above it grows by some (1 + sqrt(8 * 0.02))^steps.
+TEST(LargestStableStep, IsWhereARodWithAngleBendsBlowsUp) {
+  const SpringNetwork rod = make_test_rod(60);
+  const double largest = largest_stable_step(SymplecticEulerSettings{}, spectral_bounds(rod));
+  const auto amplitude = [&](double step) {
+    Forces forces;
+    forces.push_back(std::make_unique<SpringForce>(rod));
+    forces.push_back(std::make_unique<AngleForce>(rod));
+    SimulationState state = initial_state(rod);
+    for (Index i = 0; i < 60; ++i) state.x(1, i) += (i % 2 == 0 ? 1e-7 : -1e-7) * (1.0 + 0.1 * std::sin(i));
+    const auto integrator = make_integrator(SymplecticEulerSettings{}, rod);
+    Points scratch;
+    for (int step_number = 0; step_number < 400; ++step_number) integrator->advance(state, forces, step, scratch);
+    return state.x.row(1).cwiseAbs().maxCoeff();
+  };
+  EXPECT_LT(amplitude(0.99 * largest), 1e-5);
+  EXPECT_GT(amplitude(1.03 * largest), 1e-3);
 }
 
 }  // namespace

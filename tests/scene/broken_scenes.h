@@ -25,6 +25,8 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"SpringDampedTwice", {"bodies.banner.springs.shear={\"stiffness\":1,\"damping\":0.1,\"damping_ratio\":0.1}"}, "bodies.banner.springs.shear", "may have only one of damping, damping_ratio"},
       {"NegativeDampingRatio", {"bodies.banner.springs.shear={\"modulus\":1,\"damping_ratio\":-0.1}"}, "bodies.banner.springs.shear.damping_ratio", "must be at least 0"},
       {"DampingRatioWithoutStiffness", {"bodies.banner.springs.shear={\"stiffness\":0,\"damping_ratio\":0.1}"}, "bodies.banner.springs.shear.damping_ratio", "needs springs with stiffness; give damping instead", false},
+      {"UnknownBendModel", {"bodies.banner.springs.bend={\"modulus\":1,\"model\":\"angel\"}"}, "bodies.banner.springs.bend.model", "must be one of spring, angle; did you mean \"angle\"?"},
+      {"ModelOfStructuralSprings", {"bodies.banner.springs.structural={\"modulus\":1,\"model\":\"angle\"}"}, "bodies.banner.springs.structural.model", "is not a known key"},
       {"UnknownKeyOfAPin", {"bodies.banner.pins[0].wich=[]"}, "bodies.banner.pins[0].wich", "did you mean \"which\"?"},
       {"UnknownKeyLikeNoOther", {"bodies.banner.colour=red"}, "bodies.banner.colour", "choose from shape, mass"},
       {"SolverOfALaterVersion", {"solver.type=xpbd"}, "solver", "is not a known key"},

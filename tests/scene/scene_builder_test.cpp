@@ -304,6 +304,19 @@ TEST(SceneBuilder, ProblemsOfAllBodiesObstaclesAndTheStepComeInOneGo) {
       ElementsAre(problem("obstacles.bunny.shape.file", "no such file"), problem("step", "is beyond the largest stable step")));
 }
 
+TEST(SceneBuilder, AnglesBendWhereTheSceneSaysSo) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {"bodies.banner.springs.bend={\"model\":\"angle\",\"stiffness\":0.5}"});
+  // 3 x 3 particles: a row or column each.
+  EXPECT_THAT(built.network.angle_bends.stiffness, ::testing::ElementsAre(0.5, 0.5, 0.5, 0.5, 0.5, 0.5));
+  const std::vector<Problem> problems = problems_of([&] {
+    build(folder, {"bodies.banner.shape={\"type\":\"solid\",\"size\":[1,1,1],\"resolution\":[2,2,2]}", "bodies.banner.pins=[]",
+                   "bodies.banner.springs.bend={\"model\":\"angle\",\"stiffness\":0.5}"});
+  });
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems[0].key, "bodies.banner.springs.bend.model");
+}
+
 TEST(SceneBuilder, BodyWithoutSpringsIsWarnedOf) {
   const SceneFolder folder;
   EXPECT_THAT(build(folder, {"bodies.banner.springs={}"}).warnings, ElementsAre(HasSubstr("\"banner\" has no springs")));

@@ -112,6 +112,10 @@ TEST(SceneReader, ShapesOfBodiesArrive) {
   EXPECT_THAT(rope.points, ElementsAre(Vector3(0, 0, 0), Vector3(1, 0, 0)));
   EXPECT_EQ(rope.particles, 5);
   EXPECT_EQ(rope.length, 1.25);
+  EXPECT_EQ(scene.bodies[1].springs.structural->damping_ratio, 0.1);
+  EXPECT_EQ(scene.bodies[1].springs.structural->damping, 0.0);
+  EXPECT_EQ(scene.bodies[1].springs.bend_model, SpringMaterials::BendModel::angle);
+  EXPECT_EQ(scene.bodies[0].springs.bend_model, SpringMaterials::BendModel::spring);
   EXPECT_EQ(scene.bodies[1].mass.kind, MassScene::Kind::particle);
   const auto& line = std::get<RopeShape>(scene.bodies[2].shape);
   EXPECT_THAT(line.points, ElementsAre(Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(1, 1, 0)));

@@ -114,6 +114,7 @@ inline constexpr const char* kFullScene = R"({
       "self_contact": false, "body_contact": false
     },
     "rope": { "shape": { "type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 5, "length": 1.25 }, "particle_mass": 0.5,
+              "springs": { "structural": { "modulus": 30, "damping_ratio": 0.1 }, "bend": { "model": "angle", "modulus": 0.02 } },
               "pins": [ { "at": "corner", "which": ["from", "to"] } ] },
     "line": { "shape": { "type": "rope", "points": [[0, 0, 0], [1, 0, 0], [1, 1, 0]] }, "density": 0.1 },
     "jelly": { "shape": { "type": "solid", "size": [1, 2, 3], "resolution": [4, 5, 6] }, "density": 1000,

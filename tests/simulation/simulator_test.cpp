@@ -92,6 +92,41 @@ TEST(Simulator, WarnedStepDivergesWithTheCulpritNamed) {
   }
 }
 
+TEST(Simulator, EnergyThatNothingPutInStopsIt) {
+  // The bob swings up and down by 5 cm, and grows without end; the spring never reaches 1,000 times its length.
+  SpringNetwork network = two_masses(100.0);
+  network.positions(1, 1) = -1.05;
+  SimulatorSettings settings{.step = 5e-3, .gravity = Vector3::Zero(), .integrator = ExplicitEulerSettings{}};
+  Simulator simulator(network, settings);
+  try {
+    run(simulator, 1000.0);
+    FAIL() << "did not explode";
+  } catch (const StepError& error) {
+    // Explicit Euler grows by 1 + (omega dt)^2 a step: from 1/2 k 0.05^2 to 1,000 times that and the 1/2 k 1^2 of the spring.
+    const double growth = std::log1p(100.0 * 5e-3 * 5e-3);
+    const double expected = std::log(1000.0 * (0.05 * 0.05 + 1.0) / (0.05 * 0.05)) / growth;
+    // A bob that passes the hook meets a spring that pushes from the other side, and grows a little slower.
+    EXPECT_NEAR(static_cast<double>(error.failure().step), expected, 0.1 * expected);
+    EXPECT_THAT(error.what(), HasSubstr("its energy exploded"));
+    EXPECT_EQ(error.failure().particle, 1);
+    EXPECT_EQ(error.failure().spring, 0);
+  }
+}
+
+TEST(Simulator, EnergyThatGravityOrPinsPutInDoesNotStopIt) {
+  NetworkBuilder builder;
+  const Index hook = builder.add_particle(Vector3::Zero(), 1.0);
+  const Index bob = builder.add_particle({0.0, -1.0, 0.0}, 1.0);
+  builder.add_spring(hook, bob, 100.0, 1.0, 1.0);
+  // Twice the fall: from 0 to 1,000 m/s within 1 s.
+  builder.pin(hook,
+              {.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {500.0, 0.0, 0.0}}}, .interpolation = Interpolation::smooth});
+  Simulator driven(builder.build(), {.step = 1e-3});
+  EXPECT_NO_THROW(run(driven, 1.5));
+  Simulator falling(one_particle(Vector3::Zero()), {.step = 1e-2});
+  EXPECT_NO_THROW(run(falling, 100.0));
+}
+
 TEST(Simulator, ExplicitEulerOnUndampedSpringsIsWarnedOf) {
   const Simulator simulator(two_masses(100.0), {.step = 1e-3, .integrator = ExplicitEulerSettings{}});
   ASSERT_EQ(simulator.warnings().size(), 1U);

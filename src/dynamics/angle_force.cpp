@@ -1,0 +1,104 @@
+#include "dynamics/angle_force.h"
+
+#include "base/parallel.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+// Particles of a block belong to one thread, which computes each element that touches them: those across two blocks twice.
+constexpr Index kParticleBlock = 2048;
+
+/// f(bond), and how it changes with the bond: f's gradient is `slope` times the bond.
+struct Fullness {
+  double value = 1.0;
+  double slope = 0.0;  ///< [1/m^2]
+};
+
+Fullness fullness(const Vector3& bond, double rest_length) {
+  const double inverse_square = 4.0 / (rest_length * rest_length);
+  const double value = bond.squaredNorm() * inverse_square;
+  return value < 1.0 ? Fullness{value, 2.0 * inverse_square} : Fullness{};
+}
+
+struct Bend {
+  Bend(const AngleBends& bends, Index element, const Points& x)
+      : a(x.col(bends.middle[element]) - x.col(bends.before[element])),
+        b(x.col(bends.after[element]) - x.col(bends.middle[element])),
+        normal(a.cross(b)),
+        sine(normal.norm()),
+        angle(std::atan2(sine, a.dot(b))),
+        full_a(fullness(a, bends.length_before[element])),
+        full_b(fullness(b, bends.length_after[element])) {}
+
+  [[nodiscard]] double energy(double stiffness) const { return 0.5 * stiffness * angle * angle * full_a.value * full_b.value; }
+
+  Vector3 a;
+  Vector3 b;
+  Vector3 normal;
+  double sine;  ///< |a| |b| sin(angle)
+  double angle;
+  Fullness full_a;
+  Fullness full_b;
+};
+
+/// Forces on before and after; the middle has minus their sum.
+std::array<Vector3, 2> bend_forces(const AngleBends& bends, Index element, const Kinematics& at) {
+  const Bend bend(bends, element, at.x);
+  if (!(bend.sine > 0.0)) return {Vector3::Zero(), Vector3::Zero()};
+  const Vector3 turn_before = bend.normal.cross(bend.a) / (bend.sine * bend.a.squaredNorm());
+  const Vector3 turn_after = bend.normal.cross(bend.b) / (bend.sine * bend.b.squaredNorm());
+  const double stiffness = bends.stiffness[element];
+  const double damping = bends.damping[element];
+  double moment = stiffness * bend.angle;
+  if (damping > 0.0) {
+    const Vector3 v = at.v.col(bends.middle[element]);
+    moment += damping * (turn_before.dot(at.v.col(bends.before[element]) - v) + turn_after.dot(at.v.col(bends.after[element]) - v));
+  }
+  moment *= bend.full_a.value * bend.full_b.value;
+  const double half = 0.5 * stiffness * bend.angle * bend.angle;
+  return {half * bend.full_b.value * bend.full_a.slope * bend.a - moment * turn_before,
+          -half * bend.full_a.value * bend.full_b.slope * bend.b - moment * turn_after};
+}
+
+}  // namespace
+
+AngleForce::AngleForce(const SpringNetwork& network) : network_(network), blocks_(network.particle_count() / kParticleBlock + 1) {
+  const AngleBends& bends = network.angle_bends;
+  for (Index element = 0; element < bends.count(); ++element) {
+    for (const Index particle : {bends.before[element], bends.middle[element], bends.after[element]}) {
+      std::vector<Index>& block = blocks_[particle / kParticleBlock];
+      if (block.empty() || block.back() != element) block.push_back(element);
+    }
+  }
+}
+
+void AngleForce::add(const Kinematics& at, Points& forces) const {
+  const AngleBends& bends = network_.angle_bends;
+  parallel_chunks(static_cast<Index>(blocks_.size()), 1, [&](Index begin, Index end) {
+    for (Index block = begin; block < end; ++block) {
+      const auto add_to = [&](Index particle, const Vector3& force) {
+        if (particle / kParticleBlock == block) forces.col(particle) += force;
+      };
+      for (const Index element : blocks_[block]) {
+        const auto [on_before, on_after] = bend_forces(bends, element, at);
+        add_to(bends.before[element], on_before);
+        add_to(bends.middle[element], -(on_before + on_after));
+        add_to(bends.after[element], on_after);
+      }
+    }
+  });
+}
+
+double AngleForce::energy(const Points& positions) const {
+  const AngleBends& bends = network_.angle_bends;
+  double energy = 0.0;
+  for (Index element = 0; element < bends.count(); ++element)
+    energy += Bend(bends, element, positions).energy(bends.stiffness[element]);
+  return energy;
+}
+
+}  // namespace sprung

@@ -1,0 +1,47 @@
+#include "simulation/energy_watch.h"
+
+#include "base/format.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace sprung {
+namespace {
+
+constexpr double kExploded = 1000.0;
+
+double capacity_of(const SpringNetwork& network) {
+  const Springs& springs = network.springs;
+  double energy = 0.0;
+  for (Index s = 0; s < springs.count(); ++s)
+    energy += 0.5 * springs.stiffness[s] * springs.rest_length[s] * springs.rest_length[s];
+  for (const double k : network.angle_bends.stiffness) energy += 0.5 * k * std::numbers::pi * std::numbers::pi;
+  return energy;
+}
+
+}  // namespace
+
+EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles)
+    : mass_(network.masses.sum()),
+      watches_(std::none_of(obstacles.begin(), obstacles.end(), [](const Obstacle& obstacle) { return obstacle.changes(); })),
+      fastest_drive_(settings.air_drag > 0.0 ? settings.wind.norm() : 0.0),
+      capacity_(capacity_of(network)) {}
+
+void EnergyWatch::note(std::int64_t step, const Energies& energies) {
+  if (step <= 1) start_ = std::max(start_, energies.kinetic + energies.elastic);
+  highest_ = step == 0 ? energies.gravity : std::max(highest_, energies.gravity);
+}
+
+std::optional<std::string> EnergyWatch::explosion(const Energies& energies) const {
+  const double held = energies.kinetic + energies.elastic;
+  if (!watches_ || held <= kExploded * put_in(energies)) return std::nullopt;
+  return "its energy exploded: motion and springs hold " + format_number(held, 3) + " J, of which no more than " +
+         format_number(put_in(energies), 3) + " J can have been put in";
+}
+
+double EnergyWatch::put_in(const Energies& energies) const {
+  const double driven = 0.5 * mass_ * fastest_drive_ * fastest_drive_;
+  return start_ + std::max(0.0, highest_ - energies.gravity) + driven + capacity_;
+}
+
+}  // namespace sprung

@@ -1,0 +1,48 @@
+// Tells a simulation whose energy explodes: none of what drives it could have put so much in.
+#pragma once
+
+#include "simulation/simulator.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// What a state holds [J].
+struct Energies {
+  double kinetic = 0.0;
+  double elastic = 0.0;
+  double gravity = 0.0;
+};
+
+class EnergyWatch {
+ public:
+  /// Does not watch scenes with obstacles that move, whose pushes it does not know.
+  EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles);
+
+  /// Takes in the energies after a step; of the first two, 0 and 1, both count as what the scene begins with: limits and contact
+  /// may give a start of their own.
+  void note(std::int64_t step, const Energies& energies);
+
+  /// Takes in the speed [m/s] of a pin.
+  void note_drive(double speed) { fastest_drive_ = std::max(fastest_drive_, speed); }
+
+  /// What is wrong with the energies, when motion and springs hold more than 1,000 times the sum of what they began with, what
+  /// gravity has set free since, the motion of all particles as fast as the fastest pin or the wind, and what it takes to stretch
+  /// every spring to twice its length and fold every angle.
+  [[nodiscard]] std::optional<std::string> explosion(const Energies& energies) const;
+
+ private:
+  [[nodiscard]] double put_in(const Energies& energies) const;
+
+  double mass_;  ///< [kg]
+  bool watches_;
+  double fastest_drive_;  ///< [m/s]
+  double capacity_;       ///< what springs and angles hold [J]
+  double start_ = 0.0;    ///< [J]
+  double highest_ = 0.0;  ///< of the energies of gravity [J]
+};
+
+}  // namespace sprung
