@@ -79,24 +79,29 @@ inline bool segment_meets_triangle(const Vector3& p, const Vector3& q, const Vec
   return (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
 }
 
+/// How many edges of an element meet a face with which they share no particle.
+inline int count_crossings(const Element& element, const Element& face, const Points& x) {
+  if (face.corners != 3) return 0;
+  const auto& t = face.particles;
+  Box3 box;
+  for (const Index i : corners_of(face)) box.extend(x.col(i));
+  int crossings = 0;
+  for (int k = 0; k < (element.corners == 3 ? 3 : element.corners - 1); ++k) {
+    const Index p = element.particles[static_cast<std::size_t>(k)];
+    const Index q = element.particles[static_cast<std::size_t>((k + 1) % element.corners)];
+    if (p == t[0] || p == t[1] || p == t[2] || q == t[0] || q == t[1] || q == t[2]) continue;
+    Box3 edge(x.col(p));
+    edge.extend(x.col(q));
+    if (edge.intersects(box) && segment_meets_triangle(x.col(p), x.col(q), x.col(t[0]), x.col(t[1]), x.col(t[2]))) ++crossings;
+  }
+  return crossings;
+}
+
 /// How many edges meet triangles with which they share no particle.
 inline int count_crossings(const std::vector<Element>& elements, const Points& x) {
   int crossings = 0;
   for (const Element& face : elements) {
-    if (face.corners != 3) continue;
-    Box3 box;
-    for (const Index i : corners_of(face)) box.extend(x.col(i));
-    for (const Element& other : elements) {
-      for (int k = 0; k < (other.corners == 3 ? 3 : other.corners - 1); ++k) {
-        const Index p = other.particles[static_cast<std::size_t>(k)];
-        const Index q = other.particles[static_cast<std::size_t>((k + 1) % other.corners)];
-        const auto& t = face.particles;
-        if (p == t[0] || p == t[1] || p == t[2] || q == t[0] || q == t[1] || q == t[2]) continue;
-        Box3 edge(x.col(p));
-        edge.extend(x.col(q));
-        if (edge.intersects(box) && segment_meets_triangle(x.col(p), x.col(q), x.col(t[0]), x.col(t[1]), x.col(t[2]))) ++crossings;
-      }
-    }
+    for (const Element& other : elements) crossings += count_crossings(other, face, x);
   }
   return crossings;
 }

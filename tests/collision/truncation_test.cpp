@@ -96,6 +96,53 @@ TEST(Truncation, NothingPassesATurningMesh) {
   expect_no_crossing(wheel, 200, 40, 0.5, 10.0);
 }
 
+/// Leads the particles of a cloth and of ropes on their own ways around a mesh for many steps, most of them hardly at all and some
+/// straight at it: no element ever crosses it.
+void expect_no_element_crosses(const TriangleMesh& mesh, bool closed, int steps) {
+  test::SelfNetwork network;
+  network.add_cloth(8, Vector3(-1.2, 1.2, -1.2), Vector3(0.3, 0.0, 0.0), Vector3(0.0, 0.0, 0.3));
+  for (const double z : {-1.5, 1.5}) network.add_rope(8, Vector3(-1.2, 0.0, z), Vector3(0.3, 0.0, 0.0));
+  const Index count = network.count();
+  const std::vector<char> alone(static_cast<std::size_t>(network.bodies), 0);
+  Environment environment({mesh_obstacle(mesh, closed)});
+  FreeSpace space(environment,
+                  make_collision_surface(network.elements, network.positions, network.body_of, Scalars::Zero(count), network.pinned,
+                                         alone, alone),
+                  network.positions, 0.0);
+  auto crossings = [&, everything = Points(3, count + mesh.vertices.cols())](const Points& positions) mutable {
+    everything << positions, mesh.vertices;
+    int found = 0;
+    for (Index t = 0; t < mesh.triangles.cols(); ++t) {
+      const Element face{{count + mesh.triangles(0, t), count + mesh.triangles(1, t), count + mesh.triangles(2, t)}, 3};
+      for (const Element& element : network.elements) {
+        found += test::count_crossings(element, face, everything) + test::count_crossings(face, element, everything);
+      }
+    }
+    return found;
+  };
+  Random random(73);
+  Points x = network.positions;
+  Index stopped = 0;
+  for (int step = 0; step < steps; ++step) {
+    Points after = x;
+    for (Index i = 0; i < count; ++i) {
+      const Vector3 at = mesh.vertices.col(random.below(static_cast<Index>(mesh.vertices.cols())));
+      const bool far = random.below(8) == 0;
+      after.col(i) += far ? Vector3(random.between(0.0, 1.5) * (at - x.col(i))) : Vector3(0.01 * random.direction());
+    }
+    const FreeSpace::Truncation truncation = space.truncate(x, after);
+    stopped += truncation.truncated;
+    ASSERT_EQ(truncation.squeezed, 0);
+    ASSERT_EQ(crossings(after), 0) << "in step " << step;
+    x = after;
+  }
+  EXPECT_GT(stopped, count);
+}
+
+TEST(Truncation, NoElementCrossesNeedles) { expect_no_element_crosses(test::needles(12), true, 300); }
+
+TEST(Truncation, NoElementCrossesARing) { expect_no_element_crosses(test::torus(0.8, 0.1, 16, 6), true, 300); }
+
 TEST(Truncation, ThinSheetHoldsAt500MetresPerSecondFromEitherSide) {
   Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
   constexpr double kMove = 500.0 / 60.0;
