@@ -22,6 +22,11 @@ class AngleForce final : public Force {
   explicit AngleForce(const SpringNetwork& network);
 
   void add(const Kinematics& at, Points& forces) const override;
+  void couple(std::vector<ParticlePair>& pairs) const override;
+
+  /// Of the angle's own change k times the square of its gradient g, g g^T, and across the plane of the bend 1/2 k theta cot(theta
+  /// / 2) w w^T with w = (1 / |a|, -1 / |a| - 1 / |b|, 1 / |b|). In line the two are the whole of it.
+  void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
   /// sum 1/2 k theta^2 f(a) f(b) [J]
   [[nodiscard]] double energy(const Points& positions) const override;

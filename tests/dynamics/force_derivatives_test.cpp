@@ -1,14 +1,18 @@
 // Derivatives of forces against differences of the forces themselves.
+#include "dynamics/angle_force.h"
 #include "dynamics/body_forces.h"
 #include "dynamics/networks.h"
 #include "dynamics/penalty_contact.h"
 #include "dynamics/spring_force.h"
+#include "dynamics/stable_step.h"
 
 #include <gmock/gmock.h>
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 namespace sprung {
@@ -238,6 +242,76 @@ TEST(BlockMatrix, TakesBlocksOfAnyTwoParticles) {
   EXPECT_EQ(dense(matrix), expected);
   matrix.set_zero();
   EXPECT_TRUE(dense(matrix).isZero(0.0));
+}
+
+/// Three particles 1 m and 2 m apart, bent by an angle [rad] at the middle.
+SpringNetwork make_hinge(double angle, double damping = 0.0) {
+  NetworkBuilder builder;
+  const Vector3 drift(0.3, 0.2, -0.4);
+  builder.add_particle(Vector3::Zero(), 1.0, drift);
+  builder.add_particle(Vector3(1, 0, 0), 1.0);
+  builder.add_particle(Vector3(1 + 2.0 * std::cos(angle), 2.0 * std::sin(angle), 0.0), 1.0, -2.0 * drift);
+  builder.add_angle_bend(0, 1, 2, 5.0, damping);
+  return builder.build();
+}
+
+TEST(ForceDerivatives, OfAngleBendsInLineAreTheDifferencesOfTheirForces) {
+  const SpringNetwork network = make_hinge(0.0);
+  const Case bend(network, std::in_place_type<AngleForce>);
+  expect_near(bend.derivatives().by_position, bend.differences_by_position());
+}
+
+// What is left out, forces turning with their bonds, grows with the angle: some k theta / length^2.
+TEST(ForceDerivatives, OfAngleBendsNearlyInLineAreNearlyTheDifferences) {
+  const SpringNetwork network = make_hinge(0.01);
+  const Case bend(network, std::in_place_type<AngleForce>);
+  const Eigen::MatrixXd differences = bend.differences_by_position();
+  EXPECT_LT((dense(bend.derivatives().by_position) - differences).norm(), 0.03 * differences.norm());
+}
+
+TEST(ForceDerivatives, OfAngleBendsNeverPushOn) {
+  for (const double angle : {0.0, 0.3, 1.5, 3.0, std::numbers::pi}) {
+    const SpringNetwork network = make_hinge(angle, 0.5);
+    const ForceDerivatives derivatives = Case(network, std::in_place_type<AngleForce>).derivatives();
+    for (const BlockMatrix* matrix : {&derivatives.by_position, &derivatives.by_velocity}) {
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(*matrix), Eigen::EigenvaluesOnly);
+      EXPECT_LT(solver.eigenvalues().maxCoeff(), 1e-12 * (1.0 + solver.eigenvalues().cwiseAbs().maxCoeff())) << angle;
+    }
+  }
+}
+
+TEST(ForceDerivatives, OfDampedAngleBendsAreTheDifferencesOfTheirForces) {
+  const SpringNetwork network = make_hinge(1.2, 0.5);
+  const Case bend(network, std::in_place_type<AngleForce>);
+  expect_near(bend.derivatives().by_velocity, bend.differences_by_velocity());
+}
+
+// A rod held by two particles that springs back from a bend of a quarter of a circle, by steps of a hundred times what explicit
+// schemes bear: it comes to rest in line.
+TEST(ForceDerivatives, OfAngleBendsLetImplicitStepsBeLarge) {
+  BodyShape shape = make_rope({.points = {Vector3::Zero(), Vector3::UnitX()}, .particles = 20, .length = {}},
+                              {.structural = SpringMaterial{.value = 1e4},
+                               .bend = SpringMaterial{.value = 10.0},
+                               .bend_model = SpringMaterials::BendModel::angle});
+  set_total_mass(shape, 0.1);
+  NetworkBuilder builder;
+  builder.add_body("rod", shape);
+  builder.pin({0, 1});
+  const SpringNetwork rod = builder.build();
+  SimulationState state = initial_state(rod);
+  for (Index i = 2; i < 20; ++i) {
+    const double angle = std::numbers::pi / 2.0 * (i - 1) / 18.0;
+    state.x.col(i) = state.x.col(i - 1) + Vector3(std::cos(angle), std::sin(angle), 0.0) / 19.0;
+  }
+  Forces forces;
+  forces.push_back(std::make_unique<SpringForce>(rod));
+  forces.push_back(std::make_unique<AngleForce>(rod));
+  const double step = 100.0 * largest_stable_step(SymplecticEulerSettings{}, spectral_bounds(rod));
+  const auto integrator = make_integrator(ImplicitEulerSettings{}, rod);
+  integrator->start(state, forces, step);
+  for (int i = 0; i < 500; ++i) integrator->advance(state, forces, step);
+  EXPECT_LT(state.x.row(1).cwiseAbs().maxCoeff(), 0.01);
+  EXPECT_NEAR(state.x(0, 19), 1.0, 0.01);
 }
 
 }  // namespace
