@@ -7,6 +7,9 @@
 namespace sprung {
 namespace {
 
+// A time is a product of steps: its last digits are rounding.
+constexpr int kTimeDigits = 9;
+
 std::string join_lines(const std::vector<Problem>& problems) {
   std::string text;
   for (const Problem& problem : problems) {
@@ -17,8 +20,8 @@ std::string join_lines(const std::vector<Problem>& problems) {
 }
 
 std::string describe(const StepFailure& failure) {
-  std::string text = "the simulation diverged at step " + std::to_string(failure.step) + ", time " + format_number(failure.time) +
-                     " s: " + failure.cause;
+  std::string text = "the simulation diverged at step " + std::to_string(failure.step) + ", time " +
+                     format_number(failure.time, kTimeDigits) + " s: " + failure.cause;
   std::string place;
   if (!failure.body.empty()) place += "body \"" + failure.body + "\"";
   if (failure.particle != kNone) place += (place.empty() ? "" : ", ") + ("particle " + std::to_string(failure.particle));
