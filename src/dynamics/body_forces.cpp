@@ -9,17 +9,17 @@ constexpr Index kParticleChunk = 8192;
 
 }  // namespace
 
-Gravity::Gravity(const SpringNetwork& network, const Vector3& acceleration) : network_(network), acceleration_(acceleration) {}
+Gravity::Gravity(const SpringNetwork& network, const Vector3& acceleration) : weights_(acceleration * network.masses.transpose()) {}
 
 void Gravity::add(const Kinematics&, Points& forces) const {
-  parallel_chunks(network_.particle_count(), kParticleChunk, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) forces.col(i) += network_.masses[i] * acceleration_;
+  parallel_chunks(static_cast<Index>(weights_.cols()), kParticleChunk, [&](Index begin, Index end) {
+    forces.middleCols(begin, end - begin) += weights_.middleCols(begin, end - begin);
   });
 }
 
 double Gravity::energy(const Points& positions) const {
   double energy = 0.0;
-  for (Index i = 0; i < network_.particle_count(); ++i) energy -= network_.masses[i] * acceleration_.dot(positions.col(i));
+  for (Index i = 0; i < positions.cols(); ++i) energy -= weights_.col(i).dot(positions.col(i));
   return energy;
 }
 

@@ -14,8 +14,7 @@ class Gravity final : public Force {
   [[nodiscard]] double energy(const Points& positions) const override;
 
  private:
-  const SpringNetwork& network_;
-  Vector3 acceleration_;
+  Points weights_;  ///< m g of each particle [N]
 };
 
 /// Linear air drag, -c A (v - wind): c per particle [kg/s] for ropes (A = 1), per area [kg/(m^2 s)] for surfaces.

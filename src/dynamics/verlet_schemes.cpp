@@ -1,14 +1,38 @@
 #include "dynamics/integration_schemes.h"
+#include "dynamics/verlet_kernel.h"
 
 #include <cmath>
+#include <vector>
 
 namespace sprung {
 namespace {
 
+/// Consecutive particles of which none is pinned.
+struct FreeRun {
+  Index begin;
+  Index count;
+};
+
+std::vector<FreeRun> free_runs(const SpringNetwork& network) {
+  constexpr Index kMost = 4096;
+  std::vector<FreeRun> runs;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (network.is_pinned(i)) continue;
+    const bool follows = !runs.empty() && runs.back().begin + runs.back().count == i && runs.back().count < kMost;
+    if (follows) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({i, 1});
+    }
+  }
+  return runs;
+}
+
 // Between steps state.v is (x - x_previous) / dt, so that forces and dampers of neighbours see Verlet's velocity without more ado.
 class Verlet final : public Integrator {
  public:
-  Verlet(const VerletSettings& settings, const SpringNetwork& network) : Integrator(network), settings_(settings) {}
+  Verlet(const VerletSettings& settings, const SpringNetwork& network)
+      : Integrator(network), settings_(settings), free_runs_(free_runs(network)) {}
 
   void start(SimulationState& state, const Forces& forces, double dt) override {
     Integrator::start(state, forces, dt);
@@ -21,20 +45,18 @@ class Verlet final : public Integrator {
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
     evaluate(state, forces, dt, total_);
-    const double kept = 1.0 - damping_per_step(settings_, dt);
-    for_free_particles(network(), [&](Index i) {
-      const Vector3 x = state.x.col(i);
-      const Vector3 moved = kept * (x - state.x_previous.col(i)) + dt * dt * network().inverse_masses[i] * total_.col(i);
-      state.x_previous.col(i) = x;
-      state.x.col(i) = x + moved;
-      state.v.col(i) = (state.x.col(i) - x) / dt;
+    set_gains(dt);
+    const VerletStep step{.kept = 1.0 - damping_per_step(settings_, dt), .per_dt = 1.0 / dt};
+    for_free_runs([&](Index begin, Index count) {
+      advance_verlet(3 * count, step, gains_.col(begin).data(), total_.col(begin).data(), state.x.col(begin).data(),
+                     state.x_previous.col(begin).data(), state.v.col(begin).data());
     });
   }
 
   void recover_velocities(SimulationState& state, const Points& before, const Points&, double dt) const override {
-    for_free_particles(network(), [&](Index i) {
-      state.v.col(i) = (state.x.col(i) - before.col(i)) / dt;
-      state.x_previous.col(i) = before.col(i);
+    for_free_runs([&](Index begin, Index count) {
+      velocities_between(3 * count, 1.0 / dt, before.col(begin).data(), state.x.col(begin).data(), state.v.col(begin).data());
+      state.x_previous.middleCols(begin, count) = before.middleCols(begin, count);
     });
   }
 
@@ -43,8 +65,25 @@ class Verlet final : public Integrator {
   }
 
  private:
+  /// dt^2 / m for each coordinate.
+  void set_gains(double dt) {
+    if (dt == dt_of_gains_) return;
+    dt_of_gains_ = dt;
+    gains_ = (dt * dt * network().inverse_masses.transpose()).replicate(3, 1);
+  }
+
+  template <class Body>
+  void for_free_runs(Body&& body) const {
+    parallel_chunks(static_cast<Index>(free_runs_.size()), 2, [&](Index begin, Index end) {
+      for (Index run = begin; run < end; ++run) body(free_runs_[run].begin, free_runs_[run].count);
+    });
+  }
+
   VerletSettings settings_;
+  std::vector<FreeRun> free_runs_;
   Points total_;
+  Points gains_;
+  double dt_of_gains_ = 0.0;
 };
 
 // The acceleration at the step's end is not kept for the next one: dampers, constraints and contact change what it depends on.

@@ -10,6 +10,9 @@ namespace {
 
 constexpr double kOverstretched = 1000.0;
 
+/// Zero times what is not finite is no number, and nor is a sum with it. Far faster than asking each.
+bool are_finite(const Points& values) { return (0.0 * values).sum() == 0.0; }
+
 double length(const Points& positions, Index a, Index b) { return (positions.col(a) - positions.col(b)).norm(); }
 
 /// `3 m long, 1 m at rest: stretched by 200 %, pulling with 20 N`
@@ -35,11 +38,12 @@ DivergenceCheck::DivergenceCheck(const SpringNetwork& network) : network_(networ
     const double longest = kOverstretched * (start > 0.0 ? start : longest_rest);
     const bool pulls = springs.stiffness[s] > 0.0;  // one without stiffness may be as long as it likes
     longest_squared_.push_back(pulls && longest > 0.0 ? longest * longest : HUGE_VAL);
+    if (longest_squared_.back() < HUGE_VAL) bounded_.push_back(static_cast<Index>(s));
   }
 }
 
 std::optional<StepFailure> DivergenceCheck::not_finite(const SimulationState& state, const Points& before) const {
-  if (state.x.allFinite() && state.v.allFinite()) return std::nullopt;
+  if (are_finite(state.x) && are_finite(state.v)) return std::nullopt;
   Index particle = 0;
   while (state.x.col(particle).allFinite() && state.v.col(particle).allFinite()) ++particle;
   StepFailure failure = blame(particle, worst_spring_at(particle, before), before);
@@ -52,7 +56,7 @@ std::optional<StepFailure> DivergenceCheck::overstretched(const Points& position
   const Springs& springs = network_.springs;
   Index worst = kNone;
   double most = 1.0;
-  for (Index s = 0; s < springs.count(); ++s) {
+  for (const Index s : bounded_) {
     const auto i = static_cast<std::size_t>(s);
     const double ratio = (positions.col(springs.first[i]) - positions.col(springs.second[i])).squaredNorm() / longest_squared_[i];
     if (ratio <= most) continue;

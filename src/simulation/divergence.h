@@ -32,6 +32,7 @@ class DivergenceCheck {
 
   const SpringNetwork& network_;
   std::vector<double> longest_squared_;  ///< of each spring [m^2]
+  std::vector<Index> bounded_;           ///< springs for which that is finite
 };
 
 }  // namespace sprung

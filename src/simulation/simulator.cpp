@@ -84,7 +84,7 @@ struct Simulator::Implementation {
 
   // Within a step: where it began, and where the forces alone would have ended it.
   Points before;
-  Points v_before;
+  Points v_before;  ///< for contact alone
   Points advanced;
 };
 
@@ -121,7 +121,7 @@ StepReport Simulator::Implementation::step() {
   const double t = static_cast<double>(state.step) * settings.step;
   const double t_end = static_cast<double>(state.step + 1) * settings.step;
   before = state.x;
-  v_before = state.v;
+  if (contacts.meets_anything()) v_before = state.v;
 
   integrator->advance(state, forces, settings.step);
   environment.set_interval(t, t_end);
