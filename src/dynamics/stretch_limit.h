@@ -54,8 +54,8 @@ class StretchLimit {
 
   /// The step [s] at which `iterations` passes a step keep the excess at about half of `max_stretch` plus `tolerance` when each
   /// body hangs at rest under `acceleration` [m/s^2] by its pins, or over an obstacle: in each step gravity adds g dt^2 per carried
-  /// particle, and the passes must hand it on. Infinity when nothing is limited, and with `solver` newton, which needs no small
-  /// steps.
+  /// particle, and the passes must hand it on. Larger with tethers to pins that are taut (see are_pins_taut). Infinity when nothing
+  /// is limited, and with `solver` newton, which needs no small steps.
   [[nodiscard]] double suggested_step(double acceleration) const;
 
  private:

@@ -8,7 +8,8 @@ namespace sprung {
 /// By how much a Gauss-Seidel pass leaves the most loaded limited spring of a body too long when each particle moves down by 1 m
 /// before it, as a part of the spring's rest length [1/m]; 0 without limited springs. That is particles carried, times springs that
 /// meet at a particle, over the rest length. With pins the free particles are shared evenly by the pinned ones that have limited
-/// springs. Without, the body may hang over an obstacle by its middle: half the springs on the way between its farthest ends.
-double largest_load(const SpringNetwork& network, const Body& body, const StretchBatches& batches);
+/// springs; with tethers one carries the springs of the longest strand that leads to it. Without pins the body may
+/// hang over an obstacle by its middle: half the springs on the way between its farthest ends.
+double largest_load(const SpringNetwork& network, const Body& body, const StretchBatches& batches, bool tethers);
 
 }  // namespace sprung

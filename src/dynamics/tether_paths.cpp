@@ -1,6 +1,7 @@
 #include "dynamics/tether_paths.h"
 
 #include <algorithm>
+#include <map>
 #include <queue>
 #include <span>
 #include <tuple>
@@ -122,6 +123,26 @@ std::vector<Tether> find_tethers(const SpringNetwork& network, const std::vector
   std::vector<Tether> tethers = Search(network, neighbours).all();
   std::ranges::sort(tethers, {}, [](const Tether& tether) { return std::pair(tether.particle, tether.group); });
   return tethers;
+}
+
+bool are_pins_taut(const SpringNetwork& network, const std::vector<Tether>& tethers, double max_stretch) {
+  constexpr double kRounding = 1.0 + 1.0e-9;  // lengths along springs are sums of as many as there are
+  const auto way_between = [](const Tether& a, const Tether& b) { return a.length + b.length; };
+  std::map<std::pair<Index, Index>, std::pair<Tether, Tether>> shortest;
+  for (std::size_t a = 0; a < tethers.size(); ++a) {
+    for (std::size_t b = a + 1; b < tethers.size() && tethers[b].particle == tethers[a].particle; ++b) {
+      const std::pair between(tethers[a], tethers[b]);
+      const auto [kept, added] = shortest.try_emplace({tethers[a].group, tethers[b].group}, between);
+      auto& nearest = kept->second;
+      if (way_between(tethers[a], tethers[b]) < way_between(nearest.first, nearest.second)) nearest = between;
+    }
+  }
+  const auto is_taut = [&](const auto& way) {
+    const auto& [a, b] = way.second;
+    const double straight = (network.positions.col(a.pin) - network.positions.col(b.pin)).norm();
+    return (1.0 + max_stretch) * way_between(a, b) <= kRounding * straight;
+  };
+  return !shortest.empty() && std::ranges::all_of(shortest, is_taut);
 }
 
 }  // namespace sprung

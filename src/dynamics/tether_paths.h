@@ -22,4 +22,8 @@ inline constexpr int kMostTethers = 4;
 /// no other pin (Dijkstra 1959). Ordered by particle, then by group.
 [[nodiscard]] std::vector<Tether> find_tethers(const SpringNetwork& network, const std::vector<SpringKind>& kinds);
 
+/// Whether there are two groups of pins at least, and all between which tethers of a particle lead are, where they begin, as far
+/// from each other as springs within a limit of `max_stretch` reach: what hangs by them cannot sag between them.
+[[nodiscard]] bool are_pins_taut(const SpringNetwork& network, const std::vector<Tether>& tethers, double max_stretch);
+
 }  // namespace sprung

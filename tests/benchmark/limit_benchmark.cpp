@@ -23,8 +23,8 @@ constexpr int kBulletPasses = 20;
 
 enum Motion : std::uint8_t { hanging, swinging };
 
-/// What the benchmark asks of the limit: 1 % in all.
-StretchLimitSettings limit() { return {.max_stretch = 0.005, .tolerance = 0.005}; }
+/// No stretch but a tolerance of 1 %. Small steps of one pass reach it sooner than larger ones of more.
+StretchLimitSettings limit() { return {.max_stretch = 0.0, .iterations = 1, .tolerance = 0.01, .tethers = true}; }
 
 Scene scene_of(BodyScene body) {
   Scene scene;

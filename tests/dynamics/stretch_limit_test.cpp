@@ -295,6 +295,29 @@ TEST(SuggestedStep, HoldsTheLimitOfWhatHangs) {
   }
 }
 
+// Without tethers each of the two corners carries half the cloth; with them what a strand of 34 springs does, 23 down and 11
+// across.
+TEST(SuggestedStep, IsLargerWithTethersToTautPinsAndHoldsTheLimit) {
+  const SpringNetwork cloth = make_test_cloth(24, 0.0, 0.0);
+  for (const int passes : {1, 4, 32}) {
+    const StretchLimitSettings tethered{.max_stretch = 0.0, .iterations = passes, .tolerance = 0.01, .tethers = true};
+    StretchLimitSettings untethered = tethered;
+    untethered.tethers = false;
+    const double with = StretchLimit(cloth, tethered).suggested_step(9.81);
+    const double without = StretchLimit(cloth, untethered).suggested_step(9.81);
+    EXPECT_NEAR(with / without, std::sqrt(0.5 * (24 * 24 - 2) / 34.0 / std::cbrt(passes)), 1e-12);
+    EXPECT_LT(excess_hanging(cloth, tethered, with, 1.0), 1.3 * tethered.tolerance) << passes;
+  }
+}
+
+TEST(SuggestedStep, IsTheSameWithTethersWhereTheClothSagsBetweenItsPins) {
+  const SpringNetwork cloth = make_test_cloth(24, 0.0, 0.0);
+  const auto step = [&](bool tethers) {
+    return StretchLimit(cloth, {.max_stretch = 0.02, .tethers = tethers}).suggested_step(9.81);
+  };
+  EXPECT_EQ(step(true), step(false));
+}
+
 TEST(SuggestedStep, IsThatOfTheBodyThatNeedsTheSmallest) {
   const auto rope = [](Index particles) {
     BodyShape shape = make_rope({.points = {Vector3::Zero(), Vector3::UnitX()}, .particles = particles, .length = {}},
