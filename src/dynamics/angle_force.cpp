@@ -19,9 +19,9 @@ struct Fullness {
 };
 
 Fullness fullness_of(const Vector3& bond, double rest_length) {
-  const double inverse_square = 4.0 / (rest_length * rest_length);
-  const double value = bond.squaredNorm() * inverse_square;
-  return value < 1.0 ? Fullness{value, 2.0 * inverse_square} : Fullness{};
+  const double square = rest_length * rest_length;
+  const double most = 4.0 * bond.squaredNorm();
+  return most < square ? Fullness{most / square, 8.0 / square} : Fullness{};
 }
 
 struct Bend {
@@ -48,8 +48,8 @@ struct Bend {
 
 /// The gradient of the angle at before, middle and after [1/m]. Requires a sine that is not 0.
 std::array<Vector3, 3> turns(const Bend& bend) {
-  const Vector3 before = bend.normal.cross(bend.a) / (bend.sine * bend.a.squaredNorm());
-  const Vector3 after = bend.normal.cross(bend.b) / (bend.sine * bend.b.squaredNorm());
+  const Vector3 before = (1.0 / (bend.sine * bend.a.squaredNorm())) * bend.normal.cross(bend.a);
+  const Vector3 after = (1.0 / (bend.sine * bend.b.squaredNorm())) * bend.normal.cross(bend.b);
   return {before, -(before + after), after};
 }
 
