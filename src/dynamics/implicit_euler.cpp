@@ -23,11 +23,24 @@ class ImplicitEuler final : public Integrator {
     differentiate(forces, at, derivatives_);
     derivatives_.by_position.add_product(state.v, dt, gained_);
     gained_ *= dt;
-    system_->solve(derivatives_, dt, gained_);
+    system_->assemble(derivatives_, dt);
+    system_->solve(gained_);
     for_free_particles(network(), [&](Index i) {
       state.v.col(i) += gained_.col(i);
       state.x.col(i) += dt * state.v.col(i);
     });
+  }
+
+  [[nodiscard]] bool answers_contact() const override { return true; }
+
+  // The equations are solved for what pushes change: those who were pushed move that far, as contact's own forces make them.
+  void answer_contact(const Points& advanced, Points& positions, double dt) override {
+    gained_.setZero(3, advanced.cols());
+    for (Index i = 0; i < network().particle_count(); ++i) {
+      if (!network().is_pinned(i)) system_->hold(i, (positions.col(i) - advanced.col(i)) / dt, gained_);
+    }
+    system_->solve(gained_);
+    for_free_particles(network(), [&](Index i) { positions.col(i) = advanced.col(i) + dt * gained_.col(i); });
   }
 
  private:

@@ -6,6 +6,12 @@
 #include <vector>
 
 namespace sprung {
+namespace {
+
+// What is held weighs so many times what its particle's equations do: they move it by a millionth, and 10 digits remain.
+constexpr double kHoldWeight = 1 << 20;
+
+}  // namespace
 
 struct ImplicitSystem::Factor {
   Eigen::SparseMatrix<double> matrix;  // its lower half
@@ -57,17 +63,28 @@ void ImplicitSystem::fill() {
   }
 }
 
-void ImplicitSystem::solve(const ForceDerivatives& derivatives, double dt, Points& vectors) {
-  if (free_count_ == 0) {
-    vectors.setZero();
-    return;
-  }
+void ImplicitSystem::assemble(const ForceDerivatives& derivatives, double dt) {
   blocks_.set_zero();
   for (Index i = 0; i < blocks_.size(); ++i) blocks_.add(i, i, network_.masses[i] * Matrix3::Identity());
   blocks_.add_scaled(derivatives.by_velocity, -dt);
   blocks_.add_scaled(derivatives.by_position, -dt * dt);
-  fill();
+}
 
+void ImplicitSystem::hold(Index particle, const Vector3& vector, Points& right) {
+  const double length = vector.norm();
+  if (length == 0.0) return;
+  const Vector3 direction = vector / length;
+  const double weight = kHoldWeight * blocks_.diagonal(particle).trace();
+  blocks_.add(particle, particle, weight * direction * direction.transpose());
+  right.col(particle) += weight * vector;
+}
+
+void ImplicitSystem::solve(Points& vectors) {
+  if (free_count_ == 0) {
+    vectors.setZero();
+    return;
+  }
+  fill();
   Scalars& right = factor_->right;
   right.resize(3 * free_count_);
   for (Index i = 0; i < blocks_.size(); ++i) {

@@ -17,9 +17,16 @@ class ImplicitSystem {
   ImplicitSystem(const SpringNetwork& network, const ForceDerivatives& derivatives);
   ~ImplicitSystem();
 
-  /// Replaces the right-hand sides b of free particles by the solution y, and those of pinned particles by zero; 3 x n. `dt` is h
-  /// [s]. What is not finite when the matrix is not.
-  void solve(const ForceDerivatives& derivatives, double dt, Points& vectors);
+  /// Writes the matrix; `dt` is h [s].
+  void assemble(const ForceDerivatives& derivatives, double dt);
+
+  /// Lets the solution of a free particle have the part `vector` in that vector's direction, whatever its equations say; across it
+  /// stays free (the constraints of Baraff and Witkin 1998, by weight). After `assemble`, before `solve`.
+  void hold(Index particle, const Vector3& vector, Points& right);
+
+  /// Replaces the right-hand sides b of free particles by the solution y, and those of pinned particles by zero; 3 x n. Not finite
+  /// when the matrix is not.
+  void solve(Points& vectors);
 
  private:
   struct Factor;

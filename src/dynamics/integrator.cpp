@@ -20,6 +20,8 @@ struct MakeIntegrator {
 
 void Integrator::start(SimulationState& state, const Forces&, double) { state.x_previous = state.x; }
 
+void Integrator::answer_contact(const Points&, Points&, double) {}
+
 void Integrator::recover_velocities(SimulationState& state, const Points&, const Points& advanced, double dt) const {
   for_free_particles(network_, [&](Index i) { state.v.col(i) += (state.x.col(i) - advanced.col(i)) / dt; });
 }

@@ -55,6 +55,13 @@ class Integrator {
   /// depends on the arguments alone.
   virtual void advance(SimulationState& state, const Forces& forces, double dt) = 0;
 
+  /// Whether `answer_contact` does anything.
+  [[nodiscard]] virtual bool answers_contact() const { return false; }
+
+  /// Contact has pushed some particles from `advanced` (what `advance` has just made) to `positions` [m]. A scheme that solves for
+  /// the forces at the step's end moves the others to where these forces take them then, and the pushed ones where they may go.
+  virtual void answer_contact(const Points& advanced, Points& positions, double dt);
+
   /// Velocities after constraints moved `advanced` (what `advance` made) to state.x; `before` are the positions at t. Default:
   /// v += (x - advanced) / dt.
   virtual void recover_velocities(SimulationState& state, const Points& before, const Points& advanced, double dt) const;

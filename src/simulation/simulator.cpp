@@ -55,6 +55,7 @@ struct Simulator::Implementation {
   StepReport step();
   void move_pins(double time);
   void constrain(StepReport& report);
+  void answer_contact();
   void settle(StepReport& report);
   [[nodiscard]] bool relax(Points& positions, double excess_before);
   [[nodiscard]] double elastic_energy() const;
@@ -157,6 +158,7 @@ void Simulator::Implementation::constrain(StepReport& report) {
   const bool projects = projects_contacts();
   if (!projects && !limit) return;
   if (projects) contacts.find(motion());
+  if (projects && integrator->answers_contact()) answer_contact();
   const bool solved = limit && limit->solve(before, state.x, settings.gravity.norm() * settings.step * settings.step) > 0;
   const int limit_passes = limit ? limit->settings().iterations : 0;
   const int passes = projects ? std::max(limit_passes, kContactPasses) : limit_passes;
@@ -173,6 +175,16 @@ void Simulator::Implementation::constrain(StepReport& report) {
     settled = (!limit || excess <= limit->settings().tolerance) && push <= kContactTolerance;
     ++report.iterations;
   }
+}
+
+void Simulator::Implementation::answer_contact() {
+  bool pushed = false;
+  for (int pass = 0; pass < kContactPasses; ++pass) {
+    const double push = contacts.project(state.x);
+    pushed = pushed || push > 0.0;
+    if (push <= kContactTolerance) break;
+  }
+  if (pushed) integrator->answer_contact(advanced, state.x, settings.step);
 }
 
 void Simulator::Implementation::settle(StepReport& report) {

@@ -24,7 +24,9 @@ TEST(ImplicitSystem, SolutionFulfilsTheEquationsOfFreeParticles) {
   const double dt = 0.02;
   const Points right = Points::Random(3, network.particle_count());
   Points y = right;
-  ImplicitSystem(network, derivatives).solve(derivatives, dt, y);
+  ImplicitSystem system(network, derivatives);
+  system.assemble(derivatives, dt);
+  system.solve(y);
   Points left = y * network.masses.asDiagonal();
   derivatives.by_velocity.add_product(y, -dt, left);
   derivatives.by_position.add_product(y, -dt * dt, left);
@@ -38,6 +40,25 @@ TEST(ImplicitSystem, SolutionFulfilsTheEquationsOfFreeParticles) {
   }
 }
 
+// Two masses on a spring: one is held along x, so the other follows by h^2 k / (m + h^2 k) of it, and across both are free.
+TEST(ImplicitSystem, HoldsAParticleAlongAVectorAndTheOthersFollow) {
+  const SpringNetwork network = make_pair(1.0, 10.0, 1.0);
+  Forces forces;
+  forces.push_back(std::make_unique<SpringForce>(network));
+  ForceDerivatives derivatives = make_derivatives(forces, 2);
+  differentiate(forces, {.x = network.positions, .v = network.velocities, .time = 0.0}, derivatives);
+  ImplicitSystem system(network, derivatives);
+  system.assemble(derivatives, 0.5);
+  Points y = Points::Zero(3, 2);
+  y(1, 0) = 3.0;
+  system.hold(0, Vector3(2.0, 0.0, 0.0), y);
+  system.solve(y);
+  const double follows = 2.5 / (1.0 + 2.5);
+  // A hold weighs a million times as much as what it holds.
+  EXPECT_LT((y.col(0) - Vector3(2.0, 3.0, 0.0)).norm(), 4.0e-6);
+  EXPECT_LT((y.col(1) - Vector3(2.0 * follows, 0.0, 0.0)).norm(), 4.0e-6);
+}
+
 TEST(ImplicitSystem, TakesNetworksThatArePinnedAltogether) {
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 1.0);
@@ -45,7 +66,9 @@ TEST(ImplicitSystem, TakesNetworksThatArePinnedAltogether) {
   const SpringNetwork network = builder.build();
   const ForceDerivatives derivatives = make_derivatives({}, 1);
   Points vectors = Points::Ones(3, 1);
-  ImplicitSystem(network, derivatives).solve(derivatives, 0.1, vectors);
+  ImplicitSystem system(network, derivatives);
+  system.assemble(derivatives, 0.1);
+  system.solve(vectors);
   EXPECT_TRUE(vectors.isZero(0.0));
 }
 
@@ -57,7 +80,8 @@ TEST(ImplicitSystem, TellsByNaNWhatHasNoSolution) {
   ImplicitSystem system(network, derivatives);
   derivatives.by_position.add(0, 0, Matrix3::Constant(std::numeric_limits<double>::quiet_NaN()));
   Points vectors = Points::Ones(3, 2);
-  system.solve(derivatives, 0.1, vectors);
+  system.assemble(derivatives, 0.1);
+  system.solve(vectors);
   EXPECT_FALSE(vectors.allFinite());
 }
 

@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace sprung {
 namespace {
@@ -32,6 +34,34 @@ TEST(TwoMasses, TheHeavierMassStretchesTheSpringFurther) {
   const double reached = extension(heavy, heavy.frames());
   EXPECT_GT(reached, extension(light, light.frames()));
   EXPECT_NEAR(reached, 3 * 9.81 / 20, 3 * 9.81 / 20 * std::exp(-15.0) * 2);
+}
+
+// How the energy of the rope differs from that at the start, at most and at the end.
+struct EnergyGain {
+  double most = 0.0;
+  double last = 0.0;
+};
+
+EnergyGain energy_gain(const std::string& scheme) {
+  const ExampleRun run("six_schemes", {"--set", "integrator.type=" + scheme});
+  EXPECT_EQ(run.exit_code(), 0) << run.messages();
+  EnergyGain gain;
+  for (std::size_t i = 0; i < run.column("frame").size(); ++i) {
+    const double energy = run.column("kinetic_energy")[i] + run.column("elastic_energy")[i] + run.column("gravity_energy")[i];
+    gain.last = energy - run.column("elastic_energy")[0] - run.column("gravity_energy")[0];
+    gain.most = std::max(gain.most, std::abs(gain.last));
+  }
+  return gain;
+}
+
+// What README's table says. The rope falls a metre: 5 J.
+TEST(SixSchemes, TreatEnergyAsTheReadmeTells) {
+  EXPECT_EQ(ExampleRun("six_schemes", {"--set", "integrator.type=explicit_euler"}).exit_code(), 4);
+  EXPECT_LT(energy_gain("symplectic_euler").most, 0.11);
+  EXPECT_LT(energy_gain("verlet").most, 0.11);
+  EXPECT_LT(energy_gain("velocity_verlet").most, 0.011);
+  EXPECT_NEAR(energy_gain("rk4").last, -0.004, 0.001);
+  EXPECT_NEAR(energy_gain("implicit_euler").last, -1.6, 0.05);
 }
 
 TEST(TooLargeStep, IsRefusedWithTheLargestStableOne) {

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Runs six_schemes.json with each scheme and plots what becomes of its energy: examples/pictures/six_schemes.png
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+examples/install_packages.sh picture
+
+schemes=(explicit_euler symplectic_euler verlet velocity_verlet rk4 implicit_euler)
+frames=build/frames/six_schemes
+for scheme in "${schemes[@]}"; do
+  # Explicit Euler diverges, and leaves its good frames.
+  build/release/bin/sprung run examples/six_schemes.json --out "$frames/$scheme" --overwrite --quiet \
+    --set "integrator.type=$scheme" || (($? == 4))
+done
+
+mkdir -p examples/pictures
+gnuplot <<TXT
+set terminal pngcairo size 1000,400 font "sans,11"
+set output "examples/pictures/six_schemes.png"
+set datafile separator ","
+set multiplot layout 1,2
+set xlabel "time [s]"
+set ylabel "energy gained [J]"
+set grid
+schemes = "${schemes[*]}"
+colors = "#d62728 #ff7f0e #2ca02c #9467bd #000000 #1f77b4"
+energy(k) = column("kinetic_energy") + column("elastic_energy") + column("gravity_energy")
+set key bottom left
+set yrange [-2:1]
+plot for [k = 1:6] "$frames/".word(schemes, k)."/diagnostics.csv" using "time":(energy(k)) \
+  with lines lw 1.5 lc rgb word(colors, k) title word(schemes, k) noenhanced
+set yrange [-0.1:0.1]
+unset key
+replot
+TXT
