@@ -80,8 +80,8 @@ class Simulator {
   /// Particles that obstacles push at present.
   [[nodiscard]] Index contact_count() const;
 
-  /// Throws StepError when a spring gave way, or the energy exploded, that the check of the steps, which looks at large networks only now and then, has not
-  /// seen yet.
+  /// Throws StepError when a spring gave way, or the energy exploded, that the check of the steps, which looks at large networks
+  /// only now and then, has not seen yet.
   void check() const;
 
   /// Elastic energy [J], sum 1/2 k_s (|s| - d)^2 and that of angle bends, and -m g . x.
