@@ -77,10 +77,10 @@ TEST(Materials, ClothHeldByTwoEdgesSagsAlikeAtAnyResolution) {
 }
 
 // A corner that is one particle is a point load on a sheet, whose give grows with the logarithm of the resolution whatever the
-// discretisation: weight / 2 / (pi modulus) a factor of e, here 0.5 %. Measured: 1.7 % from 16 to 64.
+// discretisation: weight / 2 / (pi modulus) a factor of e, here 0.5 %. Measured: 2.4 % at rest.
 TEST(Materials, ClothHeldByTwoCornersSagsAlikeAtAnyResolution) {
   std::vector<double> sags;
-  for (const Index side : {16, 32, 64}) sags.push_back(sag(level_cloth(side, true, 60.0), 3.0, 6.0));
+  for (const Index side : {16, 32, 64, 128}) sags.push_back(sag(level_cloth(side, true, 60.0), 2.0, 6.0));
   EXPECT_LT(spread(sags), 0.03);
   EXPECT_GT(sags[0], 1.0);
 }
