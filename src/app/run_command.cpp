@@ -28,6 +28,7 @@ RunFacts facts_of(const LoadedScene& loaded, int threads) {
           .frames = loaded.frames,
           .steps_per_frame = loaded.steps_per_frame,
           .threads = threads,
+          .stretch_solver = loaded.simulator.stretch_solver(),
           .warnings = loaded.warnings};
 }
 
@@ -61,18 +62,54 @@ void warn_of_squeezing(const FrameDiagnostics& frame, RunOutput& output, bool& w
   print_warning(warning);
 }
 
+/// Remembers by how much the stretch limit was missed, to be told once.
+class MissedLimit {
+ public:
+  explicit MissedLimit(const Simulator& simulator) {
+    if (const auto& limit = simulator.settings().stretch_limit) tolerance_ = limit->tolerance;
+  }
+
+  void see(const FrameDiagnostics& frame) {
+    if (frame.stretch_excess <= tolerance_) return;
+    ++frames_;
+    if (frame.stretch_excess <= most_) return;
+    most_ = frame.stretch_excess;
+    worst_frame_ = frame.frame;
+  }
+
+  void tell(RunOutput& output) const {
+    if (frames_ == 0) return;
+    const std::string warning = fmt::format(
+        "the stretch limit was missed by more than its tolerance in {} {}, by at most {} % of a rest length in frame {}; the "
+        "column stretch_excess of diagnostics.csv tells by how much in each",
+        frames_, frames_ == 1 ? "frame" : "frames", format_number(100.0 * most_, 2), worst_frame_);
+    output.add_warning(warning);
+    print_warning(warning);
+  }
+
+ private:
+  double tolerance_ = 0.0;
+  double most_ = 0.0;
+  int frames_ = 0;
+  int worst_frame_ = 0;
+};
+
 /// Writes frames until all are done or the user interrupts; `written` counts them.
 void write_frames(LoadedScene& loaded, RunOutput& output, bool quiet, int& written) {
   FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
   Progress progress(loaded.frames, quiet);
   bool warned = false;
+  MissedLimit missed(loaded.simulator);
   for (int frame = 1;; ++frame) {
     const FrameDiagnostics diagnostics = frame == 1 ? runner.first_frame() : runner.next_frame();
     output.write_frame(loaded.simulator, diagnostics);
     written = frame;
     warn_of_squeezing(diagnostics, output, warned);
+    missed.see(diagnostics);
     progress.frame_done(frame);
-    if (frame == loaded.frames || interrupted()) return;
+    if (frame < loaded.frames && !interrupted()) continue;
+    missed.tell(output);
+    return;
   }
 }
 

@@ -41,10 +41,10 @@ ComponentNewton::ComponentNewton(StretchComponent component, const StretchLimitS
       mass_(std::accumulate(component_.masses.begin(), component_.masses.end(), 0.0)) {}
 ComponentNewton::~ComponentNewton() = default;
 
-int ComponentNewton::solve(const Points& before, Points& positions, double fall) {
+std::optional<int> ComponentNewton::solve(const Points& before, Points& positions, double fall) {
   gather(before, positions);
   energy_.set_weight(1.0);
-  if (energy_.value(led_, led_) == 0.0) return 0;
+  if (energy_.value(led_, led_) == 0.0) return std::nullopt;
   energy_.set_weight(carried_weight(fall));
   const int iterations = minimise();
   if (clips_) clip();

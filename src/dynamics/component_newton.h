@@ -5,6 +5,7 @@
 #include "dynamics/stretch_system.h"
 
 #include <memory>
+#include <optional>
 
 namespace sprung {
 
@@ -19,8 +20,8 @@ class ComponentNewton {
   /// Leads the component's free particles from where forces led them, `positions`, to the minimum; `before` is where the step
   /// began. `fall` [m] is how far the largest steady acceleration leads a particle at rest in a step, |g| dt^2: links are made
   /// stiff enough to carry the component against it, and against the motion it has. Of a chain or tree that hangs on one link, no
-  /// link is beyond the tolerance then. Returns how many linear systems were solved; 0 when no link was too long.
-  int solve(const Points& before, Points& positions, double fall);
+  /// link is beyond the tolerance then. Returns how many linear systems were solved; none when no link was too long.
+  std::optional<int> solve(const Points& before, Points& positions, double fall);
 
  private:
   void gather(const Points& before, const Points& positions);

@@ -40,7 +40,7 @@ LengthRange length_range(const StretchLimitSettings& settings) {
 StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings)
     : network_(network), settings_(settings), batches_(std::make_unique<StretchBatches>(network, settings.kinds)) {
   if (settings.tethers) tethers_ = std::make_unique<Tethers>(network, settings.kinds, settings.max_stretch);
-  if (settings.solver == StretchLimitSettings::Solver::newton) newton_ = std::make_unique<StretchNewton>(network, settings);
+  if (settings.solver != StretchLimitSettings::Solver::gauss_seidel) newton_ = std::make_unique<StretchNewton>(network, settings);
 }
 StretchLimit::~StretchLimit() = default;
 
@@ -57,8 +57,8 @@ double StretchLimit::project(Points& positions, double relaxation) const {
   return excess;
 }
 
-int StretchLimit::solve(const Points& before, Points& positions, double fall) const {
-  return newton_ ? newton_->solve(before, positions, fall) : 0;
+std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double fall) const {
+  return newton_ ? newton_->solve(before, positions, fall) : std::nullopt;
 }
 
 double StretchLimit::excess(const Points& positions) const {
@@ -70,14 +70,21 @@ double StretchLimit::excess(const Points& positions) const {
 
 const StretchLimitSettings& StretchLimit::settings() const { return settings_; }
 
+std::string StretchLimit::chosen_solver() const {
+  if (!newton_ || !newton_->holds_any()) return "gauss_seidel";
+  return newton_->holds_all() ? "newton" : "newton for chains and trees, gauss_seidel for the rest";
+}
+
 // At rest each step adds g dt^2 to each particle, and each of its passes hands on a part of it. Where tethers have handed on
 // theirs, passes gain less: hanging cloths showed 4 passes to be worth 2.6, and 32 to be worth 10. What sags between its
 // pins hangs askew from all of them: there tethers gain nothing.
 double StretchLimit::suggested_step(double acceleration) const {
-  if (newton_) return std::numeric_limits<double>::infinity();
   const auto step = [&](bool tethers, double passes) {
     double load = 0.0;
-    for (const Body& body : network_.bodies) load = std::max(load, largest_load(network_, body, *batches_, tethers));
+    for (const Body& body : network_.bodies) {
+      if (newton_ && newton_->holds(body)) continue;
+      load = std::max(load, largest_load(network_, body, *batches_, tethers));
+    }
     const double excess = std::max(0.5 * settings_.max_stretch + settings_.tolerance, kLeastExcess);
     const double divisor = acceleration * load;
     return divisor > 0.0 ? std::sqrt(excess * passes / divisor) : std::numeric_limits<double>::infinity();

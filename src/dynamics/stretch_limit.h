@@ -4,6 +4,8 @@
 #include "network/spring_network.h"
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace sprung {
@@ -15,7 +17,8 @@ class Tethers;
 struct StretchLimitSettings {
   enum class Solver : std::uint8_t {
     gauss_seidel,  ///< passes alone
-    newton         ///< a global solve before them
+    newton,        ///< a global solve before them
+    automatic      ///< a global solve of chains and trees, passes for the rest
   };
   double max_stretch = 0.02;                              ///< >= 0: lengths stay below d (1 + max_stretch)
   double max_compression = 1.0;                           ///< in [0, 1]: and above d (1 - max_compression)
@@ -41,21 +44,24 @@ class StretchLimit {
   /// where many springs share it.
   double project(Points& positions, double relaxation = 1.0) const;
 
-  /// Newton's method on all that is too long at once, when `solver` is newton: leads free particles to where springs are within
+  /// Newton's method on all that is too long at once, as `solver` chooses: leads free particles to where springs are within
   /// their limits, with as little weighted movement as that takes. What is left is for the passes: compression, and what contact
   /// does. `before` is where the step began; `fall` [m] is |g| dt^2. Returns how many linear systems were
-  /// solved in turn.
-  int solve(const Points& before, Points& positions, double fall) const;
+  /// solved in turn; none when no spring that is solved for was too long.
+  std::optional<int> solve(const Points& before, Points& positions, double fall) const;
 
   /// The largest excess over the limits, as a part of the rest length; changes nothing.
   [[nodiscard]] double excess(const Points& positions) const;
 
   [[nodiscard]] const StretchLimitSettings& settings() const;
 
+  /// What `solver` comes to for this network: `newton`, `gauss_seidel`, or both where automatic parts it.
+  [[nodiscard]] std::string chosen_solver() const;
+
   /// The step [s] at which `iterations` passes a step keep the excess at about half of `max_stretch` plus `tolerance` when each
   /// body hangs at rest under `acceleration` [m/s^2] by its pins, or over an obstacle: in each step gravity adds g dt^2 per carried
   /// particle, and the passes must hand it on. Larger with tethers to pins that are taut (see are_pins_taut). Infinity when nothing
-  /// is limited, and with `solver` newton, which needs no small steps.
+  /// is limited, and for what a global solve holds, which needs no small steps.
   [[nodiscard]] double suggested_step(double acceleration) const;
 
  private:

@@ -4,6 +4,7 @@
 #include "dynamics/stretch_limit.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace sprung {
@@ -14,16 +15,23 @@ class ComponentNewton;
 /// max_stretch is held, not max_compression. Same bits for any number of threads.
 class StretchNewton {
  public:
+  /// Takes chains and trees alone when `settings.solver` is automatic.
   StretchNewton(const SpringNetwork& network, const StretchLimitSettings& settings);
   ~StretchNewton();
 
   /// Leads free particles from where forces led them, `positions`, to where no limited spring is much too long, with as little
   /// weighted movement as that takes. `before` is where the step began; pins are where they shall be in `positions`. `fall` as
-  /// ComponentNewton's. Returns the most linear systems that a component took.
-  int solve(const Points& before, Points& positions, double fall);
+  /// ComponentNewton's. Returns the most linear systems that a component took; none when nothing was too long.
+  std::optional<int> solve(const Points& before, Points& positions, double fall);
+
+  /// Whether all limited springs of a body are solved for.
+  [[nodiscard]] bool holds(const Body& body) const;
+  [[nodiscard]] bool holds_any() const { return !components_.empty(); }
+  [[nodiscard]] bool holds_all() const { return left_.empty(); }
 
  private:
   std::vector<std::unique_ptr<ComponentNewton>> components_;
+  std::vector<Index> left_;  ///< particles that are not solved for, in ascending order
 };
 
 }  // namespace sprung

@@ -14,7 +14,7 @@ struct Column {
 
 using Frame = FrameDiagnostics;
 
-const std::array<Column, 12> kColumns{{
+const std::array<Column, 13> kColumns{{
     {"frame", [](const Frame& frame) { return std::to_string(frame.frame); }},
     {"time", [](const Frame& frame) { return format_number(frame.time); }},
     {"kinetic_energy", [](const Frame& frame) { return format_number(frame.kinetic_energy); }},
@@ -27,6 +27,7 @@ const std::array<Column, 12> kColumns{{
     {"stretch_excess", [](const Frame& frame) { return format_number(frame.stretch_excess); }},
     {"truncated", [](const Frame& frame) { return std::to_string(frame.truncated); }},
     {"squeezed", [](const Frame& frame) { return std::to_string(frame.squeezed); }},
+    {"limit_solves", [](const Frame& frame) { return std::to_string(frame.limit_solves); }},
 }};
 
 template <class Field>

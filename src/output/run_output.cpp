@@ -32,6 +32,7 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
   std::vector<std::string> written;
   ++progress_.frames_written;
   progress_.steps = simulator.state().step;
+  progress_.limit_solves += diagnostics.limit_solves;
   try {
     for (const ObjSequence& sequence : sequences_) {
       if (before.frames_written > 0 && !sequence.changes()) continue;

@@ -37,6 +37,8 @@ RunRecord::RunRecord(const RunFacts& facts, double step, const std::vector<std::
                      {"seed", facts.seed},
                      {"threads", facts.threads},
                      {"wall_seconds", 0.0},
+                     {"stretch_solver", facts.stretch_solver},
+                     {"limit_solves", 0},
                      {"warnings", facts.warnings},
                      {"files", files},
                      {"scene", facts.scene.empty() ? Json() : Json::parse(facts.scene)}};
@@ -51,6 +53,7 @@ std::string RunRecord::text(const RunProgress& progress) const {
   json["outcome"] = progress.outcome;
   json["frames_written"] = progress.frames_written;
   json["steps"] = progress.steps;
+  json["limit_solves"] = progress.limit_solves;
   json["wall_seconds"] = progress.wall_seconds;
   // A warning may quote a file name that is not UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -19,7 +19,8 @@ struct RunFacts {
   int frames = 1;            ///< that the run is to write
   int steps_per_frame = 1;
   int threads = 1;
-  std::uint64_t seed = 0;  ///< of what is random; nothing is yet
+  std::string stretch_solver{};  ///< what holds the stretch limit; empty without one
+  std::uint64_t seed = 0;        ///< of what is random; nothing is yet
   std::vector<std::string> warnings{};
 };
 
@@ -28,7 +29,8 @@ struct RunProgress {
   std::string outcome = "running";  ///< `running`, `done`, `interrupted`, `diverged: ...`
   int frames_written = 0;
   std::int64_t steps = 0;
-  double wall_seconds = 0.0;  ///< since the output was opened, writing included
+  std::int64_t limit_solves = 0;  ///< linear systems of the stretch limit
+  double wall_seconds = 0.0;      ///< since the output was opened, writing included
 };
 
 /// The text of run.json.

@@ -47,7 +47,7 @@ StretchLimitSettings read_stretch_limit(Fields& fields) {
   limit.max_compression = fields.value("max_compression", number(kFraction), limit.max_compression).value_or(0.0);
   limit.kinds = read_kinds(fields);
   limit.iterations = fields.value("iterations", integer(1, 1'000'000), limit.iterations).value_or(1);
-  const auto solver = fields.value("solver", word_of({"gauss_seidel", "newton"}), "gauss_seidel");
+  const auto solver = fields.value("solver", word_of({"gauss_seidel", "newton", "auto"}), "gauss_seidel");
   limit.solver = static_cast<StretchLimitSettings::Solver>(solver.value_or(0));
   limit.tolerance = fields.value("tolerance", number(kNotNegative), limit.tolerance).value_or(0.0);
   limit.tethers = fields.value("tethers", boolean(), limit.tethers).value_or(false);

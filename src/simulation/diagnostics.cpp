@@ -55,11 +55,13 @@ FrameDiagnostics FrameRunner::next_frame() {
   double excess = 0.0;
   Index truncated = 0;
   Index squeezed = 0;
+  std::int64_t limit_solves = 0;
   for (int step = 0; step < steps_per_frame_; ++step) {
     const StepReport report = simulator_.step();
     excess = std::max(excess, report.stretch_excess);
     truncated += report.truncated;
     squeezed += report.squeezed;
+    limit_solves += report.limit_solves;
   }
   simulator_.check();
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
@@ -68,6 +70,7 @@ FrameDiagnostics FrameRunner::next_frame() {
   diagnostics.stretch_excess = excess;
   diagnostics.truncated = truncated;
   diagnostics.squeezed = squeezed;
+  diagnostics.limit_solves = limit_solves;
   diagnostics.frame_ms = elapsed.count();
   return diagnostics;
 }

@@ -20,6 +20,7 @@ struct FrameDiagnostics {
                                        ///< all are farther than the network is large
   Index truncated = 0;                 ///< in all of the frame's steps
   Index squeezed = 0;                  ///< in all of the frame's steps
+  std::int64_t limit_solves = 0;       ///< linear systems of the stretch limit, in all of the frame's steps
   double frame_ms = 0.0;               ///< wall time of computing the frame
 };
 

@@ -159,14 +159,16 @@ void Simulator::Implementation::constrain(StepReport& report) {
   if (!projects && !limit) return;
   if (projects) contacts.find(motion());
   if (projects && integrator->answers_contact()) answer_contact();
-  const bool solved = limit && limit->solve(before, state.x, settings.gravity.norm() * settings.step * settings.step) > 0;
+  const double fall = settings.gravity.norm() * settings.step * settings.step;
+  const std::optional<int> solves = limit ? limit->solve(before, state.x, fall) : std::nullopt;
+  report.limit_solves = solves.value_or(0);
   const int limit_passes = limit ? limit->settings().iterations : 0;
   const int passes = projects ? std::max(limit_passes, kContactPasses) : limit_passes;
   bool settled = false;
   while (!settled && report.iterations < passes) {
     const bool between = report.iterations > 0 && report.iterations + 1 < limit_passes;
     double excess = 0.0;
-    if (solved && report.iterations == 0) {
+    if (solves && report.iterations == 0) {
       excess = limit->excess(state.x);
     } else if (report.iterations < limit_passes) {
       excess = limit->project(state.x, between ? kRelaxation : 1.0);
@@ -269,6 +271,10 @@ const std::vector<std::string>& Simulator::warnings() const { return implementat
 double Simulator::time() const { return static_cast<double>(state().step) * settings().step; }
 double Simulator::gravity_energy() const { return implementation_->gravity->energy(state().x); }
 double Simulator::elastic_energy() const { return implementation_->elastic_energy(); }
+
+std::string Simulator::stretch_solver() const {
+  return implementation_->limit ? implementation_->limit->chosen_solver() : std::string();
+}
 
 Index Simulator::contact_count() const {
   return implementation_->penalty != nullptr ? implementation_->penalty->contact_count(state().x)

@@ -47,6 +47,7 @@ struct SimulatorSettings {
 /// What one step did.
 struct StepReport {
   int iterations = 0;           ///< passes of stretch limit and contact
+  int limit_solves = 0;         ///< linear systems that the stretch limit solved in turn
   double stretch_excess = 0.0;  ///< beyond the stretch limit at the end, as a part of the rest length
   Index truncated = 0;          ///< particles stopped at a surface
   Index squeezed = 0;           ///< particles that found no free place between obstacles
@@ -76,6 +77,9 @@ class Simulator {
 
   /// Positions [m], 3 x n.
   [[nodiscard]] const Points& positions() const { return state().x; }
+
+  /// What solves the stretch limit of this network, as StretchLimit::chosen_solver; empty without a limit.
+  [[nodiscard]] std::string stretch_solver() const;
 
   /// Particles that obstacles push at present.
   [[nodiscard]] Index contact_count() const;

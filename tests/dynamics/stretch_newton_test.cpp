@@ -127,7 +127,7 @@ TEST(StretchNewton, LeavesWhatIsNotTooLongWhereForcesLedIt) {
   const SpringNetwork network = make_test_rope(20, 0.0);
   Points x = 0.5 * network.positions;
   const Points led = x;
-  EXPECT_EQ(StretchNewton(network, {}).solve(network.positions, x, 1.0e-3), 0);
+  EXPECT_FALSE(StretchNewton(network, {}).solve(network.positions, x, 1.0e-3));
   EXPECT_EQ(x, led);
 }
 
@@ -159,6 +159,24 @@ TEST(StretchNewton, HoldsTheLimitOfAHangingRope) {
     limit.solve(network.positions, x, kGravity * dt * dt);
     EXPECT_LE(limit.excess(x), settings.tolerance) << particles;
   }
+}
+
+TEST(StretchLimit, AutomaticSolvesForChainsAndLeavesClothsToPasses) {
+  using Solver = StretchLimitSettings::Solver;
+  const auto chosen = [](const SpringNetwork& network, Solver solver) {
+    return StretchLimit(network, {.solver = solver}).chosen_solver();
+  };
+  const SpringNetwork rope = make_test_rope(10, 0.0);
+  const SpringNetwork cloth = make_test_cloth(5, 0.0, 0.0);
+  EXPECT_EQ(chosen(rope, Solver::automatic), "newton");
+  EXPECT_EQ(chosen(cloth, Solver::automatic), "gauss_seidel");
+  EXPECT_EQ(chosen(cloth, Solver::newton), "newton");
+  EXPECT_EQ(chosen(rope, Solver::gauss_seidel), "gauss_seidel");
+  const StretchLimitSettings settings{.solver = Solver::automatic};
+  EXPECT_EQ(StretchLimit(rope, settings).suggested_step(kGravity), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(StretchLimit(cloth, settings).suggested_step(kGravity), StretchLimit(cloth, {}).suggested_step(kGravity));
+  Points x = 1.5 * cloth.positions;
+  EXPECT_FALSE(StretchLimit(cloth, settings).solve(cloth.positions, x, 1.0e-3));
 }
 
 // A rope of two pins farther apart than it is long: what cannot be is shared evenly, and told.
