@@ -23,7 +23,8 @@ VerletSettings read_verlet(Fields& fields) {
 }
 
 IntegratorSettings read_integrator(Fields& fields) {
-  const auto kind = fields.kind("type", {"explicit_euler", "symplectic_euler", "verlet", "velocity_verlet", "rk4", "implicit_euler"});
+  const auto kind =
+      fields.kind("type", {"explicit_euler", "symplectic_euler", "verlet", "velocity_verlet", "rk4", "implicit_euler"});
   if (kind == 0) return ExplicitEulerSettings{};
   if (kind == 1) return SymplecticEulerSettings{};
   if (kind == 2) return read_verlet(fields);

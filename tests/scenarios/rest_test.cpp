@@ -85,7 +85,9 @@ TEST(RestOfAJelly, ItsWeightIsCarriedAtItsThickness) {
     EXPECT_TRUE(report.is_free()) << report;
     EXPECT_NEAR(extremes.lowest(), kThickness, 0.05 * kThickness);
     EXPECT_LT(extremes.fastest(), 1e-3);
-    EXPECT_LT(extremes.energy_growth(), 1e-12);
+    // Verlet's velocity is half a step old, and the jelly swings four times a second, at first with 0.03 J: of that 26 / s times
+    // half a step of 1 / 540 s goes to and fro between motion and springs meanwhile.
+    EXPECT_LT(extremes.energy_growth(), 0.024 * 0.03);
   }
 }
 
