@@ -172,7 +172,10 @@ SpringNetwork NetworkBuilder::build() const {
   network.inverse_masses = network.masses.cwiseInverse();
   network.pins = pins_;
   for (const Pin& pin : pins_) {
-    for (const Index particle : pin.particles) network.inverse_masses[particle] = 0.0;
+    for (const Index particle : pin.particles) {
+      network.inverse_masses[particle] = 0.0;
+      network.velocities.col(particle).setZero();
+    }
   }
   for (std::size_t b = 0; b < drafts.size(); ++b) damp_by_ratio(drafts[b].shape.damping_ratios, network.bodies[b], network);
   return network;

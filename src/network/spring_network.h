@@ -84,7 +84,7 @@ struct Pin {
 /// The const model of a network. Made by NetworkBuilder.
 struct SpringNetwork {
   Points positions;        ///< at time 0 [m], 3 x n
-  Points velocities;       ///< at time 0 [m/s], 3 x n
+  Points velocities;       ///< at time 0 [m/s], 3 x n; 0 of pinned particles
   Scalars masses;          ///< [kg], > 0
   Scalars inverse_masses;  ///< [1/kg]; 0 for pinned particles
   Scalars drag_areas;      ///< what air drag multiplies: a third of the area [m^2] of the surface triangles around a

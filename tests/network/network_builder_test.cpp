@@ -127,6 +127,17 @@ TEST(NetworkBuilder, StartsAtItsPositionsAndVelocities) {
   EXPECT_EQ(state.x_previous, network.positions);
 }
 
+// What its body is thrown with is none of a pin's: dampers of its neighbours would drag them along.
+TEST(NetworkBuilder, APinnedParticleIsNotThrownWithItsBody) {
+  NetworkBuilder builder;
+  const Index pinned = builder.add_particle(Vector3::Zero(), 1.0, Vector3(4, 5, 6));
+  const Index free = builder.add_particle(Vector3::UnitX(), 1.0, Vector3(4, 5, 6));
+  builder.pin(pinned);
+  const SpringNetwork network = builder.build();
+  EXPECT_EQ(network.velocities.col(pinned), Vector3::Zero());
+  EXPECT_EQ(network.velocities.col(free), Vector3(4, 5, 6));
+}
+
 TEST(NetworkBuilder, RejectsANetworkWithoutParticles) {
   EXPECT_THAT(keys({}), ElementsAre("particles"));
   NetworkBuilder builder;
