@@ -22,8 +22,10 @@ constexpr double kBalanced = 1.0e-4;
 // few of them.
 constexpr double kActiveAtFirst = 0.9;
 
-// The part of the tolerance that clipped links keep: they shall not be beyond it by rounding.
+// The part of the tolerance that clipped links keep, and what they keep clear of the limit where it has none: they shall not be
+// beyond it by rounding.
 constexpr double kClipPart = 0.99;
+constexpr double kClipRounding = 1.0 - 0x1p-40;
 
 Index count_ties(const StretchComponent& component) {
   return static_cast<Index>(
@@ -46,6 +48,7 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
   energy_.set_weight(1.0);
   if (energy_.value(led_, led_) == 0.0) return std::nullopt;
   energy_.set_weight(carried_weight(fall));
+  solver_->begin_step();
   const int iterations = minimise();
   if (clips_) clip();
   for (Index i = 0; i < component_.free_count; ++i) positions.col(component_.points[i]) = x_.col(i);
@@ -70,12 +73,22 @@ Vector3 ComponentNewton::common_move() const {
   return moved / mass_;
 }
 
-// What moves by u in a step, on a circle of radius r, is pulled inwards as by an acceleration of u^2 / r.
+// What moves by u in a step, on a circle of radius r, is pulled inwards as by an acceleration of u^2 / r. Where nothing pulls,
+// links that are too long do.
 double ComponentNewton::carried_weight(double fall) const {
   const double farthest = ((led_ - before_).colwise() - common_move()).colwise().squaredNorm().maxCoeff();
   const double extent = bounds(before_).diagonal().norm();
   const double turn = extent > 0.0 ? farthest / extent : 0.0;
-  return mass_ / std::max(component_.pin_count(), Index{1}) * std::max(fall, turn);
+  return mass_ / std::max(component_.pin_count(), Index{1}) * std::max({fall, turn, fall + turn > 0.0 ? 0.0 : most_beyond()});
+}
+
+double ComponentNewton::most_beyond() const {
+  double most = 0.0;
+  for (const StretchComponent::Link& link : component_.links) {
+    const double length = (led_.col(link.first) - led_.col(link.second)).norm();
+    most = std::max(most, length - (1.0 + settings_.max_stretch) * link.rest_length);
+  }
+  return most;
 }
 
 int ComponentNewton::minimise() {
@@ -127,7 +140,7 @@ bool ComponentNewton::descend(double& energy) {
 }
 
 void ComponentNewton::clip() {
-  const double most = 1.0 + settings_.max_stretch + kClipPart * settings_.tolerance;
+  const double most = (1.0 + settings_.max_stretch + kClipPart * settings_.tolerance) * kClipRounding;
   for (Index i = component_.free_count - 1; i >= 0; --i) {
     for (Index k = component_.begin[i]; k < component_.begin[i + 1]; ++k) {
       const StretchComponent::Link& link = component_.links[k];

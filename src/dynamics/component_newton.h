@@ -27,6 +27,7 @@ class ComponentNewton {
   void gather(const Points& before, const Points& positions);
   [[nodiscard]] Vector3 common_move() const;
   [[nodiscard]] double carried_weight(double fall) const;
+  [[nodiscard]] double most_beyond() const;
   int minimise();
   void start();
   [[nodiscard]] double imbalance() const;

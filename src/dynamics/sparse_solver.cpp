@@ -41,6 +41,7 @@ class SparseSolver::Factor {
   }
 
   [[nodiscard]] bool is_made() const { return made_; }
+  void forget() { made_ = false; }
 
   void make(const StretchSystem& system) {
     matrix_.coeffs().setZero();
@@ -119,6 +120,8 @@ class SparseSolver::Factor {
 SparseSolver::SparseSolver(const StretchComponent& component)
     : component_(component), factor_(std::make_unique<Factor>(component)) {}
 SparseSolver::~SparseSolver() = default;
+
+void SparseSolver::begin_step() { factor_->forget(); }
 
 void SparseSolver::solve(const StretchSystem& system, Points& step) {
   if (factor_->is_made() && conjugate_gradients(system, step)) return;

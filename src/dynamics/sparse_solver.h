@@ -7,13 +7,14 @@
 
 namespace sprung {
 
-/// Conjugate gradients, with the Cholesky factor of an earlier system as preconditioner; a new factor is made when they take too
-/// long. The factor's pattern is found once, ordered by minimum degree (Amestoy, Davis and Duff 1996).
+/// Conjugate gradients, with the Cholesky factor of an earlier system of the step as preconditioner; a new factor is made when they
+/// take too long. The factor's pattern is found once, ordered by minimum degree (Amestoy, Davis and Duff 1996).
 class SparseSolver final : public StretchSystemSolver {
  public:
   /// Keeps a reference to the component.
   explicit SparseSolver(const StretchComponent& component);
   ~SparseSolver() override;
+  void begin_step() override;
   void solve(const StretchSystem& system, Points& step) override;
 
  private:

@@ -82,7 +82,7 @@ double StretchLimit::suggested_step(double acceleration) const {
   const auto step = [&](bool tethers, double passes) {
     double load = 0.0;
     for (const Body& body : network_.bodies) {
-      if (newton_ && newton_->holds(body)) continue;
+      if (newton_ && newton_->holds(body) && settings_.max_compression == 1.0) continue;
       load = std::max(load, largest_load(network_, body, *batches_, tethers));
     }
     const double excess = std::max(0.5 * settings_.max_stretch + settings_.tolerance, kLeastExcess);

@@ -46,8 +46,8 @@ class StretchLimit {
 
   /// Newton's method on all that is too long at once, as `solver` chooses: leads free particles to where springs are within
   /// their limits, with as little weighted movement as that takes. What is left is for the passes: compression, and what contact
-  /// does. `before` is where the step began; `fall` [m] is |g| dt^2. Returns how many linear systems were
-  /// solved in turn; none when no spring that is solved for was too long.
+  /// does. `before` is where the step began; `fall` [m] is a dt^2 with the largest steady acceleration a, of gravity and wind.
+  /// Returns how many linear systems were solved in turn; none when no spring that is solved for was too long.
   std::optional<int> solve(const Points& before, Points& positions, double fall) const;
 
   /// The largest excess over the limits, as a part of the rest length; changes nothing.

@@ -20,6 +20,9 @@ class StretchSystemSolver {
  public:
   virtual ~StretchSystemSolver() = default;
 
+  /// Begins a step: what earlier steps left shall not change its bits.
+  virtual void begin_step() {}
+
   /// Writes the free points' displacements [m] to `step`, 3 x free.
   virtual void solve(const StretchSystem& system, Points& step) = 0;
 };

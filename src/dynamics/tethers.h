@@ -8,7 +8,8 @@
 
 namespace sprung {
 
-/// Springs that are within their limits keep each particle within (1 + max_stretch) times its distance along them from each pin.
+/// Springs that are within their limits keep each particle within (1 + max_stretch) times its distance along them from each pin;
+/// here from the nearest pin of each of the kMostTethers nearest groups.
 /// Passes of projection hand that on from spring to spring; tethers know it at once. They pull, and never push.
 class Tethers {
  public:

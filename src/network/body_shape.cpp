@@ -60,10 +60,10 @@ void set_density(BodyShape& shape, double density) {
   problems.require_positive("density", density, "give the mass of a metre, a square metre or a cubic metre in kg");
   const auto bare = std::find(shape.measures.begin(), shape.measures.end(), 0.0);
   if (bare != shape.measures.end()) {
-    problems.add(
-        "density", format_number(density),
-        "gives no mass to particle " + std::to_string(bare - shape.measures.begin()) + ", which has no length, area or volume",
-        "give a mass, or remove such vertices from the mesh");
+    problems.add("density", format_number(density),
+                 "gives no mass to particle " + std::to_string(bare - shape.measures.begin()) +
+                     ", in no face, or in no line of what has no faces",
+                 "give mass or particle_mass, or remove such vertices from the mesh");
   }
   problems.throw_if_any();
   for (std::size_t i = 0; i < shape.masses.size(); ++i) shape.masses[i] = density * shape.measures[i];

@@ -1,6 +1,8 @@
 #include "network/corners.h"
 #include "scene/scene_rules.h"
 
+#include <optional>
+
 namespace sprung {
 namespace {
 
@@ -82,14 +84,16 @@ MassScene read_mass(Fields& fields) {
 
 SpringMaterial read_spring(Fields& fields) {
   SpringMaterial material;
+  std::optional<double> value;
   if (const auto key = fields.one_of({"stiffness", "modulus"})) {
     material.measure = *key == "modulus" ? SpringMaterial::Measure::modulus : SpringMaterial::Measure::stiffness;
-    material.value = fields.optional(*key, number(kNotNegative)).value_or(0.0);
+    value = fields.optional(*key, number(kNotNegative));
+    material.value = value.value_or(0.0);
   }
   if (fields.has("damping_ratio")) {
     fields.one_of({"damping", "damping_ratio"});
     material.damping_ratio = fields.optional("damping_ratio", number(kNotNegative));
-    if (material.value == 0.0) {
+    if (value == 0.0) {
       fields.place()
           .at("damping_ratio")
           .report(fields.json()["damping_ratio"], "needs springs with stiffness", "give damping instead");

@@ -23,7 +23,9 @@ double capacity_of(const SpringNetwork& network) {
 
 EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles)
     : mass_(network.masses.sum()),
-      watches_(std::none_of(obstacles.begin(), obstacles.end(), [](const Obstacle& obstacle) { return obstacle.changes(); })),
+      watches_(obstacles.empty() ||
+               (settings.contact.response == ContactSettings::Response::projection &&
+                std::none_of(obstacles.begin(), obstacles.end(), [](const Obstacle& obstacle) { return obstacle.changes(); }))),
       fastest_drive_(settings.air_drag > 0.0 ? settings.wind.norm() : 0.0),
       capacity_(capacity_of(network)) {}
 

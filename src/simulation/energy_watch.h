@@ -19,8 +19,10 @@ struct Energies {
 
 class EnergyWatch {
  public:
-  /// Does not watch scenes with obstacles that move, whose pushes it does not know.
+  /// Does not watch scenes with obstacles that move or push by forces, which it does not know.
   EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles);
+
+  [[nodiscard]] bool watches() const { return watches_; }
 
   /// Takes in the energies after a step; of the first two, 0 and 1, both count as what the scene begins with: limits and contact
   /// may give a start of their own.

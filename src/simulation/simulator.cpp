@@ -61,7 +61,7 @@ struct Simulator::Implementation {
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] Energies energies() const;
   void check_state();
-  void check_energy() const;
+  void check_energy(const Energies& now) const;
   void fail(StepFailure failure) const;
   [[nodiscard]] bool projects_contacts() const;
   [[nodiscard]] StepMotion motion() const { return {before, v_before, advanced, settings.step}; }
@@ -159,10 +159,10 @@ void Simulator::Implementation::constrain(StepReport& report) {
   if (!projects && !limit) return;
   if (projects) contacts.find(motion());
   if (projects && integrator->answers_contact()) answer_contact();
-  const double fall = settings.gravity.norm() * settings.step * settings.step;
+  const double fall = (settings.gravity.norm() + bounds.drag * settings.wind.norm()) * settings.step * settings.step;
   const std::optional<int> solves = limit ? limit->solve(before, state.x, fall) : std::nullopt;
   report.limit_solves = solves.value_or(0);
-  const int limit_passes = limit ? limit->settings().iterations : 0;
+  const int limit_passes = limit ? limit->settings().iterations + (solves ? 1 : 0) : 0;  // after a solve the first only measures
   const int passes = projects ? std::max(limit_passes, kContactPasses) : limit_passes;
   bool settled = false;
   while (!settled && report.iterations < passes) {
@@ -223,12 +223,14 @@ void Simulator::Implementation::check_state() {
     if (const auto failure = divergence.overstretched(state.x)) fail(*failure);
   }
   if (state.step > 1 && state.step % (kStepsPerEnergy * check_interval) != 0) return;
-  energy_watch.note(state.step, energies());
-  check_energy();
+  if (!energy_watch.watches()) return;
+  const Energies now = energies();
+  energy_watch.note(state.step, now);
+  check_energy(now);
 }
 
-void Simulator::Implementation::check_energy() const {
-  const auto explosion = energy_watch.explosion(energies());
+void Simulator::Implementation::check_energy(const Energies& now) const {
+  const auto explosion = energy_watch.explosion(now);
   if (!explosion) return;
   StepFailure failure = divergence.fastest(state);
   failure.cause = *explosion + (failure.cause.empty() ? "" : "; " + failure.cause);
@@ -283,7 +285,7 @@ Index Simulator::contact_count() const {
 
 void Simulator::check() const {
   if (const auto failure = implementation_->divergence.overstretched(state().x)) implementation_->fail(*failure);
-  implementation_->check_energy();
+  implementation_->check_energy(implementation_->energies());
 }
 
 }  // namespace sprung

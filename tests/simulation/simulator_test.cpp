@@ -113,6 +113,15 @@ TEST(Simulator, EnergyThatNothingPutInStopsIt) {
   }
 }
 
+TEST(Simulator, EnergyThatAPenaltyPutsInDoesNotStopIt) {
+  SimulatorSettings settings{.step = 1.0 / 3000.0, .gravity = Vector3::Zero()};
+  settings.contact = {.response = ContactSettings::Response::penalty, .stiffness = 10.0};
+  Simulator simulator(one_particle({0.0, 0.005, 0.0}, {.thickness = 0.01}), settings, {ground()});
+  EXPECT_NO_THROW(run(simulator, 0.5));
+  // 1/2 k p^2 has become motion.
+  EXPECT_NEAR(simulator.state().v(1, 0), std::sqrt(10.0 / simulator.network().masses[0]) * 0.005, 1.0e-3 * 0.05);
+}
+
 TEST(Simulator, EnergyThatGravityOrPinsPutInDoesNotStopIt) {
   NetworkBuilder builder;
   const Index hook = builder.add_particle(Vector3::Zero(), 1.0);
