@@ -14,7 +14,6 @@ namespace sprung {
 namespace {
 
 constexpr int kDigits = 6;
-constexpr std::array<const char*, 3> kKinds{"structural", "shear", "bend"};
 
 /// The smallest and the largest of some values.
 struct Extremes {
@@ -104,7 +103,7 @@ std::string body_rows(const SpringNetwork& network, const Body& body) {
   const std::array<KindOfSprings, 3> kinds = kinds_of(network.springs, body);
   std::string text = head_row(network, body, kinds) + mass_row(network, body);
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-    if (kinds[kind].count > 0) text += spring_row(kKinds[kind], kinds[kind]);
+    if (kinds[kind].count > 0) text += spring_row(kSpringKindNames[kind], kinds[kind]);
   }
   if (body.angle_bend_count > 0) text += angle_row(network.angle_bends, body);
   return text;

@@ -7,7 +7,10 @@
 
 namespace sprung {
 
-/// The springs of the given kinds that have a rest length and at least one free end, in the network's order.
+/// The springs of the given kinds that have a rest length, those between pins too, in the network's order.
+[[nodiscard]] std::vector<Index> measurable_springs(const SpringNetwork& network, const std::vector<SpringKind>& kinds);
+
+/// Those of them that have at least one free end.
 [[nodiscard]] std::vector<Index> limited_springs(const SpringNetwork& network, const std::vector<SpringKind>& kinds);
 
 }  // namespace sprung

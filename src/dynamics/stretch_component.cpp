@@ -1,48 +1,17 @@
 #include "dynamics/stretch_component.h"
 
 #include "dynamics/limited_springs.h"
+#include "dynamics/spring_graph.h"
 
 #include <algorithm>
 
 namespace sprung {
 namespace {
 
-/// The limited springs at each particle.
-class SpringsAt {
- public:
-  SpringsAt(const SpringNetwork& network, const std::vector<Index>& limited)
-      : springs_(network.springs), begin_(network.particle_count() + 1, 0), spring_(2 * limited.size()) {
-    for (const Index s : limited) {
-      ++begin_[springs_.first[s] + 1];
-      ++begin_[springs_.second[s] + 1];
-    }
-    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-    std::vector<Index> next(begin_.begin(), begin_.end() - 1);
-    for (const Index s : limited) {
-      spring_[next[springs_.first[s]]++] = s;
-      spring_[next[springs_.second[s]]++] = s;
-    }
-  }
-
-  /// Calls `visit(spring, other end)`.
-  template <class Visit>
-  void for_each(Index particle, Visit&& visit) const {
-    for (Index k = begin_[particle]; k < begin_[particle + 1]; ++k) {
-      const Index s = spring_[k];
-      visit(s, springs_.first[s] == particle ? springs_.second[s] : springs_.first[s]);
-    }
-  }
-
- private:
-  const Springs& springs_;
-  std::vector<Index> begin_;
-  std::vector<Index> spring_;
-};
-
 class Finder {
  public:
   Finder(const SpringNetwork& network, const std::vector<Index>& limited)
-      : network_(network), springs_at_(network, limited), seen_(network.particle_count(), false), point_(seen_.size(), kNone) {}
+      : network_(network), graph_(network, limited), seen_(network.particle_count(), false), point_(seen_.size(), kNone) {}
 
   std::vector<StretchComponent> all() {
     std::vector<StretchComponent> found;
@@ -60,19 +29,17 @@ class Finder {
     std::vector<Index> queue{start};
     seen_[start] = true;
     for (std::size_t head = 0; head < queue.size(); ++head) {
-      springs_at_.for_each(queue[head], [&](Index, Index other) {
-        if (seen_[other] || network_.is_pinned(other)) return;
-        seen_[other] = true;
-        queue.push_back(other);
-      });
+      for (const SpringGraph::Way& way : graph_.at(queue[head])) {
+        if (seen_[way.to] || network_.is_pinned(way.to)) continue;
+        seen_[way.to] = true;
+        queue.push_back(way.to);
+      }
     }
     return queue;
   }
 
   [[nodiscard]] bool hangs_on_pin(Index particle) const {
-    bool hangs = false;
-    springs_at_.for_each(particle, [&](Index, Index other) { hangs = hangs || network_.is_pinned(other); });
-    return hangs;
+    return std::ranges::any_of(graph_.at(particle), [&](const SpringGraph::Way& way) { return network_.is_pinned(way.to); });
   }
 
   /// The same particles, from the tips to one that hangs on a pin.
@@ -101,23 +68,23 @@ class Finder {
 
   void add_links(StretchComponent& component, Index i) {
     Index parent = kNone;
-    springs_at_.for_each(component.points[i], [&](Index spring, Index other) {
+    for (const auto& [spring, other] : graph_.at(component.points[i])) {
       if (point_[other] == kNone) {
         point_[other] = static_cast<Index>(component.points.size());
         component.points.push_back(other);
       }
       const Index second = point_[other];
-      if (second < i) return;
+      if (second < i) continue;
       component.links.push_back({i, second, network_.springs.rest_length[spring]});
-      if (!component.is_free(second)) return;
+      if (!component.is_free(second)) continue;
       component.is_tree = component.is_tree && (parent == kNone || parent == second);
       parent = second;
-    });
+    }
     component.begin.push_back(static_cast<Index>(component.links.size()));
   }
 
   const SpringNetwork& network_;
-  SpringsAt springs_at_;
+  SpringGraph graph_;
   std::vector<bool> seen_;
   std::vector<Index> point_;
 };

@@ -1,6 +1,7 @@
 #include "dynamics/stretch_limit.h"
 
 #include "base/parallel.h"
+#include "dynamics/limited_springs.h"
 #include "dynamics/stretch_kernel.h"
 #include "dynamics/stretch_load.h"
 #include "dynamics/stretch_newton.h"
@@ -79,21 +80,20 @@ std::string StretchLimit::chosen_solver() const {
 // theirs, passes gain less: hanging cloths showed 4 passes to be worth 2.6, and 32 to be worth 10. What sags between its
 // pins hangs askew from all of them: there tethers gain nothing.
 double StretchLimit::suggested_step(double acceleration) const {
-  const auto step = [&](bool tethers, double passes) {
-    double load = 0.0;
-    for (const Body& body : network_.bodies) {
-      if (newton_ && newton_->holds(body) && settings_.max_compression == 1.0) continue;
-      load = std::max(load, largest_load(network_, body, *batches_, tethers));
-    }
-    const double excess = std::max(0.5 * settings_.max_stretch + settings_.tolerance, kLeastExcess);
-    const double divisor = acceleration * load;
-    return divisor > 0.0 ? std::sqrt(excess * passes / divisor) : std::numeric_limits<double>::infinity();
-  };
+  const SpringGraph graph(network_, limited_springs(network_, settings_.kinds));
+  const std::vector<Tether> tethers = settings_.tethers ? find_tethers(network_, settings_.kinds) : std::vector<Tether>{};
+  const double excess = std::max(0.5 * settings_.max_stretch + settings_.tolerance, kLeastExcess);
   const double passes = settings_.iterations;
-  const double untethered = step(false, passes);
-  if (!settings_.tethers) return untethered;
-  const bool taut = are_pins_taut(network_, find_tethers(network_, settings_.kinds), settings_.max_stretch);
-  return taut ? std::max(untethered, step(true, std::cbrt(passes * passes))) : untethered;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Body& body : network_.bodies) {
+    if (newton_ && newton_->holds(body) && settings_.max_compression == 1.0) continue;
+    double gained = largest_load(network_, body, graph, false) / passes;
+    if (are_pins_taut(network_, body, tethers, settings_.max_stretch)) {
+      gained = std::min(gained, largest_load(network_, body, graph, true) / std::cbrt(passes * passes));
+    }
+    if (acceleration * gained > 0.0) smallest = std::min(smallest, std::sqrt(excess / (acceleration * gained)));
+  }
+  return smallest;
 }
 
 }  // namespace sprung

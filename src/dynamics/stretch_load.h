@@ -1,7 +1,7 @@
 // What the springs that hold a body must hand on to its pins.
 #pragma once
 
-#include "dynamics/stretch_batches.h"
+#include "dynamics/spring_graph.h"
 
 namespace sprung {
 
@@ -9,7 +9,8 @@ namespace sprung {
 /// before it, as a part of the spring's rest length [1/m]; 0 without limited springs. That is particles carried, times springs that
 /// meet at a particle, over the rest length. With pins the free particles are shared evenly by the pinned ones that have limited
 /// springs; with tethers one carries the springs of the longest strand that leads to it. Without pins the body may
-/// hang over an obstacle by its middle: half the springs on the way between its farthest ends.
-double largest_load(const SpringNetwork& network, const Body& body, const StretchBatches& batches, bool tethers);
+/// hang over an obstacle by its middle: half the springs on the way between its farthest ends. `graph` is that of the limited
+/// springs.
+double largest_load(const SpringNetwork& network, const Body& body, const SpringGraph& graph, bool tethers);
 
 }  // namespace sprung

@@ -1,53 +1,19 @@
 #include "dynamics/tether_paths.h"
 
+#include "dynamics/limited_springs.h"
+#include "dynamics/spring_graph.h"
+
 #include <algorithm>
 #include <map>
 #include <queue>
-#include <span>
 #include <tuple>
 #include <utility>
 
 namespace sprung {
 namespace {
 
-/// Who is joined to whom.
-class Neighbours {
- public:
-  struct Way {
-    Index to;
-    double length;
-  };
-
-  Neighbours(const SpringNetwork& network, const std::vector<SpringKind>& kinds) : begin_(network.particle_count() + 1, 0) {
-    const Springs& springs = network.springs;
-    std::vector<Index> joining;
-    for (Index s = 0; s < springs.count(); ++s) {
-      if (springs.rest_length[s] > 0.0 && std::ranges::find(kinds, springs.kind[s]) != kinds.end()) joining.push_back(s);
-    }
-    for (const Index s : joining) {
-      ++begin_[springs.first[s] + 1];
-      ++begin_[springs.second[s] + 1];
-    }
-    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-    ways_.resize(begin_.back());
-    std::vector<Index> next(begin_.begin(), begin_.end() - 1);
-    for (const Index s : joining) {
-      ways_[next[springs.first[s]]++] = {springs.second[s], springs.rest_length[s]};
-      ways_[next[springs.second[s]]++] = {springs.first[s], springs.rest_length[s]};
-    }
-  }
-
-  [[nodiscard]] std::span<const Way> of(Index particle) const {
-    return {ways_.begin() + begin_[particle], ways_.begin() + begin_[particle + 1]};
-  }
-
- private:
-  std::vector<Index> begin_;
-  std::vector<Way> ways_;
-};
-
 /// The group of each pinned particle; kNone for those that are not.
-std::vector<Index> pin_groups(const SpringNetwork& network, const Neighbours& neighbours) {
+std::vector<Index> pin_groups(const SpringNetwork& network, const SpringGraph& graph) {
   std::vector<Index> groups(network.particle_count(), kNone);
   Index count = 0;
   for (Index i = 0; i < network.particle_count(); ++i) {
@@ -57,7 +23,7 @@ std::vector<Index> pin_groups(const SpringNetwork& network, const Neighbours& ne
     while (!reached.empty()) {
       const Index pin = reached.back();
       reached.pop_back();
-      for (const Neighbours::Way& way : neighbours.of(pin)) {
+      for (const SpringGraph::Way& way : graph.at(pin)) {
         if (!network.is_pinned(way.to) || groups[way.to] != kNone) continue;
         groups[way.to] = count;
         reached.push_back(way.to);
@@ -75,9 +41,9 @@ bool is_longer(const Tether& a, const Tether& b) {
 /// The tethers of each particle, nearest first.
 class Search {
  public:
-  Search(const SpringNetwork& network, const Neighbours& neighbours)
-      : network_(network), neighbours_(neighbours), found_(network.particle_count()) {
-    const std::vector<Index> groups = pin_groups(network, neighbours);
+  Search(const SpringNetwork& network, const SpringGraph& graph)
+      : network_(network), graph_(graph), found_(network.particle_count()) {
+    const std::vector<Index> groups = pin_groups(network, graph);
     for (Index i = 0; i < network.particle_count(); ++i) {
       if (network.is_pinned(i)) go_on_from({i, i, groups[i], 0.0});
     }
@@ -98,8 +64,8 @@ class Search {
 
  private:
   void go_on_from(const Tether& tether) {
-    for (const Neighbours::Way& way : neighbours_.of(tether.particle)) {
-      const Tether next{way.to, tether.pin, tether.group, tether.length + way.length};
+    for (const SpringGraph::Way& way : graph_.at(tether.particle)) {
+      const Tether next{way.to, tether.pin, tether.group, tether.length + network_.springs.rest_length[way.spring]};
       if (!network_.is_pinned(way.to) && is_wanted(next)) ahead_.push(next);
     }
   }
@@ -110,7 +76,7 @@ class Search {
   }
 
   const SpringNetwork& network_;
-  const Neighbours& neighbours_;
+  const SpringGraph& graph_;
   std::vector<std::vector<Tether>> found_;
   std::priority_queue<Tether, std::vector<Tether>, decltype(&is_longer)> ahead_{&is_longer};
 };
@@ -119,17 +85,22 @@ class Search {
 
 std::vector<Tether> find_tethers(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
   if (network.pins.empty()) return {};
-  const Neighbours neighbours(network, kinds);
-  std::vector<Tether> tethers = Search(network, neighbours).all();
+  const SpringGraph graph(network, measurable_springs(network, kinds));
+  std::vector<Tether> tethers = Search(network, graph).all();
   std::ranges::sort(tethers, {}, [](const Tether& tether) { return std::pair(tether.particle, tether.group); });
   return tethers;
 }
 
-bool are_pins_taut(const SpringNetwork& network, const std::vector<Tether>& tethers, double max_stretch) {
+bool are_pins_taut(const SpringNetwork& network, const Body& body, const std::vector<Tether>& tethers, double max_stretch) {
   constexpr double kRounding = 1.0 + 1.0e-9;  // lengths along springs are sums of as many as there are
+  const auto is_of_body = [&](Index i) { return i >= body.first_particle && i < body.first_particle + body.particle_count; };
+  const auto moves = [&](const Pin& pin) { return pin.motion.moves() && std::ranges::any_of(pin.particles, is_of_body); };
+  if (std::ranges::any_of(network.pins, moves)) return false;
+
   const auto way_between = [](const Tether& a, const Tether& b) { return a.length + b.length; };
   std::map<std::pair<Index, Index>, std::pair<Tether, Tether>> shortest;
   for (std::size_t a = 0; a < tethers.size(); ++a) {
+    if (!is_of_body(tethers[a].particle)) continue;
     for (std::size_t b = a + 1; b < tethers.size() && tethers[b].particle == tethers[a].particle; ++b) {
       const std::pair between(tethers[a], tethers[b]);
       const auto [kept, added] = shortest.try_emplace({tethers[a].group, tethers[b].group}, between);

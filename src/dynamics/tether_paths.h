@@ -22,8 +22,10 @@ inline constexpr int kMostTethers = 4;
 /// no other pin (Dijkstra 1959). Ordered by particle, then by group.
 [[nodiscard]] std::vector<Tether> find_tethers(const SpringNetwork& network, const std::vector<SpringKind>& kinds);
 
-/// Whether there are two groups of pins at least, and all between which tethers of a particle lead are, where they begin, as far
-/// from each other as springs within a limit of `max_stretch` reach: what hangs by them cannot sag between them.
-[[nodiscard]] bool are_pins_taut(const SpringNetwork& network, const std::vector<Tether>& tethers, double max_stretch);
+/// Whether the pins of a body stay where they are and part into two groups at least, and all groups between which tethers of a
+/// particle lead are, where they begin, as far from each other as springs within a limit of `max_stretch` reach: what hangs by them
+/// cannot sag between them. Requires tethers as found, in their order.
+[[nodiscard]] bool are_pins_taut(const SpringNetwork& network, const Body& body, const std::vector<Tether>& tethers,
+                                 double max_stretch);
 
 }  // namespace sprung

@@ -13,6 +13,7 @@
 namespace sprung {
 
 enum class SpringKind : std::uint8_t { structural, shear, bend };
+inline constexpr std::array<const char*, 3> kSpringKindNames{"structural", "shear", "bend"};  ///< in the order of the kinds
 
 /// Springs as arrays; entry s of each belongs to spring s. Within a body they are sorted by (second - first, first), so that
 /// neighbours in a lattice make contiguous runs.

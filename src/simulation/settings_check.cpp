@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/format.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -34,6 +35,14 @@ class Rules {
   std::vector<Problem> problems_;
 };
 
+std::string names_of(const std::vector<SpringKind>& kinds) {
+  std::string names;
+  for (const SpringKind kind : kinds) {
+    names += (names.empty() ? "\"" : ", \"") + std::string(kSpringKindNames[static_cast<std::size_t>(kind)]) + "\"";
+  }
+  return "[" + names + "]";
+}
+
 }  // namespace
 
 void check_settings(const SimulatorSettings& settings) {
@@ -54,6 +63,18 @@ void check_settings(const SimulatorSettings& settings) {
   rules.require_between("contact.stiffness", settings.contact.stiffness, 0.0, kInfinity);
   rules.require_between("contact.damping", settings.contact.damping, 0.0, kInfinity);
   rules.throw_if_broken();
+}
+
+std::vector<std::string> idle_settings(const SimulatorSettings& settings, const SpringNetwork& network) {
+  if (!settings.stretch_limit) return {};
+  std::vector<SpringKind> present;
+  for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bend}) {
+    if (std::ranges::find(network.springs.kind, kind) != network.springs.kind.end()) present.push_back(kind);
+  }
+  const std::vector<SpringKind>& kinds = settings.stretch_limit->kinds;
+  if (present.empty() || std::ranges::find_first_of(kinds, present) != kinds.end()) return {};
+  return {"stretch_limit.kinds = " + names_of(kinds) + " holds nothing: the springs of this network are of the kinds " +
+          names_of(present)};
 }
 
 }  // namespace sprung

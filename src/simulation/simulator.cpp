@@ -113,7 +113,9 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   move_pins(0.0);
   Start start = find_start(network, environment, settings.contact, state.x);
   state.x = std::move(start.positions);
-  warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
+  for (const auto& more : {start.warnings, idle_settings(settings, network)}) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  }
   integrator->start(state, forces, settings.step);
   energy_watch.note(0, energies());
 }

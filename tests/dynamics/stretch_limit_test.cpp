@@ -333,6 +333,41 @@ TEST(SuggestedStep, IsThatOfTheBodyThatNeedsTheSmallest) {
   EXPECT_EQ(StretchLimit(both.build(), {}).suggested_step(9.81), StretchLimit(alone.build(), {}).suggested_step(9.81));
 }
 
+/// A cloth by one corner, and beside it a rope whose ends are both pinned as far from each other as it is long.
+SpringNetwork cloth_beside_taut_rope(bool with_rope) {
+  const SpringMaterials structural{.structural = SpringMaterial{}, .shear = {}, .bend = {}};
+  BodyShape cloth = make_cloth({.size = {1.0, 1.0}, .resolution = {16, 16}}, structural);
+  set_total_mass(cloth, 1.0);
+  BodyShape rope = make_rope({.points = {Vector3::Zero(), Vector3::UnitX()}, .particles = 8, .length = {}}, structural);
+  set_total_mass(rope, 1.0);
+  NetworkBuilder builder;
+  builder.pin(builder.add_body("cloth", cloth));
+  if (!with_rope) return builder.build();
+  const Index first = builder.add_body("rope", rope);
+  builder.pin(first);
+  builder.pin(first + 7);
+  return builder.build();
+}
+
+TEST(SuggestedStep, TautPinsOfOneBodyDoNotHelpAnother) {
+  const StretchLimitSettings settings{.max_stretch = 0.0, .tolerance = 0.01, .tethers = true};
+  const auto step = [&](bool with_rope) { return StretchLimit(cloth_beside_taut_rope(with_rope), settings).suggested_step(9.81); };
+  EXPECT_EQ(step(true), step(false));
+}
+
+TEST(SuggestedStep, PinsThatMoveAreNotTaut) {
+  const auto step = [](bool moves, bool tethers) {
+    SpringNetwork cloth = make_test_cloth(12, 0.0, 0.0);
+    Motion motion;
+    if (moves) motion.spin = Vector3::UnitY();
+    for (const Index corner : {132, 143})
+      cloth.pins.push_back({.particles = {corner}, .origin = Vector3::Zero(), .motion = motion});
+    return StretchLimit(cloth, {.max_stretch = 0.0, .tolerance = 0.01, .tethers = tethers}).suggested_step(9.81);
+  };
+  EXPECT_GT(step(false, true), step(false, false));
+  EXPECT_EQ(step(true, true), step(true, false));
+}
+
 TEST(SuggestedStep, OfAnUnpinnedRopeIsThatOfItsHalf) {
   // n springs over an obstacle by the middle: n / 2 particles hang from it. Here as many as a rope of half the length, pinned.
   NetworkBuilder builder;

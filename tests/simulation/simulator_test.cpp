@@ -12,8 +12,10 @@ namespace sprung {
 namespace {
 
 using testing::cloth;
+using ::testing::ElementsAre;
 using testing::ground;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using testing::one_particle;
 using testing::run;
 
@@ -90,6 +92,18 @@ TEST(Simulator, WarnedStepDivergesWithTheCulpritNamed) {
     EXPECT_DOUBLE_EQ(error.failure().time, static_cast<double>(error.failure().step) * 0.03);
     EXPECT_THAT(error.what(), HasSubstr("use a step of at most 0.01"));
   }
+}
+
+TEST(Simulator, WarnsOfAStretchLimitOfKindsThatNoSpringHas) {
+  const auto warnings = [](const SpringNetwork& network, std::vector<SpringKind> kinds) {
+    return Simulator(network, {.stretch_limit = StretchLimitSettings{.kinds = std::move(kinds)}}).warnings();
+  };
+  const SpringNetwork rope = two_masses(100.0);
+  EXPECT_THAT(warnings(rope, {SpringKind::shear, SpringKind::bend}),
+              ElementsAre("stretch_limit.kinds = [\"shear\", \"bend\"] holds nothing: the springs of this network are of "
+                          "the kinds [\"structural\"]"));
+  EXPECT_THAT(warnings(rope, {SpringKind::shear, SpringKind::structural}), IsEmpty());
+  EXPECT_THAT(warnings(one_particle(Vector3::Zero()), {SpringKind::structural}), IsEmpty());
 }
 
 TEST(Simulator, EnergyThatNothingPutInStopsIt) {
