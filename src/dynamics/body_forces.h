@@ -10,6 +10,7 @@ namespace sprung {
 class Gravity final : public Force {
  public:
   Gravity(const SpringNetwork& network, const Vector3& acceleration);  ///< [m/s^2]
+  [[nodiscard]] bool is_constant() const override { return true; }
   void add(const Kinematics& at, Points& forces) const override;
   [[nodiscard]] double energy(const Points& positions) const override;
 

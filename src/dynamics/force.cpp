@@ -1,14 +1,22 @@
 #include "dynamics/force.h"
 
+#include <algorithm>
+
 namespace sprung {
 
 void Force::prepare(double) {}
+
+bool Force::is_constant() const { return false; }
 
 void Force::couple(std::vector<ParticlePair>&) const {}
 
 void Force::add_derivatives(const Kinematics&, ForceDerivatives&) const {}
 
 double Force::energy(const Points&) const { return 0.0; }
+
+bool are_constant(const Forces& forces) {
+  return std::ranges::all_of(forces, [](const auto& force) { return force->is_constant(); });
+}
 
 void sum_forces(const Forces& forces, const Kinematics& at, Points& total) {
   total.setZero(3, at.x.cols());

@@ -29,6 +29,9 @@ class Force {
   /// Called before forces are evaluated at a `time` [s]; not thread-safe. Default: nothing.
   virtual void prepare(double time);
 
+  /// Whether `add` adds the same at all positions, velocities and times. Default: it does not.
+  [[nodiscard]] virtual bool is_constant() const;
+
   /// Adds the forces [N] on all particles to `forces`, 3 x n. Thread-safe; the same bits for any number of threads.
   virtual void add(const Kinematics& at, Points& forces) const = 0;
 
@@ -44,6 +47,9 @@ class Force {
 };
 
 using Forces = std::vector<std::unique_ptr<Force>>;
+
+/// Whether their sum is the same at all positions, velocities and times.
+[[nodiscard]] bool are_constant(const Forces& forces);
 
 /// Sum of all forces [N], 3 x n, written to `total`.
 void sum_forces(const Forces& forces, const Kinematics& at, Points& total);

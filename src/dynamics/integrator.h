@@ -48,7 +48,7 @@ class Integrator {
   explicit Integrator(const SpringNetwork& network) : network_(network) {}
   virtual ~Integrator() = default;
 
-  /// Sets what the scheme keeps between steps. Call once, before the first step.
+  /// Sets what the scheme keeps between steps. Call once, before the first step, with the forces of all of them.
   virtual void start(SimulationState& state, const Forces& forces, double dt);
 
   /// Advances x and v of free particles from t to t + dt. What an integrator keeps for itself is room to calculate in: the result
@@ -63,8 +63,11 @@ class Integrator {
   virtual void answer_contact(const Points& advanced, Points& positions, double dt);
 
   /// Velocities after constraints moved `advanced` (what `advance` made) to state.x; `before` are the positions at t. Default:
-  /// v += (x - advanced) / dt.
+  /// v += (x - advanced) / dt. Unless `needs_advanced`, `advanced` may be anything.
   virtual void recover_velocities(SimulationState& state, const Points& before, const Points& advanced, double dt) const;
+
+  /// Whether `recover_velocities` looks at `advanced`. Default: it does.
+  [[nodiscard]] virtual bool needs_advanced() const { return true; }
 
   /// Called after contact changed velocities of a particle. Verlet: x_previous = x - v dt.
   virtual void velocity_changed(SimulationState& state, Index particle, double dt) const;

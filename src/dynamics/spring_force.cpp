@@ -88,6 +88,9 @@ double sideways_part(double length, double rest_length) {
 SpringForce::SpringForce(const SpringNetwork& network) : network_(network), plan_(std::make_unique<SpringPlan>(network)) {}
 SpringForce::~SpringForce() = default;
 
+// Nothing pulls.
+bool SpringForce::is_constant() const { return plan_->blocks.empty(); }
+
 void SpringForce::add(const Kinematics& at, Points& forces) const {
   parallel_chunks(static_cast<Index>(plan_->blocks.size()), 1, [&](Index begin, Index end) {
     for (Index b = begin; b < end; ++b) {

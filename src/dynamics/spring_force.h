@@ -21,6 +21,8 @@ class SpringForce final : public Force {
   explicit SpringForce(const SpringNetwork& network);
   ~SpringForce() override;
 
+  [[nodiscard]] bool is_constant() const override;
+
   void add(const Kinematics& at, Points& forces) const override;
 
   void couple(std::vector<ParticlePair>& pairs) const override;

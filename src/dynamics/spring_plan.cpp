@@ -112,6 +112,7 @@ SpringPlan::SpringPlan(const SpringNetwork& network) {
     planner.add(line);
     s += line.end;
   }
+  std::erase_if(blocks, [](const Block& block) { return block.runs.empty() && block.singles.empty(); });
   // Springs of all kinds that begin at the same particles follow each other, so that a particle is in the first-level cache for
   // all.
   for (Block& block : blocks) {

@@ -41,7 +41,7 @@ struct SpringPlan {
   /// Springs without stiffness and damping are left out.
   explicit SpringPlan(const SpringNetwork& network);
 
-  std::vector<Block> blocks;
+  std::vector<Block> blocks;  ///< that any spring touches
 };
 
 }  // namespace sprung

@@ -36,15 +36,16 @@ class Verlet final : public Integrator {
 
   void start(SimulationState& state, const Forces& forces, double dt) override {
     Integrator::start(state, forces, dt);
-    if (settings_.start_at_rest) return;
+    forces_are_constant_ = are_constant(forces);
     evaluate(state, forces, dt, total_);
+    if (settings_.start_at_rest) return;
     for_free_particles(network(), [&](Index i) {
       state.x_previous.col(i) -= dt * state.v.col(i) - 0.5 * dt * dt * network().inverse_masses[i] * total_.col(i);
     });
   }
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
-    evaluate(state, forces, dt, total_);
+    if (!forces_are_constant_) evaluate(state, forces, dt, total_);
     set_gains(dt);
     const VerletStep step{.kept = 1.0 - damping_per_step(settings_, dt), .per_dt = 1.0 / dt};
     for_free_runs([&](Index begin, Index count) {
@@ -56,9 +57,10 @@ class Verlet final : public Integrator {
   void recover_velocities(SimulationState& state, const Points& before, const Points&, double dt) const override {
     for_free_runs([&](Index begin, Index count) {
       velocities_between(3 * count, 1.0 / dt, before.col(begin).data(), state.x.col(begin).data(), state.v.col(begin).data());
-      state.x_previous.middleCols(begin, count) = before.middleCols(begin, count);
     });
   }
+
+  [[nodiscard]] bool needs_advanced() const override { return false; }
 
   void velocity_changed(SimulationState& state, Index particle, double dt) const override {
     state.x_previous.col(particle) = state.x.col(particle) - dt * state.v.col(particle);
@@ -82,6 +84,7 @@ class Verlet final : public Integrator {
   VerletSettings settings_;
   std::vector<FreeRun> free_runs_;
   Points total_;
+  bool forces_are_constant_ = false;
   Points gains_;
   double dt_of_gains_ = 0.0;
 };

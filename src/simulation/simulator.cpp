@@ -86,7 +86,7 @@ struct Simulator::Implementation {
   // Within a step: where it began, and where the forces alone would have ended it.
   Points before;
   Points v_before;  ///< for contact alone
-  Points advanced;
+  Points advanced;  ///< for contact, and for integrators that need it
 };
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles)
@@ -129,7 +129,7 @@ StepReport Simulator::Implementation::step() {
   integrator->advance(state, forces, settings.step);
   environment.set_interval(t, t_end);
   move_pins(t_end);
-  advanced = state.x;
+  if (contacts.meets_anything() || (limit && integrator->needs_advanced())) advanced = state.x;
 
   StepReport report;
   constrain(report);

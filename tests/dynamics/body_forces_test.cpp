@@ -2,6 +2,7 @@
 
 #include "dynamics/integrator.h"
 #include "dynamics/networks.h"
+#include "dynamics/spring_force.h"
 #include "network/simulation_state.h"
 
 #include <gmock/gmock.h>
@@ -39,6 +40,21 @@ TEST(AirDrag, OpposesTheMotionRelativeToTheWind) {
   const Points forces = forces_of(AirDrag(network, 0.5, Vector3(1.0, 0.0, 0.0)), network);
   EXPECT_EQ(forces.col(0), Vector3(-0.5, 0.0, -0.5));
   EXPECT_EQ(forces.col(1), Vector3(0.5, 0.0, 0.0));
+}
+
+// An integrator evaluates them once.
+TEST(Forces, AreConstantWhereNothingPullsButGravity) {
+  for (const double stiffness : {0.0, 2.0}) {
+    for (const double damping : {0.0, 1.0}) {
+      const SpringNetwork network = make_pair(1.0, stiffness, 1.0, damping);
+      Forces forces;
+      forces.push_back(std::make_unique<Gravity>(network, Vector3(0.0, -9.81, 0.0)));
+      forces.push_back(std::make_unique<SpringForce>(network));
+      EXPECT_EQ(are_constant(forces), stiffness == 0.0 && damping == 0.0);
+      forces.push_back(std::make_unique<AirDrag>(network, 0.5, Vector3::Zero()));
+      EXPECT_FALSE(are_constant(forces));
+    }
+  }
 }
 
 // m v' = m g - c v from rest: v = (m g / c) (1 - exp(-c t / m)). Symplectic Euler's v' is explicit Euler's: an error of at most
