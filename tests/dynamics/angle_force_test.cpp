@@ -136,21 +136,32 @@ TEST(AngleForce, FoldedAndCollapsedBondsHaveFiniteForces) {
   }
 }
 
+/// More particles than one thread takes at a time: rows and columns of elements go on from each to the next.
+SpringNetwork large_cloth() {
+  BodyShape shape = make_cloth({.resolution = {90, 80}}, {.bend = SpringMaterial{.value = 0.1, .damping = 0.01},
+                                                          .bend_model = SpringMaterials::BendModel::angle});
+  set_total_mass(shape, 0.2);
+  NetworkBuilder builder;
+  builder.add_body("cloth", shape);
+  return builder.build();
+}
+
 TEST(AngleForce, HasTheSameBitsForAnyNumberOfThreads) {
-  const SpringNetwork cloth = [] {
-    BodyShape shape = make_cloth({.resolution = {90, 80}}, {.bend = SpringMaterial{.value = 0.1, .damping = 0.01},
-                                                            .bend_model = SpringMaterials::BendModel::angle});
-    set_total_mass(shape, 0.2);
-    NetworkBuilder builder;
-    builder.add_body("cloth", shape);
-    return builder.build();
-  }();
+  const SpringNetwork cloth = large_cloth();
   const Points x = cloth.positions + random_points(cloth.particle_count(), 3, 0.005);
   const Points v = random_points(cloth.particle_count(), 4, 1.0);
   const Points forces = forces_of(cloth, x, v);
   const ThreadLimit one(1);
   EXPECT_EQ(forces_of(cloth, x, v), forces);
   EXPECT_GT(forces.norm(), 0.0);
+}
+
+// Rounding of as many sums as there are particles, of forces as large as the largest.
+TEST(AngleForce, OfALargeClothHasNoNetForce) {
+  const SpringNetwork cloth = large_cloth();
+  const Index count = cloth.particle_count();
+  const Points forces = forces_of(cloth, cloth.positions + random_points(count, 3, 0.005), random_points(count, 4, 1.0));
+  EXPECT_LT(forces.rowwise().sum().norm(), 1e-16 * count * forces.colwise().norm().maxCoeff());
 }
 
 }  // namespace
