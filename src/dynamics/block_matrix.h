@@ -38,6 +38,8 @@ class BlockMatrix {
 
   [[nodiscard]] Index size() const { return static_cast<Index>(diagonal_.size()); }
   [[nodiscard]] const Matrix3& diagonal(Index i) const { return diagonal_[static_cast<std::size_t>(i)]; }
+  /// Blocks below the diagonal, counted column by column, rows ascending.
+  [[nodiscard]] const Matrix3& beside(Index block) const { return blocks_[static_cast<std::size_t>(block)]; }
 
   /// Calls `visit(row, block)` for the blocks of a column below the diagonal, rows ascending.
   template <class Visit>

@@ -31,6 +31,8 @@ struct SymmetricMatrix3 {
     return {a * scale, b * scale, c * scale, (xx * zz - xz * xz) * scale, (xy * xz - xx * yz) * scale, (xx * yy - xy * xy) * scale};
   }
 
+  [[nodiscard]] Matrix3 matrix() const { return Matrix3{{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}; }
+
   /// a I + b n n^T
   [[nodiscard]] static SymmetricMatrix3 along(double a, double b, const Vector3& n) {
     const Vector3 bn = b * n;

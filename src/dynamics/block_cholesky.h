@@ -1,0 +1,41 @@
+// A direct solver for sparse symmetric matrices of 3 x 3 blocks.
+#pragma once
+
+#include "dynamics/block_matrix.h"
+
+#include <memory>
+#include <vector>
+
+namespace sprung {
+
+struct FrontLayout;
+
+/// L D L^T of a positive definite matrix, eliminated by supernodes as dense work (multifrontal: Duff and Reid 1983). Order and
+/// pattern are found once. One thread. Of a matrix times a power of two, D is exactly so many times as large.
+class BlockCholesky {
+ public:
+  /// For matrices of the same pairs as `pattern`, without the rows and columns of the particles of which `left_out` has the flag;
+  /// none has when it is empty.
+  explicit BlockCholesky(const BlockMatrix& pattern, const std::vector<bool>& left_out = {});
+  ~BlockCholesky();
+
+  /// Returns whether the matrix is positive definite, as far as rounding tells. Before `solve`, which is not to be called when not.
+  [[nodiscard]] bool factor(const BlockMatrix& matrix);
+
+  /// Writes x of A x = `right`, 3 x particles, to `solution`, which may be the same; zero for what is left out.
+  void solve(const Points& right, Points& solution);
+
+ private:
+  void assemble(std::size_t front, const BlockMatrix& matrix);
+
+  std::unique_ptr<const FrontLayout> layout_;
+  std::vector<double> panels_;   ///< L
+  std::vector<double> inverse_;  ///< 1 / D
+  // Of a factor or a solve.
+  std::vector<double> updates_;
+  std::vector<double> vector_;
+  std::vector<double> below_;
+  std::vector<double> row_;
+};
+
+}  // namespace sprung

@@ -1,0 +1,54 @@
+// Elimination of a supernode: dense work of whole registers.
+#pragma once
+
+#include "dynamics/lane_count.h"
+
+#include <span>
+
+namespace sprung {
+
+/// The columns of a supernode in L D L^T, in tiles: rows four at a time, the four numbers of a column side by side, then those of
+/// the next column. First the rows of the supernode itself, as many as its columns, of which those on and above the diagonal are
+/// not meant; then the rows below. Both are filled up to whole tiles by rows and columns of the identity.
+struct FrontShape {
+  Index own_tiles = 0;    ///< of rows and columns
+  Index lower_tiles = 0;  ///< of rows below
+
+  [[nodiscard]] Index width() const { return own_tiles * kSpringLanes; }
+  [[nodiscard]] Index lower_height() const { return lower_tiles * kSpringLanes; }
+  /// Where a number is in the panel.
+  [[nodiscard]] std::size_t place(Index row, Index column) const {
+    return (static_cast<std::size_t>(row / kSpringLanes) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(column)) *
+               kSpringLanes +
+           static_cast<std::size_t>(row % kSpringLanes);
+  }
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(own_tiles + lower_tiles) * kSpringLanes * static_cast<std::size_t>(width());
+  }
+};
+
+/// Replaces the panel of a matrix by that of its L, writes 1 / D to `inverse`, and subtracts L D L^T of the rows below from
+/// `update`, column by column, `lower_height` numbers each, of which those above the diagonal are not meant. `row` has room for two
+/// rows of tiles. Returns whether D is positive; if not, what is written is not meant.
+bool eliminate_front(const FrontShape& shape, double* panel, double* inverse, double* update, double* row);
+
+/// Rows that are neighbours in what a front hands on, and in its parent's.
+struct RowRun {
+  Index from;
+  Index to;
+  Index length;
+};
+
+/// Adds what a child hands on to its parent, whose shape, panel and update these are. `rows` are those in the parent of the child's
+/// rows below, each the first of three: the parent's own are first, and `runs` has the others.
+void add_update(std::span<const Index> rows, std::span<const RowRun> runs, const double* child, Index child_height,
+                const FrontShape& shape, double* panel, double* update);
+
+/// Solves L x = b for the supernode's own part, in place, and writes what is to be subtracted from the rows below.
+void solve_front(const FrontShape& shape, const double* panel, double* own, double* below);
+
+/// Solves D L^T x = b for the supernode's own part, in place, when the rows below are solved.
+void solve_front_transposed(const FrontShape& shape, const double* panel, const double* inverse, double* own, const double* below,
+                            double* sums);
+
+}  // namespace sprung
