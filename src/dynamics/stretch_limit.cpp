@@ -21,6 +21,9 @@ constexpr Index kPartChunk = 4096 / StretchBatches::kPartSprings;
 // A limit without play and without tolerance is never held quite: this is what steps are chosen for then.
 constexpr double kLeastExcess = 1.0e-3;
 
+// Springs that may shrink by no more than this part of the excess hardly let a surface neck.
+constexpr double kLeastPlay = 0.1;
+
 /// Largest of what `excess_of` says of parts [begin, end).
 template <class ExcessOf>
 double largest_excess(const StretchBatches& batches, Index begin, Index end, const ExcessOf& excess_of) {
@@ -77,21 +80,26 @@ std::string StretchLimit::chosen_solver() const {
 }
 
 // At rest each step adds g dt^2 to each particle, and each of its passes hands on a part of it. Where tethers have handed on
-// theirs, passes gain less: hanging cloths showed 4 passes to be worth 2.6, and 32 to be worth 10. What sags between its
-// pins hangs askew from all of them: there tethers gain nothing.
+// theirs, passes gain less: hanging cloths showed 4 passes to be worth 2.6, and 32 to be worth 10. Where springs may
+// not shrink either, over-relaxed passes gain more: 2, 4, 8 and 32 were worth 2, 10, 29 and 280. What sags between its pins hangs
+// askew from all of them: there tethers gain nothing.
 double StretchLimit::suggested_step(double acceleration) const {
   const SpringGraph graph(network_, limited_springs(network_, settings_.kinds));
   const std::vector<Tether> tethers = settings_.tethers ? find_tethers(network_, settings_.kinds) : std::vector<Tether>{};
   const double excess = std::max(0.5 * settings_.max_stretch + settings_.tolerance, kLeastExcess);
   const double passes = settings_.iterations;
+  const auto gained_by = [&](const Body& body) {
+    const bool shared = settings_.max_compression <= kLeastPlay * excess && holds_shape(body, graph);
+    const double alone = largest_load(network_, body, graph, {.tethers = false, .shared = shared}) / passes;
+    if (!are_pins_taut(network_, body, tethers, settings_.max_stretch)) return alone;
+    const double worth = shared ? 1.0 + std::pow(passes - 1.0, 1.5) : std::cbrt(passes * passes);
+    return std::min(alone, largest_load(network_, body, graph, {.tethers = true, .shared = shared}) / worth);
+  };
   double smallest = std::numeric_limits<double>::infinity();
   for (const Body& body : network_.bodies) {
     if (newton_ && newton_->holds(body) && settings_.max_compression == 1.0) continue;
-    double gained = largest_load(network_, body, graph, false) / passes;
-    if (are_pins_taut(network_, body, tethers, settings_.max_stretch)) {
-      gained = std::min(gained, largest_load(network_, body, graph, true) / std::cbrt(passes * passes));
-    }
-    if (acceleration * gained > 0.0) smallest = std::min(smallest, std::sqrt(excess / (acceleration * gained)));
+    const double gained = acceleration * gained_by(body);
+    if (gained > 0.0) smallest = std::min(smallest, std::sqrt(excess / gained));
   }
   return smallest;
 }

@@ -23,8 +23,14 @@ constexpr int kBulletPasses = 20;
 
 enum Motion : std::uint8_t { hanging, swinging };
 
-/// Of cloths: no stretch but a tolerance of 1 %. Small steps of one pass reach it sooner than larger ones of more.
-const StretchLimitSettings kClothLimit{.max_stretch = 0.0, .iterations = 1, .tolerance = 0.01, .tethers = true};
+/// Of cloths: neither stretch nor compression but a tolerance of 1 %, of structural and shear springs: links of Bullet hold both
+/// ways too, of these and of bend springs. Small steps of one pass reach it sooner than larger ones of more.
+const StretchLimitSettings kClothLimit{.max_stretch = 0.0,
+                                       .max_compression = 0.0,
+                                       .kinds = {SpringKind::structural, SpringKind::shear},
+                                       .iterations = 1,
+                                       .tolerance = 0.01,
+                                       .tethers = true};
 
 /// Of ropes: a tolerance of 0.4 %, for which a global solve needs no small steps.
 const StretchLimitSettings kRopeLimit{.max_stretch = 0.0, .tolerance = 0.004, .solver = StretchLimitSettings::Solver::automatic};
