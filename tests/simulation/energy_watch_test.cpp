@@ -1,0 +1,63 @@
+#include "simulation/energy_watch.h"
+
+#include "network/network_builder.h"
+
+#include <gtest/gtest.h>
+
+namespace sprung {
+namespace {
+
+/// 2 kg on their own: nothing that holds energy.
+SpringNetwork one_particle() {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 2.0);
+  return builder.build();
+}
+
+EnergyWatch watch(const SpringNetwork& network) { return {network, SimulatorSettings{.step = 0.01}, {}}; }
+
+TEST(EnergyWatch, AllowsAThousandTimesWhatMotionBeganWith) {
+  EnergyWatch energy = watch(one_particle());
+  energy.note(0, {.kinetic = 1.0});
+  EXPECT_FALSE(energy.explosion({.kinetic = 999.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 1001.0}));
+  // Limits and contact may give a start of their own; what comes later is none.
+  energy.note(1, {.kinetic = 2.0});
+  energy.note(64, {.kinetic = 1500.0});
+  EXPECT_FALSE(energy.explosion({.kinetic = 1999.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 2001.0}));
+}
+
+TEST(EnergyWatch, WhatWasLiftedMayFall) {
+  EnergyWatch energy = watch(one_particle());
+  energy.note(0, {.gravity = -3.0});
+  energy.note(64, {.gravity = 1.0});
+  energy.note(128, {.gravity = 0.5});
+  EXPECT_FALSE(energy.explosion({.kinetic = 3999.0, .gravity = -3.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 4001.0, .gravity = -3.0}));
+}
+
+// 1/2 m v^2 = 9 J.
+TEST(EnergyWatch, AllMayMoveAsFastAsPins) {
+  EnergyWatch energy = watch(one_particle());
+  energy.note(0, {});
+  energy.note_drive(3.0);
+  energy.note_drive(2.0);
+  EXPECT_FALSE(energy.explosion({.kinetic = 8999.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 9001.0}));
+}
+
+// 1/2 k d^2 = 4 J.
+TEST(EnergyWatch, SpringsMayBeStretchedToTwiceTheirLength) {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 1.0);
+  builder.add_particle(Vector3::UnitX(), 1.0);
+  builder.add_spring(0, 1, 2.0, 2.0);
+  EnergyWatch energy = watch(builder.build());
+  energy.note(0, {});
+  EXPECT_FALSE(energy.explosion({.kinetic = 2000.0, .elastic = 1999.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 2000.0, .elastic = 2001.0}));
+}
+
+}  // namespace
+}  // namespace sprung
