@@ -1,10 +1,27 @@
-// Hot loops compiled once for the baseline machine and once for AVX2, chosen at run time. The whole program keeps the
-// baseline ABI, which libfcl needs, and contraction is off, so both versions compute the same bits.
+// Hot loops compiled once for the baseline machine and once for AVX2, chosen at run time; a few once more for the eight lanes of
+// AVX-512. The whole program keeps the baseline ABI, which libfcl needs, and contraction is off, so all versions compute the same
+// bits.
 #pragma once
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__OPTIMIZE__) && !defined(__SANITIZE_THREAD__) && \
     !defined(__SANITIZE_ADDRESS__)
 #define SPRUNG_KERNEL __attribute__((target_clones("avx2", "default")))
+#define SPRUNG_WIDE_KERNEL __attribute__((target("arch=x86-64-v4")))
 #else
 #define SPRUNG_KERNEL
+#define SPRUNG_WIDE_KERNEL
 #endif
+
+namespace sprung {
+
+/// Whether this machine has what SPRUNG_WIDE_KERNEL is compiled for.
+[[nodiscard]] inline bool has_wide_lanes() {
+#if defined(__GNUC__) && defined(__x86_64__)
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
+         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+#else
+  return false;
+#endif
+}
+
+}  // namespace sprung

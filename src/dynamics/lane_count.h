@@ -6,5 +6,6 @@
 namespace sprung {
 
 inline constexpr Index kSpringLanes = 4;
+inline constexpr Index kWideLanes = 8;  ///< where a kernel has a version for AVX-512
 
 }  // namespace sprung

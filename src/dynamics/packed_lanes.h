@@ -1,4 +1,5 @@
-// Four vectors as they lie in memory, three registers for twelve numbers. For the .cpp files of kernels, as lanes.h.
+// Four or eight vectors as they lie in memory, three registers for twelve or twenty-four numbers. For the .cpp files of kernels, as
+// lanes.h.
 //
 // The compiler vectorises loops over x, y, z by itself too, but shuffles three times as much, and shuffles are what such loops wait
 // for.
@@ -8,28 +9,50 @@
 
 namespace sprung {
 
-struct Packed {
-  SpringLanes low;     ///< x0 y0 z0 x1
-  SpringLanes middle;  ///< y1 z1 x2 y2
-  SpringLanes high;    ///< z2 x3 y3 z3
+template <class L>
+struct PackedLanes {
+  using Lanes = L;
+
+  Lanes low;     ///< of four: x0 y0 z0 x1; of eight: x0 y0 z0 ... x2 y2
+  Lanes middle;  ///< y1 z1 x2 y2; z2 x3 ... z4 x5
+  Lanes high;    ///< z2 x3 y3 z3; y5 z5 ... y7 z7
 };
+using Packed = PackedLanes<SpringLanes>;
+using WidePacked = PackedLanes<WideLanes>;
 
-[[gnu::always_inline]] inline void load(const double* from, Packed& to) {
+template <class Lanes>
+[[gnu::always_inline]] inline void load(const double* from, PackedLanes<Lanes>& to) {
   load_lanes(from, to.low);
-  load_lanes(from + kSpringLanes, to.middle);
-  load_lanes(from + 2 * kSpringLanes, to.high);
+  load_lanes(from + kCountOf<Lanes>, to.middle);
+  load_lanes(from + 2 * kCountOf<Lanes>, to.high);
 }
 
-[[gnu::always_inline]] inline void store(const Packed& from, double* to) {
+template <class Lanes>
+[[gnu::always_inline]] inline void store(const PackedLanes<Lanes>& from, double* to) {
   store_lanes(from.low, to);
-  store_lanes(from.middle, to + kSpringLanes);
-  store_lanes(from.high, to + 2 * kSpringLanes);
+  store_lanes(from.middle, to + kCountOf<Lanes>);
+  store_lanes(from.high, to + 2 * kCountOf<Lanes>);
 }
 
-[[gnu::always_inline]] inline void subtract(const Packed& a, const Packed& b, Packed& to) {
+template <class Lanes>
+[[gnu::always_inline]] inline void add(const PackedLanes<Lanes>& a, const PackedLanes<Lanes>& b, PackedLanes<Lanes>& to) {
+  to.low = a.low + b.low;
+  to.middle = a.middle + b.middle;
+  to.high = a.high + b.high;
+}
+
+template <class Lanes>
+[[gnu::always_inline]] inline void subtract(const PackedLanes<Lanes>& a, const PackedLanes<Lanes>& b, PackedLanes<Lanes>& to) {
   to.low = a.low - b.low;
   to.middle = a.middle - b.middle;
   to.high = a.high - b.high;
+}
+
+template <class Lanes>
+[[gnu::always_inline]] inline void square(PackedLanes<Lanes>& numbers) {
+  numbers.low *= numbers.low;
+  numbers.middle *= numbers.middle;
+  numbers.high *= numbers.high;
 }
 
 [[gnu::always_inline]] inline void unpack(const Packed& from, SpringLanes& x, SpringLanes& y, SpringLanes& z) {
@@ -41,13 +64,13 @@ struct Packed {
   z = __builtin_shufflevector(zx, yz, 0, 5, 2, 7);
 }
 
-[[gnu::always_inline]] inline void pack(const SpringLanes& x, const SpringLanes& y, const SpringLanes& z, Packed& to) {
-  const SpringLanes xy = __builtin_shufflevector(x, y, 0, 4, 2, 6);  // x0 y0 x2 y2
-  const SpringLanes zx = __builtin_shufflevector(z, x, 0, 5, 2, 7);  // z0 x1 z2 x3
-  const SpringLanes yz = __builtin_shufflevector(y, z, 1, 5, 3, 7);  // y1 z1 y3 z3
-  to.low = __builtin_shufflevector(xy, zx, 0, 1, 4, 5);
-  to.middle = __builtin_shufflevector(yz, xy, 0, 1, 6, 7);
-  to.high = __builtin_shufflevector(zx, yz, 2, 3, 6, 7);
+[[gnu::always_inline]] inline void unpack(const WidePacked& from, WideLanes& x, WideLanes& y, WideLanes& z) {
+  x = __builtin_shufflevector(from.low, from.middle, 0, 3, 6, 9, 12, 15, 15, 15);
+  y = __builtin_shufflevector(from.low, from.middle, 1, 4, 7, 10, 13, 13, 13, 13);
+  z = __builtin_shufflevector(from.low, from.middle, 2, 5, 8, 11, 14, 14, 14, 14);
+  x = __builtin_shufflevector(x, from.high, 0, 1, 2, 3, 4, 5, 10, 13);
+  y = __builtin_shufflevector(y, from.high, 0, 1, 2, 3, 4, 8, 11, 14);
+  z = __builtin_shufflevector(z, from.high, 0, 1, 2, 3, 4, 9, 12, 15);
 }
 
 /// Each vector times its own number.
@@ -55,6 +78,39 @@ struct Packed {
   vectors.low *= __builtin_shufflevector(scale, scale, 0, 0, 0, 1);
   vectors.middle *= __builtin_shufflevector(scale, scale, 1, 1, 2, 2);
   vectors.high *= __builtin_shufflevector(scale, scale, 2, 3, 3, 3);
+}
+
+[[gnu::always_inline]] inline void multiply(WidePacked& vectors, const WideLanes& scale) {
+  vectors.low *= __builtin_shufflevector(scale, scale, 0, 0, 0, 1, 1, 1, 2, 2);
+  vectors.middle *= __builtin_shufflevector(scale, scale, 2, 3, 3, 3, 4, 4, 4, 5);
+  vectors.high *= __builtin_shufflevector(scale, scale, 5, 5, 6, 6, 6, 7, 7, 7);
+}
+
+/// The vector after each, as far as it is among them; the last one's is anything. `from` is where they lie.
+[[gnu::always_inline]] inline void load_next(const double* from, const Packed& vectors, Packed& next) {
+  load_lanes(from + 3, next.low);
+  load_lanes(from + 7, next.middle);
+  next.high = __builtin_shufflevector(vectors.high, vectors.high, 3, 3, 3, 3);
+}
+
+[[gnu::always_inline]] inline void load_next(const double* from, const WidePacked& vectors, WidePacked& next) {
+  load_lanes(from + 3, next.low);
+  load_lanes(from + 11, next.middle);
+  next.high = __builtin_shufflevector(vectors.high, vectors.high, 3, 4, 5, 6, 7, 7, 7, 7);
+}
+
+/// 0 with 1, 2 with 3 and so on change places.
+[[gnu::always_inline]] inline void swap_neighbours(const Packed& from, Packed& to) {
+  to.low = __builtin_shufflevector(from.low, from.middle, 3, 4, 5, 0);
+  to.middle = __builtin_shufflevector(from.low, from.high, 1, 2, 5, 6);
+  to.high = __builtin_shufflevector(from.high, from.middle, 3, 6, 7, 0);
+}
+
+[[gnu::always_inline]] inline void swap_neighbours(const WidePacked& from, WidePacked& to) {
+  to.low = __builtin_shufflevector(from.low, from.middle, 3, 4, 5, 0, 1, 2, 9, 10);
+  const WideLanes without_y5_z5 = __builtin_shufflevector(from.middle, from.low, 3, 14, 15, 0, 7, 7, 7, 4);
+  to.middle = __builtin_shufflevector(without_y5_z5, from.high, 0, 1, 2, 3, 4, 8, 9, 7);
+  to.high = __builtin_shufflevector(from.high, from.middle, 13, 14, 5, 6, 7, 2, 3, 4);
 }
 
 }  // namespace sprung

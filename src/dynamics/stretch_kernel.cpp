@@ -1,279 +1,211 @@
 #include "dynamics/stretch_kernel.h"
 
 #include "base/kernel.h"
-#include "dynamics/packed_lanes.h"
+#include "dynamics/stretch_groups.h"
 
 #include <algorithm>
-#include <cstddef>
+#include <cmath>
 
 namespace sprung {
 namespace {
 
-/// Of four springs.
-struct Constants {
-  SpringLanes first_share;
-  SpringLanes per_most_squared;  ///< 1 / the square of the largest allowed length
+using Layout = StretchBatches::Layout;
+using Part = StretchBatches::Part;
+
+/// The longest and the shortest of the springs in each lane, squared: only at the end all lanes are looked at.
+template <class Lanes>
+struct Extremes {
+  Lanes longest{};
+  Lanes shortest = Lanes{} + HUGE_VAL;
+
+  [[gnu::always_inline]] void include(const Lanes& longer, const Lanes& shorter) {
+    longest = longer > longest ? longer : longest;
+    shortest = shorter < shortest ? shorter : shortest;
+  }
+
+  [[gnu::always_inline]] void include_into(SquaredLengths& all) const {
+    for (Index lane = 0; lane < kCountOf<Lanes>; ++lane) all.include({longest[lane], shortest[lane]});
+  }
 };
 
-[[gnu::always_inline]] inline void load(const StretchBatches& batches, Index s, double per_most_squared, Constants& constants) {
-  SpringLanes per_length;
-  load_lanes(&batches.first_share[s], constants.first_share);
+/// Of parts whose springs fill `Wide` groups, and of what is left over.
+template <class Wide>
+struct AllExtremes {
+  Extremes<Wide> of_wide;
+  Extremes<SpringLanes> of_narrow;
+
+  [[gnu::always_inline]] void include(const Extremes<WideLanes>& others) { of_wide.include(others.longest, others.shortest); }
+  [[gnu::always_inline]] void include(const Extremes<SpringLanes>& others) { of_narrow.include(others.longest, others.shortest); }
+
+  [[gnu::always_inline]] SquaredLengths lengths() const {
+    SquaredLengths all;
+    of_wide.include_into(all);
+    of_narrow.include_into(all);
+    return all;
+  }
+};
+
+[[gnu::always_inline]] inline bool are_beyond(const LengthRange& range, const Extremes<SpringLanes>& springs) {
+  const auto outside = (springs.longest > range.most * range.most) | (springs.shortest < range.least * range.least);
+  return (outside[0] | outside[1] | outside[2] | outside[3]) != 0;
+}
+
+[[gnu::always_inline]] inline bool are_beyond(const LengthRange& range, const Extremes<WideLanes>& springs) {
+  const auto half = [](const WideLanes& of, SpringLanes& low, SpringLanes& high) {
+    low = __builtin_shufflevector(of, of, 0, 1, 2, 3);
+    high = __builtin_shufflevector(of, of, 4, 5, 6, 7);
+  };
+  Extremes<SpringLanes> some;
+  Extremes<SpringLanes> others;
+  half(springs.longest, some.longest, others.longest);
+  half(springs.shortest, some.shortest, others.shortest);
+  some.include(others.longest, others.shortest);
+  return are_beyond(range, some);
+}
+
+/// Squared lengths of a part's springs from `s` on, as parts of the rest length, as long as they fill a group; returns where they
+/// do not. Without `lengths` only the extremes are kept.
+template <class Group>
+[[gnu::always_inline]] inline Index find_squared(const StretchBatches& batches, const Part& part, Index s, const double* positions,
+                                                 double* lengths, Extremes<typename Group::Lanes>& extremes) {
+  using Lanes = typename Group::Lanes;
+  if (s + kCountOf < Lanes >> part.end) return s;
+  Lanes per_length;
   load_lanes(&batches.per_length[s], per_length);
-  constants.per_most_squared = per_most_squared * (per_length * per_length);
-}
-
-/// Lengths as parts of the largest allowed one.
-struct Lengths {
-  SpringLanes squared;
-  SpringLanes length;
-};
-
-/// Allowed lengths as parts of the largest allowed one, and that as a part of the rest length.
-struct Limits {
-  explicit Limits(const LengthRange& range)
-      : most(range.most), per_most_squared(1.0 / (range.most * range.most)), least(range.least / range.most) {}
-
-  double most;
-  double per_most_squared;
-  double least;
-};
-
-/// Finds the lengths; false where all are allowed, which is most of the time.
-[[gnu::always_inline]] inline bool find_beyond(const Limits& limits, Lengths& springs) {
-  const auto outside = (springs.squared > 1.0) | (springs.squared < limits.least * limits.least);
-  if ((outside[0] | outside[1] | outside[2] | outside[3]) == 0) return false;
-  springs.length = springs.squared;
-  square_root(springs.length);
-  return true;
-}
-
-[[gnu::always_inline]] inline void keep_largest(const Limits& limits, const Lengths& springs, SpringLanes& excess) {
-  const SpringLanes too_long = springs.length - 1.0;
-  const SpringLanes too_short = limits.least - springs.length;
-  const SpringLanes larger = too_long > too_short ? too_long : too_short;
-  excess = larger > excess ? larger : excess;
-}
-
-/// What the ends move, as parts of the way between them. A spring without length has no direction to be projected along: it stays.
-struct Moves {
-  SpringLanes first;
-  SpringLanes second;
-};
-
-[[gnu::always_inline]] inline void find_moves(const Constants& constants, const Limits& limits, const Lengths& springs,
-                                              double relaxation, Moves& moves) {
-  const SpringLanes quotient = 1.0 / springs.length;
-  const SpringLanes inverse = springs.length > 0.0 ? quotient : SpringLanes{};
-  const SpringLanes too_long = 1.0 - inverse;
-  const SpringLanes too_short = 1.0 - limits.least * inverse;
-  const SpringLanes part =
-      relaxation * ((too_long > 0.0 ? too_long : SpringLanes{}) + (too_short < 0.0 ? too_short : SpringLanes{}));
-  moves.first = constants.first_share * part;
-  moves.second = part - moves.first;
-}
-
-/// Four springs between consecutive particles and consecutive others.
-struct RunGroup {
-  std::ptrdiff_t first_at;  ///< in the positions
-  std::ptrdiff_t second_at;
-  Packed first;
-  Packed second;
-  Packed between;  ///< second - first
-};
-
-[[gnu::always_inline]] inline void load(const StretchBatches& batches, Index s, const double* positions, RunGroup& group,
-                                        SpringLanes& squared) {
-  group.first_at = std::ptrdiff_t{3} * batches.first[s];
-  group.second_at = std::ptrdiff_t{3} * batches.second[s];
-  load(positions + group.first_at, group.first);
-  load(positions + group.second_at, group.second);
-  subtract(group.second, group.first, group.between);
-  SpringLanes x, y, z;
-  unpack(group.between, x, y, z);
-  squared = x * x + y * y + z * z;
-}
-
-[[gnu::always_inline]] inline void move(const Moves& moves, RunGroup& group, double* positions) {
-  Packed of_first = group.between;
-  Packed of_second = group.between;
-  multiply(of_first, moves.first);
-  multiply(of_second, moves.second);
-  group.first.low += of_first.low;
-  group.first.middle += of_first.middle;
-  group.first.high += of_first.high;
-  subtract(group.second, of_second, group.second);
-  store(group.first, positions + group.first_at);
-  store(group.second, positions + group.second_at);
-}
-
-/// Four springs that join eight consecutive particles two by two: see StretchBatches::Layout.
-struct PairGroup {
-  std::ptrdiff_t at;  ///< of its particles in the positions
-  SpringLanes first[3];
-  SpringLanes second[3];
-  SpringLanes between[3];  ///< second - first
-};
-
-[[gnu::always_inline]] inline void load(const StretchBatches& batches, Index s, const double* positions, PairGroup& group,
-                                        SpringLanes& squared) {
-  group.at = std::ptrdiff_t{3} * batches.first[s];
-  Packed low;
-  Packed high;
-  load(positions + group.at, low);
-  load(positions + group.at + 3 * kSpringLanes, high);
-  SpringLanes of_low[3];
-  SpringLanes of_high[3];
-  unpack(low, of_low[0], of_low[1], of_low[2]);
-  unpack(high, of_high[0], of_high[1], of_high[2]);
-  for (int i = 0; i < 3; ++i) {
-    group.first[i] = __builtin_shufflevector(of_low[i], of_high[i], 0, 4, 2, 6);
-    group.second[i] = __builtin_shufflevector(of_low[i], of_high[i], 1, 5, 3, 7);
-    group.between[i] = group.second[i] - group.first[i];
+  for (; s + kCountOf<Lanes> <= part.end; s += kCountOf<Lanes>) {
+    if (!part.same) load_lanes(&batches.per_length[s], per_length);
+    Lanes squared;
+    Group::find_squared(batches, s, positions, squared);
+    squared *= per_length * per_length;
+    extremes.include(squared, squared);
+    if (lengths != nullptr) store_lanes(squared, lengths + (s - part.begin));
   }
-  squared = group.between[0] * group.between[0] + group.between[1] * group.between[1] + group.between[2] * group.between[2];
+  return s;
 }
 
-[[gnu::always_inline]] inline void move(const Moves& moves, PairGroup& group, double* positions) {
-  SpringLanes of_low[3];
-  SpringLanes of_high[3];
-  for (int i = 0; i < 3; ++i) {
-    group.first[i] += moves.first * group.between[i];
-    group.second[i] -= moves.second * group.between[i];
-    of_low[i] = __builtin_shufflevector(group.first[i], group.second[i], 0, 4, 2, 6);
-    of_high[i] = __builtin_shufflevector(group.first[i], group.second[i], 1, 5, 3, 7);
+/// From squared lengths to how much of each spring is beyond its limits: 1 - allowed / length. What is not allowed anyhow has no
+/// length to be divided by, and no direction: 0 times anything is what it moves.
+template <class Lanes>
+[[gnu::always_inline]] inline Index find_beyond(const LengthRange& range, double relaxation, Index i, Index count,
+                                                double* lengths) {
+  const double most_squared = range.most * range.most;
+  const double least_squared = range.least * range.least;
+  for (; i + kCountOf<Lanes> <= count; i += kCountOf<Lanes>) {
+    Lanes squared, inverse;
+    load_lanes(lengths + i, squared);
+    inverse_root(squared, inverse);
+    const Lanes too_long = 1.0 - range.most * inverse;
+    const Lanes too_short = 1.0 - range.least * inverse;
+    const Lanes beyond = squared > most_squared ? too_long : (squared < least_squared ? too_short : Lanes{});
+    store_lanes(relaxation * beyond, lengths + i);
   }
-  Packed packed;
-  pack(of_low[0], of_low[1], of_low[2], packed);
-  store(packed, positions + group.at);
-  pack(of_high[0], of_high[1], of_high[2], packed);
-  store(packed, positions + group.at + 3 * kSpringLanes);
-}
-
-using Pair = double __attribute__((vector_size(2 * sizeof(double))));
-using StoredPair = double __attribute__((vector_size(2 * sizeof(double)), aligned(alignof(double)), may_alias));
-
-// Four lanes, the last one 0: fewer shuffles than gathering x, y and z of four particles.
-[[gnu::always_inline]] inline void load(const double* from, SpringLanes& to) {
-  const Pair xy = *reinterpret_cast<const StoredPair*>(from);
-  const Pair z{from[2], 0.0};
-  to = __builtin_shufflevector(xy, z, 0, 1, 2, 3);
-}
-
-[[gnu::always_inline]] inline void store(const SpringLanes& from, double* to) {
-  *reinterpret_cast<StoredPair*>(to) = __builtin_shufflevector(from, from, 0, 1);
-  to[2] = from[2];
-}
-
-/// Four springs between any particles.
-struct GatheredGroup {
-  std::ptrdiff_t first_at[kSpringLanes];  ///< in the positions
-  std::ptrdiff_t second_at[kSpringLanes];
-  SpringLanes first[kSpringLanes];
-  SpringLanes second[kSpringLanes];
-  SpringLanes between[kSpringLanes];  ///< second - first
-};
-
-[[gnu::always_inline]] inline void load(const StretchBatches& batches, Index s, const double* positions, GatheredGroup& group,
-                                        SpringLanes& squared) {
-  SpringLanes squares[kSpringLanes];
-  for (Index k = 0; k < kSpringLanes; ++k) {
-    group.first_at[k] = std::ptrdiff_t{3} * batches.first[s + k];
-    group.second_at[k] = std::ptrdiff_t{3} * batches.second[s + k];
-    load(positions + group.first_at[k], group.first[k]);
-    load(positions + group.second_at[k], group.second[k]);
-    group.between[k] = group.second[k] - group.first[k];
-    squares[k] = group.between[k] * group.between[k];
-  }
-  const SpringLanes sums01 =
-      __builtin_shufflevector(squares[0], squares[1], 0, 4, 2, 6) + __builtin_shufflevector(squares[0], squares[1], 1, 5, 3, 7);
-  const SpringLanes sums23 =
-      __builtin_shufflevector(squares[2], squares[3], 0, 4, 2, 6) + __builtin_shufflevector(squares[2], squares[3], 1, 5, 3, 7);
-  squared = __builtin_shufflevector(sums01, sums23, 0, 1, 4, 5) + __builtin_shufflevector(sums01, sums23, 2, 3, 6, 7);
-}
-
-[[gnu::always_inline]] inline void move(const Moves& moves, GatheredGroup& group, double* positions) {
-  for (Index k = 0; k < kSpringLanes; ++k) {
-    group.first[k] += moves.first[k] * group.between[k];
-    group.second[k] -= moves.second[k] * group.between[k];
-    store(group.first[k], positions + group.first_at[k]);
-    store(group.second[k], positions + group.second_at[k]);
-  }
-}
-
-[[gnu::always_inline]] inline double largest(const SpringLanes& of) {
-  return std::max(std::max(of[0], of[1]), std::max(of[2], of[3]));
+  return i;
 }
 
 template <class Group>
-[[gnu::always_inline]] inline double project(const StretchBatches& batches, const StretchBatches::Part& part,
-                                             const LengthRange& range, double relaxation, double* positions) {
-  const Limits limits(range);
-  Constants constants;
-  load(batches, part.begin, limits.per_most_squared, constants);
-  SpringLanes excess{};
-  for (Index s = part.begin; s < part.end; s += kSpringLanes) {
-    if (!part.same) load(batches, s, limits.per_most_squared, constants);
-    Group group;
-    Lengths springs;
-    load(batches, s, positions, group, springs.squared);
-    springs.squared *= constants.per_most_squared;
-    if (!find_beyond(limits, springs)) continue;
-    keep_largest(limits, springs, excess);
-    Moves moves;
-    find_moves(constants, limits, springs, relaxation, moves);
-    move(moves, group, positions);
+[[gnu::always_inline]] inline Index move(const StretchBatches& batches, const Part& part, Index s, const double* beyond,
+                                         double* positions) {
+  using Lanes = typename Group::Lanes;
+  if (s + kCountOf < Lanes >> part.end) return s;
+  Lanes first_share;
+  load_lanes(&batches.first_share[s], first_share);
+  for (; s + kCountOf<Lanes> <= part.end; s += kCountOf<Lanes>) {
+    if (!part.same) load_lanes(&batches.first_share[s], first_share);
+    Moves<Lanes> moves;
+    load_lanes(beyond + (s - part.begin), moves.second);
+    moves.first = first_share * moves.second;
+    moves.second -= moves.first;
+    Group::move(batches, s, moves, positions);
   }
-  return limits.most * largest(excess);
+  return s;
 }
 
-// One square root for the longest and the shortest.
-template <class Group>
-[[gnu::always_inline]] inline double measure(const StretchBatches& batches, const StretchBatches::Part& part,
-                                             const LengthRange& range, const double* positions) {
-  Constants constants;
-  load(batches, part.begin, 1.0, constants);
-  SpringLanes longest{};
-  SpringLanes shortest = SpringLanes{} + HUGE_VAL;
-  for (Index s = part.begin; s < part.end; s += kSpringLanes) {
-    if (!part.same) load(batches, s, 1.0, constants);
-    Group group;
-    SpringLanes squared;
-    load(batches, s, positions, group, squared);
-    squared *= constants.per_most_squared;
-    longest = squared > longest ? squared : longest;
-    shortest = squared < shortest ? squared : shortest;
+// Three sweeps over a part, which is in the first-level cache: in one, each spring would wait for its own root, and the machine
+// does not look far enough ahead to do another meanwhile. What does not fill a wide group is left to narrow ones.
+template <class Wide, class Narrow, class All>
+[[gnu::always_inline]] inline void project(const StretchBatches& batches, const Part& part, const LengthRange& range,
+                                           double relaxation, double* positions, All& extremes) {
+  alignas(WideLanes) double lengths[StretchBatches::kPartSprings];
+  Extremes<typename Wide::Lanes> of_wide;
+  Extremes<typename Narrow::Lanes> of_narrow;
+  const Index measured = find_squared<Wide>(batches, part, part.begin, positions, lengths, of_wide);
+  find_squared<Narrow>(batches, part, measured, positions, lengths, of_narrow);
+  if (!are_beyond(range, of_wide) && !are_beyond(range, of_narrow)) return;
+  extremes.include(of_wide);
+  extremes.include(of_narrow);
+
+  const Index count = part.end - part.begin;
+  const Index found = find_beyond<typename Wide::Lanes>(range, relaxation, 0, count, lengths);
+  find_beyond<typename Narrow::Lanes>(range, relaxation, found, count, lengths);
+  const Index moved = move<Wide>(batches, part, part.begin, lengths, positions);
+  move<Narrow>(batches, part, moved, lengths, positions);
+}
+
+/// Calls `body` with the groups of each part.
+template <class Widest, class Body>
+[[gnu::always_inline]] inline void for_parts(const StretchBatches& batches, const Parts& parts, const Body& body) {
+  for (Index p = parts.begin; p < parts.end; ++p) {
+    const Part& part = batches.parts[p];
+    switch (part.layout) {
+      case Layout::run:
+        body.template operator()<RunGroup<Widest>, RunGroup<Packed>>(part);
+        break;
+      case Layout::pairs:
+        body.template operator()<PairGroup<Widest>, PairGroup<Packed>>(part);
+        break;
+      default:
+        body.template operator()<GatheredGroup, GatheredGroup>(part);
+    }
   }
-  const double most = std::sqrt(largest(longest));
-  const double least = std::sqrt(-largest(-shortest));
-  return std::max({0.0, most - range.most, range.least - least});
+}
+
+template <class Widest>
+[[gnu::always_inline]] inline SquaredLengths project_parts(const StretchBatches& batches, const Parts& parts,
+                                                           const LengthRange& range, double relaxation, double* positions) {
+  AllExtremes<typename Widest::Lanes> extremes;
+  for_parts<Widest>(
+      batches, parts, [&]<class Wide, class Narrow>(const Part& part) __attribute__((always_inline)) {
+        project<Wide, Narrow>(batches, part, range, relaxation, positions, extremes);
+      });
+  return extremes.lengths();
+}
+
+template <class Widest>
+[[gnu::always_inline]] inline SquaredLengths measure_parts(const StretchBatches& batches, const Parts& parts,
+                                                           const double* positions) {
+  AllExtremes<typename Widest::Lanes> extremes;
+  for_parts<Widest>(
+      batches, parts, [&]<class Wide, class Narrow>(const Part& part) __attribute__((always_inline)) {
+        Extremes<typename Wide::Lanes> of_wide;
+        const Index measured = find_squared<Wide>(batches, part, part.begin, positions, nullptr, of_wide);
+        extremes.include(of_wide);
+        find_squared<Narrow>(batches, part, measured, positions, nullptr, extremes.of_narrow);
+      });
+  return extremes.lengths();
 }
 
 }  // namespace
 
 SPRUNG_KERNEL
-double project_springs(const StretchBatches& batches, const StretchBatches::Part& part, const LengthRange& range, double relaxation,
-                       double* positions) {
-  switch (part.layout) {
-    case StretchBatches::Layout::run:
-      return project<RunGroup>(batches, part, range, relaxation, positions);
-    case StretchBatches::Layout::pairs:
-      return project<PairGroup>(batches, part, range, relaxation, positions);
-    default:
-      return project<GatheredGroup>(batches, part, range, relaxation, positions);
-  }
+SquaredLengths project_springs_narrow(const StretchBatches& batches, const Parts& parts, const LengthRange& range,
+                                      double relaxation, double* positions) {
+  return project_parts<Packed>(batches, parts, range, relaxation, positions);
 }
 
 SPRUNG_KERNEL
-double measure_springs(const StretchBatches& batches, const StretchBatches::Part& part, const LengthRange& range,
-                       const double* positions) {
-  switch (part.layout) {
-    case StretchBatches::Layout::run:
-      return measure<RunGroup>(batches, part, range, positions);
-    case StretchBatches::Layout::pairs:
-      return measure<PairGroup>(batches, part, range, positions);
-    default:
-      return measure<GatheredGroup>(batches, part, range, positions);
-  }
+SquaredLengths measure_springs_narrow(const StretchBatches& batches, const Parts& parts, const double* positions) {
+  return measure_parts<Packed>(batches, parts, positions);
+}
+
+SPRUNG_WIDE_KERNEL
+SquaredLengths project_springs_wide(const StretchBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
+                                    double* positions) {
+  return project_parts<WidePacked>(batches, parts, range, relaxation, positions);
+}
+
+SPRUNG_WIDE_KERNEL
+SquaredLengths measure_springs_wide(const StretchBatches& batches, const Parts& parts, const double* positions) {
+  return measure_parts<WidePacked>(batches, parts, positions);
 }
 
 }  // namespace sprung

@@ -24,15 +24,18 @@ constexpr double kLeastExcess = 1.0e-3;
 // Springs that may shrink by no more than this part of the excess hardly let a surface neck.
 constexpr double kLeastPlay = 0.1;
 
-/// Largest of what `excess_of` says of parts [begin, end).
-template <class ExcessOf>
-double largest_excess(const StretchBatches& batches, Index begin, Index end, const ExcessOf& excess_of) {
-  std::vector<double> excess((end - begin + kPartChunk - 1) / kPartChunk, 0.0);
-  parallel_chunks(end - begin, kPartChunk, [&](Index chunk_begin, Index chunk_end) {
-    double& largest = excess[chunk_begin / kPartChunk];
-    for (Index p = begin + chunk_begin; p < begin + chunk_end; ++p) largest = std::max(largest, excess_of(batches.parts[p]));
+/// Extremes of what `lengths_of` says of `parts`, chunk by chunk.
+template <class LengthsOf>
+SquaredLengths extremes(const Parts& parts, const LengthsOf& lengths_of) {
+  const Index count = parts.end - parts.begin;
+  if (count <= kPartChunk) return lengths_of(parts);
+  std::vector<SquaredLengths> of_chunks((count + kPartChunk - 1) / kPartChunk);
+  parallel_chunks(count, kPartChunk, [&](Index begin, Index end) {
+    of_chunks[begin / kPartChunk] = lengths_of(Parts{parts.begin + begin, parts.begin + end});
   });
-  return excess.empty() ? 0.0 : *std::ranges::max_element(excess);
+  SquaredLengths all;
+  for (const SquaredLengths& of_chunk : of_chunks) all.include(of_chunk);
+  return all;
 }
 
 LengthRange length_range(const StretchLimitSettings& settings) {
@@ -51,14 +54,13 @@ StretchLimit::~StretchLimit() = default;
 double StretchLimit::project(Points& positions, double relaxation) const {
   if (tethers_) tethers_->project(positions);
   const LengthRange range = length_range(settings_);
-  const auto project_part = [&](const StretchBatches::Part& part) {
-    return project_springs(*batches_, part, range, relaxation, positions.data());
-  };
-  double excess = 0.0;
+  SquaredLengths met;
   for (std::size_t batch = 0; batch + 1 < batches_->begin.size(); ++batch) {
-    excess = std::max(excess, largest_excess(*batches_, batches_->begin[batch], batches_->begin[batch + 1], project_part));
+    met.include(extremes({batches_->begin[batch], batches_->begin[batch + 1]}, [&](const Parts& parts) {
+      return project_springs(*batches_, parts, range, relaxation, positions.data());
+    }));
   }
-  return excess;
+  return met.excess(range);
 }
 
 std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double fall) const {
@@ -66,10 +68,9 @@ std::optional<int> StretchLimit::solve(const Points& before, Points& positions, 
 }
 
 double StretchLimit::excess(const Points& positions) const {
-  const LengthRange range = length_range(settings_);
-  return largest_excess(*batches_, 0, batches_->begin.back(), [&](const StretchBatches::Part& part) {
-    return measure_springs(*batches_, part, range, positions.data());
-  });
+  return extremes({0, batches_->begin.back()},
+                  [&](const Parts& parts) { return measure_springs(*batches_, parts, positions.data()); })
+      .excess(length_range(settings_));
 }
 
 const StretchLimitSettings& StretchLimit::settings() const { return settings_; }
