@@ -71,7 +71,8 @@ struct FreeSpace::Implementation {
   const ObstacleSet& set;
   CollisionSurface surface;
   ObstacleZones zones;
-  std::optional<SelfZones> pairs;        ///< where elements of the network may meet
+  std::optional<SelfZones> pairs;  ///< where elements of the network may meet
+  std::vector<Contact> contacts{};
   std::vector<Contact> pair_contacts{};  ///< of the step that follow() began
   bool pairs_began = false;
 };
@@ -90,8 +91,10 @@ void FreeSpace::follow(const Points& before, const Points& after) {
   if (implementation_->pairs) implementation_->begin_pairs(before, after);
 }
 
-std::vector<Contact> FreeSpace::contacts(const Points& before, const Points& after) {
-  std::vector<Contact> contacts = implementation_->zones.contacts({before, after});
+const std::vector<Contact>& FreeSpace::contacts(const Points& before, const Points& after) {
+  std::vector<Contact>& contacts = implementation_->contacts;
+  contacts.clear();
+  implementation_->zones.find_contacts({before, after}, contacts);
   const std::vector<Contact>& of_pairs = implementation_->pair_contacts;
   contacts.insert(contacts.end(), of_pairs.begin(), of_pairs.end());
   return contacts;

@@ -33,7 +33,8 @@ class FreeSpace {
   /// Contacts of particles (see Environment::contacts), and of obstacles with the inside of edges and faces: an edge over a spike,
   /// a face over a corner; then those of the network's elements with each other. Same order for any number of threads. Requires
   /// follow() with the same positions.
-  [[nodiscard]] std::vector<Contact> contacts(const Points& before, const Points& after);
+  /// Valid until it is asked again.
+  [[nodiscard]] const std::vector<Contact>& contacts(const Points& before, const Points& after);
 
   struct Truncation {
     Index truncated = 0;  ///< particles stopped on their way

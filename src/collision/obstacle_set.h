@@ -46,6 +46,8 @@ class ObstacleSet {
     return into_after_[static_cast<std::size_t>(k)] * position;
   }
 
+  [[nodiscard]] const RigidTransform& into_after(Index k) const { return into_after_[static_cast<std::size_t>(k)]; }
+
   /// Replaces `found` by the obstacles that may be within the box at the interval's end, ascending.
   void find_near(const Box3& box, std::vector<Index>& found) const { broad_phase_->find_near(box, found); }
 

@@ -4,7 +4,6 @@
 #include "base/parallel.h"
 #include "collision/lanes.h"
 #include "collision/particle_blocks.h"
-#include "collision/particle_contact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,9 +20,6 @@ constexpr double kAside = 0.125;
 
 // Where no obstacle moves the broad phase is asked for more than is needed, by this part of the diagonal, to be asked less often.
 constexpr double kStock = 0.25;
-
-// A nearest point this close to a corner is that particle's own contact.
-constexpr double kAtCorner = 1.0 - 1.0e-6;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -70,7 +66,7 @@ ObstacleZones::ObstacleZones(const ObstacleSet& set, const CollisionSurface& sur
     for (std::size_t slot = 0; slot < elements.particles.size(); ++slot) {
       const Index i = elements.particles[slot];
       patch.thickness = std::max(patch.thickness, surface.thickness[i]);
-      if (at(slots_of(i).front().patch) == p) patch.own.push_back(static_cast<Index>(slot));
+      patch.own.push_back(at(slots_of(i).front().patch) == p ? 1 : 0);
     }
     patches_.push_back(std::move(patch));
   }
@@ -87,9 +83,9 @@ void ObstacleZones::follow(const Way& way) {
       patch.restless.clear();
       for (PatchZones& zones : patch.zones) {
         const ObstacleShape& shape = set_.shape(zones.obstacle());
-        find_ends(p, zones.obstacle(), way, paths);
-        if (!zones.find_restless(shape, paths.to)) continue;
+        if (!zones.find_restless(shape, {way.to, particles_of(p), set_.into_after(zones.obstacle())})) continue;
         find_begins(p, zones.obstacle(), way, paths);
+        find_ends(p, zones.obstacle(), way, paths);
         zones.follow(shape, patch.topology, paths, demand(patch, zones.obstacle(), way));
         append_restless(p, zones);
       }
@@ -99,7 +95,7 @@ void ObstacleZones::follow(const Way& way) {
 
 void ObstacleZones::find_near(Index p, const Way& way, double carried) {
   Patch& patch = patches_[at(p)];
-  const std::vector<Index>& particles = surface_.patches[at(p)].particles;
+  const std::vector<Index>& particles = particles_of(p);
   patch.box = bounds_of(way, particles);
   std::vector<Index> near;
   if (!patch.box.isEmpty()) {
@@ -128,7 +124,7 @@ void ObstacleZones::find_near(Index p, const Way& way, double carried) {
 }
 
 void ObstacleZones::append_restless(Index p, const PatchZones& zones) {
-  for (const Index slot : zones.restless()) patches_[at(p)].restless.push_back(surface_.patches[at(p)].particles[at(slot)]);
+  for (const Index slot : zones.restless()) patches_[at(p)].restless.push_back(particles_of(p)[at(slot)]);
 }
 
 std::vector<Index> ObstacleZones::restless() const {
@@ -140,7 +136,7 @@ std::vector<Index> ObstacleZones::restless() const {
 }
 
 void ObstacleZones::find_begins(Index p, Index k, const Way& way, PatchPaths& paths) const {
-  const std::vector<Index>& particles = surface_.patches[at(p)].particles;
+  const std::vector<Index>& particles = particles_of(p);
   paths.from.resize(particles.size());
   for (std::size_t slot = 0; slot < particles.size(); ++slot) {
     const Vector3 from = way.from.col(particles[slot]);
@@ -149,7 +145,7 @@ void ObstacleZones::find_begins(Index p, Index k, const Way& way, PatchPaths& pa
 }
 
 void ObstacleZones::find_ends(Index p, Index k, const Way& way, PatchPaths& paths) const {
-  const std::vector<Index>& particles = surface_.patches[at(p)].particles;
+  const std::vector<Index>& particles = particles_of(p);
   paths.to.resize(particles.size());
   for (std::size_t slot = 0; slot < particles.size(); ++slot) paths.to[slot] = set_.local(k, way.to.col(particles[slot]));
 }
@@ -178,79 +174,11 @@ void ObstacleZones::renew_around(const std::vector<Index>& particles, const Way&
         find_ends(p, zones.obstacle(), way, paths);
         const ObstacleShape& shape = set_.shape(zones.obstacle());
         zones.renew(shape, patches_[at(p)].topology, paths, demand(patches_[at(p)], zones.obstacle(), way), slots[at(p)]);
-        zones.find_restless(shape, paths.to);
+        zones.find_restless(shape, {way.to, particles_of(p), set_.into_after(zones.obstacle())});
         append_restless(p, zones);
       }
     }
   });
-}
-
-std::vector<Contact> ObstacleZones::contacts(const Way& way) {
-  std::vector<std::vector<Contact>> parts(patches_.size());
-  parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
-    for (Index p = begin; p < end; ++p) {
-      for (PatchZones& zones : patches_[at(p)].zones) {
-        append_particle_contacts(p, zones, way, parts[at(p)]);
-        append_element_contacts(p, zones, way, parts[at(p)]);
-      }
-    }
-  });
-  std::vector<Contact> contacts;
-  for (const std::vector<Contact>& part : parts) contacts.insert(contacts.end(), part.begin(), part.end());
-  return contacts;
-}
-
-// A particle of several patches is looked at in its first. A path no longer than the distance of its end from the surface cannot
-// have crossed it.
-void ObstacleZones::append_particle_contacts(Index p, PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const {
-  const Index k = zones.obstacle();
-  const std::vector<Index>& particles = surface_.patches[at(p)].particles;
-  const ZoneDemand needed = demand(patches_[at(p)], k, way);
-  const double deformed = set_.shape(k).largest_displacement();
-  const double reach = needed.gap + needed.margin + deformed;
-  const bool rests = set_.rests(k);
-  for (const Index slot : patches_[at(p)].own) {
-    const Index i = particles[at(slot)];
-    if (is_passing(k, i)) continue;
-    const Vector3 from = way.from.col(i);
-    const Vector3 to = way.to.col(i);
-    const Vector3 end = set_.local(k, to);
-    const double length = (rests ? Vector3(to - from) : Vector3(end - set_.local_before(k, from))).norm() + deformed;
-    if (length <= reach && zones.is_far(slot, end, reach)) continue;
-    if (!from.allFinite() || !to.allFinite()) continue;
-    const auto contact = find_contact(set_, k, {i, from, to, surface_.thickness[i], margin_}, zones.memory(slot));
-    if (contact) contacts.push_back(*contact);
-  }
-}
-
-void ObstacleZones::append_element_contacts(Index p, const PatchZones& zones, const Way& way,
-                                            std::vector<Contact>& contacts) const {
-  const Index k = zones.obstacle();
-  const RigidTransform& pose = set_.after(k);
-  const ElementPatch& patch = surface_.patches[at(p)];
-  for (const Index e : zones.near_elements()) {
-    const Zone& zone = zones.zone(e);
-    if (zone.broken || zone.weights.maxCoeff() > kAtCorner) continue;
-    const Element& element = surface_.elements[at(patch.first_element + e)];
-    const auto corners = element.particles.begin();
-    if (std::any_of(corners, corners + element.corners, [&](Index i) { return is_passing(k, i); })) continue;
-    Contact contact{.obstacle = k, .point = pose * zone.point, .normal = pose.linear() * zone.normal};
-    Vector3 sum = Vector3::Zero();
-    double thickness = 0.0;
-    for (std::size_t c = 0; c < at(element.corners); ++c) {
-      const Index i = element.particles[c];
-      thickness = std::max(thickness, surface_.thickness[i]);
-      if (zone.weights[static_cast<Index>(c)] == 0.0) continue;
-      contact.particles[at(contact.count)] = i;
-      contact.weights[at(contact.count++)] = zone.weights[static_cast<Index>(c)];
-      sum += zone.weights[static_cast<Index>(c)] * way.to.col(i);
-    }
-    contact.drift = pose.linear() * zone.drift;
-    contact.distance = contact.normal.dot(sum - contact.point);
-    contact.clearance = set_.clearance(k, sum, sum);
-    const double gap = std::max(thickness + set_.obstacle(k).material.thickness, contact.clearance);
-    if (contact.distance < gap + margin_) contacts.push_back(contact);
-  }
 }
 
 bool ObstacleZones::allow(Index particle, const Vector3& position) const {

@@ -27,8 +27,8 @@ struct CarriedCorner {
 
 class ObstacleZones {
  public:
-  /// Contacts are found `margin` [m] beyond their gap. The network is stretched by nothing at `rest` [m], 3 x n. Keeps references
-  /// to set and surface.
+  /// Contacts are found up to `margin` [m] beyond their gap. The network is stretched by nothing at `rest` [m], 3 x n. Keeps
+  /// references to set and surface.
   ObstacleZones(const ObstacleSet& set, const CollisionSurface& surface, const Points& rest, double margin);
 
   /// Makes zones where elements are near obstacles and have none that holds them on their way.
@@ -45,9 +45,10 @@ class ObstacleZones {
   /// Makes the zones of all elements around these particles again, where they are when the way begins.
   void renew_around(const std::vector<Index>& particles, const Way& way);
 
-  /// Contacts of particles (see Environment::contacts), then those of obstacles with the inside of elements, at the zones' nearest
-  /// points; patch by patch. Requires follow() for the same way.
-  [[nodiscard]] std::vector<Contact> contacts(const Way& way);
+  /// Appends contacts of particles (see Environment::contacts), then those of obstacles with the inside of elements, at the zones'
+  /// nearest points; patch by patch. Where hardly anything moves they are found less than the margin beyond their gap. Requires
+  /// follow() for the same way.
+  void find_contacts(const Way& way, std::vector<Contact>& contacts);
 
   /// Whether the zones of all elements around the particle hold it there, at the interval's end.
   [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
@@ -82,8 +83,10 @@ class ObstacleZones {
   struct Patch {
     PatchTopology topology;
     std::vector<PatchZones> zones{};  ///< by obstacle, ascending: those that are near
-    std::vector<Index> own{};         ///< slots of the particles that no patch before it has
+    std::vector<char> own{};          ///< by slot: 1 for particles that no patch before it has
     std::vector<Index> restless{};    ///< its particles that may leave a zone
+    std::vector<Index> close{};       ///< slots of particles that may have contacts, by find_contacts()
+    std::vector<Contact> contacts{};  ///< by find_contacts()
     Box3 box{};                       ///< around its particles' ways
     Box3 known{};                     ///< what meets this box is in `zones`
     double size = 0.0;                ///< of its elements [m]
@@ -112,9 +115,12 @@ class ObstacleZones {
   void find_begins(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
   void find_ends(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
   [[nodiscard]] ZoneDemand demand(const Patch& patch, Index obstacle, const Way& way) const;
-  void append_particle_contacts(Index patch, PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const;
-  void append_element_contacts(Index patch, const PatchZones& zones, const Way& way, std::vector<Contact>& contacts) const;
+  void append_particle_contacts(Index patch, PatchZones& zones, const Way& way, const ZoneDemand& demanded, double motion);
+  void append_element_contacts(Index patch, const PatchZones& zones, const Way& way, double margin);
   [[nodiscard]] std::span<const PatchSlot> slots_of(Index particle) const;
+  [[nodiscard]] const std::vector<Index>& particles_of(Index patch) const {
+    return surface_.patches[static_cast<std::size_t>(patch)].particles;
+  }
 
   const ObstacleSet& set_;
   const CollisionSurface& surface_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sprung {
 
@@ -40,11 +41,12 @@ PatchZones::PatchZones(Index obstacle, const PatchTopology& topology)
       quiet_(slots_.size()),
       marked_(zones_.size(), 0) {}
 
-bool PatchZones::find_restless(const ObstacleShape& shape, const std::vector<Vector3>& to) {
-  restless_.clear();
-  const bool all = shape.deforms();
-  for (std::size_t i = 0; i < calm_.size(); ++i) {
-    if (all || !calm_[i].holds(to[i])) restless_.push_back(static_cast<Index>(i));
+bool PatchZones::find_restless(const ObstacleShape& shape, const BallParticles& to) {
+  if (shape.deforms()) {
+    restless_.resize(slots_.size());
+    std::iota(restless_.begin(), restless_.end(), Index{0});
+  } else {
+    calm_.find_outside(to, 0.0, restless_);
   }
   return !restless_.empty();
 }
@@ -99,7 +101,7 @@ void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, co
     for (const Index e : topology.elements_of(i)) {
       const Zone& zone = zones_[at(e)];
       const bool near = zone.distance < demand.gap + demand.margin;
-      if (leaves || (stale && near) || zone.broken) marked_[at(e)] = 1;
+      if ((stale && near) || zone.broken || (leaves && !corner_box(topology, e, i).contains(to))) marked_[at(e)] = 1;
     }
   }
 }
@@ -157,25 +159,26 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
   slot.box = Box3(Vector3::Constant(-kInfinity), Vector3::Constant(kInfinity));
   slot.near = slot.broken = false;
   slot.planes.clear();
-  Ball& quiet = quiet_[at(i)];
-  quiet.radius = 0.0;
+  quiet_.set(i, slot.settled, 0.0);
   for (const Index e : topology.elements_of(i)) {
     const Zone& zone = zones_[at(e)];
     slot.broken = slot.broken || zone.broken;
     slot.near = slot.near || zone.distance < demand.gap + demand.margin;
     if (zone.broken) continue;
-    slot.box = slot.box.intersection(zone.box);
+    slot.box = slot.box.intersection(corner_box(topology, e, i));
     slot.planes.insert(slot.planes.end(), zone.planes.begin(), zone.planes.begin() + zone.plane_count);
-    const auto& slots = topology.corners(e).slots;
-    const auto corner = static_cast<std::size_t>(std::find(slots.begin(), slots.end(), i) - slots.begin());
-    const Vector3& made_at = made_around_[at(e)][corner];
-    if (zone.clear > quiet.radius) quiet = {made_at, zone.clear};
-    if (zone.free_radius == kInfinity) continue;
-    // The cube within the ball.
-    const Vector3 radius = Vector3::Constant(zone.free_radius / std::sqrt(3.0));
-    slot.box = slot.box.intersection(Box3(made_at - radius, made_at + radius));
+    if (zone.clear > quiet_.radius(i)) quiet_.set(i, made_around_[at(e)][topology.corner(e, i)], zone.clear);
   }
   if (slot.near && !was_near) slot.settled = slot.box.center();
+}
+
+// The radius is that of a ball: the cube within it.
+Box3 PatchZones::corner_box(const PatchTopology& topology, Index e, Index slot) const {
+  const Zone& zone = zones_[at(e)];
+  if (!std::isfinite(zone.free_radius)) return zone.box;
+  const Vector3& made_at = made_around_[at(e)][topology.corner(e, slot)];
+  const Vector3 radius = Vector3::Constant(zone.free_radius / std::sqrt(3.0));
+  return zone.box.intersection(Box3(made_at - radius, made_at + radius));
 }
 
 void PatchZones::calm_down(Index i, const Vector3& p, const ZoneDemand& demand) {
@@ -183,7 +186,7 @@ void PatchZones::calm_down(Index i, const Vector3& p, const ZoneDemand& demand) 
   double radius = slot.broken ? 0.0 : std::min((p - slot.box.min()).minCoeff(), (slot.box.max() - p).minCoeff());
   if (slot.near) radius = std::min(radius, kFreshPart * demand.gap - (p - slot.settled).norm());
   for (const HalfSpace& plane : slot.planes) radius = std::min(radius, plane.normal.dot(p) - plane.offset);
-  calm_[at(i)] = {p, kCalmPart * radius};
+  calm_.set(i, p, kCalmPart * radius);
 }
 
 bool PatchZones::allow(Index i, const Vector3& p) const {

@@ -1,6 +1,7 @@
 // The free space of one patch's elements before one obstacle, in the obstacle's frame, kept from step to step.
 #pragma once
 
+#include "collision/balls.h"
 #include "collision/obstacle_shape.h"
 #include "collision/patch_topology.h"
 
@@ -30,9 +31,9 @@ class PatchZones {
   [[nodiscard]] Index obstacle() const { return obstacle_; }
   [[nodiscard]] const Zone& zone(Index element) const { return zones_[static_cast<std::size_t>(element)]; }
 
-  /// Finds the slots that follow() has to look at when their particles go to these places, in the obstacle's frame: most stay where
-  /// nothing changes for their zones. Returns whether there are any.
-  bool find_restless(const ObstacleShape& shape, const std::vector<Vector3>& to);
+  /// Finds the slots that follow() has to look at when these particles, by slot, go to these places: most stay where nothing
+  /// changes for their zones. Returns whether there are any.
+  bool find_restless(const ObstacleShape& shape, const BallParticles& to);
   /// As they were found last, ascending.
   [[nodiscard]] const std::vector<Index>& restless() const { return restless_; }
 
@@ -47,11 +48,10 @@ class PatchZones {
   /// Whether the zones of all elements at the slot hold p.
   [[nodiscard]] bool allow(Index slot, const Vector3& p) const;
 
-  /// Whether nothing of the surface can be within `reach` [m] of the slot's particle at p: so of most where nothing is.
-  [[nodiscard]] bool is_far(Index slot, const Vector3& p, double reach) const {
-    const auto i = static_cast<std::size_t>(slot);
-    const Ball searched{memories_[i].asked_at, memories_[i].clear};
-    return quiet_[i].holds(p, reach) || searched.holds(p, reach);
+  /// Replaces `slots` by those, ascending, within `reach` [m] of whose particle there may be something of the surface: most are
+  /// where nothing is.
+  void find_close(const BallParticles& particles, double reach, std::vector<Index>& slots) const {
+    quiet_.find_outside(particles, reach, slots);
   }
 
   /// Whether an element at the slot may touch.
@@ -81,21 +81,12 @@ class PatchZones {
     bool broken = false;
   };
 
-  struct Ball {
-    Vector3 centre = Vector3::Zero();
-    double radius = 0.0;  ///< [m]; at most 0 for one that holds nothing
-
-    /// Whether p is in it, at least `margin` [m] from its surface.
-    [[nodiscard]] bool holds(const Vector3& p, double margin = 0.0) const {
-      const double free = radius - margin;
-      return free > 0.0 && (p - centre).squaredNorm() < free * free;
-    }
-  };
-
   void take_along(const ObstacleShape& shape, const PatchTopology& topology, const ZoneDemand& demand);
   void mark(const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
   void make_marked(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
   void gather(const PatchTopology& topology, const ZoneDemand& demand, Index slot);
+  /// Where the zone lets a corner of the element be that is at the slot.
+  [[nodiscard]] Box3 corner_box(const PatchTopology& topology, Index element, Index slot) const;
   void calm_down(Index slot, const Vector3& p, const ZoneDemand& demand);
   void find_near_elements(const ZoneDemand& demand);
 
@@ -104,8 +95,8 @@ class PatchZones {
   std::vector<std::array<Vector3, 3>> made_around_;  ///< the corners when the zone was made
   std::vector<Slot> slots_;
   std::vector<SurfaceMemory> memories_;  ///< by slot
-  std::vector<Ball> calm_;               ///< by slot: a particle in it leaves no zone and needs no new ones
-  std::vector<Ball> quiet_;              ///< by slot: holds nothing of the surface
+  Balls calm_;                           ///< by slot: a particle in it leaves no zone and needs no new ones
+  Balls quiet_;                          ///< by slot: holds nothing of the surface
   std::vector<Index> restless_;          ///< slots
   std::vector<Index> near_elements_;
   bool crosses_ = false;

@@ -8,7 +8,7 @@
 namespace sprung {
 namespace {
 
-// Contacts are looked for this part of the thickness beyond the gap: the passes of a step move resting particles less.
+// Contacts are looked for this part of the thickness beyond the gap at most: the passes of a step move resting particles less.
 constexpr double kMargin = 0.5;
 
 /// For what the passes of a step may move [m].
