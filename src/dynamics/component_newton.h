@@ -30,6 +30,7 @@ class ComponentNewton {
   [[nodiscard]] double most_beyond() const;
   int minimise();
   void start();
+  [[nodiscard]] double inertia() const;
   [[nodiscard]] double imbalance() const;
   [[nodiscard]] bool descend(double& energy);
   void clip();

@@ -7,8 +7,9 @@ namespace sprung {
 namespace {
 
 // A link that carries its component's weight is longer than its limit by this part of the tolerance; in motion it carries a few
-// times as much.
-constexpr double kPartOfTolerance = 0.25;
+// times as much. Chains and trees that hang on one link are clipped besides; in cloths the load gathers at the pins.
+constexpr double kPartForChains = 0.25;
+constexpr double kPartForCloths = 0.1;
 
 // Without a tolerance there is still some give: stiffer links take more iterations.
 constexpr double kLeastTolerance = 4.0e-4;
@@ -16,7 +17,8 @@ constexpr double kLeastTolerance = 4.0e-4;
 }  // namespace
 
 StretchEnergy::StretchEnergy(const StretchComponent& component, const StretchLimitSettings& settings) : component_(component) {
-  const double give = kPartOfTolerance * std::max(settings.tolerance, kLeastTolerance);
+  const double part = component.is_tree ? kPartForChains : kPartForCloths;
+  const double give = part * std::max(settings.tolerance, kLeastTolerance);
   for (const StretchComponent::Link& link : component.links) {
     limits_.push_back({link.rest_length * (1.0 + settings.max_stretch), 1.0 / (give * link.rest_length)});
   }
@@ -65,7 +67,7 @@ double StretchEnergy::linearise(const Points& x, const Points& y, double active_
     const Vector3 pull = stiffness * excess * direction;
     system.residual.col(link.first) += pull;
     if (component_.is_free(link.second)) system.residual.col(link.second) -= pull;
-    if (excess > 0.0) elastic += stiffness * excess * excess;
+    elastic += stiffness * excess * excess;
   }
   return 0.5 * (inertia + elastic);
 }

@@ -21,7 +21,8 @@ class StretchEnergy {
   [[nodiscard]] double value(const Points& x, const Points& y) const;
 
   /// E, its negative gradient as the residual, and its second derivatives, of which those are left out that would make a block
-  /// indefinite. Links that are longer than L times `active_from`, in (0, 1], count as if they pushed when they are shorter than L.
+  /// indefinite. Links that are longer than L times `active_from`, in (0, 1], count as if they pushed when they are shorter than L,
+  /// in what is returned too.
   double linearise(const Points& x, const Points& y, double active_from, StretchSystem& system) const;
 
  private:

@@ -20,10 +20,8 @@ class StretchSystemSolver {
  public:
   virtual ~StretchSystemSolver() = default;
 
-  /// Begins a step: what earlier steps left shall not change its bits.
-  virtual void begin_step() {}
-
-  /// Writes the free points' displacements [m] to `step`, 3 x free.
+  /// Writes the free points' displacements [m] to `step`, 3 x free; what earlier systems left does not change their bits. Not
+  /// finite when the system is not.
   virtual void solve(const StretchSystem& system, Points& step) = 0;
 };
 

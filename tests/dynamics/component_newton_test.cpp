@@ -23,8 +23,7 @@ StretchComponent component_of(const SpringNetwork& network) {
 }
 
 // A step that begins where forces led adds no motion: links carry the component's mass against the fall alone, which is what the
-// energy's weight says. Iterations end with a step that gains no more than 1e-5 of the energy, of which a Newton step that is
-// solved to a hundredth leaves a hundredth at least.
+// energy's weight says. Iterations end with a forecast that was right to a tenth of the energy, so no more than that is left.
 TEST(ComponentNewton, EndsWhereNothingIsToBeGained) {
   const SpringNetwork network = make_test_cloth(8, 0.0, 0.0, false);
   const StretchLimitSettings settings{.max_stretch = 0.0};
@@ -45,7 +44,7 @@ TEST(ComponentNewton, EndsWhereNothingIsToBeGained) {
   const double reached = energy.linearise(of_points(x), of_points(led), 1.0, system);
   Points step;
   make_system_solver(component)->solve(system, step);
-  EXPECT_LT(system.residual.cwiseProduct(step).sum(), 1.0e-7 * reached);
+  EXPECT_LT(0.5 * system.residual.cwiseProduct(step).sum(), 0.1 * reached);
 }
 
 // However its particles were thrown about, what hangs on one link ends within the tolerance, and without one within the limit to
