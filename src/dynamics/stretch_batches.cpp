@@ -2,11 +2,13 @@
 
 #include "dynamics/lane_count.h"
 #include "dynamics/limited_springs.h"
+#include "dynamics/part_order.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstdlib>
 #include <span>
 #include <utility>
 
@@ -14,6 +16,12 @@ namespace sprung {
 namespace {
 
 constexpr int kColours = 64;
+
+// A network is narrow when springs join particles no farther apart, by number, than this part of all: rows of a cloth.
+constexpr Index kNarrow = 32;
+
+// Of a narrow network a part has springs of some rows only: longer parts are cheaper, shorter ones can be done when their rows are.
+constexpr Index kSpan = 4;
 
 /// Springs [begin, begin + count) of the network: one, or a run that fills the kernel's lanes.
 struct Piece {
@@ -83,10 +91,25 @@ bool are_pairs(const Springs& springs, std::span<const Piece> singles, std::size
   return true;
 }
 
+/// How far apart the particles are, by number, that a spring joins.
+Index bandwidth(const Springs& springs, const std::vector<Index>& limited) {
+  Index widest = 1;
+  for (const Index s : limited) widest = std::max(widest, std::abs(springs.second[s] - springs.first[s]));
+  return widest;
+}
+
 class Filler {
  public:
-  Filler(const SpringNetwork& network, StretchBatches& batches) : network_(network), batches_(batches) {}
+  /// The first ends of a part's springs are at most about `span` apart.
+  Filler(const SpringNetwork& network, Index span, StretchBatches& batches) : network_(network), span_(span), batches_(batches) {}
 
+  void add_colour(Colour& colour) {
+    add_runs(colour.runs);
+    std::ranges::stable_sort(colour.singles, {}, [&](const Piece& piece) { return network_.springs.first[piece.begin]; });
+    add_singles(colour.singles);
+  }
+
+ private:
   void add_runs(std::span<const Piece> runs) {
     for (const Piece& run : runs) {
       const Index from = batches_.count();
@@ -110,15 +133,24 @@ class Filler {
     add_parts(others, StretchBatches::Layout::gathered);
   }
 
- private:
   void add_parts(const std::vector<Index>& springs, StretchBatches::Layout layout) {
-    for (std::size_t begin = 0; begin < springs.size(); begin += StretchBatches::kPartSprings) {
+    for (std::size_t begin = 0; begin < springs.size();) {
       const Index from = batches_.count();
-      const std::size_t end = std::min(springs.size(), begin + StretchBatches::kPartSprings);
+      const std::size_t end = part_end(springs, begin);
       for (std::size_t i = begin; i < end; ++i) append(springs[i]);
       while (batches_.count() % kSpringLanes != 0) append(springs[end - 1]);
       add_part(from, layout);
+      begin = end;
     }
+  }
+
+  /// Whole groups, as far as springs go.
+  [[nodiscard]] std::size_t part_end(const std::vector<Index>& springs, std::size_t begin) const {
+    const auto first = [&](std::size_t i) { return network_.springs.first[springs[i]]; };
+    const std::size_t most = std::min(springs.size(), begin + StretchBatches::kPartSprings);
+    std::size_t end = std::min(most, begin + kSpringLanes);
+    while (end < most && first(end) - first(begin) <= span_) end = std::min(most, end + kSpringLanes);
+    return end;
   }
 
   void append(Index s) {
@@ -139,22 +171,31 @@ class Filler {
   }
 
   const SpringNetwork& network_;
+  Index span_;
   StretchBatches& batches_;
 };
 
 }  // namespace
 
 StretchBatches::StretchBatches(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
-  Filler filler(network, *this);
-  for (std::vector<Piece> waiting = pieces(network.springs, limited_springs(network, kinds)); !waiting.empty();) {
+  const std::vector<Index> limited = limited_springs(network, kinds);
+  const Index band = bandwidth(network.springs, limited);
+  const bool is_narrow = band <= network.particle_count() / kNarrow;
+  Filler filler(network, is_narrow ? kSpan * band : network.particle_count(), *this);
+  std::vector<Index> colour_begin{0};
+  for (std::vector<Piece> waiting = pieces(network.springs, limited); !waiting.empty();) {
     Colouring colours;
     waiting = colour(network, waiting, colours);
-    for (const auto& [runs, singles] : colours) {
-      if (runs.empty() && singles.empty()) break;
-      filler.add_runs(runs);
-      filler.add_singles(singles);
-      begin.push_back(static_cast<Index>(parts.size()));
+    for (Colour& of_colour : colours) {
+      if (of_colour.runs.empty() && of_colour.singles.empty()) break;
+      filler.add_colour(of_colour);
+      colour_begin.push_back(static_cast<Index>(parts.size()));
     }
+  }
+  if (is_narrow) {
+    order_by_place(colour_begin, band, network.particle_count(), *this);
+  } else {
+    order_by_colour(colour_begin, *this);
   }
 }
 

@@ -1,4 +1,4 @@
-// The springs that a stretch limit holds, in batches without shared particles.
+// The springs that a stretch limit holds, in parts without shared particles.
 #pragma once
 
 #include "network/spring_network.h"
@@ -32,7 +32,11 @@ struct StretchBatches {
   };
   static constexpr Index kPartSprings = 64;
   std::vector<Part> parts;
-  std::vector<Index> begin{0};  ///< batch b holds parts [begin[b], begin[b + 1])
+
+  /// Task t is to go through parts [task_begin[t], task_begin[t + 1]), one after the other; stage s holds tasks [stage_begin[s],
+  /// stage_begin[s + 1]), of which no two share a particle. The bits are those of one colour of springs after the other.
+  std::vector<Index> task_begin{0};
+  std::vector<Index> stage_begin{0};
 
   /// Springs of the given kinds that have a rest length and at least one free end.
   StretchBatches(const SpringNetwork& network, const std::vector<SpringKind>& kinds);

@@ -15,26 +15,23 @@
 namespace sprung {
 namespace {
 
-// Cut by size alone; a thread is worth waking for some 10 us of work.
-constexpr Index kPartChunk = 4096 / StretchBatches::kPartSprings;
-
 // A limit without play and without tolerance is never held quite: this is what steps are chosen for then.
 constexpr double kLeastExcess = 1.0e-3;
 
 // Springs that may shrink by no more than this part of the excess hardly let a surface neck.
 constexpr double kLeastPlay = 0.1;
 
-/// Extremes of what `lengths_of` says of `parts`, chunk by chunk.
+/// Extremes of what `lengths_of` says of tasks [begin, end).
 template <class LengthsOf>
-SquaredLengths extremes(const Parts& parts, const LengthsOf& lengths_of) {
-  const Index count = parts.end - parts.begin;
-  if (count <= kPartChunk) return lengths_of(parts);
-  std::vector<SquaredLengths> of_chunks((count + kPartChunk - 1) / kPartChunk);
-  parallel_chunks(count, kPartChunk, [&](Index begin, Index end) {
-    of_chunks[begin / kPartChunk] = lengths_of(Parts{parts.begin + begin, parts.begin + end});
+SquaredLengths extremes(const StretchBatches& batches, Index begin, Index end, const LengthsOf& lengths_of) {
+  std::vector<SquaredLengths> of_tasks(end - begin);
+  parallel_chunks(end - begin, 1, [&](Index first, Index last) {
+    for (Index task = first; task < last; ++task) {
+      of_tasks[task] = lengths_of(Parts{batches.task_begin[begin + task], batches.task_begin[begin + task + 1]});
+    }
   });
   SquaredLengths all;
-  for (const SquaredLengths& of_chunk : of_chunks) all.include(of_chunk);
+  for (const SquaredLengths& of_task : of_tasks) all.include(of_task);
   return all;
 }
 
@@ -55,8 +52,8 @@ double StretchLimit::project(Points& positions, double relaxation) const {
   if (tethers_) tethers_->project(positions);
   const LengthRange range = length_range(settings_);
   SquaredLengths met;
-  for (std::size_t batch = 0; batch + 1 < batches_->begin.size(); ++batch) {
-    met.include(extremes({batches_->begin[batch], batches_->begin[batch + 1]}, [&](const Parts& parts) {
+  for (std::size_t stage = 0; stage + 1 < batches_->stage_begin.size(); ++stage) {
+    met.include(extremes(*batches_, batches_->stage_begin[stage], batches_->stage_begin[stage + 1], [&](const Parts& parts) {
       return project_springs(*batches_, parts, range, relaxation, positions.data());
     }));
   }
@@ -68,9 +65,8 @@ std::optional<int> StretchLimit::solve(const Points& before, Points& positions, 
 }
 
 double StretchLimit::excess(const Points& positions) const {
-  return extremes({0, batches_->begin.back()},
-                  [&](const Parts& parts) { return measure_springs(*batches_, parts, positions.data()); })
-      .excess(length_range(settings_));
+  const auto lengths_of = [&](const Parts& parts) { return measure_springs(*batches_, parts, positions.data()); };
+  return extremes(*batches_, 0, batches_->stage_begin.back(), lengths_of).excess(length_range(settings_));
 }
 
 const StretchLimitSettings& StretchLimit::settings() const { return settings_; }
