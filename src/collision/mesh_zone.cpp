@@ -18,7 +18,10 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kPlaneRounding = 0x1p-20F;
 
 // Triangles are looked for this many times the reach away: an element that has none so near keeps its zone for longer.
-constexpr double kSearch = 4.0;
+constexpr double kSearch = 16.0;
+
+// What is farther than this part of the squared distance that is clear is not gone into to know how far.
+constexpr float kClearEnough = 0.5F;
 
 Box3 grown(const Box3& box, double reach) { return {box.min().array() - reach, box.max().array() + reach}; }
 
@@ -85,11 +88,16 @@ SPRUNG_KERNEL void find_nearest(const MeshTree& tree, double near, const Zone& z
     const double nearest = std::min(zone.distance, builder.clear());
     return static_cast<float>(std::min(nearest * nearest, 1e38)) * (1.0F + 0x1p-20F);
   };
+  const auto squared_near = static_cast<float>(near * near) * (1.0F + 0x1p-20F);
   WalkStack stack(tree.stack_size());
   stack.push({0.0F, 0});
   while (!stack.empty()) {
     const WalkEntry entry = stack.pop();
     if (entry.bound > limit()) continue;
+    if (entry.bound > squared_near && entry.bound > kClearEnough * limit()) {
+      builder.keep_clear((1.0 - 0x1p-20) * std::sqrt(static_cast<double>(entry.bound)));
+      continue;
+    }
     if (zone.triangle != kNone) {
       set_plane(0, zone.normal, builder.nearest_limit(), search);
       search.planes = 1;

@@ -21,6 +21,9 @@ constexpr double kReachOfMotion = 0.5;
 // Nearest points are looked for again after a motion of this part of the gap: friction goes wrong with older ones.
 constexpr double kFreshPart = 1.0;
 
+// Those that were found within this part of that motion are left until the next time.
+constexpr double kRecentPart = 0.5;
+
 // Zones that a surface that deforms takes along are made again when they lost this part of the gap.
 constexpr double kMostLoss = 0.3;
 
@@ -88,6 +91,7 @@ void PatchZones::renew(const ObstacleShape& shape, const PatchTopology& topology
 // A zone that was never made has an empty box, which all its corners are about to leave.
 void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand) {
   const double fresh = kFreshPart * demand.gap;
+  const double recent = kRecentPart * fresh;
   for (const Index i : restless_) {
     Slot& slot = slots_[at(i)];
     const Vector3& to = paths.to[at(i)];
@@ -101,7 +105,8 @@ void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, co
     for (const Index e : topology.elements_of(i)) {
       const Zone& zone = zones_[at(e)];
       const bool near = zone.distance < demand.gap + demand.margin;
-      if ((stale && near) || zone.broken || (leaves && !corner_box(topology, e, i).contains(to))) marked_[at(e)] = 1;
+      const bool old = near && (to - made_around_[at(e)][topology.corner(e, i)]).squaredNorm() > recent * recent;
+      if ((stale && old) || zone.broken || (leaves && !corner_box(topology, e, i).contains(to))) marked_[at(e)] = 1;
     }
   }
 }

@@ -31,8 +31,8 @@ class ZoneBuilder {
   /// Tells how near the obstacle may be.
   void finish();
 
-  /// What lies wholly below this along the nearest pair's normal is no nearer.
-  [[nodiscard]] double nearest_limit() const { return nearest_lowest_ - zone_.distance; }
+  /// What lies wholly below this along the nearest pair's normal is no nearer, but for rounding.
+  [[nodiscard]] double nearest_limit() const { return nearest_lowest_ - (1.0 - kSameDistance) * zone_.distance; }
 
   [[nodiscard]] const Box3& box() const { return zone_.box; }
   [[nodiscard]] const Box3& element_box() const { return element_box_; }
@@ -42,6 +42,9 @@ class ZoneBuilder {
   [[nodiscard]] double limit(int plane) const { return limits_[static_cast<std::size_t>(plane)]; }
 
  private:
+  // Neighbours share the nearest point on an edge or a corner: rounding is not to make one of them nearer.
+  static constexpr double kSameDistance = 0x1p-30;
+
   [[nodiscard]] bool may_be_nearer(const TriangleCorners& corners) const;
   [[nodiscard]] bool is_beyond(const Vector3& normal, const Vector3& origin, const std::array<Vector3, 3>& points) const;
   [[nodiscard]] bool ruled_out(const TriangleCorners& corners) const;
