@@ -34,17 +34,20 @@ BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const std::vector<bool>
     height = std::max(height, front.shape.lower_height());
   }
   below_.resize(static_cast<std::size_t>(height));
-  row_.resize(std::size_t{2} * kSpringLanes * static_cast<std::size_t>(width));
+  row_.resize(static_cast<std::size_t>(kRowRoom) * static_cast<std::size_t>(width));
 }
 BlockCholesky::~BlockCholesky() = default;
 
 bool BlockCholesky::factor(const BlockMatrix& matrix) {
-  for (std::size_t f = 0; f < layout_->fronts.size(); ++f) {
-    const Front& front = layout_->fronts[f];
+  const std::vector<Front>& fronts = layout_->fronts;
+  for (std::size_t f = 0; f < fronts.size(); ++f) {
+    const Front& front = fronts[f];
     assemble(f, matrix);
-    if (!eliminate_front(front.shape, &panels_[front.panel], &inverse_[front.first_place], updates_.data() + front.update,
-                         row_.data())) {
-      return false;
+    double* const update = updates_.data() + front.update;
+    if (!eliminate_front(front.shape, &panels_[front.panel], &inverse_[front.first_place], update, row_.data())) return false;
+    for (const Index c : front.children) {
+      const Front& child = fronts[c];
+      add_to_update(child.runs, updates_.data() + child.update, child.shape.lower_height(), front.shape.lower_height(), update);
     }
   }
   return true;
@@ -59,12 +62,9 @@ void BlockCholesky::assemble(std::size_t number, const BlockMatrix& matrix) {
   for (std::size_t e = number == 0 ? 0 : layout_->fronts[number - 1].end_entry; e < front.end_entry; ++e) {
     add_entry(layout_->entries[e], matrix, shape, panel);
   }
-  const auto height = static_cast<std::size_t>(shape.lower_height());
-  double* const update = updates_.data() + front.update;
-  std::fill_n(update, height * height, 0.0);
   for (const Index c : front.children) {
     const Front& child = layout_->fronts[c];
-    add_update(child.in_parent, child.runs, updates_.data() + child.update, child.shape.lower_height(), shape, panel, update);
+    add_to_panel(child.parent_columns, child.parent_rows, updates_.data() + child.update, child.shape.lower_height(), panel);
   }
 }
 

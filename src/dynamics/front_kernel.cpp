@@ -9,83 +9,98 @@ namespace {
 constexpr Index kLanes = kSpringLanes;
 constexpr Index kTile = kLanes * kLanes;
 
-/// Tiles in the same columns of kRows rows of tiles, which lie `stride` numbers apart.
-template <int kRows>
+/// Four columns of kVectors vectors of rows: one row of tiles where Lanes are four, two where they are eight. Such rows are worked
+/// on side by side, number by number in the same order, so that results do not depend on how many they are.
+template <class Lanes, int kVectors>
 struct Tiles {
-  SpringLanes column[kRows][kLanes];
+  static constexpr int kRows = kVectors * kCountOf<Lanes> / kLanes;
+  static constexpr Index kHeight = kRows * kLanes;
+  Lanes column[kLanes][kVectors];
 };
 
-template <int kRows>
-[[gnu::always_inline]] inline void load_tiles(const double* from, std::size_t row_stride, std::size_t column_stride,
-                                              Tiles<kRows>& to) {
-  for (int r = 0; r < kRows; ++r) {
-    for (Index c = 0; c < kLanes; ++c) load_lanes(from + r * row_stride + c * column_stride, to.column[r][c]);
-  }
+[[gnu::always_inline]] inline void gather(const double* from, std::size_t, SpringLanes& to) { load_lanes(from, to); }
+[[gnu::always_inline]] inline void gather(const double* from, std::size_t stride, WideLanes& to) {
+  SpringLanes low;
+  SpringLanes high;
+  load_lanes(from, low);
+  load_lanes(from + stride, high);
+  to = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-template <int kRows>
-[[gnu::always_inline]] inline void store_tiles(const Tiles<kRows>& from, std::size_t row_stride, std::size_t column_stride,
-                                               double* to) {
-  for (int r = 0; r < kRows; ++r) {
-    for (Index c = 0; c < kLanes; ++c) store_lanes(from.column[r][c], to + r * row_stride + c * column_stride);
-  }
+[[gnu::always_inline]] inline void scatter(const SpringLanes& from, std::size_t, double* to) { store_lanes(from, to); }
+[[gnu::always_inline]] inline void scatter(const WideLanes& from, std::size_t stride, double* to) {
+  store_lanes(__builtin_shufflevector(from, from, 0, 1, 2, 3), to);
+  store_lanes(__builtin_shufflevector(from, from, 4, 5, 6, 7), to + stride);
 }
 
-/// Subtracts A B^T of `depth` columns.
-template <int kRows>
-[[gnu::always_inline]] inline void subtract_product(const double* a, std::size_t stride, const double* b, Index depth,
-                                                    Tiles<kRows>& from) {
+/// Where vector v begins among rows of tiles that lie `stride` numbers apart.
+template <class Lanes>
+[[gnu::always_inline]] inline std::size_t vector_begin(int v, std::size_t stride) {
+  return static_cast<std::size_t>(v * (kCountOf<Lanes> / kLanes)) * stride;
+}
+
+/// Subtracts A B^T of `depth` columns. Those of A are one after the other, all rows that are worked on side by side.
+template <class Lanes, int kVectors>
+[[gnu::always_inline]] inline void subtract_product(const double* a, const double* b, Index depth, Tiles<Lanes, kVectors>& from) {
   for (Index k = 0; k < depth; ++k) {
-    SpringLanes left[kRows];
-    for (int r = 0; r < kRows; ++r) load_lanes(a + r * stride + k * kLanes, left[r]);
+    Lanes left[kVectors];
+    for (int v = 0; v < kVectors; ++v) load_lanes(a + k * from.kHeight + v * kCountOf<Lanes>, left[v]);
     for (Index c = 0; c < kLanes; ++c) {
-      for (int r = 0; r < kRows; ++r) from.column[r][c] -= left[r] * b[k * kLanes + c];
+      for (int v = 0; v < kVectors; ++v) from.column[c][v] -= left[v] * b[k * kLanes + c];
     }
   }
 }
 
 /// Rows of L D from those of the matrix, left of tile column `columns`: what the columns before have in them is taken out.
-template <int kRows>
+template <class Lanes, int kVectors>
 [[gnu::always_inline]] inline void solve_rows(const double* panel, std::size_t stride, const double* from, Index columns,
                                               double* row) {
   for (Index c = 0; c < columns; ++c) {
     const double* const diagonal = panel + c * stride;
-    Tiles<kRows> tiles;
-    load_tiles(from + c * kTile, stride, kLanes, tiles);
-    subtract_product(row, stride, diagonal, c * kLanes, tiles);
+    Tiles<Lanes, kVectors> tiles;
+    for (Index q = 0; q < kLanes; ++q) {
+      for (int v = 0; v < kVectors; ++v) {
+        gather(from + c * kTile + q * kLanes + vector_begin<Lanes>(v, stride), stride, tiles.column[q][v]);
+      }
+    }
+    subtract_product(row, diagonal, c * kLanes, tiles);
     for (Index q = 1; q < kLanes; ++q) {
       for (Index p = 0; p < q; ++p) {
         const double l = diagonal[c * kTile + p * kLanes + q];
-        for (int r = 0; r < kRows; ++r) tiles.column[r][q] -= tiles.column[r][p] * l;
+        for (int v = 0; v < kVectors; ++v) tiles.column[q][v] -= tiles.column[p][v] * l;
       }
     }
-    store_tiles(tiles, stride, kLanes, row + c * kTile);
+    for (Index q = 0; q < kLanes; ++q) {
+      for (int v = 0; v < kVectors; ++v) {
+        store_lanes(tiles.column[q][v], row + (c * kLanes + q) * tiles.kHeight + v * kCountOf<Lanes>);
+      }
+    }
   }
 }
 
 /// Rows of L from those of L D.
-template <int kRows>
+template <class Lanes, int kVectors>
 [[gnu::always_inline]] inline void scale_rows(const double* row, std::size_t stride, const double* inverse, Index columns,
                                               double* to) {
-  for (int r = 0; r < kRows; ++r) {
-    for (Index k = 0; k < columns * kLanes; ++k) {
-      SpringLanes lanes;
-      load_lanes(row + r * stride + k * kLanes, lanes);
+  for (Index k = 0; k < columns * kLanes; ++k) {
+    for (int v = 0; v < kVectors; ++v) {
+      Lanes lanes;
+      load_lanes(row + (k * kVectors + v) * kCountOf<Lanes>, lanes);
       lanes *= inverse[k];
-      store_lanes(lanes, to + r * stride + k * kLanes);
+      scatter(lanes, stride, to + k * kLanes + vector_begin<Lanes>(v, stride));
     }
   }
 }
 
 /// L D L^T of a tile on the diagonal.
-[[gnu::always_inline]] inline bool eliminate_tile(Tiles<1>& tile, double* inverse) {
+[[gnu::always_inline]] inline bool eliminate_tile(Tiles<SpringLanes, 1>& tile, double* inverse) {
   bool positive = true;
   for (Index q = 0; q < kLanes; ++q) {
-    SpringLanes& column = tile.column[0][q];
+    SpringLanes& column = tile.column[q][0];
     positive = positive && column[q] > 0.0;
     inverse[q] = 1.0 / column[q];
     const SpringLanes scaled = column * inverse[q];
-    for (Index p = q + 1; p < kLanes; ++p) tile.column[0][p] -= column * scaled[p];
+    for (Index p = q + 1; p < kLanes; ++p) tile.column[p][0] -= column * scaled[p];
     column = scaled;
     for (Index lane = 0; lane <= q; ++lane) column[lane] = 0.0;
   }
@@ -96,58 +111,79 @@ template <int kRows>
                                                  double* row) {
   for (Index t = 0; t < shape.own_tiles; ++t) {
     double* const own = panel + t * stride;
-    solve_rows<1>(panel, stride, own, t, row);
-    scale_rows<1>(row, stride, inverse, t, own);
-    Tiles<1> diagonal;
-    load_tiles(own + t * kTile, stride, kLanes, diagonal);
-    subtract_product(row, stride, own, t * kLanes, diagonal);
+    solve_rows<SpringLanes, 1>(panel, stride, own, t, row);
+    scale_rows<SpringLanes, 1>(row, stride, inverse, t, own);
+    Tiles<SpringLanes, 1> diagonal;
+    for (Index q = 0; q < kLanes; ++q) load_lanes(own + t * kTile + q * kLanes, diagonal.column[q][0]);
+    subtract_product(row, own, t * kLanes, diagonal);
     if (!eliminate_tile(diagonal, inverse + t * kLanes)) return false;
-    store_tiles(diagonal, stride, kLanes, own + t * kTile);
+    for (Index q = 0; q < kLanes; ++q) store_lanes(diagonal.column[q][0], own + t * kTile + q * kLanes);
   }
   return true;
 }
 
-/// Rows below, from tile `t` on, and what they hand on.
-template <int kRows>
-[[gnu::always_inline]] inline void eliminate_lower(const FrontShape& shape, std::size_t stride, Index t, double* panel,
+/// Rows of tiles below, from `t` on, as many as are left in whole Tiles, and what they hand on.
+template <class Lanes, int kVectors>
+[[gnu::always_inline]] inline void eliminate_lower(const FrontShape& shape, std::size_t stride, Index& t, double* panel,
                                                    const double* inverse, double* update, double* row) {
+  constexpr int kRows = Tiles<Lanes, kVectors>::kRows;
   double* const lower = panel + shape.own_tiles * stride;
-  solve_rows<kRows>(panel, stride, lower + t * stride, shape.own_tiles, row);
-  scale_rows<kRows>(row, stride, inverse, shape.own_tiles, lower + t * stride);
   const auto height = static_cast<std::size_t>(shape.lower_height());
-  for (Index s = 0; s < t + kRows; ++s) {
-    Tiles<kRows> tiles;
-    double* const at = update + s * kLanes * height + t * kLanes;
-    load_tiles(at, kLanes, height, tiles);
-    subtract_product(row, stride, lower + s * stride, shape.width(), tiles);
-    store_tiles(tiles, kLanes, height, at);
+  for (; t + kRows <= shape.lower_tiles; t += kRows) {
+    solve_rows<Lanes, kVectors>(panel, stride, lower + t * stride, shape.own_tiles, row);
+    scale_rows<Lanes, kVectors>(row, stride, inverse, shape.own_tiles, lower + t * stride);
+    for (Index s = 0; s < t + kRows; ++s) {
+      Tiles<Lanes, kVectors> tiles{};
+      subtract_product(row, lower + s * stride, shape.width(), tiles);
+      double* const at = update + s * kLanes * height + t * kLanes;
+      for (Index q = 0; q < kLanes; ++q) {
+        for (int v = 0; v < kVectors; ++v) store_lanes(tiles.column[q][v], at + q * height + v * kCountOf<Lanes>);
+      }
+    }
   }
+}
+
+template <int kVectors>
+[[gnu::always_inline]] inline bool eliminate(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
+  const auto stride = static_cast<std::size_t>(shape.width()) * kLanes;
+  if (!eliminate_own(shape, stride, panel, inverse, row)) return false;
+  Index t = 0;
+  eliminate_lower<WideLanes, kVectors>(shape, stride, t, panel, inverse, update, row);
+  eliminate_lower<WideLanes, 1>(shape, stride, t, panel, inverse, update, row);
+  eliminate_lower<SpringLanes, 1>(shape, stride, t, panel, inverse, update, row);
+  return true;
+}
+
+SPRUNG_WIDE_KERNEL
+bool eliminate_wide(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
+  return eliminate<2>(shape, panel, inverse, update, row);
+}
+
+SPRUNG_KERNEL
+bool eliminate_narrow(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
+  return eliminate<1>(shape, panel, inverse, update, row);
 }
 
 }  // namespace
 
-SPRUNG_KERNEL bool eliminate_front(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
-  const auto stride = static_cast<std::size_t>(shape.width()) * kLanes;
-  if (!eliminate_own(shape, stride, panel, inverse, row)) return false;
-  Index t = 0;
-  for (; t + 2 <= shape.lower_tiles; t += 2) eliminate_lower<2>(shape, stride, t, panel, inverse, update, row);
-  if (t < shape.lower_tiles) eliminate_lower<1>(shape, stride, t, panel, inverse, update, row);
-  return true;
+bool eliminate_front(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
+  static const bool kWide = has_wide_lanes();
+  return (kWide ? eliminate_wide : eliminate_narrow)(shape, panel, inverse, update, row);
 }
 
-SPRUNG_KERNEL void add_update(std::span<const Index> rows, std::span<const RowRun> runs, const double* child, Index child_height,
-                              const FrontShape& shape, double* panel, double* update) {
-  const auto from_height = static_cast<std::size_t>(child_height);
-  const std::size_t own = runs.empty() ? rows.size() : static_cast<std::size_t>(runs.front().from) / 3;
-  for (std::size_t j = 0; j < 3 * own; ++j) {
-    const double* const from = child + j * from_height;
-    const Index column = rows[j / 3] + static_cast<Index>(j % 3);
-    for (std::size_t r = j % 3; r < 3; ++r) panel[shape.place(rows[j / 3] + static_cast<Index>(r), column)] += from[j - j % 3 + r];
-    for (std::size_t i = j / 3 + 1; i < rows.size(); ++i) {
-      for (std::size_t r = 0; r < 3; ++r) panel[shape.place(rows[i] + static_cast<Index>(r), column)] += from[3 * i + r];
-    }
+SPRUNG_KERNEL void add_to_panel(std::span<const Index> columns, std::span<const Index> rows, const double* child,
+                                Index child_height, double* panel) {
+  for (std::size_t j = 0; j < 3 * columns.size(); ++j) {
+    const double* const from = child + j * static_cast<std::size_t>(child_height);
+    double* const to = panel + (columns[j / 3] + static_cast<Index>(j % 3)) * kLanes;
+    for (std::size_t k = j; k < rows.size(); ++k) to[rows[k]] += from[k];
   }
-  const auto to_height = static_cast<std::size_t>(shape.lower_height());
+}
+
+SPRUNG_KERNEL void add_to_update(std::span<const RowRun> runs, const double* child, Index child_height, Index update_height,
+                                 double* update) {
+  const auto from_height = static_cast<std::size_t>(child_height);
+  const auto to_height = static_cast<std::size_t>(update_height);
   for (std::size_t first = 0; first < runs.size(); ++first) {
     for (Index q = 0; q < runs[first].length; ++q) {
       const double* const from = child + static_cast<std::size_t>(runs[first].from + q) * from_height;

@@ -27,9 +27,12 @@ struct FrontShape {
   }
 };
 
-/// Replaces the panel of a matrix by that of its L, writes 1 / D to `inverse`, and subtracts L D L^T of the rows below from
-/// `update`, column by column, `lower_height` numbers each, of which those above the diagonal are not meant. `row` has room for two
-/// rows of tiles. Returns whether D is positive; if not, what is written is not meant.
+/// How many numbers of `row` eliminate_front needs for each of a front's columns.
+inline constexpr Index kRowRoom = 4 * kSpringLanes;
+
+/// Replaces the panel of a matrix by that of its L, writes 1 / D to `inverse`, and what the rows below hand on, - L D L^T, to
+/// `update`, column by column, `lower_height` numbers each, of which those above the diagonal are not meant. Returns whether D is
+/// positive; if not, what is written is not meant.
 bool eliminate_front(const FrontShape& shape, double* panel, double* inverse, double* update, double* row);
 
 /// Rows that are neighbours in what a front hands on, and in its parent's.
@@ -39,10 +42,13 @@ struct RowRun {
   Index length;
 };
 
-/// Adds what a child hands on to its parent, whose shape, panel and update these are. `rows` are those in the parent of the child's
-/// rows below, each the first of three: the parent's own are first, and `runs` has the others.
-void add_update(std::span<const Index> rows, std::span<const RowRun> runs, const double* child, Index child_height,
-                const FrontShape& shape, double* panel, double* update);
+/// Adds what a child hands on to its parent's own columns, before the parent is eliminated. `columns` are those of the child's
+/// first rows below, each the first of three; `rows` says where each of all its rows begins in the parent's panel.
+void add_to_panel(std::span<const Index> columns, std::span<const Index> rows, const double* child, Index child_height,
+                  double* panel);
+
+/// Adds the rest to what the parent hands on, when it has been eliminated.
+void add_to_update(std::span<const RowRun> runs, const double* child, Index child_height, Index update_height, double* update);
 
 /// Solves L x = b for the supernode's own part, in place, and writes what is to be subtracted from the rows below.
 void solve_front(const FrontShape& shape, const double* panel, double* own, double* below);

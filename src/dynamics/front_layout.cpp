@@ -76,18 +76,19 @@ void FrontLayout::join_with_parents() {
     if (front.parent == kNone) continue;
     Front& parent = fronts[front.parent];
     parent.children.push_back(static_cast<Index>(f));
-    for (const Index at : front.lower) {
-      const Index row = parent.row_of(at);
-      if (row >= parent.shape.width()) {
-        const Index from = 3 * static_cast<Index>(front.in_parent.size());
-        const Index to = row - parent.shape.width();
-        if (!front.runs.empty() && front.runs.back().to + front.runs.back().length == to) {
-          front.runs.back().length += 3;
-        } else {
-          front.runs.push_back({.from = from, .to = to, .length = 3});
-        }
+    for (std::size_t k = 0; k < front.lower.size(); ++k) {
+      const Index row = parent.row_of(front.lower[k]);
+      for (Index r = 0; r < 3; ++r) front.parent_rows.push_back(static_cast<Index>(parent.shape.place(row + r, 0)));
+      if (row < parent.shape.width()) {
+        front.parent_columns.push_back(row);
+        continue;
       }
-      front.in_parent.push_back(row);
+      const RowRun run{.from = 3 * static_cast<Index>(k), .to = row - parent.shape.width(), .length = 3};
+      if (!front.runs.empty() && front.runs.back().to + front.runs.back().length == run.to) {
+        front.runs.back().length += run.length;
+      } else {
+        front.runs.push_back(run);
+      }
     }
   }
 }

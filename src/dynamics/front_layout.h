@@ -15,11 +15,12 @@ struct FrontLayout {
   struct Front {
     FrontShape shape;
     Index parent = kNone;
-    Index first_place = 0;         ///< of its own part of a vector
-    std::vector<Index> own;        ///< its particles
-    std::vector<Index> lower;      ///< the places of those below
-    std::vector<Index> in_parent;  ///< the rows of those below in the parent: what is the parent's own comes first
-    std::vector<RowRun> runs;      ///< of those that are below in the parent too, counted from there
+    Index first_place = 0;              ///< of its own part of a vector
+    std::vector<Index> own;             ///< its particles
+    std::vector<Index> lower;           ///< the places of those below
+    std::vector<Index> parent_columns;  ///< of those that are the parent's own, the first ones
+    std::vector<Index> parent_rows;     ///< three of each below: where the row begins in the parent's panel
+    std::vector<RowRun> runs;           ///< of those that are below in the parent too, counted from there
     std::vector<Index> children;
     std::size_t panel = 0;   ///< where it begins among all panels
     std::size_t update = 0;  ///< where what it hands on begins
