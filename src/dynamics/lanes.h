@@ -45,6 +45,17 @@ inline constexpr Index kCountOf = sizeof(Lanes) / sizeof(double);
   for (Index lane = 0; lane < kSpringLanes; ++lane) of[lane] = std::sqrt(of[lane]);
 }
 
+[[gnu::always_inline]] inline bool any_above(const SpringLanes& of, const SpringLanes& limits) {
+  const auto above = of > limits;
+  return (above[0] | above[1] | above[2] | above[3]) != 0;
+}
+
+[[gnu::always_inline]] inline bool any_above(const WideLanes& of, const WideLanes& limits) {
+  const auto above = of > limits;
+  const auto some = __builtin_shufflevector(above, above, 0, 1, 2, 3) | __builtin_shufflevector(above, above, 4, 5, 6, 7);
+  return (some[0] | some[1] | some[2] | some[3]) != 0;
+}
+
 /// 1 / sqrt(of) but for its last bit, and some large number where `of` is 0. A first guess from the bits, good to 3.5 %; a cubic
 /// that is best on what that leaves, good to 7.5e-7; and a step of Halley's. Machines' own square roots and quotients take longer,
 /// one after the other, and their own guesses differ from maker to maker.

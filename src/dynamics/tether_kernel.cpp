@@ -1,6 +1,5 @@
 #include "dynamics/tether_kernel.h"
 
-#include "base/kernel.h"
 #include "dynamics/packed_lanes.h"
 
 #include <algorithm>
@@ -8,29 +7,34 @@
 namespace sprung {
 namespace {
 
-/// One vector four times.
+/// One vector as often as there are lanes.
 [[gnu::always_inline]] inline void repeat(const double* from, Packed& to) {
   to.low = SpringLanes{from[0], from[1], from[2], from[0]};
   to.middle = SpringLanes{from[1], from[2], from[0], from[1]};
   to.high = SpringLanes{from[2], from[0], from[1], from[2]};
 }
 
-/// Four tethers.
+[[gnu::always_inline]] inline void repeat(const double* from, WidePacked& to) {
+  to.low = WideLanes{from[0], from[1], from[2], from[0], from[1], from[2], from[0], from[1]};
+  to.middle = WideLanes{from[2], from[0], from[1], from[2], from[0], from[1], from[2], from[0]};
+  to.high = WideLanes{from[1], from[2], from[0], from[1], from[2], from[0], from[1], from[2]};
+}
+
+/// As many tethers as there are lanes, some of which are to be held.
+template <class Packed>
 [[gnu::always_inline]] inline void project(const Packed& pins, const double* lengths, double* positions) {
+  using Lanes = typename Packed::Lanes;
   Packed particles;
   Packed beyond;
-  SpringLanes x, y, z, most;
+  Lanes x, y, z, most, inverse;
   load(positions, particles);
   subtract(particles, pins, beyond);
   unpack(beyond, x, y, z);
   load_lanes(lengths, most);
-  const SpringLanes squared = x * x + y * y + z * z;
-  const auto outside = squared > most * most;
-  if ((outside[0] | outside[1] | outside[2] | outside[3]) == 0) return;
-  SpringLanes length = squared;
-  square_root(length);
-  const SpringLanes quotient = (length - most) / length;
-  multiply(beyond, outside ? quotient : SpringLanes{});
+  const Lanes squared = x * x + y * y + z * z;
+  if (!any_above(squared, most * most)) return;
+  inverse_root(squared, inverse);
+  multiply(beyond, squared > most * most ? 1.0 - most * inverse : Lanes{});
   subtract(particles, beyond, particles);
   store(particles, positions);
 }
@@ -48,25 +52,46 @@ namespace {
   position[2] -= part * z;
 }
 
-}  // namespace
-
-// The last four tethers of a run may be projected twice, which changes nothing but rounding.
-SPRUNG_KERNEL
-void project_tethers(const TetherRun& run, const double* lengths, double* positions) {
-  const Index step = run.one_pin ? 0 : 1;
-  if (run.count < kSpringLanes) {
-    for (Index i = 0; i < run.count; ++i) {
-      project_one(positions + 3 * (run.pin + i * step), lengths[run.tether + i], positions + 3 * (run.particle + i));
-    }
-    return;
-  }
+/// Tethers of a run from `begin` on, as long as they fill the lanes; returns where they do not.
+template <class Packed>
+[[gnu::always_inline]] inline Index project_whole(const TetherRun& run, Index begin, const double* lengths, double* positions) {
+  constexpr Index kCount = kCountOf<typename Packed::Lanes>;
   Packed pins;
   repeat(positions + 3 * run.pin, pins);
-  for (Index next = 0; next < run.count; next += kSpringLanes) {
-    const Index i = std::min(next, run.count - kSpringLanes);
+  Index i = begin;
+  for (; i + kCount <= run.count; i += kCount) {
     if (!run.one_pin) load(positions + 3 * (run.pin + i), pins);
     project(pins, lengths + run.tether + i, positions + 3 * (run.particle + i));
   }
+  return i;
+}
+
+// The last four tethers of a run may be projected twice, which changes nothing but rounding.
+template <class Widest>
+[[gnu::always_inline]] inline void project_run(const TetherRun& run, const double* lengths, double* positions) {
+  const Index wide = project_whole<Widest>(run, 0, lengths, positions);
+  const Index whole = project_whole<Packed>(run, wide, lengths, positions);
+  if (whole == run.count) return;
+  if (run.count >= kSpringLanes) {
+    project_whole<Packed>(run, run.count - kSpringLanes, lengths, positions);
+    return;
+  }
+  const Index step = run.one_pin ? 0 : 1;
+  for (Index i = 0; i < run.count; ++i) {
+    project_one(positions + 3 * (run.pin + i * step), lengths[run.tether + i], positions + 3 * (run.particle + i));
+  }
+}
+
+}  // namespace
+
+SPRUNG_KERNEL
+void project_tethers_narrow(const TetherRun& run, const double* lengths, double* positions) {
+  project_run<Packed>(run, lengths, positions);
+}
+
+SPRUNG_WIDE_KERNEL
+void project_tethers_wide(const TetherRun& run, const double* lengths, double* positions) {
+  project_run<WidePacked>(run, lengths, positions);
 }
 
 }  // namespace sprung

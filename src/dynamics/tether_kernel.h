@@ -1,6 +1,7 @@
 // Projection of particles onto the reach of their pins: the hot loop of Tethers.
 #pragma once
 
+#include "base/kernel.h"
 #include "base/types.h"
 
 namespace sprung {
@@ -16,6 +17,14 @@ struct TetherRun {
 
 /// Moves particles that are farther from their pins than `lengths` [m] allow towards them; `positions` holds 3 numbers a particle
 /// [m].
-void project_tethers(const TetherRun& run, const double* lengths, double* positions);
+void project_tethers_narrow(const TetherRun& run, const double* lengths, double* positions);
+
+/// The same bits, with twice as many lanes. Requires has_wide_lanes().
+void project_tethers_wide(const TetherRun& run, const double* lengths, double* positions);
+
+/// Whichever the machine has.
+inline void project_tethers(const TetherRun& run, const double* lengths, double* positions) {
+  (has_wide_lanes() ? project_tethers_wide : project_tethers_narrow)(run, lengths, positions);
+}
 
 }  // namespace sprung

@@ -184,6 +184,34 @@ TEST(Tethers, HaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE(project(3) == alone);
 }
 
+TEST(Tethers, HaveTheSameBitsWithTwiceAsManyLanes) {
+  if (!has_wide_lanes()) GTEST_SKIP() << "this machine has no AVX-512";
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (Index count = 1; count < 40; ++count) {
+    for (const bool one_pin : {false, true}) {
+      const TetherRun run{.particle = 50, .pin = 3, .tether = 2, .count = count, .one_pin = one_pin};
+      Points narrow(3, 100);
+      for (double& number : narrow.reshaped()) number = unit(random);
+      Points wide = narrow;
+      const Points before = narrow;
+      std::vector<double> lengths(50);
+      for (double& length : lengths) length = 1.0 + 0.9 * unit(random);
+      project_tethers_narrow(run, lengths.data(), narrow.data());
+      project_tethers_wide(run, lengths.data(), wide.data());
+      EXPECT_EQ(narrow, wide);
+      for (Index i = 0; i < count; ++i) {
+        const Vector3 from_pin = before.col(50 + i) - before.col(one_pin ? 3 : 3 + i);
+        const double part = std::min(1.0, lengths[static_cast<std::size_t>(2 + i)] / from_pin.norm());
+        const Vector3 expected = before.col(50 + i) - (1.0 - part) * from_pin;
+        EXPECT_LT((narrow.col(50 + i) - expected).norm(), 16 * kEpsilon) << i << " of " << count;
+      }
+      narrow.middleCols(50, count) = before.middleCols(50, count);
+      EXPECT_EQ(narrow, before) << "others stay";
+    }
+  }
+}
+
 // A particle that hangs n springs below its pin is back after one pass, not after n^2.
 TEST(StretchLimit, WithTethersHoldsALongRopeInOnePass) {
   SpringNetwork network = make_test_rope(500, 0.0);
