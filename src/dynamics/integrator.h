@@ -66,6 +66,9 @@ class Integrator {
   /// v += (x - advanced) / dt. Unless `needs_advanced`, `advanced` may be anything.
   virtual void recover_velocities(SimulationState& state, const Points& before, const Points& advanced, double dt) const;
 
+  /// Whether `advance` leaves the positions at t, of pinned particles too, in state.x_previous. Default: it does not.
+  [[nodiscard]] virtual bool keeps_positions() const { return false; }
+
   /// Whether `recover_velocities` looks at `advanced`. Default: it does.
   [[nodiscard]] virtual bool needs_advanced() const { return true; }
 

@@ -15,6 +15,9 @@ struct VerletStep {
 void advance_verlet(Index count, const VerletStep& step, const double* gains, const double* forces, double* x, double* x_previous,
                     double* v);
 
+/// The same with gains forces = gained [m].
+void advance_verlet(Index count, const VerletStep& step, const double* gained, double* x, double* x_previous, double* v);
+
 /// v = (x - before) per_dt
 void velocities_between(Index count, double per_dt, const double* before, const double* x, double* v);
 

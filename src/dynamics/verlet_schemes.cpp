@@ -28,15 +28,24 @@ std::vector<FreeRun> free_runs(const SpringNetwork& network) {
   return runs;
 }
 
+std::vector<Index> pinned_particles(const SpringNetwork& network) {
+  std::vector<Index> pinned;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (network.is_pinned(i)) pinned.push_back(i);
+  }
+  return pinned;
+}
+
 // Between steps state.v is (x - x_previous) / dt, so that forces and dampers of neighbours see Verlet's velocity without more ado.
 class Verlet final : public Integrator {
  public:
   Verlet(const VerletSettings& settings, const SpringNetwork& network)
-      : Integrator(network), settings_(settings), free_runs_(free_runs(network)) {}
+      : Integrator(network), settings_(settings), free_runs_(free_runs(network)), pinned_(pinned_particles(network)) {}
 
   void start(SimulationState& state, const Forces& forces, double dt) override {
     Integrator::start(state, forces, dt);
     forces_are_constant_ = are_constant(forces);
+    dt_of_gains_ = 0.0;
     evaluate(state, forces, dt, total_);
     if (settings_.start_at_rest) return;
     for_free_particles(network(), [&](Index i) {
@@ -47,8 +56,14 @@ class Verlet final : public Integrator {
   void advance(SimulationState& state, const Forces& forces, double dt) override {
     if (!forces_are_constant_) evaluate(state, forces, dt, total_);
     set_gains(dt);
+    for (const Index i : pinned_) state.x_previous.col(i) = state.x.col(i);
     const VerletStep step{.kept = 1.0 - damping_per_step(settings_, dt), .per_dt = 1.0 / dt};
     for_free_runs([&](Index begin, Index count) {
+      if (forces_are_constant_) {
+        advance_verlet(3 * count, step, gained_.col(begin).data(), state.x.col(begin).data(), state.x_previous.col(begin).data(),
+                       state.v.col(begin).data());
+        return;
+      }
       advance_verlet(3 * count, step, gains_.col(begin).data(), total_.col(begin).data(), state.x.col(begin).data(),
                      state.x_previous.col(begin).data(), state.v.col(begin).data());
     });
@@ -60,6 +75,7 @@ class Verlet final : public Integrator {
     });
   }
 
+  [[nodiscard]] bool keeps_positions() const override { return true; }
   [[nodiscard]] bool needs_advanced() const override { return false; }
 
   void velocity_changed(SimulationState& state, Index particle, double dt) const override {
@@ -67,11 +83,12 @@ class Verlet final : public Integrator {
   }
 
  private:
-  /// dt^2 / m for each coordinate.
+  /// dt^2 / m for each coordinate, and what constant forces make of it.
   void set_gains(double dt) {
     if (dt == dt_of_gains_) return;
     dt_of_gains_ = dt;
     gains_ = (dt * dt * network().inverse_masses.transpose()).replicate(3, 1);
+    if (forces_are_constant_) gained_ = gains_.cwiseProduct(total_);
   }
 
   template <class Body>
@@ -83,9 +100,11 @@ class Verlet final : public Integrator {
 
   VerletSettings settings_;
   std::vector<FreeRun> free_runs_;
+  std::vector<Index> pinned_;
   Points total_;
   bool forces_are_constant_ = false;
   Points gains_;
+  Points gained_;
   double dt_of_gains_ = 0.0;
 };
 

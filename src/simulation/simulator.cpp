@@ -64,6 +64,8 @@ struct Simulator::Implementation {
   void check_energy(const Energies& now) const;
   void fail(StepFailure failure) const;
   [[nodiscard]] bool projects_contacts() const;
+  [[nodiscard]] bool copies_positions() const { return contacts.meets_anything() || !integrator->keeps_positions(); }
+  [[nodiscard]] const Points& step_began() const { return copies_positions() ? before : state.x_previous; }
   [[nodiscard]] StepMotion motion() const { return {before, v_before, advanced, settings.step}; }
 
   SpringNetwork network;
@@ -84,7 +86,7 @@ struct Simulator::Implementation {
   SimulationState state;
 
   // Within a step: where it began, and where the forces alone would have ended it.
-  Points before;
+  Points before;    ///< for contact, and where the integrator does not keep them
   Points v_before;  ///< for contact alone
   Points advanced;  ///< for contact, and for integrators that need it
 };
@@ -123,7 +125,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
 StepReport Simulator::Implementation::step() {
   const double t = static_cast<double>(state.step) * settings.step;
   const double t_end = static_cast<double>(state.step + 1) * settings.step;
-  before = state.x;
+  if (copies_positions()) before = state.x;
   if (contacts.meets_anything()) v_before = state.v;
 
   integrator->advance(state, forces, settings.step);
@@ -162,7 +164,7 @@ void Simulator::Implementation::constrain(StepReport& report) {
   if (projects) contacts.find(motion());
   if (projects && integrator->answers_contact()) answer_contact();
   const double fall = (settings.gravity.norm() + bounds.drag * settings.wind.norm()) * settings.step * settings.step;
-  const std::optional<int> solves = limit ? limit->solve(before, state.x, fall) : std::nullopt;
+  const std::optional<int> solves = limit ? limit->solve(step_began(), state.x, fall) : std::nullopt;
   report.limit_solves = solves.value_or(0);
   const int limit_passes = limit ? limit->settings().iterations + (solves ? 1 : 0) : 0;  // after a solve the first only measures
   const int passes = projects ? std::max(limit_passes, kContactPasses) : limit_passes;
@@ -198,7 +200,7 @@ void Simulator::Implementation::settle(StepReport& report) {
   int rounds = 0;
   const auto relax_again = [&](Points& positions) { return rounds++ < most_rounds && relax(positions, report.stretch_excess); };
   if (contacts.meets_anything()) contacts.truncate(before, state.x, relax_again);
-  integrator->recover_velocities(state, before, advanced, settings.step);
+  integrator->recover_velocities(state, step_began(), advanced, settings.step);
   if (contacts.meets_anything()) contacts.settle_velocities(motion(), state, *integrator);
   report.truncated = contacts.truncated_count();
   report.squeezed = contacts.squeezed_count();
@@ -219,7 +221,7 @@ bool Simulator::Implementation::relax(Points& positions, double excess_before) {
 }
 
 void Simulator::Implementation::check_state() {
-  if (const auto failure = divergence.not_finite(state, before)) fail(*failure);
+  if (const auto failure = divergence.not_finite(state, step_began())) fail(*failure);
   const Index check_interval = 1 + network.springs.count() / kSpringsCheckedPerStep;
   if (state.step % check_interval == 0) {
     if (const auto failure = divergence.overstretched(state.x)) fail(*failure);

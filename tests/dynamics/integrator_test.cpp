@@ -144,6 +144,27 @@ TEST(Integrators, LeavePinnedParticlesAlone) {
   }
 }
 
+// What the simulator need not copy.
+TEST(Integrators, KeepThePositionsAtTheBeginOfTheStepWhereTheySaySo) {
+  const SpringNetwork network = make_test_cloth(6, 0.0, 0.0);
+  Forces forces;
+  forces.push_back(std::make_unique<Gravity>(network, Vector3(0.0, -9.81, 0.0)));
+  for (const IntegratorSettings& settings : all_integrators()) {
+    SimulationState state = initial_state(network);
+    const auto integrator = make_integrator(settings, network);
+    EXPECT_EQ(integrator->keeps_positions(), std::holds_alternative<VerletSettings>(settings));
+    if (!integrator->keeps_positions()) continue;
+    integrator->start(state, forces, 0.01);
+    for (int step = 0; step < 3; ++step) {
+      state.x.col(30) += Vector3(0.1, 0.0, 0.0);  // a pin that moves
+      const Points before = state.x;
+      integrator->advance(state, forces, 0.01);
+      EXPECT_EQ(state.x_previous, before);
+      EXPECT_NE(state.x, before);
+    }
+  }
+}
+
 TEST(Integrators, RecoverVelocitiesFromWhatConstraintsMoved) {
   const SpringNetwork network = make_pair(1.0, 0.0, 1.0);
   const double dt = 0.5;
