@@ -32,6 +32,7 @@ class SelfContacts {
         clearance_(kClearance * before.cwiseAbs().maxCoeff()) {}
 
   void append(const ContactCandidate& candidate, std::vector<Contact>& contacts) const {
+    if (stays_apart(candidate)) return;
     std::array<Vector3, 4> x;
     for (std::size_t k = 0; k < 4; ++k) x[k] = before_.col(candidate.particles[k]);
     CandidateClosest closest = closest_points(candidate, x);
@@ -62,6 +63,18 @@ class SelfContacts {
 
  private:
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
+
+  /// Whether the ways of the two sides are apart by their reach along an axis: those of most are.
+  [[nodiscard]] bool stays_apart(const ContactCandidate& candidate) const {
+    const std::size_t first_of_second = candidate.edges ? 2 : 1;
+    std::array<Box3, 2> ways;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Index i = candidate.particles[k];
+      ways[k < first_of_second ? 0 : 1].extend(before_.col(i)).extend(after_.col(i));
+    }
+    const double apart = std::max((ways[0].min() - ways[1].max()).maxCoeff(), (ways[1].min() - ways[0].max()).maxCoeff());
+    return apart >= candidate.reach;
+  }
 
   /// What lies between the sides at the end, along the normal.
   [[nodiscard]] double lowest_gap(const ContactCandidate& candidate, const Vector3& normal) const {

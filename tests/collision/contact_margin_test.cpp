@@ -1,0 +1,51 @@
+#include "collision/single_particles.h"
+
+#include <gtest/gtest.h>
+
+namespace sprung {
+namespace {
+
+constexpr double kGap = 0.01;  // [m]
+
+/// Contacts with a floor of this gap, of particles on their way down to these heights [gaps] by so much [gaps]; found half a gap
+/// beyond it at most.
+std::size_t contacts(const std::vector<double>& heights, const std::vector<double>& falls) {
+  Environment environment({{.name = "floor",
+                            .geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = 0.0},
+                            .material = {.thickness = kGap}}});
+  environment.set_interval(0.0, 0.01);
+  FreeSpace space = test::single_particles(environment, std::vector<char>(heights.size(), 0), 0.5 * kGap);
+  Points after = Points::Zero(3, static_cast<Index>(heights.size()));
+  Points before = after;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    after(1, static_cast<Index>(i)) = heights[i] * kGap;
+    before(1, static_cast<Index>(i)) = (heights[i] + falls[i]) * kGap;
+  }
+  space.follow(before, after);
+  return space.contacts(before, after).size();
+}
+
+TEST(ContactMargin, OfWhatRestsIsATenthOfTheGap) {
+  EXPECT_EQ(contacts({1.09}, {0.0}), 1U);
+  EXPECT_EQ(contacts({1.11}, {0.0}), 0U);
+}
+
+TEST(ContactMargin, GrowsByHalfOfTheMotion) {
+  EXPECT_EQ(contacts({1.29}, {0.4}), 1U);
+  EXPECT_EQ(contacts({1.31}, {0.4}), 0U);
+}
+
+TEST(ContactMargin, IsNoLargerThanAsked) {
+  EXPECT_EQ(contacts({1.49}, {8.0}), 1U);
+  EXPECT_EQ(contacts({1.51}, {8.0}), 0U);
+}
+
+TEST(ContactMargin, CountsTheMotionOfNeighbours) {
+  EXPECT_EQ(contacts({1.29, 5.0}, {0.0, 0.4}), 1U);
+  EXPECT_EQ(contacts({1.29, 5.0}, {0.0, 0.2}), 0U);
+}
+
+TEST(ContactMargin, DoesNotMatterToWhatFallsThrough) { EXPECT_EQ(contacts({-3.0}, {8.0}), 1U); }
+
+}  // namespace
+}  // namespace sprung
