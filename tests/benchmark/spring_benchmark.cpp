@@ -66,14 +66,20 @@ void forces(benchmark::State& state) {
   count_springs(state, network.springs.count());
 }
 
+/// What a pass is measured with: a play of 2 % that only stretch can leave, or none, neither way.
+StretchLimitSettings limit_of(bool both_sides) {
+  return both_sides ? StretchLimitSettings{.max_stretch = 0.0, .max_compression = 0.0} : StretchLimitSettings{.max_stretch = 0.02};
+}
+
 // Each pass starts from the same stretched cloth; copying it is part of what is measured, for both.
 void textbook_projection(benchmark::State& state) {
   SpringNetwork network = cloth(static_cast<Index>(state.range(0)));
   disturb(network);
   textbook::Network objects(network);
+  const StretchLimitSettings settings = limit_of(state.range(1) != 0);
   for ([[maybe_unused]] auto _ : state) {
     for (Index i = 0; i < network.particle_count(); ++i) objects.masses[i]->position = network.positions.col(i);
-    objects.project(0.02);
+    objects.project(settings.max_stretch, settings.max_compression);
     benchmark::ClobberMemory();
   }
   count_springs(state, static_cast<Index>(objects.structural.size()));
@@ -83,7 +89,7 @@ void projection(benchmark::State& state) {
   const ThreadLimit threads(static_cast<int>(state.range(1)));
   SpringNetwork network = cloth(static_cast<Index>(state.range(0)));
   disturb(network);
-  const StretchLimit limit(network, {.max_stretch = 0.02});
+  const StretchLimit limit(network, limit_of(state.range(2) != 0));
   const Index side = static_cast<Index>(state.range(0));
   Points positions = network.positions;
   for ([[maybe_unused]] auto _ : state) {
@@ -101,8 +107,8 @@ void bounds(benchmark::State& state) {
 
 BENCHMARK(textbook_forces)->ArgName("side")->Arg(64)->Arg(256)->Arg(512)->UseRealTime();
 BENCHMARK(forces)->ArgNames({"side", "threads"})->ArgsProduct({{64, 256, 512}, {1, 2}})->UseRealTime();
-BENCHMARK(textbook_projection)->ArgName("side")->Arg(64)->Arg(256)->Arg(512)->UseRealTime();
-BENCHMARK(projection)->ArgNames({"side", "threads"})->ArgsProduct({{64, 256, 512}, {1, 2}})->UseRealTime();
+BENCHMARK(textbook_projection)->ArgNames({"side", "both_sides"})->ArgsProduct({{64, 256, 512}, {0, 1}})->UseRealTime();
+BENCHMARK(projection)->ArgNames({"side", "threads", "both_sides"})->ArgsProduct({{64, 256, 512}, {1, 2}, {0, 1}})->UseRealTime();
 BENCHMARK(bounds)->ArgName("side")->Arg(64)->Arg(512)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -36,13 +36,13 @@ class Spring {
     b_->force -= force;
   }
 
-  void project(double max_stretch) {
+  void project(double max_stretch, double max_compression) {
     const Vector3 s = a_->position - b_->position;
     const double length = s.norm();
-    const double allowed = rest_length_ * (1.0 + max_stretch);
+    const double allowed = std::clamp(length, rest_length_ * (1.0 - max_compression), rest_length_ * (1.0 + max_stretch));
     const double inverse_a = a_->pinned ? 0.0 : 1.0 / a_->mass;
     const double inverse_b = b_->pinned ? 0.0 : 1.0 / b_->mass;
-    if (length <= allowed || inverse_a + inverse_b == 0.0) return;
+    if (length == allowed || inverse_a + inverse_b == 0.0) return;
     const Vector3 correction = (length - allowed) / (length * (inverse_a + inverse_b)) * s;
     a_->position -= inverse_a * correction;
     b_->position += inverse_b * correction;
@@ -84,8 +84,8 @@ class Network {
     for (const auto& spring : springs) spring->solve();
   }
 
-  void project(double max_stretch) {
-    for (Spring* spring : structural) spring->project(max_stretch);
+  void project(double max_stretch, double max_compression) {
+    for (Spring* spring : structural) spring->project(max_stretch, max_compression);
   }
 
   std::vector<std::unique_ptr<Mass>> masses;
