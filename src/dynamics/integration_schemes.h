@@ -15,7 +15,9 @@ namespace sprung {
 [[nodiscard]] std::unique_ptr<Integrator> make_implicit_euler(const SpringNetwork& network);
 
 /// Time [s] at the begin of the step that a state is about to make.
-[[nodiscard]] inline double step_begin(const SimulationState& state, double dt) { return static_cast<double>(state.step) * dt; }
+[[nodiscard]] inline double step_begin(const SimulationState& state, double dt) {
+  return static_cast<double>(parts_done(state)) * dt;
+}
 
 /// Forces [N] at the begin of the step, 3 x n, written to `total`.
 inline void evaluate(const SimulationState& state, const Forces& forces, double dt, Points& total) {

@@ -20,6 +20,8 @@ struct MakeIntegrator {
 
 void Integrator::start(SimulationState& state, const Forces&, double) { state.x_previous = state.x; }
 
+void Integrator::step_changed(SimulationState&, const Forces&, double, double) {}
+
 void Integrator::answer_contact(const Points&, Points&, double) {}
 
 void Integrator::recover_velocities(SimulationState& state, const Points&, const Points& advanced, double dt) const {

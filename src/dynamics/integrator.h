@@ -66,6 +66,10 @@ class Integrator {
   /// v += (x - advanced) / dt. Unless `needs_advanced`, `advanced` may be anything.
   virtual void recover_velocities(SimulationState& state, const Points& before, const Points& advanced, double dt) const;
 
+  /// Called between two steps where steps of length `dt` follow those of length `dt_before` [s]. Verlet's velocity is that half a
+  /// step ago: it gains what the forces give from then on to half a step of the new length ago.
+  virtual void step_changed(SimulationState& state, const Forces& forces, double dt_before, double dt);
+
   /// Whether `advance` leaves the positions at t, of pinned particles too, in state.x_previous. Default: it does not.
   [[nodiscard]] virtual bool keeps_positions() const { return false; }
 

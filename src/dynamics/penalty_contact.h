@@ -15,6 +15,9 @@ class PenaltyContact final : public Force {
   PenaltyContact(const SpringNetwork& network, Environment& environment, double stiffness, double damping, double dt);
 
   /// Obstacles go where they are at `time`: the environment's interval becomes (time, time).
+  /// Steps are of length `dt` [s] from now on.
+  void set_step(double dt) { dt_ = dt; }
+
   void prepare(double time) override;
   void add(const Kinematics& at, Points& forces) const override;
 

@@ -29,6 +29,10 @@ struct StretchLimitSettings {
   Solver solver = Solver::gauss_seidel;
 };
 
+/// The excess over the limit, as a part of the rest length, that automatic steps are chosen for: half of `max_stretch` plus
+/// `tolerance`, and at least a thousandth.
+[[nodiscard]] double wanted_excess(const StretchLimitSettings& settings);
+
 class StretchLimit {
  public:
   /// Keeps a reference to the network. Springs of rest length 0 cannot be measured in parts of it and are left out.
@@ -58,11 +62,16 @@ class StretchLimit {
   /// What `solver` comes to for this network: `newton`, `gauss_seidel`, or both where automatic parts it.
   [[nodiscard]] std::string chosen_solver() const;
 
-  /// The step [s] at which `iterations` passes a step keep the excess at about half of `max_stretch` plus `tolerance` when each
+  /// The step [s] at which `iterations` passes a step keep the excess at about `wanted_excess` when each
   /// body hangs at rest under `acceleration` [m/s^2] by its pins, or over an obstacle: in each step gravity adds g dt^2 per carried
   /// particle, and the passes must hand it on. Larger with tethers to pins that are taut (see are_pins_taut). Infinity when nothing
   /// is limited, and for what a global solve holds, which needs no small steps.
   [[nodiscard]] double suggested_step(double acceleration) const;
+
+  /// Whether steps may become smaller as a simulation goes. What a smaller step takes back of the excess gives springs speed:
+  /// surfaces whose springs neither stretch nor shrink, hold the shape and have tethers lose it within themselves, others go slack
+  /// and are thrown.
+  [[nodiscard]] bool bears_smaller_steps() const;
 
  private:
   const SpringNetwork& network_;

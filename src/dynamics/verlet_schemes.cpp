@@ -78,6 +78,14 @@ class Verlet final : public Integrator {
   [[nodiscard]] bool keeps_positions() const override { return true; }
   [[nodiscard]] bool needs_advanced() const override { return false; }
 
+  void step_changed(SimulationState& state, const Forces& forces, double dt_before, double dt) override {
+    if (!forces_are_constant_) evaluate(state, forces, dt, total_);
+    for_free_particles(network(), [&](Index i) {
+      state.v.col(i) += 0.5 * (dt_before - dt) * network().inverse_masses[i] * total_.col(i);
+      state.x_previous.col(i) = state.x.col(i) - dt * state.v.col(i);
+    });
+  }
+
   void velocity_changed(SimulationState& state, Index particle, double dt) const override {
     state.x_previous.col(particle) = state.x.col(particle) - dt * state.v.col(particle);
   }

@@ -3,7 +3,7 @@
 namespace sprung {
 
 SimulationState initial_state(const SpringNetwork& network) {
-  return {0, network.positions, network.velocities, network.positions};
+  return {.x = network.positions, .v = network.velocities, .x_previous = network.positions};
 }
 
 }  // namespace sprung

@@ -14,7 +14,7 @@ struct Column {
 
 using Frame = FrameDiagnostics;
 
-const std::array<Column, 13> kColumns{{
+const std::array<Column, 14> kColumns{{
     {"frame", [](const Frame& frame) { return std::to_string(frame.frame); }},
     {"time", [](const Frame& frame) { return format_number(frame.time); }},
     {"kinetic_energy", [](const Frame& frame) { return format_number(frame.kinetic_energy); }},
@@ -28,6 +28,7 @@ const std::array<Column, 13> kColumns{{
     {"truncated", [](const Frame& frame) { return std::to_string(frame.truncated); }},
     {"squeezed", [](const Frame& frame) { return std::to_string(frame.squeezed); }},
     {"limit_solves", [](const Frame& frame) { return std::to_string(frame.limit_solves); }},
+    {"parts", [](const Frame& frame) { return std::to_string(frame.parts); }},
 }};
 
 template <class Field>

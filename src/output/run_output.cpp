@@ -3,6 +3,7 @@
 #include "output/diagnostics_csv.h"
 #include "output/file_pattern.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace sprung {
@@ -32,6 +33,11 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
   std::vector<std::string> written;
   ++progress_.frames_written;
   progress_.steps = simulator.state().step;
+  progress_.parts += diagnostics.parts;
+  if (diagnostics.parts > 0) {
+    progress_.smallest_step =
+        before.parts > 0 ? std::min(before.smallest_step, diagnostics.smallest_step) : diagnostics.smallest_step;
+  }
   progress_.limit_solves += diagnostics.limit_solves;
   try {
     for (const ObjSequence& sequence : sequences_) {

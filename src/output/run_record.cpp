@@ -34,6 +34,8 @@ RunRecord::RunRecord(const RunFacts& facts, double step, const std::vector<std::
                      {"step", step},
                      {"steps_per_frame", facts.steps_per_frame},
                      {"steps", 0},
+                     {"parts", 0},
+                     {"smallest_step", 0.0},
                      {"seed", facts.seed},
                      {"threads", facts.threads},
                      {"wall_seconds", 0.0},
@@ -53,6 +55,8 @@ std::string RunRecord::text(const RunProgress& progress) const {
   json["outcome"] = progress.outcome;
   json["frames_written"] = progress.frames_written;
   json["steps"] = progress.steps;
+  json["parts"] = progress.parts;
+  json["smallest_step"] = progress.smallest_step;
   json["limit_solves"] = progress.limit_solves;
   json["wall_seconds"] = progress.wall_seconds;
   // A warning may quote a file name that is not UTF-8.

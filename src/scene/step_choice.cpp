@@ -28,6 +28,12 @@ std::string advice_for_unstable(const Scene& scene, double largest_stable) {
   return "use \"auto\"";
 }
 
+bool may_be_halved(const SimulatorSettings& settings, const SpringNetwork& network) {
+  const auto* verlet = std::get_if<VerletSettings>(&settings.integrator);
+  const bool damps_steps = verlet != nullptr && verlet->damping > 0.0;
+  return !damps_steps && settings.stretch_limit && StretchLimit(network, *settings.stretch_limit).bears_smaller_steps();
+}
+
 }  // namespace
 
 StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems) {
@@ -47,6 +53,7 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
     choice.steps_per_frame = *steps;
     choice.step = step_of(scene.frame_rate, *steps);
+    choice.most_halvings = may_be_halved(scene.settings, network) ? kAutoHalvings : 0;
   } else {
     problems.push_back({scene.file.string(), "step", "\"auto\"",
                         "must be at most " + format_upper_bound(largest) + " s, which is too many steps a frame",

@@ -52,25 +52,23 @@ FrameDiagnostics FrameRunner::first_frame() const { return measure(simulator_, 1
 
 FrameDiagnostics FrameRunner::next_frame() {
   const auto begin = std::chrono::steady_clock::now();
-  double excess = 0.0;
-  Index truncated = 0;
-  Index squeezed = 0;
-  std::int64_t limit_solves = 0;
+  StepReport all;
+  int most_parts = 1;
   for (int step = 0; step < steps_per_frame_; ++step) {
     const StepReport report = simulator_.step();
-    excess = std::max(excess, report.stretch_excess);
-    truncated += report.truncated;
-    squeezed += report.squeezed;
-    limit_solves += report.limit_solves;
+    most_parts = std::max(most_parts, report.parts);
+    all += report;
   }
   simulator_.check();
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
 
   FrameDiagnostics diagnostics = measure(simulator_, ++frame_);
-  diagnostics.stretch_excess = excess;
-  diagnostics.truncated = truncated;
-  diagnostics.squeezed = squeezed;
-  diagnostics.limit_solves = limit_solves;
+  diagnostics.stretch_excess = all.stretch_excess;
+  diagnostics.truncated = all.truncated;
+  diagnostics.squeezed = all.squeezed;
+  diagnostics.parts = all.parts;
+  diagnostics.smallest_step = simulator_.settings().step / most_parts;
+  diagnostics.limit_solves = all.limit_solves;
   diagnostics.frame_ms = elapsed.count();
   return diagnostics;
 }

@@ -10,8 +10,10 @@
 #include "simulation/settings_check.h"
 #include "simulation/start.h"
 #include "simulation/step_check.h"
+#include "simulation/step_refinement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace sprung {
@@ -45,14 +47,16 @@ struct Simulator::Implementation {
   Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles);
 
   template <class F, class... Arguments>
-  const F* add_force(Arguments&&... arguments) {
+  F* add_force(Arguments&&... arguments) {
     auto force = std::make_unique<F>(network, std::forward<Arguments>(arguments)...);
-    const F* kept = force.get();
+    F* kept = force.get();
     forces.push_back(std::move(force));
     return kept;
   }
 
   StepReport step();
+  StepReport make_part();
+  void choose_parts(double excess);
   void move_pins(double time);
   void constrain(StepReport& report);
   void answer_contact();
@@ -66,7 +70,9 @@ struct Simulator::Implementation {
   [[nodiscard]] bool projects_contacts() const;
   [[nodiscard]] bool copies_positions() const { return contacts.meets_anything() || !integrator->keeps_positions(); }
   [[nodiscard]] const Points& step_began() const { return copies_positions() ? before : state.x_previous; }
-  [[nodiscard]] StepMotion motion() const { return {before, v_before, advanced, settings.step}; }
+  [[nodiscard]] StepMotion motion() const { return {before, v_before, advanced, dt()}; }
+  [[nodiscard]] double dt() const { return std::ldexp(settings.step, -state.halvings); }
+  [[nodiscard]] double time() const { return static_cast<double>(parts_done(state)) * dt(); }
 
   SpringNetwork network;
   SimulatorSettings settings;
@@ -76,10 +82,11 @@ struct Simulator::Implementation {
   Forces forces;
   const Gravity* gravity = nullptr;
   const SpringForce* springs = nullptr;
-  const AngleForce* angles = nullptr;       ///< when the network has angle bends
-  const PenaltyContact* penalty = nullptr;  ///< when contact answers by forces
+  const AngleForce* angles = nullptr;  ///< when the network has angle bends
+  PenaltyContact* penalty = nullptr;   ///< when contact answers by forces
   std::unique_ptr<Integrator> integrator;
   std::optional<StretchLimit> limit;
+  std::optional<StepRefinement> refinement;  ///< when steps may be made in parts
   ContactProjection contacts;
   DivergenceCheck divergence;
   EnergyWatch energy_watch;
@@ -111,6 +118,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
     penalty = add_force<PenaltyContact>(environment, settings.contact.stiffness, settings.contact.damping, settings.step);
   }
   if (settings.stretch_limit) limit.emplace(network, *settings.stretch_limit);
+  if (limit && settings.most_halvings > 0) refinement.emplace(*settings.stretch_limit, settings.most_halvings);
   environment.set_interval(0.0, 0.0);
   move_pins(0.0);
   Start start = find_start(network, environment, settings.contact, state.x);
@@ -123,23 +131,43 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
 }
 
 StepReport Simulator::Implementation::step() {
-  const double t = static_cast<double>(state.step) * settings.step;
-  const double t_end = static_cast<double>(state.step + 1) * settings.step;
+  const int parts = 1 << state.halvings;
+  StepReport report;
+  for (int part = 0; part < parts; ++part) report += make_part();
+  if (refinement) choose_parts(report.stretch_excess);
+  return report;
+}
+
+StepReport Simulator::Implementation::make_part() {
+  const double t = time();
+  const double t_end = static_cast<double>(parts_done(state) + 1) * dt();
   if (copies_positions()) before = state.x;
   if (contacts.meets_anything()) v_before = state.v;
 
-  integrator->advance(state, forces, settings.step);
+  integrator->advance(state, forces, dt());
   environment.set_interval(t, t_end);
   move_pins(t_end);
   if (contacts.meets_anything() || (limit && integrator->needs_advanced())) advanced = state.x;
 
-  StepReport report;
+  StepReport report{.parts = 1};
   constrain(report);
   settle(report);
-  ++state.step;
+  if (++state.part == 1 << state.halvings) {
+    ++state.step;
+    state.part = 0;
+  }
   if (penalty != nullptr) environment.set_interval(t_end, t_end);
   check_state();
   return report;
+}
+
+void Simulator::Implementation::choose_parts(double excess) {
+  const double dt_before = dt();
+  refinement->choose(excess, state);
+  if (dt() == dt_before) return;
+  if (penalty != nullptr) penalty->set_step(dt());
+  move_pins(time());
+  integrator->step_changed(state, forces, dt_before, dt());
 }
 
 // A pin's velocity is that of the step to come: what its neighbours' dampers see.
@@ -148,11 +176,11 @@ void Simulator::Implementation::move_pins(double time) {
     if (!pin.motion.moves()) continue;
     const RigidTransform origin(Eigen::Translation3d(pin.origin));
     const RigidTransform now = pin.motion.pose(origin, time) * origin.inverse();
-    const RigidTransform next = pin.motion.pose(origin, time + settings.step) * origin.inverse();
+    const RigidTransform next = pin.motion.pose(origin, time + dt()) * origin.inverse();
     for (const Index i : pin.particles) {
       const Vector3 start = network.positions.col(i);
       state.x.col(i) = now * start;
-      state.v.col(i) = (next * start - state.x.col(i)) / settings.step;
+      state.v.col(i) = (next * start - state.x.col(i)) / dt();
       energy_watch.note_drive(state.v.col(i).norm());
     }
   }
@@ -163,7 +191,7 @@ void Simulator::Implementation::constrain(StepReport& report) {
   if (!projects && !limit) return;
   if (projects) contacts.find(motion());
   if (projects && integrator->answers_contact()) answer_contact();
-  const double fall = (settings.gravity.norm() + bounds.drag * settings.wind.norm()) * settings.step * settings.step;
+  const double fall = (settings.gravity.norm() + bounds.drag * settings.wind.norm()) * dt() * dt();
   const std::optional<int> solves = limit ? limit->solve(step_began(), state.x, fall) : std::nullopt;
   report.limit_solves = solves.value_or(0);
   const int limit_passes = limit ? limit->settings().iterations + (solves ? 1 : 0) : 0;  // after a solve the first only measures
@@ -190,7 +218,7 @@ void Simulator::Implementation::answer_contact() {
     pushed = pushed || push > 0.0;
     if (push <= kContactTolerance) break;
   }
-  if (pushed) integrator->answer_contact(advanced, state.x, settings.step);
+  if (pushed) integrator->answer_contact(advanced, state.x, dt());
 }
 
 void Simulator::Implementation::settle(StepReport& report) {
@@ -200,7 +228,7 @@ void Simulator::Implementation::settle(StepReport& report) {
   int rounds = 0;
   const auto relax_again = [&](Points& positions) { return rounds++ < most_rounds && relax(positions, report.stretch_excess); };
   if (contacts.meets_anything()) contacts.truncate(before, state.x, relax_again);
-  integrator->recover_velocities(state, step_began(), advanced, settings.step);
+  integrator->recover_velocities(state, step_began(), advanced, dt());
   if (contacts.meets_anything()) contacts.settle_velocities(motion(), state, *integrator);
   report.truncated = contacts.truncated_count();
   report.squeezed = contacts.squeezed_count();
@@ -253,13 +281,23 @@ Energies Simulator::Implementation::energies() const {
 
 void Simulator::Implementation::fail(StepFailure failure) const {
   failure.step = state.step;
-  failure.time = static_cast<double>(state.step) * settings.step;
+  failure.time = time();
   failure.remedy = divergence_remedy(settings, bounds);
   throw StepError(std::move(failure));
 }
 
 bool Simulator::Implementation::projects_contacts() const {
   return settings.contact.response == ContactSettings::Response::projection && contacts.meets_anything();
+}
+
+StepReport& StepReport::operator+=(const StepReport& part) {
+  parts += part.parts;
+  iterations += part.iterations;
+  limit_solves += part.limit_solves;
+  stretch_excess = std::max(stretch_excess, part.stretch_excess);
+  truncated += part.truncated;
+  squeezed += part.squeezed;
+  return *this;
 }
 
 Simulator::Simulator(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles)
@@ -274,7 +312,7 @@ const SimulatorSettings& Simulator::settings() const { return implementation_->s
 const SimulationState& Simulator::state() const { return implementation_->state; }
 const Environment& Simulator::environment() const { return implementation_->environment; }
 const std::vector<std::string>& Simulator::warnings() const { return implementation_->warnings; }
-double Simulator::time() const { return static_cast<double>(state().step) * settings().step; }
+double Simulator::time() const { return implementation_->time(); }
 double Simulator::gravity_energy() const { return implementation_->gravity->energy(state().x); }
 double Simulator::elastic_energy() const { return implementation_->elastic_energy(); }
 

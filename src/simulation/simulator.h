@@ -42,15 +42,19 @@ struct SimulatorSettings {
   std::optional<StretchLimitSettings> stretch_limit{};
   ContactSettings contact{};
   StabilityCheck stability = StabilityCheck::refuse;
+  int most_halvings = 0;  ///< in [0, 16]: steps are made in up to 2^most_halvings parts where the stretch limit is missed
 };
 
-/// What one step did.
+/// What one step did: sums over its parts, and the largest excess.
 struct StepReport {
+  int parts = 0;                ///< that it was made in
   int iterations = 0;           ///< passes of stretch limit and contact
   int limit_solves = 0;         ///< linear systems that the stretch limit solved in turn
-  double stretch_excess = 0.0;  ///< beyond the stretch limit at the end, as a part of the rest length
+  double stretch_excess = 0.0;  ///< beyond the stretch limit at the end of a part, as a part of the rest length
   Index truncated = 0;          ///< particles stopped at a surface
   Index squeezed = 0;           ///< particles that found no free place between obstacles
+
+  StepReport& operator+=(const StepReport& part);
 };
 
 class Simulator {
@@ -63,7 +67,8 @@ class Simulator {
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
-  /// Advances by one step. Throws StepError when the network diverged; its state is of no use then.
+  /// Advances by one step, in as many parts as the step before asks for (see StepRefinement). Throws StepError when the network
+  /// diverged; its state is of no use then.
   StepReport step();
 
   [[nodiscard]] const SpringNetwork& network() const;
@@ -72,7 +77,7 @@ class Simulator {
   [[nodiscard]] const Environment& environment() const;
   [[nodiscard]] const std::vector<std::string>& warnings() const;
 
-  /// state().step * settings().step [s]
+  /// state().step * settings().step [s], between steps
   [[nodiscard]] double time() const;
 
   /// Positions [m], 3 x n.

@@ -202,7 +202,7 @@ TEST_F(RunOutputFiles, DiagnosticsHaveARowAFrame) {
   std::istringstream stream(read_text(file("diagnostics.csv")));
   std::vector<std::string> starts;
   for (std::string line; std::getline(stream, line);) {
-    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 12);
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 13);
     starts.push_back(line.substr(0, line.find(',', line.find(',') + 1)));
   }
   EXPECT_THAT(starts, ElementsAre("frame,time", "1,0", "2,0.02", "3,0.04", "4,0.06"));
@@ -223,6 +223,8 @@ TEST_F(RunOutputFiles, RecordTellsHowFarTheRunCame) {
   EXPECT_EQ(json["frames_written"], 2);
   EXPECT_EQ(json["steps"], 2);
   EXPECT_EQ(json["step"], 0.01);
+  EXPECT_EQ(json["parts"], 2);
+  EXPECT_EQ(json["smallest_step"], 0.01);
   EXPECT_EQ(json["threads"], 3);
   EXPECT_EQ(json["seed"], 0);
   EXPECT_EQ(json["scene"]["duration"], 0.1);

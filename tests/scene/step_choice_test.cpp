@@ -69,6 +69,23 @@ TEST(StepChoice, AutoHeedsTheStretchLimit) {
   EXPECT_GT(1.0 / (10.0 * (limited.steps_per_frame - 1)), limit.suggested_step(9.81));
 }
 
+TEST(StepChoice, AutoMayHalveStepsOfClothsThatBearIt) {
+  const auto halvings = [](const std::vector<std::string>& changes) {
+    const SceneFolder folder;
+    const std::string text = R"({"duration": 1, "stretch_limit": {"max_compression": 0, "kinds": ["structural", "shear"],
+        "tethers": true}, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [8, 8]}, "mass": 1,
+        "springs": {"structural": {"stiffness": 0}, "shear": {"stiffness": 0}},
+        "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
+    return build_scene(folder.read(text, changes)).settings.most_halvings;
+  };
+  EXPECT_EQ(halvings({}), kAutoHalvings);
+  EXPECT_EQ(halvings({"frame_rate=10", "step=0.001"}), 0);
+  EXPECT_EQ(halvings({"stretch_limit.max_compression=1"}), 0);
+  EXPECT_EQ(halvings({"stretch_limit.kinds=[\"structural\"]"}), 0);
+  EXPECT_EQ(halvings({"stretch_limit.tethers=false"}), 0);
+  EXPECT_EQ(halvings({R"(integrator={"type": "verlet", "damping": 0.01})"}), 0);
+}
+
 TEST(StepChoice, WithoutAnyBoundAutoIsAtMostTheDocumentedStep) {
   const BuiltScene built = build(0.0);
   EXPECT_TRUE(std::isinf(built.largest_stable_step));

@@ -1,0 +1,35 @@
+#include "simulation/step_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+// Steps are chosen to come near the wanted excess; this much more is not worth smaller ones.
+constexpr double kMargin = 1.25;
+
+// Doubled, a step leaves two to four times as much: less than this part of the bound must be left for that.
+constexpr double kRoom = 0.25;
+
+constexpr int kCalmSteps = 8;
+
+}  // namespace
+
+StepRefinement::StepRefinement(const StretchLimitSettings& limit, int most_halvings)
+    : bound_(kMargin * wanted_excess(limit)), most_halvings_(most_halvings) {}
+
+void StepRefinement::choose(double excess, SimulationState& state) const {
+  if (excess > bound_) {
+    const int missing = 1 + std::ilogb(excess / bound_);
+    state.halvings = std::min(state.halvings + missing, most_halvings_);
+    state.calm_steps = 0;
+    return;
+  }
+  state.calm_steps = excess < kRoom * bound_ ? state.calm_steps + 1 : 0;
+  if (state.calm_steps < kCalmSteps || state.halvings == 0) return;
+  --state.halvings;
+  state.calm_steps = 0;
+}
+
+}  // namespace sprung

@@ -1,0 +1,25 @@
+// In how many parts a step is made, by the stretch that the one before left.
+#pragma once
+
+#include "dynamics/stretch_limit.h"
+#include "network/simulation_state.h"
+
+namespace sprung {
+
+/// Steps are halved as soon as one leaves springs longer than the limit lets them be, and doubled again once several in a row left
+/// far less. The excess of what swings falls with the step, that of what hangs with its square: a doubled step is safe where a
+/// quarter of the bound is not reached.
+class StepRefinement {
+ public:
+  /// Halves a step at most `most_halvings` times.
+  StepRefinement(const StretchLimitSettings& limit, int most_halvings);
+
+  /// Chooses `halvings` of the step to come when one has left `excess` over the limit, as a part of the rest length.
+  void choose(double excess, SimulationState& state) const;
+
+ private:
+  double bound_;  ///< of the excess
+  int most_halvings_;
+};
+
+}  // namespace sprung

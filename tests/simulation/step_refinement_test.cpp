@@ -1,0 +1,150 @@
+// Steps in parts: when, how long, and that time and motion do not notice.
+#include "simulation/step_refinement.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "dynamics/body_forces.h"
+#include "simulation/scenes.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace sprung {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kRate = 60.0;
+
+/// Nothing may stretch or shrink by more than 1 %.
+StretchLimitSettings both_ways() {
+  return {.max_stretch = 0.0,
+          .max_compression = 0.0,
+          .kinds = {SpringKind::structural, SpringKind::shear},
+          .iterations = 1,
+          .tolerance = 0.01,
+          .tethers = true};
+}
+
+/// `halvings` after steps that left these excesses.
+int halvings_after(const std::vector<double>& excesses, int most = 3) {
+  const StepRefinement refinement(both_ways(), most);
+  SimulationState state;
+  for (const double excess : excesses) refinement.choose(excess, state);
+  return state.halvings;
+}
+
+TEST(StepRefinement, HalvesAsOftenAsTheExcessIsTooLarge) {
+  EXPECT_EQ(halvings_after({0.012}), 0);
+  EXPECT_EQ(halvings_after({0.013}), 1);
+  EXPECT_EQ(halvings_after({0.026}), 2);
+  EXPECT_EQ(halvings_after({0.013, 0.013}), 2);
+  EXPECT_EQ(halvings_after({1.0}), 3);
+  EXPECT_EQ(halvings_after({1.0}, 2), 2);
+}
+
+TEST(StepRefinement, DoublesAgainAfterSeveralCalmStepsInARow) {
+  const std::vector<double> calm(7, 0.003);
+  const auto after = [&](std::vector<double> between) {
+    std::vector<double> excesses{0.026};
+    excesses.insert(excesses.end(), calm.begin(), calm.end());
+    excesses.insert(excesses.end(), between.begin(), between.end());
+    return halvings_after(excesses);
+  };
+  EXPECT_EQ(after({}), 2);
+  EXPECT_EQ(after({0.003}), 1);
+  EXPECT_EQ(after({0.0035, 0.003}), 2) << "there was not room enough in between";
+  EXPECT_EQ(halvings_after(std::vector<double>(30, 0.0)), 0);
+}
+
+// Verlet's positions lie on the parabola of what is thrown, whatever the step.
+TEST(StepRefinement, LeavesVerletOnTheParabola) {
+  const SpringNetwork ball = testing::one_particle(Vector3::Zero(), {}, Vector3(1.0, 2.0, 0.0));
+  const Vector3 g(0.0, -testing::kGravity, 0.0);
+  Forces forces;
+  forces.push_back(std::make_unique<Gravity>(ball, g));
+  const auto integrator = make_integrator(VerletSettings{}, ball);
+  SimulationState state = initial_state(ball);
+  constexpr double kStep = 0.01;
+  integrator->start(state, forces, kStep);
+  for (; state.step < 5; ++state.step) integrator->advance(state, forces, kStep);
+  state.halvings = 2;
+  integrator->step_changed(state, forces, kStep, 0.25 * kStep);
+  for (int part = 0; part < 12; ++part) integrator->advance(state, forces, 0.25 * kStep);
+  state.halvings = 0;
+  integrator->step_changed(state, forces, 0.25 * kStep, kStep);
+  for (int step = 0; step < 4; ++step) integrator->advance(state, forces, kStep);
+  const double t = 12 * kStep;
+  // 21 steps, each rounded a few times, of differences that later ones add up: positions are below 1 m.
+  EXPECT_LT((state.x.col(0) - (t * Vector3(1.0, 2.0, 0.0) + 0.5 * t * t * g)).norm(), 21 * 21 * kEpsilon);
+}
+
+/// A cloth of 1 m that swings from two of its corners, and begins level.
+SpringNetwork swinging_cloth(Index side) {
+  SpringNetwork network = testing::cloth(side, 0.0);
+  network.springs.stiffness.assign(network.springs.stiffness.size(), 0.0);
+  network.springs.damping.assign(network.springs.damping.size(), 0.0);
+  network.pins.push_back({.particles = {side * (side - 1), side * side - 1}, .origin = Vector3::Zero(), .motion = {}});
+  for (const Index i : network.pins[0].particles) network.inverse_masses[i] = 0.0;
+  return network;
+}
+
+struct Swing {
+  Points x;
+  double energy = 0.0;        ///< of motion and height [J]
+  double worst_excess = 0.0;  ///< after any step
+  int most_parts = 0;
+};
+
+/// For a second and a half, by steps of which a frame takes so many.
+Swing swing(const SpringNetwork& network, int steps_a_frame, int most_halvings) {
+  Simulator simulator(network,
+                      {.step = 1.0 / (kRate * steps_a_frame), .stretch_limit = both_ways(), .most_halvings = most_halvings});
+  Swing swing;
+  for (int step = 1; step <= 90 * steps_a_frame; ++step) {
+    const StepReport report = simulator.step();
+    EXPECT_EQ(simulator.time(), step * simulator.settings().step);
+    swing.worst_excess = std::max(swing.worst_excess, report.stretch_excess);
+    swing.most_parts = std::max(swing.most_parts, report.parts);
+  }
+  swing.x = simulator.positions();
+  swing.energy = 0.5 * network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose()) + simulator.gravity_energy();
+  return swing;
+}
+
+TEST(StepRefinement, HoldsTheLimitOfWhatSwingsAndItsEnergy) {
+  const SpringNetwork cloth = swinging_cloth(16);
+  const Swing coarse = swing(cloth, 8, 0);
+  const Swing refined = swing(cloth, 8, 3);
+  const Swing fine = swing(cloth, 80, 0);
+  EXPECT_EQ(coarse.most_parts, 1);
+  EXPECT_EQ(refined.most_parts, 8);
+  EXPECT_GT(coarse.worst_excess, 0.06);
+  EXPECT_LT(refined.worst_excess, 0.04);
+  const double height = 0.2 * testing::kGravity * 1.0;  // what the cloth's lower edge may fall by
+  EXPECT_NEAR(refined.energy, fine.energy, 0.1 * height);
+}
+
+TEST(StepRefinement, IsTheSameForAnyNumberOfThreads) {
+  const SpringNetwork cloth = swinging_cloth(40);
+  const auto positions = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return swing(cloth, 4, 2).x;
+  };
+  EXPECT_EQ(positions(1), positions(2));
+}
+
+TEST(StepRefinement, HalvingsOutOfTheirBoundsAreRefused) {
+  for (const int halvings : {-1, 17}) {
+    try {
+      const Simulator simulator(testing::one_particle(Vector3::Zero()), {.most_halvings = halvings});
+      FAIL() << halvings;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.problems().front().key, "most_halvings");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sprung
