@@ -19,6 +19,14 @@ double capacity_of(const SpringNetwork& network) {
   return energy;
 }
 
+/// A limit holds energy as stiff springs do: what hangs by it a little too long bounces. That is less than the weight of all times
+/// the length of a spring.
+double capacity_of_limit(const SpringNetwork& network, const SimulatorSettings& settings) {
+  const std::vector<double>& lengths = network.springs.rest_length;
+  if (!settings.stretch_limit || lengths.empty()) return 0.0;
+  return network.masses.sum() * settings.gravity.norm() * *std::ranges::max_element(lengths);
+}
+
 }  // namespace
 
 EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles)
@@ -27,7 +35,7 @@ EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& 
                (settings.contact.response == ContactSettings::Response::projection &&
                 std::none_of(obstacles.begin(), obstacles.end(), [](const Obstacle& obstacle) { return obstacle.changes(); }))),
       fastest_drive_(settings.air_drag > 0.0 ? settings.wind.norm() : 0.0),
-      capacity_(capacity_of(network)) {}
+      capacity_(capacity_of(network) + capacity_of_limit(network, settings)) {}
 
 void EnergyWatch::note(std::int64_t step, const Energies& energies) {
   if (step <= 1) start_ = std::max(start_, energies.kinetic + energies.elastic);

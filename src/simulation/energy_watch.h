@@ -32,8 +32,8 @@ class EnergyWatch {
   void note_drive(double speed) { fastest_drive_ = std::max(fastest_drive_, speed); }
 
   /// What is wrong with the energies, when motion and springs hold more than 1,000 times the sum of what they began with, what
-  /// gravity has set free since, the motion of all particles as fast as the fastest pin or the wind, and what it takes to stretch
-  /// every spring to twice its length and fold every angle.
+  /// gravity has set free since, the motion of all particles as fast as the fastest pin or the wind, what it takes to stretch every
+  /// spring to twice its length and fold every angle, and, where a limit holds lengths, to lift all by the length of a spring.
   [[nodiscard]] std::optional<std::string> explosion(const Energies& energies) const;
 
  private:
@@ -42,7 +42,7 @@ class EnergyWatch {
   double mass_;  ///< [kg]
   bool watches_;
   double fastest_drive_;  ///< [m/s]
-  double capacity_;       ///< what springs and angles hold [J]
+  double capacity_;       ///< what springs, angles and limits hold [J]
   double start_ = 0.0;    ///< [J]
   double highest_ = 0.0;  ///< of the energies of gravity [J]
 };

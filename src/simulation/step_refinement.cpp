@@ -6,8 +6,9 @@
 namespace sprung {
 namespace {
 
-// Steps are chosen to come near the wanted excess; this much more is not worth smaller ones.
-constexpr double kMargin = 1.25;
+// Steps are chosen to come near the wanted excess of what hangs, which bounces to half as much again at first. A smaller step takes
+// back what is too long faster, and so would make that bounce the higher: only what moves misses by more.
+constexpr double kMargin = 3.0;
 
 // Doubled, a step leaves two to four times as much: less than this part of the bound must be left for that.
 constexpr double kRoom = 0.25;

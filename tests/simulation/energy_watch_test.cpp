@@ -59,5 +59,19 @@ TEST(EnergyWatch, SpringsMayBeStretchedToTwiceTheirLength) {
   EXPECT_TRUE(energy.explosion({.kinetic = 2000.0, .elastic = 2001.0}));
 }
 
+// m g d = 40 J.
+TEST(EnergyWatch, WhatALimitHoldsMayBounceByTheLengthOfASpring) {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 1.0);
+  builder.add_particle(Vector3::UnitX(), 1.0);
+  builder.add_spring(0, 1, 0.0, 2.0);
+  const SpringNetwork network = builder.build();
+  const SimulatorSettings settings{.step = 0.01, .gravity = {0.0, -10.0, 0.0}, .stretch_limit = StretchLimitSettings{}};
+  EnergyWatch energy(network, settings, {});
+  energy.note(0, {});
+  EXPECT_FALSE(energy.explosion({.kinetic = 39999.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 40001.0}));
+}
+
 }  // namespace
 }  // namespace sprung
