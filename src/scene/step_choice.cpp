@@ -28,6 +28,12 @@ std::string advice_for_unstable(const Scene& scene, double largest_stable) {
   return "use \"auto\"";
 }
 
+std::string advice_for_too_many_steps(const Scene& scene) {
+  const bool gains_energy = std::holds_alternative<ExplicitEulerSettings>(scene.settings.integrator);
+  return std::string(gains_energy ? "use \"symplectic_euler\", which does not gain energy at any step, " : "use ") +
+         "less stiffness, more mass, or a higher frame_rate";
+}
+
 bool may_be_halved(const SimulatorSettings& settings, const SpringNetwork& network) {
   const auto* verlet = std::get_if<VerletSettings>(&settings.integrator);
   const bool damps_steps = verlet != nullptr && verlet->damping > 0.0;
@@ -57,7 +63,7 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
   } else {
     problems.push_back({scene.file.string(), "step", "\"auto\"",
                         "must be at most " + format_upper_bound(largest) + " s, which is too many steps a frame",
-                        "use less stiffness, more mass, or a higher frame_rate"});
+                        advice_for_too_many_steps(scene)});
   }
   return choice;
 }

@@ -128,7 +128,13 @@ TEST(StepChoice, PenaltyContactCountsAsASpringToTheGround) {
 
 TEST(StepChoice, TooManyStepsAFrameAreRefused) {
   EXPECT_THAT(problems_of([] { (void)build(1e20); }),
-              ElementsAre(AllOf(Field(&Problem::key, "step"), Field(&Problem::rule, HasSubstr("too many steps a frame")))));
+              ElementsAre(AllOf(Field(&Problem::key, "step"), Field(&Problem::rule, HasSubstr("too many steps a frame")),
+                                Field(&Problem::remedy, HasSubstr("less stiffness")))));
+}
+
+TEST(StepChoice, WhereExplicitEulerWouldTakeTooManyStepsAnotherSchemeIsNamed) {
+  EXPECT_THAT(problems_of([] { (void)build(1e12, {R"(integrator={"type": "explicit_euler"})"}); }),
+              ElementsAre(Field(&Problem::remedy, HasSubstr("symplectic_euler"))));
 }
 
 }  // namespace
