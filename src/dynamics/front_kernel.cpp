@@ -154,21 +154,16 @@ template <int kVectors>
   return true;
 }
 
-SPRUNG_WIDE_KERNEL
-bool eliminate_wide(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
-  return eliminate<2>(shape, panel, inverse, update, row);
-}
+}  // namespace
 
 SPRUNG_KERNEL
-bool eliminate_narrow(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
+bool eliminate_front_narrow(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
   return eliminate<1>(shape, panel, inverse, update, row);
 }
 
-}  // namespace
-
-bool eliminate_front(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
-  static const bool kWide = has_wide_lanes();
-  return (kWide ? eliminate_wide : eliminate_narrow)(shape, panel, inverse, update, row);
+SPRUNG_WIDE_KERNEL
+bool eliminate_front_wide(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
+  return eliminate<2>(shape, panel, inverse, update, row);
 }
 
 SPRUNG_KERNEL void add_to_panel(std::span<const Index> columns, std::span<const Index> rows, const double* child,

@@ -1,6 +1,7 @@
 // Elimination of a supernode: dense work of whole registers.
 #pragma once
 
+#include "base/kernel.h"
 #include "dynamics/lane_count.h"
 
 #include <span>
@@ -33,7 +34,15 @@ inline constexpr Index kRowRoom = 4 * kSpringLanes;
 /// Replaces the panel of a matrix by that of its L, writes 1 / D to `inverse`, and what the rows below hand on, - L D L^T, to
 /// `update`, column by column, `lower_height` numbers each, of which those above the diagonal are not meant. Returns whether D is
 /// positive; if not, what is written is not meant.
-bool eliminate_front(const FrontShape& shape, double* panel, double* inverse, double* update, double* row);
+bool eliminate_front_narrow(const FrontShape& shape, double* panel, double* inverse, double* update, double* row);
+
+/// The same bits, with more lanes at a time. Requires has_wide_lanes().
+bool eliminate_front_wide(const FrontShape& shape, double* panel, double* inverse, double* update, double* row);
+
+/// Whichever the machine has.
+inline bool eliminate_front(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
+  return (has_wide_lanes() ? eliminate_front_wide : eliminate_front_narrow)(shape, panel, inverse, update, row);
+}
 
 /// Rows that are neighbours in what a front hands on, and in its parent's.
 struct RowRun {
