@@ -1,5 +1,7 @@
 #include "dynamics/block_cholesky.h"
 
+#include "dynamics/dense_matrix.h"
+
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
@@ -55,18 +57,6 @@ BlockMatrix random_matrix(Index particles, const Pairs& pairs, std::mt19937& ran
     matrix.add(pair.first, pair.second, a * b.transpose());
   }
   return matrix;
-}
-
-Eigen::MatrixXd dense(const BlockMatrix& matrix) {
-  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(3 * matrix.size(), 3 * matrix.size());
-  for (Index j = 0; j < matrix.size(); ++j) {
-    full.block<3, 3>(3 * j, 3 * j) = matrix.diagonal(j);
-    matrix.for_column(j, [&](Index i, const Matrix3& block) {
-      full.block<3, 3>(3 * i, 3 * j) = block;
-      full.block<3, 3>(3 * j, 3 * i) = block.transpose();
-    });
-  }
-  return full;
 }
 
 /// Of a factor of n columns the residual is below (3 n + 1) eps | |L| |D| |L^T| | |x|, of which the second norm is at most n |A|

@@ -1,6 +1,7 @@
 // Derivatives of forces against differences of the forces themselves.
 #include "dynamics/angle_force.h"
 #include "dynamics/body_forces.h"
+#include "dynamics/dense_matrix.h"
 #include "dynamics/networks.h"
 #include "dynamics/penalty_contact.h"
 #include "dynamics/spring_force.h"
@@ -17,18 +18,6 @@
 
 namespace sprung {
 namespace {
-
-Eigen::MatrixXd dense(const BlockMatrix& matrix) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * matrix.size(), 3 * matrix.size());
-  for (Index j = 0; j < matrix.size(); ++j) {
-    result.block<3, 3>(3 * j, 3 * j) = matrix.diagonal(j);
-    matrix.for_column(j, [&](Index i, const Matrix3& block) {
-      result.block<3, 3>(3 * i, 3 * j) = block;
-      result.block<3, 3>(3 * j, 3 * i) = block.transpose();
-    });
-  }
-  return result;
-}
 
 /// A force, and where it is looked at. The network must outlive it.
 struct Case {
