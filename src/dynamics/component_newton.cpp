@@ -81,10 +81,21 @@ Vector3 ComponentNewton::common_move() const {
 // What moves by u in a step, on a circle of radius r, is pulled inwards as by an acceleration of u^2 / r. Where nothing pulls,
 // links that are too long do.
 double ComponentNewton::carried_weight(double fall) const {
-  const double farthest = ((led_ - before_).colwise() - common_move()).colwise().squaredNorm().maxCoeff();
-  const double extent = bounds(before_).diagonal().norm();
-  const double turn = extent > 0.0 ? farthest / extent : 0.0;
+  const double radius = extent();
+  const double turn = radius > 0.0 ? farthest_squared() / radius : 0.0;
   return mass_ / std::max(component_.pin_count(), Index{1}) * std::max({fall, turn, fall + turn > 0.0 ? 0.0 : most_beyond()});
+}
+
+/// Apart from the common move [m^2].
+double ComponentNewton::farthest_squared() const {
+  return ((led_ - before_).colwise() - common_move()).colwise().squaredNorm().maxCoeff();
+}
+
+double ComponentNewton::extent() const { return bounds(before_).diagonal().norm(); }
+
+double ComponentNewton::turn() const {
+  const double across = extent();
+  return across > 0.0 ? std::sqrt(farthest_squared()) / across : 0.0;
 }
 
 double ComponentNewton::most_beyond() const {

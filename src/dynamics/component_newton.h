@@ -23,9 +23,17 @@ class ComponentNewton {
   /// link is beyond the tolerance then. Returns how many linear systems were solved; none when no link was too long.
   std::optional<int> solve(const Points& before, Points& positions, double fall);
 
+  /// How far the point that goes farthest by itself was led by the forces of the last `solve`, as a part of the component's extent:
+  /// of what swings about its pins, the angle of a step.
+  [[nodiscard]] double turn() const;
+
+  [[nodiscard]] bool is_tree() const { return component_.is_tree; }
+
  private:
   void gather(const Points& before, const Points& positions);
   [[nodiscard]] Vector3 common_move() const;
+  [[nodiscard]] double farthest_squared() const;
+  [[nodiscard]] double extent() const;
   [[nodiscard]] double carried_weight(double fall) const;
   [[nodiscard]] double most_beyond() const;
   int minimise();

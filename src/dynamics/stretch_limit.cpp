@@ -110,6 +110,12 @@ double StretchLimit::suggested_step(double acceleration) const {
   return smallest;
 }
 
+bool StretchLimit::follows_turn() const {
+  return newton_ && newton_->holds_any() && newton_->holds_all() && newton_->holds_no_tree() && settings_.max_compression == 1.0;
+}
+
+double StretchLimit::turn() const { return newton_ ? newton_->turn() : 0.0; }
+
 // Without halving, a cloth of 32 particles a side that swings from its corners held its energy as one at a tenth of its step did,
 // within 10 %. Halved up to three times it does so too, but not with structural springs alone, with which it got as much energy as
 // its fall had given it, nor without tethers, where it got 15 % for a while.

@@ -68,10 +68,18 @@ class StretchLimit {
   /// is limited, and for what a global solve holds, which needs no small steps.
   [[nodiscard]] double suggested_step(double acceleration) const;
 
-  /// Whether steps may become smaller as a simulation goes. What a smaller step takes back of the excess gives springs speed:
+  /// Whether steps may become smaller where the limit is missed. What a smaller step takes back of the excess gives springs speed:
   /// surfaces whose springs neither stretch nor shrink, hold the shape and have tethers lose it within themselves, others go slack
   /// and are thrown.
   [[nodiscard]] bool bears_smaller_steps() const;
+
+  /// Whether a global solve holds all springs, and no chains or trees are among them: it holds surfaces and solids at any step, but
+  /// the larger a part of their extent they turn in one the more of their motion it takes. Steps are to be chosen by `turn`.
+  [[nodiscard]] bool follows_turn() const;
+
+  /// That of the last `solve`: how far a particle was led by forces as a part of the extent of what it belongs to, apart from what
+  /// all of that has in common; the largest, of surfaces and solids that are solved for.
+  [[nodiscard]] double turn() const;
 
  private:
   const SpringNetwork& network_;

@@ -7,18 +7,39 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace sprung {
 namespace {
 
-double largest_auto_step(const Scene& scene, const SpringNetwork& network, const SpectralBounds& bounds, double largest_stable) {
+bool may_meet_anything(const Scene& scene, const SpringNetwork& network) {
+  const auto meets_itself = [](const Body& body) { return body.contact.self; };
+  const auto meets_others = [](const Body& body) { return body.contact.others; };
+  return !scene.obstacles.empty() || std::ranges::any_of(network.bodies, meets_itself) ||
+         std::ranges::count_if(network.bodies, meets_others) > 1;
+}
+
+bool damps_steps(const IntegratorSettings& integrator) {
+  const auto* verlet = std::get_if<VerletSettings>(&integrator);
+  return verlet != nullptr && verlet->damping > 0.0;
+}
+
+bool may_be_halved(const Scene& scene, const std::optional<StretchLimit>& limit) {
+  return limit && (limit->bears_smaller_steps() || limit->follows_turn()) && !damps_steps(scene.settings.integrator);
+}
+
+/// Of what a step may be as large as a frame for: its parts are chosen as it moves, and nothing is in its way.
+bool is_bound_by_turn(const Scene& scene, const SpringNetwork& network, const std::optional<StretchLimit>& limit) {
+  return may_be_halved(scene, limit) && limit->follows_turn() && !may_meet_anything(scene, network);
+}
+
+double largest_auto_step(const Scene& scene, const SpringNetwork& network, const std::optional<StretchLimit>& limit,
+                         const SpectralBounds& bounds, double largest_stable) {
   double largest = std::min(kStablePart * largest_stable, step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
   const bool implicit = std::holds_alternative<ImplicitEulerSettings>(scene.settings.integrator);
-  if (!std::isfinite(largest) && !implicit) largest = kLargestAutoStep;
-  if (!scene.settings.stretch_limit) return largest;
-  const StretchLimit limit(network, *scene.settings.stretch_limit);
-  return std::min(largest, limit.suggested_step(scene.settings.gravity.norm()));
+  if (!std::isfinite(largest) && !implicit && !is_bound_by_turn(scene, network, limit)) largest = kLargestAutoStep;
+  return limit ? std::min(largest, limit->suggested_step(scene.settings.gravity.norm())) : largest;
 }
 
 std::string advice_for_unstable(const Scene& scene, double largest_stable) {
@@ -32,12 +53,6 @@ std::string advice_for_too_many_steps(const Scene& scene) {
   const bool gains_energy = std::holds_alternative<ExplicitEulerSettings>(scene.settings.integrator);
   return std::string(gains_energy ? "use \"symplectic_euler\", which does not gain energy at any step, " : "use ") +
          "less stiffness, more mass, or a higher frame_rate";
-}
-
-bool may_be_halved(const SimulatorSettings& settings, const SpringNetwork& network) {
-  const auto* verlet = std::get_if<VerletSettings>(&settings.integrator);
-  const bool damps_steps = verlet != nullptr && verlet->damping > 0.0;
-  return !damps_steps && settings.stretch_limit && StretchLimit(network, *settings.stretch_limit).bears_smaller_steps();
 }
 
 }  // namespace
@@ -55,11 +70,13 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
     }
     return choice;
   }
-  const double largest = largest_auto_step(scene, network, bounds, choice.largest_stable);
+  std::optional<StretchLimit> limit;
+  if (scene.settings.stretch_limit) limit.emplace(network, *scene.settings.stretch_limit);
+  const double largest = largest_auto_step(scene, network, limit, bounds, choice.largest_stable);
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
     choice.steps_per_frame = *steps;
     choice.step = step_of(scene.frame_rate, *steps);
-    choice.most_halvings = may_be_halved(scene.settings, network) ? kAutoHalvings : 0;
+    choice.most_halvings = may_be_halved(scene, limit) ? kAutoHalvings : 0;
   } else {
     problems.push_back({scene.file.string(), "step", "\"auto\"",
                         "must be at most " + format_upper_bound(largest) + " s, which is too many steps a frame",

@@ -9,24 +9,25 @@
 namespace sprung {
 
 /// When stability does not bound it, "auto" is at most this [s]: a fall of a second then moves a particle by
-/// 4 cm in a step. With implicit Euler, which is chosen for its large steps, it is a frame.
+/// 4 cm in a step. With implicit Euler, which is chosen for its large steps, it is a frame, and so it is where all that moves is
+/// surfaces and solids that a global solve keeps within their limit, and nothing is in their way: see StretchLimit::follows_turn.
 inline constexpr double kLargestAutoStep = 1.0 / 240.0;
 
-/// Steps chosen by "auto" may be made in parts this often halved where they miss the stretch limit.
+/// Steps chosen by "auto" may be made in parts this often halved where they miss the stretch limit, or turn too much.
 inline constexpr int kAutoHalvings = 3;
 
 struct StepChoice {
   double step = 0.0;  ///< [s]
   int steps_per_frame = 1;
-  int most_halvings = 0;        ///< of a step, where it misses the stretch limit
+  int most_halvings = 0;        ///< of a step, where it misses the stretch limit or turns too much
   double largest_stable = 0.0;  ///< [s]; infinity when any is stable
 };
 
 /// The scene's step or, for "auto", 1 / (frame_rate * n) with the least n whose step is at most `kStablePart` of the largest stable
 /// one and at most what the stretch limit suggests; with explicit Euler, also one at which the fastest motion grows by no more than
-/// a factor of e in the whole scene. Steps of "auto" may be halved where a stretch limit that bears it is missed, unless
-/// Verlet's `damping` takes its part of each. Adds a problem when the scene's step is beyond the largest stable one and `stability`
-/// is refuse, or when a frame would take too many steps.
+/// a factor of e in the whole scene. Steps of "auto" may be halved where a stretch limit that bears it is missed, or where what a
+/// global solve holds turns too much in one, unless Verlet's `damping` takes its part of each. Adds a problem when the scene's step
+/// is beyond the largest stable one and `stability` is refuse, or when a frame would take too many steps.
 [[nodiscard]] StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems);
 
 }  // namespace sprung

@@ -163,7 +163,11 @@ StepReport Simulator::Implementation::make_part() {
 
 void Simulator::Implementation::choose_parts(double excess) {
   const double dt_before = dt();
-  refinement->choose(excess, state);
+  if (limit->follows_turn()) {
+    refinement->choose_by_turn(limit->turn(), state);
+  } else {
+    refinement->choose(excess, state);
+  }
   if (dt() == dt_before) return;
   if (penalty != nullptr) penalty->set_step(dt());
   move_pins(time());

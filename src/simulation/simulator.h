@@ -42,7 +42,7 @@ struct SimulatorSettings {
   std::optional<StretchLimitSettings> stretch_limit{};
   ContactSettings contact{};
   StabilityCheck stability = StabilityCheck::refuse;
-  int most_halvings = 0;  ///< in [0, 16]: steps are made in up to 2^most_halvings parts where the stretch limit is missed
+  int most_halvings = 0;  ///< in [0, 16]: steps are made in up to 2^most_halvings parts: see StepRefinement
 };
 
 /// What one step did: sums over its parts, and the largest excess.

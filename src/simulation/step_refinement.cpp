@@ -15,6 +15,9 @@ constexpr double kRoom = 0.25;
 
 constexpr int kCalmSteps = 8;
 
+// A limit that is held at the end of a step takes of the motion in proportion to the step.
+constexpr double kMostTurn = 1.0 / 60.0;
+
 }  // namespace
 
 StepRefinement::StepRefinement(const StretchLimitSettings& limit, int most_halvings)
@@ -31,6 +34,11 @@ void StepRefinement::choose(double excess, SimulationState& state) const {
   if (state.calm_steps < kCalmSteps || state.halvings == 0) return;
   --state.halvings;
   state.calm_steps = 0;
+}
+
+void StepRefinement::choose_by_turn(double turn, SimulationState& state) const {
+  const double parts = std::ldexp(turn, state.halvings) / kMostTurn;
+  state.halvings = parts > 1.0 ? std::min(1 + std::ilogb(parts), most_halvings_) : 0;
 }
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// In how many parts a step is made, by the stretch that the one before left.
+// In how many parts a step is made, by the stretch that the one before left, or by how far things turned in it.
 #pragma once
 
 #include "dynamics/stretch_limit.h"
@@ -16,6 +16,11 @@ class StepRefinement {
 
   /// Chooses `halvings` of the step to come when one has left `excess` over the limit, as a part of the rest length.
   void choose(double excess, SimulationState& state) const;
+
+  /// Chooses them when a part of the step has turned something by `turn`, as StretchLimit::turn says: so many that a part turns it
+  /// by no more than a sixtieth, where `most_halvings` lets it. Of a motion that changes little from step to step none is made too
+  /// large.
+  void choose_by_turn(double turn, SimulationState& state) const;
 
  private:
   double bound_;  ///< of the excess

@@ -35,6 +35,8 @@ const StretchLimitSettings kClothLimit{.max_stretch = 0.0,
 /// Of cloths by a global solve: as small a tolerance of what is too long; that what is too short pushes back takes passes.
 const StretchLimitSettings kSolvedClothLimit{.max_stretch = 0.0, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};
 
+const StretchLimitSettings& cloth_limit(bool solved) { return solved ? kSolvedClothLimit : kClothLimit; }
+
 /// Of ropes: a tolerance of 0.4 %, for which a global solve needs no small steps.
 const StretchLimitSettings kRopeLimit{.max_stretch = 0.0, .tolerance = 0.004, .solver = StretchLimitSettings::Solver::automatic};
 
@@ -132,8 +134,8 @@ Measured report(benchmark::State& state, const BuiltScene& built) {
 /// Arguments: particles along a side, motion, whether a global solve holds the limit. One thread.
 void cloth_against_bullet(benchmark::State& state) {
   const ThreadLimit one_thread(1);
-  const auto& limit = state.range(2) != 0 ? kSolvedClothLimit : kClothLimit;
-  const BuiltScene built = build_scene(cloth(static_cast<Index>(state.range(0)), static_cast<Motion>(state.range(1)), limit));
+  const BuiltScene built =
+      build_scene(cloth(static_cast<Index>(state.range(0)), static_cast<Motion>(state.range(1)), cloth_limit(state.range(2) != 0)));
   for ([[maybe_unused]] auto _ : state) {
     const Measured sprung = report(state, built);
     const Measured bullet = run_bullet(built.network);
@@ -161,10 +163,10 @@ double energy_after(const BuiltScene& built, int frames, int parts, int most_hal
 }
 
 /// By how much the energy of a cloth after 2 s of swinging differs from that at a tenth of the step, as a part of what its fall by
-/// half its length sets free. Argument: particles along a side.
+/// half its length sets free. Arguments: particles along a side, whether a global solve holds the limit.
 void swing_energy(benchmark::State& state) {
   constexpr int kTwoSeconds = 120;
-  const BuiltScene built = build_scene(cloth(static_cast<Index>(state.range(0)), swinging, kClothLimit));
+  const BuiltScene built = build_scene(cloth(static_cast<Index>(state.range(0)), swinging, cloth_limit(state.range(1) != 0)));
   const double fall = built.network.masses.sum() * kGravity * 0.5;
   for ([[maybe_unused]] auto _ : state) {
     const double energy = energy_after(built, kTwoSeconds, 1, built.settings.most_halvings);
@@ -172,7 +174,7 @@ void swing_energy(benchmark::State& state) {
   }
 }
 
-BENCHMARK(swing_energy)->ArgName("side")->Arg(64)->Iterations(1)->Unit(benchmark::kSecond);
+BENCHMARK(swing_energy)->ArgNames({"side", "newton"})->ArgsProduct({{64}, {0, 1}})->Iterations(1)->Unit(benchmark::kSecond);
 BENCHMARK(cloth_against_bullet)
     ->ArgNames({"side", "swinging", "newton"})
     ->ArgsProduct({{64, 128, 256}, {hanging, swinging}, {0, 1}})

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <numbers>
 #include <random>
 
 namespace sprung {
@@ -77,6 +78,23 @@ TEST(ComponentNewton, HoldsAgainstMotion) {
   const Points before = network.positions;
   ComponentNewton(component_of(network), settings).solve(before, x, 1.0e-6 * turned);
   EXPECT_LE(StretchLimit(network, settings).excess(x), settings.tolerance);
+}
+
+// Whatever it does in common, and however many springs are too long: 0.05 of the lower edge's distance to the pins, which is 1 m,
+// is a part of 0.05 / sqrt(2) of a square's diagonal. Differences of numbers near 10 keep 14 digits.
+TEST(ComponentNewton, TellsHowFarThingsTurn) {
+  const SpringNetwork network = make_test_cloth(8, 0.0, 0.0);
+  const double turned = 0.05;
+  Points x = network.positions;
+  for (Index i = 0; i < x.cols(); ++i) x(2, i) += turned * (network.positions.row(1).maxCoeff() - x(1, i));
+  for (const double move : {0.0, 10.0}) {
+    for (const double max_stretch : {0.0, 1.0}) {
+      ComponentNewton newton(component_of(network), {.max_stretch = max_stretch});
+      Points led = x.array() + move;
+      newton.solve(network.positions, led, kFall);
+      EXPECT_NEAR(newton.turn(), turned / std::numbers::sqrt2, 1.0e-13);
+    }
+  }
 }
 
 // Factors need positive semidefinite blocks, also of links that are shorter than their limit but count as if they pushed. An

@@ -86,6 +86,26 @@ TEST(StepChoice, AutoMayHalveStepsOfClothsThatBearIt) {
   EXPECT_EQ(halvings({R"(integrator={"type": "verlet", "damping": 0.01})"}), 0);
 }
 
+TEST(StepChoice, AutoIsAFrameForWhatAGlobalSolveHoldsAndMeetsNothing) {
+  const auto built = [](const std::vector<std::string>& changes) {
+    const SceneFolder folder;
+    const std::string text = R"({"duration": 1, "stretch_limit": {"solver": "newton"},
+        "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [4, 4]}, "mass": 1,
+        "springs": {"structural": {"stiffness": 0}}, "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
+    return build_scene(folder.read(text, changes));
+  };
+  EXPECT_EQ(built({}).steps_per_frame, 1);
+  EXPECT_EQ(built({}).settings.most_halvings, kAutoHalvings);
+  EXPECT_EQ(built({"obstacles.floor.shape={\"type\":\"half_space\",\"offset\":-5}"}).steps_per_frame, 8);
+  EXPECT_EQ(built({"bodies.cloth.self_contact=true"}).steps_per_frame, 8);
+  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).steps_per_frame, 8) << "which takes its part of each step";
+  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).settings.most_halvings, 0);
+  const std::string second = R"(bodies.other={"shape": {"type": "cloth", "size": [1, 1], "resolution": [2, 2]}, "mass": 1,
+      "place": {"position": [0, 0, 1]}, "springs": {"structural": {"stiffness": 0}})";
+  EXPECT_EQ(built({second + "}"}).steps_per_frame, 8);
+  EXPECT_EQ(built({second + R"(, "body_contact": false})"}).steps_per_frame, 1);
+}
+
 TEST(StepChoice, WithoutAnyBoundAutoIsAtMostTheDocumentedStep) {
   const BuiltScene built = build(0.0);
   EXPECT_TRUE(std::isinf(built.largest_stable_step));

@@ -59,6 +59,21 @@ TEST(StepRefinement, DoublesAgainAfterSeveralCalmStepsInARow) {
   EXPECT_EQ(halvings_after(std::vector<double>(30, 0.0)), 0);
 }
 
+TEST(StepRefinement, HalvesAsOftenAsThePartsTurnTooMuch) {
+  const StepRefinement refinement(both_ways(), 3);
+  SimulationState state;
+  const auto halvings_after_turn = [&](double turn) {
+    refinement.choose_by_turn(turn, state);
+    return state.halvings;
+  };
+  EXPECT_EQ(halvings_after_turn(1.0 / 61.0), 0);
+  EXPECT_EQ(halvings_after_turn(1.0 / 59.0), 1);
+  EXPECT_EQ(halvings_after_turn(1.0 / 59.0), 2) << "of one of two parts";
+  EXPECT_EQ(halvings_after_turn(1.0 / 121.0), 1) << "of one of four parts";
+  EXPECT_EQ(halvings_after_turn(0.0), 0);
+  EXPECT_EQ(halvings_after_turn(10.0), 3);
+}
+
 // Verlet's positions lie on the parabola of what is thrown, whatever the step.
 TEST(StepRefinement, LeavesVerletOnTheParabola) {
   const SpringNetwork ball = testing::one_particle(Vector3::Zero(), {}, Vector3(1.0, 2.0, 0.0));
@@ -99,9 +114,8 @@ struct Swing {
 };
 
 /// For a second and a half, by steps of which a frame takes so many.
-Swing swing(const SpringNetwork& network, int steps_a_frame, int most_halvings) {
-  Simulator simulator(network,
-                      {.step = 1.0 / (kRate * steps_a_frame), .stretch_limit = both_ways(), .most_halvings = most_halvings});
+Swing swing(const SpringNetwork& network, int steps_a_frame, int most_halvings, const StretchLimitSettings& limit = both_ways()) {
+  Simulator simulator(network, {.step = 1.0 / (kRate * steps_a_frame), .stretch_limit = limit, .most_halvings = most_halvings});
   Swing swing;
   for (int step = 1; step <= 90 * steps_a_frame; ++step) {
     const StepReport report = simulator.step();
@@ -125,6 +139,20 @@ TEST(StepRefinement, HoldsTheLimitOfWhatSwingsAndItsEnergy) {
   EXPECT_LT(refined.worst_excess, 0.04);
   const double height = 0.2 * testing::kGravity * 1.0;  // what the cloth's lower edge may fall by
   EXPECT_NEAR(refined.energy, fine.energy, 0.1 * height);
+}
+
+// What a global solve holds is within its limit at any step, but loses what it got as it fell.
+TEST(StepRefinement, KeepsTheEnergyOfWhatTurns) {
+  const StretchLimitSettings limit{.max_stretch = 0.0, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};
+  const SpringNetwork cloth = swinging_cloth(16);
+  const Swing coarse = swing(cloth, 1, 0, limit);
+  const Swing refined = swing(cloth, 1, 3, limit);
+  const Swing fine = swing(cloth, 10, 0, limit);
+  EXPECT_GT(refined.most_parts, 2);
+  for (const Swing& held : {coarse, refined, fine}) EXPECT_LT(held.worst_excess, 0.02);
+  const double fall = 0.2 * testing::kGravity * 0.5;  // by half its length
+  EXPECT_LT(coarse.energy, fine.energy - 0.2 * fall);
+  EXPECT_NEAR(refined.energy, fine.energy, 0.1 * fall);
 }
 
 // It begins unstretched, and so bounces at first; smaller steps would only make it bounce the higher.
