@@ -3,6 +3,7 @@
 
 #include "base/types.h"
 
+#include <algorithm>
 #include <array>
 
 namespace sprung {
@@ -14,7 +15,16 @@ struct ContactCandidate {
   std::array<int, 2> edge{};         ///< of two edges: their numbers in these elements
   double gap = 0.0;                  ///< that contact keeps between them [m]
   double reach = 0.0;                ///< contact looks at them when they are nearer than this [m]
+  Vector3 normal = Vector3::Zero();  ///< unit length or 0: the direction of their separation when they were measured last
+  int rest = 0;                      ///< steps in which they need not be looked at
 };
+
+/// What lies between the sides along a direction, negative where they overlap; `height(k)` is how far up particle k is.
+template <class Height>
+[[nodiscard]] double gap_along(const ContactCandidate& candidate, const Height& height) {
+  return candidate.edges ? std::min(height(0), height(1)) - std::max(height(2), height(3))
+                         : height(0) - std::max({height(1), height(2), height(3)});
+}
 
 /// The closest points of the two sides.
 struct CandidateClosest {

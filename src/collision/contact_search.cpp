@@ -145,19 +145,31 @@ void ContactSearch::append_if_near(ContactCandidate candidate, const Search& sea
   };
   const Index first = candidate.particles[0];
   const Index second = candidate.particles[candidate.edges ? 2 : 1];
-  const double drift = (search.times.end - search.times.now) * (search.balls.motion(first) - search.balls.motion(second)).norm();
-  const double nearer = drift + 0.5 * (search.balls.radius(first) + search.balls.radius(second));
+  const double drift = 0.5 * (search.balls.radius(first) + search.balls.radius(second));
   candidate.gap = 0.5 * (thickness(candidate.elements[0]) + thickness(candidate.elements[1]));
   candidate.reach = candidate.gap + margin_;
-  const double distance = closest_points(candidate, positions(search.positions)).separation.norm();
-  if (distance - nearer > candidate.reach) return;
+  const double distance = least_distance(candidate, positions(search.positions), search);
+  if (distance - drift > candidate.reach) return;
   if (element(candidate.elements[0]).body == element(candidate.elements[1]).body) {
     const double at_rest = closest_points(candidate, positions(rest_)).separation.norm();
     candidate.gap = std::min(candidate.gap, kMostGap * at_rest);
     candidate.reach = candidate.gap + std::min(margin_, kMostMargin * at_rest);
-    if (distance - nearer > candidate.reach) return;
+    if (distance - drift > candidate.reach) return;
   }
   candidates.push_back(candidate);
+}
+
+/// Along a fixed direction what lies between them is least now or at the end.
+double ContactSearch::least_distance(ContactCandidate& candidate, const std::array<Vector3, 4>& x, const Search& search) {
+  candidate.normal = closest_points(candidate, x).separation;
+  const double distance = candidate.normal.norm();
+  if (!(distance > 0.0)) return 0.0;
+  candidate.normal /= distance;
+  const double duration = search.times.end - search.times.now;
+  const auto height_at_end = [&](std::size_t k) {
+    return candidate.normal.dot(x[k] + duration * search.balls.motion(candidate.particles[k]));
+  };
+  return std::min(distance, gap_along(candidate, height_at_end));
 }
 
 bool ContactSearch::owns_sharp_edge(Index number) const {

@@ -42,6 +42,9 @@ class ContactSearch {
   void append_edges(const Side& a, const Side& b, const Search& search, std::vector<ContactCandidate>& candidates) const;
   void append_edges_of(Index first, Index second, const Search& search, std::vector<ContactCandidate>& candidates) const;
   void append_if_near(ContactCandidate candidate, const Search& search, std::vector<ContactCandidate>& candidates) const;
+  /// A lower bound of their distance until the end, from their positions now; sets the normal.
+  [[nodiscard]] static double least_distance(ContactCandidate& candidate, const std::array<Vector3, 4>& positions,
+                                             const Search& search);
   [[nodiscard]] bool owns_sharp_edge(Index number) const;
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
   [[nodiscard]] double thickness(Index number) const { return surface_.thickness[element(number).particles[0]]; }

@@ -33,6 +33,15 @@ double least_gap(const ElementPair& pair, const WatchState& state) {
   return std::min(at(0.0), at(state.horizon));
 }
 
+/// Where most corners, edges and faces next to each other are apart.
+Vector3 direction_between_middles(const ElementPair& pair, const Points& positions) {
+  Vector3 first = Vector3::Zero();
+  Vector3 second = Vector3::Zero();
+  for (int k = 0; k < pair.count(); ++k)
+    (k < pair.first_count ? first : second) += positions.col(pair.particles[static_cast<std::size_t>(k)]);
+  return (first / pair.first_count - second / pair.second_count).normalized();
+}
+
 void append_if_near(ElementPair pair, const WatchState& state, std::vector<ElementPair>& pairs) {
   pair.normal = direction_between(pair, state.positions);
   if (!(least_gap(pair, state) > 0.0)) pairs.push_back(pair);
@@ -41,6 +50,12 @@ void append_if_near(ElementPair pair, const WatchState& state, std::vector<Eleme
 bool is_marked(const ElementPair& pair, const WatchState& state) {
   return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(),
                      [&](Index i) { return state.marked[static_cast<std::size_t>(i)] != 0; });
+}
+
+void append_part_if_near(ElementPair pair, const WatchState& state, std::vector<ElementPair>& pairs) {
+  if (!is_marked(pair, state)) return;
+  pair.normal = direction_between_middles(pair, state.positions);
+  if (!(least_gap(pair, state) > 0.0)) append_if_near(pair, state, pairs);
 }
 
 }  // namespace
@@ -70,8 +85,7 @@ void PairSearch::append_corners(Index element_number, Index face, const WatchSta
     if (!features_.owns_corner(element_number, static_cast<int>(k))) continue;
     const std::array<Index, 1> a{corners[k]};
     if (share_particle(a, b)) continue;
-    const ElementPair pair = sides_of(a, b);
-    if (is_marked(pair, state)) append_if_near(pair, state, pairs);
+    append_part_if_near(sides_of(a, b), state, pairs);
   }
 }
 
@@ -83,8 +97,7 @@ void PairSearch::append_edges(Index first, Index second, const WatchState& state
       if (!features_.owns_edge(second, k)) continue;
       const auto b = ends_of(element(second), k);
       if (share_particle(a, b)) continue;
-      const ElementPair pair = sides_of(a, b);
-      if (is_marked(pair, state)) append_if_near(pair, state, pairs);
+      append_part_if_near(sides_of(a, b), state, pairs);
     }
   }
 }

@@ -19,11 +19,11 @@ constexpr double kShortestEdge = 0.25;
 
 // Balls are to last until particles, seen from the middle of their body, have flown so many edges' length, and at most so many
 // steps.
-constexpr double kFlight = 0.25;
+constexpr double kFlight = 0.12;
 constexpr double kMostSteps = 64.0;
 
 // Candidates of contact are looked for when balls are made for the so manieth time.
-constexpr int kCandidateTurns = 3;
+constexpr int kCandidateTurns = 2;
 
 constexpr Index kParticlesPerTask = 1024;
 constexpr Index kFansPerTask = 128;
@@ -183,7 +183,7 @@ void PairWatch::mark(std::vector<Index> particles, const Points& before, const P
     for (const Index i : particles) {
       if (marked_[static_cast<std::size_t>(i)] != 0) continue;
       marked_[static_cast<std::size_t>(i)] = 1;
-      place_ball(i, before, ends);
+      balls_.place(i, before.col(i), ends.col(i));
       marked.push_back(i);
     }
     marked_list_.insert(marked_list_.end(), marked.begin(), marked.end());
@@ -194,17 +194,6 @@ void PairWatch::mark(std::vector<Index> particles, const Points& before, const P
       particles.insert(particles.end(), spokes.begin(), spokes.end());
     }
   }
-}
-
-void PairWatch::place_ball(Index i, const Points& before, const Points& ends) {
-  const Vector3 begin = before.col(i);
-  const Vector3 own = ends.col(i) - begin;
-  Vector3 motion = own;
-  const auto spokes = features_.spokes(i);
-  for (const Index spoke : spokes) motion += ends.col(spoke) - before.col(spoke);
-  motion /= static_cast<double>(spokes.size() + 1);
-  if (!((motion - own).norm() < 0.5 * balls_.radius(i))) motion = own;
-  balls_.place(i, begin, begin + motion);
 }
 
 /// Looks at the fans that have these particles, and returns the middles of those that were flat and are no more.

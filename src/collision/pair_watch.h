@@ -11,9 +11,9 @@
 
 namespace sprung {
 
-/// Each particle has a ball that moves on with it. A pair that is not listed cannot touch, and no candidate of contact that is not
-/// comes within its reach, while particles are in their balls; for those that leave theirs, both are looked for again. All balls
-/// are made again after as many steps as they were to last.
+/// Each particle has a ball that moves on with it. A pair that is not listed cannot touch while particles are in their balls; for
+/// those that leave theirs, pairs are looked for again. All balls are made again after as many steps as they were to last, and
+/// candidates of contact every other time.
 class PairWatch {
  public:
   /// See ContactSearch. Keeps a reference to the surface.
@@ -30,7 +30,8 @@ class PairWatch {
 
   /// The normals may be changed.
   [[nodiscard]] std::vector<ElementPair>& pairs() { return pairs_; }
-  [[nodiscard]] const std::vector<ContactCandidate>& candidates() const { return candidates_; }
+  /// Contact notes in them what it found.
+  [[nodiscard]] std::vector<ContactCandidate>& candidates() { return candidates_; }
   [[nodiscard]] const MovingBalls& balls() const { return balls_; }
   [[nodiscard]] const SurfaceFeatures& features() const { return features_; }
   [[nodiscard]] WatchCounts counts() const;
@@ -39,7 +40,6 @@ class PairWatch {
   void choose_horizon(const Points& before, const Points& after);
   [[nodiscard]] std::vector<Index> find_leaving(const Points& ends, double time) const;
   void renew(std::vector<Index> leaving, const Points& before, const Points& ends);
-  void place_ball(Index particle, const Points& before, const Points& ends);
   void mark(std::vector<Index> particles, const Points& before, const Points& ends);
   [[nodiscard]] std::vector<Index> find_folded(const std::vector<Index>& particles);
   void mark_elements();

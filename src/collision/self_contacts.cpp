@@ -22,6 +22,14 @@ constexpr double kEdgeLean = 0.1;
 // What comes nearer than its gap by more than this part of it has its nearest points looked for where it passes the gap.
 constexpr double kLongWay = 0.1;
 
+// Passes lead particles less far than the forces alone have led them in this step. What is farther off than this part of the gap,
+// and that part of the way, is no contact: it would not be touched.
+constexpr double kMarginOfGap = 0.1;
+constexpr double kMarginOfMotion = 0.5;
+
+// What is far off is looked at again after so many steps at the latest.
+constexpr int kMostRest = 4;
+
 class SelfContacts {
  public:
   SelfContacts(const CollisionSurface& surface, const SurfaceFeatures& features, const Points& before, const Points& after)
@@ -31,15 +39,23 @@ class SelfContacts {
         after_(after),
         clearance_(kClearance * before.cwiseAbs().maxCoeff()) {}
 
-  void append(const ContactCandidate& candidate, std::vector<Contact>& contacts) const {
-    if (stays_apart(candidate)) return;
+  void append(ContactCandidate& candidate, std::vector<Contact>& contacts) const {
+    if (candidate.rest > 0) {
+      --candidate.rest;
+      return;
+    }
+    const double way = longest_way(candidate);
+    const double most_margin = candidate.reach - candidate.gap;
+    const double reach = candidate.gap + std::min(most_margin, kMarginOfGap * candidate.gap + kMarginOfMotion * way);
+    if (stays_apart(candidate, reach, way)) return;
     std::array<Vector3, 4> x;
     for (std::size_t k = 0; k < 4; ++k) x[k] = before_.col(candidate.particles[k]);
     CandidateClosest closest = closest_points(candidate, x);
     const double begin = closest.separation.norm();
     if (!(begin > 0.0)) return;
-    const double end = lowest_gap(candidate, closest.separation / begin);
-    if (!(std::min(begin, end) < candidate.reach)) return;
+    candidate.normal = closest.separation / begin;
+    if (stays_apart(candidate, reach, way)) return;
+    const double end = gap_at(candidate, after_);
     if (begin > candidate.gap && end < (1.0 - kLongWay) * candidate.gap) {
       const double time = (begin - candidate.gap) / (begin - end);
       for (std::size_t k = 0; k < 4; ++k) x[k] += time * (after_.col(candidate.particles[k]) - x[k]);
@@ -55,7 +71,7 @@ class SelfContacts {
     contact.normal = closest.separation / distance;
     for (std::size_t k = 0; k < 4; ++k)
       contact.distance += closest.weights[k] * contact.normal.dot(after_.col(candidate.particles[k]));
-    if (!(contact.distance < candidate.reach)) return;
+    if (!(contact.distance < reach)) return;
     contact.most_gap = candidate.gap;
     contact.clearance = clearance_;
     contacts.push_back(contact);
@@ -64,24 +80,27 @@ class SelfContacts {
  private:
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
 
-  /// Whether the ways of the two sides are apart by their reach along an axis: those of most are.
-  [[nodiscard]] bool stays_apart(const ContactCandidate& candidate) const {
-    const std::size_t first_of_second = candidate.edges ? 2 : 1;
-    std::array<Box3, 2> ways;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Index i = candidate.particles[k];
-      ways[k < first_of_second ? 0 : 1].extend(before_.col(i)).extend(after_.col(i));
-    }
-    const double apart = std::max((ways[0].min() - ways[1].max()).maxCoeff(), (ways[1].min() - ways[0].max()).maxCoeff());
-    return apart >= candidate.reach;
+  /// The longest of its particles [m].
+  [[nodiscard]] double longest_way(const ContactCandidate& candidate) const {
+    double way2 = 0.0;
+    for (const Index i : candidate.particles) way2 = std::max(way2, (after_.col(i) - before_.col(i)).squaredNorm());
+    return std::sqrt(way2);
   }
 
-  /// What lies between the sides at the end, along the normal.
-  [[nodiscard]] double lowest_gap(const ContactCandidate& candidate, const Vector3& normal) const {
-    std::array<double, 4> height;
-    for (std::size_t k = 0; k < 4; ++k) height[k] = normal.dot(after_.col(candidate.particles[k]));
-    return candidate.edges ? std::min(height[0], height[1]) - std::max(height[2], height[3])
-                           : height[0] - std::max({height[1], height[2], height[3]});
+  [[nodiscard]] static double gap_at(const ContactCandidate& candidate, const Points& positions) {
+    return gap_along(candidate, [&](std::size_t k) { return candidate.normal.dot(positions.col(candidate.particles[k])); });
+  }
+
+  /// Whether they are apart along the normal all the time, by more than they are to be looked at. Then they rest while they could
+  /// come no nearer if they came nearer by as much in each step, and one of them by its whole way.
+  [[nodiscard]] bool stays_apart(ContactCandidate& candidate, double reach, double way) const {
+    const double begin = gap_at(candidate, before_);
+    const double end = gap_at(candidate, after_);
+    const double slack = std::min(begin, end) - reach;
+    if (!(slack >= 0.0)) return false;
+    const double nearer = std::max(begin - end, 0.0) + way;
+    candidate.rest = slack < kMostRest * nearer ? static_cast<int>(slack / nearer) : kMostRest;
+    return true;
   }
 
   /// Whether a direction from a point of an element leans over what ends at `other` by no more than `lean`.
@@ -158,7 +177,7 @@ class SelfContacts {
 }  // namespace
 
 void append_self_contacts(const CollisionSurface& surface, const SurfaceFeatures& features,
-                          const std::vector<ContactCandidate>& candidates, const Points& before, const Points& after,
+                          std::vector<ContactCandidate>& candidates, const Points& before, const Points& after,
                           std::vector<Contact>& contacts) {
   const SelfContacts finder(surface, features, before, after);
   const auto count = static_cast<Index>(candidates.size());
