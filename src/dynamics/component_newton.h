@@ -27,8 +27,6 @@ class ComponentNewton {
   /// of what swings about its pins, the angle of a step.
   [[nodiscard]] double turn() const;
 
-  [[nodiscard]] bool is_tree() const { return component_.is_tree; }
-
  private:
   void gather(const Points& before, const Points& positions);
   [[nodiscard]] Vector3 common_move() const;

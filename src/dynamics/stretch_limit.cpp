@@ -111,7 +111,7 @@ double StretchLimit::suggested_step(double acceleration) const {
 }
 
 bool StretchLimit::follows_turn() const {
-  return newton_ && newton_->holds_any() && newton_->holds_all() && newton_->holds_no_tree() && settings_.max_compression == 1.0;
+  return newton_ && newton_->holds_any() && newton_->holds_all() && settings_.max_compression == 1.0;
 }
 
 double StretchLimit::turn() const { return newton_ ? newton_->turn() : 0.0; }

@@ -73,12 +73,12 @@ class StretchLimit {
   /// and are thrown.
   [[nodiscard]] bool bears_smaller_steps() const;
 
-  /// Whether a global solve holds all springs, and no chains or trees are among them: it holds surfaces and solids at any step, but
-  /// the larger a part of their extent they turn in one the more of their motion it takes. Steps are to be chosen by `turn`.
+  /// Whether a global solve holds all springs: it does at any step, but the larger a part of its extent a body turns by in one, the
+  /// more of its motion that takes. Steps are to be chosen by `turn`.
   [[nodiscard]] bool follows_turn() const;
 
   /// That of the last `solve`: how far a particle was led by forces as a part of the extent of what it belongs to, apart from what
-  /// all of that has in common; the largest, of surfaces and solids that are solved for.
+  /// all of that has in common; the largest of all that is solved for.
   [[nodiscard]] double turn() const;
 
  private:

@@ -28,15 +28,9 @@ std::optional<int> StretchNewton::solve(const Points& before, Points& positions,
   return iterations.empty() ? std::nullopt : *std::ranges::max_element(iterations);
 }
 
-bool StretchNewton::holds_no_tree() const {
-  return std::ranges::none_of(components_, [](const auto& component) { return component->is_tree(); });
-}
-
 double StretchNewton::turn() const {
   double largest = 0.0;
-  for (const auto& component : components_) {
-    if (!component->is_tree()) largest = std::max(largest, component->turn());
-  }
+  for (const auto& component : components_) largest = std::max(largest, component->turn());
   return largest;
 }
 

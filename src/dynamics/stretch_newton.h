@@ -29,10 +29,7 @@ class StretchNewton {
   [[nodiscard]] bool holds_any() const { return !components_.empty(); }
   [[nodiscard]] bool holds_all() const { return left_.empty(); }
 
-  /// Whether none of what it holds is a chain or a tree.
-  [[nodiscard]] bool holds_no_tree() const;
-
-  /// The largest turn of a component that is no tree in the last solve; see ComponentNewton. None is 0.
+  /// The largest turn of a component in the last solve; see ComponentNewton. None is 0.
   [[nodiscard]] double turn() const;
 
  private:

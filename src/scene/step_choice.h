@@ -9,8 +9,8 @@
 namespace sprung {
 
 /// When stability does not bound it, "auto" is at most this [s]: a fall of a second then moves a particle by
-/// 4 cm in a step. With implicit Euler, which is chosen for its large steps, it is a frame, and so it is where all that moves is
-/// surfaces and solids that a global solve keeps within their limit, and nothing is in their way: see StretchLimit::follows_turn.
+/// 4 cm in a step. With implicit Euler, which is chosen for its large steps, it is a frame, and so it is where a global solve keeps
+/// all that moves within its limit, and nothing is in its way: see StretchLimit::follows_turn.
 inline constexpr double kLargestAutoStep = 1.0 / 240.0;
 
 /// Steps chosen by "auto" may be made in parts this often halved where they miss the stretch limit, or turn too much.

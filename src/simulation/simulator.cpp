@@ -110,15 +110,16 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       energy_watch(network, settings, environment.obstacles()),
       state(initial_state(network)) {
   check_settings(settings);
+  if (settings.stretch_limit) limit.emplace(network, *settings.stretch_limit);
+  if (limit && settings.most_halvings > 0) refinement.emplace(*settings.stretch_limit, settings.most_halvings);
+  if (refinement && limit->follows_turn()) state.halvings = settings.most_halvings;  // how far things will turn is not known yet
   gravity = add_force<Gravity>(settings.gravity);
   springs = add_force<SpringForce>();
   if (network.angle_bends.count() > 0) angles = add_force<AngleForce>();
   if (settings.air_drag > 0.0) add_force<AirDrag>(settings.air_drag, settings.wind);
   if (settings.contact.response == ContactSettings::Response::penalty && !environment.obstacles().empty()) {
-    penalty = add_force<PenaltyContact>(environment, settings.contact.stiffness, settings.contact.damping, settings.step);
+    penalty = add_force<PenaltyContact>(environment, settings.contact.stiffness, settings.contact.damping, dt());
   }
-  if (settings.stretch_limit) limit.emplace(network, *settings.stretch_limit);
-  if (limit && settings.most_halvings > 0) refinement.emplace(*settings.stretch_limit, settings.most_halvings);
   environment.set_interval(0.0, 0.0);
   move_pins(0.0);
   Start start = find_start(network, environment, settings.contact, state.x);
@@ -126,7 +127,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   for (const auto& more : {start.warnings, idle_settings(settings, network)}) {
     warnings.insert(warnings.end(), more.begin(), more.end());
   }
-  integrator->start(state, forces, settings.step);
+  integrator->start(state, forces, dt());
   energy_watch.note(0, energies());
 }
 

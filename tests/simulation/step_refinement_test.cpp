@@ -155,6 +155,19 @@ TEST(StepRefinement, KeepsTheEnergyOfWhatTurns) {
   EXPECT_NEAR(refined.energy, fine.energy, 0.1 * fall);
 }
 
+TEST(StepRefinement, BeginsWithTheSmallestPartsOfWhatMayTurn) {
+  NetworkBuilder builder;
+  const Vector3 velocity(0.0, 0.0, 10.0);
+  const Index first = builder.add_particle({0.0, 0.0, 0.0}, 1.0, velocity);
+  builder.add_spring(first, builder.add_particle({1.0, 0.0, 0.0}, 1.0, velocity), 0.0, 1.0, 0.0);
+  SimulatorSettings settings{.step = 1.0 / kRate, .stretch_limit = StretchLimitSettings{}, .most_halvings = 3};
+  EXPECT_EQ(Simulator(builder.build(), settings).step().parts, 1) << "passes follow what they miss";
+  settings.stretch_limit->solver = StretchLimitSettings::Solver::automatic;
+  Simulator simulator(builder.build(), settings);
+  EXPECT_EQ(simulator.step().parts, 8);
+  EXPECT_EQ(simulator.step().parts, 1) << "it flies, and does not turn";
+}
+
 // It begins unstretched, and so bounces at first; smaller steps would only make it bounce the higher.
 TEST(StepRefinement, LeavesWhatHangsAlone) {
   SpringNetwork cloth = swinging_cloth(64);
