@@ -15,14 +15,18 @@ constexpr int kMostIterations = 20;
 constexpr int kMostHalvings = 10;
 
 // Iterations end when one lowered the energy as it forecast, but for this part of the energy and of what the way to where
-// forces led was worth at first: what is left to gain is about that much, and no other solve is needed to say so. Chains need more
-// iterations, and have them cheaply.
+// forces led was worth at first, and its solve left no more: what is left to gain is about that much, and no other solve is needed
+// to say so. Chains need more iterations, and have them cheaply.
 constexpr double kForecastOfChains = 1.0e-4;
 constexpr double kForecastOfCloths = 0.1;
 
 // No iteration is made when the imbalance, were all of it left, amounts to no more than a hundredth of the way from where forces
 // led.
 constexpr double kBalanced = 1.0e-4;
+
+// What turned by less than this and took one iteration the step before hardly changes: of what moves an old factor, to which other
+// springs were slack, takes too much of the motion.
+constexpr double kCalmTurn = 1.0 / 240.0;
 
 // Springs that are nearly at their limit will mostly be at it: were they left out at first, each iteration would find only the next
 // few of them.
@@ -55,6 +59,7 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
   if (energy_.value(led_, led_) == 0.0) return std::nullopt;
   energy_.set_weight(carried_weight(fall));
   const int iterations = minimise();
+  last_iterations_ = iterations;
   if (clips_) clip();
   for (Index i = 0; i < component_.free_count; ++i) positions.col(component_.points[i]) = x_.col(i);
   return iterations;
@@ -112,13 +117,15 @@ int ComponentNewton::minimise() {
   double energy = energy_.linearise(x_, led_, 1.0, system_);
   if (imbalance() <= kBalanced * energy) return 0;
   const double at_first = inertia();
+  const bool is_calm = last_iterations_ <= 1 && turn() <= kCalmTurn;
   const double close = component_.is_tree ? kForecastOfChains : kForecastOfCloths;
   double modelled = energy_.linearise(x_, led_, kActiveAtFirst, system_);
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
-    solver_->solve(system_, step_);
+    system_.is_like_last = iteration == 1 && is_calm;
+    const double left = solver_->solve(system_, step_);
     const double forecast = modelled - 0.5 * system_.residual.cwiseProduct(step_).sum();
     if (descend(energy)) {
-      if (std::abs(energy - forecast) <= close * (at_first + energy)) return iteration;
+      if (std::abs(energy - forecast) + left <= close * (at_first + energy)) return iteration;
       modelled = energy;
     } else {
       if (iteration > 1) return iteration;

@@ -4,6 +4,7 @@
 #include "dynamics/stretch_energy.h"
 #include "dynamics/stretch_system.h"
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -46,7 +47,8 @@ class ComponentNewton {
   StretchEnergy energy_;
   std::unique_ptr<StretchSystemSolver> solver_;
   bool clips_;
-  double mass_ = 0.0;  ///< of all free points [kg]
+  int last_iterations_ = std::numeric_limits<int>::max();  ///< of the solve before, if there was one
+  double mass_ = 0.0;                                      ///< of all free points [kg]
 
   // Of a solve, 3 x points: where the step began, where forces led, where the solve is.
   Points before_;

@@ -12,7 +12,8 @@ namespace sprung {
 class ComponentNewton;
 
 /// Newton's method on each component of limited springs: chains and trees by elimination, others by a sparse factor. Only
-/// max_stretch is held, not max_compression. Same bits for any number of threads.
+/// max_stretch is held, not max_compression. Same bits for any number of threads. Of what is not a chain or a tree a step's later
+/// digits depend on the steps before, whose factors it may use: the same steps one after the other have the same bits.
 class StretchNewton {
  public:
   /// Takes chains and trees alone when `settings.solver` is automatic.

@@ -8,7 +8,7 @@ TreeSolver::TreeSolver(const StretchComponent& component) : component_(component
   }
 }
 
-void TreeSolver::solve(const StretchSystem& system, Points& step) {
+double TreeSolver::solve(const StretchSystem& system, Points& step) {
   step = system.residual;
   eliminate(system, step);
   for (Index i = component_.free_count - 1; i >= 0; --i) {
@@ -16,6 +16,7 @@ void TreeSolver::solve(const StretchSystem& system, Points& step) {
     const Vector3 pull = node.parent == kNone ? Vector3(Vector3::Zero()) : node.upward * step.col(node.parent);
     step.col(i) = node.inverse * (step.col(i) + pull);
   }
+  return 0.0;
 }
 
 // What a point adds to its parent is U - U (S + U)^-1 U for the block U between them and the point's own stiffness S. As

@@ -10,7 +10,7 @@ class TreeSolver final : public StretchSystemSolver {
  public:
   /// Keeps a reference to the component. Requires that it is a tree.
   explicit TreeSolver(const StretchComponent& component);
-  void solve(const StretchSystem& system, Points& step) override;
+  double solve(const StretchSystem& system, Points& step) override;
 
  private:
   struct Node {

@@ -1,0 +1,25 @@
+#include "base/tiny_numbers.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace sprung {
+namespace {
+
+// As functions of what the compiler cannot know.
+volatile double least_normal = std::numeric_limits<double>::min();
+
+TEST(TinyNumbers, AreThereAgainAfterwards) {
+  {
+    const TinyNumbersAreZero quick;
+#if defined(__SSE2__)
+    EXPECT_TRUE(least_normal * 0.5 * 4.0 == 0.0);
+#endif
+    EXPECT_TRUE(least_normal * 2.0 * 0.5 == least_normal) << "normal numbers are what they were";
+  }
+  EXPECT_TRUE(least_normal * 0.5 * 4.0 == 2.0 * least_normal);
+}
+
+}  // namespace
+}  // namespace sprung
