@@ -37,6 +37,7 @@ const std::vector<Library> kLibraries = {
     {"CLI/", {"app"}},
     {"fmt/", {"app"}},
     {"sanitizer/", {"base"}},
+    {"xmmintrin.h", {"base"}},
     {"fcntl.h", {"app", "output"}},
     {"unistd.h", {"app", "output"}},
     {"sys/", {"app", "output"}},
