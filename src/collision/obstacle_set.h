@@ -46,6 +46,7 @@ class ObstacleSet {
     return into_after_[static_cast<std::size_t>(k)] * position;
   }
 
+  [[nodiscard]] const RigidTransform& into_before(Index k) const { return into_before_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] const RigidTransform& into_after(Index k) const { return into_after_[static_cast<std::size_t>(k)]; }
 
   /// Replaces `found` by the obstacles that may be within the box at the interval's end, ascending.

@@ -76,7 +76,6 @@ void ObstacleZones::follow(const Way& way) {
   if (set_.obstacles().empty()) return;
   const double carried = way.obstacles_rest ? 0.0 : set_.carries_at_most(way.from);
   parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
-    PatchPaths paths;
     for (Index p = begin; p < end; ++p) {
       find_near(p, way, carried);
       Patch& patch = patches_[at(p)];
@@ -84,9 +83,7 @@ void ObstacleZones::follow(const Way& way) {
       for (PatchZones& zones : patch.zones) {
         const ObstacleShape& shape = set_.shape(zones.obstacle());
         if (!zones.find_restless(shape, {way.to, particles_of(p), set_.into_after(zones.obstacle())})) continue;
-        find_begins(p, zones.obstacle(), way, paths);
-        find_ends(p, zones.obstacle(), way, paths);
-        zones.follow(shape, patch.topology, paths, demand(patch, zones.obstacle(), way));
+        zones.follow(shape, patch.topology, paths(p, zones.obstacle(), way), demand(patch, zones.obstacle(), way));
         append_restless(p, zones);
       }
     }
@@ -135,19 +132,9 @@ std::vector<Index> ObstacleZones::restless() const {
   return particles;
 }
 
-void ObstacleZones::find_begins(Index p, Index k, const Way& way, PatchPaths& paths) const {
-  const std::vector<Index>& particles = particles_of(p);
-  paths.from.resize(particles.size());
-  for (std::size_t slot = 0; slot < particles.size(); ++slot) {
-    const Vector3 from = way.from.col(particles[slot]);
-    paths.from[slot] = way.obstacles_rest ? set_.local(k, from) : set_.local_before(k, from);
-  }
-}
-
-void ObstacleZones::find_ends(Index p, Index k, const Way& way, PatchPaths& paths) const {
-  const std::vector<Index>& particles = particles_of(p);
-  paths.to.resize(particles.size());
-  for (std::size_t slot = 0; slot < particles.size(); ++slot) paths.to[slot] = set_.local(k, way.to.col(particles[slot]));
+PatchPaths ObstacleZones::paths(Index p, Index k, const Way& way) const {
+  const RigidTransform& before = way.obstacles_rest ? set_.into_after(k) : set_.into_before(k);
+  return {{way.from, particles_of(p), before}, {way.to, particles_of(p), set_.into_after(k)}};
 }
 
 ZoneDemand ObstacleZones::demand(const Patch& patch, Index k, const Way& way) const {
@@ -166,14 +153,12 @@ void ObstacleZones::renew_around(const std::vector<Index>& particles, const Way&
     for (const PatchSlot& place : slots_of(i)) slots[at(place.patch)].push_back(place.slot);
   }
   parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
-    PatchPaths paths;
     for (Index p = begin; p < end; ++p) {
       if (slots[at(p)].empty()) continue;
       for (PatchZones& zones : patches_[at(p)].zones) {
-        find_begins(p, zones.obstacle(), way, paths);
-        find_ends(p, zones.obstacle(), way, paths);
         const ObstacleShape& shape = set_.shape(zones.obstacle());
-        zones.renew(shape, patches_[at(p)].topology, paths, demand(patches_[at(p)], zones.obstacle(), way), slots[at(p)]);
+        const ZoneDemand demanded = demand(patches_[at(p)], zones.obstacle(), way);
+        zones.renew(shape, patches_[at(p)].topology, paths(p, zones.obstacle(), way), demanded, slots[at(p)]);
         zones.find_restless(shape, {way.to, particles_of(p), set_.into_after(zones.obstacle())});
         append_restless(p, zones);
       }

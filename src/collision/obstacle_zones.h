@@ -112,8 +112,7 @@ class ObstacleZones {
   }
   void find_near(Index patch, const Way& way, double carried);
   void append_restless(Index patch, const PatchZones& zones);
-  void find_begins(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
-  void find_ends(Index patch, Index obstacle, const Way& way, PatchPaths& paths) const;
+  [[nodiscard]] PatchPaths paths(Index patch, Index obstacle, const Way& way) const;
   [[nodiscard]] ZoneDemand demand(const Patch& patch, Index obstacle, const Way& way) const;
   void append_particle_contacts(Index patch, PatchZones& zones, const Way& way, const ZoneDemand& demanded, double motion);
   void append_element_contacts(Index patch, const PatchZones& zones, const Way& way, double margin);

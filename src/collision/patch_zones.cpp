@@ -94,7 +94,7 @@ void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, co
   const double recent = kRecentPart * fresh;
   for (const Index i : restless_) {
     Slot& slot = slots_[at(i)];
-    const Vector3& to = paths.to[at(i)];
+    const Vector3 to = paths.to(i);
     const bool leaves = !slot.box.contains(to);
     const bool stale = slot.near && (to - slot.settled).squaredNorm() > fresh * fresh;
     if (stale) slot.settled = to;
@@ -124,11 +124,11 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
     double motion = 0.0;
     request.way.setEmpty();
     for (std::size_t k = 0; k < at(corners.count); ++k) {
-      const std::size_t slot = at(corners.slots[k]);
-      element.x[k] = paths.from[slot];
-      const double moved = (paths.to[slot] - paths.from[slot]).norm();
+      const Vector3 to = paths.to(corners.slots[k]);
+      element.x[k] = paths.from(corners.slots[k]);
+      const double moved = (to - element.x[k]).norm();
       motion = moved <= motion ? motion : moved;  // what is not finite stays
-      request.way.extend(paths.to[slot]);
+      request.way.extend(to);
     }
     request.reach = least_reach + kReachOfMotion * motion;
     if (std::isfinite(motion)) {
@@ -142,7 +142,7 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
     const auto elements = topology.elements_of(i);
     if (std::none_of(elements.begin(), elements.end(), [&](Index e) { return marked_[at(e)] != 0; })) continue;
     gather(topology, demand, i);
-    calm_down(i, paths.from[at(i)], demand);
+    calm_down(i, paths.from(i), demand);
   }
   std::fill(marked_.begin(), marked_.end(), 0);
   find_near_elements(demand);

@@ -9,10 +9,22 @@
 
 namespace sprung {
 
-/// Where the patch's particles are and where they are about to be, in the obstacle's frame [m], by slot.
-struct PatchPaths {
-  std::vector<Vector3> from;
-  std::vector<Vector3> to;
+/// Where the patch's particles are and where they are about to be, in the obstacle's frame, by slot. Refers to what it is made of.
+class PatchPaths {
+ public:
+  /// Columns of positions [m], 3 x n, and the ways into the frame.
+  PatchPaths(const BallParticles& from, const BallParticles& to) : from_(from), to_(to) {}
+
+  [[nodiscard]] Vector3 from(Index slot) const { return position(from_, slot); }
+  [[nodiscard]] Vector3 to(Index slot) const { return position(to_, slot); }
+
+ private:
+  [[nodiscard]] static Vector3 position(const BallParticles& at, Index slot) {
+    return at.into * at.positions.col(at.particles[static_cast<std::size_t>(slot)]);
+  }
+
+  BallParticles from_;
+  BallParticles to_;
 };
 
 /// What a patch's zones are made for. All lengths [m].
