@@ -54,6 +54,7 @@ struct Simulator::Implementation {
     return kept;
   }
 
+  [[nodiscard]] bool anything_moves() const;
   StepReport step();
   StepReport make_part();
   void choose_parts(double excess);
@@ -112,7 +113,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   check_settings(settings);
   if (settings.stretch_limit) limit.emplace(network, *settings.stretch_limit);
   if (limit && settings.most_halvings > 0) refinement.emplace(*settings.stretch_limit, settings.most_halvings);
-  if (refinement && limit->follows_turn()) state.halvings = settings.most_halvings;  // how far things will turn is not known yet
+  if (refinement && limit->follows_turn() && anything_moves()) state.halvings = settings.most_halvings;
   gravity = add_force<Gravity>(settings.gravity);
   springs = add_force<SpringForce>();
   if (network.angle_bends.count() > 0) angles = add_force<AngleForce>();
@@ -129,6 +130,11 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   }
   integrator->start(state, forces, dt());
   energy_watch.note(0, energies());
+}
+
+/// Whether something does at the start: by how much it will turn is not known yet.
+bool Simulator::Implementation::anything_moves() const {
+  return !network.velocities.isZero(0.0) || std::ranges::any_of(network.pins, [](const Pin& pin) { return pin.motion.moves(); });
 }
 
 StepReport Simulator::Implementation::step() {

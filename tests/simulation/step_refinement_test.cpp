@@ -155,7 +155,7 @@ TEST(StepRefinement, KeepsTheEnergyOfWhatTurns) {
   EXPECT_NEAR(refined.energy, fine.energy, 0.1 * fall);
 }
 
-TEST(StepRefinement, BeginsWithTheSmallestPartsOfWhatMayTurn) {
+TEST(StepRefinement, BeginsWithTheSmallestPartsOfWhatMoves) {
   NetworkBuilder builder;
   const Vector3 velocity(0.0, 0.0, 10.0);
   const Index first = builder.add_particle({0.0, 0.0, 0.0}, 1.0, velocity);
@@ -166,6 +166,12 @@ TEST(StepRefinement, BeginsWithTheSmallestPartsOfWhatMayTurn) {
   Simulator simulator(builder.build(), settings);
   EXPECT_EQ(simulator.step().parts, 8);
   EXPECT_EQ(simulator.step().parts, 1) << "it flies, and does not turn";
+  SpringNetwork resting = builder.build();
+  resting.velocities.setZero();
+  EXPECT_EQ(Simulator(resting, settings).step().parts, 1);
+  resting.pins.push_back({.particles = {first}, .origin = Vector3::Zero(), .motion = {.spin = {0.0, 90.0, 0.0}}});
+  resting.inverse_masses[first] = 0.0;
+  EXPECT_EQ(Simulator(resting, settings).step().parts, 8);
 }
 
 // It begins unstretched, and so bounces at first; smaller steps would only make it bounce the higher.
