@@ -28,10 +28,6 @@ constexpr double kBalanced = 1.0e-4;
 // springs were slack, takes too much of the motion.
 constexpr double kCalmTurn = 1.0 / 240.0;
 
-// Springs that are nearly at their limit will mostly be at it: were they left out at first, each iteration would find only the next
-// few of them.
-constexpr double kActiveAtFirst = 0.9;
-
 // The part of the tolerance that clipped links keep, and what they keep clear of the limit where it has none: they shall not be
 // beyond it by rounding.
 constexpr double kClipPart = 0.99;
@@ -114,24 +110,27 @@ double ComponentNewton::most_beyond() const {
 
 int ComponentNewton::minimise() {
   start();
-  double energy = energy_.linearise(x_, led_, 1.0, system_);
+  double energy = energy_.linearise(x_, led_, NearLimit::slack, system_);
   if (imbalance() <= kBalanced * energy) return 0;
   const double at_first = inertia();
   const bool is_calm = last_iterations_ <= 1 && turn() <= kCalmTurn;
   const double close = component_.is_tree ? kForecastOfChains : kForecastOfCloths;
-  double modelled = energy_.linearise(x_, led_, kActiveAtFirst, system_);
+  // Links that are nearly at their limit will mostly be at it: were they left out at first, each iteration would find only the next
+  // few of them.
+  double modelled = energy_.linearise(x_, led_, NearLimit::pushing, system_);
+  bool is_too_stiff = false;
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
     system_.is_like_last = iteration == 1 && is_calm;
     const double left = solver_->solve(system_, step_);
     const double forecast = modelled - 0.5 * system_.residual.cwiseProduct(step_).sum();
-    if (descend(energy)) {
-      if (std::abs(energy - forecast) + left <= close * (at_first + energy)) return iteration;
-      modelled = energy;
-    } else {
-      if (iteration > 1) return iteration;
-      // What counted as if it pushed was not worth it.
-      modelled = energy_.linearise(x_, led_, 1.0, system_);
-    }
+    const double part = descend(energy);
+    if (part > 0.0 && !is_too_stiff && std::abs(energy - forecast) + left <= close * (at_first + energy)) return iteration;
+    if (part == 0.0 && iteration > 1) return iteration;
+    // What was slack stopped the step short, or what counted as if it pushed was not worth it. A forecast with links that are stiff
+    // but do not pull tells less than can be gained.
+    is_too_stiff = part < 1.0;
+    if (is_too_stiff) energy_.linearise(x_, led_, NearLimit::stiff, system_);
+    modelled = energy;
   }
   return kMostIterations;
 }
@@ -155,18 +154,18 @@ double ComponentNewton::imbalance() const {
   return sum;
 }
 
-bool ComponentNewton::descend(double& energy) {
+double ComponentNewton::descend(double& energy) {
   double part = 1.0;
   for (int halving = 0; halving <= kMostHalvings; ++halving, part *= 0.5) {
     tried_ = x_;
     tried_.leftCols(component_.free_count) += part * step_;
-    const double reached = energy_.linearise(tried_, led_, 1.0, system_);
+    const double reached = energy_.linearise(tried_, led_, NearLimit::slack, system_);
     if (!(reached < energy)) continue;
     energy = reached;
     x_.swap(tried_);
-    return true;
+    return part;
   }
-  return false;
+  return 0.0;
 }
 
 void ComponentNewton::clip() {

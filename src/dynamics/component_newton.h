@@ -39,7 +39,7 @@ class ComponentNewton {
   void start();
   [[nodiscard]] double inertia() const;
   [[nodiscard]] double imbalance() const;
-  [[nodiscard]] bool descend(double& energy);
+  [[nodiscard]] double descend(double& energy);
   void clip();
 
   StretchComponent component_;

@@ -11,6 +11,9 @@ namespace {
 constexpr double kPartForChains = 0.25;
 constexpr double kPartForCloths = 0.1;
 
+// Links are near their limit from this part of it.
+constexpr double kNear = 0.9;
+
 // Without a tolerance there is still some give: stiffer links take more iterations.
 constexpr double kLeastTolerance = 4.0e-4;
 
@@ -38,7 +41,7 @@ double StretchEnergy::value(const Points& x, const Points& y) const {
   return 0.5 * (inertia + weight_ * elastic);
 }
 
-double StretchEnergy::linearise(const Points& x, const Points& y, double active_from, StretchSystem& system) const {
+double StretchEnergy::linearise(const Points& x, const Points& y, NearLimit near, StretchSystem& system) const {
   system.blocks.resize(limits_.size());
   system.residual.resize(Eigen::NoChange, component_.free_count);
   double inertia = 0.0;
@@ -48,7 +51,7 @@ double StretchEnergy::linearise(const Points& x, const Points& y, double active_
     system.residual.col(i) = component_.masses[i] * away;
   }
   double elastic = 0.0;
-  const double squared_part = active_from * active_from;
+  const double squared_part = near == NearLimit::slack ? 1.0 : kNear * kNear;
   for (std::size_t s = 0; s < limits_.size(); ++s) {
     const StretchComponent::Link& link = component_.links[s];
     const Limit& limit = limits_[s];
@@ -64,6 +67,7 @@ double StretchEnergy::linearise(const Points& x, const Points& y, double active_
     const double excess = length - limit.length;
     const double across = stiffness * std::max(0.0, excess / length);
     system.blocks[s] = SymmetricMatrix3::along(across, stiffness - across, direction);
+    if (excess <= 0.0 && near != NearLimit::pushing) continue;
     const Vector3 pull = stiffness * excess * direction;
     system.residual.col(link.first) += pull;
     if (component_.is_free(link.second)) system.residual.col(link.second) -= pull;

@@ -4,7 +4,16 @@
 #include "dynamics/stretch_limit.h"
 #include "dynamics/stretch_system.h"
 
+#include <cstdint>
+
 namespace sprung {
+
+/// What links count as that are shorter than the longest they may be, by less than a tenth.
+enum class NearLimit : std::uint8_t {
+  slack,   ///< what they are
+  stiff,   ///< as stiff as those that are too long, though they neither pull nor push
+  pushing  ///< as if they held both ways
+};
 
 /// E(x) = 1/2 sum m |x - y|^2 + 1/2 sum k max(0, |d| - L)^2 over free points and links of a component: y is where forces led, L the
 /// longest a link may be, and k = W / (e d) for what the links carry, W [kg m], the rest length d and the part of it, e, by which a
@@ -21,9 +30,8 @@ class StretchEnergy {
   [[nodiscard]] double value(const Points& x, const Points& y) const;
 
   /// E, its negative gradient as the residual, and its second derivatives, of which those are left out that would make a block
-  /// indefinite. Links that are longer than L times `active_from`, in (0, 1], count as if they pushed when they are shorter than L,
-  /// in what is returned too.
-  double linearise(const Points& x, const Points& y, double active_from, StretchSystem& system) const;
+  /// indefinite. What links near the limit count as if they pushed is in what is returned too.
+  double linearise(const Points& x, const Points& y, NearLimit near, StretchSystem& system) const;
 
  private:
   struct Limit {

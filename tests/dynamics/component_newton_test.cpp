@@ -42,7 +42,7 @@ TEST(ComponentNewton, EndsWhereNothingIsToBeGained) {
     return points;
   };
   StretchSystem system;
-  const double reached = energy.linearise(of_points(x), of_points(led), 1.0, system);
+  const double reached = energy.linearise(of_points(x), of_points(led), NearLimit::slack, system);
   Points step;
   make_system_solver(component)->solve(system, step);
   EXPECT_LT(0.5 * system.residual.cwiseProduct(step).sum(), 0.1 * reached);
@@ -105,9 +105,9 @@ TEST(StretchEnergy, BlocksAreNeverIndefinite) {
   StretchEnergy energy(component, {.max_stretch = 0.0});
   energy.set_weight(1.0);
   std::mt19937 random(9);
-  const Points x = displaced(network.positions, random, 0.05);
+  const Points x = displaced(network.positions, random, 0.02);
   StretchSystem system;
-  energy.linearise(x, x, 0.5, system);
+  energy.linearise(x, x, NearLimit::pushing, system);
   int short_ones = 0;
   for (std::size_t s = 0; s < system.blocks.size(); ++s) {
     const auto& [first, second, rest_length] = component.links[s];
@@ -119,6 +119,59 @@ TEST(StretchEnergy, BlocksAreNeverIndefinite) {
     if (eigenvalues.maxCoeff() > 0.0 && (x.col(second) - x.col(first)).norm() < rest_length) ++short_ones;
   }
   EXPECT_GT(short_ones, 0);
+}
+
+// As a spring of the links' stiffness: a displacement along a link is pushed back, one across it is not. Blocks are sums of a few
+// terms that are no larger than the stiffness.
+TEST(StretchEnergy, LinksNearTheLimitAreStiffButDoNotPull) {
+  const SpringNetwork network = make_test_cloth(8, 0.0, 0.0, false);
+  const StretchComponent component = component_of(network);
+  StretchEnergy energy(component, {.max_stretch = 0.0});
+  energy.set_weight(1.0);
+  std::mt19937 random(9);
+  const Points x = displaced(network.positions, random, 0.02);
+  StretchSystem slack;
+  StretchSystem stiff;
+  EXPECT_EQ(energy.linearise(x, x, NearLimit::slack, slack), energy.linearise(x, x, NearLimit::stiff, stiff));
+  EXPECT_EQ(slack.residual, stiff.residual);
+  int near_ones = 0;
+  for (std::size_t s = 0; s < stiff.blocks.size(); ++s) {
+    const auto& [first, second, rest_length] = component.links[s];
+    const Vector3 between = x.col(second) - x.col(first);
+    const double part = between.norm() / rest_length;
+    if (part > 1.0) {
+      EXPECT_EQ(stiff.blocks[s].xx, slack.blocks[s].xx);
+      continue;
+    }
+    const SymmetricMatrix3& k = stiff.blocks[s];
+    Matrix3 block;
+    block << k.xx, k.xy, k.xz, k.xy, k.yy, k.yz, k.xz, k.yz, k.zz;
+    EXPECT_EQ(slack.blocks[s].xx + slack.blocks[s].yy + slack.blocks[s].zz, 0.0);
+    EXPECT_EQ(block.trace() > 0.0, part > 0.9);
+    EXPECT_LE((block - block.trace() * between * between.transpose() / between.squaredNorm()).norm(), 1.0e-14 * block.trace());
+    near_ones += part > 0.9 ? 1 : 0;
+  }
+  EXPECT_GT(near_ones, 0);
+}
+
+// Its links are all at their limit when it starts to fall: each iteration must not find only the next few that a step makes too
+// long.
+TEST(ComponentNewton, TakesFewSolvesForWhatBeginsAtItsLimit) {
+  const SpringNetwork network = make_test_cloth(48, 0.0, 0.0);
+  ComponentNewton newton(component_of(network), {.max_stretch = 0.0, .tolerance = 0.01});
+  constexpr double kFrameFall = 9.81 / 3600.0;
+  Points before = network.positions;
+  Points x = network.positions;
+  for (int step = 0; step < 20; ++step) {
+    Points led = 2.0 * x - before;
+    led.row(1).array() -= kFrameFall;
+    for (Index i = 0; i < x.cols(); ++i) {
+      if (network.is_pinned(i)) led.col(i) = network.positions.col(i);
+    }
+    before.swap(x);
+    x = led;
+    EXPECT_LE(newton.solve(before, x, kFrameFall).value_or(0), 6) << "step " << step;
+  }
 }
 
 // What all move in common changes neither the solution but for that move, nor how many solves lead there: rounding at 10 m, and

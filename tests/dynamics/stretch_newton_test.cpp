@@ -81,7 +81,7 @@ TEST_P(Solvers, SolveWhatADenseSolverSolves) {
     Points led = x;
     led.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
     StretchSystem system;
-    energy.linearise(x, led, 1.0, system);
+    energy.linearise(x, led, NearLimit::slack, system);
     const Eigen::MatrixXd matrix = dense_matrix(component, system);
     const Scalars expected = matrix.ldlt().solve(Scalars(system.residual.reshaped()));
     Points step;
@@ -104,7 +104,7 @@ TEST_P(Solvers, ResidualIsTheNegativeGradient) {
   Points led = x;
   led.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
   StretchSystem system;
-  const double value = energy.linearise(x, led, 1.0, system);
+  const double value = energy.linearise(x, led, NearLimit::slack, system);
   EXPECT_NEAR(value, energy.value(x, led), 100 * kEpsilon * value);
   const double h = 1.0e-6;
   for (Index c = 0; c < 3 * component.free_count; ++c) {
@@ -168,7 +168,7 @@ TEST(SparseSolver, OldFactorsLeadNearEnough) {
     Points points(3, component.free_count);
     for (Index i = 0; i < component.free_count; ++i) points.col(i) = x.col(component.points[i]);
     StretchSystem system;
-    energy.linearise(points, points, 1.0, system);
+    energy.linearise(points, points, NearLimit::slack, system);
     system.is_like_last = true;
     Points step;
     Points exact;
