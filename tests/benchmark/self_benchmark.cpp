@@ -14,7 +14,8 @@
 namespace sprung::benchmarks {
 namespace {
 
-// The drape's first second, at 60 frames a second; the twist's first two, at 30, in which the cloth is turned by a turn and a third.
+// The drape's first second, at 60 frames a second; the twist's first two, at 30, in which the cloth is turned by a turn and a
+// third.
 constexpr int kDrapeFrames = 60;
 constexpr int kTwistFrames = 60;
 
