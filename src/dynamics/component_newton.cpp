@@ -69,6 +69,9 @@ void ComponentNewton::gather(const Points& before, const Points& positions) {
     before_.col(i) = before.col(component_.points[i]);
     led_.col(i) = positions.col(component_.points[i]);
   }
+  common_move_ = common_move();
+  farthest_squared_ = ((led_ - before_).colwise() - common_move_).colwise().squaredNorm().maxCoeff();
+  extent_ = bounds(before_).diagonal().norm();
 }
 
 /// Where the pins went, or what moves as it likes: so its momentum is right from the start.
@@ -82,22 +85,11 @@ Vector3 ComponentNewton::common_move() const {
 // What moves by u in a step, on a circle of radius r, is pulled inwards as by an acceleration of u^2 / r. Where nothing pulls,
 // links that are too long do.
 double ComponentNewton::carried_weight(double fall) const {
-  const double radius = extent();
-  const double turn = radius > 0.0 ? farthest_squared() / radius : 0.0;
-  return mass_ / std::max(component_.pin_count(), Index{1}) * std::max({fall, turn, fall + turn > 0.0 ? 0.0 : most_beyond()});
+  const double inwards = extent_ > 0.0 ? farthest_squared_ / extent_ : 0.0;
+  return mass_ / std::max(component_.pin_count(), Index{1}) * std::max({fall, inwards, fall + inwards > 0.0 ? 0.0 : most_beyond()});
 }
 
-/// Apart from the common move [m^2].
-double ComponentNewton::farthest_squared() const {
-  return ((led_ - before_).colwise() - common_move()).colwise().squaredNorm().maxCoeff();
-}
-
-double ComponentNewton::extent() const { return bounds(before_).diagonal().norm(); }
-
-double ComponentNewton::turn() const {
-  const double across = extent();
-  return across > 0.0 ? std::sqrt(farthest_squared()) / across : 0.0;
-}
+double ComponentNewton::turn() const { return extent_ > 0.0 ? std::sqrt(farthest_squared_) / extent_ : 0.0; }
 
 double ComponentNewton::most_beyond() const {
   double most = 0.0;
@@ -137,7 +129,7 @@ int ComponentNewton::minimise() {
 
 // In motion where the step began is mostly nearer to the minimum: there springs are not too long.
 void ComponentNewton::start() {
-  x_ = before_.colwise() + common_move();
+  x_ = before_.colwise() + common_move_;
   x_.rightCols(component_.pin_count()) = led_.rightCols(component_.pin_count());
   if (energy_.value(led_, led_) < energy_.value(x_, led_)) x_ = led_;
 }

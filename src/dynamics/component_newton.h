@@ -31,8 +31,6 @@ class ComponentNewton {
  private:
   void gather(const Points& before, const Points& positions);
   [[nodiscard]] Vector3 common_move() const;
-  [[nodiscard]] double farthest_squared() const;
-  [[nodiscard]] double extent() const;
   [[nodiscard]] double carried_weight(double fall) const;
   [[nodiscard]] double most_beyond() const;
   int minimise();
@@ -49,6 +47,10 @@ class ComponentNewton {
   bool clips_;
   int last_iterations_ = std::numeric_limits<int>::max();  ///< of the solve before, if there was one
   double mass_ = 0.0;                                      ///< of all free points [kg]
+
+  Vector3 common_move_ = Vector3::Zero();  ///< of the last solve [m]
+  double farthest_squared_ = 0.0;          ///< that a point was led, apart from the common move [m^2]
+  double extent_ = 0.0;                    ///< where the step began [m]
 
   // Of a solve, 3 x points: where the step began, where forces led, where the solve is.
   Points before_;

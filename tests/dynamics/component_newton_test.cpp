@@ -97,59 +97,64 @@ TEST(ComponentNewton, TellsHowFarThingsTurn) {
   }
 }
 
+/// Of a cloth whose links are a little too long or too short.
+class EnergyOfACloth : public ::testing::Test {
+ protected:
+  EnergyOfACloth() { energy_.set_weight(1.0); }
+
+  [[nodiscard]] double linearise(NearLimit near, StretchSystem& system) const { return energy_.linearise(x_, x_, near, system); }
+  [[nodiscard]] Vector3 between(std::size_t link) const {
+    return x_.col(component_.links[link].second) - x_.col(component_.links[link].first);
+  }
+  /// Its length as a part of the longest it may be.
+  [[nodiscard]] double part(std::size_t link) const { return between(link).norm() / component_.links[link].rest_length; }
+
+  SpringNetwork network_ = make_test_cloth(8, 0.0, 0.0, false);
+  StretchComponent component_ = component_of(network_);
+  StretchEnergy energy_{component_, {.max_stretch = 0.0}};
+  std::mt19937 random_{9};
+  Points x_ = displaced(network_.positions, random_, 0.02);
+};
+
 // Factors need positive semidefinite blocks, also of links that are shorter than their limit but count as if they pushed. An
 // eigenvalue of 0 is off by a few roundings of the largest.
-TEST(StretchEnergy, BlocksAreNeverIndefinite) {
-  const SpringNetwork network = make_test_cloth(8, 0.0, 0.0, false);
-  const StretchComponent component = component_of(network);
-  StretchEnergy energy(component, {.max_stretch = 0.0});
-  energy.set_weight(1.0);
-  std::mt19937 random(9);
-  const Points x = displaced(network.positions, random, 0.02);
+TEST_F(EnergyOfACloth, BlocksAreNeverIndefinite) {
   StretchSystem system;
-  energy.linearise(x, x, NearLimit::pushing, system);
+  EXPECT_GT(linearise(NearLimit::pushing, system), 0.0);
   int short_ones = 0;
   for (std::size_t s = 0; s < system.blocks.size(); ++s) {
-    const auto& [first, second, rest_length] = component.links[s];
-    const SymmetricMatrix3& k = system.blocks[s];
-    Matrix3 block;
-    block << k.xx, k.xy, k.xz, k.xy, k.yy, k.yz, k.xz, k.yz, k.zz;
+    const Matrix3 block = system.blocks[s].matrix();
     const Vector3 eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix3>(block, Eigen::EigenvaluesOnly).eigenvalues();
     EXPECT_GE(eigenvalues.minCoeff(), -1.0e-14 * eigenvalues.maxCoeff());
-    if (eigenvalues.maxCoeff() > 0.0 && (x.col(second) - x.col(first)).norm() < rest_length) ++short_ones;
+    if (eigenvalues.maxCoeff() > 0.0 && part(s) < 1.0) ++short_ones;
   }
   EXPECT_GT(short_ones, 0);
 }
 
-// As a spring of the links' stiffness: a displacement along a link is pushed back, one across it is not. Blocks are sums of a few
-// terms that are no larger than the stiffness.
-TEST(StretchEnergy, LinksNearTheLimitAreStiffButDoNotPull) {
-  const SpringNetwork network = make_test_cloth(8, 0.0, 0.0, false);
-  const StretchComponent component = component_of(network);
-  StretchEnergy energy(component, {.max_stretch = 0.0});
-  energy.set_weight(1.0);
-  std::mt19937 random(9);
-  const Points x = displaced(network.positions, random, 0.02);
+// As a spring of the links' stiffness k: a displacement along a link is pushed back by k, one across it is not. The energy's weight
+// is 1, so k is 1 / (give times rest length), the same for all links of this cloth. Blocks are sums of a few terms no larger than
+// k.
+TEST_F(EnergyOfACloth, LinksNearTheLimitAreStiffButDoNotPull) {
   StretchSystem slack;
   StretchSystem stiff;
-  EXPECT_EQ(energy.linearise(x, x, NearLimit::slack, slack), energy.linearise(x, x, NearLimit::stiff, stiff));
+  EXPECT_EQ(linearise(NearLimit::slack, slack), linearise(NearLimit::stiff, stiff));
   EXPECT_EQ(slack.residual, stiff.residual);
+  double stiffness = 0.0;
+  for (std::size_t s = 0; s < stiff.blocks.size(); ++s) {
+    if (part(s) > 1.0) stiffness = between(s).normalized().dot(stiff.blocks[s] * between(s).normalized());
+  }
+  ASSERT_GT(stiffness, 0.0);
   int near_ones = 0;
   for (std::size_t s = 0; s < stiff.blocks.size(); ++s) {
-    const auto& [first, second, rest_length] = component.links[s];
-    const Vector3 between = x.col(second) - x.col(first);
-    const double part = between.norm() / rest_length;
-    if (part > 1.0) {
-      EXPECT_EQ(stiff.blocks[s].xx, slack.blocks[s].xx);
+    if (part(s) > 1.0) {
+      EXPECT_EQ(stiff.blocks[s].matrix(), slack.blocks[s].matrix());
       continue;
     }
-    const SymmetricMatrix3& k = stiff.blocks[s];
-    Matrix3 block;
-    block << k.xx, k.xy, k.xz, k.xy, k.yy, k.yz, k.xz, k.yz, k.zz;
-    EXPECT_EQ(slack.blocks[s].xx + slack.blocks[s].yy + slack.blocks[s].zz, 0.0);
-    EXPECT_EQ(block.trace() > 0.0, part > 0.9);
-    EXPECT_LE((block - block.trace() * between * between.transpose() / between.squaredNorm()).norm(), 1.0e-14 * block.trace());
-    near_ones += part > 0.9 ? 1 : 0;
+    EXPECT_EQ(slack.blocks[s].matrix(), Matrix3::Zero());
+    const Vector3 along = between(s).normalized();
+    const Matrix3 expected = part(s) > 0.9 ? Matrix3(stiffness * along * along.transpose()) : Matrix3(Matrix3::Zero());
+    EXPECT_LE((stiff.blocks[s].matrix() - expected).norm(), 1.0e-14 * stiffness);
+    near_ones += part(s) > 0.9 ? 1 : 0;
   }
   EXPECT_GT(near_ones, 0);
 }

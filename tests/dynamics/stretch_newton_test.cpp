@@ -38,9 +38,7 @@ Eigen::MatrixXd dense_matrix(const StretchComponent& component, const StretchSys
   }
   for (std::size_t s = 0; s < component.links.size(); ++s) {
     const auto& [a, b, rest_length] = component.links[s];
-    const SymmetricMatrix3& k = system.blocks[s];
-    Matrix3 block;
-    block << k.xx, k.xy, k.xz, k.xy, k.yy, k.yz, k.xz, k.yz, k.zz;
+    const Matrix3 block = system.blocks[s].matrix();
     matrix.block<3, 3>(3 * a, 3 * a) += block;
     if (!component.is_free(b)) continue;
     matrix.block<3, 3>(3 * b, 3 * b) += block;
