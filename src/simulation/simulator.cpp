@@ -60,6 +60,7 @@ struct Simulator::Implementation {
   void choose_parts(double excess);
   void move_pins(double time);
   void constrain(StepReport& report);
+  int push_out(int most_passes);
   void answer_contact();
   void settle(StepReport& report);
   [[nodiscard]] bool relax(Points& positions, double excess_before);
@@ -206,20 +207,24 @@ void Simulator::Implementation::constrain(StepReport& report) {
   const std::optional<int> solves = limit ? limit->solve(step_began(), state.x, fall) : std::nullopt;
   report.limit_solves = solves.value_or(0);
   const int limit_passes = limit ? limit->settings().iterations + (solves ? 1 : 0) : 0;  // after a solve the first only measures
-  const int passes = projects ? std::max(limit_passes, kContactPasses) : limit_passes;
+  if (projects) report.iterations = push_out(kContactPasses - limit_passes);
   bool settled = false;
-  while (!settled && report.iterations < passes) {
-    const bool between = report.iterations > 0 && report.iterations + 1 < limit_passes;
-    double excess = 0.0;
-    if (solves && report.iterations == 0) {
-      excess = limit->excess(state.x);
-    } else if (report.iterations < limit_passes) {
-      excess = limit->project(state.x, between ? kRelaxation : 1.0);
-    }
+  for (int pass = 0; pass < limit_passes && !settled; ++pass) {
+    const bool between = pass > 0 && pass + 1 < limit_passes;
     const double push = projects ? contacts.project(state.x) : 0.0;
-    settled = (!limit || excess <= limit->settings().tolerance) && push <= kContactTolerance;
+    const double excess = solves && pass == 0 ? limit->excess(state.x) : limit->project(state.x, between ? kRelaxation : 1.0);
+    settled = excess <= limit->settings().tolerance && push <= kContactTolerance;
     ++report.iterations;
   }
+}
+
+int Simulator::Implementation::push_out(int most_passes) {
+  int passes = 0;
+  while (passes < most_passes) {
+    ++passes;
+    if (contacts.project(state.x) <= kContactTolerance) break;
+  }
+  return passes;
 }
 
 void Simulator::Implementation::answer_contact() {
@@ -253,8 +258,8 @@ bool Simulator::Implementation::relax(Points& positions, double excess_before) {
   if (limit->excess(positions) <= std::max(limits.tolerance, std::min(excess_before, limits.max_stretch))) return false;
   if (projects_contacts()) contacts.find_again(motion(), positions);
   for (int pass = 0; pass < kRelaxPasses; ++pass) {
-    limit->project(positions);
     if (projects_contacts()) contacts.project(positions);
+    limit->project(positions);
   }
   return true;
 }
