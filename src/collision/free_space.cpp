@@ -51,6 +51,7 @@ struct FreeSpace::Implementation {
   }
 
   void begin_pairs(const Points& before, const Points& after);
+  const std::vector<Contact>& with_pairs();
   Truncation truncate(const Points& before, Points& after, const Relax& relax);
   Truncation place_all(const Way& way, Points& after);
   void look_at_pins(const Points& after);
@@ -72,6 +73,7 @@ struct FreeSpace::Implementation {
   CollisionSurface surface;
   ObstacleZones zones;
   std::optional<SelfZones> pairs;  ///< where elements of the network may meet
+  std::vector<Index> held_back{};  ///< particles that did not arrive at once when they were placed last
   std::vector<Contact> contacts{};
   std::vector<Contact> pair_contacts{};  ///< of the step that follow() began
   bool pairs_began = false;
@@ -92,12 +94,15 @@ void FreeSpace::follow(const Points& before, const Points& after) {
 }
 
 const std::vector<Contact>& FreeSpace::contacts(const Points& before, const Points& after) {
-  std::vector<Contact>& contacts = implementation_->contacts;
-  contacts.clear();
-  implementation_->zones.find_contacts({before, after}, contacts);
-  const std::vector<Contact>& of_pairs = implementation_->pair_contacts;
-  contacts.insert(contacts.end(), of_pairs.begin(), of_pairs.end());
-  return contacts;
+  implementation_->contacts.clear();
+  implementation_->zones.find_contacts({before, after}, implementation_->contacts);
+  return implementation_->with_pairs();
+}
+
+const std::vector<Contact>& FreeSpace::contacts_again(const Points& before, const Points& after) {
+  implementation_->contacts.clear();
+  implementation_->zones.find_contacts_around(implementation_->held_back, {before, after}, implementation_->contacts);
+  return implementation_->with_pairs();
 }
 
 FreeSpace::Truncation FreeSpace::truncate(const Points& before, Points& after, const Relax& relax) {
@@ -147,6 +152,7 @@ FreeSpace::Truncation FreeSpace::Implementation::lead_on(const std::vector<Index
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] == Outcome::stopped) stopped.push_back(particles[n]);
   }
+  held_back = stopped;
   Truncation truncation;
   truncation.truncated = count(outcomes, Outcome::squeezed) + static_cast<Index>(stopped.size());
   truncation.squeezed = count(outcomes, Outcome::squeezed) + crossed(particles, outcomes);
@@ -243,6 +249,11 @@ Outcomes FreeSpace::Implementation::place_with_fresh_zones(std::vector<Index>& p
   std::set_union(particles.begin(), particles.end(), restless.begin(), restless.end(), std::back_inserter(all));
   particles = std::move(all);
   return place(zones, particles, way, positions);
+}
+
+const std::vector<Contact>& FreeSpace::Implementation::with_pairs() {
+  contacts.insert(contacts.end(), pair_contacts.begin(), pair_contacts.end());
+  return contacts;
 }
 
 void FreeSpace::Implementation::begin_pairs(const Points& before, const Points& after) {

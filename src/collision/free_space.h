@@ -36,6 +36,9 @@ class FreeSpace {
   /// Valid until it is asked again.
   [[nodiscard]] const std::vector<Contact>& contacts(const Points& before, const Points& after);
 
+  /// Those that contacts() told of, but found anew around what truncate() has stopped, while it relaxes.
+  [[nodiscard]] const std::vector<Contact>& contacts_again(const Points& before, const Points& after);
+
   struct Truncation {
     Index truncated = 0;  ///< particles stopped on their way
     Index squeezed = 0;   ///< particles that found no free place between obstacles, or of whose elements an obstacle crosses one

@@ -50,6 +50,9 @@ class ObstacleZones {
   /// follow() for the same way.
   void find_contacts(const Way& way, std::vector<Contact>& contacts);
 
+  /// The same, but found anew only in the patches of these particles: the others have those that were found last.
+  void find_contacts_around(const std::vector<Index>& particles, const Way& way, std::vector<Contact>& contacts);
+
   /// Whether the zones of all elements around the particle hold it there, at the interval's end.
   [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
 
@@ -114,6 +117,7 @@ class ObstacleZones {
   void append_restless(Index patch, const PatchZones& zones);
   [[nodiscard]] PatchPaths paths(Index patch, Index obstacle, const Way& way) const;
   [[nodiscard]] ZoneDemand demand(const Patch& patch, Index obstacle, const Way& way) const;
+  void find_contacts_of(const std::vector<Index>& patches, const Way& way);
   void append_particle_contacts(Index patch, PatchZones& zones, const Way& way, const ZoneDemand& demanded, double motion);
   void append_element_contacts(Index patch, const PatchZones& zones, const Way& way, double margin);
   [[nodiscard]] std::span<const PatchSlot> slots_of(Index particle) const;

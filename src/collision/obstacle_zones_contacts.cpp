@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sprung {
 
@@ -39,9 +40,28 @@ SPRUNG_KERNEL double largest_motion(const Way& way, const std::vector<Index>& pa
 }  // namespace
 
 void ObstacleZones::find_contacts(const Way& way, std::vector<Contact>& contacts) {
+  std::vector<Index> all(patches_.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  find_contacts_of(all, way);
+  for (const Patch& patch : patches_) contacts.insert(contacts.end(), patch.contacts.begin(), patch.contacts.end());
+}
+
+void ObstacleZones::find_contacts_around(const std::vector<Index>& particles, const Way& way, std::vector<Contact>& contacts) {
+  std::vector<Index> around;
+  for (const Index i : particles) {
+    for (const PatchSlot& place : slots_of(i)) around.push_back(place.patch);
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  find_contacts_of(around, way);
+  for (const Patch& patch : patches_) contacts.insert(contacts.end(), patch.contacts.begin(), patch.contacts.end());
+}
+
+void ObstacleZones::find_contacts_of(const std::vector<Index>& patches, const Way& way) {
   const double carried = way.obstacles_rest ? 0.0 : set_.carries_at_most(way.from);
-  parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
-    for (Index p = begin; p < end; ++p) {
+  parallel_chunks(static_cast<Index>(patches.size()), kPatchChunk, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      const Index p = patches[at(k)];
       Patch& patch = patches_[at(p)];
       patch.contacts.clear();
       if (patch.zones.empty()) continue;
@@ -54,7 +74,6 @@ void ObstacleZones::find_contacts(const Way& way, std::vector<Contact>& contacts
       }
     }
   });
-  for (const Patch& patch : patches_) contacts.insert(contacts.end(), patch.contacts.begin(), patch.contacts.end());
 }
 
 // A particle of several patches is looked at in its first. A path no longer than the distance of its end from the surface cannot

@@ -30,7 +30,7 @@ void ContactProjection::find(const StepMotion& motion) {
 }
 
 void ContactProjection::find_again(const StepMotion& motion, const Points& positions) {
-  response_.start_again(free_space_.contacts(motion.before, positions), motion);
+  response_.start_again(free_space_.contacts_again(motion.before, positions), motion);
 }
 
 void ContactProjection::truncate(const Points& before, Points& positions, const FreeSpace::Relax& relax) {

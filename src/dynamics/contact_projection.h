@@ -20,7 +20,8 @@ class ContactProjection {
   /// Finds the contacts of a step. Requires that the environment's interval is the step's.
   void find(const StepMotion& motion);
 
-  /// Finds them anew where the particles are now [m], which the zones must hold: during truncation. Pushes so far count on.
+  /// Finds those around what truncation has stopped anew where the particles are now [m], which the zones must hold: while it
+  /// relaxes. Pushes so far count on.
   void find_again(const StepMotion& motion, const Points& positions);
 
   /// See ContactResponse.

@@ -1,3 +1,4 @@
+// Which contacts are found: how near, and what is looked for again.
 #include "collision/single_particles.h"
 
 #include <gtest/gtest.h>
@@ -43,6 +44,34 @@ TEST(ContactMargin, IsNoLargerThanAsked) {
 TEST(ContactMargin, CountsTheMotionOfNeighbours) {
   EXPECT_EQ(contacts({1.29, 5.0}, {0.0, 0.4}), 1U);
   EXPECT_EQ(contacts({1.29, 5.0}, {0.0, 0.2}), 0U);
+}
+
+// Of two patches of particles that touch, all but the first particle, which falls through the floor and is stopped, go where
+// nothing is: those of its own patch are seen there.
+TEST(ContactsAgain, AreFoundAnewAroundWhatWasStopped) {
+  constexpr Index kParticles = 40;
+  constexpr Index kInFirstPatch = kParticles / 2;  // more than a patch may have are halved
+  Environment environment({{.name = "floor",
+                            .geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = 0.0},
+                            .material = {.thickness = kGap}}});
+  environment.set_interval(0.0, 0.01);
+  FreeSpace space = test::single_particles(environment, std::vector<char>(kParticles, 0), 0.5 * kGap);
+  Points before = Points::Zero(3, kParticles);
+  before.row(1).setConstant(kGap);
+  Points after = before;
+  after(1, 0) = -kGap;
+  space.follow(before, after);
+  EXPECT_EQ(space.contacts(before, after).size(), kParticles);
+  std::vector<Contact> again;
+  space.truncate(before, after, [&](Points& positions) {
+    if (!again.empty()) return false;
+    positions.row(1).tail(kParticles - 1).array() += 4.0 * kGap;
+    again = space.contacts_again(before, positions);
+    return true;
+  });
+  ASSERT_EQ(again.size(), 1 + kParticles - kInFirstPatch);
+  EXPECT_EQ(again.front().particles[0], 0);
+  EXPECT_GT(again.front().distance, 0.0);
 }
 
 TEST(ContactMargin, DoesNotMatterToWhatFallsThrough) { EXPECT_EQ(contacts({-3.0}, {8.0}), 1U); }
