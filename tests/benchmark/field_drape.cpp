@@ -14,11 +14,16 @@ constexpr double kMass = 0.2;         // [kg]
 constexpr double kBunnySize = 0.6;    // [m]
 constexpr double kDropHeight = 0.01;  // [m] above the bunny's highest point
 
+// More and smaller steps stretch it less, and cost more: twice as many take 1.3 times as long. In 5 steps all but a thousandth of
+// the springs are as long as Bullet leaves them in 4.
+constexpr int kSteps = 5;
+static_assert(kPasses % kSteps == 0);
+
 SimulatorSettings settings() {
   using enum SpringKind;
-  return {.step = kFrameTime / kPasses,
+  return {.step = kFrameTime / kSteps,
           .gravity = {0.0, -kGravity, 0.0},
-          .stretch_limit = StretchLimitSettings{.kinds = {structural, shear, bend}, .iterations = 1}};
+          .stretch_limit = StretchLimitSettings{.kinds = {structural, shear, bend}, .iterations = kPasses / kSteps}};
 }
 
 Obstacle obstacle(Index triangles) {
@@ -53,7 +58,7 @@ SprungDrape::SprungDrape(Index triangles, Index side, bool self_contact)
     : simulator_(drape_network(triangles, side, self_contact), settings(), {obstacle(triangles)}) {}
 
 void SprungDrape::step_frame() {
-  for (int step = 0; step < kPasses; ++step) simulator_.step();
+  for (int step = 0; step < kSteps; ++step) simulator_.step();
 }
 
 int InsideCount::operator()(const Points& positions) const {

@@ -11,7 +11,7 @@ inline constexpr double kFrameTime = 1.0 / 60.0;  ///< [s]
 inline constexpr double kGravity = 9.81;          ///< [m/s^2]
 inline constexpr double kThickness = 0.005;       ///< [m]
 inline constexpr double kFriction = 0.3;
-/// Projection passes a frame; a step has one.
+/// Projection passes a frame, of all its steps together.
 inline constexpr int kPasses = 20;
 
 /// `side` x `side` particles with structural, shear and bend springs of stiffness 0: projection alone carries the cloth.
