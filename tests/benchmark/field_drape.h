@@ -20,7 +20,7 @@ inline constexpr int kPasses = 20;
 /// The bunny of 0.6 m with so many triangles.
 [[nodiscard]] TriangleMesh drape_mesh(Index triangles);
 
-/// Sprung's simulator of it.
+/// Sprung's simulator of it. As Bullet's links its springs have no play; unlike those they may shrink.
 class SprungDrape {
  public:
   SprungDrape(Index triangles, Index side, bool self_contact = false);
