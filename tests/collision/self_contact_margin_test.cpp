@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace sprung {
 namespace {
 
@@ -80,6 +82,56 @@ TEST(SelfContactMargin, WhatASheetComesToIsToldOfToo) {
     expect_contact_in_time(steps, 0.5);
     expect_contact_in_time(steps, 1.0);
   }
+}
+
+/// What turns about an axis through the origin along z, and has come up at x = 1 by this.
+Points turned(const Points& positions, Index count, double slope) {
+  Points x = positions;
+  x.row(1).head(count) += slope * x.row(0).head(count);
+  return x;
+}
+
+/// The first `turning` particles turn towards the rest, of which the last is the nearest, until they are nearer than the gap;
+/// `distance` is that between the two.
+template <class Distance>
+void expect_contact_as_it_turns(const SelfNetwork& network, Index turning, int steps, const Distance& distance) {
+  const CollisionSurface surface = network.surface(kGap);
+  SelfZones zones(surface, network.positions, 0.5 * kGap);
+  const double slope = network.positions(1, network.count() - 1) / network.positions(0, network.count() - 1) / steps;
+  Points x = network.positions;
+  for (int step = 1; distance(x) > kGap; ++step) {
+    Points targets = turned(network.positions, turning, step * slope);
+    std::vector<Contact> found;
+    zones.begin_step(x, targets, found);
+    if (distance(targets) < kGap) {
+      EXPECT_GT(found.size(), 0U) << steps << " steps, at " << distance(x);
+    }
+    zones.hold(x, targets);
+    x = targets;
+  }
+}
+
+// Above a face whose corners are at different heights.
+TEST(SelfContactMargin, WhatASheetTurnsToIsToldOf) {
+  const SelfNetwork network = sheet_and_particle(4.0 * kGap);
+  const Index last = network.count() - 1;
+  const auto above_the_slope = [&](const Points& x) {
+    const double slope = x(1, 4) / x(0, 4);
+    return (x(1, last) - slope * x(0, last)) / std::hypot(1.0, slope);
+  };
+  for (int steps = 5; steps <= 70; ++steps) expect_contact_as_it_turns(network, last, steps, above_the_slope);
+}
+
+// Of two segments that cross at right angles, the one that lies along x below the other.
+TEST(SelfContactMargin, WhatARopeTurnsToIsToldOf) {
+  SelfNetwork network;
+  network.add_rope(1, Vector3::Zero(), 0.02 * Vector3::UnitX());
+  network.add_rope(1, {0.015, 4.0 * kGap, -0.01}, 0.02 * Vector3::UnitZ());
+  const auto apart = [](const Points& x) {
+    const double slope = x(1, 1) / x(0, 1);
+    return (x(1, 2) - slope * x(0, 2)) / std::hypot(1.0, slope);
+  };
+  for (int steps = 5; steps <= 70; ++steps) expect_contact_as_it_turns(network, 2, steps, apart);
 }
 
 /// A particle that stays above the sheet for long, at rest as far as contact is concerned, and then comes down is told of.

@@ -174,6 +174,28 @@ TEST(StepRefinement, BeginsWithTheSmallestPartsOfWhatMoves) {
   EXPECT_EQ(Simulator(resting, settings).step().parts, 8);
 }
 
+// Eight parts are eight steps: for Verlet's first, and for the friction of a penalty, which stops what slides within a step if it
+// can.
+TEST(StepRefinement, APartAtTheStartIsAStepOfItsLength) {
+  const ContactMaterial rough{.thickness = 0.01, .friction = 100.0, .static_friction = 100.0};
+  NetworkBuilder builder;
+  builder.begin_body("stick", rough);
+  const Vector3 velocity(1.0, 0.0, 0.0);
+  const Index first = builder.add_particle({0.0, 0.005, 0.0}, 1.0, velocity);
+  builder.add_spring(first, builder.add_particle({1.0, 0.005, 0.0}, 1.0, velocity), 0.0, 1.0);
+  const auto after_a_frame = [&](int most_halvings, int steps) {
+    SimulatorSettings settings{.step = 1.0 / (kRate * steps),
+                               .stretch_limit = StretchLimitSettings{.solver = StretchLimitSettings::Solver::newton},
+                               .most_halvings = most_halvings};
+    settings.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1000.0};
+    Simulator simulator(builder.build(), settings, {testing::ground(rough)});
+    for (int step = 0; step < steps; ++step) EXPECT_EQ(simulator.step().parts, 8 / steps);
+    EXPECT_GT(simulator.contact_count(), 0);
+    return simulator.positions();
+  };
+  EXPECT_EQ(after_a_frame(3, 1), after_a_frame(0, 8));
+}
+
 // It begins unstretched, and so bounces at first; smaller steps would only make it bounce the higher.
 TEST(StepRefinement, LeavesWhatHangsAlone) {
   SpringNetwork cloth = swinging_cloth(64);
