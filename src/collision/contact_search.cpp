@@ -40,12 +40,11 @@ ContactSearch::ContactSearch(const CollisionSurface& surface, const SurfaceFeatu
   }
 }
 
-std::vector<ContactCandidate> ContactSearch::find_candidates(const MovingBalls& balls, const Points& positions, WatchTimes times) {
-  parallel_chunks(tree_.leaf_count(), kLeavesPerTask, [&](Index begin, Index end) {
-    for (Index k = begin; k < end; ++k) prepare(sides_[static_cast<std::size_t>(k)], times);
-  });
-  const Search search{balls, positions, times};
-  const std::vector<ElementTree::LeafPair> pairs = tree_.find_pairs(times, largest_reach_, false);
+std::vector<ContactCandidate> ContactSearch::find_candidates(const MovingBalls& balls, const std::vector<char>& marked,
+                                                             WatchTimes times) {
+  const Search search{balls, marked, times};
+  const std::vector<ElementTree::LeafPair> pairs = tree_.find_pairs(times, largest_reach_, true);
+  prepare_sides(pairs, times);
   const auto count = static_cast<Index>(pairs.size());
   std::vector<std::vector<ContactCandidate>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
   parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {
@@ -63,12 +62,27 @@ std::vector<ContactCandidate> ContactSearch::find_candidates(const MovingBalls& 
   return candidates;
 }
 
+void ContactSearch::prepare_sides(const std::vector<ElementTree::LeafPair>& pairs, WatchTimes times) {
+  std::vector<char> needed(sides_.size(), 0);
+  for (const ElementTree::LeafPair& pair : pairs) {
+    needed[static_cast<std::size_t>(pair.first)] = 1;
+    needed[static_cast<std::size_t>(pair.second)] = 1;
+  }
+  parallel_chunks(tree_.leaf_count(), kLeavesPerTask, [&](Index begin, Index end) {
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      if (needed[k] != 0) prepare(sides_[k], times);
+    }
+  });
+}
+
 void ContactSearch::prepare(Side& side, WatchTimes times) const {
   place_corners(*side.leaf, times, side.places);
   side.any_sharp = false;
+  side.largest_radius = 0.0F;
   for (int lane = 0; lane < side.leaf->count; ++lane) {
     side.sharp[lane] = owns_sharp_edge(side.leaf->element[static_cast<std::size_t>(lane)]);
     side.any_sharp = side.any_sharp || side.sharp[lane];
+    side.largest_radius = std::max(side.largest_radius, float{side.leaf->radius[lane]});
   }
 }
 
@@ -81,8 +95,8 @@ void ContactSearch::append_corners(const Side& a, const Side& b, const Search& s
     const MovingBounds::Axes start = axes(a.leaf->corner[k]);
     const MovingBounds::Axes motion = axes(a.leaf->motion[k]);
     CornerWay corner;
-    corner.aside = 2.0F * a.leaf->radius[lane];
-    corner.reach = static_cast<float>(largest_reach_) + 0.5F * corner.aside;
+    corner.aside = a.leaf->radius[lane] + b.largest_radius;
+    corner.reach = static_cast<float>(largest_reach_) + corner.aside;
     if (are_apart({start, start, motion, motion}, b.leaf->bounds, now, end, corner.reach)) continue;
     corner.particle = a.leaf->particle[k][lane];
     for (int axis = 0; axis < 3; ++axis) {
@@ -135,32 +149,32 @@ void ContactSearch::append_edges_of(Index first, Index second, const Search& sea
   }
 }
 
-/// Each side may move by half its ball's radius from where it is bound to be.
 void ContactSearch::append_if_near(ContactCandidate candidate, const Search& search,
                                    std::vector<ContactCandidate>& candidates) const {
-  const auto positions = [&](const Points& points) {
-    std::array<Vector3, 4> x;
-    for (std::size_t k = 0; k < 4; ++k) x[k] = points.col(candidate.particles[k]);
-    return x;
-  };
+  const auto is_marked = [&](Index i) { return search.marked[static_cast<std::size_t>(i)] != 0; };
+  if (std::ranges::none_of(candidate.particles, is_marked)) return;
   const Index first = candidate.particles[0];
   const Index second = candidate.particles[candidate.edges ? 2 : 1];
-  const double drift = 0.5 * (search.balls.radius(first) + search.balls.radius(second));
+  const double stray = search.balls.radius(first) + search.balls.radius(second);
   candidate.gap = 0.5 * (thickness(candidate.elements[0]) + thickness(candidate.elements[1]));
   candidate.reach = candidate.gap + margin_;
-  const double distance = least_distance(candidate, positions(search.positions), search);
-  if (distance - drift > candidate.reach) return;
+  const double distance = least_distance(candidate, search);
+  if (distance - stray > candidate.reach) return;
   if (element(candidate.elements[0]).body == element(candidate.elements[1]).body) {
-    const double at_rest = closest_points(candidate, positions(rest_)).separation.norm();
+    std::array<Vector3, 4> rest;
+    for (std::size_t k = 0; k < 4; ++k) rest[k] = rest_.col(candidate.particles[k]);
+    const double at_rest = closest_points(candidate, rest).separation.norm();
     candidate.gap = std::min(candidate.gap, kMostGap * at_rest);
     candidate.reach = candidate.gap + std::min(margin_, kMostMargin * at_rest);
-    if (distance - drift > candidate.reach) return;
+    if (distance - stray > candidate.reach) return;
   }
   candidates.push_back(candidate);
 }
 
 /// Along a fixed direction what lies between them is least now or at the end.
-double ContactSearch::least_distance(ContactCandidate& candidate, const std::array<Vector3, 4>& x, const Search& search) {
+double ContactSearch::least_distance(ContactCandidate& candidate, const Search& search) {
+  std::array<Vector3, 4> x;
+  for (std::size_t k = 0; k < 4; ++k) x[k] = search.balls.center(candidate.particles[k]);
   candidate.normal = closest_points(candidate, x).separation;
   const double distance = candidate.normal.norm();
   if (!(distance > 0.0)) return 0.0;

@@ -18,9 +18,10 @@ class ContactSearch {
   ContactSearch(const CollisionSurface& surface, const SurfaceFeatures& features, const SharpEdges& sharp, const ElementTree& tree,
                 const Points& rest, double margin);
 
-  /// All that may come within contact's reach from now to the end, with the particles at `positions` [m] now: corners above faces,
-  /// and pairs of sharp edges. The same for any number of threads.
-  [[nodiscard]] std::vector<ContactCandidate> find_candidates(const MovingBalls& balls, const Points& positions, WatchTimes times);
+  /// All with a particle that is marked that may come within contact's reach from now to the end while particles are in their
+  /// balls, those that the tree bounds: corners above faces, and pairs of sharp edges. The same for any number of threads.
+  [[nodiscard]] std::vector<ContactCandidate> find_candidates(const MovingBalls& balls, const std::vector<char>& marked,
+                                                              WatchTimes times);
 
  private:
   /// A leaf of the tree, with what of it contact looks at.
@@ -30,21 +31,22 @@ class ContactSearch {
     LeafPlaces places{};
     bool sharp[kTreeLanes]{};  ///< by lane: the element owns a sharp edge
     bool any_sharp = false;
+    float largest_radius = 0.0F;  ///< of its balls [m]
   };
   struct Search {
     const MovingBalls& balls;
-    const Points& positions;
+    const std::vector<char>& marked;
     WatchTimes times;
   };
 
+  void prepare_sides(const std::vector<ElementTree::LeafPair>& pairs, WatchTimes times);
   void prepare(Side& side, WatchTimes times) const;
   void append_corners(const Side& a, const Side& b, const Search& search, std::vector<ContactCandidate>& candidates) const;
   void append_edges(const Side& a, const Side& b, const Search& search, std::vector<ContactCandidate>& candidates) const;
   void append_edges_of(Index first, Index second, const Search& search, std::vector<ContactCandidate>& candidates) const;
   void append_if_near(ContactCandidate candidate, const Search& search, std::vector<ContactCandidate>& candidates) const;
-  /// A lower bound of their distance until the end, from their positions now; sets the normal.
-  [[nodiscard]] static double least_distance(ContactCandidate& candidate, const std::array<Vector3, 4>& positions,
-                                             const Search& search);
+  /// A lower bound of the distance of their balls' centers until the end; sets the normal.
+  [[nodiscard]] static double least_distance(ContactCandidate& candidate, const Search& search);
   [[nodiscard]] bool owns_sharp_edge(Index number) const;
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
   [[nodiscard]] double thickness(Index number) const { return surface_.thickness[element(number).particles[0]]; }

@@ -22,9 +22,6 @@ constexpr double kShortestEdge = 0.25;
 constexpr double kFlight = 0.12;
 constexpr double kMostSteps = 64.0;
 
-// Candidates of contact are looked for when balls are made for the so manieth time.
-constexpr int kCandidateTurns = 2;
-
 constexpr Index kParticlesPerTask = 1024;
 constexpr Index kFansPerTask = 128;
 constexpr Index kLeafPairsPerTask = 32;
@@ -80,21 +77,15 @@ void PairWatch::begin_step(const Points& before, const Points& after) {
   if (age_ >= horizon_) {
     choose_horizon(before, after);
     age_ = 0.0;
+    sharp_.update(before);
     renew(watched_, before, after);
-    find_candidates(before);
-    return;
+  } else {
+    std::vector<Index> leaving = find_leaving(before, 0.0);
+    const std::vector<Index> later = find_leaving(after, 1.0);
+    leaving.insert(leaving.end(), later.begin(), later.end());
+    renew(std::move(leaving), before, after);
   }
-  std::vector<Index> leaving = find_leaving(before, 0.0);
-  const std::vector<Index> later = find_leaving(after, 1.0);
-  leaving.insert(leaving.end(), later.begin(), later.end());
-  renew(std::move(leaving), before, after);
-}
-
-void PairWatch::find_candidates(const Points& before) {
-  if (--candidate_turns_ > 0) return;
-  candidate_turns_ = kCandidateTurns;
-  sharp_.update(before);
-  candidates_ = contact_search_.find_candidates(balls_, before, {age_, kCandidateTurns * horizon_});
+  find_candidates();
 }
 
 void PairWatch::follow(const Points& before, const Points& ends) { renew(find_leaving(ends, 1.0), before, ends); }
@@ -152,10 +143,25 @@ void PairWatch::renew(std::vector<Index> leaving, const Points& before, const Po
   mark_elements();
   tree_.bound(balls_, flat_, marked_elements_, {age_, horizon_});
   std::erase_if(pairs_, [&](const ElementPair& pair) {
-    return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(),
-                       [&](Index i) { return marked_[static_cast<std::size_t>(i)] != 0; });
+    return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return is_marked(i); });
   });
   find_pairs(before);
+  renewed_ += static_cast<Index>(marked_list_.size());
+  moved_on_.insert(moved_on_.end(), marked_list_.begin(), marked_list_.end());
+  clear_marks();
+}
+
+void PairWatch::find_candidates() {
+  if (moved_on_.empty()) return;
+  for (const Index i : moved_on_) marked_[static_cast<std::size_t>(i)] = 1;
+  marked_list_.swap(moved_on_);
+  mark_elements();
+  tree_.bound(balls_, flat_, marked_elements_, {age_, horizon_});
+  std::erase_if(candidates_, [&](const ContactCandidate& candidate) {
+    return std::ranges::any_of(candidate.particles, [&](Index i) { return is_marked(i); });
+  });
+  const std::vector<ContactCandidate> found = contact_search_.find_candidates(balls_, marked_, {age_, horizon_});
+  candidates_.insert(candidates_.end(), found.begin(), found.end());
   clear_marks();
 }
 
@@ -233,7 +239,6 @@ void PairWatch::mark_elements() {
 }
 
 void PairWatch::clear_marks() {
-  renewed_ += static_cast<Index>(marked_list_.size());
   for (const Index i : marked_list_) {
     marked_[static_cast<std::size_t>(i)] = 0;
     for (const Index e : features_.elements_at(i)) marked_elements_[static_cast<std::size_t>(e)] = 0;

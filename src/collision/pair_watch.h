@@ -11,9 +11,9 @@
 
 namespace sprung {
 
-/// Each particle has a ball that moves on with it. A pair that is not listed cannot touch while particles are in their balls; for
-/// those that leave theirs, pairs are looked for again. All balls are made again after as many steps as they were to last, and
-/// candidates of contact every other time.
+/// Each particle has a ball that moves on with it. What is not listed cannot touch, or come within contact's reach, while particles
+/// are in their balls; for those that leave theirs, pairs and candidates are looked for again. All balls are made again after as
+/// many steps as they were to last.
 class PairWatch {
  public:
   /// See ContactSearch. Keeps a reference to the surface.
@@ -44,8 +44,9 @@ class PairWatch {
   [[nodiscard]] std::vector<Index> find_folded(const std::vector<Index>& particles);
   void mark_elements();
   void find_pairs(const Points& before);
-  void find_candidates(const Points& before);
+  void find_candidates();
   void clear_marks();
+  [[nodiscard]] bool is_marked(Index i) const { return marked_[static_cast<std::size_t>(i)] != 0; }
 
   const CollisionSurface& surface_;
   Points rest_;
@@ -61,10 +62,10 @@ class PairWatch {
   std::vector<char> flat_;      ///< by particle: see fan_stays_flat()
   double age_ = 0.0;            ///< of the first balls, in steps
   double horizon_ = 0.0;        ///< age at which all are made again
-  int candidate_turns_ = 0;     ///< until candidates are looked for again
   Index renewed_ = 0;
   std::vector<char> marked_;  ///< by particle; 0 between calls, as the marks of elements
   std::vector<Index> marked_list_;
+  std::vector<Index> moved_on_;  ///< whose balls were made again since candidates were looked for
   std::vector<char> marked_elements_;
   std::vector<char> visited_;  ///< by particle; 0 between calls
 };

@@ -122,16 +122,65 @@ TEST(SelfContactMargin, WhatASheetTurnsToIsToldOf) {
   for (int steps = 5; steps <= 70; ++steps) expect_contact_as_it_turns(network, last, steps, above_the_slope);
 }
 
-// Of two segments that cross at right angles, the one that lies along x below the other.
+// Two segments that cross at right angles: the lower one comes up by an end, or the upper one down.
 TEST(SelfContactMargin, WhatARopeTurnsToIsToldOf) {
-  SelfNetwork network;
-  network.add_rope(1, Vector3::Zero(), 0.02 * Vector3::UnitX());
-  network.add_rope(1, {0.015, 4.0 * kGap, -0.01}, 0.02 * Vector3::UnitZ());
   const auto apart = [](const Points& x) {
-    const double slope = x(1, 1) / x(0, 1);
-    return (x(1, 2) - slope * x(0, 2)) / std::hypot(1.0, slope);
+    const double slope = (x(1, 1) - x(1, 0)) / (x(0, 1) - x(0, 0));
+    return (x(1, 2) - x(1, 0) - slope * (x(0, 2) - x(0, 0))) / std::hypot(1.0, slope);
   };
-  for (int steps = 5; steps <= 70; ++steps) expect_contact_as_it_turns(network, 2, steps, apart);
+  for (const double sign : {1.0, -1.0}) {
+    SelfNetwork network;
+    network.add_rope(1, Vector3::Zero(), 0.02 * Vector3::UnitX());
+    network.add_rope(1, {0.015, sign * 4.0 * kGap, -0.01}, 0.02 * Vector3::UnitZ());
+    for (int steps = 5; steps <= 70; ++steps) {
+      expect_contact_as_it_turns(network, 2, steps, [&](const Points& x) { return sign * apart(x); });
+    }
+  }
+}
+
+// What hangs above the sheet until it is let go comes faster in each step.
+TEST(SelfContactMargin, WhatFallsFromRestIsToldOf) {
+  for (const double gained : {0.001, 0.01, 0.1}) {
+    const SelfNetwork network = sheet_and_particle(4.0 * kGap);
+    const CollisionSurface surface = network.surface(kGap);
+    SelfZones zones(surface, network.positions, 0.5 * kGap);
+    const Index last = network.count() - 1;
+    Points x = network.positions;
+    for (int step = 1; x(1, last) > kGap; ++step) {
+      Points targets = x;
+      targets(1, last) -= std::min(step * gained * kGap, x(1, last) - 0.5 * kGap);
+      std::vector<Contact> found;
+      zones.begin_step(x, targets, found);
+      if (targets(1, last) < kGap) {
+        EXPECT_EQ(found.size(), 1U) << gained;
+      }
+      zones.hold(x, targets);
+      x = targets;
+    }
+  }
+}
+
+// What goes along the sheet may turn down to it in any step, as fast as it went.
+TEST(SelfContactMargin, WhatTurnsDownIsToldOf) {
+  constexpr double kWay = 0.2 * kGap;  // [m per step]
+  for (double height = 1.02; height < 3.0; height += 0.06) {
+    const SelfNetwork network = sheet_and_particle(height * kGap);
+    const CollisionSurface surface = network.surface(kGap);
+    SelfZones zones(surface, network.positions, 0.5 * kGap);
+    const Index last = network.count() - 1;
+    Points x = network.positions;
+    for (int step = 0; x(1, last) > kGap; ++step) {
+      Points targets = x;
+      targets(step < 5 ? 0 : 1, last) -= kWay;
+      std::vector<Contact> found;
+      zones.begin_step(x, targets, found);
+      if (targets(1, last) < kGap) {
+        EXPECT_EQ(found.size(), 1U) << "from " << height;
+      }
+      zones.hold(x, targets);
+      x = targets;
+    }
+  }
 }
 
 /// A particle that stays above the sheet for long, at rest as far as contact is concerned, and then comes down is told of.
