@@ -62,6 +62,27 @@ void warn_of_squeezing(const FrameDiagnostics& frame, RunOutput& output, bool& w
   print_warning(warning);
 }
 
+/// Tells, as it happens, that a body was handed over to another solver of the stretch limit.
+class Handovers {
+ public:
+  explicit Handovers(bool quiet) : quiet_(quiet) {}
+
+  void see(const Simulator& simulator) {
+    const std::vector<StretchHold>& holds = simulator.state().stretch_holds;
+    told_.resize(holds.size(), false);
+    for (std::size_t b = 0; b < holds.size(); ++b) {
+      if (quiet_ || told_[b] || !holds[b].solved_since) continue;
+      told_[b] = true;
+      print_message(fmt::format("passes kept missing the stretch limit of \"{}\"; newton holds it after step {}",
+                                simulator.network().bodies[b].name, *holds[b].solved_since));
+    }
+  }
+
+ private:
+  bool quiet_;
+  std::vector<bool> told_;
+};
+
 /// Remembers by how much the stretch limit was missed, to be told once.
 class MissedLimit {
  public:
@@ -100,12 +121,14 @@ void write_frames(LoadedScene& loaded, RunOutput& output, bool quiet, int& writt
   Progress progress(loaded.frames, quiet);
   bool warned = false;
   MissedLimit missed(loaded.simulator);
+  Handovers handovers(quiet);
   for (int frame = 1;; ++frame) {
     const FrameDiagnostics diagnostics = frame == 1 ? runner.first_frame() : runner.next_frame();
     output.write_frame(loaded.simulator, diagnostics);
     written = frame;
     warn_of_squeezing(diagnostics, output, warned);
     missed.see(diagnostics);
+    handovers.see(loaded.simulator);
     progress.frame_done(frame);
     if (frame < loaded.frames && !interrupted()) continue;
     missed.tell(output);

@@ -66,6 +66,8 @@ ExitCode validate(const ValidateOptions& options) {
   const LoadedScene loaded = load_scene(options.scene);
   const SpringNetwork& network = loaded.simulator.network();
   std::string text = text_row("scene", loaded.scene.file.string()) + time_text(loaded);
+  if (const std::string solver = loaded.simulator.stretch_solver(); !solver.empty())
+    text += text_row("stretch", "held by " + solver);
   for (const Body& body : network.bodies) text += body_rows(network, body);
   for (const Obstacle& obstacle : loaded.simulator.environment().obstacles()) text += obstacle_row(obstacle);
   for (const NamedReport& mesh : loaded.meshes) text += mesh_row(mesh);

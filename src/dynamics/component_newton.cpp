@@ -44,7 +44,6 @@ ComponentNewton::ComponentNewton(StretchComponent component, const StretchLimitS
     : component_(std::move(component)),
       settings_(settings),
       energy_(component_, settings),
-      solver_(make_system_solver(component_)),
       clips_(component_.is_tree && count_ties(component_) == 1),
       mass_(std::accumulate(component_.masses.begin(), component_.masses.end(), 0.0)) {}
 ComponentNewton::~ComponentNewton() = default;
@@ -54,6 +53,8 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
   energy_.set_weight(1.0);
   if (energy_.value(led_, led_) == 0.0) return std::nullopt;
   energy_.set_weight(carried_weight(fall));
+  // An order of elimination takes its time, and what only asks for the step, or is never handed over, needs none.
+  if (!solver_) solver_ = make_system_solver(component_);
   const int iterations = minimise();
   last_iterations_ = iterations;
   if (clips_) clip();

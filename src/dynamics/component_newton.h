@@ -43,7 +43,7 @@ class ComponentNewton {
   StretchComponent component_;
   StretchLimitSettings settings_;
   StretchEnergy energy_;
-  std::unique_ptr<StretchSystemSolver> solver_;
+  std::unique_ptr<StretchSystemSolver> solver_;  ///< from the first solve on
   bool clips_;
   int last_iterations_ = std::numeric_limits<int>::max();  ///< of the solve before, if there was one
   double mass_ = 0.0;                                      ///< of all free points [kg]

@@ -7,6 +7,9 @@
 
 namespace sprung {
 
+/// Whether a spring is of one of the given kinds, has a rest length and at least one free end.
+[[nodiscard]] bool is_limited(const SpringNetwork& network, const std::vector<SpringKind>& kinds, Index spring);
+
 /// The springs of the given kinds that have a rest length, those between pins too, in the network's order.
 [[nodiscard]] std::vector<Index> measurable_springs(const SpringNetwork& network, const std::vector<SpringKind>& kinds);
 

@@ -50,10 +50,11 @@ double wanted_excess(const StretchLimitSettings& settings) {
   return std::max(0.5 * settings.max_stretch + settings.tolerance, kLeastExcess);
 }
 
-StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings)
+StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings, bool may_meet_anything)
     : network_(network), settings_(settings), batches_(std::make_unique<StretchBatches>(network, settings.kinds)) {
   if (settings.tethers) tethers_ = std::make_unique<Tethers>(network, settings.kinds, settings.max_stretch);
-  if (settings.solver != StretchLimitSettings::Solver::gauss_seidel) newton_ = std::make_unique<StretchNewton>(network, settings);
+  if (settings.solver == StretchLimitSettings::Solver::gauss_seidel) return;
+  newton_ = std::make_unique<StretchNewton>(network, settings, may_meet_anything);
 }
 StretchLimit::~StretchLimit() = default;
 
@@ -69,8 +70,9 @@ double StretchLimit::project(Points& positions, double relaxation) const {
   return met.excess(range);
 }
 
-std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double fall) const {
-  return newton_ ? newton_->solve(before, positions, fall) : std::nullopt;
+std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double fall,
+                                       const std::vector<StretchHold>& holds) const {
+  return newton_ ? newton_->solve(before, positions, fall, holds) : std::nullopt;
 }
 
 double StretchLimit::excess(const Points& positions) const {
@@ -78,12 +80,34 @@ double StretchLimit::excess(const Points& positions) const {
   return extremes(*batches_, 0, batches_->stage_begin.back(), lengths_of).excess(length_range(settings_));
 }
 
+double StretchLimit::excess(const Points& positions, const Body& body) const {
+  const Springs& springs = network_.springs;
+  SquaredLengths met;
+  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+    if (!is_limited(network_, settings_.kinds, s)) continue;
+    const double squared = (positions.col(springs.second[s]) - positions.col(springs.first[s])).squaredNorm();
+    const double part = squared / (springs.rest_length[s] * springs.rest_length[s]);
+    met.include({.longest = part, .shortest = part});
+  }
+  return met.excess(length_range(settings_));
+}
+
 const StretchLimitSettings& StretchLimit::settings() const { return settings_; }
 
 std::string StretchLimit::chosen_solver() const {
-  if (!newton_ || !newton_->holds_any()) return "gauss_seidel";
-  return newton_->holds_all() ? "newton" : "newton for chains and trees, gauss_seidel for the rest";
+  std::string held;
+  for (std::size_t b = 0; newton_ && b < network_.bodies.size(); ++b) {
+    if (!newton_->takes_any_of(b)) continue;
+    const Body& body = network_.bodies[b];
+    held += std::string(held.empty() ? "" : ", ") + (newton_->holds(body) ? "\"" : "chains and trees of \"") + body.name + "\"";
+  }
+  if (newton_ && newton_->takes_any() && newton_->holds_all()) return "newton";
+  const std::string passes = held.empty() ? "gauss_seidel" : "newton for " + held + ", gauss_seidel for the rest";
+  const bool may_change = newton_ && newton_->may_take_over_any();
+  return passes + (may_change ? ", then newton for what keeps missing the limit" : "");
 }
+
+bool StretchLimit::may_be_handed_over(std::size_t body) const { return newton_ && newton_->may_take_over(body); }
 
 // At rest each step adds g dt^2 to each particle, and each of its passes hands on a part of it. Where tethers have handed on
 // theirs, passes gain less: hanging cloths showed 4 passes to be worth 2.6, and 32 to be worth 10. Where springs may
@@ -110,8 +134,17 @@ double StretchLimit::suggested_step(double acceleration) const {
   return smallest;
 }
 
-bool StretchLimit::follows_turn() const {
-  return newton_ && newton_->holds_any() && newton_->holds_all() && settings_.max_compression == 1.0;
+bool StretchLimit::follows_turn(const std::vector<StretchHold>& holds) const {
+  if (!newton_ || settings_.max_compression < 1.0) return false;
+  for (std::size_t b = 0; b < network_.bodies.size(); ++b) {
+    const bool handed_over = !holds.empty() && holds[b].solved_since && newton_->may_take_over(b);
+    if (!handed_over && !newton_->holds(network_.bodies[b])) return false;
+  }
+  return newton_->takes_any();
+}
+
+bool StretchLimit::may_follow_turn() const {
+  return !follows_turn() && follows_turn(std::vector<StretchHold>(network_.bodies.size(), {.solved_since = 0}));
 }
 
 double StretchLimit::turn() const { return newton_ ? newton_->turn() : 0.0; }

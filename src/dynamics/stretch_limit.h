@@ -1,6 +1,7 @@
 // Projection-based limits on how far springs stretch or shrink (Provot 1995; Jakobsen 2001; Mueller et al. 2007).
 #pragma once
 
+#include "network/simulation_state.h"
 #include "network/spring_network.h"
 
 #include <memory>
@@ -18,7 +19,7 @@ struct StretchLimitSettings {
   enum class Solver : std::uint8_t {
     gauss_seidel,  ///< passes alone
     newton,        ///< a global solve before them
-    automatic      ///< a global solve of chains and trees, passes for the rest
+    automatic      ///< a global solve of ropes, of cloths that meet nothing, and of those whose limit passes keep missing
   };
   double max_stretch = 0.02;                              ///< >= 0: lengths stay below d (1 + max_stretch)
   double max_compression = 1.0;                           ///< in [0, 1]: and above d (1 - max_compression)
@@ -36,7 +37,8 @@ struct StretchLimitSettings {
 class StretchLimit {
  public:
   /// Keeps a reference to the network. Springs of rest length 0 cannot be measured in parts of it and are left out.
-  StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings);
+  /// `may_meet_anything` tells whether contact may be in the way of what it does.
+  StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings, bool may_meet_anything = true);
   ~StretchLimit();
 
   /// One Gauss-Seidel pass in batches without shared particles: each spring beyond its limits is projected onto them, both ends
@@ -50,17 +52,24 @@ class StretchLimit {
 
   /// Newton's method on all that is too long at once, as `solver` chooses: leads free particles to where springs are within
   /// their limits, with as little weighted movement as that takes. What is left is for the passes: compression, and what contact
-  /// does. `before` is where the step began; `fall` [m] is a dt^2 with the largest steady acceleration a, of gravity and wind.
-  /// Returns how many linear systems were solved in turn; none when no spring that is solved for was too long.
-  std::optional<int> solve(const Points& before, Points& positions, double fall) const;
+  /// does. `before` is where the step began; `fall` [m] is a dt^2 with the largest steady acceleration a, of gravity and wind;
+  /// `holds` tells of each body whether it was handed over, and is empty when none was. Returns how many linear systems were
+  /// solved in turn; none when no spring that is solved for was too long.
+  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHold>& holds = {}) const;
 
   /// The largest excess over the limits, as a part of the rest length; changes nothing.
   [[nodiscard]] double excess(const Points& positions) const;
 
+  /// That of the springs of one body.
+  [[nodiscard]] double excess(const Points& positions, const Body& body) const;
+
   [[nodiscard]] const StretchLimitSettings& settings() const;
 
-  /// What `solver` comes to for this network: `newton`, `gauss_seidel`, or both where automatic parts it.
+  /// What `solver` comes to for this network: `newton`, `gauss_seidel`, or both and for which bodies, or when.
   [[nodiscard]] std::string chosen_solver() const;
+
+  /// Whether a global solve may take over from passes that miss the limit of a body, by its number.
+  [[nodiscard]] bool may_be_handed_over(std::size_t body) const;
 
   /// The step [s] at which `iterations` passes a step keep the excess at about `wanted_excess` when each
   /// body hangs at rest under `acceleration` [m/s^2] by its pins, or over an obstacle: in each step gravity adds g dt^2 per carried
@@ -73,9 +82,13 @@ class StretchLimit {
   /// and are thrown.
   [[nodiscard]] bool bears_smaller_steps() const;
 
-  /// Whether a global solve holds all springs: it does at any step, but the larger a part of its extent a body turns by in one, the
-  /// more of its motion that takes. Steps are to be chosen by `turn`.
-  [[nodiscard]] bool follows_turn() const;
+  /// Whether a global solve holds all springs, with those of bodies that were handed over: it does at any step, but the larger a
+  /// part of its extent a body turns by in one, the more of its motion that takes. Steps are to be chosen by `turn`.
+  [[nodiscard]] bool follows_turn(const std::vector<StretchHold>& holds = {}) const;
+
+  /// Whether it does not at the start, but will once all bodies are handed over that may be: then it no longer needs the small
+  /// steps of passes.
+  [[nodiscard]] bool may_follow_turn() const;
 
   /// That of the last `solve`: how far a particle was led by forces as a part of the extent of what it belongs to, apart from what
   /// all of that has in common; the largest of all that is solved for.

@@ -3,7 +3,10 @@
 namespace sprung {
 
 SimulationState initial_state(const SpringNetwork& network) {
-  return {.x = network.positions, .v = network.velocities, .x_previous = network.positions};
+  return {.x = network.positions,
+          .v = network.velocities,
+          .x_previous = network.positions,
+          .stretch_holds = std::vector<StretchHold>(network.bodies.size())};
 }
 
 }  // namespace sprung

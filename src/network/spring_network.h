@@ -101,4 +101,7 @@ struct SpringNetwork {
   [[nodiscard]] const Body& body_of(Index particle) const;
 };
 
+/// Whether contact is asked for within a body, or between two.
+[[nodiscard]] bool bodies_may_meet(const SpringNetwork& network);
+
 }  // namespace sprung

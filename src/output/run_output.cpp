@@ -17,6 +17,15 @@ std::vector<std::string> patterns_of(const std::vector<ObjSequence>& sequences) 
   return patterns;
 }
 
+std::vector<NewtonFrom> handed_over(const Simulator& simulator) {
+  std::vector<NewtonFrom> bodies;
+  for (std::size_t b = 0; b < simulator.network().bodies.size(); ++b) {
+    const StretchHold& hold = simulator.state().stretch_holds[b];
+    if (hold.solved_since) bodies.push_back({.body = simulator.network().bodies[b].name, .step = *hold.solved_since});
+  }
+  return bodies;
+}
+
 }  // namespace
 
 RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator)
@@ -39,6 +48,7 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
         before.parts > 0 ? std::min(before.smallest_step, diagnostics.smallest_step) : diagnostics.smallest_step;
   }
   progress_.limit_solves += diagnostics.limit_solves;
+  progress_.newton_from = handed_over(simulator);
   try {
     for (const ObjSequence& sequence : sequences_) {
       if (before.frames_written > 0 && !sequence.changes()) continue;

@@ -11,6 +11,9 @@ using Json = nlohmann::ordered_json;
 
 const std::string kProgram = "sprung";
 
+// Frame 1 is the state at time 0.
+constexpr std::int64_t kFirstComputedFrame = 2;
+
 bool is_run_record(const Json& json) {
   if (!json.is_object() || json.value("program", Json()) != kProgram || !json.contains("files")) return false;
   const Json& files = json["files"];
@@ -40,6 +43,7 @@ RunRecord::RunRecord(const RunFacts& facts, double step, const std::vector<std::
                      {"threads", facts.threads},
                      {"wall_seconds", 0.0},
                      {"stretch_solver", facts.stretch_solver},
+                     {"newton_from", Json::array()},
                      {"limit_solves", 0},
                      {"warnings", facts.warnings},
                      {"files", files},
@@ -57,6 +61,11 @@ std::string RunRecord::text(const RunProgress& progress) const {
   json["steps"] = progress.steps;
   json["parts"] = progress.parts;
   json["smallest_step"] = progress.smallest_step;
+  json["newton_from"] = Json::array();
+  for (const NewtonFrom& from : progress.newton_from) {
+    const std::int64_t frame = kFirstComputedFrame + from.step / json["steps_per_frame"].get<int>();
+    json["newton_from"].push_back({{"body", from.body}, {"step", from.step}, {"frame", frame}});
+  }
   json["limit_solves"] = progress.limit_solves;
   json["wall_seconds"] = progress.wall_seconds;
   // A warning may quote a file name that is not UTF-8.

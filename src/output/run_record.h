@@ -24,6 +24,12 @@ struct RunFacts {
   std::vector<std::string> warnings{};
 };
 
+/// A body whose stretch limit a global solve took over from passes.
+struct NewtonFrom {
+  std::string body;
+  std::int64_t step = 0;  ///< after which it did
+};
+
 /// How far a run has come.
 struct RunProgress {
   std::string outcome = "running";  ///< `running`, `done`, `interrupted`, `diverged: ...`
@@ -32,7 +38,8 @@ struct RunProgress {
   std::int64_t parts = 0;         ///< in which the steps were made
   double smallest_step = 0.0;     ///< length of the smallest of them [s]; 0 when no step was made
   std::int64_t limit_solves = 0;  ///< linear systems of the stretch limit
-  double wall_seconds = 0.0;      ///< since the output was opened, writing included
+  std::vector<NewtonFrom> newton_from{};
+  double wall_seconds = 0.0;  ///< since the output was opened, writing included
 };
 
 /// The text of run.json.

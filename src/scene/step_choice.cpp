@@ -14,10 +14,7 @@ namespace sprung {
 namespace {
 
 bool may_meet_anything(const Scene& scene, const SpringNetwork& network) {
-  const auto meets_itself = [](const Body& body) { return body.contact.self; };
-  const auto meets_others = [](const Body& body) { return body.contact.others; };
-  return !scene.obstacles.empty() || std::ranges::any_of(network.bodies, meets_itself) ||
-         std::ranges::count_if(network.bodies, meets_others) > 1;
+  return !scene.obstacles.empty() || bodies_may_meet(network);
 }
 
 bool damps_steps(const IntegratorSettings& integrator) {
@@ -34,12 +31,20 @@ bool is_bound_by_turn(const Scene& scene, const SpringNetwork& network, const st
   return may_be_halved(scene, limit) && limit->follows_turn() && !may_meet_anything(scene, network);
 }
 
+/// Whatever passes of the stretch limit need.
 double largest_auto_step(const Scene& scene, const SpringNetwork& network, const std::optional<StretchLimit>& limit,
                          const SpectralBounds& bounds, double largest_stable) {
   double largest = std::min(kStablePart * largest_stable, step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
   const bool implicit = std::holds_alternative<ImplicitEulerSettings>(scene.settings.integrator);
   if (!std::isfinite(largest) && !implicit && !is_bound_by_turn(scene, network, limit)) largest = kLargestAutoStep;
-  return limit ? std::min(largest, limit->suggested_step(scene.settings.gravity.norm())) : largest;
+  return largest;
+}
+
+/// How often a step of which a frame has `most` must be halved, at most, to be as small as one of which it has `needed`; 0 where
+/// parts must not be.
+int halvings_for_passes(const Scene& scene, const std::optional<StretchLimit>& limit, int needed, int most) {
+  if (!limit || !limit->may_follow_turn() || damps_steps(scene.settings.integrator)) return 0;
+  return std::min(std::ilogb(static_cast<double>(needed) / most), kMostHalvings);
 }
 
 std::string advice_for_unstable(const Scene& scene, double largest_stable) {
@@ -71,12 +76,14 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
     return choice;
   }
   std::optional<StretchLimit> limit;
-  if (scene.settings.stretch_limit) limit.emplace(network, *scene.settings.stretch_limit);
-  const double largest = largest_auto_step(scene, network, limit, bounds, choice.largest_stable);
+  if (scene.settings.stretch_limit) limit.emplace(network, *scene.settings.stretch_limit, may_meet_anything(scene, network));
+  const double without_passes = largest_auto_step(scene, network, limit, bounds, choice.largest_stable);
+  const double largest = limit ? std::min(without_passes, limit->suggested_step(scene.settings.gravity.norm())) : without_passes;
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
-    choice.steps_per_frame = *steps;
-    choice.step = step_of(scene.frame_rate, *steps);
-    choice.most_halvings = may_be_halved(scene, limit) ? kAutoHalvings : 0;
+    const int halvings = halvings_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));
+    choice.steps_per_frame = 1 + (*steps - 1) / (1 << halvings);
+    choice.step = step_of(scene.frame_rate, choice.steps_per_frame);
+    choice.most_halvings = may_be_halved(scene, limit) ? kAutoHalvings : halvings;
   } else {
     problems.push_back({scene.file.string(), "step", "\"auto\"",
                         "must be at most " + format_upper_bound(largest) + " s, which is too many steps a frame",

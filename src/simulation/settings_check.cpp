@@ -60,7 +60,7 @@ void check_settings(const SimulatorSettings& settings) {
     rules.require_between("stretch_limit.iterations", limit->iterations, 1.0, kInfinity);
     rules.require_between("stretch_limit.tolerance", limit->tolerance, 0.0, kInfinity);
   }
-  rules.require_between("most_halvings", settings.most_halvings, 0.0, 16.0);
+  rules.require_between("most_halvings", settings.most_halvings, 0.0, kMostHalvings);
   rules.require_between("contact.stiffness", settings.contact.stiffness, 0.0, kInfinity);
   rules.require_between("contact.damping", settings.contact.damping, 0.0, kInfinity);
   rules.throw_if_broken();

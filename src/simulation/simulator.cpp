@@ -7,6 +7,7 @@
 #include "dynamics/spring_force.h"
 #include "simulation/divergence.h"
 #include "simulation/energy_watch.h"
+#include "simulation/limit_handover.h"
 #include "simulation/settings_check.h"
 #include "simulation/start.h"
 #include "simulation/step_check.h"
@@ -112,9 +113,11 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       energy_watch(network, settings, environment.obstacles()),
       state(initial_state(network)) {
   check_settings(settings);
-  if (settings.stretch_limit) limit.emplace(network, *settings.stretch_limit);
+  const bool may_meet_anything = !environment.obstacles().empty() || bodies_may_meet(network);
+  if (settings.stretch_limit) limit.emplace(network, *settings.stretch_limit, may_meet_anything);
   if (limit && settings.most_halvings > 0) refinement.emplace(*settings.stretch_limit, settings.most_halvings);
-  if (refinement && limit->follows_turn() && anything_moves()) state.halvings = settings.most_halvings;
+  const bool needs_parts = limit && (limit->may_follow_turn() || (limit->follows_turn() && anything_moves()));
+  if (refinement && needs_parts) state.halvings = settings.most_halvings;
   gravity = add_force<Gravity>(settings.gravity);
   springs = add_force<SpringForce>();
   if (network.angle_bends.count() > 0) angles = add_force<AngleForce>();
@@ -142,7 +145,10 @@ StepReport Simulator::Implementation::step() {
   const int parts = 1 << state.halvings;
   StepReport report;
   for (int part = 0; part < parts; ++part) report += make_part();
+  const int halvings = state.halvings;
   if (refinement) choose_parts(report.stretch_excess);
+  // Smaller parts come first.
+  if (limit && state.halvings <= halvings) hand_over_missed(network, *limit, report.stretch_excess, state);
   return report;
 }
 
@@ -171,9 +177,9 @@ StepReport Simulator::Implementation::make_part() {
 
 void Simulator::Implementation::choose_parts(double excess) {
   const double dt_before = dt();
-  if (limit->follows_turn()) {
+  if (limit->follows_turn(state.stretch_holds)) {
     refinement->choose_by_turn(limit->turn(), state);
-  } else {
+  } else if (!limit->may_follow_turn()) {
     refinement->choose(excess, state);
   }
   if (dt() == dt_before) return;
@@ -207,7 +213,7 @@ void Simulator::Implementation::constrain(StepReport& report) {
   if (projects) contacts.find(motion());
   if (projects && integrator->answers_contact()) answer_contact();
   const double fall = (settings.gravity.norm() + bounds.drag * settings.wind.norm()) * dt() * dt();
-  const std::optional<int> solves = limit ? limit->solve(step_began(), state.x, fall) : std::nullopt;
+  const std::optional<int> solves = limit ? limit->solve(step_began(), state.x, fall, state.stretch_holds) : std::nullopt;
   report.limit_solves = solves.value_or(0);
   const int limit_passes = limit ? limit->settings().iterations + (solves ? 1 : 0) : 0;  // after a solve the first only measures
   if (projects) report.iterations = push_out(kContactPasses - limit_passes);

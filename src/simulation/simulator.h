@@ -33,6 +33,9 @@ struct ContactSettings {
 
 enum class StabilityCheck : std::uint8_t { refuse, warn };
 
+/// A step is not halved more often.
+inline constexpr int kMostHalvings = 16;
+
 struct SimulatorSettings {
   double step = 1.0e-3;              ///< dt [s]
   Vector3 gravity{0.0, -9.81, 0.0};  ///< [m/s^2]
@@ -42,7 +45,9 @@ struct SimulatorSettings {
   std::optional<StretchLimitSettings> stretch_limit{};
   ContactSettings contact{};
   StabilityCheck stability = StabilityCheck::refuse;
-  int most_halvings = 0;  ///< in [0, 16]: steps are made in up to 2^most_halvings parts: see StepRefinement
+  /// In [0, kMostHalvings]: steps are made in up to 2^most_halvings parts, see StepRefinement; in all of them while passes hold a
+  /// limit that may be handed over to a global solve, which then needs fewer.
+  int most_halvings = 0;
 };
 
 /// What one step did: sums over its parts, and the largest excess.

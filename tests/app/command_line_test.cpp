@@ -123,6 +123,24 @@ TEST_F(CommandLine, ValidatePrintsWhatFollowsFromTheScene) {
                                 HasSubstr("ball: sphere")));
 }
 
+// A step at which four passes cannot hold a cloth that hangs by two corners.
+TEST_F(CommandLine, TellsWhatHoldsTheStretchLimitAndWhenThatChanges) {
+  json scene = cloth_scene();
+  scene["step"] = 1.0 / 120.0;
+  scene["stretch_limit"] = {{"solver", "auto"}, {"iterations", 4}};
+  scene["bodies"]["cloth"]["shape"]["resolution"] = {20, 20};
+  scene["bodies"]["cloth"]["springs"] = {{"structural", {{"stiffness", 0}}}};
+  scene["bodies"]["cloth"]["place"]["rotation"] = {0, 0, 0};
+  scene["bodies"]["cloth"]["pins"] = json::array({{{"at", "corner"}, {"which", {"min_max", "max_max"}}}});
+  scene["obstacles"]["ball"]["place"] = {{"position", {0, -9, 0}}};
+  EXPECT_THAT(run({"validate", save(scene)}).out, HasSubstr("held by gauss_seidel, then newton for what keeps missing the limit"));
+  const Ending ending = run({"run", save(scene), "--out", out()});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.err, HasSubstr("passes kept missing the stretch limit of \"cloth\"; newton holds it after step " +
+                                    record()["newton_from"][0]["step"].dump()));
+  EXPECT_GT(record()["limit_solves"], 0);
+}
+
 TEST_F(CommandLine, ValidateTellsWhatMaterialsComeTo) {
   json scene = cloth_scene();
   json& cloth = scene["bodies"]["cloth"];

@@ -279,15 +279,16 @@ TEST(StretchNewton, HoldsTheLimitOfAHangingRope) {
   }
 }
 
-TEST(StretchLimit, AutomaticSolvesForChainsAndLeavesClothsToPasses) {
+TEST(StretchLimit, AutomaticSolvesForChainsAndLeavesClothsToPassesAtFirst) {
   using Solver = StretchLimitSettings::Solver;
-  const auto chosen = [](const SpringNetwork& network, Solver solver) {
-    return StretchLimit(network, {.solver = solver}).chosen_solver();
+  const auto chosen = [](const SpringNetwork& network, Solver solver, bool may_meet_anything = true) {
+    return StretchLimit(network, {.solver = solver}, may_meet_anything).chosen_solver();
   };
   const SpringNetwork rope = make_test_rope(10, 0.0);
   const SpringNetwork cloth = make_test_cloth(5, 0.0, 0.0);
   EXPECT_EQ(chosen(rope, Solver::automatic), "newton");
-  EXPECT_EQ(chosen(cloth, Solver::automatic), "gauss_seidel");
+  EXPECT_EQ(chosen(cloth, Solver::automatic), "gauss_seidel, then newton for what keeps missing the limit");
+  EXPECT_EQ(chosen(cloth, Solver::automatic, false), "newton");
   EXPECT_EQ(chosen(cloth, Solver::newton), "newton");
   EXPECT_EQ(chosen(rope, Solver::gauss_seidel), "gauss_seidel");
   const StretchLimitSettings settings{.solver = Solver::automatic};
@@ -305,6 +306,10 @@ TEST(StretchLimit, FollowsTheTurnOfWhatAGlobalSolveHoldsAlone) {
   EXPECT_TRUE(StretchLimit(rope, {.solver = Solver::automatic}).follows_turn());
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).follows_turn());
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_turn());
+  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_turn({{.solved_since = 0}})) << "handed over";
+  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).may_follow_turn());
+  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::newton}).may_follow_turn()) << "it does";
+  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).may_follow_turn());
   EXPECT_FALSE(StretchLimit(cloth, {.max_compression = 0.5, .solver = Solver::newton}).follows_turn()) << "left to passes";
   EXPECT_FALSE(StretchLimit(rope, {.kinds = {SpringKind::shear}, .solver = Solver::newton}).follows_turn()) << "holds nothing";
 }

@@ -231,6 +231,41 @@ TEST_F(RunOutputFiles, RecordTellsHowFarTheRunCame) {
   EXPECT_GE(json["wall_seconds"], 0.0);
 }
 
+/// A cloth of 8 x 8 particles that hangs far above a ball, by passes that cannot hold it.
+Simulator hanging_cloth() {
+  BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {8, 8}}, {SpringMaterial{}, {}, {}});
+  set_total_mass(shape, 0.2);
+  NetworkBuilder builder;
+  builder.add_body("cloth", shape);
+  builder.pin({56, 63});
+  const StretchLimitSettings limit{.iterations = 1, .solver = StretchLimitSettings::Solver::automatic};
+  return Simulator(builder.build(), {.step = 0.01, .stretch_limit = limit},
+                   {still("ball", SphereGeometry{.radius = 1.0}, {0.0, -9.0, 0.0})});
+}
+
+TEST_F(RunOutputFiles, RecordTellsFromWhenOnNewtonHoldsABody) {
+  simulator_ = hanging_cloth();
+  RunOutput output(OutputFolder(scratch_ / "out", false),
+                   {.frames = 9, .steps_per_frame = 4, .stretch_solver = simulator_.stretch_solver()}, simulator_);
+  FrameRunner runner(simulator_, 4);
+  output.write_frame(simulator_, runner.first_frame());
+  EXPECT_EQ(record()["stretch_solver"], "gauss_seidel, then newton for what keeps missing the limit");
+  EXPECT_THAT(record()["newton_from"], IsEmpty());
+  std::int64_t solves = 0;
+  for (int frame = 2; frame <= 9; ++frame) {
+    const FrameDiagnostics next = runner.next_frame();
+    output.write_frame(simulator_, next);
+    if (solves == 0 && next.limit_solves > 0) {
+      EXPECT_EQ(record()["newton_from"], nlohmann::json::parse(R"([{"body": "cloth", "step": )" +
+                                                               std::to_string(*simulator_.state().stretch_holds[0].solved_since) +
+                                                               R"(, "frame": )" + std::to_string(frame) + "}]"));
+    }
+    solves += next.limit_solves;
+  }
+  EXPECT_GT(solves, 0);
+  EXPECT_EQ(record()["newton_from"].size(), 1U);
+}
+
 TEST_F(RunOutputFiles, ThatFitNoMoreTakeTheirWholeFrameBack) {
   RunOutput output = open(3);
   FrameRunner runner(simulator_, 2);

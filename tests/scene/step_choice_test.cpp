@@ -94,8 +94,10 @@ TEST(StepChoice, AutoIsAFrameForWhatAGlobalSolveHoldsAndMeetsNothing) {
         "springs": {"structural": {"stiffness": 0}}, "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
     return build_scene(folder.read(text, changes));
   };
-  EXPECT_EQ(built({}).steps_per_frame, 1);
-  EXPECT_EQ(built({}).settings.most_halvings, kAutoHalvings);
+  for (const std::string solver : {"newton", "auto"}) {
+    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).steps_per_frame, 1);
+    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).settings.most_halvings, kAutoHalvings);
+  }
   EXPECT_EQ(built({"obstacles.floor.shape={\"type\":\"half_space\",\"offset\":-5}"}).steps_per_frame, 8);
   EXPECT_EQ(built({"bodies.cloth.self_contact=true"}).steps_per_frame, 8);
   EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).steps_per_frame, 8) << "which takes its part of each step";
@@ -104,6 +106,31 @@ TEST(StepChoice, AutoIsAFrameForWhatAGlobalSolveHoldsAndMeetsNothing) {
       "place": {"position": [0, 0, 1]}, "springs": {"structural": {"stiffness": 0}})";
   EXPECT_EQ(built({second + "}"}).steps_per_frame, 8);
   EXPECT_EQ(built({second + R"(, "body_contact": false})"}).steps_per_frame, 1);
+}
+
+// The parts are what passes need; once a global solve has taken over it needs the whole step at most.
+TEST(StepChoice, AutoIsMadeInPartsForPassesThatMayBeGivenUp) {
+  const auto built = [](const std::vector<std::string>& changes) {
+    const SceneFolder folder;
+    const std::string text = R"({"duration": 1, "stretch_limit": {"solver": "auto", "iterations": 4},
+        "obstacles": {"floor": {"shape": {"type": "half_space", "offset": -5}}},
+        "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [16, 16]}, "mass": 1,
+        "springs": {"structural": {"stiffness": 0}}, "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
+    return build_scene(folder.read(text, changes));
+  };
+  const BuiltScene passes = built({"stretch_limit.solver=gauss_seidel"});
+  const BuiltScene automatic = built({});
+  const int parts = 1 << automatic.settings.most_halvings;
+  const int at_least = built({"stretch_limit.solver=newton"}).steps_per_frame;
+  EXPECT_EQ(passes.settings.most_halvings, 0);
+  EXPECT_GT(parts, 1);
+  EXPECT_GE(automatic.steps_per_frame, at_least);
+  EXPECT_LT(automatic.steps_per_frame, 2 * at_least);
+  EXPECT_GE(automatic.steps_per_frame * parts, passes.steps_per_frame);
+  EXPECT_LT((automatic.steps_per_frame - 1) * parts, passes.steps_per_frame);
+  const std::string damping = R"(integrator={"type": "verlet", "damping": 0.01})";
+  EXPECT_EQ(built({damping}).settings.most_halvings, 0) << "which takes its part of each step";
+  EXPECT_EQ(built({damping}).steps_per_frame, passes.steps_per_frame);
 }
 
 TEST(StepChoice, WithoutAnyBoundAutoIsAtMostTheDocumentedStep) {
