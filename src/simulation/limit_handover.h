@@ -6,7 +6,7 @@
 
 namespace sprung {
 
-/// What an impact leaves too long passes take back within fewer steps.
+/// What an impact leaves too long passes take back within fewer steps, and by then steps are made in their smallest parts.
 inline constexpr int kMostMissedSteps = 16;
 
 /// Hands each body over, for good, that may be and whose springs passes have left longer than wanted (see wanted_excess) after

@@ -145,10 +145,8 @@ StepReport Simulator::Implementation::step() {
   const int parts = 1 << state.halvings;
   StepReport report;
   for (int part = 0; part < parts; ++part) report += make_part();
-  const int halvings = state.halvings;
   if (refinement) choose_parts(report.stretch_excess);
-  // Smaller parts come first.
-  if (limit && state.halvings <= halvings) hand_over_missed(network, *limit, report.stretch_excess, state);
+  if (limit) hand_over_missed(network, *limit, report.stretch_excess, state);
   return report;
 }
 
