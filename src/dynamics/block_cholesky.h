@@ -10,8 +10,10 @@ namespace sprung {
 
 struct FrontLayout;
 
-/// L D L^T of a positive definite matrix, eliminated by supernodes as dense work (multifrontal: Duff and Reid 1983). Order and
-/// pattern are found once. One thread. Of a matrix times a power of two, D is exactly so many times as large.
+/// L D L^T of a positive definite matrix, eliminated by supernodes as dense work (multifrontal: Duff and Reid 1983), in double or
+/// single precision (Number). Order and pattern are found once. One thread. Matrices and vectors times powers of two have the same
+/// bits.
+template <class Number>
 class BlockCholesky {
  public:
   /// For matrices of the same pairs as `pattern`, without the rows and columns of the particles of which `left_out` has the flag;
@@ -29,13 +31,17 @@ class BlockCholesky {
   void assemble(std::size_t front, const BlockMatrix& matrix);
 
   std::unique_ptr<const FrontLayout> layout_;
-  std::vector<double> panels_;   ///< L
-  std::vector<double> inverse_;  ///< 1 / D
+  double scale_ = 1.0;           ///< of the matrix that was factored to the one that was given, a power of two
+  std::vector<Number> panels_;   ///< L
+  std::vector<Number> inverse_;  ///< 1 / D
   // Of a factor or a solve.
-  std::vector<double> updates_;
-  std::vector<double> vector_;
-  std::vector<double> below_;
-  std::vector<double> row_;
+  std::vector<Number> updates_;
+  std::vector<Number> vector_;
+  std::vector<Number> below_;
+  std::vector<Number> row_;
 };
+
+extern template class BlockCholesky<double>;
+extern template class BlockCholesky<float>;
 
 }  // namespace sprung

@@ -29,19 +29,23 @@ struct FrontShape {
 };
 
 /// How many numbers of `row` eliminate_front needs for each of a front's columns.
-inline constexpr Index kRowRoom = 4 * kSpringLanes;
+inline constexpr Index kRowRoom = 8 * kSpringLanes;
 
 /// Replaces the panel of a matrix by that of its L, writes 1 / D to `inverse`, and what the rows below hand on, - L D L^T, to
 /// `update`, column by column, `lower_height` numbers each, of which those above the diagonal are not meant. Returns whether D is
 /// positive; if not, what is written is not meant.
 bool eliminate_front_narrow(const FrontShape& shape, double* panel, double* inverse, double* update, double* row);
+bool eliminate_front_narrow(const FrontShape& shape, float* panel, float* inverse, float* update, float* row);
 
 /// The same bits, with more lanes at a time. Requires has_wide_lanes().
 bool eliminate_front_wide(const FrontShape& shape, double* panel, double* inverse, double* update, double* row);
+bool eliminate_front_wide(const FrontShape& shape, float* panel, float* inverse, float* update, float* row);
 
 /// Whichever the machine has.
-inline bool eliminate_front(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
-  return (has_wide_lanes() ? eliminate_front_wide : eliminate_front_narrow)(shape, panel, inverse, update, row);
+template <class Number>
+bool eliminate_front(const FrontShape& shape, Number* panel, Number* inverse, Number* update, Number* row) {
+  return has_wide_lanes() ? eliminate_front_wide(shape, panel, inverse, update, row)
+                          : eliminate_front_narrow(shape, panel, inverse, update, row);
 }
 
 /// Rows that are neighbours in what a front hands on, and in its parent's.
@@ -55,15 +59,21 @@ struct RowRun {
 /// first rows below, each the first of three; `rows` says where each of all its rows begins in the parent's panel.
 void add_to_panel(std::span<const Index> columns, std::span<const Index> rows, const double* child, Index child_height,
                   double* panel);
+void add_to_panel(std::span<const Index> columns, std::span<const Index> rows, const float* child, Index child_height,
+                  float* panel);
 
 /// Adds the rest to what the parent hands on, when it has been eliminated.
 void add_to_update(std::span<const RowRun> runs, const double* child, Index child_height, Index update_height, double* update);
+void add_to_update(std::span<const RowRun> runs, const float* child, Index child_height, Index update_height, float* update);
 
 /// Solves L x = b for the supernode's own part, in place, and writes what is to be subtracted from the rows below.
 void solve_front(const FrontShape& shape, const double* panel, double* own, double* below);
+void solve_front(const FrontShape& shape, const float* panel, float* own, float* below);
 
 /// Solves D L^T x = b for the supernode's own part, in place, when the rows below are solved.
 void solve_front_transposed(const FrontShape& shape, const double* panel, const double* inverse, double* own, const double* below,
                             double* sums);
+void solve_front_transposed(const FrontShape& shape, const float* panel, const float* inverse, float* own, const float* below,
+                            float* sums);
 
 }  // namespace sprung

@@ -28,7 +28,7 @@ class ImplicitSystem {
  private:
   const SpringNetwork& network_;
   BlockMatrix matrix_;  ///< of the whole network, pinned particles included
-  BlockCholesky factor_;
+  BlockCholesky<double> factor_;
 };
 
 }  // namespace sprung

@@ -5,13 +5,19 @@
 #include "dynamics/lane_count.h"
 
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 namespace sprung {
 
-using SpringLanes = double __attribute__((vector_size(kSpringLanes * sizeof(double))));
-using StoredSpringLanes = double __attribute__((vector_size(kSpringLanes * sizeof(double)), aligned(alignof(double)), may_alias));
-using WideLanes = double __attribute__((vector_size(kWideLanes * sizeof(double))));
-using StoredWideLanes = double __attribute__((vector_size(kWideLanes * sizeof(double)), aligned(alignof(double)), may_alias));
+/// So many numbers of one kind.
+template <class Number, Index kCount>
+struct LanesOf {
+  typedef Number Type __attribute__((vector_size(kCount * sizeof(Number))));
+  typedef Number Stored __attribute__((vector_size(kCount * sizeof(Number)), aligned(alignof(Number)), may_alias));
+};
+using SpringLanes = LanesOf<double, kSpringLanes>::Type;
+using WideLanes = LanesOf<double, kWideLanes>::Type;
 
 /// The bits of as many numbers.
 template <class Lanes>
@@ -26,19 +32,22 @@ struct BitsOf<WideLanes> {
 };
 
 template <class Lanes>
-inline constexpr Index kCountOf = sizeof(Lanes) / sizeof(double);
+using NumberOf = std::remove_cvref_t<decltype(std::declval<Lanes>()[0])>;
 
-[[gnu::always_inline]] inline void load_lanes(const double* from, SpringLanes& to) {
-  to = *reinterpret_cast<const StoredSpringLanes*>(from);
+template <class Lanes>
+inline constexpr Index kCountOf = sizeof(Lanes) / sizeof(NumberOf<Lanes>);
+
+/// The same wherever they lie in memory.
+template <class Lanes>
+using StoredLanes = typename LanesOf<NumberOf<Lanes>, kCountOf<Lanes>>::Stored;
+
+template <class Lanes>
+[[gnu::always_inline]] inline void load_lanes(const NumberOf<Lanes>* from, Lanes& to) {
+  to = *reinterpret_cast<const StoredLanes<Lanes>*>(from);
 }
-[[gnu::always_inline]] inline void load_lanes(const double* from, WideLanes& to) {
-  to = *reinterpret_cast<const StoredWideLanes*>(from);
-}
-[[gnu::always_inline]] inline void store_lanes(const SpringLanes& from, double* to) {
-  *reinterpret_cast<StoredSpringLanes*>(to) = from;
-}
-[[gnu::always_inline]] inline void store_lanes(const WideLanes& from, double* to) {
-  *reinterpret_cast<StoredWideLanes*>(to) = from;
+template <class Lanes>
+[[gnu::always_inline]] inline void store_lanes(const Lanes& from, NumberOf<Lanes>* to) {
+  *reinterpret_cast<StoredLanes<Lanes>*>(to) = from;
 }
 
 [[gnu::always_inline]] inline void square_root(SpringLanes& of) {

@@ -21,9 +21,9 @@ class StretchSystemSolver {
  public:
   virtual ~StretchSystemSolver() = default;
 
-  /// Writes the free points' displacements [m] to `step`, 3 x free; exact but for those of systems like the last, of which a tenth
-  /// of the residual may be left. Not finite when the system is not. Returns about how much of the energy that the system models
-  /// another displacement would gain [kg m^2]: 0 where it is exact.
+  /// Writes the free points' displacements [m] to `step`, 3 x free; exact for trees, of others a tenth of the residual may be left.
+  /// Not finite when the system is not. Returns about how much of the energy that the system models another displacement would gain
+  /// [kg m^2]: 0 where it is exact.
   virtual double solve(const StretchSystem& system, Points& step) = 0;
 };
 

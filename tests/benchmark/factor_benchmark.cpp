@@ -1,5 +1,5 @@
-// Sparse factors of a cloth's equations: L D L^T by supernodes of 3 x 3 blocks, and Eigen's simplicial one by scalars beside it in
-// the same run.
+// Sparse factors of a cloth's equations: L D L^T by supernodes of 3 x 3 blocks in double and in single precision, and Eigen's
+// simplicial one by scalars beside them in the same run.
 #include "benchmark/processor_time.h"
 #include "dynamics/block_cholesky.h"
 #include "network/network_builder.h"
@@ -65,24 +65,38 @@ double best_time(const Work& work) {
   return best;
 }
 
-/// Arguments: particles along a side, springs. The time is that of a factor.
+struct FactorTimes {
+  double factor = 0.0;  ///< [s]
+  double solve = 0.0;   ///< [s]
+};
+
+template <class Number>
+FactorTimes time_blocks(const BlockMatrix& matrix, const Points& right) {
+  BlockCholesky<Number> blocks(matrix);
+  Points solution;
+  const double factor = best_time([&] { benchmark::DoNotOptimize(blocks.factor(matrix)); });
+  return {.factor = factor, .solve = best_time([&] { blocks.solve(right, solution); })};
+}
+
+/// Arguments: particles along a side, springs. The time is that of a factor in double precision.
 void factor_against_eigen(benchmark::State& state) {
   const BlockMatrix matrix = cloth_matrix(static_cast<Index>(state.range(0)), static_cast<Springs>(state.range(1)));
   const Points right = Points::Random(3, matrix.size());
   Points solution;
   const Eigen::SparseMatrix<double> scalars = scalar_matrix(matrix);
   for ([[maybe_unused]] auto _ : state) {
-    BlockCholesky blocks(matrix);
-    const double factor = best_time([&] { benchmark::DoNotOptimize(blocks.factor(matrix)); });
-    const double solve = best_time([&] { blocks.solve(right, solution); });
+    const FactorTimes blocks = time_blocks<double>(matrix, right);
+    const FactorTimes single_blocks = time_blocks<float>(matrix, right);
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> eigen;
     eigen.analyzePattern(scalars);
     const double eigen_factor = best_time([&] { eigen.factorize(scalars); });
     const double eigen_solve = best_time([&] { solution.reshaped() = eigen.solve(right.reshaped()); });
-    state.SetIterationTime(factor);
-    state.counters["solve_ms"] = 1e3 * solve;
-    state.counters["factor_of_eigen"] = factor / eigen_factor;
-    state.counters["solve_of_eigen"] = solve / eigen_solve;
+    state.SetIterationTime(blocks.factor);
+    state.counters["solve_ms"] = 1e3 * blocks.solve;
+    state.counters["single_factor_ms"] = 1e3 * single_blocks.factor;
+    state.counters["single_solve_ms"] = 1e3 * single_blocks.solve;
+    state.counters["factor_of_eigen"] = blocks.factor / eigen_factor;
+    state.counters["solve_of_eigen"] = blocks.solve / eigen_solve;
   }
 }
 

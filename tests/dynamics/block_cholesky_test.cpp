@@ -12,8 +12,6 @@
 namespace sprung {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
 using Pairs = std::vector<ParticlePair>;
 
 Pairs random_pairs(Index particles, Index count, std::mt19937& random) {
@@ -59,53 +57,68 @@ BlockMatrix random_matrix(Index particles, const Pairs& pairs, std::mt19937& ran
   return matrix;
 }
 
+template <class Number>
+constexpr double kEpsilon = std::numeric_limits<Number>::epsilon();
+
 /// Of a factor of n columns the residual is below (3 n + 1) eps | |L| |D| |L^T| | |x|, of which the second norm is at most n |A|
 /// (Higham 2002, theorems 10.4 and 10.5).
+template <class Number>
 void expect_solution(const Eigen::MatrixXd& matrix, const Scalars& right, const Scalars& solution) {
   const double n = static_cast<double>(matrix.rows());
-  EXPECT_LE((matrix * solution - right).norm(), (3.0 * n + 1.0) * n * kEpsilon * matrix.norm() * solution.norm());
+  EXPECT_LE((matrix * solution - right).norm(), (3.0 * n + 1.0) * n * kEpsilon<Number> * matrix.norm() * solution.norm());
 }
 
+template <class Number>
 void expect_solves(Index particles, const Pairs& pairs, std::mt19937& random) {
   const BlockMatrix matrix = random_matrix(particles, pairs, random);
-  BlockCholesky factor(matrix);
+  BlockCholesky<Number> factor(matrix);
   ASSERT_TRUE(factor.factor(matrix));
   const Points right = Points::Random(3, particles);
   Points solution;
   factor.solve(right, solution);
   const Eigen::MatrixXd full = dense(matrix);
-  expect_solution(full, right.reshaped(), solution.reshaped());
+  expect_solution<Number>(full, right.reshaped(), solution.reshaped());
   const Scalars expected = full.ldlt().solve(Scalars(right.reshaped()));
   // Both are that far off, times what the inverse makes of it; masses bound it.
   const double n = 3.0 * particles;
-  EXPECT_LE((solution.reshaped() - expected).norm(), 2.0 * (3.0 * n + 1.0) * n * kEpsilon * full.norm() * expected.norm() / 1.0e-3);
+  EXPECT_LE((solution.reshaped() - expected).norm(),
+            2.0 * (3.0 * n + 1.0) * n * kEpsilon<Number> * full.norm() * expected.norm() / 1.0e-3);
 }
 
-TEST(BlockCholesky, SolvesRandomPatterns) {
+/// In double and in single precision.
+template <class Number>
+class BlockCholeskyOf : public ::testing::Test {};
+using Numbers = ::testing::Types<double, float>;
+TYPED_TEST_SUITE(BlockCholeskyOf, Numbers);
+
+TYPED_TEST(BlockCholeskyOf, SolvesRandomPatterns) {
+  using Number = TypeParam;
   std::mt19937 random(1);
   for (const Index particles : {1, 2, 3, 5, 17, 60, 150}) {
     // From separate particles to nearly all pairs.
     for (const Index count : {0, particles / 2, particles, 3 * particles, 2 * particles * particles}) {
-      expect_solves(particles, random_pairs(particles, count, random), random);
+      expect_solves<Number>(particles, random_pairs(particles, count, random), random);
     }
   }
 }
 
-TEST(BlockCholesky, SolvesChainsAndCloths) {
+TYPED_TEST(BlockCholeskyOf, SolvesChainsAndCloths) {
+  using Number = TypeParam;
   std::mt19937 random(2);
-  for (const Index side : {2, 5, 12, 16}) expect_solves(side * side, cloth_pairs(side), random);
+  for (const Index side : {2, 5, 12, 16}) expect_solves<Number>(side * side, cloth_pairs(side), random);
   Pairs chain;
   for (Index i = 0; i + 1 < 300; ++i) chain.push_back({.first = i, .second = i + 1});
-  expect_solves(300, chain, random);
+  expect_solves<Number>(300, chain, random);
 }
 
-TEST(BlockCholesky, LeavesOutRowsAndColumns) {
+TYPED_TEST(BlockCholeskyOf, LeavesOutRowsAndColumns) {
+  using Number = TypeParam;
   std::mt19937 random(3);
   const Index side = 9;
   const BlockMatrix matrix = random_matrix(side * side, cloth_pairs(side), random);
   std::vector<bool> left_out(side * side);
   for (Index i = 0; i < side * side; ++i) left_out[i] = i % 4 == 1;
-  BlockCholesky factor(matrix, left_out);
+  BlockCholesky<Number> factor(matrix, left_out);
   ASSERT_TRUE(factor.factor(matrix));
   const Points right = Points::Random(3, side * side);
   Points solution = right;
@@ -120,12 +133,13 @@ TEST(BlockCholesky, LeavesOutRowsAndColumns) {
     known.segment<3>(3 * i).setZero();
     EXPECT_EQ(solution.col(i), Vector3::Zero());
   }
-  expect_solution(full, known, solution.reshaped());
+  expect_solution<Number>(full, known, solution.reshaped());
 }
 
-TEST(BlockCholesky, TakesMatricesWithoutRows) {
+TYPED_TEST(BlockCholeskyOf, TakesMatricesWithoutRows) {
+  using Number = TypeParam;
   const BlockMatrix matrix(2, {});
-  BlockCholesky factor(matrix, {true, true});
+  BlockCholesky<Number> factor(matrix, {true, true});
   ASSERT_TRUE(factor.factor(matrix));
   Points vectors = Points::Ones(3, 2);
   factor.solve(vectors, vectors);
@@ -133,16 +147,17 @@ TEST(BlockCholesky, TakesMatricesWithoutRows) {
 }
 
 // The same object takes one matrix after the other: what one leaves does not change the next one's bits.
-TEST(BlockCholesky, FactorsDoNotDependOnThoseBefore) {
+TYPED_TEST(BlockCholeskyOf, FactorsDoNotDependOnThoseBefore) {
+  using Number = TypeParam;
   std::mt19937 random(4);
   const Pairs pairs = cloth_pairs(10);
   const BlockMatrix first = random_matrix(100, pairs, random);
   const BlockMatrix second = random_matrix(100, pairs, random);
   const Points right = Points::Random(3, 100);
-  BlockCholesky used(first);
+  BlockCholesky<Number> used(first);
   ASSERT_TRUE(used.factor(first));
   ASSERT_TRUE(used.factor(second));
-  BlockCholesky fresh(first);
+  BlockCholesky<Number> fresh(first);
   ASSERT_TRUE(fresh.factor(second));
   Points after_used;
   Points after_fresh;
@@ -152,14 +167,15 @@ TEST(BlockCholesky, FactorsDoNotDependOnThoseBefore) {
   EXPECT_EQ(after_used, after_fresh);
 }
 
-TEST(BlockCholesky, TellsWhatIsNotPositiveDefinite) {
+TYPED_TEST(BlockCholeskyOf, TellsWhatIsNotPositiveDefinite) {
+  using Number = TypeParam;
   std::mt19937 random(5);
   const Pairs pairs = cloth_pairs(8);
   for (const Index particle : {0, 27, 63}) {
     const BlockMatrix sound = random_matrix(64, pairs, random);
     const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(sound), Eigen::EigenvaluesOnly).eigenvalues()[0];
     BlockMatrix shifted = sound;
-    BlockCholesky factor(sound);
+    BlockCholesky<Number> factor(sound);
     // All eigenvalues go down alike.
     for (Index i = 0; i < 64; ++i) shifted.add(i, i, -0.99 * least * Matrix3::Identity());
     EXPECT_TRUE(factor.factor(shifted));
@@ -172,14 +188,15 @@ TEST(BlockCholesky, TellsWhatIsNotPositiveDefinite) {
   }
 }
 
-TEST(BlockCholesky, PowersOfTwoScaleItExactly) {
+TYPED_TEST(BlockCholeskyOf, PowersOfTwoScaleItExactly) {
+  using Number = TypeParam;
   std::mt19937 random(6);
   const Pairs pairs = cloth_pairs(9);
   const BlockMatrix matrix = random_matrix(81, pairs, random);
   BlockMatrix scaled(81, pairs);
   scaled.add_scaled(matrix, 0x1p-31);
   const Points right = Points::Random(3, 81);
-  BlockCholesky factor(matrix);
+  BlockCholesky<Number> factor(matrix);
   Points expected;
   ASSERT_TRUE(factor.factor(matrix));
   factor.solve(right, expected);

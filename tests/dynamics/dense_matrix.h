@@ -1,7 +1,8 @@
-// A matrix of 3 x 3 blocks in full, for solvers and formulas that know nothing of blocks.
+// Matrices of 3 x 3 blocks in full, for solvers and formulas that know nothing of blocks.
 #pragma once
 
 #include "dynamics/block_matrix.h"
+#include "dynamics/stretch_system.h"
 
 #include <Eigen/Core>
 
@@ -17,6 +18,24 @@ inline Eigen::MatrixXd dense(const BlockMatrix& matrix) {
     });
   }
   return full;
+}
+
+/// M + K as a dense matrix, by the definition.
+inline Eigen::MatrixXd dense(const StretchComponent& component, const StretchSystem& system) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(3 * component.free_count, 3 * component.free_count);
+  for (Index i = 0; i < component.free_count; ++i) {
+    matrix.block<3, 3>(3 * i, 3 * i) += component.masses[i] * Matrix3::Identity();
+  }
+  for (std::size_t s = 0; s < component.links.size(); ++s) {
+    const auto& [a, b, rest_length] = component.links[s];
+    const Matrix3 block = system.blocks[s].matrix();
+    matrix.block<3, 3>(3 * a, 3 * a) += block;
+    if (!component.is_free(b)) continue;
+    matrix.block<3, 3>(3 * b, 3 * b) += block;
+    matrix.block<3, 3>(3 * a, 3 * b) -= block;
+    matrix.block<3, 3>(3 * b, 3 * a) -= block;
+  }
+  return matrix;
 }
 
 }  // namespace sprung

@@ -9,18 +9,23 @@ namespace sprung {
 namespace {
 
 /// What elimination made of a panel, but for what is not meant: columns of L, 1 / D, and the lower triangle of what is handed on.
+template <class Number>
 struct Eliminated {
-  std::vector<double> numbers;
+  std::vector<Number> numbers;
   bool positive = false;
 };
 
-Eliminated eliminated(const FrontShape& shape, std::vector<double> panel, decltype(&eliminate_front_narrow) eliminate) {
+template <class Number>
+using Eliminate = bool (*)(const FrontShape&, Number*, Number*, Number*, Number*);
+
+template <class Number>
+Eliminated<Number> eliminated(const FrontShape& shape, std::vector<Number> panel, Eliminate<Number> eliminate) {
   const auto width = static_cast<std::size_t>(shape.width());
   const auto height = static_cast<std::size_t>(shape.lower_height());
-  std::vector<double> inverse(width);
-  std::vector<double> update(height * height);
-  std::vector<double> row(kRowRoom * width);
-  Eliminated result;
+  std::vector<Number> inverse(width);
+  std::vector<Number> update(height * height);
+  std::vector<Number> row(kRowRoom * width);
+  Eliminated<Number> result;
   result.positive = eliminate(shape, panel.data(), inverse.data(), update.data(), row.data());
   result.numbers = inverse;
   for (Index c = 0; c < shape.width(); ++c) {
@@ -33,21 +38,27 @@ Eliminated eliminated(const FrontShape& shape, std::vector<double> panel, declty
 
 // What the machine takes has twice as many lanes where it has AVX-512. A diagonal larger than its row makes the matrix positive
 // definite.
-TEST(FrontKernel, HasTheSameBitsWhateverTheMachineTakes) {
+template <class Number>
+void expect_the_same_bits() {
   std::mt19937 random(8);
-  std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  for (Index own = 1; own < 6; ++own) {
-    for (Index lower = 0; lower < 8; ++lower) {
+  std::uniform_real_distribution<Number> unit(-1, 1);
+  for (Index own = 1; own < 12; ++own) {
+    for (const Index lower : {0, 1, 2, 3, 5, 8, 13, 15}) {
       const FrontShape shape{own, lower};
-      std::vector<double> panel(shape.size());
-      for (double& number : panel) number = unit(random);
-      for (Index i = 0; i < shape.width(); ++i) panel[shape.place(i, i)] = 1.0 + shape.width();
-      const Eliminated narrow = eliminated(shape, panel, eliminate_front_narrow);
-      const Eliminated taken = eliminated(shape, panel, eliminate_front);
+      std::vector<Number> panel(shape.size());
+      for (Number& number : panel) number = unit(random);
+      for (Index i = 0; i < shape.width(); ++i) panel[shape.place(i, i)] = static_cast<Number>(1 + shape.width());
+      const auto narrow = eliminated<Number>(shape, panel, eliminate_front_narrow);
+      const auto taken = eliminated<Number>(shape, panel, eliminate_front<Number>);
       EXPECT_TRUE(narrow.positive && taken.positive);
       EXPECT_EQ(narrow.numbers, taken.numbers) << own << " and " << lower;
     }
   }
+}
+
+TEST(FrontKernel, HasTheSameBitsWhateverTheMachineTakes) {
+  expect_the_same_bits<double>();
+  expect_the_same_bits<float>();
 }
 
 }  // namespace
