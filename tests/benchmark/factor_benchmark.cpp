@@ -82,7 +82,7 @@ FactorTimes time_blocks(const BlockMatrix& matrix, const Points& right) {
 void factor_against_eigen(benchmark::State& state) {
   const BlockMatrix matrix = cloth_matrix(static_cast<Index>(state.range(0)), static_cast<Springs>(state.range(1)));
   const Points right = Points::Random(3, matrix.size());
-  Points solution;
+  Points solution(3, matrix.size());
   const Eigen::SparseMatrix<double> scalars = scalar_matrix(matrix);
   for ([[maybe_unused]] auto _ : state) {
     const FactorTimes blocks = time_blocks<double>(matrix, right);
