@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 namespace sprung::testing {
 namespace {
@@ -76,6 +77,36 @@ TEST_P(Rest, AClothThatFellAskewComesToRestAtItsThickness) {
   EXPECT_LT(extremes.fastest(), 1e-3);
   // Of 0.3 J it fell with.
   EXPECT_LT(extremes.energy_growth(), 1e-12);
+}
+
+// From rest, and from so little above that nothing warns of it but its own fall.
+TEST(RestOfAPile, AClothDroppedOntoAnotherStaysAGapAboveIt) {
+  for (const double step_factor : {0.25, 1.0, 4.0}) {
+    for (const double height : {0.012, 0.02, 0.04}) {
+      const std::string upper =
+          R"(bodies.upper={"shape": {"type": "cloth", "size": [0.31, 0.31], "resolution": [7, 7]}, "mass": 0.1,
+          "springs": {"structural": {"stiffness": 0}, "shear": {"stiffness": 0}}, "thickness": 0.005,
+          "place": {"rotation": [-90, 0, 0], "position": [0.01, )" +
+          std::to_string(height) + ", 0.02]}}";
+      Extremes all(0.0);
+      double nearest = std::numeric_limits<double>::infinity();
+      double farthest = 0.0;
+      const auto watch = [&](const Simulator& simulator, const FrameDiagnostics& frame) {
+        all(simulator, frame);
+        const Index lower = simulator.network().bodies.front().particle_count;
+        const Points& x = simulator.positions();
+        nearest = std::min(nearest, x.row(1).tail(x.cols() - lower).minCoeff() - x.row(1).head(lower).maxCoeff());
+        farthest = x.row(1).tail(x.cols() - lower).maxCoeff() - x.row(1).head(lower).minCoeff();
+      };
+      const BuiltScene scene = load_scenario("cloth_on_ground", {"duration=1", upper}, step_factor);
+      const ScenarioReport report = run_scenario(scene, watch, Judge::obstacles_and_self);
+      EXPECT_TRUE(report.is_free()) << report;
+      EXPECT_GT(nearest, 0.95 * kThickness) << height << " m at " << step_factor;
+      EXPECT_LT(farthest, 1.05 * kThickness) << height << " m at " << step_factor;
+      // Passes end when none moves anything by more than a thousandth of the gap: as high they may lift both cloths.
+      EXPECT_LT(all.energy_growth(), 0.2 * 9.81 * 1e-3 * kThickness) << height << " m at " << step_factor;
+    }
+  }
 }
 
 TEST(RestOfAJelly, ItsWeightIsCarriedAtItsThickness) {
