@@ -43,7 +43,7 @@ ContactSearch::ContactSearch(const CollisionSurface& surface, const SurfaceFeatu
 std::vector<ContactCandidate> ContactSearch::find_candidates(const MovingBalls& balls, const std::vector<char>& marked,
                                                              WatchTimes times) {
   const Search search{balls, marked, times};
-  const std::vector<ElementTree::LeafPair> pairs = tree_.find_pairs(times, largest_reach_, true);
+  const std::vector<ElementTree::LeafPair> pairs = tree_.find_pairs(times, largest_reach_);
   prepare_sides(pairs, times);
   const auto count = static_cast<Index>(pairs.size());
   std::vector<std::vector<ContactCandidate>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
@@ -90,7 +90,9 @@ void ContactSearch::append_corners(const Side& a, const Side& b, const Search& s
                                    std::vector<ContactCandidate>& candidates) const {
   const auto now = static_cast<float>(search.times.now);
   const auto end = static_cast<float>(search.times.end);
+  const bool any_marked = b.leaf->any_marked();
   for (const auto& [lane, k] : a.corners) {
+    if (!any_marked && a.leaf->marked[lane] == 0) continue;
     const auto axes = [lane = lane](const TreeLanes(&x)[3]) { return MovingBounds::Axes{x[0][lane], x[1][lane], x[2][lane]}; };
     const MovingBounds::Axes start = axes(a.leaf->corner[k]);
     const MovingBounds::Axes motion = axes(a.leaf->motion[k]);
@@ -122,12 +124,15 @@ void ContactSearch::append_edges(const Side& a, const Side& b, const Search& sea
   const auto now = static_cast<float>(search.times.now);
   const auto end = static_cast<float>(search.times.end);
   const auto margin = static_cast<float>(largest_reach_);
+  const bool any_marked = b.leaf->any_marked();
   for (int lane = 0; lane < a.leaf->count; ++lane) {
-    if (!a.sharp[lane]) continue;
+    const bool is_marked = a.leaf->marked[lane] != 0;
+    if (!a.sharp[lane] || (!is_marked && !any_marked)) continue;
     const MovingBounds bounds = a.leaf->lane_bounds(lane);
     if (are_apart(bounds, b.leaf->bounds, now, end, margin)) continue;
     for (int other = &a == &b ? lane + 1 : 0; other < b.leaf->count; ++other) {
-      if (!b.sharp[other] || are_apart(bounds, b.leaf->lane_bounds(other), now, end, margin)) continue;
+      if (!b.sharp[other] || (!is_marked && b.leaf->marked[other] == 0)) continue;
+      if (are_apart(bounds, b.leaf->lane_bounds(other), now, end, margin)) continue;
       append_edges_of(a.leaf->element[static_cast<std::size_t>(lane)], b.leaf->element[static_cast<std::size_t>(other)], search,
                       candidates);
     }

@@ -73,36 +73,49 @@ Index ElementTree::add_node(Index begin, Index end, Index body) {
   return static_cast<Index>(number);
 }
 
-void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<char>& marked,
-                        WatchTimes times) {
+void ElementTree::mark(const std::vector<char>& marked) {
   parallel_chunks(static_cast<Index>(leaves_.size()), kLeavesPerTask, [&](Index begin, Index end) {
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
       ElementLeaf& leaf = leaves_[k];
       for (int lane = 0; lane < leaf.count; ++lane) {
         const Index number = leaf.element[static_cast<std::size_t>(lane)];
-        const bool is_marked = marked[static_cast<std::size_t>(number)] != 0;
-        leaf.marked[lane] = is_marked ? -1 : 0;
-        if (is_marked) leaf.set(lane, number, surface_.elements[static_cast<std::size_t>(number)], balls, flat, times);
+        leaf.marked[lane] = marked[static_cast<std::size_t>(number)] != 0 ? -1 : 0;
       }
-      if (leaf.any_marked()) leaf.bound();
     }
   });
-  for (std::size_t k = nodes_.size(); k-- > 0;) bound_node(nodes_[k]);
+  for (std::size_t k = nodes_.size(); k-- > 0;) {
+    Node& node = nodes_[k];
+    node.marked = node.leaf != kNone ? leaf(node.leaf).any_marked() : this->node(node.left).marked || this->node(node.right).marked;
+  }
+}
+
+void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<char>& marked,
+                        WatchTimes times) {
+  mark(marked);
+  parallel_chunks(static_cast<Index>(leaves_.size()), kLeavesPerTask, [&](Index begin, Index end) {
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      ElementLeaf& leaf = leaves_[k];
+      if (!leaf.any_marked()) continue;
+      for (int lane = 0; lane < leaf.count; ++lane) {
+        if (leaf.marked[lane] == 0) continue;
+        const Index number = leaf.element[static_cast<std::size_t>(lane)];
+        leaf.set(lane, number, surface_.elements[static_cast<std::size_t>(number)], balls, flat, times);
+      }
+      leaf.bound();
+    }
+  });
+  for (std::size_t k = nodes_.size(); k-- > 0;) {
+    if (nodes_[k].marked) bound_node(nodes_[k]);
+  }
 }
 
 void ElementTree::bound_node(Node& node) const {
   if (node.leaf != kNone) {
-    const ElementLeaf& leaf = leaves_[static_cast<std::size_t>(node.leaf)];
-    node.marked = leaf.any_marked();
-    node.bounds = leaf.bounds;
+    node.bounds = leaf(node.leaf).bounds;
     return;
   }
-  const Node& left = nodes_[static_cast<std::size_t>(node.left)];
-  const Node& right = nodes_[static_cast<std::size_t>(node.right)];
-  node.marked = left.marked || right.marked;
-  if (!node.marked) return;
-  node.bounds = left.bounds;
-  extend(node.bounds, right.bounds);
+  node.bounds = this->node(node.left).bounds;
+  extend(node.bounds, this->node(node.right).bounds);
 }
 
 }  // namespace sprung

@@ -13,8 +13,11 @@ class ElementTree {
   /// Elements of a body that are neighbours at `rest` [m], 3 x n, share a leaf. Keeps a reference to the surface.
   ElementTree(const CollisionSurface& surface, const Points& rest);
 
-  /// Bounds, from time 0 to the end, the balls of the corners of each element that is marked (by element, not 0). Elements that are
-  /// not keep the bounds that they have. `flat`, by particle: see fan_stays_flat().
+  /// Marks elements (by element, not 0) and no others.
+  void mark(const std::vector<char>& marked);
+
+  /// Marks them, and bounds, from time 0 to the end, the balls of their corners. Elements that are not marked keep the bounds that
+  /// they have. `flat`, by particle: see fan_stays_flat().
   void bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<char>& marked, WatchTimes times);
 
   [[nodiscard]] Index leaf_count() const { return static_cast<Index>(leaves_.size()); }
@@ -25,9 +28,9 @@ class ElementTree {
     Index first = kNone;
     Index second = kNone;
   };
-  /// Leaves that may come within `margin` [m] of each other between now and the end and whose bodies may meet; with `marked`, only
-  /// those with an element that was marked in the last call of bound(). The same for any number of threads.
-  [[nodiscard]] std::vector<LeafPair> find_pairs(WatchTimes times, double margin, bool marked) const;
+  /// Leaves that may come within `margin` [m] of each other between now and the end and whose bodies may meet, one of them with an
+  /// element that is marked. The same for any number of threads.
+  [[nodiscard]] std::vector<LeafPair> find_pairs(WatchTimes times, double margin) const;
 
  private:
   struct Node {
@@ -50,7 +53,6 @@ class ElementTree {
     float now;
     float end;
     float margin;
-    bool marked;
   };
 
   void add_leaf(const std::vector<Index>& order, std::size_t begin, std::size_t end);

@@ -10,8 +10,8 @@ constexpr std::size_t kTasks = 128;
 
 }  // namespace
 
-std::vector<ElementTree::LeafPair> ElementTree::find_pairs(WatchTimes times, double margin, bool marked) const {
-  const Search search{static_cast<float>(times.now), static_cast<float>(times.end), static_cast<float>(margin), marked};
+std::vector<ElementTree::LeafPair> ElementTree::find_pairs(WatchTimes times, double margin) const {
+  const Search search{static_cast<float>(times.now), static_cast<float>(times.end), static_cast<float>(margin)};
   const std::vector<NodePair> tasks = find_tasks(search);
   std::vector<std::vector<LeafPair>> parts(tasks.size());
   parallel_chunks(static_cast<Index>(tasks.size()), 1, [&](Index begin, Index end) {
@@ -39,7 +39,7 @@ std::vector<ElementTree::NodePair> ElementTree::find_tasks(const Search& search)
 bool ElementTree::may_meet(NodePair pair, const Search& search) const {
   const Node& a = node(pair.a);
   const Node& b = node(pair.b);
-  if (search.marked && !a.marked && !b.marked) return false;
+  if (!a.marked && !b.marked) return false;
   if (!bodies_may_meet(a.body, b.body)) return false;
   return pair.a == pair.b || !are_apart(a.bounds, b.bounds, search.now, search.end, search.margin);
 }

@@ -156,7 +156,7 @@ void PairWatch::find_candidates() {
   for (const Index i : moved_on_) marked_[static_cast<std::size_t>(i)] = 1;
   marked_list_.swap(moved_on_);
   mark_elements();
-  tree_.bound(balls_, flat_, marked_elements_, {age_, horizon_});
+  tree_.mark(marked_elements_);
   std::erase_if(candidates_, [&](const ContactCandidate& candidate) {
     return std::ranges::any_of(candidate.particles, [&](Index i) { return is_marked(i); });
   });
@@ -168,7 +168,7 @@ void PairWatch::find_candidates() {
 void PairWatch::find_pairs(const Points& before) {
   const WatchTimes times{age_, horizon_};
   const WatchState state{before, balls_, horizon_ - age_, marked_};
-  const std::vector<ElementTree::LeafPair> leaves = tree_.find_pairs(times, 0.0, true);
+  const std::vector<ElementTree::LeafPair> leaves = tree_.find_pairs(times, 0.0);
   const auto count = static_cast<Index>(leaves.size());
   std::vector<std::vector<ElementPair>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
   parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {

@@ -1,6 +1,7 @@
 #include "simulation/limit_handover.h"
 
 namespace sprung {
+
 void hand_over_missed(const SpringNetwork& network, const StretchLimit& limit, double excess, SimulationState& state) {
   const double most = wanted_excess(limit.settings());
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {

@@ -45,6 +45,12 @@ constexpr Index kStepsPerEnergy = 64;
 }  // namespace
 
 struct Simulator::Implementation {
+  /// What contact alone did.
+  struct PushOut {
+    int passes = 0;
+    bool any = false;  ///< whether anything was moved
+  };
+
   Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles);
 
   template <class F, class... Arguments>
@@ -61,7 +67,7 @@ struct Simulator::Implementation {
   void choose_parts(double excess);
   void move_pins(double time);
   void constrain(StepReport& report);
-  int push_out(int most_passes);
+  [[nodiscard]] PushOut push_out(int most_passes);
   void answer_contact();
   void settle(StepReport& report);
   [[nodiscard]] bool relax(Points& positions, double excess_before);
@@ -214,7 +220,7 @@ void Simulator::Implementation::constrain(StepReport& report) {
   const std::optional<int> solves = limit ? limit->solve(step_began(), state.x, fall, state.stretch_holds) : std::nullopt;
   report.limit_solves = solves.value_or(0);
   const int limit_passes = limit ? limit->settings().iterations + (solves ? 1 : 0) : 0;  // after a solve the first only measures
-  if (projects) report.iterations = push_out(kContactPasses - limit_passes);
+  if (projects) report.iterations = push_out(kContactPasses - limit_passes).passes;
   bool settled = false;
   for (int pass = 0; pass < limit_passes && !settled; ++pass) {
     const bool between = pass > 0 && pass + 1 < limit_passes;
@@ -225,23 +231,19 @@ void Simulator::Implementation::constrain(StepReport& report) {
   }
 }
 
-int Simulator::Implementation::push_out(int most_passes) {
-  int passes = 0;
-  while (passes < most_passes) {
-    ++passes;
-    if (contacts.project(state.x) <= kContactTolerance) break;
+Simulator::Implementation::PushOut Simulator::Implementation::push_out(int most_passes) {
+  PushOut done;
+  while (done.passes < most_passes) {
+    const double push = contacts.project(state.x);
+    ++done.passes;
+    done.any = done.any || push > 0.0;
+    if (push <= kContactTolerance) break;
   }
-  return passes;
+  return done;
 }
 
 void Simulator::Implementation::answer_contact() {
-  bool pushed = false;
-  for (int pass = 0; pass < kContactPasses; ++pass) {
-    const double push = contacts.project(state.x);
-    pushed = pushed || push > 0.0;
-    if (push <= kContactTolerance) break;
-  }
-  if (pushed) integrator->answer_contact(advanced, state.x, dt());
+  if (push_out(kContactPasses).any) integrator->answer_contact(advanced, state.x, dt());
 }
 
 void Simulator::Implementation::settle(StepReport& report) {

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace sprung {
 namespace {
@@ -49,66 +51,63 @@ TEST(SelfContactMargin, IsNoLargerThanAsked) {
   EXPECT_EQ(contacts(1.51, 8.0), 0U);
 }
 
-/// From 3 gaps above its own at a speed that takes it there in about `steps`; the sheet makes this part of the way.
-void expect_contact_in_time(int steps, double part_of_sheet) {
-  const double way = 3.1 * kGap / steps;  // [m per step]
-  const SelfNetwork network = sheet_and_particle(4.0 * kGap);
+/// Steps to where `go(step, before)` leads, the first of which is 0, until two sides are nearer than the gap, of which contact is
+/// to tell then; `distance` is that between them.
+template <class Go, class Distance>
+void expect_contact_in_time(const SelfNetwork& network, const Go& go, const Distance& distance) {
   const CollisionSurface surface = network.surface(kGap);
   SelfZones zones(surface, network.positions, 0.5 * kGap);
-  const Index last = network.count() - 1;
   Points x = network.positions;
-  const auto height = [last](const Points& at) { return at(1, last) - at(1, 0); };
-  while (height(x) > kGap) {
-    Points targets = x;
-    const double motion = std::min(way, height(x) - 0.5 * kGap);
-    targets.row(1).head(last).array() += part_of_sheet * motion;
-    targets(1, last) -= (1.0 - part_of_sheet) * motion;
+  for (int step = 0; distance(x) > kGap; ++step) {
+    Points targets = go(step, x);
     std::vector<Contact> found;
     zones.begin_step(x, targets, found);
-    if (height(targets) < kGap) {
-      EXPECT_EQ(found.size(), 1U) << steps << " steps, at " << height(x);
+    if (distance(targets) < kGap) {
+      EXPECT_EQ(found.size(), 1U) << "in step " << step << ", from " << distance(x);
     }
     zones.hold(x, targets);
     x = targets;
   }
 }
 
+/// Of the last particle above the first.
+double height(const Points& x) { return x(1, x.cols() - 1) - x(1, 0); }
+
+/// From 3 gaps above its own at a speed that takes it there in about `steps`; the sheet makes this part of the way.
+void expect_contact_as_they_meet(int steps, double part_of_sheet) {
+  SCOPED_TRACE(std::to_string(steps) + " steps");
+  const auto go = [&](int, const Points& x) {
+    const double motion = std::min(3.1 * kGap / steps, height(x) - 0.5 * kGap);
+    Points targets = x;
+    targets.row(1).array() += part_of_sheet * motion;
+    targets(1, x.cols() - 1) -= motion;
+    return targets;
+  };
+  expect_contact_in_time(sheet_and_particle(4.0 * kGap), go, height);
+}
+
 TEST(SelfContactMargin, WhatComesToASheetIsToldOfWhenItIsNearerThanItsGap) {
-  for (int steps = 1; steps <= 70; ++steps) expect_contact_in_time(steps, 0.0);
+  for (int steps = 1; steps <= 70; ++steps) expect_contact_as_they_meet(steps, 0.0);
 }
 
 TEST(SelfContactMargin, WhatASheetComesToIsToldOfToo) {
   for (int steps = 1; steps <= 70; ++steps) {
-    expect_contact_in_time(steps, 0.5);
-    expect_contact_in_time(steps, 1.0);
+    expect_contact_as_they_meet(steps, 0.5);
+    expect_contact_as_they_meet(steps, 1.0);
   }
 }
 
-/// What turns about an axis through the origin along z, and has come up at x = 1 by this.
-Points turned(const Points& positions, Index count, double slope) {
-  Points x = positions;
-  x.row(1).head(count) += slope * x.row(0).head(count);
-  return x;
-}
-
-/// The first `turning` particles turn towards the rest, of which the last is the nearest, until they are nearer than the gap;
-/// `distance` is that between the two.
+/// The first `turning` particles turn about the z axis towards the rest, of which the last is the nearest, there in so many steps.
 template <class Distance>
 void expect_contact_as_it_turns(const SelfNetwork& network, Index turning, int steps, const Distance& distance) {
-  const CollisionSurface surface = network.surface(kGap);
-  SelfZones zones(surface, network.positions, 0.5 * kGap);
-  const double slope = network.positions(1, network.count() - 1) / network.positions(0, network.count() - 1) / steps;
-  Points x = network.positions;
-  for (int step = 1; distance(x) > kGap; ++step) {
-    Points targets = turned(network.positions, turning, step * slope);
-    std::vector<Contact> found;
-    zones.begin_step(x, targets, found);
-    if (distance(targets) < kGap) {
-      EXPECT_GT(found.size(), 0U) << steps << " steps, at " << distance(x);
-    }
-    zones.hold(x, targets);
-    x = targets;
-  }
+  SCOPED_TRACE(std::to_string(steps) + " steps");
+  const Vector3 last = network.positions.col(network.count() - 1);
+  const auto go = [&](int step, const Points&) {
+    Points targets = network.positions;
+    targets.row(1).head(turning) += (step + 1) * last.y() / last.x() / steps * targets.row(0).head(turning);
+    return targets;
+  };
+  expect_contact_in_time(network, go, distance);
 }
 
 // Above a face whose corners are at different heights.
@@ -138,70 +137,36 @@ TEST(SelfContactMargin, WhatARopeTurnsToIsToldOf) {
   }
 }
 
+/// The particle goes as `move(step)` says [gaps], from so high [gaps].
+template <class Move>
+void expect_contact_on_its_way(double from, const Move& move) {
+  SCOPED_TRACE("from " + std::to_string(from));
+  const auto go = [&](int step, const Points& x) {
+    Points targets = x;
+    targets.rightCols(1) += kGap * move(step);
+    targets(1, x.cols() - 1) = std::max(targets(1, x.cols() - 1), 0.5 * kGap);
+    return targets;
+  };
+  expect_contact_in_time(sheet_and_particle(from * kGap), go, height);
+}
+
 // What hangs above the sheet until it is let go comes faster in each step.
 TEST(SelfContactMargin, WhatFallsFromRestIsToldOf) {
   for (const double gained : {0.001, 0.01, 0.1}) {
-    const SelfNetwork network = sheet_and_particle(4.0 * kGap);
-    const CollisionSurface surface = network.surface(kGap);
-    SelfZones zones(surface, network.positions, 0.5 * kGap);
-    const Index last = network.count() - 1;
-    Points x = network.positions;
-    for (int step = 1; x(1, last) > kGap; ++step) {
-      Points targets = x;
-      targets(1, last) -= std::min(step * gained * kGap, x(1, last) - 0.5 * kGap);
-      std::vector<Contact> found;
-      zones.begin_step(x, targets, found);
-      if (targets(1, last) < kGap) {
-        EXPECT_EQ(found.size(), 1U) << gained;
-      }
-      zones.hold(x, targets);
-      x = targets;
-    }
+    expect_contact_on_its_way(4.0, [&](int step) { return Vector3(0.0, -(step + 1) * gained, 0.0); });
   }
 }
 
 // What goes along the sheet may turn down to it in any step, as fast as it went.
 TEST(SelfContactMargin, WhatTurnsDownIsToldOf) {
-  constexpr double kWay = 0.2 * kGap;  // [m per step]
-  for (double height = 1.02; height < 3.0; height += 0.06) {
-    const SelfNetwork network = sheet_and_particle(height * kGap);
-    const CollisionSurface surface = network.surface(kGap);
-    SelfZones zones(surface, network.positions, 0.5 * kGap);
-    const Index last = network.count() - 1;
-    Points x = network.positions;
-    for (int step = 0; x(1, last) > kGap; ++step) {
-      Points targets = x;
-      targets(step < 5 ? 0 : 1, last) -= kWay;
-      std::vector<Contact> found;
-      zones.begin_step(x, targets, found);
-      if (targets(1, last) < kGap) {
-        EXPECT_EQ(found.size(), 1U) << "from " << height;
-      }
-      zones.hold(x, targets);
-      x = targets;
-    }
+  for (double from = 1.02; from < 3.0; from += 0.06) {
+    expect_contact_on_its_way(from, [](int step) -> Vector3 { return -0.2 * (step < 5 ? Vector3::UnitX() : Vector3::UnitY()); });
   }
 }
 
-/// A particle that stays above the sheet for long, at rest as far as contact is concerned, and then comes down is told of.
-TEST(SelfContactMargin, WhatWaitedIsNotForgotten) {
-  const SelfNetwork network = sheet_and_particle(1.5 * kGap);
-  const CollisionSurface surface = network.surface(kGap);
-  SelfZones zones(surface, network.positions, 0.5 * kGap);
-  const Index last = network.count() - 1;
-  Points x = network.positions;
-  for (int step = 1; step <= 100; ++step) {
-    Points targets = x;
-    targets(1, last) -= step <= 90 ? 1.0e-4 * kGap : 0.07 * kGap;
-    std::vector<Contact> found;
-    zones.begin_step(x, targets, found);
-    if (targets(1, last) < kGap) {
-      EXPECT_EQ(found.size(), 1U) << step;
-    }
-    zones.hold(x, targets);
-    x = targets;
-  }
-  EXPECT_LT(x(1, last), kGap);
+// What waits above the sheet, at rest as far as contact is concerned, is not forgotten.
+TEST(SelfContactMargin, WhatWaitedIsToldOf) {
+  expect_contact_on_its_way(1.5, [](int step) { return Vector3(0.0, step < 90 ? -1.0e-4 : -0.07, 0.0); });
 }
 
 }  // namespace
