@@ -164,6 +164,55 @@ TEST(SelfContactMargin, WhatTurnsDownIsToldOf) {
   }
 }
 
+// What is not looked for again, since nothing leaves its ball, has been looked for as far as both balls let them come.
+TEST(SelfContactMargin, WhatCreepsTogetherIsToldOf) {
+  const auto go = [](int step, const Points& x) {
+    const double motion = step == 0 ? 0.0 : 0.03 * kGap;
+    Points targets = x;
+    targets.row(1).array() += motion;
+    targets(1, x.cols() - 1) -= 2.0 * motion;
+    return targets;
+  };
+  expect_contact_in_time(sheet_and_particle(1.55 * kGap), go, height);
+}
+
+// Either of two segments that cross, the other at rest.
+TEST(SelfContactMargin, WhatFallsAcrossAnEdgeIsToldOf) {
+  for (const Index falling : {0, 2}) {
+    SelfNetwork network;
+    network.add_rope(1, {-0.01, 0.0, 0.0}, 0.02 * Vector3::UnitX());
+    network.add_rope(1, {0.0, 4.0 * kGap, -0.01}, 0.02 * Vector3::UnitZ());
+    const auto go = [&](int step, const Points& x) {
+      const double motion = std::min((step + 1) * 0.01 * kGap, height(x) - 0.5 * kGap);
+      Points targets = x;
+      targets.row(1).segment(falling, 2).array() += falling == 0 ? motion : -motion;
+      return targets;
+    };
+    expect_contact_in_time(network, go, height);
+  }
+}
+
+// Passes and surfaces lead particles elsewhere than forces did: what that brings near is looked for in the next step, whatever else
+// leaves its ball then.
+TEST(SelfContactMargin, WhatPassesLedThereIsToldOf) {
+  SelfNetwork network = sheet_and_particle(1.2 * kGap);
+  network.add_single_particle({0.5, 0.5, 0.5});
+  const Index led = network.count() - 2;
+  const Points above = network.positions;
+  network.positions(0, led) += 0.1;
+  const CollisionSurface surface = network.surface(kGap);
+  SelfZones zones(surface, network.positions, 0.5 * kGap);
+  std::vector<Contact> found;
+  zones.begin_step(network.positions, network.positions, found);
+  zones.hold(network.positions, above);
+  ASSERT_TRUE(found.empty());
+  Points targets = above;
+  targets(1, led) = 0.9 * kGap;
+  targets(0, led + 1) += 1.0;
+  zones.begin_step(above, targets, found);
+  EXPECT_EQ(found.size(), 1U);
+}
+
 // What waits above the sheet, at rest as far as contact is concerned, is not forgotten.
 TEST(SelfContactMargin, WhatWaitedIsToldOf) {
   expect_contact_on_its_way(1.5, [](int step) { return Vector3(0.0, step < 90 ? -1.0e-4 : -0.07, 0.0); });
