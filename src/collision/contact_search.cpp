@@ -158,9 +158,7 @@ void ContactSearch::append_if_near(ContactCandidate candidate, const Search& sea
                                    std::vector<ContactCandidate>& candidates) const {
   const auto is_marked = [&](Index i) { return search.marked[static_cast<std::size_t>(i)] != 0; };
   if (std::ranges::none_of(candidate.particles, is_marked)) return;
-  const Index first = candidate.particles[0];
-  const Index second = candidate.particles[candidate.edges ? 2 : 1];
-  const double stray = search.balls.radius(first) + search.balls.radius(second);
+  const double stray = largest_stray(candidate, search);
   candidate.gap = 0.5 * (thickness(candidate.elements[0]) + thickness(candidate.elements[1]));
   candidate.reach = candidate.gap + margin_;
   const double distance = least_distance(candidate, search);
@@ -174,6 +172,13 @@ void ContactSearch::append_if_near(ContactCandidate candidate, const Search& sea
     if (distance - stray > candidate.reach) return;
   }
   candidates.push_back(candidate);
+}
+
+/// By how much particles in their balls may be nearer to each other than the balls' middles.
+double ContactSearch::largest_stray(const ContactCandidate& candidate, const Search& search) {
+  const auto radius = [&](std::size_t k) { return search.balls.radius(candidate.particles[k]); };
+  return candidate.edges ? std::max(radius(0), radius(1)) + std::max(radius(2), radius(3))
+                         : radius(0) + std::max({radius(1), radius(2), radius(3)});
 }
 
 /// Along a fixed direction what lies between them is least now or at the end.

@@ -46,6 +46,7 @@ class ContactSearch {
   void append_edges_of(Index first, Index second, const Search& search, std::vector<ContactCandidate>& candidates) const;
   void append_if_near(ContactCandidate candidate, const Search& search, std::vector<ContactCandidate>& candidates) const;
   /// A lower bound of the distance of their balls' centers until the end; sets the normal.
+  [[nodiscard]] static double largest_stray(const ContactCandidate& candidate, const Search& search);
   [[nodiscard]] static double least_distance(ContactCandidate& candidate, const Search& search);
   [[nodiscard]] bool owns_sharp_edge(Index number) const;
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }

@@ -164,16 +164,31 @@ TEST(SelfContactMargin, WhatTurnsDownIsToldOf) {
   }
 }
 
+/// Each particle rises by `rise` times a small part of the gap, once balls are placed.
+Points creep(const Points& x, int step, const Scalars& rise) {
+  Points targets = x;
+  if (step > 0) targets.row(1) += 0.03 * kGap * rise.transpose();
+  return targets;
+}
+
 // What is not looked for again, since nothing leaves its ball, has been looked for as far as both balls let them come.
 TEST(SelfContactMargin, WhatCreepsTogetherIsToldOf) {
-  const auto go = [](int step, const Points& x) {
-    const double motion = step == 0 ? 0.0 : 0.03 * kGap;
-    Points targets = x;
-    targets.row(1).array() += motion;
-    targets(1, x.cols() - 1) -= 2.0 * motion;
-    return targets;
-  };
-  expect_contact_in_time(sheet_and_particle(1.55 * kGap), go, height);
+  const SelfNetwork network = sheet_and_particle(1.55 * kGap);
+  Scalars rise = Scalars::Ones(network.count());
+  rise(network.count() - 1) = -1.0;
+  expect_contact_in_time(network, [&](int step, const Points& x) { return creep(x, step, rise); }, height);
+}
+
+// The end of a long segment has a larger ball than the end that it shares with a short one.
+TEST(SelfContactMargin, WhatCreepsTogetherAtAnEndIsToldOf) {
+  SelfNetwork network;
+  network.add_rope(2, Vector3::Zero(), 0.04 * Vector3::UnitX());
+  network.positions(0, 1) = 0.005;
+  network.add_rope(1, {0.0799, 2.55 * kGap, -0.01}, 0.02 * Vector3::UnitZ());
+  Scalars rise = Scalars::Zero(network.count());
+  rise << 0.0, 0.0, 2.0, -1.0, -1.0;
+  const auto apart = [](const Points& x) { return x(1, 3) - x(1, 2); };
+  expect_contact_in_time(network, [&](int step, const Points& x) { return creep(x, step, rise); }, apart);
 }
 
 // Either of two segments that cross, the other at rest.
@@ -195,11 +210,11 @@ TEST(SelfContactMargin, WhatFallsAcrossAnEdgeIsToldOf) {
 // Passes and surfaces lead particles elsewhere than forces did: what that brings near is looked for in the next step, whatever else
 // leaves its ball then.
 TEST(SelfContactMargin, WhatPassesLedThereIsToldOf) {
-  SelfNetwork network = sheet_and_particle(1.2 * kGap);
+  SelfNetwork network = sheet_and_particle(2.3 * kGap);
   network.add_single_particle({0.5, 0.5, 0.5});
   const Index led = network.count() - 2;
   const Points above = network.positions;
-  network.positions(0, led) += 0.1;
+  network.positions(1, led) = 4.0 * kGap;
   const CollisionSurface surface = network.surface(kGap);
   SelfZones zones(surface, network.positions, 0.5 * kGap);
   std::vector<Contact> found;
