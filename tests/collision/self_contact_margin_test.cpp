@@ -176,7 +176,8 @@ TEST(SelfContactMargin, WhatCreepsTogetherIsToldOf) {
   const SelfNetwork network = sheet_and_particle(1.55 * kGap);
   Scalars rise = Scalars::Ones(network.count());
   rise(network.count() - 1) = -1.0;
-  expect_contact_in_time(network, [&](int step, const Points& x) { return creep(x, step, rise); }, height);
+  expect_contact_in_time(
+      network, [&](int step, const Points& x) { return creep(x, step, rise); }, height);
 }
 
 // The end of a long segment has a larger ball than the end that it shares with a short one.
@@ -188,7 +189,8 @@ TEST(SelfContactMargin, WhatCreepsTogetherAtAnEndIsToldOf) {
   Scalars rise = Scalars::Zero(network.count());
   rise << 0.0, 0.0, 2.0, -1.0, -1.0;
   const auto apart = [](const Points& x) { return x(1, 3) - x(1, 2); };
-  expect_contact_in_time(network, [&](int step, const Points& x) { return creep(x, step, rise); }, apart);
+  expect_contact_in_time(
+      network, [&](int step, const Points& x) { return creep(x, step, rise); }, apart);
 }
 
 // Either of two segments that cross, the other at rest.
@@ -226,6 +228,22 @@ TEST(SelfContactMargin, WhatPassesLedThereIsToldOf) {
   targets(0, led + 1) += 1.0;
   zones.begin_step(above, targets, found);
   EXPECT_EQ(found.size(), 1U);
+}
+
+// One end of a segment above the sheet leaves its ball, the other does not.
+TEST(SelfContactMargin, WhatStayedIsToldOfOnce) {
+  SelfNetwork network = sheet_and_particle(100.0 * kGap);
+  network.add_rope(1, {0.0123, 0.9 * kGap, 0.0171}, {0.011, 0.0, 0.004});
+  const CollisionSurface surface = network.surface(kGap);
+  SelfZones zones(surface, network.positions, 0.5 * kGap);
+  std::vector<Contact> found;
+  zones.begin_step(network.positions, network.positions, found);
+  EXPECT_EQ(found.size(), 2U);
+  Points targets = network.positions;
+  targets(0, network.count() - 1) += 0.5 * kGap;
+  found.clear();
+  zones.begin_step(network.positions, targets, found);
+  EXPECT_EQ(found.size(), 2U);
 }
 
 // What waits above the sheet, at rest as far as contact is concerned, is not forgotten.
