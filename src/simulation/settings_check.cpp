@@ -45,7 +45,7 @@ std::string names_of(const std::vector<SpringKind>& kinds) {
 
 }  // namespace
 
-void check_settings(const SimulatorSettings& settings) {
+SimulatorSettings checked_settings(SimulatorSettings settings) {
   Rules rules;
   rules.require_finite("gravity", settings.gravity);
   rules.require_between("air_drag", settings.air_drag, 0.0, kInfinity);
@@ -64,6 +64,7 @@ void check_settings(const SimulatorSettings& settings) {
   rules.require_between("contact.stiffness", settings.contact.stiffness, 0.0, kInfinity);
   rules.require_between("contact.damping", settings.contact.damping, 0.0, kInfinity);
   rules.throw_if_broken();
+  return settings;
 }
 
 std::vector<std::string> idle_settings(const SimulatorSettings& settings, const SpringNetwork& network) {

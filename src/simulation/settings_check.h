@@ -9,9 +9,9 @@
 
 namespace sprung {
 
-/// Throws InputError naming every setting that is not finite, or out of the bounds that its declaration gives. The step is left to
-/// `check_step`.
-void check_settings(const SimulatorSettings& settings);
+/// Returns the settings. Throws InputError naming every one that is not finite, or out of the bounds that its declaration gives.
+/// The step is left to `check_step`.
+[[nodiscard]] SimulatorSettings checked_settings(SimulatorSettings settings);
 
 /// What the user should be told of settings that do nothing for this network: a stretch limit of kinds that no spring has.
 [[nodiscard]] std::vector<std::string> idle_settings(const SimulatorSettings& settings, const SpringNetwork& network);

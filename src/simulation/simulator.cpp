@@ -2,7 +2,6 @@
 
 #include "dynamics/angle_force.h"
 #include "dynamics/body_forces.h"
-#include "dynamics/contact_projection.h"
 #include "dynamics/penalty_contact.h"
 #include "dynamics/spring_force.h"
 #include "simulation/divergence.h"
@@ -11,6 +10,7 @@
 #include "simulation/settings_check.h"
 #include "simulation/start.h"
 #include "simulation/step_check.h"
+#include "simulation/step_constraints.h"
 #include "simulation/step_refinement.h"
 
 #include <algorithm>
@@ -19,22 +19,6 @@
 
 namespace sprung {
 namespace {
-
-// Passes of contact when no stretch limit asks for more: enough for a particle in a corner between obstacles to settle.
-constexpr int kContactPasses = 8;
-
-// Passes end when none pushes a particle by more than this part of its gap.
-constexpr double kContactTolerance = 1.0e-3;
-
-// Corrections of stretch between the first pass and the last are so many times what is needed: of a hanging cloth's excess a third
-// is left. But a spring on its own, which the first pass brings onto its limit, must not bounce there.
-constexpr double kRelaxation = 1.8;
-
-// Where surfaces stop particles short of where the passes led them, springs lead them and their neighbours on, at most so often,
-// by so many passes each time, as many in all as the limit has: zones are made again before particles are far from where they were
-// safe.
-constexpr int kRelaxRounds = 16;
-constexpr int kRelaxPasses = 2;
 
 // Springs are looked at for one that gave way each step, large networks less often: about so many springs a step.
 constexpr Index kSpringsCheckedPerStep = 8192;
@@ -45,12 +29,6 @@ constexpr Index kStepsPerEnergy = 64;
 }  // namespace
 
 struct Simulator::Implementation {
-  /// What contact alone did.
-  struct PushOut {
-    int passes = 0;
-    bool any = false;  ///< whether anything was moved
-  };
-
   Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles);
 
   template <class F, class... Arguments>
@@ -66,20 +44,11 @@ struct Simulator::Implementation {
   StepReport make_part();
   void choose_parts(double excess);
   void move_pins(double time);
-  void constrain(StepReport& report);
-  [[nodiscard]] PushOut push_out(int most_passes);
-  void answer_contact();
-  void settle(StepReport& report);
-  [[nodiscard]] bool relax(Points& positions, double excess_before);
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] Energies energies() const;
   void check_state();
   void check_energy(const Energies& now) const;
   void fail(StepFailure failure) const;
-  [[nodiscard]] bool projects_contacts() const;
-  [[nodiscard]] bool copies_positions() const { return contacts.meets_anything() || !integrator->keeps_positions(); }
-  [[nodiscard]] const Points& step_began() const { return copies_positions() ? before : state.x_previous; }
-  [[nodiscard]] StepMotion motion() const { return {before, v_before, advanced, dt()}; }
   [[nodiscard]] double dt() const { return std::ldexp(settings.step, -state.halvings); }
   [[nodiscard]] double time() const { return static_cast<double>(parts_done(state)) * dt(); }
 
@@ -94,36 +63,31 @@ struct Simulator::Implementation {
   const AngleForce* angles = nullptr;  ///< when the network has angle bends
   PenaltyContact* penalty = nullptr;   ///< when contact answers by forces
   std::unique_ptr<Integrator> integrator;
-  std::optional<StretchLimit> limit;
+  StepConstraints constraints;
   std::optional<StepRefinement> refinement;  ///< when steps may be made in parts
-  ContactProjection contacts;
+  bool waits_for_turn;                       ///< see StretchLimit::may_follow_turn
   DivergenceCheck divergence;
   EnergyWatch energy_watch;
   SimulationState state;
-
-  // Within a step: where it began, and where the forces alone would have ended it.
-  Points before;    ///< for contact, and where the integrator does not keep them
-  Points v_before;  ///< for contact alone
-  Points advanced;  ///< for contact, and for integrators that need it
 };
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles)
     : network(std::move(model)),
-      settings(std::move(chosen)),
+      settings(checked_settings(std::move(chosen))),
       environment(std::move(obstacles)),
       bounds(simulation_bounds(network, settings, !environment.obstacles().empty())),
       warnings(check_step(settings, bounds)),
       integrator(make_integrator(settings.integrator, network)),
-      contacts(network, environment),
+      constraints(network, settings, settings.gravity.norm() + bounds.drag * settings.wind.norm(), environment, *integrator),
+      waits_for_turn(constraints.limit() != nullptr && constraints.limit()->may_follow_turn()),
       divergence(network),
       energy_watch(network, settings, environment.obstacles()),
       state(initial_state(network)) {
-  check_settings(settings);
-  const bool may_meet_anything = !environment.obstacles().empty() || bodies_may_meet(network);
-  if (settings.stretch_limit) limit.emplace(network, *settings.stretch_limit, may_meet_anything);
-  if (limit && settings.most_halvings > 0) refinement.emplace(*settings.stretch_limit, settings.most_halvings);
-  const bool needs_parts = limit && (limit->may_follow_turn() || (limit->follows_turn() && anything_moves()));
-  if (refinement && needs_parts) state.halvings = settings.most_halvings;
+  const StretchLimit* limit = constraints.limit();
+  if (limit != nullptr && settings.most_halvings > 0) {
+    refinement.emplace(limit->settings(), settings.most_halvings);
+    if (waits_for_turn || (limit->follows_turn() && anything_moves())) state.halvings = settings.most_halvings;
+  }
   gravity = add_force<Gravity>(settings.gravity);
   springs = add_force<SpringForce>();
   if (network.angle_bends.count() > 0) angles = add_force<AngleForce>();
@@ -152,24 +116,20 @@ StepReport Simulator::Implementation::step() {
   StepReport report;
   for (int part = 0; part < parts; ++part) report += make_part();
   if (refinement) choose_parts(report.stretch_excess);
-  if (limit) hand_over_missed(network, *limit, report.stretch_excess, state);
+  if (const StretchLimit* limit = constraints.limit()) hand_over_missed(network, *limit, report.stretch_excess, state);
   return report;
 }
 
 StepReport Simulator::Implementation::make_part() {
   const double t = time();
   const double t_end = static_cast<double>(parts_done(state) + 1) * dt();
-  if (copies_positions()) before = state.x;
-  if (contacts.meets_anything()) v_before = state.v;
-
+  constraints.begin(state);
   integrator->advance(state, forces, dt());
   environment.set_interval(t, t_end);
   move_pins(t_end);
-  if (contacts.meets_anything() || (limit && integrator->needs_advanced())) advanced = state.x;
 
   StepReport report{.parts = 1};
-  constrain(report);
-  settle(report);
+  constraints.hold(state, dt(), report);
   if (++state.part == 1 << state.halvings) {
     ++state.step;
     state.part = 0;
@@ -181,9 +141,10 @@ StepReport Simulator::Implementation::make_part() {
 
 void Simulator::Implementation::choose_parts(double excess) {
   const double dt_before = dt();
-  if (limit->follows_turn(state.stretch_holds)) {
-    refinement->choose_by_turn(limit->turn(), state);
-  } else if (!limit->may_follow_turn()) {
+  const StretchLimit& limit = *constraints.limit();
+  if (limit.follows_turn(state.stretch_holds)) {
+    refinement->choose_by_turn(limit.turn(), state);
+  } else if (!waits_for_turn) {
     refinement->choose(excess, state);
   }
   if (dt() == dt_before) return;
@@ -208,73 +169,8 @@ void Simulator::Implementation::move_pins(double time) {
   }
 }
 
-// Where contact and springs want particles elsewhere, what speaks last is held, and the other is off by what a pass moves. That is
-// the gap, of which truncation leaves half: contact in the end would draw what hangs over a tip longer by as much, with few passes
-// by a fifth of its length and more.
-void Simulator::Implementation::constrain(StepReport& report) {
-  const bool projects = projects_contacts();
-  if (!projects && !limit) return;
-  if (projects) contacts.find(motion());
-  if (projects && integrator->answers_contact()) answer_contact();
-  const double fall = (settings.gravity.norm() + bounds.drag * settings.wind.norm()) * dt() * dt();
-  const std::optional<int> solves = limit ? limit->solve(step_began(), state.x, fall, state.stretch_holds) : std::nullopt;
-  report.limit_solves = solves.value_or(0);
-  const int limit_passes = limit ? limit->settings().iterations + (solves ? 1 : 0) : 0;  // after a solve the first only measures
-  if (projects) report.iterations = push_out(kContactPasses - limit_passes).passes;
-  bool settled = false;
-  for (int pass = 0; pass < limit_passes && !settled; ++pass) {
-    const bool between = pass > 0 && pass + 1 < limit_passes;
-    const double push = projects ? contacts.project(state.x) : 0.0;
-    const double excess = solves && pass == 0 ? limit->excess(state.x) : limit->project(state.x, between ? kRelaxation : 1.0);
-    settled = excess <= limit->settings().tolerance && push <= kContactTolerance;
-    ++report.iterations;
-  }
-}
-
-Simulator::Implementation::PushOut Simulator::Implementation::push_out(int most_passes) {
-  PushOut done;
-  while (done.passes < most_passes) {
-    const double push = contacts.project(state.x);
-    ++done.passes;
-    done.any = done.any || push > 0.0;
-    if (push <= kContactTolerance) break;
-  }
-  return done;
-}
-
-void Simulator::Implementation::answer_contact() {
-  if (push_out(kContactPasses).any) integrator->answer_contact(advanced, state.x, dt());
-}
-
-void Simulator::Implementation::settle(StepReport& report) {
-  if (!contacts.meets_anything() && !limit) return;
-  report.stretch_excess = limit ? limit->excess(state.x) : 0.0;
-  const int most_rounds = limit ? std::min(kRelaxRounds, limit->settings().iterations / kRelaxPasses) : 0;
-  int rounds = 0;
-  const auto relax_again = [&](Points& positions) { return rounds++ < most_rounds && relax(positions, report.stretch_excess); };
-  if (contacts.meets_anything()) contacts.truncate(before, state.x, relax_again);
-  integrator->recover_velocities(state, step_began(), advanced, dt());
-  if (contacts.meets_anything()) contacts.settle_velocities(motion(), state, *integrator);
-  report.truncated = contacts.truncated_count();
-  report.squeezed = contacts.squeezed_count();
-  if (limit && (rounds > 0 || report.truncated > 0)) report.stretch_excess = limit->excess(state.x);
-}
-
-// What truncation stopped met something that no contact told of: those are found where it is now. What springs were too long before
-// is none of truncation's doing, unless it is more than they may be longer altogether: then passes are wanted in any case.
-bool Simulator::Implementation::relax(Points& positions, double excess_before) {
-  const StretchLimitSettings& limits = limit->settings();
-  if (limit->excess(positions) <= std::max(limits.tolerance, std::min(excess_before, limits.max_stretch))) return false;
-  if (projects_contacts()) contacts.find_again(motion(), positions);
-  for (int pass = 0; pass < kRelaxPasses; ++pass) {
-    if (projects_contacts()) contacts.project(positions);
-    limit->project(positions);
-  }
-  return true;
-}
-
 void Simulator::Implementation::check_state() {
-  if (const auto failure = divergence.not_finite(state, step_began())) fail(*failure);
+  if (const auto failure = divergence.not_finite(state, constraints.step_began(state))) fail(*failure);
   const Index check_interval = 1 + network.springs.count() / kSpringsCheckedPerStep;
   if (state.step % check_interval == 0) {
     if (const auto failure = divergence.overstretched(state.x)) fail(*failure);
@@ -311,10 +207,6 @@ void Simulator::Implementation::fail(StepFailure failure) const {
   throw StepError(std::move(failure));
 }
 
-bool Simulator::Implementation::projects_contacts() const {
-  return settings.contact.response == ContactSettings::Response::projection && contacts.meets_anything();
-}
-
 StepReport& StepReport::operator+=(const StepReport& part) {
   parts += part.parts;
   iterations += part.iterations;
@@ -342,12 +234,13 @@ double Simulator::gravity_energy() const { return implementation_->gravity->ener
 double Simulator::elastic_energy() const { return implementation_->elastic_energy(); }
 
 std::string Simulator::stretch_solver() const {
-  return implementation_->limit ? implementation_->limit->chosen_solver() : std::string();
+  const StretchLimit* limit = implementation_->constraints.limit();
+  return limit != nullptr ? limit->chosen_solver() : std::string();
 }
 
 Index Simulator::contact_count() const {
   return implementation_->penalty != nullptr ? implementation_->penalty->contact_count(state().x)
-                                             : implementation_->contacts.contact_count();
+                                             : implementation_->constraints.contacts().contact_count();
 }
 
 void Simulator::check() const {
