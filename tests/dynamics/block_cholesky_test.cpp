@@ -193,17 +193,22 @@ TYPED_TEST(BlockCholeskyOf, PowersOfTwoScaleItExactly) {
   std::mt19937 random(6);
   const Pairs pairs = cloth_pairs(9);
   const BlockMatrix matrix = random_matrix(81, pairs, random);
-  BlockMatrix scaled(81, pairs);
-  scaled.add_scaled(matrix, 0x1p-31);
   const Points right = Points::Random(3, 81);
   BlockCholesky<Number> factor(matrix);
   Points expected;
   ASSERT_TRUE(factor.factor(matrix));
   factor.solve(right, expected);
-  Points solution;
-  ASSERT_TRUE(factor.factor(scaled));
-  factor.solve(right, solution);
-  EXPECT_EQ(solution, 0x1p31 * expected);
+  // Also far beyond what a float holds.
+  for (const int of_matrix : {-31, 0, -180, 180}) {
+    for (const int of_right : {0, -180, 180}) {
+      BlockMatrix scaled(81, pairs);
+      scaled.add_scaled(matrix, std::ldexp(1.0, of_matrix));
+      ASSERT_TRUE(factor.factor(scaled)) << of_matrix;
+      Points solution;
+      factor.solve(std::ldexp(1.0, of_right) * right, solution);
+      EXPECT_EQ(solution, std::ldexp(1.0, of_right - of_matrix) * expected) << of_matrix << ", " << of_right;
+    }
+  }
 }
 
 }  // namespace

@@ -179,6 +179,17 @@ TEST(StretchLimit, HoldsOnlyTheKindsItIsGiven) {
   EXPECT_GT(StretchLimit(network, {.max_stretch = 0.0, .kinds = kAllKinds}).excess(network.positions), 0.3);
 }
 
+TEST(StretchLimit, MeasuresTheExcessOfABodyByItsKinds) {
+  SpringNetwork network = make_test_cloth(2, 0.0, 0.0);
+  network.positions.row(0) *= 1.5;
+  const auto excess_of_body = [&](std::vector<SpringKind> kinds) {
+    return StretchLimit(network, {.max_stretch = 0.0, .kinds = std::move(kinds)}).excess(network.positions, network.bodies[0]);
+  };
+  EXPECT_NEAR(excess_of_body({SpringKind::structural}), 0.5, 4 * kEpsilon);
+  // A diagonal whose one leg is longer by a half.
+  EXPECT_NEAR(excess_of_body({SpringKind::shear}), std::sqrt(0.5 * (1.0 + 1.5 * 1.5)) - 1.0, 8 * kEpsilon);
+}
+
 TEST(StretchLimit, ReachesItsLimit) {
   // A free cloth stretched by a half in one direction: passes converge, and then nothing is left beyond the tolerance.
   SpringNetwork network = make_test_cloth(12, 0.0, 0.0, false);
