@@ -132,6 +132,38 @@ TEST(SelfZones, AParticleThrownAtASheetStaysOnItsSide) {
   EXPECT_LT((x - network.positions).leftCols(last).colwise().norm().maxCoeff(), kThickness) << "the sheet is not carried away";
 }
 
+// An eighth of it, where both had more: what goes on from there has room to turn.
+TEST(SelfZones, AParticleThrownAtASheetKeepsAPartOfTheThickness) {
+  SelfNetwork network = cloth_of(4);
+  network.add_single_particle({0.0123, 0.02, 0.0171});
+  const CollisionSurface surface = network.surface(kThickness);
+  SelfZones zones(surface, network.positions, kMargin);
+  const Index last = network.count() - 1;
+  for (const double fall : {0.021, 0.05}) {
+    Points ends = network.positions;
+    ends(1, last) -= fall;
+    std::vector<Contact> contacts;
+    zones.begin_step(network.positions, ends, contacts);
+    const std::vector<Index> held = zones.hold(network.positions, ends);
+    EXPECT_THAT(held, testing::Contains(last)) << fall;
+    for (const Index i : held) ends.col(i) = zones.safe_place(i);
+    EXPECT_NEAR(ends(1, last) - ends.row(1).head(last).maxCoeff(), kThickness / 8.0, 1e-12 * fall) << fall;
+  }
+}
+
+// Pairs are listed for as far as the ball reaches: beyond it there may be anything.
+TEST(SelfZones, NoPlaceOutsideAParticlesBallIsAllowed) {
+  const SelfNetwork network = cloth_of(2);
+  const CollisionSurface surface = network.surface(kThickness);
+  SelfZones zones(surface, network.positions, kMargin);
+  std::vector<Contact> contacts;
+  zones.begin_step(network.positions, network.positions, contacts);
+  EXPECT_THAT(zones.hold(network.positions, network.positions), testing::IsEmpty());
+  const SelfZones::Ball ball = zones.ball(0);
+  EXPECT_TRUE(zones.allows(0, ball.center - 0.99 * ball.radius * kY));
+  EXPECT_FALSE(zones.allows(0, ball.center - 1.01 * ball.radius * kY));
+}
+
 /// Each step takes it half of the way to the sheet, but never below what rounding, 2^-53 of the coordinates, cannot take away.
 TEST(SelfZones, AParticleThatComesNearerEachStepKeepsClear) {
   SelfNetwork network = cloth_of(4);
