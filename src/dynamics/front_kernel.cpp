@@ -152,13 +152,38 @@ template <int kVectors, class Number>
   return true;
 }
 
+template <class Lanes>
+[[gnu::always_inline]] inline void add_lanes(const NumberOf<Lanes>* from, NumberOf<Lanes>* to) {
+  Lanes added;
+  Lanes sum;
+  load_lanes(from, added);
+  load_lanes(to, sum);
+  sum += added;
+  store_lanes(sum, to);
+}
+
 template <class Number>
-[[gnu::always_inline]] inline void add_panel(std::span<const Index> columns, std::span<const Index> rows, const Number* child,
+[[gnu::always_inline]] inline void add_numbers(const Number* from, Index count, Number* to) {
+  Index k = 0;
+  for (; k + 2 * kLanes <= count; k += 2 * kLanes) add_lanes<typename LanesOf<Number, 2 * kLanes>::Type>(from + k, to + k);
+  for (; k + kLanes <= count; k += kLanes) add_lanes<typename LanesOf<Number, kLanes>::Type>(from + k, to + k);
+  for (; k < count; ++k) to[k] += from[k];
+}
+
+// Rows above the diagonal that share a tile with others are added too: they are not meant, before and after.
+template <class Number>
+[[gnu::always_inline]] inline void add_panel(std::span<const Index> columns, const PanelRows& rows, const Number* child,
                                              Index child_height, Number* panel) {
-  for (std::size_t j = 0; j < 3 * columns.size(); ++j) {
-    const Number* const from = child + j * static_cast<std::size_t>(child_height);
-    Number* const to = panel + (columns[j / 3] + static_cast<Index>(j % 3)) * kLanes;
-    for (std::size_t k = j; k < rows.size(); ++k) to[rows[k]] += from[k];
+  using Lanes = typename LanesOf<Number, kLanes>::Type;
+  auto whole = rows.whole.begin();
+  auto single = rows.single.begin();
+  for (Index j = 0; j < 3 * static_cast<Index>(columns.size()); ++j) {
+    const Number* const from = child + static_cast<std::size_t>(j) * static_cast<std::size_t>(child_height);
+    Number* const to = panel + (columns[static_cast<std::size_t>(j) / 3] + j % 3) * kLanes;
+    while (whole != rows.whole.end() && whole->from + kLanes <= j) ++whole;
+    while (single != rows.single.end() && single->from < j) ++single;
+    for (auto row = whole; row != rows.whole.end(); ++row) add_lanes<Lanes>(from + row->from, to + row->to);
+    for (auto row = single; row != rows.single.end(); ++row) to[row->to] += from[row->from];
   }
 }
 
@@ -171,10 +196,8 @@ template <class Number>
     for (Index q = 0; q < runs[first].length; ++q) {
       const Number* const from = child + static_cast<std::size_t>(runs[first].from + q) * from_height;
       Number* const to = update + static_cast<std::size_t>(runs[first].to + q) * to_height;
-      for (Index k = q; k < runs[first].length; ++k) to[runs[first].to + k] += from[runs[first].from + k];
-      for (const RowRun& run : runs.subspan(first + 1)) {
-        for (Index k = 0; k < run.length; ++k) to[run.to + k] += from[run.from + k];
-      }
+      add_numbers(from + runs[first].from + q, runs[first].length - q, to + runs[first].to + q);
+      for (const RowRun& run : runs.subspan(first + 1)) add_numbers(from + run.from, run.length, to + run.to);
     }
   }
 }
@@ -195,11 +218,11 @@ SPRUNG_WIDE_KERNEL bool eliminate_front_wide(const FrontShape& shape, float* pan
   return eliminate<2>(shape, panel, inverse, update, row);
 }
 
-SPRUNG_KERNEL void add_to_panel(std::span<const Index> columns, std::span<const Index> rows, const double* child,
-                                Index child_height, double* panel) {
+SPRUNG_KERNEL void add_to_panel(std::span<const Index> columns, const PanelRows& rows, const double* child, Index child_height,
+                                double* panel) {
   add_panel(columns, rows, child, child_height, panel);
 }
-SPRUNG_KERNEL void add_to_panel(std::span<const Index> columns, std::span<const Index> rows, const float* child, Index child_height,
+SPRUNG_KERNEL void add_to_panel(std::span<const Index> columns, const PanelRows& rows, const float* child, Index child_height,
                                 float* panel) {
   add_panel(columns, rows, child, child_height, panel);
 }

@@ -5,6 +5,7 @@
 #include "dynamics/lane_count.h"
 
 #include <span>
+#include <vector>
 
 namespace sprung {
 
@@ -55,14 +56,22 @@ struct RowRun {
   Index length;
 };
 
-/// Adds what a child hands on to its parent's own columns, before the parent is eliminated. `columns` are those of the child's
-/// first rows below, each the first of three; `rows` says where each of all its rows begins in the parent's panel.
-void add_to_panel(std::span<const Index> columns, std::span<const Index> rows, const double* child, Index child_height,
-                  double* panel);
-void add_to_panel(std::span<const Index> columns, std::span<const Index> rows, const float* child, Index child_height,
-                  float* panel);
+/// Where the rows that a front hands on begin in its parent's panel, in ascending order.
+struct PanelRows {
+  struct Place {
+    Index from;
+    Index to;
+  };
+  std::vector<Place> whole;   ///< the first of four neighbours that fill a row of tiles
+  std::vector<Place> single;  ///< all others
+};
 
-/// Adds the rest to what the parent hands on, when it has been eliminated.
+/// Adds what a child hands on to its parent's own columns, before the parent is eliminated. `columns` are those of the child's
+/// first rows below, each the first of three; `rows` are those of all its rows. The two share no memory.
+void add_to_panel(std::span<const Index> columns, const PanelRows& rows, const double* child, Index child_height, double* panel);
+void add_to_panel(std::span<const Index> columns, const PanelRows& rows, const float* child, Index child_height, float* panel);
+
+/// Adds the rest to what the parent hands on, when it has been eliminated. The two share no memory.
 void add_to_update(std::span<const RowRun> runs, const double* child, Index child_height, Index update_height, double* update);
 void add_to_update(std::span<const RowRun> runs, const float* child, Index child_height, Index update_height, float* update);
 

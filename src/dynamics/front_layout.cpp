@@ -28,6 +28,18 @@ MatrixGraph graph_of(const BlockMatrix& pattern, const std::vector<Index>& numbe
   return graph;
 }
 
+/// Of rows that ascend.
+PanelRows places_in_panel(const std::vector<Index>& rows, const FrontShape& shape) {
+  PanelRows places;
+  for (std::size_t k = 0; k < rows.size();) {
+    const std::size_t last = k + kSpringLanes - 1;
+    const bool fills = rows[k] % kSpringLanes == 0 && last < rows.size() && rows[last] == rows[k] + kSpringLanes - 1;
+    (fills ? places.whole : places.single).push_back({static_cast<Index>(k), static_cast<Index>(shape.place(rows[k], 0))});
+    k += fills ? kSpringLanes : 1;
+  }
+  return places;
+}
+
 }  // namespace
 
 Index FrontLayout::Front::row_of(Index at) const {
@@ -76,9 +88,10 @@ void FrontLayout::join_with_parents() {
     if (front.parent == kNone) continue;
     Front& parent = fronts[front.parent];
     parent.children.push_back(static_cast<Index>(f));
+    std::vector<Index> rows;
     for (std::size_t k = 0; k < front.lower.size(); ++k) {
       const Index row = parent.row_of(front.lower[k]);
-      for (Index r = 0; r < 3; ++r) front.parent_rows.push_back(static_cast<Index>(parent.shape.place(row + r, 0)));
+      for (Index r = 0; r < 3; ++r) rows.push_back(row + r);
       if (row < parent.shape.width()) {
         front.parent_columns.push_back(row);
         continue;
@@ -90,6 +103,7 @@ void FrontLayout::join_with_parents() {
         front.runs.push_back(run);
       }
     }
+    front.parent_rows = places_in_panel(rows, parent.shape);
   }
 }
 

@@ -19,7 +19,7 @@ struct FrontLayout {
     std::vector<Index> own;             ///< its particles
     std::vector<Index> lower;           ///< the places of those below
     std::vector<Index> parent_columns;  ///< of those that are the parent's own, the first ones
-    std::vector<Index> parent_rows;     ///< three of each below: where the row begins in the parent's panel
+    PanelRows parent_rows;              ///< three of each below
     std::vector<RowRun> runs;           ///< of those that are below in the parent too, counted from there
     std::vector<Index> children;
     std::size_t panel = 0;   ///< where it begins among all panels
