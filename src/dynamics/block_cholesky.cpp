@@ -19,12 +19,13 @@ double scale_to_one(double largest) {
 }
 
 template <class Number>
-void add_entry(const Entry& entry, const BlockMatrix& matrix, double scale, const FrontShape& shape, Number* panel) {
+void add_entry(const Entry& entry, const BlockMatrix& matrix, double scale, double raise, const FrontShape& shape, Number* panel) {
   const Matrix3& block = entry.on_diagonal ? matrix.diagonal(entry.block) : matrix.beside(entry.block);
   for (Index c = 0; c < 3; ++c) {
     for (Index r = 0; r < 3; ++r) {
-      panel[shape.place(entry.row + r, entry.column + c)] =
-          static_cast<Number>(scale * (entry.transposed ? block(c, r) : block(r, c)));
+      const double number = entry.transposed ? block(c, r) : block(r, c);
+      const double raised = entry.on_diagonal && r == c ? number + raise * number : number;
+      panel[shape.place(entry.row + r, entry.column + c)] = static_cast<Number>(scale * raised);
     }
   }
 }
@@ -52,7 +53,7 @@ BlockCholesky<Number>::~BlockCholesky() = default;
 
 // Where springs hardly push, what one particle hands on to the next falls off until it is next to nothing.
 template <class Number>
-bool BlockCholesky<Number>::factor(const BlockMatrix& matrix) {
+bool BlockCholesky<Number>::factor(const BlockMatrix& matrix, double raise) {
   const TinyNumbersAreZero quick;
   double largest = 0.0;
   for (Index i = 0; i < matrix.size(); ++i) largest = std::max(largest, matrix.diagonal(i).diagonal().maxCoeff());
@@ -60,7 +61,7 @@ bool BlockCholesky<Number>::factor(const BlockMatrix& matrix) {
   const std::vector<Front>& fronts = layout_->fronts;
   for (std::size_t f = 0; f < fronts.size(); ++f) {
     const Front& front = fronts[f];
-    assemble(f, matrix);
+    assemble(f, matrix, raise);
     Number* const update = updates_.data() + front.update;
     if (!eliminate_front(front.shape, &panels_[front.panel], &inverse_[front.first_place], update, row_.data())) return false;
     for (const Index c : front.children) {
@@ -72,14 +73,14 @@ bool BlockCholesky<Number>::factor(const BlockMatrix& matrix) {
 }
 
 template <class Number>
-void BlockCholesky<Number>::assemble(std::size_t number, const BlockMatrix& matrix) {
+void BlockCholesky<Number>::assemble(std::size_t number, const BlockMatrix& matrix, double raise) {
   const Front& front = layout_->fronts[number];
   const FrontShape& shape = front.shape;
   Number* const panel = &panels_[front.panel];
   std::fill_n(panel, shape.size(), Number{});
   for (Index k = 3 * static_cast<Index>(front.own.size()); k < shape.width(); ++k) panel[shape.place(k, k)] = 1;
   for (std::size_t e = number == 0 ? 0 : layout_->fronts[number - 1].end_entry; e < front.end_entry; ++e) {
-    add_entry(layout_->entries[e], matrix, scale_, shape, panel);
+    add_entry(layout_->entries[e], matrix, scale_, raise, shape, panel);
   }
   for (const Index c : front.children) {
     const Front& child = layout_->fronts[c];

@@ -21,14 +21,15 @@ class BlockCholesky {
   explicit BlockCholesky(const BlockMatrix& pattern, const std::vector<bool>& left_out = {});
   ~BlockCholesky();
 
-  /// Returns whether the matrix is positive definite, as far as rounding tells. Before `solve`, which is not to be called when not.
-  [[nodiscard]] bool factor(const BlockMatrix& matrix);
+  /// Factors the matrix with its diagonal numbers made larger by the part `raise` of them. Returns whether that is positive
+  /// definite, as far as rounding tells. Before `solve`, which is not to be called when not.
+  [[nodiscard]] bool factor(const BlockMatrix& matrix, double raise = 0.0);
 
   /// Writes x of A x = `right`, 3 x particles, to `solution`, which may be the same; zero for what is left out.
   void solve(const Points& right, Points& solution);
 
  private:
-  void assemble(std::size_t front, const BlockMatrix& matrix);
+  void assemble(std::size_t front, const BlockMatrix& matrix, double raise);
 
   std::unique_ptr<const FrontLayout> layout_;
   double scale_ = 1.0;           ///< of the matrix that was factored to the one that was given, a power of two

@@ -14,11 +14,19 @@ namespace {
 constexpr int kMostIterations = 20;
 constexpr int kMostHalvings = 10;
 
+// A step that turns links makes them longer, which its equations do not know. Corrections are made while each takes off half of the
+// energy, and are worth it where half of the forecast is gained at the end.
+constexpr int kMostCorrections = 5;
+constexpr double kWorthwhile = 0.5;
+
 // Iterations end when one lowered the energy as it forecast, but for this part of the energy and of what the way to where
 // forces led was worth at first, and its solve left no more: what is left to gain is about that much, and no other solve is needed
 // to say so. Chains need more iterations, and have them cheaply.
 constexpr double kForecastOfChains = 1.0e-4;
 constexpr double kForecastOfCloths = 0.1;
+
+// What was corrected is near the forecast by chance at times.
+constexpr double kCorrectedPart = 0.3;
 
 // No iteration is made when the imbalance, were all of it left, amounts to no more than a hundredth of the way from where forces
 // led.
@@ -116,8 +124,9 @@ int ComponentNewton::minimise() {
     system_.is_like_last = iteration == 1 && is_calm;
     const double left = solver_->solve(system_, step_);
     const double forecast = modelled - 0.5 * system_.residual.cwiseProduct(step_).sum();
-    const double part = descend(energy);
-    if (part > 0.0 && !is_too_stiff && std::abs(energy - forecast) + left <= close * (at_first + energy)) return iteration;
+    const auto [part, corrected] = descend(energy, forecast);
+    const double enough = (corrected ? kCorrectedPart : 1.0) * close * (at_first + energy);
+    if (part > 0.0 && !is_too_stiff && std::abs(energy - forecast) + left <= enough) return iteration;
     if (part == 0.0 && iteration > 1) return iteration;
     // What was slack stopped the step short, or what counted as if it pushed was not worth it. A forecast with links that are stiff
     // but do not pull tells less than can be gained.
@@ -147,18 +156,52 @@ double ComponentNewton::imbalance() const {
   return sum;
 }
 
-double ComponentNewton::descend(double& energy) {
-  double part = 1.0;
-  for (int halving = 0; halving <= kMostHalvings; ++halving, part *= 0.5) {
-    tried_ = x_;
-    tried_.leftCols(component_.free_count) += part * step_;
-    const double reached = energy_.linearise(tried_, led_, NearLimit::slack, system_);
-    if (!(reached < energy)) continue;
+// The system is that of where the whole step led, if it was made; any other is linearised anew.
+ComponentNewton::Descent ComponentNewton::descend(double& energy, double forecast) {
+  const auto go = [&](double reached) {
     energy = reached;
     x_.swap(tried_);
-    return part;
+  };
+  tried_ = x_;
+  tried_.leftCols(component_.free_count) += step_;
+  const double whole = energy_.linearise(tried_, led_, NearLimit::slack, tried_system_);
+  if (whole < energy) {
+    std::swap(system_, tried_system_);
+    go(whole);
+    return {.part = 1.0, .corrected = false};
   }
-  return 0.0;
+  if (correct(whole) < energy - kWorthwhile * (energy - forecast)) {
+    go(energy_.linearise(tried_, led_, NearLimit::slack, system_));
+    return {.part = 1.0, .corrected = true};
+  }
+  double part = 0.5;
+  for (int halving = 1; halving <= kMostHalvings; ++halving, part *= 0.5) {
+    tried_ = x_;
+    tried_.leftCols(component_.free_count) += part * step_;
+    if (const double reached = energy_.value(tried_, led_); reached < energy) {
+      go(reached);
+      return {.part = part, .corrected = false};
+    }
+  }
+  return {.part = 0.0, .corrected = false};
+}
+
+/// Bends the step to what is tried after the links that it turned; returns the energy there.
+double ComponentNewton::correct(double reached) {
+  for (int correction = 0; correction < kMostCorrections; ++correction) {
+    energy_.take_turning(x_, tried_, system_);
+    solver_->solve_again(system_, turn_);
+    turned_ = tried_;
+    turned_.leftCols(component_.free_count) += turn_;
+    const double next = energy_.value(turned_, led_);
+    const bool goes_on = next < kWorthwhile * reached;
+    if (next < reached) {
+      reached = next;
+      tried_.swap(turned_);
+    }
+    if (!goes_on) break;
+  }
+  return reached;
 }
 
 void ComponentNewton::clip() {

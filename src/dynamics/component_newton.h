@@ -29,6 +29,12 @@ class ComponentNewton {
   [[nodiscard]] double turn() const;
 
  private:
+  /// How much of a step was made, and whether it was bent after links that it turned.
+  struct Descent {
+    double part;
+    bool corrected;
+  };
+
   void gather(const Points& before, const Points& positions);
   [[nodiscard]] Vector3 common_move() const;
   [[nodiscard]] double carried_weight(double fall) const;
@@ -37,7 +43,8 @@ class ComponentNewton {
   void start();
   [[nodiscard]] double inertia() const;
   [[nodiscard]] double imbalance() const;
-  [[nodiscard]] double descend(double& energy);
+  [[nodiscard]] Descent descend(double& energy, double forecast);
+  [[nodiscard]] double correct(double reached);
   void clip();
 
   StretchComponent component_;
@@ -58,7 +65,10 @@ class ComponentNewton {
   Points x_;
   Points tried_;
   Points step_;
+  Points turn_;
+  Points turned_;
   StretchSystem system_;
+  StretchSystem tried_system_;
 };
 
 }  // namespace sprung

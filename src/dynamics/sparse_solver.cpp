@@ -2,22 +2,28 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace sprung {
 namespace {
 
-// A factor takes as long as eight solves with it.
+// A factor takes as long as eight solves with it. One that is worth something takes more off in each iteration; but where the
+// diagonal was raised, what hardly any link holds comes late, and an iteration may bring up more of it than it takes off.
 constexpr int kMostIterations = 8;
+constexpr double kSlowest = 0.8;
+constexpr int kMostIterationsRaised = 16;
+constexpr double kSlowestRaised = std::numeric_limits<double>::infinity();
 
-// Sizes are those of residuals, squared, as the factor at hand measures them: less than a tenth is left of the first at the end.
+// So many roundings of single precision: with half as many some diagonals of cloths became negative.
+constexpr double kRaise = 4.0 * 0x1p-24;
+
+// Sizes are those of residuals, squared, as the factor at hand measures them: less than a tenth is left at the end of what they
+// would have been at first, had the factor been exact.
 constexpr double kNearEnough = 0.01;
 
 // As the masses measure them, who mostly count it for far too much.
 constexpr double kSurelyNear = 1.0e-4;
-
-// A factor that is worth something takes more off in each iteration.
-constexpr double kSlowest = 0.8;
 
 // Single precision is not tried again where links are nearly as stiff, beside masses, as once when it failed.
 constexpr double kBearablePart = 0.5;
@@ -33,25 +39,52 @@ BlockMatrix pattern_of(const StretchComponent& component) {
 }  // namespace
 
 SparseSolver::SparseSolver(const StretchComponent& component)
-    : component_(component), matrix_(pattern_of(component)), rough_(matrix_) {}
+    : component_(component),
+      matrix_(pattern_of(component)),
+      rough_(matrix_),
+      ways_{Roughly{.raise = 0.0, .patience = {.most_iterations = kMostIterations, .slowest = kSlowest}},
+            Roughly{.raise = kRaise, .patience = {.most_iterations = kMostIterationsRaised, .slowest = kSlowestRaised}}} {}
 
 double SparseSolver::solve(const StretchSystem& system, Points& step) {
   assemble(system);
   if (system.is_like_last) {
-    if (const auto left = approach_as_last(system.residual, step)) return *left;
+    if (const auto left = solve_as_last(system.residual, step)) return *left;
   }
-  if (const double stiffness = stiffest(); stiffness < bearable_) {
-    kept_ = rough_.factor(matrix_) ? Kept::rough : Kept::nothing;
-    if (const auto left = approach_as_last(system.residual, step)) return *left;
-    bearable_ = kBearablePart * stiffness;
+  const double stiffness = stiffest();
+  for (Roughly& way : ways_) {
+    if (!(stiffness < way.bearable)) continue;
+    kept_ = rough_.factor(matrix_, way.raise) ? Kept::rough : Kept::nothing;
+    if (const auto left = approach_with_kept(way.patience, system.residual, step)) return *left;
+    way.bearable = kBearablePart * stiffness;
   }
   solve_exactly(system.residual, step);
   return 0.0;
 }
 
-std::optional<double> SparseSolver::approach_as_last(const Points& right, Points& step) {
+void SparseSolver::solve_again(const StretchSystem& system, Points& step) {
+  if (kept_ == Kept::nothing) {
+    step.setZero(3, component_.free_count);
+    return;
+  }
+  if (kept_ == Kept::rough) {
+    rough_.solve(system.residual, step);
+  } else {
+    exact_->solve(system.residual, step);
+  }
+  if (component_.pin_count() == 0) keep_momentum(system.residual, step);
+}
+
+std::optional<double> SparseSolver::solve_as_last(const Points& right, Points& step) {
+  // What changes so fast mostly does so the next time too.
+  if (std::exchange(led_nowhere_, false)) return std::nullopt;
+  const auto left = approach_with_kept({.most_iterations = kMostIterations, .slowest = kSlowest}, right, step);
+  led_nowhere_ = !left;
+  return left;
+}
+
+std::optional<double> SparseSolver::approach_with_kept(const Patience& patience, const Points& right, Points& step) {
   if (kept_ == Kept::nothing) return std::nullopt;
-  const auto left = kept_ == Kept::rough ? approach(rough_, right, step) : approach(*exact_, right, step);
+  const auto left = kept_ == Kept::rough ? approach(rough_, patience, right, step) : approach(*exact_, patience, right, step);
   if (left && component_.pin_count() == 0) keep_momentum(right, step);
   return left;
 }
@@ -69,30 +102,30 @@ void SparseSolver::keep_momentum(const Points& right, Points& step) const {
 
 /// Conjugate gradients with a factor as preconditioner. Returns what they left to gain, if that is little enough.
 template <class Factor>
-std::optional<double> SparseSolver::approach(Factor& factor, const Points& right, Points& step) {
+std::optional<double> SparseSolver::approach(Factor& factor, const Patience& patience, const Points& right, Points& step) {
   step.setZero(3, component_.free_count);
   left_ = right;
-  double first = 0.0;
+  double gained = 0.0;
   double before = 0.0;
-  for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
+  for (int iteration = 1; iteration <= patience.most_iterations; ++iteration) {
     factor.solve(left_, towards_);
     const double size = left_.cwiseProduct(towards_).sum();
     if (iteration == 1) {
-      first = size;
       direction_ = towards_;
     } else {
-      if (!(size <= kSlowest * before)) return std::nullopt;
+      if (!(size <= patience.slowest * before)) return std::nullopt;
       direction_ = towards_ + size / before * direction_;
     }
     before = size;
     pushed_.setZero(3, component_.free_count);
     matrix_.add_product(direction_, 1.0, pushed_);
     const double length = size / direction_.cwiseProduct(pushed_).sum();
+    gained += length * size;
     step += length * direction_;
     left_ -= length * pushed_;
     // The way is made before its end would be measured: it costs less than that, and what is left only falls.
-    if (iteration > 1 && size <= kNearEnough * first) return 0.5 * size;
-    if (const double most = largest_size(); most <= kSurelyNear * first) return 0.5 * most;
+    if (iteration > 1 && size <= kNearEnough * gained) return 0.5 * size;
+    if (const double most = largest_size(); most <= kSurelyNear * gained) return 0.5 * most;
   }
   return std::nullopt;
 }

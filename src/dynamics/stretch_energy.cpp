@@ -76,4 +76,21 @@ double StretchEnergy::linearise(const Points& x, const Points& y, NearLimit near
   return 0.5 * (inertia + elastic);
 }
 
+void StretchEnergy::take_turning(const Points& x, const Points& tried, StretchSystem& system) const {
+  system.residual.setZero();
+  for (std::size_t s = 0; s < limits_.size(); ++s) {
+    if (system.blocks[s].matrix().trace() == 0.0) continue;
+    const StretchComponent::Link& link = component_.links[s];
+    const Vector3 between = tried.col(link.second) - tried.col(link.first);
+    const double length = between.norm();
+    const double excess = length - limits_[s].length;
+    if (excess <= 0.0) continue;
+    const Vector3 direction = (x.col(link.second) - x.col(link.first)).normalized();
+    const double turned = length - direction.dot(between);
+    const Vector3 pull = weight_ * limits_[s].stiffness * std::min(turned, excess) * direction;
+    system.residual.col(link.first) += pull;
+    if (component_.is_free(link.second)) system.residual.col(link.second) -= pull;
+  }
+}
+
 }  // namespace sprung

@@ -25,6 +25,9 @@ class StretchSystemSolver {
   /// Not finite when the system is not. Returns about how much of the energy that the system models another displacement would gain
   /// [kg m^2]: 0 where it is exact.
   virtual double solve(const StretchSystem& system, Points& step) = 0;
+
+  /// The same for another residual beside the blocks that were solved last, as near as their factor comes at once.
+  virtual void solve_again(const StretchSystem& system, Points& step) = 0;
 };
 
 /// TreeSolver for trees, else SparseSolver. Keeps a reference to the component.

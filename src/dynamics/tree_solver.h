@@ -11,6 +11,7 @@ class TreeSolver final : public StretchSystemSolver {
   /// Keeps a reference to the component. Requires that it is a tree.
   explicit TreeSolver(const StretchComponent& component);
   double solve(const StretchSystem& system, Points& step) override;
+  void solve_again(const StretchSystem& system, Points& step) override { solve(system, step); }
 
  private:
   struct Node {

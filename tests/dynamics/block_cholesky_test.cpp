@@ -69,6 +69,20 @@ void expect_solution(const Eigen::MatrixXd& matrix, const Scalars& right, const 
 }
 
 template <class Number>
+void expect_raised(std::mt19937& random) {
+  constexpr double kRaise = 0.5;
+  const BlockMatrix matrix = random_matrix(40, random_pairs(40, 150, random), random);
+  BlockCholesky<Number> factor(matrix);
+  ASSERT_TRUE(factor.factor(matrix, kRaise));
+  const Points right = Points::Random(3, 40);
+  Points solution;
+  factor.solve(right, solution);
+  Eigen::MatrixXd full = dense(matrix);
+  full.diagonal() *= 1.0 + kRaise;
+  expect_solution<Number>(full, right.reshaped(), solution.reshaped());
+}
+
+template <class Number>
 void expect_solves(Index particles, const Pairs& pairs, std::mt19937& random) {
   const BlockMatrix matrix = random_matrix(particles, pairs, random);
   BlockCholesky<Number> factor(matrix);
@@ -209,6 +223,12 @@ TYPED_TEST(BlockCholeskyOf, PowersOfTwoScaleItExactly) {
       EXPECT_EQ(solution, std::ldexp(1.0, of_right - of_matrix) * expected) << of_matrix << ", " << of_right;
     }
   }
+}
+
+TEST(BlockCholesky, RaisesTheDiagonal) {
+  std::mt19937 random(12);
+  expect_raised<double>(random);
+  expect_raised<float>(random);
 }
 
 }  // namespace

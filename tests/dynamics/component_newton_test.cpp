@@ -159,8 +159,57 @@ TEST_F(EnergyOfACloth, LinksNearTheLimitAreStiffButDoNotPull) {
   EXPECT_GT(near_ones, 0);
 }
 
+/// A chain of equal links along a line, so many times as long as it may be, and so many times as long turned about its pin.
+class TurnedChain : public ::testing::Test {
+ protected:
+  /// What the tip and the next are pulled by, and the stiffness k of their link [1/m].
+  void turn(double scale, double longer) {
+    Points x(3, component_.points.size());
+    for (Index i = 0; i < x.cols(); ++i) x.col(i) = network_.positions.col(component_.points[i]);
+    const Vector3 pin = x.rightCols(1);
+    x = (scale * (x.colwise() - pin)).colwise() + pin;
+    between_ = x.col(1) - x.col(0);
+    const Vector3 across = between_.unitOrthogonal();
+    const Points tried = (Eigen::AngleAxisd(kAngle, across).matrix() * (longer * (x.colwise() - pin))).colwise() + pin;
+    StretchEnergy energy(component_, {.max_stretch = 0.0});
+    energy.set_weight(1.0);
+    energy.linearise(x, x, NearLimit::slack, system_);
+    stiffness_ = between_.normalized().dot(system_.blocks.front() * between_.normalized());
+    energy.take_turning(x, tried, system_);
+  }
+
+  static constexpr double kAngle = 0.3;
+  SpringNetwork network_ = make_test_rope(4, 0.0);
+  StretchComponent component_ = component_of(network_);
+  StretchSystem system_;
+  Vector3 between_;
+  double stiffness_ = 0.0;
+};
+
+// A link of length l that became c l long and turned by an angle a is c l cos a along where it was: a linear model misses the rest.
+// Each link pulls its first end as much as its second, so all but the pin's neighbour are in balance. A few roundings of k l.
+TEST_F(TurnedChain, PullsBackWhatTurningMadeLonger) {
+  turn(1.5, 1.25);
+  const Vector3 pull = stiffness_ * 1.25 * (1.0 - std::cos(kAngle)) * between_;
+  ASSERT_GT(pull.norm(), 0.0);
+  EXPECT_LT((system_.residual.col(0) - pull).norm(), 1.0e-13 * stiffness_ * between_.norm());
+  EXPECT_LT(system_.residual.col(1).norm(), 1.0e-13 * stiffness_ * between_.norm());
+}
+
+// At 0.84 times 1.2 of the limit a link is too long by less than turning made it longer.
+TEST_F(TurnedChain, PullsBackNoFartherThanToTheLimit) {
+  turn(1.2, 0.84);
+  const Vector3 pull = stiffness_ * (0.84 * 1.2 - 1.0) / 1.2 * between_;
+  EXPECT_LT((system_.residual.col(0) - pull).norm(), 1.0e-13 * stiffness_ * between_.norm());
+}
+
+TEST_F(TurnedChain, CountsOnlyLinksOfTheSystem) {
+  turn(0.9, 1.25);
+  EXPECT_EQ(system_.residual, Points::Zero(3, component_.free_count));
+}
+
 // Its links are all at their limit when it starts to fall: each iteration must not find only the next few that a step makes too
-// long.
+// long, by pulling or by turning them.
 TEST(ComponentNewton, TakesFewSolvesForWhatBeginsAtItsLimit) {
   const SpringNetwork network = make_test_cloth(48, 0.0, 0.0);
   ComponentNewton newton(component_of(network), {.max_stretch = 0.0, .tolerance = 0.01});
@@ -175,12 +224,13 @@ TEST(ComponentNewton, TakesFewSolvesForWhatBeginsAtItsLimit) {
     }
     before.swap(x);
     x = led;
-    EXPECT_LE(newton.solve(before, x, kFrameFall).value_or(0), 6) << "step " << step;
+    EXPECT_LE(newton.solve(before, x, kFrameFall).value_or(0), 3) << "step " << step;
   }
 }
 
-// What all move in common changes neither the solution but for that move, nor how many solves lead there: rounding at 10 m, and
-// what condition makes of it, is all the difference.
+// What all move in common changes neither the solution but for that move, nor how many solves lead there: rounding at 10 m is all
+// the difference. It may round numbers of a factor in single precision the other way, by 6e-8, and corrections of some 0.1 m with
+// them, times what condition makes of it.
 TEST(ComponentNewton, DoesNotSeeACommonMove) {
   for (const bool pinned : {false, true}) {
     const SpringNetwork network = make_test_cloth(8, 0.0, 0.0, pinned);
@@ -195,7 +245,7 @@ TEST(ComponentNewton, DoesNotSeeACommonMove) {
     const auto solves = newton.solve(network.positions, x, kFall);
     ASSERT_TRUE(solves);
     EXPECT_EQ(newton.solve(network.positions, moved, kFall), solves);
-    EXPECT_LT((moved - (x.colwise() + move)).cwiseAbs().maxCoeff(), 1.0e-9);
+    EXPECT_LT((moved - (x.colwise() + move)).cwiseAbs().maxCoeff(), 1.0e-6);
   }
 }
 
