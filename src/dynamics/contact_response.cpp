@@ -59,7 +59,10 @@ bool set_particles(const Contact& contact, const Scalars& inverse_masses, Contac
 }  // namespace
 
 ContactResponse::ContactResponse(const SpringNetwork& network, const Environment& environment)
-    : network_(network), environment_(environment), materials_(network, environment.obstacles()) {}
+    : network_(network),
+      environment_(environment),
+      materials_(network, environment.obstacles()),
+      first_row_(static_cast<std::size_t>(network.particle_count()), kNone) {}
 
 void ContactResponse::start(const std::vector<Contact>& contacts, const StepMotion& motion) {
   carry_.clear();
@@ -71,9 +74,9 @@ void ContactResponse::start(const std::vector<Contact>& contacts, const StepMoti
 }
 
 void ContactResponse::start_again(const std::vector<Contact>& contacts, const StepMotion& motion) {
-  const auto former = sets_;
+  std::swap(sets_, former_sets_);
   start(contacts, motion);
-  for_each_set(sets_, [&](auto& set) { set.count_on(std::get<std::remove_reference_t<decltype(set)>>(former)); });
+  for_each_set(sets_, [&](auto& set) { set.count_on(std::get<std::remove_reference_t<decltype(set)>>(former_sets_), first_row_); });
 }
 
 template <std::size_t n>

@@ -55,8 +55,11 @@ class ContactResponse {
   const Environment& environment_;
   PairMaterials materials_;
   std::vector<RigidTransform> carry_;  ///< of each obstacle, from the step's begin to its end
-  std::tuple<ContactSet<1>, ContactSet<2>, ContactSet<3>, ContactSet<4>> sets_;
-  std::vector<Index> order_;  ///< contacts of as many particles as the set that is filled
+  using Sets = std::tuple<ContactSet<1>, ContactSet<2>, ContactSet<3>, ContactSet<4>>;
+  Sets sets_;
+  Sets former_sets_;              ///< that start_again() goes on from
+  std::vector<Index> order_;      ///< contacts of as many particles as the set that is filled
+  std::vector<Index> first_row_;  ///< see ContactSet::count_on
 };
 
 }  // namespace sprung

@@ -7,8 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace sprung {
@@ -26,18 +25,25 @@ class ContactSet {
   [[nodiscard]] ContactGoal& goal(std::size_t contact) { return goals_[contact]; }
   [[nodiscard]] double& gap(std::size_t contact) { return gaps_[contact]; }
 
-  /// Takes over what contacts of the same particles with the same obstacle have pushed and held in `former`.
-  void count_on(const ContactSet& former) {
-    const std::vector<std::size_t> order = by_what_meets();
-    auto c = order.begin();
-    for (const std::size_t f : former.by_what_meets()) {
-      while (c != order.end() && what_meets(rows_[*c]) < what_meets(former.rows_[f])) ++c;
-      if (c == order.end()) return;
-      if (what_meets(former.rows_[f]) < what_meets(rows_[*c])) continue;
-      goals_[*c].push = former.goals_[f].push;
-      goals_[*c].held = former.goals_[f].held;
-      ++c;
+  /// Takes over what contacts of the same particles with the same obstacle have pushed and held in `former`: of several the first
+  /// from the first, and so on. `first_row` has a kNone for each particle, and again afterwards.
+  void count_on(const ContactSet& former, std::vector<Index>& first_row) {
+    std::vector<Index> next_row(former.rows_.size());
+    for (std::size_t f = former.rows_.size(); f-- > 0;) {
+      next_row[f] = std::exchange(first_of(former.rows_[f], first_row), static_cast<Index>(f));
     }
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      Index* link = &first_of(rows_[c], first_row);
+      while (*link != kNone && !meet_the_same(former.rows_[static_cast<std::size_t>(*link)], rows_[c])) {
+        link = &next_row[static_cast<std::size_t>(*link)];
+      }
+      if (*link == kNone) continue;
+      const auto f = static_cast<std::size_t>(*link);
+      goals_[c].push = former.goals_[f].push;
+      goals_[c].held = former.goals_[f].held;
+      *link = next_row[f];
+    }
+    for (const ContactRow<n>& row : former.rows_) first_of(row, first_row) = kNone;
   }
 
   /// Answers on positions. Returns the largest change of a push, as a part of the gap.
@@ -103,14 +109,12 @@ class ContactSet {
                                   row.restitution);
   }
 
-  static auto what_meets(const ContactRow<n>& row) { return std::tie(row.obstacle, row.particles); }
+  static Index& first_of(const ContactRow<n>& row, std::vector<Index>& first_row) {
+    return first_row[static_cast<std::size_t>(row.particles[0])];
+  }
 
-  [[nodiscard]] std::vector<std::size_t> by_what_meets() const {
-    std::vector<std::size_t> order(rows_.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return what_meets(rows_[a]) < what_meets(rows_[b]); });
-    return order;
+  static bool meet_the_same(const ContactRow<n>& a, const ContactRow<n>& b) {
+    return a.particles == b.particles && a.obstacle == b.obstacle;
   }
 
   template <class Visit>
