@@ -16,59 +16,46 @@ constexpr double kRounding = 1e-12;
 
 using Corners = std::array<Vector3, 3>;
 
-constexpr int kCornerPairs = 2 * kLanes;
-constexpr int kEdgePairs = 3 * kLanes;
-
-/// Corner i of the simplex against the triangle at i, corner k of the triangle against the simplex at kLanes + k.
+/// The corners of the simplex against the triangle, a lane a corner; then those of the triangle against the simplex.
 struct CornerPairs {
-  std::array<double, kCornerPairs> squared_distance;
-  std::array<Vector3, kCornerPairs> point;
-  std::array<Vector3, kCornerPairs> weights;  ///< of the corners of what the point is on
+  std::array<ClosestPointLanes, 2> closest;
 };
 
-/// Edge i of the simplex against edge k of the triangle at i kLanes + k.
+/// A lane an edge of the triangle, for each edge of the simplex.
 struct EdgePairs {
-  std::array<double, kEdgePairs> squared_distance;
-  std::array<double, kEdgePairs> s;
-  std::array<double, kEdgePairs> t;
+  std::array<SegmentPairLanes, 3> closest;
 };
 
 /// Lanes beyond `count` repeat the last point.
-[[gnu::always_inline]] inline void measure(const Corners& points, int count, const Corners& triangle, std::size_t first,
-                                           CornerPairs& pairs) {
+[[gnu::always_inline]] inline void measure(const Corners& points, int count, const Corners& triangle, ClosestPointLanes& closest) {
   LaneVector p;
   for (int lane = 0; lane < kLanes; ++lane) set_lane(lane, points[static_cast<std::size_t>(std::min(lane, count - 1))], p);
   TriangleLanes triangles;
   set_all_lanes(triangle[0], triangles.a);
   set_all_lanes(triangle[1], triangles.b);
   set_all_lanes(triangle[2], triangles.c);
-  ClosestPointLanes closest;
   unsigned needles = closest_points(p, triangles, closest);
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const std::size_t i = first + static_cast<std::size_t>(lane);
-    pairs.squared_distance[i] = closest.squared_distance[lane];
-    pairs.point[i] = {closest.point.x[lane], closest.point.y[lane], closest.point.z[lane]};
-    pairs.weights[i] = {closest.of_a[lane], closest.of_b[lane], closest.of_c[lane]};
-  }
   while (needles != 0) {
     const int lane = take_lane(needles);
-    const std::size_t i = first + static_cast<std::size_t>(lane);
     const Vector3& point = points[static_cast<std::size_t>(std::min(lane, count - 1))];
     const ClosestPoint found = closest_point_on_triangle(point, triangle[0], triangle[1], triangle[2]);
-    pairs.squared_distance[i] = found.squared_distance;
-    pairs.point[i] = found.point;
-    pairs.weights[i] = barycentric(found, triangle[0], triangle[1], triangle[2]);
+    const Vector3 weights = barycentric(found, triangle[0], triangle[1], triangle[2]);
+    closest.squared_distance[lane] = found.squared_distance;
+    set_lane(lane, found.point, closest.point);
+    closest.of_a[lane] = weights[0];
+    closest.of_b[lane] = weights[1];
+    closest.of_c[lane] = weights[2];
   }
 }
 
 SPRUNG_KERNEL void measure_corners(const Simplex& simplex, const Corners& triangle, CornerPairs& pairs) {
-  measure(simplex.x, simplex.count, triangle, 0, pairs);
-  if (simplex.count == 3) measure(triangle, 3, simplex.x, kLanes, pairs);
+  measure(simplex.x, simplex.count, triangle, pairs.closest[0]);
+  if (simplex.count == 3) measure(triangle, 3, simplex.x, pairs.closest[1]);
 }
 
 /// Lanes beyond the third repeat the first edge of the triangle.
-[[gnu::always_inline]] inline void measure(const Vector3& from, const Vector3& to, const Corners& triangle, std::size_t first,
-                                           EdgePairs& pairs) {
+[[gnu::always_inline]] inline void measure(const Vector3& from, const Vector3& to, const Corners& triangle,
+                                           SegmentPairLanes& closest) {
   SegmentLanes segment;
   set_all_lanes(from, segment.from);
   set_all_lanes(to, segment.to);
@@ -77,40 +64,37 @@ SPRUNG_KERNEL void measure_corners(const Simplex& simplex, const Corners& triang
     set_lane(lane, triangle[static_cast<std::size_t>(lane % 3)], edges.from);
     set_lane(lane, triangle[static_cast<std::size_t>((lane + 1) % 3)], edges.to);
   }
-  SegmentPairLanes closest;
   unsigned points = closest_points(segment, edges, closest);
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const std::size_t i = first + static_cast<std::size_t>(lane);
-    pairs.squared_distance[i] = closest.squared_distance[lane];
-    pairs.s[i] = closest.s[lane];
-    pairs.t[i] = closest.t[lane];
-  }
   while (points != 0) {
     const int lane = take_lane(points);
     const auto k = static_cast<std::size_t>(lane % 3);
-    const std::size_t i = first + static_cast<std::size_t>(lane);
     const SegmentPair found = closest_points_of_segments(from, to, triangle[k], triangle[(k + 1) % 3]);
-    pairs.squared_distance[i] = found.squared_distance;
-    pairs.s[i] = found.s;
-    pairs.t[i] = found.t;
+    closest.squared_distance[lane] = found.squared_distance;
+    closest.s[lane] = found.s;
+    closest.t[lane] = found.t;
   }
 }
 
 SPRUNG_KERNEL void measure_edges(const Simplex& simplex, const Corners& triangle, EdgePairs& pairs) {
-  measure(simplex.x[0], simplex.x[1], triangle, 0, pairs);
+  measure(simplex.x[0], simplex.x[1], triangle, pairs.closest[0]);
   if (simplex.count < 3) return;
-  measure(simplex.x[1], simplex.x[2], triangle, kLanes, pairs);
-  measure(simplex.x[2], simplex.x[0], triangle, 2 * kLanes, pairs);
+  measure(simplex.x[1], simplex.x[2], triangle, pairs.closest[1]);
+  measure(simplex.x[2], simplex.x[0], triangle, pairs.closest[2]);
 }
 
-/// The least of `groups` times three distances, of which kLanes are between the first of one group and that of the next.
-template <std::size_t kSize>
-std::size_t least(const std::array<double, kSize>& squared_distance, int groups) {
-  std::size_t best = 0;
-  for (int group = 0; group < groups; ++group) {
-    for (int k = 0; k < 3; ++k) {
-      const auto i = static_cast<std::size_t>(group * kLanes + k);
-      best = squared_distance[i] < squared_distance[best] ? i : best;
+struct Place {
+  std::size_t group = 0;
+  int lane = 0;
+};
+
+/// The least of three distances in each of so many groups.
+template <class Groups>
+Place least(const Groups& groups, std::size_t count) {
+  Place best;
+  for (std::size_t group = 0; group < count; ++group) {
+    for (int lane = 0; lane < 3; ++lane) {
+      const bool less = groups[group].squared_distance[lane] < groups[best.group].squared_distance[best.lane];
+      best = less ? Place{group, lane} : best;
     }
   }
   return best;
@@ -124,34 +108,36 @@ class NearestPair {
   void corners_against_faces() {
     CornerPairs pairs;
     measure_corners(simplex_, triangle_, pairs);
-    const std::size_t i = least(pairs.squared_distance, simplex_.count == 3 ? 2 : 1);
-    best_.squared_distance = pairs.squared_distance[i];
-    if (i < kLanes) {
-      const std::size_t corner = std::min(i, static_cast<std::size_t>(simplex_.count - 1));
-      best_.on_simplex = simplex_.x[corner];
-      best_.on_triangle = pairs.point[i];
-      best_.weights = Vector3::Unit(static_cast<Index>(corner));
+    const auto [group, lane] = least(pairs.closest, simplex_.count == 3 ? 2 : 1);
+    const ClosestPointLanes& closest = pairs.closest[group];
+    const Vector3 point(closest.point.x[lane], closest.point.y[lane], closest.point.z[lane]);
+    best_.squared_distance = closest.squared_distance[lane];
+    if (group == 0) {
+      const int corner = std::min(lane, simplex_.count - 1);
+      best_.on_simplex = simplex_.x[static_cast<std::size_t>(corner)];
+      best_.on_triangle = point;
+      best_.weights = Vector3::Unit(corner);
     } else {
-      best_.on_simplex = pairs.point[i];
-      best_.on_triangle = triangle_[i - kLanes];
-      best_.weights = pairs.weights[i];
+      best_.on_simplex = point;
+      best_.on_triangle = triangle_[static_cast<std::size_t>(lane)];
+      best_.weights = {closest.of_a[lane], closest.of_b[lane], closest.of_c[lane]};
     }
   }
 
   void edges_against_edges() {
     EdgePairs pairs;
     measure_edges(simplex_, triangle_, pairs);
-    const std::size_t best = least(pairs.squared_distance, simplex_.count == 3 ? 3 : 1);
-    if (pairs.squared_distance[best] >= best_.squared_distance) return;
-    const std::size_t i = best / kLanes;
+    const auto [i, lane] = least(pairs.closest, simplex_.count == 3 ? 3 : 1);
+    const SegmentPairLanes& closest = pairs.closest[i];
+    if (closest.squared_distance[lane] >= best_.squared_distance) return;
     const std::size_t next = (i + 1) % static_cast<std::size_t>(simplex_.count);
-    const std::size_t k = best % kLanes;
-    best_.on_simplex = simplex_.x[i] + pairs.s[best] * (simplex_.x[next] - simplex_.x[i]);
-    best_.on_triangle = triangle_[k] + pairs.t[best] * (triangle_[(k + 1) % 3] - triangle_[k]);
+    const auto k = static_cast<std::size_t>(lane);
+    best_.on_simplex = simplex_.x[i] + closest.s[lane] * (simplex_.x[next] - simplex_.x[i]);
+    best_.on_triangle = triangle_[k] + closest.t[lane] * (triangle_[(k + 1) % 3] - triangle_[k]);
     best_.weights.setZero();
-    best_.weights[static_cast<Index>(i)] = 1.0 - pairs.s[best];
-    best_.weights[static_cast<Index>(next)] = pairs.s[best];
-    best_.squared_distance = pairs.squared_distance[best];
+    best_.weights[static_cast<Index>(i)] = 1.0 - closest.s[lane];
+    best_.weights[static_cast<Index>(next)] = closest.s[lane];
+    best_.squared_distance = closest.squared_distance[lane];
   }
 
   /// Whether the plane across the best pair separates by this part of its distance.
