@@ -147,8 +147,8 @@ std::optional<SurfacePoint> MeshShape::nearest_again(const Vector3& p, double ra
   const double farther = kFarther * radius;
   std::optional<MeshTree::Nearest> found;
   if (memory.triangle != kNone) {
-    const auto [a, b, c] = tree_->corners(memory.triangle);
-    found = {memory.triangle, closest_point_on_triangle(p, a, b, c)};
+    const auto corners = tree_->corners(memory.triangle);
+    found = {memory.triangle, closest_point_on_triangle(p, corners[0], corners[1], corners[2]), corners};
     if (moved < same || (moved < fresh && found->closest.feature == TriangleFeature::face)) return if_within(*found);
     if (!(found->closest.squared_distance < farther * farther)) found.reset();
   }
@@ -159,19 +159,21 @@ std::optional<SurfacePoint> MeshShape::nearest_again(const Vector3& p, double ra
 }
 
 SurfacePoint MeshShape::surface_point(const Vector3& p, const MeshTree::Nearest& found) const {
-  const auto& [triangle, closest] = found;
+  const auto& [triangle, closest, corners] = found;
+  const Vector3& a = corners[0];
+  const Vector3& b = corners[1];
+  const Vector3& c = corners[2];
   const Vector3 away = p - closest.point;
   const double length = std::sqrt(closest.squared_distance);
-  const auto corner = mesh().triangles.col(triangle);
-  const Points& x = mesh().vertices;
-  const double reach = std::max({x.col(corner[0]).cwiseAbs().maxCoeff(), x.col(corner[1]).cwiseAbs().maxCoeff(),
-                                 x.col(corner[2]).cwiseAbs().maxCoeff(), p.cwiseAbs().maxCoeff()});
+  const auto is_rounding = [&] {
+    return length <= kRounding * a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(c.cwiseAbs()).cwiseMax(p.cwiseAbs()).maxCoeff();
+  };
 
   // Above a face, and everywhere within rounding of the surface, the face's normal is better than the direction to the particle,
   // and the exact side better than that direction's.
-  if (closest.feature == TriangleFeature::face || length <= kRounding * reach) {
+  if (closest.feature == TriangleFeature::face || is_rounding()) {
     const Vector3 face = face_normal(triangle);
-    const bool back = side_of_plane(x.col(corner[0]), x.col(corner[1]), x.col(corner[2]), p) < 0.0;
+    const bool back = side_of_plane(a, b, c, p) < 0.0;
     if (!closed_) return {closest.point, back ? Vector3(-face) : face, length};
     return {closest.point, face, back ? -length : length};
   }

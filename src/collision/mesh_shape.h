@@ -47,7 +47,6 @@ class MeshShape final : public ObstacleShape {
   };
   [[nodiscard]] static Spot nearest_spot(const MeshTree& tree, const Vector3& p);
   [[nodiscard]] Zone nearest_before(const ElementCorners& element) const;
-  [[nodiscard]] const TriangleMesh& mesh() const { return deforming_ ? deforming_->after() : *rigid_; }
   [[nodiscard]] Vector3 face_normal(Index triangle) const;
   [[nodiscard]] Vector3 pseudonormal(Index triangle, TriangleFeature feature) const;
   [[nodiscard]] SurfacePoint surface_point(const Vector3& p, const MeshTree::Nearest& found) const;

@@ -43,6 +43,7 @@ class MeshTree {
   struct Nearest {
     Index triangle = kNone;
     ClosestPoint closest;
+    std::array<Vector3, 3> corners;  ///< of the triangle
   };
   /// The triangle nearest to p, if nearer than `radius` [m]. Of equally near ones always the same.
   [[nodiscard]] std::optional<Nearest> nearest(const Vector3& p, double radius) const;

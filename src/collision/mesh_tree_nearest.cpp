@@ -51,11 +51,17 @@ FloatRange float_range(const Vector3& p) {
   bounds = sum * (1.0F - 0x1p-20F);
 }
 
-/// The triangle with the smallest squared distance below `best2`, which becomes that.
-SPRUNG_KERNEL Index find_nearest(const MeshTree& tree, const Vector3& p, double best2) {
+/// A triangle of a block; none where there is no block.
+struct Spot {
+  const TriangleBlock* block = nullptr;
+  int lane = 0;
+};
+
+/// The triangle with the smallest squared distance below `best2`.
+SPRUNG_KERNEL Spot find_nearest(const MeshTree& tree, const Vector3& p, double best2) {
   const FloatRange range = float_range(p);
   float bound = bound_of(best2);
-  Index best = kNone;
+  Spot best;
   WalkStack stack(tree.stack_size());
   stack.push({0.0F, 0});
   while (!stack.empty()) {
@@ -76,7 +82,7 @@ SPRUNG_KERNEL Index find_nearest(const MeshTree& tree, const Vector3& p, double 
       const int lane = take_lane(lanes);
       if (!(squared[lane] < best2)) continue;
       best2 = squared[lane];
-      best = block.triangle[lane];
+      best = {&block, lane};
     }
     bound = bound_of(best2);
   }
@@ -87,10 +93,10 @@ SPRUNG_KERNEL Index find_nearest(const MeshTree& tree, const Vector3& p, double 
 
 std::optional<MeshTree::Nearest> MeshTree::nearest(const Vector3& p, double radius) const {
   if (!(radius > 0.0)) return std::nullopt;
-  const Index triangle = find_nearest(*this, p, radius * radius);
-  if (triangle == kNone) return std::nullopt;
-  const auto [a, b, c] = corners(triangle);
-  return Nearest{triangle, closest_point_on_triangle(p, a, b, c)};
+  const auto [block, lane] = find_nearest(*this, p, radius * radius);
+  if (block == nullptr) return std::nullopt;
+  const auto corners = block->corners(lane);
+  return Nearest{block->triangle[lane], closest_point_on_triangle(p, corners[0], corners[1], corners[2]), corners};
 }
 
 }  // namespace sprung

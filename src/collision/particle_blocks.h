@@ -21,7 +21,10 @@ std::vector<Result> collect_from_blocks(Index particles, const Work& work) {
     std::vector<Result>& results = parts[static_cast<std::size_t>(begin / kChunk)];
     for (; begin < end; begin += kBlockParticles) work(begin, std::min(begin + kBlockParticles, end), results);
   });
+  std::size_t count = 0;
+  for (const std::vector<Result>& part : parts) count += part.size();
   std::vector<Result> all;
+  all.reserve(count);
   for (const std::vector<Result>& part : parts) all.insert(all.end(), part.begin(), part.end());
   return all;
 }

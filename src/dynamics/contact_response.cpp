@@ -27,7 +27,7 @@ constexpr double kNothingToDo = -std::numeric_limits<double>::infinity();
 constexpr double kMostPinned = 0.9;
 
 // Contacts that one task sets up.
-constexpr Index kContactChunk = 1024;
+constexpr Index kContactChunk = 256;
 
 template <class Sets, class Visit>
 void for_each_set(Sets& sets, const Visit& visit) {

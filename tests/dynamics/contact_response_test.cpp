@@ -186,7 +186,8 @@ TEST(ContactResponse, FoundAgainAContactCountsOnWhatItPushedAndHeld) {
     const ContactMaterial rough{.thickness = kGap, .friction = 0.5, .static_friction = 0.5};
     add_body(builder, "triangle", triangle_at(0.5 * kGap), {0.1, 0.2, 0.3}, {1.0, -1.0, 0.0}, rough);
     World world(builder.build(), kGravity, {.friction = 0.5, .static_friction = 0.5});
-    std::vector<Contact> contacts = {on_floor({1.0}, 1), on_floor({0.9, 0.1}), on_floor({0.4, 0.6}), on_floor({0.4, 0.6}, 1)};
+    std::vector<Contact> contacts = {on_floor({1.0}, 1), on_floor({0.9, 0.1}), on_floor({0.4, 0.6}), on_floor({0.4, 0.6}, 1),
+                                     on_floor({0.2, 0.8})};  // the last is between the same as the second
     std::swap(contacts[2].particles[0], contacts[2].particles[1]);
     std::vector<Contact> found = {on_floor({0.2, 0.3, 0.5})};  // by nobody before, and 1 m away
     found.front().point.y() -= 1.0;
