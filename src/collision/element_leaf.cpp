@@ -60,6 +60,19 @@ void ElementLeaf::bound() {
   for (int lane = 1; lane < count; ++lane) extend(bounds, lane_bounds(lane));
 }
 
+void ElementLeaf::bound_marked() {
+  bool first = true;
+  for (int lane = 0; lane < count; ++lane) {
+    if (marked[lane] == 0) continue;
+    if (first) {
+      marked_bounds = lane_bounds(lane);
+    } else {
+      extend(marked_bounds, lane_bounds(lane));
+    }
+    first = false;
+  }
+}
+
 bool ElementLeaf::any_marked() const {
   LaneBytes mask;
   store(marked, mask);

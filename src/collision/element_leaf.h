@@ -27,8 +27,9 @@ struct alignas(64) ElementLeaf {
   TreeLanes max[3];
   TreeLanes slowest[3];
   TreeLanes fastest[3];
-  MovingBounds bounds;     ///< of all lanes
-  TreeLanes corner[3][3];  ///< by corner and axis, at time 0; of smaller elements the first corner again
+  MovingBounds bounds;         ///< of all lanes
+  MovingBounds marked_bounds;  ///< of those that are marked; meaningless if none is
+  TreeLanes corner[3][3];      ///< by corner and axis, at time 0; of smaller elements the first corner again
   TreeLanes motion[3][3];
   TreeLanes radius;      ///< of the largest ball, and what rounding may lose
   IntLanes particle[3];  ///< by corner
@@ -46,6 +47,9 @@ struct alignas(64) ElementLeaf {
 
   /// Sets the bounds of all lanes.
   void bound();
+
+  /// Sets the bounds of those that are marked.
+  void bound_marked();
 
   [[nodiscard]] MovingBounds lane_bounds(int lane) const {
     using Axes = MovingBounds::Axes;

@@ -74,6 +74,11 @@ Index ElementTree::add_node(Index begin, Index end, Index body) {
 }
 
 void ElementTree::mark(const std::vector<char>& marked) {
+  mark_lanes(marked);
+  bound_marked();
+}
+
+void ElementTree::mark_lanes(const std::vector<char>& marked) {
   parallel_chunks(static_cast<Index>(leaves_.size()), kLeavesPerTask, [&](Index begin, Index end) {
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
       ElementLeaf& leaf = leaves_[k];
@@ -91,7 +96,7 @@ void ElementTree::mark(const std::vector<char>& marked) {
 
 void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<char>& marked,
                         WatchTimes times) {
-  mark(marked);
+  mark_lanes(marked);
   parallel_chunks(static_cast<Index>(leaves_.size()), kLeavesPerTask, [&](Index begin, Index end) {
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
       ElementLeaf& leaf = leaves_[k];
@@ -106,6 +111,25 @@ void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat,
   });
   for (std::size_t k = nodes_.size(); k-- > 0;) {
     if (nodes_[k].marked) bound_node(nodes_[k]);
+  }
+  bound_marked();
+}
+
+void ElementTree::bound_marked() {
+  for (ElementLeaf& leaf : leaves_) {
+    if (leaf.any_marked()) leaf.bound_marked();
+  }
+  for (std::size_t k = nodes_.size(); k-- > 0;) {
+    Node& node = nodes_[k];
+    if (!node.marked) continue;
+    if (node.leaf != kNone) {
+      node.marked_bounds = leaf(node.leaf).marked_bounds;
+      continue;
+    }
+    const Node& left = this->node(node.left);
+    const Node& right = this->node(node.right);
+    node.marked_bounds = left.marked ? left.marked_bounds : right.marked_bounds;
+    if (left.marked && right.marked) extend(node.marked_bounds, right.marked_bounds);
   }
 }
 

@@ -35,7 +35,8 @@ class ElementTree {
  private:
   struct Node {
     MovingBounds bounds;
-    Index left = kNone;  ///< kNone for a leaf
+    MovingBounds marked_bounds;  ///< of the elements below that are marked; meaningless if none is
+    Index left = kNone;          ///< kNone for a leaf
     Index right = kNone;
     Index leaf = kNone;
     Index leaves = 0;    ///< below it
@@ -58,6 +59,8 @@ class ElementTree {
   void add_leaf(const std::vector<Index>& order, std::size_t begin, std::size_t end);
   Index add_bodies(std::size_t begin, std::size_t end);
   Index add_node(Index begin, Index end, Index body);
+  void mark_lanes(const std::vector<char>& marked);
+  void bound_marked();
   void bound_node(Node& node) const;
   [[nodiscard]] const Node& node(Index number) const { return nodes_[static_cast<std::size_t>(number)]; }
   [[nodiscard]] bool bodies_may_meet(Index a, Index b) const;

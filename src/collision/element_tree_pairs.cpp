@@ -41,7 +41,11 @@ bool ElementTree::may_meet(NodePair pair, const Search& search) const {
   const Node& b = node(pair.b);
   if (!a.marked && !b.marked) return false;
   if (!bodies_may_meet(a.body, b.body)) return false;
-  return pair.a == pair.b || !are_apart(a.bounds, b.bounds, search.now, search.end, search.margin);
+  if (pair.a == pair.b) return true;
+  const auto near = [&](const MovingBounds& own, const MovingBounds& other) {
+    return !are_apart(own, other, search.now, search.end, search.margin);
+  };
+  return (a.marked && near(a.marked_bounds, b.bounds)) || (b.marked && near(a.bounds, b.marked_bounds));
 }
 
 bool ElementTree::bodies_may_meet(Index a, Index b) const {
