@@ -19,6 +19,14 @@ struct ContactCandidate {
   int rest = 0;                      ///< steps in which they need not be looked at
 };
 
+/// How far beyond its gap [m] contact looks in a step in which the forces alone lead its particles up to `way` [m]: passes lead
+/// them less far. What is farther off than a part of the gap, and of that way, would not be touched.
+[[nodiscard]] inline double margin_of_step(double gap, double way) {
+  constexpr double kMarginOfGap = 0.1;
+  constexpr double kMarginOfMotion = 0.5;
+  return kMarginOfGap * gap + kMarginOfMotion * way;
+}
+
 /// What lies between the sides along a direction, negative where they overlap; `height(k)` is how far up particle k is.
 template <class Height>
 [[nodiscard]] double gap_along(const ContactCandidate& candidate, const Height& height) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "collision/contact_candidate.h"
+#include "collision/edge_meetings.h"
 #include "collision/element_tree.h"
 #include "collision/sharp_edges.h"
 
@@ -29,9 +30,11 @@ class ContactSearch {
     const ElementLeaf* leaf = nullptr;
     std::vector<std::array<int, 2>> corners;  ///< lane and corner of those that the leaf's elements own
     LeafPlaces places{};
-    bool sharp[kTreeLanes]{};  ///< by lane: the element owns a sharp edge
-    bool any_sharp = false;
-    float largest_radius = 0.0F;  ///< of its balls [m]
+    std::vector<std::array<int, 2>> edges;  ///< lane and edge of those
+    std::vector<std::array<int, 2>> sharp;  ///< those of them that are
+    std::vector<EdgeLanes> sharp_lanes{};   ///< the same, eight by eight
+    float largest_radius = 0.0F;            ///< of its balls [m]
+    float longest_way = 0.0F;               ///< of its particles in a step, about [m]
   };
   struct Search {
     const MovingBalls& balls;
@@ -39,16 +42,22 @@ class ContactSearch {
     WatchTimes times;
   };
 
-  void prepare_sides(const std::vector<ElementTree::LeafPair>& pairs, WatchTimes times);
-  void prepare(Side& side, WatchTimes times) const;
+  void prepare_sides(const std::vector<ElementTree::LeafPair>& pairs, const Search& search);
+  void prepare(Side& side, const Search& search) const;
+  void prepare_edges(Side& side, const Search& search) const;
   void append_corners(const Side& a, const Side& b, const Search& search, std::vector<ContactCandidate>& candidates) const;
   void append_edges(const Side& a, const Side& b, const Search& search, std::vector<ContactCandidate>& candidates) const;
-  void append_edges_of(Index first, Index second, const Search& search, std::vector<ContactCandidate>& candidates) const;
+  /// Those that come near the edge of side `a` with this number, from a number of side `b` on.
+  void append_edges_near(const Side& a, std::size_t own, const Side& b, std::size_t from, const Search& search,
+                         std::vector<ContactCandidate>& candidates) const;
   void append_if_near(ContactCandidate candidate, const Search& search, std::vector<ContactCandidate>& candidates) const;
+  /// How far particles go in a step, about [m]: as their ball does, and by its radius beside it.
+  [[nodiscard]] static double way_of(const ContactCandidate& candidate, const Search& search);
+  /// Between balls of two sides [m].
+  [[nodiscard]] float reach_between(const Side& a, const Side& b) const;
   /// A lower bound of the distance of their balls' centers until the end; sets the normal.
   [[nodiscard]] static double largest_stray(const ContactCandidate& candidate, const Search& search);
   [[nodiscard]] static double least_distance(ContactCandidate& candidate, const Search& search);
-  [[nodiscard]] bool owns_sharp_edge(Index number) const;
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
   [[nodiscard]] double thickness(Index number) const { return surface_.thickness[element(number).particles[0]]; }
 
@@ -58,7 +67,7 @@ class ContactSearch {
   const ElementTree& tree_;
   const Points& rest_;
   double margin_;
-  double largest_reach_;     ///< of contact between balls [m]
+  double largest_gap_;       ///< [m]
   std::vector<Side> sides_;  ///< by leaf
 };
 

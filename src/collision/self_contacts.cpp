@@ -22,11 +22,6 @@ constexpr double kEdgeLean = 0.1;
 // What comes nearer than its gap by more than this part of it has its nearest points looked for where it passes the gap.
 constexpr double kLongWay = 0.1;
 
-// Passes lead particles less far than the forces alone have led them in this step. What is farther off than this part of the gap,
-// and that part of the way, is no contact: it would not be touched.
-constexpr double kMarginOfGap = 0.1;
-constexpr double kMarginOfMotion = 0.5;
-
 // What is far off is looked at again after so many steps at the latest.
 constexpr int kMostRest = 4;
 
@@ -46,15 +41,15 @@ class SelfContacts {
     }
     const double way = longest_way(candidate);
     const double most_margin = candidate.reach - candidate.gap;
-    const double reach = candidate.gap + std::min(most_margin, kMarginOfGap * candidate.gap + kMarginOfMotion * way);
-    if (stays_apart(candidate, reach, way)) return;
+    const double reach = candidate.gap + std::min(most_margin, margin_of_step(candidate.gap, way));
+    if (stays_apart(candidate, reach)) return;
     std::array<Vector3, 4> x;
     for (std::size_t k = 0; k < 4; ++k) x[k] = before_.col(candidate.particles[k]);
     CandidateClosest closest = closest_points(candidate, x);
     const double begin = closest.separation.norm();
     if (!(begin > 0.0)) return;
     candidate.normal = closest.separation / begin;
-    if (stays_apart(candidate, reach, way)) return;
+    if (stays_apart(candidate, reach)) return;
     const double end = gap_at(candidate, after_);
     if (begin > candidate.gap && end < (1.0 - kLongWay) * candidate.gap) {
       const double time = (begin - candidate.gap) / (begin - end);
@@ -87,18 +82,27 @@ class SelfContacts {
     return std::sqrt(way2);
   }
 
+  /// The longest of its particles, seen from one of them [m].
+  [[nodiscard]] double relative_way(const ContactCandidate& candidate) const {
+    const Index first = candidate.particles[0];
+    const Vector3 common = after_.col(first) - before_.col(first);
+    double way2 = 0.0;
+    for (const Index i : candidate.particles) way2 = std::max(way2, (after_.col(i) - before_.col(i) - common).squaredNorm());
+    return std::sqrt(way2);
+  }
+
   [[nodiscard]] static double gap_at(const ContactCandidate& candidate, const Points& positions) {
     return gap_along(candidate, [&](std::size_t k) { return candidate.normal.dot(positions.col(candidate.particles[k])); });
   }
 
   /// Whether they are apart along the normal all the time, by more than they are to be looked at. Then they rest while they could
-  /// come no nearer if they came nearer by as much in each step, and one of them by its whole way.
-  [[nodiscard]] bool stays_apart(ContactCandidate& candidate, double reach, double way) const {
+  /// come no nearer if they came nearer by as much in each step, and one of them by its whole way, seen from another.
+  [[nodiscard]] bool stays_apart(ContactCandidate& candidate, double reach) const {
     const double begin = gap_at(candidate, before_);
     const double end = gap_at(candidate, after_);
     const double slack = std::min(begin, end) - reach;
     if (!(slack >= 0.0)) return false;
-    const double nearer = std::max(begin - end, 0.0) + way;
+    const double nearer = std::max(begin - end, 0.0) + relative_way(candidate);
     candidate.rest = slack < kMostRest * nearer ? static_cast<int>(slack / nearer) : kMostRest;
     return true;
   }
