@@ -17,9 +17,10 @@ constexpr double kRadius = 0.1;
 // Where edges are of very different lengths, the shortest counts as at least this part of the mean.
 constexpr double kShortestEdge = 0.25;
 
-// Balls are to last until particles, seen from the middle of their body, have flown so many edges' length, and at most so many
-// steps.
-constexpr double kFlight = 0.12;
+// The longer balls last, the more rarely all are made again, but the more comes near on their way. What both cost together is least
+// at about this many times the root of the number of steps in which particles, seen from the middle of their body, fly an edge's
+// length; at most at so many steps.
+constexpr double kLasting = 1.1;
 constexpr double kMostSteps = 64.0;
 
 constexpr Index kParticlesPerTask = 1024;
@@ -132,7 +133,7 @@ void PairWatch::choose_horizon(const Points& before, const Points& after) {
     if (flight.count == 0.0 || surface_.element_size[body] == 0.0) continue;
     const double variance = flight.squares / flight.count - (flight.sum / flight.count).squaredNorm();
     const double speed = std::sqrt(std::max(variance, 0.0));
-    if (speed > 0.0) horizon_ = std::min(horizon_, std::floor(kFlight * surface_.element_size[body] / speed));
+    if (speed > 0.0) horizon_ = std::min(horizon_, std::floor(kLasting * std::sqrt(surface_.element_size[body] / speed)));
   }
   horizon_ = std::max(horizon_, 1.0);
 }
