@@ -14,6 +14,10 @@ namespace {
 constexpr int kMostIterations = 20;
 constexpr int kMostHalvings = 10;
 
+// In a crumpled cloth that neither stretches nor shears each whole step takes other links beyond their limit, and little is left of
+// it. From this iteration on all that ever were stay stiff; where fewer are enough that would only hold them up.
+constexpr int kFreeIterations = 5;
+
 // A step that turns links makes them longer, which its equations do not know. Corrections are made while each takes off half of the
 // energy, and are worth it where half of the forecast is gained at the end.
 constexpr int kMostCorrections = 5;
@@ -120,6 +124,7 @@ int ComponentNewton::minimise() {
   // few of them.
   double modelled = energy_.linearise(x_, led_, NearLimit::pushing, system_);
   bool is_too_stiff = false;
+  energy_.forget_overshot();
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
     system_.is_like_last = iteration == 1 && is_calm;
     const double left = solver_->solve(system_, step_);
@@ -130,8 +135,13 @@ int ComponentNewton::minimise() {
     if (part == 0.0 && iteration > 1) return iteration;
     // What was slack stopped the step short, or what counted as if it pushed was not worth it. A forecast with links that are stiff
     // but do not pull tells less than can be gained.
-    is_too_stiff = part < 1.0;
-    if (is_too_stiff) energy_.linearise(x_, led_, NearLimit::stiff, system_);
+    const bool restrains = iteration >= kFreeIterations && energy_.knows_overshot();
+    is_too_stiff = part < 1.0 && !restrains;
+    if (restrains) {
+      energy_.linearise(x_, led_, NearLimit::overshot, system_);
+    } else if (is_too_stiff) {
+      energy_.linearise(x_, led_, NearLimit::stiff, system_);
+    }
     modelled = energy;
   }
   return kMostIterations;
@@ -174,6 +184,8 @@ ComponentNewton::Descent ComponentNewton::descend(double& energy, double forecas
     go(energy_.linearise(tried_, led_, NearLimit::slack, system_));
     return {.part = 1.0, .corrected = true};
   }
+  tried_.leftCols(component_.free_count) = x_.leftCols(component_.free_count) + step_;
+  energy_.note_overshot(tried_);
   double part = 0.5;
   for (int halving = 1; halving <= kMostHalvings; ++halving, part *= 0.5) {
     tried_ = x_;

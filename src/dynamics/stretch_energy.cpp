@@ -41,6 +41,15 @@ double StretchEnergy::value(const Points& x, const Points& y) const {
   return 0.5 * (inertia + weight_ * elastic);
 }
 
+void StretchEnergy::note_overshot(const Points& x) {
+  overshot_.resize(limits_.size(), 0);
+  for (std::size_t s = 0; s < limits_.size(); ++s) {
+    const StretchComponent::Link& link = component_.links[s];
+    const double squared = (x.col(link.second) - x.col(link.first)).squaredNorm();
+    if (squared > limits_[s].length * limits_[s].length) overshot_[s] = 1;
+  }
+}
+
 double StretchEnergy::linearise(const Points& x, const Points& y, NearLimit near, StretchSystem& system) const {
   system.blocks.resize(limits_.size());
   system.residual.resize(Eigen::NoChange, component_.free_count);
@@ -51,13 +60,15 @@ double StretchEnergy::linearise(const Points& x, const Points& y, NearLimit near
     system.residual.col(i) = component_.masses[i] * away;
   }
   double elastic = 0.0;
-  const double squared_part = near == NearLimit::slack ? 1.0 : kNear * kNear;
+  const double squared_part = near == NearLimit::stiff || near == NearLimit::pushing ? kNear * kNear : 1.0;
+  const bool looks_at_overshot = near == NearLimit::overshot && knows_overshot();
   for (std::size_t s = 0; s < limits_.size(); ++s) {
     const StretchComponent::Link& link = component_.links[s];
     const Limit& limit = limits_[s];
     const Vector3 between = x.col(link.second) - x.col(link.first);
     const double squared = between.squaredNorm();
-    if (squared <= squared_part * limit.length * limit.length) {
+    const bool is_stiff = looks_at_overshot && overshot_[s] != 0;
+    if (!is_stiff && squared <= squared_part * limit.length * limit.length) {
       system.blocks[s] = {};
       continue;
     }

@@ -8,11 +8,13 @@
 
 namespace sprung {
 
-/// What links count as that are shorter than the longest they may be, by less than a tenth.
+/// What links count as that are shorter than the longest they may be. Stiff ones are as stiff as those that are too long, though
+/// they neither pull nor push.
 enum class NearLimit : std::uint8_t {
-  slack,   ///< what they are
-  stiff,   ///< as stiff as those that are too long, though they neither pull nor push
-  pushing  ///< as if they held both ways
+  slack,     ///< what they are
+  overshot,  ///< stiff where note_overshot() was told of them
+  stiff,     ///< stiff where less than a tenth is missing
+  pushing    ///< there as if they held both ways
 };
 
 /// E(x) = 1/2 sum m |x - y|^2 + 1/2 sum k max(0, |d| - L)^2 over free points and links of a component: y is where forces led, L the
@@ -28,6 +30,11 @@ class StretchEnergy {
 
   /// E at `x`; both 3 x points.
   [[nodiscard]] double value(const Points& x, const Points& y) const;
+
+  /// Links that are too long at `x` are stiff with NearLimit::overshot until all are forgotten.
+  void note_overshot(const Points& x);
+  void forget_overshot() { overshot_.clear(); }
+  [[nodiscard]] bool knows_overshot() const { return !overshot_.empty(); }
 
   /// E, its negative gradient as the residual, and its second derivatives, of which those are left out that would make a block
   /// indefinite. What links near the limit count as if they pushed is in what is returned too.
@@ -45,7 +52,8 @@ class StretchEnergy {
   };
 
   const StretchComponent& component_;
-  std::vector<Limit> limits_;  ///< of links
+  std::vector<Limit> limits_;   ///< of links
+  std::vector<char> overshot_;  ///< links; empty while none is known
   double weight_ = 0.0;
 };
 
