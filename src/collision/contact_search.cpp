@@ -209,7 +209,6 @@ void ContactSearch::append_if_near(ContactCandidate candidate, const Search& sea
   candidates.push_back(candidate);
 }
 
-/// By how much particles in their balls may be nearer to each other than the balls' middles.
 double ContactSearch::largest_stray(const ContactCandidate& candidate, const Search& search) {
   const auto radius = [&](std::size_t k) { return search.balls.radius(candidate.particles[k]); };
   return candidate.edges ? std::max(radius(0), radius(1)) + std::max(radius(2), radius(3))

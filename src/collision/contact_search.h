@@ -55,8 +55,9 @@ class ContactSearch {
   [[nodiscard]] static double way_of(const ContactCandidate& candidate, const Search& search);
   /// Between balls of two sides [m].
   [[nodiscard]] float reach_between(const Side& a, const Side& b) const;
-  /// A lower bound of the distance of their balls' centers until the end; sets the normal.
+  /// By how much particles in their balls may be nearer to each other than the balls' centers [m].
   [[nodiscard]] static double largest_stray(const ContactCandidate& candidate, const Search& search);
+  /// A lower bound of the distance of their balls' centers until the end; sets the normal.
   [[nodiscard]] static double least_distance(ContactCandidate& candidate, const Search& search);
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
   [[nodiscard]] double thickness(Index number) const { return surface_.thickness[element(number).particles[0]]; }
