@@ -42,14 +42,14 @@ class SelfContacts {
     const double way = longest_way(candidate);
     const double most_margin = candidate.reach - candidate.gap;
     const double reach = candidate.gap + std::min(most_margin, margin_of_step(candidate.gap, way));
-    if (stays_apart(candidate, reach)) return;
+    if (stays_apart(candidate, reach, way)) return;
     std::array<Vector3, 4> x;
     for (std::size_t k = 0; k < 4; ++k) x[k] = before_.col(candidate.particles[k]);
     CandidateClosest closest = closest_points(candidate, x);
     const double begin = closest.separation.norm();
     if (!(begin > 0.0)) return;
     candidate.normal = closest.separation / begin;
-    if (stays_apart(candidate, reach)) return;
+    if (stays_apart(candidate, reach, way)) return;
     const double end = gap_at(candidate, after_);
     if (begin > candidate.gap && end < (1.0 - kLongWay) * candidate.gap) {
       const double time = (begin - candidate.gap) / (begin - end);
@@ -82,27 +82,19 @@ class SelfContacts {
     return std::sqrt(way2);
   }
 
-  /// The longest of its particles, seen from one of them [m].
-  [[nodiscard]] double relative_way(const ContactCandidate& candidate) const {
-    const Index first = candidate.particles[0];
-    const Vector3 common = after_.col(first) - before_.col(first);
-    double way2 = 0.0;
-    for (const Index i : candidate.particles) way2 = std::max(way2, (after_.col(i) - before_.col(i) - common).squaredNorm());
-    return std::sqrt(way2);
-  }
-
   [[nodiscard]] static double gap_at(const ContactCandidate& candidate, const Points& positions) {
     return gap_along(candidate, [&](std::size_t k) { return candidate.normal.dot(positions.col(candidate.particles[k])); });
   }
 
   /// Whether they are apart along the normal all the time, by more than they are to be looked at. Then they rest while they could
-  /// come no nearer if they came nearer by as much in each step, and one of them by its whole way, seen from another.
-  [[nodiscard]] bool stays_apart(ContactCandidate& candidate, double reach) const {
+  /// come no nearer if they came nearer by as much in each step, and one of them by its whole way: what flies beside it may be
+  /// stopped.
+  [[nodiscard]] bool stays_apart(ContactCandidate& candidate, double reach, double way) const {
     const double begin = gap_at(candidate, before_);
     const double end = gap_at(candidate, after_);
     const double slack = std::min(begin, end) - reach;
     if (!(slack >= 0.0)) return false;
-    const double nearer = std::max(begin - end, 0.0) + relative_way(candidate);
+    const double nearer = std::max(begin - end, 0.0) + way;
     candidate.rest = slack < kMostRest * nearer ? static_cast<int>(slack / nearer) : kMostRest;
     return true;
   }

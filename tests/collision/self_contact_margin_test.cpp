@@ -193,6 +193,20 @@ TEST(SelfContactMargin, WhatCreepsTogetherAtAnEndIsToldOf) {
       network, [&](int step, const Points& x) { return creep(x, step, rise); }, apart);
 }
 
+// What flies together may be stopped on one side in any step, while nothing leaves its ball.
+TEST(SelfContactMargin, WhatStopsIsToldOf) {
+  for (int stop = 1; stop <= 8; ++stop) {
+    SCOPED_TRACE("stops in step " + std::to_string(stop));
+    const auto go = [&](int step, const Points& x) {
+      Points targets = x;
+      if (step < stop) targets.row(1).array() -= 0.1 * kGap;
+      if (step >= stop) targets(1, x.cols() - 1) -= 0.1 * kGap;
+      return targets;
+    };
+    expect_contact_in_time(sheet_and_particle(1.18 * kGap), go, height);
+  }
+}
+
 // Either of two segments that cross, the other at rest.
 TEST(SelfContactMargin, WhatFallsAcrossAnEdgeIsToldOf) {
   for (const Index falling : {0, 2}) {

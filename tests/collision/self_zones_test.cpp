@@ -23,6 +23,13 @@ SelfNetwork cloth_of(Index side, double edge = kEdge) {
   return network;
 }
 
+/// A particle above the inside of a face of a sheet, the last.
+SelfNetwork sheet_and_particle() {
+  SelfNetwork network = cloth_of(4);
+  network.add_single_particle({0.0123, 0.02, 0.0171});
+  return network;
+}
+
 /// Every particle is thrown about by up to `speed` [m per step], and drawn to the middle.
 std::function<Points(int, const Points&)> crumpling(double speed, std::uint64_t seed) {
   return [speed, random = test::Random(seed)](int, const Points& x) mutable {
@@ -117,8 +124,7 @@ TEST(SelfZones, RopesThrownAtEachOtherDoNotPass) {
 }
 
 TEST(SelfZones, AParticleThrownAtASheetStaysOnItsSide) {
-  SelfNetwork network = cloth_of(4);
-  network.add_single_particle({0.0123, 0.02, 0.0171});
+  const SelfNetwork network = sheet_and_particle();
   const CollisionSurface surface = network.surface(kThickness);
   SelfZones zones(surface, network.positions, kMargin);
   const Index last = network.count() - 1;
@@ -134,8 +140,7 @@ TEST(SelfZones, AParticleThrownAtASheetStaysOnItsSide) {
 
 // An eighth of it, where both had more: what goes on from there has room to turn.
 TEST(SelfZones, AParticleThrownAtASheetKeepsAPartOfTheThickness) {
-  SelfNetwork network = cloth_of(4);
-  network.add_single_particle({0.0123, 0.02, 0.0171});
+  const SelfNetwork network = sheet_and_particle();
   const CollisionSurface surface = network.surface(kThickness);
   SelfZones zones(surface, network.positions, kMargin);
   const Index last = network.count() - 1;
@@ -166,8 +171,7 @@ TEST(SelfZones, NoPlaceOutsideAParticlesBallIsAllowed) {
 
 /// Each step takes it half of the way to the sheet, but never below what rounding, 2^-53 of the coordinates, cannot take away.
 TEST(SelfZones, AParticleThatComesNearerEachStepKeepsClear) {
-  SelfNetwork network = cloth_of(4);
-  network.add_single_particle({0.0123, 0.02, 0.0171});
+  const SelfNetwork network = sheet_and_particle();
   const CollisionSurface surface = network.surface(0.0);
   SelfZones zones(surface, network.positions, kMargin);
   const Index last = network.count() - 1;
