@@ -143,9 +143,9 @@ template <Index kCount, int kVectors, class Number>
   }
 }
 
-template <int kVectors, class Number>
+template <std::size_t kBytes, int kVectors, class Number>
 [[gnu::always_inline]] inline bool eliminate(const FrontShape& shape, Number* panel, Number* inverse, Number* update, Number* row) {
-  constexpr auto kCount = static_cast<Index>(kWideLanes * sizeof(double) / sizeof(Number));
+  constexpr auto kCount = static_cast<Index>(kBytes / sizeof(Number));
   const auto stride = static_cast<std::size_t>(shape.width()) * kLanes;
   if (!eliminate_own_rows<kCount, kVectors>(shape, stride, 0, panel, inverse, row)) return false;
   eliminate_lower_rows<kCount, kVectors>(shape, stride, 0, panel, inverse, update, row);
@@ -205,17 +205,17 @@ template <class Number>
 }  // namespace
 
 SPRUNG_KERNEL bool eliminate_front_narrow(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
-  return eliminate<1>(shape, panel, inverse, update, row);
+  return eliminate<sizeof(SpringLanes), 2>(shape, panel, inverse, update, row);
 }
 SPRUNG_KERNEL bool eliminate_front_narrow(const FrontShape& shape, float* panel, float* inverse, float* update, float* row) {
-  return eliminate<1>(shape, panel, inverse, update, row);
+  return eliminate<sizeof(SpringLanes), 2>(shape, panel, inverse, update, row);
 }
 
 SPRUNG_WIDE_KERNEL bool eliminate_front_wide(const FrontShape& shape, double* panel, double* inverse, double* update, double* row) {
-  return eliminate<2>(shape, panel, inverse, update, row);
+  return eliminate<sizeof(WideLanes), 2>(shape, panel, inverse, update, row);
 }
 SPRUNG_WIDE_KERNEL bool eliminate_front_wide(const FrontShape& shape, float* panel, float* inverse, float* update, float* row) {
-  return eliminate<2>(shape, panel, inverse, update, row);
+  return eliminate<sizeof(WideLanes), 2>(shape, panel, inverse, update, row);
 }
 
 SPRUNG_KERNEL void add_to_panel(std::span<const Index> columns, const PanelRows& rows, const double* child, Index child_height,
