@@ -18,15 +18,21 @@ double scale_to_one(double largest) {
   return std::ldexp(1.0, -std::ilogb(largest));
 }
 
+// Blocks lie in the order of particles, entries in that of elimination: they are on their way so many entries before.
+constexpr std::size_t kAhead = 8;
+
+const Matrix3& block_of(const Entry& entry, const BlockMatrix& matrix) {
+  return entry.on_diagonal ? matrix.diagonal(entry.block) : matrix.beside(entry.block);
+}
+
 template <class Number>
 void add_entry(const Entry& entry, const BlockMatrix& matrix, double scale, double raise, const FrontShape& shape, Number* panel) {
-  const Matrix3& block = entry.on_diagonal ? matrix.diagonal(entry.block) : matrix.beside(entry.block);
-  for (Index c = 0; c < 3; ++c) {
-    for (Index r = 0; r < 3; ++r) {
-      const double number = entry.transposed ? block(c, r) : block(r, c);
-      const double raised = entry.on_diagonal && r == c ? number + raise * number : number;
-      panel[shape.place(entry.row + r, entry.column + c)] = static_cast<Number>(scale * raised);
-    }
+  Matrix3 block = block_of(entry, matrix);
+  if (entry.transposed) block.transposeInPlace();
+  if (entry.on_diagonal) block.diagonal() += raise * block.diagonal();
+  for (Index r = 0; r < 3; ++r) {
+    Number* const row = panel + shape.place(entry.row + r, entry.column);
+    for (Index c = 0; c < 3; ++c) row[c * kSpringLanes] = static_cast<Number>(scale * block(r, c));
   }
 }
 
@@ -79,8 +85,10 @@ void BlockCholesky<Number>::assemble(std::size_t number, const BlockMatrix& matr
   Number* const panel = &panels_[front.panel];
   std::fill_n(panel, shape.size(), Number{});
   for (Index k = 3 * static_cast<Index>(front.own.size()); k < shape.width(); ++k) panel[shape.place(k, k)] = 1;
+  const std::vector<Entry>& entries = layout_->entries;
   for (std::size_t e = number == 0 ? 0 : layout_->fronts[number - 1].end_entry; e < front.end_entry; ++e) {
-    add_entry(layout_->entries[e], matrix, scale_, raise, shape, panel);
+    __builtin_prefetch(block_of(entries[std::min(e + kAhead, entries.size() - 1)], matrix).data());
+    add_entry(entries[e], matrix, scale_, raise, shape, panel);
   }
   for (const Index c : front.children) {
     const Front& child = layout_->fronts[c];

@@ -1,6 +1,7 @@
 // A direct solver for sparse symmetric matrices of 3 x 3 blocks.
 #pragma once
 
+#include "base/huge_pages.h"
 #include "dynamics/block_matrix.h"
 
 #include <memory>
@@ -33,10 +34,10 @@ class BlockCholesky {
 
   std::unique_ptr<const FrontLayout> layout_;
   double scale_ = 1.0;           ///< of the matrix that was factored to the one that was given, a power of two
-  std::vector<Number> panels_;   ///< L
+  LargeVector<Number> panels_;   ///< L
   std::vector<Number> inverse_;  ///< 1 / D
   // Of a factor or a solve.
-  std::vector<Number> updates_;
+  LargeVector<Number> updates_;
   std::vector<Number> vector_;
   std::vector<Number> below_;
   std::vector<Number> row_;

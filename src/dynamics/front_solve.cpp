@@ -2,41 +2,104 @@
 #include "dynamics/front_kernel.h"
 #include "dynamics/lanes.h"
 
+#include <algorithm>
+
 namespace sprung {
 namespace {
 
 constexpr Index kLanes = kSpringLanes;
+constexpr Index kTile = kLanes * kLanes;
+
+/// Subtracts L of some rows of tiles, `stride` numbers apart, times a vector's first `columns` numbers.
+template <Index kRows, class Lanes>
+[[gnu::always_inline]] inline void subtract_rows(const NumberOf<Lanes>* rows, std::size_t stride, Index columns,
+                                                 const NumberOf<Lanes>* x, Lanes (&from)[kRows]) {
+  for (Index k = 0; k < columns; ++k) {
+    for (Index r = 0; r < kRows; ++r) {
+      Lanes l;
+      load_lanes(rows + r * stride + k * kLanes, l);
+      from[r] -= l * x[k];
+    }
+  }
+}
+
+/// Solves for kRows rows of tiles from `t` on, those before being solved.
+template <Index kRows, class Number>
+[[gnu::always_inline]] inline void solve_own(const Number* panel, std::size_t stride, Index& t, Index tiles, Number* own) {
+  using Lanes = typename LanesOf<Number, kLanes>::Type;
+  for (; t + kRows <= tiles; t += kRows) {
+    const Number* const rows = panel + t * stride;
+    Lanes sums[kRows];
+    for (Index r = 0; r < kRows; ++r) load_lanes(own + (t + r) * kLanes, sums[r]);
+    subtract_rows(rows, stride, t * kLanes, own, sums);
+    for (Index r = 0; r < kRows; ++r) {
+      Lanes one[1] = {sums[r]};
+      subtract_rows(rows + r * stride + t * kTile, stride, r * kLanes, own + t * kLanes, one);
+      Lanes sum = one[0];
+      for (Index q = 0; q < kLanes; ++q) {
+        Lanes l;
+        load_lanes(rows + r * stride + ((t + r) * kLanes + q) * kLanes, l);
+        sum -= l * sum[q];
+      }
+      store_lanes(sum, own + (t + r) * kLanes);
+    }
+  }
+}
+
+/// Writes L of kRows rows of tiles times the front's own part.
+template <Index kRows, class Number>
+[[gnu::always_inline]] inline void multiply_lower(const Number* lower, std::size_t stride, Index& t, Index tiles, Index width,
+                                                  const Number* own, Number* below) {
+  using Lanes = typename LanesOf<Number, kLanes>::Type;
+  for (; t + kRows <= tiles; t += kRows) {
+    const Number* const rows = lower + t * stride;
+    Lanes sums[kRows][kLanes] = {};
+    for (Index k = 0; k < width; k += kLanes) {
+      for (Index q = 0; q < kLanes; ++q) {
+        for (Index r = 0; r < kRows; ++r) {
+          Lanes l;
+          load_lanes(rows + r * stride + (k + q) * kLanes, l);
+          sums[r][q] += l * own[k + q];
+        }
+      }
+    }
+    for (Index r = 0; r < kRows; ++r) {
+      store_lanes((sums[r][0] + sums[r][1]) + (sums[r][2] + sums[r][3]), below + (t + r) * kLanes);
+    }
+  }
+}
 
 template <class Number>
 [[gnu::always_inline]] inline void solve(const FrontShape& shape, const Number* panel, Number* own, Number* below) {
-  using Lanes = typename LanesOf<Number, kLanes>::Type;
   const auto stride = static_cast<std::size_t>(shape.width()) * kLanes;
-  for (Index t = 0; t < shape.own_tiles; ++t) {
-    Lanes sum;
-    load_lanes(own + t * kLanes, sum);
-    for (Index k = 0; k < t * kLanes; ++k) {
-      Lanes l;
-      load_lanes(panel + t * stride + k * kLanes, l);
-      sum -= l * own[k];
-    }
-    for (Index q = 0; q < kLanes; ++q) {
-      Lanes l;
-      load_lanes(panel + t * stride + (t * kLanes + q) * kLanes, l);
-      sum -= l * sum[q];
-    }
-    store_lanes(sum, own + t * kLanes);
+  Index t = 0;
+  solve_own<4>(panel, stride, t, shape.own_tiles, own);
+  solve_own<1>(panel, stride, t, shape.own_tiles, own);
+  const Number* const lower = panel + shape.own_tiles * stride;
+  t = 0;
+  multiply_lower<2>(lower, stride, t, shape.lower_tiles, shape.width(), own, below);
+  multiply_lower<1>(lower, stride, t, shape.lower_tiles, shape.width(), own, below);
+}
+
+/// Adds kRows rows of tiles, transposed, times x to what each lane sums of each column, row after row.
+template <Index kRows, class Number>
+[[gnu::always_inline]] inline void add_transposed(const Number* rows, std::size_t stride, Index columns, const Number* x,
+                                                  Number* sums) {
+  constexpr Index kCount = sizeof(SpringLanes) / sizeof(Number);
+  using Lanes = typename LanesOf<Number, kCount>::Type;
+  Lanes right[kRows];
+  for (Index r = 0; r < kRows; ++r) {
+    for (Index lane = 0; lane < kCount; ++lane) right[r][lane] = x[r * kLanes + lane % kLanes];
   }
-  const Number* row = panel + shape.own_tiles * stride;
-  for (Index t = 0; t < shape.lower_tiles; ++t, row += stride) {
-    Lanes sums[kLanes] = {};
-    for (Index k = 0; k < shape.width(); k += kLanes) {
-      for (Index q = 0; q < kLanes; ++q) {
-        Lanes l;
-        load_lanes(row + (k + q) * kLanes, l);
-        sums[q] += l * own[k + q];
-      }
+  for (Index k = 0; k < columns * kLanes; k += kCount) {
+    Lanes sum;
+    load_lanes(sums + k, sum);
+    for (Index r = 0; r < kRows; ++r) {
+      Lanes l;
+      load_lanes(rows + r * stride + k, l);
+      sum += l * right[r];
     }
-    store_lanes((sums[0] + sums[1]) + (sums[2] + sums[3]), below + t * kLanes);
+    store_lanes(sum, sums + k);
   }
 }
 
@@ -44,22 +107,12 @@ template <class Number>
 template <class Number>
 [[gnu::always_inline]] inline void solve_transposed(const FrontShape& shape, const Number* panel, const Number* inverse,
                                                     Number* own, const Number* below, Number* sums) {
-  using Lanes = typename LanesOf<Number, kLanes>::Type;
   const auto stride = static_cast<std::size_t>(shape.width()) * kLanes;
-  for (Index k = 0; k < shape.width(); ++k) store_lanes(Lanes{}, sums + k * kLanes);
-  const auto add_row = [&](const Number* row, const Number* x, Index columns) __attribute__((always_inline)) {
-    Lanes right;
-    load_lanes(x, right);
-    for (Index k = 0; k < columns; ++k) {
-      Lanes l;
-      Lanes sum;
-      load_lanes(row + k * kLanes, l);
-      load_lanes(sums + k * kLanes, sum);
-      sum += l * right;
-      store_lanes(sum, sums + k * kLanes);
-    }
-  };
-  for (Index t = 0; t < shape.lower_tiles; ++t) add_row(panel + (shape.own_tiles + t) * stride, below + t * kLanes, shape.width());
+  std::fill_n(sums, stride, Number{});
+  const Number* const lower = panel + shape.own_tiles * stride;
+  Index r = 0;
+  for (; r + 4 <= shape.lower_tiles; r += 4) add_transposed<4>(lower + r * stride, stride, shape.width(), below + r * kLanes, sums);
+  for (; r < shape.lower_tiles; ++r) add_transposed<1>(lower + r * stride, stride, shape.width(), below + r * kLanes, sums);
   for (Index t = shape.own_tiles - 1; t >= 0; --t) {
     for (Index q = kLanes - 1; q >= 0; --q) {
       const Index k = t * kLanes + q;
@@ -68,7 +121,7 @@ template <class Number>
       for (Index p = q + 1; p < kLanes; ++p) inner += panel[t * stride + k * kLanes + p] * own[t * kLanes + p];
       own[k] = own[k] * inverse[k] - (((sum[0] + sum[1]) + (sum[2] + sum[3])) + inner);
     }
-    add_row(panel + t * stride, own + t * kLanes, t * kLanes);
+    add_transposed<1>(panel + t * stride, stride, t * kLanes, own + t * kLanes, sums);
   }
 }
 

@@ -1,0 +1,15 @@
+#include "base/huge_pages.h"
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace sprung {
+
+void prefer_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
+#ifdef __linux__
+  madvise(begin, bytes, MADV_HUGEPAGE);  // a hint: what comes of it does not matter
+#endif
+}
+
+}  // namespace sprung
