@@ -14,10 +14,8 @@ namespace sprung {
 [[nodiscard]] std::unique_ptr<Integrator> make_runge_kutta4(const SpringNetwork& network);
 [[nodiscard]] std::unique_ptr<Integrator> make_implicit_euler(const SpringNetwork& network);
 
-/// Time [s] at the begin of the step that a state is about to make.
-[[nodiscard]] inline double step_begin(const SimulationState& state, double dt) {
-  return static_cast<double>(parts_done(state)) * dt;
-}
+/// Time [s] at the begin of the step, or part of one, of dt [s] that a state is about to make.
+[[nodiscard]] inline double step_begin(const SimulationState& state, double dt) { return steps_done(state) * (state.parts * dt); }
 
 /// Forces [N] at the begin of the step, 3 x n, written to `total`.
 inline void evaluate(const SimulationState& state, const Forces& forces, double dt, Points& total) {

@@ -16,7 +16,7 @@ struct StretchHold {
 
 struct SimulationState {
   std::int64_t step = 0;                   ///< steps that are done
-  int halvings = 0;                        ///< the step at hand is made in 2^halvings equal parts
+  int parts = 1;                           ///< the step at hand is made in so many equal parts
   int part = 0;                            ///< of which so many are done
   int calm_steps = 0;                      ///< so many in a row did not need their parts
   Points x;                                ///< positions [m], 3 x n
@@ -25,10 +25,10 @@ struct SimulationState {
   std::vector<StretchHold> stretch_holds;  ///< of bodies
 };
 
-/// How many parts as long as those at hand the state has behind it: time is this times their length, to the last bit what it is
-/// in whole steps.
-[[nodiscard]] inline std::int64_t parts_done(const SimulationState& state) {
-  return state.step * (std::int64_t{1} << state.halvings) + state.part;
+/// How many steps the state has behind it, with the parts of the one at hand: time is this times their length, to the last bit what
+/// it is in whole steps.
+[[nodiscard]] inline double steps_done(const SimulationState& state) {
+  return static_cast<double>(state.step) + static_cast<double>(state.part) / state.parts;
 }
 
 /// The state at time 0. Verlet's x_previous is set by the integrator, which knows the step.

@@ -73,7 +73,7 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
   if (network) {
     const StepChoice choice = choose_step(scene, *network, problems);
     built.settings.step = choice.step;
-    built.settings.most_halvings = choice.most_halvings;
+    built.settings.most_parts = choice.most_parts;
     built.steps_per_frame = choice.steps_per_frame;
     built.largest_stable_step = choice.largest_stable;
     built.network = std::move(*network);

@@ -22,13 +22,13 @@ bool damps_steps(const IntegratorSettings& integrator) {
   return verlet != nullptr && verlet->damping > 0.0;
 }
 
-bool may_be_halved(const Scene& scene, const std::optional<StretchLimit>& limit) {
+bool may_be_in_parts(const Scene& scene, const std::optional<StretchLimit>& limit) {
   return limit && (limit->bears_smaller_steps() || limit->follows_turn()) && !damps_steps(scene.settings.integrator);
 }
 
 /// Of what a step may be as large as a frame for: its parts are chosen as it moves, and nothing is in its way.
 bool is_bound_by_turn(const Scene& scene, const SpringNetwork& network, const std::optional<StretchLimit>& limit) {
-  return may_be_halved(scene, limit) && limit->follows_turn() && !may_meet_anything(scene, network);
+  return may_be_in_parts(scene, limit) && limit->follows_turn() && !may_meet_anything(scene, network);
 }
 
 /// Whatever passes of the stretch limit need.
@@ -40,11 +40,11 @@ double largest_auto_step(const Scene& scene, const SpringNetwork& network, const
   return largest;
 }
 
-/// How often a step of which a frame has `most` must be halved, at most, to be as small as one of which it has `needed`; 0 where
-/// parts must not be.
-int halvings_for_passes(const Scene& scene, const std::optional<StretchLimit>& limit, int needed, int most) {
-  if (!limit || !limit->may_follow_turn() || damps_steps(scene.settings.integrator)) return 0;
-  return std::min(std::ilogb(static_cast<double>(needed) / most), kMostHalvings);
+/// In how many parts, a power of two, a step of which a frame has `most` is about as small as one of which it has `needed`, but no
+/// smaller; 1 where there must be none.
+int parts_for_passes(const Scene& scene, const std::optional<StretchLimit>& limit, int needed, int most) {
+  if (!limit || !limit->may_follow_turn() || damps_steps(scene.settings.integrator)) return 1;
+  return std::min(1 << std::ilogb(static_cast<double>(needed) / most), kMostParts);
 }
 
 std::string advice_for_unstable(const Scene& scene, double largest_stable) {
@@ -80,10 +80,10 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
   const double without_passes = largest_auto_step(scene, network, limit, bounds, choice.largest_stable);
   const double largest = limit ? std::min(without_passes, limit->suggested_step(scene.settings.gravity.norm())) : without_passes;
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
-    const int halvings = halvings_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));
-    choice.steps_per_frame = 1 + (*steps - 1) / (1 << halvings);
+    const int parts = parts_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));
+    choice.steps_per_frame = 1 + (*steps - 1) / parts;
     choice.step = step_of(scene.frame_rate, choice.steps_per_frame);
-    choice.most_halvings = may_be_halved(scene, limit) ? kAutoHalvings : halvings;
+    choice.most_parts = may_be_in_parts(scene, limit) ? kAutoParts : parts;
   } else {
     problems.push_back({scene.file.string(), "step", "\"auto\"",
                         "must be at most " + format_upper_bound(largest) + " s, which is too many steps a frame",

@@ -14,7 +14,6 @@
 #include "simulation/step_refinement.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace sprung {
@@ -49,8 +48,8 @@ struct Simulator::Implementation {
   void check_state();
   void check_energy(const Energies& now) const;
   void fail(StepFailure failure) const;
-  [[nodiscard]] double dt() const { return std::ldexp(settings.step, -state.halvings); }
-  [[nodiscard]] double time() const { return static_cast<double>(parts_done(state)) * dt(); }
+  [[nodiscard]] double dt() const { return settings.step / state.parts; }
+  [[nodiscard]] double time() const { return steps_done(state) * settings.step; }
 
   SpringNetwork network;
   SimulatorSettings settings;
@@ -84,9 +83,9 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       energy_watch(network, settings, environment.obstacles()),
       state(initial_state(network)) {
   const StretchLimit* limit = constraints.limit();
-  if (limit != nullptr && settings.most_halvings > 0) {
-    refinement.emplace(limit->settings(), settings.most_halvings);
-    if (waits_for_turn || (limit->follows_turn() && anything_moves())) state.halvings = settings.most_halvings;
+  if (limit != nullptr && settings.most_parts > 1) {
+    refinement.emplace(limit->settings(), settings.most_parts);
+    if (waits_for_turn || (limit->follows_turn() && anything_moves())) state.parts = settings.most_parts;
   }
   gravity = add_force<Gravity>(settings.gravity);
   springs = add_force<SpringForce>();
@@ -112,9 +111,8 @@ bool Simulator::Implementation::anything_moves() const {
 }
 
 StepReport Simulator::Implementation::step() {
-  const int parts = 1 << state.halvings;
   StepReport report;
-  for (int part = 0; part < parts; ++part) report += make_part();
+  for (const std::int64_t begun = state.step; state.step == begun;) report += make_part();
   if (refinement) choose_parts(report.stretch_excess);
   if (const StretchLimit* limit = constraints.limit()) hand_over_missed(network, *limit, report.stretch_excess, state);
   return report;
@@ -122,7 +120,7 @@ StepReport Simulator::Implementation::step() {
 
 StepReport Simulator::Implementation::make_part() {
   const double t = time();
-  const double t_end = static_cast<double>(parts_done(state) + 1) * dt();
+  const double t_end = (static_cast<double>(state.step) + static_cast<double>(state.part + 1) / state.parts) * settings.step;
   constraints.begin(state);
   integrator->advance(state, forces, dt());
   environment.set_interval(t, t_end);
@@ -130,7 +128,7 @@ StepReport Simulator::Implementation::make_part() {
 
   StepReport report{.parts = 1};
   constraints.hold(state, dt(), report);
-  if (++state.part == 1 << state.halvings) {
+  if (++state.part == state.parts) {
     ++state.step;
     state.part = 0;
   }

@@ -33,8 +33,8 @@ struct ContactSettings {
 
 enum class StabilityCheck : std::uint8_t { refuse, warn };
 
-/// A step is not halved more often.
-inline constexpr int kMostHalvings = 16;
+/// A step is not made in more parts.
+inline constexpr int kMostParts = 1 << 16;
 
 struct SimulatorSettings {
   double step = 1.0e-3;              ///< dt [s]
@@ -45,9 +45,9 @@ struct SimulatorSettings {
   std::optional<StretchLimitSettings> stretch_limit{};
   ContactSettings contact{};
   StabilityCheck stability = StabilityCheck::refuse;
-  /// In [0, kMostHalvings]: steps are made in up to 2^most_halvings parts, see StepRefinement; in all of them while passes hold a
-  /// limit that may be handed over to a global solve, which then needs fewer.
-  int most_halvings = 0;
+  /// In [1, kMostParts]: steps are made in up to so many parts, see StepRefinement; in all of them while passes hold a limit that
+  /// may be handed over to a global solve, which then needs fewer.
+  int most_parts = 1;
 };
 
 /// What one step did: sums over its parts, and the largest excess.

@@ -16,29 +16,29 @@ constexpr double kRoom = 0.25;
 constexpr int kCalmSteps = 8;
 
 // A limit that is held at the end of a step takes of the motion in proportion to the step.
-constexpr double kMostTurn = 1.0 / 60.0;
+constexpr double kMostTurn = 1.0 / 70.0;
 
 }  // namespace
 
-StepRefinement::StepRefinement(const StretchLimitSettings& limit, int most_halvings)
-    : bound_(kMargin * wanted_excess(limit)), most_halvings_(most_halvings) {}
+StepRefinement::StepRefinement(const StretchLimitSettings& limit, int most_parts)
+    : bound_(kMargin * wanted_excess(limit)), most_parts_(most_parts) {}
 
 void StepRefinement::choose(double excess, SimulationState& state) const {
   if (excess > bound_) {
-    const int missing = 1 + std::ilogb(excess / bound_);
-    state.halvings = std::min(state.halvings + missing, most_halvings_);
+    const int halvings = 1 + std::ilogb(excess / bound_);
+    state.parts = static_cast<int>(std::min(std::ldexp(state.parts, halvings), static_cast<double>(most_parts_)));
     state.calm_steps = 0;
     return;
   }
   state.calm_steps = excess < kRoom * bound_ ? state.calm_steps + 1 : 0;
-  if (state.calm_steps < kCalmSteps || state.halvings == 0) return;
-  --state.halvings;
+  if (state.calm_steps < kCalmSteps || state.parts == 1) return;
+  state.parts /= 2;
   state.calm_steps = 0;
 }
 
 void StepRefinement::choose_by_turn(double turn, SimulationState& state) const {
-  const double parts = std::ldexp(turn, state.halvings) / kMostTurn;
-  state.halvings = parts > 1.0 ? std::min(1 + std::ilogb(parts), most_halvings_) : 0;
+  const double needed = std::ceil(turn * state.parts / kMostTurn);
+  state.parts = static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(most_parts_)));
 }
 
 }  // namespace sprung

@@ -6,25 +6,25 @@
 
 namespace sprung {
 
-/// Steps are halved as soon as one leaves springs longer than the limit lets them be, and doubled again once several in a row left
-/// far less. The excess of what swings falls with the step, that of what hangs with its square: a doubled step is safe where a
+/// Parts are halved as soon as a step leaves springs longer than the limit lets them be, and doubled again once several in a row
+/// left far less. The excess of what swings falls with the step, that of what hangs with its square: a doubled part is safe where a
 /// quarter of the bound is not reached.
 class StepRefinement {
  public:
-  /// Halves a step at most `most_halvings` times.
-  StepRefinement(const StretchLimitSettings& limit, int most_halvings);
+  /// A step is made in `most_parts` at most, >= 1.
+  StepRefinement(const StretchLimitSettings& limit, int most_parts);
 
-  /// Chooses `halvings` of the step to come when one has left `excess` over the limit, as a part of the rest length.
+  /// Chooses the parts of the step to come when one has left `excess` over the limit, as a part of the rest length.
   void choose(double excess, SimulationState& state) const;
 
   /// Chooses them when a part of the step has turned something by `turn`, as StretchLimit::turn says: so many that a part turns it
-  /// by no more than a sixtieth, where `most_halvings` lets it. Of a motion that changes little from step to step none is made too
+  /// by no more than a seventieth, where `most_parts` lets it. Of a motion that changes little from step to step none is made too
   /// large.
   void choose_by_turn(double turn, SimulationState& state) const;
 
  private:
   double bound_;  ///< of the excess
-  int most_halvings_;
+  int most_parts_;
 };
 
 }  // namespace sprung

@@ -69,21 +69,21 @@ TEST(StepChoice, AutoHeedsTheStretchLimit) {
   EXPECT_GT(1.0 / (10.0 * (limited.steps_per_frame - 1)), limit.suggested_step(9.81));
 }
 
-TEST(StepChoice, AutoMayHalveStepsOfClothsThatBearIt) {
-  const auto halvings = [](const std::vector<std::string>& changes) {
+TEST(StepChoice, AutoMayMakePartsOfStepsOfClothsThatBearIt) {
+  const auto parts = [](const std::vector<std::string>& changes) {
     const SceneFolder folder;
     const std::string text = R"({"duration": 1, "stretch_limit": {"max_compression": 0, "kinds": ["structural", "shear"],
         "tethers": true}, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [8, 8]}, "mass": 1,
         "springs": {"structural": {"stiffness": 0}, "shear": {"stiffness": 0}},
         "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
-    return build_scene(folder.read(text, changes)).settings.most_halvings;
+    return build_scene(folder.read(text, changes)).settings.most_parts;
   };
-  EXPECT_EQ(halvings({}), kAutoHalvings);
-  EXPECT_EQ(halvings({"frame_rate=10", "step=0.001"}), 0);
-  EXPECT_EQ(halvings({"stretch_limit.max_compression=1"}), 0);
-  EXPECT_EQ(halvings({"stretch_limit.kinds=[\"structural\"]"}), 0);
-  EXPECT_EQ(halvings({"stretch_limit.tethers=false"}), 0);
-  EXPECT_EQ(halvings({R"(integrator={"type": "verlet", "damping": 0.01})"}), 0);
+  EXPECT_EQ(parts({}), kAutoParts);
+  EXPECT_EQ(parts({"frame_rate=10", "step=0.001"}), 1);
+  EXPECT_EQ(parts({"stretch_limit.max_compression=1"}), 1);
+  EXPECT_EQ(parts({"stretch_limit.kinds=[\"structural\"]"}), 1);
+  EXPECT_EQ(parts({"stretch_limit.tethers=false"}), 1);
+  EXPECT_EQ(parts({R"(integrator={"type": "verlet", "damping": 0.01})"}), 1);
 }
 
 TEST(StepChoice, AutoIsAFrameForWhatAGlobalSolveHoldsAndMeetsNothing) {
@@ -96,12 +96,12 @@ TEST(StepChoice, AutoIsAFrameForWhatAGlobalSolveHoldsAndMeetsNothing) {
   };
   for (const std::string solver : {"newton", "auto"}) {
     EXPECT_EQ(built({"stretch_limit.solver=" + solver}).steps_per_frame, 1);
-    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).settings.most_halvings, kAutoHalvings);
+    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).settings.most_parts, kAutoParts);
   }
   EXPECT_EQ(built({"obstacles.floor.shape={\"type\":\"half_space\",\"offset\":-5}"}).steps_per_frame, 8);
   EXPECT_EQ(built({"bodies.cloth.self_contact=true"}).steps_per_frame, 8);
   EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).steps_per_frame, 8) << "which takes its part of each step";
-  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).settings.most_halvings, 0);
+  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).settings.most_parts, 1);
   const std::string second = R"(bodies.other={"shape": {"type": "cloth", "size": [1, 1], "resolution": [2, 2]}, "mass": 1,
       "place": {"position": [0, 0, 1]}, "springs": {"structural": {"stiffness": 0}})";
   EXPECT_EQ(built({second + "}"}).steps_per_frame, 8);
@@ -120,16 +120,16 @@ TEST(StepChoice, AutoIsMadeInPartsForPassesThatMayBeGivenUp) {
   };
   const BuiltScene passes = built({"stretch_limit.solver=gauss_seidel"});
   const BuiltScene automatic = built({});
-  const int parts = 1 << automatic.settings.most_halvings;
+  const int parts = automatic.settings.most_parts;
   const int at_least = built({"stretch_limit.solver=newton"}).steps_per_frame;
-  EXPECT_EQ(passes.settings.most_halvings, 0);
+  EXPECT_EQ(passes.settings.most_parts, 1);
   EXPECT_GT(parts, 1);
   EXPECT_GE(automatic.steps_per_frame, at_least);
   EXPECT_LT(automatic.steps_per_frame, 2 * at_least);
   EXPECT_GE(automatic.steps_per_frame * parts, passes.steps_per_frame);
   EXPECT_LT((automatic.steps_per_frame - 1) * parts, passes.steps_per_frame);
   const std::string damping = R"(integrator={"type": "verlet", "damping": 0.01})";
-  EXPECT_EQ(built({damping}).settings.most_halvings, 0) << "which takes its part of each step";
+  EXPECT_EQ(built({damping}).settings.most_parts, 1) << "which takes its part of each step";
   EXPECT_EQ(built({damping}).steps_per_frame, passes.steps_per_frame);
 }
 

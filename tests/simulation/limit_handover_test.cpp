@@ -45,8 +45,8 @@ struct Outcome {
 };
 
 Outcome run(const SpringNetwork& network, Solver solver, int steps, const std::vector<Obstacle>& obstacles = {},
-            int most_halvings = 0) {
-  Simulator simulator(network, {.step = 1.0 / kRate, .stretch_limit = limit_of(solver), .most_halvings = most_halvings}, obstacles);
+            int most_parts = 1) {
+  Simulator simulator(network, {.step = 1.0 / kRate, .stretch_limit = limit_of(solver), .most_parts = most_parts}, obstacles);
   Outcome outcome;
   for (int step = 0; step < steps; ++step) {
     const StepReport report = simulator.step();
@@ -112,10 +112,10 @@ TEST(LimitHandover, IsNotForSolidsNorForWhatMayNotShrinkNorForPassesByName) {
 
 TEST(LimitHandover, AutomaticHasTheBitsOfNewtonWhereNothingIsInTheWay) {
   const SpringNetwork cloth = limp_cloth(16, true);
-  for (const int halvings : {0, 3}) {
-    const Outcome automatic = run(cloth, Solver::automatic, 60, {}, halvings);
-    EXPECT_EQ(automatic.x, run(cloth, Solver::newton, 60, {}, halvings).x);
-    EXPECT_NE(automatic.x, run(cloth, Solver::gauss_seidel, 60, {}, halvings).x);
+  for (const int parts : {1, 8}) {
+    const Outcome automatic = run(cloth, Solver::automatic, 60, {}, parts);
+    EXPECT_EQ(automatic.x, run(cloth, Solver::newton, 60, {}, parts).x);
+    EXPECT_NE(automatic.x, run(cloth, Solver::gauss_seidel, 60, {}, parts).x);
   }
 }
 
@@ -160,7 +160,7 @@ TEST_F(OverABall, HasTheSameBitsForAnyNumberOfThreads) {
 TEST_F(OverABall, NeedsTheSmallStepsOfPassesNoMore) {
   StretchLimitSettings limit = limit_of(Solver::automatic);
   limit.iterations = 1;
-  Simulator simulator(cloth_, {.step = 1.0 / kRate, .stretch_limit = limit, .most_halvings = 2}, ball_);
+  Simulator simulator(cloth_, {.step = 1.0 / kRate, .stretch_limit = limit, .most_parts = 4}, ball_);
   std::vector<int> parts;
   for (int step = 0; step < 60; ++step) parts.push_back(simulator.step().parts);
   const auto since = simulator.state().stretch_holds.front().solved_since;

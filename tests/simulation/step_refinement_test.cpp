@@ -28,21 +28,21 @@ StretchLimitSettings both_ways() {
           .tethers = true};
 }
 
-/// `halvings` after steps that left these excesses.
-int halvings_after(const std::vector<double>& excesses, int most = 3) {
+/// Parts of the step after steps that left these excesses.
+int parts_after(const std::vector<double>& excesses, int most = 8) {
   const StepRefinement refinement(both_ways(), most);
   SimulationState state;
   for (const double excess : excesses) refinement.choose(excess, state);
-  return state.halvings;
+  return state.parts;
 }
 
 TEST(StepRefinement, HalvesAsOftenAsTheExcessIsTooLarge) {
-  EXPECT_EQ(halvings_after({0.029}), 0);
-  EXPECT_EQ(halvings_after({0.031}), 1);
-  EXPECT_EQ(halvings_after({0.061}), 2);
-  EXPECT_EQ(halvings_after({0.031, 0.031}), 2);
-  EXPECT_EQ(halvings_after({1.0}), 3);
-  EXPECT_EQ(halvings_after({1.0}, 2), 2);
+  EXPECT_EQ(parts_after({0.029}), 1);
+  EXPECT_EQ(parts_after({0.031}), 2);
+  EXPECT_EQ(parts_after({0.061}), 4);
+  EXPECT_EQ(parts_after({0.031, 0.031}), 4);
+  EXPECT_EQ(parts_after({1.0}), 8);
+  EXPECT_EQ(parts_after({1.0}, 4), 4);
 }
 
 TEST(StepRefinement, DoublesAgainAfterSeveralCalmStepsInARow) {
@@ -51,27 +51,27 @@ TEST(StepRefinement, DoublesAgainAfterSeveralCalmStepsInARow) {
     std::vector<double> excesses{0.061};
     excesses.insert(excesses.end(), calm.begin(), calm.end());
     excesses.insert(excesses.end(), between.begin(), between.end());
-    return halvings_after(excesses);
+    return parts_after(excesses);
   };
-  EXPECT_EQ(after({}), 2);
-  EXPECT_EQ(after({0.007}), 1);
-  EXPECT_EQ(after({0.008, 0.007}), 2) << "there was not room enough in between";
-  EXPECT_EQ(halvings_after(std::vector<double>(30, 0.0)), 0);
+  EXPECT_EQ(after({}), 4);
+  EXPECT_EQ(after({0.007}), 2);
+  EXPECT_EQ(after({0.008, 0.007}), 4) << "there was not room enough in between";
+  EXPECT_EQ(parts_after(std::vector<double>(30, 0.0)), 1);
 }
 
-TEST(StepRefinement, HalvesAsOftenAsThePartsTurnTooMuch) {
-  const StepRefinement refinement(both_ways(), 3);
+TEST(StepRefinement, MakesAsManyPartsAsTurnLittleEnough) {
+  const StepRefinement refinement(both_ways(), 8);
   SimulationState state;
-  const auto halvings_after_turn = [&](double turn) {
+  const auto parts_after_turn = [&](double turn) {
     refinement.choose_by_turn(turn, state);
-    return state.halvings;
+    return state.parts;
   };
-  EXPECT_EQ(halvings_after_turn(1.0 / 61.0), 0);
-  EXPECT_EQ(halvings_after_turn(1.0 / 59.0), 1);
-  EXPECT_EQ(halvings_after_turn(1.0 / 59.0), 2) << "of one of two parts";
-  EXPECT_EQ(halvings_after_turn(1.0 / 121.0), 1) << "of one of four parts";
-  EXPECT_EQ(halvings_after_turn(0.0), 0);
-  EXPECT_EQ(halvings_after_turn(10.0), 3);
+  EXPECT_EQ(parts_after_turn(1.0 / 71.0), 1);
+  EXPECT_EQ(parts_after_turn(1.0 / 69.0), 2);
+  EXPECT_EQ(parts_after_turn(1.0 / 69.0), 3) << "of one of two parts";
+  EXPECT_EQ(parts_after_turn(1.0 / 106.0), 2) << "of one of three parts";
+  EXPECT_EQ(parts_after_turn(0.0), 1);
+  EXPECT_EQ(parts_after_turn(10.0), 8);
 }
 
 // Verlet's positions lie on the parabola of what is thrown, whatever the step.
@@ -85,10 +85,10 @@ TEST(StepRefinement, LeavesVerletOnTheParabola) {
   constexpr double kStep = 0.01;
   integrator->start(state, forces, kStep);
   for (; state.step < 5; ++state.step) integrator->advance(state, forces, kStep);
-  state.halvings = 2;
+  state.parts = 4;
   integrator->step_changed(state, forces, kStep, 0.25 * kStep);
   for (int part = 0; part < 12; ++part) integrator->advance(state, forces, 0.25 * kStep);
-  state.halvings = 0;
+  state.parts = 1;
   integrator->step_changed(state, forces, 0.25 * kStep, kStep);
   for (int step = 0; step < 4; ++step) integrator->advance(state, forces, kStep);
   const double t = 12 * kStep;
@@ -114,8 +114,8 @@ struct Swing {
 };
 
 /// For a second and a half, by steps of which a frame takes so many.
-Swing swing(const SpringNetwork& network, int steps_a_frame, int most_halvings, const StretchLimitSettings& limit = both_ways()) {
-  Simulator simulator(network, {.step = 1.0 / (kRate * steps_a_frame), .stretch_limit = limit, .most_halvings = most_halvings});
+Swing swing(const SpringNetwork& network, int steps_a_frame, int most_parts, const StretchLimitSettings& limit = both_ways()) {
+  Simulator simulator(network, {.step = 1.0 / (kRate * steps_a_frame), .stretch_limit = limit, .most_parts = most_parts});
   Swing swing;
   for (int step = 1; step <= 90 * steps_a_frame; ++step) {
     const StepReport report = simulator.step();
@@ -130,9 +130,9 @@ Swing swing(const SpringNetwork& network, int steps_a_frame, int most_halvings, 
 
 TEST(StepRefinement, HoldsTheLimitOfWhatSwingsAndItsEnergy) {
   const SpringNetwork cloth = swinging_cloth(16);
-  const Swing coarse = swing(cloth, 8, 0);
-  const Swing refined = swing(cloth, 8, 3);
-  const Swing fine = swing(cloth, 80, 0);
+  const Swing coarse = swing(cloth, 8, 1);
+  const Swing refined = swing(cloth, 8, 8);
+  const Swing fine = swing(cloth, 80, 1);
   EXPECT_EQ(coarse.most_parts, 1);
   EXPECT_EQ(refined.most_parts, 8);
   EXPECT_GT(coarse.worst_excess, 0.06);
@@ -145,9 +145,9 @@ TEST(StepRefinement, HoldsTheLimitOfWhatSwingsAndItsEnergy) {
 TEST(StepRefinement, KeepsTheEnergyOfWhatTurns) {
   const StretchLimitSettings limit{.max_stretch = 0.0, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};
   const SpringNetwork cloth = swinging_cloth(16);
-  const Swing coarse = swing(cloth, 1, 0, limit);
-  const Swing refined = swing(cloth, 1, 3, limit);
-  const Swing fine = swing(cloth, 10, 0, limit);
+  const Swing coarse = swing(cloth, 1, 1, limit);
+  const Swing refined = swing(cloth, 1, 8, limit);
+  const Swing fine = swing(cloth, 10, 1, limit);
   EXPECT_GT(refined.most_parts, 2);
   for (const Swing& held : {coarse, refined, fine}) EXPECT_LT(held.worst_excess, 0.02);
   const double fall = 0.2 * testing::kGravity * 0.5;  // by half its length
@@ -160,7 +160,7 @@ TEST(StepRefinement, BeginsWithTheSmallestPartsOfWhatMoves) {
   const Vector3 velocity(0.0, 0.0, 10.0);
   const Index first = builder.add_particle({0.0, 0.0, 0.0}, 1.0, velocity);
   builder.add_spring(first, builder.add_particle({1.0, 0.0, 0.0}, 1.0, velocity), 0.0, 1.0, 0.0);
-  SimulatorSettings settings{.step = 1.0 / kRate, .stretch_limit = StretchLimitSettings{}, .most_halvings = 3};
+  SimulatorSettings settings{.step = 1.0 / kRate, .stretch_limit = StretchLimitSettings{}, .most_parts = 8};
   EXPECT_EQ(Simulator(builder.build(), settings).step().parts, 1) << "passes follow what they miss";
   settings.stretch_limit->solver = StretchLimitSettings::Solver::automatic;
   Simulator simulator(builder.build(), settings);
@@ -183,17 +183,17 @@ TEST(StepRefinement, APartAtTheStartIsAStepOfItsLength) {
   const Vector3 velocity(1.0, 0.0, 0.0);
   const Index first = builder.add_particle({0.0, 0.005, 0.0}, 1.0, velocity);
   builder.add_spring(first, builder.add_particle({1.0, 0.005, 0.0}, 1.0, velocity), 0.0, 1.0);
-  const auto after_a_frame = [&](int most_halvings, int steps) {
+  const auto after_a_frame = [&](int most_parts, int steps) {
     SimulatorSettings settings{.step = 1.0 / (kRate * steps),
                                .stretch_limit = StretchLimitSettings{.solver = StretchLimitSettings::Solver::newton},
-                               .most_halvings = most_halvings};
+                               .most_parts = most_parts};
     settings.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1000.0};
     Simulator simulator(builder.build(), settings, {testing::ground(rough)});
     for (int step = 0; step < steps; ++step) EXPECT_EQ(simulator.step().parts, 8 / steps);
     EXPECT_GT(simulator.contact_count(), 0);
     return simulator.positions();
   };
-  EXPECT_EQ(after_a_frame(3, 1), after_a_frame(0, 8));
+  EXPECT_EQ(after_a_frame(8, 1), after_a_frame(1, 8));
 }
 
 // It begins unstretched, and so bounces at first; smaller steps would only make it bounce the higher.
@@ -202,7 +202,7 @@ TEST(StepRefinement, LeavesWhatHangsAlone) {
   cloth.positions.row(1) = -cloth.positions.row(2);
   cloth.positions.row(2).setZero();
   ASSERT_GT(cloth.positions(1, cloth.pins[0].particles[0]), cloth.positions(1, 0));
-  EXPECT_EQ(swing(cloth, 27, 3).most_parts, 1);
+  EXPECT_EQ(swing(cloth, 27, 8).most_parts, 1);
 }
 
 // Dampers see it; a chord of the wheel's arc is the longer, and points the more inwards, the longer the step.
@@ -214,14 +214,14 @@ TEST(StepRefinement, PinsHaveTheVelocityOfTheStepToCome) {
   const auto held_at = [&](double time) -> Vector3 {
     return pin.motion.pose(RigidTransform::Identity(), time) * cloth.positions.col(held);
   };
-  Simulator simulator(cloth, {.step = 1.0 / (8 * kRate), .stretch_limit = both_ways(), .most_halvings = 3});
+  Simulator simulator(cloth, {.step = 1.0 / (8 * kRate), .stretch_limit = both_ways(), .most_parts = 8});
   int changes = 0;
-  for (int step = 0, halvings = 0; step < 500; ++step) {
+  for (int step = 0, parts = 1; step < 500; ++step) {
     simulator.step();
     const SimulationState& state = simulator.state();
-    changes += state.halvings != halvings ? 1 : 0;
-    halvings = state.halvings;
-    const double dt = std::ldexp(simulator.settings().step, -halvings);
+    changes += state.parts != parts ? 1 : 0;
+    parts = state.parts;
+    const double dt = simulator.settings().step / parts;
     const Vector3 expected = (held_at(simulator.time() + dt) - held_at(simulator.time())) / dt;
     // Positions of less than 2 m are rounded before their difference is divided by the step.
     ASSERT_LT((state.v.col(held) - expected).norm(), 16 * kEpsilon / dt) << "step " << step;
@@ -233,18 +233,18 @@ TEST(StepRefinement, IsTheSameForAnyNumberOfThreads) {
   const SpringNetwork cloth = swinging_cloth(40);
   const auto positions = [&](int threads) {
     const ThreadLimit limit(threads);
-    return swing(cloth, 4, 2).x;
+    return swing(cloth, 4, 4).x;
   };
   EXPECT_EQ(positions(1), positions(2));
 }
 
-TEST(StepRefinement, HalvingsOutOfTheirBoundsAreRefused) {
-  for (const int halvings : {-1, 17}) {
+TEST(StepRefinement, PartsOutOfTheirBoundsAreRefused) {
+  for (const int parts : {0, kMostParts + 1}) {
     try {
-      const Simulator simulator(testing::one_particle(Vector3::Zero()), {.most_halvings = halvings});
-      FAIL() << halvings;
+      const Simulator simulator(testing::one_particle(Vector3::Zero()), {.most_parts = parts});
+      FAIL() << parts;
     } catch (const InputError& error) {
-      EXPECT_EQ(error.problems().front().key, "most_halvings");
+      EXPECT_EQ(error.problems().front().key, "most_parts");
     }
   }
 }
