@@ -55,9 +55,10 @@ std::vector<ContactCandidate> ContactSearch::find_candidates(const MovingBalls& 
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
       const Side& a = sides_[static_cast<std::size_t>(pairs[k].first)];
       const Side& b = sides_[static_cast<std::size_t>(pairs[k].second)];
-      append_corners(a, b, search, part);
-      if (&a != &b) append_corners(b, a, search, part);
-      append_edges(a, b, search, part);
+      const LaneBytes near = lanes_near(a, b, search);
+      append_corners(a, b, near, search, part);
+      if (&a != &b) append_corners(b, a, lanes_near(b, a, search), search, part);
+      append_edges(a, b, near, search, part);
     }
   });
   std::vector<ContactCandidate> candidates;
@@ -121,13 +122,26 @@ void ContactSearch::prepare_edges(Side& side, const Search& search) const {
   }
 }
 
-void ContactSearch::append_corners(const Side& a, const Side& b, const Search& search,
+LaneBytes ContactSearch::lanes_near(const Side& a, const Side& b, const Search& search) const {
+  const float margin = reach_between(a, b) + b.largest_radius;
+  LaneBytes near{};
+  if (b.leaf->any_marked()) find_lanes_near(*a.leaf, b.leaf->marked_bounds, search.times, margin, near);
+  if (!a.leaf->any_marked()) return near;
+  LaneBytes marked;
+  LaneBytes near_all;
+  store(a.leaf->marked, marked);
+  find_lanes_near(*a.leaf, b.leaf->bounds, search.times, margin, near_all);
+  return either(near, both(near_all, marked));
+}
+
+void ContactSearch::append_corners(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
                                    std::vector<ContactCandidate>& candidates) const {
   const auto now = static_cast<float>(search.times.now);
   const auto end = static_cast<float>(search.times.end);
   const bool any_marked = b.leaf->any_marked();
   const float reach = reach_between(a, b);
   for (const auto& [lane, k] : a.corners) {
+    if (near[static_cast<std::size_t>(lane)] == 0) continue;
     const bool is_marked = search.marked[static_cast<std::size_t>(a.leaf->particle[k][lane])] != 0;
     if (!any_marked && !is_marked) continue;
     const auto axes = [lane = lane](const TreeLanes(&x)[3]) { return MovingBounds::Axes{x[0][lane], x[1][lane], x[2][lane]}; };
@@ -157,9 +171,12 @@ void ContactSearch::append_corners(const Side& a, const Side& b, const Search& s
   }
 }
 
-void ContactSearch::append_edges(const Side& a, const Side& b, const Search& search,
+void ContactSearch::append_edges(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
                                  std::vector<ContactCandidate>& candidates) const {
-  for (std::size_t own = 0; own < a.sharp.size(); ++own) append_edges_near(a, own, b, &a == &b ? own + 1 : 0, search, candidates);
+  for (std::size_t own = 0; own < a.sharp.size(); ++own) {
+    if (near[static_cast<std::size_t>(a.sharp[own][0])] == 0) continue;
+    append_edges_near(a, own, b, &a == &b ? own + 1 : 0, search, candidates);
+  }
 }
 
 void ContactSearch::append_edges_near(const Side& a, std::size_t own, const Side& b, std::size_t from, const Search& search,

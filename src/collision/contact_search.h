@@ -45,8 +45,12 @@ class ContactSearch {
   void prepare_sides(const std::vector<ElementTree::LeafPair>& pairs, const Search& search);
   void prepare(Side& side, const Search& search) const;
   void prepare_edges(Side& side, const Search& search) const;
-  void append_corners(const Side& a, const Side& b, const Search& search, std::vector<ContactCandidate>& candidates) const;
-  void append_edges(const Side& a, const Side& b, const Search& search, std::vector<ContactCandidate>& candidates) const;
+  /// Lanes of side `a` that may have something near side `b`, with one of both marked.
+  [[nodiscard]] LaneBytes lanes_near(const Side& a, const Side& b, const Search& search) const;
+  void append_corners(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
+                      std::vector<ContactCandidate>& candidates) const;
+  void append_edges(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
+                    std::vector<ContactCandidate>& candidates) const;
   /// Those that come near the edge of side `a` with this number, from a number of side `b` on.
   void append_edges_near(const Side& a, std::size_t own, const Side& b, std::size_t from, const Search& search,
                          std::vector<ContactCandidate>& candidates) const;

@@ -1,5 +1,7 @@
 #include "collision/element_leaf.h"
 
+#include "base/kernel.h"
+
 #include <cstring>
 #include <limits>
 
@@ -71,6 +73,33 @@ void ElementLeaf::bound_marked() {
     }
     first = false;
   }
+}
+
+SPRUNG_KERNEL void place_corners(const ElementLeaf& leaf, WatchTimes times, LeafPlaces& places) {
+  const auto now = static_cast<float>(times.now);
+  const auto end = static_cast<float>(times.end);
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      places.now[k][axis] = leaf.corner[k][axis] + now * leaf.motion[k][axis];
+      places.end[k][axis] = leaf.corner[k][axis] + end * leaf.motion[k][axis];
+    }
+  }
+}
+
+SPRUNG_KERNEL void find_lanes_near(const ElementLeaf& leaf, const MovingBounds& bounds, WatchTimes times, float margin,
+                                   LaneBytes& near) {
+  const auto now = static_cast<float>(times.now);
+  const auto end = static_cast<float>(times.end);
+  ElementLeaf::IntLanes apart = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    const TreeLanes above = leaf.min[axis] - bounds.max[axis];
+    const TreeLanes rising = leaf.slowest[axis] - bounds.fastest[axis];
+    const TreeLanes below = bounds.min[axis] - leaf.max[axis];
+    const TreeLanes falling = bounds.slowest[axis] - leaf.fastest[axis];
+    apart |= (above + now * rising > margin) & (above + end * rising > margin);
+    apart |= (below + now * falling > margin) & (below + end * falling > margin);
+  }
+  store(~apart, near);
 }
 
 bool ElementLeaf::any_marked() const {

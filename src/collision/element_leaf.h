@@ -66,16 +66,7 @@ struct alignas(64) LeafPlaces {
   TreeLanes end[3][3];
 };
 
-inline void place_corners(const ElementLeaf& leaf, WatchTimes times, LeafPlaces& places) {
-  const auto now = static_cast<float>(times.now);
-  const auto end = static_cast<float>(times.end);
-  for (int k = 0; k < 3; ++k) {
-    for (int axis = 0; axis < 3; ++axis) {
-      places.now[k][axis] = leaf.corner[k][axis] + now * leaf.motion[k][axis];
-      places.end[k][axis] = leaf.corner[k][axis] + end * leaf.motion[k][axis];
-    }
-  }
-}
+void place_corners(const ElementLeaf& leaf, WatchTimes times, LeafPlaces& places);
 
 /// 255 or 0 by lane.
 using LaneBytes = std::array<std::uint8_t, kTreeLanes>;
@@ -85,6 +76,20 @@ inline void store(const ElementLeaf::IntLanes& lanes, LaneBytes& mask) {
   const Bytes bytes = __builtin_convertvector(lanes, Bytes);
   __builtin_memcpy(mask.data(), &bytes, sizeof bytes);
 }
+
+[[nodiscard]] inline LaneBytes both(const LaneBytes& a, const LaneBytes& b) {
+  LaneBytes result;
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = static_cast<std::uint8_t>(a[k] & b[k]);
+  return result;
+}
+[[nodiscard]] inline LaneBytes either(const LaneBytes& a, const LaneBytes& b) {
+  LaneBytes result;
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = static_cast<std::uint8_t>(a[k] | b[k]);
+  return result;
+}
+
+/// Finds the lanes that are not more than `margin` >= 0 [m] apart from the bounds.
+void find_lanes_near(const ElementLeaf& leaf, const MovingBounds& bounds, WatchTimes times, float margin, LaneBytes& near);
 
 [[nodiscard]] inline bool any(const LaneBytes& mask) {
   std::uint64_t all = 0;

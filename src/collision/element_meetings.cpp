@@ -16,12 +16,6 @@ struct alignas(kTreeLanes * sizeof(std::int32_t)) AskedLanes {
   IntLanes lanes;
 };
 
-/// A leaf and where its corners are.
-struct PlacedLeaf {
-  const ElementLeaf& leaf;
-  LeafPlaces places;
-};
-
 // Lanes come and go by reference: by value their way would depend on the instructions that are compiled for.
 
 inline void lower(TreeLanes& a, const TreeLanes& b) { a = a < b ? a : b; }
@@ -126,36 +120,28 @@ SPRUNG_KERNEL bool find_meeting_lanes(const PlacedLeaf& a, int lane, const Place
   return any(met);
 }
 
-/// Lanes of a that are not apart from all of b.
-SPRUNG_KERNEL void find_lanes_near(const ElementLeaf& a, const MovingBounds& b, float now, float end, LaneBytes& near) {
-  IntLanes apart = {};
-  for (int axis = 0; axis < 3; ++axis) {
-    const TreeLanes above = a.min[axis] - b.max[axis];
-    const TreeLanes rising = a.slowest[axis] - b.fastest[axis];
-    const TreeLanes below = b.min[axis] - a.max[axis];
-    const TreeLanes falling = b.slowest[axis] - a.fastest[axis];
-    apart |= (above + now * rising > 0.0F) & (above + end * rising > 0.0F);
-    apart |= (below + now * falling > 0.0F) & (below + end * falling > 0.0F);
-  }
-  store(~apart & a.marked, near);
+/// Marked lanes of a that are not apart from all of b.
+LaneBytes marked_lanes_near(const ElementLeaf& a, const ElementLeaf& b, WatchTimes times) {
+  LaneBytes near{};
+  if (!a.any_marked()) return near;
+  LaneBytes marked;
+  store(a.marked, marked);
+  find_lanes_near(a, b.bounds, times, 0.0F, near);
+  return both(near, marked);
 }
 
 }  // namespace
 
-void append_meetings(const ElementLeaf& a, const ElementLeaf& b, WatchTimes times, std::vector<ElementMeeting>& meetings) {
-  const auto now = static_cast<float>(times.now);
-  const auto end = static_cast<float>(times.end);
+void append_meetings(const PlacedLeaf& first, const PlacedLeaf& second, WatchTimes times, std::vector<ElementMeeting>& meetings) {
+  const ElementLeaf& a = first.leaf;
+  const ElementLeaf& b = second.leaf;
   const bool same = &a == &b;
-  LaneBytes near_a;
-  LaneBytes near_b{};
-  find_lanes_near(a, b.bounds, now, end, near_a);
-  if (!same) find_lanes_near(b, a.bounds, now, end, near_b);
+  const LaneBytes near_a = marked_lanes_near(a, b, times);
+  const LaneBytes near_b = same ? LaneBytes{} : marked_lanes_near(b, a, times);
   if (!any(near_a) && !any(near_b)) return;
 
-  PlacedLeaf first{a, {}};
-  PlacedLeaf second{b, {}};
-  place_corners(a, times, first.places);
-  place_corners(b, times, second.places);
+  const auto now = static_cast<float>(times.now);
+  const auto end = static_cast<float>(times.end);
   const auto append = [&](const PlacedLeaf& own, int lane, const PlacedLeaf& other, const AskedLanes& asked) {
     LaneBytes met;
     if (!find_meeting_lanes(own, lane, other, asked, now, end, met)) return;

@@ -12,9 +12,15 @@ struct ElementMeeting {
   Index second = kNone;
 };
 
+/// A leaf and where its corners are.
+struct PlacedLeaf {
+  const ElementLeaf& leaf;
+  const LeafPlaces& places;
+};
+
 /// Appends the pairs of the leaves' elements, at least one of them marked, that may touch from now to the end: those that no plane
 /// across the line between their middles, or along one of them, keeps apart. Triangles that share a particle whose triangles are
 /// flat are left out.
-void append_meetings(const ElementLeaf& a, const ElementLeaf& b, WatchTimes times, std::vector<ElementMeeting>& meetings);
+void append_meetings(const PlacedLeaf& a, const PlacedLeaf& b, WatchTimes times, std::vector<ElementMeeting>& meetings);
 
 }  // namespace sprung

@@ -12,7 +12,7 @@ constexpr Index kLeavesPerTask = 64;
 
 }  // namespace
 
-ElementTree::ElementTree(const CollisionSurface& surface, const Points& rest) : surface_(surface) {
+ElementTree::ElementTree(const CollisionSurface& surface, const Points& rest) : surface_(surface), slots_(surface.elements.size()) {
   const std::vector<Element>& elements = surface.elements;
   const Points middles = element_middles(elements, rest);
   std::vector<Index> order(elements.size());
@@ -28,6 +28,7 @@ ElementTree::ElementTree(const CollisionSurface& surface, const Points& rest) : 
     first_leaf_.push_back(static_cast<Index>(leaves_.size()));
     begin = end;
   }
+  node_of_leaf_.resize(leaves_.size());
   if (!leaves_.empty()) add_bodies(0, first_leaf_.size() - 1);
 }
 
@@ -36,6 +37,10 @@ void ElementTree::add_leaf(const std::vector<Index>& order, std::size_t begin, s
   std::copy(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end),
             leaf.element.begin());
   leaf.count = static_cast<int>(end - begin);
+  for (int lane = 0; lane < leaf.count; ++lane) {
+    const Index number = leaf.element[static_cast<std::size_t>(lane)];
+    slots_[static_cast<std::size_t>(number)] = {static_cast<Index>(leaves_.size()), lane};
+  }
   leaves_.push_back(leaf);
 }
 
@@ -63,6 +68,7 @@ Index ElementTree::add_node(Index begin, Index end, Index body) {
   nodes_[number].body = body;
   if (end - begin == 1) {
     nodes_[number].leaf = begin;
+    node_of_leaf_[static_cast<std::size_t>(begin)] = static_cast<Index>(number);
   } else {
     const Index middle = begin + (end - begin) / 2;
     const Index left = add_node(begin, middle, body);
@@ -73,34 +79,34 @@ Index ElementTree::add_node(Index begin, Index end, Index body) {
   return static_cast<Index>(number);
 }
 
-void ElementTree::mark(const std::vector<char>& marked) {
-  mark_lanes(marked);
+void ElementTree::mark(const std::vector<Index>& elements) {
+  mark_lanes(elements);
   bound_marked();
 }
 
-void ElementTree::mark_lanes(const std::vector<char>& marked) {
-  parallel_chunks(static_cast<Index>(leaves_.size()), kLeavesPerTask, [&](Index begin, Index end) {
-    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      ElementLeaf& leaf = leaves_[k];
-      for (int lane = 0; lane < leaf.count; ++lane) {
-        const Index number = leaf.element[static_cast<std::size_t>(lane)];
-        leaf.marked[lane] = marked[static_cast<std::size_t>(number)] != 0 ? -1 : 0;
-      }
-    }
-  });
+void ElementTree::mark_lanes(const std::vector<Index>& elements) {
+  for (const Index number : marked_) own_leaf(number).marked = ElementLeaf::IntLanes{};
+  marked_.clear();
+  for (const Index element : elements) {
+    const Slot slot = slots_[static_cast<std::size_t>(element)];
+    if (!leaf(slot.leaf).any_marked()) marked_.push_back(slot.leaf);
+    own_leaf(slot.leaf).marked[slot.lane] = -1;
+  }
+  for (Node& node : nodes_) node.marked = false;
+  for (const Index number : marked_)
+    nodes_[static_cast<std::size_t>(node_of_leaf_[static_cast<std::size_t>(number)])].marked = true;
   for (std::size_t k = nodes_.size(); k-- > 0;) {
     Node& node = nodes_[k];
-    node.marked = node.leaf != kNone ? leaf(node.leaf).any_marked() : this->node(node.left).marked || this->node(node.right).marked;
+    if (node.leaf == kNone) node.marked = this->node(node.left).marked || this->node(node.right).marked;
   }
 }
 
-void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<char>& marked,
+void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<Index>& elements,
                         WatchTimes times) {
-  mark_lanes(marked);
-  parallel_chunks(static_cast<Index>(leaves_.size()), kLeavesPerTask, [&](Index begin, Index end) {
+  mark_lanes(elements);
+  parallel_chunks(static_cast<Index>(marked_.size()), kLeavesPerTask, [&](Index begin, Index end) {
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      ElementLeaf& leaf = leaves_[k];
-      if (!leaf.any_marked()) continue;
+      ElementLeaf& leaf = own_leaf(marked_[k]);
       for (int lane = 0; lane < leaf.count; ++lane) {
         if (leaf.marked[lane] == 0) continue;
         const Index number = leaf.element[static_cast<std::size_t>(lane)];
@@ -116,9 +122,7 @@ void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat,
 }
 
 void ElementTree::bound_marked() {
-  for (ElementLeaf& leaf : leaves_) {
-    if (leaf.any_marked()) leaf.bound_marked();
-  }
+  for (const Index number : marked_) own_leaf(number).bound_marked();
   for (std::size_t k = nodes_.size(); k-- > 0;) {
     Node& node = nodes_[k];
     if (!node.marked) continue;

@@ -13,12 +13,12 @@ class ElementTree {
   /// Elements of a body that are neighbours at `rest` [m], 3 x n, share a leaf. Keeps a reference to the surface.
   ElementTree(const CollisionSurface& surface, const Points& rest);
 
-  /// Marks elements (by element, not 0) and no others.
-  void mark(const std::vector<char>& marked);
+  /// Marks these elements and no others.
+  void mark(const std::vector<Index>& elements);
 
   /// Marks them, and bounds, from time 0 to the end, the balls of their corners. Elements that are not marked keep the bounds that
   /// they have. `flat`, by particle: see fan_stays_flat().
-  void bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<char>& marked, WatchTimes times);
+  void bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<Index>& elements, WatchTimes times);
 
   [[nodiscard]] Index leaf_count() const { return static_cast<Index>(leaves_.size()); }
   [[nodiscard]] const ElementLeaf& leaf(Index number) const { return leaves_[static_cast<std::size_t>(number)]; }
@@ -44,6 +44,11 @@ class ElementTree {
     bool marked = false;
   };
 
+  struct Slot {
+    Index leaf = kNone;
+    int lane = 0;
+  };
+
   struct NodePair {
     Index a;
     Index b;
@@ -59,9 +64,10 @@ class ElementTree {
   void add_leaf(const std::vector<Index>& order, std::size_t begin, std::size_t end);
   Index add_bodies(std::size_t begin, std::size_t end);
   Index add_node(Index begin, Index end, Index body);
-  void mark_lanes(const std::vector<char>& marked);
+  void mark_lanes(const std::vector<Index>& elements);
   void bound_marked();
   void bound_node(Node& node) const;
+  [[nodiscard]] ElementLeaf& own_leaf(Index number) { return leaves_[static_cast<std::size_t>(number)]; }
   [[nodiscard]] const Node& node(Index number) const { return nodes_[static_cast<std::size_t>(number)]; }
   [[nodiscard]] bool bodies_may_meet(Index a, Index b) const;
   [[nodiscard]] bool may_meet(NodePair pair, const Search& search) const;
@@ -73,6 +79,9 @@ class ElementTree {
   std::vector<ElementLeaf> leaves_;
   std::vector<Index> first_leaf_;  ///< by body, and the end
   std::vector<Node> nodes_;        ///< parents before their children
+  std::vector<Index> node_of_leaf_;
+  std::vector<Slot> slots_;    ///< by element
+  std::vector<Index> marked_;  ///< leaves that have a marked element
 };
 
 }  // namespace sprung

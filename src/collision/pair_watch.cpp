@@ -25,6 +25,7 @@ constexpr double kMostSteps = 64.0;
 
 constexpr Index kParticlesPerTask = 1024;
 constexpr Index kFansPerTask = 128;
+constexpr Index kLeavesPerTask = 64;
 constexpr Index kLeafPairsPerTask = 32;
 
 std::vector<double> ball_radii(const CollisionSurface& surface, const Points& rest) {
@@ -53,12 +54,13 @@ PairWatch::PairWatch(const CollisionSurface& surface, const Points& rest, double
       features_(surface.elements, static_cast<Index>(rest.cols())),
       sharp_(surface, features_),
       tree_(surface, rest),
+      places_(static_cast<std::size_t>(tree_.leaf_count())),
       balls_(ball_radii(surface, rest)),
       pair_search_(surface, features_),
       contact_search_(surface, features_, sharp_, tree_, rest_, margin),
       flat_(static_cast<std::size_t>(rest.cols()), 0),
       marked_(static_cast<std::size_t>(rest.cols()), 0),
-      marked_elements_(surface.elements.size(), 0),
+      is_marked_element_(surface.elements.size(), 0),
       visited_(marked_) {
   std::vector<char> watched(marked_.size(), 0);
   for (const Element& element : surface.elements) {
@@ -84,7 +86,7 @@ void PairWatch::begin_step(const Points& before, const Points& after) {
     std::vector<Index> leaving = find_leaving(before, 0.0);
     const std::vector<Index> later = find_leaving(after, 1.0);
     leaving.insert(leaving.end(), later.begin(), later.end());
-    renew(std::move(leaving), before, after);
+    renew(leaving, before, after);
   }
   find_candidates();
 }
@@ -138,14 +140,13 @@ void PairWatch::choose_horizon(const Points& before, const Points& after) {
   horizon_ = std::max(horizon_, 1.0);
 }
 
-void PairWatch::renew(std::vector<Index> leaving, const Points& before, const Points& ends) {
+void PairWatch::renew(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
   if (leaving.empty()) return;
-  mark(std::move(leaving), before, ends);
+  place_balls(leaving, before, ends);
+  look_at_fans();
   mark_elements();
   tree_.bound(balls_, flat_, marked_elements_, {age_, horizon_});
-  std::erase_if(pairs_, [&](const ElementPair& pair) {
-    return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return is_marked(i); });
-  });
+  std::erase_if(pairs_, [&](const ElementPair& pair) { return has_marked(pair); });
   find_pairs(before);
   renewed_ += static_cast<Index>(marked_list_.size());
   moved_on_.insert(moved_on_.end(), marked_list_.begin(), marked_list_.end());
@@ -170,12 +171,14 @@ void PairWatch::find_pairs(const Points& before) {
   const WatchTimes times{age_, horizon_};
   const WatchState state{before, balls_, horizon_ - age_, marked_};
   const std::vector<ElementTree::LeafPair> leaves = tree_.find_pairs(times, 0.0);
+  place_leaves(leaves, times);
+  const auto placed = [&](Index number) { return PlacedLeaf{tree_.leaf(number), places_[static_cast<std::size_t>(number)]}; };
   const auto count = static_cast<Index>(leaves.size());
   std::vector<std::vector<ElementPair>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
   parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {
     std::vector<ElementMeeting> meetings;
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      append_meetings(tree_.leaf(leaves[k].first), tree_.leaf(leaves[k].second), times, meetings);
+      append_meetings(placed(leaves[k].first), placed(leaves[k].second), times, meetings);
     }
     std::vector<ElementPair>& part = parts[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
     for (const ElementMeeting& meeting : meetings) pair_search_.append_pairs(meeting, state, part);
@@ -183,67 +186,71 @@ void PairWatch::find_pairs(const Points& before) {
   for (const std::vector<ElementPair>& part : parts) pairs_.insert(pairs_.end(), part.begin(), part.end());
 }
 
-/// A fan that is flat no more has pairs that nobody looked at: all its particles are marked too.
-void PairWatch::mark(std::vector<Index> particles, const Points& before, const Points& ends) {
-  while (!particles.empty()) {
-    std::vector<Index> marked;
-    for (const Index i : particles) {
-      if (marked_[static_cast<std::size_t>(i)] != 0) continue;
-      marked_[static_cast<std::size_t>(i)] = 1;
-      balls_.place(i, before.col(i), ends.col(i));
-      marked.push_back(i);
+void PairWatch::place_leaves(const std::vector<ElementTree::LeafPair>& pairs, WatchTimes times) {
+  std::vector<char> needed(places_.size(), 0);
+  for (const ElementTree::LeafPair& pair : pairs) {
+    needed[static_cast<std::size_t>(pair.first)] = 1;
+    needed[static_cast<std::size_t>(pair.second)] = 1;
+  }
+  parallel_chunks(tree_.leaf_count(), kLeavesPerTask, [&](Index begin, Index end) {
+    for (Index number = begin; number < end; ++number) {
+      const auto k = static_cast<std::size_t>(number);
+      if (needed[k] != 0) place_corners(tree_.leaf(number), times, places_[k]);
     }
-    marked_list_.insert(marked_list_.end(), marked.begin(), marked.end());
-    particles.clear();
-    for (const Index middle : find_folded(marked)) {
-      particles.push_back(middle);
-      const auto spokes = features_.spokes(middle);
-      particles.insert(particles.end(), spokes.begin(), spokes.end());
-    }
+  });
+}
+
+bool PairWatch::has_marked(const ElementPair& pair) const {
+  return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return is_marked(i); });
+}
+
+void PairWatch::place_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
+  for (const Index i : leaving) {
+    if (is_marked(i)) continue;
+    marked_[static_cast<std::size_t>(i)] = 1;
+    balls_.place(i, before.col(i), ends.col(i));
+    marked_list_.push_back(i);
   }
 }
 
-/// Looks at the fans that have these particles, and returns the middles of those that were flat and are no more.
-std::vector<Index> PairWatch::find_folded(const std::vector<Index>& particles) {
+/// A fan that is flat no more has pairs that nobody has looked at. Those that have no marked particle cannot touch all the same:
+/// while their particles are in their balls, they are where they would be if all others were in theirs of before, and the fan was
+/// flat.
+void PairWatch::look_at_fans() {
   std::vector<Index> middles;
   const auto visit = [&](Index i) {
     if (visited_[static_cast<std::size_t>(i)] != 0) return;
     visited_[static_cast<std::size_t>(i)] = 1;
     middles.push_back(i);
   };
-  for (const Index i : particles) {
+  for (const Index i : marked_list_) {
     visit(i);
     for (const Index spoke : features_.spokes(i)) visit(spoke);
   }
   for (const Index i : middles) visited_[static_cast<std::size_t>(i)] = 0;
 
-  std::vector<char> folded(middles.size(), 0);
   parallel_chunks(static_cast<Index>(middles.size()), kFansPerTask, [&](Index begin, Index end) {
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      char& flat = flat_[static_cast<std::size_t>(middles[k])];
       const bool stays = fan_stays_flat(features_, middles[k], balls_, horizon_ - age_);
-      folded[k] = flat != 0 && !stays ? 1 : 0;
-      flat = stays ? 1 : 0;
+      flat_[static_cast<std::size_t>(middles[k])] = stays ? 1 : 0;
     }
   });
-  std::vector<Index> result;
-  for (std::size_t k = 0; k < middles.size(); ++k) {
-    if (folded[k] != 0) result.push_back(middles[k]);
-  }
-  return result;
 }
 
 void PairWatch::mark_elements() {
+  marked_elements_.clear();
   for (const Index i : marked_list_) {
-    for (const Index e : features_.elements_at(i)) marked_elements_[static_cast<std::size_t>(e)] = 1;
+    for (const Index e : features_.elements_at(i)) {
+      char& listed = is_marked_element_[static_cast<std::size_t>(e)];
+      if (listed == 0) marked_elements_.push_back(e);
+      listed = 1;
+    }
   }
+  for (const Index e : marked_elements_) is_marked_element_[static_cast<std::size_t>(e)] = 0;
 }
 
 void PairWatch::clear_marks() {
-  for (const Index i : marked_list_) {
-    marked_[static_cast<std::size_t>(i)] = 0;
-    for (const Index e : features_.elements_at(i)) marked_elements_[static_cast<std::size_t>(e)] = 0;
-  }
+  for (const Index i : marked_list_) marked_[static_cast<std::size_t>(i)] = 0;
   marked_list_.clear();
 }
 

@@ -39,11 +39,14 @@ class PairWatch {
  private:
   void choose_horizon(const Points& before, const Points& after);
   [[nodiscard]] std::vector<Index> find_leaving(const Points& ends, double time) const;
-  void renew(std::vector<Index> leaving, const Points& before, const Points& ends);
-  void mark(std::vector<Index> particles, const Points& before, const Points& ends);
-  [[nodiscard]] std::vector<Index> find_folded(const std::vector<Index>& particles);
+  void renew(const std::vector<Index>& leaving, const Points& before, const Points& ends);
+  void place_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends);
+  /// At those that have a marked particle.
+  void look_at_fans();
   void mark_elements();
   void find_pairs(const Points& before);
+  void place_leaves(const std::vector<ElementTree::LeafPair>& pairs, WatchTimes times);
+  [[nodiscard]] bool has_marked(const ElementPair& pair) const;
   void find_candidates();
   void clear_marks();
   [[nodiscard]] bool is_marked(Index i) const { return marked_[static_cast<std::size_t>(i)] != 0; }
@@ -53,6 +56,7 @@ class PairWatch {
   SurfaceFeatures features_;
   SharpEdges sharp_;
   ElementTree tree_;
+  std::vector<LeafPlaces> places_;  ///< by leaf, of those looked at last
   MovingBalls balls_;
   PairSearch pair_search_;
   ContactSearch contact_search_;
@@ -66,8 +70,9 @@ class PairWatch {
   std::vector<char> marked_;  ///< by particle; 0 between calls, as the marks of elements
   std::vector<Index> marked_list_;
   std::vector<Index> moved_on_;  ///< whose balls were made again since candidates were looked for
-  std::vector<char> marked_elements_;
-  std::vector<char> visited_;  ///< by particle; 0 between calls
+  std::vector<Index> marked_elements_;
+  std::vector<char> is_marked_element_;  ///< 0 between calls
+  std::vector<char> visited_;            ///< by particle; 0 between calls
 };
 
 }  // namespace sprung

@@ -91,11 +91,10 @@ class Crumpled {
   }
 
   void mark_elements(const std::vector<char>& marked) {
-    marked_elements_.assign(surface_->elements.size(), 0);
-    for (std::size_t e = 0; e < marked_elements_.size(); ++e) {
-      for (const Index i : corners_of(surface_->elements[e])) {
-        if (marked[static_cast<std::size_t>(i)] != 0) marked_elements_[e] = 1;
-      }
+    marked_elements_.clear();
+    for (std::size_t e = 0; e < surface_->elements.size(); ++e) {
+      const auto is_marked = [&](Index i) { return marked[static_cast<std::size_t>(i)] != 0; };
+      if (std::ranges::any_of(corners_of(surface_->elements[e]), is_marked)) marked_elements_.push_back(static_cast<Index>(e));
     }
   }
 
@@ -140,7 +139,7 @@ class Crumpled {
   std::unique_ptr<SharpEdges> sharp_;
   std::unique_ptr<ElementTree> tree_;
   std::unique_ptr<MovingBalls> balls_;
-  std::vector<char> marked_elements_;
+  std::vector<Index> marked_elements_;
 };
 
 std::set<Key> keys_of(const std::vector<ContactCandidate>& candidates) {
