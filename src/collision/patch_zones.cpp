@@ -42,7 +42,8 @@ PatchZones::PatchZones(Index obstacle, const PatchTopology& topology)
       memories_(slots_.size()),
       calm_(slots_.size()),
       quiet_(slots_.size()),
-      marked_(zones_.size(), 0) {}
+      marked_(zones_.size(), 0),
+      changed_(slots_.size(), 0) {}
 
 bool PatchZones::find_restless(const ObstacleShape& shape, const BallParticles& to) {
   if (shape.deforms()) {
@@ -59,6 +60,7 @@ void PatchZones::follow(const ObstacleShape& shape, const PatchTopology& topolog
   if (shape.deforms()) take_along(shape, topology, demand);
   mark(topology, paths, demand);
   make_marked(shape, topology, paths, demand);
+  find_restless(shape, paths.to());
 }
 
 // Zones that lost much on the way may stand in the way of their elements, or not be the nearest points' any more.
@@ -98,15 +100,15 @@ void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, co
     const bool leaves = !slot.box.contains(to);
     const bool stale = slot.near && (to - slot.settled).squaredNorm() > fresh * fresh;
     if (stale) slot.settled = to;
-    if (!leaves && !stale && !slot.broken) {
-      calm_down(i, to, demand);
-      continue;
-    }
+    calm_down(i, to, demand);
+    if (!leaves && !stale && !slot.broken) continue;
     for (const Index e : topology.elements_of(i)) {
       const Zone& zone = zones_[at(e)];
-      const bool near = zone.distance < demand.gap + demand.margin;
-      const bool old = near && (to - made_around_[at(e)][topology.corner(e, i)]).squaredNorm() > recent * recent;
-      if ((stale && old) || zone.broken || (leaves && !corner_box(topology, e, i).contains(to))) marked_[at(e)] = 1;
+      const auto old = [&] {
+        const bool near = zone.distance < demand.gap + demand.margin;
+        return near && (to - made_around_[at(e)][topology.corner(e, i)]).squaredNorm() > recent * recent;
+      };
+      if (zone.broken || (leaves && !boxes(topology, e, i, to)) || (stale && old())) marked_[at(e)] = 1;
     }
   }
 }
@@ -136,15 +138,19 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
     } else {
       zones_[at(e)] = Zone{.broken = true};
     }
-    for (std::size_t k = 0; k < at(corners.count); ++k) made_around_[at(e)][k] = element.x[k] + zones_[at(e)].drift;
+    for (std::size_t k = 0; k < at(corners.count); ++k) {
+      made_around_[at(e)][k] = element.x[k] + zones_[at(e)].drift;
+      changed_[at(corners.slots[k])] = 1;
+    }
+    marked_[at(e)] = 0;
   }
   for (Index i = 0; i < topology.slot_count(); ++i) {
-    const auto elements = topology.elements_of(i);
-    if (std::none_of(elements.begin(), elements.end(), [&](Index e) { return marked_[at(e)] != 0; })) continue;
+    if (changed_[at(i)] == 0) continue;
+    changed_[at(i)] = 0;
     gather(topology, demand, i);
-    calm_down(i, paths.from(i), demand);
+    const Vector3 to = paths.to(i);
+    calm_down(i, slots_[at(i)].box.contains(to) ? to : paths.from(i), demand);
   }
-  std::fill(marked_.begin(), marked_.end(), 0);
   find_near_elements(demand);
 }
 
@@ -164,7 +170,8 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
   slot.box = Box3(Vector3::Constant(-kInfinity), Vector3::Constant(kInfinity));
   slot.near = slot.broken = false;
   slot.planes.clear();
-  quiet_.set(i, slot.settled, 0.0);
+  double clear = 0.0;
+  Vector3 clear_around = slot.settled;
   for (const Index e : topology.elements_of(i)) {
     const Zone& zone = zones_[at(e)];
     slot.broken = slot.broken || zone.broken;
@@ -172,8 +179,11 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
     if (zone.broken) continue;
     slot.box = slot.box.intersection(corner_box(topology, e, i));
     slot.planes.insert(slot.planes.end(), zone.planes.begin(), zone.planes.begin() + zone.plane_count);
-    if (zone.clear > quiet_.radius(i)) quiet_.set(i, made_around_[at(e)][topology.corner(e, i)], zone.clear);
+    if (!(zone.clear > clear)) continue;
+    clear = zone.clear;
+    clear_around = made_around_[at(e)][topology.corner(e, i)];
   }
+  quiet_.set(i, clear_around, clear);
   if (slot.near && !was_near) slot.settled = slot.box.center();
 }
 
@@ -184,6 +194,12 @@ Box3 PatchZones::corner_box(const PatchTopology& topology, Index e, Index slot) 
   const Vector3& made_at = made_around_[at(e)][topology.corner(e, slot)];
   const Vector3 radius = Vector3::Constant(zone.free_radius / std::sqrt(3.0));
   return zone.box.intersection(Box3(made_at - radius, made_at + radius));
+}
+
+bool PatchZones::boxes(const PatchTopology& topology, Index e, Index slot, const Vector3& p) const {
+  const Zone& zone = zones_[at(e)];
+  if (!zone.box.contains(p)) return false;
+  return !std::isfinite(zone.free_radius) || corner_box(topology, e, slot).contains(p);
 }
 
 void PatchZones::calm_down(Index i, const Vector3& p, const ZoneDemand& demand) {

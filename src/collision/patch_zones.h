@@ -17,6 +17,7 @@ class PatchPaths {
 
   [[nodiscard]] Vector3 from(Index slot) const { return position(from_, slot); }
   [[nodiscard]] Vector3 to(Index slot) const { return position(to_, slot); }
+  [[nodiscard]] const BallParticles& to() const { return to_; }
 
  private:
   [[nodiscard]] static Vector3 position(const BallParticles& at, Index slot) {
@@ -50,7 +51,8 @@ class PatchZones {
   [[nodiscard]] const std::vector<Index>& restless() const { return restless_; }
 
   /// Makes the zones again, around `from`, of elements that have none, that a restless corner is about to leave, or that moved by a
-  /// part of the gap since their nearest points were found. A surface that deforms takes the zones along.
+  /// part of the gap since their nearest points were found. A surface that deforms takes the zones along. Finds the restless slots
+  /// again: what the zones hold is not among them any more, what new zones do not hold is.
   void follow(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
 
   /// Makes the zones of all elements at these slots again, around `from`.
@@ -97,8 +99,10 @@ class PatchZones {
   void mark(const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
   void make_marked(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
   void gather(const PatchTopology& topology, const ZoneDemand& demand, Index slot);
-  /// Where the zone lets a corner of the element be that is at the slot.
+  /// Where the zone's box and radius let a corner of the element be that is at the slot.
   [[nodiscard]] Box3 corner_box(const PatchTopology& topology, Index element, Index slot) const;
+  /// Whether that holds p.
+  [[nodiscard]] bool boxes(const PatchTopology& topology, Index element, Index slot, const Vector3& p) const;
   void calm_down(Index slot, const Vector3& p, const ZoneDemand& demand);
   void find_near_elements(const ZoneDemand& demand);
 
@@ -112,7 +116,8 @@ class PatchZones {
   std::vector<Index> restless_;          ///< slots
   std::vector<Index> near_elements_;
   bool crosses_ = false;
-  std::vector<char> marked_;  ///< by element; 0 between calls
+  std::vector<char> marked_;   ///< by element; 0 between calls
+  std::vector<char> changed_;  ///< by slot: whether a zone at it was made again; 0 between calls
 };
 
 }  // namespace sprung
