@@ -33,7 +33,8 @@ constexpr double kForecastOfCloths = 0.1;
 constexpr double kCorrectedPart = 0.3;
 
 // No iteration is made when the imbalance, were all of it left, amounts to no more than a hundredth of the way from where forces
-// led.
+// led. Masses alone count what is out of balance along links for far too much: once an iteration has told that it is no more, none
+// is made either until the energy changed by as much.
 constexpr double kBalanced = 1.0e-4;
 
 // What turned by less than this and took one iteration the step before hardly changes: of what moves an old factor, to which other
@@ -44,6 +45,8 @@ constexpr double kCalmTurn = 1.0 / 240.0;
 // beyond it by rounding.
 constexpr double kClipPart = 0.99;
 constexpr double kClipRounding = 1.0 - 0x1p-40;
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 Index count_ties(const StretchComponent& component) {
   return static_cast<Index>(
@@ -63,7 +66,10 @@ ComponentNewton::~ComponentNewton() = default;
 std::optional<int> ComponentNewton::solve(const Points& before, Points& positions, double fall) {
   gather(before, positions);
   energy_.set_weight(1.0);
-  if (energy_.value(led_, led_) == 0.0) return std::nullopt;
+  if (energy_.value(led_, led_) == 0.0) {
+    balanced_energy_ = kUnknown;
+    return std::nullopt;
+  }
   energy_.set_weight(carried_weight(fall));
   // An order of elimination takes its time, and what only asks for the step, or is never handed over, needs none.
   if (!solver_) solver_ = make_system_solver(component_);
@@ -116,7 +122,8 @@ double ComponentNewton::most_beyond() const {
 int ComponentNewton::minimise() {
   start();
   double energy = energy_.linearise(x_, led_, NearLimit::slack, system_);
-  if (imbalance() <= kBalanced * energy) return 0;
+  const double negligible = kBalanced * energy;
+  if (imbalance() <= negligible || std::abs(energy - balanced_energy_) <= negligible) return 0;
   const double at_first = inertia();
   const bool is_calm = last_iterations_ <= 1 && turn() <= kCalmTurn;
   const double close = component_.is_tree ? kForecastOfChains : kForecastOfCloths;
@@ -127,9 +134,12 @@ int ComponentNewton::minimise() {
   energy_.forget_overshot();
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
     system_.is_like_last = iteration == 1 && is_calm;
+    system_.may_be_left = 0.5 * negligible;
     const double left = solver_->solve(system_, step_);
     const double forecast = modelled - 0.5 * system_.residual.cwiseProduct(step_).sum();
     const auto [part, corrected] = descend(energy, forecast);
+    const bool is_balanced = iteration == 1 && 2.0 * std::max(modelled - forecast, left) <= negligible;
+    balanced_energy_ = is_balanced ? energy : kUnknown;
     const double enough = (corrected ? kCorrectedPart : 1.0) * close * (at_first + energy);
     if (part > 0.0 && !is_too_stiff && std::abs(energy - forecast) + left <= enough) return iteration;
     if (part == 0.0 && iteration > 1) return iteration;

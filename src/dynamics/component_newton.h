@@ -52,8 +52,9 @@ class ComponentNewton {
   StretchEnergy energy_;
   std::unique_ptr<StretchSystemSolver> solver_;  ///< from the first solve on
   bool clips_;
-  int last_iterations_ = std::numeric_limits<int>::max();  ///< of the solve before, if there was one
-  double mass_ = 0.0;                                      ///< of all free points [kg]
+  int last_iterations_ = std::numeric_limits<int>::max();             ///< of the solve before, if there was one
+  double mass_ = 0.0;                                                 ///< of all free points [kg]
+  double balanced_energy_ = std::numeric_limits<double>::infinity();  ///< of where it came to rest, while it does [kg m^2]
 
   Vector3 common_move_ = Vector3::Zero();  ///< of the last solve [m]
   double farthest_squared_ = 0.0;          ///< that a point was led, apart from the common move [m^2]

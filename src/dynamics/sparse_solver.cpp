@@ -48,7 +48,7 @@ SparseSolver::SparseSolver(const StretchComponent& component)
 double SparseSolver::solve(const StretchSystem& system, Points& step) {
   assemble(system);
   if (system.is_like_last) {
-    if (const auto left = solve_as_last(system.residual, step)) return *left;
+    if (const auto left = solve_as_last(system, step)) return *left;
   }
   const double stiffness = stiffest();
   for (Roughly& way : ways_) {
@@ -74,10 +74,11 @@ void SparseSolver::solve_again(const StretchSystem& system, Points& step) {
   if (component_.pin_count() == 0) keep_momentum(system.residual, step);
 }
 
-std::optional<double> SparseSolver::solve_as_last(const Points& right, Points& step) {
+std::optional<double> SparseSolver::solve_as_last(const StretchSystem& system, Points& step) {
   // What changes so fast mostly does so the next time too.
   if (std::exchange(led_nowhere_, false)) return std::nullopt;
-  const auto left = approach_with_kept({.most_iterations = kMostIterations, .slowest = kSlowest}, right, step);
+  const Patience patience{.most_iterations = kMostIterations, .slowest = kSlowest, .may_be_left = system.may_be_left};
+  const auto left = approach_with_kept(patience, system.residual, step);
   led_nowhere_ = !left;
   return left;
 }
@@ -124,7 +125,7 @@ std::optional<double> SparseSolver::approach(Factor& factor, const Patience& pat
     step += length * direction_;
     left_ -= length * pushed_;
     // The way is made before its end would be measured: it costs less than that, and what is left only falls.
-    if (iteration > 1 && size <= kNearEnough * gained) return 0.5 * size;
+    if (0.5 * size <= patience.may_be_left || (iteration > 1 && size <= kNearEnough * gained)) return 0.5 * size;
     if (const double most = largest_size(); most <= kSurelyNear * gained) return 0.5 * most;
   }
   return std::nullopt;

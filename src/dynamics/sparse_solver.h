@@ -30,7 +30,8 @@ class SparseSolver final : public StretchSystemSolver {
   /// How long conjugate gradients go on.
   struct Patience {
     int most_iterations;
-    double slowest;  ///< what may be left by an iteration of what was there before it
+    double slowest;            ///< what may be left by an iteration of what was there before it
+    double may_be_left = 0.0;  ///< when it is surely near enough [kg m^2]
   };
 
   /// A factor in single precision.
@@ -41,7 +42,7 @@ class SparseSolver final : public StretchSystemSolver {
   };
 
   void assemble(const StretchSystem& system);
-  [[nodiscard]] std::optional<double> solve_as_last(const Points& right, Points& step);
+  [[nodiscard]] std::optional<double> solve_as_last(const StretchSystem& system, Points& step);
   [[nodiscard]] std::optional<double> approach_with_kept(const Patience& patience, const Points& right, Points& step);
   template <class Factor>
   [[nodiscard]] std::optional<double> approach(Factor& factor, const Patience& patience, const Points& right, Points& step);

@@ -14,7 +14,8 @@ namespace sprung {
 struct StretchSystem {
   std::vector<SymmetricMatrix3> blocks;  ///< of links, positive semidefinite [kg]
   Points residual;                       ///< what is out of balance at free points [kg m], 3 x free
-  bool is_like_last = false;             ///< whether the system before was much the same: its factor may do
+  bool is_like_last = false;             ///< whether the system before was much the same: its factor may do,
+  double may_be_left = 0.0;              ///< and so may a displacement that leaves this much to gain [kg m^2]
 };
 
 class StretchSystemSolver {

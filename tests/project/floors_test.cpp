@@ -40,7 +40,7 @@ const std::vector<Library> kLibraries = {
     {"xmmintrin.h", {"base"}},
     {"fcntl.h", {"app", "output"}},
     {"unistd.h", {"app", "output"}},
-    {"sys/", {"app", "output"}},
+    {"sys/", {"app", "base", "output"}},
 };
 
 /// Standard headers have neither a dot nor a slash.
