@@ -38,7 +38,7 @@ void StepRefinement::choose(double excess, SimulationState& state) const {
 
 void StepRefinement::choose_by_turn(double turn, SimulationState& state) const {
   const double needed = std::ceil(turn * state.parts / kMostTurn);
-  state.parts = static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(most_parts_)));
+  state.parts = needed > 1.0 ? static_cast<int>(std::min(needed, static_cast<double>(most_parts_))) : 1;  // 1 for what is no number
 }
 
 }  // namespace sprung

@@ -199,6 +199,34 @@ TEST(SparseSolver, OldFactorsLeadThereByConjugateGradients) {
   EXPECT_LE(left, 0.01 * 16.0 * 0.5 * now.dot(exact));
 }
 
+// A factor of M + K measures what M + 16 K leaves to gain as up to sixteen times as much: all of it may be left, so the first
+// iteration is the last. With nothing that may be left they go on to a hundredth.
+TEST(SparseSolver, OldFactorsLeaveWhatMayBeLeft) {
+  StretchedCloth cloth;
+  const StretchComponent component = stretch_components(cloth.network, {SpringKind::structural}).front();
+  Points points(3, component.points.size());
+  const Points x = cloth.next();
+  for (Index i = 0; i < points.cols(); ++i) points.col(i) = x.col(component.points[i]);
+  const auto left_of = [&](double part_that_may_be_left) {
+    StretchEnergy energy(component, {.max_stretch = 0.0});
+    StretchSystem system;
+    SparseSolver used(component);
+    Points step;
+    energy.set_weight(1.0);
+    energy.linearise(points, points, NearLimit::slack, system);
+    used.solve(system, step);
+    energy.set_weight(16.0);
+    energy.linearise(points, points, NearLimit::slack, system);
+    const Scalars now = system.residual.reshaped();
+    const double gain = 0.5 * now.dot(dense(component, system).ldlt().solve(now));
+    system.is_like_last = true;
+    system.may_be_left = part_that_may_be_left * gain;
+    return used.solve(system, step) / gain;
+  };
+  EXPECT_GE(left_of(16.0), 1.0);
+  EXPECT_LE(left_of(0.0), 0.16);
+}
+
 // Two springs of 1 m, each held by one end.
 TEST(StretchNewton, TellsTheTurnOfWhatTurnsMost) {
   NetworkBuilder builder;
