@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace sprung {
 namespace {
@@ -20,7 +21,7 @@ Index count_inside(const Parity& parity, const Points& positions) {
 }
 
 TEST(ParityOfABunny, AgreesWithItsVolume) {
-  const ImportedMesh bunny = import_mesh(std::string(SPRUNG_TEST_MESHES) + "/bunny.obj");
+  const ImportedMesh bunny = import_mesh(std::filesystem::path(SPRUNG_TEST_MESHES) / "bunny.obj");
   const Parity parity(bunny.mesh);
   const Box3 box = bunny.report.bounds;
   constexpr int kSide = 60;
