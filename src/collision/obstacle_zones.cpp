@@ -1,13 +1,9 @@
 #include "collision/obstacle_zones.h"
 
-#include "base/kernel.h"
 #include "base/parallel.h"
-#include "collision/lanes.h"
 #include "collision/particle_blocks.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace sprung {
 
@@ -22,33 +18,6 @@ constexpr double kAside = 0.125;
 constexpr double kStock = 0.25;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-void extend_by_finite(const Points& positions, const std::vector<Index>& particles, Box3& box) {
-  for (const Index i : particles) {
-    if (positions.col(i).allFinite()) box.extend(positions.col(i));
-  }
-}
-
-/// Around where the way begins and where it ends, but for positions that are not finite.
-SPRUNG_KERNEL Box3 bounds_of(const Way& way, const std::vector<Index>& particles) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  Lanes low = Lanes{} + kLargest;
-  Lanes high = Lanes{} - kLargest;
-  for (const Index i : particles) {
-    for (const Points* positions : {&way.from, &way.to}) {
-      const double* p = positions->data() + 3 * static_cast<std::ptrdiff_t>(i);
-      const Lanes position = {p[0], p[1], p[2], p[0]};
-      low = position < low ? position : low;  // what is not a number is passed over
-      high = position > high ? position : high;
-    }
-  }
-  Box3 box(Vector3(low[0], low[1], low[2]), Vector3(high[0], high[1], high[2]));
-  if (box.min().allFinite() && box.max().allFinite()) return box;
-  box.setEmpty();
-  extend_by_finite(way.from, particles, box);
-  extend_by_finite(way.to, particles, box);
-  return box;
-}
 
 }  // namespace
 
@@ -93,7 +62,7 @@ void ObstacleZones::follow(const Way& way) {
 void ObstacleZones::find_near(Index p, const Way& way, double carried) {
   Patch& patch = patches_[at(p)];
   const std::vector<Index>& particles = particles_of(p);
-  patch.box = bounds_of(way, particles);
+  patch.box = finite_bounds(way.from, particles).merged(finite_bounds(way.to, particles));
   std::vector<Index> near;
   if (!patch.box.isEmpty()) {
     const double gap = std::max(patch.thickness + set_.max_thickness(), set_.max_clearance(patch.box));

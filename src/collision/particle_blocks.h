@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "collision/obstacle_set.h"
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -29,8 +30,9 @@ std::vector<Result> collect_from_blocks(Index particles, const Work& work) {
   return all;
 }
 
-/// A box around particles [begin, end) that leaves out positions that are not finite.
+/// A box around particles [begin, end), or around those listed, that leaves out positions that are not finite; empty around none.
 [[nodiscard]] Box3 finite_bounds(const Points& positions, Index begin, Index end);
+[[nodiscard]] Box3 finite_bounds(const Points& positions, std::span<const Index> particles);
 
 /// The box, `distance` [m] larger on every side, and by what rounding may do to it.
 [[nodiscard]] Box3 grown(const Box3& box, double distance);
