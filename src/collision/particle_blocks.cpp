@@ -4,29 +4,29 @@
 #include "collision/lanes.h"
 
 #include <limits>
-#include <ranges>
 
 namespace sprung {
 
 namespace {
 
-template <class Particles>
-[[gnu::always_inline]] inline Box3 bounds_of(const Points& positions, const Particles& particles) {
+template <class Particle>
+[[gnu::always_inline]] inline Box3 bounds_of(const Points& positions, Index count, const Particle& particle) {
   constexpr double kLargest = std::numeric_limits<double>::max();
   Lanes low = Lanes{} + kLargest;
   Lanes high = Lanes{} - kLargest;
   Lanes strange{};  // no number once something is not finite
-  for (const Index i : particles) {
-    const double* p = positions.data() + 3 * static_cast<std::ptrdiff_t>(i);
+  for (Index k = 0; k < count; ++k) {
+    const double* p = positions.data() + 3 * static_cast<std::ptrdiff_t>(particle(k));
     const Lanes position = {p[0], p[1], p[2], p[0]};
     low = position < low ? position : low;
     high = position > high ? position : high;
-    strange += position - position;
+    strange += 0.0 * position;
   }
   if (strange[0] + strange[1] + strange[2] == 0.0) return {Vector3(low[0], low[1], low[2]), Vector3(high[0], high[1], high[2])};
   Box3 box;
-  for (const Index i : particles) {
-    if (positions.col(i).allFinite()) box.extend(positions.col(i));
+  for (Index k = 0; k < count; ++k) {
+    const auto position = positions.col(particle(k));
+    if (position.allFinite()) box.extend(position);
   }
   return box;
 }
@@ -34,11 +34,12 @@ template <class Particles>
 }  // namespace
 
 SPRUNG_KERNEL Box3 finite_bounds(const Points& positions, Index begin, Index end) {
-  return bounds_of(positions, std::views::iota(begin, end));
+  return bounds_of(positions, end - begin, [&](Index k) { return begin + k; });
 }
 
 SPRUNG_KERNEL Box3 finite_bounds(const Points& positions, std::span<const Index> particles) {
-  return bounds_of(positions, particles);
+  return bounds_of(positions, static_cast<Index>(particles.size()),
+                   [&](Index k) { return particles[static_cast<std::size_t>(k)]; });
 }
 
 Box3 grown(const Box3& box, double distance) {
