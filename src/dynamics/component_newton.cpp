@@ -102,10 +102,12 @@ Vector3 ComponentNewton::common_move() const {
 }
 
 // What moves by u in a step, on a circle of radius r, is pulled inwards as by an acceleration of u^2 / r. Where nothing pulls,
-// links that are too long do.
+// links that are too long do. In small steps what swings on a link would take more from it than it gave, as the link is stiffer the
+// faster all move: one whose stiffness is as large as the masses stops it within a step.
 double ComponentNewton::carried_weight(double fall) const {
   const double inwards = extent_ > 0.0 ? farthest_squared_ / extent_ : 0.0;
-  return mass_ / std::max(component_.pin_count(), Index{1}) * std::max({fall, inwards, fall + inwards > 0.0 ? 0.0 : most_beyond()});
+  return mass_ / std::max(component_.pin_count(), Index{1}) *
+         std::max({fall, inwards, energy_.give(), fall + inwards > 0.0 ? 0.0 : most_beyond()});
 }
 
 double ComponentNewton::turn() const { return extent_ > 0.0 ? std::sqrt(farthest_squared_) / extent_ : 0.0; }

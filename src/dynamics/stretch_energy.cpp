@@ -24,6 +24,7 @@ StretchEnergy::StretchEnergy(const StretchComponent& component, const StretchLim
   const double give = part * std::max(settings.tolerance, kLeastTolerance);
   for (const StretchComponent::Link& link : component.links) {
     limits_.push_back({link.rest_length * (1.0 + settings.max_stretch), 1.0 / (give * link.rest_length)});
+    give_ = std::max(give_, give * link.rest_length);
   }
 }
 

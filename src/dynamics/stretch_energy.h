@@ -28,6 +28,9 @@ class StretchEnergy {
   /// Requires weight > 0. [kg m]
   void set_weight(double weight) { weight_ = weight; }
 
+  /// How much longer than its longest a link is that carries the weight, at most [m].
+  [[nodiscard]] double give() const { return give_; }
+
   /// E at `x`; both 3 x points.
   [[nodiscard]] double value(const Points& x, const Points& y) const;
 
@@ -55,6 +58,7 @@ class StretchEnergy {
   std::vector<Limit> limits_;   ///< of links
   std::vector<char> overshot_;  ///< links; empty while none is known
   double weight_ = 0.0;
+  double give_ = 0.0;
 };
 
 }  // namespace sprung

@@ -1,0 +1,63 @@
+// A stretch limit takes energy or leaves it, in steps of any size.
+#include "simulation/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+using testing::kGravity;
+
+constexpr double kMass = 0.2;
+constexpr double kSeconds = 0.8;  // down and most of the way up again
+
+/// A level cloth of 1 m and n x n particles without stiffness that two corners hold.
+SpringNetwork held_cloth(Index n) {
+  const SpringMaterial limp{.value = 0.0};
+  BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {n, n}}, {.structural = limp, .shear = limp});
+  set_total_mass(shape, kMass);
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = rotation_from_degrees({-90.0, 0.0, 0.0});
+  place(shape, pose, Vector3::Zero());
+  NetworkBuilder builder;
+  const Index first = builder.add_body("cloth", shape);
+  builder.pin(first + n * (n - 1));
+  builder.pin(first + n * n - 1);
+  return builder.build();
+}
+
+/// The most that motion and height ever have beyond what they began with [J].
+double most_gained(const SpringNetwork& network, double step, const StretchLimitSettings& limit) {
+  Simulator simulator(network, {.step = step, .stretch_limit = limit});
+  const auto energy = [&] {
+    return 0.5 * network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose()) + simulator.gravity_energy();
+  };
+  const double begin = energy();
+  double most = 0.0;
+  for (double time = 0.0; time < kSeconds; time += step) {
+    simulator.step();
+    most = std::max(most, energy() - begin);
+  }
+  return most;
+}
+
+// What falls by a height h is at most half a step's way, g t dt / 2, apart from where its speed says it is: m g sqrt(2 g h) dt / 2,
+// 1.5 mJ in the largest step here. Links that carry it, give by a tenth of the tolerance.
+TEST(LimitEnergy, NewtonMakesNoneInSmallSteps) {
+  for (const double tolerance : {0.001, 0.005, 0.02}) {
+    const StretchLimitSettings limit{.max_stretch = 0.01, .tolerance = tolerance, .solver = StretchLimitSettings::Solver::newton};
+    for (const Index side : {2, 5}) {
+      for (const int parts : {50, 200, 1000}) {
+        const double step = 1.0 / (60.0 * parts);
+        const double lags = kMass * kGravity * std::sqrt(2.0 * kGravity) * step / 2.0;
+        const double gives = kMass * kGravity * 0.1 * tolerance;
+        EXPECT_LT(most_gained(held_cloth(side), step, limit), lags + gives) << tolerance << ", " << side << ", " << parts;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sprung
