@@ -61,8 +61,8 @@ double answer(const ContactRow<n>& row, ContactGoal& goal, Points& q) {
   const Vector3 moved = row.sum(q) - goal.origin;
   const double along = row.normal.dot(moved);
   const double change = std::max(goal.least - along, -goal.push);
-  // Most contacts stay apart, and nothing is written for them.
-  const bool touches = goal.push > 0.0 || along <= goal.least + goal.touch;
+  // Most contacts stay apart, and nothing is written for them. What another one pushed off what it meets touches no more.
+  const bool touches = goal.push + change > 0.0 || along <= goal.least + goal.touch;
   if (touches != goal.touches) goal.touches = touches;
   if (change == 0.0 && goal.push == 0.0) return 0.0;
 

@@ -67,7 +67,9 @@ class ContactSet {
       const double speed = row.normal.dot(row.sum(velocities) - carrier);
       const double pushed = row.normal.dot(row.sum(positions) - row.sum(motion.advanced)) / motion.dt;
       const SpeedRange range = settled_speeds(row, goals_[c], motion, carrier, speed - pushed);
-      if (speed > range.most) row.change_sum((range.most - speed) * row.normal, velocities);
+      // No more than it pushed: what others pushed too is theirs to take.
+      const double taken = std::min(speed - range.most, goals_[c].push / motion.dt);
+      if (taken > 0.0) row.change_sum(-taken * row.normal, velocities);
       touching_.push_back(c);
       velocity_goals_.push_back({.origin = carrier, .least = range.least});
     }
