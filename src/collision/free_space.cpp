@@ -2,6 +2,7 @@
 
 #include "collision/carried_placement.h"
 #include "collision/pair_placement.h"
+#include "collision/placement_in_parts.h"
 
 #include <algorithm>
 #include <iterator>
@@ -19,9 +20,6 @@ constexpr int kRounds = 8;
 // would be led a long way round the obstacle.
 constexpr double kWorthwhile = 0x1p-10;
 constexpr double kMostLeft = 0.5;
-
-// Obstacles that close in on a particle are taken along in parts of the interval, halved until this one.
-constexpr double kSmallestPart = 1.0 / 64.0;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -61,7 +59,8 @@ struct FreeSpace::Implementation {
   [[nodiscard]] Index crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const;
   [[nodiscard]] std::vector<Index> movable(std::vector<Index> particles, const Way& way) const;
   [[nodiscard]] std::vector<Index> all_movable(const Way& way) const;
-  Outcomes place_in_parts(std::vector<Index>& particles, const Way& way, Points& after);
+  /// Places all movable particles, by themselves, in a part of the environment's interval.
+  Outcomes place_part(std::vector<Index>& particles, const Way& part, Points& after);
   [[nodiscard]] static bool can_go_on(Index particle, const Points& from, const Points& target, const Points& now);
   /// Leaves in `stopped` those that may come farther yet; returns how many arrived.
   Index go_on(std::vector<Index>& stopped, const Points& target, Points& after);
@@ -131,7 +130,10 @@ FreeSpace::Truncation FreeSpace::Implementation::place_all(const Way& way, Point
   if (set.moves() && !way.obstacles_rest && count(outcomes, Outcome::squeezed) > 0) {
     add_free(all_movable(way), particles, outcomes);
     carry_squeezed(zones, particles, way.from, after, outcomes);
-    if (count(outcomes, Outcome::squeezed) > 0) outcomes = place_in_parts(particles, way, after);
+    if (count(outcomes, Outcome::squeezed) > 0) {
+      outcomes =
+          place_in_parts(environment, way, after, [&](const Way& part, Points& x) { return place_part(particles, part, x); });
+    }
   }
   look_at_pins(after);
   return lead_on(particles, outcomes, way, after);
@@ -188,36 +190,11 @@ std::vector<Index> FreeSpace::Implementation::all_movable(const Way& way) const 
   return movable(std::move(particles), way);
 }
 
-// Planes that obstacles take along may leave nothing between them, where the obstacles themselves do: in smaller parts of the
-// interval their planes are made again before they meet.
-Outcomes FreeSpace::Implementation::place_in_parts(std::vector<Index>& particles, const Way& way, Points& after) {
-  const auto [begin, end] = environment.interval();
-  const auto time = [begin = begin, end = end](double part) { return part < 1.0 ? begin + part * (end - begin) : end; };
-  Outcomes worst(particles.size(), Outcome::free);
-  Points from = way.from;
-  double done = 0.0;
-  double part = 0.5;
-  while (done < 1.0) {
-    const double next = std::min(1.0, done + part);
-    environment.set_interval(time(done), time(next));
-    const Points to = next < 1.0 ? Points(from + (next - done) / (1.0 - done) * (way.to - from)) : way.to;
-    zones.follow({from, to});
-    after = to;
-    Outcomes outcomes = place_with_fresh_zones(particles, {from, to}, after);
-    carry_squeezed(zones, particles, from, after, outcomes);
-    if (part > kSmallestPart && count(outcomes, Outcome::squeezed) > 0) {
-      part *= 0.5;
-      continue;
-    }
-    for (std::size_t n = 0; n < particles.size(); ++n) {
-      const bool last = next == 1.0;
-      if (outcomes[n] == Outcome::squeezed || (last && worst[n] == Outcome::free)) worst[n] = outcomes[n];
-    }
-    from = after;
-    done = next;
-  }
-  environment.set_interval(begin, end);
-  return worst;
+Outcomes FreeSpace::Implementation::place_part(std::vector<Index>& particles, const Way& part, Points& after) {
+  zones.follow(part);
+  Outcomes outcomes = place_with_fresh_zones(particles, part, after);
+  carry_squeezed(zones, particles, part.from, after, outcomes);
+  return outcomes;
 }
 
 // A zone ends where it meets the obstacle's tangent; from there a new one leads round the obstacle.
@@ -265,8 +242,19 @@ void FreeSpace::Implementation::begin_pairs(const Points& before, const Points& 
 void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, Truncation& truncation) {
   pairs_began = false;
   if (!after.allFinite()) return;
-  const std::vector<Index> particles = all_movable({before, after});
-  const Outcomes outcomes = PairPlacement(zones, *pairs, particles).place(before, after);
+  std::vector<Index> particles = all_movable({before, after});
+  const Points allowed = after;
+  Outcomes outcomes = PairPlacement(zones, *pairs, particles).place(before, after);
+  if (set.moves() && count(outcomes, Outcome::squeezed) > 0) {
+    outcomes = place_in_parts(environment, {before, allowed}, after, [&](const Way& part, Points& x) {
+      zones.renew_around(particles, part);
+      const Outcomes among_obstacles = place_part(particles, part, x);
+      pairs->begin_part(part.from, x);
+      Outcomes of_part = PairPlacement(zones, *pairs, particles).place(part.from, x);
+      keep_squeezed(among_obstacles, of_part);
+      return of_part;
+    });
+  }
   truncation.truncated += static_cast<Index>(outcomes.size()) - count(outcomes, Outcome::free);
   truncation.squeezed += count(outcomes, Outcome::squeezed);
 }

@@ -47,8 +47,9 @@ class FreeSpace {
   using Relax = std::function<bool(Points& positions)>;
 
   /// The last word on positions: moves each particle that would take an element out of its zones to a place near `after` where it
-  /// does not, taking obstacles that close in on it along in smaller parts of the interval. A particle that found none stays with
-  /// an obstacle that carries it. Particles that follow their pins, and positions that are not finite, are left alone.
+  /// does not, taking obstacles that close in on it, or on what is in its way, along in smaller parts of the interval. A particle
+  /// that found none stays with an obstacle that carries it. Particles that follow their pins, and positions that
+  /// are not finite, are left alone.
   ///
   /// What obstacles stop, `relax` may lead elsewhere, and its neighbours after it, again and again: all go on from where they are
   /// safe. The result tells of the last time.

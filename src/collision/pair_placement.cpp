@@ -25,15 +25,26 @@ PairPlacement::PairPlacement(ObstacleZones& zones, SelfZones& pairs, const std::
 Outcomes PairPlacement::place(const Points& before, Points& after) {
   const Points allowed = after;
   Outcomes outcomes = place_held(before, after);
-  if (count(outcomes, Outcome::squeezed) == 0) return outcomes;
-  const Way way{before, allowed};
-  for (int round = 0; anchor_squeezed(outcomes, before, after); ++round) {
-    if (round == 0) zones_.follow(way);
-    zones_.renew_around(round < kLocalRounds ? squeezed(held_, outcomes) : movable_, way);
-    place_among_obstacles(way, after);
-    outcomes = place_held(before, after);
+  if (count(outcomes, Outcome::squeezed) > 0) {
+    const Way way{before, allowed};
+    for (int round = 0; anchor_squeezed(outcomes, before, after); ++round) {
+      if (round == 0) zones_.follow(way);
+      zones_.renew_around(round < kLocalRounds ? squeezed(held_, outcomes) : movable_, way);
+      place_among_obstacles(way, after);
+      outcomes = place_held(before, after);
+    }
+    accept_carried(after, outcomes);
   }
-  accept_carried(after, outcomes);
+  return of_movable(outcomes);
+}
+
+/// What is not held goes where it wants.
+Outcomes PairPlacement::of_movable(const Outcomes& of_held) const {
+  Outcomes outcomes(movable_.size(), Outcome::free);
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < movable_.size() && n < held_.size(); ++k) {
+    if (movable_[k] == held_[n]) outcomes[k] = of_held[n++];
+  }
   return outcomes;
 }
 

@@ -17,14 +17,16 @@ class PairPlacement {
   /// Changes `after` [m], 3 x n, which obstacles allow, to places that those allow and the sides of all pairs. Where there are none
   /// in the zones at hand, zones are made again where the step began and groups of particles go along with the obstacle that is in
   /// their way, as if they were a part of it: more and more particles, until all that are next to a group have a place. Before one
-  /// obstacle that is rigid, or such that rest, they all have one, but for pins, and mostly before one that deforms; otherwise what
-  /// finds none stays with its group: an obstacle can be left again, a knot in a cloth stays. Returns what became of particles that
-  /// were held. Requires SelfZones::begin_step() with the same `before`.
+  /// obstacle that is rigid, or such that rest, they all have one, but for pins, and mostly before one that deforms; before others,
+  /// if groups are small: in small parts of the interval. What finds none stays with its group: an obstacle can be left again, a
+  /// knot in a cloth stays. Returns what became of the movable particles. Requires SelfZones::begin_step() or begin_part() with the
+  /// same `before`.
   Outcomes place(const Points& before, Points& after);
 
  private:
   Outcomes place_held(const Points& before, Points& after);
   [[nodiscard]] Outcome place_held(Index particle, const Vector3& before, const Vector3& target, Points& after) const;
+  [[nodiscard]] Outcomes of_movable(const Outcomes& of_held) const;
   [[nodiscard]] static std::vector<Index> squeezed(const std::vector<Index>& particles, const Outcomes& outcomes);
   void place_among_obstacles(const Way& way, Points& after);
   /// Whether any held particle is an anchor now that was none, or begins to move.

@@ -91,6 +91,12 @@ void PairWatch::begin_step(const Points& before, const Points& after) {
   find_candidates();
 }
 
+void PairWatch::begin_part(const Points& before, const Points& after) {
+  age_ = 0.0;
+  horizon_ = 1.0;
+  renew(watched_, before, after);
+}
+
 void PairWatch::follow(const Points& before, const Points& ends) { renew(find_leaving(ends, 1.0), before, ends); }
 
 std::vector<Index> PairWatch::find_leaving(const Points& ends, double time) const {

@@ -24,6 +24,9 @@ class PairWatch {
   /// Lists what may touch in a step from `before` to about `after` [m], 3 x n.
   void begin_step(const Points& before, const Points& after);
 
+  /// Lists what may touch in a part of the step, as one of its own, but no candidates: the next step lists all anew.
+  void begin_part(const Points& before, const Points& after);
+
   /// Lists what may touch when particles end the step at `ends` [m] instead, where their balls do not hold them there. Requires
   /// begin_step() with the same `before`.
   void follow(const Points& before, const Points& ends);

@@ -22,6 +22,12 @@ Index count(const Outcomes& outcomes, Outcome wanted) {
   return static_cast<Index>(std::count(outcomes.begin(), outcomes.end(), wanted));
 }
 
+void keep_squeezed(const Outcomes& before, Outcomes& outcomes) {
+  for (std::size_t n = 0; n < before.size(); ++n) {
+    if (before[n] == Outcome::squeezed) outcomes[n] = Outcome::squeezed;
+  }
+}
+
 Outcome place(const ObstacleZones& zones, Index particle, const Way& way, Points& positions) {
   const Vector3 target = way.to.col(particle);
   if (zones.allow(particle, target)) {

@@ -17,6 +17,9 @@ using Outcomes = std::vector<Outcome>;
 
 [[nodiscard]] Index count(const Outcomes& outcomes, Outcome wanted);
 
+/// Leaves squeezed what was so before.
+void keep_squeezed(const Outcomes& before, Outcomes& outcomes);
+
 /// Moves a particle to where its way leads, or to a place near there within the zones of its elements. One that finds none stays
 /// with an obstacle that carries it.
 Outcome place(const ObstacleZones& zones, Index particle, const Way& way, Points& positions);

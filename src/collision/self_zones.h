@@ -30,8 +30,12 @@ class SelfZones {
   /// their gap is the mean of the two thicknesses, but at most `most_gap`.
   void begin_step(const Points& before, const Points& after, std::vector<Contact>& contacts);
 
+  /// A part of the step begins at `before` [m], where nothing crosses, and is about to end at `after`: what follows is for the
+  /// part.
+  void begin_part(const Points& before, const Points& after);
+
   /// Finds which particles would pass each other on their way to `targets` [m]; all others may go there. Pinned particles do so in
-  /// any case. Returns those that are held, ascending. Requires begin_step() with the same `before`.
+  /// any case. Returns those that are held, ascending. Requires begin_step() or begin_part() with the same `before`.
   const std::vector<Index>& hold(const Points& before, const Points& targets, const Carriers& carriers = {});
 
   /// Where a held particle may end in any case [m].
