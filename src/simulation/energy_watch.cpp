@@ -27,13 +27,19 @@ double capacity_of_limit(const SpringNetwork& network, const SimulatorSettings& 
   return network.masses.sum() * settings.gravity.norm() * *std::ranges::max_element(lengths);
 }
 
+double bounce_gain(const SpringNetwork& network, const std::vector<Obstacle>& obstacles) {
+  double restitution = 0.0;
+  for (const Body& body : network.bodies) restitution = std::max(restitution, body.material.restitution);
+  for (const Obstacle& obstacle : obstacles) restitution = std::max(restitution, obstacle.material.restitution);
+  return (1.0 + restitution) / (1.0 - restitution);
+}
+
 }  // namespace
 
 EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles)
     : mass_(network.masses.sum()),
-      watches_(obstacles.empty() ||
-               (settings.contact.response == ContactSettings::Response::projection &&
-                std::none_of(obstacles.begin(), obstacles.end(), [](const Obstacle& obstacle) { return obstacle.changes(); }))),
+      watches_(obstacles.empty() || settings.contact.response == ContactSettings::Response::projection),
+      bounce_gain_(bounce_gain(network, obstacles)),
       fastest_drive_(settings.air_drag > 0.0 ? settings.wind.norm() : 0.0),
       capacity_(capacity_of(network) + capacity_of_limit(network, settings)) {}
 

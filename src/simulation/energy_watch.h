@@ -19,7 +19,7 @@ struct Energies {
 
 class EnergyWatch {
  public:
-  /// Does not watch scenes with obstacles that move or push by forces, which it does not know.
+  /// Does not watch scenes with obstacles that push by forces, which it does not know.
   EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles);
 
   [[nodiscard]] bool watches() const { return watches_; }
@@ -29,11 +29,18 @@ class EnergyWatch {
   void note(std::int64_t step, const Energies& energies);
 
   /// Takes in the speed [m/s] of a pin.
-  void note_drive(double speed) { fastest_drive_ = std::max(fastest_drive_, speed); }
+  void note_pin(double speed) { fastest_drive_ = std::max(fastest_drive_, speed); }
+
+  /// Takes in the speed [m/s] with which an obstacle may hit. What bounces to and fro between two that close in at that speed v is
+  /// sped up to v (1 + e) / (1 - e), with restitution e: each bounce makes e (u + v) + v of its speed u.
+  void note_obstacle(double speed) {
+    if (speed > 0.0) fastest_drive_ = std::max(fastest_drive_, bounce_gain_ * speed);
+  }
 
   /// What is wrong with the energies, when motion and springs hold more than 1,000 times the sum of what they began with, what
-  /// gravity has set free since, the motion of all particles as fast as the fastest pin or the wind, what it takes to stretch every
-  /// spring to twice its length and fold every angle, and, where a limit holds lengths, to lift all by the length of a spring.
+  /// gravity has set free since, the motion of all particles as fast as the fastest pin, the wind or what obstacles hit, what it
+  /// takes to stretch every spring to twice its length and fold every angle, and, where a limit holds lengths, to lift all by the
+  /// length of a spring.
   [[nodiscard]] std::optional<std::string> explosion(const Energies& energies) const;
 
  private:
@@ -41,6 +48,7 @@ class EnergyWatch {
 
   double mass_;  ///< [kg]
   bool watches_;
+  double bounce_gain_;    ///< of speed, by obstacles that move
   double fastest_drive_;  ///< [m/s]
   double capacity_;       ///< what springs, angles and limits hold [J]
   double start_ = 0.0;    ///< [J]

@@ -1,5 +1,6 @@
 #include "simulation/simulator.h"
 
+#include "collision/obstacle_set.h"
 #include "dynamics/angle_force.h"
 #include "dynamics/body_forces.h"
 #include "dynamics/penalty_contact.h"
@@ -125,6 +126,7 @@ StepReport Simulator::Implementation::make_part() {
   integrator->advance(state, forces, dt());
   environment.set_interval(t, t_end);
   move_pins(t_end);
+  energy_watch.note_obstacle(environment.set().carries_at_most(state.x) / dt());
 
   StepReport report{.parts = 1};
   constraints.hold(state, dt(), report);
@@ -162,7 +164,7 @@ void Simulator::Implementation::move_pins(double time) {
       const Vector3 start = network.positions.col(i);
       state.x.col(i) = now * start;
       state.v.col(i) = (next * start - state.x.col(i)) / dt();
-      energy_watch.note_drive(state.v.col(i).norm());
+      energy_watch.note_pin(state.v.col(i).norm());
     }
   }
 }

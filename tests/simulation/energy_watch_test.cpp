@@ -41,10 +41,32 @@ TEST(EnergyWatch, WhatWasLiftedMayFall) {
 TEST(EnergyWatch, AllMayMoveAsFastAsPins) {
   EnergyWatch energy = watch(one_particle());
   energy.note(0, {});
-  energy.note_drive(3.0);
-  energy.note_drive(2.0);
+  energy.note_pin(3.0);
+  energy.note_pin(2.0);
   EXPECT_FALSE(energy.explosion({.kinetic = 8999.0}));
   EXPECT_TRUE(energy.explosion({.kinetic = 9001.0}));
+}
+
+// 1/2 m v^2 = 9 J, and 81 J at the three times that speed to which a restitution of 1/2 leads.
+TEST(EnergyWatch, AllMayMoveAsFastAsObstaclesThatItBouncesBetween) {
+  const SpringNetwork network = one_particle();
+  Obstacle obstacle{.name = "wall", .geometry = HalfSpaceGeometry{}};
+  EnergyWatch hard(network, {.step = 0.01}, {obstacle});
+  obstacle.material.restitution = 0.5;
+  EnergyWatch bouncing(network, {.step = 0.01}, {obstacle});
+  obstacle.material.restitution = 1.0;
+  EnergyWatch without_loss(network, {.step = 0.01}, {obstacle});
+  for (EnergyWatch* energy : {&hard, &bouncing, &without_loss}) {
+    energy->note(0, {.kinetic = 1.0e-6});
+    energy->note_obstacle(0.0);
+    EXPECT_TRUE(energy->explosion({.kinetic = 1.0}));
+    energy->note_obstacle(3.0);
+  }
+  EXPECT_FALSE(hard.explosion({.kinetic = 8999.0}));
+  EXPECT_TRUE(hard.explosion({.kinetic = 9001.0}));
+  EXPECT_FALSE(bouncing.explosion({.kinetic = 80999.0}));
+  EXPECT_TRUE(bouncing.explosion({.kinetic = 81001.0}));
+  EXPECT_FALSE(without_loss.explosion({.kinetic = 1.0e300}));
 }
 
 // 1/2 k d^2 = 4 J.
