@@ -77,6 +77,12 @@ BuiltScene load_scenario(const std::string& name, const std::vector<std::string>
   return built;
 }
 
+BuiltScene load_stiff_scenario(const std::string& name, double step_factor) {
+  BuiltScene built = load_scenario(name, {}, step_factor);
+  if (step_factor > 1.0) built.settings.integrator = ImplicitEulerSettings{};
+  return built;
+}
+
 std::ostream& operator<<(std::ostream& stream, const ScenarioReport& report) {
   return stream << report.frames << " frames in steps of " << format_number(report.step, 4) << " s: " << report.inside
                 << " inside, " << report.crossings << " crossings, " << report.self_crossings << " self-crossings, in frames "

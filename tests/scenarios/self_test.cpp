@@ -91,19 +91,39 @@ TEST_P(SelfContact, ClaspedRopesHoldEachOther) {
   EXPECT_GT(lower, upper + 0.5 * 0.01);
 }
 
-class SelfContactOfAJelly : public SelfContact {};
-
-// A jelly's step is as long as its springs allow: there is none that is four times coarser, but one that is finer.
-INSTANTIATE_TEST_SUITE_P(StepFactor, SelfContactOfAJelly, ::testing::Values(0.25, 1.0));
+class SelfContactOfAJelly : public ::testing::TestWithParam<double> {
+ protected:
+  static ScenarioReport run(const std::string& name, const Watch& watch) {
+    return run_scenario(load_stiff_scenario(name, GetParam()), watch, Judge::obstacles_and_self);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(StepFactor, SelfContactOfAJelly, ::testing::Values(0.25, 1.0, 4.0));
 
 TEST_P(SelfContactOfAJelly, AClothHeldAtItsCornersCatchesIt) {
   double lowest = 0.0;
-  const ScenarioReport report = run("jelly_on_cloth", {}, [&](const Simulator& simulator, const FrameDiagnostics&) {
+  const ScenarioReport report = run("jelly_on_cloth", [&](const Simulator& simulator, const FrameDiagnostics&) {
     const Body& jelly = simulator.network().bodies.back();
     lowest = simulator.positions().row(1).segment(jelly.first_particle, jelly.particle_count).minCoeff();
   });
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_GT(lowest, -0.5);
+}
+
+Eigen::AlignedBox3d box_around(const Simulator& simulator, const Body& body) {
+  const auto particles = simulator.positions().middleCols(body.first_particle, body.particle_count);
+  return {particles.rowwise().minCoeff(), particles.rowwise().maxCoeff()};
+}
+
+TEST_P(SelfContactOfAJelly, AClothWrapsIt) {
+  Eigen::AlignedBox3d cloth;
+  Eigen::AlignedBox3d jelly;
+  const ScenarioReport report = run("wrapped_jelly", [&](const Simulator& simulator, const FrameDiagnostics&) {
+    cloth = box_around(simulator, simulator.network().bodies.front());
+    jelly = box_around(simulator, simulator.network().bodies.back());
+  });
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_EQ(report.squeezed, 0);
+  EXPECT_TRUE(cloth.contains(jelly)) << "at the end, when its corners are drawn together above";
 }
 
 }  // namespace

@@ -9,14 +9,13 @@
 namespace sprung::testing {
 namespace {
 
-// A jelly's step is as long as its springs allow: there is none that is four times coarser, but one that is finer.
 class JellyBetweenPlates : public ::testing::TestWithParam<double> {};
-INSTANTIATE_TEST_SUITE_P(StepFactor, JellyBetweenPlates, ::testing::Values(0.25, 1.0));
+INSTANTIATE_TEST_SUITE_P(StepFactor, JellyBetweenPlates, ::testing::Values(0.25, 1.0, 4.0));
 
 TEST_P(JellyBetweenPlates, IsSqueezedToHalfItsHeight) {
   double height = 0.0;
   const ScenarioReport report =
-      run_scenario(load_scenario("squeezed_jelly", {}, GetParam()), [&](const Simulator& simulator, const FrameDiagnostics&) {
+      run_scenario(load_stiff_scenario("squeezed_jelly", GetParam()), [&](const Simulator& simulator, const FrameDiagnostics&) {
         height = simulator.positions().row(1).maxCoeff() - simulator.positions().row(1).minCoeff();
       });
   EXPECT_TRUE(report.is_free()) << report;
