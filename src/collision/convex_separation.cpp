@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <type_traits>
+#include <vector>
 
 namespace sprung {
 
@@ -30,6 +30,33 @@ int lowest_corner(const ElementCorners& element, const Vector3& normal) {
   return lowest;
 }
 
+/// Directions in which the shape's surface is straight at or beside a point of it. Close to touching, what separates it from what
+/// is flat is perpendicular to two of them, or to one and an edge, and so is known to rounding, where points that are nearly the
+/// same do not tell it. Of boxes these are all that can separate (Gottschalk, Lin and Manocha 1996).
+template <class Shape>
+std::vector<Vector3> straight_lines(const Shape& /*shape*/, const Vector3& /*point*/) {
+  return {};
+}
+
+std::vector<Vector3> straight_lines(const BoxGeometry& /*box*/, const Vector3& /*point*/) {
+  return {Vector3::UnitX(), Vector3::UnitY(), Vector3::UnitZ()};
+}
+
+/// `slope`: how far out the side goes a metre up.
+std::vector<Vector3> straight_lines_of_round_side(const Vector3& point, double slope) {
+  const double radius = std::hypot(point.x(), point.z());
+  const Vector3 outward = radius > 0.0 ? Vector3(point.x() / radius, 0.0, point.z() / radius) : Vector3::UnitX();
+  return {outward, outward.cross(Vector3::UnitY()), Vector3::UnitY() + slope * outward};
+}
+
+std::vector<Vector3> straight_lines(const CylinderGeometry& /*cylinder*/, const Vector3& point) {
+  return straight_lines_of_round_side(point, 0.0);
+}
+
+std::vector<Vector3> straight_lines(const ConeGeometry& cone, const Vector3& point) {
+  return straight_lines_of_round_side(point, -cone.radius / cone.height);
+}
+
 template <class Shape>
 class SeparationSearch {
  public:
@@ -42,6 +69,12 @@ class SeparationSearch {
     for (int i = 1; i < element_.count && !settled(); ++i) look_at_corner(i);
     const int edges = element_.count == 3 ? 3 : element_.count - 1;
     for (int i = 0; i < edges && !settled(); ++i) look_along_edge(i, (i + 1) % element_.count);
+    if (settled()) return;
+    const std::vector<Vector3> lines = straight_lines(shape_, best_.point);
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      offer_both(lines[k].cross(lines[(k + 1) % lines.size()]));
+      for (int i = 0; i < edges; ++i) offer_both(lines[k].cross(corner((i + 1) % element_.count) - corner(i)));
+    }
   }
 
  private:
@@ -140,16 +173,18 @@ class SeparationSearch {
     offer_refined(normal, direction);
   }
 
-  // Close to touching, a normal between edge and shape is mostly rounding. What it must be perpendicular to is known exactly.
+  // Close to touching, a normal between edge and shape is mostly rounding. It is perpendicular to the edge.
   void offer_refined(const Vector3& along, const Vector3& edge) {
-    const auto offer_normal = [&](const Vector3& normal) {
-      const double length = normal.norm();
-      if (length > 0.0) offer_direction(std::copysign(1.0 / length, along.dot(normal)) * normal);
-    };
-    offer_normal(along - edge.dot(along) * edge);
-    if constexpr (std::is_same_v<Shape, BoxGeometry>) {
-      for (int axis = 0; axis < 3; ++axis) offer_normal(edge.cross(Vector3::Unit(axis)));
-    }
+    const Vector3 normal = along - edge.dot(along) * edge;
+    const double length = normal.norm();
+    if (length > 0.0) offer_direction(normal / length);
+  }
+
+  void offer_both(const Vector3& across) {
+    const double length = across.norm();
+    if (!(length > 0.0)) return;
+    offer_direction(across / length);
+    offer_direction(-across / length);
   }
 
   const Shape& shape_;

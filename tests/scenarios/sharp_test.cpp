@@ -83,5 +83,22 @@ TEST(DraggedRope, KeepsItsLength) {
   EXPECT_LT(report.max_stretch, 0.02 + 0.011) << report;
 }
 
+/// What has no thickness comes as near as rounding lets it, where normals between points nearly the same tell nothing.
+TEST(Thin, AClothWithoutThicknessHangsOverPrimitives) {
+  for (const char* shape : {R"({"type": "box", "size": [0.3, 0.5, 0.3]})", R"({"type": "cylinder", "radius": 0.2, "height": 0.5})",
+                            R"({"type": "cone", "radius": 0.25, "height": 0.5})"}) {
+    for (const char* motion : {"{}", R"({"spin": [0, 573, 0]})"}) {
+      std::string obstacle = R"(obstacles.bunny={"shape": )";
+      obstacle.append(shape).append(R"(, "place": {"position": [0, 0.1, 0]}, "motion": )").append(motion).append("}");
+      const ScenarioReport report = run_scenario(load_scenario(
+          "drape", {obstacle, "duration=1", "frame_rate=60", R"(integrator={"type": "verlet"})", "bodies.cloth.thickness=0",
+                    "bodies.cloth.friction=0", "bodies.cloth.mass=0.1", "bodies.cloth.shape.size=[0.6,0.6]",
+                    "bodies.cloth.shape.resolution=[12,12]", "bodies.cloth.place.position=[0,0.4,0]"}));
+      EXPECT_TRUE(report.is_free()) << shape << motion << report;
+      EXPECT_EQ(report.squeezed, 0) << shape << motion;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sprung::testing
