@@ -10,6 +10,15 @@ namespace {
 
 constexpr double kExploded = 1000.0;
 
+// See note_obstacle().
+constexpr double kWedge = 32.0;
+
+// Of what springs hold, motion is at most this part where they are stretched slowly.
+constexpr double kSlow = 0.01;
+
+// Of the coordinates, a step: what moves less moves by rounding.
+constexpr double kRounding = 0x1p-26;
+
 double capacity_of(const SpringNetwork& network) {
   const Springs& springs = network.springs;
   double energy = 0.0;
@@ -31,7 +40,13 @@ double bounce_gain(const SpringNetwork& network, const std::vector<Obstacle>& ob
   double restitution = 0.0;
   for (const Body& body : network.bodies) restitution = std::max(restitution, body.material.restitution);
   for (const Obstacle& obstacle : obstacles) restitution = std::max(restitution, obstacle.material.restitution);
-  return (1.0 + restitution) / (1.0 - restitution);
+  return kWedge * (1.0 + restitution) / (1.0 - restitution);
+}
+
+double energy_of_rounding(const SpringNetwork& network, double step) {
+  if (network.particle_count() == 0) return 0.0;
+  const double speed = kRounding * network.positions.cwiseAbs().maxCoeff() / step;
+  return 0.5 * network.masses.sum() * speed * speed;
 }
 
 }  // namespace
@@ -41,11 +56,12 @@ EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& 
       watches_(obstacles.empty() || settings.contact.response == ContactSettings::Response::projection),
       bounce_gain_(bounce_gain(network, obstacles)),
       fastest_drive_(settings.air_drag > 0.0 ? settings.wind.norm() : 0.0),
-      capacity_(capacity_of(network) + capacity_of_limit(network, settings)) {}
+      capacity_(capacity_of(network) + capacity_of_limit(network, settings) + energy_of_rounding(network, settings.step)) {}
 
 void EnergyWatch::note(std::int64_t step, const Energies& energies) {
   if (step <= 1) start_ = std::max(start_, energies.kinetic + energies.elastic);
   highest_ = step == 0 ? energies.gravity : std::max(highest_, energies.gravity);
+  if (energies.kinetic < kSlow * energies.elastic) stored_ = std::max(stored_, energies.elastic);
 }
 
 std::optional<std::string> EnergyWatch::explosion(const Energies& energies) const {
@@ -57,7 +73,7 @@ std::optional<std::string> EnergyWatch::explosion(const Energies& energies) cons
 
 double EnergyWatch::put_in(const Energies& energies) const {
   const double driven = 0.5 * mass_ * fastest_drive_ * fastest_drive_;
-  return start_ + std::max(0.0, highest_ - energies.gravity) + driven + capacity_;
+  return start_ + std::max(0.0, highest_ - energies.gravity) + driven + stored_ + capacity_;
 }
 
 }  // namespace sprung

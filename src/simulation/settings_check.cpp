@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numbers>
 #include <utility>
 
 namespace sprung {
@@ -77,6 +79,35 @@ std::vector<std::string> idle_settings(const SimulatorSettings& settings, const 
   if (present.empty() || std::ranges::find_first_of(kinds, present) != kinds.end()) return {};
   return {"stretch_limit.kinds = " + names_of(kinds) + " holds nothing: the springs of this network are of the kinds " +
           names_of(present)};
+}
+
+std::vector<std::string> weak_bonds(const SimulatorSettings& settings, const SpringNetwork& network) {
+  const AngleBends& bends = network.angle_bends;
+  if (bends.count() == 0 || (settings.stretch_limit && settings.stretch_limit->max_compression <= 0.5)) return {};
+  const auto bond = [](Index a, Index b) { return std::minmax({a, b}); };
+  std::map<std::pair<Index, Index>, double> stiffness;
+  const Springs& springs = network.springs;
+  for (std::size_t s = 0; s < springs.first.size(); ++s)
+    stiffness[bond(springs.first[s], springs.second[s])] += springs.stiffness[s];
+  std::map<std::string, double> needed;  // by body [N/m]
+  for (std::size_t b = 0; b < bends.middle.size(); ++b) {
+    for (const auto& [end, length] :
+         {std::pair(bends.before[b], bends.length_before[b]), {bends.after[b], bends.length_after[b]}}) {
+      const auto found = stiffness.find(bond(end, bends.middle[b]));
+      const double least = std::numbers::pi * bends.stiffness[b] / (length * length);
+      if (found == stiffness.end() || found->second >= least) continue;
+      double& most = needed[network.body_of(bends.middle[b]).name];
+      most = std::max(most, least);
+    }
+  }
+  std::vector<std::string> warnings;
+  for (const auto& [body, least] : needed) {
+    warnings.push_back("bodies." + body +
+                       ": its angle bends shorten springs that give way before they do, and pull the harder the" +
+                       " shorter these are: expect it to gain energy; use a structural stiffness of at least " +
+                       format_number(least, 3) + " N/m, less bend stiffness, or \"stretch_limit\": {\"max_compression\": 0}");
+  }
+  return warnings;
 }
 
 }  // namespace sprung

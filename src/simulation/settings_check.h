@@ -16,4 +16,9 @@ namespace sprung {
 /// What the user should be told of settings that do nothing for this network: a stretch limit of kinds that no spring has.
 [[nodiscard]] std::vector<std::string> idle_settings(const SimulatorSettings& settings, const SpringNetwork& network);
 
+/// What the user should be told of angle bends whose bonds give way before them: the pull of a bend goes with 1 / length, beyond
+/// all that a step can be chosen for. A bend by a right angle, which pushes with k pi / 2 over the bond's length d, is to shorten
+/// it by half at most, if nothing else holds it: k_s d^2 >= pi k.
+[[nodiscard]] std::vector<std::string> weak_bonds(const SimulatorSettings& settings, const SpringNetwork& network);
+
 }  // namespace sprung

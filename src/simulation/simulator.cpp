@@ -99,7 +99,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   move_pins(0.0);
   Start start = find_start(network, environment, settings.contact, state.x);
   state.x = std::move(start.positions);
-  for (const auto& more : {start.warnings, idle_settings(settings, network)}) {
+  for (const auto& more : {start.warnings, idle_settings(settings, network), weak_bonds(settings, network)}) {
     warnings.insert(warnings.end(), more.begin(), more.end());
   }
   integrator->start(state, forces, dt());

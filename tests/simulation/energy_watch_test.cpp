@@ -47,8 +47,9 @@ TEST(EnergyWatch, AllMayMoveAsFastAsPins) {
   EXPECT_TRUE(energy.explosion({.kinetic = 9001.0}));
 }
 
-// 1/2 m v^2 = 9 J, and 81 J at the three times that speed to which a restitution of 1/2 leads.
-TEST(EnergyWatch, AllMayMoveAsFastAsObstaclesThatItBouncesBetween) {
+// 1/2 m v^2 = 9 J, 1,024 times as much at the 32 times that speed to which a wedge leads, and nine times that at the three times to
+// which a restitution of 1/2 leads.
+TEST(EnergyWatch, AllMayMoveAsFastAsObstaclesThatItBouncesBetweenDriveIt) {
   const SpringNetwork network = one_particle();
   Obstacle obstacle{.name = "wall", .geometry = HalfSpaceGeometry{}};
   EnergyWatch hard(network, {.step = 0.01}, {obstacle});
@@ -62,10 +63,10 @@ TEST(EnergyWatch, AllMayMoveAsFastAsObstaclesThatItBouncesBetween) {
     EXPECT_TRUE(energy->explosion({.kinetic = 1.0}));
     energy->note_obstacle(3.0);
   }
-  EXPECT_FALSE(hard.explosion({.kinetic = 8999.0}));
-  EXPECT_TRUE(hard.explosion({.kinetic = 9001.0}));
-  EXPECT_FALSE(bouncing.explosion({.kinetic = 80999.0}));
-  EXPECT_TRUE(bouncing.explosion({.kinetic = 81001.0}));
+  EXPECT_FALSE(hard.explosion({.kinetic = 1024.0 * 8999.0}));
+  EXPECT_TRUE(hard.explosion({.kinetic = 1024.0 * 9001.0}));
+  EXPECT_FALSE(bouncing.explosion({.kinetic = 1024.0 * 80999.0}));
+  EXPECT_TRUE(bouncing.explosion({.kinetic = 1024.0 * 81001.0}));
   EXPECT_FALSE(without_loss.explosion({.kinetic = 1.0e300}));
 }
 
@@ -79,6 +80,34 @@ TEST(EnergyWatch, SpringsMayBeStretchedToTwiceTheirLength) {
   energy.note(0, {});
   EXPECT_FALSE(energy.explosion({.kinetic = 2000.0, .elastic = 1999.0}));
   EXPECT_TRUE(energy.explosion({.kinetic = 2000.0, .elastic = 2001.0}));
+}
+
+// Capacity 1/2 J and 100 J stored.
+TEST(EnergyWatch, WhatWasStretchedSlowlyMaySnap) {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 1.0);
+  builder.add_particle(Vector3::UnitX(), 1.0);
+  builder.add_spring(0, 1, 1.0, 1.0);
+  const SpringNetwork network = builder.build();
+  EnergyWatch slow = watch(network);
+  EnergyWatch fast = watch(network);
+  for (EnergyWatch* energy : {&slow, &fast}) energy->note(0, {});
+  slow.note(64, {.kinetic = 0.9, .elastic = 100.0});
+  fast.note(64, {.kinetic = 1.1, .elastic = 100.0});
+  EXPECT_FALSE(slow.explosion({.kinetic = 100499.0}));
+  EXPECT_TRUE(slow.explosion({.kinetic = 100501.0}));
+  EXPECT_FALSE(fast.explosion({.kinetic = 499.0}));
+  EXPECT_TRUE(fast.explosion({.kinetic = 501.0}));
+}
+
+// Of 2 kg at 1 m, a step of 0.01 s: (2^-26 / 0.01)^2 = 2.2e-12 J.
+TEST(EnergyWatch, RoundingIsNoExplosion) {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::UnitX(), 2.0);
+  EnergyWatch energy = watch(builder.build());
+  energy.note(0, {});
+  EXPECT_FALSE(energy.explosion({.kinetic = 2.2e-9}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 2.3e-9}));
 }
 
 // m g d = 40 J.

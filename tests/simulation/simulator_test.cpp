@@ -106,6 +106,28 @@ TEST(Simulator, WarnsOfAStretchLimitOfKindsThatNoSpringHas) {
   EXPECT_THAT(warnings(one_particle(Vector3::Zero()), {SpringKind::structural}), IsEmpty());
 }
 
+/// A rope of three particles, 0.1 m apart, with this stiffness and an angle bend of 1 N m.
+SpringNetwork bent_rope(double stiffness) {
+  NetworkBuilder builder;
+  BodyShape shape = make_rope({.points = {{0.0, 0.0, 0.0}, {0.2, 0.0, 0.0}}, .particles = 3, .length = {}},
+                              {.structural = SpringMaterial{.value = stiffness}, .shear = {}, .bend = {}});
+  shape.angle_bends.append({0, 1, 2}, {0.1, 0.1}, 1.0, 0.0);
+  set_total_mass(shape, 0.1);
+  builder.add_body("rope", shape);
+  return builder.build();
+}
+
+// pi k / d^2 = 314 N/m.
+TEST(Simulator, TellsOfAngleBendsWhoseBondsGiveWay) {
+  const SimulatorSettings settings{.step = 1.0e-4};
+  EXPECT_THAT(Simulator(bent_rope(320.0), settings).warnings(), IsEmpty());
+  EXPECT_THAT(Simulator(bent_rope(310.0), settings).warnings(),
+              ElementsAre(HasSubstr("a structural stiffness of at least 314 N/m")));
+  SimulatorSettings held = settings;
+  held.stretch_limit = StretchLimitSettings{.max_compression = 0.0};
+  EXPECT_THAT(Simulator(bent_rope(0.0), held).warnings(), IsEmpty());
+}
+
 TEST(Simulator, EnergyThatNothingPutInStopsIt) {
   // The bob swings up and down by 5 cm, and grows without end; the spring never reaches 1,000 times its length.
   SpringNetwork network = two_masses(100.0);
