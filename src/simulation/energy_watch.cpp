@@ -61,7 +61,8 @@ EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& 
 void EnergyWatch::note(std::int64_t step, const Energies& energies) {
   if (step <= 1) start_ = std::max(start_, energies.kinetic + energies.elastic);
   highest_ = step == 0 ? energies.gravity : std::max(highest_, energies.gravity);
-  if (energies.kinetic < kSlow * energies.elastic) stored_ = std::max(stored_, energies.elastic);
+  most_kinetic_ = std::max(most_kinetic_, energies.kinetic);
+  if (most_kinetic_ < kSlow * energies.elastic) stored_ = std::max(stored_, energies.elastic);
 }
 
 std::optional<std::string> EnergyWatch::explosion(const Energies& energies) const {

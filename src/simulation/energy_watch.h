@@ -25,8 +25,8 @@ class EnergyWatch {
   [[nodiscard]] bool watches() const { return watches_; }
 
   /// Takes in the energies after a step; of the first two, 0 and 1, both count as what the scene begins with: limits and contact
-  /// may give a start of their own. What springs hold while next to nothing moves was put in slowly, by pins or obstacles: nothing
-  /// that blows up is still.
+  /// may give a start of their own. What springs hold while next to nothing has moved so far was put in slowly, by pins or
+  /// obstacles: nothing that blows up is still.
   void note(std::int64_t step, const Energies& energies);
 
   /// Takes in the speed [m/s] of a pin.
@@ -56,6 +56,7 @@ class EnergyWatch {
   double start_ = 0.0;    ///< [J]
   double highest_ = 0.0;  ///< of the energies of gravity [J]
   double stored_ = 0.0;   ///< by springs, slowly [J]
+  double most_kinetic_ = 0.0;
 };
 
 }  // namespace sprung
