@@ -35,7 +35,20 @@ Outcomes PairPlacement::place(const Points& before, Points& after) {
     }
     accept_carried(after, outcomes);
   }
-  return of_movable(outcomes);
+  Outcomes all = of_movable(outcomes);
+  look_at_misplaced(after, all);
+  return all;
+}
+
+/// What obstacles alone left no place went along with one, which may have led it through another or through itself.
+void PairPlacement::look_at_misplaced(const Points& after, Outcomes& outcomes) {
+  if (misplaced_.empty()) return;
+  zones_.renew_around(misplaced_, {after, after, true});
+  for (std::size_t k = 0; k < movable_.size(); ++k) {
+    if (std::binary_search(misplaced_.begin(), misplaced_.end(), movable_[k]) && zones_.is_crossed(movable_[k])) {
+      outcomes[k] = Outcome::squeezed;
+    }
+  }
 }
 
 /// What is not held goes where it wants.
@@ -79,6 +92,7 @@ void PairPlacement::place_among_obstacles(const Way& way, Points& after) {
     last = std::move(without);
     without = squeezed(movable_, sprung::place(zones_, movable_, way, after));
   }
+  misplaced_ = std::move(without);
 }
 
 std::vector<Index> PairPlacement::squeezed(const std::vector<Index>& particles, const Outcomes& outcomes) {

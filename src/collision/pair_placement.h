@@ -33,6 +33,7 @@ class PairPlacement {
   bool anchor_squeezed(const Outcomes& outcomes, const Points& before, const Points& after);
 
   void accept_carried(const Points& after, Outcomes& outcomes);
+  void look_at_misplaced(const Points& after, Outcomes& outcomes);
   /// The particle's anchor, or the first of one that comes after it.
   [[nodiscard]] std::vector<Anchor>::iterator find_anchor(Index particle);
 
@@ -40,6 +41,7 @@ class PairPlacement {
   SelfZones& pairs_;
   const std::vector<Index>& movable_;
   std::vector<Index> held_;
+  std::vector<Index> misplaced_;  ///< by place_among_obstacles(), ascending
   Carriers carriers_;
 };
 

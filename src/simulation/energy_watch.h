@@ -42,7 +42,7 @@ class EnergyWatch {
   /// What is wrong with the energies, when motion and springs hold more than 1,000 times the sum of what they began with, what
   /// gravity has set free since, what was put in slowly, the motion of all particles as fast as the fastest pin, the wind or what
   /// obstacles hit, what it takes to stretch every spring to twice its length and fold every angle, and, where a limit holds
-  /// lengths, to lift all by the length of a spring.
+  /// lengths, to lift all by the length of a spring; and what rounding may move.
   [[nodiscard]] std::optional<std::string> explosion(const Energies& energies) const;
 
  private:
