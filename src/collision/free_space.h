@@ -7,6 +7,7 @@
 #include "collision/collision_surface.h"
 #include "collision/contact.h"
 #include "collision/environment.h"
+#include "collision/obstacle_placement.h"
 
 #include <functional>
 #include <memory>
@@ -30,6 +31,13 @@ class FreeSpace {
   /// of the environment's interval [m].
   void follow(const Points& before, const Points& after);
 
+  /// The next step does not begin where the last one ended.
+  void forget();
+
+  /// Whether contacts of elements at pins are found on their whole way, wherever it begins. Truncation cannot help them, as a pin
+  /// goes where it goes; but the farther off a contact is found, the more often nothing would have touched.
+  void look_ahead(bool ahead);
+
   /// Contacts of particles (see Environment::contacts), and of obstacles with the inside of edges and faces: an edge over a spike,
   /// a face over a corner; then those of the network's elements with each other. Same order for any number of threads. Requires
   /// follow() with the same positions.
@@ -39,10 +47,7 @@ class FreeSpace {
   /// Those that contacts() told of, but found anew around what truncate() has stopped, while it relaxes.
   [[nodiscard]] const std::vector<Contact>& contacts_again(const Points& before, const Points& after);
 
-  struct Truncation {
-    Index truncated = 0;  ///< particles stopped on their way
-    Index squeezed = 0;   ///< particles that found no free place between obstacles, or of whose elements an obstacle crosses one
-  };
+  using Truncation = ObstaclePlacement::Truncation;
   /// Moves particles once more after some were stopped [m]; returns false when it has nothing to move.
   using Relax = std::function<bool(Points& positions)>;
 

@@ -59,6 +59,13 @@ void ObstacleZones::follow(const Way& way) {
   });
 }
 
+void ObstacleZones::forget() {
+  for (Patch& patch : patches_) {
+    patch.zones.clear();
+    patch.known.setEmpty();
+  }
+}
+
 void ObstacleZones::find_near(Index p, const Way& way, double carried) {
   Patch& patch = patches_[at(p)];
   const std::vector<Index>& particles = particles_of(p);
@@ -110,7 +117,8 @@ ZoneDemand ObstacleZones::demand(const Patch& patch, Index k, const Way& way) co
   ZoneDemand demand{.size = patch.size,
                     .gap = patch.thickness + set_.obstacle(k).material.thickness,
                     .margin = margin_,
-                    .at_end = way.obstacles_rest};
+                    .at_end = way.obstacles_rest,
+                    .ahead = ahead_};
   demand.clearance = patch.box.isEmpty() ? 0.0 : set_.clearance(k, patch.box.min(), patch.box.max());
   demand.gap = std::max(demand.gap, demand.clearance);
   return demand;

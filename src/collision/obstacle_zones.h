@@ -25,6 +25,13 @@ struct CarriedCorner {
   Vector3 place = Vector3::Zero();
 };
 
+/// What an obstacle that comes nearer asks of a particle.
+struct Push {
+  Index particle = kNone;
+  double distance = 0.0;         ///< of the element from the obstacle [m]
+  Vector3 by = Vector3::Zero();  ///< [m]
+};
+
 class ObstacleZones {
  public:
   /// Contacts are found up to `margin` [m] beyond their gap. The network is stretched by nothing at `rest` [m], 3 x n. Keeps
@@ -33,6 +40,12 @@ class ObstacleZones {
 
   /// Makes zones where elements are near obstacles and have none that holds them on their way.
   void follow(const Way& way);
+
+  /// Drops all zones: the next way does not begin where the last one ended.
+  void forget();
+
+  /// Whether elements at pins are near whatever comes near them on their way, for zones that are made from now on.
+  void look_ahead(bool ahead) { ahead_ = ahead; }
 
   /// Particles that might not be held by their zones where they are about to be, as follow() and what came after it saw it, or
   /// whose elements an obstacle crosses; ascending.
@@ -79,6 +92,10 @@ class ObstacleZones {
   /// with the nearest of them.
   [[nodiscard]] std::vector<CarriedCorner> carried_with_elements(const Points& from, double lift) const;
 
+  /// How far obstacles come towards elements at pins in the interval, seen from the pins: for the elements' other corners, of each
+  /// what is nearest to it, ascending by particle. Requires that their zones were made for this way.
+  [[nodiscard]] std::vector<Push> pushes_at_pins(const Way& way) const;
+
   /// Appends where the obstacles that move near the particle carry it from `from`.
   void append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const;
 
@@ -98,6 +115,7 @@ class ObstacleZones {
 
   /// Those that elements around the particle may meet, ascending.
   [[nodiscard]] std::vector<Index> near_obstacles(Index particle) const;
+  void append_pushes(Index patch, const PatchZones& zones, const Way& way, std::vector<Push>& pushes) const;
   void append_carried_around(Index patch, const Points& from, double lift, std::vector<CarriedCorner>& corners) const;
   /// Whether a particle that obstacle k carries to `place` would pass another one.
   [[nodiscard]] bool leads_through_another(Index k, Index particle, const Vector3& from, const Vector3& place) const;
@@ -128,6 +146,7 @@ class ObstacleZones {
   const ObstacleSet& set_;
   const CollisionSurface& surface_;
   double margin_;
+  bool ahead_ = false;  ///< see look_ahead
   Points rest_;
   std::vector<Patch> patches_;
   std::vector<CrossedCorner> let_through_;  ///< by let_through()

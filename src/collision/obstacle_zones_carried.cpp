@@ -1,12 +1,23 @@
 #include "collision/obstacle_zones.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sprung {
 
 namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// Leaves of each particle's only that of the least distance.
+template <class Corner>
+void keep_nearest(std::vector<Corner>& corners) {
+  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
+    return a.particle != b.particle ? a.particle < b.particle : a.distance < b.distance;
+  });
+  const auto same = [](const Corner& a, const Corner& b) { return a.particle == b.particle; };
+  corners.erase(std::unique(corners.begin(), corners.end(), same), corners.end());
+}
 
 }  // namespace
 
@@ -106,12 +117,36 @@ void ObstacleZones::append_carried_around(Index p, const Points& from, double li
 std::vector<CarriedCorner> ObstacleZones::carried_with_elements(const Points& from, double lift) const {
   std::vector<CarriedCorner> corners;
   for (Index p = 0; p < static_cast<Index>(patches_.size()); ++p) append_carried_around(p, from, lift, corners);
-  std::sort(corners.begin(), corners.end(), [](const CarriedCorner& a, const CarriedCorner& b) {
-    return a.particle != b.particle ? a.particle < b.particle : a.distance < b.distance;
-  });
-  const auto same = [](const CarriedCorner& a, const CarriedCorner& b) { return a.particle == b.particle; };
-  corners.erase(std::unique(corners.begin(), corners.end(), same), corners.end());
+  keep_nearest(corners);
   return corners;
+}
+
+void ObstacleZones::append_pushes(Index p, const PatchZones& zones, const Way& way, std::vector<Push>& pushes) const {
+  const PatchTopology& topology = patches_[at(p)].topology;
+  const Index k = zones.obstacle();
+  for (Index e = 0; e < topology.element_count(); ++e) {
+    const Zone& zone = zones.zone(e);
+    if (!topology.corners(e).pinned || zone.broken || !std::isfinite(zone.distance)) continue;
+    const Vector3 normal = set_.before(k).linear() * zone.normal;
+    const auto corners = corners_of(surface_.elements[at(surface_.patches[at(p)].first_element + e)]);
+    double nearer = 0.0;
+    for (const Index i : corners) {
+      if (surface_.pinned[at(i)] == 0) continue;
+      nearer = std::max(nearer, normal.dot(set_.carried(k, way.from.col(i)) - way.to.col(i)));
+    }
+    for (const Index i : corners) {
+      if (surface_.pinned[at(i)] == 0 && nearer > 0.0) pushes.push_back({i, zone.distance, nearer * normal});
+    }
+  }
+}
+
+std::vector<Push> ObstacleZones::pushes_at_pins(const Way& way) const {
+  std::vector<Push> pushes;
+  for (Index p = 0; p < static_cast<Index>(patches_.size()); ++p) {
+    for (const PatchZones& zones : patches_[at(p)].zones) append_pushes(p, zones, way, pushes);
+  }
+  keep_nearest(pushes);
+  return pushes;
 }
 
 }  // namespace sprung

@@ -24,6 +24,9 @@ class PairWatch {
   /// Lists what may touch in a step from `before` to about `after` [m], 3 x n.
   void begin_step(const Points& before, const Points& after);
 
+  /// The next step does not begin where the last one ended: it lists all anew.
+  void forget() { horizon_ = 0.0; }
+
   /// Lists what may touch in a part of the step, as one of its own, but no candidates: the next step lists all anew.
   void begin_part(const Points& before, const Points& after);
 

@@ -11,6 +11,7 @@ PatchTopology::PatchTopology(const CollisionSurface& surface, const ElementPatch
     for (std::size_t k = 0; k < static_cast<std::size_t>(element.corners); ++k) {
       const auto place = std::lower_bound(patch.particles.begin(), patch.particles.end(), element.particles[k]);
       corners.slots[k] = static_cast<Index>(place - patch.particles.begin());
+      corners.pinned = corners.pinned || surface.pinned[static_cast<std::size_t>(element.particles[k])] != 0;
       ++first_[static_cast<std::size_t>(corners.slots[k]) + 1];
     }
     corners_.push_back(corners);

@@ -15,6 +15,7 @@ class PatchTopology {
   struct Corners {
     std::array<Index, 3> slots{};
     int count = 0;
+    bool pinned = false;  ///< one of them is
   };
 
   PatchTopology(const CollisionSurface& surface, const ElementPatch& patch);

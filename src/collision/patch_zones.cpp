@@ -79,7 +79,7 @@ void PatchZones::take_along(const ObstacleShape& shape, const PatchTopology& top
     slots_[at(i)].settled += zones_[at(topology.elements_of(i).front())].drift;
     gather(topology, demand, i);
   }
-  find_near_elements(demand);
+  find_near_elements(topology, demand);
 }
 
 void PatchZones::renew(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand,
@@ -117,8 +117,7 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
                              const ZoneDemand& demand) {
   if (std::find(marked_.begin(), marked_.end(), 1) == marked_.end()) return;
   const double least_reach = std::max(kReachOfSize * demand.size, kReachOfGap * demand.gap);
-  ZoneRequest request{
-      .gap = demand.gap, .clearance = demand.clearance, .exact = demand.gap + demand.margin, .at_end = demand.at_end};
+  ZoneRequest request{.gap = demand.gap, .clearance = demand.clearance, .at_end = demand.at_end};
   for (Index e = 0; e < topology.element_count(); ++e) {
     if (marked_[at(e)] == 0) continue;
     const PatchTopology::Corners& corners = topology.corners(e);
@@ -133,6 +132,7 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
       request.way.extend(to);
     }
     request.reach = least_reach + kReachOfMotion * motion;
+    request.exact = demand.gap + demand.margin + (demand.ahead && corners.pinned ? motion : 0.0);
     if (std::isfinite(motion)) {
       shape.find_zone(element, request, zones_[at(e)]);
     } else {
@@ -151,15 +151,17 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
     const Vector3 to = paths.to(i);
     calm_down(i, slots_[at(i)].box.contains(to) ? to : paths.from(i), demand);
   }
-  find_near_elements(demand);
+  find_near_elements(topology, demand);
 }
 
-void PatchZones::find_near_elements(const ZoneDemand& demand) {
+void PatchZones::find_near_elements(const PatchTopology& topology, const ZoneDemand& demand) {
   near_elements_.clear();
   crosses_ = false;
-  for (std::size_t e = 0; e < zones_.size(); ++e) {
-    crosses_ = crosses_ || zones_[e].broken;
-    if (zones_[e].distance < demand.gap + demand.margin) near_elements_.push_back(static_cast<Index>(e));
+  for (Index e = 0; e < topology.element_count(); ++e) {
+    const Zone& zone = zones_[at(e)];
+    crosses_ = crosses_ || zone.broken;
+    const bool comes_near = demand.ahead && topology.corners(e).pinned && std::isfinite(zone.distance);
+    if (zone.distance < demand.gap + demand.margin || comes_near) near_elements_.push_back(e);
   }
 }
 

@@ -35,6 +35,7 @@ struct ZoneDemand {
   double margin = 0.0;     ///< contacts are found this much beyond the gap
   double clearance = 0.0;  ///< see ZoneRequest
   bool at_end = false;
+  bool ahead = false;  ///< elements at pins are near whatever comes near them on their way
 };
 
 class PatchZones {
@@ -104,7 +105,7 @@ class PatchZones {
   /// Whether that holds p.
   [[nodiscard]] bool boxes(const PatchTopology& topology, Index element, Index slot, const Vector3& p) const;
   void calm_down(Index slot, const Vector3& p, const ZoneDemand& demand);
-  void find_near_elements(const ZoneDemand& demand);
+  void find_near_elements(const PatchTopology& topology, const ZoneDemand& demand);
 
   Index obstacle_;
   std::vector<Zone> zones_;                          ///< by element

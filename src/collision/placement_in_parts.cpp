@@ -22,8 +22,8 @@ Outcomes place_in_parts(Environment& environment, const Way& way, Points& after,
     environment.set_interval(time(done), time(next));
     const Points to = next < 1.0 ? Points(from + (next - done) / (1.0 - done) * (way.to - from)) : way.to;
     after = to;
-    Outcomes of_part = place({from, to}, after);
-    if (part > kSmallestPart && count(of_part, Outcome::squeezed) > 0) {
+    auto [of_part, sure] = place({from, to}, after);
+    if (part > kSmallestPart && (!sure || count(of_part, Outcome::squeezed) > 0)) {
       part *= 0.5;
       continue;
     }

@@ -44,6 +44,8 @@ void SelfZones::begin_step(const Points& before, const Points& after, std::vecto
   append_self_contacts(self.surface, self.watch.features(), self.watch.candidates(), before, after, contacts);
 }
 
+void SelfZones::forget() { implementation_->watch.forget(); }
+
 void SelfZones::begin_part(const Points& before, const Points& after) { implementation_->watch.begin_part(before, after); }
 
 const std::vector<Index>& SelfZones::hold(const Points& before, const Points& targets, const Carriers& carriers) {

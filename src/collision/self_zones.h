@@ -30,6 +30,9 @@ class SelfZones {
   /// their gap is the mean of the two thicknesses, but at most `most_gap`.
   void begin_step(const Points& before, const Points& after, std::vector<Contact>& contacts);
 
+  /// The next step does not begin where the last one ended.
+  void forget();
+
   /// A part of the step begins at `before` [m], where nothing crosses, and is about to end at `after`: what follows is for the
   /// part.
   void begin_part(const Points& before, const Points& after);

@@ -24,6 +24,10 @@ class ContactProjection {
   /// relaxes. Pushes so far count on.
   void find_again(const StepMotion& motion, const Points& positions);
 
+  /// See FreeSpace.
+  void forget() { free_space_.forget(); }
+  void look_ahead(bool ahead) { free_space_.look_ahead(ahead); }
+
   /// See ContactResponse.
   double project(Points& positions) { return response_.project(positions); }
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {

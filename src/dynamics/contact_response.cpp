@@ -22,8 +22,7 @@ constexpr double kTouch = 1.0e-9;
 // The least of contacts that are left to pins.
 constexpr double kNothingToDo = -std::numeric_limits<double>::infinity();
 
-// Beside a pin a corner would have to go far for the sum to go a little: a contact with more than this part of its weights at pins
-// is left to them.
+// Two elements of which pins have more than this part of the weights are left to them.
 constexpr double kMostPinned = 0.9;
 
 // Contacts that one task sets up.
@@ -48,12 +47,29 @@ bool set_particles(const Contact& contact, const Scalars& inverse_masses, Contac
     total += std::abs(row.weights[k]);
     if (inverse_masses[row.particles[k]] == 0.0) pinned += std::abs(row.weights[k]);
   }
-  if (pinned > kMostPinned * total) {
+  if (mobility == 0.0 || (contact.obstacle == kNone && pinned > kMostPinned * total)) {
     row.shares.fill(0.0);
     return false;
   }
   for (double& share : row.shares) share /= mobility;
   return true;
+}
+
+/// How far the point of an element before an obstacle is from the element's pins [m]: to move it by more turns the element about
+/// them by more than a radian. Infinite without pins.
+template <std::size_t n>
+double lever_arm(const ContactRow<n>& row, const Points& positions) {
+  Vector3 at_pins = Vector3::Zero();
+  Vector3 at_others = Vector3::Zero();
+  double pinned = 0.0;
+  double others = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const bool is_pinned = row.shares[k] == 0.0;
+    (is_pinned ? at_pins : at_others) += row.weights[k] * positions.col(row.particles[k]);
+    (is_pinned ? pinned : others) += row.weights[k];
+  }
+  if (pinned == 0.0) return std::numeric_limits<double>::infinity();
+  return others * (at_others / others - at_pins / pinned).norm();
 }
 
 }  // namespace
@@ -111,6 +127,11 @@ void ContactResponse::fill_one(const Contact& contact, const ContactMaterial& pa
   ContactGoal& goal = set.goal(slot);
   goal = {.origin = carried(contact, row.sum(motion.before)), .touch = kTouch * gap};
   goal.least = moves ? gap - contact.normal.dot(goal.origin - contact.point) : kNothingToDo;
+  if (!moves || contact.obstacle == kNone) return;
+  // A pin that is in the obstacle's way itself cannot be helped.
+  const double arm = lever_arm(row, motion.before);
+  const double advanced = contact.normal.dot(row.sum(motion.advanced) - goal.origin);
+  goal.least = arm > gap ? std::min(goal.least, advanced + arm) : kNothingToDo;
 }
 
 // An obstacle that rests, and what another element is relative to, carries a position to the last bit where it was.

@@ -26,6 +26,12 @@ constexpr Index kSpringsCheckedPerStep = 8192;
 // Energies, which cost more and take many steps to explode, less often still.
 constexpr Index kStepsPerEnergy = 64;
 
+// A step that squeezes something is made again in so many times as many parts, until one does not.
+constexpr int kMoreParts[] = {4, 16, 64};
+
+// Where that does not help, it is tried again after twice as many steps each time, at most so many.
+constexpr int kMostWait = 1024;
+
 }  // namespace
 
 struct Simulator::Implementation {
@@ -41,8 +47,12 @@ struct Simulator::Implementation {
 
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
+  StepReport make_step();
+  StepReport make_again(const StepReport& report);
   StepReport make_part();
   void choose_parts(double excess);
+  void set_parts(int parts);
+  void length_changed(double dt_before);
   void move_pins(double time);
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] Energies energies() const;
@@ -69,6 +79,7 @@ struct Simulator::Implementation {
   DivergenceCheck divergence;
   EnergyWatch energy_watch;
   SimulationState state;
+  SimulationState begun;  ///< where a step that may be made again began
 };
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles)
@@ -112,11 +123,42 @@ bool Simulator::Implementation::anything_moves() const {
 }
 
 StepReport Simulator::Implementation::step() {
-  StepReport report;
-  for (const std::int64_t begun = state.step; state.step == begun;) report += make_part();
+  const bool may_retry = constraints.contacts().meets_anything() && state.step >= state.retry_from;
+  if (may_retry) begun = state;
+  StepReport report = make_step();
+  if (may_retry && report.squeezed > 0) report = make_again(report);
   if (refinement) choose_parts(report.stretch_excess);
   if (const StretchLimit* limit = constraints.limit()) hand_over_missed(network, *limit, report.stretch_excess, state);
   return report;
+}
+
+StepReport Simulator::Implementation::make_step() {
+  StepReport report;
+  for (const std::int64_t step = state.step; state.step == step;) report += make_part();
+  return report;
+}
+
+// What a step leads far, by a lever or between obstacles that close, may find no place though there is one: in smaller steps
+// contact answers before they meet.
+StepReport Simulator::Implementation::make_again(const StepReport& report) {
+  const SimulationState squeezed = state;
+  constraints.look_ahead(true);
+  StepReport again = report;
+  for (const int more : kMoreParts) {
+    if (again.squeezed == 0 || begun.parts > kMostParts / more) break;
+    state = begun;
+    constraints.forget();
+    environment.set_interval(time(), time());
+    set_parts(more * begun.parts);
+    again = make_step();
+    set_parts(begun.parts);
+  }
+  constraints.look_ahead(false);
+  if (again.squeezed > 0) state = squeezed;
+  constraints.forget();
+  state.retry_wait = again.squeezed > 0 ? std::clamp(2 * begun.retry_wait, 1, kMostWait) : 0;
+  state.retry_from = state.step + state.retry_wait;
+  return again.squeezed > 0 ? report : again;
 }
 
 StepReport Simulator::Implementation::make_part() {
@@ -147,6 +189,16 @@ void Simulator::Implementation::choose_parts(double excess) {
   } else if (!waits_for_turn) {
     refinement->choose(excess, state);
   }
+  length_changed(dt_before);
+}
+
+void Simulator::Implementation::set_parts(int parts) {
+  const double dt_before = dt();
+  state.parts = parts;
+  length_changed(dt_before);
+}
+
+void Simulator::Implementation::length_changed(double dt_before) {
   if (dt() == dt_before) return;
   if (penalty != nullptr) penalty->set_step(dt());
   move_pins(time());

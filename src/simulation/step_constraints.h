@@ -20,6 +20,10 @@ class StepConstraints {
   /// Takes down where a step begins. It is for what comes before hold(): forces, and pins that move.
   void begin(const SimulationState& state);
 
+  /// See FreeSpace.
+  void forget() { contacts_.forget(); }
+  void look_ahead(bool ahead) { contacts_.look_ahead(ahead); }
+
   /// Leads the state on from where forces and pins have led it in `dt` [s]: by contact, the stretch limit and truncation, to the
   /// positions and velocities of the step's end. Adds to the report what that took and left. Requires that the environment's
   /// interval is the step's.

@@ -210,6 +210,24 @@ TEST(ContactResponse, PinnedCornersLeaveThePushToTheOthers) {
   EXPECT_EQ(world.response.pushed_count(), 1);
 }
 
+// The other end of a rod of 1 m that is lifted close to its pin goes as many times as far as it is longer than that lever; a pin
+// that is within the gap itself is left alone, and no contact turns the rod by more than a radian.
+TEST(ContactResponse, OnALeverBesideAPinTheOtherEndGoesFarther) {
+  const auto lift = [](double lever, double depth) {
+    NetworkBuilder builder;
+    add_body(builder, "rod", {{0.0, kGap - depth, 0.0}, {1.0, kGap - depth, 0.0}}, {0.1, 0.1}, Vector3::Zero(),
+             {.thickness = kGap});
+    builder.pin(0);
+    World world(builder.build(), 0.0);
+    world.step({on_floor({1.0 - lever, lever})});
+    return world.state.x(1, 1) - (kGap - depth);
+  };
+  EXPECT_NEAR(lift(0.05, 0.002), 0.002 / 0.05, 1e-12);
+  EXPECT_NEAR(lift(0.011, 0.002), 0.002 / 0.011, 1e-12);
+  EXPECT_EQ(lift(0.009, 0.002), 0.0);
+  EXPECT_NEAR(lift(0.02, 0.1), 1.0, 1e-12);
+}
+
 TEST(ContactResponse, BetweenElementsMomentumIsKept) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(0.1, 1.0);

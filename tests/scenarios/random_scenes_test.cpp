@@ -1,5 +1,6 @@
 // Scenes that nobody thought of: random networks thrown at random obstacles that move, turn and deform, at random steps.
 #include "base/error.h"
+#include "collision/obstacle_shape.h"
 #include "collision/sample_meshes.h"
 #include "mesh_shapes.h"
 #include "network/network_builder.h"
@@ -7,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <memory>
@@ -198,6 +200,50 @@ BuiltScene scene_of_one(Random& random) {
   return random_scene(random, builder, {random_obstacle(random)});
 }
 
+/// Whether the pin comes this near [m] to the obstacle at any time of the scene.
+bool comes_near(const Pin& pin, const Vector3& pinned, const Obstacle& obstacle, double distance, double duration) {
+  const std::unique_ptr<const ObstacleShape> shape = make_shape(obstacle.geometry);
+  const RigidTransform origin(Eigen::Translation3d(pin.origin));
+  constexpr int kTimes = 400;
+  for (int k = 0; k <= kTimes; ++k) {
+    const double time = duration * k / kTimes;
+    const Vector3 place = pin.motion.pose(origin, time) * origin.inverse() * pinned;
+    const Vector3 local = obstacle.motion.pose(obstacle.placed, time).inverse() * place;
+    if (shape->nearest(local, distance) || shape->contains(local)) return true;
+  }
+  return false;
+}
+
+/// A body that one or two of its particles hold, and a primitive that moves beside them, or that they move beside.
+BuiltScene scene_with_pins(Random& random) {
+  NetworkBuilder builder;
+  add_random_body(builder, "body", random, {.self = false});
+  Obstacle obstacle = swing_above_floor(random).front();
+  obstacle.geometry = random_primitive(random);
+  Motion of_pins;
+  if (random.below(2) == 0) std::swap(of_pins, obstacle.motion);
+  const Index count = builder.build().particle_count();
+  const Index first = random.below(count);
+  const Index second = random.below(2 * count);
+  builder.pin(first, of_pins);
+  if (second < count && second != first) builder.pin(second, of_pins);
+  return random_scene(random, builder, {obstacle});
+}
+
+/// Round pins that nothing comes near there is a place for what hangs on each of them alone.
+bool leaves_pins_alone(const BuiltScene& scene) {
+  constexpr double kRoom = 0.03;
+  const auto is_pinned = [&](Index i) { return scene.network.inverse_masses[i] == 0.0; };
+  const Springs& springs = scene.network.springs;
+  for (std::size_t s = 0; s < springs.first.size(); ++s) {
+    if (is_pinned(springs.first[s]) && is_pinned(springs.second[s])) return false;
+  }
+  return std::ranges::none_of(scene.network.pins, [&](const Pin& pin) {
+    return comes_near(pin, scene.network.positions.col(pin.particles.front()), scene.obstacles.front(), kRoom,
+                      kSteps * scene.settings.step);
+  });
+}
+
 NetworkBuilder three_bodies(Random& random) {
   NetworkBuilder builder;
   for (const char* name : {"first", "second", "third"}) add_random_body(builder, name, random, {.self = true});
@@ -237,6 +283,15 @@ TEST(RandomScenes, NothingCrossesItselfOrAnotherBetweenAnObstacleThatMovesAndAFl
     EXPECT_TRUE(report.is_free() && report.squeezed == 0) << "scene " << number << ": " << report;
   }
   EXPECT_GT(reports.size(), 40);
+}
+
+/// A pin's neighbours go farther than the obstacle does that leads them round the pin.
+TEST(RandomScenes, NothingCrossesBesideItsPins) {
+  const Reports reports = run_scenes(1000, Judge::obstacles, scene_with_pins, leaves_pins_alone);
+  for (const auto& [number, report] : reports) {
+    EXPECT_TRUE(report.is_free() && report.squeezed == 0) << "scene " << number << ": " << report;
+  }
+  EXPECT_GT(reports.size(), 250);
 }
 
 TEST(RandomScenes, NothingCrossesItselfOrAnotherBeforeASurfaceThatDeforms) {

@@ -297,6 +297,56 @@ TEST(Simulator, TheStretchLimitHasTheLastWordWithinTheGap) {
   }
 }
 
+/// A rod of 0.3 m.
+NetworkBuilder rod() {
+  NetworkBuilder builder;
+  BodyShape shape = make_rope({.points = {{0.0, 0.0, 0.0}, {0.3, 0.0, 0.0}}, .particles = 2, .length = {}},
+                              {.structural = SpringMaterial{.value = 0.0}, .shear = {}, .bend = {}});
+  set_total_mass(shape, 0.02);
+  builder.add_body("rod", shape, {.thickness = 0.002});
+  return builder;
+}
+
+// A rod on a pin at one end, and a ball of 1 cm that rises beside the pin from below it to 5 cm above, in few steps or many.
+TEST(Simulator, WhatRisesBesideAPinDoesNotPassTheRodThatHangsOnIt) {
+  NetworkBuilder builder = rod();
+  builder.pin(0);
+  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.01}};
+  ball.placed.translation() = Vector3(0.03, -0.05, 0.0);
+  ball.motion.keyframes = {{.time = 0.0}, {.time = 0.1, .position = {0.0, 0.1, 0.0}}};
+  for (const int steps : {1, 4, 16, 64}) {
+    Simulator simulator(builder.build(),
+                        {.step = 0.1 / steps,
+                         .gravity = Vector3::Zero(),
+                         .integrator = all_integrators()[1],
+                         .stretch_limit = StretchLimitSettings{}},
+                        {ball});
+    for (int step = 0; step < steps; ++step) EXPECT_EQ(simulator.step().squeezed, 0) << steps;
+    const Vector3 end = simulator.positions().col(1);
+    EXPECT_GT(0.03 * end.y() - 0.05 * end.x(), 0.0) << steps << " steps: the ball is on the right of the rod";
+    EXPECT_EQ(simulator.state().parts, 1) << steps << ": steps that may be whole are";
+    EXPECT_EQ(simulator.time(), 0.1) << steps;
+  }
+}
+
+// What is pinned at both ends cannot be helped, however small the parts: trying again becomes rare.
+TEST(Simulator, WhatSqueezesInAnyPartsIsTriedAgainRarely) {
+  NetworkBuilder builder = rod();
+  builder.pin({0, 1});
+  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.01}};
+  ball.placed.translation() = Vector3(0.1, -0.05, 0.0);
+  ball.motion.keyframes = {{.time = 0.0}, {.time = 0.5, .position = {0.0, 0.05, 0.0}}};
+  Simulator simulator(builder.build(), {.step = 1e-2, .gravity = Vector3::Zero()}, {ball});
+  Index squeezed = 0;
+  for (int step = 0; step < 100; ++step) {
+    const StepReport report = simulator.step();
+    EXPECT_EQ(report.parts, 1);
+    squeezed += report.squeezed > 0 ? 1 : 0;
+  }
+  EXPECT_GT(squeezed, 50);
+  EXPECT_GE(simulator.state().retry_wait, 16);
+}
+
 // Two particles in a groove, whose slopes push each of them towards the other slope: a pass leaves a quarter of what is missing. Of
 // a step's fall, 4 mm, one would leave 2 % of the gap; passes end at a thousandth.
 TEST(Simulator, ContactSettlesBetweenSlopesWhateverThePassesOfTheLimit) {

@@ -1,0 +1,64 @@
+// Where particles end that obstacles do not let go where they want, all of them: the last word before obstacles.
+#pragma once
+
+#include "collision/environment.h"
+#include "collision/placement_in_parts.h"
+
+#include <vector>
+
+namespace sprung {
+
+class ObstaclePlacement {
+ public:
+  /// Keeps references to all.
+  ObstaclePlacement(Environment& environment, const CollisionSurface& surface, ObstacleZones& zones);
+
+  struct Truncation {
+    Index truncated = 0;  ///< particles stopped on their way
+    Index squeezed = 0;   ///< particles that found no free place between obstacles, or of whose elements an obstacle crosses one
+  };
+  /// Places all particles in `after` [m], 3 x n: where their way leads, or as near to there as zones allow that are made again
+  /// where they stop one short. Where there are none obstacles carry what is in their way, then all go in parts of the interval.
+  Truncation place_all(const Way& way, Points& after);
+
+  /// Particles that did not arrive at once when all were placed last.
+  [[nodiscard]] const std::vector<Index>& held_back() const { return held_back_; }
+
+  /// Places all of these movable particles in a part of the environment's interval, which may begin anywhere.
+  PlacedPart place_part(std::vector<Index>& particles, const Way& part, Points& after);
+
+  /// Particles that are not pinned and whose ways are finite, ascending.
+  [[nodiscard]] std::vector<Index> all_movable(const Way& way) const;
+
+  [[nodiscard]] const std::vector<Index>& pinned() const { return pinned_; }  ///< ascending
+
+ private:
+  [[nodiscard]] std::vector<Index> movable(std::vector<Index> particles, const Way& way) const;
+  /// Particles are ascending; those that may be held back too are added.
+  Outcomes place_with_fresh_zones(std::vector<Index>& particles, const Way& way, Points& after);
+  PlacedPart place_anew(std::vector<Index>& particles, const Way& way, Points& after);
+  PlacedPart place_ahead(std::vector<Index>& particles, const Way& part, const Points& goals, Points& after);
+
+  void note_crossed();
+  /// Makes zones that do not hold their pins again; false if there are any.
+  bool look_at_pins(const Points& after);
+  [[nodiscard]] bool is_crossed_anew(Index particle) const;
+  /// Squeezes those of whose elements an obstacle crosses one that it did not cross where the step began.
+  void squeeze_crossed(const std::vector<Index>& particles, Outcomes& outcomes) const;
+
+  Truncation lead_on(const std::vector<Index>& particles, const Outcomes& outcomes, const Way& way, Points& after);
+  /// Leaves in `stopped` those that may come farther yet; returns how many arrived.
+  Index go_on(std::vector<Index>& stopped, const Points& target, Points& after);
+  /// Particles, pinned ones too, that are not squeezed but of whose elements an obstacle crosses one.
+  [[nodiscard]] Index crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const;
+
+  Environment& environment_;
+  const ObstacleSet& set_;
+  const CollisionSurface& surface_;
+  ObstacleZones& zones_;
+  std::vector<Index> pinned_;
+  std::vector<char> crossed_before_;  ///< by particle, where the step begins; empty where none is
+  std::vector<Index> held_back_;
+};
+
+}  // namespace sprung
