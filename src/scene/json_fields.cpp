@@ -41,6 +41,10 @@ void Fields::accept(const std::string& key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
 }
 
+void Fields::belongs_elsewhere(const std::vector<std::string>& keys, const std::string& remedy) {
+  for (const std::string& key : keys) elsewhere_[key] = remedy;
+}
+
 bool Fields::has(const std::string& key) {
   accept(key);
   return json_.contains(key);
@@ -52,7 +56,9 @@ void Fields::reject_unknown_keys() const {
   if (!kind_is_known_) return;
   for (const auto& [key, value] : json_.items()) {
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-    place_.at(key).report_key("is not a known key", suggestion(key, known_));
+    const auto elsewhere = elsewhere_.find(key);
+    place_.at(key).report_key("is not a known key", elsewhere != elsewhere_.end() ? elsewhere->second : suggestion(key, known_));
+    if (place_.unknown_keys != nullptr) ++*place_.unknown_keys;
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "scene/json_rules.h"
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -51,6 +52,9 @@ class Fields {
   /// Makes a key known without reading it.
   void accept(const std::string& key);
 
+  /// What to do about keys that are not known here, but are elsewhere.
+  void belongs_elsewhere(const std::vector<std::string>& keys, const std::string& remedy);
+
   [[nodiscard]] bool has(const std::string& key);
   [[nodiscard]] const Json& json() const { return json_; }
   [[nodiscard]] const JsonPlace& place() const { return place_; }
@@ -62,6 +66,7 @@ class Fields {
   Json& json_;
   JsonPlace place_;
   std::vector<std::string> known_;
+  std::map<std::string, std::string> elsewhere_;  ///< remedies by key
   bool kind_is_known_ = true;
 };
 

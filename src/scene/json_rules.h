@@ -19,9 +19,10 @@ struct JsonPlace {
   std::string file;
   std::string path;
   std::vector<Problem>* problems = nullptr;
+  std::size_t* unknown_keys = nullptr;  ///< how many of the problems are keys that nobody knows; may be left out
 
-  [[nodiscard]] JsonPlace at(const std::string& key) const { return {file, join_path(path, key), problems}; }
-  [[nodiscard]] JsonPlace at(std::size_t index) const { return {file, join_path(path, index), problems}; }
+  [[nodiscard]] JsonPlace at(const std::string& key) const { return {file, join_path(path, key), problems, unknown_keys}; }
+  [[nodiscard]] JsonPlace at(std::size_t index) const { return {file, join_path(path, index), problems, unknown_keys}; }
   void report(const Json& value, const std::string& rule, const std::string& remedy = {}) const;
   /// When there is no value to show, or too much of it.
   void report_key(const std::string& rule, const std::string& remedy = {}) const;

@@ -25,6 +25,10 @@ VerletSettings read_verlet(Fields& fields) {
 IntegratorSettings read_integrator(Fields& fields) {
   const auto kind =
       fields.kind("type", {"explicit_euler", "symplectic_euler", "verlet", "velocity_verlet", "rk4", "implicit_euler"});
+  if (kind != 2) {
+    fields.belongs_elsewhere({"damping", "damping_rate", "start_at_rest"},
+                             "it is Verlet's: leave it out; springs and air have a damping of their own");
+  }
   if (kind == 0) return ExplicitEulerSettings{};
   if (kind == 1) return SymplecticEulerSettings{};
   if (kind == 2) return read_verlet(fields);
@@ -59,6 +63,7 @@ ContactSettings read_contact(Fields& fields) {
   ContactSettings contact;
   const auto start = fields.value("start", word_of({"refuse", "push_out"}), "refuse");
   contact.start = start == 1 ? ContactSettings::Start::push_out : ContactSettings::Start::refuse;
+  fields.belongs_elsewhere({"stiffness", "damping"}, "it is of \"response\": \"penalty\"; leave it out");
   if (fields.kind("response", {"projection", "penalty"}, "projection") != 1) return contact;
   contact.response = ContactSettings::Response::penalty;
   contact.stiffness = fields.required("stiffness", number(kPositive)).value_or(0.0);

@@ -45,6 +45,18 @@ std::string names_of(const std::vector<SpringKind>& kinds) {
   return "[" + names + "]";
 }
 
+std::vector<std::string> idle_kinds(const SimulatorSettings& settings, const SpringNetwork& network) {
+  if (!settings.stretch_limit) return {};
+  std::vector<SpringKind> present;
+  for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bend}) {
+    if (std::ranges::find(network.springs.kind, kind) != network.springs.kind.end()) present.push_back(kind);
+  }
+  const std::vector<SpringKind>& kinds = settings.stretch_limit->kinds;
+  if (present.empty() || std::ranges::find_first_of(kinds, present) != kinds.end()) return {};
+  return {"stretch_limit.kinds = " + names_of(kinds) + " holds nothing: the springs of this network are of the kinds " +
+          names_of(present)};
+}
+
 }  // namespace
 
 SimulatorSettings checked_settings(SimulatorSettings settings) {
@@ -70,15 +82,9 @@ SimulatorSettings checked_settings(SimulatorSettings settings) {
 }
 
 std::vector<std::string> idle_settings(const SimulatorSettings& settings, const SpringNetwork& network) {
-  if (!settings.stretch_limit) return {};
-  std::vector<SpringKind> present;
-  for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bend}) {
-    if (std::ranges::find(network.springs.kind, kind) != network.springs.kind.end()) present.push_back(kind);
-  }
-  const std::vector<SpringKind>& kinds = settings.stretch_limit->kinds;
-  if (present.empty() || std::ranges::find_first_of(kinds, present) != kinds.end()) return {};
-  return {"stretch_limit.kinds = " + names_of(kinds) + " holds nothing: the springs of this network are of the kinds " +
-          names_of(present)};
+  std::vector<std::string> idle = idle_kinds(settings, network);
+  if (settings.air_drag == 0.0 && !settings.wind.isZero(0.0)) idle.emplace_back("air.wind moves nothing without air.drag: add it");
+  return idle;
 }
 
 std::vector<std::string> weak_bonds(const SimulatorSettings& settings, const SpringNetwork& network) {

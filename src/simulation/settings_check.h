@@ -13,7 +13,8 @@ namespace sprung {
 /// The step is left to `check_step`.
 [[nodiscard]] SimulatorSettings checked_settings(SimulatorSettings settings);
 
-/// What the user should be told of settings that do nothing for this network: a stretch limit of kinds that no spring has.
+/// What the user should be told of settings that do nothing for this network: a stretch limit of kinds that no spring has, wind
+/// without drag.
 [[nodiscard]] std::vector<std::string> idle_settings(const SimulatorSettings& settings, const SpringNetwork& network);
 
 /// What the user should be told of angle bends whose bonds give way before them: the pull of a bend goes with 1 / length, beyond

@@ -63,6 +63,17 @@ TEST_F(CommandLine, InvalidSceneEndsWithThreeNamesEveryProblemAndWritesNothing) 
   }
 }
 
+TEST_F(CommandLine, KeysThatNobodyKnowsHideNothingElse) {
+  json scene = rope_scene();
+  scene["duraton"] = 1;
+  scene["bodies"]["rope"]["pins"] = {{{"indices", {9999}}}};
+  scene["obstacles"]["thing"]["shape"] = {{"type", "mesh"}, {"file", "thing.obj"}};
+  const Ending ending = run({"validate", save(scene)});
+  EXPECT_EQ(ending.code, 3);
+  EXPECT_THAT(ending.err,
+              AllOf(HasSubstr("duraton: is not a known key"), HasSubstr("bodies.rope.pins[0]"), HasSubstr("thing.obj")));
+}
+
 TEST_F(CommandLine, MeshThatIsMissingOrBrokenEndsWithThree) {
   json scene = rope_scene();
   scene["obstacles"]["thing"]["shape"] = {{"type", "mesh"}, {"file", "thing.obj"}};

@@ -106,6 +106,15 @@ TEST(Simulator, WarnsOfAStretchLimitOfKindsThatNoSpringHas) {
   EXPECT_THAT(warnings(one_particle(Vector3::Zero()), {SpringKind::structural}), IsEmpty());
 }
 
+TEST(Simulator, WarnsOfWindWithoutDrag) {
+  const auto warnings = [](double drag, const Vector3& wind) {
+    return Simulator(two_masses(1.0), {.air_drag = drag, .wind = wind}).warnings();
+  };
+  EXPECT_THAT(warnings(0.0, Vector3::UnitX()), ElementsAre("air.wind moves nothing without air.drag: add it"));
+  EXPECT_THAT(warnings(0.1, Vector3::UnitX()), IsEmpty());
+  EXPECT_THAT(warnings(0.0, Vector3::Zero()), IsEmpty());
+}
+
 /// A rope of three particles, 0.1 m apart, with this stiffness and an angle bend of 1 N m.
 SpringNetwork bent_rope(double stiffness) {
   NetworkBuilder builder;
