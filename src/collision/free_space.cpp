@@ -61,6 +61,8 @@ void FreeSpace::follow(const Points& before, const Points& after) {
   if (implementation_->pairs) implementation_->begin_pairs(before, after);
 }
 
+void FreeSpace::note() { implementation_->zones.note(); }
+
 void FreeSpace::forget() {
   implementation_->zones.forget();
   if (implementation_->pairs) implementation_->pairs->forget();
@@ -83,7 +85,7 @@ const std::vector<Contact>& FreeSpace::contacts_again(const Points& before, cons
   return implementation_->with_pairs();
 }
 
-FreeSpace::Truncation FreeSpace::truncate(const Points& before, Points& after, const Relax& relax) {
+Truncation FreeSpace::truncate(const Points& before, Points& after, const Relax& relax) {
   Truncation truncation;
   if (!implementation_->set.obstacles().empty()) truncation = implementation_->truncate(before, after, relax);
   if (implementation_->pairs_began) implementation_->keep_apart(before, after, truncation);
@@ -91,7 +93,7 @@ FreeSpace::Truncation FreeSpace::truncate(const Points& before, Points& after, c
 }
 
 // What found no free place is not safe to go on from.
-FreeSpace::Truncation FreeSpace::Implementation::truncate(const Points& before, Points& after, const Relax& relax) {
+Truncation FreeSpace::Implementation::truncate(const Points& before, Points& after, const Relax& relax) {
   Points target = after;
   Truncation truncation = placement.place_all({before, target}, after);
   if (truncation.truncated == 0 || !relax) return truncation;
@@ -119,11 +121,13 @@ void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, 
   std::vector<Index> particles = placement.all_movable({before, after});
   const Points allowed = after;
   Outcomes outcomes = PairPlacement(zones, *pairs, particles).place(before, after);
-  if (set.moves() && count(outcomes, Outcome::squeezed) > 0) {
+  const bool sure = placement.look_at_pins(particles, after, outcomes);
+  if (!sure || (set.moves() && count(outcomes, Outcome::squeezed) > 0)) {
     outcomes = place_in_parts(environment, {before, allowed}, after, [&](const Way& part, Points& x) {
       const PlacedPart among_obstacles = placement.place_part(particles, part, x);
       pairs->begin_part(part.from, x);
       PlacedPart placed{PairPlacement(zones, *pairs, particles).place(part.from, x), among_obstacles.sure};
+      placed.sure = placement.look_at_pins(particles, x, placed.outcomes) && placed.sure;
       keep_squeezed(among_obstacles.outcomes, placed.outcomes);
       return placed;
     });

@@ -7,7 +7,7 @@
 #include "collision/collision_surface.h"
 #include "collision/contact.h"
 #include "collision/environment.h"
-#include "collision/obstacle_placement.h"
+#include "collision/truncation.h"
 
 #include <functional>
 #include <memory>
@@ -31,7 +31,9 @@ class FreeSpace {
   /// of the environment's interval [m].
   void follow(const Points& before, const Points& after);
 
-  /// The next step does not begin where the last one ended.
+  /// Notes where a step begins that may be made again.
+  void note();
+  /// The next step does not begin where the last one ended, but where one was noted, or ended.
   void forget();
 
   /// Whether contacts of elements at pins are found on their whole way, wherever it begins. Truncation cannot help them, as a pin
@@ -47,7 +49,6 @@ class FreeSpace {
   /// Those that contacts() told of, but found anew around what truncate() has stopped, while it relaxes.
   [[nodiscard]] const std::vector<Contact>& contacts_again(const Points& before, const Points& after);
 
-  using Truncation = ObstaclePlacement::Truncation;
   /// Moves particles once more after some were stopped [m]; returns false when it has nothing to move.
   using Relax = std::function<bool(Points& positions)>;
 

@@ -49,19 +49,19 @@ ObstaclePlacement::ObstaclePlacement(Environment& environment, const CollisionSu
   }
 }
 
-ObstaclePlacement::Truncation ObstaclePlacement::place_all(const Way& way, Points& after) {
+Truncation ObstaclePlacement::place_all(const Way& way, Points& after) {
   zones_.follow(way);
   note_crossed();
+  zones_.renew_around(leaving_pins(way.to), way);
   std::vector<Index> particles = movable(zones_.restless(), way);
   Outcomes outcomes = place_with_fresh_zones(particles, way, after);
-  const bool sure = look_at_pins(after);
+  const bool sure = look_at_pins(particles, after, outcomes);
   if (!way.obstacles_rest && (!sure || (set_.moves() && count(outcomes, Outcome::squeezed) > 0))) {
     add_free(all_movable(way), particles, outcomes);
     if (sure) carry_squeezed(zones_, particles, way.from, after, outcomes);
     if (!sure || count(outcomes, Outcome::squeezed) > 0) {
       outcomes =
           place_in_parts(environment_, way, after, [&](const Way& part, Points& x) { return place_part(particles, part, x); });
-      look_at_pins(after);
     }
   }
   return lead_on(particles, outcomes, way, after);
@@ -90,23 +90,28 @@ PlacedPart ObstaclePlacement::place_part(std::vector<Index>& particles, const Wa
   if (pinned_.empty() || count(placed.outcomes, Outcome::squeezed) == 0) return placed;
   zones_.renew_around(pinned_, part);
   const std::vector<Push> pushes = zones_.pushes_at_pins(part);
+  if (pushes.empty()) return place_anew(particles, part, after);
   for (const double lever : kLevers) {
     Points goals = part.to;
-    for (const Push& push : pushes) goals.col(push.particle) += lever * push.by;
+    for (const Push& push : pushes) goals.col(push.particle) += std::min(lever, push.most / push.by.norm()) * push.by;
     placed = place_ahead(particles, part, goals, after);
-    if (count(placed.outcomes, Outcome::squeezed) == 0) return placed;
+    if (count(placed.outcomes, Outcome::squeezed) > 0) continue;
+    for (std::size_t n = 0; n < particles.size(); ++n) {
+      if (after.col(particles[n]) != part.to.col(particles[n])) placed.outcomes[n] = Outcome::stopped;
+    }
+    return placed;
   }
   return place_anew(particles, part, after);
 }
 
 PlacedPart ObstaclePlacement::place_anew(std::vector<Index>& particles, const Way& way, Points& after) {
   after = way.to;
-  zones_.renew_around(particles, way);
   zones_.follow(way);
+  zones_.renew_around(pinned_, way);
+  zones_.renew_around(particles, way);
   PlacedPart placed{place_with_fresh_zones(particles, way, after)};
   carry_squeezed(zones_, particles, way.from, after, placed.outcomes);
-  placed.sure = look_at_pins(after);
-  squeeze_crossed(particles, placed.outcomes);
+  placed.sure = look_at_pins(particles, after, placed.outcomes);
   return placed;
 }
 
@@ -118,6 +123,7 @@ PlacedPart ObstaclePlacement::place_ahead(std::vector<Index>& particles, const W
   Points ahead = first_goals;
   const Way first{part.from, first_goals, true};
   environment_.set_interval(begin, begin);
+  zones_.follow(first);
   zones_.renew_around(particles, first);
   place(zones_, particles, first, ahead);
   environment_.set_interval(begin, end);
@@ -132,29 +138,27 @@ void ObstaclePlacement::note_crossed() {
   }
 }
 
-// Pins ask nobody. Where zones do not hold them, whether an obstacle crosses an element is known for where they are alone.
-bool ObstaclePlacement::look_at_pins(const Points& after) {
+std::vector<Index> ObstaclePlacement::leaving_pins(const Points& positions) const {
   std::vector<Index> leaving;
   for (const Index i : pinned_) {
-    if (after.col(i).allFinite() && !zones_.allow(i, after.col(i))) leaving.push_back(i);
+    if (positions.col(i).allFinite() && !zones_.allow(i, positions.col(i))) leaving.push_back(i);
   }
+  return leaving;
+}
+
+// Pins ask nobody. Where zones do not hold them, whether an obstacle crosses an element is known for where they are alone.
+bool ObstaclePlacement::look_at_pins(const std::vector<Index>& particles, const Points& after, Outcomes& outcomes) {
+  const std::vector<Index> leaving = leaving_pins(after);
   if (!leaving.empty()) zones_.renew_around(leaving, {after, after, true});
+  for (std::size_t n = 0; n < particles.size() && zones_.crosses(); ++n) {
+    const Index i = particles[n];
+    if (zones_.is_crossed(i) && (crossed_before_.empty() || crossed_before_[at(i)] == 0)) outcomes[n] = Outcome::squeezed;
+  }
   return leaving.empty();
 }
 
-bool ObstaclePlacement::is_crossed_anew(Index i) const {
-  return zones_.is_crossed(i) && (crossed_before_.empty() || crossed_before_[at(i)] == 0);
-}
-
-void ObstaclePlacement::squeeze_crossed(const std::vector<Index>& particles, Outcomes& outcomes) const {
-  if (!zones_.crosses()) return;
-  for (std::size_t n = 0; n < particles.size(); ++n) {
-    if (is_crossed_anew(particles[n])) outcomes[n] = Outcome::squeezed;
-  }
-}
-
-ObstaclePlacement::Truncation ObstaclePlacement::lead_on(const std::vector<Index>& particles, const Outcomes& outcomes,
-                                                         const Way& way, Points& after) {
+Truncation ObstaclePlacement::lead_on(const std::vector<Index>& particles, const Outcomes& outcomes, const Way& way,
+                                      Points& after) {
   std::vector<Index> stopped;
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] == Outcome::stopped) stopped.push_back(particles[n]);

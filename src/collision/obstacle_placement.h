@@ -3,6 +3,7 @@
 
 #include "collision/environment.h"
 #include "collision/placement_in_parts.h"
+#include "collision/truncation.h"
 
 #include <vector>
 
@@ -13,10 +14,6 @@ class ObstaclePlacement {
   /// Keeps references to all.
   ObstaclePlacement(Environment& environment, const CollisionSurface& surface, ObstacleZones& zones);
 
-  struct Truncation {
-    Index truncated = 0;  ///< particles stopped on their way
-    Index squeezed = 0;   ///< particles that found no free place between obstacles, or of whose elements an obstacle crosses one
-  };
   /// Places all particles in `after` [m], 3 x n: where their way leads, or as near to there as zones allow that are made again
   /// where they stop one short. Where there are none obstacles carry what is in their way, then all go in parts of the interval.
   Truncation place_all(const Way& way, Points& after);
@@ -26,6 +23,10 @@ class ObstaclePlacement {
 
   /// Places all of these movable particles in a part of the environment's interval, which may begin anywhere.
   PlacedPart place_part(std::vector<Index>& particles, const Way& part, Points& after);
+
+  /// Looks where pins are now; squeezes those of the particles of whose elements an obstacle crosses one that it did not cross
+  /// where the way began. False where zones did not hold pins: then that is known for this place alone.
+  bool look_at_pins(const std::vector<Index>& particles, const Points& after, Outcomes& outcomes);
 
   /// Particles that are not pinned and whose ways are finite, ascending.
   [[nodiscard]] std::vector<Index> all_movable(const Way& way) const;
@@ -40,11 +41,8 @@ class ObstaclePlacement {
   PlacedPart place_ahead(std::vector<Index>& particles, const Way& part, const Points& goals, Points& after);
 
   void note_crossed();
-  /// Makes zones that do not hold their pins again; false if there are any.
-  bool look_at_pins(const Points& after);
-  [[nodiscard]] bool is_crossed_anew(Index particle) const;
-  /// Squeezes those of whose elements an obstacle crosses one that it did not cross where the step began.
-  void squeeze_crossed(const std::vector<Index>& particles, Outcomes& outcomes) const;
+  /// Pins that their zones do not hold there.
+  [[nodiscard]] std::vector<Index> leaving_pins(const Points& positions) const;
 
   Truncation lead_on(const std::vector<Index>& particles, const Outcomes& outcomes, const Way& way, Points& after);
   /// Leaves in `stopped` those that may come farther yet; returns how many arrived.
@@ -57,7 +55,7 @@ class ObstaclePlacement {
   const CollisionSurface& surface_;
   ObstacleZones& zones_;
   std::vector<Index> pinned_;
-  std::vector<char> crossed_before_;  ///< by particle, where the step begins; empty where none is
+  std::vector<char> crossed_before_;  ///< by particle, where the way begins; empty where none is
   std::vector<Index> held_back_;
 };
 

@@ -59,13 +59,6 @@ void ObstacleZones::follow(const Way& way) {
   });
 }
 
-void ObstacleZones::forget() {
-  for (Patch& patch : patches_) {
-    patch.zones.clear();
-    patch.known.setEmpty();
-  }
-}
-
 void ObstacleZones::find_near(Index p, const Way& way, double carried) {
   Patch& patch = patches_[at(p)];
   const std::vector<Index>& particles = particles_of(p);

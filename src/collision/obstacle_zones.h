@@ -1,6 +1,7 @@
 // The zones of all elements before all obstacles.
 #pragma once
 
+#include "collision/carried_corner.h"
 #include "collision/collision_surface.h"
 #include "collision/contact.h"
 #include "collision/held_groups.h"
@@ -18,20 +19,6 @@ struct Way {
   bool obstacles_rest = false;  ///< obstacles are at the interval's end already when the way begins
 };
 
-/// A particle that an obstacle carries together with an element.
-struct CarriedCorner {
-  Index particle = kNone;
-  double distance = 0.0;  ///< of the element from the obstacle [m]
-  Vector3 place = Vector3::Zero();
-};
-
-/// What an obstacle that comes nearer asks of a particle.
-struct Push {
-  Index particle = kNone;
-  double distance = 0.0;         ///< of the element from the obstacle [m]
-  Vector3 by = Vector3::Zero();  ///< [m]
-};
-
 class ObstacleZones {
  public:
   /// Contacts are found up to `margin` [m] beyond their gap. The network is stretched by nothing at `rest` [m], 3 x n. Keeps
@@ -41,7 +28,9 @@ class ObstacleZones {
   /// Makes zones where elements are near obstacles and have none that holds them on their way.
   void follow(const Way& way);
 
-  /// Drops all zones: the next way does not begin where the last one ended.
+  /// Notes where a step begins that may be made again.
+  void note();
+  /// Drops all zones: the next way does not begin where the last one ended. What is let through is what was when it was noted.
   void forget();
 
   /// Whether elements at pins are near whatever comes near them on their way, for zones that are made from now on.
@@ -126,6 +115,7 @@ class ObstacleZones {
     Index obstacle = kNone;
     Index particle = kNone;
   };
+  void set_passing(std::vector<CrossedCorner> corners);
   void append_passing(Index patch, const PatchZones& zones, const Points& from, std::vector<CrossedCorner>& passing) const;
   [[nodiscard]] bool is_overstretched(const Element& element, const Points& positions) const;
   [[nodiscard]] bool is_passing(Index k, Index particle) const {
@@ -150,6 +140,7 @@ class ObstacleZones {
   Points rest_;
   std::vector<Patch> patches_;
   std::vector<CrossedCorner> let_through_;  ///< by let_through()
+  std::vector<CrossedCorner> noted_;        ///< of let_through_
   std::vector<std::vector<char>> passing_;  ///< by obstacle, by particle: whether the one lets the other through
 };
 

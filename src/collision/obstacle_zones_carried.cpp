@@ -12,7 +12,7 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 /// Leaves of each particle's only that of the least distance.
 template <class Corner>
 void keep_nearest(std::vector<Corner>& corners) {
-  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
+  std::stable_sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return a.particle != b.particle ? a.particle < b.particle : a.distance < b.distance;
   });
   const auto same = [](const Corner& a, const Corner& b) { return a.particle == b.particle; };
@@ -135,7 +135,7 @@ void ObstacleZones::append_pushes(Index p, const PatchZones& zones, const Way& w
       nearer = std::max(nearer, normal.dot(set_.carried(k, way.from.col(i)) - way.to.col(i)));
     }
     for (const Index i : corners) {
-      if (surface_.pinned[at(i)] == 0 && nearer > 0.0) pushes.push_back({i, zone.distance, nearer * normal});
+      if (surface_.pinned[at(i)] == 0 && nearer > 0.0) pushes.push_back({i, zone.distance, nearer * normal, patches_[at(p)].size});
     }
   }
 }

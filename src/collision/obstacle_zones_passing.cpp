@@ -36,9 +36,23 @@ void ObstacleZones::let_through(const Points& from) {
       if (zones.crosses()) append_passing(p, zones, from, passing);
     }
   }
+  set_passing(std::move(passing));
+}
+
+void ObstacleZones::set_passing(std::vector<CrossedCorner> corners) {
   for (const auto& [k, i] : let_through_) passing_[at(k)][at(i)] = 0;
-  for (const auto& [k, i] : passing) passing_[at(k)][at(i)] = 1;
-  let_through_ = std::move(passing);
+  for (const auto& [k, i] : corners) passing_[at(k)][at(i)] = 1;
+  let_through_ = std::move(corners);
+}
+
+void ObstacleZones::note() { noted_ = let_through_; }
+
+void ObstacleZones::forget() {
+  for (Patch& patch : patches_) {
+    patch.zones.clear();
+    patch.known.setEmpty();
+  }
+  set_passing(noted_);
 }
 
 void ObstacleZones::append_passing(Index p, const PatchZones& zones, const Points& from,

@@ -34,7 +34,7 @@ void ContactProjection::find_again(const StepMotion& motion, const Points& posit
 }
 
 void ContactProjection::truncate(const Points& before, Points& positions, const FreeSpace::Relax& relax) {
-  const FreeSpace::Truncation truncation = free_space_.truncate(before, positions, relax);
+  const Truncation truncation = free_space_.truncate(before, positions, relax);
   truncated_ = truncation.truncated;
   squeezed_ = truncation.squeezed;
 }

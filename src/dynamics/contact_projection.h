@@ -25,6 +25,7 @@ class ContactProjection {
   void find_again(const StepMotion& motion, const Points& positions);
 
   /// See FreeSpace.
+  void note() { free_space_.note(); }
   void forget() { free_space_.forget(); }
   void look_ahead(bool ahead) { free_space_.look_ahead(ahead); }
 

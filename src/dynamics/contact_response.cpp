@@ -22,7 +22,8 @@ constexpr double kTouch = 1.0e-9;
 // The least of contacts that are left to pins.
 constexpr double kNothingToDo = -std::numeric_limits<double>::infinity();
 
-// Two elements of which pins have more than this part of the weights are left to them.
+// What pins have more than this part of the weights of is left to them where the pins are in the way themselves, or before another
+// element.
 constexpr double kMostPinned = 0.9;
 
 // Contacts that one task sets up.
@@ -33,7 +34,7 @@ void for_each_set(Sets& sets, const Visit& visit) {
   std::apply([&](auto&... set) { (visit(set), ...); }, sets);
 }
 
-/// Sets the contact's particles, weights and shares; false when pins alone, or nearly, have it.
+/// Sets the contact's particles, weights and shares; false when pins alone have it, or between two elements nearly.
 template <std::size_t n>
 bool set_particles(const Contact& contact, const Scalars& inverse_masses, ContactRow<n>& row) {
   double mobility = 0.0;
@@ -55,10 +56,14 @@ bool set_particles(const Contact& contact, const Scalars& inverse_masses, Contac
   return true;
 }
 
-/// How far the point of an element before an obstacle is from the element's pins [m]: to move it by more turns the element about
-/// them by more than a radian. Infinite without pins.
+/// How an element before an obstacle turns about its pins.
+struct Lever {
+  double arm = std::numeric_limits<double>::infinity();  ///< of the contact's point [m]: farther than that it turns by a radian
+  double part = 1.0;                                     ///< of the way of corners that are not pinned the point goes
+};
+
 template <std::size_t n>
-double lever_arm(const ContactRow<n>& row, const Points& positions) {
+Lever lever(const ContactRow<n>& row, const Points& positions) {
   Vector3 at_pins = Vector3::Zero();
   Vector3 at_others = Vector3::Zero();
   double pinned = 0.0;
@@ -68,8 +73,8 @@ double lever_arm(const ContactRow<n>& row, const Points& positions) {
     (is_pinned ? at_pins : at_others) += row.weights[k] * positions.col(row.particles[k]);
     (is_pinned ? pinned : others) += row.weights[k];
   }
-  if (pinned == 0.0) return std::numeric_limits<double>::infinity();
-  return others * (at_others / others - at_pins / pinned).norm();
+  if (pinned == 0.0) return {};
+  return {others * (at_others / others - at_pins / pinned).norm(), others};
 }
 
 }  // namespace
@@ -128,10 +133,10 @@ void ContactResponse::fill_one(const Contact& contact, const ContactMaterial& pa
   goal = {.origin = carried(contact, row.sum(motion.before)), .touch = kTouch * gap};
   goal.least = moves ? gap - contact.normal.dot(goal.origin - contact.point) : kNothingToDo;
   if (!moves || contact.obstacle == kNone) return;
-  // A pin that is in the obstacle's way itself cannot be helped.
-  const double arm = lever_arm(row, motion.before);
+  const auto [arm, part] = lever(row, motion.before);
+  const bool pins_are_in_the_way = arm <= gap && part < 1.0 - kMostPinned;
   const double advanced = contact.normal.dot(row.sum(motion.advanced) - goal.origin);
-  goal.least = arm > gap ? std::min(goal.least, advanced + arm) : kNothingToDo;
+  goal.least = pins_are_in_the_way ? kNothingToDo : std::min(goal.least, advanced + arm);
 }
 
 // An obstacle that rests, and what another element is relative to, carries a position to the last bit where it was.

@@ -23,7 +23,8 @@ class ContactResponse {
   ContactResponse(const SpringNetwork& network, const Environment& environment);
 
   /// Begins a step with these contacts. Those of few particles are answered first, and those of as many in the order given; those
-  /// of pinned particles alone never. Requires that the environment's interval is the step's.
+  /// of pinned particles alone never, nor those closer than the gap to the pins that have nearly all of them. No contact with an
+  /// obstacle turns an element about its pins by more than a radian. Requires that the environment's interval is the step's.
   void start(const std::vector<Contact>& contacts, const StepMotion& motion);
 
   /// Goes on with these contacts in the same step: one between the same as before keeps what it has pushed and held.

@@ -66,6 +66,9 @@ class Integrator {
   /// v += (x - advanced) / dt. Unless `needs_advanced`, `advanced` may be anything.
   virtual void recover_velocities(SimulationState& state, const Points& before, const Points& advanced, double dt) const;
 
+  /// Steps that follow are this part, in (0, 1], of those that a damping per step is for. Default: there is none.
+  virtual void set_part(double /*part*/) {}
+
   /// Called between two steps where steps of length `dt` follow those of length `dt_before` [s]. Verlet's velocity is that half a
   /// step ago: it gains what the forces give from then on to half a step of the new length ago.
   virtual void step_changed(SimulationState& state, const Forces& forces, double dt_before, double dt);

@@ -57,7 +57,7 @@ class Verlet final : public Integrator {
     if (!forces_are_constant_) evaluate(state, forces, dt, total_);
     set_gains(dt);
     for (const Index i : pinned_) state.x_previous.col(i) = state.x.col(i);
-    const VerletStep step{.kept = 1.0 - damping_per_step(settings_, dt), .per_dt = 1.0 / dt};
+    const VerletStep step{.kept = kept(dt), .per_dt = 1.0 / dt};
     for_free_runs([&](Index begin, Index count) {
       if (forces_are_constant_) {
         advance_verlet(3 * count, step, gained_.col(begin).data(), state.x.col(begin).data(), state.x_previous.col(begin).data(),
@@ -78,6 +78,8 @@ class Verlet final : public Integrator {
   [[nodiscard]] bool keeps_positions() const override { return true; }
   [[nodiscard]] bool needs_advanced() const override { return false; }
 
+  void set_part(double part) override { part_ = part; }
+
   void step_changed(SimulationState& state, const Forces& forces, double dt_before, double dt) override {
     if (!forces_are_constant_) evaluate(state, forces, dt, total_);
     for_free_particles(network(), [&](Index i) {
@@ -91,6 +93,12 @@ class Verlet final : public Integrator {
   }
 
  private:
+  /// Of the movement.
+  [[nodiscard]] double kept(double dt) const {
+    const double of_step = 1.0 - damping_per_step(settings_, dt);
+    return part_ < 1.0 && settings_.damping_rate == 0.0 ? std::pow(of_step, part_) : of_step;
+  }
+
   /// dt^2 / m for each coordinate, and what constant forces make of it.
   void set_gains(double dt) {
     if (dt == dt_of_gains_) return;
@@ -107,6 +115,7 @@ class Verlet final : public Integrator {
   }
 
   VerletSettings settings_;
+  double part_ = 1.0;  ///< see set_part
   std::vector<FreeRun> free_runs_;
   std::vector<Index> pinned_;
   Points total_;

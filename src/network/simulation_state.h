@@ -19,8 +19,9 @@ struct SimulationState {
   int parts = 1;                           ///< the step at hand is made in so many equal parts
   int part = 0;                            ///< of which so many are done
   int calm_steps = 0;                      ///< so many in a row did not need their parts
+  int free_steps = 0;                      ///< so many in a row squeezed nothing
   std::int64_t retry_from = 0;             ///< steps before this one are not made again where they squeeze anything
-  int retry_wait = 0;                      ///< so many steps were to pass since one was made again without success
+  int retry_wait = 0;                      ///< how many that are after the last time that this did not help
   Points x;                                ///< positions [m], 3 x n
   Points v;                                ///< velocities [m/s], 3 x n
   Points x_previous;                       ///< Verlet's positions one step ago [m], 3 x n

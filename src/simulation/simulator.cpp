@@ -1,18 +1,12 @@
 #include "simulation/simulator.h"
 
 #include "collision/obstacle_set.h"
-#include "dynamics/angle_force.h"
-#include "dynamics/body_forces.h"
-#include "dynamics/penalty_contact.h"
-#include "dynamics/spring_force.h"
-#include "simulation/divergence.h"
-#include "simulation/energy_watch.h"
 #include "simulation/limit_handover.h"
 #include "simulation/settings_check.h"
+#include "simulation/simulator_implementation.h"
 #include "simulation/start.h"
 #include "simulation/step_check.h"
-#include "simulation/step_constraints.h"
-#include "simulation/step_refinement.h"
+#include "simulation/step_retry.h"
 
 #include <algorithm>
 #include <utility>
@@ -26,61 +20,7 @@ constexpr Index kSpringsCheckedPerStep = 8192;
 // Energies, which cost more and take many steps to explode, less often still.
 constexpr Index kStepsPerEnergy = 64;
 
-// A step that squeezes something is made again in so many times as many parts, until one does not.
-constexpr int kMoreParts[] = {4, 16, 64};
-
-// Where that does not help, it is tried again after twice as many steps each time, at most so many.
-constexpr int kMostWait = 1024;
-
 }  // namespace
-
-struct Simulator::Implementation {
-  Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles);
-
-  template <class F, class... Arguments>
-  F* add_force(Arguments&&... arguments) {
-    auto force = std::make_unique<F>(network, std::forward<Arguments>(arguments)...);
-    F* kept = force.get();
-    forces.push_back(std::move(force));
-    return kept;
-  }
-
-  [[nodiscard]] bool anything_moves() const;
-  StepReport step();
-  StepReport make_step();
-  StepReport make_again(const StepReport& report);
-  StepReport make_part();
-  void choose_parts(double excess);
-  void set_parts(int parts);
-  void length_changed(double dt_before);
-  void move_pins(double time);
-  [[nodiscard]] double elastic_energy() const;
-  [[nodiscard]] Energies energies() const;
-  void check_state();
-  void check_energy(const Energies& now) const;
-  void fail(StepFailure failure) const;
-  [[nodiscard]] double dt() const { return settings.step / state.parts; }
-  [[nodiscard]] double time() const { return steps_done(state) * settings.step; }
-
-  SpringNetwork network;
-  SimulatorSettings settings;
-  Environment environment;
-  SpectralBounds bounds;
-  std::vector<std::string> warnings;
-  Forces forces;
-  const Gravity* gravity = nullptr;
-  const SpringForce* springs = nullptr;
-  const AngleForce* angles = nullptr;  ///< when the network has angle bends
-  PenaltyContact* penalty = nullptr;   ///< when contact answers by forces
-  std::unique_ptr<Integrator> integrator;
-  StepConstraints constraints;
-  std::optional<StepRefinement> refinement;  ///< when steps may be made in parts
-  bool waits_for_turn;                       ///< see StretchLimit::may_follow_turn
-  DivergenceCheck divergence;
-  EnergyWatch energy_watch;
-  SimulationState state;
-  SimulationState begun;  ///< where a step that may be made again began
-};
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles)
     : network(std::move(model)),
@@ -123,11 +63,16 @@ bool Simulator::Implementation::anything_moves() const {
 }
 
 StepReport Simulator::Implementation::step() {
-  const bool may_retry = constraints.contacts().meets_anything() && state.step >= state.retry_from;
-  if (may_retry) begun = state;
+  const bool may_be_made_again = constraints.contacts().meets_anything() && may_retry(state);
+  if (may_be_made_again) {
+    begun = state;
+    constraints.note();
+  }
+  kept_contacts.reset();
   StepReport report = make_step();
-  if (may_retry && report.squeezed > 0) report = make_again(report);
-  if (refinement) choose_parts(report.stretch_excess);
+  if (may_be_made_again && report.squeezed > 0) report = make_again(report);
+  note_step(report.squeezed, state);
+  if (refinement) choose_parts(report);
   if (const StretchLimit* limit = constraints.limit()) hand_over_missed(network, *limit, report.stretch_excess, state);
   return report;
 }
@@ -135,30 +80,8 @@ StepReport Simulator::Implementation::step() {
 StepReport Simulator::Implementation::make_step() {
   StepReport report;
   for (const std::int64_t step = state.step; state.step == step;) report += make_part();
+  if (const StretchLimit* limit = constraints.limit()) report.turn = limit->turn();
   return report;
-}
-
-// What a step leads far, by a lever or between obstacles that close, may find no place though there is one: in smaller steps
-// contact answers before they meet.
-StepReport Simulator::Implementation::make_again(const StepReport& report) {
-  const SimulationState squeezed = state;
-  constraints.look_ahead(true);
-  StepReport again = report;
-  for (const int more : kMoreParts) {
-    if (again.squeezed == 0 || begun.parts > kMostParts / more) break;
-    state = begun;
-    constraints.forget();
-    environment.set_interval(time(), time());
-    set_parts(more * begun.parts);
-    again = make_step();
-    set_parts(begun.parts);
-  }
-  constraints.look_ahead(false);
-  if (again.squeezed > 0) state = squeezed;
-  constraints.forget();
-  state.retry_wait = again.squeezed > 0 ? std::clamp(2 * begun.retry_wait, 1, kMostWait) : 0;
-  state.retry_from = state.step + state.retry_wait;
-  return again.squeezed > 0 ? report : again;
 }
 
 StepReport Simulator::Implementation::make_part() {
@@ -181,13 +104,13 @@ StepReport Simulator::Implementation::make_part() {
   return report;
 }
 
-void Simulator::Implementation::choose_parts(double excess) {
+void Simulator::Implementation::choose_parts(const StepReport& report) {
   const double dt_before = dt();
   const StretchLimit& limit = *constraints.limit();
   if (limit.follows_turn(state.stretch_holds)) {
-    refinement->choose_by_turn(limit.turn(), state);
+    refinement->choose_by_turn(report.turn, state);
   } else if (!waits_for_turn) {
-    refinement->choose(excess, state);
+    refinement->choose(report.stretch_excess, state);
   }
   length_changed(dt_before);
 }
@@ -202,7 +125,11 @@ void Simulator::Implementation::length_changed(double dt_before) {
   if (dt() == dt_before) return;
   if (penalty != nullptr) penalty->set_step(dt());
   move_pins(time());
-  integrator->step_changed(state, forces, dt_before, dt());
+  if (steps_done(state) == 0.0) {
+    integrator->start(state, forces, dt());
+  } else {
+    integrator->step_changed(state, forces, dt_before, dt());
+  }
 }
 
 // A pin's velocity is that of the step to come: what its neighbours' dampers see.
@@ -219,6 +146,11 @@ void Simulator::Implementation::move_pins(double time) {
       energy_watch.note_pin(state.v.col(i).norm());
     }
   }
+}
+
+Index Simulator::Implementation::contacts() const {
+  if (penalty != nullptr) return penalty->contact_count(state.x);
+  return kept_contacts ? *kept_contacts : constraints.contacts().contact_count();
 }
 
 void Simulator::Implementation::check_state() {
@@ -266,6 +198,7 @@ StepReport& StepReport::operator+=(const StepReport& part) {
   stretch_excess = std::max(stretch_excess, part.stretch_excess);
   truncated += part.truncated;
   squeezed += part.squeezed;
+  most_squeezed = std::max(most_squeezed, part.squeezed);
   return *this;
 }
 
@@ -290,10 +223,7 @@ std::string Simulator::stretch_solver() const {
   return limit != nullptr ? limit->chosen_solver() : std::string();
 }
 
-Index Simulator::contact_count() const {
-  return implementation_->penalty != nullptr ? implementation_->penalty->contact_count(state().x)
-                                             : implementation_->constraints.contacts().contact_count();
-}
+Index Simulator::contact_count() const { return implementation_->contacts(); }
 
 void Simulator::check() const {
   if (const auto failure = implementation_->divergence.overstretched(state().x)) implementation_->fail(*failure);

@@ -21,6 +21,7 @@ class StepConstraints {
   void begin(const SimulationState& state);
 
   /// See FreeSpace.
+  void note() { contacts_.note(); }
   void forget() { contacts_.forget(); }
   void look_ahead(bool ahead) { contacts_.look_ahead(ahead); }
 

@@ -73,7 +73,7 @@ void truncation_near(benchmark::State& state) {
                   make_collision_surface({}, cloth.before, std::vector<Index>(kParticles, 0), cloth.thickness,
                                          std::vector<char>(kParticles, 0), {0}, {0}),
                   cloth.before, kMargin);
-  FreeSpace::Truncation truncation;
+  Truncation truncation;
   for (auto _ : state) {
     Points after = cloth.after;
     truncation = space.truncate(cloth.before, after);

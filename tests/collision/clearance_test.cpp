@@ -39,7 +39,7 @@ Index step_to(const Environment& environment, FreeSpace& space, Points& x, const
     const double depth = contact.clearance - contact.normal.dot(position - contact.point);
     if (depth > 0.0) position += depth * contact.normal;
   }
-  const FreeSpace::Truncation truncation = space.truncate(x, after);
+  const Truncation truncation = space.truncate(x, after);
   EXPECT_EQ(truncation.squeezed, 0);
   x = after;
   return truncation.truncated;

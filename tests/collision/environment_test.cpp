@@ -138,7 +138,7 @@ TEST(Environment, SameBitsForAnyNumberOfThreads) {
     Run result;
     result.contacts = environment.contacts({particles.before, particles.after, particles.thickness, 0.05});
     result.after = particles.after;
-    const FreeSpace::Truncation truncation = test::single_particles(environment, 20000).truncate(particles.before, result.after);
+    const Truncation truncation = test::single_particles(environment, 20000).truncate(particles.before, result.after);
     result.truncated = truncation.truncated;
     result.squeezed = truncation.squeezed;
     result.distance = environment.min_distance(result.after, 0.5);

@@ -66,7 +66,7 @@ void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double
       after.col(i) += i % 3 == 0 ? Vector3(kick * random.direction()) : Vector3(random.between(0.0, 2.0) * at);
       after.col(i) = pose * within(pose.inverse() * after.col(i));
     }
-    const FreeSpace::Truncation truncation = space.truncate(x, after);
+    const Truncation truncation = space.truncate(x, after);
     stopped += truncation.truncated;
     ASSERT_EQ(truncation.squeezed, 0);
     for (Index i = 0; i < count; ++i) {
@@ -130,7 +130,7 @@ void expect_no_element_crosses(const TriangleMesh& mesh, bool closed, int steps)
       const bool far = random.below(8) == 0;
       after.col(i) += far ? Vector3(random.between(0.0, 1.5) * (at - x.col(i))) : Vector3(0.01 * random.direction());
     }
-    const FreeSpace::Truncation truncation = space.truncate(x, after);
+    const Truncation truncation = space.truncate(x, after);
     stopped += truncation.truncated;
     ASSERT_EQ(truncation.squeezed, 0);
     ASSERT_EQ(crossings(after), 0) << "in step " << step;
@@ -150,7 +150,7 @@ TEST(Truncation, ThinSheetHoldsAt500MetresPerSecondFromEitherSide) {
   before << 0.3, 0.3, 0.0, 0.5, 0.01, -0.01, 0.01, -0.01, 0.4, 0.4, 0.0, 0.5;  // the last two over a vertex and an edge
   Points after = before;
   after.row(1) -= Eigen::RowVector4d(kMove, -kMove, kMove, -kMove);
-  const FreeSpace::Truncation truncation = test::single_particles(environment, 4).truncate(before, after);
+  const Truncation truncation = test::single_particles(environment, 4).truncate(before, after);
   EXPECT_EQ(truncation.truncated, 4);
   EXPECT_EQ(truncation.squeezed, 0);
   for (Index i = 0; i < 4; ++i) EXPECT_GT(after(1, i) * before(1, i), 0.0) << i;
@@ -185,7 +185,7 @@ TEST(Truncation, WhatIsStoppedIsLedOnFromWhereItIsSafe) {
     if (times == 4) x.col(0) = Vector3(0.5, 0.5, 0.4);
     return times <= 4;
   };
-  const FreeSpace::Truncation truncation = space.truncate(before, after, lead_on);
+  const Truncation truncation = space.truncate(before, after, lead_on);
   EXPECT_EQ(times, 5);
   EXPECT_EQ(truncation.truncated, 0);
   EXPECT_EQ(after.col(0), Vector3(0.5, 0.5, 0.4));
@@ -210,7 +210,7 @@ TEST(Truncation, AnObstacleThatComesCarriesARestingParticle) {
   environment.set_interval(0.0, 0.1);
   const Points rest = Vector3(0.1, 0.0, 0.2);
   Points after = rest;
-  const FreeSpace::Truncation truncation = test::single_particles(environment, 1).truncate(rest, after);
+  const Truncation truncation = test::single_particles(environment, 1).truncate(rest, after);
   EXPECT_EQ(truncation.truncated, 1);
   EXPECT_EQ(truncation.squeezed, 0);
   EXPECT_GT(after(1, 0), 49.0);
@@ -240,7 +240,7 @@ TEST(Truncation, ObstaclesThatCloseInAreReported) {
   environment.set_interval(0.0, 1.0);
   const Points rest = Vector3(0.1, 0.0, 0.2);
   Points after = rest;
-  const FreeSpace::Truncation truncation = test::single_particles(environment, 1).truncate(rest, after);
+  const Truncation truncation = test::single_particles(environment, 1).truncate(rest, after);
   EXPECT_EQ(truncation.truncated, 1);
   EXPECT_EQ(truncation.squeezed, 1);
 }

@@ -1,0 +1,13 @@
+// What the last word on positions did.
+#pragma once
+
+#include "base/types.h"
+
+namespace sprung {
+
+struct Truncation {
+  Index truncated = 0;  ///< particles stopped on their way
+  Index squeezed = 0;   ///< particles that found no free place between obstacles, or of whose elements an obstacle crosses one
+};
+
+}  // namespace sprung

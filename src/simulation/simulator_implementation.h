@@ -1,0 +1,81 @@
+// What the simulator is made of. Internal to simulation/.
+#pragma once
+
+#include "dynamics/angle_force.h"
+#include "dynamics/body_forces.h"
+#include "dynamics/penalty_contact.h"
+#include "dynamics/spring_force.h"
+#include "simulation/divergence.h"
+#include "simulation/energy_watch.h"
+#include "simulation/simulator.h"
+#include "simulation/step_constraints.h"
+#include "simulation/step_refinement.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sprung {
+
+/// What a step, made in some number of parts, came to.
+struct Made {
+  SimulationState state;
+  EnergyWatch watch;
+  StepReport report;
+  Index contacts = 0;
+};
+
+struct Simulator::Implementation {
+  Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles);
+
+  template <class F, class... Arguments>
+  F* add_force(Arguments&&... arguments) {
+    auto force = std::make_unique<F>(network, std::forward<Arguments>(arguments)...);
+    F* kept = force.get();
+    forces.push_back(std::move(force));
+    return kept;
+  }
+
+  [[nodiscard]] bool anything_moves() const;
+  StepReport step();
+  StepReport make_step();
+  StepReport make_again(const StepReport& first);
+  std::optional<StepReport> attempt(int more);
+  StepReport make_part();
+  void choose_parts(const StepReport& report);
+  void set_parts(int parts);
+  void length_changed(double dt_before);
+  void move_pins(double time);
+  [[nodiscard]] double elastic_energy() const;
+  [[nodiscard]] Energies energies() const;
+  [[nodiscard]] Index contacts() const;
+  void check_state();
+  void check_energy(const Energies& now) const;
+  void fail(StepFailure failure) const;
+  [[nodiscard]] double dt() const { return settings.step / state.parts; }
+  [[nodiscard]] double time() const { return steps_done(state) * settings.step; }
+
+  SpringNetwork network;
+  SimulatorSettings settings;
+  Environment environment;
+  SpectralBounds bounds;
+  std::vector<std::string> warnings;
+  Forces forces;
+  const Gravity* gravity = nullptr;
+  const SpringForce* springs = nullptr;
+  const AngleForce* angles = nullptr;  ///< when the network has angle bends
+  PenaltyContact* penalty = nullptr;   ///< when contact answers by forces
+  std::unique_ptr<Integrator> integrator;
+  StepConstraints constraints;
+  std::optional<StepRefinement> refinement;  ///< when steps may be made in parts
+  bool waits_for_turn;                       ///< see StretchLimit::may_follow_turn
+  DivergenceCheck divergence;
+  EnergyWatch energy_watch;
+  SimulationState state;
+  SimulationState begun;               ///< where a step that may be made again began
+  std::optional<Index> kept_contacts;  ///< of the last step, if constraints have seen another since
+};
+
+}  // namespace sprung

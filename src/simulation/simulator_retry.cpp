@@ -1,0 +1,49 @@
+#include "base/error.h"
+#include "simulation/simulator_implementation.h"
+#include "simulation/step_retry.h"
+
+#include <utility>
+
+namespace sprung {
+
+// What a step leads far, by a lever or between obstacles that close, may find no place though there is one: in smaller steps
+// contact answers before they meet. Of all attempts that of the fewest squeezed counts.
+StepReport Simulator::Implementation::make_again(const StepReport& first) {
+  Made best{state, energy_watch, first, contacts()};
+  const EnergyWatch watch = energy_watch;
+  constraints.look_ahead(true);
+  for (const int more : kRetryParts) {
+    if (best.report.most_squeezed == 0 || begun.parts > kMostParts / more) break;
+    energy_watch = watch;
+    const auto report = attempt(more);
+    if (report && report->most_squeezed < best.report.most_squeezed) best = {state, energy_watch, *report, contacts()};
+  }
+  constraints.look_ahead(false);
+  constraints.forget();
+  state = std::move(best.state);
+  energy_watch = best.watch;
+  kept_contacts = best.contacts;
+  note_retry(first.most_squeezed, best.report.most_squeezed, state);
+  return best.report;
+}
+
+/// None when it diverges.
+std::optional<StepReport> Simulator::Implementation::attempt(int more) {
+  state = begun;
+  constraints.forget();
+  environment.set_interval(time(), time());
+  integrator->set_part(1.0 / more);
+  set_parts(more * begun.parts);
+  std::optional<StepReport> report;
+  try {
+    report = make_step();
+    report->turn *= more;
+  } catch (const StepError&) {
+    report.reset();
+  }
+  integrator->set_part(1.0);
+  set_parts(begun.parts);
+  return report;
+}
+
+}  // namespace sprung
