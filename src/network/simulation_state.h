@@ -22,6 +22,7 @@ struct SimulationState {
   int free_steps = 0;                      ///< so many in a row squeezed nothing
   std::int64_t retry_from = 0;             ///< steps before this one are not made again where they squeeze anything
   int retry_wait = 0;                      ///< how many that are after the last time that this did not help
+  Index retry_squeezed = 0;                ///< but those that squeeze more than this, which was left then
   Points x;                                ///< positions [m], 3 x n
   Points v;                                ///< velocities [m/s], 3 x n
   Points x_previous;                       ///< Verlet's positions one step ago [m], 3 x n

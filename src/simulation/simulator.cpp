@@ -63,14 +63,13 @@ bool Simulator::Implementation::anything_moves() const {
 }
 
 StepReport Simulator::Implementation::step() {
-  const bool may_be_made_again = constraints.contacts().meets_anything() && may_retry(state);
-  if (may_be_made_again) {
+  if (constraints.contacts().meets_anything()) {
     begun = state;
     constraints.note();
   }
   kept_contacts.reset();
   StepReport report = make_step();
-  if (may_be_made_again && report.squeezed > 0) report = make_again(report);
+  if (may_retry(report.most_squeezed, begun)) report = make_again(report);
   note_step(report.squeezed, state);
   if (refinement) choose_parts(report);
   if (const StretchLimit* limit = constraints.limit()) hand_over_missed(network, *limit, report.stretch_excess, state);

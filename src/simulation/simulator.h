@@ -59,7 +59,7 @@ struct StepReport {
   Index truncated = 0;          ///< particles stopped at a surface
   Index squeezed = 0;           ///< particles that found no free place between obstacles
   Index most_squeezed = 0;      ///< of those, the most in one part
-  double turn = 0.0;            ///< by how much the last part turned what a global solve holds, see StretchLimit::turn
+  double turn = 0.0;            ///< of what a global solve holds, by the pace of the last part in one of as many as the state has
 
   StepReport& operator+=(const StepReport& part);
 };
@@ -76,8 +76,8 @@ class Simulator {
 
   /// Advances by one step, in as many parts as the step before asks for (see StepRefinement). One that squeezes particles is made
   /// again in 4, 16 and 64 times as many, until none is: obstacles that come fast, or near pins, leave a place that a long step
-  /// passes by. While that does not help it is tried ever more rarely. Throws StepError when the network diverged; its state is of
-  /// no use then.
+  /// passes by. While that does not help those that squeeze no more are tried ever more rarely. Throws StepError when the network
+  /// diverged; its state is of no use then.
   StepReport step();
 
   [[nodiscard]] const SpringNetwork& network() const;

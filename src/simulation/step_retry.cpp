@@ -14,7 +14,9 @@ constexpr int kForgetting = 16;
 
 }  // namespace
 
-bool may_retry(const SimulationState& state) { return state.step >= state.retry_from; }
+bool may_retry(Index squeezed, const SimulationState& begun) {
+  return squeezed > 0 && (begun.step >= begun.retry_from || squeezed > begun.retry_squeezed);
+}
 
 void note_retry(Index squeezed_at_first, Index squeezed, SimulationState& state) {
   if (squeezed == 0) {
@@ -23,6 +25,7 @@ void note_retry(Index squeezed_at_first, Index squeezed, SimulationState& state)
     state.retry_wait = std::clamp(2 * state.retry_wait, 1, kMostWait);
   }
   state.retry_from = state.step + state.retry_wait;
+  state.retry_squeezed = squeezed > 0 ? std::max(state.retry_squeezed, squeezed) : 0;
 }
 
 void note_step(Index squeezed, SimulationState& state) {
@@ -30,6 +33,7 @@ void note_step(Index squeezed, SimulationState& state) {
   if (state.free_steps <= kLeastFree + state.retry_wait / kForgetting) return;
   state.retry_wait = 0;
   state.retry_from = state.step;
+  state.retry_squeezed = 0;
 }
 
 }  // namespace sprung

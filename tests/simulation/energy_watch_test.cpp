@@ -14,6 +14,15 @@ SpringNetwork one_particle() {
   return builder.build();
 }
 
+/// 1 kg each, 1 m apart, and a spring between them.
+SpringNetwork two_masses(double stiffness, double rest_length) {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 1.0);
+  builder.add_particle(Vector3::UnitX(), 1.0);
+  builder.add_spring(0, 1, stiffness, rest_length);
+  return builder.build();
+}
+
 EnergyWatch watch(const SpringNetwork& network) { return {network, SimulatorSettings{.step = 0.01}, {}}; }
 
 TEST(EnergyWatch, AllowsAThousandTimesWhatMotionBeganWith) {
@@ -84,11 +93,7 @@ TEST(EnergyWatch, SpringsMayBeStretchedToTwiceTheirLength) {
 
 // Capacity 1/2 J and 100 J stored.
 TEST(EnergyWatch, WhatWasStretchedSlowlyMaySnap) {
-  NetworkBuilder builder;
-  builder.add_particle(Vector3::Zero(), 1.0);
-  builder.add_particle(Vector3::UnitX(), 1.0);
-  builder.add_spring(0, 1, 1.0, 1.0);
-  const SpringNetwork network = builder.build();
+  const SpringNetwork network = two_masses(1.0, 1.0);
   EnergyWatch slow = watch(network);
   EnergyWatch fast = watch(network);
   for (EnergyWatch* energy : {&slow, &fast}) energy->note(0, {});
@@ -112,11 +117,7 @@ TEST(EnergyWatch, RoundingIsNoExplosion) {
 
 // m g d = 40 J.
 TEST(EnergyWatch, WhatALimitHoldsMayBounceByTheLengthOfASpring) {
-  NetworkBuilder builder;
-  builder.add_particle(Vector3::Zero(), 1.0);
-  builder.add_particle(Vector3::UnitX(), 1.0);
-  builder.add_spring(0, 1, 0.0, 2.0);
-  const SpringNetwork network = builder.build();
+  const SpringNetwork network = two_masses(0.0, 2.0);
   const SimulatorSettings settings{.step = 0.01, .gravity = {0.0, -10.0, 0.0}, .stretch_limit = StretchLimitSettings{}};
   EnergyWatch energy(network, settings, {});
   energy.note(0, {});

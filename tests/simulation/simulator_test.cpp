@@ -356,9 +356,8 @@ NetworkBuilder rod_and_thrown_particle(const std::vector<Index>& pinned) {
   return builder;
 }
 
-// What has no place in any parts is tried again ever more rarely, and the attempts leave nothing behind: what is far off goes as if
-// nothing were in the way.
-TEST(Simulator, WhatSqueezesInAnyPartsIsTriedAgainRarely) {
+// What has no place in any parts is tried all the same: what is far off goes on as if nothing were in the way.
+TEST(Simulator, WhatSqueezesInAnyPartsLeavesNothingBehind) {
   const NetworkBuilder builder = rod_and_thrown_particle({0, 1});
   for (const IntegratorSettings& integrator : all_integrators()) {
     const SimulatorSettings settings{.step = 1e-2, .integrator = integrator};

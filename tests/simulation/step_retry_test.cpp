@@ -10,7 +10,7 @@ namespace {
 int tries(int steps, bool helps, SimulationState& state) {
   int tried = 0;
   for (int step = 0; step < steps; ++step) {
-    const bool again = may_retry(state);
+    const bool again = may_retry(2, state);
     ++state.step;
     if (again) {
       ++tried;
@@ -21,9 +21,11 @@ int tries(int steps, bool helps, SimulationState& state) {
   return tried;
 }
 
+TEST(StepRetry, IsNotForStepsThatSqueezeNothing) { EXPECT_FALSE(may_retry(0, {})); }
+
 TEST(StepRetry, IsEverRarerWhileItDoesNotHelp) {
   SimulationState state;
-  EXPECT_EQ(tries(2048, false, state), 11);  // at 0, 1, 3, 7, ... 1023
+  EXPECT_EQ(tries(2048, false, state), 11);  // at 0, 2, 5, 10, 19, ... 1033
 }
 
 TEST(StepRetry, IsNotRarerWhileItHelps) {
@@ -31,16 +33,24 @@ TEST(StepRetry, IsNotRarerWhileItHelps) {
   EXPECT_EQ(tries(100, true, state), 100);
 }
 
+TEST(StepRetry, IsForStepsThatSqueezeMoreThanWasLeft) {
+  SimulationState state;
+  tries(100, false, state);
+  EXPECT_FALSE(may_retry(2, state));
+  EXPECT_TRUE(may_retry(3, state));
+}
+
 TEST(StepRetry, ForgetsWhatIsOver) {
   SimulationState state;
   tries(5000, false, state);
-  EXPECT_FALSE(may_retry(state));
+  EXPECT_FALSE(may_retry(2, state));
   int free = 0;
-  for (; !may_retry(state); ++free) {
+  for (; !may_retry(2, state); ++free) {
     ++state.step;
     note_step(0, state);
   }
   EXPECT_LT(free, 128);
+  EXPECT_EQ(tries(2048, false, state), 11) << "as from the start";
 }
 
 TEST(StepRetry, StaysRareWhereEveryOtherStepSqueezes) {
