@@ -122,7 +122,7 @@ void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, 
   const Points allowed = after;
   Outcomes outcomes = PairPlacement(zones, *pairs, particles).place(before, after);
   const bool sure = placement.look_at_pins(particles, after, outcomes);
-  if (!sure || (set.moves() && count(outcomes, Outcome::squeezed) > 0)) {
+  if (!sure || (placement.closes_in({before, allowed}) && count(outcomes, Outcome::squeezed) > 0)) {
     outcomes = place_in_parts(environment, {before, allowed}, after, [&](const Way& part, Points& x) {
       const PlacedPart among_obstacles = placement.place_part(particles, part, x);
       pairs->begin_part(part.from, x);

@@ -1,5 +1,7 @@
 #include "collision/held_groups.h"
 
+#include "collision/pin_motion.h"
+
 #include <algorithm>
 
 namespace sprung {
@@ -36,7 +38,9 @@ bool HeldGroups::unite(std::span<const Index> particles) {
   if (first == kNone) return false;
   char& stop = stopped_[static_cast<std::size_t>(first)];
   for (const Index i : particles) {
-    if (changed && pinned_[static_cast<std::size_t>(i)] != 0) leads_.push_back({first, targets_.col(i) - before_.col(i)});
+    if (pinned_[static_cast<std::size_t>(i)] == 0 || (!changed && is_led(first, i))) continue;
+    leads_.push_back({first, i});
+    changed = true;
   }
   if (!changed && stop == 0) {
     stop = 1;
@@ -46,11 +50,17 @@ bool HeldGroups::unite(std::span<const Index> particles) {
   return changed;
 }
 
+bool HeldGroups::is_led(Index root_particle, Index pin) const {
+  return std::any_of(leads_.begin(), leads_.end(),
+                     [&](const Lead& lead) { return lead.pin == pin && root(lead.follower) == root_particle; });
+}
+
 void HeldGroups::find_motions() {
   number_groups();
-  std::vector<char> led_by_pins(groups_.size(), 0);
-  find_means(led_by_pins);
-  anchor_groups(led_by_pins);
+  find_means();
+  const std::vector<std::vector<Index>> pins = leading_pins();
+  anchor_groups(pins);
+  let_pins_turn(pins);
 }
 
 void HeldGroups::number_groups() {
@@ -63,7 +73,7 @@ void HeldGroups::number_groups() {
   for (const Index i : held_) number_[static_cast<std::size_t>(i)] = number_[static_cast<std::size_t>(root(i))];
 }
 
-void HeldGroups::find_means(std::vector<char>& led_by_pins) {
+void HeldGroups::find_means() {
   struct Sum {
     Vector3 motion = Vector3::Zero();
     double squares = 0.0;
@@ -79,10 +89,7 @@ void HeldGroups::find_means(std::vector<char>& led_by_pins) {
     sum.squares += motion.squaredNorm();
     sum.count += 1.0;
   };
-  for (const Lead& by_pin : leads_) {
-    lead(by_pin.follower, by_pin.motion, 3);
-    led_by_pins[static_cast<std::size_t>(group(by_pin.follower))] = 1;
-  }
+  for (const Lead& by_pin : leads_) lead(by_pin.follower, targets_.col(by_pin.pin) - before_.col(by_pin.pin), 3);
   const std::vector<Carried>& carried = carriers_.carried;
   for (const Index i : held_) {
     const auto found =
@@ -103,26 +110,55 @@ void HeldGroups::find_means(std::vector<char>& led_by_pins) {
   }
 }
 
-void HeldGroups::anchor_groups(const std::vector<char>& led_by_pins) {
+std::vector<std::vector<Index>> HeldGroups::leading_pins() const {
+  std::vector<std::vector<Index>> pins(groups_.size());
+  for (const Lead& lead : leads_) pins[static_cast<std::size_t>(group(lead.follower))].push_back(lead.pin);
+  for (std::vector<Index>& of_group : pins) {
+    std::sort(of_group.begin(), of_group.end());
+    of_group.erase(std::unique(of_group.begin(), of_group.end()), of_group.end());
+  }
+  return pins;
+}
+
+void HeldGroups::anchor_groups(const std::vector<std::vector<Index>>& pins) {
   if (carriers_.anchors.empty()) return;
   std::vector<std::vector<Anchor>> anchors(groups_.size());
   for (const Anchor& anchor : carriers_.anchors) {
     const Index k = group(anchor.particle);
-    if (k != kNone && led_by_pins[static_cast<std::size_t>(k)] == 0) anchors[static_cast<std::size_t>(k)].push_back(anchor);
+    if (k != kNone && pins[static_cast<std::size_t>(k)].empty()) anchors[static_cast<std::size_t>(k)].push_back(anchor);
   }
   for (std::size_t k = 0; k < groups_.size(); ++k) {
-    if (!anchors[k].empty()) groups_[k] = {.motion = common_motion(anchors[k]), .fraction = 0.0, .anchored = true};
+    if (!anchors[k].empty()) groups_[k] = {.motion = common_motion(anchors[k]), .fraction = 0.0, .turned = true};
+  }
+}
+
+void HeldGroups::let_pins_turn(const std::vector<std::vector<Index>>& pins) {
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    if (pins[k].empty() || groups_[k].fraction > 0.0) continue;
+    std::vector<PinWay> ways;
+    for (const Index pin : pins[k]) ways.push_back({before_.col(pin), targets_.col(pin)});
+    groups_[k] = {.motion = AffineTransform(common_motion(ways)), .fraction = 0.0, .turned = true};
   }
 }
 
 Vector3 HeldGroups::turned(Index group, const Vector3& normal) const {
   const Group& of = groups_[static_cast<std::size_t>(group)];
-  return of.anchored ? Vector3((of.motion.linear().inverse().transpose() * normal).normalized()) : normal;
+  return of.turned ? Vector3((of.motion.linear().inverse().transpose() * normal).normalized()) : normal;
 }
 
 Vector3 HeldGroups::start(Index particle) const {
   if (!holds(particle)) return targets_.col(particle);
   return groups_[static_cast<std::size_t>(group(particle))].motion * before_.col(particle);
+}
+
+bool HeldGroups::turn() const {
+  return std::any_of(groups_.begin(), groups_.end(), [](const Group& group) { return group.turned; });
+}
+
+bool HeldGroups::takes_along(Index group, Index pin, double miss) const {
+  if (group == kNone || fraction(group) > 0.0) return false;
+  const Vector3 end = groups_[static_cast<std::size_t>(group)].motion * before_.col(pin);
+  return (end - targets_.col(pin)).norm() <= miss;
 }
 
 Vector3 HeldGroups::end(Index particle) const {

@@ -31,10 +31,11 @@ class HeldGroups {
   /// may not leave the motion that it shares any more. Returns whether anything has changed.
   bool unite(std::span<const Index> particles);
 
-  /// Finds the groups' motions: the mean of those of pinned particles that lead it; else the common motion of its anchors, which it
-  /// may not leave; else the mean of its carried particles; else what its particles' ways have in
-  /// common: their mean, less the part that their spread is of it, so that a falling cloth is not held back and a resting one not
-  /// carried away by what hits it. Fractions are 1 again, except of groups that may not leave it.
+  /// Finds the groups' motions: the mean of those of pinned particles that lead it or, if it may not leave that, the rigid motion
+  /// that takes them along; else the common motion of its anchors, which it may not leave; else the mean of its carried particles;
+  /// else what its particles' ways have in common: their mean, less the part that their spread is of it, so that a falling cloth is
+  /// not held back and a resting one not carried away by what hits it. Fractions are 1 again, except of groups that may not leave
+  /// it.
   void find_motions();
 
   /// A group's number from 0, or kNone for a particle that is not held, as find_motions() found it.
@@ -47,6 +48,12 @@ class HeldGroups {
   /// Where a particle ends that has gone its group's fraction of the way to its target as well.
   [[nodiscard]] Vector3 end(Index particle) const;
 
+  /// Whether a group that may not leave its motion takes a pin to where that goes, but for a miss [m]: it moves as they all do.
+  [[nodiscard]] bool takes_along(Index group, Index pin, double miss) const;
+
+  /// Whether any group's motion may be more than a translation.
+  [[nodiscard]] bool turn() const;
+
   /// The normal of a plane within the group after its motion.
   [[nodiscard]] Vector3 turned(Index group, const Vector3& normal) const;
 
@@ -57,17 +64,22 @@ class HeldGroups {
   struct Group {
     AffineTransform motion = AffineTransform::Identity();
     double fraction = 1.0;
-    bool anchored = false;
+    bool turned = false;  ///< the motion may be more than a translation
   };
   struct Lead {
     Index follower;
-    Vector3 motion;
+    Index pin;
   };
 
   [[nodiscard]] Index root(Index particle) const;
+  [[nodiscard]] bool is_led(Index root_particle, Index pin) const;
   void number_groups();
-  void find_means(std::vector<char>& led_by_pins);
-  void anchor_groups(const std::vector<char>& led_by_pins);
+  void find_means();
+  /// By group, ascending.
+  [[nodiscard]] std::vector<std::vector<Index>> leading_pins() const;
+  void anchor_groups(const std::vector<std::vector<Index>>& pins);
+  /// Those of groups that may not leave the motion that they share.
+  void let_pins_turn(const std::vector<std::vector<Index>>& pins);
 
   const Points& before_;
   const Points& targets_;

@@ -56,7 +56,7 @@ Truncation ObstaclePlacement::place_all(const Way& way, Points& after) {
   std::vector<Index> particles = movable(zones_.restless(), way);
   Outcomes outcomes = place_with_fresh_zones(particles, way, after);
   const bool sure = look_at_pins(particles, after, outcomes);
-  if (!way.obstacles_rest && (!sure || (set_.moves() && count(outcomes, Outcome::squeezed) > 0))) {
+  if (!way.obstacles_rest && (!sure || (closes_in(way) && count(outcomes, Outcome::squeezed) > 0))) {
     add_free(all_movable(way), particles, outcomes);
     if (sure) carry_squeezed(zones_, particles, way.from, after, outcomes);
     if (!sure || count(outcomes, Outcome::squeezed) > 0) {
@@ -128,6 +128,10 @@ PlacedPart ObstaclePlacement::place_ahead(std::vector<Index>& particles, const W
   place(zones_, particles, first, ahead);
   environment_.set_interval(begin, end);
   return place_anew(particles, {ahead, goals}, after);
+}
+
+bool ObstaclePlacement::closes_in(const Way& way) const {
+  return set_.moves() || std::any_of(pinned_.begin(), pinned_.end(), [&](Index i) { return way.from.col(i) != way.to.col(i); });
 }
 
 void ObstaclePlacement::note_crossed() {

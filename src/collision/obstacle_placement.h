@@ -28,6 +28,9 @@ class ObstaclePlacement {
   /// where the way began. False where zones did not hold pins: then that is known for this place alone.
   bool look_at_pins(const std::vector<Index>& particles, const Points& after, Outcomes& outcomes);
 
+  /// Whether obstacles or pins move: else there is a place where the way begins.
+  [[nodiscard]] bool closes_in(const Way& way) const;
+
   /// Particles that are not pinned and whose ways are finite, ascending.
   [[nodiscard]] std::vector<Index> all_movable(const Way& way) const;
 

@@ -135,6 +135,10 @@ Outcomes PairPlacement::place_held(const Points& before, Points& after) {
 }
 
 Outcome PairPlacement::place_held(Index particle, const Vector3& before, const Vector3& target, Points& after) const {
+  if (pairs_.passes(particle)) {
+    after.col(particle) = pairs_.safe_place(particle);
+    return Outcome::squeezed;
+  }
   if (pairs_.allows(particle, target) && zones_.allow(particle, target)) return Outcome::free;
   std::vector<HalfSpace> bounds;
   zones_.append_half_spaces(particle, bounds);

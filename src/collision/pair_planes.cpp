@@ -31,6 +31,7 @@ PairPlanes::PairPlanes(const Points& before, const Points& targets, const std::v
                        double kept)
     : before_(before),
       targets_(targets),
+      pinned_(pinned),
       groups_(before, targets, pinned, carriers),
       ends_(targets),
       kept_(kept),
@@ -38,9 +39,12 @@ PairPlanes::PairPlanes(const Points& before, const Points& targets, const std::v
 
 bool PairPlanes::hold(std::vector<ElementPair>& pairs) {
   bool changed = false;
+  passing_.clear();
   for (const Index k : find_conflicts(pairs)) {
     const ElementPair& pair = pairs[static_cast<std::size_t>(k)];
-    changed = groups_.unite({pair.particles.data(), static_cast<std::size_t>(pair.count())}) || changed;
+    const std::span<const Index> particles(pair.particles.data(), static_cast<std::size_t>(pair.count()));
+    changed = groups_.unite(particles) || changed;
+    passing_.insert(passing_.end(), particles.begin(), particles.end());
   }
   if (!changed) return false;
   groups_.find_motions();
@@ -84,9 +88,12 @@ bool PairPlanes::passes(const ElementPair& pair) const {
 }
 
 Index PairPlanes::group_of(const ElementPair& pair) const {
-  const Index group = groups_.group(pair.particles.front());
-  const auto end = pair.particles.begin() + pair.count();
-  return std::all_of(pair.particles.begin(), end, [&](Index i) { return groups_.group(i) == group; }) ? group : kNone;
+  Index group = kNone;
+  for (int k = 0; k < pair.count(); ++k) group = std::max(group, groups_.group(pair.particles[static_cast<std::size_t>(k)]));
+  const auto is_of = [&](Index i) {
+    return groups_.group(i) == group || (is_pinned(i) && groups_.takes_along(group, i, kRounding * clearance_));
+  };
+  return std::all_of(pair.particles.begin(), pair.particles.begin() + pair.count(), is_of) ? group : kNone;
 }
 
 double PairPlanes::kept_gap(const ElementPair& pair) const {

@@ -26,6 +26,9 @@ class PairPlanes {
   /// Pairs whose plane does not do any more get a better one, if there is one.
   [[nodiscard]] bool hold(std::vector<ElementPair>& pairs);
 
+  /// Whether groups were turned, and the normals of their pairs not.
+  [[nodiscard]] bool turned() const { return groups_.turn(); }
+
   /// Gives a new normal to those pairs whose own does not separate them where the step begins.
   void renew_normals(std::vector<ElementPair>& pairs) const;
 
@@ -34,6 +37,10 @@ class PairPlanes {
 
   /// In the order in which they were held.
   [[nodiscard]] const std::vector<Index>& held() const { return groups_.particles(); }
+
+  /// Those of pairs that pass each other all the same, when no end changes any more: pins that go different ways drag them [any
+  /// order, some more than once].
+  [[nodiscard]] const std::vector<Index>& passing() const { return passing_; }
 
   /// What bounds a held particle at the step's end.
   struct Bound {
@@ -46,7 +53,8 @@ class PairPlanes {
  private:
   [[nodiscard]] std::vector<Index> find_conflicts(std::vector<ElementPair>& pairs) const;
   [[nodiscard]] bool passes(const ElementPair& pair) const;
-  /// The group that all of the pair is in; kNone if there is none.
+  [[nodiscard]] bool is_pinned(Index i) const { return pinned_[static_cast<std::size_t>(i)] != 0; }
+  /// The group that all of the pair is in, or that takes along what of it is pinned; kNone if there is none.
   [[nodiscard]] Index group_of(const ElementPair& pair) const;
   void limit_groups(const std::vector<ElementPair>& pairs);
   [[nodiscard]] double kept_gap(const ElementPair& pair) const;
@@ -55,8 +63,10 @@ class PairPlanes {
 
   const Points& before_;
   const Points& targets_;
+  const std::vector<char>& pinned_;
   HeldGroups groups_;
   Points ends_;
+  std::vector<Index> passing_;
   double kept_;
   double clearance_;  ///< below this, a gap is not told from rounding [m]
 };

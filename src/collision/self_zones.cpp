@@ -28,6 +28,7 @@ struct SelfZones::Implementation {
   PairWatch watch;
   Points ends;
   std::vector<Index> held;
+  std::vector<Index> passing;  ///< ascending
   std::vector<PairPlanes::Bound> bounds;
   bool turned = false;  ///< groups were, and the normals of their pairs not
 };
@@ -53,11 +54,13 @@ const std::vector<Index>& SelfZones::hold(const Points& before, const Points& ta
   PairPlanes planes(before, targets, self.surface.pinned, carriers, kKeptPart * self.surface.thickness.minCoeff());
   self.watch.follow(before, targets);
   if (self.turned) planes.renew_normals(self.watch.pairs());
-  self.turned = !carriers.anchors.empty();
   while (planes.hold(self.watch.pairs())) self.watch.follow(before, planes.ends());
+  self.turned = planes.turned();
   self.ends = planes.ends();
   self.held = planes.held();
   std::sort(self.held.begin(), self.held.end());
+  self.passing = planes.passing();
+  std::sort(self.passing.begin(), self.passing.end());
   self.bounds = planes.bounds(self.watch.pairs());
   return self.held;
 }
@@ -71,6 +74,10 @@ void SelfZones::append_half_spaces(Index particle, std::vector<HalfSpace>& half_
 SelfZones::Ball SelfZones::ball(Index particle) const {
   const MovingBalls& balls = implementation_->watch.balls();
   return {balls.center(particle, 1.0), balls.radius(particle)};
+}
+
+bool SelfZones::passes(Index particle) const {
+  return std::binary_search(implementation_->passing.begin(), implementation_->passing.end(), particle);
 }
 
 bool SelfZones::allows(Index particle, const Vector3& p) const {

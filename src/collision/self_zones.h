@@ -52,6 +52,9 @@ class SelfZones {
   };
   [[nodiscard]] Ball ball(Index particle) const;
 
+  /// Whether a held particle is one of a side that passes another wherever it ends: pins that go different ways drag it.
+  [[nodiscard]] bool passes(Index particle) const;
+
   /// Whether a held particle may end at p: it is within both.
   [[nodiscard]] bool allows(Index particle, const Vector3& p) const;
 

@@ -259,6 +259,71 @@ TEST(SelfZones, PinnedParticlesReachTheirTargets) {
   }
 }
 
+/// Pins two corners of the cloth and its middle.
+void pin_three(SelfNetwork& network) {
+  for (const Index i : {Index{0}, network.count() / 2, network.count() - 1}) network.pinned[static_cast<std::size_t>(i)] = 1;
+}
+
+/// Takes each pin from its place to `way(place)` in each step, whatever becomes of the others.
+template <class PlaceAfter>
+std::function<Points(int, const Points&)> led(const std::function<Points(int, const Points&)>& others, const SelfNetwork& network,
+                                              const PlaceAfter& way) {
+  return [&network, others, way](int step, const Points& x) {
+    Points targets = others(step, x);
+    for (Index i = 0; i < network.count(); ++i) {
+      if (network.pinned[static_cast<std::size_t>(i)] != 0) targets.col(i) = way(Vector3(x.col(i)));
+    }
+    return targets;
+  };
+}
+
+// What is in the way of a pin, or hangs on one, goes its way.
+TEST(SelfZones, ACrumplingClothNeverCrossesItselfAtPinsThatRestOrMoveRigidly) {
+  SelfNetwork network = cloth_of(6);
+  pin_three(network);
+  const CollisionSurface surface = network.surface(kThickness);
+  RigidTransform shift = RigidTransform::Identity();
+  shift.translation() = kEdge * Vector3(0.3, -0.2, 0.1);
+  RigidTransform turn = shift;
+  turn.linear() = Eigen::AngleAxisd(0.3, Vector3(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
+  for (const RigidTransform& motion : {RigidTransform(RigidTransform::Identity()), shift, turn}) {
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+      SelfZones zones(surface, network.positions, kMargin);
+      const auto moved = [&](const Vector3& pin) -> Vector3 { return motion * pin; };
+      test::run(network, zones, 60, led(crumpling(2.0 * kEdge, seed), network, moved), [&](const Points& x) {
+        ASSERT_EQ(test::count_crossings(network.elements, x), 0) << "seed " << seed << ", " << motion.matrix();
+      });
+    }
+  }
+}
+
+TEST(SelfZones, WhatPinsDragThroughEachOtherIsTold) {
+  SelfNetwork network = cloth_of(6);
+  pin_three(network);
+  const CollisionSurface surface = network.surface(kThickness);
+  int crossed = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    test::Random random(seed);
+    SelfZones zones(surface, network.positions, kMargin);
+    const auto apart = [&](const Vector3& pin) -> Vector3 { return pin + 3.0 * kEdge * random.direction(); };
+    const auto move = led(crumpling(kEdge, seed), network, apart);
+    Points x = network.positions;
+    std::vector<Contact> contacts;
+    for (int step = 0; step < 40 && test::count_crossings(network.elements, x) == 0; ++step) {
+      Points targets = move(step, x);
+      zones.begin_step(x, targets, contacts);
+      test::truncate(zones, x, targets);
+      x = targets;
+      if (test::count_crossings(network.elements, x) == 0) continue;
+      ++crossed;
+      Index told = 0;
+      for (Index i = 0; i < network.count(); ++i) told += zones.passes(i) ? 1 : 0;
+      EXPECT_GT(told, 0) << "seed " << seed << ", step " << step;
+    }
+  }
+  EXPECT_GT(crossed, 0);
+}
+
 TEST(SelfZones, ScaledScenesGiveTheSameBits) {
   std::vector<Points> ends;
   for (const double scale : {1.0, 0x1p7, 0x1p-7}) {

@@ -11,23 +11,36 @@
 namespace sprung::testing {
 namespace {
 
-/// The time in which the bar rises by 0.1 m [s], particles along the cloth, and the step's factor.
-class LiftedBesideItsPins : public ::testing::TestWithParam<std::tuple<double, int, double>> {};
+/// The time in which the bar rises by 0.1 m, or the pins sink by as much [s], which of them moves, particles along the cloth, the
+/// step's factor, and whether the cloth collides with itself.
+class LiftedBesideItsPins : public ::testing::TestWithParam<std::tuple<double, bool, int, double, bool>> {};
 INSTANTIATE_TEST_SUITE_P(Lift, LiftedBesideItsPins,
-                         ::testing::Combine(::testing::Values(0.2, 0.05, 0.01), ::testing::Values(8, 24),
-                                            ::testing::Values(1.0, 4.0)));
+                         ::testing::Combine(::testing::Values(0.2, 0.05, 0.01), ::testing::Bool(), ::testing::Values(8, 24),
+                                            ::testing::Values(1.0, 4.0), ::testing::Bool()));
+
+std::string sinking(double time) {
+  const std::string t = std::to_string(time);
+  return R"(bodies.cloth.pins[0].motion={"keyframes": [{"time": 0}, {"time": )" + t + R"(, "position": [0, 0, -0.1]}, )" +
+         R"({"time": 1, "position": [0, 0, -0.1]}]})";
+}
 
 // A bar rises through the plane of a cloth that is pinned 3 cm beside it: the cloth's next row, 9 or 29 cm from the pins, is thrown
 // up to ten times as fast.
 TEST_P(LiftedBesideItsPins, TheClothTurnsAboutThem) {
-  const auto [rise, columns, step_factor] = GetParam();
-  const std::string cloth = "bodies.cloth.shape.resolution=[" + std::to_string(columns) + ", 3]";
-  const std::string motion = "obstacles.bar.motion.keyframes[1].time=" + std::to_string(rise);
+  const auto [rise, pins_sink, columns, step_factor, self] = GetParam();
+  std::vector<std::string> overrides = {"bodies.cloth.shape.resolution=[" + std::to_string(columns) + ", 3]",
+                                        "bodies.cloth.self_contact=" + std::string(self ? "true" : "false")};
+  if (pins_sink) {
+    overrides.push_back("obstacles.bar.motion.keyframes=[{\"time\": 0}]");
+    overrides.push_back(sinking(rise));
+  } else {
+    overrides.push_back("obstacles.bar.motion.keyframes[1].time=" + std::to_string(rise));
+  }
   Points risen;
   const auto watch = [&, rise = rise](const Simulator& simulator, const FrameDiagnostics& frame) {
     if (risen.cols() == 0 && frame.time >= rise) risen = simulator.positions();
   };
-  const ScenarioReport report = run_scenario(load_scenario("lifted_beside_pins", {cloth, motion}, step_factor), watch);
+  const ScenarioReport report = run_scenario(load_scenario("lifted_beside_pins", overrides, step_factor), watch);
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_EQ(report.squeezed, 0);
   // The bar is 5 cm above the pins then, and on the right of the line from them to the next row. Faster ones have thrown it round.
@@ -48,6 +61,29 @@ TEST(LiftedBesidePins, AStepThatWouldSqueezeIsMadeAgainInParts) {
   EXPECT_EQ(report.squeezed, 0) << report;
   EXPECT_GT(parts, steps);
   EXPECT_LT(parts, steps + 2 * 64) << "few steps are made in more parts than one";
+}
+
+// A rope that is pinned at both ends beside the cloth, at several heights, leaves the bar no way: it is squeezed for good, a step
+// before the cloth would be, in the same one or after it.
+TEST(LiftedBesidePins, WhatIsSqueezedForGoodDoesNotKeepOthersFromIt) {
+  for (const double height : {-0.03, -0.02, -0.01, -0.004}) {
+    const std::string z = std::to_string(height);
+    const std::vector<std::string> overrides = {
+        "bodies.cloth.shape.resolution=[8, 3]", "obstacles.bar.motion.keyframes[1].time=0.05",
+        R"(bodies.rope={"shape": {"type": "rope", "points": [[-1.2, 0.15, )" + z + "], [-0.8, 0.15, " + z +
+            R"(]], "particles": 2}, "mass": 0.01, "springs": {"structural": {"stiffness": 0}}, "body_contact": false,)"
+            R"("thickness": 0.002, "pins": [{"indices": [0, 1]}]})"};
+    Points risen;
+    const ScenarioReport report = run_scenario(
+        load_scenario("lifted_beside_pins", overrides),
+        [&](const Simulator& simulator, const FrameDiagnostics& frame) {
+          if (risen.cols() == 0 && frame.time >= 0.05) risen = simulator.positions();
+        },
+        Judge::nothing);
+    EXPECT_GT(report.squeezed, 0) << height;
+    const Vector3 next = risen.col(1) - risen.col(0);
+    EXPECT_GT(0.03 * next.z() - 0.05 * next.x(), 0.0) << height;
+  }
 }
 
 /// The velocity at the end [m/s] of a cloth that flies far off, and in how many parts steps were made.
