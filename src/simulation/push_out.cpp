@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -34,6 +35,16 @@ std::vector<Vector3> ways_out() {
   return ways;
 }
 
+bool crosses_another(const CollisionSurface& surface, Index body, const Points& positions) {
+  const auto body_of = [&](Index element) { return surface.elements[static_cast<std::size_t>(element)].body; };
+  const std::vector<CrossingElements> found = find_self_intersections(surface, positions);
+  return std::any_of(found.begin(), found.end(), [&](const CrossingElements& crossing) {
+    const Index first = body_of(crossing.first);
+    const Index second = body_of(crossing.second);
+    return first != second && (first == body || second == body);
+  });
+}
+
 class FreePlace {
  public:
   FreePlace(const Environment& environment, const CollisionSurface& surface, Index body, const Points& wanted)
@@ -51,7 +62,7 @@ class FreePlace {
     }
   }
 
-  [[nodiscard]] std::optional<Points> find() const {
+  [[nodiscard]] std::optional<Points> off_obstacles() const {
     double depth = 0.0;
     for (const auto& inside : intersections(wanted_).inside) depth = std::max(depth, inside.depth);
     const double size = surface_.element_size[static_cast<std::size_t>(body_)];
@@ -59,8 +70,15 @@ class FreePlace {
     if (shallow) {
       if (auto place = off_surfaces(size, depth)) return place;
     }
-    if (auto place = as_a_whole(kFirstWay * (size > 0.0 ? size : depth))) return place;
+    const auto is_off = [&](const Points& x) { return is_off_obstacles(x); };
+    if (auto place = as_a_whole(kFirstWay * (size > 0.0 ? size : depth), is_off)) return place;
     return shallow ? std::nullopt : off_surfaces(size, depth);
+  }
+
+  /// Off other bodies too.
+  [[nodiscard]] std::optional<Points> off_all() const {
+    return as_a_whole(kFirstWay * surface_.element_size[static_cast<std::size_t>(body_)],
+                      [&](const Points& x) { return !crosses_another(surface_, body_, x) && is_off_obstacles(x); });
   }
 
  private:
@@ -68,12 +86,12 @@ class FreePlace {
     return find_intersections(environment_.set(), surface_, x, body_);
   }
 
-  [[nodiscard]] bool is_free(const Points& x) const { return intersections(x).empty(); }
+  [[nodiscard]] bool is_off_obstacles(const Points& x) const { return intersections(x).empty(); }
 
   [[nodiscard]] std::optional<Points> off_surfaces(double size, double depth) const {
     for (const double part : kDistancesOff) {
       Points place = led_off(part * size, depth);
-      if (is_free(place)) return place;
+      if (is_off_obstacles(place)) return place;
     }
     return std::nullopt;
   }
@@ -92,7 +110,8 @@ class FreePlace {
     return place;
   }
 
-  [[nodiscard]] std::optional<Points> as_a_whole(double first_way) const {
+  template <class IsFree>
+  [[nodiscard]] std::optional<Points> as_a_whole(double first_way, const IsFree& is_free) const {
     double way = first_way;
     for (int doubling = 0; doubling < kMostDoublings; ++doubling, way *= 2.0) {
       for (const Vector3& direction : ways_out()) {
@@ -113,15 +132,32 @@ class FreePlace {
   std::vector<char> movable_;  ///< by particle: 1 for those of the body that no pin holds
 };
 
+/// Those that are to stay come last: bodies that pins hold, and of others the first.
+std::vector<Index> in_order_of_leaving(const SpringNetwork& network) {
+  std::vector<Index> order(network.bodies.size());
+  std::iota(order.rbegin(), order.rend(), 0);
+  std::stable_partition(order.begin(), order.end(), [&](Index number) {
+    const Body& body = network.bodies[static_cast<std::size_t>(number)];
+    return (network.inverse_masses.segment(body.first_particle, body.particle_count).array() > 0.0).all();
+  });
+  return order;
+}
+
 }  // namespace
 
-Points push_out(const SpringNetwork& network, Environment& environment, const CollisionSurface& surface, const Points& wanted) {
+Points push_out(const SpringNetwork& network, Environment& environment, const CollisionSurface& surface, const Points& wanted,
+                bool apart) {
   Points positions = wanted;
+  const auto come_back = [&](Index body, const std::optional<Points>& place) {
+    if (place) positions = WayBack(network, environment, body).walk(*place, positions);
+  };
   for (Index body = 0; body < static_cast<Index>(network.bodies.size()); ++body) {
     if (find_intersections(environment.set(), surface, positions, body).empty()) continue;
-    if (const auto place = FreePlace(environment, surface, body, positions).find()) {
-      positions = WayBack(network, environment, body).walk(*place, positions);
-    }
+    come_back(body, FreePlace(environment, surface, body, positions).off_obstacles());
+  }
+  if (!apart) return positions;
+  for (const Index body : in_order_of_leaving(network)) {
+    if (crosses_another(surface, body, positions)) come_back(body, FreePlace(environment, surface, body, positions).off_all());
   }
   return positions;
 }

@@ -30,7 +30,7 @@ std::vector<std::string> say_what_moved(const SpringNetwork& network, const Poin
       farthest = std::max(farthest, (to.col(i) - from.col(i)).norm());
     }
     if (count == 0) continue;
-    lines.push_back("body \"" + body.name + "\" was pushed out of obstacles at the start: " + std::to_string(count) +
+    lines.push_back("body \"" + body.name + "\" was pushed out of what it intersected at the start: " + std::to_string(count) +
                     (count == 1 ? " particle by " : " particles by up to ") + format_number(farthest, 3) + " m");
   }
   return lines;
@@ -44,8 +44,8 @@ Start find_start(const SpringNetwork& network, Environment& environment, const C
   if (found.empty()) return {positions};
   Points place = positions;
   std::string remedy = "move one of them by \"place\", or let contact.start be \"push_out\"";
-  if (contact.start == ContactSettings::Start::push_out && !found.with_obstacles.empty()) {
-    place = push_out(network, environment, surface, positions);
+  if (contact.start == ContactSettings::Start::push_out) {
+    place = push_out(network, environment, surface, positions, contact.response == ContactSettings::Response::projection);
     found = find_all(environment, surface, contact, place);
     if (found.empty()) return {place, say_what_moved(network, positions, place)};
     remedy = "it could not be pushed out: move one of them by \"place\"";

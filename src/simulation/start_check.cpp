@@ -104,13 +104,14 @@ Problem problem_of(const InObstacle& found, const std::string& body, const std::
   return {.key = "bodies." + body, .value = value, .rule = rule, .remedy = remedy};
 }
 
-Problem problem_of(const std::vector<std::string>& pairs, const std::string& body, const std::string& other) {
+Problem problem_of(const std::vector<std::string>& pairs, const std::string& body, const std::string& other,
+                   const std::string& remedy) {
   const bool self = body == other;
   return {.key = "bodies." + body,
           .value = count_text(pairs.size(), "pair") + " of elements",
           .rule = "intersects " + (self ? "itself" : "body \"" + other + "\"") + " at the start: " + first_of(pairs),
           .remedy = self ? "change its shape, or set its self_contact to false"
-                         : "move one of them by \"place\", or set body_contact of one of them to false"};
+                         : remedy + ", or set body_contact of one of them to false"};
 }
 
 }  // namespace
@@ -137,7 +138,7 @@ std::vector<Problem> start_problems(const StartIntersections& found, const Sprin
     crossing_bodies[{a.body, b.body}].push_back(place.of(a) + " and " + place.of(b));
   }
   for (const auto& [numbers, pairs] : crossing_bodies) {
-    problems.push_back(problem_of(pairs, body_name(numbers.first), body_name(numbers.second)));
+    problems.push_back(problem_of(pairs, body_name(numbers.first), body_name(numbers.second), remedy));
   }
   return problems;
 }

@@ -25,8 +25,8 @@ struct StartIntersections {
 [[nodiscard]] StartIntersections find_start_intersections(const Environment& environment, const CollisionSurface& surface,
                                                           const Points& positions);
 
-/// A line for each body and obstacle, and for each pair of bodies: how much intersects, how deep, where, and, for what is in
-/// obstacles, `remedy`.
+/// A line for each body and obstacle, and for each pair of bodies: how much intersects, how deep, where, and the remedy: for what
+/// intersects anything but itself, `remedy`.
 [[nodiscard]] std::vector<Problem> start_problems(const StartIntersections& found, const SpringNetwork& network,
                                                   const Environment& environment, const CollisionSurface& surface,
                                                   const Points& positions, const std::string& remedy);

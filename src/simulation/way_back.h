@@ -1,4 +1,4 @@
-// Brings a body from a place where it is free to where it is wanted, as far as obstacles let it.
+// Brings a body from a place where it is free to where it is wanted, as far as obstacles and other bodies let it.
 #pragma once
 
 #include "dynamics/contact_projection.h"
@@ -10,8 +10,8 @@ class WayBack {
   /// Only this body moves. Keeps a reference to the environment.
   WayBack(const SpringNetwork& network, Environment& environment, Index body);
 
-  /// From `free`, where the body intersects no obstacle, towards `wanted`, in strides of an element's size; where it ends
-  /// [m]. Particles that meet an obstacle slide along it towards where they are wanted, while the others arrive.
+  /// From `free`, where the body intersects nothing, towards `wanted`, in strides of an element's size; where it ends
+  /// [m]. Particles that meet anything slide along it towards where they are wanted, while the others arrive.
   [[nodiscard]] Points walk(const Points& free, const Points& wanted);
 
  private:

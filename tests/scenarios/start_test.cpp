@@ -147,7 +147,7 @@ TEST_P(EveryStart, IsRefusedOrLedOutAndGoesOnFromThere) {
   expect_free(simulator);
   EXPECT_EQ(simulator.state().v, network.velocities);
   ASSERT_EQ(simulator.warnings().size(), 1U);
-  EXPECT_THAT(simulator.warnings()[0], HasSubstr("body \"body\" was pushed out of obstacles at the start: "));
+  EXPECT_THAT(simulator.warnings()[0], HasSubstr("body \"body\" was pushed out of what it intersected at the start: "));
   // The gap is body's and obstacle's thickness; passes end within a thousandth of it.
   EXPECT_GE(least_distance(simulator, in), 0.998 * (kThickness + in.material.thickness));
 
@@ -211,6 +211,66 @@ TEST(StartScenario, SeveralBodiesAreLedOutOfSeveralObstacles) {
   ASSERT_EQ(simulator.warnings().size(), 2U);
   EXPECT_THAT(simulator.warnings()[1], HasSubstr("\"right\""));
 }
+
+struct Placed {
+  BodyShape shape;
+  RigidTransform pose;
+};
+
+SpringNetwork network_of_several(const std::vector<Placed>& bodies) {
+  NetworkBuilder builder;
+  for (const Placed& body : bodies) {
+    BodyShape shape = body.shape;
+    set_total_mass(shape, 0.2);
+    place(shape, body.pose, Vector3::Zero());
+    builder.add_body("body" + std::to_string(&body - bodies.data()), shape, {.thickness = kThickness}, {.self = true});
+  }
+  return builder.build();
+}
+
+struct AcrossCase {
+  std::string name;
+  std::vector<Placed> bodies;
+};
+
+std::ostream& operator<<(std::ostream& stream, const AcrossCase& across) { return stream << across.name; }
+
+class EveryStartAcross : public ::testing::TestWithParam<AcrossCase> {};
+
+TEST_P(EveryStartAcross, IsRefusedOrLedApartAndGoesOnFromThere) {
+  const SpringNetwork network = network_of_several(GetParam().bodies);
+  const std::vector<Obstacle> floor = {obstacle(HalfSpaceGeometry{Vector3::UnitY(), 0.0})};
+  const std::vector<JudgedElement> elements = judged_elements(network);
+  EXPECT_GT(count_self_crossings(elements, network.positions), 0);
+  EXPECT_THROW(Simulator(network, {.step = 4.0e-4}, floor), InputError);
+
+  Simulator simulator(network, pushing_out(), floor);
+  EXPECT_EQ(count_self_crossings(elements, simulator.positions()), 0);
+  expect_free(simulator);
+  const Body& first = network.bodies.front();
+  EXPECT_EQ(simulator.positions().leftCols(first.particle_count), network.positions.leftCols(first.particle_count)) << "it stays";
+  // In a direction along an axis or across them, and no farther than the bodies measure.
+  EXPECT_LT((simulator.positions() - network.positions).colwise().norm().maxCoeff(), 1.0);
+
+  for (int step = 0; step < 50; ++step) simulator.step();
+  EXPECT_EQ(count_self_crossings(elements, simulator.positions()), 0);
+  expect_free(simulator);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    StartScenario, EveryStartAcross,
+    ::testing::Values(AcrossCase{"ACubeIsInACube",
+                                 {{cube(), pose_at({0, 0.3, 0})}, {cube(), pose_at({0.1, 0.5, 0.05}, {10, 20, 30})}}},
+                      AcrossCase{"TwoClothsCutEachOther",
+                                 {{cloth(), pose_at({0, 0.6, 0}, kLying)}, {cloth(), pose_at({0.1, 0.62, 0}, {-80, 0, 0})}}},
+                      AcrossCase{"ThreeClothsCutEachOther",
+                                 {{cloth(), pose_at({0, 0.6, 0}, kLying)},
+                                  {cloth(), pose_at({0.1, 0.61, 0}, {-87, 5, 0})},
+                                  {cloth(), pose_at({0.05, 0.63, 0.03}, {-92, 0, 3})}}},
+                      AcrossCase{"ARopeIsThroughACube",
+                                 {{cube(), pose_at({0, 0.5, 0})},
+                                  {rope({Vector3(-0.9, 0.55, 0.01), Vector3(0.9, 0.45, 0.02)}), pose_at({0, 0, 0})}}}),
+    [](const auto& of) { return of.param.name; });
 
 TEST(StartScenario, WhatPinsHoldAcrossAWallIsRefused) {
   const SpringNetwork network = network_of(cloth(), pose_at({0, 0, 0}, kLying), {0, 20, 420, 440});

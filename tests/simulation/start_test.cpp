@@ -10,10 +10,14 @@ namespace {
 
 using ::testing::AllOf;
 using testing::cloth;
+using ::testing::Ge;
 using testing::ground;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::IsSubsetOf;
 using testing::one_particle;
 using testing::sheet;
+using ::testing::SizeIs;
 
 Obstacle ball(double radius, const Vector3& position) {
   Obstacle result{.name = "ball", .geometry = SphereGeometry{radius}};
@@ -70,8 +74,8 @@ TEST(Start, OnAnOpenSurfaceIsAcrossIt) {
   EXPECT_TRUE(refusal(one_particle({0.25, 1e-6, 0.25}), {}, {sheet(1.0)}).empty());
 }
 
-/// A rope of two particles through a triangle, as bodies of their own.
-SpringNetwork needle_and_patch(const BodyContact& contact) {
+/// A rope of two particles through a triangle, as bodies of their own; `pinned` are all particles of these.
+SpringNetwork needle_and_patch(const BodyContact& contact, const std::vector<std::string>& pinned = {}) {
   NetworkBuilder builder;
   BodyShape patch = make_cloth({.size = {1.0, 1.0}, .resolution = {2, 2}}, {});
   set_total_mass(patch, 1.0);
@@ -79,6 +83,7 @@ SpringNetwork needle_and_patch(const BodyContact& contact) {
   set_total_mass(needle, 1.0);
   builder.add_body("patch", patch, {}, contact);
   builder.add_body("needle", needle, {}, contact);
+  for (const std::string& name : pinned) builder.pin(name == "patch" ? std::vector<Index>{0, 1, 2, 3} : std::vector<Index>{4, 5});
   return builder.build();
 }
 
@@ -112,7 +117,7 @@ TEST(Start, AParticleIsPushedToItsGapBeforeTheNearestSurface) {
   // Passes leave a thousandth of the gap.
   EXPECT_LT((simulator.positions().col(0) - Vector3(0.31, 0.0, 0.0)).norm(), 1e-5);
   ASSERT_EQ(simulator.warnings().size(), 1U);
-  EXPECT_EQ(simulator.warnings()[0], "body \"ball\" was pushed out of obstacles at the start: 1 particle by 0.21 m");
+  EXPECT_EQ(simulator.warnings()[0], "body \"ball\" was pushed out of what it intersected at the start: 1 particle by 0.21 m");
 }
 
 TEST(Start, VelocitiesStayAsGivenWhereParticlesArePushedOut) {
@@ -147,10 +152,31 @@ TEST(Start, PushesOutForPenaltyContactToo) {
   EXPECT_LT(simulator.positions()(1, 0), 1e-8);
 }
 
-TEST(Start, BodiesAcrossEachOtherAreNotPushed) {
-  SimulatorSettings settings = pushing_out();
-  EXPECT_EQ(refusal(needle_and_patch({}), settings, {}).size(), 1U);
+/// Which particles push_out moved.
+std::vector<Index> moved(const SpringNetwork& network) {
+  const Simulator simulator(network, pushing_out(), {});
+  std::vector<Index> particles;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (simulator.positions().col(i) != network.positions.col(i)) particles.push_back(i);
+  }
+  return particles;
 }
+
+// 0 to 3 are the patch's, 4 and 5 the needle's.
+TEST(Start, OfBodiesAcrossEachOtherTheLaterIsPushedOutUnlessPinsHoldIt) {
+  EXPECT_THAT(moved(needle_and_patch({})), AllOf(IsSubsetOf({4, 5}), SizeIs(Ge(1))));
+  EXPECT_THAT(moved(needle_and_patch({}, {"patch"})), AllOf(IsSubsetOf({4, 5}), SizeIs(Ge(1))));
+  EXPECT_THAT(moved(needle_and_patch({}, {"needle"})), AllOf(IsSubsetOf({0, 1, 2, 3}), SizeIs(Ge(1))));
+}
+
+TEST(Start, WhatPinsHoldAcrossEachOtherIsRefused) {
+  const auto lines = refusal(needle_and_patch({}, {"patch", "needle"}), pushing_out(), {});
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0],
+              AllOf(HasSubstr("intersects body \"needle\""), HasSubstr("could not be pushed out"), HasSubstr("body_contact")));
+}
+
+TEST(Start, BodiesThatDoNotMeetAreNotPushedOutOfEachOther) { EXPECT_THAT(moved(needle_and_patch({.others = false})), IsEmpty()); }
 
 }  // namespace
 }  // namespace sprung
