@@ -39,10 +39,14 @@ Matrix3 rotation_about(const Vector3& axis, double degrees) {
   return c * Matrix3::Identity() + s * cross + (1.0 - c) * axis * axis.transpose();
 }
 
+auto next_after(const std::vector<Keyframe>& keys, double time) {
+  return std::upper_bound(keys.begin(), keys.end(), time, [](double t, const Keyframe& key) { return t < key.time; });
+}
+
 Keyframe keyframe_at(const Motion& motion, double time) {
   const std::vector<Keyframe>& keys = motion.keyframes;
   if (keys.empty()) return {};
-  const auto next = std::upper_bound(keys.begin(), keys.end(), time, [](double t, const Keyframe& key) { return t < key.time; });
+  const auto next = next_after(keys, time);
   if (next == keys.begin()) return keys.front();
   if (next == keys.end()) return keys.back();
   const Keyframe& a = *(next - 1);
@@ -62,6 +66,18 @@ Matrix3 rotation_from_degrees(const Vector3& degrees) {
 bool Motion::moves() const {
   const auto differs = [](const Keyframe& a, const Keyframe& b) { return a.position != b.position || a.rotation != b.rotation; };
   return spin != Vector3::Zero() || std::adjacent_find(keyframes.begin(), keyframes.end(), differs) != keyframes.end();
+}
+
+double Motion::turn(double begin, double end) const {
+  double angles = spin.norm() * (end - begin);
+  Keyframe last = keyframe_at(*this, begin);
+  const auto turn_to = [&](const Keyframe& next) {
+    angles += (next.rotation - last.rotation).lpNorm<1>();
+    last = next;
+  };
+  for (auto key = next_after(keyframes, begin); key != keyframes.end() && key->time < end; ++key) turn_to(*key);
+  turn_to(keyframe_at(*this, end));
+  return angles;
 }
 
 RigidTransform Motion::pose(const RigidTransform& placed, double time) const {

@@ -28,6 +28,9 @@ struct Motion {
   /// False when the pose is the same at all times.
   [[nodiscard]] bool moves() const;
 
+  /// The most by which it turns, there and back, between two times [degrees].
+  [[nodiscard]] double turn(double begin, double end) const;
+
   /// Where a thing placed at `placed` is at `time` [s].
   [[nodiscard]] RigidTransform pose(const RigidTransform& placed, double time) const;
 };

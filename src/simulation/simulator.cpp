@@ -9,6 +9,7 @@
 #include "simulation/step_retry.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace sprung {
@@ -19,6 +20,9 @@ constexpr Index kSpringsCheckedPerStep = 8192;
 
 // Energies, which cost more and take many steps to explode, less often still.
 constexpr Index kStepsPerEnergy = 64;
+
+// By which an obstacle or a pin turns in a part of a step [degrees].
+constexpr double kMostTurn = 45.0;
 
 }  // namespace
 
@@ -68,18 +72,36 @@ StepReport Simulator::Implementation::step() {
     constraints.note();
   }
   kept_contacts.reset();
-  StepReport report = make_step();
-  if (may_retry(report.most_squeezed, begun)) report = make_again(report);
+  const int more = parts_by_turn();
+  StepReport report = make_step(more);
+  if (may_retry(report.most_squeezed, begun)) report = make_again(report, more);
   note_step(report.squeezed, state);
   if (refinement) choose_parts(report);
   if (const StretchLimit* limit = constraints.limit()) hand_over_missed(network, *limit, report.stretch_excess, state);
   return report;
 }
 
-StepReport Simulator::Implementation::make_step() {
+/// Seen from what turns, particles go straight from where a part begins to where it ends: by half a turn, through its middle.
+int Simulator::Implementation::parts_by_turn() const {
+  const double begin = time();
+  double turn = 0.0;
+  for (const Obstacle& obstacle : environment.obstacles())
+    turn = std::max(turn, obstacle.motion.turn(begin, begin + settings.step));
+  for (const Pin& pin : network.pins) turn = std::max(turn, pin.motion.turn(begin, begin + settings.step));
+  const double needed = std::ceil(turn / (kMostTurn * state.parts));
+  return static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(std::min(kRetryParts.back(), kMostParts / state.parts))));
+}
+
+/// In so many times as many parts.
+StepReport Simulator::Implementation::make_step(int more) {
+  const int parts = state.parts;
+  integrator->set_part(1.0 / more);
+  set_parts(more * parts);
   StepReport report;
   for (const std::int64_t step = state.step; state.step == step;) report += make_part();
-  if (const StretchLimit* limit = constraints.limit()) report.turn = limit->turn();
+  if (const StretchLimit* limit = constraints.limit()) report.turn = more * limit->turn();
+  integrator->set_part(1.0);
+  set_parts(parts);
   return report;
 }
 

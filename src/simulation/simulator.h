@@ -74,10 +74,11 @@ class Simulator {
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
-  /// Advances by one step, in as many parts as the step before asks for (see StepRefinement). One that squeezes particles is made
-  /// again in 4, 16 and 64 times as many, until none is: obstacles that come fast, or near pins, leave a place that a long step
-  /// passes by. While that does not help those that squeeze no more are tried ever more rarely. Throws StepError when the network
-  /// diverged; its state is of no use then.
+  /// Advances by one step, in as many parts as the step before asks for (see StepRefinement), or as it takes for no obstacle or pin
+  /// to turn by more than 45 degrees in one, 64 times as many at most. One that squeezes particles is made again in 4, 16 and 64
+  /// times as many, until none is: obstacles that come fast, or near pins, leave a place that a long step passes by. While that
+  /// does not help those that squeeze no more are tried ever more rarely. Throws StepError when the network diverged; its state is
+  /// of no use then.
   StepReport step();
 
   [[nodiscard]] const SpringNetwork& network() const;

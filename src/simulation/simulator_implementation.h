@@ -40,8 +40,9 @@ struct Simulator::Implementation {
 
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
-  StepReport make_step();
-  StepReport make_again(const StepReport& first);
+  [[nodiscard]] int parts_by_turn() const;
+  StepReport make_step(int more);
+  StepReport make_again(const StepReport& first, int more_at_first);
   std::optional<StepReport> attempt(int more);
   StepReport make_part();
   void choose_parts(const StepReport& report);

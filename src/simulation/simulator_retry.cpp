@@ -8,12 +8,13 @@ namespace sprung {
 
 // What a step leads far, by a lever or between obstacles that close, may find no place though there is one: in smaller steps
 // contact answers before they meet. Of all attempts that of the fewest squeezed counts.
-StepReport Simulator::Implementation::make_again(const StepReport& first) {
+StepReport Simulator::Implementation::make_again(const StepReport& first, int more_at_first) {
   Made best{state, energy_watch, first, contacts()};
   const EnergyWatch watch = energy_watch;
   constraints.look_ahead(true);
   for (const int more : kRetryParts) {
     if (best.report.most_squeezed == 0 || begun.parts > kMostParts / more) break;
+    if (more <= more_at_first) continue;
     energy_watch = watch;
     const auto report = attempt(more);
     if (report && report->most_squeezed < best.report.most_squeezed) best = {state, energy_watch, *report, contacts()};
@@ -32,18 +33,13 @@ std::optional<StepReport> Simulator::Implementation::attempt(int more) {
   state = begun;
   constraints.forget();
   environment.set_interval(time(), time());
-  integrator->set_part(1.0 / more);
-  set_parts(more * begun.parts);
-  std::optional<StepReport> report;
   try {
-    report = make_step();
-    report->turn *= more;
+    return make_step(more);
   } catch (const StepError&) {
-    report.reset();
+    integrator->set_part(1.0);
+    set_parts(begun.parts);
+    return std::nullopt;
   }
-  integrator->set_part(1.0);
-  set_parts(begun.parts);
-  return report;
 }
 
 }  // namespace sprung

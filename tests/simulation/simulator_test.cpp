@@ -375,6 +375,23 @@ TEST(Simulator, WhatSqueezesInAnyPartsLeavesNothingBehind) {
   }
 }
 
+// Seen from what turns by half a turn, all goes through its middle.
+TEST(Simulator, WhatSpinsFastMeetsOnlyWhatItReaches) {
+  NetworkBuilder builder;
+  for (const double x : {10.0, -1.0, 0.3}) builder.add_particle({x, 0.0, 0.0}, 0.1);
+  const SpringNetwork network = builder.build();
+  constexpr double kStep = 1.0 / 60.0;
+  for (const double degrees : {180.0, 540.0, 900.0}) {
+    const Obstacle blade{
+        .name = "blade", .geometry = BoxGeometry{.size = {0.2, 0.2, 0.8}}, .motion = {.spin = {0.0, degrees / kStep, 0.0}}};
+    Simulator simulator(network, {.step = kStep, .gravity = Vector3::Zero()}, {blade});
+    const StepReport report = simulator.step();
+    EXPECT_EQ(report.parts, static_cast<int>(degrees / 45.0));
+    EXPECT_EQ(simulator.positions().leftCols(2), network.positions.leftCols(2)) << degrees;
+    EXPECT_GT((simulator.positions().col(2) - network.positions.col(2)).norm(), 0.1) << "the blade sweeps over it";
+  }
+}
+
 // Two particles in a groove, whose slopes push each of them towards the other slope: a pass leaves a quarter of what is missing. Of
 // a step's fall, 4 mm, one would leave 2 % of the gap; passes end at a thousandth.
 TEST(Simulator, ContactSettlesBetweenSlopesWhateverThePassesOfTheLimit) {
