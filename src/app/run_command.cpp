@@ -55,8 +55,8 @@ void warn_of_squeezing(const FrameDiagnostics& frame, RunOutput& output, bool& w
   if (warned || frame.squeezed == 0) return;
   warned = true;
   const std::string warning = fmt::format(
-      "frame {}: particles found no free place between obstacles {} times and may end inside one; the column squeezed of "
-      "diagnostics.csv counts them",
+      "frame {}: particles found no free place between obstacles, pins and each other {} times and may cross them; the column "
+      "squeezed of diagnostics.csv counts them",
       frame.frame, frame.squeezed);
   output.add_warning(warning);
   print_warning(warning);

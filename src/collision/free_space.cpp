@@ -61,10 +61,10 @@ void FreeSpace::follow(const Points& before, const Points& after) {
   if (implementation_->pairs) implementation_->begin_pairs(before, after);
 }
 
-void FreeSpace::note() { implementation_->zones.note(); }
+const LetThrough& FreeSpace::lets_through() const { return implementation_->zones.lets_through(); }
 
-void FreeSpace::forget() {
-  implementation_->zones.forget();
+void FreeSpace::forget(const LetThrough& through) {
+  implementation_->zones.forget(through);
   if (implementation_->pairs) implementation_->pairs->forget();
 }
 
@@ -133,7 +133,12 @@ void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, 
     });
   }
   truncation.truncated += static_cast<Index>(outcomes.size()) - count(outcomes, Outcome::free);
-  truncation.squeezed += count(outcomes, Outcome::squeezed);
+  std::vector<Index> squeezed = placement.squeezed();
+  for (std::size_t n = 0; n < particles.size(); ++n) {
+    if (outcomes[n] == Outcome::squeezed) squeezed.push_back(particles[n]);
+  }
+  std::sort(squeezed.begin(), squeezed.end());
+  truncation.squeezed = static_cast<Index>(std::unique(squeezed.begin(), squeezed.end()) - squeezed.begin());
 }
 
 }  // namespace sprung

@@ -6,6 +6,7 @@
 
 #include "collision/collision_surface.h"
 #include "collision/contact.h"
+#include "collision/crossed_corner.h"
 #include "collision/environment.h"
 #include "collision/truncation.h"
 
@@ -31,10 +32,10 @@ class FreeSpace {
   /// of the environment's interval [m].
   void follow(const Points& before, const Points& after);
 
-  /// Notes where a step begins that may be made again.
-  void note();
-  /// The next step does not begin where the last one ended, but where one was noted, or ended.
-  void forget();
+  /// What obstacles let through, because pins drag it through them.
+  [[nodiscard]] const LetThrough& lets_through() const;
+  /// The next step does not begin where the last one ended, but where this was let through.
+  void forget(const LetThrough& through);
 
   /// Whether contacts of elements at pins are found on their whole way, wherever it begins. Truncation cannot help them, as a pin
   /// goes where it goes; but the farther off a contact is found, the more often nothing would have touched.

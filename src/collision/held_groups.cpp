@@ -38,7 +38,7 @@ bool HeldGroups::unite(std::span<const Index> particles) {
   if (first == kNone) return false;
   char& stop = stopped_[static_cast<std::size_t>(first)];
   for (const Index i : particles) {
-    if (pinned_[static_cast<std::size_t>(i)] == 0 || (!changed && is_led(first, i))) continue;
+    if (pinned_[static_cast<std::size_t>(i)] == 0 || is_led(first, i)) continue;
     leads_.push_back({first, i});
     changed = true;
   }
@@ -57,8 +57,8 @@ bool HeldGroups::is_led(Index root_particle, Index pin) const {
 
 void HeldGroups::find_motions() {
   number_groups();
-  find_means();
   const std::vector<std::vector<Index>> pins = leading_pins();
+  find_means(pins);
   anchor_groups(pins);
   let_pins_turn(pins);
 }
@@ -73,7 +73,7 @@ void HeldGroups::number_groups() {
   for (const Index i : held_) number_[static_cast<std::size_t>(i)] = number_[static_cast<std::size_t>(root(i))];
 }
 
-void HeldGroups::find_means() {
+void HeldGroups::find_means(const std::vector<std::vector<Index>>& pins) {
   struct Sum {
     Vector3 motion = Vector3::Zero();
     double squares = 0.0;
@@ -81,23 +81,26 @@ void HeldGroups::find_means() {
     int rank = 0;  ///< of those that lead
   };
   std::vector<Sum> sums(groups_.size());
-  const auto lead = [&](Index follower, const Vector3& motion, int rank) {
-    Sum& sum = sums[static_cast<std::size_t>(group(follower))];
+  const auto lead = [&](std::size_t number, const Vector3& motion, int rank) {
+    Sum& sum = sums[number];
     if (rank > sum.rank) sum = {.rank = rank};
     if (rank < sum.rank) return;
     sum.motion += motion;
     sum.squares += motion.squaredNorm();
     sum.count += 1.0;
   };
-  for (const Lead& by_pin : leads_) lead(by_pin.follower, targets_.col(by_pin.pin) - before_.col(by_pin.pin), 3);
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    for (const Index pin : pins[k]) lead(k, targets_.col(pin) - before_.col(pin), 3);
+  }
   const std::vector<Carried>& carried = carriers_.carried;
   for (const Index i : held_) {
+    const auto number = static_cast<std::size_t>(group(i));
     const auto found =
         std::lower_bound(carried.begin(), carried.end(), i, [](const Carried& a, Index b) { return a.particle < b; });
     if (found != carried.end() && found->particle == i) {
-      lead(i, found->motion, 2);
+      lead(number, found->motion, 2);
     } else {
-      lead(i, targets_.col(i) - before_.col(i), 1);
+      lead(number, targets_.col(i) - before_.col(i), 1);
     }
   }
   for (std::size_t k = 0; k < groups_.size(); ++k) {
@@ -137,7 +140,8 @@ void HeldGroups::let_pins_turn(const std::vector<std::vector<Index>>& pins) {
     if (pins[k].empty() || groups_[k].fraction > 0.0) continue;
     std::vector<PinWay> ways;
     for (const Index pin : pins[k]) ways.push_back({before_.col(pin), targets_.col(pin)});
-    groups_[k] = {.motion = AffineTransform(common_motion(ways)), .fraction = 0.0, .turned = true};
+    const auto motion = common_turn(ways);
+    if (motion) groups_[k] = {.motion = AffineTransform(*motion), .fraction = 0.0, .turned = true};
   }
 }
 

@@ -31,11 +31,11 @@ class HeldGroups {
   /// may not leave the motion that it shares any more. Returns whether anything has changed.
   bool unite(std::span<const Index> particles);
 
-  /// Finds the groups' motions: the mean of those of pinned particles that lead it or, if it may not leave that, the rigid motion
-  /// that takes them along; else the common motion of its anchors, which it may not leave; else the mean of its carried particles;
-  /// else what its particles' ways have in common: their mean, less the part that their spread is of it, so that a falling cloth is
-  /// not held back and a resting one not carried away by what hits it. Fractions are 1 again, except of groups that may not leave
-  /// it.
+  /// Finds the groups' motions: the mean of those of pinned particles that lead it or, if it may not leave that, their rigid
+  /// motion, if they have one; else the common motion of its anchors, which it may not leave; else the mean of its carried
+  /// particles; else what its particles' ways have in common: their mean, less the part that their spread is of it, so that a
+  /// falling cloth is not held back and a resting one not carried away by what hits it. Fractions are 1 again, except of groups
+  /// that may not leave it.
   void find_motions();
 
   /// A group's number from 0, or kNone for a particle that is not held, as find_motions() found it.
@@ -74,7 +74,7 @@ class HeldGroups {
   [[nodiscard]] Index root(Index particle) const;
   [[nodiscard]] bool is_led(Index root_particle, Index pin) const;
   void number_groups();
-  void find_means();
+  void find_means(const std::vector<std::vector<Index>>& pins);
   /// By group, ascending.
   [[nodiscard]] std::vector<std::vector<Index>> leading_pins() const;
   void anchor_groups(const std::vector<std::vector<Index>>& pins);

@@ -154,7 +154,8 @@ std::vector<Index> ObstaclePlacement::leaving_pins(const Points& positions) cons
 bool ObstaclePlacement::look_at_pins(const std::vector<Index>& particles, const Points& after, Outcomes& outcomes) {
   const std::vector<Index> leaving = leaving_pins(after);
   if (!leaving.empty()) zones_.renew_around(leaving, {after, after, true});
-  for (std::size_t n = 0; n < particles.size() && zones_.crosses(); ++n) {
+  if (!zones_.crosses()) return leaving.empty();
+  for (std::size_t n = 0; n < particles.size(); ++n) {
     const Index i = particles[n];
     if (zones_.is_crossed(i) && (crossed_before_.empty() || crossed_before_[at(i)] == 0)) outcomes[n] = Outcome::squeezed;
   }
@@ -170,7 +171,8 @@ Truncation ObstaclePlacement::lead_on(const std::vector<Index>& particles, const
   held_back_ = stopped;
   Truncation truncation;
   truncation.truncated = count(outcomes, Outcome::squeezed) + static_cast<Index>(stopped.size());
-  truncation.squeezed = count(outcomes, Outcome::squeezed) + crossed(particles, outcomes);
+  list_squeezed(particles, outcomes);
+  truncation.squeezed = static_cast<Index>(squeezed_.size());
   std::erase_if(stopped, [&](Index i) { return !can_go_on(i, way.from, way.to, after); });
   for (int round = 1; round < kRounds && !stopped.empty(); ++round) truncation.truncated -= go_on(stopped, way.to, after);
   return truncation;
@@ -190,14 +192,18 @@ Index ObstaclePlacement::go_on(std::vector<Index>& stopped, const Points& target
   return count(outcomes, Outcome::free);
 }
 
-Index ObstaclePlacement::crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const {
-  if (!zones_.crosses()) return 0;
-  Index found = 0;
-  for (Index i = 0; i < static_cast<Index>(surface_.pinned.size()); ++i) found += zones_.is_crossed(i) ? 1 : 0;
+/// Pinned ones too.
+void ObstaclePlacement::list_squeezed(const std::vector<Index>& particles, const Outcomes& outcomes) {
+  squeezed_.clear();
   for (std::size_t n = 0; n < particles.size(); ++n) {
-    if (outcomes[n] == Outcome::squeezed && zones_.is_crossed(particles[n])) --found;
+    if (outcomes[n] == Outcome::squeezed) squeezed_.push_back(particles[n]);
   }
-  return found;
+  if (!zones_.crosses()) return;
+  for (Index i = 0; i < static_cast<Index>(surface_.pinned.size()); ++i) {
+    if (zones_.is_crossed(i)) squeezed_.push_back(i);
+  }
+  std::sort(squeezed_.begin(), squeezed_.end());
+  squeezed_.erase(std::unique(squeezed_.begin(), squeezed_.end()), squeezed_.end());
 }
 
 std::vector<Index> ObstaclePlacement::movable(std::vector<Index> particles, const Way& way) const {

@@ -18,6 +18,9 @@ class ObstaclePlacement {
   /// where they stop one short. Where there are none obstacles carry what is in their way, then all go in parts of the interval.
   Truncation place_all(const Way& way, Points& after);
 
+  /// Particles that found no place when all were placed last, or of whose elements an obstacle crosses one; ascending.
+  [[nodiscard]] const std::vector<Index>& squeezed() const { return squeezed_; }
+
   /// Particles that did not arrive at once when all were placed last.
   [[nodiscard]] const std::vector<Index>& held_back() const { return held_back_; }
 
@@ -50,8 +53,7 @@ class ObstaclePlacement {
   Truncation lead_on(const std::vector<Index>& particles, const Outcomes& outcomes, const Way& way, Points& after);
   /// Leaves in `stopped` those that may come farther yet; returns how many arrived.
   Index go_on(std::vector<Index>& stopped, const Points& target, Points& after);
-  /// Particles, pinned ones too, that are not squeezed but of whose elements an obstacle crosses one.
-  [[nodiscard]] Index crossed(const std::vector<Index>& particles, const Outcomes& outcomes) const;
+  void list_squeezed(const std::vector<Index>& particles, const Outcomes& outcomes);
 
   Environment& environment_;
   const ObstacleSet& set_;
@@ -60,6 +62,7 @@ class ObstaclePlacement {
   std::vector<Index> pinned_;
   std::vector<char> crossed_before_;  ///< by particle, where the way begins; empty where none is
   std::vector<Index> held_back_;
+  std::vector<Index> squeezed_;
 };
 
 }  // namespace sprung

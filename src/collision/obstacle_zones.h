@@ -4,6 +4,7 @@
 #include "collision/carried_corner.h"
 #include "collision/collision_surface.h"
 #include "collision/contact.h"
+#include "collision/crossed_corner.h"
 #include "collision/held_groups.h"
 #include "collision/obstacle_set.h"
 #include "collision/patch_zones.h"
@@ -28,10 +29,10 @@ class ObstacleZones {
   /// Makes zones where elements are near obstacles and have none that holds them on their way.
   void follow(const Way& way);
 
-  /// Notes where a step begins that may be made again.
-  void note();
-  /// Drops all zones: the next way does not begin where the last one ended. What is let through is what was when it was noted.
-  void forget();
+  /// What let_through() let through last.
+  [[nodiscard]] const LetThrough& lets_through() const { return let_through_; }
+  /// Drops all zones: the next way does not begin where the last one ended, but where this was let through.
+  void forget(const LetThrough& through);
 
   /// Whether elements at pins are near whatever comes near them on their way, for zones that are made from now on.
   void look_ahead(bool ahead) { ahead_ = ahead; }
@@ -110,13 +111,8 @@ class ObstacleZones {
   [[nodiscard]] bool leads_through_another(Index k, Index particle, const Vector3& from, const Vector3& place) const;
   /// An obstacle that moves and that an element around the particle may touch; kNone if there is none.
   [[nodiscard]] Index leans_on(Index particle) const;
-  /// A corner of an element that an obstacle crosses.
-  struct CrossedCorner {
-    Index obstacle = kNone;
-    Index particle = kNone;
-  };
-  void set_passing(std::vector<CrossedCorner> corners);
-  void append_passing(Index patch, const PatchZones& zones, const Points& from, std::vector<CrossedCorner>& passing) const;
+  void set_passing(LetThrough corners);
+  void append_passing(Index patch, const PatchZones& zones, const Points& from, LetThrough& passing) const;
   [[nodiscard]] bool is_overstretched(const Element& element, const Points& positions) const;
   [[nodiscard]] bool is_passing(Index k, Index particle) const {
     return passing_[static_cast<std::size_t>(k)][static_cast<std::size_t>(particle)] != 0;
@@ -139,8 +135,7 @@ class ObstacleZones {
   bool ahead_ = false;  ///< see look_ahead
   Points rest_;
   std::vector<Patch> patches_;
-  std::vector<CrossedCorner> let_through_;  ///< by let_through()
-  std::vector<CrossedCorner> noted_;        ///< of let_through_
+  LetThrough let_through_;
   std::vector<std::vector<char>> passing_;  ///< by obstacle, by particle: whether the one lets the other through
 };
 

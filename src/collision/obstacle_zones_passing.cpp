@@ -30,7 +30,7 @@ bool ObstacleZones::is_crossed(Index particle) const {
 // A pin may take an element through an obstacle, and the obstacle the element's other corners along for ever. They are let through,
 // and then what they drag along in turn.
 void ObstacleZones::let_through(const Points& from) {
-  std::vector<CrossedCorner> passing;
+  LetThrough passing;
   for (Index p = 0; p < static_cast<Index>(patches_.size()); ++p) {
     for (const PatchZones& zones : patches_[at(p)].zones) {
       if (zones.crosses()) append_passing(p, zones, from, passing);
@@ -39,24 +39,21 @@ void ObstacleZones::let_through(const Points& from) {
   set_passing(std::move(passing));
 }
 
-void ObstacleZones::set_passing(std::vector<CrossedCorner> corners) {
+void ObstacleZones::set_passing(LetThrough corners) {
   for (const auto& [k, i] : let_through_) passing_[at(k)][at(i)] = 0;
   for (const auto& [k, i] : corners) passing_[at(k)][at(i)] = 1;
   let_through_ = std::move(corners);
 }
 
-void ObstacleZones::note() { noted_ = let_through_; }
-
-void ObstacleZones::forget() {
+void ObstacleZones::forget(const LetThrough& through) {
   for (Patch& patch : patches_) {
     patch.zones.clear();
     patch.known.setEmpty();
   }
-  set_passing(noted_);
+  set_passing(through);
 }
 
-void ObstacleZones::append_passing(Index p, const PatchZones& zones, const Points& from,
-                                   std::vector<CrossedCorner>& passing) const {
+void ObstacleZones::append_passing(Index p, const PatchZones& zones, const Points& from, LetThrough& passing) const {
   const Index k = zones.obstacle();
   for (Index e = 0; e < patches_[at(p)].topology.element_count(); ++e) {
     if (!zones.zone(e).broken) continue;

@@ -29,7 +29,7 @@ Outcomes PairPlacement::place(const Points& before, Points& after) {
     const Way way{before, allowed};
     for (int round = 0; anchor_squeezed(outcomes, before, after); ++round) {
       if (round == 0) zones_.follow(way);
-      zones_.renew_around(round < kLocalRounds ? squeezed(held_, outcomes) : movable_, way);
+      zones_.renew_around(round < kLocalRounds ? without_place(outcomes) : movable_, way);
       place_among_obstacles(way, after);
       outcomes = place_held(before, after);
     }
@@ -65,7 +65,7 @@ Outcomes PairPlacement::of_movable(const Outcomes& of_held) const {
 /// there is: of particles that went with the surface, only those are squeezed of whose elements it crosses one.
 void PairPlacement::accept_carried(const Points& after, Outcomes& outcomes) {
   std::vector<Index> carried;
-  for (const Index i : squeezed(held_, outcomes)) {
+  for (const Index i : without_place(outcomes)) {
     const auto anchor = find_anchor(i);
     if (anchor != carriers_.anchors.end() && anchor->particle == i && anchor->surface) carried.push_back(i);
   }
@@ -103,9 +103,15 @@ std::vector<Index> PairPlacement::squeezed(const std::vector<Index>& particles, 
   return found;
 }
 
+std::vector<Index> PairPlacement::without_place(const Outcomes& outcomes) const {
+  std::vector<Index> found = squeezed(held_, outcomes);
+  std::erase_if(found, [&](Index i) { return pairs_.passes(i); });
+  return found;
+}
+
 bool PairPlacement::anchor_squeezed(const Outcomes& outcomes, const Points& before, const Points& after) {
   bool changed = false;
-  for (const Index i : squeezed(held_, outcomes)) {
+  for (const Index i : without_place(outcomes)) {
     const Anchor anchor = zones_.anchor(i, before.col(i), after.col(i));
     const auto found = find_anchor(i);
     if (found == carriers_.anchors.end() || found->particle != i) {

@@ -28,6 +28,8 @@ class PairPlacement {
   [[nodiscard]] Outcome place_held(Index particle, const Vector3& before, const Vector3& target, Points& after) const;
   [[nodiscard]] Outcomes of_movable(const Outcomes& of_held) const;
   [[nodiscard]] static std::vector<Index> squeezed(const std::vector<Index>& particles, const Outcomes& outcomes);
+  /// Held particles that obstacles leave none; not those that pins drag.
+  [[nodiscard]] std::vector<Index> without_place(const Outcomes& outcomes) const;
   void place_among_obstacles(const Way& way, Points& after);
   /// Whether any held particle is an anchor now that was none, or begins to move.
   bool anchor_squeezed(const Outcomes& outcomes, const Points& before, const Points& after);

@@ -27,7 +27,7 @@ class PairPlanes {
   [[nodiscard]] bool hold(std::vector<ElementPair>& pairs);
 
   /// Whether groups were turned, and the normals of their pairs not.
-  [[nodiscard]] bool turned() const { return groups_.turn(); }
+  [[nodiscard]] bool turns() const { return groups_.turn(); }
 
   /// Gives a new normal to those pairs whose own does not separate them where the step begins.
   void renew_normals(std::vector<ElementPair>& pairs) const;
@@ -38,8 +38,8 @@ class PairPlanes {
   /// In the order in which they were held.
   [[nodiscard]] const std::vector<Index>& held() const { return groups_.particles(); }
 
-  /// Those of pairs that pass each other all the same, when no end changes any more: pins that go different ways drag them [any
-  /// order, some more than once].
+  /// Particles of pairs that pass each other all the same, because pins that go different ways drag them; pins too, in any order,
+  /// some more than once. Requires that hold() returned false.
   [[nodiscard]] const std::vector<Index>& passing() const { return passing_; }
 
   /// What bounds a held particle at the step's end.
@@ -54,8 +54,11 @@ class PairPlanes {
   [[nodiscard]] std::vector<Index> find_conflicts(std::vector<ElementPair>& pairs) const;
   [[nodiscard]] bool passes(const ElementPair& pair) const;
   [[nodiscard]] bool is_pinned(Index i) const { return pinned_[static_cast<std::size_t>(i)] != 0; }
-  /// The group that all of the pair is in, or that takes along what of it is pinned; kNone if there is none.
-  [[nodiscard]] Index group_of(const ElementPair& pair) const;
+  /// The group that all of the pair is in, or that takes along what of it is pinned; kNone if there is none. The sides are `gap`
+  /// [m] apart when the step begins.
+  [[nodiscard]] Index group_of(const ElementPair& pair, double gap) const;
+  /// With the normal that it has after its group's motion.
+  [[nodiscard]] ElementPair turned(ElementPair pair, Index group) const;
   void limit_groups(const std::vector<ElementPair>& pairs);
   [[nodiscard]] double kept_gap(const ElementPair& pair) const;
   /// A gap that is larger may end as small as this, one that is smaller never smaller: else it would wear away, step by step [m].

@@ -6,15 +6,19 @@ namespace sprung {
 
 namespace {
 
-// Pins whose spread across a line has a square of less than this part of that along it say nothing of turns about the line.
-constexpr double kLeastSquare = 0x1p-20;
+// Of pins next to a line, whose second singular value, as that of a spread squared, is less than this part of the first, rounding
+// would choose the turn about it.
+constexpr double kLeastSquare = 0x1p-40;
 
-// As a part of the largest coordinate, ways that differ by no more are the same.
-constexpr double kRounding = 0x1p-50;
+// Pins that go ways of their own are not turned by those: a turn leaves at most this part of what translation alone misses.
+constexpr double kWorthwhile = 0.5;
+
+// Of a turn by a right angle: straight ways of what turns by more come too near each other.
+constexpr double kLeastTrace = 1.0;
 
 using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
-Matrix3 common_turn(const Columns& before, const Columns& after) {
+Matrix3 best_turn(const Columns& before, const Columns& after) {
   const Eigen::JacobiSVD<Matrix3> svd(after * before.transpose(), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vector3& squares = svd.singularValues();
   if (!(squares[0] > 0.0)) return Matrix3::Identity();
@@ -27,7 +31,7 @@ Matrix3 common_turn(const Columns& before, const Columns& after) {
 
 }  // namespace
 
-RigidTransform common_motion(std::span<const PinWay> pins) {
+std::optional<RigidTransform> common_turn(std::span<const PinWay> pins) {
   const auto count = static_cast<Eigen::Index>(pins.size());
   Columns before(3, count);
   Columns after(3, count);
@@ -37,12 +41,14 @@ RigidTransform common_motion(std::span<const PinWay> pins) {
   }
   const Vector3 middle_before = before.rowwise().mean();
   const Vector3 middle_after = after.rowwise().mean();
+  before.colwise() -= middle_before;
+  after.colwise() -= middle_after;
+  const Matrix3 turn = best_turn(before, after);
+  const double missed = (turn * before - after).norm();
+  if (turn.trace() < kLeastTrace || !(missed < kWorthwhile * (before - after).norm())) return std::nullopt;
   RigidTransform motion = RigidTransform::Identity();
-  const Columns ways = after - before;
-  const double apart = (ways.colwise() - ways.col(0)).cwiseAbs().maxCoeff();
-  const bool turns = apart > kRounding * before.cwiseAbs().maxCoeff();
-  if (turns) motion.linear() = common_turn(before.colwise() - middle_before, after.colwise() - middle_after);
-  motion.translation() = middle_after - motion.linear() * middle_before;
+  motion.linear() = turn;
+  motion.translation() = middle_after - turn * middle_before;
   return motion;
 }
 

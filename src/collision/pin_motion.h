@@ -3,6 +3,7 @@
 
 #include "base/types.h"
 
+#include <optional>
 #include <span>
 
 namespace sprung {
@@ -14,7 +15,9 @@ struct PinWay {
 };
 
 /// The rigid motion that takes pins where they go, with the least squares of what it misses (Kabsch 1976), and turns no more than
-/// they ask for: what pins say nothing about, as one of them does about all turns, it leaves. Requires a pin.
-[[nodiscard]] RigidTransform common_motion(std::span<const PinWay> pins);
+/// they ask for: what pins say nothing about, as two of them do about turns about their line, it leaves. None where they go the
+/// same way or ways of their own: where it misses half of what their mean motion does or more, or turns by more than a right angle.
+/// Requires a pin.
+[[nodiscard]] std::optional<RigidTransform> common_turn(std::span<const PinWay> pins);
 
 }  // namespace sprung

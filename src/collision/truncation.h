@@ -7,7 +7,7 @@ namespace sprung {
 
 struct Truncation {
   Index truncated = 0;  ///< particles stopped on their way
-  Index squeezed = 0;   ///< particles that found no free place between obstacles, or of whose elements an obstacle crosses one
+  Index squeezed = 0;   ///< particles that found no free place, that pins drag through the network, or whose elements are crossed
 };
 
 }  // namespace sprung

@@ -25,8 +25,8 @@ class ContactProjection {
   void find_again(const StepMotion& motion, const Points& positions);
 
   /// See FreeSpace.
-  void note() { free_space_.note(); }
-  void forget() { free_space_.forget(); }
+  [[nodiscard]] const LetThrough& lets_through() const { return free_space_.lets_through(); }
+  void forget(const LetThrough& through) { free_space_.forget(through); }
   void look_ahead(bool ahead) { free_space_.look_ahead(ahead); }
 
   /// See ContactResponse.

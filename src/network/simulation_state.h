@@ -21,8 +21,8 @@ struct SimulationState {
   int calm_steps = 0;                      ///< so many in a row did not need their parts
   int free_steps = 0;                      ///< so many in a row squeezed nothing
   std::int64_t retry_from = 0;             ///< steps before this one are not made again where they squeeze anything
-  int retry_wait = 0;                      ///< how many that are after the last time that this did not help
-  Index retry_squeezed = 0;                ///< but those that squeeze more than this, which was left then
+  int retry_wait = 0;                      ///< so many steps after the last one for which that did not help
+  Index retry_squeezed = 0;                ///< but for those that squeeze more than this, the most that was left since it helped
   Points x;                                ///< positions [m], 3 x n
   Points v;                                ///< velocities [m/s], 3 x n
   Points x_previous;                       ///< Verlet's positions one step ago [m], 3 x n

@@ -37,7 +37,8 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       waits_for_turn(constraints.limit() != nullptr && constraints.limit()->may_follow_turn()),
       divergence(network),
       energy_watch(network, settings, environment.obstacles()),
-      state(initial_state(network)) {
+      state(initial_state(network)),
+      begun{state, energy_watch, {}} {
   const StretchLimit* limit = constraints.limit();
   if (limit != nullptr && settings.most_parts > 1) {
     refinement.emplace(limit->settings(), settings.most_parts);
@@ -68,13 +69,12 @@ bool Simulator::Implementation::anything_moves() const {
 
 StepReport Simulator::Implementation::step() {
   if (constraints.contacts().meets_anything()) {
-    begun = state;
-    constraints.note();
+    begun = {state, energy_watch, constraints.lets_through()};
   }
   kept_contacts.reset();
   const int more = parts_by_turn();
   StepReport report = make_step(more);
-  if (may_retry(report.most_squeezed, begun)) report = make_again(report, more);
+  if (may_retry(report.most_squeezed, begun.state)) report = make_again(report, more);
   note_step(report.squeezed, state);
   if (refinement) choose_parts(report);
   if (const StretchLimit* limit = constraints.limit()) hand_over_missed(network, *limit, report.stretch_excess, state);

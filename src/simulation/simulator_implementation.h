@@ -19,10 +19,18 @@
 
 namespace sprung {
 
+/// Where a step that may be made again began.
+struct Begun {
+  SimulationState state;
+  EnergyWatch watch;
+  LetThrough through;
+};
+
 /// What a step, made in some number of parts, came to.
 struct Made {
   SimulationState state;
   EnergyWatch watch;
+  LetThrough through;
   StepReport report;
   Index contacts = 0;
 };
@@ -42,6 +50,7 @@ struct Simulator::Implementation {
   StepReport step();
   [[nodiscard]] int parts_by_turn() const;
   StepReport make_step(int more);
+  [[nodiscard]] Made made(const StepReport& report) const;
   StepReport make_again(const StepReport& first, int more_at_first);
   std::optional<StepReport> attempt(int more);
   StepReport make_part();
@@ -75,7 +84,7 @@ struct Simulator::Implementation {
   DivergenceCheck divergence;
   EnergyWatch energy_watch;
   SimulationState state;
-  SimulationState begun;               ///< where a step that may be made again began
+  Begun begun;
   std::optional<Index> kept_contacts;  ///< of the last step, if constraints have seen another since
 };
 

@@ -9,35 +9,39 @@ namespace sprung {
 // What a step leads far, by a lever or between obstacles that close, may find no place though there is one: in smaller steps
 // contact answers before they meet. Of all attempts that of the fewest squeezed counts.
 StepReport Simulator::Implementation::make_again(const StepReport& first, int more_at_first) {
-  Made best{state, energy_watch, first, contacts()};
-  const EnergyWatch watch = energy_watch;
+  Made best = made(first);
   constraints.look_ahead(true);
   for (const int more : kRetryParts) {
-    if (best.report.most_squeezed == 0 || begun.parts > kMostParts / more) break;
+    if (best.report.most_squeezed == 0 || begun.state.parts > kMostParts / more) break;
     if (more <= more_at_first) continue;
-    energy_watch = watch;
     const auto report = attempt(more);
-    if (report && report->most_squeezed < best.report.most_squeezed) best = {state, energy_watch, *report, contacts()};
+    if (report && report->most_squeezed < best.report.most_squeezed) best = made(*report);
   }
   constraints.look_ahead(false);
-  constraints.forget();
+  constraints.forget(best.through);
   state = std::move(best.state);
+  environment.set_interval(time(), time());
   energy_watch = best.watch;
   kept_contacts = best.contacts;
   note_retry(first.most_squeezed, best.report.most_squeezed, state);
   return best.report;
 }
 
+Made Simulator::Implementation::made(const StepReport& report) const {
+  return {state, energy_watch, constraints.lets_through(), report, contacts()};
+}
+
 /// None when it diverges.
 std::optional<StepReport> Simulator::Implementation::attempt(int more) {
-  state = begun;
-  constraints.forget();
+  state = begun.state;
+  energy_watch = begun.watch;
+  constraints.forget(begun.through);
   environment.set_interval(time(), time());
   try {
     return make_step(more);
   } catch (const StepError&) {
     integrator->set_part(1.0);
-    set_parts(begun.parts);
+    set_parts(begun.state.parts);
     return std::nullopt;
   }
 }

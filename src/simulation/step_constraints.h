@@ -21,8 +21,8 @@ class StepConstraints {
   void begin(const SimulationState& state);
 
   /// See FreeSpace.
-  void note() { contacts_.note(); }
-  void forget() { contacts_.forget(); }
+  [[nodiscard]] const LetThrough& lets_through() const { return contacts_.lets_through(); }
+  void forget(const LetThrough& through) { contacts_.forget(through); }
   void look_ahead(bool ahead) { contacts_.look_ahead(ahead); }
 
   /// Leads the state on from where forces and pins have led it in `dt` [s]: by contact, the stretch limit and truncation, to the

@@ -11,7 +11,7 @@ namespace sprung {
 inline constexpr std::array<int, 3> kRetryParts{4, 16, 64};
 
 /// Whether a step that began at the state and squeezed so many particles is. Where that did not help at all it is not tried for
-/// some steps, each time for twice as many, unless more are squeezed than were left then: it may be something else.
+/// some steps, each time for twice as many, unless more are squeezed than were left since it did: it may be something else.
 [[nodiscard]] bool may_retry(Index squeezed, const SimulationState& begun);
 
 /// Takes down in the state after each step how many particles it squeezed: what did may be over.

@@ -31,17 +31,36 @@ constexpr double kRounding = 0x1p-47;
 
 TEST(PinMotion, TakesPinsThatMoveRigidlyWhereTheyGo) {
   Random random(1);
-  const std::vector<std::vector<Vector3>> sets = {{{1.0, 0.5, -0.3}},
-                                                  {{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}},
+  const std::vector<std::vector<Vector3>> sets = {{{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}},
                                                   {{0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}, {1.0, 0.0, 0.0}},
                                                   {{0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}, {1.0, 0.2, 0.0}, {0.3, 0.8, 0.0}},
                                                   {{0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}, {1.0, 0.2, 0.0}, {0.3, 0.8, 0.5}}};
   for (const std::vector<Vector3>& pins : sets) {
     for (int k = 0; k < 100; ++k) {
-      const std::vector<PinWay> pin_ways = ways(random_motion(random, 3.0), pins);
-      const RigidTransform motion = common_motion(pin_ways);
-      for (const PinWay& pin : pin_ways) EXPECT_LT((motion * pin.from - pin.to).norm(), kRounding) << pins.size();
-      EXPECT_NEAR(motion.linear().determinant(), 1.0, kRounding);
+      const std::vector<PinWay> pin_ways = ways(random_motion(random, 1.5), pins);
+      const auto motion = common_turn(pin_ways);
+      ASSERT_TRUE(motion) << pins.size();
+      for (const PinWay& pin : pin_ways) EXPECT_LT((*motion * pin.from - pin.to).norm(), kRounding) << pins.size();
+      EXPECT_NEAR(motion->linear().determinant(), 1.0, kRounding);
+    }
+  }
+}
+
+// Rounding of 2^-53 chooses the turn about the strip's line: by so much more as the strip is narrower than long.
+TEST(PinMotion, TakesPinsOfNarrowStripsAlongToRounding) {
+  Random random(3);
+  for (const double width : {1e-1, 1e-2, 1e-3, 1e-4, 1e-6}) {
+    std::vector<Vector3> pins;
+    for (int k = 0; k < 24; ++k) {
+      for (const double side : {-0.5, 0.5}) pins.emplace_back(k / 23.0, side * width, 0.0);
+    }
+    for (int k = 0; k < 50; ++k) {
+      const std::vector<PinWay> pin_ways = ways(random_motion(random, 0.3), pins);
+      const auto motion = common_turn(pin_ways);
+      ASSERT_TRUE(motion) << width;
+      for (const PinWay& pin : pin_ways) {
+        EXPECT_LT((*motion * pin.from - pin.to).norm(), std::min(kRounding / width, width)) << width;
+      }
     }
   }
 }
@@ -51,19 +70,25 @@ TEST(PinMotion, TurnsNoMoreThanPinsAskFor) {
   const std::vector<Vector3> pins = {{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}};
   const Vector3 along = (pins[1] - pins[0]).normalized();
   for (int k = 0; k < 100; ++k) {
-    const RigidTransform turned = random_motion(random, 3.0);
-    const Matrix3 turn = common_motion(ways(turned, pins)).linear();
+    const RigidTransform turned = random_motion(random, 1.5);
+    const auto motion = common_turn(ways(turned, pins));
+    ASSERT_TRUE(motion);
     const double least = std::acos(std::min(1.0, along.dot(turned.linear() * along)));
-    EXPECT_NEAR(Eigen::AngleAxisd(turn).angle(), least, 1e-7) << "the arc cosine loses half of the digits";
+    EXPECT_NEAR(Eigen::AngleAxisd(motion->linear()).angle(), least, 1e-7) << "the arc cosine loses half of the digits";
   }
 }
 
-TEST(PinMotion, OfPinsThatRestOrGoTheSameWayIsNoTurnAtAll) {
-  const std::vector<Vector3> pins = {{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}, {0.1, 0.7, 0.2}};
-  EXPECT_EQ(common_motion(ways(RigidTransform::Identity(), pins)).matrix(), RigidTransform::Identity().matrix());
+TEST(PinMotion, OfPinsThatRestOrGoTheSameWayIsNone) {
+  EXPECT_FALSE(common_turn(ways(RigidTransform::Identity(), {{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}})));
   RigidTransform shift = RigidTransform::Identity();
   shift.translation() = Vector3(0.25, 0.5, -0.125);
-  EXPECT_EQ(common_motion(ways(shift, pins)).linear(), Matrix3::Identity());
+  EXPECT_FALSE(common_turn(ways(shift, {{1.0, 0.5, -0.25}, {-0.25, 0.5, 0.75}})));
+}
+
+TEST(PinMotion, OfPinsThatGoWaysOfTheirOwnIsNone) {
+  // They pass each other, and one goes on alone.
+  EXPECT_FALSE(common_turn(std::vector<PinWay>{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {-0.5, 0.0, 0.0}}}));
+  EXPECT_FALSE(common_turn(std::vector<PinWay>{{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {1.5, 0.0, 0.0}}}));
 }
 
 }  // namespace

@@ -347,18 +347,18 @@ TEST(Simulator, WhatRisesBesideAPinDoesNotPassTheRodThatHangsOnIt) {
   }
 }
 
-/// The rod, pinned at its ends where they leave the ball no way past it, or at one end, and 10 m away a particle that is thrown.
-NetworkBuilder rod_and_thrown_particle(const std::vector<Index>& pinned) {
+/// The rod, pinned at its ends where they leave the ball no way past it, and 10 m away a particle that is thrown.
+NetworkBuilder rod_and_thrown_particle() {
   NetworkBuilder builder = rod();
   builder.begin_body("thrown");
   builder.add_particle({10.0, 0.0, 0.0}, 0.1, {1.0, 2.0, 0.0});
-  builder.pin(pinned);
+  builder.pin({0, 1});
   return builder;
 }
 
 // What has no place in any parts is tried all the same: what is far off goes on as if nothing were in the way.
 TEST(Simulator, WhatSqueezesInAnyPartsLeavesNothingBehind) {
-  const NetworkBuilder builder = rod_and_thrown_particle({0, 1});
+  const NetworkBuilder builder = rod_and_thrown_particle();
   for (const IntegratorSettings& integrator : all_integrators()) {
     const SimulatorSettings settings{.step = 1e-2, .integrator = integrator};
     Simulator simulator(builder.build(), settings, {rising_ball()});

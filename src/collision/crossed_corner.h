@@ -1,0 +1,18 @@
+// What obstacles let through, because something drags it through them.
+#pragma once
+
+#include "base/types.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// A corner of an element that an obstacle crosses.
+struct CrossedCorner {
+  Index obstacle = kNone;
+  Index particle = kNone;
+};
+
+using LetThrough = std::vector<CrossedCorner>;
+
+}  // namespace sprung
