@@ -1,4 +1,5 @@
 // Networks that meet themselves and each other.
+#include "base/format.h"
 #include "scenarios/judge.h"
 #include "scenarios/knot.h"
 #include "scenarios/scenario.h"
@@ -6,8 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sprung::testing {
@@ -30,6 +34,36 @@ TEST_P(SelfContact, AClothSwungTwoTurnsByItsUpperCornersDoesNotPassItself) {
   const ScenarioReport report = run("twisted_cloth", {R"(bodies.cloth.pins=[{"at": "corner", "which": ["min_max", "max_max"],
                                 "motion": {"keyframes": [{"time": 0}, {"time": 2, "rotation": [0, 720, 0]}]}}])"});
   EXPECT_TRUE(report.is_free()) << report;
+}
+
+/// A sheet's lower edge goes round the axis between both sheets by 300 degrees a second, in chords.
+std::string around_axis(const std::string& body, double distance) {
+  constexpr int kChords = 96;
+  std::string keys;
+  for (int k = 0; k <= kChords; ++k) {
+    const double time = 0.3 * k / kChords;
+    const double degrees = 300.0 * time;
+    const double angle = degrees * std::numbers::pi / 180.0;
+    keys += keys.empty() ? "" : ", ";
+    keys += "{\"time\": " + format_number(time) + ", \"position\": [" + format_number(distance * std::sin(angle)) + ", 0, " +
+            format_number(distance * (std::cos(angle) - 1.0)) + "], \"rotation\": [0, " + format_number(degrees) + ", 0]}";
+  }
+  return "bodies." + body + ".pins[1].motion={\"keyframes\": [" + keys + "]}";
+}
+
+// Pins of both go the same way but for the chords: no pin drags anything through anything.
+TEST(SelfContactAtPins, TwoSheetsTurnedTogetherFindTheirPlace) {
+  BuiltScene scene = load_scenario("two_sheets_turned", {around_axis("front", 0.025), around_axis("back", -0.025)});
+  const ScenarioReport report = run_scenario(std::move(scene), {}, Judge::obstacles_and_self);
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_EQ(report.squeezed, 0);
+}
+
+// By 2.8 turns, until it is a rope.
+TEST(SelfContactAtPins, AClothTwistedAtBothEndsDoesNotPassItself) {
+  const ScenarioReport report = run_scenario(load_scenario("cloth_twisted_at_both_ends", {}), {}, Judge::obstacles_and_self);
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_EQ(report.squeezed, 0);
 }
 
 /// Cloths of n x n particles, whose middles are to lie over the top of the ball one above the other.
