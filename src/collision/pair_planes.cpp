@@ -15,7 +15,7 @@ constexpr double kClearance = 0x1p-30;
 constexpr double kRounding = 0x1p-18;
 
 // How far from where its group takes it a pin may go, as a part of its pair's gap.
-constexpr double kOfPins = 0.5;
+constexpr double kOfPins = 0.25;
 
 constexpr Index kPairsPerTask = 2048;
 
@@ -99,7 +99,8 @@ ElementPair PairPlanes::turned(ElementPair pair, Index group) const {
   return pair;
 }
 
-// A turn by less than a right angle leaves seven tenths of a gap on straight ways: half of it is a pin's to go elsewhere.
+// On straight ways a turn by less than a right angle leaves seven tenths of a gap, the strain of an anchored group half of it: a
+// quarter is a pin's to go elsewhere.
 Index PairPlanes::group_of(const ElementPair& pair, double gap) const {
   Index group = kNone;
   for (int k = 0; k < pair.count(); ++k) group = std::max(group, groups_.group(pair.particles[static_cast<std::size_t>(k)]));
