@@ -11,11 +11,11 @@ namespace {
 // As a part of the largest coordinate: above what the rounding of heights along a normal may lose.
 constexpr double kClearance = 0x1p-30;
 
-// What a step may do by rounding to a gap, as a part of the clearance.
-constexpr double kRounding = 0x1p-18;
-
 // How far from where its group takes it a pin may go, as a part of its pair's gap.
 constexpr double kOfPins = 0.25;
+
+// Times that those give way, and what is then near them; what then still passes is told.
+constexpr int kMostRounds = 8;
 
 constexpr Index kPairsPerTask = 2048;
 
@@ -37,17 +37,17 @@ PairPlanes::PairPlanes(const Points& before, const Points& targets, const std::v
       pinned_(pinned),
       groups_(before, targets, pinned, carriers),
       ends_(targets),
-      kept_(kept),
-      clearance_(kClearance * before.cwiseAbs().maxCoeff()) {}
+      rule_{.thickness_kept = kept, .clearance = kClearance * before.cwiseAbs().maxCoeff()},
+      way_(before, pinned, rule_),
+      is_aside_(static_cast<std::size_t>(before.cols()), 0) {}
 
 bool PairPlanes::hold(std::vector<ElementPair>& pairs) {
   bool changed = false;
   passing_.clear();
-  for (const Index k : find_conflicts(pairs)) {
+  for (const Index k : find_passing(pairs, [&](const ElementPair& pair) { return passes(pair); })) {
     const ElementPair& pair = pairs[static_cast<std::size_t>(k)];
-    const std::span<const Index> particles(pair.particles.data(), static_cast<std::size_t>(pair.count()));
-    changed = groups_.unite(particles) || changed;
-    passing_.insert(passing_.end(), particles.begin(), particles.end());
+    changed = groups_.unite({pair.particles.data(), static_cast<std::size_t>(pair.count())}) || changed;
+    note_passing(pair);
   }
   if (!changed) return false;
   groups_.find_motions();
@@ -65,20 +65,60 @@ void PairPlanes::renew_normals(std::vector<ElementPair>& pairs) const {
   });
 }
 
-std::vector<Index> PairPlanes::find_conflicts(std::vector<ElementPair>& pairs) const {
+template <class Passes>
+std::vector<Index> PairPlanes::find_passing(std::vector<ElementPair>& pairs, const Passes& passes) const {
   const auto count = static_cast<Index>(pairs.size());
   std::vector<std::vector<Index>> parts(static_cast<std::size_t>((count + kPairsPerTask - 1) / kPairsPerTask));
   parallel_chunks(count, kPairsPerTask, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       ElementPair& pair = pairs[static_cast<std::size_t>(k)];
-      if (!(heights_at(pair, ends_).gap() < least_gap())) continue;
+      if (!(heights_at(pair, ends_).gap() < rule_.least())) continue;
       pair.normal = direction_between(pair, before_);
       if (passes(pair)) parts[static_cast<std::size_t>(begin / kPairsPerTask)].push_back(k);
     }
   });
-  std::vector<Index> conflicts;
-  for (const std::vector<Index>& part : parts) conflicts.insert(conflicts.end(), part.begin(), part.end());
-  return conflicts;
+  std::vector<Index> passing;
+  for (const std::vector<Index>& part : parts) passing.insert(passing.end(), part.begin(), part.end());
+  return passing;
+}
+
+void PairPlanes::note_passing(const ElementPair& pair) {
+  passing_.insert(passing_.end(), pair.particles.begin(), pair.particles.begin() + pair.count());
+}
+
+bool PairPlanes::give_way(std::vector<ElementPair>& pairs) {
+  gives_way_ = true;
+  passing_.clear();
+  const auto passes = [&](const ElementPair& pair) { return way_.passes(pair, ends_); };
+  for (const Index k : find_passing(pairs, passes)) note_passing(pairs[static_cast<std::size_t>(k)]);
+  if (passing_.empty() || ++rounds_ > kMostRounds) return false;
+  if (rounds_ == 1) begin_at_rest();
+  const std::vector<Index> moved = way_.move_apart(pairs, ends_);
+  for (const Index i : moved) {
+    if (is_held(i)) continue;
+    is_aside_[static_cast<std::size_t>(i)] = 1;
+    aside_.push_back(i);
+  }
+  return rounds_ == 1 || !moved.empty();
+}
+
+/// Groups of sides that pass each other begin where they are: what they have in common with some of their pins is not what others
+/// leave them.
+void PairPlanes::begin_at_rest() {
+  std::vector<Index> drawn;
+  for (const Index i : passing_) {
+    if (groups_.holds(i)) drawn.push_back(groups_.group(i));
+  }
+  std::sort(drawn.begin(), drawn.end());
+  for (const Index i : groups_.particles()) {
+    if (std::binary_search(drawn.begin(), drawn.end(), groups_.group(i))) ends_.col(i) = before_.col(i);
+  }
+}
+
+std::vector<Index> PairPlanes::held() const {
+  std::vector<Index> held = groups_.particles();
+  held.insert(held.end(), aside_.begin(), aside_.end());
+  return held;
 }
 
 /// Whether the sides end nearer than they ever may. What touched when the step began has no plane to keep, what moves rigidly needs
@@ -91,7 +131,7 @@ bool PairPlanes::passes(const ElementPair& pair) const {
       std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return is_pinned(i); });
   if (group != kNone && groups_.fraction(group) == 0.0 && !has_pins) return false;
   const double end = heights_at(turned(pair, group), ends_).gap();
-  return end < std::min(begun, least_gap()) - kRounding * clearance_;
+  return end < rule_.needed(begun);
 }
 
 ElementPair PairPlanes::turned(ElementPair pair, Index group) const {
@@ -110,11 +150,6 @@ Index PairPlanes::group_of(const ElementPair& pair, double gap) const {
   return std::all_of(pair.particles.begin(), pair.particles.begin() + pair.count(), is_of) ? group : kNone;
 }
 
-double PairPlanes::kept_gap(const ElementPair& pair) const {
-  const double begun = heights_at(pair, before_).gap();
-  return std::min(begun, std::max(clearance_, kept_));
-}
-
 /// Along their ways the gap of a group's pair is at least the linear function between its values at both ends.
 void PairPlanes::limit_groups(const std::vector<ElementPair>& pairs) {
   for (const ElementPair& pair : pairs) {
@@ -128,7 +163,7 @@ void PairPlanes::limit_groups(const std::vector<ElementPair>& pairs) {
     }
     if (group == kNone || !inner) continue;
     const double at_target = heights_at(pair, targets_).gap();
-    const double kept = kept_gap(pair);
+    const double kept = rule_.kept(heights_at(pair, before_).gap());
     if (!(at_target < kept)) continue;
     const double at_start =
         heights_of(pair, [&](int k) { return pair.normal.dot(groups_.start(pair.particles[static_cast<std::size_t>(k)])); }).gap();
@@ -138,26 +173,47 @@ void PairPlanes::limit_groups(const std::vector<ElementPair>& pairs) {
 
 std::vector<PairPlanes::Bound> PairPlanes::bounds(const std::vector<ElementPair>& pairs) const {
   std::vector<Bound> found;
-  for (ElementPair pair : pairs) {
-    if (std::none_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return groups_.holds(i); }))
-      continue;
+  const auto nothing = [](Index) { return 0.0; };
+  for (const ElementPair& pair : pairs) {
+    if (std::none_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return is_held(i); })) continue;
     const double begun = heights_at(pair, before_).gap();
     if (!(begun > 0.0)) continue;
-    const double room = 0.5 * kept_gap(pair);
-    pair = turned(pair, group_of(pair, begun));
-    const PairHeights end = heights_at(pair, ends_);
-    const PairHeights target = heights_at(pair, targets_);
-    const double least = 0.5 * std::clamp(end.gap(), 0.0, least_gap());
-    const double highest = std::max(end.first, end.second) - least;
-    const double middle = std::max(end.second + least, std::min(0.5 * (target.first + target.second), highest));
-    const HalfSpace above{pair.normal, std::min(end.first, middle + room)};
-    const HalfSpace below{-pair.normal, -std::max(end.second, middle - room)};
-    for (int k = 0; k < pair.count(); ++k) {
-      const Index i = pair.particles[static_cast<std::size_t>(k)];
-      if (groups_.holds(i)) found.push_back({i, k < pair.first_count ? above : below});
+    if (!gives_way_) {
+      append_bounds(pair, turned(pair, group_of(pair, begun)).normal, nothing, found);
+      continue;
     }
+    const TurningPlane plane = *way_.plane(pair, ends_);
+    append_bounds(pair, plane.end, nothing, found);
+    if (plane.end != plane.begin)
+      append_bounds(
+          pair, plane.begin, [&](Index i) { return plane.end.dot(before_.col(i)); }, found);
   }
   return sorted(found, static_cast<Index>(before_.cols()));
+}
+
+/// Bounds of what `normal` . x + extra(i) is of each particle i.
+template <class Extra>
+void PairPlanes::append_bounds(const ElementPair& pair, const Vector3& normal, const Extra& extra,
+                               std::vector<Bound>& found) const {
+  const auto heights = [&](const Points& x) {
+    return heights_of(pair, [&](int k) {
+      const Index i = pair.particles[static_cast<std::size_t>(k)];
+      return normal.dot(x.col(i)) + extra(i);
+    });
+  };
+  const double room = 0.5 * rule_.kept(heights_at(pair, before_).gap());
+  const PairHeights end = heights(ends_);
+  const PairHeights target = heights(targets_);
+  const double least = 0.5 * std::clamp(end.gap(), 0.0, rule_.least());
+  const double highest = std::max(end.first, end.second) - least;
+  const double middle = std::max(end.second + least, std::min(0.5 * (target.first + target.second), highest));
+  const double above = std::min(end.first, middle + room);
+  const double below = std::max(end.second, middle - room);
+  for (int k = 0; k < pair.count(); ++k) {
+    const Index i = pair.particles[static_cast<std::size_t>(k)];
+    if (!is_held(i)) continue;
+    found.push_back(k < pair.first_count ? Bound{i, {normal, above - extra(i)}} : Bound{i, {-normal, extra(i) - below}});
+  }
 }
 
 }  // namespace sprung

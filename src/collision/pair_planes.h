@@ -4,7 +4,7 @@
 // lies between the sides along a fixed direction is a concave function of time. So only the end of the step is looked at.
 #pragma once
 
-#include "collision/element_pair.h"
+#include "collision/giving_way.h"
 #include "collision/held_groups.h"
 #include "collision/zone.h"
 
@@ -26,8 +26,12 @@ class PairPlanes {
   /// Pairs whose plane does not do any more get a better one, if there is one.
   [[nodiscard]] bool hold(std::vector<ElementPair>& pairs);
 
-  /// Whether groups were turned, and the normals of their pairs not.
-  [[nodiscard]] bool turns() const { return groups_.turn(); }
+  /// Lets those that pins drag through each other give way instead, and what is then in their way. Returns whether any end has
+  /// changed: then it is to be called again, with the pairs that these ends may touch. Requires that hold() returned false.
+  [[nodiscard]] bool give_way(std::vector<ElementPair>& pairs);
+
+  /// Whether pairs were turned, and their normals not.
+  [[nodiscard]] bool turns() const { return gives_way_ || groups_.turn(); }
 
   /// Gives a new normal to those pairs whose own does not separate them where the step begins.
   void renew_normals(std::vector<ElementPair>& pairs) const;
@@ -35,11 +39,11 @@ class PairPlanes {
   /// Where particles may end: their targets, or, for those that are held, a place on the way [m].
   [[nodiscard]] const Points& ends() const { return ends_; }
 
-  /// In the order in which they were held.
-  [[nodiscard]] const std::vector<Index>& held() const { return groups_.particles(); }
+  /// In any order.
+  [[nodiscard]] std::vector<Index> held() const;
 
   /// Particles of pairs that pass each other all the same, because pins that go different ways drag them; pins too, in any order,
-  /// some more than once. Requires that hold() returned false.
+  /// some more than once. Requires that hold() and give_way() returned false.
   [[nodiscard]] const std::vector<Index>& passing() const { return passing_; }
 
   /// What bounds a held particle at the step's end.
@@ -51,18 +55,23 @@ class PairPlanes {
   [[nodiscard]] std::vector<Bound> bounds(const std::vector<ElementPair>& pairs) const;
 
  private:
-  [[nodiscard]] std::vector<Index> find_conflicts(std::vector<ElementPair>& pairs) const;
+  /// Numbers of the pairs that their own normals do not keep apart, and that pass each other. They get better normals, if there are
+  /// any.
+  template <class Passes>
+  [[nodiscard]] std::vector<Index> find_passing(std::vector<ElementPair>& pairs, const Passes& passes) const;
   [[nodiscard]] bool passes(const ElementPair& pair) const;
   [[nodiscard]] bool is_pinned(Index i) const { return pinned_[static_cast<std::size_t>(i)] != 0; }
+  [[nodiscard]] bool is_held(Index i) const { return groups_.holds(i) || is_aside_[static_cast<std::size_t>(i)] != 0; }
   /// The group that all of the pair is in, or that takes along what of it is pinned; kNone if there is none. The sides are `gap`
   /// [m] apart when the step begins.
   [[nodiscard]] Index group_of(const ElementPair& pair, double gap) const;
   /// With the normal that it has after its group's motion.
   [[nodiscard]] ElementPair turned(ElementPair pair, Index group) const;
   void limit_groups(const std::vector<ElementPair>& pairs);
-  [[nodiscard]] double kept_gap(const ElementPair& pair) const;
-  /// A gap that is larger may end as small as this, one that is smaller never smaller: else it would wear away, step by step [m].
-  [[nodiscard]] double least_gap() const { return 0.5 * clearance_; }
+  void begin_at_rest();
+  void note_passing(const ElementPair& pair);
+  template <class Extra>
+  void append_bounds(const ElementPair& pair, const Vector3& normal, const Extra& extra, std::vector<Bound>& found) const;
 
   const Points& before_;
   const Points& targets_;
@@ -70,8 +79,12 @@ class PairPlanes {
   HeldGroups groups_;
   Points ends_;
   std::vector<Index> passing_;
-  double kept_;
-  double clearance_;  ///< below this, a gap is not told from rounding [m]
+  GapRule rule_;
+  GivingWay way_;
+  bool gives_way_ = false;
+  int rounds_ = 0;              ///< of giving way
+  std::vector<Index> aside_;    ///< particles of no group that gave way
+  std::vector<char> is_aside_;  ///< by particle
 };
 
 }  // namespace sprung

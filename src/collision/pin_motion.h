@@ -14,10 +14,9 @@ struct PinWay {
   Vector3 to;
 };
 
-/// The rigid motion that takes pins where they go, with the least squares of what it misses (Kabsch 1976), and turns no more than
-/// they ask for: what pins say nothing about, as two of them do about turns about their line, it leaves. None where they go the
-/// same way or ways of their own: where it misses half of what their mean motion does or more, or turns by more than a right angle.
-/// Requires a pin.
+/// The rigid motion that takes pins where they go, with the least squares of what it misses, turned by best_turn(). None where they
+/// go the same way or ways of their own: where it misses half of what their mean motion does or more, or turns by more than a right
+/// angle. Requires a pin.
 [[nodiscard]] std::optional<RigidTransform> common_turn(std::span<const PinWay> pins);
 
 }  // namespace sprung

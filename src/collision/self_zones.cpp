@@ -55,6 +55,7 @@ const std::vector<Index>& SelfZones::hold(const Points& before, const Points& ta
   self.watch.follow(before, targets);
   if (self.turned) planes.renew_normals(self.watch.pairs());
   while (planes.hold(self.watch.pairs())) self.watch.follow(before, planes.ends());
+  while (!planes.passing().empty() && planes.give_way(self.watch.pairs())) self.watch.follow(before, planes.ends());
   self.turned = planes.turns();
   self.ends = planes.ends();
   self.held = planes.held();

@@ -66,6 +66,14 @@ TEST(SelfContactAtPins, AClothTwistedAtBothEndsDoesNotPassItself) {
   EXPECT_EQ(report.squeezed, 0);
 }
 
+// Without a thickness nothing keeps gaps open: pins of both ends draw all of it at once.
+TEST(SelfContactAtPins, AThinClothTwistedAtBothEndsDoesNotPassItself) {
+  const ScenarioReport report =
+      run_scenario(load_scenario("cloth_twisted_at_both_ends", {"bodies.cloth.thickness=0"}), {}, Judge::obstacles_and_self);
+  EXPECT_TRUE(report.is_free()) << report;
+  EXPECT_EQ(report.squeezed, 0);
+}
+
 /// Cloths of n x n particles, whose middles are to lie over the top of the ball one above the other.
 void expect_a_pile(Index n, double step_factor) {
   const Watch watch = [n](const Simulator& simulator, const FrameDiagnostics& frame) {
