@@ -15,7 +15,7 @@ constexpr double kClearance = 0x1p-30;
 constexpr double kOfPins = 0.25;
 
 // Times that those give way, and what is then near them; what then still passes is told.
-constexpr int kMostRounds = 8;
+constexpr int kMostRounds = 3;
 
 constexpr Index kPairsPerTask = 2048;
 
