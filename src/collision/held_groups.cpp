@@ -145,9 +145,9 @@ void HeldGroups::let_pins_turn(const std::vector<std::vector<Index>>& pins) {
   }
 }
 
-Vector3 HeldGroups::turned(Index group, const Vector3& normal) const {
-  const Group& of = groups_[static_cast<std::size_t>(group)];
-  return of.turned ? Vector3((of.motion.linear().inverse().transpose() * normal).normalized()) : normal;
+CarriedPlane HeldGroups::carried(Index group, const Vector3& normal) const {
+  if (group == kNone || !groups_[static_cast<std::size_t>(group)].turned) return {normal, normal, normal};
+  return carried_plane(normal, groups_[static_cast<std::size_t>(group)].motion.linear());
 }
 
 Vector3 HeldGroups::start(Index particle) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/anchor.h"
+#include "collision/carried_plane.h"
 
 #include <span>
 #include <vector>
@@ -54,8 +55,8 @@ class HeldGroups {
   /// Whether any group's motion may be more than a translation.
   [[nodiscard]] bool turn() const;
 
-  /// The normal of a plane within the group after its motion.
-  [[nodiscard]] Vector3 turned(Index group, const Vector3& normal) const;
+  /// The plane that the group takes along; one that stays for none.
+  [[nodiscard]] CarriedPlane carried(Index group, const Vector3& normal) const;
 
   [[nodiscard]] double fraction(Index group) const { return groups_[static_cast<std::size_t>(group)].fraction; }
   void limit_fraction(Index group, double fraction);

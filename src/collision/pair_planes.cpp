@@ -14,8 +14,9 @@ constexpr double kClearance = 0x1p-30;
 // How far from where its group takes it a pin may go, as a part of its pair's gap.
 constexpr double kOfPins = 0.25;
 
-// Times that those give way, and what is then near them; what then still passes is told.
-constexpr int kMostRounds = 3;
+// Times that those give way, and what is then near them: from where their groups take them, and as often again from rest. What then
+// still passes is told.
+constexpr int kRoundsEach = 3;
 
 constexpr Index kPairsPerTask = 2048;
 
@@ -91,15 +92,14 @@ bool PairPlanes::give_way(std::vector<ElementPair>& pairs) {
   passing_.clear();
   const auto passes = [&](const ElementPair& pair) { return way_.passes(pair, ends_); };
   for (const Index k : find_passing(pairs, passes)) note_passing(pairs[static_cast<std::size_t>(k)]);
-  if (passing_.empty() || ++rounds_ > kMostRounds) return false;
-  if (rounds_ == 1) begin_at_rest();
-  const std::vector<Index> moved = way_.move_apart(pairs, ends_);
-  for (const Index i : moved) {
+  if (passing_.empty() || ++rounds_ > 2 * kRoundsEach) return false;
+  if (rounds_ == kRoundsEach + 1) begin_at_rest();
+  for (const Index i : way_.move_apart(pairs, ends_)) {
     if (is_held(i)) continue;
     is_aside_[static_cast<std::size_t>(i)] = 1;
     aside_.push_back(i);
   }
-  return rounds_ == 1 || !moved.empty();
+  return true;
 }
 
 /// Groups of sides that pass each other begin where they are: what they have in common with some of their pins is not what others
@@ -135,7 +135,7 @@ bool PairPlanes::passes(const ElementPair& pair) const {
 }
 
 ElementPair PairPlanes::turned(ElementPair pair, Index group) const {
-  if (group != kNone) pair.normal = groups_.turned(group, pair.normal);
+  pair.normal = groups_.carried(group, pair.normal).end.normalized();
   return pair;
 }
 
@@ -173,28 +173,37 @@ void PairPlanes::limit_groups(const std::vector<ElementPair>& pairs) {
 
 std::vector<PairPlanes::Bound> PairPlanes::bounds(const std::vector<ElementPair>& pairs) const {
   std::vector<Bound> found;
-  const auto nothing = [](Index) { return 0.0; };
   for (const ElementPair& pair : pairs) {
     if (std::none_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return is_held(i); })) continue;
     const double begun = heights_at(pair, before_).gap();
     if (!(begun > 0.0)) continue;
-    if (!gives_way_) {
-      append_bounds(pair, turned(pair, group_of(pair, begun)).normal, nothing, found);
-      continue;
+    if (gives_way_) {
+      append_bounds(pair, *way_.plane(pair, ends_), found);
+    } else {
+      append_bounds(pair, groups_.carried(group_of(pair, begun), pair.normal), found);
     }
-    const TurningPlane plane = *way_.plane(pair, ends_);
-    append_bounds(pair, plane.end, nothing, found);
-    if (plane.end != plane.begin)
-      append_bounds(
-          pair, plane.begin, [&](Index i) { return plane.end.dot(before_.col(i)); }, found);
   }
   return sorted(found, static_cast<Index>(before_.cols()));
 }
 
-/// Bounds of what `normal` . x + extra(i) is of each particle i.
-template <class Extra>
-void PairPlanes::append_bounds(const ElementPair& pair, const Vector3& normal, const Extra& extra,
+void PairPlanes::append_bounds(const ElementPair& pair, const TurningPlane& plane, std::vector<Bound>& found) const {
+  append_bounds(pair, plane.end, Vector3::Zero(), found);
+  if (plane.end != plane.begin) append_bounds(pair, plane.begin, plane.end, found);
+}
+
+void PairPlanes::append_bounds(const ElementPair& pair, const CarriedPlane& plane, std::vector<Bound>& found) const {
+  append_bounds(pair, plane.end, Vector3::Zero(), found);
+  if (plane.stays()) return;
+  append_bounds(pair, plane.begin, 2.0 * plane.middle, found);
+  append_bounds(pair, 2.0 * plane.middle, plane.end, found);
+}
+
+/// Bounds of what `after` . x1 + `earlier` . x0 is of each particle.
+void PairPlanes::append_bounds(const ElementPair& pair, const Vector3& after, const Vector3& earlier,
                                std::vector<Bound>& found) const {
+  const double length = after.norm();
+  const Vector3 normal = after / length;
+  const auto extra = [&](Index i) { return earlier.dot(before_.col(i)) / length; };
   const auto heights = [&](const Points& x) {
     return heights_of(pair, [&](int k) {
       const Index i = pair.particles[static_cast<std::size_t>(k)];

@@ -1,7 +1,8 @@
 // Moving planes that keep the sides of pairs apart.
 //
 // A plane with the pair's normal separates the sides while particles move straight, if it does at the step's begin and end: what
-// lies between the sides along a fixed direction is a concave function of time. So only the end of the step is looked at.
+// lies between the sides along a fixed direction is a concave function of time. So only the end of the step is looked at, but for
+// what gives way: see turning_plane.h.
 #pragma once
 
 #include "collision/giving_way.h"
@@ -70,8 +71,9 @@ class PairPlanes {
   void limit_groups(const std::vector<ElementPair>& pairs);
   void begin_at_rest();
   void note_passing(const ElementPair& pair);
-  template <class Extra>
-  void append_bounds(const ElementPair& pair, const Vector3& normal, const Extra& extra, std::vector<Bound>& found) const;
+  void append_bounds(const ElementPair& pair, const TurningPlane& plane, std::vector<Bound>& found) const;
+  void append_bounds(const ElementPair& pair, const CarriedPlane& plane, std::vector<Bound>& found) const;
+  void append_bounds(const ElementPair& pair, const Vector3& after, const Vector3& earlier, std::vector<Bound>& found) const;
 
   const Points& before_;
   const Points& targets_;
