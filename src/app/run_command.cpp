@@ -3,6 +3,7 @@
 #include "app/interrupt.h"
 #include "app/load_scene.h"
 #include "app/progress.h"
+#include "app/run_watch.h"
 #include "base/error.h"
 #include "base/format.h"
 #include "base/parallel.h"
@@ -50,88 +51,19 @@ void finish_quietly(RunOutput& output, const std::string& outcome) {
   }
 }
 
-/// Tells once, as it happens, that particles had to yield: contact could not keep them outside of all obstacles.
-void warn_of_squeezing(const FrameDiagnostics& frame, RunOutput& output, bool& warned) {
-  if (warned || frame.squeezed == 0) return;
-  warned = true;
-  const std::string warning = fmt::format(
-      "frame {}: particles found no free place between obstacles, pins and each other {} times and may cross them; the column "
-      "squeezed of diagnostics.csv counts them",
-      frame.frame, frame.squeezed);
-  output.add_warning(warning);
-  print_warning(warning);
-}
-
-/// Tells, as it happens, that a body was handed over to another solver of the stretch limit.
-class Handovers {
- public:
-  explicit Handovers(bool quiet) : quiet_(quiet) {}
-
-  void see(const Simulator& simulator) {
-    const std::vector<StretchHold>& holds = simulator.state().stretch_holds;
-    told_.resize(holds.size(), false);
-    for (std::size_t b = 0; b < holds.size(); ++b) {
-      if (quiet_ || told_[b] || !holds[b].solved_since) continue;
-      told_[b] = true;
-      print_message(fmt::format("passes kept missing the stretch limit of \"{}\"; newton holds it after step {}",
-                                simulator.network().bodies[b].name, *holds[b].solved_since));
-    }
-  }
-
- private:
-  bool quiet_;
-  std::vector<bool> told_;
-};
-
-/// Remembers by how much the stretch limit was missed, to be told once.
-class MissedLimit {
- public:
-  explicit MissedLimit(const Simulator& simulator) {
-    if (const auto& limit = simulator.settings().stretch_limit) tolerance_ = limit->tolerance;
-  }
-
-  void see(const FrameDiagnostics& frame) {
-    if (frame.stretch_excess <= tolerance_) return;
-    ++frames_;
-    if (frame.stretch_excess <= most_) return;
-    most_ = frame.stretch_excess;
-    worst_frame_ = frame.frame;
-  }
-
-  void tell(RunOutput& output) const {
-    if (frames_ == 0) return;
-    const std::string warning = fmt::format(
-        "the stretch limit was missed by more than its tolerance in {} {}, by at most {} % of a rest length in frame {}; the "
-        "column stretch_excess of diagnostics.csv tells by how much in each",
-        frames_, frames_ == 1 ? "frame" : "frames", format_number(100.0 * most_, 2), worst_frame_);
-    output.add_warning(warning);
-    print_warning(warning);
-  }
-
- private:
-  double tolerance_ = 0.0;
-  double most_ = 0.0;
-  int frames_ = 0;
-  int worst_frame_ = 0;
-};
-
 /// Writes frames until all are done or the user interrupts; `written` counts them.
 void write_frames(LoadedScene& loaded, RunOutput& output, bool quiet, int& written) {
   FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
   Progress progress(loaded.frames, quiet);
-  bool warned = false;
-  MissedLimit missed(loaded.simulator);
-  Handovers handovers(quiet);
+  RunWatch watch(loaded.simulator, output, quiet);
   for (int frame = 1;; ++frame) {
     const FrameDiagnostics diagnostics = frame == 1 ? runner.first_frame() : runner.next_frame();
     output.write_frame(loaded.simulator, diagnostics);
     written = frame;
-    warn_of_squeezing(diagnostics, output, warned);
-    missed.see(diagnostics);
-    handovers.see(loaded.simulator);
+    watch.see(diagnostics);
     progress.frame_done(frame);
     if (frame < loaded.frames && !interrupted()) continue;
-    missed.tell(output);
+    watch.tell();
     return;
   }
 }
