@@ -5,7 +5,35 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace sprung {
+
+namespace {
+
+// Many particles: this part of all. Many frames: this part of them.
+constexpr double kManyParticles = 0.05;
+constexpr double kManyFrames = 0.1;
+
+// What rests falls by g dt^2 in a step before contact lifts it again. Layers with a gap of less than so many times that use it up
+// in a few steps, and are stopped at their surfaces from then on.
+constexpr double kFallsWithinGap = 16.0;
+
+/// The smallest gap that bodies keep to each other or to themselves [m]; infinite where none meet.
+double thinnest_gap(const std::vector<Body>& bodies) {
+  double gap = std::numeric_limits<double>::infinity();
+  for (std::size_t a = 0; a < bodies.size(); ++a) {
+    if (bodies[a].contact.self) gap = std::min(gap, bodies[a].material.thickness);
+    for (std::size_t b = 0; b < a; ++b) {
+      if (!bodies[a].contact.others || !bodies[b].contact.others) continue;
+      gap = std::min(gap, 0.5 * (bodies[a].material.thickness + bodies[b].material.thickness));
+    }
+  }
+  return gap;
+}
+
+}  // namespace
 
 RunWatch::RunWatch(const Simulator& simulator, RunOutput& output, bool quiet)
     : simulator_(simulator), output_(output), quiet_(quiet) {}
@@ -14,9 +42,11 @@ void RunWatch::see(const FrameDiagnostics& frame) {
   see_squeezing(frame);
   see_stretch(frame);
   see_handovers();
+  see_held_back(frame);
 }
 
 void RunWatch::tell() {
+  tell_of_thin_bodies();
   if (missed_.frames == 0) return;
   warn(fmt::format(
       "the stretch limit was missed by more than its tolerance in {} {}, by at most {} % of a rest length in frame {}; "
@@ -56,6 +86,25 @@ void RunWatch::see_handovers() {
     print_message(fmt::format("passes kept missing the stretch limit of \"{}\"; newton holds it after step {}",
                               simulator_.network().bodies[b].name, *holds[b].solved_since));
   }
+}
+
+void RunWatch::see_held_back(const FrameDiagnostics& frame) {
+  ++frames_;
+  const double particles = static_cast<double>(frame.parts) * static_cast<double>(simulator_.network().particle_count());
+  if (static_cast<double>(frame.truncated) > kManyParticles * particles) ++held_back_;
+}
+
+void RunWatch::tell_of_thin_bodies() {
+  if (held_back_ < kManyFrames * frames_) return;
+  const SimulatorSettings& settings = simulator_.settings();
+  const double least = kFallsWithinGap * settings.gravity.norm() * settings.step * settings.step;
+  const double gap = thinnest_gap(simulator_.network().bodies);
+  if (gap >= least) return;
+  warn(fmt::format(
+      "bodies that meet keep a gap of {} m, which what lies on them uses up as it falls in a step: contact held back more than "
+      "{} % of the particles in each step of {} frames, which takes long and lets them stretch; a thickness of at least {} m, or "
+      "smaller steps, would help",
+      format_number(gap, 3), format_number(100.0 * kManyParticles), held_back_, format_number(least, 2)));
 }
 
 }  // namespace sprung

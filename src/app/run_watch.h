@@ -18,7 +18,8 @@ class RunWatch {
   /// stretch limit. Throws FileError.
   void see(const FrameDiagnostics& frame);
 
-  /// After the last frame: tells by how much the stretch limit was missed. Throws FileError.
+  /// After the last frame: tells by how much the stretch limit was missed, and of bodies too thin to lie on each other. Throws
+  /// FileError.
   void tell();
 
  private:
@@ -26,6 +27,8 @@ class RunWatch {
   void see_squeezing(const FrameDiagnostics& frame);
   void see_stretch(const FrameDiagnostics& frame);
   void see_handovers();
+  void see_held_back(const FrameDiagnostics& frame);
+  void tell_of_thin_bodies();
 
   struct Missed {
     int frames = 0;
@@ -38,6 +41,8 @@ class RunWatch {
   bool quiet_;
   bool squeezed_ = false;
   Missed missed_;
+  int frames_ = 0;
+  int held_back_ = 0;              ///< frames in which many particles were
   std::vector<bool> handed_over_;  ///< by body
 };
 

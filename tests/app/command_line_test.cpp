@@ -114,6 +114,27 @@ TEST_F(CommandLine, RunWarnsOnceOfWhatIsSqueezedBetweenObstacles) {
   EXPECT_THAT(record()["warnings"][0].get<std::string>(), StartsWith("frame "));
 }
 
+TEST_F(CommandLine, RunTellsOfBodiesTooThinToLieOnEachOther) {
+  json scene = {{"version", 1}, {"duration", 0.5}, {"frame_rate", 30}, {"stretch_limit", {{"max_stretch", 0.02}}}};
+  scene["obstacles"]["floor"]["shape"] = {{"type", "half_space"}};
+  for (const int layer : {1, 2, 3, 4}) {
+    scene["bodies"][std::string("layer_") + static_cast<char>('a' + layer)] = {
+        {"shape", {{"type", "cloth"}, {"size", {1, 1}}, {"resolution", {8, 8}}}},
+        {"mass", 0.1},
+        {"springs", {{"structural", {{"stiffness", 0}}}, {"shear", {{"stiffness", 0}}}}},
+        {"place", {{"position", {0, 0.01 * layer, 0}}, {"rotation", {-90, 10 * layer, 0}}}}};
+  }
+  Ending ending = run({"run", save(scene), "--out", out()});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.err, HasSubstr("bodies that meet keep a gap of 0 m"));
+  EXPECT_THAT(record()["warnings"], Contains(StartsWith("bodies that meet")));
+
+  for (json& body : scene["bodies"]) body["thickness"] = 0.005;
+  ending = run({"run", save(scene), "--out", out(), "--overwrite"});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.err, Not(HasSubstr("bodies that meet")));
+}
+
 TEST_F(CommandLine, ValidatePrintsWhatFollowsFromTheScene) {
   const Ending ending = run({"validate", save(cloth_scene())});
   EXPECT_EQ(ending.code, 0) << ending.err;
