@@ -121,19 +121,23 @@ void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, 
   std::vector<Index> particles = placement.all_movable({before, after});
   const Points allowed = after;
   Outcomes outcomes = PairPlacement(zones, *pairs, particles).place(before, after);
+  std::vector<Index> squeezed = pairs->passing_pins();
   const bool sure = placement.look_at_pins(particles, after, outcomes);
   if (!sure || (placement.closes_in({before, allowed}) && count(outcomes, Outcome::squeezed) > 0)) {
+    squeezed.clear();
     outcomes = place_in_parts(environment, {before, allowed}, after, [&](const Way& part, Points& x) {
       const PlacedPart among_obstacles = placement.place_part(particles, part, x);
       pairs->begin_part(part.from, x);
       PlacedPart placed{PairPlacement(zones, *pairs, particles).place(part.from, x), among_obstacles.sure};
+      const std::vector<Index> pins = pairs->passing_pins();
+      squeezed.insert(squeezed.end(), pins.begin(), pins.end());
       placed.sure = placement.look_at_pins(particles, x, placed.outcomes) && placed.sure;
       keep_squeezed(among_obstacles.outcomes, placed.outcomes);
       return placed;
     });
   }
   truncation.truncated += static_cast<Index>(outcomes.size()) - count(outcomes, Outcome::free);
-  std::vector<Index> squeezed = placement.squeezed();
+  squeezed.insert(squeezed.end(), placement.squeezed().begin(), placement.squeezed().end());
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] == Outcome::squeezed) squeezed.push_back(particles[n]);
   }

@@ -1,6 +1,7 @@
 #include "collision/pair_planes.h"
 
 #include "base/parallel.h"
+#include "collision/pin_motion.h"
 
 #include <algorithm>
 #include <numeric>
@@ -75,12 +76,26 @@ std::vector<Index> PairPlanes::find_passing(std::vector<ElementPair>& pairs, con
       ElementPair& pair = pairs[static_cast<std::size_t>(k)];
       if (!(heights_at(pair, ends_).gap() < rule_.least())) continue;
       pair.normal = direction_between(pair, before_);
-      if (passes(pair)) parts[static_cast<std::size_t>(begin / kPairsPerTask)].push_back(k);
+      if (passes(pair) && !is_carried(pair)) parts[static_cast<std::size_t>(begin / kPairsPerTask)].push_back(k);
     }
   });
   std::vector<Index> passing;
   for (const std::vector<Index>& part : parts) passing.insert(passing.end(), part.begin(), part.end());
   return passing;
+}
+
+/// A turn by less than a right angle leaves seven tenths of the gap, whatever normal that was along.
+bool PairPlanes::is_carried(const ElementPair& pair) const {
+  std::vector<PinWay> ways;
+  for (int k = 0; k < pair.count(); ++k) {
+    const Index i = pair.particles[static_cast<std::size_t>(k)];
+    if (!is_pinned(i)) return false;
+    ways.push_back({before_.col(i), targets_.col(i)});
+  }
+  const auto motion = common_turn(ways);
+  const double gap = heights_at(pair, before_).gap();
+  return motion &&
+         std::ranges::all_of(ways, [&](const PinWay& way) { return (*motion * way.from - way.to).norm() <= kOfPins * gap; });
 }
 
 void PairPlanes::note_passing(const ElementPair& pair) {

@@ -61,6 +61,8 @@ class PairPlanes {
   template <class Passes>
   [[nodiscard]] std::vector<Index> find_passing(std::vector<ElementPair>& pairs, const Passes& passes) const;
   [[nodiscard]] bool passes(const ElementPair& pair) const;
+  /// Whether the pair is pins alone, which go as one rigid thing.
+  [[nodiscard]] bool is_carried(const ElementPair& pair) const;
   [[nodiscard]] bool is_pinned(Index i) const { return pinned_[static_cast<std::size_t>(i)] != 0; }
   [[nodiscard]] bool is_held(Index i) const { return groups_.holds(i) || is_aside_[static_cast<std::size_t>(i)] != 0; }
   /// The group that all of the pair is in, or that takes along what of it is pinned; kNone if there is none. The sides are `gap`

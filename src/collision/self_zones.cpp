@@ -81,6 +81,21 @@ bool SelfZones::passes(Index particle) const {
   return std::binary_search(implementation_->passing.begin(), implementation_->passing.end(), particle);
 }
 
+std::vector<Index> SelfZones::passing_pins() const {
+  const CollisionSurface& surface = implementation_->surface;
+  const auto is_pinned = [&](Index i) { return surface.pinned[static_cast<std::size_t>(i)] != 0; };
+  std::vector<Index> pins;
+  for (const Index i : implementation_->passing) {
+    if (!is_pinned(i) || (!pins.empty() && pins.back() == i)) continue;
+    const auto elements = implementation_->watch.features().elements_at(i);
+    const bool draws = std::ranges::any_of(elements, [&](Index e) {
+      return !std::ranges::all_of(corners_of(surface.elements[static_cast<std::size_t>(e)]), is_pinned);
+    });
+    if (draws) pins.push_back(i);
+  }
+  return pins;
+}
+
 bool SelfZones::allows(Index particle, const Vector3& p) const {
   if (!implementation_->watch.balls().holds(particle, p, 1.0)) return false;
   const auto bounds = implementation_->bounds_of(particle);

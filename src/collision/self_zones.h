@@ -55,6 +55,9 @@ class SelfZones {
   /// Whether a held particle is one of a side that passes another wherever it ends: pins that go different ways drag it.
   [[nodiscard]] bool passes(Index particle) const;
 
+  /// Pinned particles of sides that pass each other wherever they end, if they have elements that not pins alone hold; ascending.
+  [[nodiscard]] std::vector<Index> passing_pins() const;
+
   /// Whether a held particle may end at p: it is within both.
   [[nodiscard]] bool allows(Index particle, const Vector3& p) const;
 

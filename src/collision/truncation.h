@@ -7,7 +7,8 @@ namespace sprung {
 
 struct Truncation {
   Index truncated = 0;  ///< particles stopped on their way
-  Index squeezed = 0;   ///< particles that found no free place, that pins drag through the network, or whose elements are crossed
+  Index squeezed = 0;   ///< particles that found no free place, that pins drag through the network, or whose elements are
+                        ///< crossed, and pins of their elements that go through each other
 };
 
 }  // namespace sprung

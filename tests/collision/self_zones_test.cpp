@@ -326,6 +326,40 @@ TEST(SelfZones, WhatPinsDragThroughEachOtherIsTold) {
   EXPECT_GT(crossed, 0);
 }
 
+/// Two squares over each other; of the lower one a corner is free.
+SelfNetwork two_pinned_squares() {
+  SelfNetwork network;
+  network.add_cloth(1, {0.0, 0.0, 0.0}, Vector3::UnitX(), Vector3::UnitZ());
+  network.add_cloth(1, {0.2, 1e-3, 0.2}, Vector3::UnitX(), Vector3::UnitZ());
+  network.pinned.assign(network.pinned.size(), 1);
+  network.pinned[1] = 0;
+  return network;
+}
+
+// About an axis that leans to their plane: no plane whose normal turns at even speed keeps them apart.
+TEST(SelfZones, PinsThatTurnTogetherAreNotToldToPass) {
+  const SelfNetwork network = two_pinned_squares();
+  const CollisionSurface surface = network.surface(0.0);
+  SelfZones zones(surface, network.positions, kMargin);
+  std::vector<Contact> contacts;
+  const Points targets = Eigen::AngleAxisd(1.0, Vector3(1.0, 1.0, 1.0).normalized()).toRotationMatrix() * network.positions;
+  zones.begin_step(network.positions, targets, contacts);
+  zones.hold(network.positions, targets);
+  EXPECT_TRUE(zones.passing_pins().empty());
+}
+
+TEST(SelfZones, PinsThatGoThroughEachOtherAreTold) {
+  const SelfNetwork network = two_pinned_squares();
+  const CollisionSurface surface = network.surface(0.0);
+  SelfZones zones(surface, network.positions, kMargin);
+  std::vector<Contact> contacts;
+  Points targets = network.positions;
+  targets.row(1).tail(4).array() -= 0.2;
+  zones.begin_step(network.positions, targets, contacts);
+  zones.hold(network.positions, targets);
+  EXPECT_FALSE(zones.passing_pins().empty());
+}
+
 TEST(SelfZones, ScaledScenesGiveTheSameBits) {
   std::vector<Points> ends;
   for (const double scale : {1.0, 0x1p7, 0x1p-7}) {

@@ -74,6 +74,13 @@ TEST(SelfContactAtPins, AThinClothTwistedAtBothEndsDoesNotPassItself) {
   EXPECT_EQ(report.squeezed, 0);
 }
 
+// An edge between two pins goes through a triangle of which only the edge between two others is pinned.
+TEST(SelfContactAtPins, PinsThatDrawTheirElementsThroughEachOtherAreTold) {
+  const ScenarioReport report = run_scenario(load_scenario("pins_through_each_other", {}), {}, Judge::obstacles_and_self);
+  EXPECT_FALSE(report.is_free());
+  EXPECT_GT(report.squeezed, 0);
+}
+
 /// Cloths of n x n particles, whose middles are to lie over the top of the ball one above the other.
 void expect_a_pile(Index n, double step_factor) {
   const Watch watch = [n](const Simulator& simulator, const FrameDiagnostics& frame) {
