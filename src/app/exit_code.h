@@ -10,7 +10,7 @@ enum class ExitCode : int {
   invalid = 3,        ///< the scene or a mesh is invalid
   diverged = 4,       ///< the simulation diverged
   file = 5,           ///< the scene file cannot be read, or the output cannot be written
-  interrupted = 130,  ///< by SIGINT or SIGTERM, between two frames
+  interrupted = 130,  ///< by SIGINT or SIGTERM; the frame at hand is left off
 };
 
 }  // namespace sprung

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <optional>
 #include <thread>
 
 namespace sprung {
@@ -51,21 +52,30 @@ void finish_quietly(RunOutput& output, const std::string& outcome) {
   }
 }
 
+/// None when the user interrupts.
+std::optional<FrameDiagnostics> next_frame(FrameRunner& runner) {
+  try {
+    return runner.next_frame();
+  } catch (const StoppedError&) {
+    return std::nullopt;
+  }
+}
+
 /// Writes frames until all are done or the user interrupts; `written` counts them.
 void write_frames(LoadedScene& loaded, RunOutput& output, bool quiet, int& written) {
   FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
   Progress progress(loaded.frames, quiet);
   RunWatch watch(loaded.simulator, output, quiet);
-  for (int frame = 1;; ++frame) {
-    const FrameDiagnostics diagnostics = frame == 1 ? runner.first_frame() : runner.next_frame();
-    output.write_frame(loaded.simulator, diagnostics);
+  loaded.simulator.stop_when(interrupted);
+  for (int frame = 1; frame <= loaded.frames && !interrupted(); ++frame) {
+    const auto diagnostics = frame == 1 ? runner.first_frame() : next_frame(runner);
+    if (!diagnostics) break;
+    output.write_frame(loaded.simulator, *diagnostics);
     written = frame;
-    watch.see(diagnostics);
+    watch.see(*diagnostics);
     progress.frame_done(frame);
-    if (frame < loaded.frames && !interrupted()) continue;
-    watch.tell();
-    return;
   }
+  watch.tell();
 }
 
 /// A simulation cannot diverge before its first frame, which is the state at time 0.

@@ -98,7 +98,10 @@ StepReport Simulator::Implementation::make_step(int more) {
   integrator->set_part(1.0 / more);
   set_parts(more * parts);
   StepReport report;
-  for (const std::int64_t step = state.step; state.step == step;) report += make_part();
+  for (const std::int64_t step = state.step; state.step == step;) {
+    if (stops && stops()) throw StoppedError();
+    report += make_part();
+  }
   if (const StretchLimit* limit = constraints.limit()) report.turn = more * limit->turn();
   integrator->set_part(1.0);
   set_parts(parts);
@@ -230,6 +233,7 @@ Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
 StepReport Simulator::step() { return implementation_->step(); }
+void Simulator::stop_when(std::function<bool()> stops) { implementation_->stops = std::move(stops); }
 const SpringNetwork& Simulator::network() const { return implementation_->network; }
 const SimulatorSettings& Simulator::settings() const { return implementation_->settings; }
 const SimulationState& Simulator::state() const { return implementation_->state; }

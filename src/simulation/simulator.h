@@ -9,8 +9,10 @@
 #include "network/simulation_state.h"
 #include "network/spring_network.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -64,6 +66,12 @@ struct StepReport {
   StepReport& operator+=(const StepReport& part);
 };
 
+/// A step was left off, as somebody asked for; the state it left behind must not be used.
+class StoppedError : public std::runtime_error {
+ public:
+  StoppedError() : std::runtime_error("the step was stopped") {}
+};
+
 class Simulator {
  public:
   /// Throws InputError when settings are out of their bounds, the step is not positive or beyond the largest stable one (unless
@@ -80,6 +88,10 @@ class Simulator {
   /// does not help those that squeeze no more are tried ever more rarely. Throws StepError when the network diverged; its state is
   /// of no use then.
   StepReport step();
+
+  /// From now on step() asks this between its parts, and throws StoppedError where it is true; its state is of no use then. A step
+  /// of something that is knotted may take long.
+  void stop_when(std::function<bool()> stops);
 
   [[nodiscard]] const SpringNetwork& network() const;
   [[nodiscard]] const SimulatorSettings& settings() const;

@@ -79,6 +79,7 @@ struct Simulator::Implementation {
   PenaltyContact* penalty = nullptr;   ///< when contact answers by forces
   std::unique_ptr<Integrator> integrator;
   StepConstraints constraints;
+  std::function<bool()> stops;               ///< see Simulator::stop_when
   std::optional<StepRefinement> refinement;  ///< when steps may be made in parts
   bool waits_for_turn;                       ///< see StretchLimit::may_follow_turn
   DivergenceCheck divergence;

@@ -167,7 +167,7 @@ TEST_F(CommandLine, InvalidSceneDoesNotOverwrite) {
 
 class Interrupted : public CommandLine, public ::testing::WithParamInterface<int> {};
 
-TEST_P(Interrupted, RunFinishesItsFrameAndKeepsAll) {
+TEST_P(Interrupted, RunLeavesOffAndKeepsAllWholeFrames) {
   Program program({"run", save(rope_scene()), "--out", out(), "--frames", "1000000"});
   ASSERT_TRUE(wait_for(scratch_ / "out/rope/rope.0000020.obj"));
   program.send(GetParam());
@@ -180,6 +180,19 @@ TEST_P(Interrupted, RunFinishesItsFrameAndKeepsAll) {
   EXPECT_EQ(listing(scratch_ / "out/rope").size(), frames);
   const std::string rows = read_text(scratch_ / "out/diagnostics.csv");
   EXPECT_EQ(static_cast<std::size_t>(std::count(rows.begin(), rows.end(), '\n')), frames + 1);
+}
+
+// A frame of a hundred million steps takes minutes.
+TEST_P(Interrupted, RunDoesNotWaitForItsFrame) {
+  json scene = rope_scene();
+  scene["step"] = 1.0 / 30.0e8;
+  Program program({"run", save(scene), "--out", out()});
+  ASSERT_TRUE(wait_for(scratch_ / "out/rope/rope.0001.obj"));
+  program.send(GetParam());
+  const Ending ending = program.wait();
+  EXPECT_EQ(ending.code, 130) << ending.err;
+  EXPECT_EQ(record()["frames_written"], 1);
+  EXPECT_EQ(listing(scratch_ / "out/rope").size(), 1U);
 }
 
 INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, ::testing::Values(SIGINT, SIGTERM));

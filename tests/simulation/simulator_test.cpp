@@ -40,6 +40,21 @@ TEST(Simulator, FreeParticleFallsAsTheSchemesOwnSum) {
   }
 }
 
+// A pin that turns by ten right angles a step makes it one of 20 parts.
+TEST(Simulator, StopsBetweenThePartsOfAStep) {
+  NetworkBuilder builder;
+  const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+  const Index bob = builder.add_particle({0.0, -1.0, 0.0}, 1.0);
+  builder.add_spring(hook, bob, 100.0, 1.0, 0.5);
+  builder.pin(hook, {.spin = {0.0, 900.0e3, 0.0}});
+  Simulator simulator(builder.build(), {.step = 1e-3});
+  int asked = 0;
+  simulator.stop_when([&] { return ++asked == 30; });
+  EXPECT_EQ(simulator.step().parts, 20);
+  EXPECT_THROW(simulator.step(), StoppedError);
+  EXPECT_EQ(asked, 30);
+}
+
 TEST(Simulator, PinsFollowTheirKeyframesExactly) {
   NetworkBuilder builder;
   const Index hook = builder.add_particle({1.0, 0.0, 0.0}, 1.0);
