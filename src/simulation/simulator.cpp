@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace sprung {
@@ -73,7 +74,7 @@ StepReport Simulator::Implementation::step() {
   }
   kept_contacts.reset();
   const int more = parts_by_turn();
-  StepReport report = make_step(more);
+  StepReport report = make_step(more, std::numeric_limits<Index>::max());
   if (may_retry(report.most_squeezed, begun.state)) report = make_again(report, more);
   note_step(report.squeezed, state);
   if (refinement) choose_parts(report);
@@ -92,13 +93,13 @@ int Simulator::Implementation::parts_by_turn() const {
   return static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(std::min(kRetryParts.back(), kMostParts / state.parts))));
 }
 
-/// In so many times as many parts.
-StepReport Simulator::Implementation::make_step(int more) {
+/// In so many times as many parts. A part that squeezes too many particles is the last.
+StepReport Simulator::Implementation::make_step(int more, Index too_many) {
   const int parts = state.parts;
   integrator->set_part(1.0 / more);
   set_parts(more * parts);
   StepReport report;
-  for (const std::int64_t step = state.step; state.step == step;) {
+  for (const std::int64_t step = state.step; state.step == step && report.most_squeezed < too_many;) {
     if (stops && stops()) throw StoppedError();
     report += make_part();
   }

@@ -49,10 +49,10 @@ struct Simulator::Implementation {
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
   [[nodiscard]] int parts_by_turn() const;
-  StepReport make_step(int more);
+  StepReport make_step(int more, Index too_many);
   [[nodiscard]] Made made(const StepReport& report) const;
   StepReport make_again(const StepReport& first, int more_at_first);
-  std::optional<StepReport> attempt(int more);
+  std::optional<StepReport> attempt(int more, Index too_many);
   StepReport make_part();
   void choose_parts(const StepReport& report);
   void set_parts(int parts);

@@ -7,15 +7,16 @@
 namespace sprung {
 
 // What a step leads far, by a lever or between obstacles that close, may find no place though there is one: in smaller steps
-// contact answers before they meet. Of all attempts that of the fewest squeezed counts.
+// contact answers before they meet. Of all attempts that of the fewest squeezed counts. What is wrung past its room finds none in
+// any number of parts: an attempt that will not halve what is squeezed is left off, as it may take hundreds of times as long.
 StepReport Simulator::Implementation::make_again(const StepReport& first, int more_at_first) {
   Made best = made(first);
   constraints.look_ahead(true);
   for (const int more : kRetryParts) {
     if (best.report.most_squeezed == 0 || begun.state.parts > kMostParts / more) break;
     if (more <= more_at_first) continue;
-    const auto report = attempt(more);
-    if (report && report->most_squeezed < best.report.most_squeezed) best = made(*report);
+    const auto report = attempt(more, (best.report.most_squeezed + 1) / 2);
+    if (report) best = made(*report);
   }
   constraints.look_ahead(false);
   constraints.forget(best.through);
@@ -31,14 +32,15 @@ Made Simulator::Implementation::made(const StepReport& report) const {
   return {state, energy_watch, constraints.lets_through(), report, contacts()};
 }
 
-/// None when it diverges.
-std::optional<StepReport> Simulator::Implementation::attempt(int more) {
+/// None when it diverges, or squeezes too many particles.
+std::optional<StepReport> Simulator::Implementation::attempt(int more, Index too_many) {
   state = begun.state;
   energy_watch = begun.watch;
   constraints.forget(begun.through);
   environment.set_interval(time(), time());
   try {
-    return make_step(more);
+    const StepReport report = make_step(more, too_many);
+    return report.most_squeezed < too_many ? std::optional(report) : std::nullopt;
   } catch (const StepError&) {
     integrator->set_part(1.0);
     set_parts(begun.state.parts);
