@@ -1,8 +1,11 @@
 #include "scene/overrides.h"
 
+#include "scene/nearest_name.h"
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -54,9 +57,19 @@ bool is_bare_word(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), allowed);
 }
 
+/// As people write it, where JSON does not: .5, 1., +2, 007.
+std::optional<double> read_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double number = 0.0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (end.ec != std::errc{} || end.ptr != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
 std::optional<Json> read_value(const std::string& text) {
   JsonText json = parse_json(text, "");
   if (json.problems.empty()) return std::move(json.document);
+  if (const auto number = read_number(text)) return Json(*number);
   if (is_bare_word(text)) return Json(text);
   return std::nullopt;
 }
@@ -108,6 +121,19 @@ std::string assign(Json& document, const std::vector<PathPart>& parts, Json valu
   return "";
 }
 
+/// How to name a body or an obstacle, if the path leads into one that does not exist: a slip, unless it begins one with its shape.
+std::optional<std::string> missing_entry(const Json& document, const std::vector<PathPart>& parts) {
+  if (parts.size() < 3 || parts[2] == PathPart("shape")) return std::nullopt;
+  const auto* group = std::get_if<std::string>(&parts[0]);
+  const auto* name = std::get_if<std::string>(&parts[1]);
+  if (group == nullptr || name == nullptr || (*group != "bodies" && *group != "obstacles")) return std::nullopt;
+  const auto entries = document.find(*group);
+  if (entries == document.end() || !entries->is_object() || entries->contains(*name)) return std::nullopt;
+  std::vector<std::string> names;
+  for (const auto& entry : entries->items()) names.push_back(entry.key());
+  return suggestion(*name, names) + " To add one, set its shape first";
+}
+
 }  // namespace
 
 void apply_override(const std::string& override_text, Json& document, std::vector<Problem>& problems) {
@@ -119,6 +145,7 @@ void apply_override(const std::string& override_text, Json& document, std::vecto
   if (!parts) return report("is not of the form key.path=value", kForm);
   auto value = read_value(override_text.substr(equals + 1));
   if (!value) return report("what follows the = is neither JSON nor a single word", kForm);
+  if (const auto remedy = missing_entry(document, *parts)) return report("there is nothing of that name in the scene", *remedy);
   const std::string problem = assign(document, *parts, std::move(*value));
   if (!problem.empty()) report(problem, "check the path");
 }

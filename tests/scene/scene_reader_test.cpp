@@ -234,5 +234,19 @@ TEST(SceneReader, OverridesReplaceAddAppendAndRemove) {
   EXPECT_EQ(scene.bodies[0].place.position, Vector3(0, 1e-3, 0));
 }
 
+TEST(SceneReader, OverridesTakeNumbersAsPeopleWriteThem) {
+  for (const char* text : {".5", "+0.5", "0.5", "00.50", "5e-1", "+.5e0"}) {
+    const Scene scene = SceneFolder().read(kPlainScene, {std::string("bodies.banner.mass=") + text});
+    EXPECT_EQ(scene.bodies[0].mass.value, 0.5) << text;
+  }
+}
+
+TEST(SceneReader, OverridesAddABodyThatBeginsWithItsShape) {
+  const Scene scene =
+      SceneFolder().read(kPlainScene, {R"(bodies.line.shape={"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 5})",
+                                       "bodies.line.mass=2.", "bodies.line.springs.structural.stiffness=10"});
+  EXPECT_EQ(scene.bodies.size(), 2U);
+}
+
 }  // namespace
 }  // namespace sprung

@@ -135,6 +135,8 @@ TEST_P(BrokenOverrideTest, IsRefusedUnderItsName) {
 INSTANTIATE_TEST_SUITE_P(SceneRules, BrokenOverrideTest,
                          testing::Values(BrokenOverride{"NoEquals", "duration", "is not of the form key.path=value"},
                                          BrokenOverride{"NoKey", "=1", "is not of the form"},
+                                         BrokenOverride{"NoSuchBody", "bodies.baner.mass=1", "did you mean \"banner\"?"},
+                                         BrokenOverride{"NoSuchObstacle", "obstacles.x.friction=1", "choose from floor"},
                                          BrokenOverride{"EmptyPart", "bodies..mass=1", "is not of the form"},
                                          BrokenOverride{"OpenBracket", "gravity[0=1", "is not of the form"},
                                          BrokenOverride{"IndexIsAWord", "gravity[x]=1", "is not of the form"},
