@@ -63,8 +63,10 @@ class Integrator {
   virtual void answer_contact(const Points& advanced, Points& positions, double dt);
 
   /// Velocities after constraints moved `advanced` (what `advance` made) to state.x; `before` are the positions at t. Default:
-  /// v += (x - advanced) / dt. Unless `needs_advanced`, `advanced` may be anything.
-  virtual void recover_velocities(SimulationState& state, const Points& before, const Points& advanced, double dt) const;
+  /// v += (x - advanced) / dt. A scheme whose velocities hang on the forces where the step ends takes them there anew. Unless
+  /// `needs_advanced`, `advanced` may be anything.
+  virtual void recover_velocities(SimulationState& state, const Forces& forces, const Points& before, const Points& advanced,
+                                  double dt);
 
   /// Steps that follow are this part, in (0, 1], of those that a damping per step is for. Default: there is none.
   virtual void set_part(double /*part*/) {}

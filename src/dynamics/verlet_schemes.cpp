@@ -69,7 +69,7 @@ class Verlet final : public Integrator {
     });
   }
 
-  void recover_velocities(SimulationState& state, const Points& before, const Points&, double dt) const override {
+  void recover_velocities(SimulationState& state, const Forces&, const Points& before, const Points&, double dt) override {
     for_free_runs([&](Index begin, Index count) {
       velocities_between(3 * count, 1.0 / dt, before.col(begin).data(), state.x.col(begin).data(), state.v.col(begin).data());
     });
@@ -146,10 +146,24 @@ class VelocityVerlet final : public Integrator {
     });
   }
 
+  // What constraints took back of a stretch must not be what springs pull with as well (Andersen 1983, RATTLE).
+  void recover_velocities(SimulationState& state, const Forces& forces, const Points& before, const Points& advanced,
+                          double dt) override {
+    if (state.x == advanced) return;
+    Integrator::recover_velocities(state, forces, before, advanced, dt);
+    for_free_particles(network(), [&](Index i) { v_.col(i) += (state.x.col(i) - advanced.col(i)) / dt; });
+    sum_forces(forces, {.x = state.x, .v = v_, .time = step_begin(state, dt) + dt}, constrained_);
+    for_free_particles(network(), [&](Index i) {
+      state.v.col(i) += 0.5 * dt * network().inverse_masses[i] * (constrained_.col(i) - total_.col(i));
+    });
+  }
+
  private:
-  Points x_;  // at the step's end, and what velocities would be there if forces did not change
+  // At the end of the step that was advanced last: where that led, and what velocities would be there if forces did not change.
+  Points x_;
   Points v_;
-  Points total_;
+  Points total_;        // forces there
+  Points constrained_;  // and where constraints led it
 };
 
 }  // namespace

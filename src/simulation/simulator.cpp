@@ -119,7 +119,7 @@ StepReport Simulator::Implementation::make_part() {
   energy_watch.note_obstacle(environment.set().carries_at_most(state.x) / dt());
 
   StepReport report{.parts = 1};
-  constraints.hold(state, dt(), report);
+  constraints.hold(state, forces, dt(), report);
   if (++state.part == state.parts) {
     ++state.step;
     state.part = 0;

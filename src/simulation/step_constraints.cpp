@@ -35,13 +35,13 @@ void StepConstraints::begin(const SimulationState& state) {
   if (contacts_.meets_anything()) v_before_ = state.v;
 }
 
-void StepConstraints::hold(SimulationState& state, double dt, StepReport& report) {
+void StepConstraints::hold(SimulationState& state, const Forces& forces, double dt, StepReport& report) {
   if (!contacts_.meets_anything() && !limit_) return;
   if (contacts_.meets_anything() || integrator_.needs_advanced()) advanced_ = state.x;
   dt_ = dt;
   constrain(state, report);
   report.stretch_excess = limit_ ? limit_->excess(state.x) : 0.0;
-  truncate(state, report);
+  truncate(state, forces, report);
 }
 
 // Where contact and springs want particles elsewhere, what speaks last is held, and the other is off by what a pass moves. That is
@@ -79,13 +79,13 @@ StepConstraints::PushOut StepConstraints::push_out(Points& positions, int most_p
   return done;
 }
 
-void StepConstraints::truncate(SimulationState& state, StepReport& report) {
+void StepConstraints::truncate(SimulationState& state, const Forces& forces, StepReport& report) {
   const bool meets = contacts_.meets_anything();
   const int most_rounds = limit_ ? std::min(kRelaxRounds, limit_->settings().iterations / kRelaxPasses) : 0;
   int rounds = 0;
   const auto relax_again = [&](Points& positions) { return rounds++ < most_rounds && relax(positions, report.stretch_excess); };
   if (meets) contacts_.truncate(before_, state.x, relax_again);
-  integrator_.recover_velocities(state, step_began(state), advanced_, dt_);
+  integrator_.recover_velocities(state, forces, step_began(state), advanced_, dt_);
   if (meets) contacts_.settle_velocities(motion(), state, integrator_);
   report.truncated = contacts_.truncated_count();
   report.squeezed = contacts_.squeezed_count();

@@ -28,7 +28,7 @@ class StepConstraints {
   /// Leads the state on from where forces and pins have led it in `dt` [s]: by contact, the stretch limit and truncation, to the
   /// positions and velocities of the step's end. Adds to the report what that took and left. Requires that the environment's
   /// interval is the step's.
-  void hold(SimulationState& state, double dt, StepReport& report);
+  void hold(SimulationState& state, const Forces& forces, double dt, StepReport& report);
 
   /// Positions at the step's begin [m], 3 x n. Valid after hold().
   [[nodiscard]] const Points& step_began(const SimulationState& state) const {
@@ -47,7 +47,7 @@ class StepConstraints {
 
   void constrain(SimulationState& state, StepReport& report);
   [[nodiscard]] PushOut push_out(Points& positions, int most_passes);
-  void truncate(SimulationState& state, StepReport& report);
+  void truncate(SimulationState& state, const Forces& forces, StepReport& report);
   [[nodiscard]] bool relax(Points& positions, double excess_before);
   [[nodiscard]] bool projects_contacts() const;
   [[nodiscard]] bool copies_positions() const { return contacts_.meets_anything() || !integrator_.keeps_positions(); }

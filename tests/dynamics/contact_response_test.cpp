@@ -44,7 +44,7 @@ class World {
       if (2 * pass == passes && !again.empty()) response.start_again(again, motion);
       response.project(state.x);
     }
-    integrator->recover_velocities(state, before, advanced, kStep);
+    integrator->recover_velocities(state, forces, before, advanced, kStep);
     response.settle_velocities(motion, state, *integrator);
     ++state.step;
   }

@@ -135,7 +135,7 @@ TEST(Integrators, LeavePinnedParticlesAlone) {
     integrator->start(state, forces, 0.01);
     const SimulationState before = state;
     integrator->advance(state, forces, 0.01);
-    integrator->recover_velocities(state, before.x, Points::Constant(3, 36, 7.0), 0.01);
+    integrator->recover_velocities(state, forces, before.x, Points::Constant(3, 36, 7.0), 0.01);
     for (const Index pinned : {30, 35}) {
       EXPECT_EQ(state.x.col(pinned), before.x.col(pinned));
       EXPECT_EQ(state.v.col(pinned), before.v.col(pinned));
@@ -178,7 +178,7 @@ TEST(Integrators, RecoverVelocitiesFromWhatConstraintsMoved) {
     const Points advanced = state.x;
     const Vector3 velocity = state.v.col(0);
     state.x(1, 0) += 0.25;
-    integrator->recover_velocities(state, before, advanced, dt);
+    integrator->recover_velocities(state, {}, before, advanced, dt);
     EXPECT_EQ(state.v.col(0), velocity + Vector3(0.0, 0.5, 0.0));
     EXPECT_EQ(state.v.col(1), Vector3::Zero());
   }

@@ -274,7 +274,7 @@ double excess_hanging(const SpringNetwork& network, const StretchLimitSettings& 
     for (int pass = 0; pass < settings.iterations; ++pass) {
       if (limit.project(state.x) <= settings.tolerance) break;
     }
-    integrator->recover_velocities(state, before, advanced, dt);
+    integrator->recover_velocities(state, forces, before, advanced, dt);
   }
   return limit.excess(state.x);
 }

@@ -444,7 +444,7 @@ TEST(StretchNewton, PendulumKeepsItsPeriodAndItsEnergy) {
     integrator->advance(state, forces, kStep);
     const Points advanced = state.x;
     newton.solve(before, state.x, kGravity * kStep * kStep);
-    integrator->recover_velocities(state, before, advanced, kStep);
+    integrator->recover_velocities(state, forces, before, advanced, kStep);
     if ((before(0, 1) > 0.0) != (state.x(0, 1) > 0.0)) {
       crossings.push_back((static_cast<double>(state.step) + before(0, 1) / (before(0, 1) - state.x(0, 1))) * kStep);
     }
