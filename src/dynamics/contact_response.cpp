@@ -26,6 +26,11 @@ constexpr double kNothingToDo = -std::numeric_limits<double>::infinity();
 // element.
 constexpr double kMostPinned = 0.9;
 
+// What a contact finds within its gap when the step begins, as truncation or the stretch limit left it, goes out of it as if it
+// were accelerated to take this time for the whole gap [s]. In one short step it would go so fast that what links at their limit
+// draw after it, and no contact slows again, would get the more energy the shorter the step is.
+constexpr double kRecovery = 0x1p-9;
+
 // Contacts that one task sets up.
 constexpr Index kContactChunk = 256;
 
@@ -131,7 +136,9 @@ void ContactResponse::fill_one(const Contact& contact, const ContactMaterial& pa
   set.gap(slot) = gap;
   ContactGoal& goal = set.goal(slot);
   goal = {.origin = carried(contact, row.sum(motion.before)), .touch = kTouch * gap};
-  goal.least = moves ? gap - contact.normal.dot(goal.origin - contact.point) : kNothingToDo;
+  const double recovery = std::min(1.0, (motion.dt / kRecovery) * (motion.dt / kRecovery));
+  const double back = gap - contact.normal.dot(goal.origin - contact.point);
+  goal.least = moves ? std::min(back, std::max(back - gap, 0.0) + recovery * gap) : kNothingToDo;
   if (!moves || contact.obstacle == kNone) return;
   const auto [arm, part] = lever(row, motion.before);
   const bool pins_are_in_the_way = arm <= gap && part < 1.0 - kMostPinned;
