@@ -144,7 +144,7 @@ class Collector {
 
 // No post-processing but triangulation: JoinIdenticalVertices and the like work with absolute tolerances, and PreTransformVertices
 // rounds to float. Indices are checked before it, as it follows them blindly.
-TriangleMesh read_with_assimp(const std::filesystem::path& file) {
+TriangleMesh read_with_assimp(const std::filesystem::path& file, const std::string& text) {
   Assimp::Importer importer;
   check_extension(importer, file);
   FileProblems problems(file);
@@ -154,7 +154,9 @@ TriangleMesh read_with_assimp(const std::filesystem::path& file) {
     for (const std::string& loss : losses) problems.add("", "", "is damaged: " + shortened(loss), "export it again");
     problems.throw_if_any();
   };
-  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  const aiScene* scene = text.empty()
+                             ? importer.ReadFile(file.string(), 0)
+                             : importer.ReadFileFromMemory(text.data(), text.size(), 0, lower_case_extension(file).c_str() + 1);
   if (scene == nullptr && losses.empty()) losses.emplace_back(importer.GetErrorString());
   report_losses();
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) check_mesh(*scene->mMeshes[m], problems);

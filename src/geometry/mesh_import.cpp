@@ -8,19 +8,23 @@
 namespace sprung {
 namespace {
 
-void check_mesh_file(const std::filesystem::path& file) {
+TriangleMesh read_checked(const std::filesystem::path& file) {
   const std::string bytes = read_mesh_file(file);
   const std::string extension = lower_case_extension(file);
-  if (extension == ".obj") (void)read_obj_numbers(file, plain_obj_text(bytes));
+  if (extension == ".obj") {
+    const std::string text = plain_obj_text(bytes);
+    (void)read_obj_numbers(file, text);
+    return read_with_assimp(file, text_for_assimp(text));
+  }
   if (extension == ".ply") check_ply(file, bytes);
   if (extension == ".off") check_off(file, bytes);
+  return read_with_assimp(file);
 }
 
 }  // namespace
 
 ImportedMesh import_mesh(const std::filesystem::path& file) {
-  check_mesh_file(file);
-  ImportedMesh result = clean_mesh(read_with_assimp(file));
+  ImportedMesh result = clean_mesh(read_checked(file));
   if (result.mesh.triangles.cols() > 0) return result;
   const bool none_read = result.report.faces_read == 0;
   throw InputError(Problem{.file = file.string(),

@@ -3,6 +3,7 @@
 #include "geometry/mesh_file.h"
 #include "geometry/text_words.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -104,11 +105,12 @@ class Scanner {
 }  // namespace
 
 std::string plain_obj_text(const std::string& text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   std::string plain;
   plain.reserve(text.size() + 1);
   std::size_t joined_lines = 0;
   bool in_comment = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
+  for (std::size_t i = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0; i < text.size(); ++i) {
     const bool carriage_return = text[i] == '\r';
     if (carriage_return && i + 1 < text.size() && text[i + 1] == '\n') continue;
     const char c = carriage_return ? '\n' : text[i];
@@ -127,6 +129,21 @@ std::string plain_obj_text(const std::string& text) {
     if (!in_comment) plain += c == '\0' ? ' ' : c;
   }
   return plain;
+}
+
+std::string text_for_assimp(const std::string& plain_text) {
+  std::string text;
+  text.reserve(plain_text.size());
+  for (std::string_view rest = plain_text; !rest.empty();) {
+    std::string_view line = take_line(rest);
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    for (const char c : line) {
+      if (line.front() == 'v' && c == '.' && is_blank(text.back())) text += '0';
+      text += c;
+    }
+    text += '\n';
+  }
+  return text;
 }
 
 ObjNumbers read_obj_numbers(const std::filesystem::path& file, const std::string& plain_text) {

@@ -17,8 +17,12 @@ struct ObjNumbers {
   std::vector<std::array<Index, 2>> lines;       ///< `l` polylines, cut into edges
 };
 
-/// OBJ text with one element a line: no comments, continued lines joined, '\n' at line ends; line numbers are kept.
+/// OBJ text with one element a line: no byte order mark, no comments, continued lines joined, '\n' at line ends; line numbers are
+/// kept.
 [[nodiscard]] std::string plain_obj_text(const std::string& text);
+
+/// Plain text of which assimp reads all: it leaves out lines that begin with blanks, and vertices with coordinates like `.5`.
+[[nodiscard]] std::string text_for_assimp(const std::string& plain_text);
 
 /// Requires plain text. Throws InputError, naming `file` and each line, when a number or an index is malformed or not finite,
 /// a face has fewer than three corners, or a line element refers to a vertex that is not there.

@@ -219,6 +219,19 @@ TEST_F(ImportMesh, LeavesLinesOut) {
   EXPECT_TRUE(report.closed);
 }
 
+TEST_F(ImportMesh, TakesIndentedLinesAndCoordinatesWithoutADigitBeforeThePoint) {
+  const auto file = write("points.obj", "v 0 0 0\nv .5 0 0\n\tv\t0 +.5 0\nv -.5 .25 .0\nf 1 2 3\n  f 1 3\t4\n");
+  const TriangleMesh mesh = import_mesh(file).mesh;
+  EXPECT_EQ(mesh.vertices, (Points(3, 4) << 0, 0.5, 0, -0.5, 0, 0, 0.5, 0.25, 0, 0, 0, 0).finished());
+  EXPECT_EQ(mesh.triangles.cols(), 2);
+}
+
+TEST_F(ImportMesh, TakesAByteOrderMark) {
+  const auto file = write("mark.obj", "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(import_mesh(file).mesh.vertices.cols(), 3);
+  EXPECT_EQ(read_obj(file).vertices.cols(), 3);
+}
+
 TEST_F(ImportMesh, TriangulatesPolygonsThatAreNotConvex) {
   const std::string ell = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 2 3 4 5 6 1\n";
   const TriangleMesh mesh = import_mesh(write("ell.obj", ell)).mesh;
