@@ -141,19 +141,19 @@ void drop_unused_vertices(MeshSequence& mesh, MeshReport& report) {
   for (Points& frame : mesh.frames) frame = Points(frame(Eigen::all, used));
 }
 
-void orient(TriangleMesh& mesh, MeshReport& report) {
-  const OrientationReport orientation = orient_faces(mesh);
-  report.flipped_faces = orientation.flipped_faces;
-  if (orientation.one_sided_parts == 0) return;
-  report.notes.push_back(std::to_string(orientation.one_sided_parts) +
-                         " part(s) have one side only, like a Moebius strip, and could not be oriented");
+void note_parts(Index parts, const std::string& what, MeshReport& report) {
+  if (parts > 0) report.notes.push_back(std::to_string(parts) + " part(s) " + what);
 }
 
 // By the first frame: a deformation that tears nothing keeps what is closed closed, and what is outside outside.
 void orient_and_describe(MeshSequence& mesh, MeshReport& report) {
   TriangleMesh first{std::move(mesh.frames.front()), std::move(mesh.triangles)};
-  orient(first, report);
+  const OrientationReport orientation = orient_faces(first);
+  report.flipped_faces = orientation.flipped_faces;
+  note_parts(orientation.one_sided_parts, "have one side only, like a Moebius strip, and could not be oriented", report);
+  note_parts(orientation.flat_parts, "are closed around no volume, like both sides of a sheet: the mesh is taken as open", report);
   describe_surface(first, report);
+  report.closed = report.closed && orientation.flat_parts == 0;
   mesh.frames.front() = std::move(first.vertices);
   mesh.triangles = std::move(first.triangles);
   for (const Points& frame : mesh.frames) report.bounds.extend(bounds(frame));

@@ -11,6 +11,9 @@
 namespace sprung {
 namespace {
 
+// As a part of area times extent, a volume that is rounding: mesh files hold single precision.
+constexpr double kNoVolume = 0x1p-23;
+
 // A maximal set of faces joined by edges that exactly two faces share.
 struct Part {
   std::vector<Index> faces;
@@ -18,6 +21,7 @@ struct Part {
   Box3 box;
   double volume = 0.0;
   bool closed = false;
+  bool flat = false;           // closed, around nothing
   bool flip_as_given = false;  // what makes `triangles` agree with most of the faces as they were
   bool flip = false;           // what is done with them
 };
@@ -97,6 +101,11 @@ void measure(Part& part, const TriangleMesh& mesh, const std::vector<bool>& turn
   if (!part.closed) return;
   part.volume = signed_volume(mesh.vertices, part.triangles);
   for (const Index vertex : part.triangles.reshaped()) part.box.extend(Vector3(mesh.vertices.col(vertex)));
+  double area = 0.0;
+  for (const auto& corners : part.triangles.colwise()) {
+    area += 0.5 * area_normal(mesh.vertices.col(corners[0]), mesh.vertices.col(corners[1]), mesh.vertices.col(corners[2])).norm();
+  }
+  part.flat = std::abs(part.volume) <= kNoVolume * area * part.box.diagonal().norm();
 }
 
 // The winding number, a sum of solid angles (Van Oosterom and Strackee 1983): unlike a ray it cannot hit an edge.
@@ -146,6 +155,7 @@ OrientationReport orient_faces(TriangleMesh& mesh) {
   turn_outward(parts, mesh.vertices);
   OrientationReport report{.one_sided_parts = finder.one_sided_parts()};
   for (const Part& part : parts) {
+    if (part.flat) ++report.flat_parts;
     for (const Index face : part.faces) {
       if (finder.turned()[face] == part.flip) continue;
       std::swap(mesh.triangles(1, face), mesh.triangles(2, face));

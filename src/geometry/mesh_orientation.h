@@ -8,6 +8,7 @@ namespace sprung {
 struct OrientationReport {
   Index flipped_faces = 0;
   Index one_sided_parts = 0;  ///< parts like a Moebius strip, that no winding makes consistent
+  Index flat_parts = 0;       ///< closed ones that enclose no volume, like both sides of a sheet: they have no inside
 };
 
 /// Turns faces so that any two that share an edge with no third run along it in opposite directions. Of the two ways to do so, a

@@ -181,6 +181,22 @@ TEST(CleanMesh, TellsOfAMoebiusStrip) {
   EXPECT_FALSE(report.closed);
 }
 
+// Both sides of a square, cut along unlike diagonals: a tetrahedron without a height. As little of one as single precision leaves
+// makes no inside either; a hundred-thousandth of its size does.
+TEST(CleanMesh, TakesWhatIsClosedAroundNothingForASheet) {
+  for (const double height : {0.0, 1e-8, 1e-5}) {
+    TriangleMesh mesh;
+    mesh.vertices = (Points(3, 4) << -1, 1, 1, -1, height, 0, height, 0, -1, -1, 1, 1).finished();
+    mesh.triangles = (Triangles(3, 4) << 3, 3, 0, 0, 2, 1, 1, 2, 1, 0, 2, 3).finished();
+    const MeshReport report = clean_mesh(mesh).report;
+    EXPECT_EQ(report.border_edges, 0);
+    EXPECT_EQ(report.closed, height == 1e-5) << height;
+    if (!report.closed) {
+      EXPECT_THAT(report.notes, ElementsAre(HasSubstr("closed around no volume")));
+    }
+  }
+}
+
 TEST(CleanMesh, CountsNonManifoldEdges) {
   // Two cubes that touch along an edge: four faces share it, yet both parts are known to be solid.
   const auto [mesh, report] = clean_mesh(test::merge(test::inside_out(test::make_cube()), test::make_cube(1.0, Vector3(1, 1, 0))));
