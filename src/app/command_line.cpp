@@ -13,7 +13,7 @@ namespace {
 constexpr int kMostThreads = 1'024;
 
 constexpr const char* kExamples = R"(Examples:
-  sprung run examples/cloth_on_bunny.json --out frames
+  sprung run examples/rope_over_torus.json --out frames
   sprung run scene.json --out frames --overwrite --frames 30 --set 'bodies.banner.shape.resolution=[128,128]'
   sprung validate scene.json --mesh-path ~/meshes
   sprung info bunny.obj

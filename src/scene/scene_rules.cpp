@@ -10,17 +10,21 @@
 namespace sprung {
 namespace {
 
+// File systems take names of 255 bytes, with the number of a frame and the extension.
+constexpr std::size_t kLongestName = 200;
+
 bool is_name(const std::string& name) {
   const auto allowed = [](unsigned char letter) {
     return (letter < 128 && std::isalnum(letter)) || letter == '_' || letter == '-';
   };
-  return !name.empty() && std::all_of(name.begin(), name.end(), allowed) && !std::isdigit(static_cast<unsigned char>(name.back()));
+  return !name.empty() && name.size() <= kLongestName && std::all_of(name.begin(), name.end(), allowed) &&
+         !std::isdigit(static_cast<unsigned char>(name.back()));
 }
 
 void check_name(const std::string& name, const JsonPlace& place) {
   if (name == "obstacles") place.report_key("the name is taken by the folder of the obstacles", "choose another name");
   if (is_name(name)) return;
-  place.report_key("a name becomes a folder: it may hold letters, digits, _ and -, and must not end in a digit",
+  place.report_key("a name becomes a folder: it may hold at most 200 letters, digits, _ and -, and must not end in a digit",
                    "choose another name");
 }
 

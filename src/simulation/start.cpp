@@ -6,6 +6,8 @@
 #include "simulation/start_check.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace sprung {
 
@@ -36,12 +38,37 @@ std::vector<std::string> say_what_moved(const SpringNetwork& network, const Poin
   return lines;
 }
 
+/// Bodies whose gap obstacles are deep in: contact will throw them out of it.
+std::vector<std::string> say_what_is_too_near(const SpringNetwork& network, const Environment& environment,
+                                              const Points& positions) {
+  constexpr double kDeep = 0.5;  // of the gap, which truncation would not let anything lose
+  double obstacle_thickness = std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : environment.obstacles()) {
+    obstacle_thickness = std::min(obstacle_thickness, obstacle.material.thickness);
+  }
+  std::vector<std::string> lines;
+  for (const Body& body : network.bodies) {
+    const double gap = body.material.thickness + obstacle_thickness;
+    if (!std::isfinite(gap) || gap == 0.0) continue;
+    std::vector<Index> free;
+    for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+      if (!network.is_pinned(i)) free.push_back(i);
+    }
+    const auto nearest = environment.min_distance(positions(Eigen::all, free), gap);
+    if (!nearest || *nearest >= kDeep * gap) continue;
+    lines.push_back("body \"" + body.name + "\" begins " + format_number(*nearest, 3) +
+                    " m from an obstacle, deep in its thickness of " + format_number(gap, 3) +
+                    " m, out of which contact will throw it; begin farther off, or with a smaller thickness");
+  }
+  return lines;
+}
+
 }  // namespace
 
 Start find_start(const SpringNetwork& network, Environment& environment, const ContactSettings& contact, const Points& positions) {
   const CollisionSurface surface = contact_surface(network);
   StartIntersections found = find_all(environment, surface, contact, positions);
-  if (found.empty()) return {positions};
+  if (found.empty()) return {positions, say_what_is_too_near(network, environment, positions)};
   Points place = positions;
   std::string remedy = "move one of them by \"place\", or let contact.start be \"push_out\"";
   if (contact.start == ContactSettings::Start::push_out) {

@@ -17,8 +17,9 @@ struct Start {
 };
 
 /// `positions` [m], where nothing intersects at the end of the environment's interval; with `contact.start` push_out those that
-/// `push_out` leads to where nothing does. Throws InputError when anything intersects all the same: a line for each body and
-/// obstacle, and for each pair of bodies, with what intersects where.
+/// `push_out` leads to where nothing does. Bodies that begin deep within their gap before an obstacle are warned of. Throws
+/// InputError when anything intersects all the same: a line for each body and obstacle, and for each pair of bodies, with what
+/// intersects where.
 [[nodiscard]] Start find_start(const SpringNetwork& network, Environment& environment, const ContactSettings& contact,
                                const Points& positions);
 

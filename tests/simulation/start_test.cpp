@@ -10,6 +10,7 @@ namespace {
 
 using ::testing::AllOf;
 using testing::cloth;
+using ::testing::ElementsAre;
 using ::testing::Ge;
 using testing::ground;
 using ::testing::HasSubstr;
@@ -140,7 +141,14 @@ TEST(Start, WhatIsFreeIsNotPushed) {
   const SpringNetwork network = cloth(5, 0.01, {.thickness = 0.5});
   const Simulator simulator(network, settings, {ground()});
   EXPECT_EQ(simulator.positions(), network.positions);
-  EXPECT_TRUE(simulator.warnings().empty());
+}
+
+TEST(Start, WhatIsDeepInItsGapIsWarnedOf) {
+  const auto warnings = [](double height) {
+    return Simulator(one_particle({0.0, height, 0.0}, {.thickness = 0.5}), {.step = 1e-3}, {ground({.thickness = 0.1})}).warnings();
+  };
+  EXPECT_THAT(warnings(0.29), ElementsAre(HasSubstr("begins 0.29 m from an obstacle, deep in its thickness of 0.6 m")));
+  EXPECT_THAT(warnings(0.31), IsEmpty());
 }
 
 TEST(Start, PushesOutForPenaltyContactToo) {
