@@ -27,13 +27,8 @@ void ImplicitSystem::assemble(const ForceDerivatives& derivatives, double dt) {
   matrix_.add_scaled(derivatives.by_position, -dt * dt);
 }
 
-void ImplicitSystem::hold(Index particle, const Vector3& vector, Points& right) {
-  const double length = vector.norm();
-  if (length == 0.0) return;
-  const Vector3 direction = vector / length;
-  const double weight = kHoldWeight * matrix_.diagonal(particle).trace();
-  matrix_.add(particle, particle, weight * direction * direction.transpose());
-  right.col(particle) += weight * vector;
+void ImplicitSystem::hold(Index particle, const Vector3& direction) {
+  matrix_.add(particle, particle, kHoldWeight * matrix_.diagonal(particle).trace() * direction * direction.transpose());
 }
 
 void ImplicitSystem::solve(Points& vectors) {

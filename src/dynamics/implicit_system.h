@@ -17,9 +17,10 @@ class ImplicitSystem {
   /// Writes the matrix; `dt` is h [s].
   void assemble(const ForceDerivatives& derivatives, double dt);
 
-  /// Lets the solution of a free particle have the part `vector` in that vector's direction, whatever its equations say; across it
-  /// stays free (the constraints of Baraff and Witkin 1998, by weight). After `assemble`, before `solve`.
-  void hold(Index particle, const Vector3& vector, Points& right);
+  /// Keeps the solution of a free particle from going along a unit vector, whatever its equations say; across it stays free (the
+  /// constraints of Baraff and Witkin 1998, by weight). Thread-safe for different particles; for each after `assemble`, once at
+  /// most. Zero holds nothing.
+  void hold(Index particle, const Vector3& direction);
 
   /// Replaces the right-hand sides b of free particles by the solution y, and those of pinned particles by zero; 3 x n. Not finite
   /// when the matrix is not.

@@ -15,6 +15,9 @@ constexpr double kContactTolerance = 1.0e-3;
 // is left. But a spring on its own, which the first pass brings onto its limit, must not bounce there.
 constexpr double kRelaxation = 1.8;
 
+// Schemes that answer contact do so at most so often, and as often what truncation stopped.
+constexpr int kAnswers = 6;
+
 // Where surfaces stop particles short of where the passes led them, springs lead them and their neighbours on, at most so often,
 // by so many passes each time, as many in all as the limit has: zones are made again before particles are far from where they were
 // safe.
@@ -39,7 +42,7 @@ void StepConstraints::hold(SimulationState& state, const Forces& forces, double 
   if (!contacts_.meets_anything() && !limit_) return;
   if (contacts_.meets_anything() || integrator_.needs_advanced()) advanced_ = state.x;
   dt_ = dt;
-  constrain(state, report);
+  constrain(state, forces, report);
   report.stretch_excess = limit_ ? limit_->excess(state.x) : 0.0;
   truncate(state, forces, report);
 }
@@ -47,12 +50,10 @@ void StepConstraints::hold(SimulationState& state, const Forces& forces, double 
 // Where contact and springs want particles elsewhere, what speaks last is held, and the other is off by what a pass moves. That is
 // the gap, of which truncation leaves half: contact in the end would draw what hangs over a tip longer by as much, with few passes
 // by a fifth of its length and more.
-void StepConstraints::constrain(SimulationState& state, StepReport& report) {
+void StepConstraints::constrain(SimulationState& state, const Forces& forces, StepReport& report) {
   const bool projects = projects_contacts();
   if (projects) contacts_.find(motion());
-  if (projects && integrator_.answers_contact() && push_out(state.x, kContactPasses).any) {
-    integrator_.answer_contact(advanced_, state.x, dt_);
-  }
+  if (projects && integrator_.answers_contact()) answer_contact(state, forces);
   const double fall = steady_acceleration_ * dt_ * dt_;
   const std::optional<int> solves = limit_ ? limit_->solve(step_began(state), state.x, fall, state.stretch_holds) : std::nullopt;
   report.limit_solves = solves.value_or(0);
@@ -65,6 +66,15 @@ void StepConstraints::constrain(SimulationState& state, StepReport& report) {
     const double excess = solves && pass == 0 ? limit_->excess(state.x) : limit_->project(state.x, between ? kRelaxation : 1.0);
     settled = excess <= limit_->settings().tolerance && push <= kContactTolerance;
     ++report.iterations;
+  }
+}
+
+// Where springs take the others, contact pushes again.
+void StepConstraints::answer_contact(SimulationState& state, const Forces& forces) {
+  answered_ = advanced_;
+  for (int round = 0; round < kAnswers && push_out(state.x, kContactPasses).any; ++round) {
+    integrator_.answer_contact(motion(), forces, answered_, state);
+    answered_ = state.x;
   }
 }
 
@@ -83,8 +93,12 @@ void StepConstraints::truncate(SimulationState& state, const Forces& forces, Ste
   const bool meets = contacts_.meets_anything();
   const int most_rounds = limit_ ? std::min(kRelaxRounds, limit_->settings().iterations / kRelaxPasses) : 0;
   int rounds = 0;
-  const auto relax_again = [&](Points& positions) { return rounds++ < most_rounds && relax(positions, report.stretch_excess); };
-  if (meets) contacts_.truncate(before_, state.x, relax_again);
+  const FreeSpace::Relax relax_again = [&](Points& positions) {
+    return rounds++ < most_rounds && relax(positions, report.stretch_excess);
+  };
+  const FreeSpace::Relax answer_again = [&](Points&) { return rounds++ < kAnswers && answer_truncation(state, forces); };
+  if (meets && integrator_.answers_contact()) answered_ = state.x;
+  if (meets) contacts_.truncate(before_, state.x, limit_ || !integrator_.answers_contact() ? relax_again : answer_again);
   integrator_.recover_velocities(state, forces, step_began(state), advanced_, dt_);
   if (meets) contacts_.settle_velocities(motion(), state, integrator_);
   report.truncated = contacts_.truncated_count();
@@ -102,6 +116,14 @@ bool StepConstraints::relax(Points& positions, double excess_before) {
     if (projects_contacts()) contacts_.project(positions);
     limit_->project(positions);
   }
+  return true;
+}
+
+// What truncation stopped is pushed too. It leads the state itself on.
+bool StepConstraints::answer_truncation(SimulationState& state, const Forces& forces) {
+  if (!projects_contacts() || state.x == answered_) return false;
+  integrator_.answer_contact(motion(), forces, answered_, state);
+  answered_ = state.x;
   return true;
 }
 

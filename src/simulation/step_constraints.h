@@ -45,10 +45,12 @@ class StepConstraints {
     bool any = false;  ///< whether anything was moved
   };
 
-  void constrain(SimulationState& state, StepReport& report);
+  void constrain(SimulationState& state, const Forces& forces, StepReport& report);
+  void answer_contact(SimulationState& state, const Forces& forces);
   [[nodiscard]] PushOut push_out(Points& positions, int most_passes);
   void truncate(SimulationState& state, const Forces& forces, StepReport& report);
   [[nodiscard]] bool relax(Points& positions, double excess_before);
+  [[nodiscard]] bool answer_truncation(SimulationState& state, const Forces& forces);
   [[nodiscard]] bool projects_contacts() const;
   [[nodiscard]] bool copies_positions() const { return contacts_.meets_anything() || !integrator_.keeps_positions(); }
   [[nodiscard]] StepMotion motion() const { return {before_, v_before_, advanced_, dt_}; }
@@ -63,6 +65,7 @@ class StepConstraints {
   Points before_;    ///< for contact, and where the integrator does not keep them
   Points v_before_;  ///< for contact alone
   Points advanced_;  ///< for contact, and for integrators that need it
+  Points answered_;  ///< where the last answer to contact led, for integrators that give one
   double dt_ = 0.0;
 };
 
