@@ -10,6 +10,21 @@ namespace {
 // A time is a product of steps: its last digits are rounding.
 constexpr int kTimeDigits = 9;
 
+/// Text from files as a line that any terminal shows as it is: control characters as \xNN.
+std::string printable(const std::string& text) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) {
+      result += {'\\', 'x', kDigits[byte / 16], kDigits[byte % 16]};
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
 std::string join_lines(const std::vector<Problem>& problems) {
   std::string text;
   for (const Problem& problem : problems) {
@@ -43,7 +58,7 @@ std::string to_string(const Problem& problem) {
     text += part;
   }
   if (!problem.remedy.empty()) text += "; " + problem.remedy;
-  return text;
+  return printable(text);
 }
 
 InputError::InputError(Problem problem) : InputError(std::vector<Problem>{std::move(problem)}) {}

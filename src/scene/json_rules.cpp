@@ -53,12 +53,9 @@ Rule<Index> integer(Index lower, Index upper) {
       return std::nullopt;
     }
     const double value = json.get<double>();
-    if (value < lower) {
-      place.report(json, "must be at least " + std::to_string(lower));
-      return std::nullopt;
-    }
-    if (value > upper) {
-      place.report(json, "must be at most " + std::to_string(upper));
+    if (value < lower || value > upper) {
+      const std::string bound = lower == upper ? "must be " : value < lower ? "must be at least " : "must be at most ";
+      place.report(json, bound + std::to_string(value < lower ? lower : upper));
       return std::nullopt;
     }
     json = static_cast<Index>(value);

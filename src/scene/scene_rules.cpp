@@ -81,7 +81,10 @@ void read_time(Fields& fields, Scene& scene) {
   scene.frame_rate = frame_rate.value_or(scene.frame_rate);
   if (step) scene.step = step->step;
   if (duration && frame_rate && *duration * *frame_rate > kMostFrames) {
-    fields.place().at("duration").report(Json(*duration), "makes more than " + format_number(kMostFrames) + " frames");
+    fields.place()
+        .at("duration")
+        .report(Json(*duration), "makes more than " + format_number(kMostFrames) + " frames of 1 / frame_rate",
+                "lower one of them");
   }
   if (frame_rate && scene.step) check_step_divides_frame(*scene.step, *frame_rate, fields.place().at("step"));
 }

@@ -21,6 +21,11 @@ TEST(Problem, LeavesOutWhatIsEmpty) {
   EXPECT_EQ(to_string({.value = "-1", .rule = "must be positive"}), "-1: must be positive");
 }
 
+TEST(Problem, ShowsControlCharactersWhateverTheTerminal) {
+  const std::string value("a\0b\x1B[2J\n", 8);
+  EXPECT_EQ(to_string({.value = value, .rule = "is not JSON"}), "a\\x00b\\x1b[2J\\x0a: is not JSON");
+}
+
 TEST(InputError, TellsEveryProblem) {
   const InputError error(std::vector<Problem>{{.key = "a", .rule = "is wrong"}, {.key = "b", .rule = "is missing"}});
   EXPECT_STREQ(error.what(), "a: is wrong\nb: is missing");

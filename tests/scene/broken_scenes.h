@@ -38,7 +38,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"NoBodies", {"bodies={}"}, "bodies", "must hold at least one entry"},
       {"MissingShape", {"bodies.banner.shape=null"}, "bodies.banner.shape", "is missing"},
       {"MissingShapeType", {"bodies.banner.shape.type=null"}, "bodies.banner.shape.type", "is missing"},
-      {"WrongVersion", {"version=2"}, "version", "must be at most 1"},
+      {"WrongVersion", {"version=2"}, "version", "= 2: must be 1"},
       {"NegativeDuration", {"duration=-1"}, "duration", "duration = -1: must be at least 0"},
       {"TooManyFrames", {"duration=1e20"}, "duration", "frames", false},
       {"DurationIsText", {"duration=\"long\""}, "duration", "duration = \"long\": must be a number"},
