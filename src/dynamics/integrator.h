@@ -26,15 +26,15 @@ struct VerletSettings {
 
 /// x(t + dt) = x + v dt + a(t) dt^2 / 2, v(t + dt) = v + (a(t) + a(t + dt)) dt / 2 (Swope et al. 1982), where a(t + dt) sees the
 /// velocity v + a(t) dt: it is wrong by no more than dt^2, so that the scheme stays of second order with dampers and drag. Two
-/// evaluations of the forces a step.
+/// evaluations of the forces a step, and a third where a stretch limit or contact led anything elsewhere.
 struct VelocityVerletSettings {};
 
 /// The classic Runge-Kutta scheme of fourth order (Kutta 1901): four evaluations of the forces a step.
 struct RungeKutta4Settings {};
 
 /// v(t + dt) = v + dv, x(t + dt) = x + v(t + dt) dt with (M - dt dF/dv - dt^2 dF/dx) dv = dt (F + dt dF/dx v), where F is that of
-/// the obstacles at t + dt (Baraff and Witkin 1998, one linear solve a step). Stable at any step; its price is energy: a mode loses
-/// a factor of 1 + (omega dt)^2 a step.
+/// the obstacles at t + dt (Baraff and Witkin 1998, one linear solve a step, one more for each answer to contact). Stable at any
+/// step; its price is energy: a mode loses a factor of 1 + (omega dt)^2 a step.
 struct ImplicitEulerSettings {};
 
 /// The part of a step's movement that Verlet takes away, in [0, 1].

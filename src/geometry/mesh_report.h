@@ -21,7 +21,7 @@ struct MeshReport {
   Index non_manifold_edges = 0;  ///< shared by more than two faces
   Index border_edges = 0;        ///< used by one face only
   Index components = 0;
-  bool closed = false;             ///< every edge has two faces that agree: inside and outside are defined
+  bool closed = false;             ///< every edge has two faces that agree, around some volume: inside and outside are defined
   Box3 bounds;                     ///< [m]
   std::vector<std::string> notes;  ///< what a person should know: parts that could not be oriented, edges with too many faces
 };

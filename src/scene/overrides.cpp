@@ -131,7 +131,8 @@ std::optional<std::string> missing_entry(const Json& document, const std::vector
   if (entries == document.end() || !entries->is_object() || entries->contains(*name)) return std::nullopt;
   std::vector<std::string> names;
   for (const auto& entry : entries->items()) names.push_back(entry.key());
-  return suggestion(*name, names) + " To add one, set its shape first";
+  if (const auto near = nearest_name(*name, names)) return "did you mean \"" + *near + "\"?";
+  return (names.empty() ? "" : "choose from " + joined(names) + ", or ") + "set its shape first, to add it";
 }
 
 }  // namespace

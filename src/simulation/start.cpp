@@ -41,7 +41,7 @@ std::vector<std::string> say_what_moved(const SpringNetwork& network, const Poin
 /// Bodies whose gap obstacles are deep in: contact will throw them out of it.
 std::vector<std::string> say_what_is_too_near(const SpringNetwork& network, const Environment& environment,
                                               const Points& positions) {
-  constexpr double kDeep = 0.5;  // of the gap, which truncation would not let anything lose
+  constexpr double kDeep = 0.5;  // of the gap
   double obstacle_thickness = std::numeric_limits<double>::infinity();
   for (const Obstacle& obstacle : environment.obstacles()) {
     obstacle_thickness = std::min(obstacle_thickness, obstacle.material.thickness);

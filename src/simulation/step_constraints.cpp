@@ -91,14 +91,16 @@ StepConstraints::PushOut StepConstraints::push_out(Points& positions, int most_p
 
 void StepConstraints::truncate(SimulationState& state, const Forces& forces, StepReport& report) {
   const bool meets = contacts_.meets_anything();
-  const int most_rounds = limit_ ? std::min(kRelaxRounds, limit_->settings().iterations / kRelaxPasses) : 0;
+  const bool answers = !limit_ && integrator_.answers_contact() && projects_contacts();
+  const int relax_rounds = limit_ ? std::min(kRelaxRounds, limit_->settings().iterations / kRelaxPasses) : 0;
+  const int most_rounds = answers ? kAnswers : relax_rounds;
   int rounds = 0;
-  const FreeSpace::Relax relax_again = [&](Points& positions) {
-    return rounds++ < most_rounds && relax(positions, report.stretch_excess);
+  const FreeSpace::Relax lead_on = [&](Points& positions) {
+    if (rounds++ >= most_rounds) return false;
+    return answers ? answer_truncation(state, forces) : relax(positions, report.stretch_excess);
   };
-  const FreeSpace::Relax answer_again = [&](Points&) { return rounds++ < kAnswers && answer_truncation(state, forces); };
-  if (meets && integrator_.answers_contact()) answered_ = state.x;
-  if (meets) contacts_.truncate(before_, state.x, limit_ || !integrator_.answers_contact() ? relax_again : answer_again);
+  if (answers) answered_ = state.x;
+  if (meets) contacts_.truncate(before_, state.x, lead_on);
   integrator_.recover_velocities(state, forces, step_began(state), advanced_, dt_);
   if (meets) contacts_.settle_velocities(motion(), state, integrator_);
   report.truncated = contacts_.truncated_count();
@@ -121,7 +123,7 @@ bool StepConstraints::relax(Points& positions, double excess_before) {
 
 // What truncation stopped is pushed too. It leads the state itself on.
 bool StepConstraints::answer_truncation(SimulationState& state, const Forces& forces) {
-  if (!projects_contacts() || state.x == answered_) return false;
+  if (state.x == answered_) return false;
   integrator_.answer_contact(motion(), forces, answered_, state);
   answered_ = state.x;
   return true;

@@ -60,8 +60,8 @@ TEST(ImplicitEuler, SwingsAStiffClothByTwoCornersInStepsOfASixtiethOfASecond) {
   for (int step = 0; step < 20; ++step) {
     simulator.step();
     ASSERT_GT(least_distance(simulator, ball), 0.0) << "step " << step;
-    // It strikes at 2 m/s: contact moves particles by two lengths of their springs in a step.
-    ASSERT_LT(largest_stretch(simulator), simulator.contact_count() > 0 ? 0.2 : 0.1) << "step " << step;
+    // It strikes at 2 m/s: contact moves particles by two lengths of their springs in a step. With one answer to it 0.16.
+    ASSERT_LT(largest_stretch(simulator), simulator.contact_count() > 0 ? 0.08 : 0.1) << "step " << step;
     if (simulator.contact_count() > 0) continue;
     // The weight of the cloth, falling by its size, has no more to give.
     ASSERT_LT(moving_energy(simulator), 0.2 * testing::kGravity * 1.0) << "step " << step;
@@ -70,21 +70,23 @@ TEST(ImplicitEuler, SwingsAStiffClothByTwoCornersInStepsOfASixtiethOfASecond) {
   EXPECT_GT(simulator.contact_count(), 0);
 }
 
-// The control: without an answer to what contact pushes, its springs stay stretched by a third and hold a thousand joules.
+// The control: without an answer to what contact pushes, its springs stay stretched by a third and hold a thousand joules, with one
+// by 9 % and 1.6 J.
 TEST(ImplicitEuler, LetsAStiffClothRestOnABall) {
   const Obstacle ball = ball_in_its_way();
   Simulator simulator(stiff_cloth(24), {.step = kStep, .integrator = ImplicitEulerSettings{}}, {ball});
   for (int step = 0; step < 120; ++step) {
     simulator.step();
-    ASSERT_LT(largest_stretch(simulator), 0.15) << "step " << step;
+    ASSERT_LT(largest_stretch(simulator), 0.05) << "step " << step;
     ASSERT_GT(least_distance(simulator, ball), 0.0) << "step " << step;
   }
   EXPECT_GT(simulator.contact_count(), 0);
-  EXPECT_LT(moving_energy(simulator), 0.2 * testing::kGravity * 1.0);
+  EXPECT_LT(moving_energy(simulator), 0.1 * 0.2 * testing::kGravity * 1.0)
+      << "a tenth of what its weight gives, falling by its size";
 }
 
 // It strikes at 1.3 m/s, 4 cm a step: contact moves particles by half a spring's length, which springs must follow in the same
-// step.
+// step, and what truncation stops as well: without an answer to that springs are stretched by 0.35.
 TEST(ImplicitEuler, GainsNoEnergyWhereItStrikesABox) {
   const ContactMaterial rough{.friction = 0.3, .static_friction = 0.3};
   const Obstacle box{.name = "box", .geometry = BoxGeometry{.size = {0.4, 0.4, 0.4}}, .material = rough};
@@ -94,7 +96,7 @@ TEST(ImplicitEuler, GainsNoEnergyWhereItStrikesABox) {
   for (int step = 0; step < 36; ++step) {
     simulator.step();
     ASSERT_LT(moving_energy(simulator) + simulator.gravity_energy(), begin) << "step " << step;
-    ASSERT_LT(largest_stretch(simulator), 0.4) << "step " << step;
+    ASSERT_LT(largest_stretch(simulator), 0.32) << "step " << step;
   }
   EXPECT_GT(simulator.contact_count(), 0);
 }

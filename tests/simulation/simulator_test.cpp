@@ -390,6 +390,25 @@ TEST(Simulator, WhatSqueezesInAnyPartsLeavesNothingBehind) {
   }
 }
 
+// Where already the step before squeezed them, each attempt of 4, 16 and 64 parts is over with its first: 4 parts, not 85.
+TEST(Simulator, AttemptsEndWhereTheySqueezeNoLess) {
+  Simulator simulator(rod_and_thrown_particle().build(), {.step = 1e-2}, {rising_ball()});
+  int made = 0;
+  simulator.stop_when([&] { return ++made < 0; });
+  bool squeezed_before = false;
+  int tried = 0;
+  for (int step = 0; step < 100; ++step) {
+    made = 0;
+    const bool squeezed = simulator.step().squeezed > 0;
+    if (squeezed_before && squeezed) {
+      EXPECT_LE(made, 4) << step;
+      tried += made > 1 ? 1 : 0;
+    }
+    squeezed_before = squeezed;
+  }
+  EXPECT_GT(tried, 0);
+}
+
 // Seen from what turns by half a turn, all goes through its middle.
 TEST(Simulator, WhatSpinsFastMeetsOnlyWhatItReaches) {
   NetworkBuilder builder;
