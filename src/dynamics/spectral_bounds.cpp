@@ -150,6 +150,17 @@ double largest_eigenvalue(const Matrix& matrix) {
   return std::min(bound, kMargin * estimate);
 }
 
+/// The stiffness of what damps motion of this omega [1/s] hardly, 0 of the rest; `drag` [1/s] damps all.
+std::vector<double> hardly_damped(const std::vector<double>& stiffness, const std::vector<double>& damping, double omega,
+                                  double drag) {
+  std::vector<double> weights(stiffness.size(), 0.0);
+  for (std::size_t i = 0; i < stiffness.size(); ++i) {
+    const double rate = stiffness[i] > 0.0 ? damping[i] / stiffness[i] * omega * omega + drag : kInfinity;
+    if (rate < 2.0 * kHardlyDamped * omega) weights[i] = stiffness[i];
+  }
+  return weights;
+}
+
 /// The least damping / stiffness [s] of what has stiffness; infinity when nothing has.
 double least_damping_time(const std::vector<double>& stiffness, const std::vector<double>& damping) {
   double least = kInfinity;
@@ -164,10 +175,10 @@ double least_damping_time(const std::vector<double>& stiffness, const std::vecto
 SpectralBounds spectral_bounds(const SpringNetwork& network, double drag) {
   const Springs& springs = network.springs;
   const AngleBends& bends = network.angle_bends;
-  SpectralBounds bounds{.elastic = largest_eigenvalue(Laplacian(network, springs.stiffness)) +
-                                   largest_eigenvalue(AngleBendMatrix(network, bends.stiffness)),
-                        .damping = largest_eigenvalue(Laplacian(network, springs.damping)) +
-                                   largest_eigenvalue(AngleBendMatrix(network, bends.damping))};
+  const auto largest = [&](const std::vector<double>& of_springs, const std::vector<double>& of_bends) {
+    return largest_eigenvalue(Laplacian(network, of_springs)) + largest_eigenvalue(AngleBendMatrix(network, of_bends));
+  };
+  SpectralBounds bounds{.elastic = largest(springs.stiffness, bends.stiffness), .damping = largest(springs.damping, bends.damping)};
   const double least =
       std::min(least_damping_time(springs.stiffness, springs.damping), least_damping_time(bends.stiffness, bends.damping));
   bounds.damping_time = least < kInfinity ? least : 0.0;
@@ -179,6 +190,9 @@ SpectralBounds spectral_bounds(const SpringNetwork& network, double drag) {
     bounds.least_drag = std::min(bounds.least_drag, rate);
   }
   if (bounds.least_drag == kInfinity) bounds.least_drag = 0.0;
+  const double omega = std::sqrt(bounds.elastic);
+  bounds.undamped = largest(hardly_damped(springs.stiffness, springs.damping, omega, bounds.least_drag),
+                            hardly_damped(bends.stiffness, bends.damping, omega, bounds.least_drag));
   return bounds;
 }
 

@@ -71,6 +71,18 @@ double largest_stable_step(const IntegratorSettings& settings, const SpectralBou
   return std::visit(LargestStep{bounds.elastic, bounds.damping + bounds.drag}, settings);
 }
 
+// A turn of n steps has omega dt = 2 sin(pi / n).
+double resonant_step(const IntegratorSettings& settings, const SpectralBounds& bounds) {
+  const bool leaps = !std::holds_alternative<ExplicitEulerSettings>(settings) &&
+                     !std::holds_alternative<RungeKutta4Settings>(settings) &&
+                     !std::holds_alternative<ImplicitEulerSettings>(settings);
+  if (!leaps || bounds.undamped == 0.0) return kInfinity;
+  const double step = 1.0 / std::sqrt(bounds.undamped);
+  const auto* verlet = std::get_if<VerletSettings>(&settings);
+  const bool damps = verlet != nullptr && damping_per_step(*verlet, step) >= 2.0 * kHardlyDamped;
+  return damps ? kInfinity : step;
+}
+
 // |1 + s dt|^2 = 1 - c dt + k dt^2 for the roots s of s^2 + c s + k. Dampers give the fastest mode at least c = damping_time k.
 double growth_time(const IntegratorSettings& settings, const SpectralBounds& bounds, double step) {
   if (!std::holds_alternative<ExplicitEulerSettings>(settings)) return kInfinity;

@@ -12,6 +12,14 @@ namespace sprung {
 /// may still grow, if slowly: see growth_time. Infinity for implicit Euler, and without springs and drag.
 [[nodiscard]] double largest_stable_step(const IntegratorSettings& settings, const SpectralBounds& bounds);
 
+/// Where forces are not linear, as those of crumpled springs, leapfrog schemes (symplectic Euler, Verlet, velocity Verlet) feed
+/// energy into motion of which three, four, five or six steps are a turn, the more the fewer: below their largest stable step
+/// things explode all the same (Skeel, Zhang and Schlick 1997). This is the step of which six are a turn, 1 / omega, of the fastest
+/// motion that springs and drag hardly damp. What is left is what springs gain that pass through having no length, where their
+/// force turns about at once: ever less with smaller steps, never nothing. Infinity when nothing is hardly damped, for other
+/// schemes, and for a Verlet whose own damping is enough.
+[[nodiscard]] double resonant_step(const IntegratorSettings& settings, const SpectralBounds& bounds);
+
 /// Explicit Euler has no stable step for an undamped mode: its fastest grows by e within 2 / (omega^2 dt) [s], or 2 / (omega^2 dt -
 /// c) with damping c [1/s]. Infinity when damping outweighs the gain, dt < c / omega^2, and for other schemes. Springs damp along
 /// themselves only: sideways swings of taut springs grow all the same, if slower.

@@ -33,8 +33,9 @@ bool is_bound_by_turn(const Scene& scene, const SpringNetwork& network, const st
 
 /// Whatever passes of the stretch limit need.
 double largest_auto_step(const Scene& scene, const SpringNetwork& network, const std::optional<StretchLimit>& limit,
-                         const SpectralBounds& bounds, double largest_stable) {
-  double largest = std::min(kStablePart * largest_stable, step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
+                         const SpectralBounds& bounds) {
+  double largest = std::min(advised_step(scene.settings.integrator, bounds),
+                            step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
   const bool implicit = std::holds_alternative<ImplicitEulerSettings>(scene.settings.integrator);
   if (!std::isfinite(largest) && !implicit && !is_bound_by_turn(scene, network, limit)) largest = kLargestAutoStep;
   return largest;
@@ -77,7 +78,7 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
   }
   std::optional<StretchLimit> limit;
   if (scene.settings.stretch_limit) limit.emplace(network, *scene.settings.stretch_limit, may_meet_anything(scene, network));
-  const double without_passes = largest_auto_step(scene, network, limit, bounds, choice.largest_stable);
+  const double without_passes = largest_auto_step(scene, network, limit, bounds);
   const double largest = limit ? std::min(without_passes, limit->suggested_step(scene.settings.gravity.norm())) : without_passes;
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
     const int parts = parts_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));

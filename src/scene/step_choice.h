@@ -24,12 +24,12 @@ struct StepChoice {
   double largest_stable = 0.0;  ///< [s]; infinity when any is stable
 };
 
-/// The scene's step or, for "auto", 1 / (frame_rate * n) with the least n whose step is at most `kStablePart` of the largest stable
-/// one and at most what the stretch limit suggests; with explicit Euler, also one at which the fastest motion grows by no more than
-/// a factor of e in the whole scene. Steps of "auto" may be made in parts where a stretch limit that bears it is missed, or where
-/// what a global solve holds turns too much in one, unless Verlet's `damping` takes its part of each. Where passes may give way to
-/// a global solve, which holds all then, their steps are such parts of larger ones that this does with. Adds a problem when the
-/// scene's step is beyond the largest stable one and `stability` is refuse, or when a frame would take too many steps.
+/// The scene's step or, for "auto", 1 / (frame_rate * n) with the least n whose step is at most the advised one and at most what
+/// the stretch limit suggests; with explicit Euler, also one at which the fastest motion grows by no more than a factor of e in the
+/// whole scene. Steps of "auto" may be made in parts where a stretch limit that bears it is missed, or where what a global solve
+/// holds turns too much in one, unless Verlet's `damping` takes its part of each. Where passes may give way to a global solve,
+/// which holds all then, their steps are such parts of larger ones that this does with. Adds a problem when the scene's step is
+/// beyond the largest stable one and `stability` is refuse, or when a frame would take too many steps.
 [[nodiscard]] StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems);
 
 }  // namespace sprung

@@ -2,6 +2,7 @@
 
 #include "base/format.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sprung {
@@ -15,6 +16,11 @@ SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSe
     bounds.damping += settings.contact.damping * largest_inverse_mass;
   }
   return bounds;
+}
+
+double advised_step(const IntegratorSettings& settings, const SpectralBounds& bounds) {
+  constexpr double kStablePart = 0.9;
+  return std::min(kStablePart * largest_stable_step(settings, bounds), resonant_step(settings, bounds));
 }
 
 bool is_unstable(double step, double largest_stable) {
@@ -47,9 +53,8 @@ std::vector<std::string> check_step(const SimulatorSettings& settings, const Spe
 }
 
 std::string divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds) {
-  const double largest = largest_stable_step(settings.integrator, bounds);
-  if (settings.step > kStablePart * largest)
-    return "use a step of at most " + format_number(kStablePart * largest, 2) + " s, or \"auto\"";
+  const double advised = advised_step(settings.integrator, bounds);
+  if (settings.step > advised) return "use a step of at most " + format_number(advised, 2) + " s, or \"auto\"";
   if (std::isfinite(growth_time(settings.integrator, bounds, settings.step))) {
     return "explicit Euler gains energy at any step; use \"symplectic_euler\" or a step below " +
            format_number(0.1 * settings.step, 2) + " s";

@@ -12,8 +12,8 @@ namespace sprung {
 /// `spectral_bounds` of the network with its air drag and, when there are obstacles, its penalty contact.
 [[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
 
-/// The part of the largest stable step that is advised, and that "auto" uses at most.
-inline constexpr double kStablePart = 0.9;
+/// The largest step that is advised, and that "auto" uses [s]: 0.9 of the largest stable one, and no larger than the resonant one.
+[[nodiscard]] double advised_step(const IntegratorSettings& settings, const SpectralBounds& bounds);
 
 /// Whether a step is beyond the largest stable one by more than rounding.
 [[nodiscard]] bool is_unstable(double step, double largest_stable);

@@ -153,6 +153,38 @@ std::vector<SpectralBounds> bounds_of_all_dampings() {
 // Roundings of a factor near 1: a double root turns 1e-16 into 1e-8.
 constexpr double kNoGrowth = 1.0 + 1.0e-7;
 
+// One mass on a spring of omega = 10 1/s.
+TEST(ResonantStep, IsThatOfSixStepsATurnOfWhatIsHardlyDamped) {
+  const double slack = 1.0 / std::sqrt(1.016);
+  const auto step = [](const SpringNetwork& network, const IntegratorSettings& settings, double drag = 0.0) {
+    return resonant_step(settings, spectral_bounds(network, drag));
+  };
+  const SpringNetwork undamped = make_pair(1.0, 100.0, 1.0, 0.0, true);
+  for (const IntegratorSettings& settings :
+       {IntegratorSettings(SymplecticEulerSettings{}), IntegratorSettings(VerletSettings{}),
+        IntegratorSettings(VelocityVerletSettings{}), IntegratorSettings(VerletSettings{.damping = 0.01})}) {
+    EXPECT_LE(step(undamped, settings), 0.1);
+    EXPECT_GE(step(undamped, settings), 0.1 * slack);
+  }
+  for (const IntegratorSettings& settings :
+       {IntegratorSettings(ExplicitEulerSettings{}), IntegratorSettings(RungeKutta4Settings{}),
+        IntegratorSettings(ImplicitEulerSettings{}), IntegratorSettings(VerletSettings{.damping = 0.03}),
+        IntegratorSettings(VerletSettings{.damping_rate = 0.3})}) {
+    EXPECT_EQ(step(undamped, settings), kInfinity) << settings.index();
+  }
+  EXPECT_EQ(step(make_pair(1.0, 100.0, 1.0, 0.3, true), SymplecticEulerSettings{}), kInfinity) << "damps by 1.5 %";
+  EXPECT_LT(step(make_pair(1.0, 100.0, 1.0, 0.1, true), SymplecticEulerSettings{}), kInfinity) << "damps by 0.5 %";
+}
+
+TEST(ResonantStep, IsThatOfUndampedSpringsAlone) {
+  NetworkBuilder builder;
+  for (const double x : {-1.0, 0.0, 1.0}) builder.add_particle({x, 0.0, 0.0}, 1.0);
+  builder.add_spring(0, 1, 100.0, 1.0, 0.3);
+  builder.add_spring(1, 2, 4.0, 1.0);
+  builder.pin({0, 2});
+  EXPECT_NEAR(resonant_step(SymplecticEulerSettings{}, spectral_bounds(builder.build())), 0.5, 0.5 * 0.008);
+}
+
 TEST(StableStep, OfImplicitEulerIsAny) {
   for (const SpectralBounds& bounds : bounds_of_all_dampings()) {
     EXPECT_EQ(largest_stable_step(ImplicitEulerSettings{}, bounds), kInfinity);

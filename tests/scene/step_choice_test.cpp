@@ -41,13 +41,24 @@ TEST(StepChoice, LargestStableStepIsThatOfTheScheme) {
 
 TEST(StepChoice, AutoIsTheFewestStepsWithinNineTenthsOfTheStableStep) {
   for (const double stiffness : {100.0, 1000.0, 54321.0, 1e6}) {
-    const BuiltScene built = build(stiffness);
+    const double damping = 0.05 * std::sqrt(stiffness);
+    const BuiltScene built = build(stiffness, {"bodies.pair.springs.structural.damping=" + std::to_string(damping)});
     const int n = built.steps_per_frame;
     EXPECT_EQ(built.settings.step, 1.0 / (10.0 * n));
     EXPECT_LE(built.settings.step, 0.9 * built.largest_stable_step);
     if (n > 1) {
       EXPECT_GT(1.0 / (10.0 * (n - 1)), 0.9 * built.largest_stable_step);
     }
+  }
+}
+
+// Six steps are a turn.
+TEST(StepChoice, AutoKeepsWhatIsNotDampedFromResonance) {
+  for (const double stiffness : {1000.0, 54321.0, 1e6}) {
+    const double resonant = 1.0 / std::sqrt(stiffness);
+    const BuiltScene built = build(stiffness);
+    EXPECT_LE(built.settings.step, resonant);
+    EXPECT_GT(1.0 / (10.0 * (built.steps_per_frame - 1)), resonant * (1.0 - kBoundSlack));
   }
 }
 

@@ -23,7 +23,7 @@ double deflection(const BodyShape& shape, const std::vector<Index>& pins, double
   builder.pin(pins);
   SimulatorSettings settings{.integrator = VerletSettings{.damping_rate = damping_rate}};
   const SpringNetwork network = builder.build();
-  settings.step = kStablePart * largest_stable_step(settings.integrator, simulation_bounds(network, settings, false));
+  settings.step = advised_step(settings.integrator, simulation_bounds(network, settings, false));
   Simulator simulator(network, settings);
   testing::run(simulator, seconds);
   return -simulator.positions().row(1).minCoeff();

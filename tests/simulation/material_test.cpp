@@ -54,7 +54,7 @@ SpringNetwork level_rope(Index particles, const SpringMaterial& structural, bool
 
 /// How far [m] the lowest particle is below y = 0 after `seconds`, which is at rest when the damping is near critical. The step is
 /// `part` of the largest stable one.
-double sag(const SpringNetwork& network, double seconds, double damping_rate, double part = kStablePart) {
+double sag(const SpringNetwork& network, double seconds, double damping_rate, double part = 0.9) {
   SimulatorSettings settings{.integrator = VerletSettings{.damping_rate = damping_rate}};
   settings.step = part * largest_stable_step(settings.integrator, simulation_bounds(network, settings, false));
   Simulator simulator(network, settings);
