@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <utility>
 
 namespace sprung {
@@ -28,22 +27,10 @@ void add_new(std::vector<std::string>& all, const std::vector<std::string>& more
   }
 }
 
-/// With what is wrong with its meshes, pins and step beside keys that are not known.
-BuiltScene build(const Scene& scene, const SceneOptions& options, std::vector<Problem> unknown_keys) {
-  std::optional<BuiltScene> built;
-  try {
-    built = build_scene(scene, mesh_paths(options));
-  } catch (const InputError& error) {
-    unknown_keys.insert(unknown_keys.end(), error.problems().begin(), error.problems().end());
-  }
-  if (!unknown_keys.empty()) throw InputError(std::move(unknown_keys));
-  return std::move(*built);
-}
-
 LoadedScene load(const SceneOptions& options) {
-  std::vector<Problem> unknown_keys;
-  Scene scene = read_scene(options.file, options.overrides, unknown_keys);
-  BuiltScene built = build(scene, options, std::move(unknown_keys));
+  TextProblems problems;
+  Scene scene = read_scene(options.file, options.overrides, problems);
+  BuiltScene built = build_scene(scene, mesh_paths(options), problems);
   LoadedScene loaded{.scene = std::move(scene),
                      .simulator = Simulator(std::move(built.network), built.settings, std::move(built.obstacles)),
                      .frames = built.frames,

@@ -83,6 +83,10 @@ Json* descend(Json& json, const PathPart& part, std::string& problem) {
     return nullptr;
   }
   const std::size_t index = std::get<std::size_t>(part);
+  if (json.is_null() && index > 0) {
+    problem = "is not written in the scene, so it has no entry " + std::to_string(index) + " to change: set all of it";
+    return nullptr;
+  }
   if (json.is_null()) json = Json::array();
   if (!json.is_array()) {
     problem = "has no entries: it is not a list";
@@ -100,9 +104,10 @@ std::string join_part(const std::string& path, const PathPart& part) {
   return std::visit([&](const auto& value) { return join_path(path, value); }, part);
 }
 
-/// Sets the value, or says what is in the way.
+/// Sets the value, or says what is in the way, and leaves all as it is.
 std::string assign(Json& document, const std::vector<PathPart>& parts, Json value) {
-  Json* at = &document;
+  Json changed = document;
+  Json* at = &changed;
   Json* parent = nullptr;
   std::string path;
   for (const PathPart& part : parts) {
@@ -118,6 +123,7 @@ std::string assign(Json& document, const std::vector<PathPart>& parts, Json valu
   } else {
     *at = std::move(value);
   }
+  document = std::move(changed);
   return "";
 }
 

@@ -1,8 +1,11 @@
 #include "scene/scene_builder.h"
 
+#include "base/machine_memory.h"
 #include "network/network_builder.h"
 #include "scene/body_builder.h"
 #include "scene/frame_steps.h"
+#include "scene/json_text.h"
+#include "scene/memory_check.h"
 #include "scene/obstacle_builder.h"
 #include "scene/step_choice.h"
 
@@ -12,6 +15,21 @@
 
 namespace sprung {
 namespace {
+
+/// The bodies of which the user has said what shape they are. What matters to neither shape nor pins is left out where the text has
+/// problems.
+std::vector<BodyScene> told_bodies(const Scene& scene, const TextProblems& known) {
+  std::vector<BodyScene> bodies;
+  for (BodyScene body : scene.bodies) {
+    const std::string key = join_path("bodies", body.name);
+    if (known.spoil(key + ".shape")) continue;
+    if (known.spoil(key + ".springs")) body.springs = {};
+    if (body.mass.value == 0.0) body.mass = {.kind = MassScene::Kind::body, .value = 1.0};
+    if (known.spoil(key + ".place")) body.pins.clear();
+    bodies.push_back(std::move(body));
+  }
+  return bodies;
+}
 
 void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder, NetworkBuilder& network,
               std::vector<Problem>& problems) {
@@ -26,19 +44,27 @@ void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finde
   }
 }
 
-/// The network, or none when a body has problems.
-std::optional<SpringNetwork> build_network(const Scene& scene, const MeshFinder& finder, std::vector<Problem>& problems) {
-  NetworkBuilder network;
-  for (const BodyScene& body : scene.bodies) add_body(scene, body, finder, network, problems);
+/// The network, or none when a body has problems, or the scene's text has.
+std::optional<SpringNetwork> build_network(const Scene& scene, const MeshFinder& finder, const TextProblems& known,
+                                           std::vector<Problem>& problems) {
+  const std::vector<BodyScene> bodies = told_bodies(scene, known);
+  check_memory(bodies, machine_memory(), problems);
   if (!problems.empty()) return std::nullopt;
+  NetworkBuilder network;
+  for (const BodyScene& body : bodies) add_body(scene, body, finder, network, problems);
+  if (!problems.empty() || !known.only_unknown_keys) return std::nullopt;
   try {
     return network.build();
   } catch (const InputError& error) {
-    for (Problem problem : error.problems()) {
-      problem.file = scene.file.string();
-      problems.push_back(std::move(problem));
-    }
-    return std::nullopt;
+    problems = error.problems();
+  }
+  return std::nullopt;
+}
+
+/// Problems of the scene name no file yet.
+void name_file(const std::string& file, std::vector<Problem>& problems) {
+  for (Problem& problem : problems) {
+    if (problem.file.empty()) problem.file = file;
   }
 }
 
@@ -56,14 +82,16 @@ std::vector<std::string> warnings_of(const BuiltScene& built) {
 
 }  // namespace
 
-BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::path>& mesh_paths) {
+BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::path>& mesh_paths, const TextProblems& known) {
   std::vector<Problem> problems;
   const MeshFinder finder(scene.file, mesh_paths);
   BuiltScene built;
-  auto network = build_network(scene, finder, problems);
+  auto network = build_network(scene, finder, known, problems);
+  name_file(scene.file.string(), problems);
 
   ObstacleBuilder obstacles(scene, finder, problems);
   for (const ObstacleScene& obstacle : scene.obstacles) {
+    if (known.spoil(join_path("obstacles", obstacle.name) + ".shape")) continue;
     if (auto made = obstacles.build(obstacle)) built.obstacles.push_back(std::move(*made));
   }
   built.meshes = obstacles.reports();
@@ -78,6 +106,7 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
     built.largest_stable_step = choice.largest_stable;
     built.network = std::move(*network);
   }
+  problems.insert(problems.begin(), known.all.begin(), known.all.end());
   if (!problems.empty()) throw InputError(std::move(problems));
   built.warnings = warnings_of(built);
   return built;

@@ -3,6 +3,7 @@
 
 #include "geometry/mesh_import.h"
 #include "scene/scene.h"
+#include "scene/text_problems.h"
 
 #include <filesystem>
 #include <string>
@@ -28,8 +29,10 @@ struct BuiltScene {
   std::vector<std::string> warnings;
 };
 
-/// Looks for mesh files beside the scene file, then in `mesh_paths`. Throws InputError with every problem.
-[[nodiscard]] BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::path>& mesh_paths = {});
+/// Looks for mesh files beside the scene file, then in `mesh_paths`. Throws InputError with every problem: those of the scene's
+/// text, `known`, first, then what does not follow from them.
+[[nodiscard]] BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::path>& mesh_paths = {},
+                                     const TextProblems& known = {});
 
 /// Folders of the environment's SPRUNG_MESH_PATH, separated by colons.
 [[nodiscard]] std::vector<std::filesystem::path> mesh_paths_from_environment();

@@ -47,24 +47,25 @@ void add_schema_violations(const std::vector<SchemaViolation>& violations, const
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  std::vector<Problem> unknown_keys;
-  Scene scene = read_scene(file, overrides, unknown_keys);
-  throw_if_any(std::move(unknown_keys));
+  TextProblems problems;
+  Scene scene = read_scene(file, overrides, problems);
+  throw_if_any(std::move(problems.all));
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides, std::vector<Problem>& unknown_keys) {
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides, TextProblems& problems) {
   JsonText json = parse_json(read_file(file), file.string());
   throw_if_any(std::move(json.problems));
-  std::vector<Problem> problems;
-  for (const std::string& text : overrides) apply_override(text, json.document, problems);
+  std::vector<Problem> found;
+  for (const std::string& text : overrides) apply_override(text, json.document, found);
 
   const std::vector<SchemaViolation> violations = schema_violations(json.document);
   std::size_t unknown = 0;
-  auto scene = scene_rule()(json.document, {file.string(), "", &problems, &unknown});
-  add_schema_violations(violations, file.string(), problems);
-  if (problems.size() > unknown) throw InputError(std::move(problems));
-  unknown_keys.insert(unknown_keys.end(), problems.begin(), problems.end());
+  auto scene = scene_rule()(json.document, {file.string(), "", &found, &unknown});
+  add_schema_violations(violations, file.string(), found);
+  if (!scene) throw InputError(std::move(found));
+  problems.only_unknown_keys = found.size() == unknown;
+  problems.all = std::move(found);
   scene->file = file;
   scene->resolved = json_text(json.document);
   return std::move(*scene);

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
+#include "scene/text_problems.h"
 
 #include <filesystem>
 #include <string>
@@ -14,9 +15,9 @@ namespace sprung {
 /// with every problem (file, key, value, rule, remedy) when it is not valid.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// The same, but keys that are not known are appended to `unknown_keys`, and not thrown when nothing else is wrong: the scene may
-/// be looked at further.
+/// The same, but what is wrong goes into `problems`, and the scene, which holds defaults there, may be looked at further. Throws
+/// InputError when the file holds no JSON object.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                               std::vector<Problem>& unknown_keys);
+                               TextProblems& problems);
 
 }  // namespace sprung

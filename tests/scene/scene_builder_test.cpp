@@ -54,6 +54,29 @@ TEST(SceneBuilder, PlainSceneIsBuilt) {
   EXPECT_THAT(built.warnings, IsEmpty());
 }
 
+// All but the last pin, which may be what it is because of where the body was to be.
+TEST(SceneBuilder, WhatIsWrongBesideTheTextIsToldWithIt) {
+  const SceneFolder folder;
+  folder.write("broken.obj", "v 0 0\n");
+  const std::string text = R"({"duration": 1, "step": "atuo", "bodies": {
+      "heavy": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [3, 3]}, "mass": 1, "density": 1, "pins": [{"indices": [9]}]},
+      "torn": {"shape": {"type": "mesh", "file": "broken.obj"}, "mass": 1, "springs": {"structural": {"stifness": 1}}},
+      "narrow": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [3]}, "mass": 1, "pins": [{"indices": [9]}]},
+      "astray": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [3, 3]}, "mass": 1, "place": {"position": "up"},
+                 "pins": [{"box": [[7, 7, 7], [8, 8, 8]]}]}},
+      "obstacles": {"floor": {"shape": {"type": "mesh", "file": "flor.obj"}, "friction": -1},
+                    "ball": {"shape": {"type": "mesh", "fiel": "ball.obj"}}}})";
+  TextProblems known;
+  const Scene scene = read_scene(folder.write("scene.json", text), {}, known);
+  const std::size_t of_text = known.all.size();
+  std::vector<Problem> all = problems_of([&] { (void)build_scene(scene, {}, known); });
+  EXPECT_TRUE(std::equal(known.all.begin(), known.all.end(), all.begin()));
+  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(of_text));
+  EXPECT_THAT(all, ElementsAre(problem("bodies.heavy.pins[0].indices[0]", "the body has 9 particles"),
+                               AllOf(Field(&Problem::file, EndsWith("broken.obj")), Field(&Problem::key, "line 1")),
+                               problem("obstacles.floor.shape.file", "no such file")));
+}
+
 TEST(SceneBuilder, BuiltSceneRuns) {
   const SceneFolder folder;
   BuiltScene built = build(folder, {});

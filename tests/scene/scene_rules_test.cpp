@@ -146,6 +146,7 @@ INSTANTIATE_TEST_SUITE_P(SceneRules, BrokenOverrideTest,
                                          BrokenOverride{"BrokenValue", "gravity=[0,1", "neither JSON nor a single word"},
                                          BrokenOverride{"ThroughANumber", "duration.x=1", "duration has no keys"},
                                          BrokenOverride{"NoList", "duration[0]=1", "duration has no entries"},
+                                         BrokenOverride{"EntryOfADefault", "wind[1]=1", "wind is not written in the scene"},
                                          BrokenOverride{"BeyondTheEnd", "bodies.banner.pins[2].at=corner",
                                                         "bodies.banner.pins has 1 entries, so there is no entry 2"}),
                          [](const auto& test) { return test.param.name; });
