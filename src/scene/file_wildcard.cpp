@@ -1,6 +1,9 @@
 #include "scene/file_wildcard.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <numeric>
 #include <string>
 #include <system_error>
 
@@ -16,6 +19,17 @@ std::string_view take_number(std::string_view& text) {
   text.remove_prefix(digits.size());
   digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
   return digits;
+}
+
+/// The number that stands for the pattern's *.
+std::optional<std::int64_t> number_of(std::string_view name, std::string_view pattern) {
+  const std::size_t star = pattern.find('*');
+  name.remove_prefix(star);
+  name.remove_suffix(pattern.size() - star - 1);
+  std::int64_t number = 0;
+  const auto end = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (name.empty() || end.ec != std::errc{} || end.ptr != name.data() + name.size()) return std::nullopt;
+  return number;
 }
 
 bool matches(std::string_view name, std::string_view before, std::string_view after) {
@@ -66,6 +80,23 @@ std::vector<std::filesystem::path> matching_files(const std::filesystem::path& p
   }
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return natural_less(a.string(), b.string()); });
   return files;
+}
+
+std::optional<std::filesystem::path> file_before_gap(const std::vector<std::filesystem::path>& files,
+                                                     const std::filesystem::path& pattern) {
+  std::vector<std::int64_t> numbers;
+  for (const std::filesystem::path& file : files) {
+    const auto number = number_of(file.filename().string(), pattern.filename().string());
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  std::vector<std::int64_t> steps(numbers.size());
+  std::adjacent_difference(numbers.begin(), numbers.end(), steps.begin());
+  if (steps.size() < 2) return std::nullopt;
+  const std::int64_t least = *std::min_element(steps.begin() + 1, steps.end());
+  const auto gap = std::find_if(steps.begin() + 1, steps.end(), [&](std::int64_t step) { return step > least; });
+  if (least <= 0 || gap == steps.end()) return std::nullopt;
+  return files[static_cast<std::size_t>(gap - steps.begin()) - 1];
 }
 
 }  // namespace sprung

@@ -1,6 +1,7 @@
 #include "scene/obstacle_builder.h"
 
 #include "scene/body_builder.h"
+#include "scene/file_wildcard.h"
 #include "scene/json_text.h"
 
 #include <algorithm>
@@ -68,6 +69,11 @@ std::optional<ObstacleGeometry> ObstacleBuilder::geometry_of(const ObstacleScene
   try {
     auto [sequence, report] = import_sequence(files);
     add_report(obstacle, files, report);
+    const auto* pattern = std::get_if<std::string>(&mesh.files);
+    if (const auto last = pattern != nullptr ? file_before_gap(files, *pattern) : std::nullopt) {
+      reports_.back().report.notes.push_back("numbers are left out after " + last->filename().string() +
+                                             ": its files play one after the other all the same");
+    }
     if (!sequence.deforms()) reports_.back().report.notes.emplace_back("its frames are all alike: it does not deform");
     for (Points& frame : sequence.frames) frame *= obstacle.place.scale;
     sequence.frame_rate = mesh.frame_rate;

@@ -52,5 +52,19 @@ TEST(FileWildcard, MatchesFilesAroundTheStar) {
   EXPECT_THAT(names("none/*.obj"), IsEmpty());
 }
 
+TEST(FileWildcard, TellsWhereNumbersAreLeftOut) {
+  const auto before_gap = [](const std::vector<std::filesystem::path>& files) {
+    const auto file = file_before_gap(files, "sub/a.*.obj");
+    return file ? file->string() : "";
+  };
+  EXPECT_EQ(before_gap({"sub/a.1.obj", "sub/a.2.obj", "sub/a.03.obj"}), "");
+  EXPECT_EQ(before_gap({"sub/a.4.obj", "sub/a.6.obj", "sub/a.10.obj"}), "sub/a.6.obj");
+  EXPECT_EQ(before_gap({"sub/a.0.obj", "sub/a.5.obj", "sub/a.10.obj"}), "") << "every fifth";
+  EXPECT_EQ(before_gap({"sub/a.0.obj", "sub/a.9.obj", "sub/a.10.obj"}), "sub/a.0.obj");
+  EXPECT_EQ(before_gap({"sub/a.1.obj", "sub/a.x.obj", "sub/a.9.obj"}), "") << "no numbers";
+  EXPECT_EQ(before_gap({"sub/a.01.obj", "sub/a.1.obj", "sub/a.2.obj"}), "") << "not numbered one after the other";
+  EXPECT_EQ(before_gap({"sub/a.1.obj"}), "");
+}
+
 }  // namespace
 }  // namespace sprung

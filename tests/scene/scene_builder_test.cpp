@@ -246,6 +246,7 @@ TEST(SceneBuilder, PatternsOfSequencesAreSortedByNumber) {
   std::vector<double> tips;
   for (const Points& frame : std::get<SequenceGeometry>(built.obstacles[1].geometry).sequence->frames) tips.push_back(frame(2, 3));
   EXPECT_THAT(tips, ElementsAre(1.0, 9.0, 10.0, 11.0, 100.0));
+  EXPECT_THAT(built.warnings, Contains(HasSubstr("\"lung\": numbers are left out after lung.1.obj")));
 }
 
 TEST(SceneBuilder, PatternsLookInTheFirstFolderThatHasAny) {
