@@ -34,6 +34,7 @@ class ContactProjection {
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {
     response_.settle_velocities(motion, state, integrator);
   }
+  void hold_pushed(HeldDirections& held) const { response_.hold_pushed(held); }
   [[nodiscard]] Index contact_count() const { return response_.pushed_count(); }
 
   /// Stops particles before an element of the network crosses a surface, where none did at `before` [m]: the last word on

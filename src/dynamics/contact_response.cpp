@@ -174,9 +174,15 @@ void ContactResponse::settle_velocities(const StepMotion& motion, SimulationStat
   });
 }
 
+void ContactResponse::hold_pushed(HeldDirections& held) const {
+  for_each_set(
+      sets_, [&](const auto& set) { set.for_pushed([&](Index particle, const Vector3& normal) { held.add(particle, normal); }); });
+}
+
 Index ContactResponse::pushed_count() const {
   std::vector<Index> pushed;
-  for_each_set(sets_, [&](const auto& set) { set.for_pushed([&](Index particle) { pushed.push_back(particle); }); });
+  for_each_set(sets_,
+               [&](const auto& set) { set.for_pushed([&](Index particle, const Vector3&) { pushed.push_back(particle); }); });
   std::sort(pushed.begin(), pushed.end());
   return static_cast<Index>(std::unique(pushed.begin(), pushed.end()) - pushed.begin());
 }

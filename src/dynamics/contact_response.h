@@ -8,6 +8,7 @@
 #include "collision/environment.h"
 #include "dynamics/contact_pair.h"
 #include "dynamics/contact_set.h"
+#include "dynamics/held_directions.h"
 #include "dynamics/integrator.h"
 #include "dynamics/step_motion.h"
 #include "network/spring_network.h"
@@ -40,6 +41,9 @@ class ContactResponse {
   /// is met, it leaves with restitution times the speed of the impact, or rests (see `settled_speeds`). A push out of the gap never
   /// speeds anything up. Requires the motion that the step was begun with, and velocities that are recovered from positions.
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator);
+
+  /// Adds the normals along which particles were pushed in this step.
+  void hold_pushed(HeldDirections& held) const;
 
   /// Particles that were pushed in this step.
   [[nodiscard]] Index pushed_count() const;

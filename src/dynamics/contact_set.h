@@ -90,11 +90,11 @@ class ContactSet {
     for (const std::size_t c : touching_) for_moved(rows_[c], visit);
   }
 
-  /// The same for contacts that have pushed.
+  /// Calls `visit(particle, normal)` in the same way for contacts that have pushed.
   template <class Visit>
   void for_pushed(const Visit& visit) const {
     for (std::size_t c = 0; c < rows_.size(); ++c) {
-      if (goals_[c].push > 0.0) for_moved(rows_[c], visit);
+      if (goals_[c].push > 0.0) for_moved(rows_[c], [&](Index particle) { visit(particle, rows_[c].normal); });
     }
   }
 

@@ -19,7 +19,6 @@ class ImplicitEuler final : public Integrator {
   // Pins do not change their velocity in the step, but by h dF/dx v their neighbours know where they go.
   void advance(SimulationState& state, const Forces& forces, double dt) override {
     pushed_.setZero(3, network().particle_count());
-    pushed_along_.setZero(3, network().particle_count());
     const Kinematics at{.x = state.x, .v = state.v, .time = step_begin(state, dt) + dt};
     sum_forces(forces, at, gained_);
     differentiate(forces, at, derivatives_);
@@ -37,12 +36,12 @@ class ImplicitEuler final : public Integrator {
 
   // One more step of Newton's method on the scheme's own equations, M (v - v(t)) = dt F(x, v), from where contact led: at once they
   // are solved to first order alone, and pushes as long as springs stretch these far beyond.
-  void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, SimulationState& state) override {
+  void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, const HeldDirections& held,
+                      SimulationState& state) override {
     v_ = motion.v_before;
     for_free_particles(network(), [&](Index i) {
       const Vector3 push = state.x.col(i) - from.col(i);
       pushed_.col(i) += network().masses[i] / motion.dt * push;
-      if (!push.isZero(0.0)) pushed_along_.col(i) = push.normalized();
       v_.col(i) = (state.x.col(i) - motion.before.col(i)) / motion.dt;
     });
     const Kinematics at{.x = state.x, .v = v_, .time = step_begin(state, motion.dt) + motion.dt};
@@ -51,7 +50,7 @@ class ImplicitEuler final : public Integrator {
     system_->assemble(derivatives_, motion.dt);
     for_free_particles(network(), [&](Index i) {
       gained_.col(i) = motion.dt * gained_.col(i) + pushed_.col(i) - network().masses[i] * (v_.col(i) - motion.v_before.col(i));
-      system_->hold(i, pushed_along_.col(i));
+      system_->hold(i, held.projection(i));
     });
     system_->solve(gained_);
     for_free_particles(network(), [&](Index i) { state.x.col(i) += motion.dt * gained_.col(i); });
@@ -60,9 +59,8 @@ class ImplicitEuler final : public Integrator {
  private:
   ForceDerivatives derivatives_;
   std::optional<ImplicitSystem> system_;
-  Points gained_;        // momentum, then velocity
-  Points pushed_;        // impulses of contact in this step [N s], friction's too
-  Points pushed_along_;  // by particle: direction in which contact pushed it last in this step; 0 when it did not
+  Points gained_;  // momentum, then velocity
+  Points pushed_;  // impulses of contact in this step [N s], friction's too
   Points v_;
 };
 

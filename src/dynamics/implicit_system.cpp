@@ -27,8 +27,8 @@ void ImplicitSystem::assemble(const ForceDerivatives& derivatives, double dt) {
   matrix_.add_scaled(derivatives.by_position, -dt * dt);
 }
 
-void ImplicitSystem::hold(Index particle, const Vector3& direction) {
-  matrix_.add(particle, particle, kHoldWeight * matrix_.diagonal(particle).trace() * direction * direction.transpose());
+void ImplicitSystem::hold(Index particle, const Matrix3& projection) {
+  matrix_.add(particle, particle, kHoldWeight * matrix_.diagonal(particle).trace() * projection);
 }
 
 void ImplicitSystem::solve(Points& vectors) {

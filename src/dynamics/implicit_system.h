@@ -17,10 +17,10 @@ class ImplicitSystem {
   /// Writes the matrix; `dt` is h [s].
   void assemble(const ForceDerivatives& derivatives, double dt);
 
-  /// Keeps the solution of a free particle from going along a unit vector, whatever its equations say; across it stays free (the
-  /// constraints of Baraff and Witkin 1998, by weight). Thread-safe for different particles; for each after `assemble`, once at
-  /// most. Zero holds nothing.
-  void hold(Index particle, const Vector3& direction);
+  /// Keeps the solution of a free particle from going where this projects to, whatever its equations say; elsewhere it stays free
+  /// (the constraints of Baraff and Witkin 1998, by weight). Thread-safe for different particles; for each after `assemble`, once
+  /// at most. Zero holds nothing.
+  void hold(Index particle, const Matrix3& projection);
 
   /// Replaces the right-hand sides b of free particles by the solution y, and those of pinned particles by zero; 3 x n. Not finite
   /// when the matrix is not.

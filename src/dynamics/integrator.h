@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dynamics/force.h"
+#include "dynamics/held_directions.h"
 #include "dynamics/step_motion.h"
 #include "network/spring_network.h"
 
@@ -60,9 +61,10 @@ class Integrator {
   [[nodiscard]] virtual bool answers_contact() const { return false; }
 
   /// Contact has pushed some particles from `from` (where `advance` or the last answer led them) to state.x [m]. A scheme that
-  /// solves for the forces at the step's end leads all on to where these take them then: those that were pushed since `advance`
-  /// across the way of their last push alone, the others anywhere. Default: nothing.
-  virtual void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, SimulationState& state);
+  /// solves for the forces at the step's end leads all on to where these take them then, but none along what it is held along:
+  /// what pushes it is as large as needed. Default: nothing.
+  virtual void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, const HeldDirections& held,
+                              SimulationState& state);
 
   /// Velocities after constraints moved `advanced` (what `advance` made) to state.x; `before` are the positions at t. Default:
   /// v += (x - advanced) / dt. A scheme whose velocities hang on the forces where the step ends takes them there anew. Unless

@@ -37,7 +37,8 @@ double largest_auto_step(const Scene& scene, const SpringNetwork& network, const
   double largest = std::min(advised_step(scene.settings.integrator, bounds),
                             step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
   const bool implicit = std::holds_alternative<ImplicitEulerSettings>(scene.settings.integrator);
-  if (!std::isfinite(largest) && !implicit && !is_bound_by_turn(scene, network, limit)) largest = kLargestAutoStep;
+  const bool free = (implicit && !may_meet_anything(scene, network)) || is_bound_by_turn(scene, network, limit);
+  if (!std::isfinite(largest) && !free) largest = kLargestAutoStep;
   return largest;
 }
 

@@ -72,8 +72,11 @@ void StepConstraints::constrain(SimulationState& state, const Forces& forces, St
 // Where springs take the others, contact pushes again.
 void StepConstraints::answer_contact(SimulationState& state, const Forces& forces) {
   answered_ = advanced_;
+  held_.clear(static_cast<Index>(state.x.cols()));
   for (int round = 0; round < kAnswers && push_out(state.x, kContactPasses).any; ++round) {
-    integrator_.answer_contact(motion(), forces, answered_, state);
+    held_.clear(static_cast<Index>(state.x.cols()));
+    contacts_.hold_pushed(held_);
+    integrator_.answer_contact(motion(), forces, answered_, held_, state);
     answered_ = state.x;
   }
 }
@@ -124,7 +127,11 @@ bool StepConstraints::relax(Points& positions, double excess_before) {
 // What truncation stopped is pushed too. It leads the state itself on.
 bool StepConstraints::answer_truncation(SimulationState& state, const Forces& forces) {
   if (state.x == answered_) return false;
-  integrator_.answer_contact(motion(), forces, answered_, state);
+  for (Index i = 0; i < static_cast<Index>(state.x.cols()); ++i) {
+    const Vector3 stopped = state.x.col(i) - answered_.col(i);
+    if (!stopped.isZero(0.0)) held_.add(i, stopped);
+  }
+  integrator_.answer_contact(motion(), forces, answered_, held_, state);
   answered_ = state.x;
   return true;
 }

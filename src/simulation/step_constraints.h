@@ -62,10 +62,11 @@ class StepConstraints {
   ContactProjection contacts_;
 
   // Of the step at hand: where it began, and where forces and pins alone would have ended it.
-  Points before_;    ///< for contact, and where the integrator does not keep them
-  Points v_before_;  ///< for contact alone
-  Points advanced_;  ///< for contact, and for integrators that need it
-  Points answered_;  ///< where the last answer to contact led, for integrators that give one
+  Points before_;        ///< for contact, and where the integrator does not keep them
+  Points v_before_;      ///< for contact alone
+  Points advanced_;      ///< for contact, and for integrators that need it
+  HeldDirections held_;  ///< those of the last answer to contact
+  Points answered_;      ///< where the last answer to contact led, for integrators that give one
   double dt_ = 0.0;
 };
 

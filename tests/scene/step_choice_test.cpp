@@ -150,6 +150,13 @@ TEST(StepChoice, WithoutAnyBoundAutoIsAtMostTheDocumentedStep) {
   EXPECT_EQ(built.steps_per_frame, 24);  // 10 frames a second of 24 steps: 1/240 s
 }
 
+// A frame is a tenth of a second.
+TEST(StepChoice, AutoOfImplicitEulerIsSmallerWhereThereIsAnythingToMeet) {
+  const std::vector<std::string> scene{R"(integrator={"type": "implicit_euler"})",
+                                       R"(obstacles.ball={"shape": {"type": "sphere", "radius": 0.1}})"};
+  EXPECT_EQ(build(1.0e6, scene).steps_per_frame, 24);
+}
+
 TEST(StepChoice, AutoOfImplicitEulerIsAFrameOrWhatTheStretchLimitAsksFor) {
   const std::string implicit = R"(integrator={"type": "implicit_euler"})";
   const BuiltScene free = build(1.0e6, {implicit});
