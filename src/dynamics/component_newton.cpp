@@ -25,9 +25,11 @@ constexpr double kWorthwhile = 0.5;
 
 // Iterations end when one lowered the energy as it forecast, but for this part of the energy and of what the way to where
 // forces led was worth at first, and its solve left no more: what is left to gain is about that much, and no other solve is needed
-// to say so. Chains need more iterations, and have them cheaply.
+// to say so. Chains need more iterations, and have them cheaply. What springs store of the error comes back: a cloth of soft
+// springs that hangs by its limit never comes to rest with a hundredth.
 constexpr double kForecastOfChains = 1.0e-4;
 constexpr double kForecastOfCloths = 0.1;
+constexpr double kForecastOfElasticCloths = 1.0e-3;
 
 // What was corrected is near the forecast by chance at times.
 constexpr double kCorrectedPart = 0.3;
@@ -51,6 +53,11 @@ constexpr double kUnknown = std::numeric_limits<double>::infinity();
 Index count_ties(const StretchComponent& component) {
   return static_cast<Index>(
       std::ranges::count_if(component.links, [&](const StretchComponent::Link& link) { return !component.is_free(link.second); }));
+}
+
+double close_enough(const StretchComponent& component) {
+  if (component.is_tree) return kForecastOfChains;
+  return component.is_elastic ? kForecastOfElasticCloths : kForecastOfCloths;
 }
 
 }  // namespace
@@ -128,7 +135,7 @@ int ComponentNewton::minimise() {
   if (imbalance() <= negligible || std::abs(energy - balanced_energy_) <= negligible) return 0;
   const double at_first = inertia();
   const bool is_calm = last_iterations_ <= 1 && turn() <= kCalmTurn;
-  const double close = component_.is_tree ? kForecastOfChains : kForecastOfCloths;
+  const double close = close_enough(component_);
   // Links that are nearly at their limit will mostly be at it: were they left out at first, each iteration would find only the next
   // few of them.
   double modelled = energy_.linearise(x_, led_, NearLimit::pushing, system_);

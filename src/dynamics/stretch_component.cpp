@@ -11,7 +11,22 @@ namespace {
 class Finder {
  public:
   Finder(const SpringNetwork& network, const std::vector<Index>& limited)
-      : network_(network), graph_(network, limited), seen_(network.particle_count(), false), point_(seen_.size(), kNone) {}
+      : network_(network),
+        graph_(network, limited),
+        seen_(network.particle_count(), false),
+        elastic_(seen_),
+        point_(seen_.size(), kNone) {
+    const Springs& springs = network.springs;
+    for (Index s = 0; s < springs.count(); ++s) {
+      if (springs.stiffness[s] == 0.0) continue;
+      for (const Index i : {springs.first[s], springs.second[s]}) elastic_[i] = true;
+    }
+    const AngleBends& bends = network.angle_bends;
+    for (Index e = 0; e < bends.count(); ++e) {
+      if (bends.stiffness[e] == 0.0) continue;
+      for (const Index i : {bends.before[e], bends.middle[e], bends.after[e]}) elastic_[i] = true;
+    }
+  }
 
   std::vector<StretchComponent> all() {
     std::vector<StretchComponent> found;
@@ -59,6 +74,7 @@ class Finder {
       point_[found.points[i]] = i;
       found.masses.push_back(network_.masses[found.points[i]]);
     }
+    found.is_elastic = std::ranges::any_of(particles, [&](Index i) { return elastic_[i]; });
     found.is_tree = true;
     for (Index i = 0; i < found.free_count; ++i) add_links(found, i);
     // A pin may belong to several components.
@@ -86,6 +102,7 @@ class Finder {
   const SpringNetwork& network_;
   SpringGraph graph_;
   std::vector<bool> seen_;
+  std::vector<bool> elastic_;
   std::vector<Index> point_;
 };
 

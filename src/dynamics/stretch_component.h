@@ -22,6 +22,7 @@ struct StretchComponent {
   std::vector<Link> links;      ///< in the order of their first points
   std::vector<Index> begin{0};  ///< the links of which free point i is first are [begin[i], begin[i + 1])
   bool is_tree = false;         ///< each free point is first of links to one free point at most: chains and trees
+  bool is_elastic = false;      ///< springs or angle bends with stiffness act on free points
 
   [[nodiscard]] bool is_free(Index point) const { return point < free_count; }
   [[nodiscard]] Index pin_count() const { return static_cast<Index>(points.size()) - free_count; }

@@ -40,6 +40,11 @@ TEST(StretchComponents, ARopeBetweenTwoPinsIsATree) {
   EXPECT_EQ(found[0].pin_count(), 2);
 }
 
+TEST(StretchComponents, AreElasticWhereAnythingWithStiffnessActsOnThem) {
+  EXPECT_FALSE(structural(make_test_cloth(3, 0.0, 0.0))[0].is_elastic);
+  EXPECT_TRUE(structural(make_test_cloth(3, 10.0, 0.0))[0].is_elastic);
+}
+
 TEST(StretchComponents, AClothIsNoTree) {
   const auto found = structural(make_test_cloth(3, 0.0, 0.0));
   ASSERT_EQ(found.size(), 1u);
