@@ -37,8 +37,10 @@ double largest_auto_step(const Scene& scene, const SpringNetwork& network, const
   double largest = std::min(advised_step(scene.settings.integrator, bounds),
                             step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
   const bool implicit = std::holds_alternative<ImplicitEulerSettings>(scene.settings.integrator);
+  // What springs lead too far, the limit takes back: where both end is off by as much.
+  const bool is_split = implicit && limit && bounds.elastic > 0.0;
   const bool free = (implicit && !may_meet_anything(scene, network)) || is_bound_by_turn(scene, network, limit);
-  if (!std::isfinite(largest) && !free) largest = kLargestAutoStep;
+  if (!std::isfinite(largest) && (is_split || !free)) largest = kLargestAutoStep;
   return largest;
 }
 

@@ -10,7 +10,7 @@ namespace sprung {
 
 /// When stability does not bound it, "auto" is at most this [s]: a fall of a second then moves a particle by 4 cm in a step. Where
 /// nothing may be in the way it is a frame with implicit Euler, which is chosen for its large steps, and with a global solve that
-/// keeps all that moves within its limit: see StretchLimit::follows_turn.
+/// keeps all that moves within its limit (see StretchLimit::follows_turn), but not with both where springs have stiffness.
 inline constexpr double kLargestAutoStep = 1.0 / 240.0;
 
 /// Steps chosen by "auto" may be made in so many parts where they miss the stretch limit, or turn too much; in more where passes

@@ -151,10 +151,12 @@ TEST(StepChoice, WithoutAnyBoundAutoIsAtMostTheDocumentedStep) {
 }
 
 // A frame is a tenth of a second.
-TEST(StepChoice, AutoOfImplicitEulerIsSmallerWhereThereIsAnythingToMeet) {
-  const std::vector<std::string> scene{R"(integrator={"type": "implicit_euler"})",
-                                       R"(obstacles.ball={"shape": {"type": "sphere", "radius": 0.1}})"};
-  EXPECT_EQ(build(1.0e6, scene).steps_per_frame, 24);
+TEST(StepChoice, AutoOfImplicitEulerIsSmallerWhereThereIsAnythingToMeetOrALimitBesideSprings) {
+  const std::string implicit = R"(integrator={"type": "implicit_euler"})";
+  EXPECT_EQ(build(1.0e6, {implicit, R"(obstacles.ball={"shape": {"type": "sphere", "radius": 0.1}})"}).steps_per_frame, 24);
+  const std::string newton = R"(stretch_limit={"solver": "newton"})";
+  EXPECT_EQ(build(0.0, {implicit, newton}).steps_per_frame, 1);
+  EXPECT_EQ(build(1.0e6, {implicit, newton}).steps_per_frame, 24);
 }
 
 TEST(StepChoice, AutoOfImplicitEulerIsAFrameOrWhatTheStretchLimitAsksFor) {

@@ -88,6 +88,16 @@ TEST(Simulator, StepBeyondTheStableOneIsRefusedAndTheLargestIsNamed) {
   EXPECT_NO_THROW(Simulator(two_masses(1e4), {.step = 0.018}));
 }
 
+// Dampers stop what swings along springs.
+TEST(Simulator, ExplicitEulerIsWarnedOfAsFarAsItGainsEnergy) {
+  const auto warnings = [](double stiffness, double damping) {
+    return Simulator(two_masses(stiffness, damping), {.step = 1e-3, .integrator = ExplicitEulerSettings{}}).warnings();
+  };
+  EXPECT_THAT(warnings(100.0, 0.0), ElementsAre(HasSubstr("grows by a factor of e every 20 s")));
+  EXPECT_THAT(warnings(100.0, 1.0), ElementsAre(HasSubstr("not sideways of taut ones")));
+  EXPECT_THAT(warnings(0.0, 0.0), IsEmpty());
+}
+
 TEST(Simulator, WarnedStepDivergesWithTheCulpritNamed) {
   NetworkBuilder builder;
   const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
