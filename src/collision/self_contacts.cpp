@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace sprung {
 namespace {
@@ -104,11 +105,14 @@ class SelfContacts {
     return direction.dot(toward) > lean * direction.norm() * toward.norm();
   }
 
-  /// Whether all that meets at a particle, which is at x, leads away from the direction.
-  [[nodiscard]] bool leads_from_corner(Index particle, const Vector3& x, const Vector3& direction) const {
+  /// Whether all that meets at a particle, which is at x, leads away from the direction in which `met` is. What leads to a particle
+  /// of that is not asked: it is no pair with it, and nothing else would speak for a segment that folds back onto the one before.
+  [[nodiscard]] bool leads_from_corner(Index particle, const Vector3& x, const Vector3& direction,
+                                       std::span<const Index> met) const {
     for (const Index e : features_.elements_at(particle)) {
       for (const Index other : corners_of(element(e))) {
-        if (other != particle && leans(direction, before_.col(other) - x, kLean)) return false;
+        if (other == particle || std::ranges::find(met, other) != met.end()) continue;
+        if (leans(direction, before_.col(other) - x, kLean)) return false;
       }
     }
     return true;
@@ -129,7 +133,7 @@ class SelfContacts {
     if (used == 3) return true;
     if (used == 1) {
       const auto at = static_cast<std::size_t>(corner) + 1;
-      return features_.owns_corner(face, corner) && leads_from_corner(candidate.particles[at], x[at], closest.separation);
+      return features_.owns_corner(face, corner) && leads_from_corner(candidate.particles[at], x[at], closest.separation, {});
     }
     const int edge = (unused + 1) % 3;
     if (!features_.owns_edge(face, edge)) return false;
@@ -149,7 +153,7 @@ class SelfContacts {
         const std::size_t at = closest.weights[first] == 0.0 ? first + 1 : first;
         const int corner = (candidate.edge[side] + (at == first ? 0 : 1)) % own.corners;
         if (other.corners == 3 || !features_.owns_corner(candidate.elements[side], corner)) return false;
-        if (!leads_from_corner(candidate.particles[at], x[at], direction)) return false;
+        if (!leads_from_corner(candidate.particles[at], x[at], direction, corners_of(other))) return false;
         continue;
       }
       if (own.corners != 3) continue;

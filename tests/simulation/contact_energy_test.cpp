@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace sprung {
 namespace {
@@ -73,6 +75,35 @@ TEST(ContactEnergy, ContactAndAStretchLimitMakeNoneInSmallSteps) {
         .step = step, .integrator = SymplecticEulerSettings{}, .stretch_limit = StretchLimitSettings{.max_stretch = 0.005}};
     EXPECT_LT(most_gained(network, settings), pushed(49.0) + lag(step)) << parts;
   }
+}
+
+/// A rope of 1 m and 31 particles, all but upright on the ground, that meets itself.
+SpringNetwork upright_rope() {
+  RopeShape rope;
+  rope.points = {Vector3(0.0, 0.1, 0.0), Vector3(0.03, 1.1, 0.0)};
+  rope.particles = 31;
+  BodyShape shape = make_rope(rope, {.structural = SpringMaterial{.value = 500.0, .damping = 0.05}});
+  set_total_mass(shape, 0.1);
+  NetworkBuilder builder;
+  builder.add_body("rope", shape, {.thickness = kThickness, .friction = 0.4, .static_friction = 0.4}, {.self = true});
+  return builder.build();
+}
+
+// It folds in its plane, segments back onto those before. After 2 s it lies, and no particle is lifted by a gap any more.
+TEST(ContactEnergy, ARopeThatFoldsInAPlaneComesToRest) {
+  const SpringNetwork network = upright_rope();
+  Simulator simulator(network, {.step = 1.0 / 480.0, .integrator = VerletSettings{.damping_rate = 0.5}},
+                      {testing::ground({.friction = 0.4, .static_friction = 0.4})});
+  testing::run(simulator, 2.0);
+  double least = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < 6 * 480; ++step) {
+    simulator.step();
+    const double motion = 0.5 * network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose());
+    const double energy = motion + simulator.elastic_energy() + simulator.gravity_energy();
+    least = std::min(least, energy);
+    ASSERT_LT(energy - least, network.masses[0] * kGravity * kThickness) << "step " << step;
+  }
+  EXPECT_GT(simulator.contact_count(), 0);
 }
 
 }  // namespace
