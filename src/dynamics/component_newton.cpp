@@ -26,7 +26,7 @@ constexpr double kWorthwhile = 0.5;
 // Iterations end when one lowered the energy as it forecast, but for this part of the energy and of what the way to where
 // forces led was worth at first, and its solve left no more: what is left to gain is about that much, and no other solve is needed
 // to say so. Chains need more iterations, and have them cheaply. What springs store of the error comes back: a cloth of soft
-// springs that hangs by its limit never comes to rest with a hundredth.
+// springs that hangs by its limit never comes to rest with a tenth, and gains energy as it swings out with a hundredth.
 constexpr double kForecastOfChains = 1.0e-4;
 constexpr double kForecastOfCloths = 0.1;
 constexpr double kForecastOfElasticCloths = 1.0e-3;

@@ -43,6 +43,12 @@ TEST(StretchComponents, ARopeBetweenTwoPinsIsATree) {
 TEST(StretchComponents, AreElasticWhereAnythingWithStiffnessActsOnThem) {
   EXPECT_FALSE(structural(make_test_cloth(3, 0.0, 0.0))[0].is_elastic);
   EXPECT_TRUE(structural(make_test_cloth(3, 10.0, 0.0))[0].is_elastic);
+  NetworkBuilder bent;
+  for (const double x : {0.0, 1.0, 2.0}) bent.add_particle({x, 0.0, 0.0}, 1.0);
+  for (const Index i : {0, 1}) bent.add_spring(i, i + 1, 0.0, 1.0);
+  EXPECT_FALSE(structural(bent.build())[0].is_elastic);
+  bent.add_angle_bend(0, 1, 2, 1.0);
+  EXPECT_TRUE(structural(bent.build())[0].is_elastic);
 }
 
 TEST(StretchComponents, AClothIsNoTree) {

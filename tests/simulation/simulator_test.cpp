@@ -88,7 +88,7 @@ TEST(Simulator, StepBeyondTheStableOneIsRefusedAndTheLargestIsNamed) {
   EXPECT_NO_THROW(Simulator(two_masses(1e4), {.step = 0.018}));
 }
 
-// Dampers stop what swings along springs.
+// Dampers stop what swings along springs, the air what swings across them too.
 TEST(Simulator, ExplicitEulerIsWarnedOfAsFarAsItGainsEnergy) {
   const auto warnings = [](double stiffness, double damping) {
     return Simulator(two_masses(stiffness, damping), {.step = 1e-3, .integrator = ExplicitEulerSettings{}}).warnings();
@@ -96,6 +96,16 @@ TEST(Simulator, ExplicitEulerIsWarnedOfAsFarAsItGainsEnergy) {
   EXPECT_THAT(warnings(100.0, 0.0), ElementsAre(HasSubstr("grows by a factor of e every 20 s")));
   EXPECT_THAT(warnings(100.0, 1.0), ElementsAre(HasSubstr("not sideways of taut ones")));
   EXPECT_THAT(warnings(0.0, 0.0), IsEmpty());
+
+  RopeShape line;
+  line.points = {Vector3::Zero(), Vector3::UnitX()};
+  line.particles = 2;
+  BodyShape rope = make_rope(line, {.structural = SpringMaterial{.value = 100.0, .damping = 1.0}});
+  set_total_mass(rope, 2.0);
+  NetworkBuilder builder;
+  builder.add_body("rope", rope);
+  EXPECT_THAT(Simulator(builder.build(), {.step = 1e-3, .air_drag = 1.0, .integrator = ExplicitEulerSettings{}}).warnings(),
+              IsEmpty());
 }
 
 TEST(Simulator, WarnedStepDivergesWithTheCulpritNamed) {
