@@ -78,6 +78,7 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
     return std::nullopt;
   }
   energy_.set_weight(carried_weight(fall));
+  energy_.find_near(led_);
   // An order of elimination takes its time, and what only asks for the step, or is never handed over, needs none.
   if (!solver_) solver_ = make_system_solver(component_);
   const int iterations = minimise();

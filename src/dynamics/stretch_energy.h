@@ -13,8 +13,8 @@ namespace sprung {
 enum class NearLimit : std::uint8_t {
   slack,     ///< what they are
   overshot,  ///< stiff where note_overshot() was told of them
-  stiff,     ///< stiff where less than a tenth is missing
-  pushing    ///< there as if they held both ways
+  stiff,     ///< stiff where they are near it, as find_near() has it
+  pushing    ///< near it as if they held both ways
 };
 
 /// E(x) = 1/2 sum m |x - y|^2 + 1/2 sum k max(0, |d| - L)^2 over free points and links of a component: y is where forces led, L the
@@ -30,6 +30,10 @@ class StretchEnergy {
 
   /// How much longer than its longest a link is that carries the weight, at most [m].
   [[nodiscard]] double give() const { return give_; }
+
+  /// Links are near their limit that are shorter by less than a tenth of it; where springs have stiffness, after this also by less
+  /// than half of what the longest is too long at `y`, where forces led.
+  void find_near(const Points& y);
 
   /// E at `x`; both 3 x points.
   [[nodiscard]] double value(const Points& x, const Points& y) const;
@@ -59,6 +63,7 @@ class StretchEnergy {
   std::vector<char> overshot_;  ///< links; empty while none is known
   double weight_ = 0.0;
   double give_ = 0.0;
+  double near_;  ///< the part of their limit from which links are near it
 };
 
 }  // namespace sprung

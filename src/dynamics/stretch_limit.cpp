@@ -50,11 +50,11 @@ double wanted_excess(const StretchLimitSettings& settings) {
   return std::max(0.5 * settings.max_stretch + settings.tolerance, kLeastExcess);
 }
 
-StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings, bool may_meet_anything)
+StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use)
     : network_(network), settings_(settings), batches_(std::make_unique<StretchBatches>(network, settings.kinds)) {
   if (settings.tethers) tethers_ = std::make_unique<Tethers>(network, settings.kinds, settings.max_stretch);
   if (settings.solver == StretchLimitSettings::Solver::gauss_seidel) return;
-  newton_ = std::make_unique<StretchNewton>(network, settings, may_meet_anything);
+  newton_ = std::make_unique<StretchNewton>(network, settings, use);
 }
 StretchLimit::~StretchLimit() = default;
 

@@ -19,7 +19,7 @@ struct StretchLimitSettings {
   enum class Solver : std::uint8_t {
     gauss_seidel,  ///< passes alone
     newton,        ///< a global solve before them
-    automatic      ///< a global solve of ropes, of cloths that meet nothing, and of those whose limit passes keep missing
+    automatic      ///< a global solve of ropes, of limp cloths that meet nothing, and of those whose limit passes keep missing
   };
   double max_stretch = 0.02;                              ///< >= 0: lengths stay below d (1 + max_stretch)
   double max_compression = 1.0;                           ///< in [0, 1]: and above d (1 - max_compression)
@@ -30,6 +30,12 @@ struct StretchLimitSettings {
   Solver solver = Solver::gauss_seidel;
 };
 
+/// What an automatic solver begins with passes for, of what it could solve for.
+struct LimitUse {
+  bool may_meet_anything = true;  ///< contact may be in the way of what it does
+  bool takes_small_steps = true;  ///< where springs have stiffness, for their sake: passes do well in them
+};
+
 /// The excess over the limit, as a part of the rest length, that automatic steps are chosen for: half of `max_stretch` plus
 /// `tolerance`, and at least a thousandth.
 [[nodiscard]] double wanted_excess(const StretchLimitSettings& settings);
@@ -37,8 +43,7 @@ struct StretchLimitSettings {
 class StretchLimit {
  public:
   /// Keeps a reference to the network. Springs of rest length 0 cannot be measured in parts of it and are left out.
-  /// `may_meet_anything` tells whether contact may be in the way of what it does.
-  StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings, bool may_meet_anything = true);
+  StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use = {});
   ~StretchLimit();
 
   /// One Gauss-Seidel pass in batches without shared particles: each spring beyond its limits is projected onto them, both ends

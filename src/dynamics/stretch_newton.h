@@ -18,9 +18,9 @@ struct StretchComponent;
 class StretchNewton {
  public:
   /// Takes all components from the start, or, when `settings.solver` is automatic, chains and trees, and those of ropes and
-  /// surfaces that shrink freely and have nothing in their way; the rest of those it takes once their body is handed over, and
+  /// surfaces that shrink freely and for which `use` asks no passes; the rest of those it takes once their body is handed over, and
   /// others never.
-  StretchNewton(const SpringNetwork& network, const StretchLimitSettings& settings, bool may_meet_anything = true);
+  StretchNewton(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use = {});
   ~StretchNewton();
 
   /// Leads free particles from where forces led them, `positions`, to where no limited spring is much too long, with as little

@@ -13,10 +13,6 @@
 namespace sprung {
 namespace {
 
-bool may_meet_anything(const Scene& scene, const SpringNetwork& network) {
-  return !scene.obstacles.empty() || bodies_may_meet(network);
-}
-
 bool damps_steps(const IntegratorSettings& integrator) {
   const auto* verlet = std::get_if<VerletSettings>(&integrator);
   return verlet != nullptr && verlet->damping > 0.0;
@@ -27,19 +23,19 @@ bool may_be_in_parts(const Scene& scene, const std::optional<StretchLimit>& limi
 }
 
 /// Of what a step may be as large as a frame for: its parts are chosen as it moves, and nothing is in its way.
-bool is_bound_by_turn(const Scene& scene, const SpringNetwork& network, const std::optional<StretchLimit>& limit) {
-  return may_be_in_parts(scene, limit) && limit->follows_turn() && !may_meet_anything(scene, network);
+bool is_bound_by_turn(const Scene& scene, const LimitUse& use, const std::optional<StretchLimit>& limit) {
+  return may_be_in_parts(scene, limit) && limit->follows_turn() && !use.may_meet_anything;
 }
 
 /// Whatever passes of the stretch limit need.
-double largest_auto_step(const Scene& scene, const SpringNetwork& network, const std::optional<StretchLimit>& limit,
+double largest_auto_step(const Scene& scene, const LimitUse& use, const std::optional<StretchLimit>& limit,
                          const SpectralBounds& bounds) {
   double largest = std::min(advised_step(scene.settings.integrator, bounds),
                             step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
   const bool implicit = std::holds_alternative<ImplicitEulerSettings>(scene.settings.integrator);
   // What springs lead too far, the limit takes back: where both end is off by as much.
   const bool is_split = implicit && limit && bounds.elastic > 0.0;
-  const bool free = (implicit && !may_meet_anything(scene, network)) || is_bound_by_turn(scene, network, limit);
+  const bool free = (implicit && !use.may_meet_anything) || is_bound_by_turn(scene, use, limit);
   if (!std::isfinite(largest) && (is_split || !free)) largest = kLargestAutoStep;
   return largest;
 }
@@ -80,8 +76,9 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
     return choice;
   }
   std::optional<StretchLimit> limit;
-  if (scene.settings.stretch_limit) limit.emplace(network, *scene.settings.stretch_limit, may_meet_anything(scene, network));
-  const double without_passes = largest_auto_step(scene, network, limit, bounds);
+  const LimitUse use = limit_use(network, scene.settings, !scene.obstacles.empty());
+  if (scene.settings.stretch_limit) limit.emplace(network, *scene.settings.stretch_limit, use);
+  const double without_passes = largest_auto_step(scene, use, limit, bounds);
   const double largest = limit ? std::min(without_passes, limit->suggested_step(scene.settings.gravity.norm())) : without_passes;
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
     const int parts = parts_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));

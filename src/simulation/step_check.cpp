@@ -25,6 +25,11 @@ SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSe
   return bounds;
 }
 
+LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {
+  return {.may_meet_anything = has_obstacles || bodies_may_meet(network),
+          .takes_small_steps = !std::holds_alternative<ImplicitEulerSettings>(settings.integrator)};
+}
+
 double advised_step(const IntegratorSettings& settings, const SpectralBounds& bounds) {
   constexpr double kStablePart = 0.9;
   return std::min(kStablePart * largest_stable_step(settings, bounds), resonant_step(settings, bounds));

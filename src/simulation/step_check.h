@@ -12,6 +12,9 @@ namespace sprung {
 /// `spectral_bounds` of the network with its air drag and, when there are obstacles, its penalty contact.
 [[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
 
+/// How the simulation uses its stretch limit.
+[[nodiscard]] LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
+
 /// The largest step that is advised, and that "auto" uses [s]: 0.9 of the largest stable one, and no larger than the resonant one.
 [[nodiscard]] double advised_step(const IntegratorSettings& settings, const SpectralBounds& bounds);
 

@@ -1,5 +1,7 @@
 #include "simulation/step_constraints.h"
 
+#include "simulation/step_check.h"
+
 #include <algorithm>
 
 namespace sprung {
@@ -29,8 +31,8 @@ constexpr int kRelaxPasses = 2;
 StepConstraints::StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, double steady_acceleration,
                                  Environment& environment, Integrator& integrator)
     : settings_(settings), steady_acceleration_(steady_acceleration), integrator_(integrator), contacts_(network, environment) {
-  const bool may_meet_anything = !environment.obstacles().empty() || bodies_may_meet(network);
-  if (settings.stretch_limit) limit_.emplace(network, *settings.stretch_limit, may_meet_anything);
+  if (!settings.stretch_limit) return;
+  limit_.emplace(network, *settings.stretch_limit, limit_use(network, settings, !environment.obstacles().empty()));
 }
 
 void StepConstraints::begin(const SimulationState& state) {

@@ -296,14 +296,17 @@ TEST(StretchNewton, HoldsTheLimitOfAHangingRope) {
 
 TEST(StretchLimit, AutomaticSolvesForChainsAndLeavesClothsToPassesAtFirst) {
   using Solver = StretchLimitSettings::Solver;
-  const auto chosen = [](const SpringNetwork& network, Solver solver, bool may_meet_anything = true) {
-    return StretchLimit(network, {.solver = solver}, may_meet_anything).chosen_solver();
+  const auto chosen = [](const SpringNetwork& network, Solver solver, const LimitUse& use = {}) {
+    return StretchLimit(network, {.solver = solver}, use).chosen_solver();
   };
   const SpringNetwork rope = make_test_rope(10, 0.0);
   const SpringNetwork cloth = make_test_cloth(5, 0.0, 0.0);
   EXPECT_EQ(chosen(rope, Solver::automatic), "newton");
   EXPECT_EQ(chosen(cloth, Solver::automatic), "gauss_seidel, then newton for what keeps missing the limit");
-  EXPECT_EQ(chosen(cloth, Solver::automatic, false), "newton");
+  EXPECT_EQ(chosen(cloth, Solver::automatic, {.may_meet_anything = false}), "newton");
+  const SpringNetwork springy = make_test_cloth(5, 100.0, 0.0);
+  EXPECT_EQ(chosen(springy, Solver::automatic, {.may_meet_anything = false}), chosen(cloth, Solver::automatic));
+  EXPECT_EQ(chosen(springy, Solver::automatic, {.may_meet_anything = false, .takes_small_steps = false}), "newton");
   EXPECT_EQ(chosen(cloth, Solver::newton), "newton");
   EXPECT_EQ(chosen(rope, Solver::gauss_seidel), "gauss_seidel");
   const StretchLimitSettings settings{.solver = Solver::automatic};

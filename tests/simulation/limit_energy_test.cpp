@@ -13,10 +13,11 @@ using testing::kGravity;
 constexpr double kMass = 0.2;
 constexpr double kSeconds = 0.8;  // down and most of the way up again
 
-/// A level cloth of 1 m and n x n particles without stiffness that two corners hold.
-SpringNetwork held_cloth(Index n) {
-  const SpringMaterial limp{.value = 0.0};
-  BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {n, n}}, {.structural = limp, .shear = limp});
+constexpr SpringMaterial kLimp{.value = 0.0};
+
+/// A level cloth of 1 m and n x n particles that two corners hold.
+SpringNetwork held_cloth(Index n, const SpringMaterial& structural = kLimp, const SpringMaterial& shear = kLimp) {
+  BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {n, n}}, {.structural = structural, .shear = shear});
   set_total_mass(shape, kMass);
   RigidTransform pose = RigidTransform::Identity();
   pose.linear() = rotation_from_degrees({-90.0, 0.0, 0.0});
@@ -90,6 +91,15 @@ TEST(LimitEnergy, SoftSpringsUnderNewtonComeToRest) {
     ASSERT_LT(energy - least, lags) << "step " << step;
   }
   EXPECT_LT(least, 0.0);
+}
+
+// All of its links are nearly as long as they may be, most of the time.
+TEST(LimitEnergy, StiffSpringsUnderNewtonMakeNoneAsTheySwing) {
+  const StretchLimitSettings limit{.max_stretch = 0.02, .solver = StretchLimitSettings::Solver::newton};
+  const SpringNetwork network = held_cloth(13, {.value = 500.0}, {.value = 20.0});
+  constexpr double kStep = 1.0 / 1050.0;
+  const double lags = kMass * kGravity * std::sqrt(2.0 * kGravity) * kStep / 2.0;
+  EXPECT_LT(most_gained(network, kStep, limit), lags);
 }
 
 /// A level rope of 1 m that one end holds, with springs that a stretch limit keeps from giving as they would.

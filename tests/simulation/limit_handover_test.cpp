@@ -107,7 +107,8 @@ TEST(LimitHandover, IsNotForSolidsNorForWhatMayNotShrinkNorForPassesByName) {
   EXPECT_FALSE(StretchLimit(builder.build(), limit_of(Solver::automatic)).may_be_handed_over(0));
   EXPECT_FALSE(StretchLimit(cloth, both_ways).may_be_handed_over(0));
   EXPECT_FALSE(StretchLimit(cloth, limit_of(Solver::gauss_seidel)).may_be_handed_over(0));
-  EXPECT_FALSE(StretchLimit(cloth, limit_of(Solver::automatic), false).may_be_handed_over(0)) << "it is from the start";
+  EXPECT_FALSE(StretchLimit(cloth, limit_of(Solver::automatic), {.may_meet_anything = false}).may_be_handed_over(0))
+      << "it is from the start";
 }
 
 TEST(LimitHandover, AutomaticHasTheBitsOfNewtonWhereNothingIsInTheWay) {
