@@ -116,7 +116,6 @@ void FreeSpace::Implementation::begin_pairs(const Points& before, const Points& 
 }
 
 void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, Truncation& truncation) {
-  pairs_began = false;
   if (!after.allFinite()) return;
   std::vector<Index> particles = placement.all_movable({before, after});
   const Points allowed = after;
@@ -141,6 +140,7 @@ void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, 
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] == Outcome::squeezed) squeezed.push_back(particles[n]);
   }
+  if (count(outcomes, Outcome::free) < static_cast<Index>(outcomes.size())) pairs->append_meetings(before, truncation.meetings);
   std::sort(squeezed.begin(), squeezed.end());
   truncation.squeezed = static_cast<Index>(std::unique(squeezed.begin(), squeezed.end()) - squeezed.begin());
 }

@@ -1,5 +1,6 @@
 #include "collision/self_zones.h"
 
+#include "collision/pair_meeting.h"
 #include "collision/pair_planes.h"
 #include "collision/pair_watch.h"
 #include "collision/self_contacts.h"
@@ -22,6 +23,10 @@ struct SelfZones::Implementation {
     const auto range = std::equal_range(bounds.begin(), bounds.end(), PairPlanes::Bound{.particle = particle, .half_space = {}},
                                         [](const auto& a, const auto& b) { return a.particle < b.particle; });
     return {range.first, range.second};
+  }
+
+  [[nodiscard]] Index body_at(Index particle) {
+    return surface.elements[static_cast<std::size_t>(watch.features().elements_at(particle).front())].body;
   }
 
   const CollisionSurface& surface;
@@ -101,6 +106,17 @@ bool SelfZones::allows(Index particle, const Vector3& p) const {
   const auto bounds = implementation_->bounds_of(particle);
   return std::all_of(bounds.begin(), bounds.end(),
                      [&](const PairPlanes::Bound& bound) { return bound.half_space.normal.dot(p) >= bound.half_space.offset; });
+}
+
+void SelfZones::append_meetings(const Points& before, std::vector<Contact>& meetings) {
+  Implementation& self = *implementation_;
+  const auto is_held = [&](Index i) { return std::binary_search(self.held.begin(), self.held.end(), i); };
+  for (const ElementPair& pair : self.watch.pairs()) {
+    const std::span particles(pair.particles.data(), static_cast<std::size_t>(pair.count()));
+    const bool within_a_body = self.body_at(particles.front()) == self.body_at(particles.back());
+    if (within_a_body || std::ranges::none_of(particles, is_held)) continue;
+    if (const auto meeting = meeting_of(pair, before)) meetings.push_back(*meeting);
+  }
 }
 
 WatchCounts SelfZones::counts() const { return implementation_->watch.counts(); }

@@ -61,6 +61,9 @@ class SelfZones {
   /// Whether a held particle may end at p: it is within both.
   [[nodiscard]] bool allows(Index particle, const Vector3& p) const;
 
+  /// Appends where other bodies are nearest to held particles, or to what is between those, at `before` [m], where the step begins.
+  void append_meetings(const Points& before, std::vector<Contact>& meetings);
+
   [[nodiscard]] WatchCounts counts() const;
 
  private:

@@ -1,7 +1,9 @@
 // What the last word on positions did.
 #pragma once
 
-#include "base/types.h"
+#include "collision/contact.h"
+
+#include <vector>
 
 namespace sprung {
 
@@ -9,6 +11,7 @@ struct Truncation {
   Index truncated = 0;  ///< particles stopped on their way
   Index squeezed = 0;   ///< particles that found no free place, that pins drag through the network, or whose elements are
                         ///< crossed, and pins of their elements that go through each other
+  std::vector<Contact> meetings{};  ///< of bodies that stopped each other, where the step begins
 };
 
 }  // namespace sprung

@@ -11,6 +11,14 @@ namespace {
 // Contacts are looked for this part of the thickness beyond the gap at most: the passes of a step move resting particles less.
 constexpr double kMargin = 0.5;
 
+// Bodies that stop each other are led apart so often, by so many passes each time. Of a cube of 1 kg that meets a cloth of 0.2 kg
+// at 3 m/s twice the rounds, or twelve times the passes, kept no more of its momentum.
+constexpr int kMeetingRounds = 4;
+constexpr int kMeetingPasses = 8;
+
+// Passes end when none pushes a particle by more than this part of its gap.
+constexpr double kContactTolerance = 1.0e-3;
+
 /// For what the passes of a step may move [m].
 double margin_of(const SpringNetwork& network, const std::vector<Obstacle>& obstacles) {
   double largest = 0.0;
@@ -33,10 +41,30 @@ void ContactProjection::find_again(const StepMotion& motion, const Points& posit
   response_.start_again(free_space_.contacts_again(motion.before, positions), motion);
 }
 
-void ContactProjection::truncate(const Points& before, Points& positions, const FreeSpace::Relax& relax) {
-  const Truncation truncation = free_space_.truncate(before, positions, relax);
+// Truncation stops each of two bodies for itself, whatever the other weighs: a cube that flew into a light cloth stopped in
+// mid-air, and one that lay on it was thrown up again. What contact led them into is told to it, and it tries again.
+void ContactProjection::truncate(const StepMotion& motion, Points& positions, const FreeSpace::Relax& relax) {
+  Points led = positions;
+  Truncation truncation = free_space_.truncate(motion.before, positions, relax);
+  for (int round = 0; round < kMeetingRounds && !truncation.meetings.empty(); ++round) {
+    response_.add(truncation.meetings, motion);
+    if (!answer_meetings(led)) break;
+    positions = led;
+    truncation = free_space_.truncate(motion.before, positions, relax);
+  }
   truncated_ = truncation.truncated;
   squeezed_ = truncation.squeezed;
+}
+
+/// Whether any moved.
+bool ContactProjection::answer_meetings(Points& positions) {
+  bool any = false;
+  for (int pass = 0; pass < kMeetingPasses; ++pass) {
+    const double push = response_.project(positions);
+    any = any || push > 0.0;
+    if (push <= kContactTolerance) break;
+  }
+  return any;
 }
 
 }  // namespace sprung

@@ -37,14 +37,17 @@ class ContactProjection {
   void hold_pushed(HeldDirections& held) const { response_.hold_pushed(held); }
   [[nodiscard]] Index contact_count() const { return response_.pushed_count(); }
 
-  /// Stops particles before an element of the network crosses a surface, where none did at `before` [m]: the last word on
-  /// positions. What is stopped `relax` may lead on (see FreeSpace::truncate).
-  void truncate(const Points& before, Points& positions, const FreeSpace::Relax& relax = {});
+  /// Stops particles before an element of the network crosses a surface, where none did at the begin of the step: the last word on
+  /// positions [m]. What is stopped `relax` may lead on (see FreeSpace::truncate); what two bodies stop of each other is answered
+  /// as contact first, which keeps their momentum.
+  void truncate(const StepMotion& motion, Points& positions, const FreeSpace::Relax& relax = {});
 
   [[nodiscard]] Index truncated_count() const { return truncated_; }
   [[nodiscard]] Index squeezed_count() const { return squeezed_; }
 
  private:
+  [[nodiscard]] bool answer_meetings(Points& positions);
+
   ContactResponse response_;
   FreeSpace free_space_;
   Index truncated_ = 0;

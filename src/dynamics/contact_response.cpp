@@ -105,6 +105,21 @@ void ContactResponse::start_again(const std::vector<Contact>& contacts, const St
   for_each_set(sets_, [&](auto& set) { set.count_on(std::get<std::remove_reference_t<decltype(set)>>(former_sets_), first_row_); });
 }
 
+void ContactResponse::add(const std::vector<Contact>& meetings, const StepMotion& motion) {
+  for_each_set(sets_, [&](auto& set) { add(set, meetings, motion); });
+}
+
+template <std::size_t n>
+void ContactResponse::add(ContactSet<n>& set, const std::vector<Contact>& meetings, const StepMotion& motion) {
+  PairMaterials::Last last;
+  for (const Contact& meeting : meetings) {
+    if (static_cast<std::size_t>(meeting.count) != n) continue;
+    const std::size_t slot = set.count();
+    set.resize(slot + 1);
+    fill_one(meeting, materials_.of(meeting, last), motion, set, slot);
+  }
+}
+
 template <std::size_t n>
 void ContactResponse::fill(ContactSet<n>& set, const std::vector<Contact>& contacts, const StepMotion& motion) {
   order_.clear();

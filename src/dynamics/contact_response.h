@@ -31,6 +31,9 @@ class ContactResponse {
   /// Goes on with these contacts in the same step: one between the same as before keeps what it has pushed and held.
   void start_again(const std::vector<Contact>& contacts, const StepMotion& motion);
 
+  /// Adds contacts between elements to those of the step.
+  void add(const std::vector<Contact>& meetings, const StepMotion& motion);
+
   /// One Gauss-Seidel pass: each contact moves its particles, weighted by inverse mass, out to its gap, and friction holds or slows
   /// their motion along the surface, relative to the point that the obstacle or the other element carries: holds it while it is at
   /// most static friction times the push, else takes kinetic friction times the push from it (Coulomb). Pinned particles do not
@@ -49,6 +52,8 @@ class ContactResponse {
   [[nodiscard]] Index pushed_count() const;
 
  private:
+  template <std::size_t n>
+  void add(ContactSet<n>& set, const std::vector<Contact>& meetings, const StepMotion& motion);
   template <std::size_t n>
   void fill(ContactSet<n>& set, const std::vector<Contact>& contacts, const StepMotion& motion);
   template <std::size_t n>

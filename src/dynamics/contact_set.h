@@ -21,6 +21,7 @@ class ContactSet {
     goals_.resize(count);
     gaps_.resize(count);
   }
+  [[nodiscard]] std::size_t count() const { return rows_.size(); }
   [[nodiscard]] ContactRow<n>& row(std::size_t contact) { return rows_[contact]; }
   [[nodiscard]] ContactGoal& goal(std::size_t contact) { return goals_[contact]; }
   [[nodiscard]] double& gap(std::size_t contact) { return gaps_[contact]; }

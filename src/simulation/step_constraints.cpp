@@ -105,7 +105,7 @@ void StepConstraints::truncate(SimulationState& state, const Forces& forces, Ste
     return answers ? answer_truncation(state, forces) : relax(positions, report.stretch_excess);
   };
   if (answers) answered_ = state.x;
-  if (meets) contacts_.truncate(before_, state.x, lead_on);
+  if (meets) contacts_.truncate(motion(), state.x, lead_on);
   integrator_.recover_velocities(state, forces, step_began(state), advanced_, dt_);
   if (meets) contacts_.settle_velocities(motion(), state, integrator_);
   report.truncated = contacts_.truncated_count();

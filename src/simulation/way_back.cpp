@@ -48,11 +48,13 @@ WayBack::WayBack(const SpringNetwork& network, Environment& environment, Index b
 double WayBack::stride(Points& x, const Points& advanced) {
   const Points before = x;
   x = advanced;
-  contacts_.find({before, Points::Zero(3, x.cols()), advanced, 1.0});
+  const Points v = Points::Zero(3, x.cols());
+  const StepMotion motion{before, v, advanced, 1.0};
+  contacts_.find(motion);
   for (int pass = 0; pass < kContactPasses; ++pass) {
     if (contacts_.project(x) <= kContactTolerance) break;
   }
-  contacts_.truncate(before, x);
+  contacts_.truncate(motion, x);
   return (x - before).colwise().norm().maxCoeff();
 }
 

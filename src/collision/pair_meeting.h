@@ -1,0 +1,15 @@
+// Where two parts of the network would meet.
+#pragma once
+
+#include "collision/contact.h"
+#include "collision/element_pair.h"
+
+#include <optional>
+
+namespace sprung {
+
+/// The nearest points of a pair's sides at `positions` [m], 3 x n, as a contact along the line between them, and how far apart they
+/// are there; none where they touch or cross, or next to it.
+[[nodiscard]] std::optional<Contact> meeting_of(const ElementPair& pair, const Points& positions);
+
+}  // namespace sprung

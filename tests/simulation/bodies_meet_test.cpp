@@ -1,0 +1,76 @@
+// Bodies that meet exchange momentum and make no energy, also where contact did not tell of all that truncation stops.
+#include "simulation/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+using testing::kGravity;
+
+constexpr ContactMaterial kThin{.thickness = 0.005};
+
+/// A level cloth with springs of 200 N/m, or so many times that.
+BodyShape level_cloth(double size, Index n, double stiffer, double damping) {
+  BodyShape shape = make_cloth({.size = {size, size}, .resolution = {n, n}},
+                               {.structural = SpringMaterial{.value = 200.0 * stiffer, .damping = damping},
+                                .shear = SpringMaterial{.value = 120.0 * stiffer, .damping = damping}});
+  set_total_mass(shape, 0.2);
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = rotation_from_degrees({90.0, 0.0, 0.0});
+  place(shape, pose, Vector3::Zero());
+  return shape;
+}
+
+BodyShape cube(double size, double mass, double stiffness, double damping, const Vector3& rotation, const Vector3& position,
+               const Vector3& velocity) {
+  BodyShape shape = make_solid({.size = Vector3::Constant(size), .resolution = {2, 2, 2}},
+                               {.structural = SpringMaterial{.value = stiffness, .damping = damping},
+                                .shear = SpringMaterial{.value = 0.6 * stiffness, .damping = damping}});
+  set_total_mass(shape, mass);
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = rotation_from_degrees(rotation);
+  pose.translation() = position;
+  place(shape, pose, velocity);
+  return shape;
+}
+
+// Truncation, which may stop one of them for itself, has little left to do. A cube that stopped in mid-air lost all.
+TEST(BodiesMeet, ACubeThatFliesIntoALightClothTakesItAlong) {
+  NetworkBuilder builder;
+  builder.add_body("cube", cube(0.3, 1.0, 800.0, 0.02, {10.0, 30.0, 20.0}, {0.1, 0.4, 0.05}, {0.0, -3.0, 0.0}), kThin);
+  builder.add_body("cloth", level_cloth(0.6, 14, 1.0, 0.02), kThin);
+  const SpringNetwork network = builder.build();
+  Simulator simulator(network, {.step = 1.0 / 960.0, .gravity = Vector3::Zero()});
+  testing::run(simulator, 0.5);
+  const Vector3 momentum = simulator.state().v * network.masses;
+  EXPECT_LT((momentum - Vector3(0.0, -3.0, 0.0)).norm(), 0.6) << momentum.transpose();
+}
+
+// What falls by a height h is at most half a step's way, g t dt / 2, apart from where its speed says it is.
+TEST(BodiesMeet, AHeavyBlockOnAClothIsNotThrownUp) {
+  constexpr double kMass = 20.0;
+  constexpr double kStep = 1.0 / 3000.0;
+  constexpr double kFall = 0.5;
+  NetworkBuilder builder;
+  const Index first = builder.add_body("cloth", level_cloth(0.8, 10, 13.0, 0.5), kThin);
+  builder.pin({first, first + 9, first + 90, first + 99});
+  builder.add_body("block", cube(0.2, kMass, 20000.0, 40.0, {0.0, 13.0, 0.0}, {0.01, 0.25, 0.02}, Vector3::Zero()), kThin);
+  Simulator simulator(builder.build(), {.step = kStep});
+  const SpringNetwork& network = simulator.network();
+  double least = std::numeric_limits<double>::infinity();
+  double rise = 0.0;
+  for (int step = 0; step < 3000; ++step) {
+    simulator.step();
+    const double energy = 0.5 * network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose()) +
+                          simulator.gravity_energy() + simulator.elastic_energy();
+    least = std::min(least, energy);
+    rise = std::max(rise, energy - least);
+  }
+  EXPECT_LT(rise, kMass * kGravity * std::sqrt(2.0 * kGravity * kFall) * kStep / 2.0);
+}
+
+}  // namespace
+}  // namespace sprung
