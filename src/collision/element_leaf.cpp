@@ -26,8 +26,8 @@ ElementLeaf::ElementLeaf() {
   element.fill(kNone);
 }
 
-void ElementLeaf::set(int lane, Index number, const Element& source, const MovingBalls& balls, const std::vector<char>& is_flat,
-                      WatchTimes times) {
+void ElementLeaf::set(int lane, Index number, const Element& source, const MovingBalls& balls, const Vector3& origin,
+                      const std::vector<char>& is_flat, WatchTimes times) {
   element[static_cast<std::size_t>(lane)] = number;
   is_triangle[lane] = source.corners == 3 ? -1 : 0;
   Box3 box;
@@ -35,7 +35,7 @@ void ElementLeaf::set(int lane, Index number, const Element& source, const Movin
   double largest = 0.0;
   for (int k = 0; k < 3; ++k) {
     const Index i = source.particles[k < source.corners ? static_cast<std::size_t>(k) : 0];
-    const Vector3 start = balls.center(i, -times.now);
+    const Vector3 start = balls.center(i, -times.now) - origin;
     const Vector3 speed = balls.motion(i);
     box.extend(start);
     speeds.extend(speed);

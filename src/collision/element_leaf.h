@@ -18,8 +18,8 @@ struct WatchTimes {
   double end = 0.0;
 };
 
-/// Up to eight elements of one body, a lane each, in single precision; unused lanes are empty. At time t their balls are between
-/// min + t slowest and max + t fastest.
+/// Up to eight elements of one body, a lane each, in single precision, from an origin near all bodies; unused lanes are empty. At
+/// time t their balls are between min + t slowest and max + t fastest.
 struct alignas(64) ElementLeaf {
   using IntLanes = std::int32_t __attribute__((vector_size(kTreeLanes * sizeof(std::int32_t))));
 
@@ -41,9 +41,9 @@ struct alignas(64) ElementLeaf {
 
   ElementLeaf();
 
-  /// Sets the lane to an element from time 0 to the end.
-  void set(int lane, Index number, const Element& element, const MovingBalls& balls, const std::vector<char>& is_flat,
-           WatchTimes times);
+  /// Sets the lane to an element from time 0 to the end. The origin [m] is that of all leaves, at any time.
+  void set(int lane, Index number, const Element& element, const MovingBalls& balls, const Vector3& origin,
+           const std::vector<char>& is_flat, WatchTimes times);
 
   /// Sets the bounds of all lanes.
   void bound();

@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "collision/bisection.h"
+#include "geometry/triangle_mesh.h"
 
 #include <algorithm>
 
@@ -12,7 +13,8 @@ constexpr Index kLeavesPerTask = 64;
 
 }  // namespace
 
-ElementTree::ElementTree(const CollisionSurface& surface, const Points& rest) : surface_(surface), slots_(surface.elements.size()) {
+ElementTree::ElementTree(const CollisionSurface& surface, const Points& rest)
+    : surface_(surface), origin_(bounds(rest).center()), slots_(surface.elements.size()) {
   const std::vector<Element>& elements = surface.elements;
   const Points middles = element_middles(elements, rest);
   std::vector<Index> order(elements.size());
@@ -110,7 +112,7 @@ void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat,
       for (int lane = 0; lane < leaf.count; ++lane) {
         if (leaf.marked[lane] == 0) continue;
         const Index number = leaf.element[static_cast<std::size_t>(lane)];
-        leaf.set(lane, number, surface_.elements[static_cast<std::size_t>(number)], balls, flat, times);
+        leaf.set(lane, number, surface_.elements[static_cast<std::size_t>(number)], balls, origin_, flat, times);
       }
       leaf.bound();
     }

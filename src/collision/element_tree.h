@@ -76,6 +76,7 @@ class ElementTree {
   void walk(NodePair pair, const Search& search, std::vector<LeafPair>& found) const;
 
   const CollisionSurface& surface_;
+  Vector3 origin_;  ///< of what leaves hold: single precision tells little apart far from it [m]
   std::vector<ElementLeaf> leaves_;
   std::vector<Index> first_leaf_;  ///< by body, and the end
   std::vector<Node> nodes_;        ///< parents before their children
