@@ -18,6 +18,7 @@ struct SpectralBounds {
   double elastic = 0.0;       ///< l_K [1/s^2]
   double damping = 0.0;       ///< l_D [1/s]
   double undamped = 0.0;      ///< l_K of those alone that damp the fastest motion hardly [1/s^2]
+  double penalty = 0.0;       ///< largest k_c / m of penalty contact [1/s^2]: what `elastic` has of it
   double drag = 0.0;          ///< largest c A / m of air drag [1/s]
   double damping_time = 0.0;  ///< least k_d / k_s of springs and angle bends with stiffness [s]: damps modes by this omega^2
   double least_drag = 0.0;    ///< least c A / m of air drag [1/s]

@@ -4,9 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sprung {
 namespace {
+
+// A bounce is half a turn of the penalty's spring. In three steps or more it gives back what it took but for a tenth; in one or two
+// it is found at one depth and left at another, and a cloth of 0.9 J had 12 J after two, damped or not.
+double step_for_penalty(const IntegratorSettings& settings, const SpectralBounds& bounds) {
+  if (bounds.penalty == 0.0 || std::holds_alternative<ImplicitEulerSettings>(settings)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return 1.0 / std::sqrt(bounds.penalty);
+}
 
 bool gains_sideways(const IntegratorSettings& integrator, const SpectralBounds& bounds) {
   return std::holds_alternative<ExplicitEulerSettings>(integrator) && bounds.elastic > 0.0 && bounds.least_drag == 0.0;
@@ -19,7 +29,8 @@ SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSe
   if (has_obstacles && settings.contact.response == ContactSettings::Response::penalty) {
     // A penalty ties a particle to the ground: it adds to the Laplacian's diagonal, and so at most this much to its eigenvalues.
     const double largest_inverse_mass = network.inverse_masses.maxCoeff();
-    bounds.elastic += settings.contact.stiffness * largest_inverse_mass;
+    bounds.penalty = settings.contact.stiffness * largest_inverse_mass;
+    bounds.elastic += bounds.penalty;
     bounds.damping += settings.contact.damping * largest_inverse_mass;
   }
   return bounds;
@@ -32,7 +43,8 @@ LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settin
 
 double advised_step(const IntegratorSettings& settings, const SpectralBounds& bounds) {
   constexpr double kStablePart = 0.9;
-  return std::min(kStablePart * largest_stable_step(settings, bounds), resonant_step(settings, bounds));
+  return std::min(
+      {kStablePart * largest_stable_step(settings, bounds), resonant_step(settings, bounds), step_for_penalty(settings, bounds)});
 }
 
 bool is_unstable(double step, double largest_stable) {

@@ -15,7 +15,8 @@ namespace sprung {
 /// How the simulation uses its stretch limit.
 [[nodiscard]] LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
 
-/// The largest step that is advised, and that "auto" uses [s]: 0.9 of the largest stable one, and no larger than the resonant one.
+/// The largest step that is advised, and that "auto" uses [s]: 0.9 of the largest stable one, no larger than the resonant one, and
+/// such that a bounce by penalty contact takes three.
 [[nodiscard]] double advised_step(const IntegratorSettings& settings, const SpectralBounds& bounds);
 
 /// Whether a step is beyond the largest stable one by more than rounding.

@@ -70,6 +70,23 @@ TEST(StepChoice, AutoKeepsExplicitEulerFromGrowingMuchWithinTheScene) {
   EXPECT_GT(1.0 / (10.0 * (built.steps_per_frame - 1)), 2.0 / 1000.0 * (1.0 - 2.0 * kBoundSlack));
 }
 
+// A half turn of the penalty's spring, pi sqrt(m / k), with 1 kg, takes three steps: damped or not, by any explicit scheme.
+TEST(StepChoice, AutoMakesABounceByPenaltyTakeThreeSteps) {
+  const auto penalty = [](const std::string& scheme, const std::string& damping) {
+    return build(0.0,
+                 {R"(contact={"response": "penalty", "stiffness": 543210, "damping": )" + damping + "}",
+                  R"(integrator={"type": ")" + scheme + R"("})", R"(obstacles.floor.shape={"type": "half_space", "offset": -5})"});
+  };
+  const double third = 1.0 / std::sqrt(543210.0);
+  for (const std::string scheme : {"verlet", "symplectic_euler", "velocity_verlet", "rk4"}) {
+    for (const std::string damping : {"0", "10"}) {
+      EXPECT_LE(penalty(scheme, damping).settings.step, third) << scheme;
+      EXPECT_GT(1.0 / (10.0 * (penalty(scheme, damping).steps_per_frame - 1)), third) << scheme;
+    }
+  }
+  EXPECT_GT(penalty("implicit_euler", "0").settings.step, third);
+}
+
 TEST(StepChoice, AutoHeedsTheStretchLimit) {
   const BuiltScene free = build(0.0);
   const BuiltScene limited =
