@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string_view>
 
 namespace sprung {
 
@@ -33,6 +34,12 @@ double thinnest_gap(const std::vector<Body>& bodies) {
   return gap;
 }
 
+std::string_view remedy_for_stretch(const StretchLimitSettings& limit) {
+  const bool could_be_solved = limit.solver == StretchLimitSettings::Solver::gauss_seidel && limit.max_compression == 1.0;
+  return could_be_solved ? "more iterations, smaller steps, or, of ropes and cloths, \"solver\": \"auto\" hold it better"
+                         : "more iterations or smaller steps hold it better";
+}
+
 }  // namespace
 
 RunWatch::RunWatch(const Simulator& simulator, RunOutput& output, bool quiet)
@@ -48,10 +55,11 @@ void RunWatch::see(const FrameDiagnostics& frame) {
 void RunWatch::tell() {
   tell_of_thin_bodies();
   if (missed_.frames == 0) return;
-  warn(fmt::format(
-      "the stretch limit was missed by more than its tolerance in {} {}, by at most {} % of a rest length in frame {}; "
-      "the column stretch_excess of diagnostics.csv tells by how much in each",
-      missed_.frames, missed_.frames == 1 ? "frame" : "frames", format_number(100.0 * missed_.most, 2), missed_.worst_frame));
+  warn(
+      fmt::format("the stretch limit was missed by more than its tolerance in {} {}, by at most {} % of a rest length in frame {}; "
+                  "the column stretch_excess of diagnostics.csv tells by how much in each; {}",
+                  missed_.frames, missed_.frames == 1 ? "frame" : "frames", format_number(100.0 * missed_.most, 2),
+                  missed_.worst_frame, remedy_for_stretch(*simulator_.settings().stretch_limit)));
 }
 
 void RunWatch::warn(const std::string& warning) {
@@ -64,7 +72,7 @@ void RunWatch::see_squeezing(const FrameDiagnostics& frame) {
   squeezed_ = true;
   warn(fmt::format(
       "frame {}: particles found no free place between obstacles, pins and each other {} times and may cross them; the column "
-      "squeezed of diagnostics.csv counts them",
+      "squeezed of diagnostics.csv counts them; leave them more room, or let what closes in on them stop before or go slower",
       frame.frame, frame.squeezed));
 }
 

@@ -109,9 +109,25 @@ TEST_F(CommandLine, RunWarnsOnceOfWhatIsSqueezedBetweenObstacles) {
       {"motion", {{"keyframes", {{{"time", 0}, {"position", {0, 0, 0}}}, {{"time", 0.1}, {"position", {0, -0.5, 0}}}}}}}};
   const Ending ending = run({"run", save(scene), "--out", out()});
   EXPECT_EQ(ending.code, 0) << ending.err;
-  EXPECT_THAT(ending.err, HasSubstr("found no free place between obstacles"));
+  EXPECT_THAT(ending.err, AllOf(HasSubstr("found no free place between obstacles"), HasSubstr("leave them more room")));
   ASSERT_EQ(record()["warnings"].size(), 1U);
   EXPECT_THAT(record()["warnings"][0].get<std::string>(), StartsWith("frame "));
+}
+
+TEST_F(CommandLine, RunTellsOfAMissedStretchLimitAndWhatHoldsItBetter) {
+  json scene = rope_scene();
+  scene["bodies"]["rope"]["shape"]["particles"] = 50;
+  scene["step"] = 1.0 / 60.0;
+  scene["frame_rate"] = 60;
+  scene["bodies"]["rope"]["springs"] = {{"structural", {{"stiffness", 0}}}};
+  scene["stretch_limit"] = {{"max_stretch", 0.0}, {"iterations", 1}};
+  Ending ending = run({"run", save(scene), "--out", out()});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.err, AllOf(HasSubstr("stretch limit was missed"), HasSubstr(R"("solver": "auto")")));
+
+  scene["stretch_limit"]["max_compression"] = 0.5;  // which passes alone hold
+  ending = run({"run", save(scene), "--out", out(), "--overwrite"});
+  EXPECT_THAT(ending.err, AllOf(HasSubstr("more iterations or smaller steps"), Not(HasSubstr("solver"))));
 }
 
 TEST_F(CommandLine, RunTellsOfBodiesTooThinToLieOnEachOther) {
