@@ -18,8 +18,8 @@ struct WatchTimes {
   double end = 0.0;
 };
 
-/// Up to eight elements of one body, a lane each, in single precision, from an origin near all bodies; unused lanes are empty. At
-/// time t their balls are between min + t slowest and max + t fastest.
+/// Up to eight elements of one body, a lane each, in single precision, from an origin near where all bodies began; unused lanes are
+/// empty. At time t their balls are between min + t slowest and max + t fastest.
 struct alignas(64) ElementLeaf {
   using IntLanes = std::int32_t __attribute__((vector_size(kTreeLanes * sizeof(std::int32_t))));
 

@@ -11,10 +11,11 @@ namespace sprung {
 
 namespace {
 
+bool bodies_meet(const CollisionSurface& surface) { return std::count(surface.others.begin(), surface.others.end(), 1) > 1; }
+
 /// Whether elements of one body or of two may meet.
 bool meets_itself(const CollisionSurface& surface) {
-  return std::count(surface.self.begin(), surface.self.end(), 1) > 0 ||
-         std::count(surface.others.begin(), surface.others.end(), 1) > 1;
+  return std::count(surface.self.begin(), surface.self.end(), 1) > 0 || bodies_meet(surface);
 }
 
 }  // namespace
@@ -53,6 +54,8 @@ FreeSpace::FreeSpace(FreeSpace&&) noexcept = default;
 FreeSpace& FreeSpace::operator=(FreeSpace&&) noexcept = default;
 
 bool FreeSpace::meets_anything() const { return implementation_->pairs.has_value() || !implementation_->set.obstacles().empty(); }
+
+bool FreeSpace::bodies_may_meet() const { return bodies_meet(implementation_->surface); }
 
 void FreeSpace::follow(const Points& before, const Points& after) {
   implementation_->zones.follow({before, after});
@@ -124,6 +127,7 @@ void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, 
   const bool sure = placement.look_at_pins(particles, after, outcomes);
   if (!sure || (placement.closes_in({before, allowed}) && count(outcomes, Outcome::squeezed) > 0)) {
     squeezed.clear();
+    truncation.in_parts = true;
     outcomes = place_in_parts(environment, {before, allowed}, after, [&](const Way& part, Points& x) {
       const PlacedPart among_obstacles = placement.place_part(particles, part, x);
       pairs->begin_part(part.from, x);
@@ -140,7 +144,8 @@ void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, 
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] == Outcome::squeezed) squeezed.push_back(particles[n]);
   }
-  if (count(outcomes, Outcome::free) < static_cast<Index>(outcomes.size())) pairs->append_meetings(before, truncation.meetings);
+  const bool stops = count(outcomes, Outcome::free) < static_cast<Index>(outcomes.size());
+  if (stops && !truncation.in_parts) pairs->append_meetings(before, truncation.meetings);
   std::sort(squeezed.begin(), squeezed.end());
   truncation.squeezed = static_cast<Index>(std::unique(squeezed.begin(), squeezed.end()) - squeezed.begin());
 }

@@ -28,6 +28,9 @@ class FreeSpace {
   /// Whether there is anything that the network may meet: obstacles, other bodies, itself.
   [[nodiscard]] bool meets_anything() const;
 
+  /// Whether elements of two bodies may meet.
+  [[nodiscard]] bool bodies_may_meet() const;
+
   /// Makes the zones hold the elements on their way from `before`, where nothing crosses, to where they are about to be at the end
   /// of the environment's interval [m].
   void follow(const Points& before, const Points& after);
@@ -59,7 +62,7 @@ class FreeSpace {
   /// are not finite, are left alone.
   ///
   /// What obstacles stop, `relax` may lead elsewhere, and its neighbours after it, again and again: all go on from where they are
-  /// safe. The result tells of the last time.
+  /// safe. The result tells of the last time. It may be asked again in a step, of other positions, but not after it went in parts.
   Truncation truncate(const Points& before, Points& after, const Relax& relax = {});
 
  private:

@@ -55,16 +55,20 @@ Truncation ObstaclePlacement::place_all(const Way& way, Points& after) {
   zones_.renew_around(leaving_pins(way.to), way);
   std::vector<Index> particles = movable(zones_.restless(), way);
   Outcomes outcomes = place_with_fresh_zones(particles, way, after);
+  bool in_parts = false;
   const bool sure = look_at_pins(particles, after, outcomes);
   if (!way.obstacles_rest && (!sure || (closes_in(way) && count(outcomes, Outcome::squeezed) > 0))) {
     add_free(all_movable(way), particles, outcomes);
     if (sure) carry_squeezed(zones_, particles, way.from, after, outcomes);
-    if (!sure || count(outcomes, Outcome::squeezed) > 0) {
+    in_parts = !sure || count(outcomes, Outcome::squeezed) > 0;
+    if (in_parts) {
       outcomes =
           place_in_parts(environment_, way, after, [&](const Way& part, Points& x) { return place_part(particles, part, x); });
     }
   }
-  return lead_on(particles, outcomes, way, after);
+  Truncation truncation = lead_on(particles, outcomes, way, after);
+  truncation.in_parts = in_parts;
+  return truncation;
 }
 
 // Zones that were made some steps ago may stop a particle, or leave it no place at all, where new ones would not. Those are their

@@ -3,12 +3,13 @@
 #include "geometry/closest_pair.h"
 
 #include <cmath>
+#include <span>
 
 namespace sprung {
 namespace {
 
-// Corners that have less than this of their side's point are none of it but for rounding: at most four have more, one and three or
-// two and two.
+// Corners that have less than this of their side's point are none of it but for rounding: but for sides that lie along each other,
+// at most four have more, one and three or two and two.
 constexpr double kNoWeight = 1.0e-9;
 
 // Next to touching, the line between the nearest points is mostly rounding: one that separates the sides by less than this part of
@@ -21,25 +22,42 @@ struct Sides {
   Vector3 between = Vector3::Zero();  ///< from the second side's point to the first's [m]
 };
 
-Sides nearest_points(const ElementPair& pair, const Points& positions) {
-  const auto corner = [&](int k) { return Vector3(positions.col(pair.particles[static_cast<std::size_t>(k)])); };
-  if (pair.second_count == 2) {
-    const SegmentPair nearest = closest_points_of_segments(corner(0), corner(1), corner(2), corner(3));
-    const Sides sides{.weights = {1.0 - nearest.s, nearest.s, nearest.t - 1.0, -nearest.t}};
-    Vector3 between = Vector3::Zero();
-    for (int k = 0; k < 4; ++k) between += sides.weights[static_cast<std::size_t>(k)] * corner(k);
-    return {sides.weights, between};
+/// Without corners that rounding alone gives a part, of all of the point again.
+void clean(std::span<double> weights) {
+  double sum = 0.0;
+  for (double& weight : weights) {
+    if (std::abs(weight) <= kNoWeight) weight = 0.0;
+    sum += std::abs(weight);
   }
-  Simplex first{.x = {}, .count = pair.first_count};
-  for (int k = 0; k < pair.first_count; ++k) first.x[static_cast<std::size_t>(k)] = corner(k);
-  const int begin = pair.first_count;
-  const std::array<Vector3, 3> second{corner(begin), corner(begin + 1), corner(begin + 2)};
-  const ClosestPair nearest = closest_pair(first, second);
-  const ClosestPoint again = closest_point_on_triangle(nearest.on_simplex, second[0], second[1], second[2]);
-  const Vector3 weights = barycentric(again, second[0], second[1], second[2]);
-  Sides sides{.weights = {}, .between = nearest.on_simplex - again.point};
-  for (int k = 0; k < pair.first_count; ++k) sides.weights[static_cast<std::size_t>(k)] = nearest.weights[k];
-  for (int k = 0; k < 3; ++k) sides.weights[static_cast<std::size_t>(begin + k)] = -weights[k];
+  for (double& weight : weights) weight /= sum;
+}
+
+/// From one of them, so that it does not matter how far from the origin they are.
+std::array<Vector3, 6> corners(const ElementPair& pair, const Points& positions) {
+  std::array<Vector3, 6> x;
+  const Vector3 origin = positions.col(pair.particles[0]);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(pair.count()); ++k) x[k] = positions.col(pair.particles[k]) - origin;
+  return x;
+}
+
+Sides nearest_points(const ElementPair& pair, const Points& positions) {
+  const std::array<Vector3, 6> x = corners(pair, positions);
+  const auto first_count = static_cast<std::size_t>(pair.first_count);
+  Sides sides;
+  if (pair.second_count == 2) {
+    const SegmentPair nearest = closest_points_of_segments(x[0], x[1], x[2], x[3]);
+    sides.weights = {1.0 - nearest.s, nearest.s, nearest.t - 1.0, -nearest.t};
+  } else {
+    const std::array<Vector3, 3> second{x[first_count], x[first_count + 1], x[first_count + 2]};
+    const ClosestPair nearest = closest_pair({.x = {x[0], x[1], x[2]}, .count = pair.first_count}, second);
+    const ClosestPoint on_second = closest_point_on_triangle(nearest.on_triangle, second[0], second[1], second[2]);
+    const Vector3 weights = barycentric(on_second, second[0], second[1], second[2]);
+    for (std::size_t k = 0; k < first_count; ++k) sides.weights[k] = nearest.weights[static_cast<Eigen::Index>(k)];
+    for (std::size_t k = 0; k < 3; ++k) sides.weights[first_count + k] = -weights[static_cast<Eigen::Index>(k)];
+  }
+  clean({sides.weights.data(), first_count});
+  clean({sides.weights.data() + first_count, static_cast<std::size_t>(pair.second_count)});
+  for (std::size_t k = 0; k < static_cast<std::size_t>(pair.count()); ++k) sides.between += sides.weights[k] * x[k];
   return sides;
 }
 
@@ -55,8 +73,9 @@ std::optional<Contact> meeting_of(const ElementPair& pair, const Points& positio
   along.normal = contact.normal;
   if (!(heights_at(along, positions).gap() > kSeparated * contact.distance)) return std::nullopt;
   contact.most_gap = contact.distance;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(pair.count()) && contact.count < Contact::kMostParticles; ++k) {
-    if (std::abs(sides.weights[k]) <= kNoWeight) continue;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(pair.count()); ++k) {
+    if (sides.weights[k] == 0.0) continue;
+    if (contact.count == Contact::kMostParticles) return std::nullopt;
     const auto slot = static_cast<std::size_t>(contact.count++);
     contact.particles[slot] = pair.particles[k];
     contact.weights[slot] = sides.weights[k];

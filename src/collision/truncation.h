@@ -11,7 +11,8 @@ struct Truncation {
   Index truncated = 0;  ///< particles stopped on their way
   Index squeezed = 0;   ///< particles that found no free place, that pins drag through the network, or whose elements are
                         ///< crossed, and pins of their elements that go through each other
-  std::vector<Contact> meetings{};  ///< of bodies that stopped each other, where the step begins
+  std::vector<Contact> meetings{};  ///< of bodies that stopped each other, where the step begins; none of what went in parts
+  bool in_parts = false;            ///< whether obstacles were taken along in parts of the step
 };
 
 }  // namespace sprung

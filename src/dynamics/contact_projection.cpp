@@ -38,22 +38,46 @@ void ContactProjection::find(const StepMotion& motion) {
 }
 
 void ContactProjection::find_again(const StepMotion& motion, const Points& positions) {
-  response_.start_again(free_space_.contacts_again(motion.before, positions), motion);
+  std::vector<Contact> contacts = free_space_.contacts_again(motion.before, positions);
+  contacts.insert(contacts.end(), meetings_.begin(), meetings_.end());
+  response_.start_again(contacts, motion);
+}
+
+void ContactProjection::truncate(const StepMotion& motion, Points& positions, const FreeSpace::Relax& relax) {
+  meetings_.clear();
+  const bool meet = free_space_.bodies_may_meet();
+  const Truncation truncation =
+      meet ? truncate_bodies(motion, positions, relax) : free_space_.truncate(motion.before, positions, relax);
+  truncated_ = truncation.truncated;
+  squeezed_ = truncation.squeezed;
 }
 
 // Truncation stops each of two bodies for itself, whatever the other weighs: a cube that flew into a light cloth stopped in
-// mid-air, and one that lay on it was thrown up again. What contact led them into is told to it, and it tries again.
-void ContactProjection::truncate(const StepMotion& motion, Points& positions, const FreeSpace::Relax& relax) {
+// mid-air, and one that lay on it was thrown up again. What contact led them into is told to it, and it tries again. What leads on
+// where obstacles stop something notes what it did, and so is asked once, when bodies are out of each other's way.
+Truncation ContactProjection::truncate_bodies(const StepMotion& motion, Points& positions, const FreeSpace::Relax& relax) {
   Points led = positions;
-  Truncation truncation = free_space_.truncate(motion.before, positions, relax);
-  for (int round = 0; round < kMeetingRounds && !truncation.meetings.empty(); ++round) {
-    response_.add(truncation.meetings, motion);
+  Truncation truncation = free_space_.truncate(motion.before, positions);
+  for (int round = 0; round < kMeetingRounds && note_meetings(truncation.meetings, motion); ++round) {
     if (!answer_meetings(led)) break;
     positions = led;
-    truncation = free_space_.truncate(motion.before, positions, relax);
+    truncation = free_space_.truncate(motion.before, positions);
   }
-  truncated_ = truncation.truncated;
-  squeezed_ = truncation.squeezed;
+  if (!relax || truncation.truncated == 0 || truncation.squeezed > 0 || truncation.in_parts) return truncation;
+  positions = led;
+  return free_space_.truncate(motion.before, positions, relax);
+}
+
+/// Whether any is new.
+bool ContactProjection::note_meetings(const std::vector<Contact>& meetings, const StepMotion& motion) {
+  std::vector<Contact> fresh;
+  for (const Contact& meeting : meetings) {
+    const auto is_same = [&](const Contact& other) { return other.particles == meeting.particles; };
+    if (std::none_of(meetings_.begin(), meetings_.end(), is_same)) fresh.push_back(meeting);
+  }
+  response_.add(fresh, motion);
+  meetings_.insert(meetings_.end(), fresh.begin(), fresh.end());
+  return !fresh.empty();
 }
 
 /// Whether any moved.

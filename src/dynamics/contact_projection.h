@@ -46,10 +46,13 @@ class ContactProjection {
   [[nodiscard]] Index squeezed_count() const { return squeezed_; }
 
  private:
+  [[nodiscard]] Truncation truncate_bodies(const StepMotion& motion, Points& positions, const FreeSpace::Relax& relax);
+  [[nodiscard]] bool note_meetings(const std::vector<Contact>& meetings, const StepMotion& motion);
   [[nodiscard]] bool answer_meetings(Points& positions);
 
   ContactResponse response_;
   FreeSpace free_space_;
+  std::vector<Contact> meetings_;  ///< of the step, that contact did not tell of
   Index truncated_ = 0;
   Index squeezed_ = 0;
 };

@@ -15,7 +15,7 @@ namespace sprung {
 template <std::size_t n>
 class ContactSet {
  public:
-  /// Begins a step with so many contacts, each of which `row`, `goal` and `gap` [m] > 0 are then to be set.
+  /// Holds so many contacts, the first as before; of new ones `row`, `goal` and `gap` [m] > 0 are then to be set.
   void resize(std::size_t count) {
     rows_.resize(count);
     goals_.resize(count);

@@ -31,8 +31,8 @@ class StretchEnergy {
   /// How much longer than its longest a link is that carries the weight, at most [m].
   [[nodiscard]] double give() const { return give_; }
 
-  /// Links are near their limit that are shorter by less than a tenth of it; where springs have stiffness, after this also by less
-  /// than half of what the longest is too long at `y`, where forces led.
+  /// Links are near their limit that are shorter by less than a tenth of it; where springs or angle bends have stiffness, after
+  /// this also by less than half of what the longest is too long at `y`, where forces led.
   void find_near(const Points& y);
 
   /// E at `x`; both 3 x points.

@@ -33,7 +33,7 @@ struct StretchLimitSettings {
 /// What an automatic solver begins with passes for, of what it could solve for.
 struct LimitUse {
   bool may_meet_anything = true;  ///< contact may be in the way of what it does
-  bool takes_small_steps = true;  ///< where springs have stiffness, for their sake: passes do well in them
+  bool takes_small_steps = true;  ///< where springs or angle bends have stiffness, for their sake: passes do well in them
 };
 
 /// The excess over the limit, as a part of the rest length, that automatic steps are chosen for: half of `max_stretch` plus
