@@ -1,10 +1,12 @@
 // Groups of springs as they lie in the layouts of StretchBatches: what kernels read and write of them at a time. Each layout has
-// `find_squared`, the springs' squared lengths, and `move`, which moves their ends towards each other. For the .cpp files of
-// kernels, as lanes.h.
+// `find_squared`, the springs' squared lengths, and `move`, which moves their ends towards each other, or away along where they
+// were before. For the .cpp files of kernels, as lanes.h.
 #pragma once
 
 #include "dynamics/packed_lanes.h"
 #include "dynamics/stretch_batches.h"
+
+#include <type_traits>
 
 namespace sprung {
 
@@ -15,6 +17,9 @@ struct Moves {
   Lanes second;
 };
 
+/// No moves along where springs were before.
+struct NoPushes {};
+
 [[gnu::always_inline]] inline std::ptrdiff_t place_of(Index particle) { return std::ptrdiff_t{3} * particle; }
 
 /// Springs between consecutive particles and consecutive others.
@@ -23,33 +28,50 @@ struct RunGroup {
   using Lanes = typename Packed::Lanes;
 
   [[gnu::always_inline]] static void find_squared(const StretchBatches& batches, Index s, const double* positions, Lanes& squared) {
-    Packed first;
-    Packed second;
-    load(positions + place_of(batches.first[s]), first);
-    load(positions + place_of(batches.second[s]), second);
-    subtract(second, first, second);
-    square(second);
+    Packed between;
+    find_between(batches, s, positions, between);
+    square(between);
     Lanes y, z;
-    unpack(second, squared, y, z);
+    unpack(between, squared, y, z);
     squared = squared + y + z;
   }
 
-  [[gnu::always_inline]] static void move(const StretchBatches& batches, Index s, const Moves<Lanes>& moves, double* positions) {
+  template <class Pushes>
+  [[gnu::always_inline]] static void move(const StretchBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
+                                          const double* before, double* positions) {
     double* const first_at = positions + place_of(batches.first[s]);
     double* const second_at = positions + place_of(batches.second[s]);
     Packed first;
     Packed second;
     load(first_at, first);
     load(second_at, second);
-    Packed of_second;
-    subtract(second, first, of_second);
-    Packed of_first = of_second;
+    Packed between;
+    subtract(second, first, between);
+    move_along(between, pulls, first, second);
+    if constexpr (!std::is_same_v<Pushes, NoPushes>) {
+      find_between(batches, s, before, between);
+      move_along(between, pushes, first, second);
+    }
+    store(first, first_at);
+    store(second, second_at);
+  }
+
+ private:
+  [[gnu::always_inline]] static void find_between(const StretchBatches& batches, Index s, const double* positions,
+                                                  Packed& between) {
+    Packed first;
+    load(positions + place_of(batches.first[s]), first);
+    load(positions + place_of(batches.second[s]), between);
+    subtract(between, first, between);
+  }
+
+  [[gnu::always_inline]] static void move_along(const Packed& between, const Moves<Lanes>& moves, Packed& first, Packed& second) {
+    Packed of_first = between;
+    Packed of_second = between;
     multiply(of_first, moves.first);
     multiply(of_second, moves.second);
     add(first, of_first, first);
     subtract(second, of_second, second);
-    store(first, first_at);
-    store(second, second_at);
   }
 };
 
@@ -66,12 +88,31 @@ struct PairGroup {
     merge(of_others, squared);
   }
 
-  [[gnu::always_inline]] static void move(const StretchBatches& batches, Index s, const Moves<Lanes>& moves, double* positions) {
+  template <class Pushes>
+  [[gnu::always_inline]] static void move(const StretchBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
+                                          const double* before, double* positions) {
+    const std::ptrdiff_t some_at = place_of(batches.first[s]);
+    const std::ptrdiff_t others_at = place_of(start_of_others(batches, s));
     Packed parts;
     Packed of_others;
-    spread(moves, parts, of_others);
-    move_half(parts, positions + place_of(batches.first[s]));
-    move_half(of_others, positions + place_of(start_of_others(batches, s)));
+    Packed some;
+    Packed others;
+    spread(pulls, parts, of_others);
+    load(positions + some_at, some);
+    load(positions + others_at, others);
+    Packed some_now = some;
+    Packed others_now = others;
+    move_half(parts, some_now, some);
+    move_half(of_others, others_now, others);
+    if constexpr (!std::is_same_v<Pushes, NoPushes>) {
+      spread(pushes, parts, of_others);
+      load(before + some_at, some_now);
+      load(before + others_at, others_now);
+      move_half(parts, some_now, some);
+      move_half(of_others, others_now, others);
+    }
+    store(some, positions + some_at);
+    store(others, positions + others_at);
   }
 
  private:
@@ -99,16 +140,14 @@ struct PairGroup {
     squared = __builtin_shufflevector(squared, others, 0, 4, 2, 6, 8, 12, 10, 14);
   }
 
-  [[gnu::always_inline]] static void move_half(const Packed& parts, double* positions) {
-    Packed particles;
+  // By parts of the way to their neighbours `there`.
+  [[gnu::always_inline]] static void move_half(const Packed& parts, const Packed& there, Packed& particles) {
     Packed to_others;
-    load(positions, particles);
-    swap_neighbours(particles, to_others);
-    subtract(to_others, particles, to_others);
+    swap_neighbours(there, to_others);
+    subtract(to_others, there, to_others);
     particles.low += parts.low * to_others.low;
     particles.middle += parts.middle * to_others.middle;
     particles.high += parts.high * to_others.high;
-    store(particles, positions);
   }
 
   // Each particle's own.
@@ -137,10 +176,8 @@ struct GatheredGroup {
   [[gnu::always_inline]] static void find_squared(const StretchBatches& batches, Index s, const double* positions, Lanes& squared) {
     Lanes squares[kSpringLanes];
     for (Index k = 0; k < kSpringLanes; ++k) {
-      Lanes first, second;
-      load_one(positions + place_of(batches.first[s + k]), first);
-      load_one(positions + place_of(batches.second[s + k]), second);
-      const Lanes between = second - first;
+      Lanes between;
+      find_between(batches, s + k, positions, between);
       squares[k] = between * between;
     }
     const Lanes sums01 =
@@ -150,7 +187,9 @@ struct GatheredGroup {
     squared = __builtin_shufflevector(sums01, sums23, 0, 1, 4, 5) + __builtin_shufflevector(sums01, sums23, 2, 3, 6, 7);
   }
 
-  [[gnu::always_inline]] static void move(const StretchBatches& batches, Index s, const Moves<Lanes>& moves, double* positions) {
+  template <class Pushes>
+  [[gnu::always_inline]] static void move(const StretchBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
+                                          const double* before, double* positions) {
     Lanes first[kSpringLanes];
     Lanes second[kSpringLanes];
     for (Index k = 0; k < kSpringLanes; ++k) {
@@ -159,14 +198,27 @@ struct GatheredGroup {
     }
     for (Index k = 0; k < kSpringLanes; ++k) {
       const Lanes between = second[k] - first[k];
-      first[k] += moves.first[k] * between;
-      second[k] -= moves.second[k] * between;
+      first[k] += pulls.first[k] * between;
+      second[k] -= pulls.second[k] * between;
+      if constexpr (!std::is_same_v<Pushes, NoPushes>) {
+        Lanes between_before;
+        find_between(batches, s + k, before, between_before);
+        first[k] += pushes.first[k] * between_before;
+        second[k] -= pushes.second[k] * between_before;
+      }
       store_one(first[k], positions + place_of(batches.first[s + k]));
       store_one(second[k], positions + place_of(batches.second[s + k]));
     }
   }
 
  private:
+  [[gnu::always_inline]] static void find_between(const StretchBatches& batches, Index s, const double* positions, Lanes& between) {
+    Lanes first;
+    load_one(positions + place_of(batches.first[s]), first);
+    load_one(positions + place_of(batches.second[s]), between);
+    between -= first;
+  }
+
   using Pair = double __attribute__((vector_size(2 * sizeof(double))));
   using StoredPair = double __attribute__((vector_size(2 * sizeof(double)), aligned(alignof(double)), may_alias));
 

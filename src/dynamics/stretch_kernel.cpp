@@ -83,11 +83,11 @@ template <class Group>
   return s;
 }
 
-/// From squared lengths to how much of each spring is beyond its limits: 1 - allowed / length. What is not allowed anyhow has no
-/// length to be divided by, and no direction: 0 times anything is what it moves.
+/// From squared lengths to how much of each spring is beyond its limits: 1 - allowed / length, of what is too long in `lengths`,
+/// and of what is too short in `pushes`, at most its own length, unless there is none of these.
 template <class Lanes>
-[[gnu::always_inline]] inline Index find_beyond(const LengthRange& range, double relaxation, Index i, Index count,
-                                                double* lengths) {
+[[gnu::always_inline]] inline Index find_beyond(const LengthRange& range, double relaxation, Index i, Index count, double* lengths,
+                                                double* pushes) {
   const double most_squared = range.most * range.most;
   const double least_squared = range.least * range.least;
   for (; i + kCountOf<Lanes> <= count; i += kCountOf<Lanes>) {
@@ -95,27 +95,41 @@ template <class Lanes>
     load_lanes(lengths + i, squared);
     inverse_root(squared, inverse);
     const Lanes too_long = 1.0 - range.most * inverse;
+    store_lanes(relaxation * (squared > most_squared ? too_long : Lanes{}), lengths + i);
+    if (pushes == nullptr) continue;
     const Lanes too_short = 1.0 - range.least * inverse;
-    const Lanes beyond = squared > most_squared ? too_long : (squared < least_squared ? too_short : Lanes{});
-    store_lanes(relaxation * beyond, lengths + i);
+    const Lanes push = too_short > -1.0 ? too_short : Lanes{} - 1.0;
+    store_lanes(relaxation * (squared < least_squared ? push : Lanes{}), pushes + i);
   }
   return i;
 }
 
+/// What ends move of what is beyond their limits.
+template <class Lanes>
+[[gnu::always_inline]] inline void load_moves(const double* beyond, const Lanes& first_share, Moves<Lanes>& moves) {
+  load_lanes(beyond, moves.second);
+  moves.first = first_share * moves.second;
+  moves.second -= moves.first;
+}
+
 template <class Group>
-[[gnu::always_inline]] inline Index move(const StretchBatches& batches, const Part& part, Index s, const double* beyond,
-                                         double* positions) {
+[[gnu::always_inline]] inline Index move(const StretchBatches& batches, const Part& part, Index s, const double* too_long,
+                                         const double* too_short, const double* before, double* positions) {
   using Lanes = typename Group::Lanes;
   if (s + kCountOf < Lanes >> part.end) return s;
   Lanes first_share;
   load_lanes(&batches.first_share[s], first_share);
   for (; s + kCountOf<Lanes> <= part.end; s += kCountOf<Lanes>) {
     if (!part.same) load_lanes(&batches.first_share[s], first_share);
-    Moves<Lanes> moves;
-    load_lanes(beyond + (s - part.begin), moves.second);
-    moves.first = first_share * moves.second;
-    moves.second -= moves.first;
-    Group::move(batches, s, moves, positions);
+    Moves<Lanes> pulls;
+    load_moves(too_long + (s - part.begin), first_share, pulls);
+    if (too_short == nullptr) {
+      Group::move(batches, s, pulls, NoPushes{}, before, positions);
+      continue;
+    }
+    Moves<Lanes> pushes;
+    load_moves(too_short + (s - part.begin), first_share, pushes);
+    Group::move(batches, s, pulls, pushes, before, positions);
   }
   return s;
 }
@@ -124,7 +138,7 @@ template <class Group>
 // does not look far enough ahead to do another meanwhile. What does not fill a wide group is left to narrow ones.
 template <class Wide, class Narrow, class All>
 [[gnu::always_inline]] inline void project(const StretchBatches& batches, const Part& part, const LengthRange& range,
-                                           double relaxation, double* positions, All& extremes) {
+                                           double relaxation, const double* before, double* positions, All& extremes) {
   alignas(WideLanes) double lengths[StretchBatches::kPartSprings];
   Extremes<typename Wide::Lanes> of_wide;
   Extremes<typename Narrow::Lanes> of_narrow;
@@ -134,11 +148,14 @@ template <class Wide, class Narrow, class All>
   extremes.include(of_wide);
   extremes.include(of_narrow);
 
+  const LengthRange least_alone{.least = range.least, .most = HUGE_VAL};
+  alignas(WideLanes) double pushes[StretchBatches::kPartSprings];
+  double* const too_short = are_beyond(least_alone, of_wide) || are_beyond(least_alone, of_narrow) ? pushes : nullptr;
   const Index count = part.end - part.begin;
-  const Index found = find_beyond<typename Wide::Lanes>(range, relaxation, 0, count, lengths);
-  find_beyond<typename Narrow::Lanes>(range, relaxation, found, count, lengths);
-  const Index moved = move<Wide>(batches, part, part.begin, lengths, positions);
-  move<Narrow>(batches, part, moved, lengths, positions);
+  const Index found = find_beyond<typename Wide::Lanes>(range, relaxation, 0, count, lengths, too_short);
+  find_beyond<typename Narrow::Lanes>(range, relaxation, found, count, lengths, too_short);
+  const Index moved = move<Wide>(batches, part, part.begin, lengths, too_short, before, positions);
+  move<Narrow>(batches, part, moved, lengths, too_short, before, positions);
 }
 
 /// Calls `body` with the groups of each part.
@@ -161,11 +178,12 @@ template <class Widest, class Body>
 
 template <class Widest>
 [[gnu::always_inline]] inline SquaredLengths project_parts(const StretchBatches& batches, const Parts& parts,
-                                                           const LengthRange& range, double relaxation, double* positions) {
+                                                           const LengthRange& range, double relaxation, const double* before,
+                                                           double* positions) {
   AllExtremes<typename Widest::Lanes> extremes;
   for_parts<Widest>(
       batches, parts, [&]<class Wide, class Narrow>(const Part& part) __attribute__((always_inline)) {
-        project<Wide, Narrow>(batches, part, range, relaxation, positions, extremes);
+        project<Wide, Narrow>(batches, part, range, relaxation, before, positions, extremes);
       });
   return extremes.lengths();
 }
@@ -188,8 +206,8 @@ template <class Widest>
 
 SPRUNG_KERNEL
 SquaredLengths project_springs_narrow(const StretchBatches& batches, const Parts& parts, const LengthRange& range,
-                                      double relaxation, double* positions) {
-  return project_parts<Packed>(batches, parts, range, relaxation, positions);
+                                      double relaxation, const double* before, double* positions) {
+  return project_parts<Packed>(batches, parts, range, relaxation, before, positions);
 }
 
 SPRUNG_KERNEL
@@ -199,8 +217,8 @@ SquaredLengths measure_springs_narrow(const StretchBatches& batches, const Parts
 
 SPRUNG_WIDE_KERNEL
 SquaredLengths project_springs_wide(const StretchBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
-                                    double* positions) {
-  return project_parts<WidePacked>(batches, parts, range, relaxation, positions);
+                                    const double* before, double* positions) {
+  return project_parts<WidePacked>(batches, parts, range, relaxation, before, positions);
 }
 
 SPRUNG_WIDE_KERNEL

@@ -38,22 +38,24 @@ struct Parts {
 };
 
 /// Moves the ends of springs by `relaxation` times what makes their lengths lie in `range`, part after part; `positions` holds 3
-/// numbers a particle [m]. Returns the lengths that it met. A spring of no length has no direction to be projected along: it stays.
+/// numbers a particle [m]. Returns the lengths that it met. What is too short is pushed along what it was from end to end `before`,
+/// where the step began, by at most that: what turns meanwhile is pushed short of its limit by the square of the angle, which
+/// further passes take. Neither a push nor a pull has a direction where that has no length.
 SquaredLengths project_springs_narrow(const StretchBatches& batches, const Parts& parts, const LengthRange& range,
-                                      double relaxation, double* positions);
+                                      double relaxation, const double* before, double* positions);
 
 /// Lengths of springs.
 SquaredLengths measure_springs_narrow(const StretchBatches& batches, const Parts& parts, const double* positions);
 
 /// The same bits, with twice as many lanes. Require has_wide_lanes().
 SquaredLengths project_springs_wide(const StretchBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
-                                    double* positions);
+                                    const double* before, double* positions);
 SquaredLengths measure_springs_wide(const StretchBatches& batches, const Parts& parts, const double* positions);
 
 /// Whichever the machine has.
 inline SquaredLengths project_springs(const StretchBatches& batches, const Parts& parts, const LengthRange& range,
-                                      double relaxation, double* positions) {
-  return (has_wide_lanes() ? project_springs_wide : project_springs_narrow)(batches, parts, range, relaxation, positions);
+                                      double relaxation, const double* before, double* positions) {
+  return (has_wide_lanes() ? project_springs_wide : project_springs_narrow)(batches, parts, range, relaxation, before, positions);
 }
 inline SquaredLengths measure_springs(const StretchBatches& batches, const Parts& parts, const double* positions) {
   return (has_wide_lanes() ? measure_springs_wide : measure_springs_narrow)(batches, parts, positions);

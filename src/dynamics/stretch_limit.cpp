@@ -58,13 +58,13 @@ StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSetti
 }
 StretchLimit::~StretchLimit() = default;
 
-double StretchLimit::project(Points& positions, double relaxation) const {
+double StretchLimit::project(const Points& before, Points& positions, double relaxation) const {
   if (tethers_) tethers_->project(positions);
   const LengthRange range = length_range(settings_);
   SquaredLengths met;
   for (std::size_t stage = 0; stage + 1 < batches_->stage_begin.size(); ++stage) {
     met.include(extremes(*batches_, batches_->stage_begin[stage], batches_->stage_begin[stage + 1], [&](const Parts& parts) {
-      return project_springs(*batches_, parts, range, relaxation, positions.data());
+      return project_springs(*batches_, parts, range, relaxation, before.data(), positions.data());
     }));
   }
   return met.excess(range);

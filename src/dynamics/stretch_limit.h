@@ -50,10 +50,14 @@ class StretchLimit {
   /// weighted by inverse mass; pinned particles do not move. Tethers come first. Same bits for any number of threads. Returns the
   /// largest excess it met, as a part of the rest length.
   ///
+  /// What is too short is pushed along the direction it had `before`, where the step began (as SHAKE does: Ryckaert, Ciccotti and
+  /// Berendsen 1977). Along the one it has now a push on what turns would do work, and gave a cube that swung from an edge as much
+  /// energy in ten seconds as its swing had; a pull takes energy so, and keeps what turns far in a step at its length.
+  ///
   /// With a `relaxation` other than 1, in (0, 2), corrections are so many times as large. Passes converge all the same, on lengths
   /// that are not too long because these are a convex set (Agmon 1954; Motzkin and Schoenberg 1954), and hand excess on faster
   /// where many springs share it.
-  double project(Points& positions, double relaxation = 1.0) const;
+  double project(const Points& before, Points& positions, double relaxation = 1.0) const;
 
   /// Newton's method on all that is too long at once, as `solver` chooses: leads free particles to where springs are within
   /// their limits, with as little weighted movement as that takes. What is left is for the passes: compression, and what contact

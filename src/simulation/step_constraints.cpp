@@ -65,7 +65,8 @@ void StepConstraints::constrain(SimulationState& state, const Forces& forces, St
   for (int pass = 0; pass < limit_passes && !settled; ++pass) {
     const bool between = pass > 0 && pass + 1 < limit_passes;
     const double push = projects ? contacts_.project(state.x) : 0.0;
-    const double excess = solves && pass == 0 ? limit_->excess(state.x) : limit_->project(state.x, between ? kRelaxation : 1.0);
+    const double excess =
+        solves && pass == 0 ? limit_->excess(state.x) : limit_->project(step_began(state), state.x, between ? kRelaxation : 1.0);
     settled = excess <= limit_->settings().tolerance && push <= kContactTolerance;
     ++report.iterations;
   }
@@ -121,7 +122,7 @@ bool StepConstraints::relax(Points& positions, double excess_before) {
   if (projects_contacts()) contacts_.find_again(motion(), positions);
   for (int pass = 0; pass < kRelaxPasses; ++pass) {
     if (projects_contacts()) contacts_.project(positions);
-    limit_->project(positions);
+    limit_->project(before_, positions);
   }
   return true;
 }

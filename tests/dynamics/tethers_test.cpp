@@ -218,7 +218,7 @@ TEST(StretchLimit, WithTethersHoldsALongRopeInOnePass) {
   network.positions.row(0) *= 1.5;
   const auto length_after = [&](bool tethers) {
     Points x = network.positions;
-    StretchLimit(network, {.max_stretch = 0.0, .tethers = tethers}).project(x);
+    StretchLimit(network, {.max_stretch = 0.0, .tethers = tethers}).project(network.positions, x);
     return x.col(499).norm();
   };
   EXPECT_NEAR(length_after(true), 1.0, 0.002) << "the last spring may move it by its own length";
