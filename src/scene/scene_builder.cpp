@@ -98,17 +98,20 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
 
   built.settings = scene.settings;
   built.frames = frame_count(scene.duration, scene.frame_rate);
+  std::optional<std::string> step_warning;
   if (network) {
-    const StepChoice choice = choose_step(scene, *network, problems);
+    StepChoice choice = choose_step(scene, *network, problems);
     built.settings.step = choice.step;
     built.settings.most_parts = choice.most_parts;
     built.steps_per_frame = choice.steps_per_frame;
     built.largest_stable_step = choice.largest_stable;
+    step_warning = std::move(choice.warning);
     built.network = std::move(*network);
   }
   problems.insert(problems.begin(), known.all.begin(), known.all.end());
   if (!problems.empty()) throw InputError(std::move(problems));
   built.warnings = warnings_of(built);
+  if (step_warning) built.warnings.push_back(std::move(*step_warning));
   return built;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/format.h"
 #include "scene/frame_steps.h"
+#include "scene/many_steps.h"
 #include "simulation/step_check.h"
 
 #include <algorithm>
@@ -79,12 +80,14 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
   const LimitUse use = limit_use(network, scene.settings, !scene.obstacles.empty());
   if (scene.settings.stretch_limit) limit.emplace(network, *scene.settings.stretch_limit, use);
   const double without_passes = largest_auto_step(scene, use, limit, bounds);
-  const double largest = limit ? std::min(without_passes, limit->suggested_step(scene.settings.gravity.norm())) : without_passes;
+  const double for_passes = limit ? limit->suggested_step(scene.settings.gravity.norm()) : std::numeric_limits<double>::infinity();
+  const double largest = std::min(without_passes, for_passes);
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
     const int parts = parts_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));
     choice.steps_per_frame = 1 + (*steps - 1) / parts;
     choice.step = step_of(scene.frame_rate, choice.steps_per_frame);
     choice.most_parts = may_be_in_parts(scene, limit) ? kAutoParts : parts;
+    choice.warning = many_steps_warning(scene, network, choice, for_passes < without_passes);
   } else {
     problems.push_back({scene.file.string(), "step", "\"auto\"",
                         "must be at most " + format_upper_bound(largest) + " s, which is too many steps a frame",

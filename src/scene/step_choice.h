@@ -4,6 +4,8 @@
 #include "base/error.h"
 #include "scene/scene.h"
 
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace sprung {
@@ -20,8 +22,9 @@ inline constexpr int kAutoParts = 8;
 struct StepChoice {
   double step = 0.0;  ///< [s]
   int steps_per_frame = 1;
-  int most_parts = 1;           ///< of a step, where it misses the stretch limit or turns too much
-  double largest_stable = 0.0;  ///< [s]; infinity when any is stable
+  int most_parts = 1;                    ///< of a step, where it misses the stretch limit or turns too much
+  double largest_stable = 0.0;           ///< [s]; infinity when any is stable
+  std::optional<std::string> warning{};  ///< of very many steps a frame
 };
 
 /// The scene's step or, for "auto", 1 / (frame_rate * n) with the least n whose step is at most the advised one and at most what
@@ -29,7 +32,7 @@ struct StepChoice {
 /// whole scene. Steps of "auto" may be made in parts where a stretch limit that bears it is missed, or where what a global solve
 /// holds turns too much in one, unless Verlet's `damping` takes its part of each. Where passes may give way to a global solve,
 /// which holds all then, their steps are such parts of larger ones that this does with. Adds a problem when the scene's step is
-/// beyond the largest stable one and `stability` is refuse, or when a frame would take too many steps.
+/// beyond the largest stable one and `stability` is refuse, or when a frame would take too many steps; warns of very many.
 [[nodiscard]] StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems);
 
 }  // namespace sprung

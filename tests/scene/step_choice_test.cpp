@@ -10,6 +10,7 @@ namespace sprung {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
@@ -50,6 +51,23 @@ TEST(StepChoice, AutoIsTheFewestStepsWithinNineTenthsOfTheStableStep) {
       EXPECT_GT(1.0 / (10.0 * (n - 1)), 0.9 * built.largest_stable_step);
     }
   }
+}
+
+// A thousand are no more than it takes; what asks for more is told, and what to change.
+TEST(StepChoice, AutoTellsWhatAsksForVeryManySteps) {
+  EXPECT_THAT(build(1.0e8).warnings, testing::IsEmpty());
+  EXPECT_THAT(build(1.0e10).warnings,
+              ElementsAre(AllOf(HasSubstr("body \"pair\""), HasSubstr("structural"), HasSubstr("1e+10 N/m"), HasSubstr("1 kg"),
+                                HasSubstr("less stiffness"), HasSubstr("implicit_euler"))));
+  EXPECT_THAT(build(1.0, {"bodies.pair.springs.structural.damping=1e6"}).warnings,
+              ElementsAre(AllOf(HasSubstr("body \"pair\""), HasSubstr("1e+06 N s/m"), HasSubstr("less damping"))));
+  EXPECT_THAT(build(1.0e10, {R"(integrator={"type": "implicit_euler"})"}).warnings, testing::IsEmpty());
+  EXPECT_THAT(build(1.0e6, {R"(integrator={"type": "explicit_euler"})"}).warnings, Contains(HasSubstr("symplectic_euler")));
+  EXPECT_THAT(build(0.0, {R"(stretch_limit={"max_stretch": 0, "tolerance": 0, "iterations": 1, "solver": "gauss_seidel"})",
+                          "bodies.pair.shape.particles=1000"})
+                  .warnings,
+              ElementsAre(AllOf(HasSubstr("passes"), HasSubstr("newton"))));
+  EXPECT_THAT(build(1.0e10, {"step=1e-7"}).warnings, testing::IsEmpty()) << "they were asked for";
 }
 
 // Six steps are a turn.
