@@ -45,6 +45,7 @@ void ContactProjection::find_again(const StepMotion& motion, const Points& posit
 
 void ContactProjection::truncate(const StepMotion& motion, Points& positions, const FreeSpace::Relax& relax) {
   meetings_.clear();
+  noted_.clear();
   const bool meet = free_space_.bodies_may_meet();
   const Truncation truncation =
       meet ? truncate_bodies(motion, positions, relax) : free_space_.truncate(motion.before, positions, relax);
@@ -72,8 +73,7 @@ Truncation ContactProjection::truncate_bodies(const StepMotion& motion, Points& 
 bool ContactProjection::note_meetings(const std::vector<Contact>& meetings, const StepMotion& motion) {
   std::vector<Contact> fresh;
   for (const Contact& meeting : meetings) {
-    const auto is_same = [&](const Contact& other) { return other.particles == meeting.particles; };
-    if (std::none_of(meetings_.begin(), meetings_.end(), is_same)) fresh.push_back(meeting);
+    if (noted_.insert(meeting.particles).second) fresh.push_back(meeting);
   }
   response_.add(fresh, motion);
   meetings_.insert(meetings_.end(), fresh.begin(), fresh.end());

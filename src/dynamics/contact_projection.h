@@ -7,6 +7,9 @@
 #include "dynamics/integrator.h"
 #include "network/spring_network.h"
 
+#include <set>
+#include <vector>
+
 namespace sprung {
 
 class ContactProjection {
@@ -52,7 +55,8 @@ class ContactProjection {
 
   ContactResponse response_;
   FreeSpace free_space_;
-  std::vector<Contact> meetings_;  ///< of the step, that contact did not tell of
+  std::vector<Contact> meetings_;                 ///< of the step, that contact did not tell of
+  std::set<decltype(Contact::particles)> noted_;  ///< theirs
   Index truncated_ = 0;
   Index squeezed_ = 0;
 };
