@@ -73,8 +73,9 @@ Truncation ContactProjection::truncate_bodies(const StepMotion& motion, Points& 
 bool ContactProjection::note_meetings(const std::vector<Contact>& meetings, const StepMotion& motion) {
   std::vector<Contact> fresh;
   for (const Contact& meeting : meetings) {
-    if (noted_.insert(meeting.particles).second) fresh.push_back(meeting);
+    if (!noted_.contains(meeting.particles)) fresh.push_back(meeting);
   }
+  for (const Contact& meeting : fresh) noted_.insert(meeting.particles);
   response_.add(fresh, motion);
   meetings_.insert(meetings_.end(), fresh.begin(), fresh.end());
   return !fresh.empty();
