@@ -122,16 +122,23 @@ void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, 
   if (!after.allFinite()) return;
   std::vector<Index> particles = placement.all_movable({before, after});
   const Points allowed = after;
+  const auto note_taken_along = [&] {
+    const std::vector<Index>& taken = pairs->taken_along();
+    truncation.taken_along.insert(truncation.taken_along.end(), taken.begin(), taken.end());
+  };
   Outcomes outcomes = PairPlacement(zones, *pairs, particles).place(before, after);
+  note_taken_along();
   std::vector<Index> squeezed = pairs->passing_pins();
   const bool sure = placement.look_at_pins(particles, after, outcomes);
   if (!sure || (placement.closes_in({before, allowed}) && count(outcomes, Outcome::squeezed) > 0)) {
     squeezed.clear();
     truncation.in_parts = true;
+    truncation.taken_along.clear();
     outcomes = place_in_parts(environment, {before, allowed}, after, [&](const Way& part, Points& x) {
       const PlacedPart among_obstacles = placement.place_part(particles, part, x);
       pairs->begin_part(part.from, x);
       PlacedPart placed{PairPlacement(zones, *pairs, particles).place(part.from, x), among_obstacles.sure};
+      note_taken_along();
       const std::vector<Index> pins = pairs->passing_pins();
       squeezed.insert(squeezed.end(), pins.begin(), pins.end());
       placed.sure = placement.look_at_pins(particles, x, placed.outcomes) && placed.sure;

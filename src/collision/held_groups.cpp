@@ -131,7 +131,8 @@ void HeldGroups::anchor_groups(const std::vector<std::vector<Index>>& pins) {
     if (k != kNone && pins[static_cast<std::size_t>(k)].empty()) anchors[static_cast<std::size_t>(k)].push_back(anchor);
   }
   for (std::size_t k = 0; k < groups_.size(); ++k) {
-    if (!anchors[k].empty()) groups_[k] = {.motion = common_motion(anchors[k]), .fraction = 0.0, .turned = true};
+    if (anchors[k].empty()) continue;
+    groups_[k] = {.motion = common_motion(anchors[k]), .fraction = 0.0, .turned = true, .anchored = true};
   }
 }
 

@@ -58,6 +58,9 @@ class HeldGroups {
   /// The plane that the group takes along; one that stays for none.
   [[nodiscard]] CarriedPlane carried(Index group, const Vector3& normal) const;
 
+  /// Whether the group goes along with anchors.
+  [[nodiscard]] bool is_anchored(Index group) const { return groups_[static_cast<std::size_t>(group)].anchored; }
+
   [[nodiscard]] double fraction(Index group) const { return groups_[static_cast<std::size_t>(group)].fraction; }
   void limit_fraction(Index group, double fraction);
 
@@ -66,6 +69,7 @@ class HeldGroups {
     AffineTransform motion = AffineTransform::Identity();
     double fraction = 1.0;
     bool turned = false;  ///< the motion may be more than a translation
+    bool anchored = false;
   };
   struct Lead {
     Index follower;

@@ -136,6 +136,12 @@ std::vector<Index> PairPlanes::held() const {
   return held;
 }
 
+std::vector<Index> PairPlanes::taken_along() const {
+  std::vector<Index> taken = groups_.particles();
+  std::erase_if(taken, [&](Index i) { return !groups_.is_anchored(groups_.group(i)); });
+  return taken;
+}
+
 /// Whether the sides end nearer than they ever may. What touched when the step began has no plane to keep, what moves rigidly needs
 /// none.
 bool PairPlanes::passes(const ElementPair& pair) const {

@@ -43,6 +43,9 @@ class PairPlanes {
   /// In any order.
   [[nodiscard]] std::vector<Index> held() const;
 
+  /// Held particles that anchors take along, in any order.
+  [[nodiscard]] std::vector<Index> taken_along() const;
+
   /// Particles of pairs that pass each other all the same, because pins that go different ways drag them; pins too, in any order,
   /// some more than once. Requires that hold() and give_way() returned false.
   [[nodiscard]] const std::vector<Index>& passing() const { return passing_; }

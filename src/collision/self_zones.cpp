@@ -35,6 +35,7 @@ struct SelfZones::Implementation {
   std::vector<Index> held;
   std::vector<Index> passing;  ///< ascending
   std::vector<PairPlanes::Bound> bounds;
+  std::vector<Index> taken_along;
   bool turned = false;  ///< groups were, and the normals of their pairs not
 };
 
@@ -68,6 +69,7 @@ const std::vector<Index>& SelfZones::hold(const Points& before, const Points& ta
   self.passing = planes.passing();
   std::sort(self.passing.begin(), self.passing.end());
   self.bounds = planes.bounds(self.watch.pairs());
+  self.taken_along = planes.taken_along();
   return self.held;
 }
 
@@ -81,6 +83,8 @@ SelfZones::Ball SelfZones::ball(Index particle) const {
   const MovingBalls& balls = implementation_->watch.balls();
   return {balls.center(particle, 1.0), balls.radius(particle)};
 }
+
+const std::vector<Index>& SelfZones::taken_along() const { return implementation_->taken_along; }
 
 bool SelfZones::passes(Index particle) const {
   return std::binary_search(implementation_->passing.begin(), implementation_->passing.end(), particle);

@@ -52,6 +52,9 @@ class SelfZones {
   };
   [[nodiscard]] Ball ball(Index particle) const;
 
+  /// Held particles that anchors take along, in any order.
+  [[nodiscard]] const std::vector<Index>& taken_along() const;
+
   /// Whether a held particle is one of a side that passes another wherever it ends: pins that go different ways drag it.
   [[nodiscard]] bool passes(Index particle) const;
 

@@ -4,6 +4,7 @@
 #include "dynamics/contact_surface.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -47,10 +48,21 @@ void ContactProjection::truncate(const StepMotion& motion, Points& positions, co
   meetings_.clear();
   noted_.clear();
   const bool meet = free_space_.bodies_may_meet();
-  const Truncation truncation =
-      meet ? truncate_bodies(motion, positions, relax) : free_space_.truncate(motion.before, positions, relax);
+  Truncation truncation = meet ? truncate_bodies(motion, positions, relax) : free_space_.truncate(motion.before, positions, relax);
+  taken_along_ = std::move(truncation.taken_along);
   truncated_ = truncation.truncated;
   squeezed_ = truncation.squeezed;
+}
+
+void ContactProjection::slow_down_taken_along(const StepMotion& motion, SimulationState& state,
+                                              const Integrator& integrator) const {
+  for (const Index i : taken_along_) {
+    const double most = (motion.advanced.col(i) - motion.before.col(i)).norm() / motion.dt;
+    const double speed = state.v.col(i).norm();
+    if (!(speed > most)) continue;
+    state.v.col(i) *= most / speed;
+    integrator.velocity_changed(state, i, motion.dt);
+  }
 }
 
 // Truncation stops each of two bodies for itself, whatever the other weighs: a cube that flew into a light cloth stopped in

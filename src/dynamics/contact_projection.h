@@ -45,6 +45,10 @@ class ContactProjection {
   /// as contact first, which keeps their momentum.
   void truncate(const StepMotion& motion, Points& positions, const FreeSpace::Relax& relax = {});
 
+  /// Slows what truncation took along with obstacles down to the speed that forces gave it: what is far from one that spins was
+  /// swung about it. What leans on it contact speeds up. Requires velocities that are recovered from positions.
+  void slow_down_taken_along(const StepMotion& motion, SimulationState& state, const Integrator& integrator) const;
+
   [[nodiscard]] Index truncated_count() const { return truncated_; }
   [[nodiscard]] Index squeezed_count() const { return squeezed_; }
 
@@ -57,6 +61,7 @@ class ContactProjection {
   FreeSpace free_space_;
   std::vector<Contact> meetings_;                 ///< of the step, that contact did not tell of
   std::set<decltype(Contact::particles)> noted_;  ///< theirs
+  std::vector<Index> taken_along_;
   Index truncated_ = 0;
   Index squeezed_ = 0;
 };

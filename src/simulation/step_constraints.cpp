@@ -108,6 +108,7 @@ void StepConstraints::truncate(SimulationState& state, const Forces& forces, Ste
   if (answers) answered_ = state.x;
   if (meets) contacts_.truncate(motion(), state.x, lead_on);
   integrator_.recover_velocities(state, forces, step_began(state), advanced_, dt_);
+  if (meets) contacts_.slow_down_taken_along(motion(), state, integrator_);
   if (meets) contacts_.settle_velocities(motion(), state, integrator_);
   report.truncated = contacts_.truncated_count();
   report.squeezed = contacts_.squeezed_count();
