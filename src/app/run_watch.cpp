@@ -43,17 +43,19 @@ std::string_view remedy_for_stretch(const StretchLimitSettings& limit) {
 }  // namespace
 
 RunWatch::RunWatch(const Simulator& simulator, RunOutput& output, bool quiet)
-    : simulator_(simulator), output_(output), quiet_(quiet) {}
+    : simulator_(simulator), output_(output), quiet_(quiet), gain_(simulator) {}
 
 void RunWatch::see(const FrameDiagnostics& frame) {
   see_squeezing(frame);
   see_stretch(frame);
   see_handovers();
   see_held_back(frame);
+  gain_.see(frame);
 }
 
 void RunWatch::tell() {
   tell_of_thin_bodies();
+  if (const auto gained = gain_.warning()) warn(*gained);
   if (missed_.frames == 0) return;
   warn(
       fmt::format("the stretch limit was missed by more than its tolerance in {} {}, by at most {} % of a rest length in frame {}; "

@@ -1,6 +1,7 @@
 // What the user should be told of a run, as it happens or at its end.
 #pragma once
 
+#include "app/energy_gain.h"
 #include "output/run_output.h"
 #include "simulation/diagnostics.h"
 
@@ -18,8 +19,8 @@ class RunWatch {
   /// stretch limit. Throws FileError.
   void see(const FrameDiagnostics& frame);
 
-  /// After the last frame: tells by how much the stretch limit was missed, and of bodies too thin to lie on each other. Throws
-  /// FileError.
+  /// After the last frame: tells by how much the stretch limit was missed, of bodies too thin to lie on each other, and of energy
+  /// from nowhere. Throws FileError.
   void tell();
 
  private:
@@ -41,6 +42,7 @@ class RunWatch {
   bool quiet_;
   bool squeezed_ = false;
   Missed missed_;
+  EnergyGain gain_;
   int frames_ = 0;
   int held_back_ = 0;              ///< frames in which many particles were
   std::vector<bool> handed_over_;  ///< by body

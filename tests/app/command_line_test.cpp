@@ -130,6 +130,26 @@ TEST_F(CommandLine, RunTellsOfAMissedStretchLimitAndWhatHoldsItBetter) {
   EXPECT_THAT(ending.err, AllOf(HasSubstr("more iterations or smaller steps"), Not(HasSubstr("solver"))));
 }
 
+// Undamped, and passing through itself, a soft rope gains from each spring that comes to no length.
+TEST_F(CommandLine, RunTellsOfEnergyFromNowhere) {
+  json scene = {{"version", 1}, {"duration", 40}, {"frame_rate", 10}, {"integrator", {{"type", "symplectic_euler"}}}};
+  scene["bodies"]["rope"] = {{"shape", {{"type", "rope"}, {"from", {0, 0, 0}}, {"to", {1, 0, 0}}, {"particles", 40}}},
+                             {"mass", 0.1},
+                             {"springs", {{"structural", {{"stiffness", 100}}}, {"bend", {{"stiffness", 1}}}}},
+                             {"pins", json::array({{{"at", "corner"}, {"which", {"from"}}}})},
+                             {"velocity", {0, 3, 0.3}}};
+  Ending ending = run({"run", save(scene), "--out", out()});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.err, AllOf(HasSubstr("though nothing drives them"), HasSubstr("more damping")));
+  EXPECT_THAT(record()["warnings"], Contains(StartsWith("motion, springs and height held")));
+
+  scene["bodies"]["rope"]["springs"]["structural"]["damping"] = 0.05;
+  EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("warning")));
+  scene["bodies"]["rope"]["springs"]["structural"].erase("damping");
+  scene["bodies"]["rope"]["pins"][0]["motion"] = {{"spin", {0, 90, 0}}};
+  EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("nothing drives")));
+}
+
 TEST_F(CommandLine, RunTellsOfBodiesTooThinToLieOnEachOther) {
   json scene = {{"version", 1}, {"duration", 0.5}, {"frame_rate", 30}, {"stretch_limit", {{"max_stretch", 0.02}}}};
   scene["obstacles"]["floor"]["shape"] = {{"type", "half_space"}};
