@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace sprung {
 namespace {
 
 using Front = FrontLayout::Front;
+using Child = FrontLayout::Child;
 using Entry = FrontLayout::Entry;
 
 /// 1 / the power of two next below `largest`, or 1 where there is none.
@@ -34,6 +36,18 @@ void add_entry(const Entry& entry, const BlockMatrix& matrix, double scale, doub
     Number* const row = panel + shape.place(entry.row + r, entry.column);
     for (Index c = 0; c < 3; ++c) row[c * kSpringLanes] = static_cast<Number>(scale * block(r, c));
   }
+}
+
+// What is read backwards no machine fetches ahead. The first of a large panel are enough: then it sees where reading goes.
+constexpr std::size_t kFetched = 16384;  // [bytes]
+constexpr std::size_t kCacheLine = 64;
+
+// Inlined, as compilers leave out calls of what does nothing but fetch.
+template <class Number>
+[[gnu::always_inline]] inline void fetch_panel(const Front& front, const Number* panels) {
+  const Number* const panel = panels + front.panel;
+  const std::size_t size = std::min(front.shape.size(), kFetched / sizeof(Number));
+  for (std::size_t k = 0; k < size; k += kCacheLine / sizeof(Number)) __builtin_prefetch(panel + k);
 }
 
 }  // namespace
@@ -70,9 +84,8 @@ bool BlockCholesky<Number>::factor(const BlockMatrix& matrix, double raise) {
     assemble(f, matrix, raise);
     Number* const update = updates_.data() + front.update;
     if (!eliminate_front(front.shape, &panels_[front.panel], &inverse_[front.first_place], update, row_.data())) return false;
-    for (const Index c : front.children) {
-      const Front& child = fronts[c];
-      add_to_update(child.runs, updates_.data() + child.update, child.shape.lower_height(), front.shape.lower_height(), update);
+    for (const Child& child : layout_->children_of(front)) {
+      add_to_update(layout_->runs_of(child), updates_.data() + child.update, child.height, front.shape.lower_height(), update);
     }
   }
   return true;
@@ -84,15 +97,14 @@ void BlockCholesky<Number>::assemble(std::size_t number, const BlockMatrix& matr
   const FrontShape& shape = front.shape;
   Number* const panel = &panels_[front.panel];
   std::fill_n(panel, shape.size(), Number{});
-  for (Index k = 3 * static_cast<Index>(front.own.size()); k < shape.width(); ++k) panel[shape.place(k, k)] = 1;
+  for (Index k = front.own_rows; k < shape.width(); ++k) panel[shape.place(k, k)] = 1;
   const std::vector<Entry>& entries = layout_->entries;
   for (std::size_t e = number == 0 ? 0 : layout_->fronts[number - 1].end_entry; e < front.end_entry; ++e) {
     __builtin_prefetch(block_of(entries[std::min(e + kAhead, entries.size() - 1)], matrix).data());
     add_entry(entries[e], matrix, scale_, raise, shape, panel);
   }
-  for (const Index c : front.children) {
-    const Front& child = layout_->fronts[c];
-    add_to_panel(child.parent_columns, child.parent_rows, updates_.data() + child.update, child.shape.lower_height(), panel);
+  for (const Child& child : layout_->children_of(front)) {
+    add_to_panel(layout_->columns_of(child), layout_->rows_of(child), updates_.data() + child.update, child.height, panel);
   }
 }
 
@@ -107,13 +119,16 @@ void BlockCholesky<Number>::solve(const Points& right, Points& solution) {
   }
   for (const Front& front : layout_->fronts) {
     solve_front(front.shape, &panels_[front.panel], &vector_[front.first_place], below_.data());
-    for (std::size_t k = 0; k < front.lower.size(); ++k) Part::Map(&vector_[front.lower[k]]) -= Part::Map(&below_[3 * k]);
+    const std::span<const Index> lower = layout_->lower_of(front);
+    for (std::size_t k = 0; k < lower.size(); ++k) Part::Map(&vector_[lower[k]]) -= Part::Map(&below_[3 * k]);
   }
   for (std::size_t f = layout_->fronts.size(); f-- > 0;) {
     const Front& front = layout_->fronts[f];
+    if (f > 0) fetch_panel(layout_->fronts[f - 1], panels_.data());
     // The rows that fill up the last tile are zero in L, but zero times what is not finite is not.
     std::fill_n(below_.begin(), front.shape.lower_height(), Number{});
-    for (std::size_t k = 0; k < front.lower.size(); ++k) Part::Map(&below_[3 * k]) = Part::Map(&vector_[front.lower[k]]);
+    const std::span<const Index> lower = layout_->lower_of(front);
+    for (std::size_t k = 0; k < lower.size(); ++k) Part::Map(&below_[3 * k]) = Part::Map(&vector_[lower[k]]);
     solve_front_transposed(front.shape, &panels_[front.panel], &inverse_[front.first_place], &vector_[front.first_place],
                            below_.data(), row_.data());
   }

@@ -5,7 +5,6 @@
 #include "dynamics/lane_count.h"
 
 #include <span>
-#include <vector>
 
 namespace sprung {
 
@@ -62,8 +61,8 @@ struct PanelRows {
     Index from;
     Index to;
   };
-  std::vector<Place> whole;   ///< the first of four neighbours that fill a row of tiles
-  std::vector<Place> single;  ///< all others
+  std::span<const Place> whole;   ///< the first of four neighbours that fill a row of tiles
+  std::span<const Place> single;  ///< all others
 };
 
 /// Adds what a child hands on to its parent's own columns, before the parent is eliminated. `columns` are those of the child's

@@ -10,8 +10,8 @@ namespace {
 
 Index tiles_of(std::size_t particles) { return static_cast<Index>((3 * particles + kSpringLanes - 1) / kSpringLanes); }
 
-/// The particles that are in, and who is coupled to whom among them.
-MatrixGraph graph_of(const BlockMatrix& pattern, const std::vector<Index>& number, Index count) {
+/// Who is coupled to whom among the particles that are in, by their numbers.
+MatrixGraph graph_of(const BlockMatrix& pattern, const std::vector<Index>& number, std::size_t count) {
   std::vector<std::vector<Index>> others(count);
   for (Index j = 0; j < pattern.size(); ++j) {
     pattern.for_column(j, [&](Index i, const Matrix3&) {
@@ -28,33 +28,8 @@ MatrixGraph graph_of(const BlockMatrix& pattern, const std::vector<Index>& numbe
   return graph;
 }
 
-/// Of rows that ascend.
-PanelRows places_in_panel(const std::vector<Index>& rows, const FrontShape& shape) {
-  PanelRows places;
-  for (std::size_t k = 0; k < rows.size();) {
-    const std::size_t last = k + kSpringLanes - 1;
-    const bool fills = rows[k] % kSpringLanes == 0 && last < rows.size() && rows[last] == rows[k] + kSpringLanes - 1;
-    (fills ? places.whole : places.single).push_back({static_cast<Index>(k), static_cast<Index>(shape.place(rows[k], 0))});
-    k += fills ? kSpringLanes : 1;
-  }
-  return places;
-}
-
-}  // namespace
-
-Index FrontLayout::Front::row_of(Index at) const {
-  if (at < first_place + shape.width()) return at - first_place;
-  return shape.width() + 3 * static_cast<Index>(std::ranges::lower_bound(lower, at) - lower.begin());
-}
-
-FrontLayout::FrontLayout(const BlockMatrix& pattern, const std::vector<bool>& left_out) {
-  place_fronts(pattern, left_out);
-  join_with_parents();
-  place_updates();
-  place_entries(pattern);
-}
-
-void FrontLayout::place_fronts(const BlockMatrix& pattern, const std::vector<bool>& left_out) {
+/// Supernodes of particles.
+std::vector<Supernode> supernodes_of(const BlockMatrix& pattern, const std::vector<bool>& left_out) {
   std::vector<Index> particles;
   std::vector<Index> number(pattern.size(), kNone);
   for (Index i = 0; i < pattern.size(); ++i) {
@@ -62,57 +37,63 @@ void FrontLayout::place_fronts(const BlockMatrix& pattern, const std::vector<boo
     number[i] = static_cast<Index>(particles.size());
     particles.push_back(i);
   }
-  const std::vector<Supernode> nodes = find_supernodes(graph_of(pattern, number, static_cast<Index>(particles.size())));
-  place.assign(pattern.size(), kNone);
+  std::vector<Supernode> nodes = find_supernodes(graph_of(pattern, number, particles.size()));
+  for (Supernode& node : nodes) {
+    for (std::vector<Index>* const rows : {&node.columns, &node.rows}) {
+      for (Index& row : *rows) row = particles[row];
+    }
+  }
+  return nodes;
+}
+
+template <class T>
+Index end_of(const std::vector<T>& list) {
+  return static_cast<Index>(list.size());
+}
+
+}  // namespace
+
+Index FrontLayout::row_of(const Front& front, Index at) const {
+  if (at < front.first_place + front.shape.width()) return at - front.first_place;
+  const std::span<const Index> below = lower_of(front);
+  return front.shape.width() + 3 * static_cast<Index>(std::ranges::lower_bound(below, at) - below.begin());
+}
+
+FrontLayout::FrontLayout(const BlockMatrix& pattern, const std::vector<bool>& left_out) : place(pattern.size(), kNone) {
+  const std::vector<Supernode> nodes = supernodes_of(pattern, left_out);
+  place_fronts(nodes);
+  place_updates(nodes);
+  join_with_parents(nodes);
+  place_entries(pattern, nodes);
+}
+
+void FrontLayout::place_fronts(const std::vector<Supernode>& nodes) {
   for (const Supernode& node : nodes) {
     Front& front = fronts.emplace_back();
     front.shape = {.own_tiles = tiles_of(node.columns.size()), .lower_tiles = tiles_of(node.rows.size())};
-    front.parent = node.parent;
+    front.own_rows = 3 * end_of(node.columns);
     front.first_place = static_cast<Index>(vector_size);
     front.panel = panel_size;
-    for (const Index column : node.columns) {
-      place[particles[column]] = front.first_place + 3 * static_cast<Index>(front.own.size());
-      front.own.push_back(particles[column]);
-    }
+    for (std::size_t k = 0; k < node.columns.size(); ++k) place[node.columns[k]] = front.first_place + 3 * static_cast<Index>(k);
     vector_size += static_cast<std::size_t>(front.shape.width());
     panel_size += front.shape.size();
   }
   for (std::size_t f = 0; f < fronts.size(); ++f) {
-    for (const Index row : nodes[f].rows) fronts[f].lower.push_back(place[particles[row]]);
-  }
-}
-
-void FrontLayout::join_with_parents() {
-  for (std::size_t f = 0; f < fronts.size(); ++f) {
-    Front& front = fronts[f];
-    if (front.parent == kNone) continue;
-    Front& parent = fronts[front.parent];
-    parent.children.push_back(static_cast<Index>(f));
-    std::vector<Index> rows;
-    for (std::size_t k = 0; k < front.lower.size(); ++k) {
-      const Index row = parent.row_of(front.lower[k]);
-      for (Index r = 0; r < 3; ++r) rows.push_back(row + r);
-      if (row < parent.shape.width()) {
-        front.parent_columns.push_back(row);
-        continue;
-      }
-      const RowRun run{.from = 3 * static_cast<Index>(k), .to = row - parent.shape.width(), .length = 3};
-      if (!front.runs.empty() && front.runs.back().to + front.runs.back().length == run.to) {
-        front.runs.back().length += run.length;
-      } else {
-        front.runs.push_back(run);
-      }
-    }
-    front.parent_rows = places_in_panel(rows, parent.shape);
+    fronts[f].lower.begin = end_of(lower);
+    for (const Index row : nodes[f].rows) lower.push_back(place[row]);
+    fronts[f].lower.end = end_of(lower);
   }
 }
 
 // Updates are taken in the reverse order of their making, but a front's is made while its children's are still there. Fronts at
 // even and odd depths of the tree have a stack each, so that theirs can go first.
-void FrontLayout::place_updates() {
+void FrontLayout::place_updates(const std::vector<Supernode>& nodes) {
   std::vector<Index> depth(fronts.size(), 0);
+  std::vector<Index> first_child(fronts.size(), kNone);
   for (std::size_t f = fronts.size(); f-- > 0;) {
-    if (fronts[f].parent != kNone) depth[f] = depth[fronts[f].parent] + 1;
+    if (nodes[f].parent == kNone) continue;
+    depth[f] = depth[nodes[f].parent] + 1;
+    first_child[nodes[f].parent] = static_cast<Index>(f);
   }
   std::array<std::size_t, 2> top{};
   std::array<std::size_t, 2> most{};
@@ -122,7 +103,7 @@ void FrontLayout::place_updates() {
     fronts[f].update = top[stack];
     top[stack] += height * height;
     most[stack] = std::max(most[stack], top[stack]);
-    if (!fronts[f].children.empty()) top[1 - stack] = fronts[fronts[f].children.front()].update;
+    if (first_child[f] != kNone) top[1 - stack] = fronts[first_child[f]].update;
   }
   for (std::size_t f = 0; f < fronts.size(); ++f) {
     if (depth[f] % 2 == 1) fronts[f].update += most[0];
@@ -130,7 +111,60 @@ void FrontLayout::place_updates() {
   update_size = most[0] + most[1];
 }
 
-void FrontLayout::place_entries(const BlockMatrix& pattern) {
+void FrontLayout::join_with_parents(const std::vector<Supernode>& nodes) {
+  std::vector<std::vector<Index>> children_of_fronts(fronts.size());
+  for (std::size_t f = 0; f < fronts.size(); ++f) {
+    if (nodes[f].parent != kNone) children_of_fronts[nodes[f].parent].push_back(static_cast<Index>(f));
+  }
+  for (std::size_t f = 0; f < fronts.size(); ++f) {
+    fronts[f].children.begin = end_of(children);
+    for (const Index child : children_of_fronts[f]) add_child(fronts[f], fronts[child]);
+    fronts[f].children.end = end_of(children);
+  }
+}
+
+void FrontLayout::add_child(const Front& parent, const Front& front) {
+  Child child{.height = front.shape.lower_height(),
+              .update = front.update,
+              .columns = {.begin = end_of(columns)},
+              .whole = {.begin = end_of(whole)},
+              .single = {.begin = end_of(single)},
+              .runs = {.begin = end_of(runs)}};
+  const std::span<const Index> below = lower_of(front);
+  std::vector<Index> rows;
+  for (std::size_t k = 0; k < below.size(); ++k) {
+    const Index row = row_of(parent, below[k]);
+    for (Index r = 0; r < 3; ++r) rows.push_back(row + r);
+    if (row < parent.shape.width()) {
+      columns.push_back(row);
+      continue;
+    }
+    const RowRun run{.from = 3 * static_cast<Index>(k), .to = row - parent.shape.width(), .length = 3};
+    if (end_of(runs) > child.runs.begin && runs.back().to + runs.back().length == run.to) {
+      runs.back().length += run.length;
+    } else {
+      runs.push_back(run);
+    }
+  }
+  add_rows(parent.shape, rows);
+  child.columns.end = end_of(columns);
+  child.whole.end = end_of(whole);
+  child.single.end = end_of(single);
+  child.runs.end = end_of(runs);
+  children.push_back(child);
+}
+
+/// Of rows that ascend.
+void FrontLayout::add_rows(const FrontShape& parent, const std::vector<Index>& rows) {
+  for (std::size_t k = 0; k < rows.size();) {
+    const std::size_t last = k + kSpringLanes - 1;
+    const bool fills = rows[k] % kSpringLanes == 0 && last < rows.size() && rows[last] == rows[k] + kSpringLanes - 1;
+    (fills ? whole : single).push_back({static_cast<Index>(k), static_cast<Index>(parent.place(rows[k], 0))});
+    k += fills ? kSpringLanes : 1;
+  }
+}
+
+void FrontLayout::place_entries(const BlockMatrix& pattern, const std::vector<Supernode>& nodes) {
   std::vector<std::vector<Entry>> entries_of(pattern.size());
   Index block = 0;
   for (Index j = 0; j < pattern.size(); ++j) {
@@ -145,15 +179,15 @@ void FrontLayout::place_entries(const BlockMatrix& pattern) {
           {.block = number, .row = row, .column = column, .on_diagonal = false, .transposed = transposed});
     });
   }
-  for (Front& front : fronts) {
-    for (const Index particle : front.own) {
+  for (std::size_t f = 0; f < fronts.size(); ++f) {
+    for (const Index particle : nodes[f].columns) {
       for (Entry entry : entries_of[particle]) {
-        entry.row = front.row_of(entry.row);
-        entry.column -= front.first_place;
+        entry.row = row_of(fronts[f], entry.row);
+        entry.column -= fronts[f].first_place;
         entries.push_back(entry);
       }
     }
-    front.end_entry = entries.size();
+    fronts[f].end_entry = entries.size();
   }
 }
 
