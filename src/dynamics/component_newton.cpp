@@ -73,15 +73,17 @@ ComponentNewton::~ComponentNewton() = default;
 std::optional<int> ComponentNewton::solve(const Points& before, Points& positions, double fall) {
   gather(before, positions);
   energy_.set_weight(1.0);
-  if (energy_.value(led_, led_) == 0.0) {
+  const double beyond = energy_.value(led_, led_);
+  if (beyond == 0.0) {
     balanced_energy_ = kUnknown;
     return std::nullopt;
   }
-  energy_.set_weight(carried_weight(fall));
+  const double weight = carried_weight(fall);
+  energy_.set_weight(weight);
   energy_.find_near(led_);
   // An order of elimination takes its time, and what only asks for the step, or is never handed over, needs none.
   if (!solver_) solver_ = make_system_solver(component_);
-  const int iterations = minimise();
+  const int iterations = minimise(weight * beyond);
   last_iterations_ = iterations;
   if (clips_) clip();
   for (Index i = 0; i < component_.free_count; ++i) positions.col(component_.points[i]) = x_.col(i);
@@ -129,9 +131,8 @@ double ComponentNewton::most_beyond() const {
   return most;
 }
 
-int ComponentNewton::minimise() {
-  start();
-  double energy = energy_.linearise(x_, led_, NearLimit::slack, system_);
+int ComponentNewton::minimise(double energy_where_led) {
+  double energy = start(energy_where_led);
   const double negligible = kBalanced * energy;
   if (imbalance() <= negligible || std::abs(energy - balanced_energy_) <= negligible) return 0;
   const double at_first = inertia();
@@ -167,11 +168,15 @@ int ComponentNewton::minimise() {
   return kMostIterations;
 }
 
-// In motion where the step began is mostly nearer to the minimum: there springs are not too long.
-void ComponentNewton::start() {
+/// Linearises where the solve begins; returns the energy there. In motion where the step began is mostly nearer to the minimum:
+/// there springs are not too long.
+double ComponentNewton::start(double energy_where_led) {
   x_ = before_.colwise() + common_move_;
   x_.rightCols(component_.pin_count()) = led_.rightCols(component_.pin_count());
-  if (energy_.value(led_, led_) < energy_.value(x_, led_)) x_ = led_;
+  const double energy = energy_.linearise(x_, led_, NearLimit::slack, system_);
+  if (energy <= energy_where_led) return energy;
+  x_ = led_;
+  return energy_.linearise(x_, led_, NearLimit::slack, system_);
 }
 
 double ComponentNewton::inertia() const {

@@ -39,8 +39,8 @@ class ComponentNewton {
   [[nodiscard]] Vector3 common_move() const;
   [[nodiscard]] double carried_weight(double fall) const;
   [[nodiscard]] double most_beyond() const;
-  int minimise();
-  void start();
+  int minimise(double energy_where_led);
+  [[nodiscard]] double start(double energy_where_led);
   [[nodiscard]] double inertia() const;
   [[nodiscard]] double imbalance() const;
   [[nodiscard]] Descent descend(double& energy, double forecast);

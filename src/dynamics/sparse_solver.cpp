@@ -9,11 +9,12 @@ namespace sprung {
 namespace {
 
 // A factor takes as long as eight solves with it. One that is worth something takes more off in each iteration; but where the
-// diagonal was raised, what hardly any link holds comes late, and an iteration may bring up more of it than it takes off.
+// diagonal was raised, or links changed since, what hardly any link holds comes late, and an iteration may bring up more of it than
+// it takes off.
 constexpr int kMostIterations = 8;
 constexpr double kSlowest = 0.8;
 constexpr int kMostIterationsRaised = 16;
-constexpr double kSlowestRaised = std::numeric_limits<double>::infinity();
+constexpr double kAnySlowness = std::numeric_limits<double>::infinity();
 
 // So many roundings of single precision: with half as many some diagonals of cloths became negative.
 constexpr double kRaise = 4.0 * 0x1p-24;
@@ -43,7 +44,7 @@ SparseSolver::SparseSolver(const StretchComponent& component)
       matrix_(pattern_of(component)),
       rough_(matrix_),
       ways_{Roughly{.raise = 0.0, .patience = {.most_iterations = kMostIterations, .slowest = kSlowest}},
-            Roughly{.raise = kRaise, .patience = {.most_iterations = kMostIterationsRaised, .slowest = kSlowestRaised}}} {}
+            Roughly{.raise = kRaise, .patience = {.most_iterations = kMostIterationsRaised, .slowest = kAnySlowness}}} {}
 
 double SparseSolver::solve(const StretchSystem& system, Points& step) {
   assemble(system);
@@ -77,7 +78,7 @@ void SparseSolver::solve_again(const StretchSystem& system, Points& step) {
 std::optional<double> SparseSolver::solve_as_last(const StretchSystem& system, Points& step) {
   // What changes so fast mostly does so the next time too.
   if (std::exchange(led_nowhere_, false)) return std::nullopt;
-  const Patience patience{.most_iterations = kMostIterations, .slowest = kSlowest, .may_be_left = system.may_be_left};
+  const Patience patience{.most_iterations = kMostIterations, .slowest = kAnySlowness, .may_be_left = system.may_be_left};
   const auto left = approach_with_kept(patience, system.residual, step);
   led_nowhere_ = !left;
   return left;
