@@ -1,7 +1,6 @@
 #include "dynamics/block_cholesky.h"
 
 #include "base/tiny_numbers.h"
-#include "dynamics/front_layout.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,10 +70,35 @@ BlockCholesky<Number>::BlockCholesky(const BlockMatrix& pattern, const std::vect
 template <class Number>
 BlockCholesky<Number>::~BlockCholesky() = default;
 
-// Where springs hardly push, what one particle hands on to the next falls off until it is next to nothing.
 template <class Number>
 bool BlockCholesky<Number>::factor(const BlockMatrix& matrix, double raise) {
   const TinyNumbersAreZero quick;
+  return eliminate(matrix, raise, [](const Front&) {});
+}
+
+template <class Number>
+bool BlockCholesky<Number>::factor_and_solve(const BlockMatrix& matrix, double raise, const Points& right, Points& solution) {
+  const TinyNumbersAreZero quick;
+  const double scale = take(right);
+  if (!eliminate(matrix, raise, [&](const Front& front) { substitute(front); })) return false;
+  substitute_back();
+  give(scale, solution);
+  return true;
+}
+
+template <class Number>
+void BlockCholesky<Number>::solve(const Points& right, Points& solution) {
+  const TinyNumbersAreZero quick;
+  const double scale = take(right);
+  for (const Front& front : layout_->fronts) substitute(front);
+  substitute_back();
+  give(scale, solution);
+}
+
+/// Calls `and_then` with each front while its panel is near.
+template <class Number>
+template <class AndThen>
+bool BlockCholesky<Number>::eliminate(const BlockMatrix& matrix, double raise, const AndThen& and_then) {
   double largest = 0.0;
   for (Index i = 0; i < matrix.size(); ++i) largest = std::max(largest, matrix.diagonal(i).diagonal().maxCoeff());
   scale_ = scale_to_one(largest);
@@ -84,6 +108,7 @@ bool BlockCholesky<Number>::factor(const BlockMatrix& matrix, double raise) {
     assemble(f, matrix, raise);
     Number* const update = updates_.data() + front.update;
     if (!eliminate_front(front.shape, &panels_[front.panel], &inverse_[front.first_place], update, row_.data())) return false;
+    and_then(front);
     for (const Child& child : layout_->children_of(front)) {
       add_to_update(layout_->runs_of(child), updates_.data() + child.update, child.height, front.shape.lower_height(), update);
     }
@@ -108,20 +133,26 @@ void BlockCholesky<Number>::assemble(std::size_t number, const BlockMatrix& matr
   }
 }
 
+/// Returns by what numbers are scaled on their way in.
 template <class Number>
-void BlockCholesky<Number>::solve(const Points& right, Points& solution) {
-  const TinyNumbersAreZero quick;
-  using Part = Eigen::Matrix<Number, 3, 1>;
+double BlockCholesky<Number>::take(const Points& right) {
   const double scale = scale_to_one(right.cwiseAbs().maxCoeff());
   std::ranges::fill(vector_, Number{});
   for (Index i = 0; i < right.cols(); ++i) {
     if (layout_->place[i] != kNone) Part::Map(&vector_[layout_->place[i]]) = (scale * right.col(i)).template cast<Number>();
   }
-  for (const Front& front : layout_->fronts) {
-    solve_front(front.shape, &panels_[front.panel], &vector_[front.first_place], below_.data());
-    const std::span<const Index> lower = layout_->lower_of(front);
-    for (std::size_t k = 0; k < lower.size(); ++k) Part::Map(&vector_[lower[k]]) -= Part::Map(&below_[3 * k]);
-  }
+  return scale;
+}
+
+template <class Number>
+void BlockCholesky<Number>::substitute(const Front& front) {
+  solve_front(front.shape, &panels_[front.panel], &vector_[front.first_place], below_.data());
+  const std::span<const Index> lower = layout_->lower_of(front);
+  for (std::size_t k = 0; k < lower.size(); ++k) Part::Map(&vector_[lower[k]]) -= Part::Map(&below_[3 * k]);
+}
+
+template <class Number>
+void BlockCholesky<Number>::substitute_back() {
   for (std::size_t f = layout_->fronts.size(); f-- > 0;) {
     const Front& front = layout_->fronts[f];
     if (f > 0) fetch_panel(layout_->fronts[f - 1], panels_.data());
@@ -132,9 +163,14 @@ void BlockCholesky<Number>::solve(const Points& right, Points& solution) {
     solve_front_transposed(front.shape, &panels_[front.panel], &inverse_[front.first_place], &vector_[front.first_place],
                            below_.data(), row_.data());
   }
+}
+
+template <class Number>
+void BlockCholesky<Number>::give(double scale, Points& solution) const {
   const double back = scale_ / scale;
-  solution.resize(Eigen::NoChange, right.cols());
-  for (Index i = 0; i < right.cols(); ++i) {
+  const auto count = static_cast<Index>(layout_->place.size());
+  solution.resize(Eigen::NoChange, count);
+  for (Index i = 0; i < count; ++i) {
     if (layout_->place[i] == kNone) {
       solution.col(i).setZero();
     } else {

@@ -32,11 +32,7 @@ void ImplicitSystem::hold(Index particle, const Matrix3& projection) {
 }
 
 void ImplicitSystem::solve(Points& vectors) {
-  if (factor_.factor(matrix_)) {
-    factor_.solve(vectors, vectors);
-  } else {
-    vectors.setConstant(std::numeric_limits<double>::quiet_NaN());
-  }
+  if (!factor_.factor_and_solve(matrix_, 0.0, vectors, vectors)) vectors.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace sprung

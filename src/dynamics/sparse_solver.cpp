@@ -54,7 +54,7 @@ double SparseSolver::solve(const StretchSystem& system, Points& step) {
   const double stiffness = stiffest();
   for (Roughly& way : ways_) {
     if (!(stiffness < way.bearable)) continue;
-    kept_ = rough_.factor(matrix_, way.raise) ? Kept::rough : Kept::nothing;
+    kept_ = rough_.factor_and_solve(matrix_, way.raise, system.residual, towards_) ? Kept::rough : Kept::nothing;
     if (const auto left = approach_with_kept(way.patience, system.residual, step)) return *left;
     way.bearable = kBearablePart * stiffness;
   }
@@ -67,11 +67,7 @@ void SparseSolver::solve_again(const StretchSystem& system, Points& step) {
     step.setZero(3, component_.free_count);
     return;
   }
-  if (kept_ == Kept::rough) {
-    rough_.solve(system.residual, step);
-  } else {
-    exact_->solve(system.residual, step);
-  }
+  solve_with_kept(system.residual, step);
   if (component_.pin_count() == 0) keep_momentum(system.residual, step);
 }
 
@@ -79,16 +75,18 @@ std::optional<double> SparseSolver::solve_as_last(const StretchSystem& system, P
   // What changes so fast mostly does so the next time too.
   if (std::exchange(led_nowhere_, false)) return std::nullopt;
   const Patience patience{.most_iterations = kMostIterations, .slowest = kAnySlowness, .may_be_left = system.may_be_left};
+  solve_with_kept(system.residual, towards_);
   const auto left = approach_with_kept(patience, system.residual, step);
   led_nowhere_ = !left;
   return left;
 }
 
-std::optional<double> SparseSolver::approach_with_kept(const Patience& patience, const Points& right, Points& step) {
-  if (kept_ == Kept::nothing) return std::nullopt;
-  const auto left = kept_ == Kept::rough ? approach(rough_, patience, right, step) : approach(*exact_, patience, right, step);
-  if (left && component_.pin_count() == 0) keep_momentum(right, step);
-  return left;
+void SparseSolver::solve_with_kept(const Points& right, Points& solution) {
+  if (kept_ == Kept::rough) {
+    rough_.solve(right, solution);
+  } else if (kept_ == Kept::exact) {
+    exact_->solve(right, solution);
+  }
 }
 
 // Links push one end as the other: what all move in common has an equation of its own, in which nothing needs to be left.
@@ -102,15 +100,22 @@ void SparseSolver::keep_momentum(const Points& right, Points& step) const {
   step.colwise() += missing / mass;
 }
 
-/// Conjugate gradients with a factor as preconditioner. Returns what they left to gain, if that is little enough.
-template <class Factor>
-std::optional<double> SparseSolver::approach(Factor& factor, const Patience& patience, const Points& right, Points& step) {
+/// Conjugate gradients with the factor that is kept as preconditioner; `towards_` is its solution for `right`. Returns what they
+/// left to gain, if that is little enough.
+std::optional<double> SparseSolver::approach_with_kept(const Patience& patience, const Points& right, Points& step) {
+  if (kept_ == Kept::nothing) return std::nullopt;
+  const auto left = approach(patience, right, step);
+  if (left && component_.pin_count() == 0) keep_momentum(right, step);
+  return left;
+}
+
+std::optional<double> SparseSolver::approach(const Patience& patience, const Points& right, Points& step) {
   step.setZero(3, component_.free_count);
   left_ = right;
   double gained = 0.0;
   double before = 0.0;
   for (int iteration = 1; iteration <= patience.most_iterations; ++iteration) {
-    factor.solve(left_, towards_);
+    if (iteration > 1) solve_with_kept(left_, towards_);
     const double size = left_.cwiseProduct(towards_).sum();
     if (iteration == 1) {
       direction_ = towards_;
@@ -148,12 +153,8 @@ double SparseSolver::largest_size() const {
 
 void SparseSolver::solve_exactly(const Points& right, Points& step) {
   if (!exact_) exact_ = std::make_unique<BlockCholesky<double>>(matrix_);
-  kept_ = exact_->factor(matrix_) ? Kept::exact : Kept::nothing;
-  if (kept_ == Kept::exact) {
-    exact_->solve(right, step);
-  } else {
-    step.setConstant(3, component_.free_count, std::numeric_limits<double>::quiet_NaN());
-  }
+  kept_ = exact_->factor_and_solve(matrix_, 0.0, right, step) ? Kept::exact : Kept::nothing;
+  if (kept_ == Kept::nothing) step.setConstant(3, component_.free_count, std::numeric_limits<double>::quiet_NaN());
 }
 
 void SparseSolver::assemble(const StretchSystem& system) {

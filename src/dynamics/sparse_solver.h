@@ -43,9 +43,9 @@ class SparseSolver final : public StretchSystemSolver {
 
   void assemble(const StretchSystem& system);
   [[nodiscard]] std::optional<double> solve_as_last(const StretchSystem& system, Points& step);
+  void solve_with_kept(const Points& right, Points& solution);
   [[nodiscard]] std::optional<double> approach_with_kept(const Patience& patience, const Points& right, Points& step);
-  template <class Factor>
-  [[nodiscard]] std::optional<double> approach(Factor& factor, const Patience& patience, const Points& right, Points& step);
+  [[nodiscard]] std::optional<double> approach(const Patience& patience, const Points& right, Points& step);
   void keep_momentum(const Points& right, Points& step) const;
   void solve_exactly(const Points& right, Points& step);
   [[nodiscard]] double stiffest() const;

@@ -181,6 +181,25 @@ TYPED_TEST(BlockCholeskyOf, FactorsDoNotDependOnThoseBefore) {
   EXPECT_EQ(after_used, after_fresh);
 }
 
+TYPED_TEST(BlockCholeskyOf, SolvesOnTheWayWithTheSameBits) {
+  using Number = TypeParam;
+  std::mt19937 random(13);
+  const BlockMatrix matrix = random_matrix(100, cloth_pairs(10), random);
+  const Points right = Points::Random(3, 100);
+  BlockCholesky<Number> factor(matrix);
+  ASSERT_TRUE(factor.factor(matrix, 0.01));
+  Points expected;
+  factor.solve(right, expected);
+  Points solution = right;
+  ASSERT_TRUE(factor.factor_and_solve(matrix, 0.01, solution, solution));
+  EXPECT_EQ(solution, expected);
+
+  BlockMatrix broken = matrix;
+  broken.add(27, 27, Matrix3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_FALSE(factor.factor_and_solve(broken, 0.01, right, solution));
+  EXPECT_EQ(solution, expected);
+}
+
 TYPED_TEST(BlockCholeskyOf, TellsWhatIsNotPositiveDefinite) {
   using Number = TypeParam;
   std::mt19937 random(5);
