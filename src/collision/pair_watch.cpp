@@ -77,8 +77,10 @@ void PairWatch::begin_step(const Points& before, const Points& after) {
   renewed_ = 0;
   age_ += 1.0;
   balls_.advance();
-  if (age_ >= horizon_) {
-    choose_horizon(before, after);
+  // What falls as a whole, and then strikes something, would be looked for all along the way that it no longer goes.
+  const double lasting = lasting_steps(before, after);
+  if (age_ >= horizon_ || horizon_ - age_ > lasting) {
+    horizon_ = lasting;
     age_ = 0.0;
     sharp_.update(before);
     renew(watched_, before, after);
@@ -119,7 +121,8 @@ WatchCounts PairWatch::counts() const {
           balls_.count() - static_cast<Index>(flat)};
 }
 
-void PairWatch::choose_horizon(const Points& before, const Points& after) {
+/// How many steps balls that are made now had best last.
+double PairWatch::lasting_steps(const Points& before, const Points& after) const {
   struct Flight {
     Vector3 sum = Vector3::Zero();
     double squares = 0.0;
@@ -135,15 +138,15 @@ void PairWatch::choose_horizon(const Points& before, const Points& after) {
     flight.squares += motion.squaredNorm();
     flight.count += 1.0;
   }
-  horizon_ = kMostSteps;
+  double steps = kMostSteps;
   for (std::size_t body = 0; body < flights.size(); ++body) {
     const Flight& flight = flights[body];
     if (flight.count == 0.0 || surface_.element_size[body] == 0.0) continue;
     const double variance = flight.squares / flight.count - (flight.sum / flight.count).squaredNorm();
     const double speed = std::sqrt(std::max(variance, 0.0));
-    if (speed > 0.0) horizon_ = std::min(horizon_, std::floor(kLasting * std::sqrt(surface_.element_size[body] / speed)));
+    if (speed > 0.0) steps = std::min(steps, std::floor(kLasting * std::sqrt(surface_.element_size[body] / speed)));
   }
-  horizon_ = std::max(horizon_, 1.0);
+  return std::max(steps, 1.0);
 }
 
 void PairWatch::renew(const std::vector<Index>& leaving, const Points& before, const Points& ends) {

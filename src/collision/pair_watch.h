@@ -13,7 +13,7 @@ namespace sprung {
 
 /// Each particle has a ball that moves on with it. What is not listed cannot touch, or come within contact's reach, while particles
 /// are in their balls; for those that leave theirs, pairs and candidates are looked for again. All balls are made again after as
-/// many steps as they were to last.
+/// many steps as they were to last, and when particles begin to move so that they had better last less.
 class PairWatch {
  public:
   /// See ContactSearch. Keeps a reference to the surface.
@@ -43,7 +43,7 @@ class PairWatch {
   [[nodiscard]] WatchCounts counts() const;
 
  private:
-  void choose_horizon(const Points& before, const Points& after);
+  [[nodiscard]] double lasting_steps(const Points& before, const Points& after) const;
   [[nodiscard]] std::vector<Index> find_leaving(const Points& ends, double time) const;
   void renew(const std::vector<Index>& leaving, const Points& before, const Points& ends);
   void place_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends);
