@@ -1,7 +1,7 @@
 # Lets clang-tidy look at SOURCE, unless RECORD says that it found nothing in the same text: to look at all sources takes longer than
 # all tests do. Writes to STAMP what RECORD is to say of it, and to STAMP.d what it read.
 #
-# ROOT, SOURCE (relative to it), STAMP, RECORD, CLANG_TIDY, BINARY_FOLDER.
+# ROOT, SOURCE (relative to it), STAMP, RECORD, CLANG_TIDY, COMMANDS_FOLDER.
 cmake_minimum_required(VERSION 3.25)
 
 # The text is that of the source and of all headers of the project that it reads, and of how clang-tidy is told to look.
@@ -35,7 +35,7 @@ set(entry "${digest} ${SOURCE}")
 
 file(STRINGS ${RECORD} looked_at)
 if(NOT entry IN_LIST looked_at)
-  execute_process(COMMAND ${CLANG_TIDY} -p ${BINARY_FOLDER} --quiet ${ROOT}/${SOURCE} RESULT_VARIABLE result)
+  execute_process(COMMAND ${CLANG_TIDY} -p ${COMMANDS_FOLDER} --quiet ${ROOT}/${SOURCE} RESULT_VARIABLE result)
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "clang-tidy does not pass ${SOURCE}")
   endif()
