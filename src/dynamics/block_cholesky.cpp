@@ -53,23 +53,20 @@ template <class Number>
 
 template <class Number>
 BlockCholesky<Number>::BlockCholesky(const BlockMatrix& pattern, const std::vector<bool>& left_out)
-    : layout_(std::make_unique<FrontLayout>(pattern, left_out)),
-      panels_(layout_->panel_size),
-      inverse_(layout_->vector_size),
-      updates_(layout_->update_size),
-      vector_(layout_->vector_size) {
+    : layout_(pattern, left_out),
+      panels_(layout_.panel_size),
+      inverse_(layout_.vector_size),
+      updates_(layout_.update_size),
+      vector_(layout_.vector_size) {
   Index width = 0;
   Index height = 0;
-  for (const Front& front : layout_->fronts) {
+  for (const Front& front : layout_.fronts) {
     width = std::max(width, front.shape.width());
     height = std::max(height, front.shape.lower_height());
   }
   below_.resize(static_cast<std::size_t>(height));
   row_.resize(static_cast<std::size_t>(kRowRoom) * static_cast<std::size_t>(width));
 }
-template <class Number>
-BlockCholesky<Number>::~BlockCholesky() = default;
-
 template <class Number>
 bool BlockCholesky<Number>::factor(const BlockMatrix& matrix, double raise) {
   const TinyNumbersAreZero quick;
@@ -90,7 +87,7 @@ template <class Number>
 void BlockCholesky<Number>::solve(const Points& right, Points& solution) {
   const TinyNumbersAreZero quick;
   const double scale = take(right);
-  for (const Front& front : layout_->fronts) substitute(front);
+  for (const Front& front : layout_.fronts) substitute(front);
   substitute_back();
   give(scale, solution);
 }
@@ -102,15 +99,15 @@ bool BlockCholesky<Number>::eliminate(const BlockMatrix& matrix, double raise, c
   double largest = 0.0;
   for (Index i = 0; i < matrix.size(); ++i) largest = std::max(largest, matrix.diagonal(i).diagonal().maxCoeff());
   scale_ = scale_to_one(largest);
-  const std::vector<Front>& fronts = layout_->fronts;
+  const std::vector<Front>& fronts = layout_.fronts;
   for (std::size_t f = 0; f < fronts.size(); ++f) {
     const Front& front = fronts[f];
     assemble(f, matrix, raise);
     Number* const update = updates_.data() + front.update;
     if (!eliminate_front(front.shape, &panels_[front.panel], &inverse_[front.first_place], update, row_.data())) return false;
     and_then(front);
-    for (const Child& child : layout_->children_of(front)) {
-      add_to_update(layout_->runs_of(child), updates_.data() + child.update, child.height, front.shape.lower_height(), update);
+    for (const Child& child : layout_.children_of(front)) {
+      add_to_update(layout_.runs_of(child), updates_.data() + child.update, child.height, front.shape.lower_height(), update);
     }
   }
   return true;
@@ -118,28 +115,28 @@ bool BlockCholesky<Number>::eliminate(const BlockMatrix& matrix, double raise, c
 
 template <class Number>
 void BlockCholesky<Number>::assemble(std::size_t number, const BlockMatrix& matrix, double raise) {
-  const Front& front = layout_->fronts[number];
+  const Front& front = layout_.fronts[number];
   const FrontShape& shape = front.shape;
   Number* const panel = &panels_[front.panel];
   std::fill_n(panel, shape.size(), Number{});
   for (Index k = front.own_rows; k < shape.width(); ++k) panel[shape.place(k, k)] = 1;
-  const std::vector<Entry>& entries = layout_->entries;
-  for (std::size_t e = number == 0 ? 0 : layout_->fronts[number - 1].end_entry; e < front.end_entry; ++e) {
+  const std::vector<Entry>& entries = layout_.entries;
+  for (std::size_t e = number == 0 ? 0 : layout_.fronts[number - 1].end_entry; e < front.end_entry; ++e) {
     __builtin_prefetch(block_of(entries[std::min(e + kAhead, entries.size() - 1)], matrix).data());
     add_entry(entries[e], matrix, scale_, raise, shape, panel);
   }
-  for (const Child& child : layout_->children_of(front)) {
-    add_to_panel(layout_->columns_of(child), layout_->rows_of(child), updates_.data() + child.update, child.height, panel);
+  for (const Child& child : layout_.children_of(front)) {
+    add_to_panel(layout_.columns_of(child), layout_.rows_of(child), updates_.data() + child.update, child.height, panel);
   }
 }
 
 /// Returns by what numbers are scaled on their way in.
 template <class Number>
 double BlockCholesky<Number>::take(const Points& right) {
-  const double scale = scale_to_one(right.cwiseAbs().maxCoeff());
+  const double scale = scale_to_one(right.size() > 0 ? right.cwiseAbs().maxCoeff() : 0.0);
   std::ranges::fill(vector_, Number{});
   for (Index i = 0; i < right.cols(); ++i) {
-    if (layout_->place[i] != kNone) Part::Map(&vector_[layout_->place[i]]) = (scale * right.col(i)).template cast<Number>();
+    if (layout_.place[i] != kNone) Part::Map(&vector_[layout_.place[i]]) = (scale * right.col(i)).template cast<Number>();
   }
   return scale;
 }
@@ -147,18 +144,18 @@ double BlockCholesky<Number>::take(const Points& right) {
 template <class Number>
 void BlockCholesky<Number>::substitute(const Front& front) {
   solve_front(front.shape, &panels_[front.panel], &vector_[front.first_place], below_.data());
-  const std::span<const Index> lower = layout_->lower_of(front);
+  const std::span<const Index> lower = layout_.lower_of(front);
   for (std::size_t k = 0; k < lower.size(); ++k) Part::Map(&vector_[lower[k]]) -= Part::Map(&below_[3 * k]);
 }
 
 template <class Number>
 void BlockCholesky<Number>::substitute_back() {
-  for (std::size_t f = layout_->fronts.size(); f-- > 0;) {
-    const Front& front = layout_->fronts[f];
-    if (f > 0) fetch_panel(layout_->fronts[f - 1], panels_.data());
+  for (std::size_t f = layout_.fronts.size(); f-- > 0;) {
+    const Front& front = layout_.fronts[f];
+    if (f > 0) fetch_panel(layout_.fronts[f - 1], panels_.data());
     // The rows that fill up the last tile are zero in L, but zero times what is not finite is not.
     std::fill_n(below_.begin(), front.shape.lower_height(), Number{});
-    const std::span<const Index> lower = layout_->lower_of(front);
+    const std::span<const Index> lower = layout_.lower_of(front);
     for (std::size_t k = 0; k < lower.size(); ++k) Part::Map(&below_[3 * k]) = Part::Map(&vector_[lower[k]]);
     solve_front_transposed(front.shape, &panels_[front.panel], &inverse_[front.first_place], &vector_[front.first_place],
                            below_.data(), row_.data());
@@ -168,13 +165,13 @@ void BlockCholesky<Number>::substitute_back() {
 template <class Number>
 void BlockCholesky<Number>::give(double scale, Points& solution) const {
   const double back = scale_ / scale;
-  const auto count = static_cast<Index>(layout_->place.size());
+  const auto count = static_cast<Index>(layout_.place.size());
   solution.resize(Eigen::NoChange, count);
   for (Index i = 0; i < count; ++i) {
-    if (layout_->place[i] == kNone) {
+    if (layout_.place[i] == kNone) {
       solution.col(i).setZero();
     } else {
-      solution.col(i) = back * Part::Map(&vector_[layout_->place[i]]).template cast<double>();
+      solution.col(i) = back * Part::Map(&vector_[layout_.place[i]]).template cast<double>();
     }
   }
 }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "base/huge_pages.h"
+#include "dynamics/block_matrix.h"
 #include "dynamics/front_layout.h"
 
-#include <memory>
 #include <vector>
 
 namespace sprung {
@@ -18,7 +18,6 @@ class BlockCholesky {
   /// For matrices of the same pairs as `pattern`, without the rows and columns of the particles of which `left_out` has the flag;
   /// none has when it is empty.
   explicit BlockCholesky(const BlockMatrix& pattern, const std::vector<bool>& left_out = {});
-  ~BlockCholesky();
 
   /// Factors the matrix with its diagonal numbers made larger by the part `raise` of them. Returns whether that is positive
   /// definite, as far as rounding tells. Before `solve`, which is not to be called when not.
@@ -44,7 +43,7 @@ class BlockCholesky {
   void substitute_back();
   void give(double scale, Points& solution) const;
 
-  std::unique_ptr<const FrontLayout> layout_;
+  FrontLayout layout_;
   double scale_ = 1.0;           ///< of the matrix that was factored to the one that was given, a power of two
   LargeVector<Number> panels_;   ///< L
   std::vector<Number> inverse_;  ///< 1 / D

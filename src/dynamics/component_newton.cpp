@@ -83,6 +83,7 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
   energy_.find_near(led_);
   // An order of elimination takes its time, and what only asks for the step, or is never handed over, needs none.
   if (!solver_) solver_ = make_system_solver(component_);
+  // Where forces led nothing is to be moved: all of the energy is that of links, in proportion to the weight.
   const int iterations = minimise(weight * beyond);
   last_iterations_ = iterations;
   if (clips_) clip();

@@ -47,7 +47,7 @@ std::vector<Supernode> supernodes_of(const BlockMatrix& pattern, const std::vect
 }
 
 template <class T>
-Index end_of(const std::vector<T>& list) {
+Index count_of(const std::vector<T>& list) {
   return static_cast<Index>(list.size());
 }
 
@@ -62,7 +62,7 @@ Index FrontLayout::row_of(const Front& front, Index at) const {
 FrontLayout::FrontLayout(const BlockMatrix& pattern, const std::vector<bool>& left_out) : place(pattern.size(), kNone) {
   const std::vector<Supernode> nodes = supernodes_of(pattern, left_out);
   place_fronts(nodes);
-  place_updates(nodes);
+  place_updates(nodes);  // parents note where their children's are
   join_with_parents(nodes);
   place_entries(pattern, nodes);
 }
@@ -71,7 +71,7 @@ void FrontLayout::place_fronts(const std::vector<Supernode>& nodes) {
   for (const Supernode& node : nodes) {
     Front& front = fronts.emplace_back();
     front.shape = {.own_tiles = tiles_of(node.columns.size()), .lower_tiles = tiles_of(node.rows.size())};
-    front.own_rows = 3 * end_of(node.columns);
+    front.own_rows = 3 * count_of(node.columns);
     front.first_place = static_cast<Index>(vector_size);
     front.panel = panel_size;
     for (std::size_t k = 0; k < node.columns.size(); ++k) place[node.columns[k]] = front.first_place + 3 * static_cast<Index>(k);
@@ -79,9 +79,9 @@ void FrontLayout::place_fronts(const std::vector<Supernode>& nodes) {
     panel_size += front.shape.size();
   }
   for (std::size_t f = 0; f < fronts.size(); ++f) {
-    fronts[f].lower.begin = end_of(lower);
+    fronts[f].lower.begin = count_of(lower);
     for (const Index row : nodes[f].rows) lower.push_back(place[row]);
-    fronts[f].lower.end = end_of(lower);
+    fronts[f].lower.end = count_of(lower);
   }
 }
 
@@ -117,20 +117,20 @@ void FrontLayout::join_with_parents(const std::vector<Supernode>& nodes) {
     if (nodes[f].parent != kNone) children_of_fronts[nodes[f].parent].push_back(static_cast<Index>(f));
   }
   for (std::size_t f = 0; f < fronts.size(); ++f) {
-    fronts[f].children.begin = end_of(children);
+    fronts[f].children.begin = count_of(children);
     for (const Index child : children_of_fronts[f]) add_child(fronts[f], fronts[child]);
-    fronts[f].children.end = end_of(children);
+    fronts[f].children.end = count_of(children);
   }
 }
 
-void FrontLayout::add_child(const Front& parent, const Front& front) {
-  Child child{.height = front.shape.lower_height(),
-              .update = front.update,
-              .columns = {.begin = end_of(columns)},
-              .whole = {.begin = end_of(whole)},
-              .single = {.begin = end_of(single)},
-              .runs = {.begin = end_of(runs)}};
-  const std::span<const Index> below = lower_of(front);
+void FrontLayout::add_child(const Front& parent, const Front& child) {
+  Child handed{.height = child.shape.lower_height(),
+               .update = child.update,
+               .columns = {.begin = count_of(columns)},
+               .whole = {.begin = count_of(whole)},
+               .single = {.begin = count_of(single)},
+               .runs = {.begin = count_of(runs)}};
+  const std::span<const Index> below = lower_of(child);
   std::vector<Index> rows;
   for (std::size_t k = 0; k < below.size(); ++k) {
     const Index row = row_of(parent, below[k]);
@@ -140,18 +140,18 @@ void FrontLayout::add_child(const Front& parent, const Front& front) {
       continue;
     }
     const RowRun run{.from = 3 * static_cast<Index>(k), .to = row - parent.shape.width(), .length = 3};
-    if (end_of(runs) > child.runs.begin && runs.back().to + runs.back().length == run.to) {
+    if (count_of(runs) > handed.runs.begin && runs.back().to + runs.back().length == run.to) {
       runs.back().length += run.length;
     } else {
       runs.push_back(run);
     }
   }
   add_rows(parent.shape, rows);
-  child.columns.end = end_of(columns);
-  child.whole.end = end_of(whole);
-  child.single.end = end_of(single);
-  child.runs.end = end_of(runs);
-  children.push_back(child);
+  handed.columns.end = count_of(columns);
+  handed.whole.end = count_of(whole);
+  handed.single.end = count_of(single);
+  handed.runs.end = count_of(runs);
+  children.push_back(handed);
 }
 
 /// Of rows that ascend.

@@ -13,7 +13,7 @@ struct Supernode;
 
 /// The supernodes of a matrix of 3 x 3 blocks as fronts: dense panels of their own columns, and what they hand on to their parents
 /// (Duff and Reid 1983). Each front's own part of a vector is filled up to whole registers; a particle's place is where its three
-/// numbers begin in such a vector. Places ascend in the order of elimination. A factor is larger than the caches, and each pass
+/// numbers begin in such a vector. Places ascend in the order of elimination. A factor may be larger than the caches, and each pass
 /// over it drives all else out of them: what passes read lies in the order in which they read it.
 struct FrontLayout {
   /// A part of one of the arrays below.
@@ -59,7 +59,7 @@ struct FrontLayout {
   [[nodiscard]] std::span<const RowRun> runs_of(const Child& child) const { return part(runs, child.runs); }
 
   std::vector<Front> fronts;  ///< children before their parents
-  std::vector<Index> lower;   ///< of one front after the other, as all that follows
+  std::vector<Index> lower;   ///< of one front after the other, as what follows up to `entries`
   std::vector<Child> children;
   std::vector<Index> columns;
   std::vector<PanelRows::Place> whole;
@@ -76,12 +76,13 @@ struct FrontLayout {
   [[nodiscard]] static std::span<const T> part(const std::vector<T>& of, Range range) {
     return std::span(of).subspan(range.begin, range.end - range.begin);
   }
+  /// Row of a place, its own or one of those below.
   [[nodiscard]] Index row_of(const Front& front, Index at) const;
 
   void place_fronts(const std::vector<Supernode>& nodes);
   void place_updates(const std::vector<Supernode>& nodes);
   void join_with_parents(const std::vector<Supernode>& nodes);
-  void add_child(const Front& parent, const Front& front);
+  void add_child(const Front& parent, const Front& child);
   void add_rows(const FrontShape& parent, const std::vector<Index>& rows);
   void place_entries(const BlockMatrix& pattern, const std::vector<Supernode>& nodes);
 };

@@ -8,13 +8,12 @@
 namespace sprung {
 namespace {
 
-// A factor takes as long as eight solves with it. One that is worth something takes more off in each iteration; but where the
-// diagonal was raised, or links changed since, what hardly any link holds comes late, and an iteration may bring up more of it than
-// it takes off.
+// A factor takes as long as six to eight solves with it. One that is worth something takes more off in each iteration; but where
+// the diagonal was raised, what hardly any link holds comes late, and an iteration may bring up more of it than it takes off.
 constexpr int kMostIterations = 8;
 constexpr double kSlowest = 0.8;
 constexpr int kMostIterationsRaised = 16;
-constexpr double kAnySlowness = std::numeric_limits<double>::infinity();
+constexpr double kSlowestRaised = std::numeric_limits<double>::infinity();
 
 // So many roundings of single precision: with half as many some diagonals of cloths became negative.
 constexpr double kRaise = 4.0 * 0x1p-24;
@@ -44,7 +43,7 @@ SparseSolver::SparseSolver(const StretchComponent& component)
       matrix_(pattern_of(component)),
       rough_(matrix_),
       ways_{Roughly{.raise = 0.0, .patience = {.most_iterations = kMostIterations, .slowest = kSlowest}},
-            Roughly{.raise = kRaise, .patience = {.most_iterations = kMostIterationsRaised, .slowest = kAnySlowness}}} {}
+            Roughly{.raise = kRaise, .patience = {.most_iterations = kMostIterationsRaised, .slowest = kSlowestRaised}}} {}
 
 double SparseSolver::solve(const StretchSystem& system, Points& step) {
   assemble(system);
@@ -74,7 +73,7 @@ void SparseSolver::solve_again(const StretchSystem& system, Points& step) {
 std::optional<double> SparseSolver::solve_as_last(const StretchSystem& system, Points& step) {
   // What changes so fast mostly does so the next time too.
   if (std::exchange(led_nowhere_, false)) return std::nullopt;
-  const Patience patience{.most_iterations = kMostIterations, .slowest = kAnySlowness, .may_be_left = system.may_be_left};
+  const Patience patience{.most_iterations = kMostIterations, .slowest = kSlowest, .may_be_left = system.may_be_left};
   solve_with_kept(system.residual, towards_);
   const auto left = approach_with_kept(patience, system.residual, step);
   led_nowhere_ = !left;
@@ -100,8 +99,6 @@ void SparseSolver::keep_momentum(const Points& right, Points& step) const {
   step.colwise() += missing / mass;
 }
 
-/// Conjugate gradients with the factor that is kept as preconditioner; `towards_` is its solution for `right`. Returns what they
-/// left to gain, if that is little enough.
 std::optional<double> SparseSolver::approach_with_kept(const Patience& patience, const Points& right, Points& step) {
   if (kept_ == Kept::nothing) return std::nullopt;
   const auto left = approach(patience, right, step);
@@ -109,6 +106,8 @@ std::optional<double> SparseSolver::approach_with_kept(const Patience& patience,
   return left;
 }
 
+/// Conjugate gradients with the factor that is kept as preconditioner; `towards_` is its solution for `right`, the first direction.
+/// Returns what they left to gain, if that is little enough.
 std::optional<double> SparseSolver::approach(const Patience& patience, const Points& right, Points& step) {
   step.setZero(3, component_.free_count);
   left_ = right;
@@ -117,6 +116,7 @@ std::optional<double> SparseSolver::approach(const Patience& patience, const Poi
   for (int iteration = 1; iteration <= patience.most_iterations; ++iteration) {
     if (iteration > 1) solve_with_kept(left_, towards_);
     const double size = left_.cwiseProduct(towards_).sum();
+    if (size == 0.0) return 0.0;
     if (iteration == 1) {
       direction_ = towards_;
     } else {

@@ -158,6 +158,9 @@ TYPED_TEST(BlockCholeskyOf, TakesMatricesWithoutRows) {
   Points vectors = Points::Ones(3, 2);
   factor.solve(vectors, vectors);
   EXPECT_EQ(vectors, Points::Zero(3, 2));
+  vectors = Points::Random(3, 2);
+  ASSERT_TRUE(factor.factor_and_solve(matrix, 0.0, vectors, vectors));
+  EXPECT_EQ(vectors, Points::Zero(3, 2));
 }
 
 // The same object takes one matrix after the other: what one leaves does not change the next one's bits.
@@ -184,12 +187,17 @@ TYPED_TEST(BlockCholeskyOf, FactorsDoNotDependOnThoseBefore) {
 TYPED_TEST(BlockCholeskyOf, SolvesOnTheWayWithTheSameBits) {
   using Number = TypeParam;
   std::mt19937 random(13);
-  const BlockMatrix matrix = random_matrix(100, cloth_pairs(10), random);
+  const Pairs pairs = cloth_pairs(10);
+  const BlockMatrix matrix = random_matrix(100, pairs, random);
   const Points right = Points::Random(3, 100);
-  BlockCholesky<Number> factor(matrix);
-  ASSERT_TRUE(factor.factor(matrix, 0.01));
+  std::vector<bool> left_out(100, false);
+  left_out[0] = left_out[57] = true;
+  BlockCholesky<Number> apart(matrix, left_out);
+  ASSERT_TRUE(apart.factor(matrix, 0.01));
   Points expected;
-  factor.solve(right, expected);
+  apart.solve(right, expected);
+  BlockCholesky<Number> factor(matrix, left_out);
+  ASSERT_TRUE(factor.factor(random_matrix(100, pairs, random)));
   Points solution = right;
   ASSERT_TRUE(factor.factor_and_solve(matrix, 0.01, solution, solution));
   EXPECT_EQ(solution, expected);

@@ -2,5 +2,5 @@
 cmake_minimum_required(VERSION 3.25)
 
 file(READ ${BINARY_FOLDER}/compile_commands.json commands)
-string(REGEX REPLACE " -Winvalid-pch -include [^ ]+" "" commands "${commands}")
+string(REGEX REPLACE " -Winvalid-pch -include [^\"]*cmake_pch.hxx" "" commands "${commands}")
 file(WRITE ${COMMANDS} "${commands}")
