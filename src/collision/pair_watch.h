@@ -68,10 +68,11 @@ class PairWatch {
   ContactSearch contact_search_;
   std::vector<ElementPair> pairs_;
   std::vector<ContactCandidate> candidates_;
-  std::vector<Index> watched_;  ///< particles of bodies that may meet something
-  std::vector<char> flat_;      ///< by particle: see fan_stays_flat()
-  double age_ = 0.0;            ///< of the first balls, in steps
-  double horizon_ = 0.0;        ///< age at which all are made again
+  std::vector<Index> watched_;         ///< particles of bodies that may meet something
+  std::vector<Index> watched_bodies_;  ///< theirs
+  std::vector<char> flat_;             ///< by particle: see fan_stays_flat()
+  double age_ = 0.0;                   ///< of the first balls, in steps
+  double horizon_ = 0.0;               ///< age at which all are made again
   Index renewed_ = 0;
   std::vector<char> marked_;  ///< by particle; 0 between calls, as the marks of elements
   std::vector<Index> marked_list_;
