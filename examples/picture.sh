@@ -6,8 +6,13 @@
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+if (($# < 3)); then
+  sed -n '2,5s/^# //p' "${BASH_SOURCE[0]}" >&2
+  exit 2
+fi
 folder=$1 picture=$2
 shift 2
+[ -f "$folder/run.json" ] || { echo "picture.sh: $folder: is no folder that sprung wrote a run to" >&2; exit 2; }
 "$here/install_packages.sh" picture
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -22,7 +27,15 @@ TXT
 hidden() { case " ${HIDE:-} " in *" $1 "*) return 0 ;; *) return 1 ;; esac; }
 
 # The file of a body's or a moving obstacle's folder that holds a frame, whatever the number of its digits.
-frame_file() { find "$1" -name "$(basename "$1").*.obj" | grep -E "\.0*$2\.obj$"; }
+frame_file() { find "$1" -name "$(basename "$1").*.obj" | grep -E "\.0*$2\.obj$" || true; }
+
+for frame in "$@"; do
+  for path in "$folder"/*/; do
+    if [ "$(basename "$path")" = obstacles ] || [ -n "$(frame_file "${path%/}" "$frame")" ]; then continue; fi
+    echo "picture.sh: $path: has no frame $frame" >&2
+    exit 2
+  done
+done
 
 # All that a frame shows, for picture.awk.
 frame_parts() {

@@ -2,6 +2,9 @@
 # Runs the examples and makes README's pictures of them: pictures.sh [SCENE...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+examples/install_packages.sh run
+[[ -f build/release/build.ninja ]] || cmake --preset release -DBUILD_TESTING=OFF
+cmake --build --preset release --target sprung
 
 declare -A frames=(
   [cloth_on_bunny]="1 12 121"

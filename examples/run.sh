@@ -23,6 +23,6 @@ cat <<END
 
 The frames are in $frames: a folder a body, an OBJ file a frame; beside them the obstacles as placed.
   The last frame:  f3d --up=+Y "$last"    (from Debian's package f3d)
-  A picture:       examples/picture.sh "$frames" picture.png 1 $(find "$(dirname "$last")" -name '*.obj' | wc -l)
+  A picture:       HIDE=floor examples/picture.sh "$frames" picture.png 1 $(find "$(dirname "$last")" -name '*.obj' | wc -l)
   The animation:   in Blender, import the sequence with the add-on Stop-motion-OBJ and the obstacles as Wavefront (.obj).
 END

@@ -2,20 +2,23 @@
 # Runs six_schemes.json with each scheme and plots what becomes of its energy: examples/pictures/six_schemes.png
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-examples/install_packages.sh picture
+examples/install_packages.sh run picture
+[[ -f build/release/build.ninja ]] || cmake --preset release -DBUILD_TESTING=OFF
+cmake --build --preset release --target sprung
 
 schemes=(explicit_euler symplectic_euler verlet velocity_verlet rk4 implicit_euler)
-frames=build/frames/six_schemes
+frames=build/frames/schemes
+picture=examples/pictures/six_schemes.png
 for scheme in "${schemes[@]}"; do
-  # Explicit Euler diverges, and leaves its good frames.
+  if [[ $scheme == explicit_euler ]]; then echo "Explicit Euler is to diverge, and leaves its good frames:"; fi
   build/release/bin/sprung run examples/six_schemes.json --out "$frames/$scheme" --overwrite --quiet \
     --set "integrator.type=$scheme" || (($? == 4))
 done
 
 mkdir -p examples/pictures
-gnuplot <<TXT
+gnuplot <<TXT | convert - -colors 64 -define png:exclude-chunks=date,time "$picture"
 set terminal pngcairo size 1000,400 font "sans,11"
-set output "examples/pictures/six_schemes.png"
+set output
 set datafile separator ","
 set multiplot layout 1,2
 set xlabel "time [s]"
@@ -32,3 +35,4 @@ set yrange [-0.1:0.1]
 unset key
 replot
 TXT
+echo "The plot is $picture."

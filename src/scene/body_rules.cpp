@@ -47,9 +47,12 @@ SolidShape read_solid(Fields& fields) {
   return {.size = size.value_or(Vector3::Zero()), .resolution = read_resolution<3>(fields)};
 }
 
-BodyShapeScene read_shape(Fields& fields) {
+std::optional<BodyShapeScene> read_shape(Fields& fields) {
   const auto kind = fields.kind("type", {"rope", "cloth", "solid", "mesh"});
-  if (!kind) return {};
+  if (!kind) {
+    fields.knows_no_others({"from", "to", "points", "particles", "length", "size", "resolution", "file"});
+    return std::nullopt;
+  }
   switch (*kind) {
     case 0:
       return read_rope(fields);
@@ -62,8 +65,14 @@ BodyShapeScene read_shape(Fields& fields) {
   }
 }
 
+/// Those of any shape where it is broken.
 std::vector<std::string> corners_of(const std::optional<BodyShapeScene>& shape) {
-  if (!shape) return {};
+  if (!shape) {
+    std::vector<std::string> names;
+    for (const auto& some : {corner_names(RopeShape{}), corner_names(ClothShape{}), corner_names(SolidShape{})})
+      names.insert(names.end(), some.begin(), some.end());
+    return names;
+  }
   struct Names {
     std::vector<std::string> operator()(const MeshFile& /*mesh*/) const { return {}; }
     std::vector<std::string> operator()(const RopeShape& rope) const { return corner_names(rope); }

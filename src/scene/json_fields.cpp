@@ -37,6 +37,11 @@ std::optional<std::size_t> Fields::kind(const std::string& key, const std::vecto
   return kind(key, kinds);
 }
 
+void Fields::knows_no_others(const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) accept(key);
+  kind_is_known_ = true;
+}
+
 void Fields::accept(const std::string& key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
 }

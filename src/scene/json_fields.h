@@ -49,6 +49,9 @@ class Fields {
   /// The same for a key that may be missing.
   std::optional<std::size_t> kind(const std::string& key, const std::vector<std::string>& kinds, const std::string& fallback);
 
+  /// Makes these keys known without reading them, and all others unknown though the kind is broken: no kind has any of those.
+  void knows_no_others(const std::vector<std::string>& keys);
+
   /// Makes a key known without reading it.
   void accept(const std::string& key);
 
@@ -70,13 +73,13 @@ class Fields {
   bool kind_is_known_ = true;
 };
 
-/// An object whose keys `read` asks for.
+/// An object whose keys `read` asks for; none when it returns none.
 template <class T, class Read>
 [[nodiscard]] Rule<T> object_of(Read read) {
   return [=](Json& json, const JsonPlace& place) -> std::optional<T> {
     if (!check_object(json, place)) return std::nullopt;
     Fields fields(json, place);
-    T value = read(fields);
+    std::optional<T> value = read(fields);
     fields.reject_unknown_keys();
     return value;
   };

@@ -25,6 +25,11 @@ VerletSettings read_verlet(Fields& fields) {
 IntegratorSettings read_integrator(Fields& fields) {
   const auto kind =
       fields.kind("type", {"explicit_euler", "symplectic_euler", "verlet", "velocity_verlet", "rk4", "implicit_euler"});
+  fields.belongs_elsewhere({"step"}, "it stands beside the integrator, at the top of the scene: move it there");
+  if (!kind) {
+    fields.knows_no_others({"damping", "damping_rate", "start_at_rest"});
+    return {};
+  }
   if (kind != 2) {
     fields.belongs_elsewhere({"damping", "damping_rate", "start_at_rest"},
                              "it is Verlet's: leave it out; springs and air have a damping of their own");
@@ -34,8 +39,7 @@ IntegratorSettings read_integrator(Fields& fields) {
   if (kind == 2) return read_verlet(fields);
   if (kind == 3) return VelocityVerletSettings{};
   if (kind == 4) return RungeKutta4Settings{};
-  if (kind == 5) return ImplicitEulerSettings{};
-  return {};
+  return ImplicitEulerSettings{};
 }
 
 std::vector<SpringKind> read_kinds(Fields& fields) {

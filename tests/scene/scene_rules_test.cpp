@@ -57,6 +57,21 @@ TEST(SceneRules, AllProblemsAreReportedInOneGo) {
                                     Field(&Problem::key, "obstacles.floor.shape.normal"), Field(&Problem::key, "gravty")));
 }
 
+// What is right whatever the type was meant to be is not said to be wrong, and what no type has is.
+TEST(SceneRules, AMistypedTypeHidesNoKeysAndAddsNoProblems) {
+  const SceneFolder folder;
+  const auto problems = problems_of([&] {
+    (void)folder.read(kPlainScene, {R"(integrator={"type":"verlett","damping":0.1,"stp":0.1,"step":0.1})",
+                                    "bodies.banner.shape.type=clth", "bodies.banner.shape.sise=[1,1]"});
+  });
+  EXPECT_THAT(problems,
+              UnorderedElementsAre(AllOf(Field(&Problem::key, "integrator.type"), says("did you mean \"verlet\"?")),
+                                   AllOf(Field(&Problem::key, "integrator.stp"), says("is not a known key")),
+                                   AllOf(Field(&Problem::key, "integrator.step"), says("it stands beside the integrator")),
+                                   AllOf(Field(&Problem::key, "bodies.banner.shape.type"), says("did you mean \"cloth\"?")),
+                                   AllOf(Field(&Problem::key, "bodies.banner.shape.sise"), says("did you mean \"size\"?"))));
+}
+
 TEST(SceneRules, LongValuesAreShortened) {
   const SceneFolder folder;
   const auto problems = problems_of([&] { (void)folder.read(kPlainScene, {"duration=\"" + std::string(1000, 'x') + "\""}); });
