@@ -40,6 +40,9 @@ constexpr double kCorrectedPart = 0.3;
 // once an iteration has told that it is no more, none is made either until the energy changed by as much.
 constexpr double kBalanced = 3.0e-6;
 
+// The part of the energy that a solve by an old factor may leave to gain: less takes more iterations than it is worth.
+constexpr double kLeftByOldFactor = 5.0e-5;
+
 // What turned by less than this and took one iteration the step before hardly changes: of what moves an old factor, to which other
 // springs were slack, takes too much of the motion.
 constexpr double kCalmTurn = 1.0 / 240.0;
@@ -147,7 +150,7 @@ int ComponentNewton::minimise(double energy_where_led) {
   energy_.forget_overshot();
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
     system_.is_like_last = iteration == 1 && is_calm;
-    system_.may_be_left = 0.5 * negligible;
+    system_.may_be_left = kLeftByOldFactor * energy;
     const double left = solver_->solve(system_, step_);
     const double forecast = modelled - 0.5 * system_.residual.cwiseProduct(step_).sum();
     const auto [part, corrected] = descend(energy, forecast);
