@@ -34,10 +34,10 @@ constexpr double kForecastOfElasticCloths = 1.0e-3;
 // What was corrected is near the forecast by chance at times.
 constexpr double kCorrectedPart = 0.3;
 
-// No iteration is made when the imbalance, were all of it left, amounts to no more than a six hundredth of the way from where forces
-// led: what gravity pulls back that hangs a tenth of a degree askew. With a hundredth cloths stopped where they turned round, nearly
-// a degree askew, and leaned 38 % too far in a light wind. Masses alone count what is out of balance along links for far too much:
-// once an iteration has told that it is no more, none is made either until the energy changed by as much.
+// No iteration is made when the imbalance, were all of it left, amounts to no more than a six hundredth of the way from where
+// forces led: what gravity pulls back that hangs a tenth of a degree askew. With a hundredth cloths stopped where they turned
+// round, nearly a degree askew, and leaned 38 % too far in a light wind. Masses alone count what is out of balance along links for
+// far too much: once an iteration has told that it is no more, none is made either until the energy changed by as much.
 constexpr double kBalanced = 3.0e-6;
 
 // The part of the energy that a solve by an old factor may leave to gain: less takes more iterations than it is worth.
