@@ -24,8 +24,8 @@ constexpr double kLasting = 1.1;
 constexpr double kMostSteps = 64.0;
 
 // All are made anew when they are still to last so many times as long as new ones would: what falls as a whole, and then strikes
-// something, would be looked for along the way that it no longer goes. With 1 a drape takes a twentieth less, but motion that grows
-// steadily would have all made in each step.
+// something, would be looked for along the way that it no longer goes. With 2 a drape takes a twentieth more; with 1 motion that
+// grows steadily could have all made in step after step.
 constexpr double kMuchLonger = 1.5;
 
 constexpr Index kParticlesPerTask = 1024;
