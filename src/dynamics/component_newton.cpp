@@ -37,7 +37,8 @@ constexpr double kCorrectedPart = 0.3;
 // No iteration is made when the imbalance, were all of it left, amounts to no more than a six hundredth of the way from where
 // forces led: what gravity pulls back that hangs a tenth of a degree askew. With a hundredth cloths stopped where they turned
 // round, nearly a degree askew, and leaned 38 % too far in a light wind. Masses alone count what is out of balance along links for
-// far too much: once an iteration has told that it is no more, none is made either until the energy changed by as much.
+// far too much: once an iteration has told that it is no more, none is made either until the energy changed by as much, or, where
+// nothing moved it since, until forces lead so far from where they led then.
 constexpr double kBalanced = 3.0e-6;
 
 // The part of the energy that a solve by an old factor may leave to gain: less takes more iterations than it is worth.
@@ -139,7 +140,11 @@ double ComponentNewton::most_beyond() const {
 int ComponentNewton::minimise(double energy_where_led) {
   double energy = start(energy_where_led);
   const double negligible = kBalanced * energy;
-  if (imbalance() <= negligible || std::abs(energy - balanced_energy_) <= negligible) return 0;
+  if (imbalance() <= negligible) {
+    note_balance(energy);
+    return 0;
+  }
+  if (is_still_balanced(energy, negligible)) return 0;
   const double at_first = inertia();
   const bool is_calm = last_iterations_ <= 1 && turn() <= kCalmTurn;
   const double close = close_enough(component_);
@@ -155,7 +160,8 @@ int ComponentNewton::minimise(double energy_where_led) {
     const double forecast = modelled - 0.5 * system_.residual.cwiseProduct(step_).sum();
     const auto [part, corrected] = descend(energy, forecast);
     const bool is_balanced = iteration == 1 && 2.0 * std::max(modelled - forecast, left) <= negligible;
-    balanced_energy_ = is_balanced ? energy : kUnknown;
+    balanced_energy_ = kUnknown;
+    if (is_balanced) note_balance(energy);
     const double enough = (corrected ? kCorrectedPart : 1.0) * close * (at_first + energy);
     if (part > 0.0 && !is_too_stiff && std::abs(energy - forecast) + left <= enough) return iteration;
     if (part == 0.0 && iteration > 1) return iteration;
@@ -182,6 +188,27 @@ double ComponentNewton::start(double energy_where_led) {
   if (energy <= energy_where_led) return energy;
   x_ = led_;
   return energy_.linearise(x_, led_, NearLimit::slack, system_);
+}
+
+void ComponentNewton::note_balance(double energy) {
+  balanced_energy_ = energy;
+  balanced_ = x_;
+  balanced_led_ = led_;
+}
+
+// Energies may change much faster along gravity than what can be gained: by as much as forces lead farther, not by its square. But
+// E is convex, and its minimum goes no farther than where forces lead, as masses measure it (Moreau 1965).
+bool ComponentNewton::is_still_balanced(double energy, double negligible) {
+  if (std::abs(energy - balanced_energy_) <= negligible) {
+    note_balance(balanced_energy_);
+    return true;
+  }
+  if (balanced_energy_ == kUnknown || x_ != balanced_) return false;
+  double led_apart = 0.0;
+  for (Index i = 0; i < component_.free_count; ++i) {
+    led_apart += component_.masses[i] * (led_.col(i) - balanced_led_.col(i)).squaredNorm();
+  }
+  return led_apart <= negligible;
 }
 
 double ComponentNewton::inertia() const {

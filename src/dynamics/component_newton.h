@@ -41,6 +41,8 @@ class ComponentNewton {
   [[nodiscard]] double most_beyond() const;
   int minimise(double energy_where_led);
   [[nodiscard]] double start(double energy_where_led);
+  void note_balance(double energy);
+  [[nodiscard]] bool is_still_balanced(double energy, double negligible);
   [[nodiscard]] double inertia() const;
   [[nodiscard]] double imbalance() const;
   [[nodiscard]] Descent descend(double& energy, double forecast);
@@ -55,6 +57,8 @@ class ComponentNewton {
   int last_iterations_ = std::numeric_limits<int>::max();             ///< of the solve before, if there was one
   double mass_ = 0.0;                                                 ///< of all free points [kg]
   double balanced_energy_ = std::numeric_limits<double>::infinity();  ///< of where it came to rest, while it does [kg m^2]
+  Points balanced_;                                                   ///< where that is, 3 x points,
+  Points balanced_led_;                                               ///< and where forces led from there
 
   Vector3 common_move_ = Vector3::Zero();  ///< of the last solve [m]
   double farthest_squared_ = 0.0;          ///< that a point was led, apart from the common move [m^2]
