@@ -66,17 +66,17 @@ std::string angle_row(const AngleBends& bends, const Body& body) {
     angles.bond.add(bends.length_before[a]);
     angles.bond.add(bends.length_after[a]);
   }
-  return text_row("bend", fmt::format("{} angles, k {}, damping {}, bonds {}", body.angle_bend_count, angles.stiffness.text("N m"),
-                                      angles.damping.text("N m s"), angles.bond.text("m")));
+  return text_row("bend", fmt::format("{}, k {}, damping {}, bonds {}", counted(body.angle_bend_count, "angle"),
+                                      angles.stiffness.text("N m"), angles.damping.text("N m s"), angles.bond.text("m")));
 }
 
 std::string head_row(const SpringNetwork& network, const Body& body, const std::array<KindOfSprings, 3>& kinds) {
   Index pinned = 0;
   for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) pinned += network.is_pinned(i) ? 1 : 0;
   const Box3 box = bounds(network.positions.middleCols(body.first_particle, body.particle_count));
-  return text_row("body", fmt::format("{}: {} particles ({} pinned), {} springs ({} structural, {} shear, {} bend), {}", body.name,
-                                      body.particle_count, pinned, body.spring_count, kinds[0].count, kinds[1].count,
-                                      kinds[2].count, describe_size(box)));
+  return text_row("body", fmt::format("{}: {} ({} pinned), {} ({} structural, {} shear, {} bend), {}", body.name,
+                                      counted(body.particle_count, "particle"), pinned, counted(body.spring_count, "spring"),
+                                      kinds[0].count, kinds[1].count, kinds[2].count, describe_size(box)));
 }
 
 std::string mass_row(const SpringNetwork& network, const Body& body) {

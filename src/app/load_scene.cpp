@@ -54,7 +54,7 @@ LoadedScene load_scene(const SceneOptions& options) try { return load(options); 
 }
 
 std::string describe_steps(const LoadedScene& loaded) {
-  return fmt::format("{} {} of {} s ({})", loaded.steps_per_frame, loaded.steps_per_frame == 1 ? "step" : "steps",
+  return fmt::format("{} of {} s ({})", counted(loaded.steps_per_frame, "step"),
                      format_number(loaded.simulator.settings().step, kDigits), loaded.scene.step ? "as given" : "automatic");
 }
 

@@ -20,7 +20,8 @@ std::string describe_size(const Box3& box) {
 
 std::string describe_closedness(const MeshReport& report) {
   if (report.closed) return "closed";
-  return fmt::format("open: {} border edges, {} edges with more than two faces", report.border_edges, report.non_manifold_edges);
+  return fmt::format("open: {}, {} with more than two faces", counted(report.border_edges, "border edge"),
+                     counted(report.non_manifold_edges, "edge"));
 }
 
 std::vector<std::string> repairs(const MeshReport& report) {

@@ -37,9 +37,9 @@ RunFacts facts_of(const LoadedScene& loaded, int threads) {
 void announce(const LoadedScene& loaded) {
   const SpringNetwork& network = loaded.simulator.network();
   const std::size_t obstacles = loaded.simulator.environment().obstacles().size();
-  print_message(fmt::format("{}: {} {} of {}, {} particles, {} springs, {} {}", loaded.scene.file.string(), loaded.frames,
-                            loaded.frames == 1 ? "frame" : "frames", describe_steps(loaded), network.particle_count(),
-                            network.springs.count(), obstacles, obstacles == 1 ? "obstacle" : "obstacles"));
+  print_message(fmt::format("{}: {} of {}, {}, {}, {}", loaded.scene.file.string(), counted(loaded.frames, "frame"),
+                            describe_steps(loaded), counted(network.particle_count(), "particle"),
+                            counted(network.springs.count(), "spring"), counted(obstacles, "obstacle")));
   for (const std::string& warning : loaded.warnings) print_warning(warning);
 }
 

@@ -58,10 +58,10 @@ void RunWatch::tell() {
   if (const auto gained = gain_.warning()) warn(*gained);
   if (missed_.frames == 0) return;
   warn(
-      fmt::format("the stretch limit was missed by more than its tolerance in {} {}, by at most {} % of a rest length in frame {}; "
+      fmt::format("the stretch limit was missed by more than its tolerance in {}, by at most {} % of a rest length in frame {}; "
                   "the column stretch_excess of diagnostics.csv tells by how much in each; {}",
-                  missed_.frames, missed_.frames == 1 ? "frame" : "frames", format_number(100.0 * missed_.most, 2),
-                  missed_.worst_frame, remedy_for_stretch(*simulator_.settings().stretch_limit)));
+                  counted(missed_.frames, "frame"), format_number(100.0 * missed_.most, 2), missed_.worst_frame,
+                  remedy_for_stretch(*simulator_.settings().stretch_limit)));
 }
 
 void RunWatch::warn(const std::string& warning) {

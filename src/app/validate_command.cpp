@@ -48,10 +48,9 @@ std::string mesh_row(const NamedReport& mesh) {
   const MeshReport& report = mesh.report;
   const std::vector<std::string> done = repairs(report);
   const std::string more = mesh.files > 1 ? fmt::format(" and {} more", mesh.files - 1) : "";
-  std::string text =
-      text_row("mesh", fmt::format("{}: {}{}, {} triangles read, {}, {} {}, {}", mesh.obstacle, mesh.file.string(), more,
-                                   report.faces_read, describe_closedness(report), report.components,
-                                   report.components == 1 ? "component" : "components", describe_size(report.bounds)));
+  std::string text = text_row("mesh", fmt::format("{}: {}{}, {} read, {}, {}, {}", mesh.obstacle, mesh.file.string(), more,
+                                                  counted(report.faces_read, "triangle"), describe_closedness(report),
+                                                  counted(report.components, "component"), describe_size(report.bounds)));
   if (!done.empty()) text += text_row("", fmt::format("repaired: {}", fmt::join(done, ", ")));
   return text;
 }

@@ -32,4 +32,8 @@ std::string format_upper_bound(double bound) {
   return format_number(std::floor(bound / unit * kRounding) * unit, kDigits);
 }
 
+std::string counted(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 }  // namespace sprung

@@ -1,6 +1,7 @@
 // Numbers as text: the shortest that reads back to the same double.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace sprung {
@@ -16,5 +17,8 @@ void append_number(std::string& text, double value);
 /// A bound that people may type: rounded to six significant digits, but never above `bound` by more than rounding. Requires bound >
 /// 0.
 [[nodiscard]] std::string format_upper_bound(double bound);
+
+/// "1 spring", "2 springs".
+[[nodiscard]] std::string counted(std::size_t count, const std::string& what);
 
 }  // namespace sprung

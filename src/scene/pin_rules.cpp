@@ -4,11 +4,15 @@ namespace sprung {
 namespace {
 
 void read_corners(Fields& fields, const std::vector<std::string>& corners, PinScene& pin) {
-  fields.optional("at", word_of({"corner"}));
   if (corners.empty()) {
     fields.accept("which");
     fields.place().at("at").report(fields.json()["at"], "needs a rope, a cloth or a solid: nothing else has named corners",
                                    "pin by indices, nearest or box");
+    return;
+  }
+  if (fields.json()["at"] != "corner") {
+    fields.accept("which");
+    fields.place().at("at").report(fields.json()["at"], "must be \"corner\"", "pin what is no corner by indices, nearest or box");
     return;
   }
   const auto which = fields.required("which", list_of(word_of(corners), 1));

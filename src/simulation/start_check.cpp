@@ -22,10 +22,6 @@ std::string place_text(const Vector3& p) {
   return text + "]";
 }
 
-std::string count_text(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 std::string first_of(const std::vector<std::string>& places) {
   std::string text;
   for (std::size_t i = 0; i < std::min(places.size(), kPlacesNamed); ++i) text += (i == 0 ? "" : ", ") + places[i];
@@ -96,8 +92,8 @@ std::map<NumberPair, InObstacle> by_body_and_obstacle(const Intersections& found
 
 Problem problem_of(const InObstacle& found, const std::string& body, const std::string& obstacle, const std::string& remedy) {
   std::string value;
-  if (!found.particles.empty()) value = count_text(found.particles.size(), "particle") + " inside";
-  if (!found.elements.empty()) value += (value.empty() ? "" : ", ") + count_text(found.elements.size(), found.kind) + " across";
+  if (!found.particles.empty()) value = counted(found.particles.size(), "particle") + " inside";
+  if (!found.elements.empty()) value += (value.empty() ? "" : ", ") + counted(found.elements.size(), found.kind) + " across";
   std::string rule = "intersects obstacle \"" + obstacle + "\" at the start";
   if (found.deepest > 0.0) rule += ", up to " + format_number(found.deepest, 3) + " m deep";
   rule += ": " + first_of(found.particles.empty() ? found.elements : found.particles);
@@ -108,7 +104,7 @@ Problem problem_of(const std::vector<std::string>& pairs, const std::string& bod
                    const std::string& remedy) {
   const bool self = body == other;
   return {.key = "bodies." + body,
-          .value = count_text(pairs.size(), "pair") + " of elements",
+          .value = counted(pairs.size(), "pair") + " of elements",
           .rule = "intersects " + (self ? "itself" : "body \"" + other + "\"") + " at the start: " + first_of(pairs),
           .remedy = self ? "change its shape, or set its self_contact to false"
                          : remedy + ", or set body_contact of one of them to false"};

@@ -231,7 +231,7 @@ TEST_F(CommandLine, ValidateDescribesWhatDeforms) {
   const Ending ending = run({"validate", save(scene)});
   EXPECT_EQ(ending.code, 0) << ending.err;
   EXPECT_THAT(ending.out, AllOf(HasSubstr("lung: sequence of 2 frames, 25 a second from 0 s on, in a loop, deforming"),
-                                HasSubstr("lung.1.obj and 1 more, 1 triangles read, open")));
+                                HasSubstr("lung.1.obj and 1 more, 1 triangle read, open")));
   EXPECT_THAT(listing(scratch_.path()), ::testing::Not(Contains("lung/")));
   EXPECT_EQ(run({"run", save(scene), "--frames", "2", "--out", out()}).code, 0);
   EXPECT_THAT(listing(out()), Contains("obstacles/lung/lung.0002.obj"));

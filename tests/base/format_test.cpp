@@ -58,5 +58,11 @@ TEST(AppendNumber, KeepsWhatWasThere) {
   EXPECT_EQ(text, "x = 1.5");
 }
 
+TEST(Counted, AgreesWithItsNumber) {
+  EXPECT_EQ(counted(0, "spring"), "0 springs");
+  EXPECT_EQ(counted(1, "spring"), "1 spring");
+  EXPECT_EQ(counted(2, "spring"), "2 springs");
+}
+
 }  // namespace
 }  // namespace sprung

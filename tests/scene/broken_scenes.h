@@ -105,6 +105,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"CornerOfAMesh", {"bodies.banner.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}"}, "bodies.banner.pins[0].at", "nothing else has named corners", false},
       {"PinOfNothing", {"bodies.banner.pins=[{}]"}, "bodies.banner.pins[0]", "must have one of at, indices, nearest, box"},
       {"PinOfTwoKinds", {"bodies.banner.pins[0].nearest=[0,0,0]"}, "bodies.banner.pins[0]", "may have only one of"},
+      {"PinOfWhatIsNoCorner", {"bodies.banner.pins=[{\"at\":\"edge\",\"which\":[\"min_y\"]}]"}, "bodies.banner.pins[0].at", "must be \"corner\"; pin what is no corner by indices, nearest or box"},
       {"PinOfNegativeIndex", {"bodies.banner.pins=[{\"indices\":[-1]}]"}, "bodies.banner.pins[0].indices[0]", "must be at least 0"},
       {"PinOfNoIndex", {"bodies.banner.pins=[{\"indices\":[]}]"}, "bodies.banner.pins[0].indices", "must have at least 1 entry"},
       {"BoxUpsideDown", {"bodies.banner.pins=[{\"box\":[[0,1,0],[1,0,1]]}]"}, "bodies.banner.pins[0].box", "must hold the smaller coordinates first", false},
