@@ -34,15 +34,14 @@ constexpr double kForecastOfElasticCloths = 1.0e-3;
 // What was corrected is near the forecast by chance at times.
 constexpr double kCorrectedPart = 0.3;
 
-// No iteration is made when the imbalance, were all of it left, amounts to no more than a six hundredth of the way from where
-// forces led: what gravity pulls back that hangs a tenth of a degree askew. With a hundredth cloths stopped where they turned
-// round, nearly a degree askew, and leaned 38 % too far in a light wind. Masses alone count what is out of balance along links for
-// far too much: once an iteration has told that it is no more, none is made either until the energy changed by as much, or, where
-// nothing moved it since, until forces lead so far from where they led then.
-constexpr double kBalanced = 3.0e-6;
+// What would lead all points by a six hundredth of the way from where forces led is worth this part of the inertia at first, and
+// not moved: what gravity pulls back that hangs a tenth of a degree askew. With a hundredth cloths stopped where they turned round,
+// nearly a degree askew, and leaned 38 % too far in a light wind. Of the energy it would be far more, as links' part of that grows
+// the smaller the steps, and need not fall: what was drawn taut stopped 10 degrees askew.
+constexpr double kBalanced = 2.0 / (600.0 * 600.0);
 
-// The part of the energy that a solve by an old factor may leave to gain: less takes more iterations than it is worth.
-constexpr double kLeftByOldFactor = 5.0e-5;
+// Nor is this part of the energy, where no force leads anywhere.
+constexpr double kNegligible = 1.0e-12;
 
 // What turned by less than this and took one iteration the step before hardly changes: of what moves an old factor, to which other
 // springs were slack, takes too much of the motion.
@@ -52,6 +51,9 @@ constexpr double kCalmTurn = 1.0 / 240.0;
 // beyond it by rounding.
 constexpr double kClipPart = 0.99;
 constexpr double kClipRounding = 1.0 - 0x1p-40;
+
+// Where all moved in common it is the same place but for rounding, which this part of the extent bounds far from the origin too.
+constexpr double kSamePlace = 0x1p-40;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
@@ -77,6 +79,12 @@ ComponentNewton::~ComponentNewton() = default;
 
 std::optional<int> ComponentNewton::solve(const Points& before, Points& positions, double fall) {
   gather(before, positions);
+  begin_beside_led();
+  if (rests_in_place()) {
+    last_iterations_ = 0;
+    write_to(positions);
+    return 0;
+  }
   energy_.set_weight(1.0);
   const double beyond = energy_.value(led_, led_);
   if (beyond == 0.0) {
@@ -92,8 +100,12 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
   const int iterations = minimise(weight * beyond);
   last_iterations_ = iterations;
   if (clips_) clip();
-  for (Index i = 0; i < component_.free_count; ++i) positions.col(component_.points[i]) = x_.col(i);
+  write_to(positions);
   return iterations;
+}
+
+void ComponentNewton::write_to(Points& positions) const {
+  for (Index i = 0; i < component_.free_count; ++i) positions.col(component_.points[i]) = x_.col(i);
 }
 
 void ComponentNewton::gather(const Points& before, const Points& positions) {
@@ -139,13 +151,15 @@ double ComponentNewton::most_beyond() const {
 
 int ComponentNewton::minimise(double energy_where_led) {
   double energy = start(energy_where_led);
-  const double negligible = kBalanced * energy;
+  const double at_first = inertia();
+  const double negligible = kBalanced * at_first + kNegligible * energy;
+  // Masses alone count what is out of balance along links for far too much: an iteration may tell that it is less.
   if (imbalance() <= negligible) {
     note_balance(energy);
     return 0;
   }
-  if (is_still_balanced(energy, negligible)) return 0;
-  const double at_first = inertia();
+  // Where contact moved something since, links are to store as much as then.
+  if (led_apart() <= negligible && std::abs(energy - balanced_energy_) <= negligible) return 0;
   const bool is_calm = last_iterations_ <= 1 && turn() <= kCalmTurn;
   const double close = close_enough(component_);
   // Links that are nearly at their limit will mostly be at it: were they left out at first, each iteration would find only the next
@@ -155,7 +169,7 @@ int ComponentNewton::minimise(double energy_where_led) {
   energy_.forget_overshot();
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
     system_.is_like_last = iteration == 1 && is_calm;
-    system_.may_be_left = kLeftByOldFactor * energy;
+    system_.may_be_left = 0.5 * negligible;
     const double left = solver_->solve(system_, step_);
     const double forecast = modelled - 0.5 * system_.residual.cwiseProduct(step_).sum();
     const auto [part, corrected] = descend(energy, forecast);
@@ -179,11 +193,14 @@ int ComponentNewton::minimise(double energy_where_led) {
   return kMostIterations;
 }
 
-/// Linearises where the solve begins; returns the energy there. In motion where the step began is mostly nearer to the minimum:
-/// there springs are not too long.
-double ComponentNewton::start(double energy_where_led) {
+/// In motion where the step began is mostly nearer to the minimum than where forces led: there springs are not too long.
+void ComponentNewton::begin_beside_led() {
   x_ = before_.colwise() + common_move_;
   x_.rightCols(component_.pin_count()) = led_.rightCols(component_.pin_count());
+}
+
+/// Linearises where the solve begins, if that is not where forces led; returns the energy there.
+double ComponentNewton::start(double energy_where_led) {
   const double energy = energy_.linearise(x_, led_, NearLimit::slack, system_);
   if (energy <= energy_where_led) return energy;
   x_ = led_;
@@ -196,19 +213,23 @@ void ComponentNewton::note_balance(double energy) {
   balanced_led_ = led_;
 }
 
-// Energies may change much faster along gravity than what can be gained: by as much as forces lead farther, not by its square. But
-// E is convex, and its minimum goes no farther than where forces lead, as masses measure it (Moreau 1965).
-bool ComponentNewton::is_still_balanced(double energy, double negligible) {
-  if (std::abs(energy - balanced_energy_) <= negligible) {
-    note_balance(balanced_energy_);
-    return true;
-  }
-  if (balanced_energy_ == kUnknown || x_ != balanced_) return false;
-  double led_apart = 0.0;
+/// What nothing moved since but all in common, and forces lead to nearly where they led then.
+bool ComponentNewton::rests_in_place() const {
+  if (balanced_energy_ == kUnknown) return false;
+  const Vector3 carried = x_.col(0) - balanced_.col(0);
+  const double moved = ((x_ - balanced_).colwise() - carried).cwiseAbs().maxCoeff();
+  return moved <= kSamePlace * extent_ && led_apart() <= kBalanced * inertia();
+}
+
+/// How far from where they led when it came to rest, seen from where each particle is, by masses. E is convex: its minimum goes no
+/// farther than that (Moreau 1965).
+double ComponentNewton::led_apart() const {
+  if (balanced_energy_ == kUnknown) return kUnknown;
+  double sum = 0.0;
   for (Index i = 0; i < component_.free_count; ++i) {
-    led_apart += component_.masses[i] * (led_.col(i) - balanced_led_.col(i)).squaredNorm();
+    sum += component_.masses[i] * ((led_.col(i) - x_.col(i)) - (balanced_led_.col(i) - balanced_.col(i))).squaredNorm();
   }
-  return led_apart <= negligible;
+  return sum;
 }
 
 double ComponentNewton::inertia() const {

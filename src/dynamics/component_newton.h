@@ -39,10 +39,13 @@ class ComponentNewton {
   [[nodiscard]] Vector3 common_move() const;
   [[nodiscard]] double carried_weight(double fall) const;
   [[nodiscard]] double most_beyond() const;
+  void begin_beside_led();
+  void write_to(Points& positions) const;
   int minimise(double energy_where_led);
   [[nodiscard]] double start(double energy_where_led);
   void note_balance(double energy);
-  [[nodiscard]] bool is_still_balanced(double energy, double negligible);
+  [[nodiscard]] bool rests_in_place() const;
+  [[nodiscard]] double led_apart() const;
   [[nodiscard]] double inertia() const;
   [[nodiscard]] double imbalance() const;
   [[nodiscard]] Descent descend(double& energy, double forecast);

@@ -283,7 +283,8 @@ class FallingCloth : public ::testing::Test {
 
   static constexpr double kFrameFall = 9.81 / 3600.0;
   SpringNetwork network_ = make_test_cloth(48, 0.0, 0.0);
-  ComponentNewton newton_{component_of(network_), {.max_stretch = 0.0, .tolerance = 0.01}};
+  const StretchLimitSettings kLimit{.max_stretch = 0.0, .tolerance = 0.01};
+  ComponentNewton newton_{component_of(network_), kLimit};
   Points before_ = network_.positions;
   Points x_ = network_.positions;
 };
@@ -337,6 +338,22 @@ TEST_F(FallingCloth, DoesNotRestOnceForcesChange) {
   const Points rest = x_;
   EXPECT_GT(step(0.1 * kFrameFall * Vector3::UnitZ()), 0);
   EXPECT_GT((x_ - rest).row(2).mean(), 0.01 * kFrameFall);
+}
+
+// Which changes no energy where it rests.
+TEST_F(FallingCloth, DoesNotRestOnceForcesTurn) {
+  come_to_rest();
+  const Points rest = x_;
+  ComponentNewton newton(component_of(network_), kLimit);
+  const auto solves_from_rest = [&](const Vector3& load) {
+    for (Index i = 0; i < x_.cols(); ++i) x_.col(i) = rest.col(i) + (network_.is_pinned(i) ? Vector3(Vector3::Zero()) : load);
+    return newton.solve(rest, x_, kFrameFall).value_or(0);
+  };
+  solves_from_rest(-kFrameFall * Vector3::UnitY());
+  EXPECT_EQ(solves_from_rest(-kFrameFall * Vector3::UnitY()), 0);
+  constexpr double kTurn = 0.1;
+  EXPECT_GT(solves_from_rest(kFrameFall * Vector3(0.0, -std::cos(kTurn), std::sin(kTurn))), 0);
+  EXPECT_GT((x_ - rest).row(2).mean(), 0.5 * kTurn * kFrameFall);
 }
 
 TEST_F(FallingCloth, DoesNotRestOncePinsMove) {
