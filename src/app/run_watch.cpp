@@ -21,9 +21,12 @@ constexpr double kManyFrames = 0.1;
 // in a few steps, and are stopped at their surfaces from then on.
 constexpr double kFallsWithinGap = 16.0;
 
-/// The smallest gap that bodies keep to each other or to themselves [m]; infinite where none meet.
-double thinnest_gap(const std::vector<Body>& bodies) {
+/// The smallest gap that bodies keep to obstacles, to each other or to themselves [m]; infinite where none meet.
+double thinnest_gap(const std::vector<Body>& bodies, const std::vector<Obstacle>& obstacles) {
   double gap = std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : obstacles) {
+    for (const Body& body : bodies) gap = std::min(gap, body.material.thickness + obstacle.material.thickness);
+  }
   for (std::size_t a = 0; a < bodies.size(); ++a) {
     if (bodies[a].contact.self) gap = std::min(gap, bodies[a].material.thickness);
     for (std::size_t b = 0; b < a; ++b) {
@@ -101,17 +104,18 @@ void RunWatch::see_handovers() {
 void RunWatch::see_held_back(const FrameDiagnostics& frame) {
   ++frames_;
   const double particles = static_cast<double>(frame.parts) * static_cast<double>(simulator_.network().particle_count());
-  if (static_cast<double>(frame.truncated) > kManyParticles * particles) ++held_back_;
+  // What closes in on bodies holds them back too, whatever their thickness.
+  if (frame.squeezed == 0 && static_cast<double>(frame.truncated) > kManyParticles * particles) ++held_back_;
 }
 
 void RunWatch::tell_of_thin_bodies() {
   if (held_back_ < kManyFrames * frames_) return;
   const SimulatorSettings& settings = simulator_.settings();
   const double least = kFallsWithinGap * settings.gravity.norm() * settings.step * settings.step;
-  const double gap = thinnest_gap(simulator_.network().bodies);
+  const double gap = thinnest_gap(simulator_.network().bodies, simulator_.environment().obstacles());
   if (gap >= least) return;
   warn(fmt::format(
-      "bodies that meet keep a gap of {} m, which what lies on them uses up as it falls in a step: contact held back more than "
+      "some bodies keep a gap of {} m to what they meet, which they use up as they fall in a step: contact held back more than "
       "{} % of the particles in each step of {} frames, which takes long and lets them stretch; a thickness of at least {} m, or "
       "smaller steps, would help",
       format_number(gap, 3), format_number(100.0 * kManyParticles), held_back_, format_number(least, 2)));

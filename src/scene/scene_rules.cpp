@@ -103,6 +103,7 @@ void check_self_contact(const Scene& scene, const JsonPlace& place) {
 
 Scene read_scene_fields(Fields& fields) {
   Scene scene;
+  fields.optional("$schema", text());
   fields.value("version", integer(1, 1), 1);
   read_time(fields, scene);
   scene.settings = read_settings(fields);

@@ -162,8 +162,8 @@ TEST_F(CommandLine, RunTellsOfBodiesTooThinToLieOnEachOther) {
   }
   Ending ending = run({"run", save(scene), "--out", out()});
   EXPECT_EQ(ending.code, 0) << ending.err;
-  EXPECT_THAT(ending.err, HasSubstr("bodies that meet keep a gap of 0 m"));
-  EXPECT_THAT(record()["warnings"], Contains(StartsWith("bodies that meet")));
+  EXPECT_THAT(ending.err, HasSubstr("some bodies keep a gap of 0 m to what they meet"));
+  EXPECT_THAT(record()["warnings"], Contains(StartsWith("some bodies keep")));
 
   for (json& body : scene["bodies"]) body["thickness"] = 0.005;
   ending = run({"run", save(scene), "--out", out(), "--overwrite"});

@@ -59,6 +59,10 @@ TEST(SceneReader, TimeAndSettingsArrive) {
   EXPECT_EQ(scene.settings.stability, StabilityCheck::warn);
 }
 
+TEST(SceneReader, SchemaForEditorsIsNoUnknownKey) {
+  EXPECT_EQ(SceneFolder().read(kFullScene, {"$schema=scene.schema.json"}).bodies.size(), 5U);
+}
+
 TEST(SceneReader, BodiesArriveInTheOrderOfTheFile) {
   const Scene scene = SceneFolder().read(kFullScene);
   EXPECT_THAT(names_of(scene.bodies), ElementsAre("zebra", "rope", "line", "jelly", "shirt"));

@@ -1,5 +1,6 @@
 // Every rule of a scene has a scene that breaks it.
 #include "broken_scenes.h"
+#include "scene/nearest_name.h"
 #include "scene/overrides.h"
 #include "scene/scene_schema.h"
 #include "scene_text.h"
@@ -165,6 +166,11 @@ INSTANTIATE_TEST_SUITE_P(SceneRules, BrokenOverrideTest,
                                          BrokenOverride{"BeyondTheEnd", "bodies.banner.pins[2].at=corner",
                                                         "bodies.banner.pins has 1 entries, so there is no entry 2"}),
                          [](const auto& test) { return test.param.name; });
+
+TEST(NearestName, IsNoOtherWord) {
+  EXPECT_EQ(nearest_name("cube", {"cone", "box"}), std::nullopt);
+  EXPECT_EQ(nearest_name("bix", {"cone", "box"}), "box");
+}
 
 }  // namespace
 }  // namespace sprung
