@@ -106,14 +106,14 @@ Rule<Vector3> vector3(Range range) {
 namespace detail {
 
 bool check_list(const Json& json, const JsonPlace& place, std::size_t least, std::size_t most) {
+  const std::string entries = std::to_string(least) + (least == 1 ? " entry" : " entries");
+  const std::string number = (least == most ? "" : "at least ") + entries;
   if (!json.is_array()) {
-    place.report(json, "must be a list, written in [ ]");
+    place.report(json, "must be a list" + (least > 0 ? " of " + number : "") + ", written in [ ]");
     return false;
   }
   if (json.size() >= least && json.size() <= most) return true;
-  const std::string entries = least == 1 ? " entry" : " entries";
-  const std::string count = (least == most ? "must have " : "must have at least ") + std::to_string(least) + entries;
-  place.report(json, count, "it has " + std::to_string(json.size()));
+  place.report(json, "must have " + number, "it has " + std::to_string(json.size()));
   return false;
 }
 

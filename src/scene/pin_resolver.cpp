@@ -46,7 +46,8 @@ class PinFinder {
         particles.push_back(particle);
       } else {
         report(join_path(".indices", i), std::to_string(particle),
-               "the body has " + std::to_string(positions_.size()) + " particles, numbered from 0", "");
+               "the body has " + std::to_string(positions_.size()) + " particles",
+               "they are numbered from 0 to " + std::to_string(positions_.size() - 1));
       }
     }
     return particles;

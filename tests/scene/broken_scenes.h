@@ -50,7 +50,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"StepDoesNotDivideTheFrame", {"frame_rate=25", "step=0.003"}, "step", "not a whole number; use 0.003076923076923077 or 0.002857142857142857, or \"auto\"", false},
       {"StepLongerThanAFrame", {"frame_rate=50", "step=0.03"}, "step", "not a whole number; use 0.02, or \"auto\"", false},
       {"StepTooShort", {"step=1e-29"}, "step", "use a larger step", false},
-      {"GravityIsANumber", {"gravity=-9.81"}, "gravity", "must be a list"},
+      {"GravityIsANumber", {"gravity=-9.81"}, "gravity", "must be a list of 3 entries, written in [ ]"},
       {"GravityOfTwoNumbers", {"gravity=[0,-9.81]"}, "gravity", "must have 3 entries; it has 2"},
       {"GravityHoldsText", {"gravity=[0,\"down\",0]"}, "gravity[1]", "must be a number"},
       {"HugeNumber", {"gravity=[0,-1e300,0]"}, "gravity[1]", "must be at most 1e+30 in size"},
