@@ -40,9 +40,6 @@ constexpr double kCorrectedPart = 0.3;
 // the smaller the steps, and need not fall: what was drawn taut stopped 10 degrees askew.
 constexpr double kBalanced = 2.0 / (600.0 * 600.0);
 
-// Nor is this part of the energy, where no force leads anywhere.
-constexpr double kNegligible = 1.0e-12;
-
 // What turned by less than this and took one iteration the step before hardly changes: of what moves an old factor, to which other
 // springs were slack, takes too much of the motion.
 constexpr double kCalmTurn = 1.0 / 240.0;
@@ -152,7 +149,7 @@ double ComponentNewton::most_beyond() const {
 int ComponentNewton::minimise(double energy_where_led) {
   double energy = start(energy_where_led);
   const double at_first = inertia();
-  const double negligible = kBalanced * at_first + kNegligible * energy;
+  const double negligible = kBalanced * at_first;
   // Masses alone count what is out of balance along links for far too much: an iteration may tell that it is less.
   if (imbalance() <= negligible) {
     note_balance(energy);

@@ -93,7 +93,8 @@ Json* descend(Json& json, const PathPart& part, std::string& problem) {
     return nullptr;
   }
   if (index > json.size()) {
-    problem = "has " + std::to_string(json.size()) + " entries, so there is no entry " + std::to_string(index);
+    problem = "has " + std::to_string(json.size()) + (json.size() == 1 ? " entry" : " entries") + ", so there is no entry " +
+              std::to_string(index);
     return nullptr;
   }
   if (index == json.size()) json.push_back(nullptr);

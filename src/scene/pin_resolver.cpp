@@ -1,3 +1,4 @@
+#include "base/format.h"
 #include "network/corners.h"
 #include "scene/body_builder.h"
 #include "scene/json_text.h"
@@ -45,8 +46,7 @@ class PinFinder {
       if (particle < static_cast<Index>(positions_.size())) {
         particles.push_back(particle);
       } else {
-        report(join_path(".indices", i), std::to_string(particle),
-               "the body has " + std::to_string(positions_.size()) + " particles",
+        report(join_path(".indices", i), std::to_string(particle), "the body has " + counted(positions_.size(), "particle"),
                "they are numbered from 0 to " + std::to_string(positions_.size() - 1));
       }
     }

@@ -150,6 +150,23 @@ TEST_F(CommandLine, RunTellsOfEnergyFromNowhere) {
   EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("nothing drives")));
 }
 
+TEST_F(CommandLine, RunTellsOfABodyTooThinToLieOnAnObstacle) {
+  json scene = {{"version", 1}, {"duration", 1}, {"frame_rate", 30}};
+  scene["obstacles"]["hills"]["shape"] = {{"type", "mesh"}, {"file", SPRUNG_SOURCE_DIR "/meshes/terrain.gltf"}};
+  scene["bodies"]["cloth"] = {{"shape", {{"type", "cloth"}, {"size", {1, 1}}, {"resolution", {12, 12}}}},
+                              {"mass", 0.1},
+                              {"springs", {{"structural", {{"stiffness", 100}}}}},
+                              {"place", {{"position", {0, 0.4, 0}}, {"rotation", {-90, 0, 0}}}}};
+  Ending ending = run({"run", save(scene), "--out", out()});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.err, HasSubstr("some bodies keep a gap of 0 m to what they meet"));
+
+  scene["obstacles"]["hills"]["thickness"] = 0.005;
+  ending = run({"run", save(scene), "--out", out(), "--overwrite"});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.err, Not(HasSubstr("keep a gap")));
+}
+
 TEST_F(CommandLine, RunTellsOfBodiesTooThinToLieOnEachOther) {
   json scene = {{"version", 1}, {"duration", 0.5}, {"frame_rate", 30}, {"stretch_limit", {{"max_stretch", 0.02}}}};
   scene["obstacles"]["floor"]["shape"] = {{"type", "half_space"}};

@@ -319,7 +319,7 @@ TEST_F(FallingCloth, TakesOneSolveToTellThatNothingIsToBeGained) {
 }
 
 // Rest leaves a six hundredth of the way from where forces lead, of which its last motion may have taken most. A ten thousandth
-// along gravity changes the energy by ten times what rest leaves, and moves its minimum next to nowhere.
+// along gravity changes the energy by many times what rest leaves, and moves its minimum next to nowhere.
 TEST_F(FallingCloth, RestsUntilForcesLeadElsewhere) {
   come_to_rest();
   const Points rest = x_;

@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(SceneRules, BrokenOverrideTest,
                                          BrokenOverride{"NoList", "duration[0]=1", "duration has no entries"},
                                          BrokenOverride{"EntryOfADefault", "wind[1]=1", "wind is not written in the scene"},
                                          BrokenOverride{"BeyondTheEnd", "bodies.banner.pins[2].at=corner",
-                                                        "bodies.banner.pins has 1 entries, so there is no entry 2"}),
+                                                        "bodies.banner.pins has 1 entry, so there is no entry 2"}),
                          [](const auto& test) { return test.param.name; });
 
 TEST(NearestName, IsNoOtherWord) {

@@ -46,12 +46,12 @@ int passes_under_pins(const SpringNetwork& network, const StretchLimitSettings& 
 }
 
 // Where it turns round there is little to be gained in a step, and yet it must not stop there: half a degree askew gravity pulls it
-// back with a hundredth of itself. A sheet of 1 m swings through in each pi sqrt(2 / (3 g)) = 0.82 s: 4 times in these.
+// back with a hundredth of itself. A sheet of 1 m swings through in each pi sqrt(2 / (3 g)) = 0.82 s: 7 times in these.
 TEST(LimitMotion, WhatHangsHalfADegreeAskewSwingsBackUnderNewton) {
   for (const double max_stretch : {0.0, 0.02}) {
     const StretchLimitSettings limit{.max_stretch = max_stretch, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};
-    for (const int rate : {30, 120, 960}) {
-      EXPECT_GE(passes_under_pins(held_cloth(16, kLimp, kLimp, -0.5), limit, rate, 4.0), 3) << max_stretch << ", " << rate;
+    for (const int rate : {30, 60, 120, 960}) {
+      EXPECT_GE(passes_under_pins(held_cloth(16, kLimp, kLimp, -0.5), limit, rate, 6.0), 5) << max_stretch << ", " << rate;
     }
   }
 }
