@@ -34,12 +34,6 @@ constexpr double kForecastOfElasticCloths = 1.0e-3;
 // What was corrected is near the forecast by chance at times.
 constexpr double kCorrectedPart = 0.3;
 
-// What would lead all points by a six hundredth of the way from where forces led is worth this part of the inertia at first, and
-// not moved: what gravity pulls back that hangs a tenth of a degree askew. With a hundredth cloths stopped where they turned round,
-// nearly a degree askew, and leaned 38 % too far in a light wind. Of the energy it would be far more, as links' part of that grows
-// the smaller the steps, and need not fall: what was drawn taut stopped 10 degrees askew.
-constexpr double kBalanced = 2.0 / (600.0 * 600.0);
-
 // What turned by less than this and took one iteration the step before hardly changes: of what moves an old factor, to which other
 // springs were slack, takes too much of the motion.
 constexpr double kCalmTurn = 1.0 / 240.0;

@@ -1,6 +1,7 @@
 // Newton's method for the stretch limit of one component.
 #pragma once
 
+#include "dynamics/component_solver.h"
 #include "dynamics/stretch_energy.h"
 #include "dynamics/stretch_system.h"
 
@@ -11,22 +12,21 @@
 namespace sprung {
 
 /// Minimises StretchEnergy by Newton's method with a halving line search.
-class ComponentNewton {
+class ComponentNewton final : public ComponentSolver {
  public:
   ComponentNewton(StretchComponent component, const StretchLimitSettings& settings);
-  ~ComponentNewton();
+  ~ComponentNewton() override;
   ComponentNewton(const ComponentNewton&) = delete;
   ComponentNewton& operator=(const ComponentNewton&) = delete;
 
-  /// Leads the component's free particles from where forces led them, `positions`, to the minimum; `before` is where the step
-  /// began. `fall` [m] is how far the largest steady acceleration leads a particle at rest in a step, |g| dt^2: links are made
-  /// stiff enough to carry the component against it, and against the motion it has. Of a chain or tree that hangs on one link, no
-  /// link is beyond the tolerance then. Returns how many linear systems were solved; none when no link was too long.
-  std::optional<int> solve(const Points& before, Points& positions, double fall);
+  /// To the minimum. Links are made stiff enough to carry the component against `fall`, and against the motion it has. Of a chain
+  /// or tree that hangs on one link, no link is beyond the tolerance then.
+  std::optional<int> solve(const Points& before, Points& positions, double fall) override;
 
-  /// How far the point that goes farthest by itself was led by the forces of the last `solve`, as a part of the component's extent:
-  /// of what swings about its pins, the angle of a step.
-  [[nodiscard]] double turn() const;
+  [[nodiscard]] double turn() const override;
+
+  /// How stiff each link's pull makes it against turning, where the last solve ended [kg]; 0 of links that do not pull.
+  [[nodiscard]] std::vector<double> stiffness_across() const { return energy_.stiffness_across(x_); }
 
  private:
   /// How much of a step was made, and whether it was bent after links that it turned.

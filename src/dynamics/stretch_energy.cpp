@@ -105,6 +105,17 @@ double StretchEnergy::linearise(const Points& x, const Points& y, NearLimit near
   return 0.5 * (inertia + elastic);
 }
 
+std::vector<double> StretchEnergy::stiffness_across(const Points& x) const {
+  std::vector<double> across;
+  for (std::size_t s = 0; s < limits_.size(); ++s) {
+    const StretchComponent::Link& link = component_.links[s];
+    const double squared = (x.col(link.second) - x.col(link.first)).squaredNorm();
+    const bool pulls = squared > limits_[s].length * limits_[s].length;
+    across.push_back(pulls ? weight_ * limits_[s].stiffness * (1.0 - limits_[s].length / std::sqrt(squared)) : 0.0);
+  }
+  return across;
+}
+
 void StretchEnergy::take_turning(const Points& x, const Points& tried, StretchSystem& system) const {
   system.residual.setZero();
   for (std::size_t s = 0; s < limits_.size(); ++s) {

@@ -47,6 +47,9 @@ class StretchEnergy {
   /// indefinite. What links near the limit count as if they pushed is in what is returned too.
   double linearise(const Points& x, const Points& y, NearLimit near, StretchSystem& system) const;
 
+  /// Of each link k max(0, 1 - L / |d|) at `x`, what its pull adds to the second derivatives across it [kg].
+  [[nodiscard]] std::vector<double> stiffness_across(const Points& x) const;
+
   /// What links pull on the way from `x`, where the system is linearised, to `tried` that it does not know of: as much as turning
   /// made them longer, along their directions at `x`; links that count and are too long at `tried`, at most by that. Replaces the
   /// residual: the step of a second-order correction (Nocedal and Wright 2006, chapter 18).

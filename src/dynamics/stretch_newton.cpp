@@ -1,7 +1,7 @@
 #include "dynamics/stretch_newton.h"
 
 #include "base/parallel.h"
-#include "dynamics/component_newton.h"
+#include "dynamics/two_level_newton.h"
 
 #include <algorithm>
 #include <utility>
@@ -34,7 +34,7 @@ StretchNewton::StretchNewton(const SpringNetwork& network, const StretchLimitSet
       left_.insert(left_.end(), component.points.begin(), component.points.begin() + component.free_count);
     }
     if (taken == Taken::never) continue;
-    parts_.push_back({.newton = std::make_unique<ComponentNewton>(std::move(component), settings),
+    parts_.push_back({.solver = make_component_solver(network, std::move(component), settings, use),
                       .body = static_cast<std::size_t>(&body - network.bodies.data()),
                       .from_start = taken == Taken::from_start});
   }
@@ -49,7 +49,7 @@ std::optional<int> StretchNewton::solve(const Points& before, Points& positions,
     for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p) {
       const Part& part = parts_[p];
       const bool handed_over = !holds.empty() && holds[part.body].solved_since;
-      if (part.from_start || handed_over) iterations[p] = part.newton->solve(before, positions, fall);
+      if (part.from_start || handed_over) iterations[p] = part.solver->solve(before, positions, fall);
     }
   });
   return iterations.empty() ? std::nullopt : *std::ranges::max_element(iterations);
@@ -57,7 +57,7 @@ std::optional<int> StretchNewton::solve(const Points& before, Points& positions,
 
 double StretchNewton::turn() const {
   double largest = 0.0;
-  for (const Part& part : parts_) largest = std::max(largest, part.newton->turn());
+  for (const Part& part : parts_) largest = std::max(largest, part.solver->turn());
   return largest;
 }
 

@@ -9,7 +9,7 @@
 
 namespace sprung {
 
-class ComponentNewton;
+class ComponentSolver;
 struct StretchComponent;
 
 /// Newton's method on each component of limited springs: chains and trees by elimination, others by a sparse factor. Only
@@ -46,7 +46,7 @@ class StretchNewton {
  private:
   /// What is or may be solved for.
   struct Part {
-    std::unique_ptr<ComponentNewton> newton;
+    std::unique_ptr<ComponentSolver> solver;
     std::size_t body;
     bool from_start;
   };

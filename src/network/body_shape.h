@@ -19,8 +19,10 @@ struct BodyShape {
   Springs springs;                  ///< in any order
   AngleBends angle_bends;
   Surface surface;
-  int dimension = 0;             ///< of what `measure` measures: 1 length, 2 area, 3 volume; 0: nothing
-  double measure = 0.0;          ///< length [m], area [m^2] or volume [m^3]
+  int dimension = 0;     ///< of what `measure` measures: 1 length, 2 area, 3 volume; 0: nothing
+  double measure = 0.0;  ///< length [m], area [m^2] or volume [m^3]
+  /// Of a cloth that make_cloth made: particles along x, which are numbered first, and along y; 0 of all else.
+  std::array<Index, 2> resolution{};
   std::vector<double> measures;  ///< each particle's part of it: what is nearest to it, on a border half of it or less
   /// Of each kind of spring, in the order of SpringKind: the damping ratio that NetworkBuilder turns into k_d.
   std::array<std::optional<double>, 3> damping_ratios{};

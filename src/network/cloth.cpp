@@ -34,6 +34,7 @@ BodyShape make_cloth(const ClothShape& cloth, const SpringMaterials& materials) 
   set_surface(shape, to_triangles(triangles));
   shape.dimension = 2;
   shape.measure = cloth.size[0] * cloth.size[1];
+  shape.resolution = cloth.resolution;
   shape.measures = lattice.measures();
   return shape;
 }

@@ -167,7 +167,8 @@ SpringNetwork NetworkBuilder::build() const {
     append_angle_bends(network.angle_bends, draft.shape.angle_bends, draft.first_particle);
     network.bodies.push_back({draft.name, draft.first_particle, static_cast<Index>(draft.shape.positions.size()), first_spring,
                               network.springs.count() - first_spring, first_bend, network.angle_bends.count() - first_bend,
-                              draft.shape.dimension, draft.shape.measure, draft.shape.surface, draft.material, draft.contact});
+                              draft.shape.dimension, draft.shape.measure, draft.shape.resolution, draft.shape.surface,
+                              draft.material, draft.contact});
   }
   network.inverse_masses = network.masses.cwiseInverse();
   network.pins = pins_;

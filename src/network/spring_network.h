@@ -68,8 +68,9 @@ struct Body {
   Index spring_count = 0;
   Index first_angle_bend = 0;
   Index angle_bend_count = 0;
-  int dimension = 0;     ///< of its measure, see BodyShape
-  double measure = 0.0;  ///< length [m], area [m^2] or volume [m^3]; 0 for particles added one by one
+  int dimension = 0;                  ///< of its measure, see BodyShape
+  double measure = 0.0;               ///< length [m], area [m^2] or volume [m^3]; 0 for particles added one by one
+  std::array<Index, 2> resolution{};  ///< of a cloth, see BodyShape
   Surface surface;
   ContactMaterial material;
   BodyContact contact;
