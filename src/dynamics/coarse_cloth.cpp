@@ -52,13 +52,13 @@ class Coarsener {
       : network_(network), body_(body), columns_(body.resolution[0]), rows_(body.resolution[1]) {
     length_to_right_.assign(static_cast<std::size_t>(body.particle_count), kUnknown);
     length_upwards_ = length_to_right_;
-    for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) note_spring(s);
-    structural_ = std::ranges::find(kinds, SpringKind::structural) != kinds.end();
-    shear_ = std::ranges::find(kinds, SpringKind::shear) != kinds.end();
+    for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+      if (std::ranges::find(kinds, network.springs.kind[s]) != kinds.end()) note_spring(s);
+    }
   }
 
   std::optional<CoarseCloth> coarse(const StretchComponent& component) {
-    if (!structural_ || !is_whole(component)) return std::nullopt;
+    if (!is_lattice() || !is_whole(component)) return std::nullopt;
     xs_ = every_other(columns_);
     ys_ = every_other(rows_);
     while (keep_pins()) {
@@ -76,11 +76,33 @@ class Coarsener {
 
   void note_spring(Index s) {
     const Springs& springs = network_.springs;
-    if (springs.kind[s] != SpringKind::structural) return;
     const Index from = springs.first[s] - body_.first_particle;
     const Index apart = springs.second[s] - springs.first[s];
-    if (apart == 1 && (from + 1) % columns_ != 0) length_to_right_[from] = springs.rest_length[s];
-    if (apart == columns_) length_upwards_[from] = springs.rest_length[s];
+    const bool is_to_right = apart == 1 && (from + 1) % columns_ != 0;
+    switch (springs.kind[s]) {
+      case SpringKind::structural: {
+        double& length = (apart == columns_ ? length_upwards_ : length_to_right_)[from];
+        has_others_ = has_others_ || !(is_to_right || apart == columns_) || !std::isnan(length);
+        length = springs.rest_length[s];
+        break;
+      }
+      case SpringKind::shear:
+        has_others_ = has_others_ || std::abs(apart - columns_) != 1;
+        ++shear_count_;
+        break;
+      case SpringKind::bend:  // as long as two structural ones in line, which hold it
+        has_others_ = has_others_ || !(apart == 2 || apart == 2 * columns_);
+        break;
+    }
+  }
+
+  /// Whether neighbours along all rows and columns are joined, and across all cells both ways or across none, and no others are.
+  [[nodiscard]] bool is_lattice() const {
+    const auto known = [](const std::vector<double>& lengths) {
+      return std::ranges::count_if(lengths, [](double length) { return !std::isnan(length); });
+    };
+    const bool is_joined = known(length_to_right_) == (columns_ - 1) * rows_ && known(length_upwards_) == columns_ * (rows_ - 1);
+    return is_joined && !has_others_ && (shear_count_ == 0 || shear_count_ == 2 * (columns_ - 1) * (rows_ - 1));
   }
 
   /// Whether it has all free particles of the cloth.
@@ -155,7 +177,7 @@ class Coarsener {
       const bool has_above = q + width() < count;
       if (has_right) join(q, q + 1, length_right_of(q), of_first);
       if (has_above) join(q, q + width(), length_above(q), of_first);
-      if (!shear_ || !has_right || !has_above) continue;
+      if (shear_count_ == 0 || !has_right || !has_above) continue;
       const double across = std::sqrt(squared(length_right_of(q)) + squared(length_above(q)));
       join(q, q + width() + 1, across, of_first);
       join(q + 1, q + width(), across, of_first);
@@ -189,8 +211,8 @@ class Coarsener {
   const Body& body_;
   Index columns_;
   Index rows_;
-  bool structural_ = false;
-  bool shear_ = false;
+  Index shear_count_ = 0;                ///< of limited springs
+  bool has_others_ = false;              ///< limited springs that make_cloth makes none of, or twice
   std::vector<double> length_to_right_;  ///< of the structural spring from each particle of the body to the next
   std::vector<double> length_upwards_;   ///< and to the one in the next row
   std::vector<Index> xs_;                ///< coarse columns

@@ -9,11 +9,12 @@
 
 namespace sprung {
 
+/// A cloth of fewer particles in place of another, and where those of the other lie in it.
 struct CoarseCloth {
   /// Where a free particle of the cloth lies among the points of the coarse one.
   struct Place {
     std::array<Index, 4> points;    ///< the corners of the cell that it lies in
-    std::array<double, 4> weights;  ///< of them; their sum is 1
+    std::array<double, 4> weights;  ///< of them, dimensionless; their sum is 1
   };
 
   StretchComponent component;    ///< its particles are coarse points, numbered row by row; masses are shared out by weights
@@ -21,10 +22,11 @@ struct CoarseCloth {
   std::vector<Place> places;     ///< of the free points of the cloth that it was made of
 };
 
-/// Coarse rows and columns are two apart, nearer where a pin lies that is not among others. Links join neighbours along them, and
-/// across cells where shear springs are limited; they are as long as what they take the place of: while those hold, so do they.
-/// None for what is not all free particles of a cloth from make_cloth, with structural springs among those that are limited, or has
-/// so many pins that half of its particles would be left.
+/// Of a component of the network that springs of `kinds` join. Coarse rows and columns are about two apart, nearer where a pin lies
+/// that is not among others. Links join neighbours along them, and across cells where shear springs are limited; they are as long
+/// as what they take the place of: while those hold, so do they. None for what is not all free particles of a cloth, joined as by
+/// make_cloth with structural springs among those that are limited and by no others, or has so many pins that half of its particles
+/// would be left.
 [[nodiscard]] std::optional<CoarseCloth> coarsen(const SpringNetwork& network, const StretchComponent& component,
                                                  const std::vector<SpringKind>& kinds);
 

@@ -13,13 +13,14 @@ namespace sprung {
 /// that grows the smaller the steps, and need not fall: what was drawn taut stopped 10 degrees askew.
 inline constexpr double kBalanced = 2.0 / (600.0 * 600.0);
 
+/// What brings the free particles of one component towards the limit of its links, all at once, before the passes do.
 class ComponentSolver {
  public:
   virtual ~ComponentSolver() = default;
 
   /// Leads the component's free particles on from where forces led them, `positions` [m], 3 x particles, to where no link is much
   /// too long; `before` is where the step began, `fall` [m] how far the largest steady acceleration leads a particle at rest in a
-  /// step, |g| dt^2. Returns how many linear systems were solved; none when no link was too long.
+  /// step, |g| dt^2. Returns how many linear systems were solved; none when no link that it solves for was too long.
   virtual std::optional<int> solve(const Points& before, Points& positions, double fall) = 0;
 
   /// How far the point that goes farthest by itself was led by the forces of the last `solve`, as a part of the component's extent:

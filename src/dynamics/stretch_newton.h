@@ -40,7 +40,7 @@ class StretchNewton {
   [[nodiscard]] bool may_take_over(std::size_t body) const;
   [[nodiscard]] bool may_take_over_any() const;
 
-  /// The largest turn of a component in the last solve; see ComponentNewton. None is 0.
+  /// The largest turn of a component in the last solve; see ComponentSolver. None is 0.
   [[nodiscard]] double turn() const;
 
  private:

@@ -50,8 +50,8 @@ class TwoLevelNewton final : public ComponentSolver {
   std::vector<double> tautness_;  ///< by coarse point: how stiff the pull of its links is across them [kg]
 };
 
-/// What solves for a component: two levels for cloths from make_cloth without stiffness, of 8,192 particles and more, that meet
-/// nothing and whose limit has a tolerance of half a per cent or more; else one.
+/// What solves for a component: two levels for cloths from make_cloth without stiffness, of 8,192 free particles and more, that
+/// meet nothing and whose limit has a tolerance of half a per cent or more; else one.
 [[nodiscard]] std::unique_ptr<ComponentSolver> make_component_solver(const SpringNetwork& network, StretchComponent component,
                                                                      const StretchLimitSettings& settings, const LimitUse& use);
 
