@@ -151,16 +151,37 @@ class Coarsener {
     }
     StretchComponent& coarse = cloth_.component;
     point_.assign(static_cast<std::size_t>(count), kNone);
-    for (Index q = 0; q < count; ++q) cloth_.particles.push_back(coarse_particle(q));
-    for (const bool pinned : {false, true}) {
-      for (Index q = 0; q < count; ++q) {
-        if (network_.is_pinned(cloth_.particles[q]) != pinned) continue;
-        point_[q] = static_cast<Index>(coarse.points.size());
-        coarse.points.push_back(q);
-        if (!pinned) coarse.masses.push_back(masses[q]);
+    for (Index q = 0; q < count; ++q) {
+      cloth_.particles.push_back(coarse_particle(q));
+      if (network_.is_pinned(cloth_.particles[q])) {
+        cloth_.pins.push_back(q);
+      } else {
+        add_point(q);
+        coarse.masses.push_back(masses[q]);
       }
-      if (!pinned) coarse.free_count = static_cast<Index>(coarse.points.size());
     }
+    coarse.free_count = static_cast<Index>(coarse.points.size());
+    for (const Index q : cloth_.pins) {
+      if (is_beside_free_point(q)) add_point(q);
+    }
+  }
+
+  void add_point(Index q) {
+    point_[q] = static_cast<Index>(cloth_.component.points.size());
+    cloth_.component.points.push_back(q);
+  }
+
+  /// As links join them. Pins that hold nothing share no load.
+  [[nodiscard]] bool is_beside_free_point(Index q) const {
+    const Index column = q % width();
+    const Index row = q / width();
+    for (Index y = std::max(row - 1, 0); y <= std::min(row + 1, static_cast<Index>(ys_.size()) - 1); ++y) {
+      for (Index x = std::max(column - 1, 0); x <= std::min(column + 1, width() - 1); ++x) {
+        const bool is_joined = shear_count_ > 0 || x == column || y == row;
+        if (is_joined && !network_.is_pinned(particle(xs_[x], ys_[y]))) return true;
+      }
+    }
+    return false;
   }
 
   [[nodiscard]] CoarseCloth::Place place_of_particle(Index particle) const {
@@ -188,10 +209,12 @@ class Coarsener {
     }
   }
 
-  /// Two pins are not, nor is what no springs join.
+  /// Two pins are not.
   void join(Index a, Index b, double length, std::vector<std::vector<StretchComponent::Link>>& of_first) const {
+    const bool a_is_free = !network_.is_pinned(cloth_.particles[a]);
+    const bool b_is_free = !network_.is_pinned(cloth_.particles[b]);
+    if (!a_is_free && !b_is_free) return;
     const Index first = std::min(point_[a], point_[b]);
-    if (!cloth_.component.is_free(first) || !(length > 0.0)) return;
     of_first[first].push_back({first, std::max(point_[a], point_[b]), length});
   }
 

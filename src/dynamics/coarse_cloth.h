@@ -19,6 +19,7 @@ struct CoarseCloth {
 
   StretchComponent component;    ///< its particles are coarse points, numbered row by row; masses are shared out by weights
   std::vector<Index> particles;  ///< of the network, by coarse point
+  std::vector<Index> pins;       ///< coarse points that are pinned; the component has those that links join to free ones
   std::vector<Place> places;     ///< of the free points of the cloth that it was made of
 };
 

@@ -76,10 +76,7 @@ void TwoLevelNewton::gather(const Points& before, const Points& positions) {
       coarse_led_.col(points[k]) += weights[k] * masses_[n] / coarse_masses_[points[k]] * (led_.col(n) - before_.col(n));
     }
   }
-  const std::vector<Index>& points = coarse_.component.points;
-  for (std::size_t p = coarse_.component.free_count; p < points.size(); ++p) {
-    coarse_led_.col(points[p]) = positions.col(coarse_.particles[points[p]]);
-  }
+  for (const Index q : coarse_.pins) coarse_led_.col(q) = positions.col(coarse_.particles[q]);
 }
 
 void TwoLevelNewton::note_tautness() {

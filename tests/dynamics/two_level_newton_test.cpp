@@ -95,6 +95,18 @@ TEST(CoarseCloth, KeepsPinsThatLieAmongFreeParticles) {
   EXPECT_EQ(cloth->component.pin_count(), 1);
 }
 
+// Pins share the load by which the energy weighs links: a cloth of which half is pinned was stretched by three times its tolerance.
+TEST(CoarseCloth, HangsOnThePinsThatHoldItAlone) {
+  SpringNetwork network = make_test_cloth(kSide, 0.0, 0.0);
+  network.inverse_masses.tail(kSide / 2 * kSide).setZero();
+  const StretchComponent fine = component_of(network);
+  ASSERT_EQ(fine.pin_count(), kSide);
+  const auto cloth = coarsen(network, fine, kLimit.kinds);
+  ASSERT_TRUE(cloth);
+  EXPECT_EQ(cloth->component.pin_count(), kSide / 2);
+  EXPECT_GT(cloth->pins.size(), kSide / 2);
+}
+
 TEST(CoarseCloth, IsMadeOfWholeClothsAlone) {
   EXPECT_FALSE(coarsen(make_test_rope(40, 0.0), component_of(make_test_rope(40, 0.0)), kLimit.kinds));
   const SpringNetwork network = make_test_cloth(kSide, 0.0, 0.0);
