@@ -1,7 +1,5 @@
 #include "dynamics/coarse_cloth.h"
 
-#include "dynamics/limited_springs.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -87,7 +85,6 @@ class Coarsener {
         break;
       }
       case SpringKind::shear:
-        has_others_ = has_others_ || std::abs(apart - columns_) != 1;
         ++shear_count_;
         break;
       case SpringKind::bend:  // as long as two structural ones in line, which hold it
@@ -161,27 +158,11 @@ class Coarsener {
       }
     }
     coarse.free_count = static_cast<Index>(coarse.points.size());
-    for (const Index q : cloth_.pins) {
-      if (is_beside_free_point(q)) add_point(q);
-    }
   }
 
   void add_point(Index q) {
     point_[q] = static_cast<Index>(cloth_.component.points.size());
     cloth_.component.points.push_back(q);
-  }
-
-  /// As links join them. Pins that hold nothing share no load.
-  [[nodiscard]] bool is_beside_free_point(Index q) const {
-    const Index column = q % width();
-    const Index row = q / width();
-    for (Index y = std::max(row - 1, 0); y <= std::min(row + 1, static_cast<Index>(ys_.size()) - 1); ++y) {
-      for (Index x = std::max(column - 1, 0); x <= std::min(column + 1, width() - 1); ++x) {
-        const bool is_joined = shear_count_ > 0 || x == column || y == row;
-        if (is_joined && !network_.is_pinned(particle(xs_[x], ys_[y]))) return true;
-      }
-    }
-    return false;
   }
 
   [[nodiscard]] CoarseCloth::Place place_of_particle(Index particle) const {
@@ -209,11 +190,12 @@ class Coarsener {
     }
   }
 
-  /// Two pins are not.
-  void join(Index a, Index b, double length, std::vector<std::vector<StretchComponent::Link>>& of_first) const {
-    const bool a_is_free = !network_.is_pinned(cloth_.particles[a]);
-    const bool b_is_free = !network_.is_pinned(cloth_.particles[b]);
-    if (!a_is_free && !b_is_free) return;
+  /// Two pins are not. The component gets a pin with its first link: those that hold nothing share no load.
+  void join(Index a, Index b, double length, std::vector<std::vector<StretchComponent::Link>>& of_first) {
+    if (network_.is_pinned(cloth_.particles[a]) && network_.is_pinned(cloth_.particles[b])) return;
+    for (const Index q : {a, b}) {
+      if (point_[q] == kNone) add_point(q);
+    }
     const Index first = std::min(point_[a], point_[b]);
     of_first[first].push_back({first, std::max(point_[a], point_[b]), length});
   }

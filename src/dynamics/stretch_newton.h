@@ -12,9 +12,10 @@ namespace sprung {
 class ComponentSolver;
 struct StretchComponent;
 
-/// Newton's method on each component of limited springs: chains and trees by elimination, others by a sparse factor. Only
-/// max_stretch is held, not max_compression. Same bits for any number of threads. Of what is not a chain or a tree a step's later
-/// digits depend on the steps before, whose factors it may use: the same steps one after the other have the same bits.
+/// Newton's method on each component of limited springs: chains and trees by elimination, others by a sparse factor, large
+/// cloths on two levels. Only max_stretch is held, not max_compression. Same bits for any number of threads. Of what is not a chain
+/// or a tree a step's later digits depend on the steps before, whose factors it may use: the same steps one after the other have
+/// the same bits.
 class StretchNewton {
  public:
   /// Takes all components from the start, or, when `settings.solver` is automatic, chains and trees, and those of ropes and
@@ -25,7 +26,7 @@ class StretchNewton {
 
   /// Leads free particles from where forces led them, `positions`, to where no limited spring is much too long, with as little
   /// weighted movement as that takes. `before` is where the step began; pins are where they shall be in `positions`. `fall` as
-  /// ComponentNewton's; `holds` of bodies, or empty. Returns the most linear systems that a component took; none when nothing was
+  /// ComponentSolver's; `holds` of bodies, or empty. Returns the most linear systems that a component took; none when nothing was
   /// too long.
   std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHold>& holds = {});
 

@@ -6,7 +6,7 @@
 namespace sprung {
 namespace {
 
-// A cloth of 64 x 64 hangs in half a millisecond a frame by itself; one of 128 x 128 takes a quarter of its time in two levels.
+// A cloth of 64 x 64 hangs in less than a millisecond a frame by itself; one of 128 x 128 takes a third of its time in two levels.
 constexpr Index kLeastParticles = 8192;
 
 // Between coarse points a cloth that turns is longer than they tell, by some tenths of a per cent. Passes mend that, but come to
@@ -88,7 +88,7 @@ void TwoLevelNewton::note_tautness() {
   }
 }
 
-// A fine link is half as long as a coarse one and carries half as much: it is as stiff across.
+// Most fine links are half as long as coarse ones and carry half as much: they are as stiff across.
 void TwoLevelNewton::lead_along(double fall) {
   x_.resizeLike(led_);
   for (Index n = 0; n < static_cast<Index>(x_.cols()); ++n) {

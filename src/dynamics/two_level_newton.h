@@ -14,7 +14,7 @@ namespace sprung {
 /// beside that goes on where links around them are slack; where they pull it dies out as an implicit step has it, and what is
 /// uneven is straightened. The little that fine links are too long then is left to passes.
 ///
-/// A factor of a quarter of the particles takes an eighth of the time or less.
+/// A factor of a quarter of the particles takes a seventh of the time or less.
 class TwoLevelNewton final : public ComponentSolver {
  public:
   /// Of the component that the coarse cloth was made of.

@@ -259,7 +259,6 @@ TEST_F(TurnedChain, CountsOnlyLinksOfTheSystem) {
   EXPECT_EQ(system_.residual, Points::Zero(3, component_.free_count));
 }
 
-/// A cloth in steps of a frame under gravity and what else there is.
 /// How far a level rope of 8 m, held by both ends and given 2 % to stretch by, falls in 0.3 s on average [m].
 double fall_of_level_rope(Index particles) {
   constexpr double kStepFall = 9.81 / 900.0;
@@ -284,11 +283,12 @@ double fall_of_level_rope(Index particles) {
 }
 
 // In a step it falls by up to 25 times the length of its links: it took more iterations than there were, stayed near where each
-// step began, and fell half as far.
+// step began, and fell a third as far.
 TEST(ComponentNewton, AFineRopeHeldByBothEndsFallsAsFarAsACoarseOne) {
   EXPECT_NEAR(fall_of_level_rope(2000), fall_of_level_rope(200), 0.02 * fall_of_level_rope(200));
 }
 
+/// A cloth in steps of a frame under gravity and what else there is.
 class FallingCloth : public ::testing::Test {
  protected:
   /// Returns how many solves the step took. `push` is an acceleration times dt^2 [m].
