@@ -39,23 +39,24 @@ struct ContactRow {
 struct ContactGoal {
   Vector3 origin = Vector3::Zero();
   double least = 0.0;
-  double touch = 0.0;    ///< within this much of its least the row touches, without being pushed too
-  double push = 0.0;     ///< change along the normal so far, >= 0
-  double held = 0.0;     ///< what friction has taken from the slip so far, >= 0
-  bool touches = false;  ///< as it was found last
+  double touch = 0.0;              ///< within this much of its least the row touches, without being pushed too
+  double push = 0.0;               ///< change along the normal so far, >= 0
+  Vector3 held = Vector3::Zero();  ///< change across it by friction so far
+  bool touches = false;            ///< as it was found last
 };
 
-/// What friction takes next from a slip of this length: all of it while static friction holds it, else what kinetic friction has
-/// not taken yet.
+/// What friction changes across the normal altogether, where `needed` would leave no slip: that while static friction holds it,
+/// else what kinetic friction gives (Coulomb).
 template <std::size_t n>
-[[nodiscard]] double friction_part(const ContactRow<n>& row, const ContactGoal& goal, double slip) {
-  const double hold = row.static_friction * goal.push - goal.held;
-  const double slow = row.friction * goal.push - goal.held;
-  return slip <= hold ? slip : std::clamp(slow, 0.0, slip);
+[[nodiscard]] Vector3 friction_of(const ContactRow<n>& row, const ContactGoal& goal, const Vector3& needed) {
+  const double length = needed.norm();
+  if (length <= row.static_friction * goal.push) return needed;
+  return std::min(1.0, row.friction * goal.push / length) * needed;
 }
 
 /// Brings the row to its least and lets friction answer to the push. The push is a Lagrange multiplier in the sense of sequential
-/// impulses: what another contact makes needless is taken back, but never more than was given. Returns the change of the push.
+/// impulses: what another contact makes needless is taken back, but never more than was given, and the friction that it gave goes
+/// with it: where many contacts share a load, each pushes more at first than in the end. Returns the change of the push.
 template <std::size_t n>
 double answer(const ContactRow<n>& row, ContactGoal& goal, Points& q) {
   const Vector3 moved = row.sum(q) - goal.origin;
@@ -68,12 +69,11 @@ double answer(const ContactRow<n>& row, ContactGoal& goal, Points& q) {
 
   goal.push += change;
   Vector3 answered = change * row.normal;
-  if (goal.push > 0.0 && row.static_friction > 0.0) {
+  if (row.static_friction > 0.0) {
     const Vector3 across = moved - along * row.normal;
-    const double slip = across.norm();
-    const double taken = slip > 0.0 ? friction_part(row, goal, slip) : 0.0;
-    if (taken > 0.0) answered -= (taken / slip) * across;
-    goal.held += taken;
+    const Vector3 held = friction_of(row, goal, goal.held - across);
+    answered += held - goal.held;
+    goal.held = held;
   }
   row.change_sum(answered, q);
   return change;

@@ -70,7 +70,7 @@ class ContactSet {
       const SpeedRange range = settled_speeds(row, goals_[c], motion, carrier, speed - pushed);
       // No more than it pushed: what others pushed too is theirs to take.
       const double taken = std::min(speed - range.most, goals_[c].push / motion.dt);
-      if (taken > 0.0) row.change_sum(-taken * row.normal, velocities);
+      if (taken > 0.0) row.change_sum(-taken * row.normal + friction_lost(row, goals_[c], taken, motion.dt), velocities);
       touching_.push_back(c);
       velocity_goals_.push_back({.origin = carrier, .least = range.least});
     }
@@ -100,6 +100,12 @@ class ContactSet {
   }
 
  private:
+  /// What pushed no speed into anything had no load: of velocities, what friction gives back with it.
+  static Vector3 friction_lost(const ContactRow<n>& row, ContactGoal goal, double taken, double dt) {
+    goal.push -= taken * dt;
+    return (friction_of(row, goal, goal.held) - goal.held) / dt;
+  }
+
   /// `v_after` is what the forces alone would have made of the speed along the normal.
   static SpeedRange settled_speeds(const ContactRow<n>& row, const ContactGoal& goal, const StepMotion& motion,
                                    const Vector3& carrier, double v_after) {

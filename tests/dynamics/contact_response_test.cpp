@@ -180,6 +180,35 @@ TEST(ContactResponse, PushThatAnotherMakesNeedlessIsTakenBack) {
   for (Index i = 0; i < 2; ++i) EXPECT_NEAR(world.state.x(1, i), kGap, std::ldexp(kGap, -16));
 }
 
+// In the first pass the corner's own contact carries it, in the last the edge's does.
+TEST_P(ContactResponseLaws, FrictionIsThatOfThePushThatIsLeft) {
+  const double mu = 0.5;
+  const auto speeds_on = [&](const std::vector<Contact>& contacts) {
+    const ContactMaterial rough{.thickness = kGap, .friction = mu, .static_friction = mu};
+    NetworkBuilder builder;
+    add_body(builder, "triangle", triangle_at(kGap), {0.1, 0.1, 0.1}, {1.0, 0.0, 0.0}, rough);
+    World world(builder.build(), kGravity, {.friction = mu, .static_friction = mu}, scheme());
+    world.step(contacts, 64);
+    return Eigen::Vector2d(world.state.v(0, 0), world.state.v(0, 1));
+  };
+  // The passes of the velocities leave at most 1e-3 of the speed that they stop.
+  EXPECT_NEAR((speeds_on({on_floor({1.0}), on_floor({0.5, 0.5})}) - speeds_on({on_floor({1.0}, 0), on_floor({1.0}, 1)})).norm(),
+              0.0, 0.01 * mu * kGravity * kStep);
+}
+
+TEST_P(ContactResponseLaws, PushOutOfTheGapSlowsNothingDown) {
+  for (const std::vector<double>& weights : {std::vector<double>{1.0}, {0.4, 0.6}, {0.2, 0.3, 0.5}}) {
+    const ContactMaterial rough{.thickness = kGap, .friction = 0.5, .static_friction = 0.5};
+    NetworkBuilder builder;
+    add_body(builder, "triangle", triangle_at(0.5 * kGap), {0.1, 0.2, 0.7}, {3.0, 0.0, -2.0}, rough);
+    World world(builder.build(), 0.0, {.friction = 0.5, .static_friction = 0.5}, scheme());
+    world.step({on_floor(weights)});
+    Vector3 velocity = Vector3::Zero();
+    for (std::size_t k = 0; k < weights.size(); ++k) velocity += weights[k] * world.state.v.col(static_cast<Index>(k));
+    EXPECT_NEAR((velocity - Vector3(3.0, 0.0, -2.0)).norm(), 0.0, 1e-12);
+  }
+}
+
 TEST(ContactResponse, FoundAgainAContactCountsOnWhatItPushedAndHeld) {
   const auto slide = [](bool again) {
     NetworkBuilder builder;
