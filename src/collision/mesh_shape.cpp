@@ -136,8 +136,7 @@ std::optional<SurfacePoint> MeshShape::nearest(const Vector3& p, double radius) 
   return surface_point(p, *found);
 }
 
-std::optional<SurfacePoint> MeshShape::nearest_again(const Vector3& p, double radius, double same, double fresh,
-                                                     SurfaceMemory& memory) const {
+std::optional<SurfacePoint> MeshShape::nearest_again(const Vector3& p, double radius, double same, SurfaceMemory& memory) const {
   if (deforms_) return nearest(p, radius);
   const double moved = (p - memory.asked_at).norm();
   if (moved + radius < kClearPart * memory.clear) return std::nullopt;
@@ -149,7 +148,7 @@ std::optional<SurfacePoint> MeshShape::nearest_again(const Vector3& p, double ra
   if (memory.triangle != kNone) {
     const auto corners = tree_->corners(memory.triangle);
     found = {memory.triangle, closest_point_on_triangle(p, corners[0], corners[1], corners[2]), corners};
-    if (moved < same || (moved < fresh && found->closest.feature == TriangleFeature::face)) return if_within(*found);
+    if (moved < same) return if_within(*found);
     if (!(found->closest.squared_distance < farther * farther)) found.reset();
   }
   const auto nearer = tree_->nearest(p, found ? std::sqrt(found->closest.squared_distance) : farther);
@@ -198,6 +197,22 @@ void MeshShape::find_zone(const ElementCorners& element, const ZoneRequest& requ
     zone.triangle_weights = barycentric(closest_point_on_triangle(zone.point, a, b, c), a, b, c);
   }
   if (!request.at_end) follow_surface(zone);
+}
+
+void MeshShape::look_again(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const {
+  if (zone.triangle == kNone) return;
+  const bool comes = deforms_ && !request.at_end;
+  const auto corners = (comes ? *tree_before_ : *tree_).corners(zone.triangle);
+  const ClosestPair pair = closest_pair(element, corners);
+  if (!(pair.squared_distance > 0.0)) return;
+  zone.point = pair.on_triangle;
+  zone.normal = (pair.on_simplex - pair.on_triangle).normalized();
+  zone.weights = pair.weights;
+  if (!comes) return;
+  const auto& [a, b, c] = corners;
+  zone.triangle_weights = barycentric(closest_point_on_triangle(zone.point, a, b, c), a, b, c);
+  zone.drift = deforming_->displacement(zone.triangle, zone.triangle_weights);
+  zone.point += zone.drift;
 }
 
 bool MeshShape::take_along(Zone& zone) const {

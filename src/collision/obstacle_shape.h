@@ -71,10 +71,10 @@ class ObstacleShape {
   /// than radius) nothing is found: use `contains`. Where p is on the surface the normal is that of the face found there.
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const = 0;
 
-  /// The same, begun with what was found last. After a motion of less than `same` [m] the surface found may be that of the same
-  /// triangle, and after one of less than `fresh` [m] above the inside of its face.
+  /// The same, begun with what was found last: after a motion of less than `same` [m] the surface found may be that of the same
+  /// triangle.
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest_again(const Vector3& p, double radius, double /*same*/,
-                                                                  double /*fresh*/, SurfaceMemory& /*memory*/) const {
+                                                                  SurfaceMemory& /*memory*/) const {
     return nearest(p, radius);
   }
 
@@ -86,6 +86,10 @@ class ObstacleShape {
 
   /// Makes the zone of an element that the shape does not cross; `zone` comes as it was left by the element's last search.
   virtual void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const = 0;
+
+  /// Finds the nearest points of the zone's element again, where it is now: of a mesh those on the same triangle. All else of the
+  /// zone stays, as does all of it where nothing is within `reach`, or touches.
+  virtual void look_again(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const = 0;
 
   /// Makes a zone that was for the end of the interval before one for the end of this: where the surface deforms, it takes the zone
   /// along. False for a zone of another time, which cannot be taken along.

@@ -122,8 +122,8 @@ class ObstacleZones {
   [[nodiscard]] PatchPaths paths(Index patch, Index obstacle, const Way& way) const;
   [[nodiscard]] ZoneDemand demand(const Patch& patch, Index obstacle, const Way& way) const;
   void find_contacts_of(const std::vector<Index>& patches, const Way& way);
-  void append_particle_contacts(Index patch, PatchZones& zones, const Way& way, const ZoneDemand& demanded, double motion);
-  void append_element_contacts(Index patch, const PatchZones& zones, const Way& way, double margin);
+  void append_particle_contacts(Index patch, PatchZones& zones, const Way& way, double margin, double reach);
+  void append_element_contacts(Index patch, PatchZones& zones, const Way& way, const ZoneDemand& demanded, double margin);
   [[nodiscard]] std::span<const PatchSlot> slots_of(Index particle) const;
   [[nodiscard]] const std::vector<Index>& particles_of(Index patch) const {
     return surface_.patches[static_cast<std::size_t>(patch)].particles;

@@ -67,10 +67,11 @@ void ObstacleZones::find_contacts_of(const std::vector<Index>& patches, const Wa
       if (patch.zones.empty()) continue;
       const double motion = carried + largest_motion(way, particles_of(p));
       for (PatchZones& zones : patch.zones) {
-        ZoneDemand demanded = demand(patch, zones.obstacle(), way);
-        demanded.margin = std::min(margin_, kMarginOfGap * demanded.gap + kMarginOfMotion * motion);
-        append_particle_contacts(p, zones, way, demanded, motion);
-        append_element_contacts(p, zones, way, demanded.margin);
+        const ZoneDemand demanded = demand(patch, zones.obstacle(), way);
+        const double margin = std::min(margin_, kMarginOfGap * demanded.gap + kMarginOfMotion * motion);
+        const double spread = set_.shape(zones.obstacle()).largest_displacement();
+        append_particle_contacts(p, zones, way, margin, std::max(motion, demanded.gap + margin + spread));
+        append_element_contacts(p, zones, way, demanded, margin);
       }
     }
   });
@@ -78,12 +79,10 @@ void ObstacleZones::find_contacts_of(const std::vector<Index>& patches, const Wa
 
 // A particle of several patches is looked at in its first. A path no longer than the distance of its end from the surface cannot
 // have crossed it.
-void ObstacleZones::append_particle_contacts(Index p, PatchZones& zones, const Way& way, const ZoneDemand& demanded,
-                                             double motion) {
+void ObstacleZones::append_particle_contacts(Index p, PatchZones& zones, const Way& way, double margin, double reach) {
   const Index k = zones.obstacle();
   Patch& patch = patches_[at(p)];
   const std::vector<Index>& particles = particles_of(p);
-  const double reach = std::max(motion, demanded.gap + demanded.margin + set_.shape(k).largest_displacement());
   zones.find_close({way.to, particles, set_.into_after(k)}, reach, patch.close);
   for (const Index slot : patch.close) {
     const Index i = particles[at(slot)];
@@ -91,19 +90,21 @@ void ObstacleZones::append_particle_contacts(Index p, PatchZones& zones, const W
     const Vector3 from = way.from.col(i);
     const Vector3 to = way.to.col(i);
     if (!from.allFinite() || !to.allFinite()) continue;
-    const auto contact = find_contact(set_, k, {i, from, to, surface_.thickness[i], demanded.margin}, zones.memory(slot));
+    const auto contact = find_contact(set_, k, {i, from, to, surface_.thickness[i], margin}, zones.memory(slot));
     if (contact) patch.contacts.push_back(*contact);
   }
 }
 
 // Most elements that may touch are not about to.
-void ObstacleZones::append_element_contacts(Index p, const PatchZones& zones, const Way& way, double margin) {
+void ObstacleZones::append_element_contacts(Index p, PatchZones& zones, const Way& way, const ZoneDemand& demanded, double margin) {
   const Index k = zones.obstacle();
   const RigidTransform& pose = set_.after(k);
   const ElementPatch& patch = surface_.patches[at(p)];
+  const PatchPaths ways = paths(p, k, way);
   for (const Index e : zones.near_elements()) {
-    const Zone& zone = zones.zone(e);
-    if (zone.broken || zone.weights.maxCoeff() > kAtCorner) continue;
+    if (zones.zone(e).broken) continue;
+    const Zone& zone = zones.look_again(set_.shape(k), patches_[at(p)].topology, ways, demanded, e);
+    if (zone.weights.maxCoeff() > kAtCorner) continue;
     const Element& element = surface_.elements[at(patch.first_element + e)];
     Vector3 sum = Vector3::Zero();
     double thickness = 0.0;

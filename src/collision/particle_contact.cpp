@@ -7,10 +7,10 @@ namespace sprung {
 
 namespace {
 
-// A surface point is looked for again after a motion of these parts of the gap: with older ones friction is no longer the law's,
-// and in a crease a particle sinks into the gap by as much as it moved past the triangle that was nearest.
+// A surface point is looked for again after a motion of this part of the gap: with older ones friction is no longer the law's, and
+// in a crease, where it moves away from the triangle that was nearest and towards another, a particle sinks into the gap by twice
+// as much.
 constexpr double kSame = 0.02;
-constexpr double kFresh = 0.05;
 
 /// Where a path meets a shape, in the shape's frame.
 struct LocalContact {
@@ -62,7 +62,7 @@ std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const Parti
 
 std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const ParticlePath& path, SurfaceMemory& memory) {
   return find_with(set, k, path, [&](const Vector3& p, double reach, double gap) {
-    return set.shape(k).nearest_again(p, reach, kSame * gap, kFresh * gap, memory);
+    return set.shape(k).nearest_again(p, reach, kSame * gap, memory);
   });
 }
 

@@ -18,8 +18,12 @@ constexpr double kReachOfGap = 0.8;
 // It holds the corners' way too, and is larger by this part of it, since constraints lead them elsewhere.
 constexpr double kReachOfMotion = 0.5;
 
-// Nearest points are looked for again after a motion of this part of the gap: friction goes wrong with older ones.
+// Nearest points are looked for again after a motion of this part of the gap: what slides goes over others.
 constexpr double kFreshPart = 1.0;
+
+// And after one of this part on the same triangle: the plane there lets the element go on straight where the surface is round, and
+// what slid down an ear stuck to it.
+constexpr double kSeenPart = 0.02;
 
 // Those that were found within this part of that motion are left until the next time.
 constexpr double kRecentPart = 0.5;
@@ -32,12 +36,41 @@ constexpr double kCalmPart = 1.0 - 0x1p-20;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
+/// The ways of an element's corners.
+struct ElementWay {
+  ElementWay(const PatchPaths& paths, const PatchTopology::Corners& corners) {
+    from.count = corners.count;
+    for (std::size_t k = 0; k < at(corners.count); ++k) {
+      const Vector3 end = paths.to(corners.slots[k]);
+      from.x[k] = paths.from(corners.slots[k]);
+      to.extend(end);
+      const double moved = (end - from.x[k]).norm();
+      longest = moved <= longest ? longest : moved;  // what is not finite stays
+    }
+  }
+
+  ElementCorners from{};
+  Box3 to{};             ///< around where the corners go
+  double longest = 0.0;  ///< [m]; not finite where a corner is not
+};
+
+ZoneRequest request(const ZoneDemand& demand, bool pinned, const ElementWay& way) {
+  const double least_reach = std::max(kReachOfSize * demand.size, kReachOfGap * demand.gap);
+  return {.reach = least_reach + kReachOfMotion * way.longest,
+          .way = way.to,
+          .gap = demand.gap,
+          .clearance = demand.clearance,
+          .exact = demand.gap + demand.margin + (demand.ahead && pinned ? way.longest : 0.0),
+          .at_end = demand.at_end};
+}
+
 }  // namespace
 
 PatchZones::PatchZones(Index obstacle, const PatchTopology& topology)
     : obstacle_(obstacle),
       zones_(at(topology.element_count())),
       made_around_(zones_.size()),
+      seen_from_(zones_.size()),
       slots_(at(topology.slot_count())),
       memories_(slots_.size()),
       calm_(slots_.size()),
@@ -73,6 +106,7 @@ void PatchZones::take_along(const ObstacleShape& shape, const PatchTopology& top
     if (zone.time == time || std::isnan(zone.time)) continue;
     along = true;
     for (Vector3& corner : made_around_[at(e)]) corner += zone.drift;
+    for (Vector3& corner : seen_from_[at(e)]) corner += zone.drift;
   }
   if (!along) return;
   for (Index i = 0; i < topology.slot_count(); ++i) {
@@ -116,33 +150,21 @@ void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, co
 void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
                              const ZoneDemand& demand) {
   if (std::find(marked_.begin(), marked_.end(), 1) == marked_.end()) return;
-  const double least_reach = std::max(kReachOfSize * demand.size, kReachOfGap * demand.gap);
-  ZoneRequest request{.gap = demand.gap, .clearance = demand.clearance, .at_end = demand.at_end};
   for (Index e = 0; e < topology.element_count(); ++e) {
     if (marked_[at(e)] == 0) continue;
+    marked_[at(e)] = 0;
     const PatchTopology::Corners& corners = topology.corners(e);
-    ElementCorners element{.count = corners.count};
-    double motion = 0.0;
-    request.way.setEmpty();
-    for (std::size_t k = 0; k < at(corners.count); ++k) {
-      const Vector3 to = paths.to(corners.slots[k]);
-      element.x[k] = paths.from(corners.slots[k]);
-      const double moved = (to - element.x[k]).norm();
-      motion = moved <= motion ? motion : moved;  // what is not finite stays
-      request.way.extend(to);
-    }
-    request.reach = least_reach + kReachOfMotion * motion;
-    request.exact = demand.gap + demand.margin + (demand.ahead && corners.pinned ? motion : 0.0);
-    if (std::isfinite(motion)) {
-      shape.find_zone(element, request, zones_[at(e)]);
+    const ElementWay way(paths, corners);
+    Zone& zone = zones_[at(e)];
+    if (std::isfinite(way.longest)) {
+      shape.find_zone(way.from, request(demand, corners.pinned, way), zone);
     } else {
-      zones_[at(e)] = Zone{.broken = true};
+      zone = Zone{.broken = true};
     }
     for (std::size_t k = 0; k < at(corners.count); ++k) {
-      made_around_[at(e)][k] = element.x[k] + zones_[at(e)].drift;
+      made_around_[at(e)][k] = seen_from_[at(e)][k] = way.from.x[k] + zone.drift;
       changed_[at(corners.slots[k])] = 1;
     }
-    marked_[at(e)] = 0;
   }
   for (Index i = 0; i < topology.slot_count(); ++i) {
     if (changed_[at(i)] == 0) continue;
@@ -152,6 +174,24 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
     calm_down(i, slots_[at(i)].box.contains(to) ? to : paths.from(i), demand);
   }
   find_near_elements(topology, demand);
+}
+
+const Zone& PatchZones::look_again(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
+                                   const ZoneDemand& demand, Index e) {
+  const PatchTopology::Corners& corners = topology.corners(e);
+  const double seen = kSeenPart * demand.gap;
+  const auto moved = [&](std::size_t k) {
+    return (paths.from(corners.slots[k]) - seen_from_[at(e)][k]).squaredNorm() > seen * seen;
+  };
+  bool any = false;
+  for (std::size_t k = 0; k < at(corners.count) && !any; ++k) any = moved(k);
+  if (!any) return zones_[at(e)];
+  const ElementWay way(paths, corners);
+  ZoneRequest asked = request(demand, corners.pinned, way);
+  asked.reach = std::max(asked.reach, asked.exact);
+  shape.look_again(way.from, asked, zones_[at(e)]);
+  for (std::size_t k = 0; k < at(corners.count); ++k) seen_from_[at(e)][k] = way.from.x[k] + zones_[at(e)].drift;
+  return zones_[at(e)];
 }
 
 void PatchZones::find_near_elements(const PatchTopology& topology, const ZoneDemand& demand) {

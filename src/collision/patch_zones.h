@@ -84,6 +84,11 @@ class PatchZones {
   /// Elements that may touch, ascending.
   [[nodiscard]] const std::vector<Index>& near_elements() const { return near_elements_; }
 
+  /// The element's zone, with the nearest points that it has where the way begins (see ObstacleShape::look_again). Requires
+  /// follow() for the same way.
+  const Zone& look_again(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
+                         const ZoneDemand& demand, Index element);
+
   /// What the last search for the surface near a particle found.
   [[nodiscard]] SurfaceMemory& memory(Index slot) { return memories_[static_cast<std::size_t>(slot)]; }
 
@@ -110,6 +115,7 @@ class PatchZones {
   Index obstacle_;
   std::vector<Zone> zones_;                          ///< by element
   std::vector<std::array<Vector3, 3>> made_around_;  ///< the corners when the zone was made
+  std::vector<std::array<Vector3, 3>> seen_from_;    ///< the corners when its nearest points were found last
   std::vector<Slot> slots_;
   std::vector<SurfaceMemory> memories_;  ///< by slot
   Balls calm_;                           ///< by slot: a particle in it leaves no zone and needs no new ones

@@ -37,6 +37,14 @@ class PrimitiveShape final : public ObstacleShape {
     zone = sprung::find_zone(geometry_, element, request);
   }
 
+  void look_again(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const override {
+    const Zone again = sprung::find_zone(geometry_, element, request);
+    if (again.broken || !std::isfinite(again.distance)) return;
+    zone.point = again.point;
+    zone.normal = again.normal;
+    zone.weights = again.weights;
+  }
+
   [[nodiscard]] bool touches(const ElementCorners& element, double tolerance) const override {
     return !(separation(geometry_, element, box_around(element, tolerance)).gap > tolerance);
   }

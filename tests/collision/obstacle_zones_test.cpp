@@ -65,5 +65,55 @@ TEST(ObstacleZones, WhomNewZonesDoNotHoldIsRestless) {
   }
 }
 
+struct Top {
+  const char* name;
+  ObstacleGeometry geometry;
+};
+
+void PrintTo(const Top& top, std::ostream* stream) { *stream << top.name; }
+
+TriangleMesh spike() {
+  TriangleMesh mesh{Points(3, 5), Triangles(3, 4)};
+  mesh.vertices.transpose() << 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, -1.0, -1.0, -1.0, -1.0, 0.0, 0.0, -1.0, 1.0;
+  mesh.triangles.transpose() << 0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1;
+  return mesh;
+}
+
+class ElementOverTop : public ::testing::TestWithParam<Top> {};
+INSTANTIATE_TEST_SUITE_P(Tops, ElementOverTop,
+                         ::testing::Values(Top{"ball", SphereGeometry{.radius = 0.5}},
+                                           Top{"spike", MeshGeometry{std::make_shared<const TriangleMesh>(spike()), false}}));
+
+// However far a square slides over what is below its inside, that stays where it is, and another part of the square is opposite.
+TEST_P(ElementOverTop, MeetsItWhereItIsNow) {
+  constexpr double kGap = 0.05;
+  constexpr double kSlide = 0.08 * kGap;
+  Obstacle obstacle{.name = "top", .geometry = GetParam().geometry};
+  if (std::holds_alternative<SphereGeometry>(obstacle.geometry)) obstacle.placed.translation() = Vector3(0.0, -0.5, 0.0);
+  Environment environment({obstacle});
+  environment.set_interval(0.0, 0.01);
+  test::SelfNetwork square;
+  square.add_cloth(1, {-0.6, 0.9 * kGap, -0.4}, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
+  const CollisionSurface surface = square.surface(kGap);
+  ObstacleZones zones(environment.set(), surface, square.positions, 0.5 * kGap);
+  Points from = square.positions;
+  for (int step = 0; step < 40; ++step) {
+    Points to = from;
+    to.row(0).array() += kSlide;
+    zones.follow({from, to});
+    std::vector<Contact> contacts;
+    zones.find_contacts({from, to}, contacts);
+    ASSERT_FALSE(contacts.empty());
+    for (const Contact& contact : contacts) {
+      Vector3 above = Vector3::Zero();
+      for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+        above += contact.weights[k] * from.col(contact.particles[k]);
+      }
+      EXPECT_NEAR((above - contact.point).cross(contact.normal).norm(), 0.0, 0.03 * kGap) << "step " << step;
+    }
+    from = to;
+  }
+}
+
 }  // namespace
 }  // namespace sprung
