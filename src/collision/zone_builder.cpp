@@ -15,6 +15,10 @@ constexpr double kPairSlack = 0.005;
 // A plane that separates by this part of the nearest triangle's distance is not improved.
 constexpr double kGoodPart = 0.9;
 
+// A triangle that rises no higher than this part of the way from another one to its plane needs none of its own: in a valley of
+// small triangles there would be no end of them.
+constexpr double kBelowPlane = 0.5;
+
 // The box ends this far before a triangle, as a part of what lies between, so that rounding does not bring them together.
 constexpr double kBoxMargin = 0.02;
 
@@ -134,7 +138,7 @@ void ZoneBuilder::keep_above(const TriangleCorners& corners, const TriangleSepar
   const double height = stand_off(gap, request_);
   const auto plane = static_cast<std::size_t>(zone_.plane_count++);
   zone_.planes[plane] = {normal, highest + height};
-  limits_[plane] = highest + 0.5 * std::min(height, request_.clearance);
+  limits_[plane] = highest + kBelowPlane * height;
 }
 
 // Rounding may leave no plane between what still does not cross: corners that move less than the distance cannot change that.

@@ -1,0 +1,141 @@
+// Sliding where a cloth meets many triangles at once, and others in each step: on hills and in valleys that are round.
+#include "collision/sample_meshes.h"
+#include "network/network_builder.h"
+#include "simulation/simulator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+constexpr double kGravity = 9.81;     // [m/s^2]
+constexpr double kThickness = 0.005;  // [m] of the cloth
+constexpr double kBegin = 0.44;       // [rad] from the top, beyond what friction holds
+constexpr double kSide = 0.1;         // [m] of the cloth
+
+/// A sheet about the z axis, a part of a cylinder: `middle` [rad] from the top, where the radius [m] is positive, else from the
+/// bottom.
+TriangleMesh round_slope(double radius, double middle, double facet) {
+  TriangleMesh mesh = test::flat_sheet(2 * static_cast<Index>(0.6 / facet));
+  for (Index i = 0; i < mesh.vertices.cols(); ++i) {
+    const Vector3 p = facet * mesh.vertices.col(i);
+    const double angle = middle + p.x() / radius;
+    mesh.vertices.col(i) = Vector3(std::abs(radius) * std::sin(angle), radius * std::cos(angle), p.z());
+  }
+  return mesh;
+}
+
+/// A square that lies `angle` [rad] from the top of a hill or from the bottom of a valley, carried by the stretch limit alone.
+SpringNetwork square(double radius, double angle, Index resolution, double friction) {
+  const SpringMaterial without_force{};
+  BodyShape shape =
+      make_cloth({.size = {kSide, kSide}, .resolution = {resolution, resolution}}, {without_force, without_force, without_force});
+  set_total_mass(shape, 0.02);
+  const double sagitta = radius < 0.0 ? kSide * kSide / 8.0 / -radius : 0.0;
+  RigidTransform pose = RigidTransform::Identity();
+  pose.rotate(Eigen::AngleAxisd(radius < 0.0 ? angle : -angle, Vector3::UnitZ()));
+  pose.translate(Vector3(0.0, radius + kThickness + sagitta, 0.0));
+  pose.rotate(Eigen::AngleAxisd(-0.5 * std::numbers::pi, Vector3::UnitX()));
+  place(shape, pose);
+  NetworkBuilder builder;
+  builder.add_body("square", shape, {.thickness = kThickness, .friction = friction, .static_friction = friction});
+  return builder.build();
+}
+
+Simulator simulator_of(SpringNetwork network, TriangleMesh slope, double friction, int steps_a_frame) {
+  using enum SpringKind;
+  const SimulatorSettings settings{
+      .step = 1.0 / (60.0 * steps_a_frame),
+      .gravity = {0.0, -kGravity, 0.0},
+      .stretch_limit = StretchLimitSettings{.max_stretch = 0.0, .kinds = {structural, shear, bend}, .iterations = 4}};
+  const Obstacle obstacle{.name = "slope",
+                          .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(std::move(slope)), false},
+                          .material = {.friction = friction, .static_friction = friction}};
+  return Simulator(std::move(network), settings, {obstacle});
+}
+
+Vector3 middle_of(const Simulator& simulator) { return simulator.positions().rowwise().mean(); }
+
+/// How far [m] a point that slides on the hill of this radius gets: Coulomb's law with the weight that its speed leaves it.
+double way_of_a_point(double radius, double friction, double duration) {
+  constexpr double kFine = 1e-5;
+  double angle = kBegin;
+  double spin = 0.0;
+  for (double t = 0.0; t < duration; t += kFine) {
+    const double weight = std::max(0.0, kGravity / radius * std::cos(angle) - spin * spin);
+    spin += (kGravity / radius * std::sin(angle) - friction * weight) * kFine;
+    angle += spin * kFine;
+  }
+  return radius * (angle - kBegin);
+}
+
+struct Slide {
+  double radius;     ///< of the hill [m]
+  Index resolution;  ///< particles along a side: of few the elements are what meets the hill
+  double friction;
+  int steps_a_frame;
+};
+
+void PrintTo(const Slide& slide, std::ostream* stream) {
+  *stream << slide.resolution << " squared on " << slide.radius << " m, friction " << slide.friction << ", " << slide.steps_a_frame
+          << " steps";
+}
+
+class RoundHill : public ::testing::TestWithParam<Slide> {};
+INSTANTIATE_TEST_SUITE_P(Slides, RoundHill,
+                         ::testing::Values(Slide{1.0, 2, 0.3, 5}, Slide{1.0, 2, 0.3, 20}, Slide{1.0, 8, 0.3, 5},
+                                           Slide{1.0, 8, 0.3, 20}, Slide{1.0, 8, 0.1, 5}, Slide{3.0, 8, 0.3, 5}));
+
+// Friction is right within a hundredth. The square is no point: that it bends and has a length may change its way by as much.
+TEST_P(RoundHill, ASquareSlidesAsFarAsAPoint) {
+  const auto& [radius, resolution, friction, steps_a_frame] = GetParam();
+  constexpr int kFrames = 24;
+  Simulator simulator = simulator_of(square(radius, kBegin, resolution, friction),
+                                     round_slope(radius, kBegin + 0.2 / radius, 0.008), friction, steps_a_frame);
+  const auto angle = [&] { return std::atan2(middle_of(simulator).x(), middle_of(simulator).y()); };
+  const double begin = angle();
+  for (int step = 0; step < kFrames * steps_a_frame; ++step) simulator.step();
+  const double radius_of_middle = radius + kThickness;
+  const auto way_with = [&](double mu) { return way_of_a_point(radius_of_middle, mu, kFrames / 60.0); };
+  const double way = radius_of_middle * (angle() - begin);
+  EXPECT_GT(way, 0.99 * way_with(1.01 * friction));
+  EXPECT_LT(way, 1.01 * way_with(0.99 * friction));
+}
+
+struct Swing {
+  double facet;  ///< [m]
+  Index resolution;
+  int steps_a_frame;
+};
+
+void PrintTo(const Swing& swing, std::ostream* stream) {
+  *stream << swing.resolution << " squared over facets of " << swing.facet << " m, " << swing.steps_a_frame << " steps";
+}
+
+class RoundValley : public ::testing::TestWithParam<Swing> {};
+INSTANTIATE_TEST_SUITE_P(Swings, RoundValley,
+                         ::testing::Values(Swing{0.01, 2, 5}, Swing{0.01, 8, 5}, Swing{0.003, 8, 5}, Swing{0.01, 8, 20}));
+
+// Each facet turns it a little: what speed it has into the next one is lost.
+TEST_P(RoundValley, WithoutFrictionASquareRisesAsHighAsItBegan) {
+  const auto& [facet, resolution, steps_a_frame] = GetParam();
+  constexpr double kRadius = 1.0;
+  constexpr double kStart = -0.5;
+  Simulator simulator =
+      simulator_of(square(-kRadius, kStart, resolution, 0.0), round_slope(-kRadius, 0.0, facet), 0.0, steps_a_frame);
+  double highest = kStart;
+  for (int step = 0; step < 75 * steps_a_frame; ++step) {
+    simulator.step();
+    highest = std::max(highest, std::atan2(middle_of(simulator).x(), -middle_of(simulator).y()));
+  }
+  EXPECT_NEAR(highest, -kStart, 0.03 * -kStart);
+}
+
+}  // namespace
+}  // namespace sprung
