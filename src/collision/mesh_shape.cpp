@@ -199,10 +199,12 @@ void MeshShape::find_zone(const ElementCorners& element, const ZoneRequest& requ
   if (!request.at_end) follow_surface(zone);
 }
 
-void MeshShape::look_again(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const {
-  if (zone.triangle == kNone) return;
+void MeshShape::look_again(const ElementCorners& element, const ZoneRequest& request, bool fresh, Zone& zone) const {
   const bool comes = deforms_ && !request.at_end;
-  const auto corners = (comes ? *tree_before_ : *tree_).corners(zone.triangle);
+  const MeshTree& tree = comes ? *tree_before_ : *tree_;
+  if (!fresh) zone.triangle = nearest_triangle(tree, element, request, zone.triangle);
+  if (zone.triangle == kNone) return;
+  const auto corners = tree.corners(zone.triangle);
   const ClosestPair pair = closest_pair(element, corners);
   if (!(pair.squared_distance > 0.0)) return;
   zone.point = pair.on_triangle;

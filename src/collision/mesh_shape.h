@@ -29,7 +29,7 @@ class MeshShape final : public ObstacleShape {
                                                           SurfaceMemory& memory) const override;
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override;
   void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const override;
-  void look_again(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const override;
+  void look_again(const ElementCorners& element, const ZoneRequest& request, bool fresh, Zone& zone) const override;
   bool take_along(Zone& zone) const override;
   [[nodiscard]] bool touches(const ElementCorners& element, double tolerance) const override;
   [[nodiscard]] bool contains(const Vector3& p) const override;

@@ -82,7 +82,7 @@ void update(const ZoneBuilder& zone, Search& search) {
 }
 
 /// Visits the triangles that may be nearer than the nearest so far, and than what is clear.
-SPRUNG_KERNEL void find_nearest(const MeshTree& tree, double near, const Zone& zone, ZoneBuilder& builder) {
+SPRUNG_KERNEL void walk_to_nearest(const MeshTree& tree, double near, const Zone& zone, ZoneBuilder& builder) {
   Search search = search_around(tree, builder.element_box(), grown(builder.element_box(), builder.clear()));
   const auto limit = [&] {
     const double nearest = std::min(zone.distance, builder.clear());
@@ -153,6 +153,14 @@ SPRUNG_KERNEL void carve(const MeshTree& tree, Index nearest, ZoneBuilder& zone)
   }
 }
 
+/// Finds the nearest triangle that is nearer than `near`, begun with `last`.
+void find_nearest(const MeshTree& tree, Index last, double near, const Zone& zone, ZoneBuilder& builder) {
+  if (last != kNone && box_distance(tree.corners(last), builder.element_box()) < near) {
+    builder.look_at(last, tree.corners(last));
+  }
+  walk_to_nearest(tree, near, zone, builder);
+}
+
 }  // namespace
 
 // The nearest triangle's plane comes first: it rules out most of the others, and lies as the surface does.
@@ -161,16 +169,21 @@ void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRe
   ZoneBuilder builder(element, request, zone);
   const double near = std::max(request.exact, std::sqrt(3.0) * request.reach);
   builder.keep_clear(std::max(near, kSearch * request.reach));
-  if (last != kNone && box_distance(tree.corners(last), builder.element_box()) < near) {
-    builder.look_at(last, tree.corners(last));
-  }
-  find_nearest(tree, near, zone, builder);
+  find_nearest(tree, last, near, zone, builder);
   if (!builder.grow_clear()) {
     const Index nearest = zone.triangle;
     if (nearest != kNone) builder.meet(tree.corners(nearest));
     carve(tree, nearest, builder);
   }
   builder.finish();
+}
+
+Index nearest_triangle(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Index last) {
+  Zone zone;
+  ZoneBuilder builder(element, request, zone);
+  builder.keep_clear(request.exact);
+  find_nearest(tree, last, request.exact, zone, builder);
+  return zone.triangle != kNone ? zone.triangle : last;
 }
 
 }  // namespace sprung

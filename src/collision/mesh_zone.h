@@ -11,4 +11,7 @@ namespace sprung {
 /// with `zone.triangle`, left from the element's last zone.
 void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone);
 
+/// The triangle that is nearest to the element, if nearer than `exact`, else `last`, which the search begins with; kNone is none.
+[[nodiscard]] Index nearest_triangle(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Index last);
+
 }  // namespace sprung

@@ -87,9 +87,9 @@ class ObstacleShape {
   /// Makes the zone of an element that the shape does not cross; `zone` comes as it was left by the element's last search.
   virtual void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const = 0;
 
-  /// Finds the nearest points of the zone's element again, where it is now: of a mesh those on the same triangle. All else of the
-  /// zone stays, as does all of it where nothing is within `reach`, or touches.
-  virtual void look_again(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const = 0;
+  /// Finds the nearest points of the zone's element again, where it is now: of a mesh, while it is `fresh`, those on the same
+  /// triangle. All else of the zone stays, as does all of it where nothing is within `reach`, or touches.
+  virtual void look_again(const ElementCorners& element, const ZoneRequest& request, bool fresh, Zone& zone) const = 0;
 
   /// Makes a zone that was for the end of the interval before one for the end of this: where the surface deforms, it takes the zone
   /// along. False for a zone of another time, which cannot be taken along.

@@ -18,15 +18,12 @@ constexpr double kReachOfGap = 0.8;
 // It holds the corners' way too, and is larger by this part of it, since constraints lead them elsewhere.
 constexpr double kReachOfMotion = 0.5;
 
-// Nearest points are looked for again after a motion of this part of the gap: what slides goes over others.
+// Nearest points are looked for again after a way of this part of the gap: what slides goes over others.
 constexpr double kFreshPart = 1.0;
 
 // And after one of this part on the same triangle: the plane there lets the element go on straight where the surface is round, and
 // what slid down an ear stuck to it.
 constexpr double kSeenPart = 0.02;
-
-// Those that were found within this part of that motion are left until the next time.
-constexpr double kRecentPart = 0.5;
 
 // Zones that a surface that deforms takes along are made again when they lost this part of the gap.
 constexpr double kMostLoss = 0.3;
@@ -70,7 +67,7 @@ PatchZones::PatchZones(Index obstacle, const PatchTopology& topology)
     : obstacle_(obstacle),
       zones_(at(topology.element_count())),
       made_around_(zones_.size()),
-      seen_from_(zones_.size()),
+      sights_(zones_.size()),
       slots_(at(topology.slot_count())),
       memories_(slots_.size()),
       calm_(slots_.size()),
@@ -91,7 +88,7 @@ bool PatchZones::find_restless(const ObstacleShape& shape, const BallParticles& 
 void PatchZones::follow(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
                         const ZoneDemand& demand) {
   if (shape.deforms()) take_along(shape, topology, demand);
-  mark(topology, paths, demand);
+  mark(topology, paths);
   make_marked(shape, topology, paths, demand);
   find_restless(shape, paths.to());
 }
@@ -106,13 +103,10 @@ void PatchZones::take_along(const ObstacleShape& shape, const PatchTopology& top
     if (zone.time == time || std::isnan(zone.time)) continue;
     along = true;
     for (Vector3& corner : made_around_[at(e)]) corner += zone.drift;
-    for (Vector3& corner : seen_from_[at(e)]) corner += zone.drift;
+    for (Vector3& corner : sights_[at(e)].from) corner += zone.drift;
   }
   if (!along) return;
-  for (Index i = 0; i < topology.slot_count(); ++i) {
-    slots_[at(i)].settled += zones_[at(topology.elements_of(i).front())].drift;
-    gather(topology, demand, i);
-  }
+  for (Index i = 0; i < topology.slot_count(); ++i) gather(topology, demand, i);
   find_near_elements(topology, demand);
 }
 
@@ -125,24 +119,14 @@ void PatchZones::renew(const ObstacleShape& shape, const PatchTopology& topology
 }
 
 // A zone that was never made has an empty box, which all its corners are about to leave.
-void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand) {
-  const double fresh = kFreshPart * demand.gap;
-  const double recent = kRecentPart * fresh;
+void PatchZones::mark(const PatchTopology& topology, const PatchPaths& paths) {
   for (const Index i : restless_) {
-    Slot& slot = slots_[at(i)];
+    const Slot& slot = slots_[at(i)];
     const Vector3 to = paths.to(i);
-    const bool leaves = !slot.box.contains(to);
-    const bool stale = slot.near && (to - slot.settled).squaredNorm() > fresh * fresh;
-    if (stale) slot.settled = to;
-    calm_down(i, to, demand);
-    if (!leaves && !stale && !slot.broken) continue;
+    calm_down(i, to);
+    if (slot.box.contains(to) && !slot.broken) continue;
     for (const Index e : topology.elements_of(i)) {
-      const Zone& zone = zones_[at(e)];
-      const auto old = [&] {
-        const bool near = zone.distance < demand.gap + demand.margin;
-        return near && (to - made_around_[at(e)][topology.corner(e, i)]).squaredNorm() > recent * recent;
-      };
-      if (zone.broken || (leaves && !boxes(topology, e, i, to)) || (stale && old())) marked_[at(e)] = 1;
+      if (zones_[at(e)].broken || !boxes(topology, e, i, to)) marked_[at(e)] = 1;
     }
   }
 }
@@ -161,37 +145,40 @@ void PatchZones::make_marked(const ObstacleShape& shape, const PatchTopology& to
     } else {
       zone = Zone{.broken = true};
     }
-    for (std::size_t k = 0; k < at(corners.count); ++k) {
-      made_around_[at(e)][k] = seen_from_[at(e)][k] = way.from.x[k] + zone.drift;
-      changed_[at(corners.slots[k])] = 1;
-    }
+    made_around_[at(e)] = way.from.x;
+    for (Vector3& corner : made_around_[at(e)]) corner += zone.drift;
+    sights_[at(e)] = {made_around_[at(e)]};
+    for (std::size_t k = 0; k < at(corners.count); ++k) changed_[at(corners.slots[k])] = 1;
   }
   for (Index i = 0; i < topology.slot_count(); ++i) {
     if (changed_[at(i)] == 0) continue;
     changed_[at(i)] = 0;
     gather(topology, demand, i);
     const Vector3 to = paths.to(i);
-    calm_down(i, slots_[at(i)].box.contains(to) ? to : paths.from(i), demand);
+    calm_down(i, slots_[at(i)].box.contains(to) ? to : paths.from(i));
   }
   find_near_elements(topology, demand);
 }
 
 const Zone& PatchZones::look_again(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
                                    const ZoneDemand& demand, Index e) {
+  Zone& zone = zones_[at(e)];
+  Sight& sight = sights_[at(e)];
   const PatchTopology::Corners& corners = topology.corners(e);
-  const double seen = kSeenPart * demand.gap;
-  const auto moved = [&](std::size_t k) {
-    return (paths.from(corners.slots[k]) - seen_from_[at(e)][k]).squaredNorm() > seen * seen;
-  };
-  bool any = false;
-  for (std::size_t k = 0; k < at(corners.count) && !any; ++k) any = moved(k);
-  if (!any) return zones_[at(e)];
+  double moved = 0.0;
+  for (std::size_t k = 0; k < at(corners.count); ++k) {
+    moved = std::max(moved, (paths.from(corners.slots[k]) - sight.from[k]).squaredNorm());
+  }
+  moved = std::sqrt(moved);
+  if (!(moved > kSeenPart * demand.gap)) return zone;
   const ElementWay way(paths, corners);
   ZoneRequest asked = request(demand, corners.pinned, way);
   asked.reach = std::max(asked.reach, asked.exact);
-  shape.look_again(way.from, asked, zones_[at(e)]);
-  for (std::size_t k = 0; k < at(corners.count); ++k) seen_from_[at(e)][k] = way.from.x[k] + zones_[at(e)].drift;
-  return zones_[at(e)];
+  const bool fresh = sight.way + moved <= kFreshPart * demand.gap;
+  shape.look_again(way.from, asked, fresh, zone);
+  sight = {way.from.x, fresh ? sight.way + moved : 0.0};
+  for (Vector3& corner : sight.from) corner += zone.drift;
+  return zone;
 }
 
 void PatchZones::find_near_elements(const PatchTopology& topology, const ZoneDemand& demand) {
@@ -208,12 +195,11 @@ void PatchZones::find_near_elements(const PatchTopology& topology, const ZoneDem
 void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand, Index i) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Slot& slot = slots_[at(i)];
-  const bool was_near = slot.near;
   slot.box = Box3(Vector3::Constant(-kInfinity), Vector3::Constant(kInfinity));
   slot.near = slot.broken = false;
   slot.planes.clear();
   double clear = 0.0;
-  Vector3 clear_around = slot.settled;
+  Vector3 clear_around = Vector3::Zero();
   for (const Index e : topology.elements_of(i)) {
     const Zone& zone = zones_[at(e)];
     slot.broken = slot.broken || zone.broken;
@@ -226,7 +212,6 @@ void PatchZones::gather(const PatchTopology& topology, const ZoneDemand& demand,
     clear_around = made_around_[at(e)][topology.corner(e, i)];
   }
   quiet_.set(i, clear_around, clear);
-  if (slot.near && !was_near) slot.settled = slot.box.center();
 }
 
 // The radius is that of a ball: the cube within it.
@@ -244,10 +229,9 @@ bool PatchZones::boxes(const PatchTopology& topology, Index e, Index slot, const
   return !std::isfinite(zone.free_radius) || corner_box(topology, e, slot).contains(p);
 }
 
-void PatchZones::calm_down(Index i, const Vector3& p, const ZoneDemand& demand) {
+void PatchZones::calm_down(Index i, const Vector3& p) {
   const Slot& slot = slots_[at(i)];
   double radius = slot.broken ? 0.0 : std::min((p - slot.box.min()).minCoeff(), (slot.box.max() - p).minCoeff());
-  if (slot.near) radius = std::min(radius, kFreshPart * demand.gap - (p - slot.settled).norm());
   for (const HalfSpace& plane : slot.planes) radius = std::min(radius, plane.normal.dot(p) - plane.offset);
   calm_.set(i, p, kCalmPart * radius);
 }

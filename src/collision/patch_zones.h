@@ -51,9 +51,9 @@ class PatchZones {
   /// As they were found last, ascending.
   [[nodiscard]] const std::vector<Index>& restless() const { return restless_; }
 
-  /// Makes the zones again, around `from`, of elements that have none, that a restless corner is about to leave, or that moved by a
-  /// part of the gap since their nearest points were found. A surface that deforms takes the zones along. Finds the restless slots
-  /// again: what the zones hold is not among them any more, what new zones do not hold is.
+  /// Makes the zones again, around `from`, of elements that have none, or that a restless corner is about to leave. A surface that
+  /// deforms takes the zones along. Finds the restless slots again: what the zones hold is not among them any more, what new zones
+  /// do not hold is.
   void follow(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
 
   /// Makes the zones of all elements at these slots again, around `from`.
@@ -95,27 +95,31 @@ class PatchZones {
  private:
   struct Slot {
     Box3 box;                         ///< of all zones at it
-    Vector3 settled;                  ///< where it was when its near elements were looked at last
     std::vector<HalfSpace> planes{};  ///< of all zones at it
     bool near = false;                ///< an element at it may touch
     bool broken = false;
   };
 
+  struct Sight {
+    std::array<Vector3, 3> from;  ///< the element's corners when its nearest points were found last
+    double way = 0.0;             ///< that they went since the whole surface was looked at [m]
+  };
+
   void take_along(const ObstacleShape& shape, const PatchTopology& topology, const ZoneDemand& demand);
-  void mark(const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
+  void mark(const PatchTopology& topology, const PatchPaths& paths);
   void make_marked(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const ZoneDemand& demand);
   void gather(const PatchTopology& topology, const ZoneDemand& demand, Index slot);
   /// Where the zone's box and radius let a corner of the element be that is at the slot.
   [[nodiscard]] Box3 corner_box(const PatchTopology& topology, Index element, Index slot) const;
   /// Whether that holds p.
   [[nodiscard]] bool boxes(const PatchTopology& topology, Index element, Index slot, const Vector3& p) const;
-  void calm_down(Index slot, const Vector3& p, const ZoneDemand& demand);
+  void calm_down(Index slot, const Vector3& p);
   void find_near_elements(const PatchTopology& topology, const ZoneDemand& demand);
 
   Index obstacle_;
   std::vector<Zone> zones_;                          ///< by element
   std::vector<std::array<Vector3, 3>> made_around_;  ///< the corners when the zone was made
-  std::vector<std::array<Vector3, 3>> seen_from_;    ///< the corners when its nearest points were found last
+  std::vector<Sight> sights_;                        ///< by element
   std::vector<Slot> slots_;
   std::vector<SurfaceMemory> memories_;  ///< by slot
   Balls calm_;                           ///< by slot: a particle in it leaves no zone and needs no new ones

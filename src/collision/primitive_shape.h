@@ -37,7 +37,7 @@ class PrimitiveShape final : public ObstacleShape {
     zone = sprung::find_zone(geometry_, element, request);
   }
 
-  void look_again(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const override {
+  void look_again(const ElementCorners& element, const ZoneRequest& request, bool /*fresh*/, Zone& zone) const override {
     const Zone again = sprung::find_zone(geometry_, element, request);
     if (again.broken || !std::isfinite(again.distance)) return;
     zone.point = again.point;
