@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 namespace sprung {
 namespace {
@@ -72,17 +73,26 @@ struct Top {
 
 void PrintTo(const Top& top, std::ostream* stream) { *stream << top.name; }
 
-TriangleMesh spike() {
-  TriangleMesh mesh{Points(3, 5), Triangles(3, 4)};
-  mesh.vertices.transpose() << 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, -1.0, -1.0, -1.0, -1.0, 0.0, 0.0, -1.0, 1.0;
-  mesh.triangles.transpose() << 0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1;
+/// Open pyramids, 1 m high, with these tips.
+TriangleMesh spikes(const std::vector<Vector3>& tips) {
+  const auto count = static_cast<Index>(tips.size());
+  TriangleMesh mesh{Points(3, 5 * count), Triangles(3, 4 * count)};
+  for (Index k = 0; k < count; ++k) {
+    Eigen::Matrix<double, 5, 3> corners;
+    corners << 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, -1.0, -1.0, -1.0, -1.0, 0.0, 0.0, -1.0, 1.0;
+    mesh.vertices.middleCols(5 * k, 5) = corners.transpose().colwise() + tips[static_cast<std::size_t>(k)];
+    Eigen::Matrix<Index, 4, 3> faces;
+    faces << 0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1;
+    mesh.triangles.middleCols(4 * k, 4) = (faces.array() + 5 * k).transpose();
+  }
   return mesh;
 }
 
 class ElementOverTop : public ::testing::TestWithParam<Top> {};
-INSTANTIATE_TEST_SUITE_P(Tops, ElementOverTop,
-                         ::testing::Values(Top{"ball", SphereGeometry{.radius = 0.5}},
-                                           Top{"spike", MeshGeometry{std::make_shared<const TriangleMesh>(spike()), false}}));
+INSTANTIATE_TEST_SUITE_P(
+    Tops, ElementOverTop,
+    ::testing::Values(Top{"ball", SphereGeometry{.radius = 0.5}},
+                      Top{"spike", MeshGeometry{std::make_shared<const TriangleMesh>(spikes({Vector3::Zero()})), false}}));
 
 // However far a square slides over what is below its inside, that stays where it is, and another part of the square is opposite.
 TEST_P(ElementOverTop, MeetsItWhereItIsNow) {
@@ -113,6 +123,35 @@ TEST_P(ElementOverTop, MeetsItWhereItIsNow) {
     }
     from = to;
   }
+}
+
+// The square slides off one tip, within the zone that it has, and lies on another one then.
+TEST(ElementOverTops, MeetsTheNextOneOnceItLeftTheFirst) {
+  constexpr double kGap = 0.05;
+  const Vector3 next(0.3, -0.1 * kGap, 0.3);
+  const Obstacle obstacle{.name = "tops",
+                          .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(spikes({Vector3::Zero(), next})), false}};
+  Environment environment({obstacle});
+  environment.set_interval(0.0, 0.01);
+  test::SelfNetwork square;
+  square.add_cloth(1, {-0.02, 0.9 * kGap, -0.5}, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
+  const CollisionSurface surface = square.surface(kGap);
+  ObstacleZones zones(environment.set(), surface, square.positions, 0.5 * kGap);
+  const auto meets = [&](const Points& from, const Points& to, const Vector3& tip) {
+    zones.follow({from, to});
+    std::vector<Contact> contacts;
+    zones.find_contacts({from, to}, contacts);
+    return std::ranges::any_of(contacts, [&](const Contact& contact) { return contact.point.isApprox(tip, 1e-12); });
+  };
+  Points from = square.positions;
+  EXPECT_TRUE(meets(from, from, Vector3::Zero()));
+  for (int step = 0; step < 40; ++step) {
+    Points to = from;
+    to.row(0).array() += 0.08 * kGap;
+    meets(from, to, next);
+    from = to;
+  }
+  EXPECT_TRUE(meets(from, from, next));
 }
 
 }  // namespace
