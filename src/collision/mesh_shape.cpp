@@ -192,27 +192,27 @@ void MeshShape::find_zone(const ElementCorners& element, const ZoneRequest& requ
   sprung::find_zone(tree, element, request, zone);
   if (!deforms_) return;
   zone.time = deforming_->end();
-  if (zone.triangle != kNone) {
-    const auto [a, b, c] = tree.corners(zone.triangle);
-    zone.triangle_weights = barycentric(closest_point_on_triangle(zone.point, a, b, c), a, b, c);
-  }
+  if (zone.triangle != kNone) weigh_point(tree, zone);
   if (!request.at_end) follow_surface(zone);
 }
 
+void MeshShape::weigh_point(const MeshTree& tree, Zone& zone) {
+  const auto [a, b, c] = tree.corners(zone.triangle);
+  zone.triangle_weights = barycentric(closest_point_on_triangle(zone.point, a, b, c), a, b, c);
+}
+
 void MeshShape::look_again(const ElementCorners& element, const ZoneRequest& request, bool fresh, Zone& zone) const {
-  const bool comes = deforms_ && !request.at_end;
-  const MeshTree& tree = comes ? *tree_before_ : *tree_;
+  const MeshTree& tree = deforms_ ? *tree_before_ : *tree_;
   if (!fresh) zone.triangle = nearest_triangle(tree, element, request, zone.triangle);
   if (zone.triangle == kNone) return;
-  const auto corners = tree.corners(zone.triangle);
-  const ClosestPair pair = closest_pair(element, corners);
-  if (!(pair.squared_distance > 0.0)) return;
+  const ClosestPair pair = closest_pair(element, tree.corners(zone.triangle));
+  const Vector3 between = pair.on_simplex - pair.on_triangle;
+  if (!(between.squaredNorm() > 0.0)) return;
   zone.point = pair.on_triangle;
-  zone.normal = (pair.on_simplex - pair.on_triangle).normalized();
+  zone.normal = between.normalized();
   zone.weights = pair.weights;
-  if (!comes) return;
-  const auto& [a, b, c] = corners;
-  zone.triangle_weights = barycentric(closest_point_on_triangle(zone.point, a, b, c), a, b, c);
+  if (!deforms_) return;
+  weigh_point(tree, zone);
   zone.drift = deforming_->displacement(zone.triangle, zone.triangle_weights);
   zone.point += zone.drift;
 }

@@ -41,6 +41,7 @@ class MeshShape final : public ObstacleShape {
 
  private:
   void follow_surface(Zone& zone) const;
+  static void weigh_point(const MeshTree& tree, Zone& zone);
   /// A point of the surface: a triangle and the weights of its corners.
   struct Spot {
     Index triangle = kNone;

@@ -87,8 +87,9 @@ class ObstacleShape {
   /// Makes the zone of an element that the shape does not cross; `zone` comes as it was left by the element's last search.
   virtual void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const = 0;
 
-  /// Finds the nearest points of the zone's element again, where it is now: of a mesh, while it is `fresh`, those on the same
-  /// triangle. All else of the zone stays, as does all of it where nothing is within `reach`, or touches.
+  /// Finds the nearest points of the zone's element again, where it is when the interval begins: of a mesh, while it is `fresh`,
+  /// those on the same triangle. The rest of the zone stays, as do the nearest points where element and shape touch or a primitive
+  /// is not within `reach`.
   virtual void look_again(const ElementCorners& element, const ZoneRequest& request, bool fresh, Zone& zone) const = 0;
 
   /// Makes a zone that was for the end of the interval before one for the end of this: where the surface deforms, it takes the zone

@@ -167,7 +167,7 @@ const Zone& PatchZones::look_again(const ObstacleShape& shape, const PatchTopolo
   const PatchTopology::Corners& corners = topology.corners(e);
   double moved = 0.0;
   for (std::size_t k = 0; k < at(corners.count); ++k) {
-    moved = std::max(moved, (paths.from(corners.slots[k]) - sight.from[k]).squaredNorm());
+    moved = std::max(moved, (paths.from(corners.slots[k]) + zone.drift - sight.from[k]).squaredNorm());
   }
   moved = std::sqrt(moved);
   if (!(moved > kSeenPart * demand.gap)) return zone;

@@ -18,7 +18,7 @@ struct ZoneRequest {
   double reach = 0.0;      ///< the box is that of element and way, this much larger on each side, where the obstacle lets it
   Box3 way{};              ///< where the corners are about to go; empty if nobody knows
   double gap = 0.0;        ///< what contact keeps between element and obstacle: planes stand off by at most half of it
-  double clearance = 0.0;  ///< planes stand off at least this much, above rounding, where the element does too
+  double clearance = 0.0;  ///< planes stand off at least half of this, above rounding, where the element does by all of it
   double exact = 0.0;      ///< nearest points are to be the true ones where they are nearer than this; may be 0
   bool at_end = false;     ///< the element is where it is at the end of the obstacle's interval; else at its begin
 };
@@ -46,7 +46,7 @@ struct Zone {
 
   // Before a surface that deforms:
   double time = std::numeric_limits<double>::quiet_NaN();  ///< end of the interval that the zone is for [s]
-  Vector3 drift = Vector3::Zero();                         ///< how far the surface took the zone along in that interval [m]
+  Vector3 drift = Vector3::Zero();                         ///< how far the surface at `point` goes in that interval [m]
   double loss = 0.0;                                       ///< what the zone lost on each side since it was made [m]
   Vector3 triangle_weights = Vector3::Zero();              ///< of the triangle's corners at `point`; their sum is 1
 };

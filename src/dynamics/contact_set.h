@@ -41,7 +41,8 @@ class ContactSet {
       if (*link == kNone) continue;
       const auto f = static_cast<std::size_t>(*link);
       goals_[c].push = former.goals_[f].push;
-      goals_[c].held = former.goals_[f].held;
+      const Vector3& held = former.goals_[f].held;
+      goals_[c].held = held - rows_[c].normal.dot(held) * rows_[c].normal;  // the normal may be another
       *link = next_row[f];
     }
     for (const ContactRow<n>& row : former.rows_) first_of(row, first_row) = kNone;
@@ -100,9 +101,10 @@ class ContactSet {
   }
 
  private:
-  /// What pushed no speed into anything had no load: of velocities, what friction gives back with it.
+  /// A push whose speed is taken answered to no load: what friction gives back of velocities with it. Positions keep it, at most
+  /// friction times the way out of the gap.
   static Vector3 friction_lost(const ContactRow<n>& row, ContactGoal goal, double taken, double dt) {
-    goal.push -= taken * dt;
+    goal.push = std::max(0.0, goal.push - taken * dt);
     return (friction_of(row, goal, goal.held) - goal.held) / dt;
   }
 

@@ -58,6 +58,38 @@ TEST(MeshZone, NothingCrossesWhileCornersStayInside) {
 
 TEST(MeshZone, NothingCrossesOnTheBunny) { expect_no_crossing(test::bunny(), 0.02, 0.02, 150); }
 
+// In a valley of facets that turn by a hundredth most triangles have no plane of their own.
+TEST(MeshZone, EachTriangleInTheBoxIsBehindAPlane) {
+  constexpr double kTurn = 0.01;
+  TriangleMesh valley = test::flat_sheet(60);
+  for (Index i = 0; i < valley.vertices.cols(); ++i) {
+    const Vector3 p = valley.vertices.col(i);
+    valley.vertices.col(i) = Vector3(std::sin(kTurn * p.x()), -std::cos(kTurn * p.x()), kTurn * p.z());
+  }
+  const MeshTree tree(valley);
+  Random random(7);
+  int behind = 0;
+  int planes = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const ElementCorners element = random_element(valley, random, 3, 0.05, 0.03);
+    Zone zone;
+    find_zone(tree, element, {.reach = 0.05, .gap = 0.03, .clearance = 1e-9, .exact = 0.05}, zone);
+    if (zone.broken || std::isfinite(zone.free_radius)) continue;
+    planes += zone.plane_count;
+    for (Index t = 0; t < valley.triangles.cols(); ++t) {
+      const auto corners = tree.corners(t);
+      Box3 box(corners[0]);
+      box.extend(corners[1]).extend(corners[2]);
+      if (!box.intersects(zone.box)) continue;
+      ++behind;
+      EXPECT_TRUE(std::any_of(zone.planes.begin(), zone.planes.begin() + zone.plane_count,
+                              [&](const HalfSpace& plane) { return highest_along(plane.normal, corners) < plane.offset; }))
+          << "trial " << trial << " triangle " << t;
+    }
+  }
+  EXPECT_GT(behind, 20 * planes);
+}
+
 TEST(MeshZone, NearestPairIsTheNearestOfAll) {
   const TriangleMesh mesh = test::needles(12);
   const MeshTree tree(mesh);

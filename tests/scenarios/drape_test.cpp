@@ -29,7 +29,8 @@ TEST_P(Drape, AClothFallsOnTheBunny) {
 TEST_P(Drape, AtRestTheGapIsTheThickness) {
   for (const char* thickness : {"0.0005", "0.002", "0.01"}) {
     double gap = 0.0;
-    // On a floor just below the bunny corners get between the two, which leave less than twice the thickness.
+    // On a floor just below the bunny corners get between the two, which leave less than twice the thickness, and hold what is
+    // next.
     const std::vector<std::string> overrides = {"duration=2.5", "bodies.cloth.shape.resolution=[32,32]",
                                                 std::string("bodies.cloth.thickness=").append(thickness),
                                                 "obstacles.floor.shape.offset=-0.6"};

@@ -92,7 +92,8 @@ INSTANTIATE_TEST_SUITE_P(Slides, RoundHill,
                          ::testing::Values(Slide{1.0, 2, 0.3, 5}, Slide{1.0, 2, 0.3, 20}, Slide{1.0, 8, 0.3, 5},
                                            Slide{1.0, 8, 0.3, 20}, Slide{1.0, 8, 0.1, 5}, Slide{3.0, 8, 0.3, 5}));
 
-// Friction is right within a hundredth. The square is no point: that it bends and has a length may change its way by as much.
+// Friction is right within a hundredth, and the square is as good as a point: of its side, a tenth of the radius, the slope's sine
+// has a mean that is off by (0.1 / 2)^2 / 6.
 TEST_P(RoundHill, ASquareSlidesAsFarAsAPoint) {
   const auto& [radius, resolution, friction, steps_a_frame] = GetParam();
   constexpr int kFrames = 24;
@@ -104,8 +105,8 @@ TEST_P(RoundHill, ASquareSlidesAsFarAsAPoint) {
   const double radius_of_middle = radius + kThickness;
   const auto way_with = [&](double mu) { return way_of_a_point(radius_of_middle, mu, kFrames / 60.0); };
   const double way = radius_of_middle * (angle() - begin);
-  EXPECT_GT(way, 0.99 * way_with(1.01 * friction));
-  EXPECT_LT(way, 1.01 * way_with(0.99 * friction));
+  EXPECT_GT(way, 0.999 * way_with(1.01 * friction));
+  EXPECT_LT(way, 1.001 * way_with(0.99 * friction));
 }
 
 struct Swing {
@@ -122,7 +123,8 @@ class RoundValley : public ::testing::TestWithParam<Swing> {};
 INSTANTIATE_TEST_SUITE_P(Swings, RoundValley,
                          ::testing::Values(Swing{0.01, 2, 5}, Swing{0.01, 8, 5}, Swing{0.003, 8, 5}, Swing{0.01, 8, 20}));
 
-// Each facet turns it a little: what speed it has into the next one is lost.
+// Contact takes what speed a step straight on has into the valley: by steps of 1/300 s it rises by 2 % of the angle less, by steps
+// of a quarter by 0.8 %. Half as much again is allowed.
 TEST_P(RoundValley, WithoutFrictionASquareRisesAsHighAsItBegan) {
   const auto& [facet, resolution, steps_a_frame] = GetParam();
   constexpr double kRadius = 1.0;
