@@ -14,8 +14,9 @@ namespace {
 // Zones are made again where they stopped a particle short, so that it can go on, at most so often.
 constexpr int kRounds = 8;
 
-// It goes on if the last round took it this part of its way or more, and no more than that part is left: what was stopped for good
-// would be led a long way round the obstacle.
+// It goes on if the last round took it this part of its way or more, and no more than that part is left where a plane is in its
+// way: what was stopped for good would be led a long way round the obstacle. Where a box alone ends, nothing is known to be in its
+// way.
 constexpr double kWorthwhile = 0x1p-10;
 constexpr double kMostLeft = 0.5;
 
@@ -33,11 +34,6 @@ void add_free(std::vector<Index> all, std::vector<Index>& particles, Outcomes& o
   }
   particles = std::move(all);
   outcomes = std::move(of_all);
-}
-
-bool can_go_on(Index i, const Points& from, const Points& target, const Points& now) {
-  const double way = (target.col(i) - from.col(i)).norm();
-  return (now.col(i) - from.col(i)).norm() > kWorthwhile * way && (target.col(i) - now.col(i)).norm() <= kMostLeft * way;
 }
 
 }  // namespace
@@ -177,7 +173,7 @@ Truncation ObstaclePlacement::lead_on(const std::vector<Index>& particles, const
   truncation.truncated = count(outcomes, Outcome::squeezed) + static_cast<Index>(stopped.size());
   list_squeezed(particles, outcomes);
   truncation.squeezed = static_cast<Index>(squeezed_.size());
-  std::erase_if(stopped, [&](Index i) { return !can_go_on(i, way.from, way.to, after); });
+  std::erase_if(stopped, [&](Index i) { return !can_go_on(i, way, after); });
   for (int round = 1; round < kRounds && !stopped.empty(); ++round) truncation.truncated -= go_on(stopped, way.to, after);
   return truncation;
 }
@@ -190,10 +186,17 @@ Index ObstaclePlacement::go_on(std::vector<Index>& stopped, const Points& target
   const Outcomes outcomes = place(zones_, stopped, way, after);
   std::vector<Index> still;
   for (std::size_t n = 0; n < stopped.size(); ++n) {
-    if (outcomes[n] != Outcome::free && can_go_on(stopped[n], from, target, after)) still.push_back(stopped[n]);
+    if (outcomes[n] != Outcome::free && can_go_on(stopped[n], way, after)) still.push_back(stopped[n]);
   }
   stopped = std::move(still);
   return count(outcomes, Outcome::free);
+}
+
+bool ObstaclePlacement::can_go_on(Index i, const Way& way, const Points& now) const {
+  const double length = (way.to.col(i) - way.from.col(i)).norm();
+  const double gone = (now.col(i) - way.from.col(i)).norm();
+  const double left = (way.to.col(i) - now.col(i)).norm();
+  return gone > kWorthwhile * length && (left <= kMostLeft * length || zones_.planes_allow(i, way.to.col(i)));
 }
 
 /// Pinned ones too.

@@ -53,6 +53,7 @@ class ObstaclePlacement {
   Truncation lead_on(const std::vector<Index>& particles, const Outcomes& outcomes, const Way& way, Points& after);
   /// Leaves in `stopped` those that may come farther yet; returns how many arrived.
   Index go_on(std::vector<Index>& stopped, const Points& target, Points& after);
+  [[nodiscard]] bool can_go_on(Index particle, const Way& way, const Points& now) const;
   void list_squeezed(const std::vector<Index>& particles, const Outcomes& outcomes);
 
   Environment& environment_;

@@ -147,6 +147,14 @@ bool ObstacleZones::allow(Index particle, const Vector3& position) const {
   return true;
 }
 
+bool ObstacleZones::planes_allow(Index particle, const Vector3& position) const {
+  return std::ranges::all_of(slots_of(particle), [&](const PatchSlot& place) {
+    return std::ranges::all_of(patches_[at(place.patch)].zones, [&](const PatchZones& zones) {
+      return is_passing(zones.obstacle(), particle) || zones.planes_allow(place.slot, set_.local(zones.obstacle(), position));
+    });
+  });
+}
+
 void ObstacleZones::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
   for (const auto& [p, slot] : slots_of(particle)) {
     const Patch& patch = patches_[at(p)];

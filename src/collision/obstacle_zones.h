@@ -59,6 +59,9 @@ class ObstacleZones {
   /// Whether the zones of all elements around the particle hold it there, at the interval's end.
   [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
 
+  /// The same of the zones' planes alone: whether none is between an obstacle and the position.
+  [[nodiscard]] bool planes_allow(Index particle, const Vector3& position) const;
+
   /// Whether an obstacle crosses any element.
   [[nodiscard]] bool crosses() const;
   /// Whether an obstacle crosses an element around the particle.

@@ -236,10 +236,9 @@ void PatchZones::calm_down(Index i, const Vector3& p) {
   calm_.set(i, p, kCalmPart * radius);
 }
 
-bool PatchZones::allow(Index i, const Vector3& p) const {
-  const Slot& slot = slots_[at(i)];
-  return slot.box.contains(p) && is_feasible(slot.planes, p);
-}
+bool PatchZones::allow(Index i, const Vector3& p) const { return slots_[at(i)].box.contains(p) && planes_allow(i, p); }
+
+bool PatchZones::planes_allow(Index i, const Vector3& p) const { return is_feasible(slots_[at(i)].planes, p); }
 
 void PatchZones::append_half_spaces(Index i, const RigidTransform& pose, std::vector<HalfSpace>& half_spaces) const {
   const auto append = [&](const Vector3& normal, double offset) {

@@ -62,6 +62,8 @@ class PatchZones {
 
   /// Whether the zones of all elements at the slot hold p.
   [[nodiscard]] bool allow(Index slot, const Vector3& p) const;
+  /// The same of their planes alone.
+  [[nodiscard]] bool planes_allow(Index slot, const Vector3& p) const;
 
   /// Replaces `slots` by those, ascending, within `reach` [m] of whose particle there may be something of the surface: most are
   /// where nothing is.
