@@ -1,7 +1,9 @@
 #include "dynamics/stretch_kernel.h"
 
 #include "base/kernel.h"
-#include "dynamics/stretch_groups.h"
+#include "dynamics/stretch_gathered.h"
+#include "dynamics/stretch_pairs.h"
+#include "dynamics/stretch_runs.h"
 
 #include <algorithm>
 #include <cmath>

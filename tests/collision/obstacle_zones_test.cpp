@@ -66,6 +66,15 @@ TEST(ObstacleZones, WhomNewZonesDoNotHoldIsRestless) {
   }
 }
 
+/// Where the contact's element is opposite to the obstacle.
+Vector3 opposite(const Contact& contact, const Points& positions) {
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+    sum += contact.weights[k] * positions.col(contact.particles[k]);
+  }
+  return sum;
+}
+
 struct Top {
   const char* name;
   ObstacleGeometry geometry;
@@ -116,11 +125,7 @@ TEST_P(ElementOverTop, MeetsItWhereItIsNow) {
     zones.find_contacts({from, to}, contacts);
     ASSERT_FALSE(contacts.empty());
     for (const Contact& contact : contacts) {
-      Vector3 above = Vector3::Zero();
-      for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
-        above += contact.weights[k] * from.col(contact.particles[k]);
-      }
-      EXPECT_NEAR((above - contact.point).cross(contact.normal).norm(), 0.0, kOld) << "step " << step;
+      EXPECT_NEAR((opposite(contact, from) - contact.point).cross(contact.normal).norm(), 0.0, kOld) << "step " << step;
     }
     from = to;
   }
@@ -150,11 +155,7 @@ TEST(ElementOverTops, MeetsATipThatDeforms) {
     std::vector<Contact> contacts;
     zones.find_contacts({from, to}, contacts);
     const auto is_of_the_tip = [&](const Contact& contact) {
-      Vector3 opposite = Vector3::Zero();  // where the interval begins
-      for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
-        opposite += contact.weights[k] * from.col(contact.particles[k]);
-      }
-      const Vector3 between = opposite - (contact.point - contact.drift);
+      const Vector3 between = opposite(contact, from) - (contact.point - contact.drift);  // where the interval begins
       return contact.point.isApprox((step + 1) * way, 1e-9) && contact.drift.isApprox(way, 1e-9) &&
              between.cross(contact.normal).norm() < 0.02 * kGap;
     };

@@ -195,8 +195,8 @@ TEST_P(ContactResponseLaws, FrictionIsThatOfThePushThatIsLeft) {
     world.step(contacts, 64);
     return Eigen::Vector2d(world.state.v(0, 0), world.state.v(0, 1));
   };
-  // The passes of the velocities leave 1e-3 of the speed that they stop, the weight's: friction may be off by as much of it, and
-  // that of two by twice that.
+  // The passes of the velocities halve what is left each time and end when one changes 1e-3 of the first or less, so that of two
+  // particles each of two answers is off by twice that at most.
   EXPECT_NEAR((speeds_on({on_floor({1.0}), on_floor({0.5, 0.5})}) - speeds_on({on_floor({1.0}, 0), on_floor({1.0}, 1)})).norm(),
               0.0, 8e-3 * mu * kGravity * kStep);
 }

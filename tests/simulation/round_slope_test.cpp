@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(Swings, RoundValley,
                                            Swing{0.01, kSide, 0.5, 8, 20}, Swing{0.0125, 0.3, 0.7, 3, 4}));
 
 // Contact takes what speed a step straight on has into the valley: by steps of 1/300 s it rises by 2 % of the angle less, by steps
-// of a quarter by 0.8 %. Half as much again is allowed.
+// of a quarter by 0.8 %. Twice the larger is allowed.
 TEST_P(RoundValley, WithoutFrictionASquareRisesAsHighAsItBegan) {
   const auto& [facet, side, start, resolution, steps_a_frame] = GetParam();
   constexpr double kRadius = 1.0;
