@@ -203,14 +203,15 @@ void MeshShape::weigh_point(const MeshTree& tree, Zone& zone) {
 
 void MeshShape::look_again(const ElementCorners& element, const ZoneRequest& request, bool fresh, Zone& zone) const {
   const MeshTree& tree = deforms_ ? *tree_before_ : *tree_;
-  if (!fresh) zone.triangle = nearest_triangle(tree, element, request, zone.triangle);
+  if (!fresh) find_nearest_triangle(tree, element, request, zone);
   if (zone.triangle == kNone) return;
-  const ClosestPair pair = closest_pair(element, tree.corners(zone.triangle));
+  const ClosestPair pair = closest_pair(element, tree.corners(zone.triangle), 0.0, 0.0, zone.place);
   const Vector3 between = pair.on_simplex - pair.on_triangle;
   if (!(between.squaredNorm() > 0.0)) return;
   zone.point = pair.on_triangle;
   zone.normal = between.normalized();
   zone.weights = pair.weights;
+  zone.place = pair.place;
   if (!deforms_) return;
   weigh_point(tree, zone);
   zone.drift = deforming_->displacement(zone.triangle, zone.triangle_weights);

@@ -153,10 +153,16 @@ SPRUNG_KERNEL void carve(const MeshTree& tree, Index nearest, ZoneBuilder& zone)
   }
 }
 
-/// Finds the nearest triangle that is nearer than `near`, begun with `last`.
-void find_nearest(const MeshTree& tree, Index last, double near, const Zone& zone, ZoneBuilder& builder) {
-  if (last != kNone && box_distance(tree.corners(last), builder.element_box()) < near) {
-    builder.look_at(last, tree.corners(last));
+/// Where the nearest points were before.
+struct Last {
+  Index triangle = kNone;
+  PairPlace place{};
+};
+
+/// Finds the nearest triangle that is nearer than `near`, begun with the last.
+void find_nearest(const MeshTree& tree, const Last& last, double near, const Zone& zone, ZoneBuilder& builder) {
+  if (last.triangle != kNone && box_distance(tree.corners(last.triangle), builder.element_box()) < near) {
+    builder.look_at(last.triangle, tree.corners(last.triangle), last.place);
   }
   walk_to_nearest(tree, near, zone, builder);
 }
@@ -165,7 +171,7 @@ void find_nearest(const MeshTree& tree, Index last, double near, const Zone& zon
 
 // The nearest triangle's plane comes first: it rules out most of the others, and lies as the surface does.
 void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone) {
-  const Index last = zone.triangle;
+  const Last last{zone.triangle, zone.place};
   ZoneBuilder builder(element, request, zone);
   const double near = std::max(request.exact, std::sqrt(3.0) * request.reach);
   builder.keep_clear(std::max(near, kSearch * request.reach));
@@ -178,12 +184,14 @@ void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRe
   builder.finish();
 }
 
-Index nearest_triangle(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Index last) {
-  Zone zone;
-  ZoneBuilder builder(element, request, zone);
+void find_nearest_triangle(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone) {
+  Zone found;
+  ZoneBuilder builder(element, request, found);
   builder.keep_clear(request.exact);
-  find_nearest(tree, last, request.exact, zone, builder);
-  return zone.triangle != kNone ? zone.triangle : last;
+  find_nearest(tree, {zone.triangle, zone.place}, request.exact, found, builder);
+  if (found.triangle == kNone) return;
+  zone.triangle = found.triangle;
+  zone.place = found.place;
 }
 
 }  // namespace sprung

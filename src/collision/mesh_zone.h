@@ -8,10 +8,11 @@ namespace sprung {
 
 /// Makes the zone of an element in the mesh's frame: the nearest triangle, and each one that comes within the box and is not behind
 /// a plane already, gives a plane between, a smaller box, or, where there are many, a radius. The search for the nearest begins
-/// with `zone.triangle`, left from the element's last zone.
+/// with the zone's triangle, left from the element's last zone.
 void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone);
 
-/// The triangle that is nearest to the element, if nearer than `exact`, else `last`, which the search begins with; kNone is none.
-[[nodiscard]] Index nearest_triangle(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Index last);
+/// Makes the zone's triangle the one that is nearest to the element, if there is one nearer than `exact`. Begins with the one that
+/// it has.
+void find_nearest_triangle(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone);
 
 }  // namespace sprung

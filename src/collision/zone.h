@@ -43,6 +43,7 @@ struct Zone {
   Vector3 normal = Vector3::Zero();                           ///< from it to the element, unit length
   Vector3 weights = Vector3::Zero();                          ///< of the element's corners; their sum is 1
   Index triangle = kNone;                                     ///< of the obstacle; where the next search may begin
+  PairPlace place{};                                          ///< of the points, on element and triangle; for that search too
 
   // Before a surface that deforms:
   double time = std::numeric_limits<double>::quiet_NaN();  ///< end of the interval that the zone is for [s]

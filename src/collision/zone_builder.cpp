@@ -40,9 +40,9 @@ ZoneBuilder::ZoneBuilder(const ElementCorners& element, const ZoneRequest& reque
   zone_.box = asked_box(element, request);
 }
 
-void ZoneBuilder::look_at(Index triangle, const TriangleCorners& corners) {
+void ZoneBuilder::look_at(Index triangle, const TriangleCorners& corners, const PairPlace& last) {
   if (zone_.triangle != kNone && !may_be_nearer(corners)) return;
-  const ClosestPair pair = closest_pair(element_, corners, kPairSlack, request_.exact);
+  const ClosestPair pair = closest_pair(element_, corners, kPairSlack, request_.exact, last);
   const double distance = std::sqrt(pair.squared_distance);
   if (!(distance < zone_.distance)) return;
   zone_.distance = distance;
@@ -50,6 +50,7 @@ void ZoneBuilder::look_at(Index triangle, const TriangleCorners& corners) {
   zone_.normal = distance > 0.0 ? Vector3((pair.on_simplex - pair.on_triangle) / distance) : Vector3::Zero();
   zone_.weights = pair.weights;
   zone_.triangle = triangle;
+  zone_.place = pair.place;
   nearest_lowest_ = lowest(zone_.normal);
 }
 

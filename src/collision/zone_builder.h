@@ -17,8 +17,8 @@ class ZoneBuilder {
   /// Makes the zone keep off the triangle, if it does not yet.
   void meet(const TriangleCorners& corners);
 
-  /// Takes the triangle as the nearest so far, if it is.
-  void look_at(Index triangle, const TriangleCorners& corners);
+  /// Takes the triangle as the nearest so far, if it is; where nearest points were before, they are looked for first.
+  void look_at(Index triangle, const TriangleCorners& corners, const PairPlace& last = {});
 
   /// No triangle whose box is nearer than this [m] to the element's is to be left out, those aside that were looked at.
   void keep_clear(double distance) { clear_ = std::min(clear_, distance); }

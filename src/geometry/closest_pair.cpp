@@ -105,6 +105,23 @@ class NearestPair {
  public:
   NearestPair(const Simplex& simplex, const Corners& triangle) : simplex_(simplex), triangle_(triangle) {}
 
+  /// What lies at a place where a pair may lie.
+  void look_at(const PairPlace& place) {
+    const std::size_t i = place.of_simplex;
+    const std::size_t k = place.of_triangle;
+    if (place.features == PairFeatures::corner_face) {
+      keep_corner(place, closest_point_on_triangle(simplex_.x[i], triangle_[0], triangle_[1], triangle_[2]).point);
+    } else if (place.features == PairFeatures::face_corner) {
+      const auto& [a, b, c] = simplex_.x;
+      const ClosestPoint closest = closest_point_on_triangle(triangle_[k], a, b, c);
+      keep_face(place, closest.point, barycentric(closest, a, b, c));
+    } else {
+      const SegmentPair pair = closest_points_of_segments(simplex_.x[i], simplex_.x[next(i)], triangle_[k], triangle_[(k + 1) % 3]);
+      keep_edges(place, pair.s, pair.t);
+    }
+    best_.squared_distance = (best_.on_simplex - best_.on_triangle).squaredNorm();
+  }
+
   void corners_against_faces() {
     CornerPairs pairs;
     measure_corners(simplex_, triangle_, pairs);
@@ -113,14 +130,9 @@ class NearestPair {
     const Vector3 point(closest.point.x[lane], closest.point.y[lane], closest.point.z[lane]);
     best_.squared_distance = closest.squared_distance[lane];
     if (group == 0) {
-      const int corner = std::min(lane, simplex_.count - 1);
-      best_.on_simplex = simplex_.x[static_cast<std::size_t>(corner)];
-      best_.on_triangle = point;
-      best_.weights = Vector3::Unit(corner);
+      keep_corner({PairFeatures::corner_face, number(std::min(lane, simplex_.count - 1)), 0}, point);
     } else {
-      best_.on_simplex = point;
-      best_.on_triangle = triangle_[static_cast<std::size_t>(lane)];
-      best_.weights = {closest.of_a[lane], closest.of_b[lane], closest.of_c[lane]};
+      keep_face({PairFeatures::face_corner, 0, number(lane)}, point, {closest.of_a[lane], closest.of_b[lane], closest.of_c[lane]});
     }
   }
 
@@ -130,13 +142,7 @@ class NearestPair {
     const auto [i, lane] = least(pairs.closest, simplex_.count == 3 ? 3 : 1);
     const SegmentPairLanes& closest = pairs.closest[i];
     if (closest.squared_distance[lane] >= best_.squared_distance) return;
-    const std::size_t next = (i + 1) % static_cast<std::size_t>(simplex_.count);
-    const auto k = static_cast<std::size_t>(lane);
-    best_.on_simplex = simplex_.x[i] + closest.s[lane] * (simplex_.x[next] - simplex_.x[i]);
-    best_.on_triangle = triangle_[k] + closest.t[lane] * (triangle_[(k + 1) % 3] - triangle_[k]);
-    best_.weights.setZero();
-    best_.weights[static_cast<Index>(i)] = 1.0 - closest.s[lane];
-    best_.weights[static_cast<Index>(next)] = closest.s[lane];
+    keep_edges({PairFeatures::edges, static_cast<std::uint8_t>(i), number(lane)}, closest.s[lane], closest.t[lane]);
     best_.squared_distance = closest.squared_distance[lane];
   }
 
@@ -152,6 +158,34 @@ class NearestPair {
   [[nodiscard]] const ClosestPair& best() const { return best_; }
 
  private:
+  static std::uint8_t number(int lane) { return static_cast<std::uint8_t>(lane); }
+  [[nodiscard]] std::size_t next(std::size_t corner) const { return (corner + 1) % static_cast<std::size_t>(simplex_.count); }
+
+  void keep_corner(const PairPlace& place, const Vector3& on_triangle) {
+    best_.place = place;
+    best_.on_simplex = simplex_.x[place.of_simplex];
+    best_.on_triangle = on_triangle;
+    best_.weights = Vector3::Unit(place.of_simplex);
+  }
+
+  void keep_face(const PairPlace& place, const Vector3& on_simplex, const Vector3& weights) {
+    best_.place = place;
+    best_.on_simplex = on_simplex;
+    best_.on_triangle = triangle_[place.of_triangle];
+    best_.weights = weights;
+  }
+
+  void keep_edges(const PairPlace& place, double s, double t) {
+    const std::size_t i = place.of_simplex;
+    const std::size_t k = place.of_triangle;
+    best_.place = place;
+    best_.on_simplex = simplex_.x[i] + s * (simplex_.x[next(i)] - simplex_.x[i]);
+    best_.on_triangle = triangle_[k] + t * (triangle_[(k + 1) % 3] - triangle_[k]);
+    best_.weights.setZero();
+    best_.weights[static_cast<Index>(i)] = 1.0 - s;
+    best_.weights[static_cast<Index>(next(i))] = s;
+  }
+
   const Simplex& simplex_;
   const Corners& triangle_;
   ClosestPair best_{.squared_distance = std::numeric_limits<double>::infinity()};
@@ -204,12 +238,19 @@ Vector3 barycentric(const ClosestPoint& closest, const Vector3& a, const Vector3
   return {1.0 - v - w, v, w};
 }
 
-ClosestPair closest_pair(const Simplex& simplex, const std::array<Vector3, 3>& triangle, double slack, double exact) {
+ClosestPair closest_pair(const Simplex& simplex, const std::array<Vector3, 3>& triangle, double slack, double exact,
+                         const PairPlace& last) {
   NearestPair nearest(simplex, triangle);
+  const auto is_proved = [&] {
+    const double allowed = nearest.best().squared_distance < exact * exact ? kRounding : std::max(slack, kRounding);
+    return nearest.separates(1.0 - allowed);
+  };
+  if (last.features != PairFeatures::unknown) {
+    nearest.look_at(last);
+    if (is_proved()) return nearest.best();
+  }
   nearest.corners_against_faces();
-  if (simplex.count == 1) return nearest.best();
-  const double allowed = nearest.best().squared_distance < exact * exact ? kRounding : std::max(slack, kRounding);
-  if (nearest.separates(1.0 - allowed)) return nearest.best();
+  if (simplex.count == 1 || is_proved()) return nearest.best();
   nearest.edges_against_edges();
   return nearest.best();
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace sprung {
 namespace {
@@ -74,6 +75,49 @@ TEST(ClosestPair, SlackCostsNoMoreThanItSays) {
     EXPECT_GE(quick, exact);
     if (separation(closest_pair(simplex, triangle), simplex, triangle) <= 0.0) continue;  // they cross
     EXPECT_LE(quick, exact / 0.9 * (1.0 + 1e-12));
+  }
+}
+
+TEST(ClosestPair, WhereItLayBeforeChangesNothing) {
+  RandomSimplices random;
+  std::vector<PairPlace> places;
+  for (std::uint8_t i = 0; i < 3; ++i) {
+    places.push_back({PairFeatures::corner_face, i, 0});
+    places.push_back({PairFeatures::face_corner, 0, i});
+    for (std::uint8_t k = 0; k < 3; ++k) places.push_back({PairFeatures::edges, i, k});
+  }
+  std::array<int, 4> found{};
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Triangle triangle = random.triangle(1.0);
+    const Simplex simplex = random.simplex(3, random.point(3.0), 1.0);
+    const ClosestPair pair = closest_pair(simplex, triangle);
+    if (separation(pair, simplex, triangle) <= 0.0) continue;  // they cross
+    ++found[static_cast<std::size_t>(pair.place.features)];
+    for (const PairPlace& last : places) {
+      const ClosestPair again = closest_pair(simplex, triangle, 0.0, 0.0, last);
+      // A pair counts as proved that is off by 1e-12 of the squared distance.
+      EXPECT_NEAR(again.squared_distance, pair.squared_distance, 2e-12 * pair.squared_distance);
+      EXPECT_NEAR((weighted(simplex, again.weights) - again.on_simplex).norm(), 0.0, 1e-12);
+      EXPECT_NEAR((again.on_simplex - again.on_triangle).squaredNorm(), again.squared_distance, 1e-12);
+    }
+  }
+  EXPECT_EQ(found[static_cast<std::size_t>(PairFeatures::unknown)], 0);
+  for (const auto features : {PairFeatures::corner_face, PairFeatures::face_corner, PairFeatures::edges}) {
+    EXPECT_GT(found[static_cast<std::size_t>(features)], 50);
+  }
+}
+
+TEST(ClosestPair, ItIsFoundWhereItLies) {
+  RandomSimplices random;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Triangle triangle = random.triangle(1.0);
+    const Simplex simplex = random.simplex(3, random.point(3.0), 1.0);
+    const ClosestPair pair = closest_pair(simplex, triangle);
+    if (separation(pair, simplex, triangle) <= 0.0) continue;  // they cross
+    const ClosestPair again = closest_pair(simplex, triangle, 0.0, 0.0, pair.place);
+    EXPECT_EQ(again.place.features, pair.place.features);
+    // The plane that proves them both lets points along it be off by the root of what it lets distances be off by.
+    EXPECT_NEAR((again.on_triangle - pair.on_triangle).norm(), 0.0, 1e-5);
   }
 }
 
