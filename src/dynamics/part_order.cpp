@@ -11,8 +11,11 @@ namespace {
 // Cut by size alone; a thread is worth waking for some 10 us of work.
 constexpr Index kTaskParts = 4096 / StretchBatches::kPartSprings;
 
-// What lies between two chunks grows by a band with each colour, on either side; something is to be left in their middle.
+// What lies between two chunks grows by a band with each colour, on either side; something is to be left in their middle. Of two
+// chunks alone most of it may lie between them: a cloth of 64 x 64 has 1.2 bands for each colour, and two threads take a third
+// less.
 constexpr Index kBandsPerColour = 3;
+constexpr Index kPartsForTwo = 4 * kTaskParts;
 
 // A part that reads what the one before has just written waits for it: colours follow each other at a distance of so many bands.
 constexpr Index kBandsBetweenColours = 2;
@@ -140,7 +143,8 @@ void order_by_colour(const std::vector<Index>& colour_begin, StretchBatches& bat
 
 void order_by_place(const std::vector<Index>& colour_begin, Index band, Index particles, StretchBatches& batches) {
   const auto colours = static_cast<Index>(colour_begin.size()) - 1;
-  const Index chunks = std::max(1, particles / std::max(1, kBandsPerColour * colours * band));
+  const Index least = static_cast<Index>(batches.parts.size()) >= kPartsForTwo ? 2 : 1;
+  const Index chunks = std::max(least, particles / std::max(1, kBandsPerColour * colours * band));
   const Index chunk = (particles + chunks - 1) / chunks;
   Order order(batches, colour_begin, band, particles);
   for (const Index offset : {0, chunk / 2, 0}) order.add_chunks(chunk, offset);
