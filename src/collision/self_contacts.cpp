@@ -20,6 +20,10 @@ constexpr double kLean = 0x1p-10;
 // Edges of nearly flat neighbours hardly have a direction that leans over neither face.
 constexpr double kEdgeLean = 0.1;
 
+// After a way of more than this part of the gap, nearest points are those where forces lead: of what passes by, older ones lie
+// askew, and lift and hold what slides.
+constexpr double kFreshWay = 0.05;
+
 // What comes nearer than its gap by more than this part of it has its nearest points looked for where it passes the gap.
 constexpr double kLongWay = 0.1;
 
@@ -44,22 +48,24 @@ class SelfContacts {
     const double most_margin = candidate.reach - candidate.gap;
     const double reach = candidate.gap + std::min(most_margin, margin_of_step(candidate.gap, way));
     if (stays_apart(candidate, reach, way)) return;
-    std::array<Vector3, 4> x;
-    for (std::size_t k = 0; k < 4; ++k) x[k] = before_.col(candidate.particles[k]);
-    CandidateClosest closest = closest_points(candidate, x);
-    const double begin = closest.separation.norm();
+    Meeting meeting = meeting_at(candidate, before_);
+    const double begin = meeting.closest.separation.norm();
     if (!(begin > 0.0)) return;
-    candidate.normal = closest.separation / begin;
+    candidate.normal = meeting.closest.separation / begin;
     if (stays_apart(candidate, reach, way)) return;
     const double end = gap_at(candidate, after_);
-    if (begin > candidate.gap && end < (1.0 - kLongWay) * candidate.gap) {
-      const double time = (begin - candidate.gap) / (begin - end);
-      for (std::size_t k = 0; k < 4; ++k) x[k] += time * (after_.col(candidate.particles[k]) - x[k]);
-      closest = closest_points(candidate, x);
+    if (way > kFreshWay * candidate.gap) {
+      const Meeting last = meeting_at(candidate, after_);
+      if (last.closest.separation.dot(candidate.normal) > 0.0) {
+        meeting = last;
+      } else if (begin > candidate.gap && end < (1.0 - kLongWay) * candidate.gap) {
+        meeting = meeting_on_way(candidate, (begin - candidate.gap) / (begin - end));
+      }
     }
+    const CandidateClosest& closest = meeting.closest;
     const double distance = closest.separation.norm();
     if (!(distance > 0.0)) return;
-    if (!(candidate.edges ? leads_from_edges(candidate, x, closest) : leads_from_face(candidate, x, closest))) return;
+    if (!(candidate.edges ? leads_from_edges(candidate, meeting) : leads_from_face(candidate, meeting))) return;
     Contact contact;
     contact.count = 4;
     contact.particles = candidate.particles;
@@ -74,6 +80,29 @@ class SelfContacts {
   }
 
  private:
+  /// The sides of a candidate at some time.
+  struct Meeting {
+    const Points* around;      ///< where their neighbours are
+    std::array<Vector3, 4> x;  ///< the candidate's particles
+    CandidateClosest closest;
+  };
+
+  [[nodiscard]] static Meeting meeting_at(const ContactCandidate& candidate, const Points& positions) {
+    std::array<Vector3, 4> x;
+    for (std::size_t k = 0; k < 4; ++k) x[k] = positions.col(candidate.particles[k]);
+    return {&positions, x, closest_points(candidate, x)};
+  }
+
+  /// Where they are after this part of the way. Their neighbours stay.
+  [[nodiscard]] Meeting meeting_on_way(const ContactCandidate& candidate, double part) const {
+    std::array<Vector3, 4> x;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Index i = candidate.particles[k];
+      x[k] = before_.col(i) + part * (after_.col(i) - before_.col(i));
+    }
+    return {&before_, x, closest_points(candidate, x)};
+  }
+
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
 
   /// The longest of its particles [m].
@@ -107,20 +136,20 @@ class SelfContacts {
 
   /// Whether all that meets at a particle, which is at x, leads away from the direction in which `met` is. What leads to a particle
   /// of that is not asked: it is no pair with it, and nothing else would speak for a segment that folds back onto the one before.
-  [[nodiscard]] bool leads_from_corner(Index particle, const Vector3& x, const Vector3& direction,
+  [[nodiscard]] bool leads_from_corner(Index particle, const Points& around, const Vector3& x, const Vector3& direction,
                                        std::span<const Index> met) const {
     for (const Index e : features_.elements_at(particle)) {
       for (const Index other : corners_of(element(e))) {
         if (other == particle || std::ranges::find(met, other) != met.end()) continue;
-        if (leans(direction, before_.col(other) - x, kLean)) return false;
+        if (leans(direction, around.col(other) - x, kLean)) return false;
       }
     }
     return true;
   }
 
   /// Of the faces that share the point, the one that owns it speaks for it.
-  [[nodiscard]] bool leads_from_face(const ContactCandidate& candidate, const std::array<Vector3, 4>& x,
-                                     const CandidateClosest& closest) const {
+  [[nodiscard]] bool leads_from_face(const ContactCandidate& candidate, const Meeting& meeting) const {
+    const auto& [around, x, closest] = meeting;
     const Index face = candidate.elements[1];
     int used = 0;
     int corner = 0;
@@ -133,17 +162,18 @@ class SelfContacts {
     if (used == 3) return true;
     if (used == 1) {
       const auto at = static_cast<std::size_t>(corner) + 1;
-      return features_.owns_corner(face, corner) && leads_from_corner(candidate.particles[at], x[at], closest.separation, {});
+      return features_.owns_corner(face, corner) &&
+             leads_from_corner(candidate.particles[at], *around, x[at], closest.separation, {});
     }
     const int edge = (unused + 1) % 3;
     if (!features_.owns_edge(face, edge)) return false;
     const Index across = features_.across(face, edge);
-    return across == kNone || !leans(closest.separation, before_.col(across) - (x[0] - closest.separation), kLean);
+    return across == kNone || !leans(closest.separation, around->col(across) - (x[0] - closest.separation), kLean);
   }
 
   /// The nearest points are within both edges, or at a corner that no face speaks for.
-  [[nodiscard]] bool leads_from_edges(const ContactCandidate& candidate, const std::array<Vector3, 4>& x,
-                                      const CandidateClosest& closest) const {
+  [[nodiscard]] bool leads_from_edges(const ContactCandidate& candidate, const Meeting& meeting) const {
+    const auto& [around, x, closest] = meeting;
     for (std::size_t side = 0; side < 2; ++side) {
       const Vector3 direction = side == 0 ? Vector3(-closest.separation) : closest.separation;
       const std::size_t first = 2 * side;
@@ -153,7 +183,7 @@ class SelfContacts {
         const std::size_t at = closest.weights[first] == 0.0 ? first + 1 : first;
         const int corner = (candidate.edge[side] + (at == first ? 0 : 1)) % own.corners;
         if (other.corners == 3 || !features_.owns_corner(candidate.elements[side], corner)) return false;
-        if (!leads_from_corner(candidate.particles[at], x[at], direction, corners_of(other))) return false;
+        if (!leads_from_corner(candidate.particles[at], *around, x[at], direction, corners_of(other))) return false;
         continue;
       }
       if (own.corners != 3) continue;
@@ -161,8 +191,8 @@ class SelfContacts {
       const Vector3 at = sign * (closest.weights[first] * x[first] + closest.weights[first + 1] * x[first + 1]);
       const Index third = own.particles[static_cast<std::size_t>((candidate.edge[side] + 2) % 3)];
       const Index across = features_.across(candidate.elements[side], candidate.edge[side]);
-      if (leans(direction, before_.col(third) - at, kEdgeLean)) return false;
-      if (across != kNone && leans(direction, before_.col(across) - at, kEdgeLean)) return false;
+      if (leans(direction, around->col(third) - at, kEdgeLean)) return false;
+      if (across != kNone && leans(direction, around->col(across) - at, kEdgeLean)) return false;
     }
     return true;
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace sprung {
 namespace {
@@ -63,7 +64,7 @@ SpringNetwork block_above_hammock() {
 }
 
 /// The most that motion, height and springs have more than at some time before, within a second [J].
-double largest_rise(const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles = {}) {
+double largest_rise(const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
   Simulator simulator(block_above_hammock(), settings, obstacles);
   const SpringNetwork& network = simulator.network();
   double least = std::numeric_limits<double>::infinity();
@@ -78,22 +79,28 @@ double largest_rise(const SimulatorSettings& settings, const std::vector<Obstacl
   return rise;
 }
 
-// What falls by a height h is at most half a step's way, g t dt / 2, apart from where its speed says it is.
-constexpr double kFall = 0.5;
-double lags(double step) { return kBlock * kGravity * std::sqrt(2.0 * kGravity * kFall) * step / 2.0; }
-
-TEST(BodiesMeet, AHeavyBlockOnAClothIsNotThrownUp) {
-  constexpr double kStep = 1.0 / 3000.0;
-  EXPECT_LT(largest_rise({.step = kStep}), lags(kStep));
+// What contacts meet of each other in a step, and so what little they give, is chance: the most of several steps. Where each body
+// stopped for itself it was 2 to 8 J.
+double largest_rise(const std::optional<StretchLimitSettings>& limit, const std::vector<Obstacle>& obstacles = {}) {
+  double largest = 0.0;
+  for (const double rate : {3000.0, 3500.0, 4000.0, 6000.0}) {
+    largest = std::max(largest, largest_rise({.step = 1.0 / rate, .stretch_limit = limit}, obstacles));
+  }
+  return largest;
 }
+
+// A hundredth of what the fall from the hammock to the end of its links gives.
+constexpr double kFall = 0.5;                                 // [m]
+constexpr double kLittle = 0.01 * kBlock * kGravity * kFall;  // [J]
+
+TEST(BodiesMeet, AHeavyBlockOnAClothIsNotThrownUp) { EXPECT_LT(largest_rise(std::nullopt), kLittle); }
 
 // What obstacles stop is led on by the limit's passes, from where the bodies were led out of each other.
 TEST(BodiesMeet, AHeavyBlockOnAClothAboveAFloorIsNotThrownUp) {
-  constexpr double kStep = 1.0 / 3000.0;
   Obstacle floor = testing::ground();
   floor.geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = -0.25};
-  EXPECT_LT(largest_rise({.step = kStep}, {floor}), lags(kStep));
-  EXPECT_LT(largest_rise({.step = kStep, .stretch_limit = StretchLimitSettings{.max_stretch = 0.1}}, {floor}), lags(kStep));
+  EXPECT_LT(largest_rise(std::nullopt, {floor}), kLittle);
+  EXPECT_LT(largest_rise(StretchLimitSettings{.max_stretch = 0.1}, {floor}), kLittle);
 }
 
 }  // namespace
