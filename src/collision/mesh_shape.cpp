@@ -203,14 +203,16 @@ void MeshShape::weigh_point(const MeshTree& tree, Zone& zone) {
 
 void MeshShape::look_again(const ElementCorners& element, const ZoneRequest& request, bool fresh, Zone& zone) const {
   const MeshTree& tree = deforms_ ? *tree_before_ : *tree_;
-  if (!fresh) find_nearest_triangle(tree, element, request, zone);
-  if (zone.triangle == kNone) return;
-  const ClosestPair pair = closest_pair(element, tree.corners(zone.triangle), 0.0, 0.0, zone.place);
+  NearestSpot spot{zone.triangle, zone.place};
+  if (!fresh) spot = sprung::nearest_spot(tree, element, request, spot);
+  if (spot.triangle == kNone) return;
+  const ClosestPair pair = closest_pair(element, tree.corners(spot.triangle), 0.0, 0.0, spot.place);
   const Vector3 between = pair.on_simplex - pair.on_triangle;
   if (!(between.squaredNorm() > 0.0)) return;
   zone.point = pair.on_triangle;
   zone.normal = between.normalized();
   zone.weights = pair.weights;
+  zone.triangle = spot.triangle;
   zone.place = pair.place;
   if (!deforms_) return;
   weigh_point(tree, zone);

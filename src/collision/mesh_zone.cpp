@@ -153,14 +153,8 @@ SPRUNG_KERNEL void carve(const MeshTree& tree, Index nearest, ZoneBuilder& zone)
   }
 }
 
-/// Where the nearest points were before.
-struct Last {
-  Index triangle = kNone;
-  PairPlace place{};
-};
-
 /// Finds the nearest triangle that is nearer than `near`, begun with the last.
-void find_nearest(const MeshTree& tree, const Last& last, double near, const Zone& zone, ZoneBuilder& builder) {
+void find_nearest(const MeshTree& tree, const NearestSpot& last, double near, const Zone& zone, ZoneBuilder& builder) {
   if (last.triangle != kNone && box_distance(tree.corners(last.triangle), builder.element_box()) < near) {
     builder.look_at(last.triangle, tree.corners(last.triangle), last.place);
   }
@@ -171,7 +165,7 @@ void find_nearest(const MeshTree& tree, const Last& last, double near, const Zon
 
 // The nearest triangle's plane comes first: it rules out most of the others, and lies as the surface does.
 void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone) {
-  const Last last{zone.triangle, zone.place};
+  const NearestSpot last{zone.triangle, zone.place};
   ZoneBuilder builder(element, request, zone);
   const double near = std::max(request.exact, std::sqrt(3.0) * request.reach);
   builder.keep_clear(std::max(near, kSearch * request.reach));
@@ -184,14 +178,12 @@ void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRe
   builder.finish();
 }
 
-void find_nearest_triangle(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone) {
+NearestSpot nearest_spot(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, const NearestSpot& last) {
   Zone found;
   ZoneBuilder builder(element, request, found);
   builder.keep_clear(request.exact);
-  find_nearest(tree, {zone.triangle, zone.place}, request.exact, found, builder);
-  if (found.triangle == kNone) return;
-  zone.triangle = found.triangle;
-  zone.place = found.place;
+  find_nearest(tree, last, request.exact, found, builder);
+  return found.triangle == kNone ? last : NearestSpot{found.triangle, found.place};
 }
 
 }  // namespace sprung

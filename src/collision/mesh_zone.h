@@ -11,8 +11,14 @@ namespace sprung {
 /// with the zone's triangle, left from the element's last zone.
 void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone);
 
-/// Makes the zone's triangle the one that is nearest to the element, if there is one nearer than `exact`. Begins with the one that
-/// it has.
-void find_nearest_triangle(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone);
+/// Where the nearest points of an element and a mesh lie.
+struct NearestSpot {
+  Index triangle = kNone;
+  PairPlace place{};  ///< on element and triangle
+};
+
+/// That of an element which is nearer than `exact`, else the last, with which the search begins.
+[[nodiscard]] NearestSpot nearest_spot(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request,
+                                       const NearestSpot& last);
 
 }  // namespace sprung

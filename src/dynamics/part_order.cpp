@@ -12,8 +12,8 @@ namespace {
 constexpr Index kTaskParts = 4096 / StretchBatches::kPartSprings;
 
 // What lies between two chunks grows by a band with each colour, on either side; something is to be left in their middle. Of two
-// chunks alone most of it may lie between them: a cloth of 64 x 64 has 1.2 bands for each colour, and two threads take a third
-// less.
+// chunks alone much may lie between them: in a cloth of 64 x 64 with bend springs each has 1.2 bands for each colour, a fifth of
+// the springs come alone, and two threads take a third less. Of fewer parts than so many, waiting would take what that saves.
 constexpr Index kBandsPerColour = 3;
 constexpr Index kPartsForTwo = 4 * kTaskParts;
 

@@ -39,7 +39,7 @@ enum class PairFeatures : std::uint8_t {
 struct PairPlace {
   PairFeatures features = PairFeatures::unknown;
   std::uint8_t of_simplex = 0;   ///< a corner or an edge; 0 for its face
-  std::uint8_t of_triangle = 0;  ///< the same
+  std::uint8_t of_triangle = 0;  ///< a corner or an edge; 0 for its face
 };
 
 /// The points of a simplex and of a triangle that are nearest to each other.
@@ -56,7 +56,8 @@ struct ClosestPair {
 /// and faces give a pair whose plane separates by all of its distance but rounding; with `slack` > 0, and where the pair is not
 /// nearer than `exact` [m], by (1 - slack) of it: then the distance is at most 1 / (1 - slack) of the true one.
 ///
-/// What lay at `last` before is looked for there first: a plane that separates by as much proves it to be the nearest still.
+/// What lay at `last` before is looked for there first: a plane that separates by as much proves it to be as near still. That is a
+/// place on a simplex of as many corners, and on any triangle.
 [[nodiscard]] ClosestPair closest_pair(const Simplex& simplex, const std::array<Vector3, 3>& triangle, double slack = 0.0,
                                        double exact = 0.0, const PairPlace& last = {});
 

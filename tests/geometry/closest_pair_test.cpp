@@ -78,14 +78,19 @@ TEST(ClosestPair, SlackCostsNoMoreThanItSays) {
   }
 }
 
-TEST(ClosestPair, WhereItLayBeforeChangesNothing) {
-  RandomSimplices random;
+std::vector<PairPlace> places_on_triangles() {
   std::vector<PairPlace> places;
   for (std::uint8_t i = 0; i < 3; ++i) {
     places.push_back({PairFeatures::corner_face, i, 0});
     places.push_back({PairFeatures::face_corner, 0, i});
     for (std::uint8_t k = 0; k < 3; ++k) places.push_back({PairFeatures::edges, i, k});
   }
+  return places;
+}
+
+TEST(ClosestPair, WhereItLayBeforeChangesNothing) {
+  RandomSimplices random;
+  const std::vector<PairPlace> places = places_on_triangles();
   std::array<int, 4> found{};
   for (int trial = 0; trial < 1000; ++trial) {
     const Triangle triangle = random.triangle(1.0);
@@ -95,7 +100,7 @@ TEST(ClosestPair, WhereItLayBeforeChangesNothing) {
     ++found[static_cast<std::size_t>(pair.place.features)];
     for (const PairPlace& last : places) {
       const ClosestPair again = closest_pair(simplex, triangle, 0.0, 0.0, last);
-      // A pair counts as proved that is off by 1e-12 of the squared distance.
+      // A plane that separates by all but 1e-12 of a distance proves it.
       EXPECT_NEAR(again.squared_distance, pair.squared_distance, 2e-12 * pair.squared_distance);
       EXPECT_NEAR((weighted(simplex, again.weights) - again.on_simplex).norm(), 0.0, 1e-12);
       EXPECT_NEAR((again.on_simplex - again.on_triangle).squaredNorm(), again.squared_distance, 1e-12);
@@ -107,17 +112,16 @@ TEST(ClosestPair, WhereItLayBeforeChangesNothing) {
   }
 }
 
-TEST(ClosestPair, ItIsFoundWhereItLies) {
-  RandomSimplices random;
-  for (int trial = 0; trial < 1000; ++trial) {
-    const Triangle triangle = random.triangle(1.0);
-    const Simplex simplex = random.simplex(3, random.point(3.0), 1.0);
-    const ClosestPair pair = closest_pair(simplex, triangle);
-    if (separation(pair, simplex, triangle) <= 0.0) continue;  // they cross
-    const ClosestPair again = closest_pair(simplex, triangle, 0.0, 0.0, pair.place);
-    EXPECT_EQ(again.place.features, pair.place.features);
-    // The plane that proves them both lets points along it be off by the root of what it lets distances be off by.
-    EXPECT_NEAR((again.on_triangle - pair.on_triangle).norm(), 0.0, 1e-5);
+TEST(ClosestPair, OfEquallyNearOnesItIsWhereItLayBefore) {
+  const Triangle below{Vector3(-4, -4, 0), Vector3(4, -4, 0), Vector3(0, 4, 0)};
+  const Simplex above{.x = {Vector3(-0.5, 0, 1), Vector3(0.5, 0, 1), Vector3(0, 0.5, 1)}, .count = 3};
+  for (std::uint8_t corner = 0; corner < 3; ++corner) {
+    const PairPlace last{PairFeatures::corner_face, corner, 0};
+    const ClosestPair pair = closest_pair(above, below, 0.0, 0.0, last);
+    EXPECT_EQ(pair.place.features, last.features);
+    EXPECT_EQ(pair.place.of_simplex, corner);
+    EXPECT_EQ(pair.weights, Vector3::Unit(corner));
+    EXPECT_EQ(pair.squared_distance, 1.0);
   }
 }
 

@@ -79,9 +79,9 @@ double largest_rise(const SimulatorSettings& settings, const std::vector<Obstacl
   return rise;
 }
 
-// What contacts meet of each other in a step, and so what little they give, is chance: the most of several steps. Where each body
-// stopped for itself it was 2 to 8 J.
-double largest_rise(const std::optional<StretchLimitSettings>& limit, const std::vector<Obstacle>& obstacles = {}) {
+// What contacts meet of each other in a step, and so what little they give, is chance: the most of several steps. Of twelve steps
+// it was at most 0.6 J, and 2 to 8 J where each body stopped for itself.
+double largest_rise_of_steps(const std::optional<StretchLimitSettings>& limit, const std::vector<Obstacle>& obstacles = {}) {
   double largest = 0.0;
   for (const double rate : {3000.0, 3500.0, 4000.0, 6000.0}) {
     largest = std::max(largest, largest_rise({.step = 1.0 / rate, .stretch_limit = limit}, obstacles));
@@ -93,14 +93,14 @@ double largest_rise(const std::optional<StretchLimitSettings>& limit, const std:
 constexpr double kFall = 0.5;                                 // [m]
 constexpr double kLittle = 0.01 * kBlock * kGravity * kFall;  // [J]
 
-TEST(BodiesMeet, AHeavyBlockOnAClothIsNotThrownUp) { EXPECT_LT(largest_rise(std::nullopt), kLittle); }
+TEST(BodiesMeet, AHeavyBlockOnAClothIsNotThrownUp) { EXPECT_LT(largest_rise_of_steps(std::nullopt), kLittle); }
 
 // What obstacles stop is led on by the limit's passes, from where the bodies were led out of each other.
 TEST(BodiesMeet, AHeavyBlockOnAClothAboveAFloorIsNotThrownUp) {
   Obstacle floor = testing::ground();
   floor.geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = -0.25};
-  EXPECT_LT(largest_rise(std::nullopt, {floor}), kLittle);
-  EXPECT_LT(largest_rise(StretchLimitSettings{.max_stretch = 0.1}, {floor}), kLittle);
+  EXPECT_LT(largest_rise_of_steps(std::nullopt, {floor}), kLittle);
+  EXPECT_LT(largest_rise_of_steps(StretchLimitSettings{.max_stretch = 0.1}, {floor}), kLittle);
 }
 
 }  // namespace

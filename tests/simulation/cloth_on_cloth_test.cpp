@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <ostream>
+#include <vector>
 
 namespace sprung {
 namespace {
@@ -56,7 +60,8 @@ INSTANTIATE_TEST_SUITE_P(Slides, ClothOnCloth,
                                            Slide{35.0, 0.5, 240.0, 6}, Slide{35.0, 0.5, 240.0, 15}, Slide{35.0, 0.5, 960.0, 6},
                                            Slide{26.0, 0.5, 240.0, 6}));
 
-// Coulomb's law, with gravity that leans instead of the slope. A step's end may be behind by what the way in a step grows by.
+// Coulomb's law, with gravity that leans instead of the slope. The speed may be behind by what a step gives it, and what
+// friction holds may settle by a thousandth of the gap.
 //
 // Within a step weight g leads the cloth g dt^2 into the gap d: over that, particles meet its round border at the sine
 // s = sqrt(2 g dt^2 / d), which at a speed v throws the border up by (v s)^2 / 2 g = (v dt)^2 / d.
