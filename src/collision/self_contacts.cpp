@@ -25,10 +25,6 @@ constexpr double kEdgeLean = 0.1;
 // not within a body: cloths that fell on their edge, and folded evenly, came to lie crumpled.
 constexpr double kFreshWay = 0.05;
 
-// What passes by keeps this part of its distance, or of the gap, where it is nearest. What has gone through each other is told from
-// it by that and by its direction alone: truncation judges.
-constexpr double kStillApart = 0.5;
-
 // What comes nearer than its gap by more than this part of it meets where it passes the gap.
 constexpr double kLongWay = 0.1;
 
@@ -107,7 +103,7 @@ class SelfContacts {
     const bool may_slide = element(candidate.elements[0]).body != element(candidate.elements[1]).body;
     if (may_slide && longest_way_ > kFreshWay * candidate.gap) {
       const Meeting last = meeting_at(candidate, after_);
-      if (passes_by(candidate, first.closest.separation, last.closest.separation)) return last;
+      if (separated(candidate, last)) return last;
     }
     const double begin = first.closest.separation.norm();
     const double end = gap_at(candidate, after_);
@@ -115,18 +111,11 @@ class SelfContacts {
     return meeting_on_way(candidate, (begin - candidate.gap) / (begin - end));
   }
 
-  /// Whether they stay apart on their way, whose ends they are less than a right angle from where they are nearest.
-  [[nodiscard]] bool passes_by(const ContactCandidate& candidate, const Vector3& from, const Vector3& to) const {
-    const Vector3 way = to - from;
-    const double inward = -from.dot(way);
-    const double length2 = way.squaredNorm();
-    Vector3 nearest = from;
-    if (inward >= length2) {
-      nearest = to;
-    } else if (inward > 0.0) {
-      nearest = meeting_on_way(candidate, inward / length2).closest.separation;
-    }
-    return nearest.norm() > kStillApart * std::min(from.norm(), candidate.gap) && nearest.dot(from) > 0.0 && nearest.dot(to) > 0.0;
+  /// Whether the plane across these nearest points, at the step's end, had the sides on either side of it at its begin: then they
+  /// did not go through each other in between.
+  [[nodiscard]] bool separated(ContactCandidate candidate, const Meeting& last) const {
+    candidate.normal = last.closest.separation;
+    return gap_at(candidate, before_) > 0.0;
   }
 
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }

@@ -13,7 +13,7 @@ constexpr Index kTaskParts = 4096 / StretchBatches::kPartSprings;
 
 // What lies between two chunks grows by a band with each colour, on either side; something is to be left in their middle. Of two
 // chunks alone much may lie between them: in a cloth of 64 x 64 with bend springs each has 1.2 bands for each colour, a fifth of
-// the springs come alone, and two threads take a third less. Of fewer parts than so many, waiting would take what that saves.
+// the springs come alone, and two threads take a third less in a drape. Of fewer parts than so many, waiting takes what that saves.
 constexpr Index kBandsPerColour = 3;
 constexpr Index kPartsForTwo = 4 * kTaskParts;
 

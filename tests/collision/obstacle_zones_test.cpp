@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace sprung {
@@ -97,6 +98,28 @@ TriangleMesh spikes(const std::vector<Vector3>& tips) {
   return mesh;
 }
 
+/// A square with sides along x and z, from this corner, above an obstacle.
+struct SquareAbove {
+  SquareAbove(const Obstacle& obstacle, const Vector3& corner) : environment({obstacle}) {
+    square.add_cloth(1, corner, Vector3::UnitX(), Vector3::UnitZ());
+    surface = square.surface(kGap);
+    zones.emplace(environment.set(), surface, square.positions, 0.5 * kGap);
+  }
+
+  std::vector<Contact> step(const Points& from, const Points& to) {
+    zones->follow({from, to});
+    std::vector<Contact> contacts;
+    zones->find_contacts({from, to}, contacts);
+    return contacts;
+  }
+
+  static constexpr double kGap = 0.05;  // [m]
+  Environment environment;
+  test::SelfNetwork square;
+  CollisionSurface surface;
+  std::optional<ObstacleZones> zones;
+};
+
 class ElementOverTop : public ::testing::TestWithParam<Top> {};
 INSTANTIATE_TEST_SUITE_P(
     Tops, ElementOverTop,
@@ -105,24 +128,18 @@ INSTANTIATE_TEST_SUITE_P(
 
 // However far a square slides over what is below its inside, that stays where it is, and another part of the square is opposite.
 TEST_P(ElementOverTop, MeetsItWhereItIsNow) {
-  constexpr double kGap = 0.05;
+  constexpr double kGap = SquareAbove::kGap;
   constexpr double kOld = 0.02 * kGap;  // nearest points may be, of this way
   constexpr double kSlide = 0.75 * kOld;
   Obstacle obstacle{.name = "top", .geometry = GetParam().geometry};
   if (std::holds_alternative<SphereGeometry>(obstacle.geometry)) obstacle.placed.translation() = Vector3(0.0, -0.5, 0.0);
-  Environment environment({obstacle});
-  environment.set_interval(0.0, 0.01);
-  test::SelfNetwork square;
-  square.add_cloth(1, {-0.6, 0.9 * kGap, -0.4}, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
-  const CollisionSurface surface = square.surface(kGap);
-  ObstacleZones zones(environment.set(), surface, square.positions, 0.5 * kGap);
-  Points from = square.positions;
+  SquareAbove above(obstacle, {-0.6, 0.9 * kGap, -0.4});
+  above.environment.set_interval(0.0, 0.01);
+  Points from = above.square.positions;
   for (int step = 0; step < 200; ++step) {
     Points to = from;
     to.row(0).array() += kSlide;
-    zones.follow({from, to});
-    std::vector<Contact> contacts;
-    zones.find_contacts({from, to}, contacts);
+    const std::vector<Contact> contacts = above.step(from, to);
     ASSERT_FALSE(contacts.empty());
     for (const Contact& contact : contacts) {
       EXPECT_NEAR((opposite(contact, from) - contact.point).cross(contact.normal).norm(), 0.0, kOld) << "step " << step;
@@ -133,7 +150,7 @@ TEST_P(ElementOverTop, MeetsItWhereItIsNow) {
 
 // Both move within their own frames, the square half as fast again: what lies below is the tip where it ends up, and goes as fast.
 TEST(ElementOverTops, MeetsATipThatDeforms) {
-  constexpr double kGap = 0.05;
+  constexpr double kGap = SquareAbove::kGap;
   constexpr double kStep = 0.01;
   const Vector3 way(0.1 * kGap, 0.02 * kGap, 0.0);  // of the tip in a step
   const TriangleMesh first = spikes({Vector3::Zero()});
@@ -141,19 +158,12 @@ TEST(ElementOverTops, MeetsATipThatDeforms) {
   for (int k = 0; k <= 30; ++k) sequence.frames.emplace_back(first.vertices.colwise() + k * way);
   const Obstacle obstacle{.name = "tip",
                           .geometry = SequenceGeometry{std::make_shared<const MeshSequence>(std::move(sequence)), false}};
-  Environment environment({obstacle});
-  test::SelfNetwork square;
-  square.add_cloth(1, {-0.6, 0.9 * kGap, -0.4}, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
-  const CollisionSurface surface = square.surface(kGap);
-  environment.set_interval(0.0, 0.0);
-  ObstacleZones zones(environment.set(), surface, square.positions, 0.5 * kGap);
-  Points from = square.positions;
+  SquareAbove above(obstacle, {-0.6, 0.9 * kGap, -0.4});
+  Points from = above.square.positions;
   for (int step = 0; step < 30; ++step) {
-    environment.set_interval(kStep * step, kStep * (step + 1));
+    above.environment.set_interval(kStep * step, kStep * (step + 1));
     const Points to = from.colwise() + Vector3(1.5 * way.x(), way.y(), 0.0);
-    zones.follow({from, to});
-    std::vector<Contact> contacts;
-    zones.find_contacts({from, to}, contacts);
+    const std::vector<Contact> contacts = above.step(from, to);
     const auto is_of_the_tip = [&](const Contact& contact) {
       const Vector3 between = opposite(contact, from) - (contact.point - contact.drift);  // where the interval begins
       return contact.point.isApprox((step + 1) * way, 1e-9) && contact.drift.isApprox(way, 1e-9) &&
@@ -166,23 +176,17 @@ TEST(ElementOverTops, MeetsATipThatDeforms) {
 
 // The square slides off one tip, within the zone that it has, and lies on another one then.
 TEST(ElementOverTops, MeetsTheNextOneOnceItLeftTheFirst) {
-  constexpr double kGap = 0.05;
+  constexpr double kGap = SquareAbove::kGap;
   const Vector3 next(0.3, -0.1 * kGap, 0.3);
   const Obstacle obstacle{.name = "tops",
                           .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(spikes({Vector3::Zero(), next})), false}};
-  Environment environment({obstacle});
-  environment.set_interval(0.0, 0.01);
-  test::SelfNetwork square;
-  square.add_cloth(1, {-0.02, 0.9 * kGap, -0.5}, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
-  const CollisionSurface surface = square.surface(kGap);
-  ObstacleZones zones(environment.set(), surface, square.positions, 0.5 * kGap);
+  SquareAbove above(obstacle, {-0.02, 0.9 * kGap, -0.5});
+  above.environment.set_interval(0.0, 0.01);
   const auto meets = [&](const Points& from, const Points& to, const Vector3& tip) {
-    zones.follow({from, to});
-    std::vector<Contact> contacts;
-    zones.find_contacts({from, to}, contacts);
+    const std::vector<Contact> contacts = above.step(from, to);
     return std::ranges::any_of(contacts, [&](const Contact& contact) { return contact.point.isApprox(tip, 1e-12); });
   };
-  Points from = square.positions;
+  Points from = above.square.positions;
   EXPECT_TRUE(meets(from, from, Vector3::Zero()));
   for (int step = 0; step < 40; ++step) {
     Points to = from;

@@ -80,7 +80,7 @@ double largest_rise(const SimulatorSettings& settings, const std::vector<Obstacl
 }
 
 // What contacts meet of each other in a step, and so what little they give, is chance: the most of several steps. Of twelve steps
-// it was at most 0.6 J, and 2 to 8 J where each body stopped for itself.
+// it was at most 0.7 J, and 4 J where each body stopped for itself.
 double largest_rise_of_steps(const std::optional<StretchLimitSettings>& limit, const std::vector<Obstacle>& obstacles = {}) {
   double largest = 0.0;
   for (const double rate : {3000.0, 3500.0, 4000.0, 6000.0}) {
