@@ -6,6 +6,7 @@
 
 #include <array>
 #include <limits>
+#include <vector>
 
 namespace sprung {
 
@@ -22,12 +23,19 @@ struct Contact {
   std::array<double, kMostParticles> weights{};
   int count = 0;
   Index obstacle = kNone;            ///< kNone between elements of the network
+  Index patch = kNone;               ///< of the surface, that it was found with; kNone between elements of the network
   Vector3 point = Vector3::Zero();   ///< on the obstacle's surface [m]
   Vector3 normal = Vector3::Zero();  ///< unit length, towards the free side
   Vector3 drift = Vector3::Zero();   ///< how far deforming has taken the surface here in this step, beside the obstacle's pose [m]
   double distance = 0.0;             ///< normal . (sum_i weights_i x_i - point) where it was found [m], negative behind the plane
   double most_gap = std::numeric_limits<double>::infinity();  ///< neighbours in a body may be nearer than its thickness [m]
   double clearance = 0.0;  ///< the least gap that is kept, whatever the thickness: above rounding [m]
+};
+
+/// Contacts of some patches with obstacles, found anew.
+struct FreshContacts {
+  std::vector<Index> patches{};  ///< ascending
+  std::vector<Contact> contacts{};
 };
 
 /// The contact of one particle with an obstacle.

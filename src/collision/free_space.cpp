@@ -82,10 +82,8 @@ const std::vector<Contact>& FreeSpace::contacts(const Points& before, const Poin
   return implementation_->with_pairs();
 }
 
-const std::vector<Contact>& FreeSpace::contacts_again(const Points& before, const Points& after) {
-  implementation_->contacts.clear();
-  implementation_->zones.find_contacts_around(implementation_->placement.held_back(), {before, after}, implementation_->contacts);
-  return implementation_->with_pairs();
+FreshContacts FreeSpace::contacts_again(const Points& before, const Points& after) {
+  return implementation_->zones.find_contacts_around(implementation_->placement.held_back(), {before, after});
 }
 
 Truncation FreeSpace::truncate(const Points& before, Points& after, const Relax& relax) {

@@ -50,8 +50,8 @@ class FreeSpace {
   /// Valid until it is asked again.
   [[nodiscard]] const std::vector<Contact>& contacts(const Points& before, const Points& after);
 
-  /// Those that contacts() told of, but found anew around what truncate() has stopped, while it relaxes.
-  [[nodiscard]] const std::vector<Contact>& contacts_again(const Points& before, const Points& after);
+  /// Contacts with obstacles around what truncate() has stopped, found anew while it relaxes.
+  [[nodiscard]] FreshContacts contacts_again(const Points& before, const Points& after);
 
   /// Moves particles once more after some were stopped [m]; returns false when it has nothing to move.
   using Relax = std::function<bool(Points& positions)>;

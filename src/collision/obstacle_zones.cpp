@@ -118,17 +118,21 @@ ZoneDemand ObstacleZones::demand(const Patch& patch, Index k, const Way& way) co
 }
 
 void ObstacleZones::renew_around(const std::vector<Index>& particles, const Way& way) {
-  std::vector<std::vector<Index>> slots(patches_.size());
+  const std::vector<Index> around = patches_around(particles);
+  std::vector<std::vector<Index>> slots(around.size());
   for (const Index i : particles) {
-    for (const PatchSlot& place : slots_of(i)) slots[at(place.patch)].push_back(place.slot);
+    for (const PatchSlot& place : slots_of(i)) {
+      const auto k = std::lower_bound(around.begin(), around.end(), place.patch) - around.begin();
+      slots[static_cast<std::size_t>(k)].push_back(place.slot);
+    }
   }
-  parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
-    for (Index p = begin; p < end; ++p) {
-      if (slots[at(p)].empty()) continue;
+  parallel_chunks(static_cast<Index>(around.size()), kPatchChunk, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      const Index p = around[at(k)];
       for (PatchZones& zones : patches_[at(p)].zones) {
         const ObstacleShape& shape = set_.shape(zones.obstacle());
         const ZoneDemand demanded = demand(patches_[at(p)], zones.obstacle(), way);
-        zones.renew(shape, patches_[at(p)].topology, paths(p, zones.obstacle(), way), demanded, slots[at(p)]);
+        zones.renew(shape, patches_[at(p)].topology, paths(p, zones.obstacle(), way), demanded, slots[at(k)]);
         zones.find_restless(shape, {way.to, particles_of(p), set_.into_after(zones.obstacle())});
         append_restless(p, zones);
       }
@@ -167,6 +171,16 @@ void ObstacleZones::append_half_spaces(Index particle, std::vector<HalfSpace>& h
       zones.append_half_spaces(slot, set_.after(zones.obstacle()), half_spaces);
     }
   }
+}
+
+std::vector<Index> ObstacleZones::patches_around(const std::vector<Index>& particles) const {
+  std::vector<Index> around;
+  for (const Index i : particles) {
+    for (const PatchSlot& place : slots_of(i)) around.push_back(place.patch);
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  return around;
 }
 
 std::span<const PatchSlot> ObstacleZones::slots_of(Index particle) const {

@@ -53,8 +53,8 @@ class ObstacleZones {
   /// follow() for the same way.
   void find_contacts(const Way& way, std::vector<Contact>& contacts);
 
-  /// The same, but found anew only in the patches of these particles: the others have those that were found last.
-  void find_contacts_around(const std::vector<Index>& particles, const Way& way, std::vector<Contact>& contacts);
+  /// The same, of the patches of these particles.
+  [[nodiscard]] FreshContacts find_contacts_around(const std::vector<Index>& particles, const Way& way);
 
   /// Whether the zones of all elements around the particle hold it there, at the interval's end.
   [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
@@ -124,10 +124,12 @@ class ObstacleZones {
   void append_restless(Index patch, const PatchZones& zones);
   [[nodiscard]] PatchPaths paths(Index patch, Index obstacle, const Way& way) const;
   [[nodiscard]] ZoneDemand demand(const Patch& patch, Index obstacle, const Way& way) const;
-  void find_contacts_of(const std::vector<Index>& patches, const Way& way);
+  void find_contacts_of(const std::vector<Index>& patches, const Way& way, std::vector<Contact>& contacts);
   void append_particle_contacts(Index patch, PatchZones& zones, const Way& way, double margin, double reach);
   void append_element_contacts(Index patch, PatchZones& zones, const Way& way, const ZoneDemand& demanded, double margin);
   [[nodiscard]] std::span<const PatchSlot> slots_of(Index particle) const;
+  /// Ascending.
+  [[nodiscard]] std::vector<Index> patches_around(const std::vector<Index>& particles) const;
   [[nodiscard]] const std::vector<Index>& particles_of(Index patch) const {
     return surface_.patches[static_cast<std::size_t>(patch)].particles;
   }

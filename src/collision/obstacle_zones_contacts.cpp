@@ -42,22 +42,16 @@ SPRUNG_KERNEL double largest_motion(const Way& way, const std::vector<Index>& pa
 void ObstacleZones::find_contacts(const Way& way, std::vector<Contact>& contacts) {
   std::vector<Index> all(patches_.size());
   std::iota(all.begin(), all.end(), Index{0});
-  find_contacts_of(all, way);
-  for (const Patch& patch : patches_) contacts.insert(contacts.end(), patch.contacts.begin(), patch.contacts.end());
+  find_contacts_of(all, way, contacts);
 }
 
-void ObstacleZones::find_contacts_around(const std::vector<Index>& particles, const Way& way, std::vector<Contact>& contacts) {
-  std::vector<Index> around;
-  for (const Index i : particles) {
-    for (const PatchSlot& place : slots_of(i)) around.push_back(place.patch);
-  }
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
-  find_contacts_of(around, way);
-  for (const Patch& patch : patches_) contacts.insert(contacts.end(), patch.contacts.begin(), patch.contacts.end());
+FreshContacts ObstacleZones::find_contacts_around(const std::vector<Index>& particles, const Way& way) {
+  FreshContacts fresh{.patches = patches_around(particles)};
+  find_contacts_of(fresh.patches, way, fresh.contacts);
+  return fresh;
 }
 
-void ObstacleZones::find_contacts_of(const std::vector<Index>& patches, const Way& way) {
+void ObstacleZones::find_contacts_of(const std::vector<Index>& patches, const Way& way, std::vector<Contact>& contacts) {
   const double carried = way.obstacles_rest ? 0.0 : set_.carries_at_most(way.from);
   parallel_chunks(static_cast<Index>(patches.size()), kPatchChunk, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
@@ -73,8 +67,13 @@ void ObstacleZones::find_contacts_of(const std::vector<Index>& patches, const Wa
         append_particle_contacts(p, zones, way, margin, std::max(motion, demanded.gap + margin + spread));
         append_element_contacts(p, zones, way, demanded, margin);
       }
+      for (Contact& contact : patch.contacts) contact.patch = p;
     }
   });
+  for (const Index p : patches) {
+    const std::vector<Contact>& found = patches_[at(p)].contacts;
+    contacts.insert(contacts.end(), found.begin(), found.end());
+  }
 }
 
 // A particle of several patches is looked at in its first. A path no longer than the distance of its end from the surface cannot

@@ -39,13 +39,10 @@ void ContactProjection::find(const StepMotion& motion) {
 }
 
 void ContactProjection::find_again(const StepMotion& motion, const Points& positions) {
-  std::vector<Contact> contacts = free_space_.contacts_again(motion.before, positions);
-  contacts.insert(contacts.end(), meetings_.begin(), meetings_.end());
-  response_.start_again(contacts, motion);
+  response_.renew(free_space_.contacts_again(motion.before, positions), motion);
 }
 
 void ContactProjection::truncate(const StepMotion& motion, Points& positions, const FreeSpace::Relax& relax) {
-  meetings_.clear();
   noted_.clear();
   const bool meet = free_space_.bodies_may_meet();
   Truncation truncation = meet ? truncate_bodies(motion, positions, relax) : free_space_.truncate(motion.before, positions, relax);
@@ -89,7 +86,6 @@ bool ContactProjection::note_meetings(const std::vector<Contact>& meetings, cons
   }
   for (const Contact& meeting : fresh) noted_.insert(meeting.particles);
   response_.add(fresh, motion);
-  meetings_.insert(meetings_.end(), fresh.begin(), fresh.end());
   return !fresh.empty();
 }
 

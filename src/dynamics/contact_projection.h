@@ -59,8 +59,7 @@ class ContactProjection {
 
   ContactResponse response_;
   FreeSpace free_space_;
-  std::vector<Contact> meetings_;                 ///< of the step, that contact did not tell of
-  std::set<decltype(Contact::particles)> noted_;  ///< theirs
+  std::set<decltype(Contact::particles)> noted_;  ///< those of meetings in the step, that contact did not tell of
   std::vector<Index> taken_along_;
   Index truncated_ = 0;
   Index squeezed_ = 0;

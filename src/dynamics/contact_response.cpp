@@ -99,10 +99,14 @@ void ContactResponse::start(const std::vector<Contact>& contacts, const StepMoti
   for_each_set(sets_, [&](auto& set) { fill(set, contacts, motion); });
 }
 
-void ContactResponse::start_again(const std::vector<Contact>& contacts, const StepMotion& motion) {
-  std::swap(sets_, former_sets_);
-  start(contacts, motion);
-  for_each_set(sets_, [&](auto& set) { set.count_on(std::get<std::remove_reference_t<decltype(set)>>(former_sets_), first_row_); });
+void ContactResponse::renew(const FreshContacts& fresh, const StepMotion& motion) {
+  for_each_set(sets_, [&](auto& set) {
+    auto& former = std::get<std::remove_reference_t<decltype(set)>>(former_sets_);
+    set.take_out(fresh.patches, former);
+    const std::size_t kept = set.count();
+    add(set, fresh.contacts, motion);
+    set.count_on(former, kept, first_row_);
+  });
 }
 
 void ContactResponse::add(const std::vector<Contact>& meetings, const StepMotion& motion) {
@@ -142,6 +146,7 @@ void ContactResponse::fill_one(const Contact& contact, const ContactMaterial& pa
   ContactRow<n>& row = set.row(slot);
   const bool moves = set_particles(contact, network_.inverse_masses, row);
   row.obstacle = contact.obstacle;
+  row.patch = contact.patch;
   row.normal = contact.normal;
   row.static_friction = pair.static_friction;
   row.friction = pair.friction;

@@ -28,8 +28,9 @@ class ContactResponse {
   /// obstacle turns an element about its pins by more than a radian. Requires that the environment's interval is the step's.
   void start(const std::vector<Contact>& contacts, const StepMotion& motion);
 
-  /// Goes on with these contacts in the same step: one between the same as before keeps what it has pushed and held.
-  void start_again(const std::vector<Contact>& contacts, const StepMotion& motion);
+  /// Goes on with these contacts of their patches in the same step: one between the same as before keeps what it has pushed and
+  /// held.
+  void renew(const FreshContacts& fresh, const StepMotion& motion);
 
   /// Adds contacts between elements to those of the step.
   void add(const std::vector<Contact>& meetings, const StepMotion& motion);
@@ -67,7 +68,7 @@ class ContactResponse {
   std::vector<RigidTransform> carry_;  ///< of each obstacle, from the step's begin to its end
   using Sets = std::tuple<ContactSet<1>, ContactSet<2>, ContactSet<3>, ContactSet<4>>;
   Sets sets_;
-  Sets former_sets_;              ///< that start_again() goes on from
+  Sets former_sets_;              ///< what renew() takes out
   std::vector<Index> order_;      ///< contacts of as many particles as the set that is filled
   std::vector<Index> first_row_;  ///< see ContactSet::count_on
 };

@@ -16,6 +16,7 @@ struct ContactRow {
   std::array<double, n> weights{};
   std::array<double, n> shares{};  ///< what each particle changes by for a change of the sum by 1: by inverse mass
   Index obstacle = kNone;          ///< kNone between elements of the network
+  Index patch = kNone;             ///< that it was found with
   Vector3 normal = Vector3::Zero();
   double static_friction = 0.0;
   double friction = 0.0;

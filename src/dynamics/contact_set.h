@@ -26,14 +26,29 @@ class ContactSet {
   [[nodiscard]] ContactGoal& goal(std::size_t contact) { return goals_[contact]; }
   [[nodiscard]] double& gap(std::size_t contact) { return gaps_[contact]; }
 
-  /// Takes over what contacts of the same particles with the same obstacle have pushed and held in `former`: of several the first
-  /// from the first, and so on. `first_row` has a kNone for each particle, and again afterwards.
-  void count_on(const ContactSet& former, std::vector<Index>& first_row) {
+  /// Moves the contacts of these patches, ascending, to `former`, in their order.
+  void take_out(const std::vector<Index>& patches, ContactSet& former) {
+    former.resize(0);
+    std::size_t kept = 0;
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      if (std::binary_search(patches.begin(), patches.end(), rows_[c].patch)) {
+        former.append(rows_[c], goals_[c], gaps_[c]);
+      } else {
+        if (kept < c) put(rows_[c], goals_[c], gaps_[c], kept);
+        ++kept;
+      }
+    }
+    resize(kept);
+  }
+
+  /// Contacts from `begin` on take over what such of the same particles with the same obstacle have pushed and held in `former`: of
+  /// several the first from the first, and so on. `first_row` has a kNone for each particle, and again afterwards.
+  void count_on(const ContactSet& former, std::size_t begin, std::vector<Index>& first_row) {
     std::vector<Index> next_row(former.rows_.size());
     for (std::size_t f = former.rows_.size(); f-- > 0;) {
       next_row[f] = std::exchange(first_of(former.rows_[f], first_row), static_cast<Index>(f));
     }
-    for (std::size_t c = 0; c < rows_.size(); ++c) {
+    for (std::size_t c = begin; c < rows_.size(); ++c) {
       Index* link = &first_of(rows_[c], first_row);
       while (*link != kNone && !meet_the_same(former.rows_[static_cast<std::size_t>(*link)], rows_[c])) {
         link = &next_row[static_cast<std::size_t>(*link)];
@@ -118,6 +133,16 @@ class ContactSet {
                                    .v_after = v_after,
                                    .dt = motion.dt},
                                   row.restitution);
+  }
+
+  void append(const ContactRow<n>& row, const ContactGoal& goal, double gap) {
+    resize(count() + 1);
+    put(row, goal, gap, count() - 1);
+  }
+  void put(const ContactRow<n>& row, const ContactGoal& goal, double gap, std::size_t c) {
+    rows_[c] = row;
+    goals_[c] = goal;
+    gaps_[c] = gap;
   }
 
   static Index& first_of(const ContactRow<n>& row, std::vector<Index>& first_row) {

@@ -35,7 +35,7 @@ class World {
     integrator->start(state, forces, dt);
   }
 
-  /// `again` are the contacts that are found after half the passes.
+  /// `again` are the contacts of patch 0 that are found after half the passes.
   void step(const std::vector<Contact>& contacts, int passes = 8, const std::vector<Contact>& again = {}) {
     const Points before = state.x;
     const Points v_before = state.v;
@@ -44,7 +44,7 @@ class World {
     const StepMotion motion{before, v_before, advanced, dt};
     response.start(contacts, motion);
     for (int pass = 0; pass < passes; ++pass) {
-      if (2 * pass == passes && !again.empty()) response.start_again(again, motion);
+      if (2 * pass == passes && !again.empty()) response.renew({{0}, again}, motion);
       response.project(state.x);
     }
     integrator->recover_velocities(state, forces, before, advanced, dt);
@@ -70,7 +70,7 @@ void add_body(NetworkBuilder& builder, const std::string& name, const std::vecto
 
 std::vector<Vector3> triangle_at(double height) { return {{0.0, height, 0.0}, {1.0, height, 0.0}, {0.0, height, 1.0}}; }
 
-/// The plane y = 0 under a point of the first particles.
+/// The plane y = 0 under a point of the first particles, found with patch 0.
 Contact on_floor(const std::vector<double>& weights, Index first = 0) {
   Contact contact = particle_contact(first, 0, Vector3::Zero(), Vector3::UnitY());
   contact.count = static_cast<int>(weights.size());
@@ -78,6 +78,7 @@ Contact on_floor(const std::vector<double>& weights, Index first = 0) {
     contact.particles[k] = first + static_cast<Index>(k);
     contact.weights[k] = weights[k];
   }
+  contact.patch = 0;
   return contact;
 }
 
@@ -239,7 +240,7 @@ TEST(ContactResponse, FoundAgainWithAnotherNormalAContactHoldsNothingAlongIt) {
   former.goal(0) = {.push = 0.3, .held = {0.1, 0.0, 0.2}};
   again.row(0).normal = Vector3::UnitX();
   std::vector<Index> first_row{kNone};
-  again.count_on(former, first_row);
+  again.count_on(former, 0, first_row);
   EXPECT_EQ(again.goal(0).push, 0.3);
   EXPECT_EQ(again.goal(0).held, Vector3(0.0, 0.0, 0.2));
 }
@@ -260,6 +261,30 @@ TEST(ContactResponse, FoundAgainAContactCountsOnWhatItPushedAndHeld) {
     return world.state.x;
   };
   EXPECT_EQ(slide(true), slide(false));
+}
+
+// The ball is on the floor no more where its patch is looked at again, and the one in the other patch, and the pair of balls that
+// meet, are pushed as before.
+TEST(ContactResponse, FoundAgainInOnePatchOthersStay) {
+  NetworkBuilder builder;
+  add_body(builder, "balls", {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}, {0.1, 0.1, 0.1, 0.1},
+           Vector3::Zero(), {.thickness = kGap});
+  World world(builder.build(), 0.0);
+  Contact in_other_patch = on_floor({1.0}, 1);
+  in_other_patch.patch = 1;
+  Contact pair;
+  pair.particles = {2, 3};
+  pair.weights = {1.0, -1.0};
+  pair.count = 2;
+  pair.normal = Vector3::UnitY();
+  const Points before = world.state.x;
+  const StepMotion motion{before, world.state.v, before, world.dt};
+  world.response.start({on_floor({1.0}), in_other_patch, pair}, motion);
+  world.response.renew({.patches = {0}}, motion);
+  world.response.project(world.state.x);
+  EXPECT_EQ(world.state.x(1, 0), 0.0);
+  EXPECT_NEAR(world.state.x(1, 1), kGap, 1e-15);
+  EXPECT_NEAR(world.state.x(1, 2) - world.state.x(1, 3), kGap, 1e-15);
 }
 
 TEST(ContactResponse, PinnedCornersLeaveThePushToTheOthers) {
