@@ -67,4 +67,4 @@ else
     views+=("$work/$frame.png")
   done
 fi
-montage "${views[@]}" -tile "x1" -geometry +0+0 -colors 64 - | convert - -trim -bordercolor white -border 10 "$picture"
+montage "${views[@]}" -tile "x1" -geometry +0+0 -colors 64 - | convert - -trim -bordercolor white -border 10 -define png:exclude-chunks=date,time "$picture"

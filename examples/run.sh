@@ -16,7 +16,10 @@ examples/install_packages.sh run
 [[ -f build/release/build.ninja ]] || cmake --preset release -DBUILD_TESTING=OFF
 cmake --build --preset release --target sprung
 
-build/release/bin/sprung run "examples/$scene.json" --out "$frames" --overwrite --mesh-path /usr/share/glmark2/models
+status=0
+build/release/bin/sprung run "examples/$scene.json" --out "$frames" --overwrite --mesh-path /usr/share/glmark2/models || status=$?
+diverged=4  # frames before that are kept
+((status == 0 || status == diverged)) || exit $status
 
 last="$(find "$frames" -mindepth 2 -maxdepth 2 -name '*.obj' -not -path '*/obstacles/*' | sort | tail -n 1)"
 cat <<END
@@ -26,3 +29,4 @@ The frames are in $frames: a folder a body, an OBJ file a frame; beside them the
   A picture:       HIDE=floor examples/picture.sh "$frames" picture.png 1 $(find "$(dirname "$last")" -name '*.obj' | wc -l)
   The animation:   in Blender, import the sequence with the add-on Stop-motion-OBJ and the obstacles as Wavefront (.obj).
 END
+exit $status

@@ -12,6 +12,7 @@ namespace sprung {
 namespace {
 
 constexpr std::chrono::milliseconds kBarPause{100};
+constexpr std::chrono::seconds kLeastLinePause{1};
 constexpr std::chrono::seconds kLinePause{5};
 constexpr int kLines = 10;
 constexpr int kBarWidth = 30;
@@ -48,7 +49,8 @@ void Progress::frame_done(int frame) {
 bool Progress::is_due(int frame, Clock::time_point now) const {
   if (frame == frames_) return true;
   if (terminal_) return shown_frame_ == 0 || now - shown_ >= kBarPause;
-  return part_of(frame, frames_) > part_of(shown_frame_, frames_) || now - shown_ >= kLinePause;
+  const bool next_part = part_of(frame, frames_) > part_of(shown_frame_, frames_);
+  return now - shown_ >= (next_part ? kLeastLinePause : kLinePause);
 }
 
 std::string Progress::line(int frame, double seconds) const {

@@ -79,8 +79,8 @@ void write_frames(LoadedScene& loaded, RunOutput& output, bool quiet, int& writt
 }
 
 /// A simulation cannot diverge before its first frame, which is the state at time 0.
-void tell_last_good_frame(const LoadedScene& loaded, int frames, const std::string& folder) {
-  print_message(fmt::format("the last good frame is {}, at {} s; it and those before are kept in {}", frames,
+void tell_last_frame(const LoadedScene& loaded, int frames, const std::string& folder) {
+  print_message(fmt::format("the last frame is {}, at {} s; it and those before are kept in {}", frames,
                             format_number((frames - 1) / loaded.scene.frame_rate, 6), folder));
 }
 
@@ -91,7 +91,7 @@ int write_run(LoadedScene& loaded, RunOutput& output, const RunOptions& options)
     output.finish(frames == loaded.frames ? "done" : "interrupted");
   } catch (const StepError& error) {
     finish_quietly(output, std::string("diverged: ") + error.what());
-    tell_last_good_frame(loaded, frames, options.out);
+    tell_last_frame(loaded, frames, options.out);
     throw;
   } catch (const std::exception& error) {
     finish_quietly(output, std::string("failed: ") + error.what());

@@ -61,7 +61,8 @@ std::size_t start_of_mistake(std::string_view text, std::size_t position, const 
 std::string_view first_word(std::string_view text, std::size_t begin) {
   constexpr std::size_t kLongest = 20;
   const std::string_view rest = text.substr(begin, kLongest);
-  return rest.substr(0, rest.find_first_of(" \t\r\n,"));
+  const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r\n,"));
+  return word.size() > 1 && word.ends_with(':') ? word.substr(0, word.size() - 1) : word;
 }
 
 Problem problem_at(std::string_view text, std::size_t offset, std::string value, std::string rule, std::string remedy) {

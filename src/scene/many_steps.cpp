@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <string>
 #include <vector>
 
 namespace sprung {
@@ -11,46 +13,70 @@ namespace {
 
 constexpr int kManySteps = 1000;
 
-// Springs ask for steps of about the time in which their particles answer; what answers in less than this part of it is not theirs.
+// Springs and bends ask for steps of about the time in which their particles answer; what answers in less than this part of it is
+// not theirs.
 constexpr double kLeastPart = 0.05;
 
 constexpr int kDigits = 3;
 
-/// The spring whose particles answer fastest to what it has per metre, or per metre per second.
-struct Fastest {
-  Index spring = 0;
-  double rate = 0.0;  ///< `of` (1/m_1 + 1/m_2)
+/// What asks for small steps: how fast particles answer to it [1/s], as they do to springs in the root of their stiffness.
+struct Demand {
+  double rate = 0.0;
+  Index particle = 0;  ///< one of those that answer
+  double constant = 0.0;
+  std::string of{};
+  const char* unit = "";
+  const char* remedy = "";
 };
 
-Fastest fastest(const SpringNetwork& network, const std::vector<double>& of) {
+/// The one whose free particles weigh least.
+Index lightest(const SpringNetwork& network, std::initializer_list<Index> particles) {
+  return std::max(particles, [&](Index a, Index b) { return network.inverse_masses[a] < network.inverse_masses[b]; });
+}
+
+Demand of_springs(const SpringNetwork& network, const std::vector<double>& constants, bool damp) {
   const Springs& springs = network.springs;
-  Fastest found;
+  Demand found{.unit = damp ? " N s/m damping" : " N/m", .remedy = damp ? "damping" : "stiffness"};
   for (Index s = 0; s < springs.count(); ++s) {
-    const double rate = of[s] * (network.inverse_masses[springs.first[s]] + network.inverse_masses[springs.second[s]]);
-    if (rate > found.rate) found = {s, rate};
+    const double per_mass = constants[s] * (network.inverse_masses[springs.first[s]] + network.inverse_masses[springs.second[s]]);
+    const double rate = damp ? per_mass : std::sqrt(per_mass);
+    if (!(rate > found.rate)) continue;
+    found.rate = rate;
+    found.particle = lightest(network, {springs.first[s], springs.second[s]});
+    found.constant = constants[s];
+    found.of = std::string(kSpringKindNames[static_cast<std::size_t>(springs.kind[s])]) + " springs";
   }
   return found;
 }
 
-std::string describe(const SpringNetwork& network, Index spring, double constant, const char* unit) {
-  const Springs& springs = network.springs;
-  const double mass = std::min(network.masses[springs.first[spring]], network.masses[springs.second[spring]]);
-  return "body \"" + network.body_of(springs.first[spring]).name + "\" has " +
-         kSpringKindNames[static_cast<std::size_t>(springs.kind[spring])] + " springs of " + format_number(constant, kDigits) +
-         unit + " at particles of " + format_number(mass, kDigits) + " kg";
+// In line: the middle goes by as much as bends turn by about both bonds.
+Demand of_bends(const SpringNetwork& network, const std::vector<double>& constants, bool damp) {
+  const AngleBends& bends = network.angle_bends;
+  Demand found{.of = "angle bends", .unit = damp ? " N m s damping" : " N m", .remedy = damp ? "damping" : "stiffness"};
+  for (Index e = 0; e < bends.count(); ++e) {
+    const double before = 1.0 / bends.length_before[e];
+    const double after = 1.0 / bends.length_after[e];
+    const double per_mass = constants[e] * (before * before * network.inverse_masses[bends.before[e]] +
+                                            (before + after) * (before + after) * network.inverse_masses[bends.middle[e]] +
+                                            after * after * network.inverse_masses[bends.after[e]]);
+    const double rate = damp ? per_mass : std::sqrt(per_mass);
+    if (!(rate > found.rate)) continue;
+    found.rate = rate;
+    found.particle = lightest(network, {bends.before[e], bends.middle[e], bends.after[e]});
+    found.constant = constants[e];
+  }
+  return found;
 }
 
 std::string reason(const SpringNetwork& network, double step) {
-  const Fastest stiff = fastest(network, network.springs.stiffness);
-  const Fastest damped = fastest(network, network.springs.damping);
-  const double frequency = std::sqrt(stiff.rate);
-  if (std::max(frequency, damped.rate) * step < kLeastPart)
-    return "bends, penalty contact or air drag ask for that; less of them needs";
-  if (damped.rate > frequency) {
-    return describe(network, damped.spring, network.springs.damping[damped.spring], " N s/m damping") +
-           "; less damping or more mass needs";
-  }
-  return describe(network, stiff.spring, network.springs.stiffness[stiff.spring], " N/m") + "; less stiffness or more mass needs";
+  const Demand most =
+      std::max({of_springs(network, network.springs.stiffness, false), of_springs(network, network.springs.damping, true),
+                of_bends(network, network.angle_bends.stiffness, false), of_bends(network, network.angle_bends.damping, true)},
+               [](const Demand& a, const Demand& b) { return a.rate < b.rate; });
+  if (most.rate * step < kLeastPart) return "penalty contact or air drag ask for that; less of them needs";
+  return "body \"" + network.body_of(most.particle).name + "\" has " + most.of + " of " + format_number(most.constant, kDigits) +
+         most.unit + " at particles of " + format_number(network.masses[most.particle], kDigits) + " kg; less " + most.remedy +
+         " or more mass needs";
 }
 
 }  // namespace

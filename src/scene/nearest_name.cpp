@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -46,10 +48,12 @@ std::optional<std::string> nearest_name(std::string_view word, const std::vector
   if (word.size() > kLongestWord) return std::nullopt;
   const std::size_t most = word.size() <= kShortWord ? 1 : std::max<std::size_t>(2, word.size() / 3);
   std::optional<std::string> best;
-  std::size_t best_distance = most + 1;
+  std::pair best_distance(most, std::numeric_limits<std::size_t>::max());
   for (const std::string& name : names) {
-    const std::size_t distance = distance_of(lower_case(word), lower_case(name));
-    if (distance < best_distance && distance < std::max(name.size(), word.size())) {
+    const std::string known = lower_case(name);
+    const std::string given = lower_case(word);
+    const std::pair distance(distance_of(given, known), edit_distance(given, known));
+    if (distance < best_distance && distance.first < std::max(name.size(), word.size())) {
       best = name;
       best_distance = distance;
     }

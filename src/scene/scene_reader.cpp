@@ -44,6 +44,20 @@ void add_schema_violations(const std::vector<SchemaViolation>& violations, const
   }
 }
 
+/// Whether the key is at or below the path.
+bool is_within(const std::string& key, const std::string& path) {
+  return key.starts_with(path) && (key.size() == path.size() || key[path.size()] == '.' || key[path.size()] == '[');
+}
+
+/// What the file says is not to blame for them.
+void tell_overridden(const std::vector<std::string>& overrides, std::vector<Problem>& problems) {
+  for (Problem& problem : problems) {
+    const bool overridden = std::ranges::any_of(
+        overrides, [&](const std::string& text) { return is_within(problem.key, text.substr(0, text.find('='))); });
+    if (overridden) problem.file += ", changed by --set";
+  }
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
@@ -63,6 +77,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   std::size_t unknown = 0;
   auto scene = scene_rule()(json.document, {file.string(), "", &found, &unknown});
   add_schema_violations(violations, file.string(), found);
+  tell_overridden(overrides, found);
   if (!scene) throw InputError(std::move(found));
   problems.only_unknown_keys = found.size() == unknown;
   problems.all = std::move(found);

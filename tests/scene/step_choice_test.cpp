@@ -61,6 +61,14 @@ TEST(StepChoice, AutoTellsWhatAsksForVeryManySteps) {
                                 HasSubstr("less stiffness"), HasSubstr("implicit_euler"))));
   EXPECT_THAT(build(1.0, {"bodies.pair.springs.structural.damping=1e6"}).warnings,
               ElementsAre(AllOf(HasSubstr("body \"pair\""), HasSubstr("1e+06 N s/m"), HasSubstr("less damping"))));
+  const auto with_bends = [](const std::string& bends) {
+    return build(1.0e6, {"bodies.pair.shape.particles=3", "bodies.pair.springs.bend={\"model\": \"angle\", " + bends + "}"})
+        .warnings;
+  };
+  EXPECT_THAT(with_bends(R"("stiffness": 1e10)"),
+              ElementsAre(AllOf(HasSubstr("body \"pair\" has angle bends of 1e+10 N m "), HasSubstr("less stiffness"))));
+  EXPECT_THAT(with_bends(R"("stiffness": 0, "damping": 1e6)"),
+              ElementsAre(AllOf(HasSubstr("body \"pair\" has angle bends of 1e+06 N m s damping"), HasSubstr("less damping"))));
   EXPECT_THAT(build(1.0e10, {R"(integrator={"type": "implicit_euler"})"}).warnings, testing::IsEmpty());
   EXPECT_THAT(build(1.0e6, {R"(integrator={"type": "explicit_euler"})"}).warnings, Contains(HasSubstr("symplectic_euler")));
   EXPECT_THAT(build(0.0, {R"(stretch_limit={"max_stretch": 0, "tolerance": 0, "iterations": 1, "solver": "gauss_seidel"})",
