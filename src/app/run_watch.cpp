@@ -60,11 +60,11 @@ void RunWatch::tell() {
   tell_of_thin_bodies();
   if (const auto gained = gain_.warning()) warn(*gained);
   if (missed_.frames == 0) return;
-  warn(
-      fmt::format("the stretch limit was missed by more than its tolerance in {}, by at most {} % of a rest length in frame {}; "
-                  "the column stretch_excess of diagnostics.csv tells by how much in each; {}",
-                  counted(missed_.frames, "frame"), format_number(100.0 * missed_.most, 2), missed_.worst_frame,
-                  remedy_for_stretch(*simulator_.settings().stretch_limit)));
+  warn(fmt::format(
+      "the stretch limit was missed by more than {} % of a rest length in {}, by at most {} % in frame {}; "
+      "the column stretch_excess of diagnostics.csv tells by how much in each; {}",
+      format_number(100.0 * wanted_excess(*simulator_.settings().stretch_limit), 2), counted(missed_.frames, "frame"),
+      format_number(100.0 * missed_.most, 2), missed_.worst_frame, remedy_for_stretch(*simulator_.settings().stretch_limit)));
 }
 
 void RunWatch::warn(const std::string& warning) {
@@ -83,7 +83,7 @@ void RunWatch::see_squeezing(const FrameDiagnostics& frame) {
 
 void RunWatch::see_stretch(const FrameDiagnostics& frame) {
   const auto& limit = simulator_.settings().stretch_limit;
-  if (!limit || frame.stretch_excess <= limit->tolerance) return;
+  if (!limit || frame.stretch_excess <= wanted_excess(*limit)) return;
   ++missed_.frames;
   if (frame.stretch_excess <= missed_.most) return;
   missed_.most = frame.stretch_excess;
