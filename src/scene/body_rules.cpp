@@ -83,23 +83,29 @@ std::vector<std::string> corners_of(const std::optional<BodyShapeScene>& shape) 
 }
 
 MassScene read_mass(Fields& fields) {
-  const auto key = fields.one_of({"mass", "particle_mass", "density"});
-  if (!key) return {};
-  const auto kind = *key == "mass"            ? MassScene::Kind::body
-                    : *key == "particle_mass" ? MassScene::Kind::particle
-                                              : MassScene::Kind::density;
-  return {.kind = kind, .value = fields.optional(*key, number(kPositive)).value_or(0.0)};
+  const auto of_body = fields.optional("mass", number(kPositive));
+  const auto of_particles = fields.optional("particle_mass", number(kPositive));
+  const auto density = fields.optional("density", number(kPositive));
+  const std::string key = fields.one_of({"mass", "particle_mass", "density"}).value_or("");
+  if (key == "mass") return {.kind = MassScene::Kind::body, .value = of_body.value_or(0.0)};
+  if (key == "particle_mass") return {.kind = MassScene::Kind::particle, .value = of_particles.value_or(0.0)};
+  if (key == "density") return {.kind = MassScene::Kind::density, .value = density.value_or(0.0)};
+  return {};
 }
 
 SpringMaterial read_spring(Fields& fields) {
   SpringMaterial material;
+  const auto stiffness = fields.optional("stiffness", number(kNotNegative));
+  const auto modulus = fields.optional("modulus", number(kNotNegative));
   std::optional<double> value;
   if (const auto key = fields.one_of({"stiffness", "modulus"})) {
-    material.measure = *key == "modulus" ? SpringMaterial::Measure::modulus : SpringMaterial::Measure::stiffness;
-    value = fields.optional(*key, number(kNotNegative));
+    const bool by_modulus = *key == "modulus";
+    material.measure = by_modulus ? SpringMaterial::Measure::modulus : SpringMaterial::Measure::stiffness;
+    value = by_modulus ? modulus : stiffness;
     material.value = value.value_or(0.0);
   }
   if (fields.has("damping_ratio")) {
+    (void)fields.optional("damping", number(kNotNegative));
     fields.one_of({"damping", "damping_ratio"});
     material.damping_ratio = fields.optional("damping_ratio", number(kNotNegative));
     if (value == 0.0) {

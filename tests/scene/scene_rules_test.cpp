@@ -168,6 +168,21 @@ INSTANTIATE_TEST_SUITE_P(SceneRules, BrokenOverrideTest,
                                                         "bodies.banner.pins has 1 entry, so there is no entry 2"}),
                          [](const auto& test) { return test.param.name; });
 
+TEST(SceneRules, WhatExcludesEachOtherIsToldOfWithWhatIsWrongWithEach) {
+  const SceneFolder folder;
+  const std::string springs = "bodies.banner.springs.structural=";
+  const auto problems = problems_of([&] {
+    (void)folder.read(kPlainScene, {springs + R"({"stiffness": -10, "modulus": -1, "damping": -2, "damping_ratio": 0})",
+                                    "bodies.banner.mass=0", "bodies.banner.density=-3"});
+  });
+  const std::string at = "bodies.banner.springs.structural";
+  EXPECT_THAT(problems,
+              testing::IsSupersetOf({Field(&Problem::key, at), Field(&Problem::key, at), Field(&Problem::key, at + ".stiffness"),
+                                     Field(&Problem::key, at + ".modulus"), Field(&Problem::key, at + ".damping"),
+                                     Field(&Problem::key, std::string("bodies.banner.mass")),
+                                     Field(&Problem::key, std::string("bodies.banner.density"))}));
+}
+
 TEST(Overrides, AreBlamedForWhatTheyBreak) {
   const SceneFolder folder;
   const std::string text = R"({"duration": 1, "frame_rate": "fast", "bodies": {}})";
