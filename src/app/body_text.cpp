@@ -66,7 +66,7 @@ std::string angle_row(const AngleBends& bends, const Body& body) {
     angles.bond.add(bends.length_before[a]);
     angles.bond.add(bends.length_after[a]);
   }
-  return text_row("bend", fmt::format("{}, k {}, damping {}, bonds {}", counted(body.angle_bend_count, "angle"),
+  return text_row("bend", fmt::format("{}, k {}, damping {}, between segments of {}", counted(body.angle_bend_count, "angle"),
                                       angles.stiffness.text("N m"), angles.damping.text("N m s"), angles.bond.text("m")));
 }
 
