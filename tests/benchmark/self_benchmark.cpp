@@ -19,8 +19,8 @@ namespace {
 constexpr int kDrapeFrames = 60;
 constexpr int kTwistFrames = 60;
 
-// Automatic steps are 145 of 20 passes. In a third of them, of three times as many passes, the cloth that meets itself is stretched
-// as much, and contact has less to find.
+// Automatic steps are 145 of 20 passes. In a third of them, of three times as many passes, contact has less to find: it takes 4 to
+// 5 times as long as without, not 6. Cloths with and without are stretched by 1.4 and 1.2 % beyond the limit, not by 0.5 %.
 constexpr int kTwistSteps = 48;
 constexpr int kTwistPasses = 60;
 
