@@ -2,6 +2,7 @@
 
 #include "app/console.h"
 #include "base/format.h"
+#include "dynamics/stretch_limit.h"
 
 #include <fmt/format.h>
 
@@ -94,13 +95,10 @@ void RunWatch::see_handovers() {
   const std::vector<StretchHold>& holds = simulator_.state().stretch_holds;
   handed_over_.resize(holds.size(), false);
   for (std::size_t b = 0; b < holds.size(); ++b) {
-    if (quiet_ || handed_over_[b] == holds[b].solved_since.has_value()) continue;
-    handed_over_[b] = holds[b].solved_since.has_value();
-    const std::string& body = simulator_.network().bodies[b].name;
-    print_message(holds[b].given_back
-                      ? fmt::format("newton did not hold the stretch limit of \"{}\" better; passes go on", body)
-                      : fmt::format("passes kept missing the stretch limit of \"{}\"; newton holds it after step {}", body,
-                                    *holds[b].solved_since));
+    if (quiet_ || handed_over_[b] || !holds[b].solved_since) continue;
+    handed_over_[b] = true;
+    print_message(fmt::format("passes kept missing the stretch limit of \"{}\"; newton holds it after step {}",
+                              simulator_.network().bodies[b].name, *holds[b].solved_since));
   }
 }
 

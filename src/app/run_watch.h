@@ -16,7 +16,7 @@ class RunWatch {
   RunWatch(const Simulator& simulator, RunOutput& output, bool quiet);
 
   /// After each frame: tells once that particles had to yield, and of each body that was handed over to another solver of the
-  /// stretch limit, or given back. Throws FileError.
+  /// stretch limit. Throws FileError.
   void see(const FrameDiagnostics& frame);
 
   /// After the last frame: tells by how much the stretch limit was missed, of bodies too thin to lie on each other, and of energy

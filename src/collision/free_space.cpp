@@ -31,7 +31,6 @@ struct FreeSpace::Implementation {
   }
 
   void begin_pairs(const Points& before, const Points& after);
-  const std::vector<Contact>& with_pairs();
   Truncation truncate(const Points& before, Points& after, const Relax& relax);
   void keep_apart(const Points& before, Points& after, Truncation& truncation);
 
@@ -79,7 +78,9 @@ void FreeSpace::look_ahead(bool ahead) {
 const std::vector<Contact>& FreeSpace::contacts(const Points& before, const Points& after) {
   implementation_->contacts.clear();
   implementation_->zones.find_contacts({before, after}, implementation_->contacts);
-  return implementation_->with_pairs();
+  const std::vector<Contact>& of_pairs = implementation_->pair_contacts;
+  implementation_->contacts.insert(implementation_->contacts.end(), of_pairs.begin(), of_pairs.end());
+  return implementation_->contacts;
 }
 
 FreshContacts FreeSpace::contacts_again(const Points& before, const Points& after) {
@@ -103,11 +104,6 @@ Truncation FreeSpace::Implementation::truncate(const Points& before, Points& aft
     truncation = placement.place_all({safe, target, true}, after);
   }
   return truncation;
-}
-
-const std::vector<Contact>& FreeSpace::Implementation::with_pairs() {
-  contacts.insert(contacts.end(), pair_contacts.begin(), pair_contacts.end());
-  return contacts;
 }
 
 void FreeSpace::Implementation::begin_pairs(const Points& before, const Points& after) {

@@ -8,13 +8,10 @@
 
 namespace sprung {
 
-/// How what holds the stretch limit of a body fares, and whether passes handed it over to a global solve.
+/// How passes fare with the stretch limit of a body, and whether it was handed over to a global solve.
 struct StretchHold {
-  int missed_steps = 0;                      ///< in so many steps in a row, the last one included, it missed it
-  double missed_by = 0.0;                    ///< the excess of those, summed
-  double passes_missed_by = 0.0;             ///< that for which passes handed it over
+  int missed_steps = 0;                      ///< in so many steps in a row, the last one included, they missed it
   std::optional<std::int64_t> solved_since;  ///< the step after which a global solve took over
-  bool given_back = false;                   ///< that did not hold it better
 };
 
 struct SimulationState {

@@ -10,8 +10,9 @@ Rule<Index> particle_count() { return integer(2, kMaxBodyParticles); }
 
 RopeShape read_rope(Fields& fields) {
   RopeShape rope;
+  const auto points = fields.optional("points", list_of(vector3(), 2));
   if (fields.one_of({"from", "points"}) == "points") {
-    rope.points = fields.optional("points", list_of(vector3(), 2)).value_or(std::vector<Vector3>{});
+    rope.points = points.value_or(std::vector<Vector3>{});
     rope.particles = fields.optional("particles", particle_count());
   } else {
     const auto from = fields.optional("from", vector3());

@@ -35,16 +35,14 @@ std::optional<PinBox> read_box(Fields& fields) {
 
 PinScene read_pin(Fields& fields, const std::vector<std::string>& corners) {
   PinScene pin;
+  if (fields.has("at")) read_corners(fields, corners, pin);
+  const auto indices = fields.optional("indices", list_of(integer(0, kMaxBodyParticles - 1), 1));
+  const auto nearest = fields.optional("nearest", vector3());
+  const auto box = read_box(fields);
   const std::string key = fields.one_of({"at", "indices", "nearest", "box"}).value_or("");
-  if (key == "at") read_corners(fields, corners, pin);
-  if (key == "indices") {
-    const auto indices = fields.optional("indices", list_of(integer(0, kMaxBodyParticles - 1), 1));
-    pin.where = PinIndices{indices.value_or(std::vector<Index>{})};
-  }
-  if (key == "nearest") pin.where = PinNearest{fields.optional("nearest", vector3()).value_or(Vector3::Zero())};
-  if (key == "box") {
-    if (const auto box = read_box(fields)) pin.where = *box;
-  }
+  if (key == "indices") pin.where = PinIndices{indices.value_or(std::vector<Index>{})};
+  if (key == "nearest") pin.where = PinNearest{nearest.value_or(Vector3::Zero())};
+  if (key == "box" && box) pin.where = *box;
   pin.motion = fields.value("motion", motion_rule(), Json::object()).value_or(Motion{});
   return pin;
 }

@@ -49,11 +49,13 @@ bool is_within(const std::string& key, const std::string& path) {
   return key.starts_with(path) && (key.size() == path.size() || key[path.size()] == '.' || key[path.size()] == '[');
 }
 
-/// What the file says is not to blame for them.
+/// Those at what was changed, below it, or at what it is part of.
 void tell_overridden(const std::vector<std::string>& overrides, std::vector<Problem>& problems) {
   for (Problem& problem : problems) {
-    const bool overridden = std::ranges::any_of(
-        overrides, [&](const std::string& text) { return is_within(problem.key, text.substr(0, text.find('='))); });
+    const bool overridden = std::ranges::any_of(overrides, [&](const std::string& text) {
+      const std::string path = text.substr(0, text.find('='));
+      return is_within(problem.key, path) || is_within(path, problem.key);
+    });
     if (overridden) problem.file += ", changed by --set";
   }
 }

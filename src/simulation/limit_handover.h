@@ -9,9 +9,8 @@ namespace sprung {
 /// What an impact leaves too long passes take back within fewer steps, and by then steps are made in their smallest parts.
 inline constexpr int kMostMissedSteps = 16;
 
-/// Hands each body over that may be and whose springs passes have left longer than wanted (see wanted_excess) after
-/// kMostMissedSteps steps in a row. Gives it back, for good, where the global solve misses it by half as much or more in as many:
-/// contact is in the way then, and passes take a part of the time. `excess` is the largest in the step that is done.
+/// Hands each body over, for good, that may be and whose springs passes have left longer than wanted (see wanted_excess) after
+/// kMostMissedSteps steps in a row. `excess` is the largest in the step that is done.
 void hand_over_missed(const SpringNetwork& network, const StretchLimit& limit, double excess, SimulationState& state);
 
 }  // namespace sprung

@@ -134,9 +134,7 @@ void Simulator::Implementation::choose_parts(const StepReport& report) {
   const StretchLimit& limit = *constraints.limit();
   if (limit.follows_turn(state.stretch_holds)) {
     refinement->choose_by_turn(report.turn, state);
-  } else if (waits_for_turn) {
-    state.parts = settings.most_parts;
-  } else {
+  } else if (!waits_for_turn) {
     refinement->choose(report.stretch_excess, state);
   }
   length_changed(dt_before);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace sprung {
 namespace {
 
@@ -49,7 +51,7 @@ TEST(ContactMargin, CountsTheMotionOfNeighbours) {
 // Of two patches of particles that touch, all but the first particle, which falls through the floor and is stopped, go where
 // nothing is: its own patch is looked at again.
 TEST(ContactsAgain, AreFoundAnewAroundWhatWasStopped) {
-  constexpr Index kParticles = 40;  // more than a patch may have
+  constexpr Index kParticles = 40;  // more than a patch may have, which are halved
   Environment environment({{.name = "floor",
                             .geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = 0.0},
                             .material = {.thickness = kGap}}});
@@ -60,7 +62,10 @@ TEST(ContactsAgain, AreFoundAnewAroundWhatWasStopped) {
   Points after = before;
   after(1, 0) = -kGap;
   space.follow(before, after);
-  EXPECT_EQ(space.contacts(before, after).size(), kParticles);
+  const std::vector<Contact>& found = space.contacts(before, after);
+  EXPECT_EQ(found.size(), kParticles);
+  EXPECT_EQ(std::ranges::count(found, 0, &Contact::patch), kParticles / 2);
+  EXPECT_EQ(std::ranges::count(found, 1, &Contact::patch), kParticles / 2);
   std::vector<Contact> again;
   std::vector<Index> patches;
   space.truncate(before, after, [&](Points& positions) {
@@ -74,6 +79,7 @@ TEST(ContactsAgain, AreFoundAnewAroundWhatWasStopped) {
   EXPECT_EQ(patches, std::vector<Index>{0});
   ASSERT_EQ(again.size(), 1);
   EXPECT_EQ(again.front().particles[0], 0);
+  EXPECT_EQ(again.front().patch, 0);
   EXPECT_GT(again.front().distance, 0.0);
 }
 

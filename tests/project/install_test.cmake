@@ -1,5 +1,5 @@
 # Installs Sprung into WORK_FOLDER, then configures, builds and runs PROGRAM in a project that finds it there.
-# Needs BINARY_FOLDER, WORK_FOLDER, PROGRAM, GENERATOR, COMPILER, BUILD_TYPE and LINK_FLAGS.
+# Needs BINARY_FOLDER, WORK_FOLDER, PROGRAM, GENERATOR, COMPILER, BUILD_TYPE and FLAGS.
 file(REMOVE_RECURSE ${WORK_FOLDER})
 set(installed ${WORK_FOLDER}/installed)
 set(built ${WORK_FOLDER}/built)
@@ -16,7 +16,7 @@ endfunction()
 run(${CMAKE_COMMAND} --install ${BINARY_FOLDER} --prefix ${installed})
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${built} -G ${GENERATOR}
     -DCMAKE_PREFIX_PATH=${installed} -DPROGRAM=${PROGRAM}
-    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_EXE_LINKER_FLAGS=${LINK_FLAGS})
+    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_CXX_FLAGS=${FLAGS})
 run(${CMAKE_COMMAND} --build ${built})
 run(${built}/hello)
 if(NOT output MATCHES "after 2 s the bob is at ")

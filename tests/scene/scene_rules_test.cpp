@@ -172,20 +172,28 @@ TEST(SceneRules, WhatExcludesEachOtherIsToldOfWithWhatIsWrongWithEach) {
   const SceneFolder folder;
   const std::string springs = "bodies.banner.springs.structural=";
   const auto problems = problems_of([&] {
-    (void)folder.read(kPlainScene, {springs + R"({"stiffness": -10, "modulus": -1, "damping": -2, "damping_ratio": 0})",
-                                    "bodies.banner.mass=0", "bodies.banner.density=-3"});
+    (void)folder.read(kPlainScene,
+                      {springs + R"({"stiffness": -10, "modulus": -1, "damping": -2, "damping_ratio": 0})", "bodies.banner.mass=0",
+                       "bodies.banner.density=-3", R"(bodies.banner.pins[0]={"nearest": [0, 0, 0], "box": 3, "indices": [-1]})",
+                       R"(bodies.rope={"shape": {"type": "rope", "points": 1, "from": 2, "to": [1, 0, 0], "particles": 3}})"});
   });
   const std::string at = "bodies.banner.springs.structural";
   EXPECT_THAT(problems,
               testing::IsSupersetOf({Field(&Problem::key, at), Field(&Problem::key, at), Field(&Problem::key, at + ".stiffness"),
                                      Field(&Problem::key, at + ".modulus"), Field(&Problem::key, at + ".damping"),
                                      Field(&Problem::key, std::string("bodies.banner.mass")),
-                                     Field(&Problem::key, std::string("bodies.banner.density"))}));
+                                     Field(&Problem::key, std::string("bodies.banner.density")),
+                                     Field(&Problem::key, std::string("bodies.banner.pins[0].box")),
+                                     Field(&Problem::key, std::string("bodies.banner.pins[0].indices[0]")),
+                                     Field(&Problem::key, std::string("bodies.rope.shape.points")),
+                                     Field(&Problem::key, std::string("bodies.rope.shape.from"))}));
 }
 
 TEST(Overrides, AreBlamedForWhatTheyBreak) {
   const SceneFolder folder;
   const std::string text = R"({"duration": 1, "frame_rate": "fast", "bodies": {}})";
+  EXPECT_THAT(problems_of([&] { (void)folder.read(kPlainScene, {"bodies.banner.density=1"}); }),
+              ElementsAre(AllOf(Field(&Problem::key, "bodies.banner"), Field(&Problem::file, EndsWith(", changed by --set")))));
   const auto problems = problems_of([&] { (void)folder.read(text, {"duration=two"}); });
   EXPECT_THAT(problems,
               testing::IsSupersetOf({AllOf(Field(&Problem::key, "duration"), Field(&Problem::file, EndsWith(", changed by --set"))),

@@ -75,28 +75,6 @@ TEST(LimitHandover, IsForWhatPassesMissedSoManyTimesInARow) {
   EXPECT_EQ(see(0.0, 100), 2 * kMostMissedSteps - 1) << "for good";
 }
 
-// It misses the limit by so large a part of what passes missed it by.
-TEST(LimitHandover, IsGivenBackForGoodWhereItHoldsTheLimitHardlyBetter) {
-  const SpringNetwork network = limp_cloth(4, true);
-  const StretchLimit limit(network, limit_of(Solver::automatic));
-  const double missed_by_passes = 4.0 * wanted_excess(limit.settings());
-  for (const auto& [part, steps, given_back] :
-       {std::tuple(0.49, 1000, false), std::tuple(0.51, kMostMissedSteps - 1, false), std::tuple(0.51, kMostMissedSteps, true),
-        std::tuple(2.0, kMostMissedSteps, true)}) {
-    SimulationState state = initial_state(network);
-    const auto see = [&](double excess, int times) {
-      state.x = (1.0 + limit.settings().max_stretch + excess) * network.positions;
-      for (int k = 0; k < times; ++k, ++state.step) hand_over_missed(network, limit, limit.excess(state.x), state);
-      return state.stretch_holds.front().solved_since.has_value();
-    };
-    EXPECT_TRUE(see(missed_by_passes, kMostMissedSteps));
-    EXPECT_NE(see(part * missed_by_passes, steps), given_back) << part;
-    if (given_back) {
-      EXPECT_FALSE(see(missed_by_passes, 1000)) << part;
-    }
-  }
-}
-
 TEST(LimitHandover, IsBodyByBody) {
   NetworkBuilder builder;
   const SpringMaterials materials{.structural = SpringMaterial{}, .shear = {}, .bend = {}};
@@ -111,7 +89,7 @@ TEST(LimitHandover, IsBodyByBody) {
   state.x.rightCols(9) *= 1.5;
   EXPECT_EQ(limit.excess(state.x, network.bodies[0]), 0.0);
   EXPECT_EQ(limit.excess(state.x, network.bodies[1]), limit.excess(state.x));
-  for (int step = 0; step < kMostMissedSteps; ++step) hand_over_missed(network, limit, limit.excess(state.x), state);
+  for (int step = 0; step < 100; ++step) hand_over_missed(network, limit, limit.excess(state.x), state);
   EXPECT_FALSE(state.stretch_holds[0].solved_since);
   EXPECT_TRUE(state.stretch_holds[1].solved_since);
 }
@@ -190,21 +168,6 @@ TEST_F(OverABall, NeedsTheSmallStepsOfPassesNoMore) {
   ASSERT_TRUE(since);
   for (int step = 0; step <= *since; ++step) EXPECT_EQ(parts[static_cast<std::size_t>(step)], 4) << step;
   EXPECT_EQ(parts.back(), 1);
-}
-
-// Between pins farther apart than its springs may be long no solver can hold the limit.
-TEST_F(OverABall, TakesTheSmallStepsOfPassesAgainWhereNoneCanHoldIt) {
-  SpringNetwork drawn_apart = limp_cloth(8, true);
-  for (double& length : drawn_apart.springs.rest_length) length *= 0.75;
-  Simulator simulator(drawn_apart, {.step = 1.0 / kRate, .stretch_limit = limit_of(Solver::automatic), .most_parts = 4}, ball_);
-  bool was_solved = false;
-  for (int step = 0; step < 4 * kMostMissedSteps; ++step) {
-    simulator.step();
-    was_solved = was_solved || simulator.state().stretch_holds.front().solved_since;
-  }
-  EXPECT_TRUE(was_solved);
-  EXPECT_TRUE(simulator.state().stretch_holds.front().given_back);
-  EXPECT_EQ(simulator.step().parts, 4);
 }
 
 }  // namespace
