@@ -96,7 +96,7 @@ void ContactResponse::start(const std::vector<Contact>& contacts, const StepMoti
     const auto obstacle = static_cast<Index>(k);
     carry_.push_back(environment_.pose_after(obstacle) * environment_.pose_before(obstacle).inverse());
   }
-  for_each_set(sets_, [&](auto& set) { fill(set, contacts, motion); });
+  for_each_set(sets_, [&](auto& set) { fill(set, 0, contacts, motion); });
 }
 
 void ContactResponse::renew(const FreshContacts& fresh, const StepMotion& motion) {
@@ -104,38 +104,27 @@ void ContactResponse::renew(const FreshContacts& fresh, const StepMotion& motion
     auto& former = std::get<std::remove_reference_t<decltype(set)>>(former_sets_);
     set.take_out(fresh.patches, former);
     const std::size_t kept = set.count();
-    add(set, fresh.contacts, motion);
+    fill(set, kept, fresh.contacts, motion);
     set.count_on(former, kept, first_row_);
   });
 }
 
 void ContactResponse::add(const std::vector<Contact>& meetings, const StepMotion& motion) {
-  for_each_set(sets_, [&](auto& set) { add(set, meetings, motion); });
+  for_each_set(sets_, [&](auto& set) { fill(set, set.count(), meetings, motion); });
 }
 
 template <std::size_t n>
-void ContactResponse::add(ContactSet<n>& set, const std::vector<Contact>& meetings, const StepMotion& motion) {
-  PairMaterials::Last last;
-  for (const Contact& meeting : meetings) {
-    if (static_cast<std::size_t>(meeting.count) != n) continue;
-    const std::size_t slot = set.count();
-    set.resize(slot + 1);
-    fill_one(meeting, materials_.of(meeting, last), motion, set, slot);
-  }
-}
-
-template <std::size_t n>
-void ContactResponse::fill(ContactSet<n>& set, const std::vector<Contact>& contacts, const StepMotion& motion) {
+void ContactResponse::fill(ContactSet<n>& set, std::size_t first, const std::vector<Contact>& contacts, const StepMotion& motion) {
   order_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     if (static_cast<std::size_t>(contacts[c].count) == n) order_.push_back(static_cast<Index>(c));
   }
-  set.resize(order_.size());
+  set.resize(first + order_.size());
   parallel_chunks(static_cast<Index>(order_.size()), kContactChunk, [&](Index begin, Index end) {
     PairMaterials::Last last;
-    for (Index slot = begin; slot < end; ++slot) {
-      const Contact& contact = contacts[static_cast<std::size_t>(order_[static_cast<std::size_t>(slot)])];
-      fill_one(contact, materials_.of(contact, last), motion, set, static_cast<std::size_t>(slot));
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      const Contact& contact = contacts[static_cast<std::size_t>(order_[k])];
+      fill_one(contact, materials_.of(contact, last), motion, set, first + k);
     }
   });
 }

@@ -53,10 +53,9 @@ class ContactResponse {
   [[nodiscard]] Index pushed_count() const;
 
  private:
+  /// Contacts of n particles, from the first one on; those before it stay.
   template <std::size_t n>
-  void add(ContactSet<n>& set, const std::vector<Contact>& meetings, const StepMotion& motion);
-  template <std::size_t n>
-  void fill(ContactSet<n>& set, const std::vector<Contact>& contacts, const StepMotion& motion);
+  void fill(ContactSet<n>& set, std::size_t first, const std::vector<Contact>& contacts, const StepMotion& motion);
   template <std::size_t n>
   void fill_one(const Contact& contact, const ContactMaterial& pair, const StepMotion& motion, ContactSet<n>& set,
                 std::size_t slot);

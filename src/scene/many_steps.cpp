@@ -29,7 +29,7 @@ struct Demand {
   const char* remedy = "";
 };
 
-/// The one whose free particles weigh least.
+/// The one that is free and weighs least.
 Index lightest(const SpringNetwork& network, std::initializer_list<Index> particles) {
   return std::max(particles, [&](Index a, Index b) { return network.inverse_masses[a] < network.inverse_masses[b]; });
 }
