@@ -1,8 +1,8 @@
 // The shapes of the generated environments, in metres, Y up.
 #pragma once
 
-#include "geometry/polygon_mesh.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/polygon_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 #include <vector>
 

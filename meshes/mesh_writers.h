@@ -1,7 +1,7 @@
 // The bytes of the formats that the generated environments are in. The library reads them through assimp and writes OBJ only.
 #pragma once
 
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 #include <string>
 

@@ -3,9 +3,9 @@
 #include "app/mesh_text.h"
 #include "base/error.h"
 #include "base/format.h"
-#include "geometry/mesh_file.h"
-#include "geometry/mesh_sequence.h"
-#include "geometry/polygon_mesh.h"
+#include "geometry/import/mesh_file.h"
+#include "geometry/mesh/mesh_sequence.h"
+#include "geometry/mesh/polygon_mesh.h"
 
 #include <fmt/format.h>
 

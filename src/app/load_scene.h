@@ -2,8 +2,8 @@
 #pragma once
 
 #include "app/command_line.h"
-#include "scene/scene_builder.h"
-#include "scene/scene_reader.h"
+#include "scene/building/scene_builder.h"
+#include "scene/reading/scene_reader.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // What a person wants to know of a mesh, as text.
 #pragma once
 
-#include "geometry/mesh_import.h"
+#include "geometry/import/mesh_import.h"
 
 #include <string>
 #include <vector>

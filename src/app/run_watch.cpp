@@ -2,7 +2,7 @@
 
 #include "app/console.h"
 #include "base/format.h"
-#include "dynamics/stretch_limit.h"
+#include "dynamics/stretch_limit/stretch_limit.h"
 
 #include <fmt/format.h>
 

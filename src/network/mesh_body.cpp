@@ -1,4 +1,4 @@
-#include "geometry/topology.h"
+#include "geometry/mesh/topology.h"
 #include "network/body_rules.h"
 #include "network/body_shape.h"
 #include "network/mesh_springs.h"

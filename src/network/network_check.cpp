@@ -1,7 +1,7 @@
 #include "network/network_check.h"
 
 #include "base/format.h"
-#include "geometry/motion_check.h"
+#include "geometry/motion/motion_check.h"
 
 #include <array>
 #include <cmath>

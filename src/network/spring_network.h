@@ -3,8 +3,8 @@
 
 #include "base/contact_material.h"
 #include "base/types.h"
-#include "geometry/motion.h"
-#include "geometry/polygon_mesh.h"
+#include "geometry/mesh/polygon_mesh.h"
+#include "geometry/motion/motion.h"
 
 #include <array>
 #include <string>

@@ -1,12 +1,12 @@
 #include "simulation/simulator.h"
 
-#include "collision/obstacle_set.h"
-#include "simulation/limit_handover.h"
-#include "simulation/settings_check.h"
+#include "collision/obstacles/obstacle_set.h"
+#include "simulation/settings/settings_check.h"
 #include "simulation/simulator_implementation.h"
-#include "simulation/start.h"
-#include "simulation/step_check.h"
-#include "simulation/step_retry.h"
+#include "simulation/start/start.h"
+#include "simulation/step/limit_handover.h"
+#include "simulation/step/step_check.h"
+#include "simulation/step/step_retry.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,15 +1,15 @@
 // What the simulator is made of. Internal to simulation/.
 #pragma once
 
-#include "dynamics/angle_force.h"
-#include "dynamics/body_forces.h"
-#include "dynamics/penalty_contact.h"
-#include "dynamics/spring_force.h"
-#include "simulation/divergence.h"
-#include "simulation/energy_watch.h"
+#include "dynamics/contact/penalty_contact.h"
+#include "dynamics/forces/bending_angle_force.h"
+#include "dynamics/forces/gravity_and_drag.h"
+#include "dynamics/forces/spring_force.h"
+#include "simulation/monitoring/divergence.h"
+#include "simulation/monitoring/energy_watch.h"
 #include "simulation/simulator.h"
-#include "simulation/step_constraints.h"
-#include "simulation/step_refinement.h"
+#include "simulation/step/step_constraints.h"
+#include "simulation/step/step_refinement.h"
 
 #include <memory>
 #include <optional>

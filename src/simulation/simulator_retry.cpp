@@ -1,6 +1,6 @@
 #include "base/error.h"
 #include "simulation/simulator_implementation.h"
-#include "simulation/step_retry.h"
+#include "simulation/step/step_retry.h"
 
 #include <utility>
 

@@ -1,7 +1,7 @@
 #include "benchmark/bunnies.h"
 
 #include "collision/sample_meshes.h"
-#include "geometry/topology.h"
+#include "geometry/mesh/topology.h"
 
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>

@@ -1,7 +1,7 @@
 // The Stanford bunny at several resolutions: closed, oriented outward, 1 m in its largest extent, around the origin.
 #pragma once
 
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace sprung::benchmarks {
 

@@ -1,8 +1,8 @@
 // Contact search of particles near the bunny at 3,700 to 280,000 triangles, beside fcl::collide per particle in the same run.
 #include "base/parallel.h"
 #include "benchmark/bunnies.h"
-#include "collision/free_space.h"
 #include "collision/sample_meshes.h"
+#include "collision/truncation/step_truncation.h"
 
 #include <benchmark/benchmark.h>
 #include <fcl/geometry/bvh/BVH_model.h>

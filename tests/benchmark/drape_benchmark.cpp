@@ -1,8 +1,8 @@
 // The main job: time of a frame while a cloth drapes over the bunny.
 #include "base/parallel.h"
 #include "benchmark/field_drape.h"
-#include "scene/scene_builder.h"
-#include "scene/scene_reader.h"
+#include "scene/building/scene_builder.h"
+#include "scene/reading/scene_reader.h"
 #include "simulation/diagnostics.h"
 
 #include <benchmark/benchmark.h>

@@ -1,7 +1,7 @@
 // Sparse factors of a cloth's equations: L D L^T by supernodes of 3 x 3 blocks in double and in single precision, and Eigen's
 // simplicial one by scalars beside them in the same run.
 #include "benchmark/processor_time.h"
-#include "dynamics/block_cholesky.h"
+#include "dynamics/numerics/block_cholesky.h"
 #include "network/network_builder.h"
 
 #include <benchmark/benchmark.h>

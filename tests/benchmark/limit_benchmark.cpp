@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "benchmark/bullet_hanging.h"
 #include "benchmark/processor_time.h"
-#include "scene/scene_builder.h"
+#include "scene/building/scene_builder.h"
 #include "simulation/simulator.h"
 
 #include <benchmark/benchmark.h>

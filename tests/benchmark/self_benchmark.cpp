@@ -4,8 +4,8 @@
 
 #include "base/format.h"
 #include "base/parallel.h"
-#include "scene/scene_builder.h"
-#include "scene/scene_reader.h"
+#include "scene/building/scene_builder.h"
+#include "scene/reading/scene_reader.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,9 +1,9 @@
 // Forces and projection of cloths, a textbook's objects and pointers against ours.
 #include "base/parallel.h"
 #include "benchmark/textbook_springs.h"
-#include "dynamics/spring_force.h"
-#include "dynamics/stable_step.h"
-#include "dynamics/stretch_limit.h"
+#include "dynamics/forces/spring_force.h"
+#include "dynamics/integrators/stable_step.h"
+#include "dynamics/stretch_limit/stretch_limit.h"
 #include "network/network_builder.h"
 
 #include <benchmark/benchmark.h>

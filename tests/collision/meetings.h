@@ -1,7 +1,7 @@
 // Two triangles, or two segments, near each other, where they go in a step, and whether they cross on the way by brute force.
 #pragma once
 
-#include "collision/element_pair.h"
+#include "collision/pairs/convex_pair.h"
 #include "collision/sample_meshes.h"
 #include "collision/self_networks.h"
 

@@ -1,8 +1,8 @@
 // Meshes that tests are made of, points around them, and answers by brute force over all triangles.
 #pragma once
 
-#include "geometry/polygon_mesh.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/polygon_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,9 +1,9 @@
 // Small networks that collide with themselves, what of them crosses by brute force, and the simplest truncation.
 #pragma once
 
+#include "collision/impact_zones/pair_separation.h"
 #include "collision/sample_meshes.h"
-#include "collision/self_zones.h"
-#include "geometry/side_of_plane.h"
+#include "geometry/queries/side_of_plane.h"
 
 #include <functional>
 #include <vector>

@@ -1,8 +1,8 @@
 // Single particles, each an element of its own, in the free space before an environment's obstacles.
 #pragma once
 
-#include "collision/free_space.h"
-#include "collision/intersections.h"
+#include "collision/obstacles/obstacle_intersections.h"
+#include "collision/truncation/step_truncation.h"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 // Elements near meshes, moved about within their zones, and whether they cross: judged by exact signs over all triangles.
 #pragma once
 
-#include "collision/segment_triangle.h"
-#include "collision/triangle_separation.h"
-#include "collision/zone.h"
+#include "collision/mesh_bvh/segment_triangle_crossing.h"
+#include "collision/safe_regions/safe_region.h"
+#include "collision/safe_regions/triangle_separating_plane.h"
 #include "sample_meshes.h"
 
 namespace sprung::test {

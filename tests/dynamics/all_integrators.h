@@ -1,7 +1,7 @@
 // What the laws that hold for any scheme are tested with.
 #pragma once
 
-#include "dynamics/integrator.h"
+#include "dynamics/integrators/integrator.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 // Matrices of 3 x 3 blocks in full, for solvers and formulas that know nothing of blocks.
 #pragma once
 
-#include "dynamics/block_matrix.h"
-#include "dynamics/stretch_system.h"
+#include "dynamics/numerics/block_matrix.h"
+#include "dynamics/stretch_newton/stretch_system.h"
 
 #include <Eigen/Core>
 

@@ -1,10 +1,10 @@
 // The mass on a spring that has a closed form, for tests of the schemes.
 #pragma once
 
-#include "dynamics/body_forces.h"
-#include "dynamics/integrator.h"
+#include "dynamics/forces/gravity_and_drag.h"
+#include "dynamics/forces/spring_force.h"
+#include "dynamics/integrators/integrator.h"
 #include "dynamics/networks.h"
-#include "dynamics/spring_force.h"
 #include "network/simulation_state.h"
 
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include "app/program.h"
 #include "base/types.h"
-#include "geometry/polygon_mesh.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/polygon_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 #include "output/scratch_folder.h"
 
 #include <cstdio>

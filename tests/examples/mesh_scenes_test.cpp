@@ -1,7 +1,7 @@
 // The examples on meshes: the main job, the jelly on the stairs, and the cloth on the waves.
 #include "example_run.h"
 #include "examples/parity.h"
-#include "geometry/mesh_import.h"
+#include "geometry/import/mesh_import.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Inside or outside of a closed mesh by the parity of the triangles above a point, independent of all contact code.
 #pragma once
 
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 #include <algorithm>
 #include <cmath>

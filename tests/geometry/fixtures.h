@@ -1,7 +1,7 @@
 // Small meshes with known answers, and a folder that goes away.
 #pragma once
 
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "network/damping_ratio.h"
 
-#include "geometry/polygon_mesh.h"
+#include "geometry/mesh/polygon_mesh.h"
 #include "network/network_builder.h"
 #include "network_helpers.h"
 

@@ -1,4 +1,4 @@
-#include "geometry/polygon_mesh.h"
+#include "geometry/mesh/polygon_mesh.h"
 #include "network_helpers.h"
 
 #include <gmock/gmock.h>

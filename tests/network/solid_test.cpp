@@ -1,5 +1,5 @@
-#include "geometry/topology.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/topology.h"
+#include "geometry/mesh/triangle_mesh.h"
 #include "network/corners.h"
 #include "network_helpers.h"
 

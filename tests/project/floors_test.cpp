@@ -1,4 +1,5 @@
-// A folder of src/ includes only folders on lower floors, and a third-party library stays in the folders that own it.
+// A folder of src/ includes only folders on lower floors, a sub-folder only those that it may, and a third-party library stays in
+// the folders that own it.
 #include "project/source_file.h"
 
 #include <gmock/gmock.h>
@@ -19,6 +20,45 @@ using ::testing::IsEmpty;
 
 const std::map<std::string, int> kFloors = {{"base", 0},       {"geometry", 1}, {"network", 2}, {"collision", 2}, {"dynamics", 3},
                                             {"simulation", 4}, {"scene", 5},    {"output", 5},  {"app", 6}};
+
+/// What the sub-folders of a folder may include of it, the lowest first. Files that stand in the folder itself are on top.
+const std::map<std::string, std::set<std::string>> kSubFloors = {
+    {"geometry/queries", {}},
+    {"geometry/motion", {}},
+    {"geometry/mesh", {"queries"}},
+    {"geometry/import", {"mesh"}},
+
+    {"collision/core", {}},
+    {"collision/surface", {"core"}},
+    {"collision/mesh_bvh", {"core"}},
+    {"collision/safe_regions", {"core", "mesh_bvh"}},
+    {"collision/shapes", {"safe_regions", "mesh_bvh"}},
+    {"collision/primitives", {"shapes", "safe_regions"}},
+    {"collision/obstacles", {"core", "surface", "shapes", "primitives"}},
+    {"collision/obstacle_regions", {"core", "surface", "shapes", "obstacles"}},
+    {"collision/element_bvh", {"core", "surface"}},
+    {"collision/pairs", {"core", "surface", "safe_regions", "element_bvh"}},
+    {"collision/impact_zones", {"core", "surface", "safe_regions", "pairs", "obstacle_regions"}},
+    {"collision/truncation", {"core", "surface", "obstacles", "obstacle_regions", "impact_zones"}},
+
+    {"dynamics/numerics", {}},
+    {"dynamics/forces", {"numerics"}},
+    {"dynamics/integrators", {"numerics", "forces"}},
+    {"dynamics/contact", {"forces", "integrators"}},
+    {"dynamics/tethers", {"numerics"}},
+    {"dynamics/stretch_newton", {"numerics", "tethers"}},
+    {"dynamics/stretch_limit", {"numerics", "tethers", "stretch_newton"}},
+
+    {"simulation/settings", {}},
+    {"simulation/monitoring", {"settings"}},
+    {"simulation/start", {"settings"}},
+    {"simulation/step", {"settings"}},
+
+    {"scene/format", {}},
+    {"scene/json", {}},
+    {"scene/reading", {"format", "json"}},
+    {"scene/building", {"format", "json"}},
+};
 
 struct Library {
   std::string prefix;             ///< of its includes
@@ -46,9 +86,23 @@ const std::vector<Library> kLibraries = {
 /// Standard headers have neither a dot nor a slash.
 bool is_standard(const Include& include) { return include.path.find_first_of("./") == std::string::npos; }
 
+/// The folder of a path from src/: "collision/core" of "collision/core/contact.h".
+std::string folder_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
+
+void check_sub_floor(const SourceFile& file, const Include& include, std::vector<std::string>& problems) {
+  const std::string from = folder_of(file.path);
+  const std::string to = folder_of(include.path);
+  if (from == to || from == file.folder) return;
+  const std::string to_sub_folder = to == file.folder ? "" : to.substr(file.folder.size() + 1);
+  const auto allowed = kSubFloors.find(from);
+  if (allowed != kSubFloors.end() && !allowed->second.contains(to_sub_folder)) {
+    problems.push_back(file.path + " includes \"" + include.path + "\", which its sub-folder may not");
+  }
+}
+
 void check_own(const SourceFile& file, const Include& include, std::vector<std::string>& problems) {
   const std::string folder = include.path.substr(0, include.path.find('/'));
-  if (folder == file.folder) return;
+  if (folder == file.folder) return check_sub_floor(file, include, problems);
   const auto theirs = kFloors.find(folder);
   if (theirs == kFloors.end()) {
     problems.push_back(file.path + " includes \"" + include.path + "\", which starts with no folder of src/");
@@ -73,6 +127,9 @@ void check_library(const SourceFile& file, const Include& include, std::vector<s
 std::vector<std::string> problems_of(const SourceFile& file) {
   if (!kFloors.contains(file.folder)) return {file.path + " is in a folder that has no floor"};
   std::vector<std::string> problems;
+  const std::string folder = folder_of(file.path);
+  if (folder != file.folder && !kSubFloors.contains(folder))
+    problems.push_back(file.path + " is in a sub-folder that has no floor");
   for (const Include& include : file.includes) (include.quoted ? check_own : check_library)(file, include, problems);
   return problems;
 }
@@ -109,8 +166,8 @@ TEST(Floors, EveryOwnIncludeStartsAtTheSourceFolder) {
 }
 
 TEST(Floors, LowerFloorsAndOwnedLibrariesAreAllowed) {
-  const SourceFile file = parse_source("collision/obstacle.cpp",
-                                       "#include \"collision/obstacle.h\"\n#include \"base/types.h\"\n"
+  const SourceFile file = parse_source("collision/shapes/obstacle.cpp",
+                                       "#include \"collision/shapes/obstacle.h\"\n#include \"base/types.h\"\n"
                                        "#include <vector>\n#include <Eigen/Core>\n#include <fcl/geometry/shape/box.h>\n");
   EXPECT_EQ(file.includes.size(), 5u);
   EXPECT_THAT(problems_of(file), IsEmpty());
@@ -131,10 +188,44 @@ TEST(Floors, AFolderWithoutFloorIsReported) {
   EXPECT_THAT(problems_of(parse_source("app/a.h", "#include \"a.h\"\n")), ElementsAre(HasSubstr("no folder")));
 }
 
+TEST(Floors, AHigherSubFloorIsReported) {
+  EXPECT_THAT(problems_of(parse_source("collision/core/a.h", "#include \"collision/obstacles/environment.h\"\n")),
+              ElementsAre(HasSubstr("its sub-folder may not")));
+  EXPECT_THAT(problems_of(parse_source("simulation/step/a.h", "#include \"simulation/simulator.h\"\n")),
+              ElementsAre(HasSubstr("its sub-folder may not")));
+}
+
+TEST(Floors, ALowerSubFloorAndTheFolderItselfAreAllowed) {
+  EXPECT_THAT(problems_of(parse_source("collision/obstacles/a.h", "#include \"collision/core/contact.h\"\n")), IsEmpty());
+  EXPECT_THAT(problems_of(parse_source("simulation/a.h", "#include \"simulation/step/step_report.h\"\n")), IsEmpty());
+}
+
+TEST(Floors, ASubFolderWithoutFloorIsReported) {
+  EXPECT_THAT(problems_of(parse_source("collision/helpers/a.h", "")), ElementsAre(HasSubstr("sub-folder that has no floor")));
+}
+
+/// Two that may include each other would make a circle.
+TEST(Floors, NoSubFoldersMayIncludeEachOther) {
+  for (const auto& [folder, allowed] : kSubFloors) {
+    std::set<std::string> reached;
+    std::vector<std::string> open(allowed.begin(), allowed.end());
+    const std::string parent = folder.substr(0, folder.find('/') + 1);
+    while (!open.empty()) {
+      const std::string next = open.back();
+      open.pop_back();
+      if (!reached.insert(next).second) continue;
+      const std::set<std::string>& more = kSubFloors.at(parent + next);
+      open.insert(open.end(), more.begin(), more.end());
+    }
+    EXPECT_FALSE(reached.contains(folder.substr(parent.size()))) << folder;
+  }
+}
+
 TEST(Floors, ALibraryOutsideItsFolderIsReported) {
-  EXPECT_THAT(problems_of(parse_source("dynamics/a.cpp", "#include <fcl/math/bv/AABB.h>\n")),
+  EXPECT_THAT(problems_of(parse_source("dynamics/forces/a.cpp", "#include <fcl/math/bv/AABB.h>\n")),
               ElementsAre(HasSubstr("belongs to another folder")));
-  EXPECT_THAT(problems_of(parse_source("geometry/a.h", "#include <assimp/scene.h>\n")), ElementsAre(HasSubstr("in a header")));
+  EXPECT_THAT(problems_of(parse_source("geometry/import/a.h", "#include <assimp/scene.h>\n")),
+              ElementsAre(HasSubstr("in a header")));
   EXPECT_THAT(problems_of(parse_source("app/a.cpp", "#include <boost/asio.hpp>\n")), ElementsAre(HasSubstr("no folder owns")));
 }
 

@@ -4,7 +4,7 @@
 // functions in doubles, whose rounding is far below the clearance that contact keeps. What only touches is not free.
 #pragma once
 
-#include "collision/obstacle.h"
+#include "collision/shapes/obstacle.h"
 #include "network/spring_network.h"
 
 #include <array>

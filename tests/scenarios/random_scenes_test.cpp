@@ -1,7 +1,7 @@
 // Scenes that nobody thought of: random networks thrown at random obstacles that move, turn and deform, at random steps.
 #include "base/error.h"
-#include "collision/obstacle_shape.h"
 #include "collision/sample_meshes.h"
+#include "collision/shapes/obstacle_shape.h"
 #include "mesh_shapes.h"
 #include "network/network_builder.h"
 #include "scenarios/scenario.h"

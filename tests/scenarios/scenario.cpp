@@ -2,7 +2,7 @@
 
 #include "base/format.h"
 #include "scenarios/judge.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 // Runs scenes with the real simulator and judges every frame.
 #pragma once
 
-#include "scene/scene_builder.h"
+#include "scene/building/scene_builder.h"
 #include "simulation/diagnostics.h"
 
 #include <functional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/error.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Ropes and cloths with angle bends against the closed forms of beams, plates and chains.
 #include "simulation/scenes.h"
 #include "simulation/simulator.h"
-#include "simulation/step_check.h"
+#include "simulation/step/step_check.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 // Materials whose motion depends neither on how finely a body is divided, nor on the step.
 #include "simulation/scenes.h"
 #include "simulation/simulator.h"
-#include "simulation/step_check.h"
+#include "simulation/step/step_check.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 // Steps below the largest stable one at which things explode all the same, and the step that is advised instead.
 #include "simulation/scenes.h"
-#include "simulation/step_check.h"
+#include "simulation/step/step_check.h"
 
 #include <gtest/gtest.h>
 

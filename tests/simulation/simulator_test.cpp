@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "simulation/diagnostics.h"
 #include "simulation/scenes.h"
-#include "simulation/step_check.h"
+#include "simulation/step/step_check.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

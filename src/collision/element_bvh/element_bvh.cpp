@@ -1,0 +1,151 @@
+#include "collision/element_bvh/element_bvh.h"
+
+#include "base/parallel.h"
+#include "collision/core/spatial_partition.h"
+#include "geometry/mesh/triangle_mesh.h"
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+constexpr Index kLeavesPerTask = 64;
+
+}  // namespace
+
+ElementTree::ElementTree(const CollisionSurface& surface, const Points& rest)
+    : surface_(surface), origin_(bounds(rest).center()), slots_(surface.elements.size()) {
+  const std::vector<Element>& elements = surface.elements;
+  const Points middles = element_middles(elements, rest);
+  std::vector<Index> order(elements.size());
+  for (std::size_t e = 0; e < order.size(); ++e) order[e] = static_cast<Index>(e);
+  first_leaf_.push_back(0);
+  for (std::size_t begin = 0; begin < elements.size();) {
+    std::size_t end = begin;
+    while (end < elements.size() && elements[end].body == elements[begin].body) ++end;
+    std::vector<std::size_t> starts;
+    bisect(middles, kFloatSimdWidth, order, begin, end, starts);
+    starts.push_back(end);
+    for (std::size_t k = 0; k + 1 < starts.size(); ++k) add_leaf(order, starts[k], starts[k + 1]);
+    first_leaf_.push_back(static_cast<Index>(leaves_.size()));
+    begin = end;
+  }
+  node_of_leaf_.resize(leaves_.size());
+  if (!leaves_.empty()) add_bodies(0, first_leaf_.size() - 1);
+}
+
+void ElementTree::add_leaf(const std::vector<Index>& order, std::size_t begin, std::size_t end) {
+  ElementLeaf leaf;
+  std::copy(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end),
+            leaf.element.begin());
+  leaf.count = static_cast<int>(end - begin);
+  for (int lane = 0; lane < leaf.count; ++lane) {
+    const Index number = leaf.element[static_cast<std::size_t>(lane)];
+    slots_[static_cast<std::size_t>(number)] = {static_cast<Index>(leaves_.size()), lane};
+  }
+  leaves_.push_back(leaf);
+}
+
+Index ElementTree::add_bodies(std::size_t begin, std::size_t end) {
+  const Index first = first_leaf_[begin];
+  if (end - begin == 1) {
+    const Index element = leaves_[static_cast<std::size_t>(first)].element[0];
+    return add_node(first, first_leaf_[end], surface_.elements[static_cast<std::size_t>(element)].body);
+  }
+  const auto number = static_cast<std::size_t>(nodes_.size());
+  nodes_.emplace_back();
+  const std::size_t middle = begin + (end - begin) / 2;
+  const Index left = add_bodies(begin, middle);
+  const Index right = add_bodies(middle, end);
+  nodes_[number].left = left;
+  nodes_[number].right = right;
+  nodes_[number].leaves = first_leaf_[end] - first;
+  return static_cast<Index>(number);
+}
+
+Index ElementTree::add_node(Index begin, Index end, Index body) {
+  const auto number = static_cast<std::size_t>(nodes_.size());
+  nodes_.emplace_back();
+  nodes_[number].leaves = end - begin;
+  nodes_[number].body = body;
+  if (end - begin == 1) {
+    nodes_[number].leaf = begin;
+    node_of_leaf_[static_cast<std::size_t>(begin)] = static_cast<Index>(number);
+  } else {
+    const Index middle = begin + (end - begin) / 2;
+    const Index left = add_node(begin, middle, body);
+    const Index right = add_node(middle, end, body);
+    nodes_[number].left = left;
+    nodes_[number].right = right;
+  }
+  return static_cast<Index>(number);
+}
+
+void ElementTree::mark(const std::vector<Index>& elements) {
+  mark_lanes(elements);
+  bound_marked();
+}
+
+void ElementTree::mark_lanes(const std::vector<Index>& elements) {
+  for (const Index number : marked_) own_leaf(number).marked = ElementLeaf::IntLanes{};
+  marked_.clear();
+  for (const Index element : elements) {
+    const Slot slot = slots_[static_cast<std::size_t>(element)];
+    if (!leaf(slot.leaf).any_marked()) marked_.push_back(slot.leaf);
+    own_leaf(slot.leaf).marked[slot.lane] = -1;
+  }
+  for (Node& node : nodes_) node.marked = false;
+  for (const Index number : marked_)
+    nodes_[static_cast<std::size_t>(node_of_leaf_[static_cast<std::size_t>(number)])].marked = true;
+  for (std::size_t k = nodes_.size(); k-- > 0;) {
+    Node& node = nodes_[k];
+    if (node.leaf == kNone) node.marked = this->node(node.left).marked || this->node(node.right).marked;
+  }
+}
+
+void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<Index>& elements,
+                        WatchTimes times) {
+  mark_lanes(elements);
+  parallel_chunks(static_cast<Index>(marked_.size()), kLeavesPerTask, [&](Index begin, Index end) {
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      ElementLeaf& leaf = own_leaf(marked_[k]);
+      for (int lane = 0; lane < leaf.count; ++lane) {
+        if (leaf.marked[lane] == 0) continue;
+        const Index number = leaf.element[static_cast<std::size_t>(lane)];
+        leaf.set(lane, number, surface_.elements[static_cast<std::size_t>(number)], balls, origin_, flat, times);
+      }
+      leaf.bound();
+    }
+  });
+  for (std::size_t k = nodes_.size(); k-- > 0;) {
+    if (nodes_[k].marked) bound_node(nodes_[k]);
+  }
+  bound_marked();
+}
+
+void ElementTree::bound_marked() {
+  for (const Index number : marked_) own_leaf(number).bound_marked();
+  for (std::size_t k = nodes_.size(); k-- > 0;) {
+    Node& node = nodes_[k];
+    if (!node.marked) continue;
+    if (node.leaf != kNone) {
+      node.marked_bounds = leaf(node.leaf).marked_bounds;
+      continue;
+    }
+    const Node& left = this->node(node.left);
+    const Node& right = this->node(node.right);
+    node.marked_bounds = left.marked ? left.marked_bounds : right.marked_bounds;
+    if (left.marked && right.marked) extend(node.marked_bounds, right.marked_bounds);
+  }
+}
+
+void ElementTree::bound_node(Node& node) const {
+  if (node.leaf != kNone) {
+    node.bounds = leaf(node.leaf).bounds;
+    return;
+  }
+  node.bounds = this->node(node.left).bounds;
+  extend(node.bounds, this->node(node.right).bounds);
+}
+
+}  // namespace sprung

@@ -1,0 +1,100 @@
+// Eight elements of the network side by side.
+#pragma once
+
+#include "base/simd.h"
+#include "collision/element_bvh/kinetic_aabb.h"
+#include "collision/element_bvh/vertex_bounds.h"
+#include "collision/surface/collision_surface.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace sprung {
+
+/// A stretch of time [steps]; balls are where they say they are at `now`.
+struct WatchTimes {
+  double now = 0.0;
+  double end = 0.0;
+};
+
+/// Up to eight elements of one body, a lane each, in single precision, from an origin near where all bodies began; unused lanes are
+/// empty. At time t their balls are between min + t slowest and max + t fastest.
+struct alignas(64) ElementLeaf {
+  using IntLanes = std::int32_t __attribute__((vector_size(kFloatSimdWidth * sizeof(std::int32_t))));
+
+  Float8 min[3];
+  Float8 max[3];
+  Float8 slowest[3];
+  Float8 fastest[3];
+  MovingBounds bounds;         ///< of all lanes
+  MovingBounds marked_bounds;  ///< of those that are marked; meaningless if none is
+  Float8 corner[3][3];         ///< by corner and axis, at time 0; of smaller elements the first corner again
+  Float8 motion[3][3];
+  Float8 radius;         ///< of the largest ball, and what rounding may lose
+  IntLanes particle[3];  ///< by corner
+  IntLanes flat[3];      ///< by corner, of triangles: -1 where those around the particle do not cross each other; else 0
+  IntLanes marked;       ///< -1 or 0
+  IntLanes is_triangle;  ///< -1 or 0
+  std::array<Index, kFloatSimdWidth> element;
+  int count;  ///< of the lanes used
+
+  ElementLeaf();
+
+  /// Sets the lane to an element from time 0 to the end. The origin [m] is that of all leaves, at any time.
+  void set(int lane, Index number, const Element& element, const MovingBalls& balls, const Vector3& origin,
+           const std::vector<char>& is_flat, WatchTimes times);
+
+  /// Sets the bounds of all lanes.
+  void bound();
+
+  /// Sets the bounds of those that are marked.
+  void bound_marked();
+
+  [[nodiscard]] MovingBounds lane_bounds(int lane) const {
+    using Axes = MovingBounds::Axes;
+    return {Axes{min[0][lane], min[1][lane], min[2][lane]}, Axes{max[0][lane], max[1][lane], max[2][lane]},
+            Axes{slowest[0][lane], slowest[1][lane], slowest[2][lane]}, Axes{fastest[0][lane], fastest[1][lane], fastest[2][lane]}};
+  }
+
+  [[nodiscard]] bool any_marked() const;
+};
+
+/// Where the corners of a leaf's elements are, now and at the end.
+struct alignas(64) LeafPlaces {
+  Float8 now[3][3];  ///< by corner and axis
+  Float8 end[3][3];
+};
+
+void place_corners(const ElementLeaf& leaf, WatchTimes times, LeafPlaces& places);
+
+/// 255 or 0 by lane.
+using LaneBytes = std::array<std::uint8_t, kFloatSimdWidth>;
+
+inline void store(const ElementLeaf::IntLanes& lanes, LaneBytes& mask) {
+  using Bytes = std::uint8_t __attribute__((vector_size(kFloatSimdWidth)));
+  const Bytes bytes = __builtin_convertvector(lanes, Bytes);
+  __builtin_memcpy(mask.data(), &bytes, sizeof bytes);
+}
+
+[[nodiscard]] inline LaneBytes both(const LaneBytes& a, const LaneBytes& b) {
+  LaneBytes result;
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = static_cast<std::uint8_t>(a[k] & b[k]);
+  return result;
+}
+[[nodiscard]] inline LaneBytes either(const LaneBytes& a, const LaneBytes& b) {
+  LaneBytes result;
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = static_cast<std::uint8_t>(a[k] | b[k]);
+  return result;
+}
+
+/// Finds the lanes that are not more than `margin` >= 0 [m] apart from the bounds.
+void find_lanes_near(const ElementLeaf& leaf, const MovingBounds& bounds, WatchTimes times, float margin, LaneBytes& near);
+
+[[nodiscard]] inline bool any(const LaneBytes& mask) {
+  std::uint64_t all = 0;
+  __builtin_memcpy(&all, mask.data(), sizeof all);
+  return all != 0;
+}
+
+}  // namespace sprung

@@ -1,0 +1,96 @@
+#include "collision/element_bvh/normal_cone_test.h"
+
+#include <algorithm>
+#include <array>
+
+namespace sprung {
+namespace {
+
+// More spokes than this are rare; such a fan is never called flat.
+constexpr std::size_t kMostSpokes = 16;
+
+/// The fan's spokes as vectors from its middle, now and when the horizon has passed.
+struct Fan {
+  std::array<Vector3, kMostSpokes + 1> begin;
+  std::array<Vector3, kMostSpokes + 1> end;
+  std::array<double, kMostSpokes + 1> length;  ///< the longest of each spoke in between
+  std::size_t spokes = 0;
+  std::size_t faces = 0;
+  double radius = 0.0;  ///< of the largest ball
+};
+
+/// A closed fan's first spoke comes once more after the last.
+Fan gather(const SurfaceFeatures& features, Index particle, const MovingBalls& balls, double horizon) {
+  Fan fan;
+  const auto spokes = features.spokes(particle);
+  const bool closed = features.fan(particle) == FanKind::closed;
+  fan.spokes = spokes.size() + (closed ? 1 : 0);
+  fan.faces = fan.spokes - 1;
+  fan.radius = balls.radius(particle);
+  for (std::size_t k = 0; k < fan.spokes; ++k) {
+    const Index other = spokes[k < spokes.size() ? k : 0];
+    fan.begin[k] = balls.center(other) - balls.center(particle);
+    fan.end[k] = fan.begin[k] + horizon * (balls.motion(other) - balls.motion(particle));
+    fan.length[k] = std::sqrt(std::max(fan.begin[k].squaredNorm(), fan.end[k].squaredNorm()));
+    fan.radius = std::max(fan.radius, balls.radius(other));
+  }
+  return fan;
+}
+
+/// Twice the area of each triangle seen along `eye` is a quadratic function of time, at least the least of its Bernstein
+/// coefficients. Moving each corner by the radius takes at most radius x perimeter + 3 radius^2 from it.
+bool faces_stay_turned(const Fan& fan, const Vector3& eye) {
+  for (std::size_t k = 0; k < fan.faces; ++k) {
+    const Vector3& a0 = fan.begin[k];
+    const Vector3& b0 = fan.begin[k + 1];
+    const Vector3& a1 = fan.end[k];
+    const Vector3& b1 = fan.end[k + 1];
+    const double at_begin = eye.dot(a0.cross(b0));
+    const double at_end = eye.dot(a1.cross(b1));
+    const double between = 0.5 * eye.dot(a0.cross(b1) + a1.cross(b0));
+    const double rim = std::sqrt(std::max((b0 - a0).squaredNorm(), (b1 - a1).squaredNorm()));
+    const double lost = fan.radius * (fan.length[k] + fan.length[k + 1] + rim + 3.0 * fan.radius);
+    if (!(std::min({at_begin, at_end, between}) > lost)) return false;
+  }
+  return true;
+}
+
+/// Each triangle is seen under less than half a turn, so the spokes pass from the lower side to the upper once a turn.
+bool turns_once(const Fan& fan, const Vector3& eye) {
+  int axis = 0;
+  eye.cwiseAbs().minCoeff(&axis);
+  const Vector3 up = eye.cross(Vector3::Unit(axis));
+  int turns = 0;
+  for (std::size_t k = 0; k < fan.faces; ++k) turns += up.dot(fan.begin[k]) < 0.0 && up.dot(fan.begin[k + 1]) >= 0.0 ? 1 : 0;
+  return turns == 1;
+}
+
+/// The first spoke keeps to one side of a line through the middle and the last to the other: they cannot meet behind it.
+bool ends_stay_apart(const Fan& fan, const Vector3& eye) {
+  if (fan.faces <= 2) return true;  // each is seen under less than half a turn
+  const std::size_t last = fan.spokes - 1;
+  Vector3 side = fan.begin[0].normalized() - fan.begin[last].normalized();
+  side -= eye.dot(side) * eye;
+  const double lost = 2.0 * fan.radius * side.norm();
+  if (!(std::min(side.dot(fan.begin[0]), side.dot(fan.end[0])) > lost)) return false;
+  if (!(std::max(side.dot(fan.begin[last]), side.dot(fan.end[last])) < -lost)) return false;
+  int changes = 0;
+  for (std::size_t k = 0; k < fan.faces; ++k)
+    changes += (side.dot(fan.begin[k]) < 0.0) != (side.dot(fan.begin[k + 1]) < 0.0) ? 1 : 0;
+  return changes == 1;
+}
+
+}  // namespace
+
+bool fan_stays_flat(const SurfaceFeatures& features, Index particle, const MovingBalls& balls, double horizon) {
+  const FanKind kind = features.fan(particle);
+  if (kind == FanKind::none || features.spokes(particle).size() > kMostSpokes) return false;
+  const Fan fan = gather(features, particle, balls, horizon);
+  Vector3 eye = Vector3::Zero();
+  for (std::size_t k = 0; k < fan.faces; ++k) eye += fan.begin[k].cross(fan.begin[k + 1]);
+  eye.normalize();
+  if (!faces_stay_turned(fan, eye)) return false;
+  return kind == FanKind::closed ? turns_once(fan, eye) : ends_stay_apart(fan, eye);
+}
+
+}  // namespace sprung

@@ -1,0 +1,117 @@
+#include "collision/impact_zones/half_space_relaxation.h"
+
+namespace sprung {
+
+namespace {
+
+// Times that each inequality is looked at.
+constexpr int kSweeps = 16;
+
+Index particle(const ElementPair& pair, int k) { return pair.particles[static_cast<std::size_t>(k)]; }
+
+/// What keeps sides apart at one of the coefficients.
+template <class Height>
+struct Side {
+  Height height;  ///< of the pair's particle k [m]
+  Vector3 along;  ///< where to move ends
+  double gain;    ///< of height, for an end moved by that
+};
+template <class Height>
+Side(Height, Vector3, double) -> Side<Height>;
+
+/// Moves the ends of one pair after the other.
+class Sweep {
+ public:
+  Sweep(const Points& before, const std::vector<char>& pinned, const GapRule& rule, Points& ends)
+      : before_(before), pinned_(pinned), rule_(rule), ends_(ends), moved_at_(static_cast<std::size_t>(before.cols()), 0) {}
+
+  /// Whether the sides were apart.
+  bool push_apart(const ElementPair& pair, int number) {
+    const double own = heights_at(pair, ends_).gap();
+    if (own >= rule_.least()) return true;
+    const double begun = heights_at(pair, before_).gap();
+    if (!(begun > 0.0) || own >= rule_.needed(begun)) return true;
+    const TurningPlane plane = turning_plane(pair, before_, ends_, pinned_);
+    const auto at_end = [&](int k) { return plane.end.dot(ends_.col(particle(pair, k))); };
+    const auto midway = [&](int k) { return midway_height(plane, before_.col(particle(pair, k)), ends_.col(particle(pair, k))); };
+    const bool apart_at_end = push(pair, begun, Side{at_end, plane.end, 1.0}, number);
+    return push(pair, begun, Side{midway, plane.begin, 0.5}, number) && apart_at_end;
+  }
+
+  [[nodiscard]] bool has_moved(const ElementPair& pair, int since) const {
+    return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(),
+                       [&](Index i) { return moved_at_[static_cast<std::size_t>(i)] >= since; });
+  }
+
+  [[nodiscard]] const std::vector<Index>& moved() const { return moved_; }
+
+ private:
+  template <class Height>
+  bool push(const ElementPair& pair, double begun, const Side<Height>& side, int number) {
+    int low = 0;
+    for (int k = 1; k < pair.first_count; ++k) low = side.height(k) < side.height(low) ? k : low;
+    int high = pair.first_count;
+    for (int k = pair.first_count + 1; k < pair.count(); ++k) high = side.height(k) > side.height(high) ? k : high;
+    const double gap = side.height(low) - side.height(high);
+    if (gap >= rule_.needed(begun)) return true;
+    const double share = share_of(particle(pair, low)) + share_of(particle(pair, high));
+    if (share == 0.0) return false;
+    const Vector3 way = (rule_.kept(begun) - gap) / (side.gain * share) * side.along;
+    move(particle(pair, low), way, number);
+    move(particle(pair, high), -way, number);
+    return false;
+  }
+
+  [[nodiscard]] double share_of(Index i) const { return pinned_[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0; }
+
+  void move(Index i, const Vector3& way, int number) {
+    if (share_of(i) == 0.0) return;
+    int& moved_at = moved_at_[static_cast<std::size_t>(i)];
+    if (moved_at == 0) moved_.push_back(i);
+    moved_at = number;
+    ends_.col(i) += way;
+  }
+
+  const Points& before_;
+  const std::vector<char>& pinned_;
+  const GapRule& rule_;
+  Points& ends_;
+  std::vector<int> moved_at_;  ///< number of the last sweep that moved it, by particle; 0 if none did
+  std::vector<Index> moved_;
+};
+
+}  // namespace
+
+GivingWay::GivingWay(const Points& before, const std::vector<char>& pinned, const GapRule& rule)
+    : before_(before), pinned_(pinned), rule_(rule) {}
+
+std::optional<TurningPlane> GivingWay::plane(const ElementPair& pair, const Points& ends) const {
+  const double begun = heights_at(pair, before_).gap();
+  if (!(begun > 0.0)) return std::nullopt;
+  if (heights_at(pair, ends).gap() >= rule_.needed(begun)) return TurningPlane{pair.normal, pair.normal};
+  return turning_plane(pair, before_, ends, pinned_);
+}
+
+bool GivingWay::passes(const ElementPair& pair, const Points& ends) const {
+  const std::optional<TurningPlane> turning = plane(pair, ends);
+  if (!turning) return false;
+  const auto at_end = [&](int k) { return turning->end.dot(ends.col(particle(pair, k))); };
+  const auto midway = [&](int k) { return midway_height(*turning, before_.col(particle(pair, k)), ends.col(particle(pair, k))); };
+  const double needed = rule_.needed(heights_at(pair, before_).gap());
+  return heights_of(pair, at_end).gap() < needed || heights_of(pair, midway).gap() < needed;
+}
+
+std::vector<Index> GivingWay::move_apart(const std::vector<ElementPair>& pairs, Points& ends) const {
+  Sweep sweep(before_, pinned_, rule_, ends);
+  bool apart = false;
+  for (int number = 1; number <= kSweeps && !apart; ++number) {
+    apart = true;
+    for (const ElementPair& pair : pairs) {
+      if (number > 1 && !sweep.has_moved(pair, number - 1)) continue;
+      apart = sweep.push_apart(pair, number) && apart;
+    }
+  }
+  return sweep.moved();
+}
+
+}  // namespace sprung

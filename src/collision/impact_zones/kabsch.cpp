@@ -1,0 +1,26 @@
+#include "collision/impact_zones/kabsch.h"
+
+#include <Eigen/SVD>
+
+namespace sprung {
+
+namespace {
+
+// Of points next to a line, whose second singular value, as that of a spread squared, is less than this part of the first, rounding
+// would choose the turn about it.
+constexpr double kLeastSquare = 0x1p-40;
+
+}  // namespace
+
+Matrix3 best_turn(const Matrix3& covariance) {
+  const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vector3& squares = svd.singularValues();
+  if (!(squares[0] > 0.0)) return Matrix3::Identity();
+  if (squares[1] <= kLeastSquare * squares[0]) {
+    return Eigen::Quaterniond::FromTwoVectors(svd.matrixV().col(0), svd.matrixU().col(0)).normalized().toRotationMatrix();
+  }
+  const double handedness = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+  return svd.matrixU() * Vector3(1.0, 1.0, handedness).asDiagonal() * svd.matrixV().transpose();
+}
+
+}  // namespace sprung

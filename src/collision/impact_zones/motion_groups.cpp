@@ -1,0 +1,186 @@
+#include "collision/impact_zones/motion_groups.h"
+
+#include "collision/impact_zones/pin_rigid_fit.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+HeldGroups::HeldGroups(const Points& before, const Points& targets, const std::vector<char>& pinned, const Carriers& carriers)
+    : before_(before),
+      targets_(targets),
+      pinned_(pinned),
+      carriers_(carriers),
+      parent_(static_cast<std::size_t>(before.cols()), kNone),
+      stopped_(parent_.size(), 0),
+      number_(parent_.size(), kNone) {}
+
+bool HeldGroups::unite(std::span<const Index> particles) {
+  Index first = kNone;
+  bool changed = false;
+  bool stopped = false;
+  for (const Index i : particles) {
+    if (pinned_[static_cast<std::size_t>(i)] != 0) continue;
+    if (!holds(i)) {
+      parent_[static_cast<std::size_t>(i)] = i;
+      held_.push_back(i);
+      changed = true;
+    }
+    const Index other = root(i);
+    stopped = stopped || stopped_[static_cast<std::size_t>(other)] != 0;
+    if (first == kNone) first = other;
+    if (other == first) continue;
+    changed = true;
+    const auto [low, high] = std::minmax(first, other);
+    parent_[static_cast<std::size_t>(high)] = low;
+    first = low;
+  }
+  if (first == kNone) return false;
+  char& stop = stopped_[static_cast<std::size_t>(first)];
+  for (const Index i : particles) {
+    if (pinned_[static_cast<std::size_t>(i)] == 0 || is_led(first, i)) continue;
+    leads_.push_back({first, i});
+    changed = true;
+  }
+  if (!changed && stop == 0) {
+    stop = 1;
+    return true;
+  }
+  stop = stopped ? 1 : 0;
+  return changed;
+}
+
+bool HeldGroups::is_led(Index root_particle, Index pin) const {
+  return std::any_of(leads_.begin(), leads_.end(),
+                     [&](const Lead& lead) { return lead.pin == pin && root(lead.follower) == root_particle; });
+}
+
+void HeldGroups::find_motions() {
+  number_groups();
+  const std::vector<std::vector<Index>> pins = leading_pins();
+  find_means(pins);
+  anchor_groups(pins);
+  let_pins_turn(pins);
+}
+
+void HeldGroups::number_groups() {
+  groups_.clear();
+  for (const Index i : held_) {
+    if (parent_[static_cast<std::size_t>(i)] != i) continue;
+    number_[static_cast<std::size_t>(i)] = static_cast<Index>(groups_.size());
+    groups_.push_back({.fraction = stopped_[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0});
+  }
+  for (const Index i : held_) number_[static_cast<std::size_t>(i)] = number_[static_cast<std::size_t>(root(i))];
+}
+
+void HeldGroups::find_means(const std::vector<std::vector<Index>>& pins) {
+  struct Sum {
+    Vector3 motion = Vector3::Zero();
+    double squares = 0.0;
+    double count = 0.0;
+    int rank = 0;  ///< of those that lead
+  };
+  std::vector<Sum> sums(groups_.size());
+  const auto lead = [&](std::size_t number, const Vector3& motion, int rank) {
+    Sum& sum = sums[number];
+    if (rank > sum.rank) sum = {.rank = rank};
+    if (rank < sum.rank) return;
+    sum.motion += motion;
+    sum.squares += motion.squaredNorm();
+    sum.count += 1.0;
+  };
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    for (const Index pin : pins[k]) lead(k, targets_.col(pin) - before_.col(pin), 3);
+  }
+  const std::vector<Carried>& carried = carriers_.carried;
+  for (const Index i : held_) {
+    const auto number = static_cast<std::size_t>(group(i));
+    const auto found =
+        std::lower_bound(carried.begin(), carried.end(), i, [](const Carried& a, Index b) { return a.particle < b; });
+    if (found != carried.end() && found->particle == i) {
+      lead(number, found->motion, 2);
+    } else {
+      lead(number, targets_.col(i) - before_.col(i), 1);
+    }
+  }
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    const Sum& sum = sums[k];
+    const Vector3 mean = sum.motion / sum.count;
+    const double common2 = mean.squaredNorm();
+    const double spread2 = sum.squares / sum.count - common2;
+    const double shared = sum.rank > 1 ? 1.0 : common2 > 0.0 ? std::max(0.0, 1.0 - spread2 / common2) : 0.0;
+    groups_[k].motion.translation() = shared * mean;
+  }
+}
+
+std::vector<std::vector<Index>> HeldGroups::leading_pins() const {
+  std::vector<std::vector<Index>> pins(groups_.size());
+  for (const Lead& lead : leads_) pins[static_cast<std::size_t>(group(lead.follower))].push_back(lead.pin);
+  for (std::vector<Index>& of_group : pins) {
+    std::sort(of_group.begin(), of_group.end());
+    of_group.erase(std::unique(of_group.begin(), of_group.end()), of_group.end());
+  }
+  return pins;
+}
+
+void HeldGroups::anchor_groups(const std::vector<std::vector<Index>>& pins) {
+  if (carriers_.anchors.empty()) return;
+  std::vector<std::vector<Anchor>> anchors(groups_.size());
+  for (const Anchor& anchor : carriers_.anchors) {
+    const Index k = group(anchor.particle);
+    if (k != kNone && pins[static_cast<std::size_t>(k)].empty()) anchors[static_cast<std::size_t>(k)].push_back(anchor);
+  }
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    if (anchors[k].empty()) continue;
+    groups_[k] = {.motion = common_motion(anchors[k]), .fraction = 0.0, .turned = true, .anchored = true};
+  }
+}
+
+void HeldGroups::let_pins_turn(const std::vector<std::vector<Index>>& pins) {
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    if (pins[k].empty() || groups_[k].fraction > 0.0) continue;
+    std::vector<PinWay> ways;
+    for (const Index pin : pins[k]) ways.push_back({before_.col(pin), targets_.col(pin)});
+    const auto motion = common_turn(ways);
+    if (motion) groups_[k] = {.motion = AffineTransform(*motion), .fraction = 0.0, .turned = true};
+  }
+}
+
+CarriedPlane HeldGroups::carried(Index group, const Vector3& normal) const {
+  if (group == kNone || !groups_[static_cast<std::size_t>(group)].turned) return {normal, normal, normal};
+  return carried_plane(normal, groups_[static_cast<std::size_t>(group)].motion.linear());
+}
+
+Vector3 HeldGroups::start(Index particle) const {
+  if (!holds(particle)) return targets_.col(particle);
+  return groups_[static_cast<std::size_t>(group(particle))].motion * before_.col(particle);
+}
+
+bool HeldGroups::turn() const {
+  return std::any_of(groups_.begin(), groups_.end(), [](const Group& group) { return group.turned; });
+}
+
+bool HeldGroups::takes_along(Index group, Index pin, double miss) const {
+  if (group == kNone || fraction(group) > 0.0) return false;
+  const Vector3 end = groups_[static_cast<std::size_t>(group)].motion * before_.col(pin);
+  return (end - targets_.col(pin)).norm() <= miss;
+}
+
+Vector3 HeldGroups::end(Index particle) const {
+  if (!holds(particle)) return targets_.col(particle);
+  const Vector3 from = start(particle);
+  return from + fraction(group(particle)) * (targets_.col(particle) - from);
+}
+
+void HeldGroups::limit_fraction(Index group, double fraction) {
+  double& limited = groups_[static_cast<std::size_t>(group)].fraction;
+  limited = std::min(limited, fraction);
+}
+
+Index HeldGroups::root(Index particle) const {
+  Index i = particle;
+  while (parent_[static_cast<std::size_t>(i)] != i) i = parent_[static_cast<std::size_t>(i)];
+  return i;
+}
+
+}  // namespace sprung

@@ -1,0 +1,35 @@
+#include "collision/impact_zones/rotating_plane.h"
+
+#include "collision/impact_zones/kabsch.h"
+
+namespace sprung {
+
+namespace {
+
+// To another particle's 1.
+constexpr double kWeightOfPins = 1024.0;
+
+}  // namespace
+
+TurningPlane turning_plane(const ElementPair& pair, const Points& before, const Points& ends, const std::vector<char>& pinned) {
+  const auto weight = [&](Index i) { return pinned[static_cast<std::size_t>(i)] != 0 ? kWeightOfPins : 1.0; };
+  Vector3 middle_before = Vector3::Zero();
+  Vector3 middle_after = Vector3::Zero();
+  double sum = 0.0;
+  for (int k = 0; k < pair.count(); ++k) {
+    const Index i = pair.particles[static_cast<std::size_t>(k)];
+    middle_before += weight(i) * before.col(i);
+    middle_after += weight(i) * ends.col(i);
+    sum += weight(i);
+  }
+  middle_before /= sum;
+  middle_after /= sum;
+  Matrix3 covariance = Matrix3::Zero();
+  for (int k = 0; k < pair.count(); ++k) {
+    const Index i = pair.particles[static_cast<std::size_t>(k)];
+    covariance += weight(i) * (ends.col(i) - middle_after) * (before.col(i) - middle_before).transpose();
+  }
+  return {pair.normal, best_turn(covariance) * pair.normal};
+}
+
+}  // namespace sprung

@@ -1,0 +1,102 @@
+#include "collision/mesh_bvh/mesh_bvh.h"
+#include "collision/mesh_bvh/traversal_stack.h"
+#include "collision/mesh_bvh/triangle_packet_distance.h"
+
+#include "base/kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+
+namespace {
+
+constexpr float kFloatMin = std::numeric_limits<float>::min();
+constexpr float kFloatMax = std::numeric_limits<float>::max();
+
+/// A float somewhat above the square of a distance; finite, so that empty boxes, which are infinitely far, are never within it.
+float bound_of(double squared) {
+  return std::min(static_cast<float>(std::min(squared, 1e38)) * (1.0F + 0x1p-22F) + kFloatMin, kFloatMax);
+}
+
+/// A position between two floats a coordinate.
+struct FloatRange {
+  float low[3];
+  float high[3];
+};
+
+FloatRange float_range(const Vector3& p) {
+  FloatRange range;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto nearest = static_cast<float>(p[axis]);
+    const float rounding = std::abs(nearest) * 0x1p-23F + kFloatMin;
+    range.low[axis] = nearest - rounding;
+    range.high[axis] = nearest + rounding;
+  }
+  return range;
+}
+
+/// Lower bounds of the children's squared distances. A box's squared distance is at most 6 roundings of 2^-24 too large, which the
+/// factor takes back.
+[[gnu::always_inline]] inline void bound_children(const MeshTree::Node& node, const FloatRange& p, Float8& bounds) {
+  Float8 sum = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Float8 below = node.min[axis] - p.high[axis];
+    const Float8 above = p.low[axis] - node.max[axis];
+    const Float8 farther = below > above ? below : above;
+    const Float8 outside = farther > 0.0F ? farther : Float8{};
+    sum += outside * outside;
+  }
+  bounds = sum * (1.0F - 0x1p-20F);
+}
+
+/// A triangle of a block; none where there is no block.
+struct Spot {
+  const TriangleBlock* block = nullptr;
+  int lane = 0;
+};
+
+/// The triangle with the smallest squared distance below `best2`.
+SPRUNG_KERNEL Spot find_nearest(const MeshTree& tree, const Vector3& p, double best2) {
+  const FloatRange range = float_range(p);
+  float bound = bound_of(best2);
+  Spot best;
+  WalkStack stack(tree.stack_size());
+  stack.push({0.0F, 0});
+  while (!stack.empty()) {
+    const WalkEntry entry = stack.pop();
+    if (entry.bound > bound) continue;
+    if (entry.child >= 0) {
+      const MeshTree::Node& node = tree.node(entry.child);
+      Float8 bounds;
+      bound_children(node, range, bounds);
+      stack.push_within(bounds, node.child, bound);
+      continue;
+    }
+    const TriangleBlock& block = tree.block(~entry.child);
+    Double4 squared;
+    squared_distances(p, block, squared);
+    const Mask4 nearer = squared < best2;
+    for (unsigned lanes = mask_bits(nearer); lanes != 0;) {
+      const int lane = pop_lane(lanes);
+      if (!(squared[lane] < best2)) continue;
+      best2 = squared[lane];
+      best = {&block, lane};
+    }
+    bound = bound_of(best2);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<MeshTree::Nearest> MeshTree::nearest(const Vector3& p, double radius) const {
+  if (!(radius > 0.0)) return std::nullopt;
+  const auto [block, lane] = find_nearest(*this, p, radius * radius);
+  if (block == nullptr) return std::nullopt;
+  const auto corners = block->corners(lane);
+  return Nearest{block->triangle[lane], closest_point_on_triangle(p, corners[0], corners[1], corners[2]), corners};
+}
+
+}  // namespace sprung

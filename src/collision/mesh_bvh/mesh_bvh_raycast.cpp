@@ -1,0 +1,101 @@
+#include "collision/mesh_bvh/mesh_bvh.h"
+#include "collision/mesh_bvh/traversal_stack.h"
+
+#include "base/kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace sprung {
+
+namespace {
+
+/// A path in single precision, and how far rounding may have moved anything in it.
+struct FloatPath {
+  float middle[3];
+  float half[3];       ///< half its extent along each axis, >= 0
+  float direction[3];  ///< its largest component is 1 or -1
+  float rounding;
+  int main_axis;
+  float begin;       ///< position along the main axis
+  float per_length;  ///< fraction of the path per length along the main axis
+};
+
+/// With all coordinates below M, single precision moves a box, the path and the products of the test below by less than 2^-20 M
+/// (times the direction, for the products); 2^-19 M is given away.
+FloatPath float_path(const Vector3& a, const Vector3& b, double magnitude) {
+  FloatPath path;
+  const Vector3 step = b - a;
+  const double length = step.cwiseAbs().maxCoeff(&path.main_axis);
+  for (int axis = 0; axis < 3; ++axis) {
+    path.middle[axis] = static_cast<float>(0.5 * (a[axis] + b[axis]));
+    path.half[axis] = static_cast<float>(0.5 * std::abs(step[axis]));
+    path.direction[axis] = static_cast<float>(step[axis] / length);
+  }
+  path.rounding = static_cast<float>(0x1p-19 * std::max({magnitude, a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff()}));
+  path.begin = static_cast<float>(a[path.main_axis]);
+  path.per_length = static_cast<float>(1.0 / length);
+  return path;
+}
+
+/// Appends the children whose box the path may meet (no axis separates them; Gottschalk et al. 1996) before the fraction `bound`,
+/// the first last.
+SPRUNG_KERNEL void push_children(const MeshTree::Node& node, const FloatPath& path, float bound, WalkStack& stack) {
+  const Float8 never = Float8{} + std::numeric_limits<float>::infinity();
+  const bool forward = path.direction[path.main_axis] > 0.0F;
+  const Float8 ahead = forward ? node.min[path.main_axis] - path.begin : path.begin - node.max[path.main_axis];
+  Float8 fraction = (ahead - path.rounding) * path.per_length;
+  fraction = fraction > 0.0F ? fraction : Float8{};
+
+  Float8 offset[3];
+  Float8 extent[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    offset[axis] = path.middle[axis] - 0.5F * (node.min[axis] + node.max[axis]);
+    extent[axis] = 0.5F * (node.max[axis] - node.min[axis]) + path.rounding;
+    const Float8 distance = offset[axis] < 0.0F ? -offset[axis] : offset[axis];
+    fraction = distance <= extent[axis] + path.half[axis] ? fraction : never;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    const Float8 across = offset[u] * path.direction[v] - offset[v] * path.direction[u];
+    const Float8 distance = across < 0.0F ? -across : across;
+    const Float8 reach = extent[u] * std::abs(path.direction[v]) + extent[v] * std::abs(path.direction[u]);
+    fraction = distance <= reach ? fraction : never;
+  }
+  stack.push_within(fraction, node.child, bound);
+}
+
+}  // namespace
+
+std::optional<MeshTree::Hit> MeshTree::first_hit(const Vector3& a, const Vector3& b, CrossingSides sides) const {
+  if (a == b) return std::nullopt;
+  const FloatPath path = float_path(a, b, magnitude_);
+  const Box3 box(a.cwiseMin(b), a.cwiseMax(b));
+  std::optional<Hit> best;
+  float bound = 1.0F;
+  WalkStack stack(stack_size_);
+  stack.push({0.0F, 0});
+  while (!stack.empty()) {
+    const WalkEntry entry = stack.pop();
+    if (entry.bound > bound) continue;
+    if (entry.child < 0) {
+      const TriangleBlock& block = this->block(~entry.child);
+      for (unsigned lanes = triangles_in_box(block, box); lanes != 0;) {
+        const int lane = pop_lane(lanes);
+        const auto [u, v, w] = block.corners(lane);
+        const auto fraction = crossing_fraction(a, b, u, v, w, sides);
+        if (!fraction || (best && std::tie(*fraction, block.triangle[lane]) >= std::tie(best->fraction, best->triangle))) continue;
+        best = Hit{block.triangle[lane], *fraction};
+        bound = std::nextafter(static_cast<float>(*fraction), 2.0F);
+      }
+      continue;
+    }
+    push_children(node(entry.child), path, bound, stack);
+  }
+  return best;
+}
+
+}  // namespace sprung

@@ -1,0 +1,57 @@
+// The stack of a walk through a tree: on the call stack for trees of usual depth, on the heap for hostile ones.
+#pragma once
+
+#include "base/simd.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace sprung {
+
+/// A node (>= 0) or block (~block) still to visit, and a lower bound that may rule it out by then.
+struct WalkEntry {
+  float bound;
+  std::int32_t child;
+};
+
+class WalkStack {
+ public:
+  explicit WalkStack(std::size_t capacity) {
+    if (capacity > local_.size()) {
+      heap_.resize(capacity);
+      entries_ = heap_.data();
+    }
+  }
+  WalkStack(const WalkStack&) = delete;
+  WalkStack& operator=(const WalkStack&) = delete;
+
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  void push(WalkEntry entry) { entries_[size_++] = entry; }
+  WalkEntry pop() { return entries_[--size_]; }
+
+  /// Pushes the children whose bound is at most `limit`, the smallest last, the others in no order: sorting them, or asking before
+  /// each, costs more in branches that nobody can predict than it saves in visits. Writes up to kFloatSimdWidth entries past the
+  /// top.
+  [[gnu::always_inline]] void push_within(const Float8& bounds, const std::int32_t* children, float limit) {
+    const std::size_t base = size_;
+    for (int lane = 0; lane < kFloatSimdWidth; ++lane) {
+      entries_[size_] = {bounds[lane], children[lane]};
+      size_ += bounds[lane] <= limit ? 1 : 0;
+    }
+    if (size_ == base) return;
+    std::size_t smallest = base;
+    for (std::size_t i = base + 1; i < size_; ++i) smallest = entries_[i].bound < entries_[smallest].bound ? i : smallest;
+    std::swap(entries_[smallest], entries_[size_ - 1]);
+  }
+
+ private:
+  std::array<WalkEntry, 256> local_;
+  std::vector<WalkEntry> heap_;
+  WalkEntry* entries_ = local_.data();
+  std::size_t size_ = 0;
+};
+
+}  // namespace sprung

@@ -1,0 +1,191 @@
+#include "collision/obstacle_regions/obstacle_safe_regions.h"
+
+#include "base/parallel.h"
+#include "collision/core/block_bounds.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+namespace {
+
+constexpr Index kPatchChunk = 4;
+
+// Obstacles may lead particles out of the box around their patch's ways, by this part of its diagonal before they are stopped.
+constexpr double kAside = 0.125;
+
+// Where no obstacle moves the broad phase is asked for more than is needed, by this part of the diagonal, to be asked less often.
+constexpr double kStock = 0.25;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+ObstacleZones::ObstacleZones(const ObstacleSet& set, const CollisionSurface& surface, const Points& rest, double margin)
+    : set_(set),
+      surface_(surface),
+      margin_(margin),
+      rest_(rest),
+      passing_(set.obstacles().size(), std::vector<char>(surface.pinned.size(), 0)) {
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    const ElementPatch& elements = surface.patches[p];
+    Patch patch{.topology = PatchTopology(surface, elements)};
+    const Element& first = surface.elements[at(elements.first_element)];
+    patch.size = surface.element_size[at(first.body)];
+    for (std::size_t slot = 0; slot < elements.particles.size(); ++slot) {
+      const Index i = elements.particles[slot];
+      patch.thickness = std::max(patch.thickness, surface.thickness[i]);
+      patch.own.push_back(at(slots_of(i).front().patch) == p ? 1 : 0);
+    }
+    patches_.push_back(std::move(patch));
+  }
+}
+
+void ObstacleZones::follow(const Way& way) {
+  if (set_.obstacles().empty()) return;
+  const double carried = way.obstacles_rest ? 0.0 : set_.carries_at_most(way.from);
+  parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
+    for (Index p = begin; p < end; ++p) {
+      find_near(p, way, carried);
+      Patch& patch = patches_[at(p)];
+      patch.restless.clear();
+      for (PatchZones& zones : patch.zones) {
+        const ObstacleShape& shape = set_.shape(zones.obstacle());
+        if (!zones.find_restless(shape, {way.to, particles_of(p), set_.into_after(zones.obstacle())})) continue;
+        zones.follow(shape, patch.topology, paths(p, zones.obstacle(), way), demand(patch, zones.obstacle(), way));
+        append_restless(p, zones);
+      }
+    }
+  });
+}
+
+void ObstacleZones::find_near(Index p, const Way& way, double carried) {
+  Patch& patch = patches_[at(p)];
+  const std::vector<Index>& particles = particles_of(p);
+  patch.box = finite_bounds(way.from, particles).merged(finite_bounds(way.to, particles));
+  std::vector<Index> near;
+  if (!patch.box.isEmpty()) {
+    const double gap = std::max(patch.thickness + set_.max_thickness(), set_.max_clearance(patch.box));
+    // Once for the way in the frame of an obstacle that comes, once more where another has carried the particle.
+    const double aside = kAside * patch.box.diagonal().norm();
+    const double reach = gap + margin_ + 2.0 * carried + aside;
+    if (!set_.moves() && patch.known.contains(grown(patch.box, reach))) return;
+    patch.known = grown(patch.box, reach + kStock * patch.box.diagonal().norm());
+    set_.find_near(patch.known, near);
+  }
+  if (std::equal(near.begin(), near.end(), patch.zones.begin(), patch.zones.end(),
+                 [](Index k, const PatchZones& zones) { return k == zones.obstacle(); })) {
+    return;
+  }
+  std::vector<PatchZones> zones;
+  for (const Index k : near) {
+    const auto kept = std::find_if(patch.zones.begin(), patch.zones.end(), [k](const PatchZones& z) { return z.obstacle() == k; });
+    if (kept == patch.zones.end()) {
+      zones.emplace_back(k, patch.topology);
+    } else {
+      zones.push_back(std::move(*kept));
+    }
+  }
+  patch.zones = std::move(zones);
+}
+
+void ObstacleZones::append_restless(Index p, const PatchZones& zones) {
+  for (const Index slot : zones.restless()) patches_[at(p)].restless.push_back(particles_of(p)[at(slot)]);
+}
+
+std::vector<Index> ObstacleZones::restless() const {
+  std::vector<Index> particles;
+  for (const Patch& patch : patches_) particles.insert(particles.end(), patch.restless.begin(), patch.restless.end());
+  std::sort(particles.begin(), particles.end());
+  particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
+  return particles;
+}
+
+PatchPaths ObstacleZones::paths(Index p, Index k, const Way& way) const {
+  const RigidTransform& before = way.obstacles_rest ? set_.into_after(k) : set_.into_before(k);
+  return {{way.from, particles_of(p), before}, {way.to, particles_of(p), set_.into_after(k)}};
+}
+
+ZoneDemand ObstacleZones::demand(const Patch& patch, Index k, const Way& way) const {
+  ZoneDemand demand{.size = patch.size,
+                    .gap = patch.thickness + set_.obstacle(k).material.thickness,
+                    .margin = margin_,
+                    .at_end = way.obstacles_rest,
+                    .ahead = ahead_};
+  demand.clearance = patch.box.isEmpty() ? 0.0 : set_.clearance(k, patch.box.min(), patch.box.max());
+  demand.gap = std::max(demand.gap, demand.clearance);
+  return demand;
+}
+
+void ObstacleZones::renew_around(const std::vector<Index>& particles, const Way& way) {
+  const std::vector<Index> around = patches_around(particles);
+  std::vector<std::vector<Index>> slots(around.size());
+  for (const Index i : particles) {
+    for (const PatchSlot& place : slots_of(i)) {
+      const auto k = std::lower_bound(around.begin(), around.end(), place.patch) - around.begin();
+      slots[static_cast<std::size_t>(k)].push_back(place.slot);
+    }
+  }
+  parallel_chunks(static_cast<Index>(around.size()), kPatchChunk, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      const Index p = around[at(k)];
+      for (PatchZones& zones : patches_[at(p)].zones) {
+        const ObstacleShape& shape = set_.shape(zones.obstacle());
+        const ZoneDemand demanded = demand(patches_[at(p)], zones.obstacle(), way);
+        zones.renew(shape, patches_[at(p)].topology, paths(p, zones.obstacle(), way), demanded, slots[at(k)]);
+        zones.find_restless(shape, {way.to, particles_of(p), set_.into_after(zones.obstacle())});
+        append_restless(p, zones);
+      }
+    }
+  });
+}
+
+bool ObstacleZones::allow(Index particle, const Vector3& position) const {
+  for (const auto& [p, slot] : slots_of(particle)) {
+    const Patch& patch = patches_[at(p)];
+    if (!patch.known.isEmpty() && !patch.known.contains(position)) return false;
+    for (const PatchZones& zones : patch.zones) {
+      if (!is_passing(zones.obstacle(), particle) && !zones.allow(slot, set_.local(zones.obstacle(), position))) return false;
+    }
+  }
+  return true;
+}
+
+bool ObstacleZones::planes_allow(Index particle, const Vector3& position) const {
+  return std::ranges::all_of(slots_of(particle), [&](const PatchSlot& place) {
+    return std::ranges::all_of(patches_[at(place.patch)].zones, [&](const PatchZones& zones) {
+      return is_passing(zones.obstacle(), particle) || zones.planes_allow(place.slot, set_.local(zones.obstacle(), position));
+    });
+  });
+}
+
+void ObstacleZones::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
+  for (const auto& [p, slot] : slots_of(particle)) {
+    const Patch& patch = patches_[at(p)];
+    for (int axis = 0; axis < 3 && !patch.known.isEmpty(); ++axis) {
+      half_spaces.push_back({Vector3::Unit(axis), patch.known.min()[axis]});
+      half_spaces.push_back({-Vector3::Unit(axis), -patch.known.max()[axis]});
+    }
+    for (const PatchZones& zones : patch.zones) {
+      if (is_passing(zones.obstacle(), particle)) continue;
+      zones.append_half_spaces(slot, set_.after(zones.obstacle()), half_spaces);
+    }
+  }
+}
+
+std::vector<Index> ObstacleZones::patches_around(const std::vector<Index>& particles) const {
+  std::vector<Index> around;
+  for (const Index i : particles) {
+    for (const PatchSlot& place : slots_of(i)) around.push_back(place.patch);
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  return around;
+}
+
+std::span<const PatchSlot> ObstacleZones::slots_of(Index particle) const {
+  const auto begin = at(surface_.first_slot[at(particle)]);
+  return {surface_.slots.data() + begin, at(surface_.first_slot[at(particle) + 1]) - begin};
+}
+
+}  // namespace sprung

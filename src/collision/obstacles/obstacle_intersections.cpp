@@ -1,0 +1,109 @@
+#include "collision/obstacles/obstacle_intersections.h"
+
+#include "base/parallel.h"
+#include "collision/obstacles/obstacle_set.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace sprung {
+
+namespace {
+
+// Of the clearance, which is 2^-30 of the coordinates: twice as much as what zones take for touching, so that they agree.
+constexpr double kTouching = 0x1p-10;
+
+class PatchSearch {
+ public:
+  PatchSearch(const ObstacleSet& obstacles, const CollisionSurface& surface, const Points& positions)
+      : obstacles_(obstacles), surface_(surface), positions_(positions) {}
+
+  /// Particles are looked at in the first patch that has them.
+  void search(Index patch_number, Intersections& found) const {
+    const ElementPatch& patch = surface_.patches[static_cast<std::size_t>(patch_number)];
+    Box3 box;
+    for (const Index i : patch.particles) box.extend(positions_.col(i));
+    const double margin = kTouching * obstacles_.max_clearance(box);
+    std::vector<Index> near;
+    obstacles_.find_near({box.min().array() - margin, box.max().array() + margin}, near);
+    for (const Index k : near) {
+      for (const Index i : patch.particles) {
+        const Index first_slot = surface_.first_slot[static_cast<std::size_t>(i)];
+        if (surface_.slots[static_cast<std::size_t>(first_slot)].patch == patch_number) look_inside(i, k, found);
+      }
+      for (Index e = patch.first_element; e < patch.first_element + patch.element_count; ++e) look_across(e, k, found);
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_pinned(Index particle) const { return surface_.pinned[static_cast<std::size_t>(particle)] != 0; }
+
+  [[nodiscard]] double tolerance(const Vector3& position, Index k) const {
+    return kTouching * obstacles_.clearance(k, position, position);
+  }
+
+  void look_inside(Index particle, Index k, Intersections& found) const {
+    if (is_pinned(particle)) return;
+    const Vector3 p = obstacles_.local(k, positions_.col(particle));
+    if (!obstacles_.shape(k).contains(p)) return;
+    const auto surface = obstacles_.shape(k).nearest(p, std::numeric_limits<double>::infinity());
+    found.inside.push_back({particle, k, std::abs(surface->distance)});
+  }
+
+  void look_across(Index e, Index k, Intersections& found) const {
+    const Element& element = surface_.elements[static_cast<std::size_t>(e)];
+    ElementCorners corners{.x = {}, .count = element.corners};
+    double within = 0.0;
+    int pinned = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(element.corners); ++i) {
+      const Vector3 x = positions_.col(element.particles[i]);
+      corners.x[i] = obstacles_.local(k, x);
+      within = std::max(within, tolerance(x, k));
+      pinned += is_pinned(element.particles[i]) ? 1 : 0;
+    }
+    if (pinned == element.corners || !obstacles_.shape(k).touches(corners, within)) return;
+    if (pinned == 0 || !hangs_in(element, k)) found.crossings.push_back({e, k});
+  }
+
+  [[nodiscard]] bool hangs_in(const Element& element, Index k) const {
+    return std::any_of(element.particles.begin(), element.particles.begin() + element.corners, [&](Index i) {
+      if (!is_pinned(i)) return false;
+      const Vector3 p = obstacles_.local(k, positions_.col(i));
+      return obstacles_.shape(k).contains(p) ||
+             obstacles_.shape(k).touches({.x = {p}, .count = 1}, tolerance(positions_.col(i), k));
+    });
+  }
+
+  const ObstacleSet& obstacles_;
+  const CollisionSurface& surface_;
+  const Points& positions_;
+};
+
+}  // namespace
+
+Intersections find_intersections(const ObstacleSet& obstacles, const CollisionSurface& surface, const Points& positions,
+                                 Index body) {
+  if (obstacles.obstacles().empty()) return {};
+  const PatchSearch search(obstacles, surface, positions);
+  std::vector<Intersections> parts(surface.patches.size());
+  parallel_chunks(static_cast<Index>(parts.size()), 1, [&](Index begin, Index end) {
+    for (Index p = begin; p < end; ++p) {
+      const ElementPatch& patch = surface.patches[static_cast<std::size_t>(p)];
+      const Index own = surface.elements[static_cast<std::size_t>(patch.first_element)].body;
+      if (body == kNone || body == own) search.search(p, parts[static_cast<std::size_t>(p)]);
+    }
+  });
+
+  Intersections all;
+  for (const Intersections& part : parts) {
+    all.inside.insert(all.inside.end(), part.inside.begin(), part.inside.end());
+    all.crossings.insert(all.crossings.end(), part.crossings.begin(), part.crossings.end());
+  }
+  std::sort(all.inside.begin(), all.inside.end(),
+            [](const auto& a, const auto& b) { return std::pair(a.particle, a.obstacle) < std::pair(b.particle, b.obstacle); });
+  std::sort(all.crossings.begin(), all.crossings.end(),
+            [](const auto& a, const auto& b) { return std::pair(a.element, a.obstacle) < std::pair(b.element, b.obstacle); });
+  return all;
+}
+
+}  // namespace sprung

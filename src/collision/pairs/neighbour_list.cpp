@@ -1,0 +1,272 @@
+#include "collision/pairs/neighbour_list.h"
+
+#include "base/parallel.h"
+#include "collision/element_bvh/normal_cone_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace sprung {
+namespace {
+
+// A ball's radius as a part of the shortest edge at its particle: larger ones last longer, but neighbours come too near each
+// other's.
+constexpr double kRadius = 0.1;
+
+// Where edges are of very different lengths, the shortest counts as at least this part of the mean.
+constexpr double kShortestEdge = 0.25;
+
+// The longer balls last, the more rarely all are made again, but the more comes near on their way. What both cost together is least
+// at about this many times the root of the number of steps in which particles, seen from the middle of their body, fly an edge's
+// length; at most at so many steps.
+constexpr double kLasting = 1.1;
+constexpr double kMostSteps = 64.0;
+
+// All are made anew when they are still to last so many times as long as new ones would: what falls as a whole, and then strikes
+// something, would be looked for along the way that it no longer goes. With 2 a drape takes a twentieth more; with 1 motion that
+// grows steadily could have all made in step after step.
+constexpr double kMuchLonger = 1.5;
+
+constexpr Index kParticlesPerTask = 1024;
+constexpr Index kFansPerTask = 128;
+constexpr Index kLeavesPerTask = 64;
+constexpr Index kLeafPairsPerTask = 32;
+
+std::vector<double> ball_radii(const CollisionSurface& surface, const Points& rest) {
+  const double largest = *std::max_element(surface.element_size.begin(), surface.element_size.end());
+  std::vector<double> radii(static_cast<std::size_t>(rest.cols()), kRadius * largest);
+  for (const Element& element : surface.elements) {
+    const auto corners = corners_of(element);
+    const double mean = surface.element_size[static_cast<std::size_t>(element.body)];
+    for (std::size_t k = 0; k < corners.size() && corners.size() > 1; ++k) {
+      const Index other = corners[(k + 1) % corners.size()];
+      const double edge = (rest.col(other) - rest.col(corners[k])).norm();
+      for (const Index i : {corners[k], other}) {
+        double& radius = radii[static_cast<std::size_t>(i)];
+        radius = std::min(radius, kRadius * std::clamp(edge, kShortestEdge * mean, mean));
+      }
+    }
+  }
+  return radii;
+}
+
+}  // namespace
+
+PairWatch::PairWatch(const CollisionSurface& surface, const Points& rest, double margin)
+    : surface_(surface),
+      rest_(rest),
+      features_(surface.elements, static_cast<Index>(rest.cols())),
+      sharp_(surface, features_),
+      tree_(surface, rest),
+      places_(static_cast<std::size_t>(tree_.leaf_count())),
+      balls_(ball_radii(surface, rest)),
+      pair_search_(surface, features_),
+      contact_search_(surface, features_, sharp_, tree_, rest_, margin),
+      flat_(static_cast<std::size_t>(rest.cols()), 0),
+      marked_(static_cast<std::size_t>(rest.cols()), 0),
+      is_marked_element_(surface.elements.size(), 0),
+      visited_(marked_) {
+  std::vector<char> watched(marked_.size(), 0);
+  for (const Element& element : surface.elements) {
+    const auto body = static_cast<std::size_t>(element.body);
+    if (surface.self[body] == 0 && surface.others[body] == 0) continue;
+    for (const Index i : corners_of(element)) watched[static_cast<std::size_t>(i)] = 1;
+  }
+  for (std::size_t i = 0; i < watched.size(); ++i) {
+    if (watched[i] == 0) continue;
+    watched_.push_back(static_cast<Index>(i));
+    const Index element = features_.elements_at(static_cast<Index>(i)).front();
+    watched_bodies_.push_back(surface.elements[static_cast<std::size_t>(element)].body);
+  }
+}
+
+void PairWatch::begin_step(const Points& before, const Points& after) {
+  renewed_ = 0;
+  age_ += 1.0;
+  balls_.advance();
+  const double lasting = lasting_steps(before, after);
+  if (age_ >= horizon_ || horizon_ - age_ > kMuchLonger * lasting) {
+    horizon_ = lasting;
+    age_ = 0.0;
+    sharp_.update(before);
+    renew(watched_, before, after);
+  } else {
+    std::vector<Index> leaving = find_leaving(before, 0.0);
+    const std::vector<Index> later = find_leaving(after, 1.0);
+    leaving.insert(leaving.end(), later.begin(), later.end());
+    renew(leaving, before, after);
+  }
+  find_candidates();
+}
+
+void PairWatch::begin_part(const Points& before, const Points& after) {
+  age_ = 0.0;
+  horizon_ = 1.0;
+  renew(watched_, before, after);
+}
+
+void PairWatch::follow(const Points& before, const Points& ends) { renew(find_leaving(ends, 1.0), before, ends); }
+
+std::vector<Index> PairWatch::find_leaving(const Points& ends, double time) const {
+  const auto count = static_cast<Index>(watched_.size());
+  std::vector<std::vector<Index>> parts(static_cast<std::size_t>((count + kParticlesPerTask - 1) / kParticlesPerTask));
+  parallel_chunks(count, kParticlesPerTask, [&](Index begin, Index end) {
+    std::vector<Index>& part = parts[static_cast<std::size_t>(begin / kParticlesPerTask)];
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      if (!balls_.holds(watched_[k], ends.col(watched_[k]), time)) part.push_back(watched_[k]);
+    }
+  });
+  std::vector<Index> leaving;
+  for (const std::vector<Index>& part : parts) leaving.insert(leaving.end(), part.begin(), part.end());
+  return leaving;
+}
+
+WatchCounts PairWatch::counts() const {
+  const auto flat = std::count(flat_.begin(), flat_.end(), char{1});
+  return {static_cast<Index>(pairs_.size()), static_cast<Index>(candidates_.size()), renewed_,
+          balls_.count() - static_cast<Index>(flat)};
+}
+
+/// How many steps balls that are made now had best last.
+double PairWatch::lasting_steps(const Points& before, const Points& after) const {
+  struct Flight {
+    Vector3 sum = Vector3::Zero();
+    double squares = 0.0;
+    double count = 0.0;
+  };
+  std::vector<Flight> flights(surface_.self.size());
+  for (std::size_t k = 0; k < watched_.size(); ++k) {
+    const Vector3 motion = after.col(watched_[k]) - before.col(watched_[k]);
+    if (!motion.allFinite()) continue;
+    Flight& flight = flights[static_cast<std::size_t>(watched_bodies_[k])];
+    flight.sum += motion;
+    flight.squares += motion.squaredNorm();
+    flight.count += 1.0;
+  }
+  double steps = kMostSteps;
+  for (std::size_t body = 0; body < flights.size(); ++body) {
+    const Flight& flight = flights[body];
+    if (flight.count == 0.0 || surface_.element_size[body] == 0.0) continue;
+    const double variance = flight.squares / flight.count - (flight.sum / flight.count).squaredNorm();
+    const double speed = std::sqrt(std::max(variance, 0.0));
+    if (speed > 0.0) steps = std::min(steps, std::floor(kLasting * std::sqrt(surface_.element_size[body] / speed)));
+  }
+  return std::max(steps, 1.0);
+}
+
+void PairWatch::renew(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
+  if (leaving.empty()) return;
+  place_balls(leaving, before, ends);
+  look_at_fans();
+  mark_elements();
+  tree_.bound(balls_, flat_, marked_elements_, {age_, horizon_});
+  std::erase_if(pairs_, [&](const ElementPair& pair) { return has_marked(pair); });
+  find_pairs(before);
+  renewed_ += static_cast<Index>(marked_list_.size());
+  moved_on_.insert(moved_on_.end(), marked_list_.begin(), marked_list_.end());
+  clear_marks();
+}
+
+void PairWatch::find_candidates() {
+  if (moved_on_.empty()) return;
+  for (const Index i : moved_on_) marked_[static_cast<std::size_t>(i)] = 1;
+  marked_list_.swap(moved_on_);
+  mark_elements();
+  tree_.mark(marked_elements_);
+  std::erase_if(candidates_, [&](const ContactCandidate& candidate) {
+    return std::ranges::any_of(candidate.particles, [&](Index i) { return is_marked(i); });
+  });
+  const std::vector<ContactCandidate> found = contact_search_.find_candidates(balls_, marked_, {age_, horizon_});
+  candidates_.insert(candidates_.end(), found.begin(), found.end());
+  clear_marks();
+}
+
+void PairWatch::find_pairs(const Points& before) {
+  const WatchTimes times{age_, horizon_};
+  const WatchState state{before, balls_, horizon_ - age_, marked_};
+  const std::vector<ElementTree::LeafPair> leaves = tree_.find_pairs(times, 0.0);
+  place_leaves(leaves, times);
+  const auto placed = [&](Index number) { return PlacedLeaf{tree_.leaf(number), places_[static_cast<std::size_t>(number)]}; };
+  const auto count = static_cast<Index>(leaves.size());
+  std::vector<std::vector<ElementPair>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
+  parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {
+    std::vector<ElementMeeting> meetings;
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      append_meetings(placed(leaves[k].first), placed(leaves[k].second), times, meetings);
+    }
+    std::vector<ElementPair>& part = parts[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
+    for (const ElementMeeting& meeting : meetings) pair_search_.append_pairs(meeting, state, part);
+  });
+  for (const std::vector<ElementPair>& part : parts) pairs_.insert(pairs_.end(), part.begin(), part.end());
+}
+
+void PairWatch::place_leaves(const std::vector<ElementTree::LeafPair>& pairs, WatchTimes times) {
+  std::vector<char> needed(places_.size(), 0);
+  for (const ElementTree::LeafPair& pair : pairs) {
+    needed[static_cast<std::size_t>(pair.first)] = 1;
+    needed[static_cast<std::size_t>(pair.second)] = 1;
+  }
+  parallel_chunks(tree_.leaf_count(), kLeavesPerTask, [&](Index begin, Index end) {
+    for (Index number = begin; number < end; ++number) {
+      const auto k = static_cast<std::size_t>(number);
+      if (needed[k] != 0) place_corners(tree_.leaf(number), times, places_[k]);
+    }
+  });
+}
+
+bool PairWatch::has_marked(const ElementPair& pair) const {
+  return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return is_marked(i); });
+}
+
+void PairWatch::place_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
+  for (const Index i : leaving) {
+    if (is_marked(i)) continue;
+    marked_[static_cast<std::size_t>(i)] = 1;
+    balls_.place(i, before.col(i), ends.col(i));
+    marked_list_.push_back(i);
+  }
+}
+
+/// A fan that is flat no more has pairs that nobody has looked at. Those that have no marked particle cannot touch all the same:
+/// while their particles are in their balls, they are where they would be if all others were in theirs of before, and the fan was
+/// flat.
+void PairWatch::look_at_fans() {
+  std::vector<Index> middles;
+  const auto visit = [&](Index i) {
+    if (visited_[static_cast<std::size_t>(i)] != 0) return;
+    visited_[static_cast<std::size_t>(i)] = 1;
+    middles.push_back(i);
+  };
+  for (const Index i : marked_list_) {
+    visit(i);
+    for (const Index spoke : features_.spokes(i)) visit(spoke);
+  }
+  for (const Index i : middles) visited_[static_cast<std::size_t>(i)] = 0;
+
+  parallel_chunks(static_cast<Index>(middles.size()), kFansPerTask, [&](Index begin, Index end) {
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      const bool stays = fan_stays_flat(features_, middles[k], balls_, horizon_ - age_);
+      flat_[static_cast<std::size_t>(middles[k])] = stays ? 1 : 0;
+    }
+  });
+}
+
+void PairWatch::mark_elements() {
+  marked_elements_.clear();
+  for (const Index i : marked_list_) {
+    for (const Index e : features_.elements_at(i)) {
+      char& listed = is_marked_element_[static_cast<std::size_t>(e)];
+      if (listed == 0) marked_elements_.push_back(e);
+      listed = 1;
+    }
+  }
+  for (const Index e : marked_elements_) is_marked_element_[static_cast<std::size_t>(e)] = 0;
+}
+
+void PairWatch::clear_marks() {
+  for (const Index i : marked_list_) marked_[static_cast<std::size_t>(i)] = 0;
+  marked_list_.clear();
+}
+
+}  // namespace sprung

@@ -1,0 +1,105 @@
+#include "collision/pairs/pair_builder.h"
+
+#include <algorithm>
+#include <span>
+
+namespace sprung {
+namespace {
+
+ElementPair sides_of(std::span<const Index> first, std::span<const Index> second) {
+  ElementPair pair;
+  const auto next = std::copy(first.begin(), first.end(), pair.particles.begin());
+  std::copy(second.begin(), second.end(), next);
+  pair.first_count = static_cast<int>(first.size());
+  pair.second_count = static_cast<int>(second.size());
+  return pair;
+}
+
+bool share_particle(std::span<const Index> a, std::span<const Index> b) {
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+}
+
+/// What lies between the balls of both sides along the normal: the least of now and the horizon, which is the least in between too.
+double least_gap(const ElementPair& pair, const WatchState& state) {
+  const auto at = [&](double time) {
+    return heights_of(pair,
+                      [&](int k) {
+                        const Index i = pair.particles[static_cast<std::size_t>(k)];
+                        const double radius = k < pair.first_count ? -state.balls.radius(i) : state.balls.radius(i);
+                        return pair.normal.dot(state.balls.center(i, time)) + radius;
+                      })
+        .gap();
+  };
+  return std::min(at(0.0), at(state.horizon));
+}
+
+/// Where most corners, edges and faces next to each other are apart.
+Vector3 direction_between_middles(const ElementPair& pair, const Points& positions) {
+  Vector3 first = Vector3::Zero();
+  Vector3 second = Vector3::Zero();
+  for (int k = 0; k < pair.count(); ++k)
+    (k < pair.first_count ? first : second) += positions.col(pair.particles[static_cast<std::size_t>(k)]);
+  return (first / pair.first_count - second / pair.second_count).normalized();
+}
+
+void append_if_near(ElementPair pair, const WatchState& state, std::vector<ElementPair>& pairs) {
+  pair.normal = direction_between(pair, state.positions);
+  if (!(least_gap(pair, state) > 0.0)) pairs.push_back(pair);
+}
+
+bool is_marked(const ElementPair& pair, const WatchState& state) {
+  return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(),
+                     [&](Index i) { return state.marked[static_cast<std::size_t>(i)] != 0; });
+}
+
+void append_part_if_near(ElementPair pair, const WatchState& state, std::vector<ElementPair>& pairs) {
+  if (!is_marked(pair, state)) return;
+  pair.normal = direction_between_middles(pair, state.positions);
+  if (!(least_gap(pair, state) > 0.0)) append_if_near(pair, state, pairs);
+}
+
+}  // namespace
+
+void PairSearch::append_pairs(const ElementMeeting& meeting, const WatchState& state, std::vector<ElementPair>& pairs) const {
+  // The second side is to be the one with more corners.
+  const bool swap = element(meeting.first).corners > element(meeting.second).corners;
+  const Index first = swap ? meeting.second : meeting.first;
+  const Index second = swap ? meeting.first : meeting.second;
+  const auto a = corners_of(element(first));
+  const auto b = corners_of(element(second));
+  if (share_particle(a, b)) {
+    append_corners(first, second, state, pairs);
+    append_corners(second, first, state, pairs);
+    append_edges(first, second, state, pairs);
+  } else if (b.size() == 3 || a.size() == 2) {
+    // A particle passes a segment or another particle without crossing it.
+    append_if_near(sides_of(a, b), state, pairs);
+  }
+}
+
+void PairSearch::append_corners(Index element_number, Index face, const WatchState& state, std::vector<ElementPair>& pairs) const {
+  const auto corners = corners_of(element(element_number));
+  const auto b = corners_of(element(face));
+  if (b.size() != 3) return;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    if (!features_.owns_corner(element_number, static_cast<int>(k))) continue;
+    const std::array<Index, 1> a{corners[k]};
+    if (share_particle(a, b)) continue;
+    append_part_if_near(sides_of(a, b), state, pairs);
+  }
+}
+
+void PairSearch::append_edges(Index first, Index second, const WatchState& state, std::vector<ElementPair>& pairs) const {
+  for (int i = 0; i < edges_of(element(first)); ++i) {
+    if (!features_.owns_edge(first, i)) continue;
+    const auto a = ends_of(element(first), i);
+    for (int k = 0; k < edges_of(element(second)); ++k) {
+      if (!features_.owns_edge(second, k)) continue;
+      const auto b = ends_of(element(second), k);
+      if (share_particle(a, b)) continue;
+      append_part_if_near(sides_of(a, b), state, pairs);
+    }
+  }
+}
+
+}  // namespace sprung

@@ -1,0 +1,261 @@
+#include "collision/pairs/proximity_search.h"
+
+#include "base/parallel.h"
+#include "collision/element_bvh/vertex_face_filter.h"
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+// Parts of the distance at rest that contact within a body keeps at most, and looks beyond it: a flat sheet is far from contact,
+// one that folds keeps its thickness as far as its elements are large enough for it.
+constexpr double kMostGap = 0.4;
+constexpr double kMostMargin = 0.1;
+
+constexpr Index kLeafPairsPerTask = 16;
+constexpr Index kLeavesPerTask = 64;
+
+}  // namespace
+
+ContactSearch::ContactSearch(const CollisionSurface& surface, const SurfaceFeatures& features, const SharpEdges& sharp,
+                             const ElementTree& tree, const Points& rest, double margin)
+    : surface_(surface),
+      features_(features),
+      sharp_(sharp),
+      tree_(tree),
+      rest_(rest),
+      margin_(margin),
+      largest_gap_(surface.thickness.maxCoeff()),
+      sides_(static_cast<std::size_t>(tree.leaf_count())) {
+  for (std::size_t number = 0; number < sides_.size(); ++number) {
+    Side& side = sides_[number];
+    side.leaf = &tree.leaf(static_cast<Index>(number));
+    for (int lane = 0; lane < side.leaf->count; ++lane) {
+      const Index own = side.leaf->element[static_cast<std::size_t>(lane)];
+      for (int k = 0; k < element(own).corners; ++k) {
+        if (features.owns_corner(own, k)) side.corners.push_back({lane, k});
+      }
+      for (int k = 0; k < edges_of(element(own)); ++k) {
+        if (features.owns_edge(own, k)) side.edges.push_back({lane, k});
+      }
+    }
+  }
+}
+
+std::vector<ContactCandidate> ContactSearch::find_candidates(const MovingBalls& balls, const std::vector<char>& marked,
+                                                             WatchTimes times) {
+  const Search search{balls, marked, times};
+  const std::vector<ElementTree::LeafPair> pairs = tree_.find_pairs(times, largest_gap_ + margin_);
+  prepare_sides(pairs, search);
+  const auto count = static_cast<Index>(pairs.size());
+  std::vector<std::vector<ContactCandidate>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
+  parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {
+    std::vector<ContactCandidate>& part = parts[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      const Side& a = sides_[static_cast<std::size_t>(pairs[k].first)];
+      const Side& b = sides_[static_cast<std::size_t>(pairs[k].second)];
+      const LaneBytes near = lanes_near(a, b, search);
+      append_corners(a, b, near, search, part);
+      if (&a != &b) append_corners(b, a, lanes_near(b, a, search), search, part);
+      append_edges(a, b, near, search, part);
+    }
+  });
+  std::vector<ContactCandidate> candidates;
+  for (const std::vector<ContactCandidate>& part : parts) candidates.insert(candidates.end(), part.begin(), part.end());
+  return candidates;
+}
+
+void ContactSearch::prepare_sides(const std::vector<ElementTree::LeafPair>& pairs, const Search& search) {
+  std::vector<char> needed(sides_.size(), 0);
+  for (const ElementTree::LeafPair& pair : pairs) {
+    needed[static_cast<std::size_t>(pair.first)] = 1;
+    needed[static_cast<std::size_t>(pair.second)] = 1;
+  }
+  parallel_chunks(tree_.leaf_count(), kLeavesPerTask, [&](Index begin, Index end) {
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      if (needed[k] != 0) prepare(sides_[k], search);
+    }
+  });
+}
+
+void ContactSearch::prepare(Side& side, const Search& search) const {
+  place_corners(*side.leaf, search.times, side.places);
+  side.largest_radius = 0.0F;
+  side.longest_way = 0.0F;
+  for (int lane = 0; lane < side.leaf->count; ++lane) {
+    side.largest_radius = std::max(side.largest_radius, float{side.leaf->radius[lane]});
+    for (int k = 0; k < 3; ++k) {
+      const Index i = side.leaf->particle[k][lane];
+      side.longest_way = std::max(side.longest_way, static_cast<float>(search.balls.motion(i).norm() + search.balls.radius(i)));
+    }
+  }
+  prepare_edges(side, search);
+}
+
+void ContactSearch::prepare_edges(Side& side, const Search& search) const {
+  const ElementLeaf& leaf = *side.leaf;
+  side.sharp.clear();
+  for (const auto& [lane, k] : side.edges) {
+    if (sharp_.is_sharp(features_.edge(leaf.element[static_cast<std::size_t>(lane)], k))) side.sharp.push_back({lane, k});
+  }
+  side.sharp_lanes.assign((side.sharp.size() + kFloatSimdWidth - 1) / kFloatSimdWidth, EdgeLanes{});
+  for (std::size_t number = 0; number < side.sharp.size(); ++number) {
+    EdgeLanes& lanes = side.sharp_lanes[number / kFloatSimdWidth];
+    const auto at = number % kFloatSimdWidth;
+    const auto [lane, k] = side.sharp[number];
+    const int corners = element(leaf.element[static_cast<std::size_t>(lane)]).corners;
+    bool marked = false;
+    for (int end = 0; end < 2; ++end) {
+      const int corner = (k + end) % corners;
+      for (int axis = 0; axis < 3; ++axis) {
+        lanes.now[end][axis][at] = side.places.now[corner][axis][lane];
+        lanes.end[end][axis][at] = side.places.end[corner][axis][lane];
+      }
+      const Index particle = leaf.particle[corner][lane];
+      lanes.particle[end][at] = particle;
+      marked = marked || search.marked[static_cast<std::size_t>(particle)] != 0;
+    }
+    lanes.radius[at] = leaf.radius[lane];
+    lanes.marked[at] = marked ? -1 : 0;
+    lanes.used[at] = -1;
+  }
+}
+
+LaneBytes ContactSearch::lanes_near(const Side& a, const Side& b, const Search& search) const {
+  const float margin = reach_between(a, b) + b.largest_radius;
+  LaneBytes near{};
+  if (b.leaf->any_marked()) find_lanes_near(*a.leaf, b.leaf->marked_bounds, search.times, margin, near);
+  if (!a.leaf->any_marked()) return near;
+  LaneBytes marked;
+  LaneBytes near_all;
+  store(a.leaf->marked, marked);
+  find_lanes_near(*a.leaf, b.leaf->bounds, search.times, margin, near_all);
+  return either(near, both(near_all, marked));
+}
+
+void ContactSearch::append_corners(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
+                                   std::vector<ContactCandidate>& candidates) const {
+  const auto now = static_cast<float>(search.times.now);
+  const auto end = static_cast<float>(search.times.end);
+  const bool any_marked = b.leaf->any_marked();
+  const float reach = reach_between(a, b);
+  for (const auto& [lane, k] : a.corners) {
+    if (near[static_cast<std::size_t>(lane)] == 0) continue;
+    const bool is_marked = search.marked[static_cast<std::size_t>(a.leaf->particle[k][lane])] != 0;
+    if (!any_marked && !is_marked) continue;
+    const auto axes = [lane = lane](const Float8(&x)[3]) { return MovingBounds::Axes{x[0][lane], x[1][lane], x[2][lane]}; };
+    const MovingBounds::Axes start = axes(a.leaf->corner[k]);
+    const MovingBounds::Axes motion = axes(a.leaf->motion[k]);
+    CornerWay corner;
+    corner.aside = a.leaf->radius[lane] + b.largest_radius;
+    corner.reach = reach + corner.aside;
+    const MovingBounds& faces = is_marked ? b.leaf->bounds : b.leaf->marked_bounds;
+    if (are_apart({start, start, motion, motion}, faces, now, end, corner.reach)) continue;
+    corner.particle = a.leaf->particle[k][lane];
+    for (int axis = 0; axis < 3; ++axis) {
+      corner.now[axis] = a.places.now[k][axis][lane];
+      corner.end[axis] = a.places.end[k][axis][lane];
+    }
+    LaneBytes met;
+    if (!find_faces(corner, *b.leaf, b.places, met)) continue;
+    for (std::size_t other = 0; other < kFloatSimdWidth; ++other) {
+      if (met[other] == 0) continue;
+      const Index face = b.leaf->element[other];
+      const auto& x = element(face).particles;
+      append_if_near({.particles = {corner.particle, x[0], x[1], x[2]},
+                      .edges = false,
+                      .elements = {a.leaf->element[static_cast<std::size_t>(lane)], face}},
+                     search, candidates);
+    }
+  }
+}
+
+void ContactSearch::append_edges(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
+                                 std::vector<ContactCandidate>& candidates) const {
+  for (std::size_t own = 0; own < a.sharp.size(); ++own) {
+    if (near[static_cast<std::size_t>(a.sharp[own][0])] == 0) continue;
+    append_edges_near(a, own, b, &a == &b ? own + 1 : 0, search, candidates);
+  }
+}
+
+void ContactSearch::append_edges_near(const Side& a, std::size_t own, const Side& b, std::size_t from, const Search& search,
+                                      std::vector<ContactCandidate>& candidates) const {
+  const auto [lane, i] = a.sharp[own];
+  const EdgeWay edge = edge_way(a.sharp_lanes[own / kFloatSimdWidth], static_cast<int>(own % kFloatSimdWidth), reach_between(a, b));
+  if (!edge.marked && !b.leaf->any_marked()) return;
+  const MovingBounds& others = edge.marked ? b.leaf->bounds : b.leaf->marked_bounds;
+  if (are_apart(a.leaf->lane_bounds(lane), others, static_cast<float>(search.times.now), static_cast<float>(search.times.end),
+                edge.reach))
+    return;
+  for (std::size_t block = from / kFloatSimdWidth; block < b.sharp_lanes.size(); ++block) {
+    LaneBytes met;
+    if (!find_edges(edge, b.sharp_lanes[block], met)) continue;
+    for (std::size_t k = 0; k < kFloatSimdWidth; ++k) {
+      const std::size_t other = kFloatSimdWidth * block + k;
+      if (met[k] == 0 || other < from) continue;
+      const auto [other_lane, other_edge] = b.sharp[other];
+      const Index first = a.leaf->element[static_cast<std::size_t>(lane)];
+      const Index second = b.leaf->element[static_cast<std::size_t>(other_lane)];
+      const auto x = ends_of(element(first), i);
+      const auto y = ends_of(element(second), other_edge);
+      append_if_near({.particles = {x[0], x[1], y[0], y[1]}, .edges = true, .elements = {first, second}, .edge = {i, other_edge}},
+                     search, candidates);
+    }
+  }
+}
+
+void ContactSearch::append_if_near(ContactCandidate candidate, const Search& search,
+                                   std::vector<ContactCandidate>& candidates) const {
+  const auto is_marked = [&](Index i) { return search.marked[static_cast<std::size_t>(i)] != 0; };
+  if (std::ranges::none_of(candidate.particles, is_marked)) return;
+  const double stray = largest_stray(candidate, search);
+  candidate.gap = 0.5 * (thickness(candidate.elements[0]) + thickness(candidate.elements[1]));
+  const double margin = std::min(margin_, margin_of_step(candidate.gap, way_of(candidate, search)));
+  candidate.reach = candidate.gap + margin;
+  const double distance = least_distance(candidate, search);
+  if (distance - stray > candidate.reach) return;
+  if (element(candidate.elements[0]).body == element(candidate.elements[1]).body) {
+    std::array<Vector3, 4> rest;
+    for (std::size_t k = 0; k < 4; ++k) rest[k] = rest_.col(candidate.particles[k]);
+    const double at_rest = closest_points(candidate, rest).separation.norm();
+    candidate.gap = std::min(candidate.gap, kMostGap * at_rest);
+    candidate.reach = candidate.gap + std::min(margin, kMostMargin * at_rest);
+    if (distance - stray > candidate.reach) return;
+  }
+  candidates.push_back(candidate);
+}
+
+double ContactSearch::largest_stray(const ContactCandidate& candidate, const Search& search) {
+  const auto radius = [&](std::size_t k) { return search.balls.radius(candidate.particles[k]); };
+  return candidate.edges ? std::max(radius(0), radius(1)) + std::max(radius(2), radius(3))
+                         : radius(0) + std::max({radius(1), radius(2), radius(3)});
+}
+
+double ContactSearch::way_of(const ContactCandidate& candidate, const Search& search) {
+  double way = 0.0;
+  for (const Index i : candidate.particles) way = std::max(way, search.balls.motion(i).norm() + search.balls.radius(i));
+  return way;
+}
+
+float ContactSearch::reach_between(const Side& a, const Side& b) const {
+  return static_cast<float>(largest_gap_ +
+                            std::min(margin_, margin_of_step(largest_gap_, double{std::max(a.longest_way, b.longest_way)})));
+}
+
+/// Along a fixed direction what lies between them is least now or at the end.
+double ContactSearch::least_distance(ContactCandidate& candidate, const Search& search) {
+  std::array<Vector3, 4> x;
+  for (std::size_t k = 0; k < 4; ++k) x[k] = search.balls.center(candidate.particles[k]);
+  candidate.normal = closest_points(candidate, x).separation;
+  const double distance = candidate.normal.norm();
+  if (!(distance > 0.0)) return 0.0;
+  candidate.normal /= distance;
+  const double duration = search.times.end - search.times.now;
+  const auto height_at_end = [&](std::size_t k) {
+    return candidate.normal.dot(x[k] + duration * search.balls.motion(candidate.particles[k]));
+  };
+  return std::min(distance, gap_along(candidate, height_at_end));
+}
+
+}  // namespace sprung

@@ -1,0 +1,81 @@
+#include "collision/primitives/primitive_distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace sprung {
+
+namespace {
+
+/// sum of (z_i / (u + gap_i))^2 - 1 and its derivative; terms with z_i = 0 are none, even at their pole.
+struct Secular {
+  double value = -1.0;
+  double slope = 0.0;
+};
+
+Secular secular(const Vector3& z, const Vector3& gap, double u) {
+  Secular sum;
+  for (int i = 0; i < 3; ++i) {
+    if (z[i] == 0.0) continue;
+    const double ratio = z[i] / (u + gap[i]);
+    sum.value += ratio * ratio;
+    sum.slope -= 2.0 * ratio * ratio / (u + gap[i]);
+  }
+  return sum;
+}
+
+/// The largest root, or 0 when the function is negative from there on. Right of its last pole it is convex and falls, so Newton's
+/// steps from a point left of the root never pass it; they end when rounding stops them.
+double largest_root(const Vector3& z, const Vector3& gap) {
+  double u = std::max((z - gap).maxCoeff(), 0.0);
+  if (u == 0.0 && !(secular(z, gap, u).value > 0.0)) return 0.0;
+  for (;;) {
+    const Secular at = secular(z, gap, u);
+    if (!(at.value > 0.0)) return u;
+    const double next = u - at.value / at.slope;
+    if (!(next > u)) return u;
+    u = next;
+  }
+}
+
+/// The point of the ellipsoid nearest to p, with p in the first octant and radii falling. The nearest point x has
+/// p - x = t (x_i / r_i^2), so x_i = r_i^2 p_i / (t + r_i^2) with the largest t that puts it on the surface (Eberly, "Distance from
+/// a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid", 2013). In units of the smallest radius, u = t / r_3^2 + 1.
+Vector3 nearest_in_octant(const Vector3& radii, const Vector3& p) {
+  const Vector3 scale = radii / radii[2];
+  const Vector3 gap = scale.array().square() - 1.0;
+  const Vector3 z = scale.cwiseProduct(p / radii[2]);
+  const double u = largest_root(z, gap);
+  Vector3 x = Vector3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (z[i] > 0.0) x[i] = scale[i] * scale[i] * p[i] / (u + gap[i]);
+  }
+  // On the medial disc: the nearest points are above and below it.
+  if (u == 0.0) x[2] = radii[2] * std::sqrt(std::max(-secular(z, gap, 0.0).value, 0.0));
+  return x;
+}
+
+}  // namespace
+
+SurfacePoint surface_point(const EllipsoidGeometry& ellipsoid, const Vector3& p) {
+  std::array<int, 3> order{0, 1, 2};
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return ellipsoid.radii[i] > ellipsoid.radii[j]; });
+  Vector3 radii;
+  Vector3 folded;
+  for (int i = 0; i < 3; ++i) {
+    radii[i] = ellipsoid.radii[order[i]];
+    folded[i] = std::abs(p[order[i]]);
+  }
+  const Vector3 nearest = nearest_in_octant(radii, folded);
+
+  SurfacePoint found;
+  for (int i = 0; i < 3; ++i) found.point[order[i]] = std::signbit(p[order[i]]) ? -nearest[i] : nearest[i];
+  // The gradient of sum (x_i / r_i)^2, which has a direction even where p is on the surface.
+  const Vector3 unit = found.point.cwiseQuotient(ellipsoid.radii);
+  found.normal = unit.cwiseQuotient(ellipsoid.radii / radii[2]).normalized();
+  found.distance = found.normal.dot(p - found.point);
+  return found;
+}
+
+}  // namespace sprung

@@ -1,0 +1,128 @@
+#include "collision/primitives/primitive_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+
+namespace {
+
+using Vector2 = Eigen::Vector2d;
+
+/// The surface of a ball around `centre`, whose own nearest point is in the direction `from_centre`.
+SurfacePoint ball_surface(const Vector3& centre, double radius, const Vector3& p, const Vector3& from_centre) {
+  const Vector3 away = p - centre;
+  const double length = away.norm();
+  const Vector3 normal = length > 0.0 ? Vector3(away / length) : from_centre;
+  return {centre + radius * normal, normal, length - radius};
+}
+
+/// A point and a normal in the half-plane of a solid of revolution: distance from the axis, height.
+struct ProfilePoint {
+  Vector2 point = Vector2::Zero();
+  Vector2 normal = Vector2::Zero();
+  double distance = 0.0;
+};
+
+/// A corner of the profile seen from outside. Directions of lengths below `rounding` may leave the range between the corner's
+/// sides; then `side` is the normal.
+ProfilePoint at_corner(const Vector2& corner, const Vector2& p, const Vector2& side, double rounding) {
+  const double distance = (p - corner).norm();
+  return {corner, distance > rounding ? Vector2((p - corner) / distance) : side, distance};
+}
+
+ProfilePoint profile_surface(const CylinderGeometry& cylinder, const Vector2& p, double rounding) {
+  const double cap = std::copysign(0.5 * cylinder.height, p.y());
+  const double beyond_wall = p.x() - cylinder.radius;
+  const double beyond_cap = std::abs(p.y()) - 0.5 * cylinder.height;
+  const Vector2 up(0.0, std::copysign(1.0, p.y()));
+  if (beyond_wall > 0.0 && beyond_cap > 0.0) {
+    return at_corner(Vector2(cylinder.radius, cap), p, beyond_wall > beyond_cap ? Vector2::UnitX() : up, rounding);
+  }
+  if (beyond_wall > beyond_cap) return {Vector2(cylinder.radius, p.y()), Vector2::UnitX(), beyond_wall};
+  return {Vector2(p.x(), cap), up, beyond_cap};
+}
+
+ProfilePoint profile_surface(const ConeGeometry& cone, const Vector2& p, double rounding) {
+  const Vector2 rim(cone.radius, -0.5 * cone.height);
+  const Vector2 tip(0.0, 0.5 * cone.height);
+  const double slant = (tip - rim).norm();
+  const Vector2 along = (tip - rim) / slant;
+  const Vector2 outward(along.y(), -along.x());
+  const Vector2 down(0.0, -1.0);
+  const double above_side = outward.dot(p - rim);
+  const double below_base = rim.y() - p.y();
+  const double way = along.dot(p - rim);
+  const bool outside = above_side > 0.0 || below_base > 0.0;
+  if (outside && way <= 0.0 && p.x() >= rim.x()) return at_corner(rim, p, above_side > below_base ? outward : down, rounding);
+  if (outside && way >= slant) return at_corner(tip, p, outward, rounding);
+  if (outside ? below_base > 0.0 && p.x() < rim.x() : below_base >= above_side) return {Vector2(p.x(), rim.y()), down, below_base};
+  return {p - above_side * outward, outward, above_side};
+}
+
+/// The profile's answer for a point in space, turned about the y axis.
+template <class Solid>
+SurfacePoint revolved_surface(const Solid& solid, const Vector3& p) {
+  const double radius = std::sqrt(p.x() * p.x() + p.z() * p.z());
+  const Vector3 outward = radius > 0.0 ? Vector3(p.x() / radius, 0.0, p.z() / radius) : Vector3::UnitX();
+  const double rounding = 1e-12 * p.norm();
+  const ProfilePoint found = profile_surface(solid, Vector2(radius, p.y()), rounding);
+  const auto in_space = [&](const Vector2& q) { return Vector3(q.x() * outward.x(), q.y(), q.x() * outward.z()); };
+  return {in_space(found.point), in_space(found.normal), found.distance};
+}
+
+Box3 centred_box(double x, double y, double z) { return {Vector3(-x, -y, -z), Vector3(x, y, z)}; }
+
+}  // namespace
+
+SurfacePoint surface_point(const SphereGeometry& sphere, const Vector3& p) {
+  return ball_surface(Vector3::Zero(), sphere.radius, p, Vector3::UnitY());
+}
+
+SurfacePoint surface_point(const CapsuleGeometry& capsule, const Vector3& p) {
+  const double half = 0.5 * capsule.length;
+  return ball_surface(std::clamp(p.y(), -half, half) * Vector3::UnitY(), capsule.radius, p, Vector3::UnitX());
+}
+
+SurfacePoint surface_point(const BoxGeometry& box, const Vector3& p) {
+  const Vector3 half = 0.5 * box.size;
+  const Vector3 nearest = p.cwiseMax(-half).cwiseMin(half);
+  const double outside = (p - nearest).norm();
+  if (outside > 0.0) return {nearest, (p - nearest) / outside, outside};
+  Index axis = 0;
+  const double highest = (p.cwiseAbs() - half).maxCoeff(&axis);
+  const Vector3 face = (p[axis] < 0.0 ? -1.0 : 1.0) * Vector3::Unit(axis);
+  Vector3 point = p;
+  point[axis] = face[axis] * half[axis];
+  return {point, face, highest};
+}
+
+SurfacePoint surface_point(const CylinderGeometry& cylinder, const Vector3& p) { return revolved_surface(cylinder, p); }
+
+SurfacePoint surface_point(const ConeGeometry& cone, const Vector3& p) { return revolved_surface(cone, p); }
+
+SurfacePoint surface_point(const HalfSpaceGeometry& half_space, const Vector3& p) {
+  const double height = half_space.normal.dot(p) - half_space.offset;
+  return {p - height * half_space.normal, half_space.normal, height};
+}
+
+Box3 bounds(const SphereGeometry& sphere) { return centred_box(sphere.radius, sphere.radius, sphere.radius); }
+
+Box3 bounds(const BoxGeometry& box) { return {-0.5 * box.size, 0.5 * box.size}; }
+
+Box3 bounds(const CapsuleGeometry& capsule) {
+  return centred_box(capsule.radius, 0.5 * capsule.length + capsule.radius, capsule.radius);
+}
+
+Box3 bounds(const CylinderGeometry& cylinder) { return centred_box(cylinder.radius, 0.5 * cylinder.height, cylinder.radius); }
+
+Box3 bounds(const ConeGeometry& cone) { return centred_box(cone.radius, 0.5 * cone.height, cone.radius); }
+
+Box3 bounds(const EllipsoidGeometry& ellipsoid) { return {-ellipsoid.radii, ellipsoid.radii}; }
+
+Box3 bounds(const HalfSpaceGeometry& /*half_space*/) {
+  return {Vector3::Constant(-std::numeric_limits<double>::infinity()), Vector3::Constant(std::numeric_limits<double>::infinity())};
+}
+
+}  // namespace sprung

@@ -1,0 +1,70 @@
+// A primitive as an obstacle's shape: everything follows from its signed distance.
+#pragma once
+
+#include "collision/primitives/convex_separating_plane.h"
+#include "collision/primitives/primitive_distance.h"
+#include "collision/primitives/primitive_safe_region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <type_traits>
+
+namespace sprung {
+
+/// Where a path first meets a convex solid with signed distance `distance`. Along a line the distance is convex, so its tangent
+/// lies below it: Newton's steps never pass the surface, and a tangent that stays positive proves the rest of the path free.
+[[nodiscard]] std::optional<Crossing> first_crossing_of_convex(const std::function<SurfacePoint(const Vector3&)>& distance,
+                                                               double rounding, const Vector3& a, const Vector3& b);
+
+template <class Geometry>
+class PrimitiveShape final : public ObstacleShape {
+ public:
+  explicit PrimitiveShape(const Geometry& geometry) : geometry_(geometry) {}
+
+  [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override {
+    const SurfacePoint found = surface_point(geometry_, p);
+    if (!(found.distance < radius)) return std::nullopt;
+    return found;
+  }
+
+  [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override {
+    return first_crossing_of_convex([this](const Vector3& p) { return surface_point(geometry_, p); },
+                                    std::max(rounding(a), rounding(b)), a, b);
+  }
+
+  void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const override {
+    zone = sprung::find_zone(geometry_, element, request);
+  }
+
+  void look_again(const ElementCorners& element, const ZoneRequest& request, bool /*fresh*/, Zone& zone) const override {
+    const Zone again = sprung::find_zone(geometry_, element, request);
+    if (again.broken || !std::isfinite(again.distance)) return;
+    zone.point = again.point;
+    zone.normal = again.normal;
+    zone.weights = again.weights;
+  }
+
+  [[nodiscard]] bool touches(const ElementCorners& element, double tolerance) const override {
+    return !(separation(geometry_, element, box_around(element, tolerance)).gap > tolerance);
+  }
+
+  [[nodiscard]] bool contains(const Vector3& p) const override { return surface_point(geometry_, p).distance < 0.0; }
+
+  [[nodiscard]] Box3 bounds() const override { return sprung::bounds(geometry_); }
+
+  [[nodiscard]] double magnitude() const override {
+    if constexpr (std::is_same_v<Geometry, HalfSpaceGeometry>) {
+      return std::abs(geometry_.offset);
+    } else {
+      return bounds().max().maxCoeff();
+    }
+  }
+
+  [[nodiscard]] double rounding(const Vector3& p) const override { return 1e-14 * (magnitude() + p.cwiseAbs().maxCoeff()); }
+
+ private:
+  Geometry geometry_;
+};
+
+}  // namespace sprung

@@ -1,0 +1,15 @@
+// Zones before a mesh that deforms.
+#pragma once
+
+#include "collision/mesh_bvh/mesh_bvh.h"
+#include "collision/safe_regions/safe_region.h"
+
+namespace sprung {
+
+/// Shifts a zone between the triangles of `before` to where they are in `after`: by `zone.drift`, which is how far the surface went
+/// where it was nearest, and smaller by how much otherwise any triangle went that comes near the zone on the way. While both go on
+/// straight, all corners that begin in the one zone and end in the other stay clear of all triangles. Requires trees of the same
+/// triangles, whose boxes hold both positions.
+void shift(Zone& zone, const MeshTree& before, const MeshTree& after);
+
+}  // namespace sprung

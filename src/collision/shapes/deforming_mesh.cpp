@@ -1,0 +1,126 @@
+#include "collision/shapes/deforming_mesh.h"
+
+#include "geometry/queries/closest_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace sprung {
+
+namespace {
+
+constexpr double kMostParts = 1024.0;
+
+double mean_edge_length(const Points& vertices, const Triangles& triangles) {
+  double sum = 0.0;
+  for (const auto& corner : triangles.colwise()) {
+    for (int k = 0; k < 3; ++k) sum += (vertices.col(corner[(k + 1) % 3]) - vertices.col(corner[k])).norm();
+  }
+  return sum / static_cast<double>(triangles.size());
+}
+
+}  // namespace
+
+DeformingMesh::DeformingMesh(std::shared_ptr<const MeshSequence> sequence)
+    : sequence_(std::move(sequence)),
+      around_(triangles_around_vertices(sequence_->triangles, static_cast<Index>(sequence_->frames.front().cols()))),
+      edge_length_(mean_edge_length(sequence_->frames.front(), sequence_->triangles)),
+      before_{{}, sequence_->triangles},
+      after_{{}, sequence_->triangles} {}
+
+void DeformingMesh::set_interval(double t, double t_end) {
+  begin_ = t;
+  end_ = t_end;
+  const MeshSequence::Moment begin = sequence_->at(t);
+  const MeshSequence::Moment end = sequence_->at(t_end);
+  sequence_->positions(begin, before_.vertices);
+  sequence_->positions(end, after_.vertices);
+  largest_displacement_ = std::sqrt((after_.vertices - before_.vertices).colwise().squaredNorm().maxCoeff());
+
+  fit_span(begin, end);
+}
+
+void DeformingMesh::fit_span(const MeshSequence::Moment& begin, const MeshSequence::Moment& end) {
+  const bool at_next = end.frame == begin.next && end.part == 0.0 && begin.part > 0.0;
+  if (end.frame != begin.frame && !at_next) {
+    span_ = {};
+    sweep_is_new_ = true;
+    return;
+  }
+  const bool same_frames = span_.frame == begin.frame && span_.next == begin.next;
+  Span span{.frame = begin.frame, .next = begin.next};
+  span.parts = same_frames ? span_.parts : parts_between(span.frame, span.next);
+  const double low = std::min(begin.part, at_next ? 1.0 : end.part);
+  const double high = std::max(begin.part, at_next ? 1.0 : end.part);
+  span.first = std::min(static_cast<int>(low * span.parts), span.parts - 1);
+  span.last = std::max(static_cast<int>(std::ceil(high * span.parts)), span.first + 1);
+  sweep_is_new_ = span != span_;
+  if (!sweep_is_new_) return;
+  span_ = span;
+  const auto place = [&](int part, Points& positions) {
+    if (part < span.parts) sequence_->positions({span.frame, span.next, static_cast<double>(part) / span.parts}, positions);
+    if (part == span.parts) positions = sequence_->frames[span.next];
+  };
+  place(span.first, sweep_from_);
+  place(span.last, sweep_to_);
+}
+
+int DeformingMesh::parts_between(Index frame, Index next) const {
+  const double farthest2 = (sequence_->frames[next] - sequence_->frames[frame]).colwise().squaredNorm().maxCoeff();
+  const double parts = std::ceil(std::sqrt(farthest2) / edge_length_);
+  return std::isfinite(parts) ? static_cast<int>(std::clamp(parts, 1.0, kMostParts)) : 1;
+}
+
+DeformingMesh::Sweep DeformingMesh::sweep() const {
+  if (span_.parts == 0) return {before_.vertices, after_.vertices};
+  return {sweep_from_, sweep_to_};
+}
+
+Vector3 DeformingMesh::displacement(Index triangle, const Vector3& weights) const {
+  Vector3 sum = Vector3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Index vertex = after_.triangles(k, triangle);
+    sum += weights[k] * (after_.vertices.col(vertex) - before_.vertices.col(vertex));
+  }
+  return sum;
+}
+
+Vector3 DeformingMesh::displacement(Index triangle, const Vector3& weights, double t, double t_end) const {
+  const MeshSequence::Moment begin = sequence_->at(t);
+  const MeshSequence::Moment end = sequence_->at(t_end);
+  Vector3 sum = Vector3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Index vertex = after_.triangles(k, triangle);
+    sum += weights[k] * (sequence_->position(vertex, end) - sequence_->position(vertex, begin));
+  }
+  return sum;
+}
+
+SpotMotion DeformingMesh::motion(Index triangle, const Vector3& point) const {
+  const auto corner = after_.triangles.col(triangle);
+  const Vector3 a = before_.vertices.col(corner[0]);
+  const Vector3 b = before_.vertices.col(corner[1]);
+  const Vector3 c = before_.vertices.col(corner[2]);
+  const Vector3 weights = barycentric(closest_point_on_triangle(point, a, b, c), a, b, c);
+  const auto axes = [&](const TriangleMesh& mesh) {
+    const Vector3 origin = mesh.vertices.col(corner[0]);
+    Matrix3 columns;
+    columns << mesh.vertices.col(corner[1]) - origin, mesh.vertices.col(corner[2]) - origin,
+        area_normal(mesh, triangle).normalized();
+    return columns;
+  };
+  SpotMotion motion{.after = point + displacement(triangle, weights), .turn = axes(after_) * axes(before_).inverse()};
+  if (!motion.turn.allFinite()) motion.turn.setIdentity();  // the triangle has no area
+  return motion;
+}
+
+Vector3 DeformingMesh::face_normal(Index triangle) const {
+  const Vector3 own = area_normal(after_, triangle);
+  if (own.squaredNorm() > 0.0) return own.normalized();
+  Vector3 around = Vector3::Zero();
+  for (int corner = 0; corner < 3; ++corner) around += normal_at(triangle, static_cast<TriangleFeature>(corner));
+  return around.squaredNorm() > 0.0 ? around.normalized() : Vector3::UnitY();
+}
+
+}  // namespace sprung

@@ -1,0 +1,259 @@
+#include "collision/shapes/mesh_shape.h"
+
+#include "base/error.h"
+#include "collision/mesh_bvh/winding_number.h"
+#include "collision/safe_regions/mesh_safe_region.h"
+#include "collision/safe_regions/safe_region_motion.h"
+#include "collision/shapes/mesh_validation.h"
+#include "geometry/queries/closest_pair.h"
+#include "geometry/queries/side_of_plane.h"
+#include "geometry/queries/simplex_crossing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+
+namespace {
+
+// Closest points are off by some tens of roundings of the largest coordinate that they are computed from.
+constexpr double kRounding = 1e-14;
+
+// What is met beyond this part of the way to a spot of the surface is what it shares with its neighbours.
+constexpr double kAtSpot = 1.0 - 1e-3;
+
+// The surface is looked for this many times farther off than asked for, since who finds nothing need not look again soon.
+constexpr double kFarther = 2.0;
+
+// Sums of distances are right to far more than this.
+constexpr double kClearPart = 1.0 - 0x1p-20;
+
+double largest_coordinate(const Points& vertices) { return vertices.cwiseAbs().maxCoeff(); }
+
+}  // namespace
+
+MeshShape::MeshShape(const MeshGeometry& geometry) : rigid_(geometry.mesh), closed_(geometry.closed) {
+  if (!rigid_) throw InputError(Problem{.key = "mesh", .rule = "must be given"});
+  require_usable(*rigid_);
+  magnitude_ = largest_coordinate(rigid_->vertices);
+  tree_.emplace(*rigid_);
+  bounds_ = tree_->bounds();
+  pseudonormals_ = pseudonormals(*rigid_);
+}
+
+// The tree is that of the first frame whatever the time, so that a simulation that begins later meets the same tree.
+MeshShape::MeshShape(const SequenceGeometry& geometry) : closed_(geometry.closed) {
+  if (!geometry.sequence) throw InputError(Problem{.key = "sequence", .rule = "must be given"});
+  const MeshSequence& sequence = *geometry.sequence;
+  require_usable(sequence);
+  for (const Points& frame : sequence.frames) magnitude_ = std::max(magnitude_, largest_coordinate(frame));
+  tree_.emplace(TriangleMesh{sequence.frames.front(), sequence.triangles});
+  tree_before_.emplace(*tree_);
+  deforming_.emplace(geometry.sequence);
+  deforms_ = sequence.deforms();
+  set_interval(0.0, 0.0);
+}
+
+void MeshShape::set_interval(double t, double t_end) {
+  if (!deforming_) return;
+  deforming_->set_interval(t, t_end);
+  if (deforming_->sweep_is_new()) {
+    const auto [from, to] = deforming_->sweep();
+    tree_->refit(from, to);
+    tree_before_->take_boxes(*tree_);
+  }
+  tree_->place(deforming_->after());
+  tree_before_->place(deforming_->before());
+  bounds_ = tree_->bounds();
+}
+
+Vector3 MeshShape::displacement(const Vector3& p) const {
+  if (!deforms_ || deforming_->largest_displacement() == 0.0) return Vector3::Zero();
+  const auto [triangle, weights] = nearest_spot(*tree_before_, p);
+  return triangle == kNone ? Vector3(Vector3::Zero()) : deforming_->displacement(triangle, weights);
+}
+
+Vector3 MeshShape::displacement(const Vector3& p, double t, double t_end) const {
+  if (!deforms_) return Vector3::Zero();
+  const auto [triangle, weights] = nearest_spot(*tree_, p);
+  return triangle == kNone ? Vector3(Vector3::Zero()) : deforming_->displacement(triangle, weights, t, t_end);
+}
+
+std::optional<CarriedElement> MeshShape::carried(const ElementCorners& element, double lift) const {
+  if (!deforms_ || deforming_->largest_displacement() == 0.0) return {{element}};
+  const Zone zone = nearest_before(element);
+  if (zone.broken || zone.triangle == kNone) return std::nullopt;
+  CarriedElement result{element, zone.distance};
+  const SpotMotion motion = deforming_->motion(zone.triangle, zone.point);
+  const Vector3 raised = lift * deforming_->largest_displacement() * (motion.turn * zone.normal).normalized();
+  Vector3 nearest = Vector3::Zero();
+  for (int i = 0; i < element.count; ++i) {
+    Vector3& corner = result.corners.x[static_cast<std::size_t>(i)];
+    corner = motion.after + motion.turn * (corner - zone.point) + raised;
+    nearest += zone.weights[i] * corner;
+  }
+  const auto hit = tree_->first_hit(nearest, motion.after, CrossingSides::both);
+  if (hit && hit->triangle != zone.triangle && hit->fraction < kAtSpot) return std::nullopt;
+  return result;
+}
+
+// What an obstacle comes to cross in the interval is no farther from it than both go.
+Zone MeshShape::nearest_before(const ElementCorners& element) const {
+  Zone zone;
+  if (element.count > 1) {
+    const double reach = 2.0 * deforming_->largest_displacement();
+    sprung::find_zone(*tree_before_, element, {.reach = reach, .exact = reach}, zone);
+    return zone;
+  }
+  const auto found = tree_before_->nearest(element.x[0], std::numeric_limits<double>::infinity());
+  if (!found) return zone;  // the particle is not finite
+  zone.triangle = found->triangle;
+  zone.point = found->closest.point;
+  zone.distance = std::sqrt(found->closest.squared_distance);
+  zone.normal = (element.x[0] - zone.point).normalized();
+  zone.weights = Vector3::UnitX();
+  return zone;
+}
+
+std::optional<MovedTriangle> MeshShape::moved_triangle(const Vector3& p) const {
+  if (!deforms_) return std::nullopt;
+  const Index triangle = nearest_spot(*tree_before_, p).triangle;
+  if (triangle == kNone) return std::nullopt;
+  return MovedTriangle{tree_before_->corners(triangle), tree_->corners(triangle)};
+}
+
+MeshShape::Spot MeshShape::nearest_spot(const MeshTree& tree, const Vector3& p) {
+  const auto found = tree.nearest(p, std::numeric_limits<double>::infinity());
+  if (!found) return {};  // p is not finite
+  const auto [a, b, c] = tree.corners(found->triangle);
+  return {found->triangle, barycentric(found->closest, a, b, c)};
+}
+
+std::optional<SurfacePoint> MeshShape::nearest(const Vector3& p, double radius) const {
+  const auto found = tree_->nearest(p, radius);
+  if (!found) return std::nullopt;
+  return surface_point(p, *found);
+}
+
+std::optional<SurfacePoint> MeshShape::nearest_again(const Vector3& p, double radius, double same, SurfaceMemory& memory) const {
+  if (deforms_) return nearest(p, radius);
+  const double moved = (p - memory.asked_at).norm();
+  if (moved + radius < kClearPart * memory.clear) return std::nullopt;
+  const auto if_within = [&](const MeshTree::Nearest& found) {
+    return found.closest.squared_distance < radius * radius ? std::optional(surface_point(p, found)) : std::nullopt;
+  };
+  const double farther = kFarther * radius;
+  std::optional<MeshTree::Nearest> found;
+  if (memory.triangle != kNone) {
+    const auto corners = tree_->corners(memory.triangle);
+    found = {memory.triangle, closest_point_on_triangle(p, corners[0], corners[1], corners[2]), corners};
+    if (moved < same) return if_within(*found);
+    if (!(found->closest.squared_distance < farther * farther)) found.reset();
+  }
+  const auto nearer = tree_->nearest(p, found ? std::sqrt(found->closest.squared_distance) : farther);
+  if (nearer) found = nearer;
+  memory = {found ? found->triangle : kNone, p, found ? std::sqrt(found->closest.squared_distance) : farther};
+  return found ? if_within(*found) : std::nullopt;
+}
+
+SurfacePoint MeshShape::surface_point(const Vector3& p, const MeshTree::Nearest& found) const {
+  const auto& [triangle, closest, corners] = found;
+  const Vector3& a = corners[0];
+  const Vector3& b = corners[1];
+  const Vector3& c = corners[2];
+  const Vector3 away = p - closest.point;
+  const double length = std::sqrt(closest.squared_distance);
+  const auto is_rounding = [&] {
+    return length <= kRounding * a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(c.cwiseAbs()).cwiseMax(p.cwiseAbs()).maxCoeff();
+  };
+
+  // Above a face, and everywhere within rounding of the surface, the face's normal is better than the direction to the particle,
+  // and the exact side better than that direction's.
+  if (closest.feature == TriangleFeature::face || is_rounding()) {
+    const Vector3 face = face_normal(triangle);
+    const bool back = side_of_plane(a, b, c, p) < 0.0;
+    if (!closed_) return {closest.point, back ? Vector3(-face) : face, length};
+    return {closest.point, face, back ? -length : length};
+  }
+  const bool inside = closed_ && pseudonormal(triangle, closest.feature).dot(away) < 0.0;
+  return {closest.point, (inside ? -away : away) / length, inside ? -length : length};
+}
+
+std::optional<Crossing> MeshShape::first_crossing(const Vector3& a, const Vector3& b) const {
+  const auto hit = tree_->first_hit(a, b, closed_ ? CrossingSides::front : CrossingSides::both);
+  if (!hit) return std::nullopt;
+  const Vector3 face = face_normal(hit->triangle);
+  return Crossing{hit->fraction, a + hit->fraction * (b - a), face.dot(b - a) > 0.0 ? Vector3(-face) : face};
+}
+
+void MeshShape::find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const {
+  const MeshTree& tree = deforms_ && !request.at_end ? *tree_before_ : *tree_;
+  sprung::find_zone(tree, element, request, zone);
+  if (!deforms_) return;
+  zone.time = deforming_->end();
+  if (zone.triangle != kNone) weigh_point(tree, zone);
+  if (!request.at_end) follow_surface(zone);
+}
+
+void MeshShape::weigh_point(const MeshTree& tree, Zone& zone) {
+  const auto [a, b, c] = tree.corners(zone.triangle);
+  zone.triangle_weights = barycentric(closest_point_on_triangle(zone.point, a, b, c), a, b, c);
+}
+
+void MeshShape::look_again(const ElementCorners& element, const ZoneRequest& request, bool fresh, Zone& zone) const {
+  const MeshTree& tree = deforms_ ? *tree_before_ : *tree_;
+  NearestSpot spot{zone.triangle, zone.place};
+  if (!fresh) spot = sprung::nearest_spot(tree, element, request, spot);
+  if (spot.triangle == kNone) return;
+  const ClosestPair pair = closest_pair(element, tree.corners(spot.triangle), 0.0, 0.0, spot.place);
+  const Vector3 between = pair.on_simplex - pair.on_triangle;
+  if (!(between.squaredNorm() > 0.0)) return;
+  zone.point = pair.on_triangle;
+  zone.normal = between.normalized();
+  zone.weights = pair.weights;
+  zone.triangle = spot.triangle;
+  zone.place = pair.place;
+  if (!deforms_) return;
+  weigh_point(tree, zone);
+  zone.drift = deforming_->displacement(zone.triangle, zone.triangle_weights);
+  zone.point += zone.drift;
+}
+
+bool MeshShape::take_along(Zone& zone) const {
+  if (!deforms_ || zone.time == deforming_->end()) return true;
+  if (zone.time != deforming_->begin()) return false;
+  zone.time = deforming_->end();
+  follow_surface(zone);
+  return true;
+}
+
+void MeshShape::follow_surface(Zone& zone) const {
+  zone.drift.setZero();
+  if (zone.broken || deforming_->largest_displacement() == 0.0) return;
+  if (zone.triangle != kNone) zone.drift = deforming_->displacement(zone.triangle, zone.triangle_weights);
+  shift(zone, *tree_before_, *tree_);
+}
+
+bool MeshShape::touches(const ElementCorners& element, double tolerance) const {
+  std::vector<Index> near;
+  find_in_box(*tree_, box_around(element, tolerance), near);
+  return std::any_of(near.begin(), near.end(), [&](Index t) {
+    const auto triangle = tree_->corners(t);
+    return meets(element, triangle) || closest_pair(element, triangle).squared_distance <= tolerance * tolerance;
+  });
+}
+
+bool MeshShape::contains(const Vector3& p) const { return closed_ && bounds_.contains(p) && winding_number(*tree_, p) > 0; }
+
+double MeshShape::rounding(const Vector3& p) const { return kRounding * (magnitude_ + p.cwiseAbs().maxCoeff()); }
+
+Vector3 MeshShape::face_normal(Index triangle) const {
+  return deforming_ ? deforming_->face_normal(triangle) : Vector3(pseudonormals_.face.col(triangle));
+}
+
+Vector3 MeshShape::pseudonormal(Index triangle, TriangleFeature feature) const {
+  return deforming_ ? deforming_->normal_at(triangle, feature) : pseudonormals_.at(rigid_->triangles, triangle, feature);
+}
+
+}  // namespace sprung

@@ -1,0 +1,125 @@
+#include "collision/surface/collision_surface.h"
+
+#include "collision/core/spatial_partition.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+// 4 x 4 squares of a cloth: larger patches have boxes too loose to reject much, smaller ones are too many to ask for.
+constexpr std::size_t kMostPatchElements = 32;
+
+void add_single_particles(const std::vector<Index>& body_of, std::vector<Element>& elements) {
+  std::vector<char> used(body_of.size(), 0);
+  for (const Element& element : elements) {
+    for (const Index particle : corners_of(element)) used[static_cast<std::size_t>(particle)] = 1;
+  }
+  for (std::size_t i = 0; i < body_of.size(); ++i) {
+    if (used[i] == 0) elements.push_back({{static_cast<Index>(i), kNone, kNone}, 1, body_of[i]});
+  }
+  std::stable_sort(elements.begin(), elements.end(), [](const Element& a, const Element& b) { return a.body < b.body; });
+}
+
+std::vector<std::size_t> sort_into_patches(const Points& positions, std::vector<Element>& elements) {
+  const Points middles = element_middles(elements, positions);
+  std::vector<Index> order(elements.size());
+  for (std::size_t e = 0; e < order.size(); ++e) order[e] = static_cast<Index>(e);
+
+  std::vector<std::size_t> starts;
+  for (std::size_t begin = 0; begin < elements.size();) {
+    std::size_t end = begin;
+    while (end < elements.size() && elements[end].body == elements[begin].body) ++end;
+    bisect(middles, kMostPatchElements, order, begin, end, starts);
+    begin = end;
+  }
+  std::vector<Element> sorted;
+  sorted.reserve(elements.size());
+  for (const Index e : order) sorted.push_back(elements[static_cast<std::size_t>(e)]);
+  elements = std::move(sorted);
+  return starts;
+}
+
+ElementPatch make_patch(const std::vector<Element>& elements, std::size_t begin, std::size_t end) {
+  ElementPatch patch{.first_element = static_cast<Index>(begin), .element_count = static_cast<Index>(end - begin), .particles = {}};
+  for (std::size_t e = begin; e < end; ++e) {
+    const auto corners = corners_of(elements[e]);
+    patch.particles.insert(patch.particles.end(), corners.begin(), corners.end());
+  }
+  std::sort(patch.particles.begin(), patch.particles.end());
+  patch.particles.erase(std::unique(patch.particles.begin(), patch.particles.end()), patch.particles.end());
+  return patch;
+}
+
+void list_slots(CollisionSurface& surface, std::size_t particles) {
+  surface.first_slot.assign(particles + 1, 0);
+  for (const ElementPatch& patch : surface.patches) {
+    for (const Index particle : patch.particles) ++surface.first_slot[static_cast<std::size_t>(particle) + 1];
+  }
+  for (std::size_t i = 0; i < particles; ++i) surface.first_slot[i + 1] += surface.first_slot[i];
+  surface.slots.resize(static_cast<std::size_t>(surface.first_slot.back()));
+  std::vector<Index> next = surface.first_slot;
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    const std::vector<Index>& own = surface.patches[p].particles;
+    for (std::size_t slot = 0; slot < own.size(); ++slot) {
+      const Index at = next[static_cast<std::size_t>(own[slot])]++;
+      surface.slots[static_cast<std::size_t>(at)] = {static_cast<Index>(p), static_cast<Index>(slot)};
+    }
+  }
+}
+
+std::vector<double> mean_edge_lengths(const std::vector<Element>& elements, const Points& positions, std::size_t bodies) {
+  std::vector<double> length(bodies, 0.0);
+  std::vector<double> edges(bodies, 0.0);
+  for (const Element& element : elements) {
+    const auto body = static_cast<std::size_t>(element.body);
+    // A segment has one edge, which its two corners would name twice.
+    const int count = element.corners == 3 ? 3 : element.corners - 1;
+    for (int k = 0; k < count; ++k) {
+      const Index to = element.particles[static_cast<std::size_t>((k + 1) % element.corners)];
+      length[body] += (positions.col(to) - positions.col(element.particles[static_cast<std::size_t>(k)])).norm();
+      edges[body] += 1.0;
+    }
+  }
+  for (std::size_t body = 0; body < bodies; ++body) length[body] /= std::max(edges[body], 1.0);
+  return length;
+}
+
+}  // namespace
+
+Points element_middles(const std::vector<Element>& elements, const Points& positions) {
+  Points middles = Points::Zero(3, static_cast<Eigen::Index>(elements.size()));
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    auto middle = middles.col(static_cast<Eigen::Index>(e));
+    for (const Index particle : corners_of(elements[e])) middle += positions.col(particle);
+    middle /= elements[e].corners;
+  }
+  return middles;
+}
+
+CollisionSurface make_collision_surface(std::vector<Element> elements, const Points& positions, const std::vector<Index>& body_of,
+                                        Scalars thickness, std::vector<char> pinned, std::vector<char> self,
+                                        std::vector<char> others) {
+  add_single_particles(body_of, elements);
+  std::vector<std::size_t> starts = sort_into_patches(positions, elements);
+  starts.push_back(elements.size());
+
+  CollisionSurface surface{.elements = std::move(elements),
+                           .patches = {},
+                           .thickness = std::move(thickness),
+                           .pinned = std::move(pinned),
+                           .self = std::move(self),
+                           .others = std::move(others),
+                           .element_size = {},
+                           .first_slot = {},
+                           .slots = {}};
+  for (std::size_t p = 0; p + 1 < starts.size(); ++p) {
+    surface.patches.push_back(make_patch(surface.elements, starts[p], starts[p + 1]));
+  }
+  list_slots(surface, body_of.size());
+  surface.element_size = mean_edge_lengths(surface.elements, positions, surface.self.size());
+  return surface;
+}
+
+}  // namespace sprung

@@ -1,0 +1,42 @@
+#include "dynamics/contact/collision_surface_builder.h"
+
+#include "dynamics/contact/contact_materials.h"
+
+#include <utility>
+
+namespace sprung {
+namespace {
+
+void append_elements(const Body& body, Index number, std::vector<Element>& elements) {
+  const Index first = body.first_particle;
+  for (const auto& corners : body.surface.triangles.colwise()) {
+    elements.push_back({{first + corners[0], first + corners[1], first + corners[2]}, 3, number});
+  }
+  for (const auto& ends : body.surface.segments.colwise()) {
+    elements.push_back({{first + ends[0], first + ends[1], kNone}, 2, number});
+  }
+}
+
+}  // namespace
+
+CollisionSurface contact_surface(const SpringNetwork& network) {
+  const auto particles = static_cast<std::size_t>(network.particle_count());
+  std::vector<Element> elements;
+  std::vector<Index> body_of;
+  std::vector<char> self;
+  std::vector<char> others;
+  body_of.reserve(particles);
+  for (const Body& body : network.bodies) {
+    const auto number = static_cast<Index>(self.size());
+    append_elements(body, number, elements);
+    body_of.insert(body_of.end(), static_cast<std::size_t>(body.particle_count), number);
+    self.push_back(body.contact.self ? 1 : 0);
+    others.push_back(body.contact.others ? 1 : 0);
+  }
+  std::vector<char> pinned(particles);
+  for (Index i = 0; i < network.particle_count(); ++i) pinned[static_cast<std::size_t>(i)] = network.is_pinned(i) ? 1 : 0;
+  return make_collision_surface(std::move(elements), network.positions, body_of, particle_thickness(network), std::move(pinned),
+                                std::move(self), std::move(others));
+}
+
+}  // namespace sprung

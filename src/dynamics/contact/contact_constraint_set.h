@@ -1,0 +1,170 @@
+// Contacts of n particles each, in flat arrays: the passes of a step over positions, then over velocities. Internal to dynamics/.
+#pragma once
+
+#include "dynamics/contact/contact_constraint.h"
+#include "dynamics/contact/restitution.h"
+#include "dynamics/integrators/step_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace sprung {
+
+template <std::size_t n>
+class ContactSet {
+ public:
+  /// Holds so many contacts, the first as before; of new ones `row`, `goal` and `gap` [m] > 0 are then to be set.
+  void resize(std::size_t count) {
+    rows_.resize(count);
+    goals_.resize(count);
+    gaps_.resize(count);
+  }
+  [[nodiscard]] std::size_t count() const { return rows_.size(); }
+  [[nodiscard]] ContactRow<n>& row(std::size_t contact) { return rows_[contact]; }
+  [[nodiscard]] ContactGoal& goal(std::size_t contact) { return goals_[contact]; }
+  [[nodiscard]] double& gap(std::size_t contact) { return gaps_[contact]; }
+
+  /// Moves the contacts of these patches, ascending, to `former`, in their order.
+  void take_out(const std::vector<Index>& patches, ContactSet& former) {
+    former.resize(0);
+    std::size_t kept = 0;
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      if (std::binary_search(patches.begin(), patches.end(), rows_[c].patch)) {
+        former.append(rows_[c], goals_[c], gaps_[c]);
+      } else {
+        if (kept < c) put(rows_[c], goals_[c], gaps_[c], kept);
+        ++kept;
+      }
+    }
+    resize(kept);
+  }
+
+  /// Contacts from `begin` on take over what such of the same particles with the same obstacle have pushed and held in `former`: of
+  /// several the first from the first, and so on. `first_row` has a kNone for each particle, and again afterwards.
+  void count_on(const ContactSet& former, std::size_t begin, std::vector<Index>& first_row) {
+    std::vector<Index> next_row(former.rows_.size());
+    for (std::size_t f = former.rows_.size(); f-- > 0;) {
+      next_row[f] = std::exchange(first_of(former.rows_[f], first_row), static_cast<Index>(f));
+    }
+    for (std::size_t c = begin; c < rows_.size(); ++c) {
+      Index* link = &first_of(rows_[c], first_row);
+      while (*link != kNone && !meet_the_same(former.rows_[static_cast<std::size_t>(*link)], rows_[c])) {
+        link = &next_row[static_cast<std::size_t>(*link)];
+      }
+      if (*link == kNone) continue;
+      const auto f = static_cast<std::size_t>(*link);
+      goals_[c].push = former.goals_[f].push;
+      const Vector3& held = former.goals_[f].held;
+      goals_[c].held = held - rows_[c].normal.dot(held) * rows_[c].normal;  // the normal may be another
+      *link = next_row[f];
+    }
+    for (const ContactRow<n>& row : former.rows_) first_of(row, first_row) = kNone;
+  }
+
+  /// Answers on positions. Returns the largest change of a push, as a part of the gap.
+  double project(Points& positions) {
+    double largest = 0.0;
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      const double change = answer(rows_[c], goals_[c], positions);
+      if (change != 0.0) largest = std::max(largest, std::abs(change) / gaps_[c]);
+    }
+    return largest;
+  }
+
+  /// Finds what touches, and takes from its velocities what a push out of the gap has made too fast.
+  void begin_settling(const StepMotion& motion, const Points& positions, Points& velocities) {
+    touching_.clear();
+    velocity_goals_.clear();
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      if (!goals_[c].touches) continue;
+      const ContactRow<n>& row = rows_[c];
+      const Vector3 carrier = (goals_[c].origin - row.sum(motion.before)) / motion.dt;
+      const double speed = row.normal.dot(row.sum(velocities) - carrier);
+      const double pushed = row.normal.dot(row.sum(positions) - row.sum(motion.advanced)) / motion.dt;
+      const SpeedRange range = settled_speeds(row, goals_[c], motion, carrier, speed - pushed);
+      // No more than it pushed: what others pushed too is theirs to take.
+      const double taken = std::min(speed - range.most, goals_[c].push / motion.dt);
+      if (taken > 0.0) row.change_sum(-taken * row.normal + friction_lost(row, goals_[c], taken, motion.dt), velocities);
+      touching_.push_back(c);
+      velocity_goals_.push_back({.origin = carrier, .least = range.least});
+    }
+  }
+
+  /// Answers on velocities. Returns the largest change of one [m/s].
+  double settle(Points& velocities) {
+    double largest = 0.0;
+    for (std::size_t t = 0; t < touching_.size(); ++t) {
+      largest = std::max(largest, std::abs(answer(rows_[touching_[t]], velocity_goals_[t], velocities)));
+    }
+    return largest;
+  }
+
+  /// Calls `visit(particle)` for each particle that what touches can move, several times for one that several do.
+  template <class Visit>
+  void for_touching(const Visit& visit) const {
+    for (const std::size_t c : touching_) for_moved(rows_[c], visit);
+  }
+
+  /// Calls `visit(particle, normal)` in the same way for contacts that have pushed.
+  template <class Visit>
+  void for_pushed(const Visit& visit) const {
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      if (goals_[c].push > 0.0) for_moved(rows_[c], [&](Index particle) { visit(particle, rows_[c].normal); });
+    }
+  }
+
+ private:
+  /// A push whose speed is taken answered to no load: what friction gives back of velocities with it. Positions keep it, at most
+  /// friction times the way out of the gap.
+  static Vector3 friction_lost(const ContactRow<n>& row, ContactGoal goal, double taken, double dt) {
+    goal.push = std::max(0.0, goal.push - taken * dt);
+    return (friction_of(row, goal, goal.held) - goal.held) / dt;
+  }
+
+  /// `v_after` is what the forces alone would have made of the speed along the normal.
+  static SpeedRange settled_speeds(const ContactRow<n>& row, const ContactGoal& goal, const StepMotion& motion,
+                                   const Vector3& carrier, double v_after) {
+    if (row.restitution == 0.0) return {.least = 0.0, .most = std::max(0.0, v_after)};
+    return sprung::settled_speeds({.height = -goal.least,
+                                   .moved = row.normal.dot(row.sum(motion.advanced) - goal.origin),
+                                   .v_before = row.normal.dot(row.sum(motion.v_before) - carrier),
+                                   .v_after = v_after,
+                                   .dt = motion.dt},
+                                  row.restitution);
+  }
+
+  void append(const ContactRow<n>& row, const ContactGoal& goal, double gap) {
+    resize(count() + 1);
+    put(row, goal, gap, count() - 1);
+  }
+  void put(const ContactRow<n>& row, const ContactGoal& goal, double gap, std::size_t c) {
+    rows_[c] = row;
+    goals_[c] = goal;
+    gaps_[c] = gap;
+  }
+
+  static Index& first_of(const ContactRow<n>& row, std::vector<Index>& first_row) {
+    return first_row[static_cast<std::size_t>(row.particles[0])];
+  }
+
+  static bool meet_the_same(const ContactRow<n>& a, const ContactRow<n>& b) {
+    return a.particles == b.particles && a.obstacle == b.obstacle;
+  }
+
+  template <class Visit>
+  static void for_moved(const ContactRow<n>& row, const Visit& visit) {
+    for (std::size_t k = 0; k < n; ++k) {
+      if (row.shares[k] != 0.0) visit(row.particles[k]);
+    }
+  }
+
+  std::vector<ContactRow<n>> rows_;
+  std::vector<ContactGoal> goals_;  ///< of positions
+  std::vector<double> gaps_;
+  std::vector<std::size_t> touching_;
+  std::vector<ContactGoal> velocity_goals_;  ///< of those that touch
+};
+
+}  // namespace sprung

@@ -1,0 +1,199 @@
+#include "dynamics/contact/contact_solver.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace sprung {
+namespace {
+
+// Impulses of contacts that share particles, or stand on each other, settle within a few passes; what is left the next step finds.
+constexpr int kVelocityPasses = 8;
+
+// Passes end when none changes a velocity by more than this part of what the first one did.
+constexpr double kVelocityTolerance = 1.0e-3;
+
+// A touching contact is this part of its gap above it at most: what rounding leaves of a projection.
+constexpr double kTouch = 1.0e-9;
+
+// The least of contacts that are left to pins.
+constexpr double kNothingToDo = -std::numeric_limits<double>::infinity();
+
+// What pins have more than this part of the weights of is left to them where the pins are in the way themselves, or before another
+// element.
+constexpr double kMostPinned = 0.9;
+
+// What a contact finds within its gap when the step begins, as truncation or the stretch limit left it, goes out of it as if it
+// were accelerated to take this time for the whole gap [s]. In one short step it would go so fast that what links at their limit
+// draw after it, and no contact slows again, would get the more energy the shorter the step is.
+constexpr double kRecovery = 0x1p-9;
+
+// Contacts that one task sets up.
+constexpr Index kContactChunk = 256;
+
+template <class Sets, class Visit>
+void for_each_set(Sets& sets, const Visit& visit) {
+  std::apply([&](auto&... set) { (visit(set), ...); }, sets);
+}
+
+/// Sets the contact's particles, weights and shares; false when pins alone have it, or between two elements nearly.
+template <std::size_t n>
+bool set_particles(const Contact& contact, const Scalars& inverse_masses, ContactRow<n>& row) {
+  double mobility = 0.0;
+  double pinned = 0.0;
+  double total = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    row.particles[k] = contact.particles[k];
+    row.weights[k] = contact.weights[k];
+    row.shares[k] = contact.weights[k] * inverse_masses[contact.particles[k]];
+    mobility += contact.weights[k] * row.shares[k];
+    total += std::abs(row.weights[k]);
+    if (inverse_masses[row.particles[k]] == 0.0) pinned += std::abs(row.weights[k]);
+  }
+  if (mobility == 0.0 || (contact.obstacle == kNone && pinned > kMostPinned * total)) {
+    row.shares.fill(0.0);
+    return false;
+  }
+  for (double& share : row.shares) share /= mobility;
+  return true;
+}
+
+/// How an element before an obstacle turns about its pins.
+struct Lever {
+  double arm = std::numeric_limits<double>::infinity();  ///< of the contact's point [m]: farther than that it turns by a radian
+  double part = 1.0;                                     ///< of the way of corners that are not pinned the point goes
+};
+
+template <std::size_t n>
+Lever lever(const ContactRow<n>& row, const Points& positions) {
+  Vector3 at_pins = Vector3::Zero();
+  Vector3 at_others = Vector3::Zero();
+  double pinned = 0.0;
+  double others = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const bool is_pinned = row.shares[k] == 0.0;
+    (is_pinned ? at_pins : at_others) += row.weights[k] * positions.col(row.particles[k]);
+    (is_pinned ? pinned : others) += row.weights[k];
+  }
+  if (pinned == 0.0) return {};
+  return {others * (at_others / others - at_pins / pinned).norm(), others};
+}
+
+}  // namespace
+
+ContactResponse::ContactResponse(const SpringNetwork& network, const Environment& environment)
+    : network_(network),
+      environment_(environment),
+      materials_(network, environment.obstacles()),
+      first_row_(static_cast<std::size_t>(network.particle_count()), kNone) {}
+
+void ContactResponse::start(const std::vector<Contact>& contacts, const StepMotion& motion) {
+  carry_.clear();
+  for (std::size_t k = 0; k < environment_.obstacles().size(); ++k) {
+    const auto obstacle = static_cast<Index>(k);
+    carry_.push_back(environment_.pose_after(obstacle) * environment_.pose_before(obstacle).inverse());
+  }
+  for_each_set(sets_, [&](auto& set) { fill(set, 0, contacts, motion); });
+}
+
+void ContactResponse::renew(const FreshContacts& fresh, const StepMotion& motion) {
+  for_each_set(sets_, [&](auto& set) {
+    auto& former = std::get<std::remove_reference_t<decltype(set)>>(former_sets_);
+    set.take_out(fresh.patches, former);
+    const std::size_t kept = set.count();
+    fill(set, kept, fresh.contacts, motion);
+    set.count_on(former, kept, first_row_);
+  });
+}
+
+void ContactResponse::add(const std::vector<Contact>& meetings, const StepMotion& motion) {
+  for_each_set(sets_, [&](auto& set) { fill(set, set.count(), meetings, motion); });
+}
+
+template <std::size_t n>
+void ContactResponse::fill(ContactSet<n>& set, std::size_t first, const std::vector<Contact>& contacts, const StepMotion& motion) {
+  order_.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (static_cast<std::size_t>(contacts[c].count) == n) order_.push_back(static_cast<Index>(c));
+  }
+  set.resize(first + order_.size());
+  parallel_chunks(static_cast<Index>(order_.size()), kContactChunk, [&](Index begin, Index end) {
+    PairMaterials::Last last;
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      const Contact& contact = contacts[static_cast<std::size_t>(order_[k])];
+      fill_one(contact, materials_.of(contact, last), motion, set, first + k);
+    }
+  });
+}
+
+template <std::size_t n>
+void ContactResponse::fill_one(const Contact& contact, const ContactMaterial& pair, const StepMotion& motion, ContactSet<n>& set,
+                               std::size_t slot) {
+  ContactRow<n>& row = set.row(slot);
+  const bool moves = set_particles(contact, network_.inverse_masses, row);
+  row.obstacle = contact.obstacle;
+  row.patch = contact.patch;
+  row.normal = contact.normal;
+  row.static_friction = pair.static_friction;
+  row.friction = pair.friction;
+  row.restitution = pair.restitution;
+
+  const double gap = std::max(std::min(pair.thickness, contact.most_gap), contact.clearance);
+  set.gap(slot) = gap;
+  ContactGoal& goal = set.goal(slot);
+  goal = {.origin = carried(contact, row.sum(motion.before)), .touch = kTouch * gap};
+  const double recovery = std::min(1.0, (motion.dt / kRecovery) * (motion.dt / kRecovery));
+  const double back = gap - contact.normal.dot(goal.origin - contact.point);
+  goal.least = moves ? std::min(back, std::max(back - gap, 0.0) + recovery * gap) : kNothingToDo;
+  if (!moves || contact.obstacle == kNone) return;
+  const auto [arm, part] = lever(row, motion.before);
+  const bool pins_are_in_the_way = arm <= gap && part < 1.0 - kMostPinned;
+  const double advanced = contact.normal.dot(row.sum(motion.advanced) - goal.origin);
+  goal.least = pins_are_in_the_way ? kNothingToDo : std::min(goal.least, advanced + arm);
+}
+
+// An obstacle that rests, and what another element is relative to, carries a position to the last bit where it was.
+Vector3 ContactResponse::carried(const Contact& contact, const Vector3& from) const {
+  if (contact.obstacle == kNone) return from;
+  const auto k = static_cast<std::size_t>(contact.obstacle);
+  if (!environment_.obstacles()[k].motion.moves()) return from + contact.drift;
+  return carry_[k] * from + contact.drift;
+}
+
+double ContactResponse::project(Points& positions) {
+  double largest = 0.0;
+  for_each_set(sets_, [&](auto& set) { largest = std::max(largest, set.project(positions)); });
+  return largest;
+}
+
+void ContactResponse::settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {
+  for_each_set(sets_, [&](auto& set) { set.begin_settling(motion, state.x, state.v); });
+  double first = 0.0;
+  for (int pass = 0; pass < kVelocityPasses; ++pass) {
+    double largest = 0.0;
+    for_each_set(sets_, [&](auto& set) { largest = std::max(largest, set.settle(state.v)); });
+    if (pass == 0) first = largest;
+    if (largest <= kVelocityTolerance * first) break;
+  }
+  for_each_set(sets_, [&](auto& set) {
+    set.for_touching([&](Index particle) { integrator.velocity_changed(state, particle, motion.dt); });
+  });
+}
+
+void ContactResponse::hold_pushed(HeldDirections& held) const {
+  for_each_set(
+      sets_, [&](const auto& set) { set.for_pushed([&](Index particle, const Vector3& normal) { held.add(particle, normal); }); });
+}
+
+Index ContactResponse::pushed_count() const {
+  std::vector<Index> pushed;
+  for_each_set(sets_,
+               [&](const auto& set) { set.for_pushed([&](Index particle, const Vector3&) { pushed.push_back(particle); }); });
+  std::sort(pushed.begin(), pushed.end());
+  return static_cast<Index>(std::unique(pushed.begin(), pushed.end()) - pushed.begin());
+}
+
+}  // namespace sprung

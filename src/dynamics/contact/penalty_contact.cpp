@@ -1,0 +1,78 @@
+#include "dynamics/contact/penalty_contact.h"
+
+#include "dynamics/contact/contact_materials.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+PenaltyContact::PenaltyContact(const SpringNetwork& network, Environment& environment, double stiffness, double damping, double dt)
+    : network_(network),
+      environment_(environment),
+      stiffness_(stiffness),
+      damping_(damping),
+      dt_(dt),
+      thickness_(particle_thickness(network)) {}
+
+void PenaltyContact::prepare(double time) {
+  const Environment::Interval interval = environment_.interval();
+  if (interval.begin != time || interval.end != time) environment_.set_interval(time, time);
+}
+
+/// What an obstacle does to a particle: it feels push * normal - rub * along.
+struct PenaltyContact::Touch {
+  double push = 0.0;                ///< [N]
+  double rub = 0.0;                 ///< friction by velocity [N s/m]
+  Vector3 along = Vector3::Zero();  ///< velocity along the surface [m/s]
+  bool slides = false;              ///< friction is not enough to stop it within a step
+};
+
+PenaltyContact::Touch PenaltyContact::touch(const Contact& contact, const Kinematics& at) const {
+  const Index i = contact.particles[0];
+  const Obstacle& obstacle = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)];
+  const ContactMaterial pair = combine(network_.body_of(i).material, obstacle.material);
+  const Vector3 relative = at.v.col(i) - environment_.surface_velocity(contact.obstacle, at.x.col(i), at.time, dt_);
+  const double speed = contact.normal.dot(relative);
+  Touch touch;
+  touch.push = std::max(0.0, stiffness_ * (pair.thickness - contact.distance) - damping_ * speed);
+  touch.along = relative - speed * contact.normal;
+  const double slip = touch.along.norm();
+  if (slip == 0.0) return touch;
+  const double stopping = network_.masses[i] * slip / dt_;
+  touch.slides = pair.friction * touch.push < stopping;
+  touch.rub = std::min(pair.friction * touch.push, stopping) / slip;
+  return touch;
+}
+
+void PenaltyContact::add(const Kinematics& at, Points& forces) const {
+  for (const Contact& contact : environment_.contacts({at.x, at.x, thickness_})) {
+    const Touch touched = touch(contact, at);
+    forces.col(contact.particles[0]) += touched.push * contact.normal;
+    forces.col(contact.particles[0]) -= touched.rub * touched.along;
+  }
+}
+
+void PenaltyContact::add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const {
+  for (const Contact& contact : environment_.contacts({at.x, at.x, thickness_})) {
+    const Touch touched = touch(contact, at);
+    if (touched.push == 0.0) continue;
+    const Index i = contact.particles[0];
+    const Matrix3 out = contact.normal * contact.normal.transpose();
+    derivatives.by_position.add(i, i, -stiffness_ * out);
+    Matrix3 held = Matrix3::Identity() - out;
+    if (touched.slides) held -= touched.along * touched.along.transpose() / touched.along.squaredNorm();
+    derivatives.by_velocity.add(i, i, -damping_ * out - touched.rub * held);
+  }
+}
+
+Index PenaltyContact::contact_count(const Points& positions) const {
+  Index count = 0;
+  Index last = kNone;  // contacts are sorted by particle
+  for (const Contact& contact : environment_.contacts({positions, positions, thickness_})) {
+    if (contact.particles[0] != last) ++count;
+    last = contact.particles[0];
+  }
+  return count;
+}
+
+}  // namespace sprung

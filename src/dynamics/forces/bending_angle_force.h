@@ -1,0 +1,39 @@
+// Resistance to bending by angles, of ropes and cloths.
+//
+// With the bonds a = x_middle - x_before, b = x_after - x_middle and n = a x b, the angle is theta = atan2(|n|, a . b). Its
+// gradient turns each bond towards the other's line, at the end by 1 / length: d theta / d x_after = n x b / (|n| b^2), d theta / d
+// x_before = n x a / (|n| a^2), and the middle has minus their sum (Bergou et al. 2008, "Discrete elastic rods", whose hinges these
+// are).
+//
+// The energy is 1/2 k theta^2 f(a) f(b): f is 1 for bonds of at least half their rest length, and (2 |a| / rest length)^2 below, so
+// that forces stay bounded where bonds collapse. Where n is 0, in line or folded back, no direction is preferred: no force.
+#pragma once
+
+#include "dynamics/forces/force.h"
+#include "network/spring_network.h"
+
+#include <vector>
+
+namespace sprung {
+
+class AngleForce final : public Force {
+ public:
+  /// Keeps a reference to the network.
+  explicit AngleForce(const SpringNetwork& network);
+
+  void add(const Kinematics& at, Points& forces) const override;
+  void couple(std::vector<ParticlePair>& pairs) const override;
+
+  /// Of the angle's own change k times the square of its gradient g, g g^T, and across the plane of the bend 1/2 k theta cot(theta
+  /// / 2) w w^T with w = (1 / |a|, -1 / |a| - 1 / |b|, 1 / |b|). In line the two are the whole of it.
+  void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
+
+  /// sum 1/2 k theta^2 f(a) f(b) [J]
+  [[nodiscard]] double energy(const Points& positions) const override;
+
+ private:
+  const SpringNetwork& network_;
+  std::vector<std::vector<Index>> blocks_;  ///< elements that touch each block of particles
+};
+
+}  // namespace sprung

@@ -1,0 +1,44 @@
+#include "dynamics/forces/force.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+void Force::prepare(double) {}
+
+bool Force::is_constant() const { return false; }
+
+void Force::couple(std::vector<ParticlePair>&) const {}
+
+void Force::add_derivatives(const Kinematics&, ForceDerivatives&) const {}
+
+double Force::energy(const Points&) const { return 0.0; }
+
+bool are_constant(const Forces& forces) {
+  return std::ranges::all_of(forces, [](const auto& force) { return force->is_constant(); });
+}
+
+void sum_forces(const Forces& forces, const Kinematics& at, Points& total) {
+  total.setZero(3, at.x.cols());
+  for (const auto& force : forces) {
+    force->prepare(at.time);
+    force->add(at, total);
+  }
+}
+
+ForceDerivatives make_derivatives(const Forces& forces, Index particles) {
+  std::vector<ParticlePair> pairs;
+  for (const auto& force : forces) force->couple(pairs);
+  return {BlockMatrix(particles, pairs), BlockMatrix(particles, pairs)};
+}
+
+void differentiate(const Forces& forces, const Kinematics& at, ForceDerivatives& derivatives) {
+  derivatives.by_position.set_zero();
+  derivatives.by_velocity.set_zero();
+  for (const auto& force : forces) {
+    force->prepare(at.time);
+    force->add_derivatives(at, derivatives);
+  }
+}
+
+}  // namespace sprung

@@ -1,0 +1,40 @@
+#include "dynamics/forces/gravity_and_drag.h"
+
+#include "base/parallel.h"
+
+namespace sprung {
+namespace {
+
+constexpr Index kParticleChunk = 8192;
+
+}  // namespace
+
+Gravity::Gravity(const SpringNetwork& network, const Vector3& acceleration) : weights_(acceleration * network.masses.transpose()) {}
+
+void Gravity::add(const Kinematics&, Points& forces) const {
+  parallel_chunks(static_cast<Index>(weights_.cols()), kParticleChunk, [&](Index begin, Index end) {
+    forces.middleCols(begin, end - begin) += weights_.middleCols(begin, end - begin);
+  });
+}
+
+double Gravity::energy(const Points& positions) const {
+  double energy = 0.0;
+  for (Index i = 0; i < positions.cols(); ++i) energy -= weights_.col(i).dot(positions.col(i));
+  return energy;
+}
+
+AirDrag::AirDrag(const SpringNetwork& network, double drag, const Vector3& wind) : network_(network), drag_(drag), wind_(wind) {}
+
+void AirDrag::add(const Kinematics& at, Points& forces) const {
+  parallel_chunks(network_.particle_count(), kParticleChunk, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) forces.col(i) -= drag_ * network_.drag_areas[i] * (at.v.col(i) - wind_);
+  });
+}
+
+void AirDrag::add_derivatives(const Kinematics&, ForceDerivatives& derivatives) const {
+  for (Index i = 0; i < network_.particle_count(); ++i) {
+    derivatives.by_velocity.add(i, i, -drag_ * network_.drag_areas[i] * Matrix3::Identity());
+  }
+}
+
+}  // namespace sprung

@@ -1,0 +1,34 @@
+// Gravity and air.
+#pragma once
+
+#include "dynamics/forces/force.h"
+#include "network/spring_network.h"
+
+namespace sprung {
+
+/// m g; energy -m g . x.
+class Gravity final : public Force {
+ public:
+  Gravity(const SpringNetwork& network, const Vector3& acceleration);  ///< [m/s^2]
+  [[nodiscard]] bool is_constant() const override { return true; }
+  void add(const Kinematics& at, Points& forces) const override;
+  [[nodiscard]] double energy(const Points& positions) const override;
+
+ private:
+  Points weights_;  ///< m g of each particle [N]
+};
+
+/// Linear air drag, -c A (v - wind): c per particle [kg/s] for ropes (A = 1), per area [kg/(m^2 s)] for surfaces.
+class AirDrag final : public Force {
+ public:
+  AirDrag(const SpringNetwork& network, double drag, const Vector3& wind);  ///< drag >= 0, wind [m/s]
+  void add(const Kinematics& at, Points& forces) const override;
+  void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
+
+ private:
+  const SpringNetwork& network_;
+  double drag_;
+  Vector3 wind_;
+};
+
+}  // namespace sprung

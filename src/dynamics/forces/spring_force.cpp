@@ -1,0 +1,133 @@
+#include "dynamics/forces/spring_force.h"
+
+#include "base/parallel.h"
+#include "dynamics/forces/spring_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+namespace sprung {
+namespace {
+
+using Repeated = std::array<double, kSimdWidth>;
+
+/// A constant of a run: read from the network's array, or once when all are the same.
+SpringConstant constant_of(const std::vector<double>& values, Index spring, bool same, Repeated& repeated) {
+  if (!same) return {&values[spring], false};
+  repeated.fill(values[spring]);
+  return {repeated.data(), true};
+}
+
+void add_run(const SpringPlan::Run& run, const Springs& springs, const Kinematics& at, Points& forces) {
+  Repeated rest_length;
+  Repeated stiffness;
+  Repeated damping;
+  add_run_forces({.x_a = at.x.col(run.first).data(),
+                  .x_b = at.x.col(run.second).data(),
+                  .v_a = at.v.col(run.first).data(),
+                  .v_b = at.v.col(run.second).data(),
+                  .force_a = run.writes_first ? forces.col(run.first).data() : nullptr,
+                  .force_b = run.writes_second ? forces.col(run.second).data() : nullptr,
+                  .count = run.count},
+                 {.rest_length = constant_of(springs.rest_length, run.spring, run.same_rest_length, rest_length),
+                  .stiffness = constant_of(springs.stiffness, run.spring, run.same_stiffness, stiffness),
+                  .damping = constant_of(springs.damping, run.spring, run.same_damping, damping)});
+}
+
+/// Springs gathered one by one. Entries beyond the last spring give forces that nobody reads.
+struct GatheredBatch {
+  using Vectors = Eigen::Matrix<double, 3, kSpringBatch>;
+  Vectors difference = Vectors::Zero();
+  Vectors velocity = Vectors::Zero();
+  std::array<double, kSpringBatch> rest_length{};
+  std::array<double, kSpringBatch> stiffness{};
+  std::array<double, kSpringBatch> damping{};
+
+  void gather(std::span<const SpringPlan::Single> singles, const Springs& springs, const Kinematics& at) {
+    for (Index i = 0; i < static_cast<Index>(singles.size()); ++i) {
+      const SpringPlan::Single& single = singles[i];
+      difference.col(i) = at.x.col(single.first) - at.x.col(single.second);
+      velocity.col(i) = at.v.col(single.first) - at.v.col(single.second);
+      rest_length[i] = springs.rest_length[single.spring];
+      stiffness[i] = springs.stiffness[single.spring];
+      damping[i] = springs.damping[single.spring];
+    }
+  }
+
+  void scatter(std::span<const SpringPlan::Single> singles, Points& forces) const {
+    for (Index i = 0; i < static_cast<Index>(singles.size()); ++i) {
+      if (singles[i].writes_first) forces.col(singles[i].first) += difference.col(i);
+      if (singles[i].writes_second) forces.col(singles[i].second) -= difference.col(i);
+    }
+  }
+};
+
+void add_singles(const SpringPlan::Block& block, const Springs& springs, const Kinematics& at, Points& forces) {
+  GatheredBatch batch;
+  for (std::size_t begin = 0; begin < block.singles.size(); begin += kSpringBatch) {
+    const std::size_t count = std::min<std::size_t>(kSpringBatch, block.singles.size() - begin);
+    const std::span<const SpringPlan::Single> singles(&block.singles[begin], count);
+    batch.gather(singles, springs, at);
+    const auto lanes = static_cast<Index>((count + kSimdWidth - 1) / kSimdWidth * kSimdWidth);
+    differences_to_forces(batch.difference.data(), batch.velocity.data(), lanes,
+                          {{batch.rest_length.data(), false}, {batch.stiffness.data(), false}, {batch.damping.data(), false}});
+    batch.scatter(singles, forces);
+  }
+}
+
+/// What a spring pulls back sideways, as a part of its stiffness. One of no length has no direction: it pulls back all ways alike
+/// if that is its rest length, and else not at all.
+double sideways_part(double length, double rest_length) {
+  if (length == 0.0) return rest_length == 0.0 ? 1.0 : 0.0;
+  return std::max(0.0, 1.0 - rest_length / length);
+}
+
+}  // namespace
+
+SpringForce::SpringForce(const SpringNetwork& network) : network_(network), plan_(std::make_unique<SpringPlan>(network)) {}
+SpringForce::~SpringForce() = default;
+
+// Nothing pulls.
+bool SpringForce::is_constant() const { return plan_->blocks.empty(); }
+
+void SpringForce::add(const Kinematics& at, Points& forces) const {
+  parallel_chunks(static_cast<Index>(plan_->blocks.size()), 1, [&](Index begin, Index end) {
+    for (Index b = begin; b < end; ++b) {
+      for (const SpringPlan::Run& run : plan_->blocks[b].runs) add_run(run, network_.springs, at, forces);
+      add_singles(plan_->blocks[b], network_.springs, at, forces);
+    }
+  });
+}
+
+void SpringForce::couple(std::vector<ParticlePair>& pairs) const {
+  const Springs& springs = network_.springs;
+  for (std::size_t s = 0; s < springs.first.size(); ++s) pairs.push_back({springs.first[s], springs.second[s]});
+}
+
+void SpringForce::add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const {
+  const Springs& springs = network_.springs;
+  for (std::size_t s = 0; s < springs.first.size(); ++s) {
+    const Index a = springs.first[s];
+    const Index b = springs.second[s];
+    const Vector3 difference = at.x.col(a) - at.x.col(b);
+    const double length = difference.norm();
+    const Vector3 e = length > 0.0 ? Vector3(difference / length) : Vector3(Vector3::Zero());
+    const Matrix3 along = e * e.transpose();
+    const Matrix3 across = sideways_part(length, springs.rest_length[s]) * (Matrix3::Identity() - along);
+    derivatives.by_position.add_difference(a, b, -springs.stiffness[s] * (along + across));
+    if (springs.damping[s] > 0.0) derivatives.by_velocity.add_difference(a, b, -springs.damping[s] * along);
+  }
+}
+
+double SpringForce::energy(const Points& positions) const {
+  const Springs& springs = network_.springs;
+  double energy = 0.0;
+  for (Index s = 0; s < springs.count(); ++s) {
+    const double stretch = (positions.col(springs.first[s]) - positions.col(springs.second[s])).norm() - springs.rest_length[s];
+    energy += 0.5 * springs.stiffness[s] * stretch * stretch;
+  }
+  return energy;
+}
+
+}  // namespace sprung

@@ -1,0 +1,43 @@
+// Spring-damper forces (eq. 5-12 of the lab manual).
+//
+// With s = p1 - p2, e = s / |s|, v1e = e . v1, v2e = e . v2, particle 1 feels
+//     F = ( -k_s (|s| - d) - k_d (v1e - v2e) ) e
+// and particle 2 feels -F. Erratum: the manual prints the elastic part as -k_s (d - |s|) along e (eq. 7, 10, 11), which would push
+// a stretched spring further apart; its own code applies the sign used here. |s| = 0 gives no force.
+#pragma once
+
+#include "dynamics/forces/force.h"
+#include "network/spring_network.h"
+
+#include <memory>
+
+namespace sprung {
+
+struct SpringPlan;
+
+class SpringForce final : public Force {
+ public:
+  /// Keeps a reference to the network.
+  explicit SpringForce(const SpringNetwork& network);
+  ~SpringForce() override;
+
+  [[nodiscard]] bool is_constant() const override;
+
+  void add(const Kinematics& at, Points& forces) const override;
+
+  void couple(std::vector<ParticlePair>& pairs) const override;
+
+  /// On particle 1, by its own position -k_s (e e^T + (1 - d / |s|) (I - e e^T)), with 1 - d / |s| taken as 0 where it is less
+  /// (Baraff and Witkin 1998), and by its own velocity -k_d e e^T. How the damper turns with the spring is left out: it is not
+  /// symmetric.
+  void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
+
+  /// sum 1/2 k_s (|s| - d)^2 [J]
+  [[nodiscard]] double energy(const Points& positions) const override;
+
+ private:
+  const SpringNetwork& network_;
+  std::unique_ptr<const SpringPlan> plan_;
+};
+
+}  // namespace sprung

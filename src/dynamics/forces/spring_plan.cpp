@@ -1,0 +1,124 @@
+#include "dynamics/forces/spring_plan.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace sprung {
+namespace {
+
+// A block's particles stay in the second-level cache; smaller blocks compute more springs twice.
+constexpr Index kSmallestBlock = 1024;
+constexpr Index kLargestBlock = 16384;
+constexpr Index kWantedBlocks = 16;
+
+// Shorter runs cost more than gathering their particles one by one.
+constexpr Index kShortestRun = 8;
+static_assert(kShortestRun >= kSimdWidth && kSpringBatch >= 2 * kSimdWidth);
+
+/// A power of two, from the number of particles alone.
+Index block_size(Index particles) {
+  const auto share = std::bit_ceil(static_cast<std::uint32_t>(particles / kWantedBlocks));
+  return std::clamp(static_cast<Index>(share), kSmallestBlock, kLargestBlock);
+}
+
+/// Spring + i joins first + i and second + i for all i in [begin, end).
+struct Line {
+  Index first;
+  Index second;
+  Index spring;
+  Index begin;
+  Index end;
+};
+
+/// Springs that only a stretch limit holds pull at nothing.
+bool pulls(const Springs& springs, Index spring) { return springs.stiffness[spring] > 0.0 || springs.damping[spring] > 0.0; }
+
+/// The longest line of springs that begins with `spring`.
+Line line_from(const Springs& springs, Index spring) {
+  const Index a = springs.first[spring];
+  const Index b = springs.second[spring];
+  Index count = 1;
+  while (spring + count < springs.count() && springs.first[spring + count] == a + count &&
+         springs.second[spring + count] == b + count && pulls(springs, spring + count)) {
+    ++count;
+  }
+  return {a, b, spring, 0, count};
+}
+
+class Planner {
+ public:
+  Planner(const Springs& springs, Index block_size, std::vector<SpringPlan::Block>& blocks)
+      : springs_(springs), size_(block_size), blocks_(blocks) {}
+
+  // Cuts a line where either end enters another block: in between, a part concerns the same one or two blocks.
+  void add(const Line& line) {
+    for (Index i = line.begin; i < line.end;) {
+      const Index first_block = (line.first + i) / size_;
+      const Index second_block = (line.second + i) / size_;
+      const Index end = std::min({line.end, (first_block + 1) * size_ - line.first, (second_block + 1) * size_ - line.second});
+      const Line part{line.first, line.second, line.spring, i, end};
+      add_part(blocks_[first_block], part, true, first_block == second_block);
+      if (first_block != second_block) add_part(blocks_[second_block], part, false, true);
+      i = end;
+    }
+  }
+
+ private:
+  void add_part(SpringPlan::Block& block, const Line& part, bool writes_first, bool writes_second) const {
+    if (part.end - part.begin < kShortestRun) {
+      for (Index i = part.begin; i < part.end; ++i) {
+        block.singles.push_back({part.first + i, part.second + i, part.spring + i, writes_first, writes_second});
+      }
+      return;
+    }
+    for (Index i = part.begin; i < part.end;) {
+      const Index count = batch_size(part.end - i);
+      const Index spring = part.spring + i;
+      block.runs.push_back({part.first + i, part.second + i, spring, count, writes_first, writes_second,
+                            all_same(springs_.rest_length, spring, count), all_same(springs_.stiffness, spring, count),
+                            all_same(springs_.damping, spring, count)});
+      i += count;
+    }
+  }
+
+  // What is left over must fill the kernel's lanes too.
+  static Index batch_size(Index springs) {
+    if (springs <= kSpringBatch) return springs;
+    return std::min(kSpringBatch, springs - kSimdWidth);
+  }
+
+  static bool all_same(const std::vector<double>& values, Index begin, Index count) {
+    const auto first = values.begin() + begin;
+    return std::all_of(first, first + count, [&](double value) { return value == *first; });
+  }
+
+  const Springs& springs_;
+  Index size_;
+  std::vector<SpringPlan::Block>& blocks_;
+};
+
+}  // namespace
+
+SpringPlan::SpringPlan(const SpringNetwork& network) {
+  const Index size = block_size(network.particle_count());
+  blocks.resize(network.particle_count() / size + 1);
+  Planner planner(network.springs, size, blocks);
+  for (Index s = 0; s < network.springs.count();) {
+    if (!pulls(network.springs, s)) {
+      ++s;
+      continue;
+    }
+    const Line line = line_from(network.springs, s);
+    planner.add(line);
+    s += line.end;
+  }
+  std::erase_if(blocks, [](const Block& block) { return block.runs.empty() && block.singles.empty(); });
+  // Springs of all kinds that begin at the same particles follow each other, so that a particle is in the first-level cache for
+  // all.
+  for (Block& block : blocks) {
+    std::ranges::stable_sort(block.runs, {}, &Run::first);
+    std::ranges::stable_sort(block.singles, {}, &Single::first);
+  }
+}
+
+}  // namespace sprung

@@ -1,0 +1,46 @@
+#include "dynamics/integrators/schemes.h"
+
+namespace sprung {
+namespace {
+
+class ExplicitEuler final : public Integrator {
+ public:
+  explicit ExplicitEuler(const SpringNetwork& network) : Integrator(network) {}
+
+  void advance(SimulationState& state, const Forces& forces, double dt) override {
+    evaluate(state, forces, dt, total_);
+    for_free_particles(network(), [&](Index i) {
+      state.x.col(i) += dt * state.v.col(i);
+      state.v.col(i) += dt * network().inverse_masses[i] * total_.col(i);
+    });
+  }
+
+ private:
+  Points total_;
+};
+
+class SymplecticEuler final : public Integrator {
+ public:
+  explicit SymplecticEuler(const SpringNetwork& network) : Integrator(network) {}
+
+  void advance(SimulationState& state, const Forces& forces, double dt) override {
+    evaluate(state, forces, dt, total_);
+    for_free_particles(network(), [&](Index i) {
+      state.v.col(i) += dt * network().inverse_masses[i] * total_.col(i);
+      state.x.col(i) += dt * state.v.col(i);
+    });
+  }
+
+ private:
+  Points total_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_explicit_euler(const SpringNetwork& network) { return std::make_unique<ExplicitEuler>(network); }
+
+std::unique_ptr<Integrator> make_symplectic_euler(const SpringNetwork& network) {
+  return std::make_unique<SymplecticEuler>(network);
+}
+
+}  // namespace sprung

@@ -1,0 +1,37 @@
+#include "dynamics/integrators/integrator.h"
+
+#include "dynamics/integrators/schemes.h"
+
+namespace sprung {
+namespace {
+
+struct MakeIntegrator {
+  const SpringNetwork& network;
+
+  std::unique_ptr<Integrator> operator()(const ExplicitEulerSettings&) const { return make_explicit_euler(network); }
+  std::unique_ptr<Integrator> operator()(const SymplecticEulerSettings&) const { return make_symplectic_euler(network); }
+  std::unique_ptr<Integrator> operator()(const VerletSettings& verlet) const { return make_verlet(verlet, network); }
+  std::unique_ptr<Integrator> operator()(const VelocityVerletSettings&) const { return make_velocity_verlet(network); }
+  std::unique_ptr<Integrator> operator()(const RungeKutta4Settings&) const { return make_runge_kutta4(network); }
+  std::unique_ptr<Integrator> operator()(const ImplicitEulerSettings&) const { return make_implicit_euler(network); }
+};
+
+}  // namespace
+
+void Integrator::start(SimulationState& state, const Forces&, double) { state.x_previous = state.x; }
+
+void Integrator::step_changed(SimulationState&, const Forces&, double, double) {}
+
+void Integrator::answer_contact(const StepMotion&, const Forces&, const Points&, const HeldDirections&, SimulationState&) {}
+
+void Integrator::recover_velocities(SimulationState& state, const Forces&, const Points&, const Points& advanced, double dt) {
+  for_free_particles(network_, [&](Index i) { state.v.col(i) += (state.x.col(i) - advanced.col(i)) / dt; });
+}
+
+void Integrator::velocity_changed(SimulationState&, Index, double) const {}
+
+std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings, const SpringNetwork& network) {
+  return std::visit(MakeIntegrator{network}, settings);
+}
+
+}  // namespace sprung

@@ -1,0 +1,42 @@
+// What the schemes share, and how each is made. A source a family of schemes.
+#pragma once
+
+#include "base/parallel.h"
+#include "dynamics/integrators/integrator.h"
+
+namespace sprung {
+
+/// Each keeps a reference to the network.
+[[nodiscard]] std::unique_ptr<Integrator> make_explicit_euler(const SpringNetwork& network);
+[[nodiscard]] std::unique_ptr<Integrator> make_symplectic_euler(const SpringNetwork& network);
+[[nodiscard]] std::unique_ptr<Integrator> make_verlet(const VerletSettings& settings, const SpringNetwork& network);
+[[nodiscard]] std::unique_ptr<Integrator> make_velocity_verlet(const SpringNetwork& network);
+[[nodiscard]] std::unique_ptr<Integrator> make_runge_kutta4(const SpringNetwork& network);
+[[nodiscard]] std::unique_ptr<Integrator> make_implicit_euler(const SpringNetwork& network);
+
+/// Time [s] at the begin of the step, or part of one, of dt [s] that a state is about to make.
+[[nodiscard]] inline double step_begin(const SimulationState& state, double dt) { return steps_done(state) * (state.parts * dt); }
+
+/// Forces [N] at the begin of the step, 3 x n, written to `total`.
+inline void evaluate(const SimulationState& state, const Forces& forces, double dt, Points& total) {
+  sum_forces(forces, {.x = state.x, .v = state.v, .time = step_begin(state, dt)}, total);
+}
+
+/// Calls `body(i)` for each particle, pinned or not, possibly at the same time.
+template <class Body>
+void for_particles(const SpringNetwork& network, Body&& body) {
+  constexpr Index kParticleChunk = 8192;
+  parallel_chunks(network.particle_count(), kParticleChunk, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) body(i);
+  });
+}
+
+/// Calls `body(i)` for each particle that is not pinned, possibly at the same time.
+template <class Body>
+void for_free_particles(const SpringNetwork& network, Body&& body) {
+  for_particles(network, [&](Index i) {
+    if (!network.is_pinned(i)) body(i);
+  });
+}
+
+}  // namespace sprung

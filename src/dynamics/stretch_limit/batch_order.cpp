@@ -1,0 +1,155 @@
+#include "dynamics/stretch_limit/batch_order.h"
+
+#include <algorithm>
+#include <functional>
+#include <queue>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+// Cut by size alone; a thread is worth waking for some 10 us of work.
+constexpr Index kTaskParts = 4096 / StretchBatches::kPartSprings;
+
+// What lies between two chunks grows by a band with each colour, on either side; something is to be left in their middle. Of two
+// chunks alone much may lie between them: in a cloth of 64 x 64 with bend springs each has 1.2 bands for each colour, a fifth of
+// the springs come alone, and two threads take a third less in a drape. Of fewer parts than so many, waiting takes what that saves.
+constexpr Index kBandsPerColour = 3;
+constexpr Index kPartsForTwo = 4 * kTaskParts;
+
+// A part that reads what the one before has just written waits for it: colours follow each other at a distance of so many bands.
+constexpr Index kBandsBetweenColours = 2;
+
+/// Calls `body` with each particle of a part.
+template <class Body>
+void for_particles(const StretchBatches& batches, Index part, const Body& body) {
+  for (Index s = batches.parts[part].begin; s < batches.parts[part].end; ++s) {
+    body(batches.first[s]);
+    body(batches.second[s]);
+  }
+}
+
+class Order {
+ public:
+  Order(const StretchBatches& batches, const std::vector<Index>& colour_begin, Index band, Index particles)
+      : batches_(batches), particles_(particles) {
+    for (std::size_t colour = 0; colour + 1 < colour_begin.size(); ++colour) {
+      for (Index p = colour_begin[colour]; p < colour_begin[colour + 1]; ++p) {
+        waiting_.push_back(p);
+        places_.push_back(lowest_particle(p) + static_cast<Index>(colour) * kBandsBetweenColours * band);
+      }
+    }
+  }
+
+  /// A stage of what concerns one of the chunks of particles, which begin at `offset` before the first, and nothing that waits
+  /// still.
+  void add_chunks(Index chunk, Index offset) {
+    std::vector<std::vector<Index>> of_chunks((particles_ + offset - 1) / chunk + 1);
+    std::vector<bool> waits_for(particles_, false);
+    std::vector<Index> left;
+    for (const Index p : waiting_) {
+      const Index owner = (batches_.first[batches_.parts[p].begin] + offset) / chunk;
+      bool alone = true;
+      for_particles(batches_, p, [&](Index i) { alone = alone && (i + offset) / chunk == owner && !waits_for[i]; });
+      if (alone) {
+        of_chunks[owner].push_back(p);
+      } else {
+        left.push_back(p);
+        for_particles(batches_, p, [&](Index i) { waits_for[i] = true; });
+      }
+    }
+    waiting_ = std::move(left);
+    for (const std::vector<Index>& task : of_chunks) add_task(task);
+    end_stage();
+  }
+
+  /// A stage of one task, of all that is left.
+  void add_rest() {
+    add_task(waiting_);
+    end_stage();
+  }
+
+  void write(StretchBatches& batches) const {
+    std::vector<StretchBatches::Part> parts;
+    parts.reserve(order_.size());
+    for (const Index p : order_) parts.push_back(batches.parts[p]);
+    batches.parts = std::move(parts);
+    batches.task_begin = task_begin_;
+    batches.stage_begin = stage_begin_;
+  }
+
+ private:
+  [[nodiscard]] Index lowest_particle(Index part) const {
+    Index lowest = particles_;
+    for_particles(batches_, part, [&](Index i) { lowest = std::min(lowest, i); });
+    return lowest;
+  }
+
+  /// `parts` by their places, as far as each is after those before it with which it shares a particle.
+  void add_task(const std::vector<Index>& parts) {
+    if (parts.empty()) return;
+    std::vector<std::vector<std::size_t>> followers(parts.size());
+    std::vector<int> missing(parts.size(), 0);
+    std::vector<Index> last_at(particles_, kNone);
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      for_particles(batches_, parts[k], [&](Index i) {
+        const auto last = std::exchange(last_at[i], static_cast<Index>(k));
+        if (last == kNone || last == static_cast<Index>(k)) return;
+        followers[last].push_back(k);
+        ++missing[k];
+      });
+    }
+    using Entry = std::pair<Index, std::size_t>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> ready;
+    const auto make_ready = [&](std::size_t k) { ready.emplace(places_[parts[k]], k); };
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      if (missing[k] == 0) make_ready(k);
+    }
+    while (!ready.empty()) {
+      const std::size_t next = ready.top().second;
+      ready.pop();
+      order_.push_back(parts[next]);
+      for (const std::size_t follower : followers[next]) {
+        if (--missing[follower] == 0) make_ready(follower);
+      }
+    }
+    task_begin_.push_back(static_cast<Index>(order_.size()));
+  }
+
+  void end_stage() {
+    const auto tasks = static_cast<Index>(task_begin_.size()) - 1;
+    if (tasks > stage_begin_.back()) stage_begin_.push_back(tasks);
+  }
+
+  const StretchBatches& batches_;
+  Index particles_;
+  std::vector<Index> waiting_;  ///< in the order of their colours
+  std::vector<Index> places_;
+  std::vector<Index> order_;
+  std::vector<Index> task_begin_{0};
+  std::vector<Index> stage_begin_{0};
+};
+
+}  // namespace
+
+void order_by_colour(const std::vector<Index>& colour_begin, StretchBatches& batches) {
+  for (std::size_t colour = 0; colour + 1 < colour_begin.size(); ++colour) {
+    for (Index p = colour_begin[colour]; p < colour_begin[colour + 1]; p = batches.task_begin.back()) {
+      batches.task_begin.push_back(std::min(p + kTaskParts, colour_begin[colour + 1]));
+    }
+    batches.stage_begin.push_back(static_cast<Index>(batches.task_begin.size()) - 1);
+  }
+}
+
+void order_by_place(const std::vector<Index>& colour_begin, Index band, Index particles, StretchBatches& batches) {
+  const auto colours = static_cast<Index>(colour_begin.size()) - 1;
+  const Index least = static_cast<Index>(batches.parts.size()) >= kPartsForTwo ? 2 : 1;
+  const Index chunks = std::max(least, particles / std::max(1, kBandsPerColour * colours * band));
+  const Index chunk = (particles + chunks - 1) / chunks;
+  Order order(batches, colour_begin, band, particles);
+  for (const Index offset : {0, chunk / 2, 0}) order.add_chunks(chunk, offset);
+  order.add_rest();
+  order.write(batches);
+}
+
+}  // namespace sprung

@@ -1,0 +1,66 @@
+// Springs between two runs of particles, as kernels read and write them at a time. See stretch_groups.h.
+#pragma once
+
+#include "dynamics/numerics/simd_packed.h"
+#include "dynamics/stretch_limit/layouts.h"
+#include "dynamics/stretch_limit/spring_batches.h"
+
+#include <type_traits>
+
+namespace sprung {
+
+/// Springs between consecutive particles and consecutive others.
+template <class PackedVectors4>
+struct RunGroup {
+  using Lanes = typename PackedVectors4::Lanes;
+
+  [[gnu::always_inline]] static void find_squared(const StretchBatches& batches, Index s, const double* positions, Lanes& squared) {
+    PackedVectors4 between;
+    find_between(batches, s, positions, between);
+    square(between);
+    Lanes y, z;
+    unpack(between, squared, y, z);
+    squared = squared + y + z;
+  }
+
+  template <class Pushes>
+  [[gnu::always_inline]] static void move(const StretchBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
+                                          const double* before, double* positions) {
+    double* const first_at = positions + place_of(batches.first[s]);
+    double* const second_at = positions + place_of(batches.second[s]);
+    PackedVectors4 first;
+    PackedVectors4 second;
+    load(first_at, first);
+    load(second_at, second);
+    PackedVectors4 between;
+    subtract(second, first, between);
+    move_along(between, pulls, first, second);
+    if constexpr (!std::is_same_v<Pushes, NoPushes>) {
+      find_between(batches, s, before, between);
+      move_along(between, pushes, first, second);
+    }
+    store(first, first_at);
+    store(second, second_at);
+  }
+
+ private:
+  [[gnu::always_inline]] static void find_between(const StretchBatches& batches, Index s, const double* positions,
+                                                  PackedVectors4& between) {
+    PackedVectors4 first;
+    load(positions + place_of(batches.first[s]), first);
+    load(positions + place_of(batches.second[s]), between);
+    subtract(between, first, between);
+  }
+
+  [[gnu::always_inline]] static void move_along(const PackedVectors4& between, const Moves<Lanes>& moves, PackedVectors4& first,
+                                                PackedVectors4& second) {
+    PackedVectors4 of_first = between;
+    PackedVectors4 of_second = between;
+    multiply(of_first, moves.first);
+    multiply(of_second, moves.second);
+    add(first, of_first, first);
+    subtract(second, of_second, second);
+  }
+};
+
+}  // namespace sprung

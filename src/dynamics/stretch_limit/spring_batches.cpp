@@ -1,0 +1,202 @@
+#include "dynamics/stretch_limit/spring_batches.h"
+
+#include "base/simd.h"
+#include "dynamics/stretch_limit/batch_order.h"
+#include "dynamics/tethers/limited_springs.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+constexpr int kColours = 64;
+
+// A network is narrow when springs join particles no farther apart, by number, than this part of all: rows of a cloth.
+constexpr Index kNarrow = 32;
+
+// Of a narrow network a part has springs of some rows only: longer parts are cheaper, shorter ones can be done when their rows are.
+constexpr Index kSpan = 4;
+
+/// Springs [begin, begin + count) of the network: one, or a run that fills the kernel's lanes.
+struct Piece {
+  Index begin;
+  Index count;
+};
+
+/// How many springs from `limited[i]` on join consecutive particles, each of them once.
+Index run_length(const Springs& springs, const std::vector<Index>& limited, std::size_t i) {
+  const Index s = limited[i];
+  const Index most = std::min(springs.second[s] - springs.first[s], StretchBatches::kPartSprings);
+  Index count = 1;
+  while (count < most && i + count < limited.size() && limited[i + count] == s + count &&
+         springs.first[s + count] == springs.first[s] + count && springs.second[s + count] == springs.second[s] + count) {
+    ++count;
+  }
+  return count;
+}
+
+std::vector<Piece> pieces(const Springs& springs, const std::vector<Index>& limited) {
+  std::vector<Piece> found;
+  for (std::size_t i = 0; i < limited.size();) {
+    const Index whole = run_length(springs, limited, i) / kSimdWidth * kSimdWidth;
+    found.push_back({limited[i], std::max(whole, Index{1})});
+    i += static_cast<std::size_t>(found.back().count);
+  }
+  return found;
+}
+
+struct Colour {
+  std::vector<Piece> runs;
+  std::vector<Piece> singles;
+};
+using Colouring = std::array<Colour, kColours>;
+
+/// Gives pieces the lowest colour that none of their particles has, in their order; returns those for which none was left.
+std::vector<Piece> colour(const SpringNetwork& network, const std::vector<Piece>& pieces, Colouring& colours) {
+  std::vector<std::uint64_t> used(network.particle_count(), 0);
+  std::vector<Piece> left;
+  for (const Piece& piece : pieces) {
+    std::uint64_t taken = 0;
+    for (Index s = piece.begin; s < piece.begin + piece.count; ++s) {
+      taken |= used[network.springs.first[s]] | used[network.springs.second[s]];
+    }
+    const int lowest = std::countr_one(taken);
+    if (lowest == kColours) {
+      left.push_back(piece);
+      continue;
+    }
+    for (Index s = piece.begin; s < piece.begin + piece.count; ++s) {
+      used[network.springs.first[s]] |= std::uint64_t{1} << lowest;
+      used[network.springs.second[s]] |= std::uint64_t{1} << lowest;
+    }
+    (piece.count > 1 ? colours[lowest].runs : colours[lowest].singles).push_back(piece);
+  }
+  return left;
+}
+
+/// Whether the kSimdWidth singles from `begin` on join consecutive particles two by two.
+bool are_pairs(const Springs& springs, std::span<const Piece> singles, std::size_t begin) {
+  if (begin + kSimdWidth > singles.size()) return false;
+  const Index first = springs.first[singles[begin].begin];
+  for (Index i = 0; i < kSimdWidth; ++i) {
+    const Index s = singles[begin + i].begin;
+    if (springs.first[s] != first + 2 * i || springs.second[s] != first + 2 * i + 1) return false;
+  }
+  return true;
+}
+
+/// How far apart the particles are, by number, that a spring joins.
+Index bandwidth(const Springs& springs, const std::vector<Index>& limited) {
+  Index widest = 1;
+  for (const Index s : limited) widest = std::max(widest, std::abs(springs.second[s] - springs.first[s]));
+  return widest;
+}
+
+class Filler {
+ public:
+  /// The first ends of a part's springs are at most about `span` apart.
+  Filler(const SpringNetwork& network, Index span, StretchBatches& batches) : network_(network), span_(span), batches_(batches) {}
+
+  void add_colour(Colour& colour) {
+    add_runs(colour.runs);
+    std::ranges::stable_sort(colour.singles, {}, [&](const Piece& piece) { return network_.springs.first[piece.begin]; });
+    add_singles(colour.singles);
+  }
+
+ private:
+  void add_runs(std::span<const Piece> runs) {
+    for (const Piece& run : runs) {
+      const Index from = batches_.count();
+      for (Index s = run.begin; s < run.begin + run.count; ++s) append(s);
+      add_part(from, StretchBatches::Layout::run);
+    }
+  }
+
+  void add_singles(std::span<const Piece> singles) {
+    std::vector<Index> pairs;
+    std::vector<Index> others;
+    for (std::size_t i = 0; i < singles.size();) {
+      if (!are_pairs(network_.springs, singles, i)) {
+        others.push_back(singles[i++].begin);
+        continue;
+      }
+      for (const std::size_t k : {0, 2, 1, 3}) pairs.push_back(singles[i + k].begin);
+      i += kSimdWidth;
+    }
+    add_parts(pairs, StretchBatches::Layout::pairs);
+    add_parts(others, StretchBatches::Layout::gathered);
+  }
+
+  void add_parts(const std::vector<Index>& springs, StretchBatches::Layout layout) {
+    for (std::size_t begin = 0; begin < springs.size();) {
+      const Index from = batches_.count();
+      const std::size_t end = part_end(springs, begin);
+      for (std::size_t i = begin; i < end; ++i) append(springs[i]);
+      while (batches_.count() % kSimdWidth != 0) append(springs[end - 1]);
+      add_part(from, layout);
+      begin = end;
+    }
+  }
+
+  /// Whole groups, as far as springs go.
+  [[nodiscard]] std::size_t part_end(const std::vector<Index>& springs, std::size_t begin) const {
+    const auto first = [&](std::size_t i) { return network_.springs.first[springs[i]]; };
+    const std::size_t most = std::min(springs.size(), begin + StretchBatches::kPartSprings);
+    std::size_t end = std::min(most, begin + kSimdWidth);
+    while (end < most && first(end) - first(begin) <= span_) end = std::min(most, end + kSimdWidth);
+    return end;
+  }
+
+  void append(Index s) {
+    const Index a = network_.springs.first[s];
+    const Index b = network_.springs.second[s];
+    batches_.first.push_back(a);
+    batches_.second.push_back(b);
+    batches_.rest_length.push_back(network_.springs.rest_length[s]);
+    batches_.per_length.push_back(1.0 / network_.springs.rest_length[s]);
+    batches_.first_share.push_back(network_.inverse_masses[a] / (network_.inverse_masses[a] + network_.inverse_masses[b]));
+  }
+
+  void add_part(Index from, StretchBatches::Layout layout) {
+    const auto same = [&](const std::vector<double>& values) {
+      return std::all_of(values.begin() + from, values.end(), [&](double value) { return value == values[from]; });
+    };
+    batches_.parts.push_back({from, batches_.count(), layout, same(batches_.rest_length) && same(batches_.first_share)});
+  }
+
+  const SpringNetwork& network_;
+  Index span_;
+  StretchBatches& batches_;
+};
+
+}  // namespace
+
+StretchBatches::StretchBatches(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
+  const std::vector<Index> limited = limited_springs(network, kinds);
+  const Index band = bandwidth(network.springs, limited);
+  const bool is_narrow = band <= network.particle_count() / kNarrow;
+  Filler filler(network, is_narrow ? kSpan * band : network.particle_count(), *this);
+  std::vector<Index> colour_begin{0};
+  for (std::vector<Piece> waiting = pieces(network.springs, limited); !waiting.empty();) {
+    Colouring colours;
+    waiting = colour(network, waiting, colours);
+    for (Colour& of_colour : colours) {
+      if (of_colour.runs.empty() && of_colour.singles.empty()) break;
+      filler.add_colour(of_colour);
+      colour_begin.push_back(static_cast<Index>(parts.size()));
+    }
+  }
+  if (is_narrow) {
+    order_by_place(colour_begin, band, network.particle_count(), *this);
+  } else {
+    order_by_colour(colour_begin, *this);
+  }
+}
+
+}  // namespace sprung

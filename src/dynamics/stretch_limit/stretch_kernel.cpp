@@ -1,0 +1,231 @@
+#include "dynamics/stretch_limit/stretch_kernel.h"
+
+#include "base/kernel.h"
+#include "dynamics/stretch_limit/layout_gathered.h"
+#include "dynamics/stretch_limit/layout_pairs.h"
+#include "dynamics/stretch_limit/layout_runs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+using Layout = StretchBatches::Layout;
+using Part = StretchBatches::Part;
+
+/// The longest and the shortest of the springs in each lane, squared: only at the end all lanes are looked at.
+template <class Lanes>
+struct Extremes {
+  Lanes longest{};
+  Lanes shortest = Lanes{} + HUGE_VAL;
+
+  [[gnu::always_inline]] void include(const Lanes& longer, const Lanes& shorter) {
+    longest = longer > longest ? longer : longest;
+    shortest = shorter < shortest ? shorter : shortest;
+  }
+
+  [[gnu::always_inline]] void include_into(SquaredLengths& all) const {
+    for (Index lane = 0; lane < kCountOf<Lanes>; ++lane) all.include({longest[lane], shortest[lane]});
+  }
+};
+
+/// Of parts whose springs fill `Wide` groups, and of what is left over.
+template <class Wide>
+struct AllExtremes {
+  Extremes<Wide> of_wide;
+  Extremes<Double4> of_narrow;
+
+  [[gnu::always_inline]] void include(const Extremes<Double8>& others) { of_wide.include(others.longest, others.shortest); }
+  [[gnu::always_inline]] void include(const Extremes<Double4>& others) { of_narrow.include(others.longest, others.shortest); }
+
+  [[gnu::always_inline]] SquaredLengths lengths() const {
+    SquaredLengths all;
+    of_wide.include_into(all);
+    of_narrow.include_into(all);
+    return all;
+  }
+};
+
+[[gnu::always_inline]] inline bool are_beyond(const LengthRange& range, const Extremes<Double4>& springs) {
+  const auto outside = (springs.longest > range.most * range.most) | (springs.shortest < range.least * range.least);
+  return (outside[0] | outside[1] | outside[2] | outside[3]) != 0;
+}
+
+[[gnu::always_inline]] inline bool are_beyond(const LengthRange& range, const Extremes<Double8>& springs) {
+  const auto half = [](const Double8& of, Double4& low, Double4& high) {
+    low = __builtin_shufflevector(of, of, 0, 1, 2, 3);
+    high = __builtin_shufflevector(of, of, 4, 5, 6, 7);
+  };
+  Extremes<Double4> some;
+  Extremes<Double4> others;
+  half(springs.longest, some.longest, others.longest);
+  half(springs.shortest, some.shortest, others.shortest);
+  some.include(others.longest, others.shortest);
+  return are_beyond(range, some);
+}
+
+/// Squared lengths of a part's springs from `s` on, as parts of the rest length, as long as they fill a group; returns where they
+/// do not. Without `lengths` only the extremes are kept.
+template <class Group>
+[[gnu::always_inline]] inline Index find_squared(const StretchBatches& batches, const Part& part, Index s, const double* positions,
+                                                 double* lengths, Extremes<typename Group::Lanes>& extremes) {
+  using Lanes = typename Group::Lanes;
+  if (s + kCountOf < Lanes >> part.end) return s;
+  Lanes per_length;
+  load_simd(&batches.per_length[s], per_length);
+  for (; s + kCountOf<Lanes> <= part.end; s += kCountOf<Lanes>) {
+    if (!part.same) load_simd(&batches.per_length[s], per_length);
+    Lanes squared;
+    Group::find_squared(batches, s, positions, squared);
+    squared *= per_length * per_length;
+    extremes.include(squared, squared);
+    if (lengths != nullptr) store_simd(squared, lengths + (s - part.begin));
+  }
+  return s;
+}
+
+/// From squared lengths to how much of each spring is beyond its limits: 1 - allowed / length, of what is too long in `lengths`,
+/// and of what is too short in `pushes`, at most its own length, unless there is none of these.
+template <class Lanes>
+[[gnu::always_inline]] inline Index find_beyond(const LengthRange& range, double relaxation, Index i, Index count, double* lengths,
+                                                double* pushes) {
+  const double most_squared = range.most * range.most;
+  const double least_squared = range.least * range.least;
+  for (; i + kCountOf<Lanes> <= count; i += kCountOf<Lanes>) {
+    Lanes squared, inverse;
+    load_simd(lengths + i, squared);
+    inverse_root(squared, inverse);
+    const Lanes too_long = 1.0 - range.most * inverse;
+    store_simd(relaxation * (squared > most_squared ? too_long : Lanes{}), lengths + i);
+    if (pushes == nullptr) continue;
+    const Lanes too_short = 1.0 - range.least * inverse;
+    const Lanes push = too_short > -1.0 ? too_short : Lanes{} - 1.0;
+    store_simd(relaxation * (squared < least_squared ? push : Lanes{}), pushes + i);
+  }
+  return i;
+}
+
+/// What ends move of what is beyond their limits.
+template <class Lanes>
+[[gnu::always_inline]] inline void load_moves(const double* beyond, const Lanes& first_share, Moves<Lanes>& moves) {
+  load_simd(beyond, moves.second);
+  moves.first = first_share * moves.second;
+  moves.second -= moves.first;
+}
+
+template <class Group>
+[[gnu::always_inline]] inline Index move(const StretchBatches& batches, const Part& part, Index s, const double* too_long,
+                                         const double* too_short, const double* before, double* positions) {
+  using Lanes = typename Group::Lanes;
+  if (s + kCountOf < Lanes >> part.end) return s;
+  Lanes first_share;
+  load_simd(&batches.first_share[s], first_share);
+  for (; s + kCountOf<Lanes> <= part.end; s += kCountOf<Lanes>) {
+    if (!part.same) load_simd(&batches.first_share[s], first_share);
+    Moves<Lanes> pulls;
+    load_moves(too_long + (s - part.begin), first_share, pulls);
+    if (too_short == nullptr) {
+      Group::move(batches, s, pulls, NoPushes{}, before, positions);
+      continue;
+    }
+    Moves<Lanes> pushes;
+    load_moves(too_short + (s - part.begin), first_share, pushes);
+    Group::move(batches, s, pulls, pushes, before, positions);
+  }
+  return s;
+}
+
+// Three sweeps over a part, which is in the first-level cache: in one, each spring would wait for its own root, and the machine
+// does not look far enough ahead to do another meanwhile. What does not fill a wide group is left to narrow ones.
+template <class Wide, class Narrow, class All>
+[[gnu::always_inline]] inline void project(const StretchBatches& batches, const Part& part, const LengthRange& range,
+                                           double relaxation, const double* before, double* positions, All& extremes) {
+  alignas(Double8) double lengths[StretchBatches::kPartSprings];
+  Extremes<typename Wide::Lanes> of_wide;
+  Extremes<typename Narrow::Lanes> of_narrow;
+  const Index measured = find_squared<Wide>(batches, part, part.begin, positions, lengths, of_wide);
+  find_squared<Narrow>(batches, part, measured, positions, lengths, of_narrow);
+  if (!are_beyond(range, of_wide) && !are_beyond(range, of_narrow)) return;
+  extremes.include(of_wide);
+  extremes.include(of_narrow);
+
+  const LengthRange least_alone{.least = range.least, .most = HUGE_VAL};
+  alignas(Double8) double pushes[StretchBatches::kPartSprings];
+  double* const too_short = are_beyond(least_alone, of_wide) || are_beyond(least_alone, of_narrow) ? pushes : nullptr;
+  const Index count = part.end - part.begin;
+  const Index found = find_beyond<typename Wide::Lanes>(range, relaxation, 0, count, lengths, too_short);
+  find_beyond<typename Narrow::Lanes>(range, relaxation, found, count, lengths, too_short);
+  const Index moved = move<Wide>(batches, part, part.begin, lengths, too_short, before, positions);
+  move<Narrow>(batches, part, moved, lengths, too_short, before, positions);
+}
+
+/// Calls `body` with the groups of each part.
+template <class Widest, class Body>
+[[gnu::always_inline]] inline void for_parts(const StretchBatches& batches, const Parts& parts, const Body& body) {
+  for (Index p = parts.begin; p < parts.end; ++p) {
+    const Part& part = batches.parts[p];
+    switch (part.layout) {
+      case Layout::run:
+        body.template operator()<RunGroup<Widest>, RunGroup<PackedVectors4>>(part);
+        break;
+      case Layout::pairs:
+        body.template operator()<PairGroup<Widest>, PairGroup<PackedVectors4>>(part);
+        break;
+      default:
+        body.template operator()<GatheredGroup, GatheredGroup>(part);
+    }
+  }
+}
+
+template <class Widest>
+[[gnu::always_inline]] inline SquaredLengths project_parts(const StretchBatches& batches, const Parts& parts,
+                                                           const LengthRange& range, double relaxation, const double* before,
+                                                           double* positions) {
+  AllExtremes<typename Widest::Lanes> extremes;
+  for_parts<Widest>(
+      batches, parts, [&]<class Wide, class Narrow>(const Part& part) __attribute__((always_inline)) {
+        project<Wide, Narrow>(batches, part, range, relaxation, before, positions, extremes);
+      });
+  return extremes.lengths();
+}
+
+template <class Widest>
+[[gnu::always_inline]] inline SquaredLengths measure_parts(const StretchBatches& batches, const Parts& parts,
+                                                           const double* positions) {
+  AllExtremes<typename Widest::Lanes> extremes;
+  for_parts<Widest>(
+      batches, parts, [&]<class Wide, class Narrow>(const Part& part) __attribute__((always_inline)) {
+        Extremes<typename Wide::Lanes> of_wide;
+        const Index measured = find_squared<Wide>(batches, part, part.begin, positions, nullptr, of_wide);
+        extremes.include(of_wide);
+        find_squared<Narrow>(batches, part, measured, positions, nullptr, extremes.of_narrow);
+      });
+  return extremes.lengths();
+}
+
+}  // namespace
+
+SPRUNG_KERNEL
+SquaredLengths project_springs_narrow(const StretchBatches& batches, const Parts& parts, const LengthRange& range,
+                                      double relaxation, const double* before, double* positions) {
+  return project_parts<PackedVectors4>(batches, parts, range, relaxation, before, positions);
+}
+
+SPRUNG_KERNEL
+SquaredLengths measure_springs_narrow(const StretchBatches& batches, const Parts& parts, const double* positions) {
+  return measure_parts<PackedVectors4>(batches, parts, positions);
+}
+
+SPRUNG_WIDE_KERNEL
+SquaredLengths project_springs_wide(const StretchBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
+                                    const double* before, double* positions) {
+  return project_parts<PackedVectors8>(batches, parts, range, relaxation, before, positions);
+}
+
+SPRUNG_WIDE_KERNEL
+SquaredLengths measure_springs_wide(const StretchBatches& batches, const Parts& parts, const double* positions) {
+  return measure_parts<PackedVectors8>(batches, parts, positions);
+}
+
+}  // namespace sprung

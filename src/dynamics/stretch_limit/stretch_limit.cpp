@@ -1,0 +1,161 @@
+#include "dynamics/stretch_limit/stretch_limit.h"
+
+#include "base/parallel.h"
+#include "dynamics/stretch_limit/step_estimate.h"
+#include "dynamics/stretch_limit/stretch_kernel.h"
+#include "dynamics/stretch_newton/stretch_newton.h"
+#include "dynamics/tethers/limited_springs.h"
+#include "dynamics/tethers/long_range_attachments.h"
+#include "dynamics/tethers/lra_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+namespace {
+
+// A limit without play and without tolerance is never held quite: this is what steps are chosen for then.
+constexpr double kLeastExcess = 1.0e-3;
+
+// Springs that may shrink by no more than this part of the excess hardly let a surface neck.
+constexpr double kLeastPlay = 0.1;
+
+/// Extremes of what `lengths_of` says of tasks [begin, end).
+template <class LengthsOf>
+SquaredLengths extremes(const StretchBatches& batches, Index begin, Index end, const LengthsOf& lengths_of) {
+  std::vector<SquaredLengths> of_tasks(end - begin);
+  parallel_chunks(end - begin, 1, [&](Index first, Index last) {
+    for (Index task = first; task < last; ++task) {
+      of_tasks[task] = lengths_of(Parts{batches.task_begin[begin + task], batches.task_begin[begin + task + 1]});
+    }
+  });
+  SquaredLengths all;
+  for (const SquaredLengths& of_task : of_tasks) all.include(of_task);
+  return all;
+}
+
+LengthRange length_range(const StretchLimitSettings& settings) {
+  return {.least = 1.0 - settings.max_compression, .most = 1.0 + settings.max_stretch};
+}
+
+/// Whether springs may not shrink either, by more than a part of the wanted excess.
+bool holds_both_ways(const StretchLimitSettings& settings) {
+  return settings.max_compression <= kLeastPlay * wanted_excess(settings);
+}
+
+}  // namespace
+
+double wanted_excess(const StretchLimitSettings& settings) {
+  return std::max(0.5 * settings.max_stretch + settings.tolerance, kLeastExcess);
+}
+
+StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use)
+    : network_(network), settings_(settings), batches_(std::make_unique<StretchBatches>(network, settings.kinds)) {
+  if (settings.tethers) tethers_ = std::make_unique<Tethers>(network, settings.kinds, settings.max_stretch);
+  if (settings.solver == StretchLimitSettings::Solver::gauss_seidel) return;
+  newton_ = std::make_unique<StretchNewton>(network, settings, use);
+}
+StretchLimit::~StretchLimit() = default;
+
+double StretchLimit::project(const Points& before, Points& positions, double relaxation) const {
+  if (tethers_) tethers_->project(positions);
+  const LengthRange range = length_range(settings_);
+  SquaredLengths met;
+  for (std::size_t stage = 0; stage + 1 < batches_->stage_begin.size(); ++stage) {
+    met.include(extremes(*batches_, batches_->stage_begin[stage], batches_->stage_begin[stage + 1], [&](const Parts& parts) {
+      return project_springs(*batches_, parts, range, relaxation, before.data(), positions.data());
+    }));
+  }
+  return met.excess(range);
+}
+
+std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double fall,
+                                       const std::vector<StretchHold>& holds) const {
+  return newton_ ? newton_->solve(before, positions, fall, holds) : std::nullopt;
+}
+
+double StretchLimit::excess(const Points& positions) const {
+  const auto lengths_of = [&](const Parts& parts) { return measure_springs(*batches_, parts, positions.data()); };
+  return extremes(*batches_, 0, batches_->stage_begin.back(), lengths_of).excess(length_range(settings_));
+}
+
+double StretchLimit::excess(const Points& positions, const Body& body) const {
+  const Springs& springs = network_.springs;
+  SquaredLengths met;
+  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+    if (!is_limited(network_, settings_.kinds, s)) continue;
+    const double squared = (positions.col(springs.second[s]) - positions.col(springs.first[s])).squaredNorm();
+    const double part = squared / (springs.rest_length[s] * springs.rest_length[s]);
+    met.include({.longest = part, .shortest = part});
+  }
+  return met.excess(length_range(settings_));
+}
+
+const StretchLimitSettings& StretchLimit::settings() const { return settings_; }
+
+std::string StretchLimit::chosen_solver() const {
+  std::string held;
+  for (std::size_t b = 0; newton_ && b < network_.bodies.size(); ++b) {
+    if (!newton_->takes_any_of(b)) continue;
+    const Body& body = network_.bodies[b];
+    held += std::string(held.empty() ? "" : ", ") + (newton_->holds(body) ? "\"" : "chains and trees of \"") + body.name + "\"";
+  }
+  if (newton_ && newton_->takes_any() && newton_->holds_all()) return "newton";
+  const std::string passes = held.empty() ? "gauss_seidel" : "newton for " + held + ", gauss_seidel for the rest";
+  const bool may_change = newton_ && newton_->may_take_over_any();
+  return passes + (may_change ? ", then newton for what keeps missing the limit" : "");
+}
+
+bool StretchLimit::may_be_handed_over(std::size_t body) const { return newton_ && newton_->may_take_over(body); }
+
+// At rest each step adds g dt^2 to each particle, and each of its passes hands on a part of it. Where tethers have handed on
+// theirs, passes gain less: hanging cloths showed 4 passes to be worth 2.6, and 32 to be worth 10. Where springs may
+// not shrink either, over-relaxed passes gain more: 2, 4, 8 and 32 were worth 2, 10, 29 and 280. What sags between its pins hangs
+// askew from all of them: there tethers gain nothing.
+double StretchLimit::suggested_step(double acceleration) const {
+  const SpringGraph graph(network_, limited_springs(network_, settings_.kinds));
+  const std::vector<Tether> tethers = settings_.tethers ? find_tethers(network_, settings_.kinds) : std::vector<Tether>{};
+  const double excess = wanted_excess(settings_);
+  const double passes = settings_.iterations;
+  const auto gained_by = [&](const Body& body) {
+    const bool shared = holds_both_ways(settings_) && holds_shape(body, graph);
+    const double alone = largest_load(network_, body, graph, {.tethers = false, .shared = shared}) / passes;
+    if (!are_pins_taut(network_, body, tethers, settings_.max_stretch)) return alone;
+    const double worth = shared ? 1.0 + std::pow(passes - 1.0, 1.5) : std::cbrt(passes * passes);
+    return std::min(alone, largest_load(network_, body, graph, {.tethers = true, .shared = shared}) / worth);
+  };
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Body& body : network_.bodies) {
+    if (newton_ && newton_->holds(body) && settings_.max_compression == 1.0) continue;
+    const double gained = acceleration * gained_by(body);
+    if (gained > 0.0) smallest = std::min(smallest, std::sqrt(excess / gained));
+  }
+  return smallest;
+}
+
+bool StretchLimit::follows_turn(const std::vector<StretchHold>& holds) const {
+  if (!newton_ || settings_.max_compression < 1.0) return false;
+  for (std::size_t b = 0; b < network_.bodies.size(); ++b) {
+    const bool handed_over = !holds.empty() && holds[b].solved_since && newton_->may_take_over(b);
+    if (!handed_over && !newton_->holds(network_.bodies[b])) return false;
+  }
+  return newton_->takes_any();
+}
+
+bool StretchLimit::may_follow_turn() const {
+  return !follows_turn() && follows_turn(std::vector<StretchHold>(network_.bodies.size(), {.solved_since = 0}));
+}
+
+double StretchLimit::turn() const { return newton_ ? newton_->turn() : 0.0; }
+
+// Without halving, a cloth of 32 particles a side that swings from its corners held its energy as one at a tenth of its step did,
+// within 10 %. Halved up to three times it does so too, but not with structural springs alone, with which it got as much energy as
+// its fall had given it, nor without tethers, where it got 15 % for a while.
+bool StretchLimit::bears_smaller_steps() const {
+  if (!tethers_ || !holds_both_ways(settings_)) return false;
+  const SpringGraph graph(network_, limited_springs(network_, settings_.kinds));
+  return std::ranges::all_of(network_.bodies, [&](const Body& body) { return holds_shape(body, graph); });
+}
+
+}  // namespace sprung

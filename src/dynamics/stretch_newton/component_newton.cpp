@@ -1,0 +1,301 @@
+#include "dynamics/stretch_newton/component_newton.h"
+
+#include "geometry/mesh/triangle_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+// A few are enough mostly; what goes by many times the length of its links in a step takes about 200 of a chain of 2,000 particles,
+// 45 of a strip. Ended after 20 it stayed near where the step began, and fell a third as far as it should.
+constexpr int kMostIterations = 200;
+constexpr int kMostHalvings = 10;
+
+// In a crumpled cloth that neither stretches nor shears each whole step takes other links beyond their limit, and little is left of
+// it. From this iteration on all that ever were stay stiff; where fewer are enough that would only hold them up.
+constexpr int kFreeIterations = 5;
+
+// A step that turns links makes them longer, which its equations do not know. Corrections are made while each takes off half of the
+// energy, and are worth it where half of the forecast is gained at the end.
+constexpr int kMostCorrections = 5;
+constexpr double kWorthwhile = 0.5;
+
+// Iterations end when one lowered the energy as it forecast, but for this part of the energy and of what the way to where
+// forces led was worth at first, and its solve left no more: what is left to gain is about that much, and no other solve is needed
+// to say so. Chains need more iterations, and have them cheaply. What springs store of the error comes back: a cloth of soft
+// springs that hangs by its limit never comes to rest with a tenth, and gains energy as it swings out with a hundredth.
+constexpr double kForecastOfChains = 1.0e-4;
+constexpr double kForecastOfCloths = 0.1;
+constexpr double kForecastOfElasticCloths = 1.0e-3;
+
+// What was corrected is near the forecast by chance at times.
+constexpr double kCorrectedPart = 0.3;
+
+// What turned by less than this and took one iteration the step before hardly changes: of what moves an old factor, to which other
+// springs were slack, takes too much of the motion.
+constexpr double kCalmTurn = 1.0 / 240.0;
+
+// The part of the tolerance that clipped links keep, and what they keep clear of the limit where it has none: they shall not be
+// beyond it by rounding.
+constexpr double kClipPart = 0.99;
+constexpr double kClipRounding = 1.0 - 0x1p-40;
+
+// Where all moved in common it is the same place but for rounding, which this part of the extent bounds far from the origin too.
+constexpr double kSamePlace = 0x1p-40;
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+Index count_ties(const StretchComponent& component) {
+  return static_cast<Index>(
+      std::ranges::count_if(component.links, [&](const StretchComponent::Link& link) { return !component.is_free(link.second); }));
+}
+
+double close_enough(const StretchComponent& component) {
+  if (component.is_tree) return kForecastOfChains;
+  return component.is_elastic ? kForecastOfElasticCloths : kForecastOfCloths;
+}
+
+}  // namespace
+
+ComponentNewton::ComponentNewton(StretchComponent component, const StretchLimitSettings& settings)
+    : component_(std::move(component)),
+      settings_(settings),
+      energy_(component_, settings),
+      clips_(component_.is_tree && count_ties(component_) == 1),
+      mass_(std::accumulate(component_.masses.begin(), component_.masses.end(), 0.0)) {}
+ComponentNewton::~ComponentNewton() = default;
+
+std::optional<int> ComponentNewton::solve(const Points& before, Points& positions, double fall) {
+  gather(before, positions);
+  begin_beside_led();
+  if (rests_in_place()) {
+    last_iterations_ = 0;
+    write_to(positions);
+    return 0;
+  }
+  energy_.set_weight(1.0);
+  const double beyond = energy_.value(led_, led_);
+  if (beyond == 0.0) {
+    balanced_energy_ = kUnknown;
+    return std::nullopt;
+  }
+  const double weight = carried_weight(fall);
+  energy_.set_weight(weight);
+  energy_.find_near(led_);
+  // An order of elimination takes its time, and what only asks for the step, or is never handed over, needs none.
+  if (!solver_) solver_ = make_system_solver(component_);
+  // Where forces led nothing is to be moved: all of the energy is that of links, in proportion to the weight.
+  const int iterations = minimise(weight * beyond);
+  last_iterations_ = iterations;
+  if (clips_) clip();
+  write_to(positions);
+  return iterations;
+}
+
+void ComponentNewton::write_to(Points& positions) const {
+  for (Index i = 0; i < component_.free_count; ++i) positions.col(component_.points[i]) = x_.col(i);
+}
+
+void ComponentNewton::gather(const Points& before, const Points& positions) {
+  const auto count = static_cast<Index>(component_.points.size());
+  before_.resize(Eigen::NoChange, count);
+  led_.resize(Eigen::NoChange, count);
+  for (Index i = 0; i < count; ++i) {
+    before_.col(i) = before.col(component_.points[i]);
+    led_.col(i) = positions.col(component_.points[i]);
+  }
+  common_move_ = common_move();
+  farthest_squared_ = ((led_ - before_).colwise() - common_move_).colwise().squaredNorm().maxCoeff();
+  extent_ = bounds(before_).diagonal().norm();
+}
+
+/// Where the pins went, or what moves as it likes: so its momentum is right from the start.
+Vector3 ComponentNewton::common_move() const {
+  if (const Index pins = component_.pin_count(); pins > 0) return (led_ - before_).rightCols(pins).rowwise().mean();
+  Vector3 moved = Vector3::Zero();
+  for (Index i = 0; i < component_.free_count; ++i) moved += component_.masses[i] * (led_.col(i) - before_.col(i));
+  return moved / mass_;
+}
+
+// What moves by u in a step, on a circle of radius r, is pulled inwards as by an acceleration of u^2 / r. Where nothing pulls,
+// links that are too long do. In small steps what swings on a link would take more from it than it gave, as the link is stiffer the
+// faster all move: one whose stiffness is as large as the masses stops it within a step.
+double ComponentNewton::carried_weight(double fall) const {
+  const double inwards = extent_ > 0.0 ? farthest_squared_ / extent_ : 0.0;
+  return mass_ / std::max(component_.pin_count(), Index{1}) *
+         std::max({fall, inwards, energy_.give(), fall + inwards > 0.0 ? 0.0 : most_beyond()});
+}
+
+double ComponentNewton::turn() const { return extent_ > 0.0 ? std::sqrt(farthest_squared_) / extent_ : 0.0; }
+
+double ComponentNewton::most_beyond() const {
+  double most = 0.0;
+  for (const StretchComponent::Link& link : component_.links) {
+    const double length = (led_.col(link.first) - led_.col(link.second)).norm();
+    most = std::max(most, length - (1.0 + settings_.max_stretch) * link.rest_length);
+  }
+  return most;
+}
+
+int ComponentNewton::minimise(double energy_where_led) {
+  double energy = start(energy_where_led);
+  const double at_first = inertia();
+  const double negligible = kBalanced * at_first;
+  // Masses alone count what is out of balance along links for far too much: an iteration may tell that it is less.
+  if (imbalance() <= negligible) {
+    note_balance(energy);
+    return 0;
+  }
+  // Where contact moved something since, links are to store as much as then.
+  if (led_apart() <= negligible && std::abs(energy - balanced_energy_) <= negligible) return 0;
+  const bool is_calm = last_iterations_ <= 1 && turn() <= kCalmTurn;
+  const double close = close_enough(component_);
+  // Links that are nearly at their limit will mostly be at it: were they left out at first, each iteration would find only the next
+  // few of them.
+  double modelled = energy_.linearise(x_, led_, NearLimit::pushing, system_);
+  bool is_too_stiff = false;
+  energy_.forget_overshot();
+  for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
+    system_.is_like_last = iteration == 1 && is_calm;
+    system_.may_be_left = 0.5 * negligible;
+    const double left = solver_->solve(system_, step_);
+    const double forecast = modelled - 0.5 * system_.residual.cwiseProduct(step_).sum();
+    const auto [part, corrected] = descend(energy, forecast);
+    const bool is_balanced = iteration == 1 && 2.0 * std::max(modelled - forecast, left) <= negligible;
+    balanced_energy_ = kUnknown;
+    if (is_balanced) note_balance(energy);
+    const double enough = (corrected ? kCorrectedPart : 1.0) * close * (at_first + energy);
+    if (part > 0.0 && !is_too_stiff && std::abs(energy - forecast) + left <= enough) return iteration;
+    if (part == 0.0 && iteration > 1) return iteration;
+    // What was slack stopped the step short, or what counted as if it pushed was not worth it. A forecast with links that are stiff
+    // but do not pull tells less than can be gained.
+    const bool restrains = iteration >= kFreeIterations && energy_.knows_overshot();
+    is_too_stiff = part < 1.0 && !restrains;
+    if (restrains) {
+      energy_.linearise(x_, led_, NearLimit::overshot, system_);
+    } else if (is_too_stiff) {
+      energy_.linearise(x_, led_, NearLimit::stiff, system_);
+    }
+    modelled = energy;
+  }
+  return kMostIterations;
+}
+
+/// In motion where the step began is mostly nearer to the minimum than where forces led: there springs are not too long.
+void ComponentNewton::begin_beside_led() {
+  x_ = before_.colwise() + common_move_;
+  x_.rightCols(component_.pin_count()) = led_.rightCols(component_.pin_count());
+}
+
+/// Linearises where the solve begins, if that is not where forces led; returns the energy there.
+double ComponentNewton::start(double energy_where_led) {
+  const double energy = energy_.linearise(x_, led_, NearLimit::slack, system_);
+  if (energy <= energy_where_led) return energy;
+  x_ = led_;
+  return energy_.linearise(x_, led_, NearLimit::slack, system_);
+}
+
+void ComponentNewton::note_balance(double energy) {
+  balanced_energy_ = energy;
+  balanced_ = x_;
+  balanced_led_ = led_;
+}
+
+/// What nothing moved since but all in common, and forces lead to nearly where they led then.
+bool ComponentNewton::rests_in_place() const {
+  if (balanced_energy_ == kUnknown) return false;
+  const Vector3 carried = x_.col(0) - balanced_.col(0);
+  const double moved = ((x_ - balanced_).colwise() - carried).cwiseAbs().maxCoeff();
+  return moved <= kSamePlace * extent_ && led_apart() <= kBalanced * inertia();
+}
+
+/// How far from where they led when it came to rest, seen from where each particle is, by masses. E is convex: its minimum goes no
+/// farther than that (Moreau 1965).
+double ComponentNewton::led_apart() const {
+  if (balanced_energy_ == kUnknown) return kUnknown;
+  double sum = 0.0;
+  for (Index i = 0; i < component_.free_count; ++i) {
+    sum += component_.masses[i] * ((led_.col(i) - x_.col(i)) - (balanced_led_.col(i) - balanced_.col(i))).squaredNorm();
+  }
+  return sum;
+}
+
+double ComponentNewton::inertia() const {
+  double sum = 0.0;
+  for (Index i = 0; i < component_.free_count; ++i) sum += component_.masses[i] * (x_.col(i) - led_.col(i)).squaredNorm();
+  return 0.5 * sum;
+}
+
+double ComponentNewton::imbalance() const {
+  double sum = 0.0;
+  for (Index i = 0; i < component_.free_count; ++i) sum += system_.residual.col(i).squaredNorm() / component_.masses[i];
+  return sum;
+}
+
+// The system is that of where the whole step led, if it was made; any other is linearised anew.
+ComponentNewton::Descent ComponentNewton::descend(double& energy, double forecast) {
+  const auto go = [&](double reached) {
+    energy = reached;
+    x_.swap(tried_);
+  };
+  tried_ = x_;
+  tried_.leftCols(component_.free_count) += step_;
+  const double whole = energy_.linearise(tried_, led_, NearLimit::slack, tried_system_);
+  if (whole < energy) {
+    std::swap(system_, tried_system_);
+    go(whole);
+    return {.part = 1.0, .corrected = false};
+  }
+  if (correct(whole) < energy - kWorthwhile * (energy - forecast)) {
+    go(energy_.linearise(tried_, led_, NearLimit::slack, system_));
+    return {.part = 1.0, .corrected = true};
+  }
+  tried_.leftCols(component_.free_count) = x_.leftCols(component_.free_count) + step_;
+  energy_.note_overshot(tried_);
+  double part = 0.5;
+  for (int halving = 1; halving <= kMostHalvings; ++halving, part *= 0.5) {
+    tried_ = x_;
+    tried_.leftCols(component_.free_count) += part * step_;
+    if (const double reached = energy_.value(tried_, led_); reached < energy) {
+      go(reached);
+      return {.part = part, .corrected = false};
+    }
+  }
+  return {.part = 0.0, .corrected = false};
+}
+
+/// Bends the step to what is tried after the links that it turned; returns the energy there.
+double ComponentNewton::correct(double reached) {
+  for (int correction = 0; correction < kMostCorrections; ++correction) {
+    energy_.take_turning(x_, tried_, system_);
+    solver_->solve_again(system_, turn_);
+    turned_ = tried_;
+    turned_.leftCols(component_.free_count) += turn_;
+    const double next = energy_.value(turned_, led_);
+    const bool goes_on = next < kWorthwhile * reached;
+    if (next < reached) {
+      reached = next;
+      tried_.swap(turned_);
+    }
+    if (!goes_on) break;
+  }
+  return reached;
+}
+
+void ComponentNewton::clip() {
+  const double most = (1.0 + settings_.max_stretch + kClipPart * settings_.tolerance) * kClipRounding;
+  for (Index i = component_.free_count - 1; i >= 0; --i) {
+    for (Index k = component_.begin[i]; k < component_.begin[i + 1]; ++k) {
+      const StretchComponent::Link& link = component_.links[k];
+      const Vector3 between = x_.col(i) - x_.col(link.second);
+      const double longest = most * link.rest_length;
+      if (between.squaredNorm() > longest * longest) x_.col(i) = x_.col(link.second) + longest / between.norm() * between;
+    }
+  }
+}
+
+}  // namespace sprung

@@ -1,0 +1,174 @@
+#include "dynamics/stretch_newton/pcg_solver.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace sprung {
+namespace {
+
+// A factor takes as long as six to eight solves with it. One that is worth something takes more off in each iteration; but where
+// the diagonal was raised, what hardly any link holds comes late, and an iteration may bring up more of it than it takes off.
+constexpr int kMostIterations = 8;
+constexpr double kSlowest = 0.8;
+constexpr int kMostIterationsRaised = 16;
+constexpr double kSlowestRaised = std::numeric_limits<double>::infinity();
+
+// So many roundings of single precision: with half as many some diagonals of cloths became negative.
+constexpr double kRaise = 4.0 * 0x1p-24;
+
+// Sizes are those of residuals, squared, as the factor at hand measures them: less than a tenth is left at the end of what they
+// would have been at first, had the factor been exact.
+constexpr double kNearEnough = 0.01;
+
+// As the masses measure them, who mostly count it for far too much.
+constexpr double kSurelyNear = 1.0e-4;
+
+// Single precision is not tried again where links are nearly as stiff, beside masses, as once when it failed.
+constexpr double kBearablePart = 0.5;
+
+BlockMatrix pattern_of(const StretchComponent& component) {
+  std::vector<ParticlePair> pairs;
+  for (const auto& link : component.links) {
+    if (component.is_free(link.second)) pairs.push_back({.first = link.first, .second = link.second});
+  }
+  return {component.free_count, pairs};
+}
+
+}  // namespace
+
+SparseSolver::SparseSolver(const StretchComponent& component)
+    : component_(component),
+      matrix_(pattern_of(component)),
+      rough_(matrix_),
+      ways_{Roughly{.raise = 0.0, .patience = {.most_iterations = kMostIterations, .slowest = kSlowest}},
+            Roughly{.raise = kRaise, .patience = {.most_iterations = kMostIterationsRaised, .slowest = kSlowestRaised}}} {}
+
+double SparseSolver::solve(const StretchSystem& system, Points& step) {
+  assemble(system);
+  if (system.is_like_last) {
+    if (const auto left = solve_as_last(system, step)) return *left;
+  }
+  const double stiffness = stiffest();
+  for (Roughly& way : ways_) {
+    if (!(stiffness < way.bearable)) continue;
+    kept_ = rough_.factor_and_solve(matrix_, way.raise, system.residual, towards_) ? Kept::rough : Kept::nothing;
+    if (const auto left = approach_with_kept(way.patience, system.residual, step)) return *left;
+    way.bearable = kBearablePart * stiffness;
+  }
+  solve_exactly(system.residual, step);
+  return 0.0;
+}
+
+void SparseSolver::solve_again(const StretchSystem& system, Points& step) {
+  if (kept_ == Kept::nothing) {
+    step.setZero(3, component_.free_count);
+    return;
+  }
+  solve_with_kept(system.residual, step);
+  if (component_.pin_count() == 0) keep_momentum(system.residual, step);
+}
+
+std::optional<double> SparseSolver::solve_as_last(const StretchSystem& system, Points& step) {
+  // What changes so fast mostly does so the next time too.
+  if (std::exchange(led_nowhere_, false)) return std::nullopt;
+  const Patience patience{.most_iterations = kMostIterations, .slowest = kSlowest, .may_be_left = system.may_be_left};
+  solve_with_kept(system.residual, towards_);
+  const auto left = approach_with_kept(patience, system.residual, step);
+  led_nowhere_ = !left;
+  return left;
+}
+
+void SparseSolver::solve_with_kept(const Points& right, Points& solution) {
+  if (kept_ == Kept::rough) {
+    rough_.solve(right, solution);
+  } else if (kept_ == Kept::exact) {
+    exact_->solve(right, solution);
+  }
+}
+
+// Links push one end as the other: what all move in common has an equation of its own, in which nothing needs to be left.
+void SparseSolver::keep_momentum(const Points& right, Points& step) const {
+  Vector3 missing = right.rowwise().sum();
+  double mass = 0.0;
+  for (Index i = 0; i < component_.free_count; ++i) {
+    missing -= component_.masses[i] * step.col(i);
+    mass += component_.masses[i];
+  }
+  step.colwise() += missing / mass;
+}
+
+std::optional<double> SparseSolver::approach_with_kept(const Patience& patience, const Points& right, Points& step) {
+  if (kept_ == Kept::nothing) return std::nullopt;
+  const auto left = approach(patience, right, step);
+  if (left && component_.pin_count() == 0) keep_momentum(right, step);
+  return left;
+}
+
+/// Conjugate gradients with the factor that is kept as preconditioner; `towards_` is its solution for `right`, the first direction.
+/// Returns what they left to gain, if that is little enough.
+std::optional<double> SparseSolver::approach(const Patience& patience, const Points& right, Points& step) {
+  step.setZero(3, component_.free_count);
+  left_ = right;
+  double gained = 0.0;
+  double before = 0.0;
+  for (int iteration = 1; iteration <= patience.most_iterations; ++iteration) {
+    if (iteration > 1) solve_with_kept(left_, towards_);
+    const double size = left_.cwiseProduct(towards_).sum();
+    if (size == 0.0) return 0.0;
+    if (iteration == 1) {
+      direction_ = towards_;
+    } else {
+      if (!(size <= patience.slowest * before)) return std::nullopt;
+      direction_ = towards_ + size / before * direction_;
+    }
+    before = size;
+    pushed_.setZero(3, component_.free_count);
+    matrix_.add_product(direction_, 1.0, pushed_);
+    const double length = size / direction_.cwiseProduct(pushed_).sum();
+    gained += length * size;
+    step += length * direction_;
+    left_ -= length * pushed_;
+    // The way is made before its end would be measured: it costs less than that, and what is left only falls.
+    if (0.5 * size <= patience.may_be_left || (iteration > 1 && size <= kNearEnough * gained)) return 0.5 * size;
+    if (const double most = largest_size(); most <= kSurelyNear * gained) return 0.5 * most;
+  }
+  return std::nullopt;
+}
+
+/// Of any particle beside its mass.
+double SparseSolver::stiffest() const {
+  double most = 0.0;
+  for (Index i = 0; i < component_.free_count; ++i) most = std::max(most, matrix_.diagonal(i).trace() / component_.masses[i]);
+  return most;
+}
+
+/// Of what is left, by masses alone: stiffness only makes it smaller.
+double SparseSolver::largest_size() const {
+  double size = 0.0;
+  for (Index i = 0; i < component_.free_count; ++i) size += left_.col(i).squaredNorm() / component_.masses[i];
+  return size;
+}
+
+void SparseSolver::solve_exactly(const Points& right, Points& step) {
+  if (!exact_) exact_ = std::make_unique<BlockCholesky<double>>(matrix_);
+  kept_ = exact_->factor_and_solve(matrix_, 0.0, right, step) ? Kept::exact : Kept::nothing;
+  if (kept_ == Kept::nothing) step.setConstant(3, component_.free_count, std::numeric_limits<double>::quiet_NaN());
+}
+
+void SparseSolver::assemble(const StretchSystem& system) {
+  matrix_.set_zero();
+  for (Index i = 0; i < component_.free_count; ++i) matrix_.add(i, i, component_.masses[i] * Matrix3::Identity());
+  for (std::size_t s = 0; s < component_.links.size(); ++s) {
+    const auto& link = component_.links[s];
+    const Matrix3 block = system.blocks[s].matrix();
+    if (component_.is_free(link.second)) {
+      matrix_.add_difference(link.first, link.second, block);
+    } else {
+      matrix_.add(link.first, link.first, block);
+    }
+  }
+}
+
+}  // namespace sprung

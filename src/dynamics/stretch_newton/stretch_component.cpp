@@ -1,0 +1,115 @@
+#include "dynamics/stretch_newton/stretch_component.h"
+
+#include "dynamics/tethers/limited_springs.h"
+#include "dynamics/tethers/spring_graph.h"
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+class Finder {
+ public:
+  Finder(const SpringNetwork& network, const std::vector<Index>& limited)
+      : network_(network),
+        graph_(network, limited),
+        seen_(network.particle_count(), false),
+        elastic_(seen_),
+        point_(seen_.size(), kNone) {
+    const Springs& springs = network.springs;
+    for (Index s = 0; s < springs.count(); ++s) {
+      if (springs.stiffness[s] == 0.0) continue;
+      for (const Index i : {springs.first[s], springs.second[s]}) elastic_[i] = true;
+    }
+    const AngleBends& bends = network.angle_bends;
+    for (Index e = 0; e < bends.count(); ++e) {
+      if (bends.stiffness[e] == 0.0) continue;
+      for (const Index i : {bends.before[e], bends.middle[e], bends.after[e]}) elastic_[i] = true;
+    }
+  }
+
+  std::vector<StretchComponent> all() {
+    std::vector<StretchComponent> found;
+    for (Index i = 0; i < network_.particle_count(); ++i) {
+      if (seen_[i] || network_.is_pinned(i)) continue;
+      const std::vector<Index> particles = outward_from(i);
+      if (particles.size() > 1 || hangs_on_pin(i)) found.push_back(component(particles));
+    }
+    return found;
+  }
+
+ private:
+  /// Free particles reached from one, nearest first.
+  std::vector<Index> outward_from(Index start) {
+    std::vector<Index> queue{start};
+    seen_[start] = true;
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+      for (const SpringGraph::Way& way : graph_.at(queue[head])) {
+        if (seen_[way.to] || network_.is_pinned(way.to)) continue;
+        seen_[way.to] = true;
+        queue.push_back(way.to);
+      }
+    }
+    return queue;
+  }
+
+  [[nodiscard]] bool hangs_on_pin(Index particle) const {
+    return std::ranges::any_of(graph_.at(particle), [&](const SpringGraph::Way& way) { return network_.is_pinned(way.to); });
+  }
+
+  /// The same particles, from the tips to one that hangs on a pin.
+  std::vector<Index> inward(const std::vector<Index>& particles) {
+    const auto root = std::ranges::find_if(particles, [&](Index i) { return hangs_on_pin(i); });
+    for (const Index i : particles) seen_[i] = false;
+    std::vector<Index> order = outward_from(root == particles.end() ? particles.front() : *root);
+    std::ranges::reverse(order);
+    return order;
+  }
+
+  StretchComponent component(const std::vector<Index>& particles) {
+    StretchComponent found;
+    found.points = inward(particles);
+    found.free_count = static_cast<Index>(found.points.size());
+    for (Index i = 0; i < found.free_count; ++i) {
+      point_[found.points[i]] = i;
+      found.masses.push_back(network_.masses[found.points[i]]);
+    }
+    found.is_elastic = std::ranges::any_of(particles, [&](Index i) { return elastic_[i]; });
+    found.is_tree = true;
+    for (Index i = 0; i < found.free_count; ++i) add_links(found, i);
+    // A pin may belong to several components.
+    for (const Index particle : found.points) point_[particle] = kNone;
+    return found;
+  }
+
+  void add_links(StretchComponent& component, Index i) {
+    Index parent = kNone;
+    for (const auto& [spring, other] : graph_.at(component.points[i])) {
+      if (point_[other] == kNone) {
+        point_[other] = static_cast<Index>(component.points.size());
+        component.points.push_back(other);
+      }
+      const Index second = point_[other];
+      if (second < i) continue;
+      component.links.push_back({i, second, network_.springs.rest_length[spring]});
+      if (!component.is_free(second)) continue;
+      component.is_tree = component.is_tree && (parent == kNone || parent == second);
+      parent = second;
+    }
+    component.begin.push_back(static_cast<Index>(component.links.size()));
+  }
+
+  const SpringNetwork& network_;
+  SpringGraph graph_;
+  std::vector<bool> seen_;
+  std::vector<bool> elastic_;
+  std::vector<Index> point_;
+};
+
+}  // namespace
+
+std::vector<StretchComponent> stretch_components(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
+  return Finder(network, limited_springs(network, kinds)).all();
+}
+
+}  // namespace sprung

@@ -1,0 +1,40 @@
+#include "geometry/mesh/mesh_report.h"
+
+#include "base/format.h"
+#include "geometry/mesh/topology.h"
+
+namespace sprung {
+namespace {
+
+constexpr int kDigits = 6;
+
+// Beyond these a mesh in metres is improbable.
+constexpr double kLargestUsual = 1000.0;
+constexpr double kSmallestUsual = 0.001;
+
+}  // namespace
+
+void describe_surface(const TriangleMesh& mesh, MeshReport& report) {
+  for (const MeshEdge& edge : mesh_edges(mesh.triangles)) {
+    report.border_edges += edge.uses == 1 ? 1 : 0;
+    report.non_manifold_edges += edge.uses > 2 ? 1 : 0;
+  }
+  report.components = connected_components(mesh.triangles);
+  report.closed = is_closed(mesh.triangles);
+  report.bounds = bounds(mesh.vertices);
+  if (report.non_manifold_edges == 0) return;
+  report.notes.push_back(std::to_string(report.non_manifold_edges) +
+                         " edge(s) have more than two faces: it has no inside, and is treated as a sheet");
+}
+
+std::optional<std::string> unit_note(const Box3& bounds, double scale) {
+  if (bounds.isEmpty()) return std::nullopt;
+  const double extent = scale * bounds.sizes().maxCoeff();
+  if (kSmallestUsual <= extent && extent <= kLargestUsual) return std::nullopt;
+  const std::string size = "its largest extent is " + format_number(extent, kDigits) + " m";
+  if (scale != 1.0) return size + " with its \"scale\" of " + format_number(scale, kDigits) + ": is that meant?";
+  return size + ": if the file is not in metres, place it with a \"scale\"" +
+         (extent > kLargestUsual ? ", 0.001 for millimetres" : "");
+}
+
+}  // namespace sprung

@@ -1,0 +1,94 @@
+#include "geometry/motion/motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace sprung {
+namespace {
+
+struct SineCosine {
+  double sine;
+  double cosine;
+};
+
+// Reduced to a quadrant first, so that quarter turns are exact and whole turns bring back the same bits.
+SineCosine sine_cosine(double degrees) {
+  const double turn = std::remainder(degrees, 360.0);
+  const double quarters = std::nearbyint(turn / 90.0);
+  const double radians = (turn - 90.0 * quarters) * std::numbers::pi / 180.0;
+  const double s = std::sin(radians);
+  const double c = std::cos(radians);
+  switch (static_cast<int>(quarters)) {
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case -1:
+      return {-c, s};
+    default:
+      return {-s, -c};
+  }
+}
+
+// Rodrigues' formula.
+Matrix3 rotation_about(const Vector3& axis, double degrees) {
+  const auto [s, c] = sine_cosine(degrees);
+  Matrix3 cross;
+  cross << 0.0, -axis.z(), axis.y(), axis.z(), 0.0, -axis.x(), -axis.y(), axis.x(), 0.0;
+  return c * Matrix3::Identity() + s * cross + (1.0 - c) * axis * axis.transpose();
+}
+
+auto next_after(const std::vector<Keyframe>& keys, double time) {
+  return std::upper_bound(keys.begin(), keys.end(), time, [](double t, const Keyframe& key) { return t < key.time; });
+}
+
+Keyframe keyframe_at(const Motion& motion, double time) {
+  const std::vector<Keyframe>& keys = motion.keyframes;
+  if (keys.empty()) return {};
+  const auto next = next_after(keys, time);
+  if (next == keys.begin()) return keys.front();
+  if (next == keys.end()) return keys.back();
+  const Keyframe& a = *(next - 1);
+  const Keyframe& b = *next;
+  const double s = (time - a.time) / (b.time - a.time);
+  const double w = motion.interpolation == Interpolation::smooth ? s * s * (3.0 - 2.0 * s) : s;
+  return {time, (1.0 - w) * a.position + w * b.position, (1.0 - w) * a.rotation + w * b.rotation};
+}
+
+}  // namespace
+
+Matrix3 rotation_from_degrees(const Vector3& degrees) {
+  return rotation_about(Vector3::UnitZ(), degrees.z()) * rotation_about(Vector3::UnitY(), degrees.y()) *
+         rotation_about(Vector3::UnitX(), degrees.x());
+}
+
+bool Motion::moves() const {
+  const auto differs = [](const Keyframe& a, const Keyframe& b) { return a.position != b.position || a.rotation != b.rotation; };
+  return spin != Vector3::Zero() || std::adjacent_find(keyframes.begin(), keyframes.end(), differs) != keyframes.end();
+}
+
+double Motion::turn(double begin, double end) const {
+  double angles = spin.norm() * (end - begin);
+  Keyframe last = keyframe_at(*this, begin);
+  const auto turn_to = [&](const Keyframe& next) {
+    angles += (next.rotation - last.rotation).lpNorm<1>();
+    last = next;
+  };
+  for (auto key = next_after(keyframes, begin); key != keyframes.end() && key->time < end; ++key) turn_to(*key);
+  turn_to(keyframe_at(*this, end));
+  return angles;
+}
+
+RigidTransform Motion::pose(const RigidTransform& placed, double time) const {
+  const Keyframe key = keyframe_at(*this, time);
+  Matrix3 turn = rotation_from_degrees(key.rotation);
+  const double rate = spin.norm();
+  if (rate > 0.0) turn = rotation_about(spin / rate, rate * time) * turn;
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = turn * placed.linear();
+  pose.translation() = placed.translation() + key.position;
+  return pose;
+}
+
+}  // namespace sprung

@@ -1,0 +1,25 @@
+#include "geometry/motion/motion_check.h"
+
+#include "base/format.h"
+
+#include <cmath>
+
+namespace sprung {
+
+void check_motion(const std::string& key, const Motion& motion, ProblemList& problems) {
+  problems.require_each(
+      motion.keyframes.size(),
+      [&](std::size_t k) {
+        const Keyframe& frame = motion.keyframes[k];
+        return std::isfinite(frame.time) && frame.position.allFinite() && frame.rotation.allFinite();
+      },
+      [&](std::size_t k) { return "time " + format_number(motion.keyframes[k].time); },
+      EntryRule{key + ".keyframes", "must hold finite numbers", "give times in s, positions in m and rotations in degrees"});
+  problems.require_each(
+      motion.keyframes.size(), [&](std::size_t k) { return k == 0 || !(motion.keyframes[k].time <= motion.keyframes[k - 1].time); },
+      [&](std::size_t k) { return "time " + format_number(motion.keyframes[k].time); },
+      EntryRule{key + ".keyframes", "must be later than the keyframe before it", "sort the keyframes by time"});
+  if (!motion.spin.allFinite()) problems.add(key + ".spin", vector_text(motion.spin), "must be finite", "give degrees per second");
+}
+
+}  // namespace sprung

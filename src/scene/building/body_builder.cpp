@@ -1,0 +1,111 @@
+#include "scene/building/body_builder.h"
+
+#include "base/format.h"
+#include "geometry/import/mesh_file.h"
+#include "geometry/mesh/polygon_mesh.h"
+#include "scene/json/json_text.h"
+
+namespace sprung {
+namespace {
+
+class ShapeMaker {
+ public:
+  ShapeMaker(const Scene& scene, const BodyScene& body, const MeshFinder& finder, std::vector<Problem>& problems)
+      : scene_(scene), body_(body), finder_(finder), problems_(problems), key_(join_path("bodies", body.name)) {}
+
+  std::optional<BodyShape> make() {
+    try {
+      return std::visit([&](const auto& shape) { return from(shape); }, body_.shape);
+    } catch (const InputError& error) {
+      for (Problem problem : error.problems()) report(std::move(problem));
+      return std::nullopt;
+    }
+  }
+
+ private:
+  // Springs are made of the scaled sizes, because what a modulus makes of them depends on lengths.
+  std::optional<BodyShape> from(RopeShape rope) const {
+    for (Vector3& point : rope.points) point *= body_.place.scale;
+    if (rope.length) *rope.length *= body_.place.scale;
+    return make_rope(rope, body_.springs);
+  }
+
+  std::optional<BodyShape> from(ClothShape cloth) const {
+    for (double& side : cloth.size) side *= body_.place.scale;
+    return make_cloth(cloth, body_.springs);
+  }
+
+  std::optional<BodyShape> from(SolidShape solid) const {
+    solid.size *= body_.place.scale;
+    return make_solid(solid, body_.springs);
+  }
+
+  std::optional<BodyShape> from(const MeshFile& mesh) {
+    const std::string key = key_ + ".shape.file";
+    if (lower_case_extension(mesh.file) != ".obj") {
+      problems_.push_back({scene_.file.string(), key, "\"" + mesh.file + "\"", "a simulated body is read from an .obj file",
+                           "export it as OBJ: other formats lose the order of its vertices"});
+      return std::nullopt;
+    }
+    const auto file = finder_.find(mesh.file, key, problems_);
+    if (!file) return std::nullopt;
+    PolygonMesh polygons = read_obj(*file);
+    polygons.vertices *= body_.place.scale;
+    return make_mesh_body(polygons, body_.springs);
+  }
+
+  /// Problems of a mesh file name it already; those of a shape are given their place in the scene.
+  void report(Problem problem) {
+    if (problem.file.empty()) {
+      problem.file = scene_.file.string();
+      problem.key = key_ + (problem.key.starts_with("springs") ? "." : ".shape.") + problem.key;
+    }
+    problems_.push_back(std::move(problem));
+  }
+
+  const Scene& scene_;
+  const BodyScene& body_;
+  const MeshFinder& finder_;
+  std::vector<Problem>& problems_;
+  std::string key_;
+};
+
+void set_mass(const MassScene& mass, BodyShape& shape) {
+  switch (mass.kind) {
+    case MassScene::Kind::body:
+      return set_total_mass(shape, mass.value);
+    case MassScene::Kind::particle:
+      return set_total_mass(shape, mass.value * static_cast<double>(shape.positions.size()));
+    case MassScene::Kind::density:
+      return set_density(shape, mass.value);
+  }
+}
+
+}  // namespace
+
+std::optional<BodyShape> build_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder,
+                                    std::vector<Problem>& problems) {
+  auto shape = ShapeMaker(scene, body, finder, problems).make();
+  if (!shape) return std::nullopt;
+  try {
+    set_mass(body.mass, *shape);
+  } catch (const InputError& error) {
+    for (Problem problem : error.problems()) {
+      problem.file = scene.file.string();
+      problem.key = join_path("bodies", body.name) + "." + problem.key;
+      problems.push_back(std::move(problem));
+    }
+    return std::nullopt;
+  }
+  place(*shape, pose_of(body.place), body.velocity);
+  return shape;
+}
+
+RigidTransform pose_of(const Placement& place) {
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = rotation_from_degrees(place.rotation);
+  pose.translation() = place.position;
+  return pose;
+}
+
+}  // namespace sprung

@@ -1,0 +1,60 @@
+#include "scene/building/mesh_finder.h"
+
+#include "scene/format/file_wildcard.h"
+#include "scene/json/nearest_name.h"
+
+#include <system_error>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+bool is_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored);
+}
+
+}  // namespace
+
+MeshFinder::MeshFinder(std::filesystem::path scene_file, const std::vector<std::filesystem::path>& mesh_paths)
+    : scene_file_(std::move(scene_file)), folders_{scene_file_.parent_path()} {
+  folders_.insert(folders_.end(), mesh_paths.begin(), mesh_paths.end());
+}
+
+std::optional<std::filesystem::path> MeshFinder::find(const std::string& file, const std::string& key,
+                                                      std::vector<Problem>& problems) const {
+  for (const std::filesystem::path& folder : folders_) {
+    const std::filesystem::path candidate = folder / file;  // the file alone when it is an absolute path
+    if (is_file(candidate)) return candidate;
+  }
+  report_missing(file, key, "no such file", problems);
+  return std::nullopt;
+}
+
+std::vector<std::filesystem::path> MeshFinder::find_all(const std::string& pattern, const std::string& key,
+                                                        std::vector<Problem>& problems) const {
+  for (const std::filesystem::path& folder : folders_) {
+    std::vector<std::filesystem::path> files = matching_files(folder / pattern);
+    if (files.size() == 1) {
+      problems.push_back({scene_file_.string(), key, "\"" + pattern + "\"", "matches one file only, " + files.front().string(),
+                          "a sequence has at least 2; a mesh that does not deform is of type \"mesh\""});
+      return {};
+    }
+    if (!files.empty()) return files;
+  }
+  report_missing(pattern, key, "no file matches", problems);
+  return {};
+}
+
+void MeshFinder::report_missing(const std::string& file, const std::string& key, const std::string& rule,
+                                std::vector<Problem>& problems) const {
+  std::vector<std::string> looked;
+  for (const std::filesystem::path& folder : folders_) {
+    const std::string candidate = (folder / file).string();
+    if (looked.empty() || looked.back() != candidate) looked.push_back(candidate);
+  }
+  problems.push_back({scene_file_.string(), key, "\"" + file + "\"", rule + ": looked for " + joined(looked),
+                      "put it beside the scene, or name its folder with --mesh-path or SPRUNG_MESH_PATH"});
+}
+
+}  // namespace sprung

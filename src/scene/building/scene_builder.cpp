@@ -1,0 +1,128 @@
+#include "scene/building/scene_builder.h"
+
+#include "base/machine_memory.h"
+#include "network/network_builder.h"
+#include "scene/building/body_builder.h"
+#include "scene/building/memory_check.h"
+#include "scene/building/obstacle_builder.h"
+#include "scene/building/step_choice.h"
+#include "scene/format/frame_steps.h"
+#include "scene/json/json_text.h"
+
+#include <cstdlib>
+#include <sstream>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+/// The bodies of which the user has said what shape they are. What matters to neither shape nor pins is left out where the text has
+/// problems.
+std::vector<BodyScene> told_bodies(const Scene& scene, const TextProblems& known) {
+  std::vector<BodyScene> bodies;
+  for (BodyScene body : scene.bodies) {
+    const std::string key = join_path("bodies", body.name);
+    if (known.spoil(key + ".shape")) continue;
+    if (known.spoil(key + ".springs")) body.springs = {};
+    if (body.mass.value == 0.0) body.mass = {.kind = MassScene::Kind::body, .value = 1.0};
+    if (known.spoil(key + ".place")) body.pins.clear();
+    bodies.push_back(std::move(body));
+  }
+  return bodies;
+}
+
+void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder, NetworkBuilder& network,
+              std::vector<Problem>& problems) {
+  const auto shape = build_body(scene, body, finder, problems);
+  if (!shape) return;
+  const std::vector<ResolvedPin> pins = resolve_pins(scene, body, *shape, problems);
+  const Index first = network.add_body(body.name, *shape, body.material, body.contact);
+  for (const ResolvedPin& pin : pins) {
+    std::vector<Index> particles = pin.particles;
+    for (Index& particle : particles) particle += first;
+    network.pin(std::move(particles), pin.motion, body.place.position);
+  }
+}
+
+/// The network, or none when a body has problems, or the scene's text has.
+std::optional<SpringNetwork> build_network(const Scene& scene, const MeshFinder& finder, const TextProblems& known,
+                                           std::vector<Problem>& problems) {
+  const std::vector<BodyScene> bodies = told_bodies(scene, known);
+  check_memory(bodies, machine_memory(), problems);
+  if (!problems.empty()) return std::nullopt;
+  NetworkBuilder network;
+  for (const BodyScene& body : bodies) add_body(scene, body, finder, network, problems);
+  if (!problems.empty() || !known.only_unknown_keys) return std::nullopt;
+  try {
+    return network.build();
+  } catch (const InputError& error) {
+    problems = error.problems();
+  }
+  return std::nullopt;
+}
+
+/// Problems of the scene name no file yet.
+void name_file(const std::string& file, std::vector<Problem>& problems) {
+  for (Problem& problem : problems) {
+    if (problem.file.empty()) problem.file = file;
+  }
+}
+
+std::vector<std::string> warnings_of(const BuiltScene& built) {
+  std::vector<std::string> warnings;
+  for (const Body& body : built.network.bodies) {
+    if (body.spring_count > 0 || body.angle_bend_count > 0 || body.particle_count < 2) continue;
+    warnings.push_back("body \"" + body.name + "\" has no springs: its particles move on their own");
+  }
+  for (const NamedReport& mesh : built.meshes) {
+    for (const std::string& note : mesh.report.notes) warnings.push_back("obstacle \"" + mesh.obstacle + "\": " + note);
+  }
+  return warnings;
+}
+
+}  // namespace
+
+BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::path>& mesh_paths, const TextProblems& known) {
+  std::vector<Problem> problems;
+  const MeshFinder finder(scene.file, mesh_paths);
+  BuiltScene built;
+  auto network = build_network(scene, finder, known, problems);
+  name_file(scene.file.string(), problems);
+
+  ObstacleBuilder obstacles(scene, finder, problems);
+  for (const ObstacleScene& obstacle : scene.obstacles) {
+    if (known.spoil(join_path("obstacles", obstacle.name) + ".shape")) continue;
+    if (auto made = obstacles.build(obstacle)) built.obstacles.push_back(std::move(*made));
+  }
+  built.meshes = obstacles.reports();
+
+  built.settings = scene.settings;
+  built.frames = frame_count(scene.duration, scene.frame_rate);
+  std::optional<std::string> step_warning;
+  if (network) {
+    StepChoice choice = choose_step(scene, *network, problems);
+    built.settings.step = choice.step;
+    built.settings.most_parts = choice.most_parts;
+    built.steps_per_frame = choice.steps_per_frame;
+    built.largest_stable_step = choice.largest_stable;
+    step_warning = std::move(choice.warning);
+    built.network = std::move(*network);
+  }
+  problems.insert(problems.begin(), known.all.begin(), known.all.end());
+  if (!problems.empty()) throw InputError(std::move(problems));
+  built.warnings = warnings_of(built);
+  if (step_warning) built.warnings.push_back(std::move(*step_warning));
+  return built;
+}
+
+std::vector<std::filesystem::path> mesh_paths_from_environment() {
+  const char* value = std::getenv("SPRUNG_MESH_PATH");
+  std::vector<std::filesystem::path> folders;
+  std::istringstream paths(value == nullptr ? "" : value);
+  for (std::string folder; std::getline(paths, folder, ':');) {
+    if (!folder.empty()) folders.emplace_back(folder);
+  }
+  return folders;
+}
+
+}  // namespace sprung

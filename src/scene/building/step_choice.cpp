@@ -1,0 +1,99 @@
+#include "scene/building/step_choice.h"
+
+#include "base/format.h"
+#include "scene/building/many_steps.h"
+#include "scene/format/frame_steps.h"
+#include "simulation/step/step_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace sprung {
+namespace {
+
+bool damps_steps(const IntegratorSettings& integrator) {
+  const auto* verlet = std::get_if<VerletSettings>(&integrator);
+  return verlet != nullptr && verlet->damping > 0.0;
+}
+
+bool may_be_in_parts(const Scene& scene, const std::optional<StretchLimit>& limit) {
+  return limit && (limit->bears_smaller_steps() || limit->follows_turn()) && !damps_steps(scene.settings.integrator);
+}
+
+/// Of what a step may be as large as a frame for: its parts are chosen as it moves, and nothing is in its way.
+bool is_bound_by_turn(const Scene& scene, const LimitUse& use, const std::optional<StretchLimit>& limit) {
+  return may_be_in_parts(scene, limit) && limit->follows_turn() && !use.may_meet_anything;
+}
+
+/// Whatever passes of the stretch limit need.
+double largest_auto_step(const Scene& scene, const LimitUse& use, const std::optional<StretchLimit>& limit,
+                         const SpectralBounds& bounds) {
+  double largest = std::min(advised_step(scene.settings.integrator, bounds),
+                            step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
+  const bool implicit = std::holds_alternative<ImplicitEulerSettings>(scene.settings.integrator);
+  // What springs lead too far, the limit takes back: where both end is off by as much.
+  const bool is_split = implicit && limit && bounds.elastic > 0.0;
+  const bool free = (implicit && !use.may_meet_anything) || is_bound_by_turn(scene, use, limit);
+  if (!std::isfinite(largest) && (is_split || !free)) largest = kLargestAutoStep;
+  return largest;
+}
+
+/// In how many parts, a power of two, a step of which a frame has `most` is about as small as one of which it has `needed`, but no
+/// smaller; 1 where there must be none.
+int parts_for_passes(const Scene& scene, const std::optional<StretchLimit>& limit, int needed, int most) {
+  if (!limit || !limit->may_follow_turn() || damps_steps(scene.settings.integrator)) return 1;
+  return std::min(1 << std::ilogb(static_cast<double>(needed) / most), kMostParts);
+}
+
+std::string advice_for_unstable(const Scene& scene, double largest_stable) {
+  if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest_stable)) {
+    return "use at most " + format_number(step_of(scene.frame_rate, *steps)) + " or \"auto\"";
+  }
+  return "use \"auto\"";
+}
+
+std::string advice_for_too_many_steps(const Scene& scene) {
+  const bool gains_energy = std::holds_alternative<ExplicitEulerSettings>(scene.settings.integrator);
+  return std::string(gains_energy ? "use \"symplectic_euler\", which does not gain energy at any step, " : "use ") +
+         "less stiffness, more mass, or a higher frame_rate";
+}
+
+}  // namespace
+
+StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems) {
+  const SpectralBounds bounds = simulation_bounds(network, scene.settings, !scene.obstacles.empty());
+  StepChoice choice;
+  choice.largest_stable = largest_stable_step(scene.settings.integrator, bounds);
+  if (scene.step) {
+    choice.step = *scene.step;
+    choice.steps_per_frame = steps_per_frame(scene.frame_rate, choice.step).value_or(1);
+    if (is_unstable(choice.step, choice.largest_stable) && scene.settings.stability == StabilityCheck::refuse) {
+      problems.push_back(unstable_step(choice.step, choice.largest_stable, advice_for_unstable(scene, choice.largest_stable)));
+      problems.back().file = scene.file.string();
+    }
+    return choice;
+  }
+  std::optional<StretchLimit> limit;
+  const LimitUse use = limit_use(network, scene.settings, !scene.obstacles.empty());
+  if (scene.settings.stretch_limit) limit.emplace(network, *scene.settings.stretch_limit, use);
+  const double without_passes = largest_auto_step(scene, use, limit, bounds);
+  const double for_passes = limit ? limit->suggested_step(scene.settings.gravity.norm()) : std::numeric_limits<double>::infinity();
+  const double largest = std::min(without_passes, for_passes);
+  if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
+    const int parts = parts_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));
+    choice.steps_per_frame = 1 + (*steps - 1) / parts;
+    choice.step = step_of(scene.frame_rate, choice.steps_per_frame);
+    choice.most_parts = may_be_in_parts(scene, limit) ? kAutoParts : parts;
+    choice.warning = many_steps_warning(scene, network, choice, for_passes < without_passes);
+  } else {
+    problems.push_back({scene.file.string(), "step", "\"auto\"",
+                        "must be at most " + format_upper_bound(largest) + " s, which is too many steps a frame",
+                        advice_for_too_many_steps(scene)});
+  }
+  return choice;
+}
+
+}  // namespace sprung

@@ -1,0 +1,29 @@
+#include "scene/format/frame_steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+
+int frame_count(double duration, double frame_rate) { return static_cast<int>(std::floor(duration * frame_rate + 1e-9)) + 1; }
+
+std::optional<int> steps_per_frame(double frame_rate, double step) {
+  const double steps = 1.0 / (frame_rate * step);
+  const double whole = std::round(steps);
+  // The division and the decimal notation of the step leave an error of some units in the last place.
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * steps;
+  if (!(whole >= 1.0) || whole > kMostStepsPerFrame || std::abs(steps - whole) > std::max(1e-9, rounding)) return std::nullopt;
+  return static_cast<int>(whole);
+}
+
+double step_of(double frame_rate, double steps) { return 1.0 / (frame_rate * steps); }
+
+std::optional<int> fewest_steps_per_frame(double frame_rate, double largest) {
+  double steps = std::max(1.0, std::floor(1.0 / (frame_rate * largest)));
+  if (steps > kMostStepsPerFrame) return std::nullopt;
+  while (step_of(frame_rate, steps) > largest) ++steps;
+  return static_cast<int>(steps);
+}
+
+}  // namespace sprung

@@ -1,0 +1,97 @@
+// A scene file as plain data: what the user wrote, with defaults filled in, nothing computed.
+#pragma once
+
+#include "collision/shapes/obstacle.h"
+#include "network/body_shape.h"
+#include "simulation/simulator.h"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace sprung {
+
+/// Scale, then rotation [degrees] about the fixed axes x, y, z, then position [m].
+struct Placement {
+  Vector3 position = Vector3::Zero();
+  Vector3 rotation = Vector3::Zero();
+  double scale = 1.0;
+};
+
+/// A mesh by its file, as written in the scene.
+struct MeshFile {
+  std::string file;
+};
+
+/// The OBJ files of a mesh that deforms, a frame each.
+struct MeshFiles {
+  std::variant<std::vector<std::string>, std::string> files;  ///< in order, or a pattern with one *
+  double frame_rate = 30.0;                                   ///< [1/s]
+  double start = 0.0;                                         ///< time of the first [s]
+  bool loop = false;
+};
+
+using BodyShapeScene = std::variant<RopeShape, ClothShape, SolidShape, MeshFile>;
+using ObstacleShapeScene = std::variant<MeshFile, MeshFiles, SphereGeometry, BoxGeometry, CapsuleGeometry, CylinderGeometry,
+                                        ConeGeometry, EllipsoidGeometry, HalfSpaceGeometry>;
+
+struct PinCorners {
+  std::vector<std::string> which;
+};  ///< `min_min`, ... of a cloth, `min_min_min`, ... of a solid, `from`, `to` of a rope
+struct PinIndices {
+  std::vector<Index> indices;
+};  ///< of the body
+struct PinNearest {
+  Vector3 point;
+};  ///< the particle nearest to a point in the world [m]
+struct PinBox {
+  Vector3 lower;
+  Vector3 upper;
+};  ///< particles in a box in the world [m]
+
+struct PinScene {
+  std::variant<PinCorners, PinIndices, PinNearest, PinBox> where;
+  Motion motion;
+};
+
+/// Exactly one of mass [kg] of the body, of each particle, or per length, area or volume.
+struct MassScene {
+  enum class Kind : std::uint8_t { body, particle, density } kind = Kind::body;
+  double value = 0.0;
+};
+
+struct BodyScene {
+  std::string name;
+  BodyShapeScene shape;
+  MassScene mass;
+  SpringMaterials springs;
+  Placement place;
+  std::vector<PinScene> pins;
+  Vector3 velocity = Vector3::Zero();
+  ContactMaterial material;
+  BodyContact contact;
+};
+
+struct ObstacleScene {
+  std::string name;
+  ObstacleShapeScene shape;
+  Placement place;
+  Motion motion;
+  ContactMaterial material;
+};
+
+struct Scene {
+  std::filesystem::path file;
+  double duration = 0.0;                 ///< [s]
+  double frame_rate = 30.0;              ///< [1/s]
+  std::optional<double> step;            ///< [s]; none: "auto"
+  SimulatorSettings settings;            ///< its step is not used
+  std::vector<BodyScene> bodies;         ///< in the order of the file
+  std::vector<ObstacleScene> obstacles;  ///< in the order of the file
+  std::string resolved;                  ///< the whole scene as JSON text, overrides applied and defaults filled in
+};
+
+}  // namespace sprung

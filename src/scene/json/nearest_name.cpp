@@ -1,0 +1,75 @@
+#include "scene/json/nearest_name.h"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& letter : result) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return result;
+}
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> before_previous;
+  std::vector<std::size_t> previous(b.size() + 1);
+  std::vector<std::size_t> current(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) previous[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    current[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replace = previous[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      current[j] = std::min({previous[j] + 1, current[j - 1] + 1, replace});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        current[j] = std::min(current[j], before_previous[j - 2] + 1);
+    }
+    before_previous = previous;
+    previous = current;
+  }
+  return previous[b.size()];
+}
+
+std::size_t distance_of(const std::string& word, const std::string& name) {
+  constexpr std::size_t kShortestBeginning = 3;
+  const bool one_begins_the_other = word.starts_with(name) || name.starts_with(word);
+  if (one_begins_the_other && std::min(word.size(), name.size()) >= kShortestBeginning && word != name) return 1;
+  return edit_distance(word, name);
+}
+
+}  // namespace
+
+std::optional<std::string> nearest_name(std::string_view word, const std::vector<std::string>& names) {
+  constexpr std::size_t kShortWord = 4;     // with two other letters it is another word: no cube is a cone
+  constexpr std::size_t kLongestWord = 64;  // a longer one is no slip of a known name, and comparing it would take long
+  if (word.size() > kLongestWord) return std::nullopt;
+  const std::size_t most = word.size() <= kShortWord ? 1 : std::max<std::size_t>(2, word.size() / 3);
+  std::optional<std::string> best;
+  std::pair best_distance(most, std::numeric_limits<std::size_t>::max());
+  for (const std::string& name : names) {
+    const std::string known = lower_case(name);
+    const std::string given = lower_case(word);
+    const std::pair distance(distance_of(given, known), edit_distance(given, known));
+    if (distance < best_distance && distance.first < std::max(name.size(), word.size())) {
+      best = name;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
+  if (const auto near = nearest_name(word, names)) return "did you mean \"" + *near + "\"?";
+  return "choose from " + joined(names);
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+}  // namespace sprung

@@ -1,0 +1,161 @@
+#include "scene/json/overrides.h"
+
+#include "scene/json/nearest_name.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <variant>
+
+namespace sprung {
+namespace {
+
+using PathPart = std::variant<std::string, std::size_t>;
+
+constexpr const char* kForm = "write key.path=value, for example bodies.rope.pins[0].nearest=[0,1,0]";
+
+std::optional<std::size_t> index_in_brackets(std::string_view text) {
+  std::size_t index = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (text.empty() || end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
+  return index;
+}
+
+/// Splits `pins[0][1]` into `pins`, 0, 1.
+bool append_parts(std::string_view text, std::vector<PathPart>& parts) {
+  const std::size_t name_end = std::min(text.find('['), text.size());
+  if (name_end == 0) return false;
+  parts.emplace_back(std::string(text.substr(0, name_end)));
+  for (text.remove_prefix(name_end); !text.empty();) {
+    const std::size_t close = text.find(']');
+    if (text.front() != '[' || close == std::string_view::npos) return false;
+    const auto index = index_in_brackets(text.substr(1, close - 1));
+    if (!index) return false;
+    parts.emplace_back(*index);
+    text.remove_prefix(close + 1);
+  }
+  return true;
+}
+
+std::optional<std::vector<PathPart>> split_path(std::string_view path) {
+  std::vector<PathPart> parts;
+  while (true) {
+    const std::size_t dot = path.find('.');
+    if (!append_parts(path.substr(0, dot), parts)) return std::nullopt;
+    if (dot == std::string_view::npos) return parts;
+    path.remove_prefix(dot + 1);
+  }
+}
+
+bool is_bare_word(std::string_view text) {
+  const auto allowed = [](unsigned char letter) {
+    return letter > ' ' && std::string_view("{}[]\",:'").find(static_cast<char>(letter)) == std::string_view::npos;
+  };
+  return !text.empty() && std::all_of(text.begin(), text.end(), allowed);
+}
+
+/// As people write it, where JSON does not: .5, 1., +2, 007.
+std::optional<double> read_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double number = 0.0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (end.ec != std::errc{} || end.ptr != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+std::optional<Json> read_value(const std::string& text) {
+  JsonText json = parse_json(text, "");
+  if (json.problems.empty()) return std::move(json.document);
+  if (const auto number = read_number(text)) return Json(*number);
+  if (is_bare_word(text)) return Json(text);
+  return std::nullopt;
+}
+
+/// The value at `part` of `json`, which becomes a container when it is nothing yet; null when `json` has no such place.
+Json* descend(Json& json, const PathPart& part, std::string& problem) {
+  if (const auto* name = std::get_if<std::string>(&part)) {
+    if (json.is_null()) json = Json::object();
+    if (json.is_object()) return &json[*name];
+    problem = "has no keys: it is not an object";
+    return nullptr;
+  }
+  const std::size_t index = std::get<std::size_t>(part);
+  if (json.is_null() && index > 0) {
+    problem = "is not written in the scene, so it has no entry " + std::to_string(index) + " to change: set all of it";
+    return nullptr;
+  }
+  if (json.is_null()) json = Json::array();
+  if (!json.is_array()) {
+    problem = "has no entries: it is not a list";
+    return nullptr;
+  }
+  if (index > json.size()) {
+    problem = "has " + std::to_string(json.size()) + (json.size() == 1 ? " entry" : " entries") + ", so there is no entry " +
+              std::to_string(index);
+    return nullptr;
+  }
+  if (index == json.size()) json.push_back(nullptr);
+  return &json[index];
+}
+
+std::string join_part(const std::string& path, const PathPart& part) {
+  return std::visit([&](const auto& value) { return join_path(path, value); }, part);
+}
+
+/// Sets the value, or says what is in the way, and leaves all as it is.
+std::string assign(Json& document, const std::vector<PathPart>& parts, Json value) {
+  Json changed = document;
+  Json* at = &changed;
+  Json* parent = nullptr;
+  std::string path;
+  for (const PathPart& part : parts) {
+    std::string problem;
+    parent = at;
+    at = descend(*parent, part, problem);
+    if (at == nullptr) return (path.empty() ? "the scene" : path) + " " + problem;
+    path = join_part(path, part);
+  }
+  const auto* name = std::get_if<std::string>(&parts.back());
+  if (value.is_null() && name != nullptr) {
+    parent->erase(*name);
+  } else {
+    *at = std::move(value);
+  }
+  document = std::move(changed);
+  return "";
+}
+
+/// How to name a body or an obstacle, if the path leads into one that does not exist: a slip, unless it begins one with its shape.
+std::optional<std::string> missing_entry(const Json& document, const std::vector<PathPart>& parts) {
+  if (parts.size() < 3 || parts[2] == PathPart("shape")) return std::nullopt;
+  const auto* group = std::get_if<std::string>(&parts[0]);
+  const auto* name = std::get_if<std::string>(&parts[1]);
+  if (group == nullptr || name == nullptr || (*group != "bodies" && *group != "obstacles")) return std::nullopt;
+  const auto entries = document.find(*group);
+  if (entries == document.end() || !entries->is_object() || entries->contains(*name)) return std::nullopt;
+  std::vector<std::string> names;
+  for (const auto& entry : entries->items()) names.push_back(entry.key());
+  if (const auto near = nearest_name(*name, names)) return "did you mean \"" + *near + "\"?";
+  return (names.empty() ? "" : "choose from " + joined(names) + ", or ") + "set its shape first, to add it";
+}
+
+}  // namespace
+
+void apply_override(const std::string& override_text, Json& document, std::vector<Problem>& problems) {
+  const auto report = [&](const std::string& rule, const std::string& remedy) {
+    problems.push_back({"", "--set", override_text, rule, remedy});
+  };
+  const std::size_t equals = override_text.find('=');
+  const auto parts = equals == std::string::npos ? std::nullopt : split_path(std::string_view(override_text).substr(0, equals));
+  if (!parts) return report("is not of the form key.path=value", kForm);
+  auto value = read_value(override_text.substr(equals + 1));
+  if (!value) return report("what follows the = is neither JSON nor a single word", kForm);
+  if (const auto remedy = missing_entry(document, *parts)) return report("there is nothing of that name in the scene", *remedy);
+  const std::string problem = assign(document, *parts, std::move(*value));
+  if (!problem.empty()) report(problem, "check the path");
+}
+
+}  // namespace sprung

@@ -1,0 +1,162 @@
+#include "network/corners.h"
+#include "scene/reading/scene_rules.h"
+
+#include <optional>
+
+namespace sprung {
+namespace {
+
+Rule<Index> particle_count() { return integer(2, kMaxBodyParticles); }
+
+RopeShape read_rope(Fields& fields) {
+  RopeShape rope;
+  const auto points = fields.optional("points", list_of(vector3(), 2));
+  if (fields.one_of({"from", "points"}) == "points") {
+    rope.points = points.value_or(std::vector<Vector3>{});
+    rope.particles = fields.optional("particles", particle_count());
+  } else {
+    const auto from = fields.optional("from", vector3());
+    const auto to = fields.required("to", vector3());
+    rope.points = {from.value_or(Vector3::Zero()), to.value_or(Vector3::Zero())};
+    rope.particles = fields.required("particles", particle_count());
+  }
+  rope.length = fields.optional("length", number(kPositive));
+  return rope;
+}
+
+template <std::size_t n>
+std::array<Index, n> read_resolution(Fields& fields) {
+  const auto resolution = fields.required("resolution", array_of<n>(particle_count()));
+  if (!resolution) return {};
+  double particles = 1.0;
+  for (const Index side : *resolution) particles *= side;
+  if (particles > kMaxBodyParticles) {
+    fields.place()
+        .at("resolution")
+        .report(fields.json()["resolution"], "must make at most " + std::to_string(kMaxBodyParticles) + " particles in all");
+  }
+  return *resolution;
+}
+
+ClothShape read_cloth(Fields& fields) {
+  const auto size = fields.required("size", array_of<2>(number(kPositive)));
+  return {.size = size.value_or(std::array<double, 2>{}), .resolution = read_resolution<2>(fields)};
+}
+
+SolidShape read_solid(Fields& fields) {
+  const auto size = fields.required("size", vector3(kPositive));
+  return {.size = size.value_or(Vector3::Zero()), .resolution = read_resolution<3>(fields)};
+}
+
+std::optional<BodyShapeScene> read_shape(Fields& fields) {
+  const auto kind = fields.kind("type", {"rope", "cloth", "solid", "mesh"});
+  if (!kind) {
+    fields.knows_no_others({"from", "to", "points", "particles", "length", "size", "resolution", "file"});
+    return std::nullopt;
+  }
+  switch (*kind) {
+    case 0:
+      return read_rope(fields);
+    case 1:
+      return read_cloth(fields);
+    case 2:
+      return read_solid(fields);
+    default:
+      return MeshFile{fields.required("file", text()).value_or("")};
+  }
+}
+
+/// Those of any shape where it is broken.
+std::vector<std::string> corners_of(const std::optional<BodyShapeScene>& shape) {
+  if (!shape) {
+    std::vector<std::string> names;
+    for (const auto& some : {corner_names(RopeShape{}), corner_names(ClothShape{}), corner_names(SolidShape{})})
+      names.insert(names.end(), some.begin(), some.end());
+    return names;
+  }
+  struct Names {
+    std::vector<std::string> operator()(const MeshFile& /*mesh*/) const { return {}; }
+    std::vector<std::string> operator()(const RopeShape& rope) const { return corner_names(rope); }
+    std::vector<std::string> operator()(const ClothShape& cloth) const { return corner_names(cloth); }
+    std::vector<std::string> operator()(const SolidShape& solid) const { return corner_names(solid); }
+  };
+  return std::visit(Names{}, *shape);
+}
+
+MassScene read_mass(Fields& fields) {
+  const auto of_body = fields.optional("mass", number(kPositive));
+  const auto of_particles = fields.optional("particle_mass", number(kPositive));
+  const auto density = fields.optional("density", number(kPositive));
+  const std::string key = fields.one_of({"mass", "particle_mass", "density"}).value_or("");
+  if (key == "mass") return {.kind = MassScene::Kind::body, .value = of_body.value_or(0.0)};
+  if (key == "particle_mass") return {.kind = MassScene::Kind::particle, .value = of_particles.value_or(0.0)};
+  if (key == "density") return {.kind = MassScene::Kind::density, .value = density.value_or(0.0)};
+  return {};
+}
+
+SpringMaterial read_spring(Fields& fields) {
+  SpringMaterial material;
+  const auto stiffness = fields.optional("stiffness", number(kNotNegative));
+  const auto modulus = fields.optional("modulus", number(kNotNegative));
+  std::optional<double> value;
+  if (const auto key = fields.one_of({"stiffness", "modulus"})) {
+    const bool by_modulus = *key == "modulus";
+    material.measure = by_modulus ? SpringMaterial::Measure::modulus : SpringMaterial::Measure::stiffness;
+    value = by_modulus ? modulus : stiffness;
+    material.value = value.value_or(0.0);
+  }
+  if (fields.has("damping_ratio")) {
+    (void)fields.optional("damping", number(kNotNegative));
+    fields.one_of({"damping", "damping_ratio"});
+    material.damping_ratio = fields.optional("damping_ratio", number(kNotNegative));
+    if (value == 0.0) {
+      fields.place()
+          .at("damping_ratio")
+          .report(fields.json()["damping_ratio"], "needs springs with stiffness", "give damping instead");
+    }
+  } else {
+    material.damping = fields.value("damping", number(kNotNegative), 0.0).value_or(0.0);
+  }
+  return material;
+}
+
+SpringMaterials read_springs(Fields& fields) {
+  const auto spring = object_of<SpringMaterial>(read_spring);
+  SpringMaterials materials;
+  materials.structural = fields.optional("structural", spring);
+  materials.shear = fields.optional("shear", spring);
+  const auto bend = object_of<SpringMaterial>([&](Fields& keys) {
+    const auto model = keys.value("model", word_of({"spring", "angle"}), "spring");
+    materials.bend_model = model == 1 ? SpringMaterials::BendModel::angle : SpringMaterials::BendModel::spring;
+    return read_spring(keys);
+  });
+  materials.bend = fields.optional("bend", bend);
+  return materials;
+}
+
+BodyContact read_body_contact(Fields& fields) {
+  const BodyContact fallback;
+  return {.self = fields.value("self_contact", boolean(), fallback.self).value_or(fallback.self),
+          .others = fields.value("body_contact", boolean(), fallback.others).value_or(fallback.others)};
+}
+
+BodyScene read_body(Fields& fields) {
+  BodyScene body;
+  const auto shape = fields.required("shape", object_of<BodyShapeScene>(read_shape));
+  body.shape = shape.value_or(BodyShapeScene{});
+  body.mass = read_mass(fields);
+  body.springs = fields.value("springs", object_of<SpringMaterials>(read_springs), Json::object()).value_or(SpringMaterials{});
+  body.place = fields.value("place", placement_rule(), Json::object()).value_or(Placement{});
+  const auto pins = fields.value("pins", list_of(pin_rule(corners_of(shape)), 0), Json::array());
+  body.pins = pins.value_or(std::vector<PinScene>{});
+  body.velocity = fields.value("velocity", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
+  body.material = read_material(fields);
+  body.contact = read_body_contact(fields);
+  return body;
+}
+
+}  // namespace
+
+Rule<BodyScene> body_rule() { return object_of<BodyScene>(read_body); }
+
+}  // namespace sprung

@@ -1,0 +1,86 @@
+#include "scene/format/file_wildcard.h"
+#include "scene/reading/scene_rules.h"
+
+namespace sprung {
+namespace {
+
+double length(Fields& fields, const std::string& key) { return fields.required(key, number(kPositive)).value_or(0.0); }
+
+HalfSpaceGeometry read_half_space(Fields& fields) {
+  HalfSpaceGeometry half_space;
+  if (const auto normal = fields.value("normal", vector3(), {0, 1, 0})) {
+    // Any length will do, but the square of a very short one is 0.
+    if (normal->isZero(0.0)) {
+      fields.place().at("normal").report(fields.json()["normal"], "must not be zero", "it points out of the solid side");
+    } else {
+      half_space.normal = normal->stableNormalized();
+    }
+  }
+  half_space.offset = fields.value("offset", number(), 0.0).value_or(0.0);
+  return half_space;
+}
+
+std::optional<std::variant<std::vector<std::string>, std::string>> read_files(Json& json, const JsonPlace& place) {
+  if (json.is_string()) {
+    if (is_wildcard(json.get_ref<const std::string&>())) return json.get<std::string>();
+    place.report(json, "must have one * in the name of the file", "write a pattern like \"breath/*.obj\", or a list of files");
+    return std::nullopt;
+  }
+  if (json.is_array()) return list_of(text(), 2)(json, place);
+  place.report(json, "must be a list of files, or a pattern with one *");
+  return std::nullopt;
+}
+
+MeshFiles read_sequence(Fields& fields, double frame_rate) {
+  MeshFiles sequence;
+  using Files = decltype(sequence.files);
+  sequence.files = fields.required<Files>("files", read_files).value_or(Files{});
+  sequence.frame_rate = fields.value("frame_rate", number(kPositive), frame_rate).value_or(frame_rate);
+  sequence.start = fields.value("start", number(), 0.0).value_or(0.0);
+  sequence.loop = fields.value("loop", boolean(), false).value_or(false);
+  return sequence;
+}
+
+ObstacleShapeScene read_shape(Fields& fields, double frame_rate) {
+  const auto kind =
+      fields.kind("type", {"mesh", "sequence", "sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "half_space"});
+  if (!kind) return {};
+  switch (*kind) {
+    case 0:
+      return MeshFile{fields.required("file", text()).value_or("")};
+    case 1:
+      return read_sequence(fields, frame_rate);
+    case 2:
+      return SphereGeometry{length(fields, "radius")};
+    case 3:
+      return BoxGeometry{fields.required("size", vector3(kPositive)).value_or(Vector3::Zero())};
+    case 4:
+      return CapsuleGeometry{length(fields, "radius"), length(fields, "length")};
+    case 5:
+      return CylinderGeometry{length(fields, "radius"), length(fields, "height")};
+    case 6:
+      return ConeGeometry{length(fields, "radius"), length(fields, "height")};
+    case 7:
+      return EllipsoidGeometry{fields.required("radii", vector3(kPositive)).value_or(Vector3::Zero())};
+    default:
+      return read_half_space(fields);
+  }
+}
+
+ObstacleScene read_obstacle(Fields& fields, double frame_rate) {
+  ObstacleScene obstacle;
+  const auto shape = object_of<ObstacleShapeScene>([=](Fields& of_shape) { return read_shape(of_shape, frame_rate); });
+  obstacle.shape = fields.required("shape", shape).value_or(ObstacleShapeScene{});
+  obstacle.place = fields.value("place", placement_rule(), Json::object()).value_or(Placement{});
+  obstacle.motion = fields.value("motion", motion_rule(), Json::object()).value_or(Motion{});
+  obstacle.material = read_material(fields);
+  return obstacle;
+}
+
+}  // namespace
+
+Rule<ObstacleScene> obstacle_rule(double frame_rate) {
+  return object_of<ObstacleScene>([=](Fields& fields) { return read_obstacle(fields, frame_rate); });
+}
+
+}  // namespace sprung

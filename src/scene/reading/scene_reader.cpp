@@ -1,0 +1,91 @@
+#include "scene/reading/scene_reader.h"
+
+#include "scene/json/overrides.h"
+#include "scene/reading/scene_rules.h"
+#include "scene/reading/scene_schema.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+std::string read_file(const std::filesystem::path& file) {
+  const auto fail = [&](int error) { throw FileError("read", file.string(), std::generic_category().message(error)); };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) fail(EISDIR);
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail(errno != 0 ? errno : EIO);
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (stream.bad()) fail(EIO);
+  return text;
+}
+
+void throw_if_any(std::vector<Problem> problems) {
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+bool touches(const std::string& path, const std::string& other) { return path.starts_with(other) || other.starts_with(path); }
+
+/// The rules report first, and better. What they let pass is reported all the same.
+void add_schema_violations(const std::vector<SchemaViolation>& violations, const std::string& file,
+                           std::vector<Problem>& problems) {
+  const std::vector<Problem> reported = problems;
+  for (const SchemaViolation& violation : violations) {
+    const bool known =
+        std::any_of(reported.begin(), reported.end(), [&](const Problem& problem) { return touches(problem.key, violation.path); });
+    if (known) continue;
+    problems.push_back({file, violation.path, "", "does not match the schema: " + violation.rule, "see scene.schema.json"});
+  }
+}
+
+/// Whether the key is at or below the path.
+bool is_within(const std::string& key, const std::string& path) {
+  return key.starts_with(path) && (key.size() == path.size() || key[path.size()] == '.' || key[path.size()] == '[');
+}
+
+/// Those at what was changed, below it, or at what it is part of.
+void tell_overridden(const std::vector<std::string>& overrides, std::vector<Problem>& problems) {
+  for (Problem& problem : problems) {
+    const bool overridden = std::ranges::any_of(overrides, [&](const std::string& text) {
+      const std::string path = text.substr(0, text.find('='));
+      return is_within(problem.key, path) || is_within(path, problem.key);
+    });
+    if (overridden) problem.file += ", changed by --set";
+  }
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  TextProblems problems;
+  Scene scene = read_scene(file, overrides, problems);
+  throw_if_any(std::move(problems.all));
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides, TextProblems& problems) {
+  JsonText json = parse_json(read_file(file), file.string());
+  throw_if_any(std::move(json.problems));
+  std::vector<Problem> found;
+  for (const std::string& text : overrides) apply_override(text, json.document, found);
+
+  const std::vector<SchemaViolation> violations = schema_violations(json.document);
+  std::size_t unknown = 0;
+  auto scene = scene_rule()(json.document, {file.string(), "", &found, &unknown});
+  add_schema_violations(violations, file.string(), found);
+  tell_overridden(overrides, found);
+  if (!scene) throw InputError(std::move(found));
+  problems.only_unknown_keys = found.size() == unknown;
+  problems.all = std::move(found);
+  scene->file = file;
+  scene->resolved = json_text(json.document);
+  return std::move(*scene);
+}
+
+}  // namespace sprung

@@ -1,0 +1,121 @@
+#include "scene/reading/scene_rules.h"
+
+#include "base/format.h"
+#include "scene/format/frame_steps.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+// File systems take names of 255 bytes, with the number of a frame and the extension.
+constexpr std::size_t kLongestName = 200;
+
+bool is_name(const std::string& name) {
+  const auto allowed = [](unsigned char letter) {
+    return (letter < 128 && std::isalnum(letter)) || letter == '_' || letter == '-';
+  };
+  return !name.empty() && name.size() <= kLongestName && std::all_of(name.begin(), name.end(), allowed) &&
+         !std::isdigit(static_cast<unsigned char>(name.back()));
+}
+
+void check_name(const std::string& name, const JsonPlace& place) {
+  if (name == "obstacles") place.report_key("the name is taken by the folder of the obstacles", "choose another name");
+  if (is_name(name)) return;
+  place.report_key("a name becomes a folder: it may hold at most 200 letters, digits, _ and -, and must not end in a digit",
+                   "choose another name");
+}
+
+/// An object keyed by name: each entry by `rule`, its name checked and filled in.
+template <class T>
+Rule<std::vector<T>> named(Rule<T> rule, bool may_be_empty) {
+  return [=](Json& json, const JsonPlace& place) -> std::optional<std::vector<T>> {
+    if (!check_object(json, place)) return std::nullopt;
+    if (json.empty() && !may_be_empty) place.report(json, "must hold at least one entry");
+    std::vector<T> entries;
+    for (const auto& item : json.items()) {
+      const JsonPlace at = place.at(item.key());
+      check_name(item.key(), at);
+      if (auto entry = rule(item.value(), at)) {
+        entry->name = item.key();
+        entries.push_back(std::move(*entry));
+      }
+    }
+    return entries;
+  };
+}
+
+/// Seconds, or none for "auto".
+struct StepScene {
+  std::optional<double> step;
+};
+
+std::optional<StepScene> read_step(Json& json, const JsonPlace& place) {
+  if (json == "auto") return StepScene{};
+  if (!json.is_number()) {
+    place.report(json, "must be a number of seconds, or \"auto\"");
+    return std::nullopt;
+  }
+  const auto step = number(kPositive)(json, place);
+  if (!step) return std::nullopt;
+  return StepScene{*step};
+}
+
+void check_step_divides_frame(double step, double frame_rate, const JsonPlace& place) {
+  if (steps_per_frame(frame_rate, step)) return;
+  const double steps = 1.0 / (frame_rate * step);
+  std::string remedy = "use " + format_number(step_of(frame_rate, std::floor(std::max(steps, 1.0))));
+  if (steps > 1.0) remedy += " or " + format_number(step_of(frame_rate, std::ceil(steps)));
+  if (steps > kMostStepsPerFrame) remedy = "use a larger step";
+  place.report(Json(step), "must divide a frame: 1 / (frame_rate * step) is " + format_number(steps) + ", not a whole number",
+               remedy + ", or \"auto\"");
+}
+
+void read_time(Fields& fields, Scene& scene) {
+  const auto duration = fields.required("duration", number(kNotNegative));
+  const auto frame_rate = fields.value("frame_rate", number(kPositive), scene.frame_rate);
+  const auto step = fields.value<StepScene>("step", read_step, "auto");
+  scene.duration = duration.value_or(0.0);
+  scene.frame_rate = frame_rate.value_or(scene.frame_rate);
+  if (step) scene.step = step->step;
+  if (duration && frame_rate && *duration * *frame_rate > kMostFrames) {
+    fields.place()
+        .at("duration")
+        .report(Json(*duration), "makes more than " + format_number(kMostFrames) + " frames of 1 / frame_rate",
+                "lower one of them");
+  }
+  if (frame_rate && scene.step) check_step_divides_frame(*scene.step, *frame_rate, fields.place().at("step"));
+}
+
+// A penalty answers only to obstacles.
+void check_self_contact(const Scene& scene, const JsonPlace& place) {
+  if (scene.settings.contact.response != ContactSettings::Response::penalty) return;
+  for (const BodyScene& body : scene.bodies) {
+    if (!body.contact.self) continue;
+    place.at("bodies")
+        .at(body.name)
+        .at("self_contact")
+        .report(Json(true), "needs contact.response \"projection\"", "use that, or set it to false");
+  }
+}
+
+Scene read_scene_fields(Fields& fields) {
+  Scene scene;
+  fields.optional("$schema", text());
+  fields.value("version", integer(1, 1), 1);
+  read_time(fields, scene);
+  scene.settings = read_settings(fields);
+  scene.bodies = fields.required("bodies", named(body_rule(), false)).value_or(std::vector<BodyScene>{});
+  check_self_contact(scene, fields.place());
+  const auto obstacles = fields.value("obstacles", named(obstacle_rule(scene.frame_rate), true), Json::object());
+  scene.obstacles = obstacles.value_or(std::vector<ObstacleScene>{});
+  return scene;
+}
+
+}  // namespace
+
+Rule<Scene> scene_rule() { return object_of<Scene>(read_scene_fields); }
+
+}  // namespace sprung

@@ -1,0 +1,28 @@
+// The rules of a scene's objects, as a table each: key, type, bounds, default. What they mean stands in scene.schema.json.
+#pragma once
+
+#include "scene/format/scene.h"
+#include "scene/json/json_fields.h"
+
+namespace sprung {
+
+[[nodiscard]] Rule<Placement> placement_rule();
+[[nodiscard]] Rule<Motion> motion_rule();
+
+/// thickness, friction, static_friction, restitution.
+[[nodiscard]] ContactMaterial read_material(Fields& fields);
+
+/// Pins of a body; `corners` are the names its shape has for corners.
+[[nodiscard]] Rule<PinScene> pin_rule(const std::vector<std::string>& corners);
+
+/// A body or an obstacle, without its name. Sequences have the scene's frame rate where they name none.
+[[nodiscard]] Rule<BodyScene> body_rule();
+[[nodiscard]] Rule<ObstacleScene> obstacle_rule(double frame_rate);
+
+/// gravity, air, integrator, stretch_limit, contact, stability.
+[[nodiscard]] SimulatorSettings read_settings(Fields& fields);
+
+/// The whole document.
+[[nodiscard]] Rule<Scene> scene_rule();
+
+}  // namespace sprung

@@ -1,0 +1,96 @@
+#include "scene/reading/scene_rules.h"
+
+namespace sprung {
+namespace {
+
+struct Air {
+  double drag = 0.0;
+  Vector3 wind = Vector3::Zero();
+};
+
+Air read_air(Fields& fields) {
+  return {.drag = fields.value("drag", number(kNotNegative), 0.0).value_or(0.0),
+          .wind = fields.value("wind", vector3(), {0, 0, 0}).value_or(Vector3::Zero())};
+}
+
+VerletSettings read_verlet(Fields& fields) {
+  VerletSettings verlet;
+  fields.one_of({"damping", "damping_rate"}, true);
+  verlet.damping = fields.optional("damping", number(kFraction)).value_or(0.0);
+  verlet.damping_rate = fields.optional("damping_rate", number(kNotNegative)).value_or(0.0);
+  verlet.start_at_rest = fields.value("start_at_rest", boolean(), false).value_or(false);
+  return verlet;
+}
+
+IntegratorSettings read_integrator(Fields& fields) {
+  const auto kind =
+      fields.kind("type", {"explicit_euler", "symplectic_euler", "verlet", "velocity_verlet", "rk4", "implicit_euler"});
+  fields.belongs_elsewhere({"step"}, "it stands beside the integrator, at the top of the scene: move it there");
+  if (!kind) {
+    fields.knows_no_others({"damping", "damping_rate", "start_at_rest"});
+    return {};
+  }
+  if (kind != 2) {
+    fields.belongs_elsewhere({"damping", "damping_rate", "start_at_rest"},
+                             "it is Verlet's: leave it out; springs and air have a damping of their own");
+  }
+  if (kind == 0) return ExplicitEulerSettings{};
+  if (kind == 1) return SymplecticEulerSettings{};
+  if (kind == 2) return read_verlet(fields);
+  if (kind == 3) return VelocityVerletSettings{};
+  if (kind == 4) return RungeKutta4Settings{};
+  return ImplicitEulerSettings{};
+}
+
+std::vector<SpringKind> read_kinds(Fields& fields) {
+  const auto kinds = fields.value("kinds", list_of(word_of({"structural", "shear", "bend"}), 1), Json::array({"structural"}));
+  if (!kinds) return {};
+  std::vector<SpringKind> result;
+  for (const std::size_t kind : *kinds) result.push_back(static_cast<SpringKind>(kind));
+  return result;
+}
+
+StretchLimitSettings read_stretch_limit(Fields& fields) {
+  StretchLimitSettings limit;
+  limit.max_stretch = fields.value("max_stretch", number(kNotNegative), limit.max_stretch).value_or(0.0);
+  limit.max_compression = fields.value("max_compression", number(kFraction), limit.max_compression).value_or(0.0);
+  limit.kinds = read_kinds(fields);
+  limit.iterations = fields.value("iterations", integer(1, 1'000'000), limit.iterations).value_or(1);
+  const auto solver = fields.value("solver", word_of({"gauss_seidel", "newton", "auto"}), "gauss_seidel");
+  limit.solver = static_cast<StretchLimitSettings::Solver>(solver.value_or(0));
+  limit.tolerance = fields.value("tolerance", number(kNotNegative), limit.tolerance).value_or(0.0);
+  limit.tethers = fields.value("tethers", boolean(), limit.tethers).value_or(false);
+  return limit;
+}
+
+ContactSettings read_contact(Fields& fields) {
+  ContactSettings contact;
+  const auto start = fields.value("start", word_of({"refuse", "push_out"}), "refuse");
+  contact.start = start == 1 ? ContactSettings::Start::push_out : ContactSettings::Start::refuse;
+  fields.belongs_elsewhere({"stiffness", "damping"}, "it is of \"response\": \"penalty\"; leave it out");
+  if (fields.kind("response", {"projection", "penalty"}, "projection") != 1) return contact;
+  contact.response = ContactSettings::Response::penalty;
+  contact.stiffness = fields.required("stiffness", number(kPositive)).value_or(0.0);
+  contact.damping = fields.required("damping", number(kNotNegative)).value_or(0.0);
+  return contact;
+}
+
+}  // namespace
+
+SimulatorSettings read_settings(Fields& fields) {
+  SimulatorSettings settings;
+  settings.gravity = fields.value("gravity", vector3(), {0, -9.81, 0}).value_or(Vector3::Zero());
+  const Air air = fields.value("air", object_of<Air>(read_air), Json::object()).value_or(Air{});
+  settings.air_drag = air.drag;
+  settings.wind = air.wind;
+  const auto integrator = fields.value("integrator", object_of<IntegratorSettings>(read_integrator), {{"type", "verlet"}});
+  settings.integrator = integrator.value_or(IntegratorSettings{});
+  settings.stretch_limit = fields.optional("stretch_limit", object_of<StretchLimitSettings>(read_stretch_limit));
+  const auto contact = fields.value("contact", object_of<ContactSettings>(read_contact), Json::object());
+  settings.contact = contact.value_or(ContactSettings{});
+  const auto stability = fields.value("stability", word_of({"refuse", "warn"}), "refuse");
+  settings.stability = stability == 1 ? StabilityCheck::warn : StabilityCheck::refuse;
+  return settings;
+}
+
+}  // namespace sprung

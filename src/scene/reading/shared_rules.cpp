@@ -1,0 +1,64 @@
+#include "scene/reading/scene_rules.h"
+
+namespace sprung {
+namespace {
+
+Keyframe read_keyframe(Fields& fields) {
+  Keyframe keyframe;
+  keyframe.time = fields.required("time", number()).value_or(0.0);
+  keyframe.position = fields.value("position", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
+  keyframe.rotation = fields.value("rotation", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
+  return keyframe;
+}
+
+void require_increasing_times(const std::vector<Keyframe>& keyframes, const JsonPlace& place) {
+  for (std::size_t k = 1; k < keyframes.size(); ++k) {
+    if (keyframes[k].time > keyframes[k - 1].time) continue;
+    place.at("keyframes")
+        .at(k)
+        .at("time")
+        .report(Json(keyframes[k].time), "must be later than the keyframe before it", "sort the keyframes by time");
+  }
+}
+
+Motion read_motion(Fields& fields) {
+  Motion motion;
+  if (const auto keyframes = fields.optional("keyframes", list_of(object_of<Keyframe>(read_keyframe), 1))) {
+    motion.keyframes = *keyframes;
+    require_increasing_times(*keyframes, fields.place());
+  }
+  const auto interpolation = fields.value("interpolation", word_of({"linear", "smooth"}), "linear");
+  motion.interpolation = interpolation == 1 ? Interpolation::smooth : Interpolation::linear;
+  motion.spin = fields.value("spin", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
+  return motion;
+}
+
+Placement read_placement(Fields& fields) {
+  Placement place;
+  place.position = fields.value("position", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
+  place.rotation = fields.value("rotation", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
+  place.scale = fields.value("scale", number(kPositive), 1.0).value_or(1.0);
+  return place;
+}
+
+}  // namespace
+
+Rule<Placement> placement_rule() { return object_of<Placement>(read_placement); }
+
+Rule<Motion> motion_rule() { return object_of<Motion>(read_motion); }
+
+ContactMaterial read_material(Fields& fields) {
+  ContactMaterial material;
+  material.thickness = fields.value("thickness", number(kNotNegative), 0.0).value_or(0.0);
+  const auto friction = fields.value("friction", number(kNotNegative), 0.0);
+  const auto static_friction = fields.value("static_friction", number(kNotNegative), friction.value_or(0.0));
+  if (friction && static_friction && *static_friction < *friction) {
+    fields.place().at("static_friction").report(Json(*static_friction), "must be at least friction, " + shortened(*friction));
+  }
+  material.friction = friction.value_or(0.0);
+  material.static_friction = static_friction.value_or(0.0);
+  material.restitution = fields.value("restitution", number(kFraction), 0.0).value_or(0.0);
+  return material;
+}
+
+}  // namespace sprung

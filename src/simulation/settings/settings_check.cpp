@@ -1,0 +1,119 @@
+#include "simulation/settings/settings_check.h"
+
+#include "base/error.h"
+#include "base/format.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class Rules {
+ public:
+  void require_between(const std::string& key, double value, double least, double most) {
+    if (std::isfinite(value) && value >= least && value <= most) return;
+    const std::string rule = most == kInfinity ? "must be a finite number, at least " + format_number(least)
+                                               : "must be from " + format_number(least) + " to " + format_number(most);
+    problems_.push_back({.key = key, .value = format_number(value), .rule = rule});
+  }
+
+  void require_finite(const std::string& key, const Vector3& value) {
+    if (value.allFinite()) return;
+    problems_.push_back({.key = key, .rule = "must have three finite components"});
+  }
+
+  void throw_if_broken() {
+    if (!problems_.empty()) throw InputError(std::move(problems_));
+  }
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+std::string names_of(const std::vector<SpringKind>& kinds) {
+  std::string names;
+  for (const SpringKind kind : kinds) {
+    names += (names.empty() ? "\"" : ", \"") + std::string(kSpringKindNames[static_cast<std::size_t>(kind)]) + "\"";
+  }
+  return "[" + names + "]";
+}
+
+std::vector<std::string> idle_kinds(const SimulatorSettings& settings, const SpringNetwork& network) {
+  if (!settings.stretch_limit) return {};
+  std::vector<SpringKind> present;
+  for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bend}) {
+    if (std::ranges::find(network.springs.kind, kind) != network.springs.kind.end()) present.push_back(kind);
+  }
+  const std::vector<SpringKind>& kinds = settings.stretch_limit->kinds;
+  if (present.empty() || std::ranges::find_first_of(kinds, present) != kinds.end()) return {};
+  return {"stretch_limit.kinds = " + names_of(kinds) + " holds nothing: the springs of this network are of the kinds " +
+          names_of(present)};
+}
+
+}  // namespace
+
+SimulatorSettings checked_settings(SimulatorSettings settings) {
+  Rules rules;
+  rules.require_finite("gravity", settings.gravity);
+  rules.require_between("air_drag", settings.air_drag, 0.0, kInfinity);
+  rules.require_finite("wind", settings.wind);
+  if (const auto* verlet = std::get_if<VerletSettings>(&settings.integrator)) {
+    rules.require_between("integrator.damping", verlet->damping, 0.0, 1.0);
+    rules.require_between("integrator.damping_rate", verlet->damping_rate, 0.0, kInfinity);
+  }
+  if (const auto& limit = settings.stretch_limit) {
+    rules.require_between("stretch_limit.max_stretch", limit->max_stretch, 0.0, kInfinity);
+    rules.require_between("stretch_limit.max_compression", limit->max_compression, 0.0, 1.0);
+    rules.require_between("stretch_limit.iterations", limit->iterations, 1.0, kInfinity);
+    rules.require_between("stretch_limit.tolerance", limit->tolerance, 0.0, kInfinity);
+  }
+  rules.require_between("most_parts", settings.most_parts, 1.0, kMostParts);
+  rules.require_between("contact.stiffness", settings.contact.stiffness, 0.0, kInfinity);
+  rules.require_between("contact.damping", settings.contact.damping, 0.0, kInfinity);
+  rules.throw_if_broken();
+  return settings;
+}
+
+std::vector<std::string> idle_settings(const SimulatorSettings& settings, const SpringNetwork& network) {
+  std::vector<std::string> idle = idle_kinds(settings, network);
+  if (settings.air_drag == 0.0 && !settings.wind.isZero(0.0)) idle.emplace_back("air.wind moves nothing without air.drag: add it");
+  return idle;
+}
+
+std::vector<std::string> weak_bonds(const SimulatorSettings& settings, const SpringNetwork& network) {
+  const AngleBends& bends = network.angle_bends;
+  if (bends.count() == 0 || (settings.stretch_limit && settings.stretch_limit->max_compression <= 0.5)) return {};
+  const auto bond = [](Index a, Index b) { return std::minmax({a, b}); };
+  std::map<std::pair<Index, Index>, double> stiffness;
+  const Springs& springs = network.springs;
+  for (std::size_t s = 0; s < springs.first.size(); ++s)
+    stiffness[bond(springs.first[s], springs.second[s])] += springs.stiffness[s];
+  std::map<std::string, double> needed;  // by body [N/m]
+  for (std::size_t b = 0; b < bends.middle.size(); ++b) {
+    for (const auto& [end, length] :
+         {std::pair(bends.before[b], bends.length_before[b]), {bends.after[b], bends.length_after[b]}}) {
+      const auto found = stiffness.find(bond(end, bends.middle[b]));
+      const double least = std::numbers::pi * bends.stiffness[b] / (length * length);
+      if (found == stiffness.end() || found->second >= least) continue;
+      double& most = needed[network.body_of(bends.middle[b]).name];
+      most = std::max(most, least);
+    }
+  }
+  std::vector<std::string> warnings;
+  for (const auto& [body, least] : needed) {
+    warnings.push_back("bodies." + body +
+                       ": its angle bends shorten springs that give way before they do, and pull the harder the" +
+                       " shorter these are: expect it to gain energy; use a structural stiffness of at least " +
+                       format_number(least, 3) + " N/m, less bend stiffness, or \"stretch_limit\": {\"max_compression\": 0}");
+  }
+  return warnings;
+}
+
+}  // namespace sprung

@@ -1,0 +1,83 @@
+#include "simulation/start/start.h"
+
+#include "base/format.h"
+#include "dynamics/contact/collision_surface_builder.h"
+#include "simulation/start/push_out.h"
+#include "simulation/start/start_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+
+namespace {
+
+StartIntersections find_all(const Environment& environment, const CollisionSurface& surface, const ContactSettings& contact,
+                            const Points& positions) {
+  StartIntersections found = find_start_intersections(environment, surface, positions);
+  // Bodies meet each other by projection alone.
+  if (contact.response == ContactSettings::Response::penalty) found.with_each_other.clear();
+  return found;
+}
+
+std::vector<std::string> say_what_moved(const SpringNetwork& network, const Points& from, const Points& to) {
+  std::vector<std::string> lines;
+  for (const Body& body : network.bodies) {
+    Index count = 0;
+    double farthest = 0.0;
+    for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+      if (from.col(i) == to.col(i)) continue;
+      ++count;
+      farthest = std::max(farthest, (to.col(i) - from.col(i)).norm());
+    }
+    if (count == 0) continue;
+    lines.push_back("body \"" + body.name + "\" was pushed out of what it intersected at the start: " + std::to_string(count) +
+                    (count == 1 ? " particle by " : " particles by up to ") + format_number(farthest, 3) + " m");
+  }
+  return lines;
+}
+
+/// Bodies whose gap obstacles are deep in: contact will throw them out of it.
+std::vector<std::string> say_what_is_too_near(const SpringNetwork& network, const Environment& environment,
+                                              const Points& positions) {
+  constexpr double kDeep = 0.5;  // of the gap
+  double obstacle_thickness = std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : environment.obstacles()) {
+    obstacle_thickness = std::min(obstacle_thickness, obstacle.material.thickness);
+  }
+  std::vector<std::string> lines;
+  for (const Body& body : network.bodies) {
+    const double gap = body.material.thickness + obstacle_thickness;
+    if (!std::isfinite(gap) || gap == 0.0) continue;
+    std::vector<Index> free;
+    for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+      if (!network.is_pinned(i)) free.push_back(i);
+    }
+    const auto nearest = environment.min_distance(positions(Eigen::all, free), gap);
+    if (!nearest || *nearest >= kDeep * gap) continue;
+    lines.push_back("body \"" + body.name + "\" begins " + format_number(*nearest, 3) +
+                    " m from an obstacle, deep in its thickness of " + format_number(gap, 3) +
+                    " m, out of which contact will throw it; begin farther off, or with a smaller thickness");
+  }
+  return lines;
+}
+
+}  // namespace
+
+Start find_start(const SpringNetwork& network, Environment& environment, const ContactSettings& contact, const Points& positions) {
+  const CollisionSurface surface = contact_surface(network);
+  StartIntersections found = find_all(environment, surface, contact, positions);
+  if (found.empty()) return {positions, say_what_is_too_near(network, environment, positions)};
+  Points place = positions;
+  std::string remedy = "move one of them by \"place\", or let contact.start be \"push_out\"";
+  if (contact.start == ContactSettings::Start::push_out) {
+    place = push_out(network, environment, surface, positions, contact.response == ContactSettings::Response::projection);
+    found = find_all(environment, surface, contact, place);
+    if (found.empty()) return {place, say_what_moved(network, positions, place)};
+    remedy = "it could not be pushed out: move one of them by \"place\"";
+  }
+  throw InputError(start_problems(found, network, environment, surface, place, remedy));
+}
+
+}  // namespace sprung

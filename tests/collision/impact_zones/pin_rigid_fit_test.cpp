@@ -1,0 +1,95 @@
+// The motion with which pins take along what hangs on them.
+#include "collision/impact_zones/pin_rigid_fit.h"
+#include "collision/sample_meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace sprung {
+namespace {
+
+using test::Random;
+
+std::vector<PinWay> ways(const RigidTransform& motion, const std::vector<Vector3>& pins) {
+  std::vector<PinWay> ways;
+  for (const Vector3& pin : pins) ways.push_back({pin, motion * pin});
+  return ways;
+}
+
+RigidTransform random_motion(Random& random, double most_angle) {
+  RigidTransform motion = RigidTransform::Identity();
+  motion.linear() = Eigen::AngleAxisd(random.between(0.0, most_angle), random.direction()).toRotationMatrix();
+  motion.translation() = random.direction();
+  return motion;
+}
+
+// Coordinates up to 2 and some twenty roundings of 2^-53 each.
+constexpr double kRounding = 0x1p-47;
+
+TEST(PinMotion, TakesPinsThatMoveRigidlyWhereTheyGo) {
+  Random random(1);
+  const std::vector<std::vector<Vector3>> sets = {{{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}},
+                                                  {{0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}, {1.0, 0.0, 0.0}},
+                                                  {{0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}, {1.0, 0.2, 0.0}, {0.3, 0.8, 0.0}},
+                                                  {{0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}, {1.0, 0.2, 0.0}, {0.3, 0.8, 0.5}}};
+  for (const std::vector<Vector3>& pins : sets) {
+    for (int k = 0; k < 100; ++k) {
+      const std::vector<PinWay> pin_ways = ways(random_motion(random, 1.5), pins);
+      const auto motion = common_turn(pin_ways);
+      ASSERT_TRUE(motion) << pins.size();
+      for (const PinWay& pin : pin_ways) EXPECT_LT((*motion * pin.from - pin.to).norm(), kRounding) << pins.size();
+      EXPECT_NEAR(motion->linear().determinant(), 1.0, kRounding);
+    }
+  }
+}
+
+// Rounding of 2^-53 chooses the turn about the strip's line: by so much more as the strip is narrower than long.
+TEST(PinMotion, TakesPinsOfNarrowStripsAlongToRounding) {
+  Random random(3);
+  for (const double width : {1e-1, 1e-2, 1e-3, 1e-4, 1e-6}) {
+    std::vector<Vector3> pins;
+    for (int k = 0; k < 24; ++k) {
+      for (const double side : {-0.5, 0.5}) pins.emplace_back(k / 23.0, side * width, 0.0);
+    }
+    for (int k = 0; k < 50; ++k) {
+      const std::vector<PinWay> pin_ways = ways(random_motion(random, 0.3), pins);
+      const auto motion = common_turn(pin_ways);
+      ASSERT_TRUE(motion) << width;
+      for (const PinWay& pin : pin_ways) {
+        EXPECT_LT((*motion * pin.from - pin.to).norm(), std::min(kRounding / width, width)) << width;
+      }
+    }
+  }
+}
+
+TEST(PinMotion, TurnsNoMoreThanPinsAskFor) {
+  Random random(2);
+  const std::vector<Vector3> pins = {{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}};
+  const Vector3 along = (pins[1] - pins[0]).normalized();
+  for (int k = 0; k < 100; ++k) {
+    const RigidTransform turned = random_motion(random, 1.5);
+    const auto motion = common_turn(ways(turned, pins));
+    ASSERT_TRUE(motion);
+    const double least = std::acos(std::min(1.0, along.dot(turned.linear() * along)));
+    EXPECT_NEAR(Eigen::AngleAxisd(motion->linear()).angle(), least, 1e-7) << "the arc cosine loses half of the digits";
+  }
+}
+
+TEST(PinMotion, OfPinsThatRestOrGoTheSameWayIsNone) {
+  EXPECT_FALSE(common_turn(ways(RigidTransform::Identity(), {{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}})));
+  RigidTransform shift = RigidTransform::Identity();
+  shift.translation() = Vector3(0.25, 0.5, -0.125);
+  EXPECT_FALSE(common_turn(ways(shift, {{1.0, 0.5, -0.25}, {-0.25, 0.5, 0.75}})));
+}
+
+TEST(PinMotion, OfPinsThatGoWaysOfTheirOwnIsNone) {
+  // They pass each other, and one goes on alone.
+  EXPECT_FALSE(common_turn(std::vector<PinWay>{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {-0.5, 0.0, 0.0}}}));
+  EXPECT_FALSE(common_turn(std::vector<PinWay>{{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {1.5, 0.0, 0.0}}}));
+}
+
+}  // namespace
+}  // namespace sprung

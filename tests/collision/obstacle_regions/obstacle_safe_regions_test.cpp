@@ -1,0 +1,201 @@
+#include "collision/obstacle_regions/obstacle_safe_regions.h"
+
+#include "collision/sample_meshes.h"
+#include "collision/self_networks.h"
+#include "collision/single_particles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace sprung {
+namespace {
+
+// Obstacles are looked for where elements are about to go. What is elsewhere has no zones, and nothing may be led there.
+TEST(ObstacleZones, AllowNoPlaceWhereNoObstacleWasLookedFor) {
+  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.5}};
+  ball.placed.translation() = Vector3(10.0, 0.0, 0.0);
+  Environment environment({ball});
+  environment.set_interval(0.0, 0.01);
+  const CollisionSurface surface = test::particle_surface({0});
+  const Points here = Points::Zero(3, 1);
+  ObstacleZones zones(environment.set(), surface, here, 0.01);
+  zones.follow({here, here});
+  std::vector<HalfSpace> half_spaces;
+  zones.append_half_spaces(0, half_spaces);
+  const auto is_within = [&](const Vector3& p) {
+    return std::ranges::all_of(half_spaces, [&](const HalfSpace& bound) { return bound.normal.dot(p) >= bound.offset; });
+  };
+  EXPECT_TRUE(zones.allow(0, here.col(0)));
+  EXPECT_TRUE(is_within(here.col(0)));
+  EXPECT_FALSE(zones.allow(0, ball.placed.translation()));
+  EXPECT_FALSE(is_within(ball.placed.translation()));
+}
+
+// A zone that is made again because one of its corners leaves has other planes, which may not hold another corner on its way
+// although its old zone did: that one has to be looked at too. A cloth moves at random over rough ground; whoever is not restless
+// goes where it wants.
+TEST(ObstacleZones, WhomNewZonesDoNotHoldIsRestless) {
+  constexpr Index kSide = 10;
+  constexpr int kSteps = 1000;
+  constexpr double kFarthest = 0.1;
+  test::Random random(1);
+  const TriangleMesh ground = test::terrain(12, [&](Index, Index) { return random.between(0.0, 1.0); });
+  const Obstacle obstacle{.name = "ground", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(ground), false}};
+  Environment environment({obstacle});
+  environment.set_interval(0.0, 0.01);
+  test::SelfNetwork cloth;
+  cloth.add_cloth(kSide, {-4.0, 1.1, -4.0}, {0.8, 0.0, 0.0}, {0.0, 0.0, 0.8});
+  const CollisionSurface surface = cloth.surface(0.05);
+  ObstacleZones zones(environment.set(), surface, cloth.positions, 0.05);
+  Points from = cloth.positions;
+  for (int step = 0; step < kSteps; ++step) {
+    Points to = from;
+    for (Index i = 0; i < cloth.count(); ++i) {
+      to.col(i) += random.between(0.0, kFarthest) * random.direction() - Vector3(0.0, 0.2 * kFarthest, 0.0);
+    }
+    zones.follow({from, to});
+    const std::vector<Index> restless = zones.restless();
+    for (Index i = 0; i < cloth.count(); ++i) {
+      if (std::ranges::binary_search(restless, i)) continue;
+      ASSERT_TRUE(zones.allow(i, to.col(i))) << "particle " << i << " in step " << step;
+      from.col(i) = to.col(i);
+    }
+  }
+}
+
+/// Where the contact's element is opposite to the obstacle.
+Vector3 opposite(const Contact& contact, const Points& positions) {
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+    sum += contact.weights[k] * positions.col(contact.particles[k]);
+  }
+  return sum;
+}
+
+struct Top {
+  const char* name;
+  ObstacleGeometry geometry;
+};
+
+void PrintTo(const Top& top, std::ostream* stream) { *stream << top.name; }
+
+/// Open pyramids, 1 m high, with these tips.
+TriangleMesh spikes(const std::vector<Vector3>& tips) {
+  const auto count = static_cast<Index>(tips.size());
+  TriangleMesh mesh{Points(3, 5 * count), Triangles(3, 4 * count)};
+  for (Index k = 0; k < count; ++k) {
+    Eigen::Matrix<double, 5, 3> corners;
+    corners << 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, -1.0, -1.0, -1.0, -1.0, 0.0, 0.0, -1.0, 1.0;
+    mesh.vertices.middleCols(5 * k, 5) = corners.transpose().colwise() + tips[static_cast<std::size_t>(k)];
+    Eigen::Matrix<Index, 4, 3> faces;
+    faces << 0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1;
+    mesh.triangles.middleCols(4 * k, 4) = (faces.array() + 5 * k).transpose();
+  }
+  return mesh;
+}
+
+/// A square with sides along x and z, from this corner, above an obstacle.
+struct SquareAbove {
+  SquareAbove(const Obstacle& obstacle, const Vector3& corner) : environment({obstacle}) {
+    square.add_cloth(1, corner, Vector3::UnitX(), Vector3::UnitZ());
+    surface = square.surface(kGap);
+    zones.emplace(environment.set(), surface, square.positions, 0.5 * kGap);
+  }
+
+  std::vector<Contact> step(const Points& from, const Points& to) {
+    zones->follow({from, to});
+    std::vector<Contact> contacts;
+    zones->find_contacts({from, to}, contacts);
+    return contacts;
+  }
+
+  static constexpr double kGap = 0.05;  // [m]
+  Environment environment;
+  test::SelfNetwork square;
+  CollisionSurface surface;
+  std::optional<ObstacleZones> zones;
+};
+
+class ElementOverTop : public ::testing::TestWithParam<Top> {};
+INSTANTIATE_TEST_SUITE_P(
+    Tops, ElementOverTop,
+    ::testing::Values(Top{"ball", SphereGeometry{.radius = 0.5}},
+                      Top{"spike", MeshGeometry{std::make_shared<const TriangleMesh>(spikes({Vector3::Zero()})), false}}));
+
+// However far a square slides over what is below its inside, that stays where it is, and another part of the square is opposite.
+TEST_P(ElementOverTop, MeetsItWhereItIsNow) {
+  constexpr double kGap = SquareAbove::kGap;
+  constexpr double kOld = 0.02 * kGap;  // nearest points may be, of this way
+  constexpr double kSlide = 0.75 * kOld;
+  Obstacle obstacle{.name = "top", .geometry = GetParam().geometry};
+  if (std::holds_alternative<SphereGeometry>(obstacle.geometry)) obstacle.placed.translation() = Vector3(0.0, -0.5, 0.0);
+  SquareAbove above(obstacle, {-0.6, 0.9 * kGap, -0.4});
+  above.environment.set_interval(0.0, 0.01);
+  Points from = above.square.positions;
+  for (int step = 0; step < 200; ++step) {
+    Points to = from;
+    to.row(0).array() += kSlide;
+    const std::vector<Contact> contacts = above.step(from, to);
+    ASSERT_FALSE(contacts.empty());
+    for (const Contact& contact : contacts) {
+      EXPECT_NEAR((opposite(contact, from) - contact.point).cross(contact.normal).norm(), 0.0, kOld) << "step " << step;
+    }
+    from = to;
+  }
+}
+
+// Both move within their own frames, the square half as fast again: what lies below is the tip where it ends up, and goes as fast.
+TEST(ElementOverTops, MeetsATipThatDeforms) {
+  constexpr double kGap = SquareAbove::kGap;
+  constexpr double kStep = 0.01;
+  const Vector3 way(0.1 * kGap, 0.02 * kGap, 0.0);  // of the tip in a step
+  const TriangleMesh first = spikes({Vector3::Zero()});
+  MeshSequence sequence{.triangles = first.triangles, .frames = {}, .frame_rate = 1.0 / kStep};
+  for (int k = 0; k <= 30; ++k) sequence.frames.emplace_back(first.vertices.colwise() + k * way);
+  const Obstacle obstacle{.name = "tip",
+                          .geometry = SequenceGeometry{std::make_shared<const MeshSequence>(std::move(sequence)), false}};
+  SquareAbove above(obstacle, {-0.6, 0.9 * kGap, -0.4});
+  Points from = above.square.positions;
+  for (int step = 0; step < 30; ++step) {
+    above.environment.set_interval(kStep * step, kStep * (step + 1));
+    const Points to = from.colwise() + Vector3(1.5 * way.x(), way.y(), 0.0);
+    const std::vector<Contact> contacts = above.step(from, to);
+    const auto is_of_the_tip = [&](const Contact& contact) {
+      const Vector3 between = opposite(contact, from) - (contact.point - contact.drift);  // where the interval begins
+      return contact.point.isApprox((step + 1) * way, 1e-9) && contact.drift.isApprox(way, 1e-9) &&
+             between.cross(contact.normal).norm() < 0.02 * kGap;
+    };
+    EXPECT_TRUE(std::ranges::any_of(contacts, is_of_the_tip)) << "step " << step;
+    from = to;
+  }
+}
+
+// The square slides off one tip, within the zone that it has, and lies on another one then.
+TEST(ElementOverTops, MeetsTheNextOneOnceItLeftTheFirst) {
+  constexpr double kGap = SquareAbove::kGap;
+  const Vector3 next(0.3, -0.1 * kGap, 0.3);
+  const Obstacle obstacle{.name = "tops",
+                          .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(spikes({Vector3::Zero(), next})), false}};
+  SquareAbove above(obstacle, {-0.02, 0.9 * kGap, -0.5});
+  above.environment.set_interval(0.0, 0.01);
+  const auto meets = [&](const Points& from, const Points& to, const Vector3& tip) {
+    const std::vector<Contact> contacts = above.step(from, to);
+    return std::ranges::any_of(contacts, [&](const Contact& contact) { return contact.point.isApprox(tip, 1e-12); });
+  };
+  Points from = above.square.positions;
+  EXPECT_TRUE(meets(from, from, Vector3::Zero()));
+  for (int step = 0; step < 40; ++step) {
+    Points to = from;
+    to.row(0).array() += 0.08 * kGap;
+    meets(from, to, next);
+    from = to;
+  }
+  EXPECT_TRUE(meets(from, from, next));
+}
+
+}  // namespace
+}  // namespace sprung

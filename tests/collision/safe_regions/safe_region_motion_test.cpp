@@ -1,0 +1,184 @@
+#include "collision/shapes/mesh_shape.h"
+#include "sample_meshes.h"
+#include "zone_trials.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+using test::crosses;
+using test::Random;
+
+/// Goes from one mesh to another in a second.
+struct Transition {
+  TriangleMesh from;
+  TriangleMesh to;
+
+  [[nodiscard]] MeshShape shape() const {
+    return MeshShape(SequenceGeometry{std::make_shared<const MeshSequence>(MeshSequence{
+                                          .triangles = from.triangles, .frames = {from.vertices, to.vertices}, .frame_rate = 1.0}),
+                                      true});
+  }
+  [[nodiscard]] TriangleMesh at(double time) const { return {(1.0 - time) * from.vertices + time * to.vertices, from.triangles}; }
+};
+
+/// The torus goes by `drift` and each vertex besides up to `wobble` in a direction of its own.
+Transition wobbling_torus(const Vector3& drift, double wobble) {
+  Transition transition{test::torus(1.0, 0.4, 24, 12), test::torus(1.0, 0.4, 24, 12)};
+  Random random(17);
+  for (Index i = 0; i < transition.to.vertices.cols(); ++i) {
+    transition.to.vertices.col(i) += drift + random.between(0.0, wobble) * random.direction();
+  }
+  return transition;
+}
+
+ElementCorners between(const ElementCorners& a, const ElementCorners& b, double part) {
+  ElementCorners middle = a;
+  for (int i = 0; i < a.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    middle.x[k] = (1.0 - part) * a.x[k] + part * b.x[k];
+  }
+  return middle;
+}
+
+struct Tally {
+  int zones = 0;
+  int moves = 0;
+};
+
+/// The law of zones before a surface that deforms: whatever begins in the zone's element and ends in the zone, with the surface
+/// going straight meanwhile, crosses it at no time.
+Tally expect_no_crossing(const Transition& transition, double begin, double end, int trials) {
+  MeshShape shape = transition.shape();
+  shape.set_interval(begin, end);
+  const TriangleMesh before = transition.at(begin);
+  Random random(18);
+  Tally tally;
+  for (int trial = 0; trial < trials; ++trial) {
+    const ElementCorners element = test::random_element(before, random, 1 + trial % 3, 0.2, 0.2);
+    const ZoneRequest request{
+        .reach = random.between(0.05, 0.4), .gap = random.between(0.0, 0.05), .clearance = 1e-9, .exact = 0.1};
+    Zone zone;
+    shape.find_zone(element, request, zone);
+    EXPECT_EQ(zone.broken, crosses(element, before)) << "trial " << trial;
+    if (zone.broken) continue;
+    ++tally.zones;
+    for (int move = 0; move < 4; ++move) {
+      ElementCorners moved = element;
+      bool inside = true;
+      for (int i = 0; i < element.count; ++i) {
+        Vector3& corner = moved.x[static_cast<std::size_t>(i)];
+        corner = test::moved_within(zone, corner + zone.drift, request.reach, random);
+        inside = inside && test::holds(zone, element.x[static_cast<std::size_t>(i)] + zone.drift, corner);
+      }
+      if (!inside) continue;  // the surface came too near to leave room
+      ++tally.moves;
+      for (const double part : {0.2, 0.5, 0.8, 1.0}) {
+        EXPECT_FALSE(crosses(between(element, moved, part), transition.at(begin + part * (end - begin))))
+            << "trial " << trial << " after " << part;
+      }
+    }
+  }
+  return tally;
+}
+
+TEST(ZoneDrift, NothingCrossesASurfaceThatWobbles) {
+  const Tally tally = expect_no_crossing(wobbling_torus(Vector3::Zero(), 0.05), 0.25, 0.75, 400);
+  EXPECT_GT(tally.moves, 2 * tally.zones) << "most elements have room to move";
+}
+
+TEST(ZoneDrift, NothingCrossesASurfaceThatGoesFartherThanItsTrianglesAreLarge) {
+  const Tally tally = expect_no_crossing(wobbling_torus({0.7, -0.5, 0.3}, 0.02), 0.0, 1.0, 400);
+  EXPECT_GT(tally.moves, 2 * tally.zones) << "most elements go along with it";
+}
+
+TEST(ZoneDrift, NothingCrossesASurfaceThatGrowsAndTurns) {
+  Transition transition{test::torus(1.0, 0.4, 24, 12), test::torus(1.0, 0.4, 24, 12)};
+  const Matrix3 turn = Eigen::AngleAxisd(0.2, Vector3(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
+  transition.to.vertices = 1.1 * turn * transition.to.vertices;
+  EXPECT_GT(expect_no_crossing(transition, 0.0, 0.5, 400).moves, 0);
+  const Tally slow = expect_no_crossing(transition, 0.4, 0.45, 400);
+  EXPECT_GT(slow.moves, 3 * slow.zones);
+}
+
+TEST(ZoneDrift, NothingCrossesWhatASurfaceGoesTo) {
+  // One torus slides under another, which stays, closely enough to catch the elements that it takes along.
+  const TriangleMesh torus = test::torus(1.0, 0.4, 24, 12);
+  const Eigen::Index vertices = torus.vertices.cols();
+  TriangleMesh both{Points(3, 2 * vertices), Triangles(3, 2 * torus.triangles.cols())};
+  both.vertices << torus.vertices, torus.vertices.colwise() + Vector3(3.0, 0.85, 0.0);
+  both.triangles << torus.triangles, (torus.triangles.array() + static_cast<Index>(vertices)).matrix();
+  Transition transition{both, both};
+  transition.to.vertices.leftCols(vertices).colwise() += Vector3(3.0, 0.0, 0.0);
+  EXPECT_GT(expect_no_crossing(transition, 0.0, 1.0, 800).moves, 800);
+}
+
+TEST(ZoneDrift, ASurfaceThatOnlyGoesAlongLeavesElementsTheirPlace) {
+  const Vector3 drift(0.25, -0.5, 0.125);
+  const Transition still{test::torus(1.0, 0.4, 24, 12), test::torus(1.0, 0.4, 24, 12)};
+  Transition moving = still;
+  moving.to.vertices.colwise() += drift;
+  const MeshShape rigid(MeshGeometry{std::make_shared<const TriangleMesh>(still.from), true});
+  MeshShape shape = moving.shape();
+  shape.set_interval(0.0, 1.0);
+  Random random(19);
+  for (int trial = 0; trial < 200; ++trial) {
+    const ElementCorners element = test::random_element(still.from, random, 1 + trial % 3, 0.2, 0.2);
+    const ZoneRequest request{.reach = 0.3, .gap = 0.02, .clearance = 1e-9, .exact = 0.1};
+    Zone expected;
+    Zone zone;
+    rigid.find_zone(element, request, expected);
+    shape.find_zone(element, request, zone);
+    ASSERT_EQ(zone.broken, expected.broken);
+    if (zone.broken || zone.triangle == kNone) continue;
+    // Coordinates up to 2 m carry roundings of 4e-16 m, sums of them a few.
+    ASSERT_LT((zone.drift - drift).norm(), 1e-15);
+    ASSERT_LT((zone.point - expected.point - drift).norm(), 1e-14);
+    ASSERT_NEAR(zone.distance, expected.distance, 1e-14);
+    for (int i = 0; i < element.count; ++i) {
+      const Vector3 along = element.x[static_cast<std::size_t>(i)] + drift;
+      ASSERT_TRUE(test::holds(zone, along, along + 2e-15 * zone.normal)) << "trial " << trial;
+    }
+  }
+}
+
+TEST(ZoneDrift, AnElementThatIsAtTheEndAlreadyIsNotTakenAlong) {
+  const Transition transition = wobbling_torus({0.7, -0.5, 0.3}, 0.05);
+  MeshShape shape = transition.shape();
+  shape.set_interval(0.0, 1.0);
+  Random random(20);
+  for (int trial = 0; trial < 200; ++trial) {
+    const ElementCorners element = test::random_element(transition.to, random, 3, 0.2, 0.2);
+    Zone zone;
+    shape.find_zone(element, {.reach = 0.3, .gap = 0.02, .clearance = 1e-9, .exact = 0.1, .at_end = true}, zone);
+    ASSERT_EQ(zone.broken, crosses(element, transition.to));
+    EXPECT_EQ(zone.drift, Vector3::Zero());
+    for (std::size_t i = 0; !zone.broken && i < 3; ++i) ASSERT_TRUE(test::holds(zone, element.x[i], element.x[i]));
+  }
+}
+
+TEST(ZoneDrift, NearestPointsGoWithTheSurface) {
+  // x is stretched to twice its length: a point of the sheet goes as far as it is from the middle.
+  Transition stretching{test::flat_sheet(4), test::flat_sheet(4)};
+  stretching.to.vertices.row(0) *= 2.0;
+  MeshShape shape = stretching.shape();
+  shape.set_interval(0.0, 0.25);
+  ElementCorners element{.count = 1};
+  element.x[0] = Vector3(1.2, 0.1, 0.3);
+  Zone zone;
+  shape.find_zone(element, {.reach = 0.5, .gap = 0.1, .clearance = 1e-9, .exact = 0.3}, zone);
+  EXPECT_LT((zone.point - Vector3(1.5, 0.0, 0.3)).norm(), 1e-15);
+  shape.set_interval(0.25, 0.5);
+  ASSERT_TRUE(shape.take_along(zone));
+  EXPECT_LT((zone.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15);
+  ASSERT_TRUE(shape.take_along(zone));
+  EXPECT_LT((zone.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15) << "once an interval";
+  shape.set_interval(0.75, 1.0);
+  EXPECT_FALSE(shape.take_along(zone)) << "it was never told where the surface went between";
+}
+
+}  // namespace
+}  // namespace sprung

@@ -1,0 +1,332 @@
+// No particle ends behind a surface in front of which it began, judged by exact predicates over all triangles.
+#include "collision/sample_meshes.h"
+#include "collision/self_networks.h"
+#include "collision/single_particles.h"
+#include "geometry/queries/side_of_plane.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+using test::Random;
+
+/// How often a ray upward from p meets the mesh; it leans a little, since particles come to rest above edges.
+int triangles_above(const TriangleMesh& mesh, const Vector3& p) {
+  int met = 0;
+  for (Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const Vector3 a = mesh.vertices.col(mesh.triangles(0, t));
+    const Vector3 b = mesh.vertices.col(mesh.triangles(1, t));
+    const Vector3 c = mesh.vertices.col(mesh.triangles(2, t));
+    const Vector3 far = p + 100.0 * Vector3(0.00317, 1.0, 0.00129);
+    if ((side_of_plane(a, b, c, p) > 0.0) == (side_of_plane(a, b, c, far) > 0.0)) continue;
+    const bool first = side_of_plane(p, far, a, b) > 0.0;
+    if (first == (side_of_plane(p, far, b, c) > 0.0) && first == (side_of_plane(p, far, c, a) > 0.0)) ++met;
+  }
+  return met;
+}
+
+Obstacle mesh_obstacle(const TriangleMesh& mesh, bool closed) {
+  Obstacle result;
+  result.name = "mesh";
+  result.geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), closed};
+  return result;
+}
+
+/// Kicks particles around an obstacle for many steps, no farther to the side than `range` in its own frame: each stays on its side,
+/// below or above an open mesh and outside of a closed one.
+void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double kick, double range) {
+  Environment environment({obstacle});
+  const TriangleMesh& mesh = *std::get<MeshGeometry>(obstacle.geometry).mesh;
+  const bool closed = std::get<MeshGeometry>(obstacle.geometry).closed;
+  const auto within = [range](const Vector3& p) { return Vector3(p.cwiseMax(-range).cwiseMin(range)); };
+  Random random(31);
+  Points x(3, count);
+  std::vector<bool> odd(static_cast<std::size_t>(count));
+  const RigidTransform start = obstacle.motion.pose(obstacle.placed, 0.0);
+  for (Index i = 0; i < count; ++i) {
+    Vector3 p = within(test::near_surface(mesh, random, 0.2));
+    while (closed && triangles_above(mesh, p) % 2 == 1) p = within(test::near_surface(mesh, random, 0.3));
+    odd[static_cast<std::size_t>(i)] = triangles_above(mesh, p) % 2 == 1;
+    x.col(i) = start * p;
+  }
+  FreeSpace space = test::single_particles(environment, count);
+  Index stopped = 0;
+  for (int step = 0; step < steps; ++step) {
+    environment.set_interval(0.01 * step, 0.01 * (step + 1));
+    const RigidTransform& pose = environment.pose_after(0);
+    Points after = x;
+    for (Index i = 0; i < count; ++i) {
+      // Most are thrown at the surface, straight at some vertex.
+      const Vector3 target = pose * mesh.vertices.col(random.below(static_cast<Index>(mesh.vertices.cols())));
+      const Vector3 at = target - x.col(i);
+      after.col(i) += i % 3 == 0 ? Vector3(kick * random.direction()) : Vector3(random.between(0.0, 2.0) * at);
+      after.col(i) = pose * within(pose.inverse() * after.col(i));
+    }
+    const Truncation truncation = space.truncate(x, after);
+    stopped += truncation.truncated;
+    ASSERT_EQ(truncation.squeezed, 0);
+    for (Index i = 0; i < count; ++i) {
+      ASSERT_EQ(triangles_above(mesh, pose.inverse() * after.col(i)) % 2 == 1, odd[static_cast<std::size_t>(i)])
+          << "particle " << i << " in step " << step;
+    }
+    x = after;
+  }
+  EXPECT_GT(stopped, count);
+}
+
+TEST(Truncation, NothingPassesAClosedMesh) {
+  expect_no_crossing(mesh_obstacle(test::torus(1.0, 0.3, 20, 10), true), 200, 40, 1.0, 10.0);
+}
+
+TEST(Truncation, NothingPassesNeedles) { expect_no_crossing(mesh_obstacle(test::needles(12), true), 200, 40, 0.5, 10.0); }
+
+TEST(Truncation, NothingPassesAnOpenMesh) {
+  expect_no_crossing(mesh_obstacle(test::terrain(24, [](Index i, Index j) { return 0.3 * ((i + 2 * j) % 3); }), false), 200, 40,
+                     1.0, 2.9);
+}
+
+TEST(Truncation, NothingPassesATurningMesh) {
+  Obstacle wheel = mesh_obstacle(test::torus(1.0, 0.3, 20, 10), true);
+  wheel.motion.spin = Vector3(400.0, 900.0, -300.0);
+  wheel.motion.keyframes = {{0.0}, {0.2, Vector3(4.0, 0.0, 0.0)}, {0.4}};
+  expect_no_crossing(wheel, 200, 40, 0.5, 10.0);
+}
+
+/// Leads the particles of a cloth and of ropes on their own ways around a mesh for many steps, most of them hardly at all and some
+/// straight at it: no element ever crosses it.
+void expect_no_element_crosses(const TriangleMesh& mesh, bool closed, int steps) {
+  test::SelfNetwork network;
+  network.add_cloth(8, Vector3(-1.2, 1.2, -1.2), Vector3(0.3, 0.0, 0.0), Vector3(0.0, 0.0, 0.3));
+  for (const double z : {-1.5, 1.5}) network.add_rope(8, Vector3(-1.2, 0.0, z), Vector3(0.3, 0.0, 0.0));
+  const Index count = network.count();
+  const std::vector<char> alone(static_cast<std::size_t>(network.bodies), 0);
+  Environment environment({mesh_obstacle(mesh, closed)});
+  FreeSpace space(environment,
+                  make_collision_surface(network.elements, network.positions, network.body_of, Scalars::Zero(count), network.pinned,
+                                         alone, alone),
+                  network.positions, 0.0);
+  auto crossings = [&, everything = Points(3, count + mesh.vertices.cols())](const Points& positions) mutable {
+    everything << positions, mesh.vertices;
+    int found = 0;
+    for (Index t = 0; t < mesh.triangles.cols(); ++t) {
+      const Element face{{count + mesh.triangles(0, t), count + mesh.triangles(1, t), count + mesh.triangles(2, t)}, 3};
+      for (const Element& element : network.elements) {
+        found += test::count_crossings(element, face, everything) + test::count_crossings(face, element, everything);
+      }
+    }
+    return found;
+  };
+  Random random(73);
+  Points x = network.positions;
+  Index stopped = 0;
+  for (int step = 0; step < steps; ++step) {
+    Points after = x;
+    for (Index i = 0; i < count; ++i) {
+      const Vector3 at = mesh.vertices.col(random.below(static_cast<Index>(mesh.vertices.cols())));
+      const bool far = random.below(8) == 0;
+      after.col(i) += far ? Vector3(random.between(0.0, 1.5) * (at - x.col(i))) : Vector3(0.01 * random.direction());
+    }
+    const Truncation truncation = space.truncate(x, after);
+    stopped += truncation.truncated;
+    ASSERT_EQ(truncation.squeezed, 0);
+    ASSERT_EQ(crossings(after), 0) << "in step " << step;
+    x = after;
+  }
+  EXPECT_GT(stopped, count);
+}
+
+TEST(Truncation, NoElementCrossesNeedles) { expect_no_element_crosses(test::needles(12), true, 300); }
+
+TEST(Truncation, NoElementCrossesARing) { expect_no_element_crosses(test::torus(0.8, 0.1, 16, 6), true, 300); }
+
+TEST(Truncation, ThinSheetHoldsAt500MetresPerSecondFromEitherSide) {
+  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
+  constexpr double kMove = 500.0 / 60.0;
+  Points before(3, 4);
+  before << 0.3, 0.3, 0.0, 0.5, 0.01, -0.01, 0.01, -0.01, 0.4, 0.4, 0.0, 0.5;  // the last two over a vertex and an edge
+  Points after = before;
+  after.row(1) -= Eigen::RowVector4d(kMove, -kMove, kMove, -kMove);
+  const Truncation truncation = test::single_particles(environment, 4).truncate(before, after);
+  EXPECT_EQ(truncation.truncated, 4);
+  EXPECT_EQ(truncation.squeezed, 0);
+  for (Index i = 0; i < 4; ++i) EXPECT_GT(after(1, i) * before(1, i), 0.0) << i;
+}
+
+TEST(Truncation, PressedForEverAParticleStaysInFront) {
+  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
+  FreeSpace space = test::single_particles(environment, 1);
+  Points x = Vector3(0.3, 0.01, 0.4);
+  for (int step = 0; step < 10000; ++step) {
+    Points after = x;
+    after(1, 0) -= 0.05;
+    after(0, 0) += 0.01 * ((step / 50) % 2 == 0 ? 1 : -1);
+    ASSERT_EQ(space.truncate(x, after).squeezed, 0);
+    x = after;
+    ASSERT_GT(x(1, 0), 0.0) << step;
+  }
+}
+
+TEST(Truncation, WhatIsStoppedIsLedOnFromWhereItIsSafe) {
+  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
+  FreeSpace space = test::single_particles(environment, 2);
+  Points before(3, 2);
+  before << 0.3, -0.3, 0.01, 0.5, 0.4, 0.4;
+  Points after = before;
+  after(1, 0) = -1.0;
+  int times = 0;
+  const auto lead_on = [&](Points& x) {
+    EXPECT_GT(x(1, 0), 0.0);
+    if (times++ < 3) x.col(0) += Vector3(0.0, -1.0, 0.0);
+    if (times == 3) x.col(1) = Vector3(-0.3, -0.5, 0.4);
+    if (times == 4) x.col(0) = Vector3(0.5, 0.5, 0.4);
+    return times <= 4;
+  };
+  const Truncation truncation = space.truncate(before, after, lead_on);
+  EXPECT_EQ(times, 5);
+  EXPECT_EQ(truncation.truncated, 0);
+  EXPECT_EQ(after.col(0), Vector3(0.5, 0.5, 0.4));
+  EXPECT_GT(after(1, 1), 0.0) << "it was to pass the sheet when another had been stopped";
+}
+
+TEST(Truncation, WhereNothingIsStoppedNothingIsLedOn) {
+  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
+  Points after = Vector3(0.3, 0.02, 0.4);
+  test::single_particles(environment, 1).truncate(Vector3(0.3, 0.01, 0.4), after, [](Points&) {
+    ADD_FAILURE() << "nothing was stopped";
+    return false;
+  });
+  EXPECT_EQ(after, Vector3(0.3, 0.02, 0.4));
+}
+
+TEST(Truncation, AnObstacleThatComesCarriesARestingParticle) {
+  Obstacle sheet = mesh_obstacle(test::flat_sheet(4), false);
+  sheet.placed.translation() = Vector3(0.0, -1.0, 0.0);
+  sheet.motion.keyframes = {{0.0}, {0.1, Vector3(0.0, 50.0, 0.0)}};
+  Environment environment({sheet});
+  environment.set_interval(0.0, 0.1);
+  const Points rest = Vector3(0.1, 0.0, 0.2);
+  Points after = rest;
+  const Truncation truncation = test::single_particles(environment, 1).truncate(rest, after);
+  EXPECT_EQ(truncation.truncated, 1);
+  EXPECT_EQ(truncation.squeezed, 0);
+  EXPECT_GT(after(1, 0), 49.0);
+  EXPECT_LT(after(1, 0), 50.0);
+}
+
+TEST(Truncation, HeldParticlesAreLeftAloneAndFreePathsKeepEveryBit) {
+  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
+  Points before(3, 2);
+  before << 0.3, 0.3, 1.0, 1.0, 0.4, 0.4;
+  Points after = before;
+  after(1, 0) = -1.0;
+  after(1, 1) = 0.1 / 3.0;
+  const Points wanted = after;
+  EXPECT_EQ(test::single_particles(environment, std::vector<char>{1, 0}).truncate(before, after).truncated, 0);
+  EXPECT_EQ(after, wanted);
+}
+
+TEST(Truncation, ObstaclesThatCloseInAreReported) {
+  Obstacle upper = mesh_obstacle(test::flat_sheet(4), false);
+  Obstacle lower = upper;
+  upper.placed.translation() = Vector3(0.0, 1.0, 0.0);
+  lower.placed.translation() = Vector3(0.0, -1.0, 0.0);
+  upper.motion.keyframes = {{0.0}, {1.0, Vector3(0.0, -1.5, 0.0)}};
+  lower.motion.keyframes = {{0.0}, {1.0, Vector3(0.0, 1.5, 0.0)}};
+  Environment environment({upper, lower});
+  environment.set_interval(0.0, 1.0);
+  const Points rest = Vector3(0.1, 0.0, 0.2);
+  Points after = rest;
+  const Truncation truncation = test::single_particles(environment, 1).truncate(rest, after);
+  EXPECT_EQ(truncation.truncated, 1);
+  EXPECT_EQ(truncation.squeezed, 1);
+}
+
+/// A sheet that goes to `deform(position)` of it in one second.
+template <class Deform>
+Obstacle deforming_obstacle(const TriangleMesh& mesh, const Deform& deform) {
+  MeshSequence sequence{.triangles = mesh.triangles, .frames = {mesh.vertices, mesh.vertices}, .frame_rate = 1.0};
+  for (Index i = 0; i < mesh.vertices.cols(); ++i) sequence.frames[1].col(i) = deform(Vector3(mesh.vertices.col(i)));
+  return {.name = "mesh", .geometry = SequenceGeometry{std::make_shared<const MeshSequence>(std::move(sequence)), false}};
+}
+
+// In one step it turns by 45 degrees, so that no plane above it at the begin is above it at the end.
+TEST(Truncation, ParticlesGoWithASurfaceThatTurnsUnderThem) {
+  Environment environment(
+      {deforming_obstacle(test::flat_sheet(8), [](const Vector3& x) { return Vector3(x.x(), x.x() + 0.1 * x.z(), x.z()); })});
+  environment.set_interval(0.0, 1.0);
+  constexpr Index kCount = 100;
+  Random random(35);
+  Points rest(3, kCount);
+  for (auto&& p : rest.colwise()) {
+    p = random.in_box({Vector3(-0.9, 0.0, -0.9), Vector3(0.9, 0.0, 0.9)}) +
+        std::exp2(-20.0 * random.between(0.1, 1.0)) * Vector3::UnitY();
+  }
+  Points after = rest;
+  EXPECT_EQ(test::single_particles(environment, kCount).truncate(rest, after).squeezed, 0);
+  for (const auto& p : after.colwise()) EXPECT_GT(p.y(), p.x() + 0.1 * p.z());
+}
+
+// In one step the upper sheet comes nearer to the lower one than the particle was.
+TEST(Truncation, ParticlesStayBetweenSheetsOfOneMesh) {
+  const TriangleMesh sheet = test::flat_sheet(4);
+  const Eigen::Index vertices = sheet.vertices.cols();
+  TriangleMesh sheets{Points(3, 2 * vertices), Triangles(3, 2 * sheet.triangles.cols())};
+  sheets.vertices << sheet.vertices, sheet.vertices.colwise() + Vector3::UnitY();
+  sheets.triangles << sheet.triangles, (sheet.triangles.array() + static_cast<Index>(vertices)).matrix();
+  Environment environment({deforming_obstacle(sheets, [](const Vector3& x) { return Vector3(x.x(), 0.2 * x.y(), x.z()); })});
+  environment.set_interval(0.0, 1.0);
+  const Points rest = Vector3(0.1, 0.4, 0.2);
+  Points after = rest;
+  EXPECT_EQ(test::single_particles(environment, 1).truncate(rest, after).squeezed, 0);
+  EXPECT_GT(after(1, 0), 0.0);
+  EXPECT_LT(after(1, 0), 0.2);
+}
+
+TEST(Truncation, WhatPinsTakeThroughAnObstacleIsReportedInTheSameStep) {
+  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.2}};
+  ball.placed.translation() = Vector3(-1.0, 0.0, 0.0);
+  ball.motion.keyframes = {{0.0}, {1.0, Vector3(1.0, 0.0, 0.0)}, {2.0, Vector3(1.0, 1.0, 0.0)}};
+  Environment environment({ball});
+  test::SelfNetwork segment;
+  segment.add_rope(1, Vector3::Zero(), Vector3(0.6, 0.0, 0.0));
+  segment.pinned[0] = 1;
+  FreeSpace space(
+      environment,
+      make_collision_surface(segment.elements, segment.positions, segment.body_of, Scalars::Zero(2), segment.pinned, {0}, {0}),
+      segment.positions, 0.0);
+  const auto squeezed_until = [&](double time) {
+    environment.set_interval(time - 1.0, time);
+    Points after = segment.positions;
+    return space.truncate(segment.positions, after).squeezed;
+  };
+  EXPECT_EQ(squeezed_until(1.0), 2) << "both ends of what the ball crosses";
+  squeezed_until(2.0);
+  EXPECT_EQ(squeezed_until(3.0), 0) << "the ball has left it";
+}
+
+TEST(Truncation, InAWedgeOfTwoObstaclesAParticleFindsAPlace) {
+  Obstacle left = mesh_obstacle(test::flat_sheet(8), false);
+  Obstacle right = left;
+  left.placed.linear() = rotation_from_degrees(Vector3(0.0, 0.0, -60.0));
+  right.placed.linear() = rotation_from_degrees(Vector3(0.0, 0.0, 60.0));
+  Environment environment({left, right});
+  Random random(33);
+  FreeSpace space = test::single_particles(environment, 1);
+  Points x = Vector3(0.0, 1.0, 0.1);
+  for (int step = 0; step < 1000; ++step) {
+    Points after = x + 0.5 * random.direction() - 0.3 * Vector3::UnitY();
+    after(2, 0) = std::clamp(after(2, 0), -1.0, 1.0);
+    ASSERT_EQ(space.truncate(x, after).squeezed, 0);
+    for (Index k = 0; k < 2; ++k) {
+      ASSERT_GT((environment.pose_after(k).inverse() * after.col(0)).y(), 0.0) << step;
+    }
+    x = after;
+  }
+}
+
+}  // namespace
+}  // namespace sprung

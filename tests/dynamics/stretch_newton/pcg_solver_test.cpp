@@ -1,0 +1,126 @@
+#include "dynamics/stretch_newton/pcg_solver.h"
+
+#include "dynamics/dense_matrix.h"
+#include "dynamics/networks.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace sprung {
+namespace {
+
+/// Of a cloth, for links of random directions.
+class SparseSolverOfACloth : public ::testing::Test {
+ protected:
+  /// Links are at most `stiffness` times as stiff as the largest mass is heavy; a part of them is slack.
+  [[nodiscard]] StretchSystem system(double stiffness) {
+    std::normal_distribution<double> normal;
+    StretchSystem system;
+    system.residual = Points::NullaryExpr(3, component_.free_count, [&] { return normal(random_); });
+    for (std::size_t s = 0; s < component_.links.size(); ++s) {
+      const Vector3 direction = Vector3(normal(random_), normal(random_), normal(random_)).normalized();
+      const double stiff = s % 5 == 0 ? 0.0 : stiffness * component_.masses.front();
+      system.blocks.push_back(SymmetricMatrix3::along(1.0e-3 * stiff, stiff, direction));
+    }
+    return system;
+  }
+
+  /// What another step than `step` would gain, as a part of all that is to be gained.
+  [[nodiscard]] double part_left(const StretchSystem& system, const Points& step) const {
+    const Eigen::MatrixXd full = dense(component_, system);
+    const Eigen::LDLT<Eigen::MatrixXd> exact(full);
+    const Scalars right = system.residual.reshaped();
+    const Scalars left = right - full * step.reshaped();
+    return left.dot(exact.solve(left)) / right.dot(exact.solve(right));
+  }
+
+  SpringNetwork network_ = make_test_cloth(9, 0.0, 0.0);
+  StretchComponent component_ = stretch_components(network_, {SpringKind::structural}).front();
+  SparseSolver solver_{component_};
+  std::mt19937 random_{3};
+};
+
+// A hundredth of the energy may be left, as the factor measures it. Single precision bears stiffness up to about 1e7 times the
+// masses; beyond that double precision must take over, and still be there for what is less stiff.
+TEST_F(SparseSolverOfACloth, SolvesHoweverStiffLinksAre) {
+  for (const double stiffness : {1.0, 1.0e3, 1.0e5, 1.0e7, 1.0e8, 1.0e9, 1.0e11, 1.0e8, 1.0e2}) {
+    const StretchSystem equations = system(stiffness);
+    Points step;
+    solver_.solve(equations, step);
+    EXPECT_LT(part_left(equations, step), 0.01) << stiffness;
+  }
+}
+
+// The factor at hand, in either precision, is that of the system before: from it conjugate gradients come near.
+TEST_F(SparseSolverOfACloth, TakesTheLastFactorForWhatIsAlike) {
+  for (const double stiffness : {1.0e3, 1.0e11}) {
+    StretchSystem equations = system(stiffness);
+    Points step;
+    solver_.solve(equations, step);
+    for (SymmetricMatrix3& block : equations.blocks) block += SymmetricMatrix3::along(0.05 * block.xx, 0.0, Vector3::UnitX());
+    equations.is_like_last = true;
+    solver_.solve(equations, step);
+    EXPECT_LT(part_left(equations, step), 0.02) << stiffness;
+  }
+}
+
+// A factor comes near enough at once, in either precision: what rounding leaves of 1e3 times the mass is next to nothing in both.
+TEST_F(SparseSolverOfACloth, SolvesAgainForAnotherResidual) {
+  for (const double stiffness : {1.0e3, 1.0e11}) {
+    StretchSystem equations = system(stiffness);
+    Points step;
+    solver_.solve(equations, step);
+    equations.residual = Points::Random(3, component_.free_count);
+    solver_.solve_again(equations, step);
+    EXPECT_LT(part_left(equations, step), 0.01) << stiffness;
+  }
+}
+
+// After one that has no factor there is nothing to solve with.
+TEST_F(SparseSolverOfACloth, DoesNotMoveAgainWithoutAFactor) {
+  StretchSystem equations = system(1.0e3);
+  equations.blocks.front().xx = std::numeric_limits<double>::quiet_NaN();
+  Points step;
+  solver_.solve(equations, step);
+  solver_.solve_again(system(1.0e3), step);
+  EXPECT_EQ(step, Points::Zero(3, component_.free_count));
+}
+
+// What nothing holds takes up all of its momentum, whatever else is left: to the rounding of double precision.
+TEST(SparseSolver, KeepsMomentum) {
+  const SpringNetwork network = make_test_cloth(6, 0.0, 0.0, false);
+  const StretchComponent component = stretch_components(network, {SpringKind::structural}).front();
+  StretchSystem system;
+  system.residual = Points::Random(3, component.free_count);
+  system.blocks.assign(component.links.size(), SymmetricMatrix3::along(0.0, 1.0e3, Vector3::UnitX()));
+  Points step;
+  const auto expect_momentum = [&] {
+    Vector3 momentum = Vector3::Zero();
+    for (Index i = 0; i < component.free_count; ++i) momentum += component.masses[i] * step.col(i);
+    EXPECT_LT((momentum - system.residual.rowwise().sum()).norm(), 1.0e-13 * system.residual.cwiseAbs().sum());
+  };
+  SparseSolver solver(component);
+  solver.solve(system, step);
+  expect_momentum();
+  system.residual = Points::Random(3, component.free_count);
+  solver.solve_again(system, step);
+  expect_momentum();
+}
+
+TEST_F(SparseSolverOfACloth, IsNotFiniteWhereTheSystemIsNot) {
+  StretchSystem equations = system(1.0e3);
+  equations.blocks.front().xx = std::numeric_limits<double>::quiet_NaN();
+  Points step;
+  solver_.solve(equations, step);
+  EXPECT_FALSE(step.allFinite());
+  const StretchSystem sound = system(1.0e3);
+  solver_.solve(sound, step);
+  EXPECT_LT(part_left(sound, step), 0.01);
+}
+
+}  // namespace
+}  // namespace sprung

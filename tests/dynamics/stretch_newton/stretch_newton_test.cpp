@@ -1,0 +1,468 @@
+#include "dynamics/stretch_newton/stretch_newton.h"
+
+#include "base/parallel.h"
+#include "dynamics/dense_matrix.h"
+#include "dynamics/forces/gravity_and_drag.h"
+#include "dynamics/integrators/integrator.h"
+#include "dynamics/networks.h"
+#include "dynamics/stretch_newton/component_newton.h"
+#include "dynamics/stretch_newton/pcg_solver.h"
+#include "dynamics/stretch_newton/stretch_energy.h"
+#include "network/simulation_state.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <tuple>
+
+namespace sprung {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kGravity = 9.81;
+
+Scalars random_displacement(std::mt19937& random, Index size, double most) {
+  std::uniform_real_distribution<double> between(-most, most);
+  return Scalars::NullaryExpr(size, [&] { return between(random); });
+}
+
+SpringNetwork tree_with_two_pins() {
+  NetworkBuilder builder;
+  std::mt19937 random(5);
+  for (Index i = 0; i < 40; ++i) {
+    const Vector3 position = random_displacement(random, 3, 1.0);
+    builder.add_particle(position, i % 3 == 0 ? 1.0 : 1000.0);
+    if (i > 0) builder.add_spring(static_cast<Index>(random() % static_cast<unsigned>(i)), i, 0.0, 0.2);
+  }
+  builder.pin(39);
+  builder.pin(38);
+  return builder.build();
+}
+
+class Solvers : public ::testing::TestWithParam<SpringNetwork> {};
+INSTANTIATE_TEST_SUITE_P(Networks, Solvers,
+                         ::testing::Values(make_test_rope(30, 0.0), tree_with_two_pins(), make_test_cloth(6, 0.0, 0.0)));
+
+// Elimination is backward stable: the error is a few roundings times the condition, which M + K bounds by 1 + |K| / least mass. Of
+// others a tenth of what the first step is worth may be left, as M + K measures it.
+TEST_P(Solvers, SolveWhatADenseSolverSolves) {
+  const SpringNetwork& network = GetParam();
+  std::mt19937 random(3);
+  for (StretchComponent& component : stretch_components(network, {SpringKind::structural})) {
+    StretchEnergy energy(component, {.max_stretch = 0.0});
+    energy.set_weight(1.0e-3 * network.masses.sum());
+    Points x(3, component.points.size());
+    for (Index i = 0; i < x.cols(); ++i) x.col(i) = network.positions.col(component.points[i]);
+    x.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
+    Points led = x;
+    led.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
+    StretchSystem system;
+    energy.linearise(x, led, NearLimit::slack, system);
+    const Eigen::MatrixXd matrix = dense(component, system);
+    const Scalars expected = matrix.ldlt().solve(Scalars(system.residual.reshaped()));
+    Points step;
+    const auto solver = make_system_solver(component);
+    solver->solve(system, step);
+    const Scalars error = step.reshaped() - expected;
+    if (component.is_tree) {
+      const double condition = matrix.norm() / *std::ranges::min_element(component.masses);
+      EXPECT_LT(error.norm(), 100 * kEpsilon * condition * expected.norm());
+    } else {
+      EXPECT_LT(error.dot(matrix * error), 0.01 * expected.dot(matrix * expected));
+    }
+  }
+}
+
+// Central differences of E, whose second derivatives change by less than k / L: an error of k h^2 / L.
+TEST_P(Solvers, ResidualIsTheNegativeGradient) {
+  const SpringNetwork& network = GetParam();
+  std::mt19937 random(4);
+  const StretchComponent component = stretch_components(network, {SpringKind::structural}).front();
+  StretchEnergy energy(component, {.max_stretch = 0.0});
+  energy.set_weight(1.0e-3);
+  Points x(3, component.points.size());
+  for (Index i = 0; i < x.cols(); ++i) x.col(i) = 1.05 * network.positions.col(component.points[i]);
+  Points led = x;
+  led.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
+  StretchSystem system;
+  const double value = energy.linearise(x, led, NearLimit::slack, system);
+  EXPECT_NEAR(value, energy.value(x, led), 100 * kEpsilon * value);
+  const double h = 1.0e-6;
+  for (Index c = 0; c < 3 * component.free_count; ++c) {
+    Points ahead = x;
+    Points behind = x;
+    ahead.reshaped()[c] += h;
+    behind.reshaped()[c] -= h;
+    const double slope = (energy.value(ahead, led) - energy.value(behind, led)) / (2.0 * h);
+    EXPECT_NEAR(system.residual.reshaped()[c], -slope, 1.0e-6 * system.residual.norm()) << c;
+  }
+}
+
+/// One step of a network from rest, or from `velocities`: where forces led it.
+Points led_by_gravity(const SpringNetwork& network, const Points& before, const Points& velocities, double dt) {
+  Points led = before;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (!network.is_pinned(i)) led.col(i) += dt * velocities.col(i) - kGravity * dt * dt * Vector3::UnitY();
+  }
+  return led;
+}
+
+/// A cloth that is too long everywhere, a little differently each time.
+class StretchedCloth {
+ public:
+  Points next() {
+    Points led = 1.3 * network.positions;
+    led.reshaped() += random_displacement(random_, static_cast<Index>(led.size()), 1.0e-3);
+    return led;
+  }
+  const SpringNetwork network = make_test_cloth(8, 0.0, 0.0, false);
+
+ private:
+  std::mt19937 random_{11};
+};
+
+// One step's factor does for the next, whose bits depend on it: but those of the same steps are the same.
+TEST(StretchNewton, TheSameStepsHaveTheSameBits) {
+  const auto after_steps = [] {
+    StretchedCloth cloth;
+    StretchNewton newton(cloth.network, {.max_stretch = 0.0});
+    Points x;
+    for (int step = 0; step < 5; ++step) {
+      x = cloth.next();
+      EXPECT_GT(newton.solve(cloth.network.positions, x, 1.0e-3), 0);
+    }
+    return x;
+  };
+  EXPECT_EQ(after_steps(), after_steps());
+}
+
+// Each solve leaves a tenth of the residual, as M + K measures it, or less: so near is the displacement to that of a new factor.
+// The second and third systems are near the first; the fourth, of another weight by a thousand, is not.
+TEST(SparseSolver, OldFactorsLeadNearEnough) {
+  StretchedCloth cloth;
+  const StretchComponent component = stretch_components(cloth.network, {SpringKind::structural}).front();
+  StretchEnergy energy(component, {.max_stretch = 0.0});
+  SparseSolver used(component);
+  for (const double weight : {1.0, 1.0, 1.0, 1000.0}) {
+    energy.set_weight(weight);
+    const Points x = cloth.next();
+    Points points(3, component.free_count);
+    for (Index i = 0; i < component.free_count; ++i) points.col(i) = x.col(component.points[i]);
+    StretchSystem system;
+    energy.linearise(points, points, NearLimit::slack, system);
+    system.is_like_last = true;
+    Points step;
+    used.solve(system, step);
+    const Eigen::MatrixXd matrix = dense(component, system);
+    const Scalars exact = matrix.ldlt().solve(Scalars(system.residual.reshaped()));
+    const auto size = [&](const Scalars& of) { return std::sqrt(of.dot(matrix * of)); };
+    EXPECT_LT(size(step.reshaped() - exact), 0.15 * size(exact)) << weight;
+  }
+}
+
+// Of M + 16 K a factor of M + K takes all eigenvalues to between 1 and 16. Conjugate gradients leave three fifths of their residual
+// in each iteration then, a tenth after six; steepest descent leaves fifteen seventeenths. What they say is left to gain is half of
+// the residual's square as the old factor measures it before the last iteration, up to sixteen times as much as there is and never
+// less. A new factor leaves less than a ten-thousandth.
+TEST(SparseSolver, OldFactorsLeadThereByConjugateGradients) {
+  StretchedCloth cloth;
+  const StretchComponent component = stretch_components(cloth.network, {SpringKind::structural}).front();
+  Points points(3, component.points.size());
+  const Points x = cloth.next();
+  for (Index i = 0; i < points.cols(); ++i) points.col(i) = x.col(component.points[i]);
+  StretchEnergy energy(component, {.max_stretch = 0.0});
+  StretchSystem system;
+  const auto of_weight = [&](double weight) {
+    energy.set_weight(weight);
+    energy.linearise(points, points, NearLimit::slack, system);
+  };
+  SparseSolver used(component);
+  Points step;
+  of_weight(1.0);
+  used.solve(system, step);
+  of_weight(16.0);
+  system.is_like_last = true;
+  const double left = used.solve(system, step);
+  const Eigen::MatrixXd matrix = dense(component, system);
+  const Scalars now = system.residual.reshaped();
+  const Scalars exact = matrix.ldlt().solve(now);
+  const Scalars missed = step.reshaped() - exact;
+  Points by_new_factor;
+  SparseSolver(component).solve(system, by_new_factor);
+  EXPECT_NE(step, by_new_factor) << "the old factor was given up";
+  EXPECT_LE(0.5 * missed.dot(matrix * missed), left);
+  EXPECT_LE(left, 0.01 * 16.0 * 0.5 * now.dot(exact));
+}
+
+// A factor of M + K measures what M + 16 K leaves to gain as up to sixteen times as much: all of it may be left, so the first
+// iteration is the last. With nothing that may be left they go on to a hundredth.
+TEST(SparseSolver, OldFactorsLeaveWhatMayBeLeft) {
+  StretchedCloth cloth;
+  const StretchComponent component = stretch_components(cloth.network, {SpringKind::structural}).front();
+  Points points(3, component.points.size());
+  const Points x = cloth.next();
+  for (Index i = 0; i < points.cols(); ++i) points.col(i) = x.col(component.points[i]);
+  const auto left_of = [&](double part_that_may_be_left) {
+    StretchEnergy energy(component, {.max_stretch = 0.0});
+    StretchSystem system;
+    SparseSolver used(component);
+    Points step;
+    energy.set_weight(1.0);
+    energy.linearise(points, points, NearLimit::slack, system);
+    used.solve(system, step);
+    energy.set_weight(16.0);
+    energy.linearise(points, points, NearLimit::slack, system);
+    const Scalars now = system.residual.reshaped();
+    const double gain = 0.5 * now.dot(dense(component, system).ldlt().solve(now));
+    system.is_like_last = true;
+    system.may_be_left = part_that_may_be_left * gain;
+    return used.solve(system, step) / gain;
+  };
+  EXPECT_GE(left_of(16.0), 1.0);
+  EXPECT_LE(left_of(0.0), 0.16);
+}
+
+// Two springs of 1 m, each held by one end.
+TEST(StretchNewton, TellsTheTurnOfWhatTurnsMost) {
+  NetworkBuilder builder;
+  for (const double z : {0.0, 1.0}) {
+    const Index held = builder.add_particle({0.0, 0.0, z}, 1.0);
+    builder.add_spring(held, builder.add_particle({1.0, 0.0, z}, 1.0), 0.0, 1.0);
+    builder.pin(held);
+  }
+  const SpringNetwork springs = builder.build();
+  for (const Index end : {1, 3}) {
+    StretchNewton newton(springs, {});
+    Points led = springs.positions;
+    led(1, end) += 0.1;
+    newton.solve(springs.positions, led, 1.0e-3);
+    EXPECT_EQ(newton.turn(), 0.1) << end;
+  }
+}
+
+// Where nothing pulls, not even gravity, what begins too long is brought to its limit all the same.
+TEST(StretchNewton, HoldsTheLimitWithoutGravity) {
+  const SpringNetwork network = make_test_cloth(8, 0.0, 0.0, false);
+  const Points before = 1.2 * network.positions;
+  Points x = before;
+  const StretchLimitSettings settings{.max_stretch = 0.0};
+  ASSERT_GT(StretchNewton(network, settings).solve(before, x, 0.0), 0);
+  EXPECT_LT(StretchLimit(network, settings).excess(x), 0.02);
+}
+
+TEST(StretchNewton, LeavesWhatIsNotTooLongWhereForcesLedIt) {
+  const SpringNetwork network = make_test_rope(20, 0.0);
+  Points x = 0.5 * network.positions;
+  const Points led = x;
+  EXPECT_FALSE(StretchNewton(network, {}).solve(network.positions, x, 1.0e-3));
+  EXPECT_EQ(x, led);
+}
+
+// Internal forces cancel: sum m x is that of where forces led, whatever each iteration does, up to the rounding of each
+// particle's position in each of at most 20 iterations.
+TEST(StretchNewton, KeepsTheMomentumOfWhatFlies) {
+  for (const SpringNetwork& network :
+       {make_test_cloth(8, 0.0, 0.0, false), make_random_network(60, 59), make_random_network(60, 200)}) {
+    std::mt19937 random(8);
+    Points led = network.positions;
+    led.reshaped() += random_displacement(random, static_cast<Index>(led.size()), 0.2);
+    Points x = led;
+    StretchNewton(network, {.max_stretch = 0.0}).solve(network.positions, x, 1.0e-3);
+    EXPECT_GT((x - led).norm(), 1.0e-3);
+    // The equations' rounding is that of their stiffest link, k / m = 1 / (give d) > 1e4 times coarser than the positions'.
+    EXPECT_LT(((x - led) * network.masses).norm(), 1.0e-9 * network.masses.sum());
+  }
+}
+
+TEST(StretchNewton, HoldsTheLimitOfAHangingRope) {
+  for (const Index particles : {2, 10, 100, 1000}) {
+    SpringNetwork network = make_test_rope(particles, 0.0);
+    network.positions.row(1) = -network.positions.row(0);
+    network.positions.row(0).setZero();
+    const StretchLimitSettings settings{.max_stretch = 0.001, .solver = StretchLimitSettings::Solver::newton};
+    const StretchLimit limit(network, settings);
+    const double dt = 1.0 / 60.0;
+    Points x = led_by_gravity(network, network.positions, Points::Zero(3, particles), dt);
+    EXPECT_GT(limit.excess(x), 0.0);
+    limit.solve(network.positions, x, kGravity * dt * dt);
+    EXPECT_LE(limit.excess(x), settings.tolerance) << particles;
+  }
+}
+
+TEST(StretchLimit, AutomaticSolvesForChainsAndLeavesClothsToPassesAtFirst) {
+  using Solver = StretchLimitSettings::Solver;
+  const auto chosen = [](const SpringNetwork& network, Solver solver, const LimitUse& use = {}) {
+    return StretchLimit(network, {.solver = solver}, use).chosen_solver();
+  };
+  const SpringNetwork rope = make_test_rope(10, 0.0);
+  const SpringNetwork cloth = make_test_cloth(5, 0.0, 0.0);
+  EXPECT_EQ(chosen(rope, Solver::automatic), "newton");
+  EXPECT_EQ(chosen(cloth, Solver::automatic), "gauss_seidel, then newton for what keeps missing the limit");
+  EXPECT_EQ(chosen(cloth, Solver::automatic, {.may_meet_anything = false}), "newton");
+  const SpringNetwork springy = make_test_cloth(5, 100.0, 0.0);
+  EXPECT_EQ(chosen(springy, Solver::automatic, {.may_meet_anything = false}), chosen(cloth, Solver::automatic));
+  EXPECT_EQ(chosen(springy, Solver::automatic, {.may_meet_anything = false, .takes_small_steps = false}), "newton");
+  EXPECT_EQ(chosen(cloth, Solver::newton), "newton");
+  EXPECT_EQ(chosen(rope, Solver::gauss_seidel), "gauss_seidel");
+  const StretchLimitSettings settings{.solver = Solver::automatic};
+  EXPECT_EQ(StretchLimit(rope, settings).suggested_step(kGravity), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(StretchLimit(cloth, settings).suggested_step(kGravity), StretchLimit(cloth, {}).suggested_step(kGravity));
+  Points x = 1.5 * cloth.positions;
+  EXPECT_FALSE(StretchLimit(cloth, settings).solve(cloth.positions, x, 1.0e-3));
+}
+
+TEST(StretchLimit, FollowsTheTurnOfWhatAGlobalSolveHoldsAlone) {
+  using Solver = StretchLimitSettings::Solver;
+  const SpringNetwork cloth = make_test_cloth(4, 0.0, 0.0);
+  const SpringNetwork rope = make_test_rope(4, 0.0);
+  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::newton}).follows_turn());
+  EXPECT_TRUE(StretchLimit(rope, {.solver = Solver::automatic}).follows_turn());
+  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).follows_turn());
+  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_turn());
+  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_turn({{.solved_since = 0}})) << "handed over";
+  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).may_follow_turn());
+  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::newton}).may_follow_turn()) << "it does";
+  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).may_follow_turn());
+  EXPECT_FALSE(StretchLimit(cloth, {.max_compression = 0.5, .solver = Solver::newton}).follows_turn()) << "left to passes";
+  EXPECT_FALSE(StretchLimit(rope, {.kinds = {SpringKind::shear}, .solver = Solver::newton}).follows_turn()) << "holds nothing";
+}
+
+// A rope of two pins farther apart than it is long: what cannot be is shared evenly, and told.
+TEST(StretchNewton, StretchesAnOverconstrainedRopeEvenly) {
+  SpringNetwork network = make_test_rope(101, 0.0);
+  network.inverse_masses[100] = 0.0;
+  const StretchLimitSettings settings{.max_stretch = 0.0, .solver = StretchLimitSettings::Solver::newton};
+  const StretchLimit limit(network, settings);
+  Points x = network.positions;
+  x(0, 100) = 1.5;
+  limit.solve(network.positions, x, 1.0e-3);
+  // Particles resist being moved as if by gravity, of which links are to carry all by a quarter of the tolerance.
+  EXPECT_NEAR(limit.excess(x), 0.5, 0.01);
+  EXPECT_TRUE(x.allFinite());
+}
+
+TEST(StretchNewton, TakesSpringsWithoutLength) {
+  SpringNetwork network = make_test_rope(3, 0.0);
+  Points x = network.positions;
+  x.col(2) = x.col(1);
+  x(1, 1) = x(1, 2) = -1.0;
+  StretchNewton(network, {}).solve(network.positions, x, 1.0e-3);
+  EXPECT_TRUE(x.allFinite());
+}
+
+TEST(StretchNewton, FollowsPinsThatMove) {
+  const SpringNetwork network = make_test_rope(50, 0.0);
+  const StretchLimitSettings settings{.solver = StretchLimitSettings::Solver::newton};
+  const StretchLimit limit(network, settings);
+  Points x = network.positions;
+  const Vector3 pin(-0.3, 0.2, 0.0);
+  x.col(0) = pin;
+  limit.solve(network.positions, x, 1.0e-3);
+  EXPECT_EQ(x.col(0), pin);
+  EXPECT_LE(limit.excess(x), settings.tolerance);
+}
+
+/// Three networks side by side, which swing for some steps.
+Points swing(double scale, int threads) {
+  const ThreadLimit at_most(threads);
+  SpringNetwork network = make_random_network(300, 450, true);
+  network.positions *= scale;
+  network.velocities *= scale;
+  for (double& rest_length : network.springs.rest_length) rest_length *= scale;
+  StretchNewton newton(network, {});
+  const double dt = 0.01;
+  Points before = network.positions;
+  Points velocities = network.velocities;
+  for (int step = 0; step < 3; ++step) {
+    Points x = before;
+    for (Index i = 0; i < network.particle_count(); ++i) {
+      if (!network.is_pinned(i)) x.col(i) += dt * velocities.col(i) - scale * kGravity * dt * dt * Vector3::UnitY();
+    }
+    newton.solve(before, x, scale * kGravity * dt * dt);
+    velocities = (x - before) / dt;
+    before = x;
+  }
+  return before;
+}
+
+TEST(StretchNewton, HasTheSameBitsForAnyNumberOfThreadsAndAnyScale) {
+  const Points expected = swing(1.0, 1);
+  EXPECT_EQ(swing(1.0, 2), expected);
+  EXPECT_EQ(Points(swing(128.0, 1) / 128.0), expected);
+  EXPECT_EQ(Points(swing(1.0 / 128.0, 1) * 128.0), expected);
+}
+
+// A cloth that falls from level about two of its corners: in each step its links are within the tolerance, for about one factor.
+TEST(StretchNewton, HoldsAClothThatSwings) {
+  const SpringNetwork network = make_test_cloth(20, 0.0, 0.0);
+  const StretchLimitSettings settings{.max_stretch = 0.0, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};
+  const StretchLimit limit(network, settings);
+  const double dt = 1.0 / 240.0;
+  Points x = network.positions;
+  x.row(2) = -network.positions.row(1);
+  x.row(1).setZero();
+  Points velocities = Points::Zero(3, x.cols());
+  int solves = 0;
+  double lowest = 0.0;
+  constexpr int kSteps = 180;
+  for (int step = 0; step < kSteps; ++step) {
+    const Points before = x;
+    x = led_by_gravity(network, before, velocities, dt);
+    solves += limit.solve(before, x, kGravity * dt * dt).value_or(0);
+    velocities = (x - before) / dt;
+    ASSERT_LE(limit.excess(x), settings.tolerance) << step;
+    lowest = std::min(lowest, x.row(1).minCoeff());
+  }
+  EXPECT_LT(lowest, -0.9);
+  EXPECT_LT(solves, 1.5 * kSteps);
+}
+
+// A stiff rod: period 2 pi sqrt(l / g) times 1 + a^2 / 16 for an amplitude a. The limit's pull is along the rod as it is at the end
+// of a step, by the angle w dt off its mean, so it takes the part 2 dt f / (m l) of the kinetic energy per second: w0^2 dt of the
+// energy, but for parts of the order of a^2.
+TEST(StretchNewton, PendulumKeepsItsPeriodAndItsEnergy) {
+  constexpr double kLength = 0.5;
+  constexpr double kAmplitude = 0.3;
+  constexpr double kStep = 1.0e-3;
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 1.0);
+  builder.add_particle(kLength * Vector3(std::sin(kAmplitude), -std::cos(kAmplitude), 0.0), 1.0);
+  builder.add_spring(0, 1, 0.0, kLength);
+  builder.pin(0);
+  const SpringNetwork network = builder.build();
+  StretchNewton newton(network, {.max_stretch = 0.0});
+  Forces forces;
+  forces.push_back(std::make_unique<Gravity>(network, Vector3(0.0, -kGravity, 0.0)));
+  const auto integrator = make_integrator(VerletSettings{}, network);
+  SimulationState state = initial_state(network);
+  integrator->start(state, forces, kStep);
+  std::vector<double> crossings;
+  while (crossings.size() < 9 && state.step < 10000) {
+    const Points before = state.x;
+    integrator->advance(state, forces, kStep);
+    const Points advanced = state.x;
+    newton.solve(before, state.x, kGravity * kStep * kStep);
+    integrator->recover_velocities(state, forces, before, advanced, kStep);
+    if ((before(0, 1) > 0.0) != (state.x(0, 1) > 0.0)) {
+      crossings.push_back((static_cast<double>(state.step) + before(0, 1) / (before(0, 1) - state.x(0, 1))) * kStep);
+    }
+    ++state.step;
+  }
+  ASSERT_EQ(crossings.size(), 9u);
+  const double period = (crossings.back() - crossings.front()) / 4.0;
+  const double expected = 2.0 * std::numbers::pi * std::sqrt(kLength / kGravity) * (1.0 + kAmplitude * kAmplitude / 16.0);
+  // The amplitude falls by 6 % while four periods are timed, and the part of the period that depends on it by twice that.
+  EXPECT_NEAR(period, expected, 0.2 * kAmplitude * kAmplitude / 16.0 * expected);
+  const double energy = 0.5 * state.v.col(1).squaredNorm() + kGravity * (state.x(1, 1) + kLength);
+  const double at_start = kGravity * kLength * (1.0 - std::cos(kAmplitude));
+  const double lost = kGravity / kLength * kStep * crossings.back();
+  EXPECT_NEAR(std::log(at_start / energy), lost, (kAmplitude * kAmplitude + 0.03) * lost);
+}
+
+}  // namespace
+}  // namespace sprung

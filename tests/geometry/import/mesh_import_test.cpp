@@ -1,0 +1,312 @@
+#include "geometry/import/mesh_import.h"
+
+#include "base/as_nobody.h"
+#include "base/error.h"
+#include "base/format.h"
+#include "geometry/fixtures.h"
+#include "geometry/mesh/polygon_mesh.h"
+#include "geometry/mesh/topology.h"
+#include "mesh_writers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <set>
+
+#ifdef __SANITIZE_ADDRESS__
+// assimp leaks what it had read when it gives a damaged file up.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
+#endif
+
+namespace sprung {
+namespace {
+
+using testing::HasSubstr;
+
+// Closed, without any symmetry, and with coordinates that no float holds.
+TriangleMesh reference_shape() {
+  TriangleMesh mesh = test::make_cube();
+  std::mt19937 random(11);
+  for (double& coordinate : mesh.vertices.reshaped()) coordinate += static_cast<double>(random() % 1000) / 3000.0;
+  return mesh;
+}
+
+// Text and binary are rounded to the nearest float, text perhaps to the one beside it.
+double float_tolerance(const TriangleMesh& mesh) {
+  return 2.0 * std::numeric_limits<float>::epsilon() * mesh.vertices.cwiseAbs().maxCoeff();
+}
+
+// The vertex of `mesh` at `p`, or none.
+Index vertex_at(const TriangleMesh& mesh, const Vector3& p, double tolerance) {
+  for (Index i = 0; i < mesh.vertices.cols(); ++i) {
+    if ((mesh.vertices.col(i) - p).cwiseAbs().maxCoeff() <= tolerance) return i;
+  }
+  return kNone;
+}
+
+std::set<std::array<Index, 3>> face_set(const Triangles& triangles, const std::vector<Index>& number) {
+  std::set<std::array<Index, 3>> faces;
+  for (const auto& triangle : triangles.colwise()) {
+    std::array<Index, 3> corners{number[triangle[0]], number[triangle[1]], number[triangle[2]]};
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    faces.insert(corners);
+  }
+  return faces;
+}
+
+void expect_same_surface(const TriangleMesh& mesh, const TriangleMesh& expected) {
+  ASSERT_EQ(mesh.vertices.cols(), expected.vertices.cols());
+  std::vector<Index> number;
+  std::vector<Index> same;
+  for (Index i = 0; i < mesh.vertices.cols(); ++i) {
+    number.push_back(vertex_at(expected, mesh.vertices.col(i), float_tolerance(expected)));
+    same.push_back(i);
+    ASSERT_NE(number.back(), kNone) << "vertex " << i << " is nowhere in the reference";
+  }
+  EXPECT_EQ(face_set(mesh.triangles, number), face_set(expected.triangles, same));
+}
+
+std::string ascii_stl(const TriangleMesh& mesh) {
+  std::string text = "solid shape\n";
+  for (const auto& triangle : mesh.triangles.colwise()) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const Index vertex : triangle) {
+      text += "vertex";
+      for (const double x : mesh.vertices.col(vertex)) append_number(text += ' ', x);
+      text += '\n';
+    }
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid\n";
+}
+
+std::string ascii_ply(const TriangleMesh& mesh) {
+  const std::string off = meshes::off_text(mesh);
+  const std::size_t counts_end = off.find('\n', off.find(" 0\n"));
+  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.vertices.cols()) +
+         "\nproperty double x\nproperty double y\nproperty double z\nelement face " + std::to_string(mesh.triangles.cols()) +
+         "\nproperty list uchar int vertex_indices\nend_header" + off.substr(counts_end);
+}
+
+std::string big_endian_ply(const TriangleMesh& mesh) {
+  std::string bytes = meshes::ply_bytes(mesh);
+  bytes.replace(bytes.find("little"), 6, "big");
+  std::size_t at = bytes.find("end_header\n") + 11;
+  const auto swap_values = [&](Index count) {
+    for (Index i = 0; i < count; ++i, at += 4) std::reverse(bytes.begin() + at, bytes.begin() + at + 4);
+  };
+  swap_values(static_cast<Index>(mesh.vertices.size()));
+  for (Index t = 0; t < mesh.triangles.cols(); ++t) {
+    ++at;
+    swap_values(3);
+  }
+  return bytes;
+}
+
+std::string obj(const TriangleMesh& mesh) { return obj_text(mesh.vertices, to_polygons(mesh.triangles), Edges(2, 0)); }
+
+const meshes::Place kHere{"[1, 1, 1]", "[0, 0, 0, 1]", "[0, 0, 0]"};
+
+std::string gltf(const TriangleMesh& mesh) { return meshes::gltf_text(mesh, kHere, kHere); }
+
+struct Format {
+  const char* name;
+  std::string (*write)(const TriangleMesh&);
+};
+
+class ImportFormat : public test::FileTest, public testing::WithParamInterface<Format> {};
+
+TEST_P(ImportFormat, GivesTheSameWeldedMesh) {
+  const auto [mesh, report] = import_mesh(write(GetParam().name, GetParam().write(reference_shape())));
+  expect_same_surface(mesh, reference_shape());
+  EXPECT_TRUE(report.closed);
+  EXPECT_EQ(report.faces_read, 12);
+  EXPECT_EQ(report.flipped_faces + report.degenerate_faces + report.duplicate_faces + report.unused_vertices, 0);
+}
+
+TEST_P(ImportFormat, RefusesAPositionThatIsNotFinite) {
+  TriangleMesh mesh = reference_shape();
+  mesh.vertices(1, 3) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)import_mesh(write(GetParam().name, GetParam().write(mesh))), InputError);
+}
+
+// Every prefix is refused with a reason; only a last digit or line end may be missing unnoticed.
+TEST_P(ImportFormat, RefusesEveryTruncation) {
+  const std::string whole = GetParam().write(reference_shape());
+  for (std::size_t length = 0; length + 3 < whole.size(); length += 1 + whole.size() / 97) {
+    try {
+      const MeshReport report = import_mesh(write(GetParam().name, whole.substr(0, length))).report;
+      // An OBJ file declares no counts: cut between two lines it is a whole file with fewer faces.
+      EXPECT_STREQ(GetParam().name, "shape.obj") << "accepted " << length << " of " << whole.size() << " bytes";
+      EXPECT_FALSE(report.closed);
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(GetParam().name));
+    }
+  }
+}
+
+// Neither a crash nor a hang nor an index that leads nowhere.
+TEST_P(ImportFormat, SurvivesDamage) {
+  const std::string whole = GetParam().write(reference_shape());
+  std::mt19937 random(5);
+  for (int trial = 0; trial < 150; ++trial) {
+    std::string damaged = whole;
+    for (int hit = 0; hit < 3; ++hit) damaged[random() % damaged.size()] = static_cast<char>(random());
+    try {
+      const TriangleMesh mesh = import_mesh(write(GetParam().name, damaged)).mesh;
+      EXPECT_LT(mesh.triangles.maxCoeff(), mesh.vertices.cols());
+      EXPECT_TRUE(mesh.vertices.allFinite());
+    } catch (const InputError& error) {
+      EXPECT_FALSE(error.problems().empty());
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ImportFormat,
+                         testing::Values(Format{"shape.obj", obj}, Format{"shape.stl", meshes::stl_bytes},
+                                         Format{"shape_ascii.stl", ascii_stl}, Format{"shape.ply", meshes::ply_bytes},
+                                         Format{"shape_ascii.ply", ascii_ply}, Format{"shape_big.ply", big_endian_ply},
+                                         Format{"shape.off", meshes::off_text}, Format{"shape.gltf", gltf}),
+                         [](const auto& parameter) {
+                           std::string name = parameter.param.name;
+                           std::replace(name.begin(), name.end(), '.', '_');
+                           return name;
+                         });
+
+class ImportMesh : public test::FileTest {
+ protected:
+  [[nodiscard]] std::string error_of(const std::filesystem::path& file) const {
+    try {
+      (void)import_mesh(file);
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(file.filename().string()));
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  [[nodiscard]] std::string error_of(const std::string& name, const std::string& bytes) const {
+    return error_of(write(name, bytes));
+  }
+};
+
+TEST_F(ImportMesh, WeldsAcrossAnUvSeam) {
+  const std::string quad =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.5 0.5\nf 1/1 2/2 3/3\nf 1/5 3/4 4/4\n";
+  EXPECT_EQ(import_mesh(write("seam.obj", quad)).mesh.vertices.cols(), 4);
+}
+
+TEST_F(ImportMesh, WeldsAcrossMaterials) {
+  std::string text = obj(test::make_cube());
+  text.insert(text.find("f "), "usemtl red\n");
+  std::size_t middle = text.find("f ");
+  for (int face = 0; face < 6; ++face) middle = text.find("f ", middle + 1);
+  text.insert(middle, "usemtl blue\n");
+  const auto [mesh, report] = import_mesh(write("two.obj", text));
+  EXPECT_EQ(mesh.vertices.cols(), 8);
+  EXPECT_TRUE(report.closed);
+}
+
+TEST_F(ImportMesh, LeavesLinesOut) {
+  const auto [mesh, report] = import_mesh(write("line.obj", obj(test::make_cube()) + "l 1 8\nl 2 3 4\n"));
+  EXPECT_EQ(report.faces_read, 12);
+  EXPECT_TRUE(report.closed);
+}
+
+TEST_F(ImportMesh, TakesIndentedLinesAndCoordinatesWithoutADigitBeforeThePoint) {
+  const auto file = write("points.obj", "v 0 0 0\nv .5 0 0\n\tv\t0 +.5 0\nv -.5 .25 .0\nf 1 2 3\n  f 1 3\t4\n");
+  const TriangleMesh mesh = import_mesh(file).mesh;
+  EXPECT_EQ(mesh.vertices, (Points(3, 4) << 0, 0.5, 0, -0.5, 0, 0, 0.5, 0.25, 0, 0, 0, 0).finished());
+  EXPECT_EQ(mesh.triangles.cols(), 2);
+}
+
+TEST_F(ImportMesh, TakesAByteOrderMark) {
+  const auto file = write("mark.obj", "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(import_mesh(file).mesh.vertices.cols(), 3);
+  EXPECT_EQ(read_obj(file).vertices.cols(), 3);
+}
+
+TEST_F(ImportMesh, TriangulatesPolygonsThatAreNotConvex) {
+  const std::string ell = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 2 3 4 5 6 1\n";
+  const TriangleMesh mesh = import_mesh(write("ell.obj", ell)).mesh;
+  double area = 0.0;
+  for (Index t = 0; t < mesh.triangles.cols(); ++t) area += 0.5 * area_normal(mesh, t).norm();
+  EXPECT_DOUBLE_EQ(area, 3.0);
+}
+
+TEST_F(ImportMesh, AppliesNodeTransforms) {
+  const meshes::Place outer{"[1, 1, 1]", "[0, 0, 0, 1]", "[10, 0, 0]"};
+  const meshes::Place inner{"[2, 3, 4]", "[0, 0.7071067811865476, 0, 0.7071067811865476]", "[0, 5, 0]"};
+  const auto [mesh, report] = import_mesh(write("nodes.gltf", meshes::gltf_text(test::make_cube(), outer, inner)));
+  // A quarter turn about y takes x to -z and z to x. The quaternion is a float one: 1 unit of 2^-24 in each of three products.
+  const double tolerance = 4.0 * 3.0 * std::numeric_limits<float>::epsilon();
+  EXPECT_LE((report.bounds.min() - Vector3(10, 5, -2)).cwiseAbs().maxCoeff(), tolerance);
+  EXPECT_LE((report.bounds.max() - Vector3(14, 8, 0)).cwiseAbs().maxCoeff(), tolerance);
+  EXPECT_NEAR(signed_volume(mesh), 24.0, 24.0 * tolerance);
+}
+
+TEST_F(ImportMesh, KeepsAnOpenSheetsSideInAMirror) {
+  const TriangleMesh sheet{test::make_points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), test::make_triangles({{0, 1, 2}})};
+  const meshes::Place mirror{"[-1, 1, 1]", "[0, 0, 0, 1]", "[0, 0, 0]"};
+  const TriangleMesh mesh = import_mesh(write("mirror.gltf", meshes::gltf_text(sheet, kHere, mirror))).mesh;
+  EXPECT_GT(area_normal(mesh, 0).z(), 0.0);
+}
+
+TEST_F(ImportMesh, TakesAnyCaseOfTheExtension) {
+  EXPECT_TRUE(import_mesh(write("CUBE.OBJ", obj(test::make_cube()))).report.closed);
+}
+
+TEST_F(ImportMesh, RefusesWhatIsNoFile) {
+  EXPECT_THAT(error_of(folder() / "missing.obj"), HasSubstr("does not exist"));
+  std::filesystem::create_directory(folder() / "folder.obj");
+  EXPECT_THAT(error_of(folder() / "folder.obj"), HasSubstr("is a folder"));
+  EXPECT_THAT(error_of("empty.stl", ""), HasSubstr("is empty"));
+}
+
+TEST_F(ImportMesh, RefusesWhatItMayNotRead) {
+  const std::filesystem::path file = write("secret.obj", obj(test::make_cube()));
+  std::filesystem::permissions(file, std::filesystem::perms::none);
+  const test::AsNobody nobody;
+  EXPECT_THAT(error_of(file), HasSubstr("cannot be read: Permission denied"));
+}
+
+TEST_F(ImportMesh, ListsFormatsForAnUnknownOne) {
+  EXPECT_THAT(error_of("cube.step9", "x"), testing::AllOf(HasSubstr(".step9"), HasSubstr(".obj, .stl, .ply")));
+  EXPECT_THAT(error_of("cube", "x"), HasSubstr("is no known mesh format"));
+}
+
+TEST_F(ImportMesh, RefusesWhatHasNoSurface) {
+  EXPECT_THAT(error_of("points.obj", "v 0 0 0\nv 1 0 0\n"), HasSubstr("has no faces"));
+  EXPECT_THAT(error_of("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), HasSubstr("has no face with an area"));
+}
+
+TEST_F(ImportMesh, RefusesIndicesOutOfRange) {
+  const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_THAT(error_of("a.off", off + "3 0 1 3\n"), HasSubstr("line 6"));
+  EXPECT_THAT(error_of("a.off", off + "3 0 -1 2\n"), HasSubstr("line 6"));
+  EXPECT_THAT(error_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"), HasSubstr("out of range"));
+  EXPECT_THAT(error_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4294967299\n"), HasSubstr("line 4"));
+  TriangleMesh cube = test::make_cube();
+  cube.triangles(2, 5) = 8;
+  EXPECT_THAT(error_of("a.ply", meshes::ply_bytes(cube)), HasSubstr("face 6: must refer to one of the 8 vertices"));
+  EXPECT_THAT(error_of("a.gltf", gltf(cube)), HasSubstr("out-of-range"));
+}
+
+TEST_F(ImportMesh, RefusesHeadersThatPromiseTooMuch) {
+  EXPECT_THAT(error_of("a.off", "OFF\n4000000000 1 0\n0 0 0\n"), HasSubstr("is truncated"));
+  std::string ply = ascii_ply(test::make_cube());
+  EXPECT_THAT(error_of("a.ply", ply.replace(ply.find("vertex 8"), 8, "vertex 4000000000")), HasSubstr("4000000000"));
+  EXPECT_THAT(error_of("b.ply", "ply\nformat ascii 1.0\nelement ver"), HasSubstr("header"));
+  std::string stl = meshes::stl_bytes(test::make_cube());
+  stl[83] = '\x7f';
+  EXPECT_THAT(error_of("a.stl", stl), HasSubstr("is damaged"));
+}
+
+}  // namespace
+}  // namespace sprung

@@ -1,0 +1,120 @@
+#include "geometry/motion/motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace sprung {
+namespace {
+
+// A handful of products and one sine of numbers near 1: a few units in the last place.
+constexpr double kRounding = 1e-15;
+
+RigidTransform placed_at(const Vector3& position, const Vector3& degrees = Vector3::Zero()) {
+  RigidTransform placed = RigidTransform::Identity();
+  placed.linear() = rotation_from_degrees(degrees);
+  placed.translation() = position;
+  return placed;
+}
+
+bool same(const RigidTransform& a, const RigidTransform& b) { return a.matrix() == b.matrix(); }
+
+TEST(RotationFromDegrees, TurnsAboutFixedAxesXThenYThenZ) {
+  const Vector3 degrees(20.0, -70.0, 200.0);
+  const Vector3 radians = degrees * std::numbers::pi / 180.0;
+  const Matrix3 expected = (Eigen::AngleAxisd(radians.z(), Vector3::UnitZ()) * Eigen::AngleAxisd(radians.y(), Vector3::UnitY()) *
+                            Eigen::AngleAxisd(radians.x(), Vector3::UnitX()))
+                               .toRotationMatrix();
+  EXPECT_LE((rotation_from_degrees(degrees) - expected).cwiseAbs().maxCoeff(), kRounding);
+}
+
+TEST(RotationFromDegrees, IsExactForQuarterTurns) {
+  EXPECT_EQ(rotation_from_degrees({90, 0, 0}) * Vector3(1, 2, 3), Vector3(1, -3, 2));
+  EXPECT_EQ(rotation_from_degrees({0, 90, 0}) * Vector3(1, 2, 3), Vector3(3, 2, -1));
+  EXPECT_EQ(rotation_from_degrees({0, 0, -90}) * Vector3(1, 2, 3), Vector3(2, -1, 3));
+  EXPECT_EQ(rotation_from_degrees({0, 180, 0}) * Vector3(1, 2, 3), Vector3(-1, 2, -3));
+  EXPECT_EQ(rotation_from_degrees({360, 720, -360}), Matrix3::Identity());
+}
+
+TEST(Motion, WithoutKeyframesAndSpinRestsAtThePlace) {
+  const RigidTransform placed = placed_at({1, 2, 3}, {10, 20, 30});
+  EXPECT_FALSE(Motion{}.moves());
+  EXPECT_TRUE(same(Motion{}.pose(placed, 7.5), placed));
+}
+
+TEST(Motion, HoldsOutsideItsKeyframes) {
+  const Motion motion{.keyframes = {{1.0, {1, 0, 0}, {0, 0, 0}}, {2.0, {5, 0, 0}, {0, 90, 0}}}};
+  const RigidTransform placed = placed_at({0, 1, 0});
+  EXPECT_TRUE(same(motion.pose(placed, -3.0), placed_at({1, 1, 0})));
+  EXPECT_TRUE(same(motion.pose(placed, 1.0), placed_at({1, 1, 0})));
+  EXPECT_TRUE(same(motion.pose(placed, 2.0), placed_at({5, 1, 0}, {0, 90, 0})));
+  EXPECT_TRUE(same(motion.pose(placed, 9.0), placed_at({5, 1, 0}, {0, 90, 0})));
+}
+
+TEST(Motion, InterpolatesComponentsLinearly) {
+  const Motion motion{.keyframes = {{0.0, {0, 0, 0}, {0, 0, 0}}, {2.0, {4, 8, 0}, {0, 0, 180}}}};
+  EXPECT_TRUE(same(motion.pose(placed_at({0, 0, 0}), 0.5), placed_at({1, 2, 0}, {0, 0, 45})));
+}
+
+TEST(Motion, SmoothStartsAndEndsAtRest) {
+  const Motion motion{.keyframes = {{0.0, {0, 0, 0}, {0, 0, 0}}, {1.0, {1, 0, 0}, {0, 0, 0}}},
+                      .interpolation = Interpolation::smooth};
+  const auto x = [&](double time) { return motion.pose(placed_at({0, 0, 0}), time).translation().x(); };
+  EXPECT_EQ(x(0.0), 0.0);
+  EXPECT_EQ(x(0.25), 0.15625);  // 3 / 16 - 2 / 64
+  EXPECT_EQ(x(0.5), 0.5);
+  EXPECT_EQ(x(1.0), 1.0);
+  // 3 s^2 - 2 s^3 is below 3 s^2 near both ends.
+  EXPECT_LT(x(1e-3), 3e-6);
+  EXPECT_LT(1.0 - x(1.0 - 1e-3), 3e-6);
+}
+
+TEST(Motion, From0To360IsAFullTurn) {
+  const Motion motion{.keyframes = {{0.0, {0, 0, 0}, {0, 0, 0}}, {4.0, {0, 0, 0}, {0, 360, 0}}}};
+  EXPECT_TRUE(motion.moves());
+  for (const double time : {1.0, 2.0, 3.0}) {
+    EXPECT_TRUE(same(motion.pose(placed_at({0, 0, 0}), time), placed_at({0, 0, 0}, {0, 90 * time, 0}))) << time;
+  }
+  EXPECT_TRUE(same(motion.pose(placed_at({0, 0, 0}), 4.0), placed_at({0, 0, 0})));
+}
+
+TEST(Motion, TurnsAboutThePlacedOriginAfterThePlacedRotation) {
+  const Motion motion{.keyframes = {{0.0, {0, 0, 0}, {0, 0, 90}}}};
+  const RigidTransform pose = motion.pose(placed_at({10, 0, 0}, {90, 0, 0}), 0.0);
+  // The placed rotation takes (0, 1, 0) to (0, 0, 1), which a turn about z leaves alone.
+  EXPECT_EQ(pose * Vector3(0, 1, 0), Vector3(10, 0, 1));
+  EXPECT_EQ(pose * Vector3(1, 0, 0), Vector3(10, 1, 0));
+  EXPECT_FALSE(motion.moves());
+}
+
+TEST(Motion, SpinTurnsForEverAtAConstantRate) {
+  const Motion motion{.spin = {0, 90, 0}};
+  EXPECT_TRUE(motion.moves());
+  EXPECT_TRUE(same(motion.pose(placed_at({1, 0, 0}), 1.0), placed_at({1, 0, 0}, {0, 90, 0})));
+  EXPECT_TRUE(same(motion.pose(placed_at({1, 0, 0}), 4001.0), placed_at({1, 0, 0}, {0, 90, 0})));
+}
+
+TEST(Motion, SpinIsAnAngularVelocityVector) {
+  const Motion motion{.spin = {30, -40, 120}};  // length 130
+  const Eigen::AngleAxisd expected(0.7 * 130.0 * std::numbers::pi / 180.0, Vector3(30, -40, 120) / 130.0);
+  EXPECT_LE((motion.pose(placed_at({0, 0, 0}), 0.7).linear() - expected.toRotationMatrix()).cwiseAbs().maxCoeff(), kRounding);
+}
+
+TEST(Motion, TurnsThereAndBackAreAddedUp) {
+  const Motion motion{.keyframes = {{.time = 0.0}, {.time = 1.0, .rotation = {0.0, 80.0, 0.0}}, {.time = 2.0}},
+                      .spin = {0.0, 30.0, 40.0}};
+  EXPECT_EQ(motion.turn(0.5, 0.75), 0.25 * (80.0 + 50.0));
+  EXPECT_EQ(motion.turn(0.5, 1.25), 0.75 * (80.0 + 50.0));
+  EXPECT_EQ(motion.turn(1.0, 2.0), 80.0 + 50.0);
+  EXPECT_EQ(motion.turn(3.0, 5.0), 2.0 * 50.0);
+  EXPECT_EQ(Motion{}.turn(0.0, 1.0), 0.0);
+}
+
+TEST(Motion, EqualKeyframesDoNotMove) {
+  const Motion motion{.keyframes = {{0.0, {1, 2, 3}, {4, 5, 6}}, {1.0, {1, 2, 3}, {4, 5, 6}}}};
+  EXPECT_FALSE(motion.moves());
+}
+
+}  // namespace
+}  // namespace sprung

@@ -1,0 +1,406 @@
+#include "scene/building/scene_builder.h"
+
+#include "geometry/mesh/polygon_mesh.h"
+#include "scene_text.h"
+
+#include <gmock/gmock.h>
+
+namespace sprung {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kTetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+BuiltScene build(const SceneFolder& folder, const std::vector<std::string>& changes,
+                 const std::vector<std::filesystem::path>& mesh_paths = {}) {
+  return build_scene(folder.read(kPlainScene, changes), mesh_paths);
+}
+
+std::vector<Problem> build_problems(const std::vector<std::string>& changes) {
+  const SceneFolder folder;
+  return problems_of([&] { (void)build(folder, changes); });
+}
+
+std::vector<Index> pinned(const SpringNetwork& network) {
+  std::vector<Index> particles;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (network.is_pinned(i)) particles.push_back(i);
+  }
+  return particles;
+}
+
+auto problem(const std::string& key, const std::string& rule) {
+  return AllOf(Field(&Problem::file, EndsWith("scene.json")), Field(&Problem::key, key), Field(&Problem::rule, HasSubstr(rule)));
+}
+
+TEST(SceneBuilder, PlainSceneIsBuilt) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {"duration=2", "frame_rate=24"});
+  EXPECT_EQ(built.frames, 49);
+  EXPECT_EQ(built.network.particle_count(), 9);
+  EXPECT_EQ(built.network.bodies[0].name, "banner");
+  EXPECT_NEAR(built.network.masses.sum(), 0.2, 1e-15);  // nine roundings of 0.2 / 9
+  EXPECT_THAT(pinned(built.network), ElementsAre(0));
+  ASSERT_EQ(built.obstacles.size(), 1U);
+  EXPECT_EQ(built.obstacles[0].name, "floor");
+  EXPECT_EQ(std::get<HalfSpaceGeometry>(built.obstacles[0].geometry).offset, -5.0);
+  EXPECT_THAT(built.warnings, IsEmpty());
+}
+
+// All but the last pin, which may be what it is because of where the body was to be.
+TEST(SceneBuilder, WhatIsWrongBesideTheTextIsToldWithIt) {
+  const SceneFolder folder;
+  folder.write("broken.obj", "v 0 0\n");
+  const std::string text = R"({"duration": 1, "step": "atuo", "bodies": {
+      "heavy": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [3, 3]}, "mass": 1, "density": 1, "pins": [{"indices": [9]}]},
+      "torn": {"shape": {"type": "mesh", "file": "broken.obj"}, "mass": 1, "springs": {"structural": {"stifness": 1}}},
+      "narrow": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [3]}, "mass": 1, "pins": [{"indices": [9]}]},
+      "astray": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [3, 3]}, "mass": 1, "place": {"position": "up"},
+                 "pins": [{"box": [[7, 7, 7], [8, 8, 8]]}]}},
+      "obstacles": {"floor": {"shape": {"type": "mesh", "file": "flor.obj"}, "friction": -1},
+                    "ball": {"shape": {"type": "mesh", "fiel": "ball.obj"}}}})";
+  TextProblems known;
+  const Scene scene = read_scene(folder.write("scene.json", text), {}, known);
+  const std::size_t of_text = known.all.size();
+  std::vector<Problem> all = problems_of([&] { (void)build_scene(scene, {}, known); });
+  EXPECT_TRUE(std::equal(known.all.begin(), known.all.end(), all.begin()));
+  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(of_text));
+  EXPECT_THAT(all, ElementsAre(problem("bodies.heavy.pins[0].indices[0]", "the body has 9 particles"),
+                               AllOf(Field(&Problem::file, EndsWith("broken.obj")), Field(&Problem::key, "line 1")),
+                               problem("obstacles.floor.shape.file", "no such file")));
+}
+
+TEST(SceneBuilder, BuiltSceneRuns) {
+  const SceneFolder folder;
+  BuiltScene built = build(folder, {});
+  Simulator simulator(std::move(built.network), built.settings, std::move(built.obstacles));
+  for (int step = 0; step < built.steps_per_frame; ++step) simulator.step();
+  // One frame of 1/30 s, up to the rounding of step * dt.
+  EXPECT_NEAR(simulator.time(), 1.0 / 30.0, 1e-15);
+}
+
+TEST(SceneBuilder, WhatABodyCollidesWithArrives) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {"bodies.banner.self_contact=true", "bodies.banner.body_contact=false"});
+  EXPECT_TRUE(built.network.bodies[0].contact.self);
+  EXPECT_FALSE(built.network.bodies[0].contact.others);
+}
+
+TEST(SceneBuilder, MassIsOfTheBodyOfAParticleOrOfTheMeasure) {
+  const SceneFolder folder;
+  const auto total = [&](const std::string& mass) {
+    return build(folder, {"bodies.banner.mass=null", mass, "bodies.banner.shape.size=[2,3]"}).network.masses.sum();
+  };
+  EXPECT_NEAR(total("bodies.banner.mass=5"), 5.0, 1e-14);
+  EXPECT_NEAR(total("bodies.banner.particle_mass=5"), 45.0, 1e-13);
+  EXPECT_NEAR(total("bodies.banner.density=5"), 30.0, 1e-13);
+}
+
+TEST(SceneBuilder, ScaleIsAppliedBeforeSpringsAndDensity) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {"bodies.banner.place.scale=4", "bodies.banner.mass=null", "bodies.banner.density=1"});
+  EXPECT_NEAR(built.network.masses.sum(), 16.0, 1e-13);
+  for (const double rest : built.network.springs.rest_length) EXPECT_EQ(rest, 2.0);  // 4 m in two springs: exact
+  EXPECT_EQ(built.network.positions.col(0), Vector3(-2, -2, 0));
+}
+
+TEST(SceneBuilder, PlaceRotatesThenMovesAndVelocityIsAdded) {
+  const SceneFolder folder;
+  const BuiltScene built = build(
+      folder, {"bodies.banner.place.rotation=[90,0,0]", "bodies.banner.place.position=[1,2,3]", "bodies.banner.velocity=[0,0,7]"});
+  // (-0.5, -0.5, 0) turned by 90 degrees about x is (-0.5, 0, -0.5); multiples of 90 degrees are exact.
+  EXPECT_EQ(built.network.positions.col(0), Vector3(0.5, 2.0, 2.5));
+  EXPECT_EQ(built.network.velocities.col(8), Vector3(0, 0, 7));
+}
+
+TEST(SceneBuilder, PinsFindTheirParticles) {
+  const SceneFolder folder;
+  const auto pins = [&](const std::string& text) {
+    return pinned(build(folder, {"bodies.banner.place.position=[0,2,0]", "bodies.banner.pins=" + text}).network);
+  };
+  EXPECT_THAT(pins(R"([{"at": "corner", "which": ["max_max", "min_max"]}])"), ElementsAre(6, 8));
+  EXPECT_THAT(pins(R"([{"indices": [4, 1]}])"), ElementsAre(1, 4));
+  EXPECT_THAT(pins(R"([{"nearest": [10, 2.1, 0]}])"), ElementsAre(5));
+  EXPECT_THAT(pins(R"([{"nearest": [0.25, 2, 0]}])"), ElementsAre(4)) << "of two equally near the first";
+  EXPECT_THAT(pins(R"([{"box": [[-1, 2.5, 0], [1, 2.5, 0]]}])"), ElementsAre(6, 7, 8)) << "a box may be flat";
+  EXPECT_THAT(pins(R"([{"box": [[-1, 2, -1], [1, 3, 1]]}, {"indices": [3, 0]}])"), ElementsAre(0, 3, 4, 5, 6, 7, 8));
+  EXPECT_THAT(pins("[]"), IsEmpty());
+}
+
+TEST(SceneBuilder, FlatBoxHoldsARowWhateverTheRoundingOfItsPlace) {
+  const SceneFolder folder;
+  // 0.35 above each height, in decimals: what placing the row leaves of it differs in the last bits.
+  for (const auto& [height, top] : {std::pair{"0.1", "0.45"}, {"17.3", "17.65"}, {"123.4", "123.75"}}) {
+    const std::string y = std::string(",") + top + ",";
+    const std::string box = "[[-9" + y + "-9],[9" + y + "9]]";
+    const BuiltScene built = build(folder, {"bodies.banner.place.scale=0.7", "bodies.banner.pins=[{\"box\":" + box + "}]",
+                                            std::string("bodies.banner.place.position=[0,") + height + ",0]"});
+    EXPECT_THAT(pinned(built.network), ElementsAre(6, 7, 8)) << height;
+  }
+}
+
+TEST(SceneBuilder, StillPinsAreOneAndMovingOnesTurnAboutTheBodysPlace) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {"bodies.banner.place.position=[0,2,0]",
+                                          R"(bodies.banner.pins=[{"indices":[0,1]},{"indices":[8],"motion":{"spin":[0,90,0]}},
+                                             {"indices":[1,2]}])"});
+  ASSERT_EQ(built.network.pins.size(), 2U);
+  EXPECT_THAT(built.network.pins[0].particles, ElementsAre(8));
+  EXPECT_EQ(built.network.pins[0].origin, Vector3(0, 2, 0));
+  EXPECT_EQ(built.network.pins[0].motion.spin, Vector3(0, 90, 0));
+  EXPECT_THAT(built.network.pins[1].particles, ElementsAre(0, 1, 2));
+}
+
+TEST(SceneBuilder, PinsOfLaterBodiesCountFromTheirOwnFirstParticle) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {R"(bodies.rope={"shape":{"type":"rope","from":[0,5,0],"to":[1,5,0],"particles":4},
+                                             "mass":1,"pins":[{"at":"corner","which":["to"]}]})"});
+  EXPECT_THAT(pinned(built.network), ElementsAre(0, 12));
+}
+
+TEST(SceneBuilder, PinsThatCannotBeAreProblems) {
+  EXPECT_THAT(build_problems({"bodies.banner.pins=[{\"indices\":[0,9]}]"}),
+              ElementsAre(problem("bodies.banner.pins[0].indices[1]", "the body has 9 particles")));
+  EXPECT_THAT(build_problems({"bodies.banner.pins=[{\"box\":[[5,5,5],[6,6,6]]}]"}),
+              ElementsAre(problem("bodies.banner.pins[0].box", "holds no particle")));
+  EXPECT_THAT(build_problems({"bodies.banner.pins=[{\"indices\":[0]},{\"indices\":[0],\"motion\":{\"spin\":[0,1,0]}}]"}),
+              ElementsAre(problem("bodies.banner.pins[1]", "holds particle 0, as does pins[0]")));
+}
+
+TEST(SceneBuilder, MeshesAreFoundBesideTheSceneThenInTheMeshPathsInOrder) {
+  const SceneFolder folder;
+  folder.write("first/mesh.obj", std::string(kTetrahedron) + "v 5 5 5\nv 6 5 5\nv 5 6 5\nf 5 6 7\n");
+  folder.write("second/mesh.obj", kTetrahedron);
+  const std::vector<std::filesystem::path> paths{folder.path() / "first", folder.path() / "second"};
+  const std::vector<std::string> change{"obstacles.floor.shape={\"type\":\"mesh\",\"file\":\"mesh.obj\"}"};
+  EXPECT_EQ(build(folder, change, paths).meshes[0].report.components, 2);
+  EXPECT_EQ(build(folder, change, {paths[1], paths[0]}).meshes[0].report.components, 1);
+  const auto beside = folder.write("mesh.obj", kTetrahedron);
+  EXPECT_EQ(build(folder, change, paths).meshes[0].file, beside);
+}
+
+TEST(SceneBuilder, MeshThatIsNowhereSaysWhereItWasLookedFor) {
+  const SceneFolder folder;
+  const auto problems = problems_of(
+      [&] { (void)build(folder, {"obstacles.floor.shape={\"type\":\"mesh\",\"file\":\"no.obj\"}"}, {"/nowhere/meshes"}); });
+  ASSERT_THAT(problems, ElementsAre(problem("obstacles.floor.shape.file", "no such file: looked for ")));
+  EXPECT_THAT(problems[0].rule, AllOf(HasSubstr((folder.path() / "no.obj").string()), HasSubstr("/nowhere/meshes/no.obj")));
+  EXPECT_THAT(problems[0].remedy, AllOf(HasSubstr("--mesh-path"), HasSubstr("SPRUNG_MESH_PATH")));
+}
+
+TEST(SceneBuilder, ObstacleMeshesAreScaledAndSharedOtherwise) {
+  const SceneFolder folder;
+  folder.write("mesh.obj", kTetrahedron);
+  const BuiltScene built =
+      build(folder, {R"(obstacles.a={"shape":{"type":"mesh","file":"mesh.obj"},"place":{"scale":3,"position":[0,-3,0]}})",
+                     R"(obstacles.b={"shape":{"type":"mesh","file":"mesh.obj"}})",
+                     R"(obstacles.c={"shape":{"type":"mesh","file":"mesh.obj"}})"});
+  const auto& larger = std::get<MeshGeometry>(built.obstacles[1].geometry);
+  EXPECT_EQ(larger.mesh->vertices.maxCoeff(), 3.0);
+  EXPECT_TRUE(larger.closed);
+  EXPECT_EQ(built.obstacles[1].placed.translation(), Vector3(0, -3, 0));
+  EXPECT_EQ(std::get<MeshGeometry>(built.obstacles[2].geometry).mesh, std::get<MeshGeometry>(built.obstacles[3].geometry).mesh);
+  EXPECT_EQ(built.meshes.size(), 3U);
+}
+
+std::string tetrahedron(const std::string& tip) {
+  return "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 " + tip + "\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+}
+
+TEST(SceneBuilder, SequencesAreScaledAndTimed) {
+  const SceneFolder folder;
+  folder.write("a.obj", tetrahedron("1"));
+  folder.write("b.obj", tetrahedron("2"));
+  const BuiltScene built = build(folder, {R"(obstacles.heart={"shape":{"type":"sequence","files":["b.obj","a.obj","b.obj"],
+                                             "frame_rate":24,"start":0.5,"loop":true},"place":{"scale":2,"position":[0,-3,0]}})"});
+  const auto& [sequence, closed] = std::get<SequenceGeometry>(built.obstacles[1].geometry);
+  ASSERT_EQ(sequence->frames.size(), 3U);
+  EXPECT_EQ(sequence->frames[0].col(3), Vector3(0, 0, 4));
+  EXPECT_EQ(sequence->frames[1].col(3), Vector3(0, 0, 2));
+  EXPECT_EQ(sequence->frame_rate, 24.0);
+  EXPECT_EQ(sequence->start, 0.5);
+  EXPECT_TRUE(sequence->loop);
+  EXPECT_TRUE(closed);
+  EXPECT_TRUE(built.obstacles[1].changes());
+  ASSERT_EQ(built.meshes.size(), 1U);
+  EXPECT_EQ(built.meshes[0].file, folder.path() / "b.obj");
+  EXPECT_EQ(built.meshes[0].files, 3U);
+  EXPECT_EQ(built.meshes[0].report.bounds.max().z(), 2.0) << "of the files, as those of other meshes";
+}
+
+TEST(SceneBuilder, PatternsOfSequencesAreSortedByNumber) {
+  const SceneFolder folder;
+  for (const char* number : {"9", "10", "1", "100", "11"}) {
+    folder.write(std::string("breath/lung.") + number + ".obj", tetrahedron(number));
+  }
+  folder.write("breath/other.2.obj", "not a frame");
+  folder.write("breath/lung.2.obj.bak", "not a frame");
+  const BuiltScene built = build(folder, {R"(obstacles.lung={"shape":{"type":"sequence","files":"breath/lung.*.obj"}})"});
+  std::vector<double> tips;
+  for (const Points& frame : std::get<SequenceGeometry>(built.obstacles[1].geometry).sequence->frames) tips.push_back(frame(2, 3));
+  EXPECT_THAT(tips, ElementsAre(1.0, 9.0, 10.0, 11.0, 100.0));
+  EXPECT_THAT(built.warnings, Contains(HasSubstr("\"lung\": numbers are left out after lung.1.obj")));
+}
+
+TEST(SceneBuilder, PatternsLookInTheFirstFolderThatHasAny) {
+  const SceneFolder folder;
+  for (const char* name : {"paths/lung.1.obj", "paths/lung.2.obj", "paths/lung.3.obj"}) folder.write(name, tetrahedron("1"));
+  const std::vector<std::string> change{R"(obstacles.lung.shape={"type":"sequence","files":"lung.*.obj"})"};
+  EXPECT_EQ(build(folder, change, {folder.path() / "paths"}).meshes[0].files, 3U);
+  for (const char* name : {"lung.1.obj", "lung.2.obj"}) folder.write(name, tetrahedron("2"));
+  EXPECT_EQ(build(folder, change, {folder.path() / "paths"}).meshes[0].files, 2U);
+}
+
+TEST(SceneBuilder, SequencesThatCannotBeAreProblems) {
+  const SceneFolder folder;
+  folder.write("a.obj", tetrahedron("1"));
+  folder.write("one.1.obj", tetrahedron("1"));
+  const auto other = folder.write("other.obj", kTetrahedron + std::string("v 1 1 1\n"));
+  const auto problems = [&](const std::string& files) {
+    const std::string shape = R"({"shape":{"type":"sequence","files":)" + files + "}}";
+    return problems_of([&] { (void)build(folder, {"obstacles.lung=" + shape, "obstacles.heart=" + shape}); });
+  };
+  const auto both = [](const std::string& key, const std::string& rule) {
+    return ElementsAre(problem("obstacles.lung.shape." + key, rule), problem("obstacles.heart.shape." + key, rule));
+  };
+  EXPECT_THAT(problems(R"("none.*.obj")"), both("files", "no file matches: looked for "));
+  EXPECT_THAT(problems(R"("one.*.obj")"), both("files", "matches one file only"));
+  EXPECT_THAT(problems(R"(["a.obj", "none.obj"])"), both("files[1]", "no such file: looked for "));
+  EXPECT_THAT(problems(R"(["a.obj", "other.obj"])"),
+              ElementsAre(AllOf(Field(&Problem::file, other.string()), Field(&Problem::rule, HasSubstr("as many as in a.obj")))))
+      << "once, though two obstacles use them";
+}
+
+TEST(SceneBuilder, SequenceThatDoesNotDeformIsWarnedOf) {
+  const SceneFolder folder;
+  folder.write("a.obj", tetrahedron("1"));
+  EXPECT_THAT(build(folder, {R"(obstacles.lung.shape={"type":"sequence","files":["a.obj","a.obj"]})"}).warnings,
+              ElementsAre(HasSubstr("obstacle \"lung\": its frames are all alike")));
+}
+
+TEST(SceneBuilder, WarnsOfUnitsByTheSizeOfAMeshAsItIsPlaced) {
+  const SceneFolder folder;
+  folder.write("mesh.obj", "v 0 0 0\nv 18000 0 0\nv 0 18000 0\nf 1 2 3\n");
+  const std::string shape = R"(obstacles.a.shape={"type":"mesh","file":"mesh.obj"})";
+  EXPECT_THAT(build(folder, {shape, "obstacles.a.place.scale=0.001"}).warnings, IsEmpty());
+  EXPECT_THAT(build(folder, {shape}).warnings, ElementsAre(HasSubstr("obstacle \"a\": its largest extent is 18000 m")));
+}
+
+TEST(SceneBuilder, PrimitivesAreScaled) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {R"(obstacles.a={"shape":{"type":"capsule","radius":1,"length":2},"place":{"scale":3}})",
+                                          R"(obstacles.b={"shape":{"type":"box","size":[1,2,3]},"place":{"scale":2}})"});
+  EXPECT_EQ(std::get<CapsuleGeometry>(built.obstacles[1].geometry).radius, 3.0);
+  EXPECT_EQ(std::get<CapsuleGeometry>(built.obstacles[1].geometry).length, 6.0);
+  EXPECT_EQ(std::get<BoxGeometry>(built.obstacles[2].geometry).size, Vector3(2, 4, 6));
+}
+
+TEST(SceneBuilder, BodyMeshesAreReadInTheirOrder) {
+  const SceneFolder folder;
+  folder.write("body.OBJ", kTetrahedron);
+  const BuiltScene built = build(
+      folder, {R"(bodies.banner.shape={"type":"mesh","file":"body.OBJ"})", "bodies.banner.pins=[]", "bodies.banner.place.scale=2"});
+  EXPECT_EQ(built.network.positions.col(3), Vector3(0, 0, 2));
+  EXPECT_EQ(built.network.springs.count(), 6);
+}
+
+TEST(SceneBuilder, BodyMeshesOfOtherFormatsAreRefused) {
+  EXPECT_THAT(build_problems({R"(bodies.banner.shape={"type":"mesh","file":"body.stl"})", "bodies.banner.pins=[]"}),
+              ElementsAre(problem("bodies.banner.shape.file", "read from an .obj file")));
+}
+
+TEST(SceneBuilder, ProblemsOfAllBodiesObstaclesAndTheStepComeInOneGo) {
+  EXPECT_THAT(
+      build_problems({"bodies.banner.pins[0]={\"indices\":[99]}",
+                      R"(bodies.shirt={"shape":{"type":"mesh","file":"shirt.obj"},"mass":1})",
+                      R"(obstacles.bunny={"shape":{"type":"mesh","file":"bunny.obj"}})"}),
+      ElementsAre(problem("bodies.banner.pins[0].indices[0]", "9 particles"), problem("bodies.shirt.shape.file", "no such file"),
+                  problem("obstacles.bunny.shape.file", "no such file")));
+  EXPECT_THAT(
+      build_problems({"step=0.03333333333333333", R"(obstacles.bunny={"shape":{"type":"mesh","file":"bunny.obj"}})"}),
+      ElementsAre(problem("obstacles.bunny.shape.file", "no such file"), problem("step", "is beyond the largest stable step")));
+}
+
+TEST(SceneBuilder, AnglesBendWhereTheSceneSaysSo) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {"bodies.banner.springs.bend={\"model\":\"angle\",\"stiffness\":0.5}"});
+  // 3 x 3 particles: a row or column each.
+  EXPECT_THAT(built.network.angle_bends.stiffness, ::testing::ElementsAre(0.5, 0.5, 0.5, 0.5, 0.5, 0.5));
+  const std::vector<Problem> problems = problems_of([&] {
+    build(folder, {"bodies.banner.shape={\"type\":\"solid\",\"size\":[1,1,1],\"resolution\":[2,2,2]}", "bodies.banner.pins=[]",
+                   "bodies.banner.springs.bend={\"model\":\"angle\",\"stiffness\":0.5}"});
+  });
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems[0].key, "bodies.banner.springs.bend.model");
+}
+
+TEST(SceneBuilder, BodyWithoutSpringsIsWarnedOf) {
+  const SceneFolder folder;
+  EXPECT_THAT(build(folder, {"bodies.banner.springs={}"}).warnings, ElementsAre(HasSubstr("\"banner\" has no springs")));
+}
+
+TEST(SceneBuilder, MeshPathsComeFromTheEnvironment) {
+  setenv("SPRUNG_MESH_PATH", "/a/b::/c", 1);
+  EXPECT_THAT(mesh_paths_from_environment(), ElementsAre("/a/b", "/c"));
+  unsetenv("SPRUNG_MESH_PATH");
+  EXPECT_THAT(mesh_paths_from_environment(), IsEmpty());
+}
+
+struct BrokenMesh {
+  std::string name;
+  std::string text;
+  std::string message;
+  bool breaks_a_body = true;
+};
+
+std::ostream& operator<<(std::ostream& stream, const BrokenMesh& mesh) { return stream << mesh.name; }
+
+class BrokenMeshTest : public testing::TestWithParam<BrokenMesh> {};
+
+TEST_P(BrokenMeshTest, IsRefusedAsAnObstacleNamingTheFile) {
+  const SceneFolder folder;
+  const auto file = folder.write("broken.obj", GetParam().text);
+  const auto problems = problems_of([&] { (void)build(folder, {R"(obstacles.floor.shape={"type":"mesh","file":"broken.obj"})"}); });
+  EXPECT_THAT(problems,
+              Contains(AllOf(Field(&Problem::file, file.string()), Field(&Problem::rule, HasSubstr(GetParam().message)))));
+}
+
+TEST_P(BrokenMeshTest, IsReportedOnceWhenSeveralObstaclesUseIt) {
+  const SceneFolder folder;
+  folder.write("broken.obj", GetParam().text);
+  const std::string first = R"(obstacles.a={"shape":{"type":"mesh","file":"broken.obj"}})";
+  const std::string second = R"(obstacles.b={"shape":{"type":"mesh","file":"broken.obj"}})";
+  const auto problems_with = [&](const std::vector<std::string>& changes) {
+    return problems_of([&] { (void)build(folder, changes); }).size();
+  };
+  EXPECT_EQ(problems_with({first, second}), problems_with({first}));
+}
+
+TEST_P(BrokenMeshTest, IsRefusedAsABodyNamingTheFile) {
+  if (!GetParam().breaks_a_body) return;
+  const SceneFolder folder;
+  const auto file = folder.write("broken.obj", GetParam().text);
+  const auto problems = problems_of([&] {
+    (void)build(folder, {R"(bodies.banner.shape={"type":"mesh","file":"broken.obj"})", "bodies.banner.pins=[]"});
+  });
+  EXPECT_THAT(problems, Contains(Field(&Problem::file, file.string())));
+}
+
+INSTANTIATE_TEST_SUITE_P(SceneBuilder, BrokenMeshTest,
+                         testing::Values(BrokenMesh{"Empty", "", "empty"},
+                                         BrokenMesh{"Truncated", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2", ""},
+                                         BrokenMesh{"NotFinite", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", ""},
+                                         BrokenMesh{"HugeIndex", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2000000000\n", ""},
+                                         BrokenMesh{"NoFaces", "v 0 0 0\nv 1 0 0\n", "", false},
+                                         BrokenMesh{"NoArea", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "", false}),
+                         [](const auto& test) { return test.param.name; });
+
+}  // namespace
+}  // namespace sprung

@@ -1,0 +1,251 @@
+#include "scene/building/step_choice.h"
+#include "scene/building/scene_builder.h"
+#include "scene_text.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+
+// Two particles of 1 kg, 1 m apart, one held: the free one swings with omega^2 = k / m, so symplectic Euler is stable up to
+// 2 / sqrt(k).
+BuiltScene build(double stiffness, const std::vector<std::string>& changes = {}) {
+  const SceneFolder folder;
+  const std::string text = R"({"duration": 1, "frame_rate": 10, "integrator": {"type": "symplectic_euler"}, "bodies": {"pair": {
+      "shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 2}, "particle_mass": 1,
+      "springs": {"structural": {"stiffness": )" +
+                           std::to_string(stiffness) + R"(}}, "pins": [{"indices": [0]}]}}})";
+  return build_scene(folder.read(text, changes));
+}
+
+// The bounds come from an iteration that converges from below, and add at most 1.5 % to the eigenvalue: 0.75 % off the step.
+constexpr double kBoundSlack = 0.0075;
+
+TEST(StepChoice, LargestStableStepIsTheClosedForm) {
+  const BuiltScene built = build(100.0);
+  EXPECT_LE(built.largest_stable_step, 0.2);
+  EXPECT_GE(built.largest_stable_step, 0.2 * (1.0 - kBoundSlack));
+}
+
+TEST(StepChoice, LargestStableStepIsThatOfTheScheme) {
+  EXPECT_NEAR(build(100.0, {R"(integrator={"type": "velocity_verlet"})"}).largest_stable_step, 0.2, kBoundSlack * 0.2);
+  EXPECT_NEAR(build(100.0, {R"(integrator={"type": "rk4"})"}).largest_stable_step, 0.2828, kBoundSlack * 0.2828);
+}
+
+TEST(StepChoice, AutoIsTheFewestStepsWithinNineTenthsOfTheStableStep) {
+  for (const double stiffness : {100.0, 1000.0, 54321.0, 1e6}) {
+    const double damping = 0.05 * std::sqrt(stiffness);
+    const BuiltScene built = build(stiffness, {"bodies.pair.springs.structural.damping=" + std::to_string(damping)});
+    const int n = built.steps_per_frame;
+    EXPECT_EQ(built.settings.step, 1.0 / (10.0 * n));
+    EXPECT_LE(built.settings.step, 0.9 * built.largest_stable_step);
+    if (n > 1) {
+      EXPECT_GT(1.0 / (10.0 * (n - 1)), 0.9 * built.largest_stable_step);
+    }
+  }
+}
+
+// A thousand are no more than it takes; what asks for more is told, and what to change.
+TEST(StepChoice, AutoTellsWhatAsksForVeryManySteps) {
+  EXPECT_THAT(build(1.0e8).warnings, testing::IsEmpty());
+  EXPECT_THAT(build(1.0e10).warnings,
+              ElementsAre(AllOf(HasSubstr("body \"pair\""), HasSubstr("structural"), HasSubstr("1e+10 N/m"), HasSubstr("1 kg"),
+                                HasSubstr("less stiffness"), HasSubstr("implicit_euler"))));
+  EXPECT_THAT(build(1.0, {"bodies.pair.springs.structural.damping=1e6"}).warnings,
+              ElementsAre(AllOf(HasSubstr("body \"pair\""), HasSubstr("1e+06 N s/m"), HasSubstr("less damping"))));
+  const auto with_bends = [](const std::string& bends) {
+    return build(1.0e6, {"bodies.pair.shape.particles=3", "bodies.pair.springs.bend={\"model\": \"angle\", " + bends + "}"})
+        .warnings;
+  };
+  EXPECT_THAT(with_bends(R"("stiffness": 1e10)"),
+              ElementsAre(AllOf(HasSubstr("body \"pair\" has angle bends of 1e+10 N m "), HasSubstr("less stiffness"))));
+  EXPECT_THAT(with_bends(R"("stiffness": 0, "damping": 1e6)"),
+              ElementsAre(AllOf(HasSubstr("body \"pair\" has angle bends of 1e+06 N m s damping"), HasSubstr("less damping"))));
+  EXPECT_THAT(build(1.0e10, {R"(integrator={"type": "implicit_euler"})"}).warnings, testing::IsEmpty());
+  EXPECT_THAT(build(1.0e6, {R"(integrator={"type": "explicit_euler"})"}).warnings, Contains(HasSubstr("symplectic_euler")));
+  EXPECT_THAT(build(0.0, {R"(stretch_limit={"max_stretch": 0, "tolerance": 0, "iterations": 1, "solver": "gauss_seidel"})",
+                          "bodies.pair.shape.particles=1000"})
+                  .warnings,
+              ElementsAre(AllOf(HasSubstr("passes"), HasSubstr("newton"))));
+  EXPECT_THAT(build(1.0e10, {"step=1e-7"}).warnings, testing::IsEmpty()) << "they were asked for";
+}
+
+// Six steps are a turn.
+TEST(StepChoice, AutoKeepsWhatIsNotDampedFromResonance) {
+  for (const double stiffness : {1000.0, 54321.0, 1e6}) {
+    const double resonant = 1.0 / std::sqrt(stiffness);
+    const BuiltScene built = build(stiffness);
+    EXPECT_LE(built.settings.step, resonant);
+    EXPECT_GT(1.0 / (10.0 * (built.steps_per_frame - 1)), resonant * (1.0 - kBoundSlack));
+  }
+}
+
+TEST(StepChoice, AutoKeepsExplicitEulerFromGrowingMuchWithinTheScene) {
+  const std::string explicit_euler = R"(integrator={"type": "explicit_euler"})";
+  // |1 + i omega dt| is sqrt(1 + omega^2 dt^2), a factor of e after 2 / (omega^2 dt): the scene's second at dt = 2 / k.
+  const BuiltScene built = build(1000.0, {explicit_euler});
+  EXPECT_LE(built.settings.step, 2.0 / 1000.0);
+  EXPECT_GT(1.0 / (10.0 * (built.steps_per_frame - 1)), 2.0 / 1000.0 * (1.0 - 2.0 * kBoundSlack));
+}
+
+// A half turn of the penalty's spring, pi sqrt(m / k), with 1 kg, takes three steps: damped or not, by any explicit scheme.
+TEST(StepChoice, AutoMakesABounceByPenaltyTakeThreeSteps) {
+  const auto penalty = [](const std::string& scheme, const std::string& damping) {
+    return build(0.0,
+                 {R"(contact={"response": "penalty", "stiffness": 543210, "damping": )" + damping + "}",
+                  R"(integrator={"type": ")" + scheme + R"("})", R"(obstacles.floor.shape={"type": "half_space", "offset": -5})"});
+  };
+  const double third = 1.0 / std::sqrt(543210.0);
+  for (const std::string scheme : {"verlet", "symplectic_euler", "velocity_verlet", "rk4"}) {
+    for (const std::string damping : {"0", "10"}) {
+      EXPECT_LE(penalty(scheme, damping).settings.step, third) << scheme;
+      EXPECT_GT(1.0 / (10.0 * (penalty(scheme, damping).steps_per_frame - 1)), third) << scheme;
+    }
+  }
+  EXPECT_GT(penalty("implicit_euler", "0").settings.step, third);
+}
+
+TEST(StepChoice, AutoHeedsTheStretchLimit) {
+  const BuiltScene free = build(0.0);
+  const BuiltScene limited =
+      build(0.0, {"bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1,\"tolerance\":1e-3,\"max_stretch\":0}"});
+  EXPECT_LT(limited.settings.step, free.settings.step);
+  const StretchLimit limit(limited.network, *limited.settings.stretch_limit);
+  EXPECT_LE(limited.settings.step, limit.suggested_step(9.81));
+  EXPECT_GT(1.0 / (10.0 * (limited.steps_per_frame - 1)), limit.suggested_step(9.81));
+}
+
+TEST(StepChoice, AutoMayMakePartsOfStepsOfClothsThatBearIt) {
+  const auto parts = [](const std::vector<std::string>& changes) {
+    const SceneFolder folder;
+    const std::string text = R"({"duration": 1, "stretch_limit": {"max_compression": 0, "kinds": ["structural", "shear"],
+        "tethers": true}, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [8, 8]}, "mass": 1,
+        "springs": {"structural": {"stiffness": 0}, "shear": {"stiffness": 0}},
+        "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
+    return build_scene(folder.read(text, changes)).settings.most_parts;
+  };
+  EXPECT_EQ(parts({}), kAutoParts);
+  EXPECT_EQ(parts({"frame_rate=10", "step=0.001"}), 1);
+  EXPECT_EQ(parts({"stretch_limit.max_compression=1"}), 1);
+  EXPECT_EQ(parts({"stretch_limit.kinds=[\"structural\"]"}), 1);
+  EXPECT_EQ(parts({"stretch_limit.tethers=false"}), 1);
+  EXPECT_EQ(parts({R"(integrator={"type": "verlet", "damping": 0.01})"}), 1);
+}
+
+TEST(StepChoice, AutoIsAFrameForWhatAGlobalSolveHoldsAndMeetsNothing) {
+  const auto built = [](const std::vector<std::string>& changes) {
+    const SceneFolder folder;
+    const std::string text = R"({"duration": 1, "stretch_limit": {"solver": "newton"},
+        "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [4, 4]}, "mass": 1,
+        "springs": {"structural": {"stiffness": 0}}, "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
+    return build_scene(folder.read(text, changes));
+  };
+  for (const std::string solver : {"newton", "auto"}) {
+    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).steps_per_frame, 1);
+    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).settings.most_parts, kAutoParts);
+  }
+  EXPECT_EQ(built({"obstacles.floor.shape={\"type\":\"half_space\",\"offset\":-5}"}).steps_per_frame, 8);
+  EXPECT_EQ(built({"bodies.cloth.self_contact=true"}).steps_per_frame, 8);
+  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).steps_per_frame, 8) << "which takes its part of each step";
+  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).settings.most_parts, 1);
+  const std::string second = R"(bodies.other={"shape": {"type": "cloth", "size": [1, 1], "resolution": [2, 2]}, "mass": 1,
+      "place": {"position": [0, 0, 1]}, "springs": {"structural": {"stiffness": 0}})";
+  EXPECT_EQ(built({second + "}"}).steps_per_frame, 8);
+  EXPECT_EQ(built({second + R"(, "body_contact": false})"}).steps_per_frame, 1);
+}
+
+// The parts are what passes need; once a global solve has taken over it needs the whole step at most.
+TEST(StepChoice, AutoIsMadeInPartsForPassesThatMayBeGivenUp) {
+  const auto built = [](const std::vector<std::string>& changes) {
+    const SceneFolder folder;
+    const std::string text = R"({"duration": 1, "stretch_limit": {"solver": "auto", "iterations": 4},
+        "obstacles": {"floor": {"shape": {"type": "half_space", "offset": -5}}},
+        "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [16, 16]}, "mass": 1,
+        "springs": {"structural": {"stiffness": 0}}, "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
+    return build_scene(folder.read(text, changes));
+  };
+  const BuiltScene passes = built({"stretch_limit.solver=gauss_seidel"});
+  const BuiltScene automatic = built({});
+  const int parts = automatic.settings.most_parts;
+  const int at_least = built({"stretch_limit.solver=newton"}).steps_per_frame;
+  EXPECT_EQ(passes.settings.most_parts, 1);
+  EXPECT_GT(parts, 1);
+  EXPECT_GE(automatic.steps_per_frame, at_least);
+  EXPECT_LT(automatic.steps_per_frame, 2 * at_least);
+  EXPECT_GE(automatic.steps_per_frame * parts, passes.steps_per_frame);
+  EXPECT_LT((automatic.steps_per_frame - 1) * parts, passes.steps_per_frame);
+  const std::string damping = R"(integrator={"type": "verlet", "damping": 0.01})";
+  EXPECT_EQ(built({damping}).settings.most_parts, 1) << "which takes its part of each step";
+  EXPECT_EQ(built({damping}).steps_per_frame, passes.steps_per_frame);
+}
+
+TEST(StepChoice, WithoutAnyBoundAutoIsAtMostTheDocumentedStep) {
+  const BuiltScene built = build(0.0);
+  EXPECT_TRUE(std::isinf(built.largest_stable_step));
+  EXPECT_EQ(built.steps_per_frame, 24);  // 10 frames a second of 24 steps: 1/240 s
+}
+
+// A frame is a tenth of a second.
+TEST(StepChoice, AutoOfImplicitEulerIsSmallerWhereThereIsAnythingToMeetOrALimitBesideSprings) {
+  const std::string implicit = R"(integrator={"type": "implicit_euler"})";
+  EXPECT_EQ(build(1.0e6, {implicit, R"(obstacles.ball={"shape": {"type": "sphere", "radius": 0.1}})"}).steps_per_frame, 24);
+  const std::string newton = R"(stretch_limit={"solver": "newton"})";
+  EXPECT_EQ(build(0.0, {implicit, newton}).steps_per_frame, 1);
+  EXPECT_EQ(build(1.0e6, {implicit, newton}).steps_per_frame, 24);
+}
+
+TEST(StepChoice, AutoOfImplicitEulerIsAFrameOrWhatTheStretchLimitAsksFor) {
+  const std::string implicit = R"(integrator={"type": "implicit_euler"})";
+  const BuiltScene free = build(1.0e6, {implicit});
+  EXPECT_TRUE(std::isinf(free.largest_stable_step));
+  EXPECT_EQ(free.steps_per_frame, 1);
+  EXPECT_EQ(build(1.0e6, {implicit, "step=0.1"}).steps_per_frame, 1) << "a given step is never refused";
+  const BuiltScene limited = build(0.0, {implicit, "bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1}"});
+  EXPECT_GT(limited.steps_per_frame, 1);
+  EXPECT_LE(limited.settings.step, StretchLimit(limited.network, *limited.settings.stretch_limit).suggested_step(9.81));
+}
+
+TEST(StepChoice, StepBeyondTheStableOneIsRefusedNamingTheLargestThatCanBe) {
+  const auto problems = problems_of([] { (void)build(1000.0, {"step=0.1"}); });
+  // 2 / sqrt(1000) = 0.0632: the largest that divides a frame of 0.1 s is 0.05.
+  EXPECT_THAT(problems, ElementsAre(AllOf(Field(&Problem::key, "step"), Field(&Problem::value, "0.1"),
+                                          Field(&Problem::rule, HasSubstr("is beyond the largest stable step, 0.06")),
+                                          Field(&Problem::remedy, AllOf(HasSubstr("use at most 0.05 or \"auto\""),
+                                                                        HasSubstr("\"stability\": \"warn\""))))));
+  EXPECT_EQ(build(1000.0, {"step=0.05"}).steps_per_frame, 2);
+}
+
+TEST(StepChoice, StepBeyondTheStableOneRunsWhenOnlyWarnedOf) {
+  const BuiltScene built = build(1000.0, {"step=0.1", "stability=warn"});
+  EXPECT_EQ(built.settings.step, 0.1);
+  EXPECT_EQ(built.steps_per_frame, 1);
+}
+
+TEST(StepChoice, PenaltyContactCountsAsASpringToTheGround) {
+  const std::vector<std::string> penalty{"contact={\"response\":\"penalty\",\"stiffness\":300,\"damping\":0}",
+                                         "obstacles.floor.shape={\"type\":\"half_space\",\"offset\":-5}"};
+  EXPECT_NEAR(build(100.0, penalty).largest_stable_step, 2.0 / std::sqrt(400.0), kBoundSlack * 0.1);
+  EXPECT_NEAR(build(100.0, {penalty[0]}).largest_stable_step, 0.2, kBoundSlack * 0.2) << "nothing to touch";
+}
+
+TEST(StepChoice, TooManyStepsAFrameAreRefused) {
+  EXPECT_THAT(problems_of([] { (void)build(1e20); }),
+              ElementsAre(AllOf(Field(&Problem::key, "step"), Field(&Problem::rule, HasSubstr("too many steps a frame")),
+                                Field(&Problem::remedy, HasSubstr("less stiffness")))));
+}
+
+TEST(StepChoice, WhereExplicitEulerWouldTakeTooManyStepsAnotherSchemeIsNamed) {
+  EXPECT_THAT(problems_of([] { (void)build(1e12, {R"(integrator={"type": "explicit_euler"})"}); }),
+              ElementsAre(Field(&Problem::remedy, HasSubstr("symplectic_euler"))));
+}
+
+}  // namespace
+}  // namespace sprung

@@ -1,0 +1,62 @@
+#include "scene/format/frame_steps.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+namespace {
+
+TEST(FrameSteps, FirstFrameIsTimeZero) {
+  EXPECT_EQ(frame_count(0.0, 30.0), 1);
+  EXPECT_EQ(frame_count(1.0, 30.0), 31);
+  EXPECT_EQ(frame_count(0.99, 30.0), 30);  // 29.7 frames: the last one that is reached is frame 30, at 29 / 30 s
+  EXPECT_EQ(frame_count(600.0, 1.0), 601);
+}
+
+TEST(FrameSteps, RoundingOfTheDurationLosesNoFrame) {
+  for (int frames = 1; frames < 1000; ++frames) {
+    EXPECT_EQ(frame_count(frames / 29.97, 29.97), frames + 1);
+    EXPECT_EQ(frame_count(frames * 0.1, 10.0), frames + 1);
+  }
+}
+
+TEST(FrameSteps, StepsThatDivideAFrameAreWhole) {
+  EXPECT_EQ(steps_per_frame(30.0, 1.0 / 30.0), 1);
+  EXPECT_EQ(steps_per_frame(25.0, 0.001), 40);
+  EXPECT_EQ(steps_per_frame(1.0, 1.0), 1);
+  for (const int steps : {1, 3, 7, 1000, 99'999, 1'234'567, 99'999'999}) {
+    EXPECT_EQ(steps_per_frame(29.97, step_of(29.97, steps)), steps);
+  }
+}
+
+TEST(FrameSteps, OthersAreNot) {
+  EXPECT_EQ(steps_per_frame(25.0, 0.003), std::nullopt);
+  EXPECT_EQ(steps_per_frame(25.0, 0.08), std::nullopt);  // half a step a frame
+  EXPECT_EQ(steps_per_frame(25.0, 0.04 * (1.0 + 1e-8)), std::nullopt);
+  EXPECT_EQ(steps_per_frame(25.0, 0.04 * (1.0 + 1e-10)), 1);
+  EXPECT_EQ(steps_per_frame(25.0, 1e-30), std::nullopt);
+}
+
+TEST(FrameSteps, FewestStepsAreJustEnough) {
+  for (const double frame_rate : {1.0, 24.0, 29.97, 60.0}) {
+    for (double largest = 2.0; largest > 1e-5; largest *= 0.731) {
+      const int steps = fewest_steps_per_frame(frame_rate, largest).value();
+      EXPECT_LE(step_of(frame_rate, steps), largest);
+      if (steps > 1) {
+        EXPECT_GT(step_of(frame_rate, steps - 1), largest);
+      }
+    }
+  }
+}
+
+TEST(FrameSteps, LargestStepThatDividesAFrameIsKept) {
+  for (const int steps : {1, 3, 7, 49, 1000, 99'999}) EXPECT_EQ(fewest_steps_per_frame(29.97, step_of(29.97, steps)), steps);
+  EXPECT_EQ(fewest_steps_per_frame(30.0, std::numeric_limits<double>::infinity()), 1);
+}
+
+TEST(FrameSteps, NoFrameTakesTooMany) { EXPECT_EQ(fewest_steps_per_frame(30.0, 1e-12), std::nullopt); }
+
+}  // namespace
+}  // namespace sprung

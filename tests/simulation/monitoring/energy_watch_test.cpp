@@ -1,0 +1,129 @@
+#include "simulation/monitoring/energy_watch.h"
+
+#include "network/network_builder.h"
+
+#include <gtest/gtest.h>
+
+namespace sprung {
+namespace {
+
+/// 2 kg on their own: nothing that holds energy.
+SpringNetwork one_particle() {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 2.0);
+  return builder.build();
+}
+
+/// 1 kg each, 1 m apart, and a spring between them.
+SpringNetwork two_masses(double stiffness, double rest_length) {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 1.0);
+  builder.add_particle(Vector3::UnitX(), 1.0);
+  builder.add_spring(0, 1, stiffness, rest_length);
+  return builder.build();
+}
+
+EnergyWatch watch(const SpringNetwork& network) { return {network, SimulatorSettings{.step = 0.01}, {}}; }
+
+TEST(EnergyWatch, AllowsAThousandTimesWhatMotionBeganWith) {
+  EnergyWatch energy = watch(one_particle());
+  energy.note(0, {.kinetic = 1.0});
+  EXPECT_FALSE(energy.explosion({.kinetic = 999.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 1001.0}));
+  // Limits and contact may give a start of their own; what comes later is none.
+  energy.note(1, {.kinetic = 2.0});
+  energy.note(64, {.kinetic = 1500.0});
+  EXPECT_FALSE(energy.explosion({.kinetic = 1999.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 2001.0}));
+}
+
+TEST(EnergyWatch, WhatWasLiftedMayFall) {
+  EnergyWatch energy = watch(one_particle());
+  energy.note(0, {.gravity = -3.0});
+  energy.note(64, {.gravity = 1.0});
+  energy.note(128, {.gravity = 0.5});
+  EXPECT_FALSE(energy.explosion({.kinetic = 3999.0, .gravity = -3.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 4001.0, .gravity = -3.0}));
+}
+
+// 1/2 m v^2 = 9 J.
+TEST(EnergyWatch, AllMayMoveAsFastAsPins) {
+  EnergyWatch energy = watch(one_particle());
+  energy.note(0, {});
+  energy.note_pin(3.0);
+  energy.note_pin(2.0);
+  EXPECT_FALSE(energy.explosion({.kinetic = 8999.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 9001.0}));
+}
+
+// 1/2 m v^2 = 9 J, 1,024 times as much at the 32 times that speed to which a wedge leads, and nine times that at the three times to
+// which a restitution of 1/2 leads.
+TEST(EnergyWatch, AllMayMoveAsFastAsObstaclesThatItBouncesBetweenDriveIt) {
+  const SpringNetwork network = one_particle();
+  Obstacle obstacle{.name = "wall", .geometry = HalfSpaceGeometry{}};
+  EnergyWatch hard(network, {.step = 0.01}, {obstacle});
+  obstacle.material.restitution = 0.5;
+  EnergyWatch bouncing(network, {.step = 0.01}, {obstacle});
+  obstacle.material.restitution = 1.0;
+  EnergyWatch without_loss(network, {.step = 0.01}, {obstacle});
+  for (EnergyWatch* energy : {&hard, &bouncing, &without_loss}) {
+    energy->note(0, {.kinetic = 1.0e-6});
+    energy->note_obstacle(0.0);
+    EXPECT_TRUE(energy->explosion({.kinetic = 1.0}));
+    energy->note_obstacle(3.0);
+  }
+  EXPECT_FALSE(hard.explosion({.kinetic = 1024.0 * 8999.0}));
+  EXPECT_TRUE(hard.explosion({.kinetic = 1024.0 * 9001.0}));
+  EXPECT_FALSE(bouncing.explosion({.kinetic = 1024.0 * 80999.0}));
+  EXPECT_TRUE(bouncing.explosion({.kinetic = 1024.0 * 81001.0}));
+  EXPECT_FALSE(without_loss.explosion({.kinetic = 1.0e300}));
+}
+
+// 1/2 k d^2 = 4 J.
+TEST(EnergyWatch, SpringsMayBeStretchedToTwiceTheirLength) {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 1.0);
+  builder.add_particle(Vector3::UnitX(), 1.0);
+  builder.add_spring(0, 1, 2.0, 2.0);
+  EnergyWatch energy = watch(builder.build());
+  energy.note(0, {});
+  EXPECT_FALSE(energy.explosion({.kinetic = 2000.0, .elastic = 1999.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 2000.0, .elastic = 2001.0}));
+}
+
+// Capacity 1/2 J and 100 J stored.
+TEST(EnergyWatch, WhatWasStretchedSlowlyMaySnap) {
+  const SpringNetwork network = two_masses(1.0, 1.0);
+  EnergyWatch slow = watch(network);
+  EnergyWatch fast = watch(network);
+  for (EnergyWatch* energy : {&slow, &fast}) energy->note(0, {});
+  slow.note(64, {.kinetic = 0.9, .elastic = 100.0});
+  fast.note(64, {.kinetic = 1.1, .elastic = 100.0});
+  EXPECT_FALSE(slow.explosion({.kinetic = 100499.0}));
+  EXPECT_TRUE(slow.explosion({.kinetic = 100501.0}));
+  EXPECT_FALSE(fast.explosion({.kinetic = 499.0}));
+  EXPECT_TRUE(fast.explosion({.kinetic = 501.0}));
+}
+
+// Of 2 kg at 1 m, a step of 0.01 s: (2^-26 / 0.01)^2 = 2.2e-12 J.
+TEST(EnergyWatch, RoundingIsNoExplosion) {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::UnitX(), 2.0);
+  EnergyWatch energy = watch(builder.build());
+  energy.note(0, {});
+  EXPECT_FALSE(energy.explosion({.kinetic = 2.2e-9}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 2.3e-9}));
+}
+
+// m g d = 40 J.
+TEST(EnergyWatch, WhatALimitHoldsMayBounceByTheLengthOfASpring) {
+  const SpringNetwork network = two_masses(0.0, 2.0);
+  const SimulatorSettings settings{.step = 0.01, .gravity = {0.0, -10.0, 0.0}, .stretch_limit = StretchLimitSettings{}};
+  EnergyWatch energy(network, settings, {});
+  energy.note(0, {});
+  EXPECT_FALSE(energy.explosion({.kinetic = 39999.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 40001.0}));
+}
+
+}  // namespace
+}  // namespace sprung

@@ -1,0 +1,174 @@
+// When a stretch limit goes over from passes to a global solve, and what that is worth.
+#include "simulation/step/limit_handover.h"
+
+#include "base/parallel.h"
+#include "simulation/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+using Solver = StretchLimitSettings::Solver;
+
+constexpr double kRate = 240.0;
+
+/// Of passes that cannot hold a cloth of more than a few particles a side at this rate.
+StretchLimitSettings limit_of(Solver solver) {
+  return {.max_stretch = 0.01, .iterations = 8, .tolerance = 0.005, .solver = solver};
+}
+
+/// A cloth of 1 m that the limit alone carries, level, or held by two of its corners.
+SpringNetwork limp_cloth(Index side, bool pinned, const ContactMaterial& material = {}) {
+  SpringNetwork network = testing::cloth(side, 0.0, material);
+  network.springs.stiffness.assign(network.springs.stiffness.size(), 0.0);
+  network.springs.damping.assign(network.springs.damping.size(), 0.0);
+  if (!pinned) return network;
+  network.pins.push_back({.particles = {side * (side - 1), side * side - 1}, .origin = Vector3::Zero(), .motion = {}});
+  for (const Index i : network.pins[0].particles) network.inverse_masses[i] = 0.0;
+  return network;
+}
+
+Obstacle ball(double height, double radius) {
+  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = radius}};
+  ball.placed.translation() = Vector3(0.0, height, 0.0);
+  return ball;
+}
+
+struct Outcome {
+  Points x;
+  double worst_excess = 0.0;  ///< in the last quarter of the steps
+  std::optional<std::int64_t> solved_since;
+  double nearest = 1.0;  ///< least distance from obstacles after any step [m]
+};
+
+Outcome run(const SpringNetwork& network, Solver solver, int steps, const std::vector<Obstacle>& obstacles = {},
+            int most_parts = 1) {
+  Simulator simulator(network, {.step = 1.0 / kRate, .stretch_limit = limit_of(solver), .most_parts = most_parts}, obstacles);
+  Outcome outcome;
+  for (int step = 0; step < steps; ++step) {
+    const StepReport report = simulator.step();
+    if (step >= steps * 3 / 4) outcome.worst_excess = std::max(outcome.worst_excess, report.stretch_excess);
+    outcome.nearest = std::min(outcome.nearest, simulator.environment().min_distance(simulator.positions(), 1.0).value_or(1.0));
+  }
+  outcome.x = simulator.positions();
+  outcome.solved_since = simulator.state().stretch_holds.front().solved_since;
+  return outcome;
+}
+
+TEST(LimitHandover, IsForWhatPassesMissedSoManyTimesInARow) {
+  const SpringNetwork network = limp_cloth(4, true);
+  const StretchLimit limit(network, limit_of(Solver::automatic));
+  SimulationState state = initial_state(network);
+  const double most = wanted_excess(limit.settings());
+  const auto see = [&](double stretch, int times) {
+    state.x = (1.0 + limit.settings().max_stretch + stretch) * network.positions;
+    for (int k = 0; k < times; ++k, ++state.step) hand_over_missed(network, limit, limit.excess(state.x), state);
+    return state.stretch_holds.front().solved_since;
+  };
+  EXPECT_FALSE(see(1.01 * most, kMostMissedSteps - 1));
+  EXPECT_FALSE(see(0.99 * most, 1));
+  EXPECT_FALSE(see(1.01 * most, kMostMissedSteps - 1));
+  EXPECT_EQ(see(1.01 * most, 1), 2 * kMostMissedSteps - 1);
+  EXPECT_EQ(see(0.0, 100), 2 * kMostMissedSteps - 1) << "for good";
+}
+
+TEST(LimitHandover, IsBodyByBody) {
+  NetworkBuilder builder;
+  const SpringMaterials materials{.structural = SpringMaterial{}, .shear = {}, .bend = {}};
+  for (const char* name : {"first", "second"}) {
+    BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {3, 3}}, materials);
+    set_total_mass(shape, 0.2);
+    builder.add_body(name, shape);
+  }
+  const SpringNetwork network = builder.build();
+  const StretchLimit limit(network, limit_of(Solver::automatic));
+  SimulationState state = initial_state(network);
+  state.x.rightCols(9) *= 1.5;
+  EXPECT_EQ(limit.excess(state.x, network.bodies[0]), 0.0);
+  EXPECT_EQ(limit.excess(state.x, network.bodies[1]), limit.excess(state.x));
+  for (int step = 0; step < 100; ++step) hand_over_missed(network, limit, limit.excess(state.x), state);
+  EXPECT_FALSE(state.stretch_holds[0].solved_since);
+  EXPECT_TRUE(state.stretch_holds[1].solved_since);
+}
+
+TEST(LimitHandover, IsNotForSolidsNorForWhatMayNotShrinkNorForPassesByName) {
+  BodyShape shape =
+      make_solid({.size = {1.0, 1.0, 1.0}, .resolution = {3, 3, 3}}, {.structural = SpringMaterial{}, .shear = {}, .bend = {}});
+  set_total_mass(shape, 1.0);
+  NetworkBuilder builder;
+  builder.add_body("solid", shape);
+  const SpringNetwork cloth = limp_cloth(4, true);
+  StretchLimitSettings both_ways = limit_of(Solver::automatic);
+  both_ways.max_compression = 0.5;
+  EXPECT_TRUE(StretchLimit(cloth, limit_of(Solver::automatic)).may_be_handed_over(0));
+  EXPECT_FALSE(StretchLimit(builder.build(), limit_of(Solver::automatic)).may_be_handed_over(0));
+  EXPECT_FALSE(StretchLimit(cloth, both_ways).may_be_handed_over(0));
+  EXPECT_FALSE(StretchLimit(cloth, limit_of(Solver::gauss_seidel)).may_be_handed_over(0));
+  EXPECT_FALSE(StretchLimit(cloth, limit_of(Solver::automatic), {.may_meet_anything = false}).may_be_handed_over(0))
+      << "it is from the start";
+}
+
+TEST(LimitHandover, AutomaticHasTheBitsOfNewtonWhereNothingIsInTheWay) {
+  const SpringNetwork cloth = limp_cloth(16, true);
+  for (const int parts : {1, 8}) {
+    const Outcome automatic = run(cloth, Solver::automatic, 60, {}, parts);
+    EXPECT_EQ(automatic.x, run(cloth, Solver::newton, 60, {}, parts).x);
+    EXPECT_NE(automatic.x, run(cloth, Solver::gauss_seidel, 60, {}, parts).x);
+  }
+}
+
+TEST(LimitHandover, AutomaticHasTheBitsOfPassesWhereTheySuffice) {
+  const SpringNetwork cloth = limp_cloth(8, false, {.thickness = 0.01, .friction = 0.3, .static_friction = 0.3});
+  const std::vector<Obstacle> below{ball(-0.32, 0.3)};
+  const Outcome automatic = run(cloth, Solver::automatic, 120, below);
+  EXPECT_FALSE(automatic.solved_since);
+  EXPECT_EQ(automatic.x, run(cloth, Solver::gauss_seidel, 120, below).x);
+  EXPECT_NE(automatic.x, run(cloth, Solver::newton, 120, below).x);
+}
+
+// A cloth that swings down over a ball and comes to hang across it by two corners: passes of this step would need many more of
+// them.
+class OverABall : public ::testing::Test {
+ protected:
+  static constexpr int kSteps = 300;
+  const SpringNetwork cloth_ = limp_cloth(24, true, {.thickness = 0.01, .friction = 0.3, .static_friction = 0.3});
+  const std::vector<Obstacle> ball_{ball(-0.45, 0.2)};
+};
+
+TEST_F(OverABall, WhatPassesCannotHoldEndsWithinTheLimitOutsideTheBall) {
+  const Outcome passes = run(cloth_, Solver::gauss_seidel, kSteps, ball_);
+  const Outcome automatic = run(cloth_, Solver::automatic, kSteps, ball_);
+  EXPECT_FALSE(passes.solved_since);
+  EXPECT_GT(passes.worst_excess, 0.05);
+  ASSERT_TRUE(automatic.solved_since);
+  EXPECT_LT(*automatic.solved_since, kSteps / 4);
+  EXPECT_LT(automatic.worst_excess, wanted_excess(limit_of(Solver::automatic)));
+  EXPECT_GT(automatic.nearest, 0.0);
+}
+
+TEST_F(OverABall, HasTheSameBitsForAnyNumberOfThreads) {
+  const auto positions = [&](int threads) {
+    const ThreadLimit at_most(threads);
+    return run(cloth_, Solver::automatic, kSteps / 3, ball_).x;
+  };
+  EXPECT_EQ(positions(1), positions(2));
+}
+
+// Passes have as many parts as may be; the solve needs none while the cloth turns slowly.
+TEST_F(OverABall, NeedsTheSmallStepsOfPassesNoMore) {
+  StretchLimitSettings limit = limit_of(Solver::automatic);
+  limit.iterations = 1;
+  Simulator simulator(cloth_, {.step = 1.0 / kRate, .stretch_limit = limit, .most_parts = 4}, ball_);
+  std::vector<int> parts;
+  for (int step = 0; step < 60; ++step) parts.push_back(simulator.step().parts);
+  const auto since = simulator.state().stretch_holds.front().solved_since;
+  ASSERT_TRUE(since);
+  for (int step = 0; step <= *since; ++step) EXPECT_EQ(parts[static_cast<std::size_t>(step)], 4) << step;
+  EXPECT_EQ(parts.back(), 1);
+}
+
+}  // namespace
+}  // namespace sprung

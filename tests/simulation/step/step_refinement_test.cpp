@@ -1,0 +1,253 @@
+// Steps in parts: when, how long, and that time and motion do not notice.
+#include "simulation/step/step_refinement.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "dynamics/forces/gravity_and_drag.h"
+#include "simulation/scenes.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprung {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kRate = 60.0;
+
+/// Nothing may stretch or shrink by more than 1 %.
+StretchLimitSettings both_ways() {
+  return {.max_stretch = 0.0,
+          .max_compression = 0.0,
+          .kinds = {SpringKind::structural, SpringKind::shear},
+          .iterations = 1,
+          .tolerance = 0.01,
+          .tethers = true};
+}
+
+/// Parts of the step after steps that left these excesses.
+int parts_after(const std::vector<double>& excesses, int most = 8) {
+  const StepRefinement refinement(both_ways(), most);
+  SimulationState state;
+  for (const double excess : excesses) refinement.choose(excess, state);
+  return state.parts;
+}
+
+TEST(StepRefinement, HalvesAsOftenAsTheExcessIsTooLarge) {
+  EXPECT_EQ(parts_after({0.029}), 1);
+  EXPECT_EQ(parts_after({0.031}), 2);
+  EXPECT_EQ(parts_after({0.061}), 4);
+  EXPECT_EQ(parts_after({0.031, 0.031}), 4);
+  EXPECT_EQ(parts_after({1.0}), 8);
+  EXPECT_EQ(parts_after({1.0}, 4), 4);
+}
+
+TEST(StepRefinement, DoublesAgainAfterSeveralCalmStepsInARow) {
+  const std::vector<double> calm(7, 0.007);
+  const auto after = [&](std::vector<double> between) {
+    std::vector<double> excesses{0.061};
+    excesses.insert(excesses.end(), calm.begin(), calm.end());
+    excesses.insert(excesses.end(), between.begin(), between.end());
+    return parts_after(excesses);
+  };
+  EXPECT_EQ(after({}), 4);
+  EXPECT_EQ(after({0.007}), 2);
+  EXPECT_EQ(after({0.008, 0.007}), 4) << "there was not room enough in between";
+  EXPECT_EQ(parts_after(std::vector<double>(30, 0.0)), 1);
+}
+
+TEST(StepRefinement, MakesAsManyPartsAsTurnLittleEnough) {
+  const StepRefinement refinement(both_ways(), 8);
+  SimulationState state;
+  const auto parts_after_turn = [&](double turn) {
+    refinement.choose_by_turn(turn, state);
+    return state.parts;
+  };
+  EXPECT_EQ(parts_after_turn(1.0 / 71.0), 1);
+  EXPECT_EQ(parts_after_turn(1.0 / 69.0), 2);
+  EXPECT_EQ(parts_after_turn(1.0 / 69.0), 3) << "of one of two parts";
+  EXPECT_EQ(parts_after_turn(1.0 / 106.0), 2) << "of one of three parts";
+  EXPECT_EQ(parts_after_turn(0.0), 1);
+  EXPECT_EQ(parts_after_turn(10.0), 8);
+}
+
+// Verlet's positions lie on the parabola of what is thrown, whatever the step.
+TEST(StepRefinement, LeavesVerletOnTheParabola) {
+  const SpringNetwork ball = testing::one_particle(Vector3::Zero(), {}, Vector3(1.0, 2.0, 0.0));
+  const Vector3 g(0.0, -testing::kGravity, 0.0);
+  Forces forces;
+  forces.push_back(std::make_unique<Gravity>(ball, g));
+  const auto integrator = make_integrator(VerletSettings{}, ball);
+  SimulationState state = initial_state(ball);
+  constexpr double kStep = 0.01;
+  integrator->start(state, forces, kStep);
+  for (; state.step < 5; ++state.step) integrator->advance(state, forces, kStep);
+  state.parts = 4;
+  integrator->step_changed(state, forces, kStep, 0.25 * kStep);
+  for (int part = 0; part < 12; ++part) integrator->advance(state, forces, 0.25 * kStep);
+  state.parts = 1;
+  integrator->step_changed(state, forces, 0.25 * kStep, kStep);
+  for (int step = 0; step < 4; ++step) integrator->advance(state, forces, kStep);
+  const double t = 12 * kStep;
+  // 21 steps, each rounded a few times, of differences that later ones add up: positions are below 1 m.
+  EXPECT_LT((state.x.col(0) - (t * Vector3(1.0, 2.0, 0.0) + 0.5 * t * t * g)).norm(), 21 * 21 * kEpsilon);
+}
+
+/// A cloth of 1 m that swings from two of its corners, and begins level.
+SpringNetwork swinging_cloth(Index side) {
+  SpringNetwork network = testing::cloth(side, 0.0);
+  network.springs.stiffness.assign(network.springs.stiffness.size(), 0.0);
+  network.springs.damping.assign(network.springs.damping.size(), 0.0);
+  network.pins.push_back({.particles = {side * (side - 1), side * side - 1}, .origin = Vector3::Zero(), .motion = {}});
+  for (const Index i : network.pins[0].particles) network.inverse_masses[i] = 0.0;
+  return network;
+}
+
+struct Swing {
+  Points x;
+  double energy = 0.0;        ///< of motion and height [J]
+  double worst_excess = 0.0;  ///< after any step
+  int most_parts = 0;
+};
+
+/// For a second and a half, by steps of which a frame takes so many.
+Swing swing(const SpringNetwork& network, int steps_a_frame, int most_parts, const StretchLimitSettings& limit = both_ways()) {
+  Simulator simulator(network, {.step = 1.0 / (kRate * steps_a_frame), .stretch_limit = limit, .most_parts = most_parts});
+  Swing swing;
+  for (int step = 1; step <= 90 * steps_a_frame; ++step) {
+    const StepReport report = simulator.step();
+    EXPECT_EQ(simulator.time(), step * simulator.settings().step);
+    swing.worst_excess = std::max(swing.worst_excess, report.stretch_excess);
+    swing.most_parts = std::max(swing.most_parts, report.parts);
+  }
+  swing.x = simulator.positions();
+  swing.energy = 0.5 * network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose()) + simulator.gravity_energy();
+  return swing;
+}
+
+TEST(StepRefinement, HoldsTheLimitOfWhatSwingsAndItsEnergy) {
+  const SpringNetwork cloth = swinging_cloth(16);
+  const Swing coarse = swing(cloth, 8, 1);
+  const Swing refined = swing(cloth, 8, 8);
+  const Swing fine = swing(cloth, 80, 1);
+  EXPECT_EQ(coarse.most_parts, 1);
+  EXPECT_EQ(refined.most_parts, 8);
+  EXPECT_GT(coarse.worst_excess, 0.05);
+  EXPECT_LT(refined.worst_excess, 0.04);
+  const double height = 0.2 * testing::kGravity * 1.0;  // what the cloth's lower edge may fall by
+  EXPECT_NEAR(refined.energy, fine.energy, 0.1 * height);
+}
+
+// What a global solve holds is within its limit at any step, but loses what it got as it fell.
+TEST(StepRefinement, KeepsTheEnergyOfWhatTurns) {
+  const StretchLimitSettings limit{.max_stretch = 0.0, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};
+  const SpringNetwork cloth = swinging_cloth(16);
+  const Swing coarse = swing(cloth, 1, 1, limit);
+  const Swing refined = swing(cloth, 1, 8, limit);
+  const Swing fine = swing(cloth, 10, 1, limit);
+  EXPECT_GT(refined.most_parts, 2);
+  for (const Swing& held : {coarse, refined, fine}) EXPECT_LT(held.worst_excess, 0.02);
+  const double fall = 0.2 * testing::kGravity * 0.5;  // by half its length
+  EXPECT_LT(coarse.energy, fine.energy - 0.2 * fall);
+  EXPECT_NEAR(refined.energy, fine.energy, 0.1 * fall);
+}
+
+TEST(StepRefinement, BeginsWithTheSmallestPartsOfWhatMoves) {
+  NetworkBuilder builder;
+  const Vector3 velocity(0.0, 0.0, 10.0);
+  const Index first = builder.add_particle({0.0, 0.0, 0.0}, 1.0, velocity);
+  builder.add_spring(first, builder.add_particle({1.0, 0.0, 0.0}, 1.0, velocity), 0.0, 1.0, 0.0);
+  SimulatorSettings settings{.step = 1.0 / kRate, .stretch_limit = StretchLimitSettings{}, .most_parts = 8};
+  EXPECT_EQ(Simulator(builder.build(), settings).step().parts, 1) << "passes follow what they miss";
+  settings.stretch_limit->solver = StretchLimitSettings::Solver::automatic;
+  Simulator simulator(builder.build(), settings);
+  EXPECT_EQ(simulator.step().parts, 8);
+  EXPECT_EQ(simulator.step().parts, 1) << "it flies, and does not turn";
+  SpringNetwork resting = builder.build();
+  resting.velocities.setZero();
+  EXPECT_EQ(Simulator(resting, settings).step().parts, 1);
+  resting.pins.push_back({.particles = {first}, .origin = Vector3::Zero(), .motion = {.spin = {0.0, 90.0, 0.0}}});
+  resting.inverse_masses[first] = 0.0;
+  EXPECT_EQ(Simulator(resting, settings).step().parts, 8);
+}
+
+// Eight parts are eight steps: for Verlet's first, and for the friction of a penalty, which stops what slides within a step if it
+// can.
+TEST(StepRefinement, APartAtTheStartIsAStepOfItsLength) {
+  const ContactMaterial rough{.thickness = 0.01, .friction = 100.0, .static_friction = 100.0};
+  NetworkBuilder builder;
+  builder.begin_body("stick", rough);
+  const Vector3 velocity(1.0, 0.0, 0.0);
+  const Index first = builder.add_particle({0.0, 0.005, 0.0}, 1.0, velocity);
+  builder.add_spring(first, builder.add_particle({1.0, 0.005, 0.0}, 1.0, velocity), 0.0, 1.0);
+  const auto after_a_frame = [&](int most_parts, int steps) {
+    SimulatorSettings settings{.step = 1.0 / (kRate * steps),
+                               .stretch_limit = StretchLimitSettings{.solver = StretchLimitSettings::Solver::newton},
+                               .most_parts = most_parts};
+    settings.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1000.0};
+    Simulator simulator(builder.build(), settings, {testing::ground(rough)});
+    for (int step = 0; step < steps; ++step) EXPECT_EQ(simulator.step().parts, 8 / steps);
+    EXPECT_GT(simulator.contact_count(), 0);
+    return simulator.positions();
+  };
+  EXPECT_EQ(after_a_frame(8, 1), after_a_frame(1, 8));
+}
+
+// It begins unstretched, and so bounces at first; smaller steps would only make it bounce the higher.
+TEST(StepRefinement, LeavesWhatHangsAlone) {
+  SpringNetwork cloth = swinging_cloth(64);
+  cloth.positions.row(1) = -cloth.positions.row(2);
+  cloth.positions.row(2).setZero();
+  ASSERT_GT(cloth.positions(1, cloth.pins[0].particles[0]), cloth.positions(1, 0));
+  EXPECT_EQ(swing(cloth, 27, 8).most_parts, 1);
+}
+
+// Dampers see it; a chord of the wheel's arc is the longer, and points the more inwards, the longer the step.
+TEST(StepRefinement, PinsHaveTheVelocityOfTheStepToCome) {
+  SpringNetwork cloth = swinging_cloth(16);
+  Pin& pin = cloth.pins.front();
+  pin.motion.spin = Vector3(0.0, 0.0, 90.0);
+  const Index held = pin.particles.back();
+  const auto held_at = [&](double time) -> Vector3 {
+    return pin.motion.pose(RigidTransform::Identity(), time) * cloth.positions.col(held);
+  };
+  Simulator simulator(cloth, {.step = 1.0 / (8 * kRate), .stretch_limit = both_ways(), .most_parts = 8});
+  int changes = 0;
+  for (int step = 0, parts = 1; step < 500; ++step) {
+    simulator.step();
+    const SimulationState& state = simulator.state();
+    changes += state.parts != parts ? 1 : 0;
+    parts = state.parts;
+    const double dt = simulator.settings().step / parts;
+    const Vector3 expected = (held_at(simulator.time() + dt) - held_at(simulator.time())) / dt;
+    // Positions of less than 2 m are rounded before their difference is divided by the step.
+    ASSERT_LT((state.v.col(held) - expected).norm(), 16 * kEpsilon / dt) << "step " << step;
+  }
+  EXPECT_GT(changes, 1);
+}
+
+TEST(StepRefinement, IsTheSameForAnyNumberOfThreads) {
+  const SpringNetwork cloth = swinging_cloth(40);
+  const auto positions = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return swing(cloth, 4, 4).x;
+  };
+  EXPECT_EQ(positions(1), positions(2));
+}
+
+TEST(StepRefinement, PartsOutOfTheirBoundsAreRefused) {
+  for (const int parts : {0, kMostParts + 1}) {
+    try {
+      const Simulator simulator(testing::one_particle(Vector3::Zero()), {.most_parts = parts});
+      FAIL() << parts;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.problems().front().key, "most_parts");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sprung
