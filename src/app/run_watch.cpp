@@ -50,7 +50,7 @@ RunWatch::RunWatch(const Simulator& simulator, RunOutput& output, bool quiet)
     : simulator_(simulator), output_(output), quiet_(quiet), gain_(simulator) {}
 
 void RunWatch::see(const FrameDiagnostics& frame) {
-  see_squeezing(frame);
+  see_infeasible(frame);
   see_stretch(frame);
   see_handovers();
   see_held_back(frame);
@@ -73,13 +73,13 @@ void RunWatch::warn(const std::string& warning) {
   print_warning(warning);
 }
 
-void RunWatch::see_squeezing(const FrameDiagnostics& frame) {
-  if (squeezed_ || frame.squeezed == 0) return;
-  squeezed_ = true;
+void RunWatch::see_infeasible(const FrameDiagnostics& frame) {
+  if (infeasible_ || frame.infeasible == 0) return;
+  infeasible_ = true;
   warn(fmt::format(
       "frame {}: particles found no free place between obstacles, pins and each other {} times and may cross them; the column "
-      "squeezed of diagnostics.csv counts them; leave them more room, or let what closes in on them stop before or go slower",
-      frame.frame, frame.squeezed));
+      "infeasible of diagnostics.csv counts them; leave them more room, or let what closes in on them stop before or go slower",
+      frame.frame, frame.infeasible));
 }
 
 void RunWatch::see_stretch(const FrameDiagnostics& frame) {
@@ -92,7 +92,7 @@ void RunWatch::see_stretch(const FrameDiagnostics& frame) {
 }
 
 void RunWatch::see_handovers() {
-  const std::vector<StretchHold>& holds = simulator_.state().stretch_holds;
+  const std::vector<StretchHandover>& holds = simulator_.state().stretch_holds;
   handed_over_.resize(holds.size(), false);
   for (std::size_t b = 0; b < holds.size(); ++b) {
     if (quiet_ || handed_over_[b] || !holds[b].solved_since) continue;
@@ -106,7 +106,7 @@ void RunWatch::see_held_back(const FrameDiagnostics& frame) {
   ++frames_;
   const double particles = static_cast<double>(frame.parts) * static_cast<double>(simulator_.network().particle_count());
   // What closes in on bodies holds them back too, whatever their thickness.
-  if (frame.squeezed == 0 && static_cast<double>(frame.truncated) > kManyParticles * particles) ++held_back_;
+  if (frame.infeasible == 0 && static_cast<double>(frame.truncated) > kManyParticles * particles) ++held_back_;
 }
 
 void RunWatch::tell_of_thin_bodies() {

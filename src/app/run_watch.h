@@ -25,7 +25,7 @@ class RunWatch {
 
  private:
   void warn(const std::string& warning);
-  void see_squeezing(const FrameDiagnostics& frame);
+  void see_infeasible(const FrameDiagnostics& frame);
   void see_stretch(const FrameDiagnostics& frame);
   void see_handovers();
   void see_held_back(const FrameDiagnostics& frame);
@@ -40,7 +40,7 @@ class RunWatch {
   const Simulator& simulator_;
   RunOutput& output_;
   bool quiet_;
-  bool squeezed_ = false;
+  bool infeasible_ = false;
   Missed missed_;
   EnergyGain gain_;
   int frames_ = 0;

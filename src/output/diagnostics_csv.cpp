@@ -26,7 +26,7 @@ const std::array<Column, 14> kColumns{{
     {"frame_ms", [](const Frame& frame) { return format_number(frame.frame_ms); }},
     {"stretch_excess", [](const Frame& frame) { return format_number(frame.stretch_excess); }},
     {"truncated", [](const Frame& frame) { return std::to_string(frame.truncated); }},
-    {"squeezed", [](const Frame& frame) { return std::to_string(frame.squeezed); }},
+    {"infeasible", [](const Frame& frame) { return std::to_string(frame.infeasible); }},
     {"limit_solves", [](const Frame& frame) { return std::to_string(frame.limit_solves); }},
     {"parts", [](const Frame& frame) { return std::to_string(frame.parts); }},
 }};

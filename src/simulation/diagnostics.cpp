@@ -53,10 +53,10 @@ FrameDiagnostics FrameRunner::first_frame() const { return measure(simulator_, 1
 FrameDiagnostics FrameRunner::next_frame() {
   const auto begin = std::chrono::steady_clock::now();
   StepReport all;
-  int most_parts = 1;
+  int max_substeps = 1;
   for (int step = 0; step < steps_per_frame_; ++step) {
     const StepReport report = simulator_.step();
-    most_parts = std::max(most_parts, report.parts);
+    max_substeps = std::max(max_substeps, report.parts);
     all += report;
   }
   simulator_.check();
@@ -65,9 +65,9 @@ FrameDiagnostics FrameRunner::next_frame() {
   FrameDiagnostics diagnostics = measure(simulator_, ++frame_);
   diagnostics.stretch_excess = all.stretch_excess;
   diagnostics.truncated = all.truncated;
-  diagnostics.squeezed = all.squeezed;
+  diagnostics.infeasible = all.infeasible;
   diagnostics.parts = all.parts;
-  diagnostics.smallest_step = simulator_.settings().step / most_parts;
+  diagnostics.smallest_step = simulator_.settings().step / max_substeps;
   diagnostics.limit_solves = all.limit_solves;
   diagnostics.frame_ms = elapsed.count();
   return diagnostics;

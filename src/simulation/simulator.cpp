@@ -41,13 +41,13 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       state(initial_state(network)),
       begun{state, energy_watch, {}} {
   const StretchLimit* limit = constraints.limit();
-  if (limit != nullptr && settings.most_parts > 1) {
-    refinement.emplace(limit->settings(), settings.most_parts);
-    if (waits_for_turn || (limit->follows_turn() && anything_moves())) state.parts = settings.most_parts;
+  if (limit != nullptr && settings.max_substeps > 1) {
+    refinement.emplace(limit->settings(), settings.max_substeps);
+    if (waits_for_turn || (limit->follows_turn() && anything_moves())) state.parts = settings.max_substeps;
   }
   gravity = add_force<Gravity>(settings.gravity);
   springs = add_force<SpringForce>();
-  if (network.angle_bends.count() > 0) angles = add_force<AngleForce>();
+  if (network.angle_bends.count() > 0) angles = add_force<BendingAngleForce>();
   if (settings.air_drag > 0.0) add_force<AirDrag>(settings.air_drag, settings.wind);
   if (settings.contact.response == ContactSettings::Response::penalty && !environment.obstacles().empty()) {
     penalty = add_force<PenaltyContact>(environment, settings.contact.stiffness, settings.contact.damping, dt());
@@ -75,8 +75,8 @@ StepReport Simulator::Implementation::step() {
   kept_contacts.reset();
   const int more = parts_by_turn();
   StepReport report = make_step(more, std::numeric_limits<Index>::max());
-  if (may_retry(report.most_squeezed, begun.state)) report = make_again(report, more);
-  note_step(report.squeezed, state);
+  if (may_retry(report.max_infeasible, begun.state)) report = make_again(report, more);
+  note_step(report.infeasible, state);
   if (refinement) choose_parts(report);
   if (const StretchLimit* limit = constraints.limit()) hand_over_missed(network, *limit, report.stretch_excess, state);
   return report;
@@ -90,7 +90,7 @@ int Simulator::Implementation::parts_by_turn() const {
     turn = std::max(turn, obstacle.motion.turn(begin, begin + settings.step));
   for (const Pin& pin : network.pins) turn = std::max(turn, pin.motion.turn(begin, begin + settings.step));
   const double needed = std::ceil(turn / (kMostTurn * state.parts));
-  return static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(std::min(kRetryParts.back(), kMostParts / state.parts))));
+  return static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(std::min(kRetryParts.back(), kMaxSubsteps / state.parts))));
 }
 
 /// In so many times as many parts. A part that squeezes too many particles is the last.
@@ -99,7 +99,7 @@ StepReport Simulator::Implementation::make_step(int more, Index too_many) {
   integrator->set_part(1.0 / more);
   set_parts(more * parts);
   StepReport report;
-  for (const std::int64_t step = state.step; state.step == step && report.most_squeezed < too_many;) {
+  for (const std::int64_t step = state.step; state.step == step && report.max_infeasible < too_many;) {
     if (stops && stops()) throw StoppedError();
     report += make_part();
   }
@@ -222,8 +222,8 @@ StepReport& StepReport::operator+=(const StepReport& part) {
   limit_solves += part.limit_solves;
   stretch_excess = std::max(stretch_excess, part.stretch_excess);
   truncated += part.truncated;
-  squeezed += part.squeezed;
-  most_squeezed = std::max(most_squeezed, part.squeezed);
+  infeasible += part.infeasible;
+  max_infeasible = std::max(max_infeasible, part.infeasible);
   return *this;
 }
 

@@ -23,14 +23,14 @@ namespace sprung {
 struct Begun {
   SimulationState state;
   EnergyWatch watch;
-  LetThrough through;
+  PermittedCrossings through;
 };
 
 /// What a step, made in some number of parts, came to.
 struct Made {
   SimulationState state;
   EnergyWatch watch;
-  LetThrough through;
+  PermittedCrossings through;
   StepReport report;
   Index contacts = 0;
 };
@@ -75,8 +75,8 @@ struct Simulator::Implementation {
   Forces forces;
   const Gravity* gravity = nullptr;
   const SpringForce* springs = nullptr;
-  const AngleForce* angles = nullptr;  ///< when the network has angle bends
-  PenaltyContact* penalty = nullptr;   ///< when contact answers by forces
+  const BendingAngleForce* angles = nullptr;  ///< when the network has angle bends
+  PenaltyContact* penalty = nullptr;          ///< when contact answers by forces
   std::unique_ptr<Integrator> integrator;
   StepConstraints constraints;
   std::function<bool()> stops;               ///< see Simulator::stop_when

@@ -7,15 +7,15 @@
 namespace sprung {
 
 // What a step leads far, by a lever or between obstacles that close, may find no place though there is one: in smaller steps
-// contact answers before they meet. Of all attempts that of the fewest squeezed counts. What is wrung past its room finds none in
-// any number of parts: an attempt that will not halve what is squeezed is left off, as it may take hundreds of times as long.
+// contact answers before they meet. Of all attempts that of the fewest infeasible counts. What is wrung past its room finds none in
+// any number of parts: an attempt that will not halve what is infeasible is left off, as it may take hundreds of times as long.
 StepReport Simulator::Implementation::make_again(const StepReport& first, int more_at_first) {
   Made best = made(first);
   constraints.look_ahead(true);
   for (const int more : kRetryParts) {
-    if (best.report.most_squeezed == 0 || begun.state.parts > kMostParts / more) break;
+    if (best.report.max_infeasible == 0 || begun.state.parts > kMaxSubsteps / more) break;
     if (more <= more_at_first) continue;
-    const auto report = attempt(more, (best.report.most_squeezed + 1) / 2);
+    const auto report = attempt(more, (best.report.max_infeasible + 1) / 2);
     if (report) best = made(*report);
   }
   constraints.look_ahead(false);
@@ -24,7 +24,7 @@ StepReport Simulator::Implementation::make_again(const StepReport& first, int mo
   environment.set_interval(time(), time());
   energy_watch = best.watch;
   kept_contacts = best.contacts;
-  note_retry(first.most_squeezed, best.report.most_squeezed, state);
+  note_retry(first.max_infeasible, best.report.max_infeasible, state);
   return best.report;
 }
 
@@ -40,7 +40,7 @@ std::optional<StepReport> Simulator::Implementation::attempt(int more, Index too
   environment.set_interval(time(), time());
   try {
     const StepReport report = make_step(more, too_many);
-    return report.most_squeezed < too_many ? std::optional(report) : std::nullopt;
+    return report.max_infeasible < too_many ? std::optional(report) : std::nullopt;
   } catch (const StepError&) {
     integrator->set_part(1.0);
     set_parts(begun.state.parts);

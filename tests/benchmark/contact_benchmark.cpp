@@ -69,11 +69,11 @@ void truncation_near(benchmark::State& state) {
   const ThreadLimit limit(static_cast<int>(state.range(1)));
   Environment environment({Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
   const Cloth cloth = cloth_on(mesh);
-  FreeSpace space(environment,
-                  make_collision_surface({}, cloth.before, std::vector<Index>(kParticles, 0), cloth.thickness,
-                                         std::vector<char>(kParticles, 0), {0}, {0}),
-                  cloth.before, kMargin);
-  Truncation truncation;
+  StepTruncation space(environment,
+                       make_collision_surface({}, cloth.before, std::vector<Index>(kParticles, 0), cloth.thickness,
+                                              std::vector<char>(kParticles, 0), {0}, {0}),
+                       cloth.before, kMargin);
+  TruncationResult truncation;
   for (auto _ : state) {
     Points after = cloth.after;
     truncation = space.truncate(cloth.before, after);

@@ -153,10 +153,10 @@ void limited_rope(benchmark::State& state) {
 }
 
 /// Of motion and height [J] after `frames`, by `parts` of the chosen step, each of which may be halved as the settings say.
-double energy_after(const BuiltScene& built, int frames, int parts, int most_parts) {
+double energy_after(const BuiltScene& built, int frames, int parts, int max_substeps) {
   SimulatorSettings settings = built.settings;
   settings.step /= parts;
-  settings.most_parts = most_parts;
+  settings.max_substeps = max_substeps;
   Simulator simulator(built.network, settings);
   for (int step = 0; step < frames * built.steps_per_frame * parts; ++step) simulator.step();
   return 0.5 * built.network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose()) + simulator.gravity_energy();
@@ -169,7 +169,7 @@ void swing_energy(benchmark::State& state) {
   const BuiltScene built = build_scene(cloth(static_cast<Index>(state.range(0)), swinging, cloth_limit(state.range(1) != 0)));
   const double fall = built.network.masses.sum() * kGravity * 0.5;
   for ([[maybe_unused]] auto _ : state) {
-    const double energy = energy_after(built, kTwoSeconds, 1, built.settings.most_parts);
+    const double energy = energy_after(built, kTwoSeconds, 1, built.settings.max_substeps);
     state.counters["off_%"] = 100.0 * (energy - energy_after(built, kTwoSeconds, 10, 1)) / fall;
   }
 }

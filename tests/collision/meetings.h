@@ -11,7 +11,7 @@ namespace sprung::test {
 
 /// Two triangles, or two segments, a gap of up to a hundredth of their size apart.
 struct Meeting {
-  ElementPair pair;
+  ConvexPair pair;
   Points before;
 };
 

@@ -107,15 +107,15 @@ inline int count_crossings(const std::vector<Element>& elements, const Points& x
 }
 
 /// Brings held particles as near to their targets as projections onto what bounds them do; else to their safe place.
-inline Index truncate(SelfZones& zones, const Points& before, Points& targets) {
-  const std::vector<Index> held = zones.hold(before, targets);
+inline Index truncate(PairSeparation& regions, const Points& before, Points& targets) {
+  const std::vector<Index> held = regions.hold(before, targets);
   std::vector<HalfSpace> half_spaces;
   for (const Index i : held) {
     Vector3 p = targets.col(i);
     half_spaces.clear();
-    zones.append_half_spaces(i, half_spaces);
-    const SelfZones::Ball ball = zones.ball(i);
-    for (int sweep = 0; sweep < 8 && !zones.allows(i, p); ++sweep) {
+    regions.append_half_spaces(i, half_spaces);
+    const PairSeparation::Ball ball = regions.ball(i);
+    for (int sweep = 0; sweep < 8 && !regions.allows(i, p); ++sweep) {
       for (const HalfSpace& bound : half_spaces) {
         const double depth = bound.offset - bound.normal.dot(p);
         if (depth > 0.0) p += 1.001 * depth * bound.normal;
@@ -123,21 +123,21 @@ inline Index truncate(SelfZones& zones, const Points& before, Points& targets) {
       const Vector3 out = p - ball.center;
       if (out.norm() > ball.radius) p = ball.center + 0.999 * ball.radius / out.norm() * out;
     }
-    targets.col(i) = zones.allows(i, p) ? p : zones.safe_place(i);
+    targets.col(i) = regions.allows(i, p) ? p : regions.safe_place(i);
   }
   return static_cast<Index>(held.size());
 }
 
 /// Steps whose targets are `move(step, before)`; returns the positions at the end.
-inline Points run(const SelfNetwork& network, SelfZones& zones, int steps, const std::function<Points(int, const Points&)>& move,
-                  const std::function<void(const Points&)>& look = {}) {
+inline Points run(const SelfNetwork& network, PairSeparation& regions, int steps,
+                  const std::function<Points(int, const Points&)>& move, const std::function<void(const Points&)>& look = {}) {
   Points x = network.positions;
   std::vector<Contact> contacts;
   for (int step = 0; step < steps; ++step) {
     Points targets = move(step, x);
     contacts.clear();
-    zones.begin_step(x, targets, contacts);
-    truncate(zones, x, targets);
+    regions.begin_step(x, targets, contacts);
+    truncate(regions, x, targets);
     x = targets;
     if (look) look(x);
   }

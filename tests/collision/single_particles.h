@@ -15,11 +15,11 @@ inline CollisionSurface particle_surface(const std::vector<char>& held) {
                                 {0});
 }
 
-inline FreeSpace single_particles(Environment& environment, const std::vector<char>& held, double margin = 0.0) {
-  return FreeSpace(environment, particle_surface(held), Points::Zero(3, static_cast<Index>(held.size())), margin);
+inline StepTruncation single_particles(Environment& environment, const std::vector<char>& held, double margin = 0.0) {
+  return StepTruncation(environment, particle_surface(held), Points::Zero(3, static_cast<Index>(held.size())), margin);
 }
 
-inline FreeSpace single_particles(Environment& environment, Index count) {
+inline StepTruncation single_particles(Environment& environment, Index count) {
   return single_particles(environment, std::vector<char>(static_cast<std::size_t>(count), 0));
 }
 

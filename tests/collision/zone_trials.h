@@ -1,4 +1,4 @@
-// Elements near meshes, moved about within their zones, and whether they cross: judged by exact signs over all triangles.
+// Elements near meshes, moved about within their regions, and whether they cross: judged by exact signs over all triangles.
 #pragma once
 
 #include "collision/mesh_bvh/segment_triangle_crossing.h"
@@ -41,13 +41,13 @@ inline bool crosses(const ElementCorners& element, const TriangleMesh& mesh) {
   return false;
 }
 
-inline bool holds(const Zone& zone, const Vector3& corner, const Vector3& p) {
-  // Rounding of coordinates up to 2: what the zone's clearance is far above.
+inline bool holds(const SafeRegion& region, const Vector3& corner, const Vector3& p) {
+  // Rounding of coordinates up to 2: what the region's clearance is far above.
   constexpr double kRounding = 1e-15;
-  if ((p - corner).norm() > zone.free_radius) return false;
-  if (!Box3(zone.box.min().array() - kRounding, zone.box.max().array() + kRounding).contains(p)) return false;
-  for (int k = 0; k < zone.plane_count; ++k) {
-    const HalfSpace& plane = zone.planes[static_cast<std::size_t>(k)];
+  if ((p - corner).norm() > region.free_radius) return false;
+  if (!Box3(region.box.min().array() - kRounding, region.box.max().array() + kRounding).contains(p)) return false;
+  for (int k = 0; k < region.plane_count; ++k) {
+    const HalfSpace& plane = region.planes[static_cast<std::size_t>(k)];
     if (plane.normal.dot(p) < plane.offset - kRounding) return false;
   }
   return true;
@@ -62,11 +62,11 @@ inline ElementCorners random_element(const TriangleMesh& mesh, Random& random, i
   return element;
 }
 
-/// An extreme place for a corner that the zone was made around: far out, then brought back to where the zone ends.
-inline Vector3 moved_within(const Zone& zone, const Vector3& corner, double reach, Random& random) {
+/// An extreme place for a corner that the region was made around: far out, then brought back to where the region ends.
+inline Vector3 moved_within(const SafeRegion& region, const Vector3& corner, double reach, Random& random) {
   Vector3 step = random.between(0.5, 3.0) * reach * random.direction();
   for (int halving = 0; halving < 60; ++halving, step *= 0.8) {
-    if (holds(zone, corner, corner + step)) return corner + step;
+    if (holds(region, corner, corner + step)) return corner + step;
   }
   return corner;
 }

@@ -8,7 +8,7 @@ namespace {
 TEST(DiagnosticsCsv, ColumnsAreThoseOfTheContract) {
   EXPECT_EQ(csv_head(),
             "frame,time,kinetic_energy,elastic_energy,gravity_energy,max_stretch,contacts,min_distance,frame_ms,"
-            "stretch_excess,truncated,squeezed,limit_solves,parts\n");
+            "stretch_excess,truncated,infeasible,limit_solves,parts\n");
 }
 
 TEST(DiagnosticsCsv, RowHoldsTheShortestNumbersInTheColumnsOrder) {
@@ -22,7 +22,7 @@ TEST(DiagnosticsCsv, RowHoldsTheShortestNumbersInTheColumnsOrder) {
                                .contacts = 4,
                                .min_distance = 0.005,
                                .truncated = 6,
-                               .squeezed = 7,
+                               .infeasible = 7,
                                .parts = 10,
                                .limit_solves = 9,
                                .frame_ms = 8.5};

@@ -271,7 +271,7 @@ TEST(RandomScenes, NothingCrossesItselfOrAnotherOrARigidObstacleInAnyStep) {
   const Reports reports =
       run_scenes(200, Judge::obstacles_and_self, scene_of_three, [](const BuiltScene& scene) { return !deforms(scene); });
   for (const auto& [number, report] : reports) {
-    EXPECT_TRUE(report.is_free() && report.squeezed == 0) << "scene " << number << ": " << report;
+    EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
   }
   EXPECT_GT(reports.size(), 40);
 }
@@ -280,7 +280,7 @@ TEST(RandomScenes, NothingCrossesItselfOrAnotherOrARigidObstacleInAnyStep) {
 TEST(RandomScenes, NothingCrossesItselfOrAnotherBetweenAnObstacleThatMovesAndAFloor) {
   const Reports reports = run_scenes(200, Judge::obstacles_and_self, scene_above_floor, [](const BuiltScene&) { return true; });
   for (const auto& [number, report] : reports) {
-    EXPECT_TRUE(report.is_free() && report.squeezed == 0) << "scene " << number << ": " << report;
+    EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
   }
   EXPECT_GT(reports.size(), 40);
 }
@@ -290,7 +290,7 @@ TEST(RandomScenes, NothingCrossesBesideItsPins) {
   const auto make = [](Random& random) { return scene_with_pins(random, false); };
   const Reports reports = run_scenes(1000, Judge::obstacles, make, leaves_pins_alone);
   for (const auto& [number, report] : reports) {
-    EXPECT_TRUE(report.is_free() && report.squeezed == 0) << "scene " << number << ": " << report;
+    EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
   }
   EXPECT_GT(reports.size(), 250);
 }
@@ -299,12 +299,12 @@ TEST(RandomScenes, NothingCrossesBesideItsPins) {
 TEST(RandomScenes, NothingCrossesItselfBesideItsPins) {
   const auto make = [](Random& random) { return scene_with_pins(random, true); };
   const Reports reports = run_scenes(300, Judge::obstacles_and_self, make, leaves_pins_alone);
-  std::size_t squeezed = 0;
+  std::size_t infeasible = 0;
   for (const auto& [number, report] : reports) {
-    EXPECT_TRUE(report.is_free() || report.squeezed > 0) << "scene " << number << ": " << report;
-    if (report.squeezed > 0) ++squeezed;
+    EXPECT_TRUE(report.is_free() || report.infeasible > 0) << "scene " << number << ": " << report;
+    if (report.infeasible > 0) ++infeasible;
   }
-  EXPECT_LE(squeezed, reports.size() / 100);
+  EXPECT_LE(infeasible, reports.size() / 100);
   EXPECT_GT(reports.size(), 100);
 }
 

@@ -87,8 +87,8 @@ std::ostream& operator<<(std::ostream& stream, const ScenarioReport& report) {
   return stream << report.frames << " frames in steps of " << format_number(report.step, 4) << " s: " << report.inside
                 << " inside, " << report.crossings << " crossings, " << report.self_crossings << " self-crossings, in frames "
                 << report.first_wrong_frame << " to " << report.last_wrong_frame << "; stretch "
-                << format_number(report.max_stretch, 3) << ", " << report.truncated << " truncated, " << report.squeezed
-                << " squeezed; simulated in " << format_number(report.simulation_seconds, 3) << " s, judged in "
+                << format_number(report.max_stretch, 3) << ", " << report.truncated << " truncated, " << report.infeasible
+                << " infeasible; simulated in " << format_number(report.simulation_seconds, 3) << " s, judged in "
                 << format_number(report.judge_seconds, 3) << " s";
 }
 
@@ -102,7 +102,7 @@ ScenarioReport run_scenario(BuiltScene scene, const Watch& watch, Judge judge) {
     report.frames = number;
     report.max_stretch = std::max(report.max_stretch, frame.max_stretch);
     report.truncated += frame.truncated;
-    report.squeezed += frame.squeezed;
+    report.infeasible += frame.infeasible;
     report.simulation_seconds += 1e-3 * frame.frame_ms;
     frame_judge.look(number, report);
     if (watch) watch(simulator, frame);

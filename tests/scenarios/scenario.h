@@ -32,7 +32,7 @@ struct ScenarioReport {
   int last_wrong_frame = 0;
   double max_stretch = 0.0;
   Index truncated = 0;
-  Index squeezed = 0;
+  Index infeasible = 0;
   double simulation_seconds = 0.0;
   double judge_seconds = 0.0;
 

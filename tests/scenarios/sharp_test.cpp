@@ -95,7 +95,7 @@ TEST(Thin, AClothWithoutThicknessHangsOverPrimitives) {
                     "bodies.cloth.friction=0", "bodies.cloth.mass=0.1", "bodies.cloth.shape.size=[0.6,0.6]",
                     "bodies.cloth.shape.resolution=[12,12]", "bodies.cloth.place.position=[0,0.4,0]"}));
       EXPECT_TRUE(report.is_free()) << shape << motion << report;
-      EXPECT_EQ(report.squeezed, 0) << shape << motion;
+      EXPECT_EQ(report.infeasible, 0) << shape << motion;
     }
   }
 }

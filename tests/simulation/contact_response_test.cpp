@@ -12,16 +12,16 @@ using testing::kGravity;
 using testing::one_particle;
 using testing::run;
 
-class ContactResponse : public ::testing::TestWithParam<std::size_t> {
+class ContactSolver : public ::testing::TestWithParam<std::size_t> {
  protected:
   [[nodiscard]] SimulatorSettings settings(double step) const {
     return {.step = step, .integrator = all_integrators()[GetParam()]};
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Integrators, ContactResponse, ::testing::Range(std::size_t{0}, all_integrators().size()));
+INSTANTIATE_TEST_SUITE_P(Integrators, ContactSolver, ::testing::Range(std::size_t{0}, all_integrators().size()));
 
-TEST_P(ContactResponse, ParticleComesToRestAtItsThickness) {
+TEST_P(ContactSolver, ParticleComesToRestAtItsThickness) {
   Simulator simulator(one_particle({0.0, 0.3, 0.0}, {.thickness = 0.01}), settings(1e-3), {ground({.thickness = 0.002})});
   run(simulator, 2.0);
   // A step of free fall from rest is g dt^2 = 1e-5 m, and explicit Euler is one step behind.
@@ -29,7 +29,7 @@ TEST_P(ContactResponse, ParticleComesToRestAtItsThickness) {
   EXPECT_LE(simulator.state().v.col(0).norm(), 1.01 * kGravity * 1e-3);
 }
 
-TEST_P(ContactResponse, FrictionHoldsBelowTheCriticalAngleAndLetsGoAboveIt) {
+TEST_P(ContactSolver, FrictionHoldsBelowTheCriticalAngleAndLetsGoAboveIt) {
   const double mu = 0.3;
   const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
   for (const double factor : {0.99, 1.01}) {
@@ -47,7 +47,7 @@ TEST_P(ContactResponse, FrictionHoldsBelowTheCriticalAngleAndLetsGoAboveIt) {
   }
 }
 
-TEST_P(ContactResponse, SlidingParticleStopsAfterItsStoppingDistance) {
+TEST_P(ContactSolver, SlidingParticleStopsAfterItsStoppingDistance) {
   const double mu = 0.4;
   const double speed = 2.0;
   const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
@@ -77,7 +77,7 @@ std::vector<Obstacle> landing_places() {
   return {ground(), ball, testing::sheet(3.0)};
 }
 
-TEST_P(ContactResponse, BounceReachesTheSquareOfRestitutionTimesTheHeightAtAnyStep) {
+TEST_P(ContactSolver, BounceReachesTheSquareOfRestitutionTimesTheHeightAtAnyStep) {
   const double e = 0.8;
   for (const Obstacle& obstacle : landing_places()) {
     for (const double step : {2.5e-4, 1e-3, 4e-3, 1.0 / 60.0}) {
@@ -93,7 +93,7 @@ TEST_P(ContactResponse, BounceReachesTheSquareOfRestitutionTimesTheHeightAtAnySt
   }
 }
 
-TEST_P(ContactResponse, ClothDroppedFlatBouncesAsAParticleDoes) {
+TEST_P(ContactSolver, ClothDroppedFlatBouncesAsAParticleDoes) {
   const double e = 0.6;
   const double height = 0.4;
   for (const Obstacle& obstacle : {ground(), testing::sheet(3.0)}) {
@@ -108,7 +108,7 @@ TEST_P(ContactResponse, ClothDroppedFlatBouncesAsAParticleDoes) {
   }
 }
 
-TEST_P(ContactResponse, RestingParticleDoesNotBounce) {
+TEST_P(ContactSolver, RestingParticleDoesNotBounce) {
   Simulator simulator(one_particle({0.0, 0.01, 0.0}, {.thickness = 0.01, .restitution = 1.0}), settings(1e-3), {ground()});
   for (int i = 0; i < 500; ++i) {
     simulator.step();
@@ -116,7 +116,7 @@ TEST_P(ContactResponse, RestingParticleDoesNotBounce) {
   }
 }
 
-TEST_P(ContactResponse, MovingPlateCarriesAParticleByFriction) {
+TEST_P(ContactSolver, MovingPlateCarriesAParticleByFriction) {
   const double mu = 0.5;
   const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
   Obstacle plate{
@@ -132,7 +132,7 @@ TEST_P(ContactResponse, MovingPlateCarriesAParticleByFriction) {
   EXPECT_NEAR(simulator.positions()(1, 0), 0.51, 1e-3);
 }
 
-TEST_P(ContactResponse, NothingPassesAThinSheetAtAnySpeed) {
+TEST_P(ContactSolver, NothingPassesAThinSheetAtAnySpeed) {
   for (const double side : {1.0, -1.0}) {
     for (const double speed : {0.0, 5.0, 50.0, 500.0}) {
       const Obstacle obstacle = testing::sheet(1.0);
@@ -150,7 +150,7 @@ TEST_P(ContactResponse, NothingPassesAThinSheetAtAnySpeed) {
   }
 }
 
-TEST_P(ContactResponse, ThicknessNothingIsAThicknessToo) {
+TEST_P(ContactSolver, ThicknessNothingIsAThicknessToo) {
   const double mu = 0.3;
   const ContactMaterial material{.friction = mu, .static_friction = mu};
   Obstacle box{.name = "box", .geometry = BoxGeometry{.size = {20.0, 1.0, 20.0}}, .material = material};
@@ -168,7 +168,7 @@ TEST_P(ContactResponse, ThicknessNothingIsAThicknessToo) {
   }
 }
 
-TEST_P(ContactResponse, PenaltyHoldsTheWeightAtItsStaticDepth) {
+TEST_P(ContactSolver, PenaltyHoldsTheWeightAtItsStaticDepth) {
   SimulatorSettings chosen = settings(1e-4);
   chosen.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1000.0, .damping = 5.0};
   Simulator simulator(one_particle({0.0, 0.02, 0.0}, {.thickness = 0.01}), chosen, {ground()});

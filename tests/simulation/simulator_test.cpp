@@ -371,7 +371,7 @@ TEST(Simulator, WhatRisesBesideAPinDoesNotPassTheRodThatHangsOnIt) {
       StepReport last;
       for (int step = 0; step < steps; ++step) {
         last = simulator.step();
-        EXPECT_EQ(last.squeezed, 0) << steps;
+        EXPECT_EQ(last.infeasible, 0) << steps;
       }
       const Vector3 end = simulator.positions().col(1);
       EXPECT_GT(0.03 * end.y() - 0.05 * end.x(), 0.0) << steps << " steps: the ball is on the right of the rod";
@@ -398,33 +398,33 @@ TEST(Simulator, WhatSqueezesInAnyPartsLeavesNothingBehind) {
     const SimulatorSettings settings{.step = 1e-2, .integrator = integrator};
     Simulator simulator(builder.build(), settings, {rising_ball()});
     Simulator alone(builder.build(), settings);
-    int squeezed = 0;
+    int infeasible = 0;
     for (int step = 0; step < 100; ++step) {
       const StepReport report = simulator.step();
       alone.step();
       EXPECT_EQ(report.parts, 1);
-      squeezed += report.squeezed > 0 ? 1 : 0;
+      infeasible += report.infeasible > 0 ? 1 : 0;
       ASSERT_EQ(simulator.positions().col(2), alone.positions().col(2)) << step;
     }
-    EXPECT_GT(squeezed, 2);
+    EXPECT_GT(infeasible, 2);
   }
 }
 
-// Where already the step before squeezed them, each attempt of 4, 16 and 64 parts is over with its first: 4 parts, not 85.
+// Where already the step before infeasible them, each attempt of 4, 16 and 64 parts is over with its first: 4 parts, not 85.
 TEST(Simulator, AttemptsEndWhereTheySqueezeNoLess) {
   Simulator simulator(rod_and_thrown_particle().build(), {.step = 1e-2}, {rising_ball()});
   int made = 0;
   simulator.stop_when([&] { return ++made < 0; });
-  bool squeezed_before = false;
+  bool infeasible_before = false;
   int tried = 0;
   for (int step = 0; step < 100; ++step) {
     made = 0;
-    const bool squeezed = simulator.step().squeezed > 0;
-    if (squeezed_before && squeezed) {
+    const bool infeasible = simulator.step().infeasible > 0;
+    if (infeasible_before && infeasible) {
       EXPECT_LE(made, 4) << step;
       tried += made > 1 ? 1 : 0;
     }
-    squeezed_before = squeezed;
+    infeasible_before = infeasible;
   }
   EXPECT_GT(tried, 0);
 }

@@ -10,7 +10,7 @@ namespace {
 constexpr int kRounds = 8;
 
 // What turning a position into an obstacle's frame and back does to it, as a part of its largest coordinate; far below the least
-// distance at which zones still tell apart (2^-42).
+// distance at which regions still tell apart (2^-42).
 constexpr double kRounding = 0x1p-48;
 
 double rounding(const HalfSpace& half_space, double largest) { return kRounding * std::max(std::abs(half_space.offset), largest); }

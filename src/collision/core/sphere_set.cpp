@@ -32,13 +32,13 @@ namespace {
 
 }  // namespace
 
-void Balls::set(Index ball, const Vector3& centre, double radius) {
+void SphereSet::set(Index ball, const Vector3& centre, double radius) {
   Block& block = blocks_[static_cast<std::size_t>(ball) / kSimdWidth];
   set_lane(lane(ball), centre, block.centre);
   block.radius[lane(ball)] = radius;
 }
 
-SPRUNG_KERNEL void Balls::find_outside(const BallParticles& asked, double margin, std::vector<Index>& outside) const {
+SPRUNG_KERNEL void SphereSet::find_outside(const SphereVertices& asked, double margin, std::vector<Index>& outside) const {
   outside.clear();
   const auto count = static_cast<Index>(asked.particles.size());
   const double* positions = asked.positions.data();

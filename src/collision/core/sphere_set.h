@@ -9,16 +9,16 @@
 namespace sprung {
 
 /// Particles by their columns of `positions` [m], 3 x n, and the way into the frame that the balls are in.
-struct BallParticles {
+struct SphereVertices {
   const Points& positions;
   const std::vector<Index>& particles;
   const RigidTransform& into;
 };
 
-class Balls {
+class SphereSet {
  public:
   /// None of them holds anything yet.
-  explicit Balls(std::size_t count) : blocks_((count + kSimdWidth - 1) / kSimdWidth) {}
+  explicit SphereSet(std::size_t count) : blocks_((count + kSimdWidth - 1) / kSimdWidth) {}
 
   /// One of at most no radius [m] holds nothing.
   void set(Index ball, const Vector3& centre, double radius);
@@ -27,7 +27,7 @@ class Balls {
 
   /// Replaces `outside` by the balls, ascending, whose particle is not in them, or not `margin` [m] >= 0 from their surface.
   /// Requires as many particles as balls.
-  void find_outside(const BallParticles& asked, double margin, std::vector<Index>& outside) const;
+  void find_outside(const SphereVertices& asked, double margin, std::vector<Index>& outside) const;
 
  private:
   struct alignas(64) Block {

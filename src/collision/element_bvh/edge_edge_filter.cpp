@@ -5,7 +5,7 @@
 namespace sprung {
 namespace {
 
-using IntLanes = ElementLeaf::IntLanes;
+using IntLanes = ElementBvhLeaf::IntLanes;
 using Vector3Lanes = Float8[3];
 
 // Double4 come and go by reference: by value their way would depend on the instructions that are compiled for.
@@ -35,7 +35,7 @@ inline void find_apart(const float (&a)[2][3], const Float8 (&b)[2][3], const Fl
 
 /// What leads from the lanes' nearest points to the edge's, in units of 1 / scale. Where both are nearly parallel, points next to
 /// those.
-inline void find_separation(const EdgeWay& edge, const EdgeLanes& lanes, float scale, Vector3Lanes& separation) {
+inline void find_separation(const MovingEdge& edge, const EdgeLanes& lanes, float scale, Vector3Lanes& separation) {
   float along_a[3];
   Vector3Lanes along_b;
   Vector3Lanes between;
@@ -81,8 +81,8 @@ inline void find_gap(const float (&a)[2][3], const Float8 (&b)[2][3], const Vect
 
 }  // namespace
 
-EdgeWay edge_way(const EdgeLanes& lanes, int lane, float reach) {
-  EdgeWay edge;
+MovingEdge edge_way(const EdgeLanes& lanes, int lane, float reach) {
+  MovingEdge edge;
   for (int k = 0; k < 2; ++k) {
     for (int axis = 0; axis < 3; ++axis) {
       edge.now[k][axis] = lanes.now[k][axis][lane];
@@ -96,7 +96,7 @@ EdgeWay edge_way(const EdgeLanes& lanes, int lane, float reach) {
   return edge;
 }
 
-SPRUNG_KERNEL bool find_edges(const EdgeWay& edge, const EdgeLanes& lanes, LaneBytes& met) {
+SPRUNG_KERNEL bool find_edges(const MovingEdge& edge, const EdgeLanes& lanes, LaneBytes& met) {
   IntLanes meets = lanes.used;
   if (!edge.marked) meets &= lanes.marked;
   for (const auto& particle : lanes.particle) meets &= (particle != edge.particle[0]) & (particle != edge.particle[1]);

@@ -13,7 +13,7 @@ constexpr Index kLeavesPerTask = 64;
 
 }  // namespace
 
-ElementTree::ElementTree(const CollisionSurface& surface, const Points& rest)
+ElementBvh::ElementBvh(const CollisionSurface& surface, const Points& rest)
     : surface_(surface), origin_(bounds(rest).center()), slots_(surface.elements.size()) {
   const std::vector<Element>& elements = surface.elements;
   const Points middles = element_middles(elements, rest);
@@ -34,8 +34,8 @@ ElementTree::ElementTree(const CollisionSurface& surface, const Points& rest)
   if (!leaves_.empty()) add_bodies(0, first_leaf_.size() - 1);
 }
 
-void ElementTree::add_leaf(const std::vector<Index>& order, std::size_t begin, std::size_t end) {
-  ElementLeaf leaf;
+void ElementBvh::add_leaf(const std::vector<Index>& order, std::size_t begin, std::size_t end) {
+  ElementBvhLeaf leaf;
   std::copy(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end),
             leaf.element.begin());
   leaf.count = static_cast<int>(end - begin);
@@ -46,7 +46,7 @@ void ElementTree::add_leaf(const std::vector<Index>& order, std::size_t begin, s
   leaves_.push_back(leaf);
 }
 
-Index ElementTree::add_bodies(std::size_t begin, std::size_t end) {
+Index ElementBvh::add_bodies(std::size_t begin, std::size_t end) {
   const Index first = first_leaf_[begin];
   if (end - begin == 1) {
     const Index element = leaves_[static_cast<std::size_t>(first)].element[0];
@@ -63,7 +63,7 @@ Index ElementTree::add_bodies(std::size_t begin, std::size_t end) {
   return static_cast<Index>(number);
 }
 
-Index ElementTree::add_node(Index begin, Index end, Index body) {
+Index ElementBvh::add_node(Index begin, Index end, Index body) {
   const auto number = static_cast<std::size_t>(nodes_.size());
   nodes_.emplace_back();
   nodes_[number].leaves = end - begin;
@@ -81,13 +81,13 @@ Index ElementTree::add_node(Index begin, Index end, Index body) {
   return static_cast<Index>(number);
 }
 
-void ElementTree::mark(const std::vector<Index>& elements) {
+void ElementBvh::mark(const std::vector<Index>& elements) {
   mark_lanes(elements);
   bound_marked();
 }
 
-void ElementTree::mark_lanes(const std::vector<Index>& elements) {
-  for (const Index number : marked_) own_leaf(number).marked = ElementLeaf::IntLanes{};
+void ElementBvh::mark_lanes(const std::vector<Index>& elements) {
+  for (const Index number : marked_) own_leaf(number).marked = ElementBvhLeaf::IntLanes{};
   marked_.clear();
   for (const Index element : elements) {
     const Slot slot = slots_[static_cast<std::size_t>(element)];
@@ -103,12 +103,12 @@ void ElementTree::mark_lanes(const std::vector<Index>& elements) {
   }
 }
 
-void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<Index>& elements,
-                        WatchTimes times) {
+void ElementBvh::bound(const VertexBounds& balls, const std::vector<char>& flat, const std::vector<Index>& elements,
+                       HorizonTimes times) {
   mark_lanes(elements);
   parallel_chunks(static_cast<Index>(marked_.size()), kLeavesPerTask, [&](Index begin, Index end) {
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      ElementLeaf& leaf = own_leaf(marked_[k]);
+      ElementBvhLeaf& leaf = own_leaf(marked_[k]);
       for (int lane = 0; lane < leaf.count; ++lane) {
         if (leaf.marked[lane] == 0) continue;
         const Index number = leaf.element[static_cast<std::size_t>(lane)];
@@ -123,7 +123,7 @@ void ElementTree::bound(const MovingBalls& balls, const std::vector<char>& flat,
   bound_marked();
 }
 
-void ElementTree::bound_marked() {
+void ElementBvh::bound_marked() {
   for (const Index number : marked_) own_leaf(number).bound_marked();
   for (std::size_t k = nodes_.size(); k-- > 0;) {
     Node& node = nodes_[k];
@@ -139,7 +139,7 @@ void ElementTree::bound_marked() {
   }
 }
 
-void ElementTree::bound_node(Node& node) const {
+void ElementBvh::bound_node(Node& node) const {
   if (node.leaf != kNone) {
     node.bounds = leaf(node.leaf).bounds;
     return;

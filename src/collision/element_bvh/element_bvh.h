@@ -8,20 +8,20 @@
 
 namespace sprung {
 
-class ElementTree {
+class ElementBvh {
  public:
   /// Elements of a body that are neighbours at `rest` [m], 3 x n, share a leaf. Keeps a reference to the surface.
-  ElementTree(const CollisionSurface& surface, const Points& rest);
+  ElementBvh(const CollisionSurface& surface, const Points& rest);
 
   /// Marks these elements and no others.
   void mark(const std::vector<Index>& elements);
 
   /// Marks them, and bounds, from time 0 to the end, the balls of their corners. Elements that are not marked keep the bounds that
   /// they have. `flat`, by particle: see fan_stays_flat().
-  void bound(const MovingBalls& balls, const std::vector<char>& flat, const std::vector<Index>& elements, WatchTimes times);
+  void bound(const VertexBounds& balls, const std::vector<char>& flat, const std::vector<Index>& elements, HorizonTimes times);
 
   [[nodiscard]] Index leaf_count() const { return static_cast<Index>(leaves_.size()); }
-  [[nodiscard]] const ElementLeaf& leaf(Index number) const { return leaves_[static_cast<std::size_t>(number)]; }
+  [[nodiscard]] const ElementBvhLeaf& leaf(Index number) const { return leaves_[static_cast<std::size_t>(number)]; }
 
   /// Two leaves, or one and itself.
   struct LeafPair {
@@ -30,13 +30,13 @@ class ElementTree {
   };
   /// Leaves that may come within `margin` [m] of each other between now and the end and whose bodies may meet, one of them with an
   /// element that is marked. The same for any number of threads.
-  [[nodiscard]] std::vector<LeafPair> find_pairs(WatchTimes times, double margin) const;
+  [[nodiscard]] std::vector<LeafPair> find_pairs(HorizonTimes times, double margin) const;
 
  private:
   struct Node {
-    MovingBounds bounds;
-    MovingBounds marked_bounds;  ///< of the elements below that are marked; meaningless if none is
-    Index left = kNone;          ///< kNone for a leaf
+    KineticAabb bounds;
+    KineticAabb marked_bounds;  ///< of the elements below that are marked; meaningless if none is
+    Index left = kNone;         ///< kNone for a leaf
     Index right = kNone;
     Index leaf = kNone;
     Index leaves = 0;    ///< below it
@@ -67,7 +67,7 @@ class ElementTree {
   void mark_lanes(const std::vector<Index>& elements);
   void bound_marked();
   void bound_node(Node& node) const;
-  [[nodiscard]] ElementLeaf& own_leaf(Index number) { return leaves_[static_cast<std::size_t>(number)]; }
+  [[nodiscard]] ElementBvhLeaf& own_leaf(Index number) { return leaves_[static_cast<std::size_t>(number)]; }
   [[nodiscard]] const Node& node(Index number) const { return nodes_[static_cast<std::size_t>(number)]; }
   [[nodiscard]] bool bodies_may_meet(Index a, Index b) const;
   [[nodiscard]] bool may_meet(NodePair pair, const Search& search) const;
@@ -77,7 +77,7 @@ class ElementTree {
 
   const CollisionSurface& surface_;
   Vector3 origin_;  ///< of what leaves hold: single precision tells little apart far from it [m]
-  std::vector<ElementLeaf> leaves_;
+  std::vector<ElementBvhLeaf> leaves_;
   std::vector<Index> first_leaf_;  ///< by body, and the end
   std::vector<Node> nodes_;        ///< parents before their children
   std::vector<Index> node_of_leaf_;

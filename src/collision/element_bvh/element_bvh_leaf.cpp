@@ -17,7 +17,7 @@ double magnitude(const Box3& box) { return box.min().cwiseAbs().cwiseMax(box.max
 
 }  // namespace
 
-ElementLeaf::ElementLeaf() {
+ElementBvhLeaf::ElementBvhLeaf() {
   std::memset(static_cast<void*>(this), 0, sizeof *this);
   for (int axis = 0; axis < 3; ++axis) {
     min[axis] = Float8{} + kInfinity;
@@ -26,8 +26,8 @@ ElementLeaf::ElementLeaf() {
   element.fill(kNone);
 }
 
-void ElementLeaf::set(int lane, Index number, const Element& source, const MovingBalls& balls, const Vector3& origin,
-                      const std::vector<char>& is_flat, WatchTimes times) {
+void ElementBvhLeaf::set(int lane, Index number, const Element& source, const VertexBounds& balls, const Vector3& origin,
+                         const std::vector<char>& is_flat, HorizonTimes times) {
   element[static_cast<std::size_t>(lane)] = number;
   is_triangle[lane] = source.corners == 3 ? -1 : 0;
   Box3 box;
@@ -57,12 +57,12 @@ void ElementLeaf::set(int lane, Index number, const Element& source, const Movin
   radius[lane] = static_cast<float>(safe_radius);
 }
 
-void ElementLeaf::bound() {
+void ElementBvhLeaf::bound() {
   bounds = lane_bounds(0);
   for (int lane = 1; lane < count; ++lane) extend(bounds, lane_bounds(lane));
 }
 
-void ElementLeaf::bound_marked() {
+void ElementBvhLeaf::bound_marked() {
   bool first = true;
   for (int lane = 0; lane < count; ++lane) {
     if (marked[lane] == 0) continue;
@@ -75,7 +75,7 @@ void ElementLeaf::bound_marked() {
   }
 }
 
-SPRUNG_KERNEL void place_corners(const ElementLeaf& leaf, WatchTimes times, LeafPlaces& places) {
+SPRUNG_KERNEL void place_corners(const ElementBvhLeaf& leaf, HorizonTimes times, LeafBounds& places) {
   const auto now = static_cast<float>(times.now);
   const auto end = static_cast<float>(times.end);
   for (int k = 0; k < 3; ++k) {
@@ -86,11 +86,11 @@ SPRUNG_KERNEL void place_corners(const ElementLeaf& leaf, WatchTimes times, Leaf
   }
 }
 
-SPRUNG_KERNEL void find_lanes_near(const ElementLeaf& leaf, const MovingBounds& bounds, WatchTimes times, float margin,
+SPRUNG_KERNEL void find_lanes_near(const ElementBvhLeaf& leaf, const KineticAabb& bounds, HorizonTimes times, float margin,
                                    LaneBytes& near) {
   const auto now = static_cast<float>(times.now);
   const auto end = static_cast<float>(times.end);
-  ElementLeaf::IntLanes apart = {};
+  ElementBvhLeaf::IntLanes apart = {};
   for (int axis = 0; axis < 3; ++axis) {
     const Float8 above = leaf.min[axis] - bounds.max[axis];
     const Float8 rising = leaf.slowest[axis] - bounds.fastest[axis];
@@ -102,7 +102,7 @@ SPRUNG_KERNEL void find_lanes_near(const ElementLeaf& leaf, const MovingBounds& 
   store(~apart, near);
 }
 
-bool ElementLeaf::any_marked() const {
+bool ElementBvhLeaf::any_marked() const {
   LaneBytes mask;
   store(marked, mask);
   return any(mask);

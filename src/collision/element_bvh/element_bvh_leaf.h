@@ -13,23 +13,23 @@
 namespace sprung {
 
 /// A stretch of time [steps]; balls are where they say they are at `now`.
-struct WatchTimes {
+struct HorizonTimes {
   double now = 0.0;
   double end = 0.0;
 };
 
 /// Up to eight elements of one body, a lane each, in single precision, from an origin near where all bodies began; unused lanes are
 /// empty. At time t their balls are between min + t slowest and max + t fastest.
-struct alignas(64) ElementLeaf {
+struct alignas(64) ElementBvhLeaf {
   using IntLanes = std::int32_t __attribute__((vector_size(kFloatSimdWidth * sizeof(std::int32_t))));
 
   Float8 min[3];
   Float8 max[3];
   Float8 slowest[3];
   Float8 fastest[3];
-  MovingBounds bounds;         ///< of all lanes
-  MovingBounds marked_bounds;  ///< of those that are marked; meaningless if none is
-  Float8 corner[3][3];         ///< by corner and axis, at time 0; of smaller elements the first corner again
+  KineticAabb bounds;         ///< of all lanes
+  KineticAabb marked_bounds;  ///< of those that are marked; meaningless if none is
+  Float8 corner[3][3];        ///< by corner and axis, at time 0; of smaller elements the first corner again
   Float8 motion[3][3];
   Float8 radius;         ///< of the largest ball, and what rounding may lose
   IntLanes particle[3];  ///< by corner
@@ -39,11 +39,11 @@ struct alignas(64) ElementLeaf {
   std::array<Index, kFloatSimdWidth> element;
   int count;  ///< of the lanes used
 
-  ElementLeaf();
+  ElementBvhLeaf();
 
   /// Sets the lane to an element from time 0 to the end. The origin [m] is that of all leaves, at any time.
-  void set(int lane, Index number, const Element& element, const MovingBalls& balls, const Vector3& origin,
-           const std::vector<char>& is_flat, WatchTimes times);
+  void set(int lane, Index number, const Element& element, const VertexBounds& balls, const Vector3& origin,
+           const std::vector<char>& is_flat, HorizonTimes times);
 
   /// Sets the bounds of all lanes.
   void bound();
@@ -51,8 +51,8 @@ struct alignas(64) ElementLeaf {
   /// Sets the bounds of those that are marked.
   void bound_marked();
 
-  [[nodiscard]] MovingBounds lane_bounds(int lane) const {
-    using Axes = MovingBounds::Axes;
+  [[nodiscard]] KineticAabb lane_bounds(int lane) const {
+    using Axes = KineticAabb::Axes;
     return {Axes{min[0][lane], min[1][lane], min[2][lane]}, Axes{max[0][lane], max[1][lane], max[2][lane]},
             Axes{slowest[0][lane], slowest[1][lane], slowest[2][lane]}, Axes{fastest[0][lane], fastest[1][lane], fastest[2][lane]}};
   }
@@ -61,17 +61,17 @@ struct alignas(64) ElementLeaf {
 };
 
 /// Where the corners of a leaf's elements are, now and at the end.
-struct alignas(64) LeafPlaces {
+struct alignas(64) LeafBounds {
   Float8 now[3][3];  ///< by corner and axis
   Float8 end[3][3];
 };
 
-void place_corners(const ElementLeaf& leaf, WatchTimes times, LeafPlaces& places);
+void place_corners(const ElementBvhLeaf& leaf, HorizonTimes times, LeafBounds& places);
 
 /// 255 or 0 by lane.
 using LaneBytes = std::array<std::uint8_t, kFloatSimdWidth>;
 
-inline void store(const ElementLeaf::IntLanes& lanes, LaneBytes& mask) {
+inline void store(const ElementBvhLeaf::IntLanes& lanes, LaneBytes& mask) {
   using Bytes = std::uint8_t __attribute__((vector_size(kFloatSimdWidth)));
   const Bytes bytes = __builtin_convertvector(lanes, Bytes);
   __builtin_memcpy(mask.data(), &bytes, sizeof bytes);
@@ -89,7 +89,7 @@ inline void store(const ElementLeaf::IntLanes& lanes, LaneBytes& mask) {
 }
 
 /// Finds the lanes that are not more than `margin` >= 0 [m] apart from the bounds.
-void find_lanes_near(const ElementLeaf& leaf, const MovingBounds& bounds, WatchTimes times, float margin, LaneBytes& near);
+void find_lanes_near(const ElementBvhLeaf& leaf, const KineticAabb& bounds, HorizonTimes times, float margin, LaneBytes& near);
 
 [[nodiscard]] inline bool any(const LaneBytes& mask) {
   std::uint64_t all = 0;

@@ -10,7 +10,7 @@ constexpr std::size_t kTasks = 128;
 
 }  // namespace
 
-std::vector<ElementTree::LeafPair> ElementTree::find_pairs(WatchTimes times, double margin) const {
+std::vector<ElementBvh::LeafPair> ElementBvh::find_pairs(HorizonTimes times, double margin) const {
   const Search search{static_cast<float>(times.now), static_cast<float>(times.end), static_cast<float>(margin)};
   const std::vector<NodePair> tasks = find_tasks(search);
   std::vector<std::vector<LeafPair>> parts(tasks.size());
@@ -22,7 +22,7 @@ std::vector<ElementTree::LeafPair> ElementTree::find_pairs(WatchTimes times, dou
   return found;
 }
 
-std::vector<ElementTree::NodePair> ElementTree::find_tasks(const Search& search) const {
+std::vector<ElementBvh::NodePair> ElementBvh::find_tasks(const Search& search) const {
   std::vector<NodePair> tasks;
   if (!nodes_.empty()) tasks.push_back({0, 0});
   for (std::size_t last = 0; tasks.size() > last && tasks.size() < kTasks;) {
@@ -36,26 +36,26 @@ std::vector<ElementTree::NodePair> ElementTree::find_tasks(const Search& search)
   return tasks;
 }
 
-bool ElementTree::may_meet(NodePair pair, const Search& search) const {
+bool ElementBvh::may_meet(NodePair pair, const Search& search) const {
   const Node& a = node(pair.a);
   const Node& b = node(pair.b);
   if (!a.marked && !b.marked) return false;
   if (!bodies_may_meet(a.body, b.body)) return false;
   if (pair.a == pair.b) return true;
-  const auto near = [&](const MovingBounds& own, const MovingBounds& other) {
+  const auto near = [&](const KineticAabb& own, const KineticAabb& other) {
     return !are_apart(own, other, search.now, search.end, search.margin);
   };
   return (a.marked && near(a.marked_bounds, b.bounds)) || (b.marked && near(a.bounds, b.marked_bounds));
 }
 
-bool ElementTree::bodies_may_meet(Index a, Index b) const {
+bool ElementBvh::bodies_may_meet(Index a, Index b) const {
   if (a == kNone || b == kNone) return true;
   if (a == b) return surface_.self[static_cast<std::size_t>(a)] != 0;
   return surface_.others[static_cast<std::size_t>(a)] != 0 && surface_.others[static_cast<std::size_t>(b)] != 0;
 }
 
 /// Pairs of leaves stay as they are.
-void ElementTree::open(NodePair pair, std::vector<NodePair>& pairs) const {
+void ElementBvh::open(NodePair pair, std::vector<NodePair>& pairs) const {
   const Node& a = node(pair.a);
   const Node& b = node(pair.b);
   if (a.leaf != kNone && b.leaf != kNone) {
@@ -69,7 +69,7 @@ void ElementTree::open(NodePair pair, std::vector<NodePair>& pairs) const {
   }
 }
 
-void ElementTree::walk(NodePair pair, const Search& search, std::vector<LeafPair>& found) const {
+void ElementBvh::walk(NodePair pair, const Search& search, std::vector<LeafPair>& found) const {
   std::vector<NodePair> stack{pair};
   while (!stack.empty()) {
     const NodePair top = stack.back();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-using IntLanes = ElementLeaf::IntLanes;
+using IntLanes = ElementBvhLeaf::IntLanes;
 
 /// Where lanes go to a kernel by reference they are to be aligned for any instructions that it may use.
 struct alignas(kFloatSimdWidth * sizeof(std::int32_t)) AskedLanes {
@@ -22,7 +22,7 @@ inline void lower(Float8& a, const Float8& b) { a = a < b ? a : b; }
 inline void raise(Float8& a, const Float8& b) { a = a > b ? a : b; }
 
 /// What lies between a lane's bounds and those of the other leaf changes linearly along an axis, so both ends of time are enough.
-inline void find_bounds_apart(const ElementLeaf& a, int lane, const ElementLeaf& b, float now, float end, IntLanes& apart) {
+inline void find_bounds_apart(const ElementBvhLeaf& a, int lane, const ElementBvhLeaf& b, float now, float end, IntLanes& apart) {
   for (int axis = 0; axis < 3; ++axis) {
     const Float8 above = a.min[axis][lane] - b.max[axis];
     const Float8 rising = a.slowest[axis][lane] - b.fastest[axis];
@@ -34,7 +34,7 @@ inline void find_bounds_apart(const ElementLeaf& a, int lane, const ElementLeaf&
 }
 
 /// Double4 that share a particle with a lane of the other leaf; `flat` if one whose triangles are flat.
-inline void find_sharing(const ElementLeaf& a, int lane, const ElementLeaf& b, IntLanes& shared, IntLanes& flat) {
+inline void find_sharing(const ElementBvhLeaf& a, int lane, const ElementBvhLeaf& b, IntLanes& shared, IntLanes& flat) {
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
       const IntLanes same = b.particle[k] == a.particle[i][lane];
@@ -46,7 +46,7 @@ inline void find_sharing(const ElementLeaf& a, int lane, const ElementLeaf& b, I
 
 /// Double4 between whose balls there is a gap along the direction, by lane, now and at the end, and so in between: with the lane of
 /// the other leaf above, or, where the direction says so, below.
-inline void find_planes_apart(const LeafPlaces& a, int lane, const LeafPlaces& b, const Float8 (&normal)[3], const Float8& radius,
+inline void find_planes_apart(const LeafBounds& a, int lane, const LeafBounds& b, const Float8 (&normal)[3], const Float8& radius,
                               IntLanes& apart) {
   Float8 low_now = Float8{} + kInfinity;
   Float8 low_end = low_now;
@@ -65,7 +65,7 @@ inline void find_planes_apart(const LeafPlaces& a, int lane, const LeafPlaces& b
 }
 
 /// The line between the middles now.
-inline void find_direction(const LeafPlaces& a, int lane, const LeafPlaces& b, Float8 (&direction)[3]) {
+inline void find_direction(const LeafBounds& a, int lane, const LeafBounds& b, Float8 (&direction)[3]) {
   for (int axis = 0; axis < 3; ++axis) {
     const Float8 middle = b.now[0][axis] + b.now[1][axis] + b.now[2][axis];
     direction[axis] = a.now[0][axis][lane] + a.now[1][axis][lane] + a.now[2][axis][lane] - middle;
@@ -90,7 +90,7 @@ inline void find_normals(const Float8 (&x)[3][3], const Float8 (&direction)[3], 
 }
 
 /// Double4 of b, of those that are asked for, that a lane of a may touch. Returns whether there are any.
-SPRUNG_KERNEL bool find_meeting_lanes(const PlacedLeaf& a, int lane, const PlacedLeaf& b, const AskedLanes& asked, float now,
+SPRUNG_KERNEL bool find_meeting_lanes(const BoundedLeaf& a, int lane, const BoundedLeaf& b, const AskedLanes& asked, float now,
                                       float end, LaneBytes& met) {
   IntLanes apart = ~asked.lanes;
   IntLanes shared = {};
@@ -121,7 +121,7 @@ SPRUNG_KERNEL bool find_meeting_lanes(const PlacedLeaf& a, int lane, const Place
 }
 
 /// Marked lanes of a that are not apart from all of b.
-LaneBytes marked_lanes_near(const ElementLeaf& a, const ElementLeaf& b, WatchTimes times) {
+LaneBytes marked_lanes_near(const ElementBvhLeaf& a, const ElementBvhLeaf& b, HorizonTimes times) {
   LaneBytes near{};
   if (!a.any_marked()) return near;
   LaneBytes marked;
@@ -132,9 +132,10 @@ LaneBytes marked_lanes_near(const ElementLeaf& a, const ElementLeaf& b, WatchTim
 
 }  // namespace
 
-void append_meetings(const PlacedLeaf& first, const PlacedLeaf& second, WatchTimes times, std::vector<ElementMeeting>& meetings) {
-  const ElementLeaf& a = first.leaf;
-  const ElementLeaf& b = second.leaf;
+void append_meetings(const BoundedLeaf& first, const BoundedLeaf& second, HorizonTimes times,
+                     std::vector<ElementIndexPair>& meetings) {
+  const ElementBvhLeaf& a = first.leaf;
+  const ElementBvhLeaf& b = second.leaf;
   const bool same = &a == &b;
   const LaneBytes near_a = marked_lanes_near(a, b, times);
   const LaneBytes near_b = same ? LaneBytes{} : marked_lanes_near(b, a, times);
@@ -142,7 +143,7 @@ void append_meetings(const PlacedLeaf& first, const PlacedLeaf& second, WatchTim
 
   const auto now = static_cast<float>(times.now);
   const auto end = static_cast<float>(times.end);
-  const auto append = [&](const PlacedLeaf& own, int lane, const PlacedLeaf& other, const AskedLanes& asked) {
+  const auto append = [&](const BoundedLeaf& own, int lane, const BoundedLeaf& other, const AskedLanes& asked) {
     LaneBytes met;
     if (!find_meeting_lanes(own, lane, other, asked, now, end, met)) return;
     for (std::size_t k = 0; k < kFloatSimdWidth; ++k) {

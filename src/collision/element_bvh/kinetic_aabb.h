@@ -4,7 +4,7 @@
 namespace sprung {
 
 /// At time t they are min + t slowest and max + t fastest. x, y, z and a lane that is always 0.
-struct MovingBounds {
+struct KineticAabb {
   using Axes = float __attribute__((vector_size(4 * sizeof(float))));
 
   Axes min{};
@@ -13,7 +13,7 @@ struct MovingBounds {
   Axes fastest{};
 };
 
-inline void extend(MovingBounds& bounds, const MovingBounds& other) {
+inline void extend(KineticAabb& bounds, const KineticAabb& other) {
   bounds.min = other.min < bounds.min ? other.min : bounds.min;
   bounds.max = other.max > bounds.max ? other.max : bounds.max;
   bounds.slowest = other.slowest < bounds.slowest ? other.slowest : bounds.slowest;
@@ -22,11 +22,11 @@ inline void extend(MovingBounds& bounds, const MovingBounds& other) {
 
 /// Whether along some axis there is more than `margin` >= 0 between them from one time to the other: what lies between them changes
 /// linearly, so these two are enough.
-[[nodiscard]] inline bool are_apart(const MovingBounds& a, const MovingBounds& b, float now, float end, float margin) {
-  const MovingBounds::Axes above = a.min - b.max;
-  const MovingBounds::Axes rising = a.slowest - b.fastest;
-  const MovingBounds::Axes below = b.min - a.max;
-  const MovingBounds::Axes falling = b.slowest - a.fastest;
+[[nodiscard]] inline bool are_apart(const KineticAabb& a, const KineticAabb& b, float now, float end, float margin) {
+  const KineticAabb::Axes above = a.min - b.max;
+  const KineticAabb::Axes rising = a.slowest - b.fastest;
+  const KineticAabb::Axes below = b.min - a.max;
+  const KineticAabb::Axes falling = b.slowest - a.fastest;
   const auto apart = ((above + now * rising > margin) & (above + end * rising > margin)) |
                      ((below + now * falling > margin) & (below + end * falling > margin));
   return (apart[0] | apart[1] | apart[2]) != 0;

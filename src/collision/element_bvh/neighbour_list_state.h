@@ -8,9 +8,9 @@
 namespace sprung {
 
 /// Particles at `positions` [m], in balls that bound them for `horizon` [steps] from now.
-struct WatchState {
+struct NeighbourListState {
   const Points& positions;
-  const MovingBalls& balls;
+  const VertexBounds& balls;
   double horizon = 0.0;
   const std::vector<char>& marked;  ///< by particle, not 0: only pairs that have one of these are looked for
 };

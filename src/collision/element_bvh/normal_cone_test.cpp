@@ -20,7 +20,7 @@ struct Fan {
 };
 
 /// A closed fan's first spoke comes once more after the last.
-Fan gather(const SurfaceFeatures& features, Index particle, const MovingBalls& balls, double horizon) {
+Fan gather(const SurfaceTopology& features, Index particle, const VertexBounds& balls, double horizon) {
   Fan fan;
   const auto spokes = features.spokes(particle);
   const bool closed = features.fan(particle) == FanKind::closed;
@@ -82,7 +82,7 @@ bool ends_stay_apart(const Fan& fan, const Vector3& eye) {
 
 }  // namespace
 
-bool fan_stays_flat(const SurfaceFeatures& features, Index particle, const MovingBalls& balls, double horizon) {
+bool fan_stays_flat(const SurfaceTopology& features, Index particle, const VertexBounds& balls, double horizon) {
   const FanKind kind = features.fan(particle);
   if (kind == FanKind::none || features.spokes(particle).size() > kMostSpokes) return false;
   const Fan fan = gather(features, particle, balls, horizon);

@@ -12,10 +12,10 @@ namespace sprung {
 
 /// Times are in steps, from the begin of the step at hand. Positions within a ball at a step's begin and end stay in it in between,
 /// when they move straight.
-class MovingBalls {
+class VertexBounds {
  public:
   /// Balls of these radii [m], none of which has a place yet.
-  explicit MovingBalls(std::vector<double> radius)
+  explicit VertexBounds(std::vector<double> radius)
       : radius_(std::move(radius)), center_(Points::Zero(3, count())), motion_(center_) {}
 
   [[nodiscard]] Index count() const { return static_cast<Index>(radius_.size()); }

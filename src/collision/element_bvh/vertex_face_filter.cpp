@@ -5,7 +5,7 @@
 namespace sprung {
 namespace {
 
-using IntLanes = ElementLeaf::IntLanes;
+using IntLanes = ElementBvhLeaf::IntLanes;
 using Vector3Lanes = Float8[3];
 
 inline void subtract(const Vector3Lanes& a, const Vector3Lanes& b, float scale, Vector3Lanes& result) {
@@ -26,7 +26,7 @@ inline void subtract(const float (&a)[3], const Vector3Lanes& b, float scale, Ve
 
 }  // namespace
 
-SPRUNG_KERNEL bool find_faces(const CornerWay& corner, const ElementLeaf& leaf, const LeafPlaces& places, LaneBytes& met) {
+SPRUNG_KERNEL bool find_faces(const MovingVertex& corner, const ElementBvhLeaf& leaf, const LeafBounds& places, LaneBytes& met) {
   // In units of `aside`, so that powers of lengths neither over- nor underflow.
   const float scale = 1.0F / corner.aside;
   const float reach = scale * corner.reach;

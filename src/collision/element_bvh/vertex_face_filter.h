@@ -6,7 +6,7 @@
 namespace sprung {
 
 /// A corner on its way from now to the end [m], and how near it is looked for.
-struct CornerWay {
+struct MovingVertex {
   float now[3]{};
   float end[3]{};
   Index particle = kNone;
@@ -17,6 +17,6 @@ struct CornerWay {
 /// Finds the leaf's triangles that the corner, which is none of theirs, comes within reach of, and does not miss by more than
 /// `aside` and what the way leads along the triangle. In single precision, for a choice of what to look at. Returns whether there
 /// are any.
-bool find_faces(const CornerWay& corner, const ElementLeaf& leaf, const LeafPlaces& places, LaneBytes& met);
+bool find_faces(const MovingVertex& corner, const ElementBvhLeaf& leaf, const LeafBounds& places, LaneBytes& met);
 
 }  // namespace sprung

@@ -21,19 +21,19 @@ constexpr int kRoundsEach = 3;
 
 constexpr Index kPairsPerTask = 2048;
 
-std::vector<PairPlanes::Bound> sorted(const std::vector<PairPlanes::Bound>& bounds, Index particles) {
+std::vector<DivisionPlanes::Bound> sorted(const std::vector<DivisionPlanes::Bound>& bounds, Index particles) {
   std::vector<std::size_t> next(static_cast<std::size_t>(particles) + 1, 0);
-  for (const PairPlanes::Bound& bound : bounds) ++next[static_cast<std::size_t>(bound.particle) + 1];
+  for (const DivisionPlanes::Bound& bound : bounds) ++next[static_cast<std::size_t>(bound.particle) + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<PairPlanes::Bound> result(bounds.size());
-  for (const PairPlanes::Bound& bound : bounds) result[next[static_cast<std::size_t>(bound.particle)]++] = bound;
+  std::vector<DivisionPlanes::Bound> result(bounds.size());
+  for (const DivisionPlanes::Bound& bound : bounds) result[next[static_cast<std::size_t>(bound.particle)]++] = bound;
   return result;
 }
 
 }  // namespace
 
-PairPlanes::PairPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned, const Carriers& carriers,
-                       double kept)
+DivisionPlanes::DivisionPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned,
+                               const ParticleDisplacements& carriers, double kept)
     : before_(before),
       targets_(targets),
       pinned_(pinned),
@@ -43,11 +43,11 @@ PairPlanes::PairPlanes(const Points& before, const Points& targets, const std::v
       way_(before, pinned, rule_),
       is_aside_(static_cast<std::size_t>(before.cols()), 0) {}
 
-bool PairPlanes::hold(std::vector<ElementPair>& pairs) {
+bool DivisionPlanes::hold(std::vector<ConvexPair>& pairs) {
   bool changed = false;
   passing_.clear();
-  for (const Index k : find_passing(pairs, [&](const ElementPair& pair) { return passes(pair); })) {
-    const ElementPair& pair = pairs[static_cast<std::size_t>(k)];
+  for (const Index k : find_passing(pairs, [&](const ConvexPair& pair) { return passes(pair); })) {
+    const ConvexPair& pair = pairs[static_cast<std::size_t>(k)];
     changed = groups_.unite({pair.particles.data(), static_cast<std::size_t>(pair.count())}) || changed;
     note_passing(pair);
   }
@@ -58,22 +58,22 @@ bool PairPlanes::hold(std::vector<ElementPair>& pairs) {
   return true;
 }
 
-void PairPlanes::renew_normals(std::vector<ElementPair>& pairs) const {
+void DivisionPlanes::renew_normals(std::vector<ConvexPair>& pairs) const {
   parallel_chunks(static_cast<Index>(pairs.size()), kPairsPerTask, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
-      ElementPair& pair = pairs[static_cast<std::size_t>(k)];
+      ConvexPair& pair = pairs[static_cast<std::size_t>(k)];
       if (!(heights_at(pair, before_).gap() > 0.0)) pair.normal = direction_between(pair, before_);
     }
   });
 }
 
 template <class Passes>
-std::vector<Index> PairPlanes::find_passing(std::vector<ElementPair>& pairs, const Passes& passes) const {
+std::vector<Index> DivisionPlanes::find_passing(std::vector<ConvexPair>& pairs, const Passes& passes) const {
   const auto count = static_cast<Index>(pairs.size());
   std::vector<std::vector<Index>> parts(static_cast<std::size_t>((count + kPairsPerTask - 1) / kPairsPerTask));
   parallel_chunks(count, kPairsPerTask, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
-      ElementPair& pair = pairs[static_cast<std::size_t>(k)];
+      ConvexPair& pair = pairs[static_cast<std::size_t>(k)];
       if (!(heights_at(pair, ends_).gap() < rule_.least())) continue;
       pair.normal = direction_between(pair, before_);
       if (passes(pair) && !is_carried(pair)) parts[static_cast<std::size_t>(begin / kPairsPerTask)].push_back(k);
@@ -85,8 +85,8 @@ std::vector<Index> PairPlanes::find_passing(std::vector<ElementPair>& pairs, con
 }
 
 /// A turn by less than a right angle leaves seven tenths of the gap, whatever normal that was along.
-bool PairPlanes::is_carried(const ElementPair& pair) const {
-  std::vector<PinWay> ways;
+bool DivisionPlanes::is_carried(const ConvexPair& pair) const {
+  std::vector<PinDisplacement> ways;
   for (int k = 0; k < pair.count(); ++k) {
     const Index i = pair.particles[static_cast<std::size_t>(k)];
     if (!is_pinned(i)) return false;
@@ -94,18 +94,18 @@ bool PairPlanes::is_carried(const ElementPair& pair) const {
   }
   const auto motion = common_turn(ways);
   const double gap = heights_at(pair, before_).gap();
-  return motion &&
-         std::ranges::all_of(ways, [&](const PinWay& way) { return (*motion * way.from - way.to).norm() <= kOfPins * gap; });
+  return motion && std::ranges::all_of(
+                       ways, [&](const PinDisplacement& way) { return (*motion * way.from - way.to).norm() <= kOfPins * gap; });
 }
 
-void PairPlanes::note_passing(const ElementPair& pair) {
+void DivisionPlanes::note_passing(const ConvexPair& pair) {
   passing_.insert(passing_.end(), pair.particles.begin(), pair.particles.begin() + pair.count());
 }
 
-bool PairPlanes::give_way(std::vector<ElementPair>& pairs) {
+bool DivisionPlanes::give_way(std::vector<ConvexPair>& pairs) {
   gives_way_ = true;
   passing_.clear();
-  const auto passes = [&](const ElementPair& pair) { return way_.passes(pair, ends_); };
+  const auto passes = [&](const ConvexPair& pair) { return way_.passes(pair, ends_); };
   for (const Index k : find_passing(pairs, passes)) note_passing(pairs[static_cast<std::size_t>(k)]);
   if (passing_.empty() || ++rounds_ > 2 * kRoundsEach) return false;
   if (rounds_ == kRoundsEach + 1) begin_at_rest();
@@ -119,7 +119,7 @@ bool PairPlanes::give_way(std::vector<ElementPair>& pairs) {
 
 /// Groups of sides that pass each other begin where they are: what they have in common with some of their pins is not what others
 /// leave them.
-void PairPlanes::begin_at_rest() {
+void DivisionPlanes::begin_at_rest() {
   std::vector<Index> drawn;
   for (const Index i : passing_) {
     if (groups_.holds(i)) drawn.push_back(groups_.group(i));
@@ -130,13 +130,13 @@ void PairPlanes::begin_at_rest() {
   }
 }
 
-std::vector<Index> PairPlanes::held() const {
+std::vector<Index> DivisionPlanes::held() const {
   std::vector<Index> held = groups_.particles();
   held.insert(held.end(), aside_.begin(), aside_.end());
   return held;
 }
 
-std::vector<Index> PairPlanes::taken_along() const {
+std::vector<Index> DivisionPlanes::taken_along() const {
   std::vector<Index> taken = groups_.particles();
   std::erase_if(taken, [&](Index i) { return !groups_.is_anchored(groups_.group(i)); });
   return taken;
@@ -144,7 +144,7 @@ std::vector<Index> PairPlanes::taken_along() const {
 
 /// Whether the sides end nearer than they ever may. What touched when the step began has no plane to keep, what moves rigidly needs
 /// none.
-bool PairPlanes::passes(const ElementPair& pair) const {
+bool DivisionPlanes::passes(const ConvexPair& pair) const {
   const double begun = heights_at(pair, before_).gap();
   if (!(begun > 0.0)) return false;
   const Index group = group_of(pair, begun);
@@ -155,14 +155,14 @@ bool PairPlanes::passes(const ElementPair& pair) const {
   return end < rule_.needed(begun);
 }
 
-ElementPair PairPlanes::turned(ElementPair pair, Index group) const {
+ConvexPair DivisionPlanes::turned(ConvexPair pair, Index group) const {
   pair.normal = groups_.carried(group, pair.normal).end.normalized();
   return pair;
 }
 
 // On straight ways a turn by less than a right angle leaves seven tenths of a gap, the strain of an anchored group half of it: a
 // quarter is a pin's to go elsewhere.
-Index PairPlanes::group_of(const ElementPair& pair, double gap) const {
+Index DivisionPlanes::group_of(const ConvexPair& pair, double gap) const {
   Index group = kNone;
   for (int k = 0; k < pair.count(); ++k) group = std::max(group, groups_.group(pair.particles[static_cast<std::size_t>(k)]));
   const auto is_of = [&](Index i) {
@@ -172,8 +172,8 @@ Index PairPlanes::group_of(const ElementPair& pair, double gap) const {
 }
 
 /// Along their ways the gap of a group's pair is at least the linear function between its values at both ends.
-void PairPlanes::limit_groups(const std::vector<ElementPair>& pairs) {
-  for (const ElementPair& pair : pairs) {
+void DivisionPlanes::limit_groups(const std::vector<ConvexPair>& pairs) {
+  for (const ConvexPair& pair : pairs) {
     Index group = kNone;
     bool inner = true;
     for (int k = 0; k < pair.count(); ++k) {
@@ -192,9 +192,9 @@ void PairPlanes::limit_groups(const std::vector<ElementPair>& pairs) {
   }
 }
 
-std::vector<PairPlanes::Bound> PairPlanes::bounds(const std::vector<ElementPair>& pairs) const {
+std::vector<DivisionPlanes::Bound> DivisionPlanes::bounds(const std::vector<ConvexPair>& pairs) const {
   std::vector<Bound> found;
-  for (const ElementPair& pair : pairs) {
+  for (const ConvexPair& pair : pairs) {
     if (std::none_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return is_held(i); })) continue;
     const double begun = heights_at(pair, before_).gap();
     if (!(begun > 0.0)) continue;
@@ -207,12 +207,12 @@ std::vector<PairPlanes::Bound> PairPlanes::bounds(const std::vector<ElementPair>
   return sorted(found, static_cast<Index>(before_.cols()));
 }
 
-void PairPlanes::append_bounds(const ElementPair& pair, const TurningPlane& plane, std::vector<Bound>& found) const {
+void DivisionPlanes::append_bounds(const ConvexPair& pair, const RotatingPlane& plane, std::vector<Bound>& found) const {
   append_bounds(pair, plane.end, Vector3::Zero(), found);
   if (plane.end != plane.begin) append_bounds(pair, plane.begin, plane.end, found);
 }
 
-void PairPlanes::append_bounds(const ElementPair& pair, const CarriedPlane& plane, std::vector<Bound>& found) const {
+void DivisionPlanes::append_bounds(const ConvexPair& pair, const MovedPlane& plane, std::vector<Bound>& found) const {
   append_bounds(pair, plane.end, Vector3::Zero(), found);
   if (plane.stays()) return;
   append_bounds(pair, plane.begin, 2.0 * plane.middle, found);
@@ -220,8 +220,8 @@ void PairPlanes::append_bounds(const ElementPair& pair, const CarriedPlane& plan
 }
 
 /// Bounds of what `after` . x1 + `earlier` . x0 is of each particle.
-void PairPlanes::append_bounds(const ElementPair& pair, const Vector3& after, const Vector3& earlier,
-                               std::vector<Bound>& found) const {
+void DivisionPlanes::append_bounds(const ConvexPair& pair, const Vector3& after, const Vector3& earlier,
+                                   std::vector<Bound>& found) const {
   const double length = after.norm();
   const Vector3 normal = after / length;
   const auto extra = [&](Index i) { return earlier.dot(before_.col(i)) / length; };

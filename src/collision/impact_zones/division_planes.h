@@ -16,26 +16,27 @@ namespace sprung {
 
 /// Particles that would pass each other on their way to their targets are held: each has a place where it may always end, and half-
 /// spaces within which it may go on from there.
-class PairPlanes {
+class DivisionPlanes {
  public:
   /// Begins a step: nothing is held. Held sides keep `kept` [m] between them where they can; for the other arguments see
-  /// HeldGroups. Keeps references to them.
-  PairPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned, const Carriers& carriers, double kept);
+  /// MotionGroups. Keeps references to them.
+  DivisionPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned,
+                 const ParticleDisplacements& carriers, double kept);
 
   /// Holds the particles of pairs that would pass each other where they are to end now. Returns whether any end has changed: then
   /// it is to be called again, with the pairs that these ends may touch.
   /// Pairs whose plane does not do any more get a better one, if there is one.
-  [[nodiscard]] bool hold(std::vector<ElementPair>& pairs);
+  [[nodiscard]] bool hold(std::vector<ConvexPair>& pairs);
 
   /// Lets those that pins drag through each other give way instead, and what is then in their way. Returns whether any end has
   /// changed: then it is to be called again, with the pairs that these ends may touch. Requires that hold() returned false.
-  [[nodiscard]] bool give_way(std::vector<ElementPair>& pairs);
+  [[nodiscard]] bool give_way(std::vector<ConvexPair>& pairs);
 
   /// Whether pairs were turned, and their normals not.
   [[nodiscard]] bool turns() const { return gives_way_ || groups_.turn(); }
 
   /// Gives a new normal to those pairs whose own does not separate them where the step begins.
-  void renew_normals(std::vector<ElementPair>& pairs) const;
+  void renew_normals(std::vector<ConvexPair>& pairs) const;
 
   /// Where particles may end: their targets, or, for those that are held, a place on the way [m].
   [[nodiscard]] const Points& ends() const { return ends_; }
@@ -56,38 +57,38 @@ class PairPlanes {
     HalfSpace half_space;
   };
   /// The planes of all pairs that have a held particle, as bounds of the held ones, ascending by particle. All ends are within.
-  [[nodiscard]] std::vector<Bound> bounds(const std::vector<ElementPair>& pairs) const;
+  [[nodiscard]] std::vector<Bound> bounds(const std::vector<ConvexPair>& pairs) const;
 
  private:
   /// Numbers of the pairs that their own normals do not keep apart, and that pass each other. They get better normals, if there are
   /// any.
   template <class Passes>
-  [[nodiscard]] std::vector<Index> find_passing(std::vector<ElementPair>& pairs, const Passes& passes) const;
-  [[nodiscard]] bool passes(const ElementPair& pair) const;
+  [[nodiscard]] std::vector<Index> find_passing(std::vector<ConvexPair>& pairs, const Passes& passes) const;
+  [[nodiscard]] bool passes(const ConvexPair& pair) const;
   /// Whether the pair is pins alone, which go as one rigid thing.
-  [[nodiscard]] bool is_carried(const ElementPair& pair) const;
+  [[nodiscard]] bool is_carried(const ConvexPair& pair) const;
   [[nodiscard]] bool is_pinned(Index i) const { return pinned_[static_cast<std::size_t>(i)] != 0; }
   [[nodiscard]] bool is_held(Index i) const { return groups_.holds(i) || is_aside_[static_cast<std::size_t>(i)] != 0; }
   /// The group that all of the pair is in, or that takes along what of it is pinned; kNone if there is none. The sides are `gap`
   /// [m] apart when the step begins.
-  [[nodiscard]] Index group_of(const ElementPair& pair, double gap) const;
+  [[nodiscard]] Index group_of(const ConvexPair& pair, double gap) const;
   /// With the normal that it has after its group's motion.
-  [[nodiscard]] ElementPair turned(ElementPair pair, Index group) const;
-  void limit_groups(const std::vector<ElementPair>& pairs);
+  [[nodiscard]] ConvexPair turned(ConvexPair pair, Index group) const;
+  void limit_groups(const std::vector<ConvexPair>& pairs);
   void begin_at_rest();
-  void note_passing(const ElementPair& pair);
-  void append_bounds(const ElementPair& pair, const TurningPlane& plane, std::vector<Bound>& found) const;
-  void append_bounds(const ElementPair& pair, const CarriedPlane& plane, std::vector<Bound>& found) const;
-  void append_bounds(const ElementPair& pair, const Vector3& after, const Vector3& earlier, std::vector<Bound>& found) const;
+  void note_passing(const ConvexPair& pair);
+  void append_bounds(const ConvexPair& pair, const RotatingPlane& plane, std::vector<Bound>& found) const;
+  void append_bounds(const ConvexPair& pair, const MovedPlane& plane, std::vector<Bound>& found) const;
+  void append_bounds(const ConvexPair& pair, const Vector3& after, const Vector3& earlier, std::vector<Bound>& found) const;
 
   const Points& before_;
   const Points& targets_;
   const std::vector<char>& pinned_;
-  HeldGroups groups_;
+  MotionGroups groups_;
   Points ends_;
   std::vector<Index> passing_;
-  GapRule rule_;
-  GivingWay way_;
+  SeparationTolerance rule_;
+  HalfSpaceRelaxation way_;
   bool gives_way_ = false;
   int rounds_ = 0;              ///< of giving way
   std::vector<Index> aside_;    ///< particles of no group that gave way

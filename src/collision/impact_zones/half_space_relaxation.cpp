@@ -7,7 +7,7 @@ namespace {
 // Times that each inequality is looked at.
 constexpr int kSweeps = 16;
 
-Index particle(const ElementPair& pair, int k) { return pair.particles[static_cast<std::size_t>(k)]; }
+Index particle(const ConvexPair& pair, int k) { return pair.particles[static_cast<std::size_t>(k)]; }
 
 /// What keeps sides apart at one of the coefficients.
 template <class Height>
@@ -22,23 +22,23 @@ Side(Height, Vector3, double) -> Side<Height>;
 /// Moves the ends of one pair after the other.
 class Sweep {
  public:
-  Sweep(const Points& before, const std::vector<char>& pinned, const GapRule& rule, Points& ends)
+  Sweep(const Points& before, const std::vector<char>& pinned, const SeparationTolerance& rule, Points& ends)
       : before_(before), pinned_(pinned), rule_(rule), ends_(ends), moved_at_(static_cast<std::size_t>(before.cols()), 0) {}
 
   /// Whether the sides were apart.
-  bool push_apart(const ElementPair& pair, int number) {
+  bool push_apart(const ConvexPair& pair, int number) {
     const double own = heights_at(pair, ends_).gap();
     if (own >= rule_.least()) return true;
     const double begun = heights_at(pair, before_).gap();
     if (!(begun > 0.0) || own >= rule_.needed(begun)) return true;
-    const TurningPlane plane = turning_plane(pair, before_, ends_, pinned_);
+    const RotatingPlane plane = turning_plane(pair, before_, ends_, pinned_);
     const auto at_end = [&](int k) { return plane.end.dot(ends_.col(particle(pair, k))); };
     const auto midway = [&](int k) { return midway_height(plane, before_.col(particle(pair, k)), ends_.col(particle(pair, k))); };
     const bool apart_at_end = push(pair, begun, Side{at_end, plane.end, 1.0}, number);
     return push(pair, begun, Side{midway, plane.begin, 0.5}, number) && apart_at_end;
   }
 
-  [[nodiscard]] bool has_moved(const ElementPair& pair, int since) const {
+  [[nodiscard]] bool has_moved(const ConvexPair& pair, int since) const {
     return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(),
                        [&](Index i) { return moved_at_[static_cast<std::size_t>(i)] >= since; });
   }
@@ -47,7 +47,7 @@ class Sweep {
 
  private:
   template <class Height>
-  bool push(const ElementPair& pair, double begun, const Side<Height>& side, int number) {
+  bool push(const ConvexPair& pair, double begun, const Side<Height>& side, int number) {
     int low = 0;
     for (int k = 1; k < pair.first_count; ++k) low = side.height(k) < side.height(low) ? k : low;
     int high = pair.first_count;
@@ -74,7 +74,7 @@ class Sweep {
 
   const Points& before_;
   const std::vector<char>& pinned_;
-  const GapRule& rule_;
+  const SeparationTolerance& rule_;
   Points& ends_;
   std::vector<int> moved_at_;  ///< number of the last sweep that moved it, by particle; 0 if none did
   std::vector<Index> moved_;
@@ -82,18 +82,18 @@ class Sweep {
 
 }  // namespace
 
-GivingWay::GivingWay(const Points& before, const std::vector<char>& pinned, const GapRule& rule)
+HalfSpaceRelaxation::HalfSpaceRelaxation(const Points& before, const std::vector<char>& pinned, const SeparationTolerance& rule)
     : before_(before), pinned_(pinned), rule_(rule) {}
 
-std::optional<TurningPlane> GivingWay::plane(const ElementPair& pair, const Points& ends) const {
+std::optional<RotatingPlane> HalfSpaceRelaxation::plane(const ConvexPair& pair, const Points& ends) const {
   const double begun = heights_at(pair, before_).gap();
   if (!(begun > 0.0)) return std::nullopt;
-  if (heights_at(pair, ends).gap() >= rule_.needed(begun)) return TurningPlane{pair.normal, pair.normal};
+  if (heights_at(pair, ends).gap() >= rule_.needed(begun)) return RotatingPlane{pair.normal, pair.normal};
   return turning_plane(pair, before_, ends, pinned_);
 }
 
-bool GivingWay::passes(const ElementPair& pair, const Points& ends) const {
-  const std::optional<TurningPlane> turning = plane(pair, ends);
+bool HalfSpaceRelaxation::passes(const ConvexPair& pair, const Points& ends) const {
+  const std::optional<RotatingPlane> turning = plane(pair, ends);
   if (!turning) return false;
   const auto at_end = [&](int k) { return turning->end.dot(ends.col(particle(pair, k))); };
   const auto midway = [&](int k) { return midway_height(*turning, before_.col(particle(pair, k)), ends.col(particle(pair, k))); };
@@ -101,12 +101,12 @@ bool GivingWay::passes(const ElementPair& pair, const Points& ends) const {
   return heights_of(pair, at_end).gap() < needed || heights_of(pair, midway).gap() < needed;
 }
 
-std::vector<Index> GivingWay::move_apart(const std::vector<ElementPair>& pairs, Points& ends) const {
+std::vector<Index> HalfSpaceRelaxation::move_apart(const std::vector<ConvexPair>& pairs, Points& ends) const {
   Sweep sweep(before_, pinned_, rule_, ends);
   bool apart = false;
   for (int number = 1; number <= kSweeps && !apart; ++number) {
     apart = true;
-    for (const ElementPair& pair : pairs) {
+    for (const ConvexPair& pair : pairs) {
       if (number > 1 && !sweep.has_moved(pair, number - 1)) continue;
       apart = sweep.push_apart(pair, number) && apart;
     }

@@ -11,26 +11,26 @@ namespace sprung {
 
 /// What several pins draw together, each its own way, no single motion takes along. Planes that turn leave it its own: what they
 /// ask of the particles' ends are linear inequalities, which are met one after the other, again and again (Agmon 1954).
-class GivingWay {
+class HalfSpaceRelaxation {
  public:
   /// The step begins at `before` [m], 3 x n; pinned particles (not 0) end where they do. Keeps references to all.
-  GivingWay(const Points& before, const std::vector<char>& pinned, const GapRule& rule);
+  HalfSpaceRelaxation(const Points& before, const std::vector<char>& pinned, const SeparationTolerance& rule);
 
   /// A plane for the way to `ends` [m]: with the pair's normal if that does, else one that turns; none if the sides touch where the
   /// step begins.
-  [[nodiscard]] std::optional<TurningPlane> plane(const ElementPair& pair, const Points& ends) const;
+  [[nodiscard]] std::optional<RotatingPlane> plane(const ConvexPair& pair, const Points& ends) const;
 
   /// Whether there is one, and it does not keep the sides apart.
-  [[nodiscard]] bool passes(const ElementPair& pair, const Points& ends) const;
+  [[nodiscard]] bool passes(const ConvexPair& pair, const Points& ends) const;
 
   /// Moves the ends of sides apart that would pass each other, and of those that are then in the way. Returns which were moved, in
   /// any order; of some, sides may still pass.
-  [[nodiscard]] std::vector<Index> move_apart(const std::vector<ElementPair>& pairs, Points& ends) const;
+  [[nodiscard]] std::vector<Index> move_apart(const std::vector<ConvexPair>& pairs, Points& ends) const;
 
  private:
   const Points& before_;
   const std::vector<char>& pinned_;
-  const GapRule& rule_;
+  const SeparationTolerance& rule_;
 };
 
 }  // namespace sprung

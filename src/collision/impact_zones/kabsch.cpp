@@ -12,7 +12,7 @@ constexpr double kLeastSquare = 0x1p-40;
 
 }  // namespace
 
-Matrix3 best_turn(const Matrix3& covariance) {
+Matrix3 kabsch_rotation(const Matrix3& covariance) {
   const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vector3& squares = svd.singularValues();
   if (!(squares[0] > 0.0)) return Matrix3::Identity();

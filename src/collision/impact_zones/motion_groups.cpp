@@ -6,7 +6,8 @@
 
 namespace sprung {
 
-HeldGroups::HeldGroups(const Points& before, const Points& targets, const std::vector<char>& pinned, const Carriers& carriers)
+MotionGroups::MotionGroups(const Points& before, const Points& targets, const std::vector<char>& pinned,
+                           const ParticleDisplacements& carriers)
     : before_(before),
       targets_(targets),
       pinned_(pinned),
@@ -15,7 +16,7 @@ HeldGroups::HeldGroups(const Points& before, const Points& targets, const std::v
       stopped_(parent_.size(), 0),
       number_(parent_.size(), kNone) {}
 
-bool HeldGroups::unite(std::span<const Index> particles) {
+bool MotionGroups::unite(std::span<const Index> particles) {
   Index first = kNone;
   bool changed = false;
   bool stopped = false;
@@ -50,12 +51,12 @@ bool HeldGroups::unite(std::span<const Index> particles) {
   return changed;
 }
 
-bool HeldGroups::is_led(Index root_particle, Index pin) const {
+bool MotionGroups::is_led(Index root_particle, Index pin) const {
   return std::any_of(leads_.begin(), leads_.end(),
                      [&](const Lead& lead) { return lead.pin == pin && root(lead.follower) == root_particle; });
 }
 
-void HeldGroups::find_motions() {
+void MotionGroups::find_motions() {
   number_groups();
   const std::vector<std::vector<Index>> pins = leading_pins();
   find_means(pins);
@@ -63,7 +64,7 @@ void HeldGroups::find_motions() {
   let_pins_turn(pins);
 }
 
-void HeldGroups::number_groups() {
+void MotionGroups::number_groups() {
   groups_.clear();
   for (const Index i : held_) {
     if (parent_[static_cast<std::size_t>(i)] != i) continue;
@@ -73,7 +74,7 @@ void HeldGroups::number_groups() {
   for (const Index i : held_) number_[static_cast<std::size_t>(i)] = number_[static_cast<std::size_t>(root(i))];
 }
 
-void HeldGroups::find_means(const std::vector<std::vector<Index>>& pins) {
+void MotionGroups::find_means(const std::vector<std::vector<Index>>& pins) {
   struct Sum {
     Vector3 motion = Vector3::Zero();
     double squares = 0.0;
@@ -92,11 +93,11 @@ void HeldGroups::find_means(const std::vector<std::vector<Index>>& pins) {
   for (std::size_t k = 0; k < groups_.size(); ++k) {
     for (const Index pin : pins[k]) lead(k, targets_.col(pin) - before_.col(pin), 3);
   }
-  const std::vector<Carried>& carried = carriers_.carried;
+  const std::vector<ParticleDisplacement>& carried = carriers_.carried;
   for (const Index i : held_) {
     const auto number = static_cast<std::size_t>(group(i));
     const auto found =
-        std::lower_bound(carried.begin(), carried.end(), i, [](const Carried& a, Index b) { return a.particle < b; });
+        std::lower_bound(carried.begin(), carried.end(), i, [](const ParticleDisplacement& a, Index b) { return a.particle < b; });
     if (found != carried.end() && found->particle == i) {
       lead(number, found->motion, 2);
     } else {
@@ -113,7 +114,7 @@ void HeldGroups::find_means(const std::vector<std::vector<Index>>& pins) {
   }
 }
 
-std::vector<std::vector<Index>> HeldGroups::leading_pins() const {
+std::vector<std::vector<Index>> MotionGroups::leading_pins() const {
   std::vector<std::vector<Index>> pins(groups_.size());
   for (const Lead& lead : leads_) pins[static_cast<std::size_t>(group(lead.follower))].push_back(lead.pin);
   for (std::vector<Index>& of_group : pins) {
@@ -123,10 +124,10 @@ std::vector<std::vector<Index>> HeldGroups::leading_pins() const {
   return pins;
 }
 
-void HeldGroups::anchor_groups(const std::vector<std::vector<Index>>& pins) {
+void MotionGroups::anchor_groups(const std::vector<std::vector<Index>>& pins) {
   if (carriers_.anchors.empty()) return;
-  std::vector<std::vector<Anchor>> anchors(groups_.size());
-  for (const Anchor& anchor : carriers_.anchors) {
+  std::vector<std::vector<KinematicAnchor>> anchors(groups_.size());
+  for (const KinematicAnchor& anchor : carriers_.anchors) {
     const Index k = group(anchor.particle);
     if (k != kNone && pins[static_cast<std::size_t>(k)].empty()) anchors[static_cast<std::size_t>(k)].push_back(anchor);
   }
@@ -136,48 +137,48 @@ void HeldGroups::anchor_groups(const std::vector<std::vector<Index>>& pins) {
   }
 }
 
-void HeldGroups::let_pins_turn(const std::vector<std::vector<Index>>& pins) {
+void MotionGroups::let_pins_turn(const std::vector<std::vector<Index>>& pins) {
   for (std::size_t k = 0; k < groups_.size(); ++k) {
     if (pins[k].empty() || groups_[k].fraction > 0.0) continue;
-    std::vector<PinWay> ways;
+    std::vector<PinDisplacement> ways;
     for (const Index pin : pins[k]) ways.push_back({before_.col(pin), targets_.col(pin)});
     const auto motion = common_turn(ways);
     if (motion) groups_[k] = {.motion = AffineTransform(*motion), .fraction = 0.0, .turned = true};
   }
 }
 
-CarriedPlane HeldGroups::carried(Index group, const Vector3& normal) const {
+MovedPlane MotionGroups::carried(Index group, const Vector3& normal) const {
   if (group == kNone || !groups_[static_cast<std::size_t>(group)].turned) return {normal, normal, normal};
-  return carried_plane(normal, groups_[static_cast<std::size_t>(group)].motion.linear());
+  return moved_plane(normal, groups_[static_cast<std::size_t>(group)].motion.linear());
 }
 
-Vector3 HeldGroups::start(Index particle) const {
+Vector3 MotionGroups::start(Index particle) const {
   if (!holds(particle)) return targets_.col(particle);
   return groups_[static_cast<std::size_t>(group(particle))].motion * before_.col(particle);
 }
 
-bool HeldGroups::turn() const {
+bool MotionGroups::turn() const {
   return std::any_of(groups_.begin(), groups_.end(), [](const Group& group) { return group.turned; });
 }
 
-bool HeldGroups::takes_along(Index group, Index pin, double miss) const {
+bool MotionGroups::takes_along(Index group, Index pin, double miss) const {
   if (group == kNone || fraction(group) > 0.0) return false;
   const Vector3 end = groups_[static_cast<std::size_t>(group)].motion * before_.col(pin);
   return (end - targets_.col(pin)).norm() <= miss;
 }
 
-Vector3 HeldGroups::end(Index particle) const {
+Vector3 MotionGroups::end(Index particle) const {
   if (!holds(particle)) return targets_.col(particle);
   const Vector3 from = start(particle);
   return from + fraction(group(particle)) * (targets_.col(particle) - from);
 }
 
-void HeldGroups::limit_fraction(Index group, double fraction) {
+void MotionGroups::limit_fraction(Index group, double fraction) {
   double& limited = groups_[static_cast<std::size_t>(group)].fraction;
   limited = std::min(limited, fraction);
 }
 
-Index HeldGroups::root(Index particle) const {
+Index MotionGroups::root(Index particle) const {
   Index i = particle;
   while (parent_[static_cast<std::size_t>(i)] != i) i = parent_[static_cast<std::size_t>(i)];
   return i;

@@ -10,17 +10,17 @@
 namespace sprung {
 
 /// Particles that lean on obstacles, and those that obstacles hold fast; both ascending by particle.
-struct Carriers {
-  std::vector<Carried> carried{};
-  std::vector<Anchor> anchors{};
+struct ParticleDisplacements {
+  std::vector<ParticleDisplacement> carried{};
+  std::vector<KinematicAnchor> anchors{};
 };
 
 /// Each group has a motion that all its particles share, after which they are to each other as they were before, and a fraction of
 /// the ways from there to their targets that they may go.
-class HeldGroups {
+class MotionGroups {
  public:
   /// No particle is held yet. Pinned ones (not 0) never are. Positions [m], 3 x n. Keeps references to all.
-  HeldGroups(const Points& before, const Points& targets, const std::vector<char>& pinned, const Carriers& carriers);
+  MotionGroups(const Points& before, const Points& targets, const std::vector<char>& pinned, const ParticleDisplacements& carriers);
 
   /// Makes these particles, and the groups that they are in, one group; pinned ones among them lead it. A group that is one already
   /// may not leave the motion that it shares any more. Returns whether anything has changed.
@@ -50,7 +50,7 @@ class HeldGroups {
   [[nodiscard]] bool turn() const;
 
   /// The plane that the group takes along; one that stays for none.
-  [[nodiscard]] CarriedPlane carried(Index group, const Vector3& normal) const;
+  [[nodiscard]] MovedPlane carried(Index group, const Vector3& normal) const;
 
   /// Whether the group goes along with anchors.
   [[nodiscard]] bool is_anchored(Index group) const { return groups_[static_cast<std::size_t>(group)].anchored; }
@@ -83,7 +83,7 @@ class HeldGroups {
   const Points& before_;
   const Points& targets_;
   const std::vector<char>& pinned_;
-  const Carriers& carriers_;
+  const ParticleDisplacements& carriers_;
   std::vector<Index> parent_;  ///< by particle: another of its group or itself; kNone when it is not held
   std::vector<Index> held_;
   std::vector<char> stopped_;  ///< by particle that is its own parent

@@ -12,7 +12,7 @@ Matrix3 cofactors(const Matrix3& m) {
 
 }  // namespace
 
-CarriedPlane carried_plane(const Vector3& normal, const Matrix3& linear) {
+MovedPlane moved_plane(const Vector3& normal, const Matrix3& linear) {
   const Matrix3 at_end = cofactors(linear);
   const Matrix3 midway = 0.5 * (cofactors(Matrix3::Identity() + linear) - Matrix3::Identity() - at_end);
   return {normal, midway * normal, at_end * normal};

@@ -11,7 +11,7 @@
 namespace sprung {
 
 /// Bernstein coefficients of the normal; the first has unit length.
-struct CarriedPlane {
+struct MovedPlane {
   Vector3 begin;
   Vector3 middle;
   Vector3 end;
@@ -20,6 +20,6 @@ struct CarriedPlane {
 };
 
 /// With `normal`, unit length, where the step begins; `linear` is F.
-[[nodiscard]] CarriedPlane carried_plane(const Vector3& normal, const Matrix3& linear);
+[[nodiscard]] MovedPlane moved_plane(const Vector3& normal, const Matrix3& linear);
 
 }  // namespace sprung

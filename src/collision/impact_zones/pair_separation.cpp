@@ -16,11 +16,11 @@ constexpr double kKeptPart = 0.125;
 
 }  // namespace
 
-struct SelfZones::Implementation {
+struct PairSeparation::Implementation {
   Implementation(const CollisionSurface& own, const Points& rest, double margin) : surface(own), watch(own, rest, margin) {}
 
-  [[nodiscard]] std::span<const PairPlanes::Bound> bounds_of(Index particle) const {
-    const auto range = std::equal_range(bounds.begin(), bounds.end(), PairPlanes::Bound{.particle = particle, .half_space = {}},
+  [[nodiscard]] std::span<const DivisionPlanes::Bound> bounds_of(Index particle) const {
+    const auto range = std::equal_range(bounds.begin(), bounds.end(), DivisionPlanes::Bound{.particle = particle, .half_space = {}},
                                         [](const auto& a, const auto& b) { return a.particle < b.particle; });
     return {range.first, range.second};
   }
@@ -30,34 +30,34 @@ struct SelfZones::Implementation {
   }
 
   const CollisionSurface& surface;
-  PairWatch watch;
+  NeighbourList watch;
   Points ends;
   std::vector<Index> held;
   std::vector<Index> passing;  ///< ascending
-  std::vector<PairPlanes::Bound> bounds;
+  std::vector<DivisionPlanes::Bound> bounds;
   std::vector<Index> taken_along;
   bool turned = false;  ///< groups were, and the normals of their pairs not
 };
 
-SelfZones::SelfZones(const CollisionSurface& surface, const Points& rest, double margin)
+PairSeparation::PairSeparation(const CollisionSurface& surface, const Points& rest, double margin)
     : implementation_(new Implementation(surface, rest, margin)) {}
-SelfZones::~SelfZones() = default;
-SelfZones::SelfZones(SelfZones&&) noexcept = default;
-SelfZones& SelfZones::operator=(SelfZones&&) noexcept = default;
+PairSeparation::~PairSeparation() = default;
+PairSeparation::PairSeparation(PairSeparation&&) noexcept = default;
+PairSeparation& PairSeparation::operator=(PairSeparation&&) noexcept = default;
 
-void SelfZones::begin_step(const Points& before, const Points& after, std::vector<Contact>& contacts) {
+void PairSeparation::begin_step(const Points& before, const Points& after, std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
   self.watch.begin_step(before, after);
   append_self_contacts(self.surface, self.watch.features(), self.watch.candidates(), before, after, contacts);
 }
 
-void SelfZones::forget() { implementation_->watch.forget(); }
+void PairSeparation::forget() { implementation_->watch.forget(); }
 
-void SelfZones::begin_part(const Points& before, const Points& after) { implementation_->watch.begin_part(before, after); }
+void PairSeparation::begin_part(const Points& before, const Points& after) { implementation_->watch.begin_part(before, after); }
 
-const std::vector<Index>& SelfZones::hold(const Points& before, const Points& targets, const Carriers& carriers) {
+const std::vector<Index>& PairSeparation::hold(const Points& before, const Points& targets, const ParticleDisplacements& carriers) {
   Implementation& self = *implementation_;
-  PairPlanes planes(before, targets, self.surface.pinned, carriers, kKeptPart * self.surface.thickness.minCoeff());
+  DivisionPlanes planes(before, targets, self.surface.pinned, carriers, kKeptPart * self.surface.thickness.minCoeff());
   self.watch.follow(before, targets);
   if (self.turned) planes.renew_normals(self.watch.pairs());
   while (planes.hold(self.watch.pairs())) self.watch.follow(before, planes.ends());
@@ -73,24 +73,24 @@ const std::vector<Index>& SelfZones::hold(const Points& before, const Points& ta
   return self.held;
 }
 
-Vector3 SelfZones::safe_place(Index particle) const { return implementation_->ends.col(particle); }
+Vector3 PairSeparation::safe_place(Index particle) const { return implementation_->ends.col(particle); }
 
-void SelfZones::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
-  for (const PairPlanes::Bound& bound : implementation_->bounds_of(particle)) half_spaces.push_back(bound.half_space);
+void PairSeparation::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
+  for (const DivisionPlanes::Bound& bound : implementation_->bounds_of(particle)) half_spaces.push_back(bound.half_space);
 }
 
-SelfZones::Ball SelfZones::ball(Index particle) const {
-  const MovingBalls& balls = implementation_->watch.balls();
+PairSeparation::Ball PairSeparation::ball(Index particle) const {
+  const VertexBounds& balls = implementation_->watch.balls();
   return {balls.center(particle, 1.0), balls.radius(particle)};
 }
 
-const std::vector<Index>& SelfZones::taken_along() const { return implementation_->taken_along; }
+const std::vector<Index>& PairSeparation::taken_along() const { return implementation_->taken_along; }
 
-bool SelfZones::passes(Index particle) const {
+bool PairSeparation::passes(Index particle) const {
   return std::binary_search(implementation_->passing.begin(), implementation_->passing.end(), particle);
 }
 
-std::vector<Index> SelfZones::passing_pins() const {
+std::vector<Index> PairSeparation::passing_pins() const {
   const CollisionSurface& surface = implementation_->surface;
   const auto is_pinned = [&](Index i) { return surface.pinned[static_cast<std::size_t>(i)] != 0; };
   std::vector<Index> pins;
@@ -105,17 +105,17 @@ std::vector<Index> SelfZones::passing_pins() const {
   return pins;
 }
 
-bool SelfZones::allows(Index particle, const Vector3& p) const {
+bool PairSeparation::allows(Index particle, const Vector3& p) const {
   if (!implementation_->watch.balls().holds(particle, p, 1.0)) return false;
   const auto bounds = implementation_->bounds_of(particle);
   return std::all_of(bounds.begin(), bounds.end(),
-                     [&](const PairPlanes::Bound& bound) { return bound.half_space.normal.dot(p) >= bound.half_space.offset; });
+                     [&](const DivisionPlanes::Bound& bound) { return bound.half_space.normal.dot(p) >= bound.half_space.offset; });
 }
 
-void SelfZones::append_meetings(const Points& before, std::vector<Contact>& meetings) {
+void PairSeparation::append_meetings(const Points& before, std::vector<Contact>& meetings) {
   Implementation& self = *implementation_;
   const auto is_held = [&](Index i) { return std::binary_search(self.held.begin(), self.held.end(), i); };
-  for (const ElementPair& pair : self.watch.pairs()) {
+  for (const ConvexPair& pair : self.watch.pairs()) {
     const std::span particles(pair.particles.data(), static_cast<std::size_t>(pair.count()));
     const bool within_a_body = self.body_at(particles.front()) == self.body_at(particles.back());
     if (within_a_body || std::ranges::none_of(particles, is_held)) continue;
@@ -123,6 +123,6 @@ void SelfZones::append_meetings(const Points& before, std::vector<Contact>& meet
   }
 }
 
-WatchCounts SelfZones::counts() const { return implementation_->watch.counts(); }
+NeighbourListCounts PairSeparation::counts() const { return implementation_->watch.counts(); }
 
 }  // namespace sprung

@@ -17,14 +17,14 @@
 
 namespace sprung {
 
-class SelfZones {
+class PairSeparation {
  public:
   /// Finds contacts up to `margin` [m] beyond their gap. What is near in one body at `rest` [m], 3 x n, may stay as near. Keeps a
   /// reference to the surface.
-  SelfZones(const CollisionSurface& surface, const Points& rest, double margin);
-  ~SelfZones();
-  SelfZones(SelfZones&&) noexcept;
-  SelfZones& operator=(SelfZones&&) noexcept;
+  PairSeparation(const CollisionSurface& surface, const Points& rest, double margin);
+  ~PairSeparation();
+  PairSeparation(PairSeparation&&) noexcept;
+  PairSeparation& operator=(PairSeparation&&) noexcept;
 
   /// A step begins at `before` [m], 3 x n, where nothing crosses, and is about to end at `after`. Appends the contacts on the way:
   /// their gap is the mean of the two thicknesses, but at most `most_gap`.
@@ -39,7 +39,7 @@ class SelfZones {
 
   /// Finds which particles would pass each other on their way to `targets` [m]; all others may go there. Pinned particles do so in
   /// any case. Returns those that are held, ascending. Requires begin_step() or begin_part() with the same `before`.
-  const std::vector<Index>& hold(const Points& before, const Points& targets, const Carriers& carriers = {});
+  const std::vector<Index>& hold(const Points& before, const Points& targets, const ParticleDisplacements& carriers = {});
 
   /// Where a held particle may end in any case [m].
   [[nodiscard]] Vector3 safe_place(Index particle) const;
@@ -67,7 +67,7 @@ class SelfZones {
   /// Appends where other bodies are nearest to held particles, or to what is between those, at `before` [m], where the step begins.
   void append_meetings(const Points& before, std::vector<Contact>& meetings);
 
-  [[nodiscard]] WatchCounts counts() const;
+  [[nodiscard]] NeighbourListCounts counts() const;
 
  private:
   struct Implementation;

@@ -16,7 +16,7 @@ using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
 }  // namespace
 
-std::optional<RigidTransform> common_turn(std::span<const PinWay> pins) {
+std::optional<RigidTransform> common_turn(std::span<const PinDisplacement> pins) {
   const auto count = static_cast<Eigen::Index>(pins.size());
   Columns before(3, count);
   Columns after(3, count);
@@ -28,7 +28,7 @@ std::optional<RigidTransform> common_turn(std::span<const PinWay> pins) {
   const Vector3 middle_after = after.rowwise().mean();
   before.colwise() -= middle_before;
   after.colwise() -= middle_after;
-  const Matrix3 turn = best_turn(after * before.transpose());
+  const Matrix3 turn = kabsch_rotation(after * before.transpose());
   const double missed = (turn * before - after).norm();
   if (turn.trace() < kLeastTrace || !(missed < kWorthwhile * (before - after).norm())) return std::nullopt;
   RigidTransform motion = RigidTransform::Identity();

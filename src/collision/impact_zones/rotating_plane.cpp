@@ -11,7 +11,7 @@ constexpr double kWeightOfPins = 1024.0;
 
 }  // namespace
 
-TurningPlane turning_plane(const ElementPair& pair, const Points& before, const Points& ends, const std::vector<char>& pinned) {
+RotatingPlane turning_plane(const ConvexPair& pair, const Points& before, const Points& ends, const std::vector<char>& pinned) {
   const auto weight = [&](Index i) { return pinned[static_cast<std::size_t>(i)] != 0 ? kWeightOfPins : 1.0; };
   Vector3 middle_before = Vector3::Zero();
   Vector3 middle_after = Vector3::Zero();
@@ -29,7 +29,7 @@ TurningPlane turning_plane(const ElementPair& pair, const Points& before, const 
     const Index i = pair.particles[static_cast<std::size_t>(k)];
     covariance += weight(i) * (ends.col(i) - middle_after) * (before.col(i) - middle_before).transpose();
   }
-  return {pair.normal, best_turn(covariance) * pair.normal};
+  return {pair.normal, kabsch_rotation(covariance) * pair.normal};
 }
 
 }  // namespace sprung

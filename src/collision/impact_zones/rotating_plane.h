@@ -11,19 +11,19 @@
 
 namespace sprung {
 
-struct TurningPlane {
+struct RotatingPlane {
   Vector3 begin;  ///< normal where the step begins, unit length
   Vector3 end;    ///< where it ends
 };
 
 /// The second coefficient of a particle that goes from x0 to x1 [m].
-[[nodiscard]] inline double midway_height(const TurningPlane& plane, const Vector3& x0, const Vector3& x1) {
+[[nodiscard]] inline double midway_height(const RotatingPlane& plane, const Vector3& x0, const Vector3& x1) {
   return 0.5 * (plane.begin.dot(x1) + plane.end.dot(x0));
 }
 
 /// Begins with the pair's normal, and turns as its particles do on their way from `before` to `ends` [m]. Pinned ones count for
 /// most: they give no way.
-[[nodiscard]] TurningPlane turning_plane(const ElementPair& pair, const Points& before, const Points& ends,
-                                         const std::vector<char>& pinned);
+[[nodiscard]] RotatingPlane turning_plane(const ConvexPair& pair, const Points& before, const Points& ends,
+                                          const std::vector<char>& pinned);
 
 }  // namespace sprung

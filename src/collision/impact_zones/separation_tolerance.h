@@ -5,7 +5,7 @@
 
 namespace sprung {
 
-struct GapRule {
+struct SeparationTolerance {
   double thickness_kept = 0.0;  ///< what sides that are held keep between them where they can [m]
   double clearance = 0.0;       ///< below this, a gap is not told from rounding [m]
 

@@ -26,7 +26,7 @@ float rounded_down(double value) {
 
 float rounded_up(double value) { return -rounded_down(-value); }
 
-void fill_lanes(const TriangleMesh& mesh, TriangleBlock& block) {
+void fill_lanes(const TriangleMesh& mesh, TrianglePacket& block) {
   for (int lane = 0; lane < kSimdWidth; ++lane) {
     const auto corner = mesh.triangles.col(block.triangle[lane]);
     for (int k = 0; k < 3; ++k) {
@@ -45,7 +45,7 @@ std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> build_model(const TriangleMesh
     triangles.emplace_back(corner[0], corner[1], corner[2]);
   }
   auto model = std::make_shared<fcl::BVHModel<fcl::AABB<double>>>();
-  model->bv_splitter = std::make_shared<SurfaceSplitter>();
+  model->bv_splitter = std::make_shared<SahSplitter>();
   model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
   model->addSubModel(vertices, triangles);
   model->endModel();
@@ -54,24 +54,24 @@ std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> build_model(const TriangleMesh
 
 }  // namespace
 
-MeshTree::MeshTree(const TriangleMesh& mesh) : model_(build_model(mesh)), magnitude_(mesh.vertices.cwiseAbs().maxCoeff()) {
+MeshBvh::MeshBvh(const TriangleMesh& mesh) : model_(build_model(mesh)), magnitude_(mesh.vertices.cwiseAbs().maxCoeff()) {
   places_.resize(static_cast<std::size_t>(mesh.triangles.cols()));
-  add_node(TreeCollapse(*model_), 0, 1);
+  add_node(WideBvhCollapse(*model_), 0, 1);
   place(mesh);
 }
 
-std::array<Vector3, 3> MeshTree::corners(Index triangle) const {
+std::array<Vector3, 3> MeshBvh::corners(Index triangle) const {
   const Place& place = places_[static_cast<std::size_t>(triangle)];
   return block(place.block).corners(place.lane);
 }
 
-Box3 MeshTree::bounds() const {
+Box3 MeshBvh::bounds() const {
   const fcl::AABB<double>& root = model_->getBV(0).bv;
   return {root.min_, root.max_};
 }
 
 // FCL refits the model of a moving mesh around the vertices of two frames, the one before and the present one.
-void MeshTree::refit(const Points& from, const Points& to) {
+void MeshBvh::refit(const Points& from, const Points& to) {
   model_->beginUpdateModel();
   for (Index i = 0; i < from.cols(); ++i) {
     model_->prev_vertices[i] = from.col(i);
@@ -85,18 +85,18 @@ void MeshTree::refit(const Points& from, const Points& to) {
   });
 }
 
-void MeshTree::take_boxes(const MeshTree& refitted) {
+void MeshBvh::take_boxes(const MeshBvh& refitted) {
   nodes_ = refitted.nodes_;
   magnitude_ = refitted.magnitude_;
 }
 
-void MeshTree::place(const TriangleMesh& mesh) {
+void MeshBvh::place(const TriangleMesh& mesh) {
   parallel_chunks(static_cast<Index>(blocks_.size()), kBlocksPerTask, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) fill_lanes(mesh, blocks_[static_cast<std::size_t>(i)]);
   });
 }
 
-void MeshTree::fit_boxes(std::size_t node) {
+void MeshBvh::fit_boxes(std::size_t node) {
   for (int lane = 0; lane < kFloatSimdWidth; ++lane) {
     const Index volume = volumes_[node][static_cast<std::size_t>(lane)];
     for (int axis = 0; axis < 3; ++axis) {
@@ -106,7 +106,7 @@ void MeshTree::fit_boxes(std::size_t node) {
   }
 }
 
-std::int32_t MeshTree::add_node(const TreeCollapse& collapse, int volume, int depth) {
+std::int32_t MeshBvh::add_node(const WideBvhCollapse& collapse, int volume, int depth) {
   const auto number = nodes_.size();
   const std::vector<int> children = collapse.is_block(volume) ? std::vector<int>{volume} : collapse.children(volume);
   nodes_.emplace_back();
@@ -123,9 +123,9 @@ std::int32_t MeshTree::add_node(const TreeCollapse& collapse, int volume, int de
   return static_cast<std::int32_t>(number);
 }
 
-std::int32_t MeshTree::add_block(int volume) {
+std::int32_t MeshBvh::add_block(int volume) {
   const auto number = static_cast<std::int32_t>(blocks_.size());
-  TriangleBlock& block = blocks_.emplace_back();
+  TrianglePacket& block = blocks_.emplace_back();
   for (std::vector<int> waiting{volume}; !waiting.empty();) {
     const int first_child = model_->getBV(waiting.back()).first_child;
     waiting.pop_back();

@@ -15,7 +15,7 @@
 
 namespace sprung {
 
-class TreeCollapse;
+class WideBvhCollapse;
 
 /// FCL builds the tree of AABBs; a copy of it with up to eight children a node and single-precision boxes, rounded outward, is what
 /// the walks read. Requires a valid mesh: at least one triangle, indices in range, positions below 1e18 [m] (squares of single
@@ -23,16 +23,16 @@ class TreeCollapse;
 ///
 /// Node 0 is the root, and a node comes before its children. Each triangle is in one block; each block, and each node but the root,
 /// is the child of one node.
-class MeshTree {
+class MeshBvh {
  public:
-  explicit MeshTree(const TriangleMesh& mesh);
+  explicit MeshBvh(const TriangleMesh& mesh);
 
   /// Refits all boxes, FCL's and the copy's, so that each holds its triangles while every vertex is between `from` and `to` [m].
   /// Not thread-safe.
   void refit(const Points& from, const Points& to);
 
   /// Takes over the boxes of a copy that was refitted.
-  void take_boxes(const MeshTree& refitted);
+  void take_boxes(const MeshBvh& refitted);
 
   /// Where the triangles are from now on, within the boxes. Requires the triangles of the tree. Not thread-safe.
   void place(const TriangleMesh& mesh);
@@ -68,7 +68,7 @@ class MeshTree {
 
   // What walks read.
   [[nodiscard]] const Node& node(std::int32_t i) const { return nodes_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] const TriangleBlock& block(std::int32_t i) const { return blocks_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const TrianglePacket& block(std::int32_t i) const { return blocks_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] std::size_t stack_size() const { return stack_size_; }  ///< entries that no walk outgrows
   [[nodiscard]] double magnitude() const { return magnitude_; }         ///< largest absolute coordinate [m]
   [[nodiscard]] std::array<Vector3, 3> corners(Index triangle) const;
@@ -83,14 +83,14 @@ class MeshTree {
     int lane;
   };
 
-  std::int32_t add_node(const TreeCollapse& collapse, int volume, int depth);
+  std::int32_t add_node(const WideBvhCollapse& collapse, int volume, int depth);
   std::int32_t add_block(int volume);
   void fit_boxes(std::size_t node);
 
   std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> model_;
   std::vector<Node> nodes_;
   std::vector<Volumes> volumes_;  ///< of each node
-  std::vector<TriangleBlock> blocks_;
+  std::vector<TrianglePacket> blocks_;
   std::vector<Place> places_;  ///< of each triangle
   std::size_t stack_size_ = 0;
   double magnitude_ = 0.0;

@@ -39,7 +39,7 @@ FloatRange float_range(const Vector3& p) {
 
 /// Lower bounds of the children's squared distances. A box's squared distance is at most 6 roundings of 2^-24 too large, which the
 /// factor takes back.
-[[gnu::always_inline]] inline void bound_children(const MeshTree::Node& node, const FloatRange& p, Float8& bounds) {
+[[gnu::always_inline]] inline void bound_children(const MeshBvh::Node& node, const FloatRange& p, Float8& bounds) {
   Float8 sum = {};
   for (int axis = 0; axis < 3; ++axis) {
     const Float8 below = node.min[axis] - p.high[axis];
@@ -53,28 +53,28 @@ FloatRange float_range(const Vector3& p) {
 
 /// A triangle of a block; none where there is no block.
 struct Spot {
-  const TriangleBlock* block = nullptr;
+  const TrianglePacket* block = nullptr;
   int lane = 0;
 };
 
 /// The triangle with the smallest squared distance below `best2`.
-SPRUNG_KERNEL Spot find_nearest(const MeshTree& tree, const Vector3& p, double best2) {
+SPRUNG_KERNEL Spot find_nearest(const MeshBvh& tree, const Vector3& p, double best2) {
   const FloatRange range = float_range(p);
   float bound = bound_of(best2);
   Spot best;
-  WalkStack stack(tree.stack_size());
+  TraversalStack stack(tree.stack_size());
   stack.push({0.0F, 0});
   while (!stack.empty()) {
-    const WalkEntry entry = stack.pop();
+    const TraversalEntry entry = stack.pop();
     if (entry.bound > bound) continue;
     if (entry.child >= 0) {
-      const MeshTree::Node& node = tree.node(entry.child);
+      const MeshBvh::Node& node = tree.node(entry.child);
       Float8 bounds;
       bound_children(node, range, bounds);
       stack.push_within(bounds, node.child, bound);
       continue;
     }
-    const TriangleBlock& block = tree.block(~entry.child);
+    const TrianglePacket& block = tree.block(~entry.child);
     Double4 squared;
     squared_distances(p, block, squared);
     const Mask4 nearer = squared < best2;
@@ -91,7 +91,7 @@ SPRUNG_KERNEL Spot find_nearest(const MeshTree& tree, const Vector3& p, double b
 
 }  // namespace
 
-std::optional<MeshTree::Nearest> MeshTree::nearest(const Vector3& p, double radius) const {
+std::optional<MeshBvh::Nearest> MeshBvh::nearest(const Vector3& p, double radius) const {
   if (!(radius > 0.0)) return std::nullopt;
   const auto [block, lane] = find_nearest(*this, p, radius * radius);
   if (block == nullptr) return std::nullopt;

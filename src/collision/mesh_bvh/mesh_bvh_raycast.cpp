@@ -42,7 +42,7 @@ FloatPath float_path(const Vector3& a, const Vector3& b, double magnitude) {
 
 /// Appends the children whose box the path may meet (no axis separates them; Gottschalk et al. 1996) before the fraction `bound`,
 /// the first last.
-SPRUNG_KERNEL void push_children(const MeshTree::Node& node, const FloatPath& path, float bound, WalkStack& stack) {
+SPRUNG_KERNEL void push_children(const MeshBvh::Node& node, const FloatPath& path, float bound, TraversalStack& stack) {
   const Float8 never = Float8{} + std::numeric_limits<float>::infinity();
   const bool forward = path.direction[path.main_axis] > 0.0F;
   const Float8 ahead = forward ? node.min[path.main_axis] - path.begin : path.begin - node.max[path.main_axis];
@@ -70,19 +70,19 @@ SPRUNG_KERNEL void push_children(const MeshTree::Node& node, const FloatPath& pa
 
 }  // namespace
 
-std::optional<MeshTree::Hit> MeshTree::first_hit(const Vector3& a, const Vector3& b, CrossingSides sides) const {
+std::optional<MeshBvh::Hit> MeshBvh::first_hit(const Vector3& a, const Vector3& b, CrossingSides sides) const {
   if (a == b) return std::nullopt;
   const FloatPath path = float_path(a, b, magnitude_);
   const Box3 box(a.cwiseMin(b), a.cwiseMax(b));
   std::optional<Hit> best;
   float bound = 1.0F;
-  WalkStack stack(stack_size_);
+  TraversalStack stack(stack_size_);
   stack.push({0.0F, 0});
   while (!stack.empty()) {
-    const WalkEntry entry = stack.pop();
+    const TraversalEntry entry = stack.pop();
     if (entry.bound > bound) continue;
     if (entry.child < 0) {
-      const TriangleBlock& block = this->block(~entry.child);
+      const TrianglePacket& block = this->block(~entry.child);
       for (unsigned lanes = triangles_in_box(block, box); lanes != 0;) {
         const int lane = pop_lane(lanes);
         const auto [u, v, w] = block.corners(lane);

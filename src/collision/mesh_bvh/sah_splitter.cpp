@@ -52,17 +52,17 @@ Cut cheapest_cut(const Bins& bins) {
 
 }  // namespace
 
-void SurfaceSplitter::set(fcl::Vector3<double>* vertices, fcl::Triangle* triangles, fcl::BVHModelType /*type*/) {
+void SahSplitter::set(fcl::Vector3<double>* vertices, fcl::Triangle* triangles, fcl::BVHModelType /*type*/) {
   vertices_ = vertices;
   triangles_ = triangles;
 }
 
-void SurfaceSplitter::clear() {
+void SahSplitter::clear() {
   vertices_ = nullptr;
   triangles_ = nullptr;
 }
 
-void SurfaceSplitter::computeRule(const fcl::AABB<double>& /*box*/, unsigned int* triangles, int count) {
+void SahSplitter::computeRule(const fcl::AABB<double>& /*box*/, unsigned int* triangles, int count) {
   Box3 middles;
   for (int i = 0; i < count; ++i) middles.extend(middle(triangles[i]));
   const Vector3 size = middles.sizes();
@@ -78,12 +78,12 @@ void SurfaceSplitter::computeRule(const fcl::AABB<double>& /*box*/, unsigned int
   cut_ = middles.min()[axis_] + length * cheapest_cut(bins).bins_before / kBins;
 }
 
-Vector3 SurfaceSplitter::middle(unsigned int triangle) const {
+Vector3 SahSplitter::middle(unsigned int triangle) const {
   const fcl::Triangle& corner = triangles_[triangle];
   return (vertices_[corner[0]] + vertices_[corner[1]] + vertices_[corner[2]]) / 3.0;
 }
 
-Box3 SurfaceSplitter::box(unsigned int triangle) const {
+Box3 SahSplitter::box(unsigned int triangle) const {
   const fcl::Triangle& corner = triangles_[triangle];
   Box3 box(vertices_[corner[0]]);
   return box.extend(vertices_[corner[1]]).extend(vertices_[corner[2]]);

@@ -11,7 +11,7 @@ namespace sprung {
 /// Cuts the longest side of the box around the triangles' middles where the areas of the two sets' boxes, each times its number of
 /// triangles, have the smallest sum (MacDonald and Booth 1990), trying 15 places (Wald 2007). With FCL's own, which cuts at the
 /// mean, walks visit a sixth more blocks.
-class SurfaceSplitter final : public fcl::detail::BVSplitterBase<fcl::AABB<double>> {
+class SahSplitter final : public fcl::detail::BVSplitterBase<fcl::AABB<double>> {
  public:
   void set(fcl::Vector3<double>* vertices, fcl::Triangle* triangles, fcl::BVHModelType type) override;
   void computeRule(const fcl::AABB<double>& box, unsigned int* triangles, int count) override;

@@ -12,25 +12,25 @@
 namespace sprung {
 
 /// A node (>= 0) or block (~block) still to visit, and a lower bound that may rule it out by then.
-struct WalkEntry {
+struct TraversalEntry {
   float bound;
   std::int32_t child;
 };
 
-class WalkStack {
+class TraversalStack {
  public:
-  explicit WalkStack(std::size_t capacity) {
+  explicit TraversalStack(std::size_t capacity) {
     if (capacity > local_.size()) {
       heap_.resize(capacity);
       entries_ = heap_.data();
     }
   }
-  WalkStack(const WalkStack&) = delete;
-  WalkStack& operator=(const WalkStack&) = delete;
+  TraversalStack(const TraversalStack&) = delete;
+  TraversalStack& operator=(const TraversalStack&) = delete;
 
   [[nodiscard]] bool empty() const { return size_ == 0; }
-  void push(WalkEntry entry) { entries_[size_++] = entry; }
-  WalkEntry pop() { return entries_[--size_]; }
+  void push(TraversalEntry entry) { entries_[size_++] = entry; }
+  TraversalEntry pop() { return entries_[--size_]; }
 
   /// Pushes the children whose bound is at most `limit`, the smallest last, the others in no order: sorting them, or asking before
   /// each, costs more in branches that nobody can predict than it saves in visits. Writes up to kFloatSimdWidth entries past the
@@ -48,9 +48,9 @@ class WalkStack {
   }
 
  private:
-  std::array<WalkEntry, 256> local_;
-  std::vector<WalkEntry> heap_;
-  WalkEntry* entries_ = local_.data();
+  std::array<TraversalEntry, 256> local_;
+  std::vector<TraversalEntry> heap_;
+  TraversalEntry* entries_ = local_.data();
   std::size_t size_ = 0;
 };
 

@@ -8,7 +8,7 @@
 
 namespace sprung {
 
-struct alignas(64) TriangleBlock {
+struct alignas(64) TrianglePacket {
   Double4 corner[3][3];        ///< [m]: corner k along axis a, a lane a triangle; lanes beyond `count` repeat the last triangle
   Index triangle[kSimdWidth];  ///< its number in the mesh
   std::int32_t count;          ///< 1 to kSimdWidth
@@ -22,7 +22,7 @@ struct alignas(64) TriangleBlock {
 };
 
 /// The triangles whose own box meets `box` [m] or touches it: bit i stands for lane i.
-[[gnu::always_inline]] inline unsigned triangles_in_box(const TriangleBlock& block, const Box3& box) {
+[[gnu::always_inline]] inline unsigned triangles_in_box(const TrianglePacket& block, const Box3& box) {
   Mask4 outside{};
   for (int axis = 0; axis < 3; ++axis) {
     const double low = box.min()[axis];
@@ -37,14 +37,14 @@ struct alignas(64) TriangleBlock {
 }
 
 /// The triangles that reach above the plane normal . x = limit.
-[[gnu::always_inline]] inline unsigned triangles_above(const TriangleBlock& block, const Vector3& normal, double limit) {
+[[gnu::always_inline]] inline unsigned triangles_above(const TrianglePacket& block, const Vector3& normal, double limit) {
   Mask4 above{};
   for (const auto& x : block.corner) above |= x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2] > limit;
   return block.lanes() & mask_bits(above);
 }
 
 /// Squared distances [m^2] of the triangles' own boxes from `box`.
-[[gnu::always_inline]] inline void squared_box_distances(const TriangleBlock& block, const Box3& box, Double4& squared) {
+[[gnu::always_inline]] inline void squared_box_distances(const TrianglePacket& block, const Box3& box, Double4& squared) {
   squared = Double4{};
   for (int axis = 0; axis < 3; ++axis) {
     const Double4& a = block.corner[0][axis];

@@ -7,7 +7,7 @@
 namespace sprung {
 
 /// Squared distances [m^2], a lane a triangle, each to the last bit that of closest_point_on_triangle.
-[[gnu::always_inline]] inline void squared_distances(const Vector3& position, const TriangleBlock& block, Double4& squared) {
+[[gnu::always_inline]] inline void squared_distances(const Vector3& position, const TrianglePacket& block, Double4& squared) {
   Vector3x4 p;
   set_all_lanes(position, p);
   const auto corner = [&](int k) { return Vector3x4{block.corner[k][0], block.corner[k][1], block.corner[k][2]}; };

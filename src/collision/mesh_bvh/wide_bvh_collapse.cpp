@@ -16,7 +16,7 @@ double half_area(const fcl::AABB<double>& box) {
 
 }  // namespace
 
-TreeCollapse::TreeCollapse(const Tree& tree) : tree_(tree), costs_(static_cast<std::size_t>(tree.getNumBVs())) {
+WideBvhCollapse::WideBvhCollapse(const Tree& tree) : tree_(tree), costs_(static_cast<std::size_t>(tree.getNumBVs())) {
   const double whole = half_area(tree.getBV(0).bv);
   for (int bv = tree.getNumBVs() - 1; bv >= 0; --bv) {  // FCL numbers children after their parents
     Costs& costs = costs_[static_cast<std::size_t>(bv)];
@@ -33,7 +33,7 @@ TreeCollapse::TreeCollapse(const Tree& tree) : tree_(tree), costs_(static_cast<s
   }
 }
 
-std::vector<int> TreeCollapse::children(int bv) const {
+std::vector<int> WideBvhCollapse::children(int bv) const {
   std::vector<int> found;
   const int first_child = tree_.getBV(bv).first_child;
   const int first_lanes = best_share(first_child, kFloatSimdWidth).first_lanes;
@@ -42,7 +42,7 @@ std::vector<int> TreeCollapse::children(int bv) const {
   return found;
 }
 
-TreeCollapse::Share TreeCollapse::best_share(int first_child, int lanes) const {
+WideBvhCollapse::Share WideBvhCollapse::best_share(int first_child, int lanes) const {
   const Costs& first = costs_[static_cast<std::size_t>(first_child)];
   const Costs& second = costs_[static_cast<std::size_t>(first_child) + 1];
   Share best{1, std::numeric_limits<float>::infinity()};
@@ -53,7 +53,7 @@ TreeCollapse::Share TreeCollapse::best_share(int first_child, int lanes) const {
   return best;
 }
 
-void TreeCollapse::gather(int bv, int lanes, std::vector<int>& children) const {
+void WideBvhCollapse::gather(int bv, int lanes, std::vector<int>& children) const {
   const Costs& costs = costs_[static_cast<std::size_t>(bv)];
   if (is_block(bv) || costs[lanes - 1] == costs[0]) {
     children.push_back(bv);

@@ -12,12 +12,12 @@ namespace sprung {
 
 /// Of all ways to leave nodes out, the one with the least cost: the sum of a node's cost, each times the area of its box, to which
 /// the number of walks that visit it is proportional (Ylitie, Karras and Laine 2017).
-class TreeCollapse {
+class WideBvhCollapse {
  public:
   using Tree = fcl::BVHModel<fcl::AABB<double>>;
 
   /// Keeps a reference to the tree, which must have been built.
-  explicit TreeCollapse(const Tree& tree);
+  explicit WideBvhCollapse(const Tree& tree);
 
   /// Whether so few triangles are below that they become one block.
   [[nodiscard]] bool is_block(int bv) const { return tree_.getBV(bv).num_primitives <= kSimdWidth; }

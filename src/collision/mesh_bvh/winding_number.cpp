@@ -15,7 +15,7 @@ namespace {
 using Vector2 = Eigen::Vector2d;
 using TriangleCorners = std::array<Vector3, 3>;
 
-SPRUNG_KERNEL void push_meeting(const MeshTree::Node& node, const FloatBox& box, WalkStack& stack) {
+SPRUNG_KERNEL void push_meeting(const MeshBvh::Node& node, const FloatBox& box, TraversalStack& stack) {
   Float8 apart = {};
   for (int axis = 0; axis < 3; ++axis) {
     const auto outside = (node.min[axis] > box.max[axis]) | (node.max[axis] < box.min[axis]);
@@ -25,14 +25,14 @@ SPRUNG_KERNEL void push_meeting(const MeshTree::Node& node, const FloatBox& box,
 }
 
 template <class Visit>
-void visit_box(const MeshTree& tree, const Box3& box, const Visit& visit) {
+void visit_box(const MeshBvh& tree, const Box3& box, const Visit& visit) {
   const FloatBox bounds = float_box(box);
-  WalkStack stack(tree.stack_size());
+  TraversalStack stack(tree.stack_size());
   stack.push({0.0F, 0});
   while (!stack.empty()) {
-    const WalkEntry entry = stack.pop();
+    const TraversalEntry entry = stack.pop();
     if (entry.child < 0) {
-      const TriangleBlock& block = tree.block(~entry.child);
+      const TrianglePacket& block = tree.block(~entry.child);
       for (unsigned lanes = triangles_in_box(block, box); lanes != 0;) {
         const int lane = pop_lane(lanes);
         visit(block.triangle[lane], block.corners(lane));
@@ -65,7 +65,7 @@ int passing(const TriangleCorners& corners, const Vector3& p) {
 
 }  // namespace
 
-int winding_number(const MeshTree& tree, const Vector3& p) {
+int winding_number(const MeshBvh& tree, const Vector3& p) {
   Box3 ray(p, p);
   ray.max().x() = std::numeric_limits<double>::infinity();
   int winding = 0;
@@ -73,7 +73,7 @@ int winding_number(const MeshTree& tree, const Vector3& p) {
   return winding;
 }
 
-void find_in_box(const MeshTree& tree, const Box3& box, std::vector<Index>& found) {
+void find_in_box(const MeshBvh& tree, const Box3& box, std::vector<Index>& found) {
   found.clear();
   visit_box(tree, box, [&](Index triangle, const TriangleCorners& /*corners*/) { found.push_back(triangle); });
 }

@@ -55,11 +55,11 @@ AffineTransform fit(const RigidTransform& rigid, const std::vector<MovedTriangle
 
 }  // namespace
 
-AffineTransform common_motion(std::span<const Anchor> anchors) {
-  const auto moving = std::find_if(anchors.begin(), anchors.end(), [](const Anchor& anchor) { return anchor.moves(); });
-  const Anchor& first = moving == anchors.end() ? anchors.front() : *moving;
+AffineTransform common_motion(std::span<const KinematicAnchor> anchors) {
+  const auto moving = std::find_if(anchors.begin(), anchors.end(), [](const KinematicAnchor& anchor) { return anchor.moves(); });
+  const KinematicAnchor& first = moving == anchors.end() ? anchors.front() : *moving;
   std::vector<MovedTriangle> triangles;
-  for (const Anchor& anchor : anchors) {
+  for (const KinematicAnchor& anchor : anchors) {
     if (anchor.surface && anchor.obstacle == first.obstacle) triangles.push_back(*anchor.surface);
   }
   return triangles.empty() ? AffineTransform(first.motion) : fit(first.motion, triangles);

@@ -11,7 +11,7 @@ namespace sprung {
 using AffineTransform = Eigen::Affine3d;
 
 /// A particle that obstacles leave no place where its group would take it.
-struct Anchor {
+struct KinematicAnchor {
   Index particle = kNone;
   Index obstacle = kNone;                              ///< which moves and is in its way; kNone: it stays
   RigidTransform motion = RigidTransform::Identity();  ///< of the obstacle, but for its deforming
@@ -21,7 +21,7 @@ struct Anchor {
 };
 
 /// A particle that leans on an obstacle, and how far that carries it in this step [m].
-struct Carried {
+struct ParticleDisplacement {
   Index particle = kNone;
   Vector3 motion = Vector3::Zero();
 };
@@ -30,6 +30,6 @@ struct Carried {
 /// that moves, if one does): the obstacle's own if that is rigid; else the affine map, near its rigid part, that takes the surface
 /// at its anchors along with the least squares of what it misses. What does not cross before an affine map does not cross after
 /// it. Requires an anchor.
-[[nodiscard]] AffineTransform common_motion(std::span<const Anchor> anchors);
+[[nodiscard]] AffineTransform common_motion(std::span<const KinematicAnchor> anchors);
 
 }  // namespace sprung

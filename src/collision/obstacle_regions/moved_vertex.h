@@ -6,7 +6,7 @@
 namespace sprung {
 
 /// A particle that an obstacle carries together with an element.
-struct CarriedCorner {
+struct MovedVertex {
   Index particle = kNone;
   double distance = 0.0;  ///< of the element from the obstacle [m]
   Vector3 place = Vector3::Zero();

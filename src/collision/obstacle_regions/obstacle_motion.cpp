@@ -21,8 +21,8 @@ void keep_nearest(std::vector<Corner>& corners) {
 
 }  // namespace
 
-std::vector<Carried> ObstacleZones::carried(const Points& from) const {
-  std::vector<Carried> particles;
+std::vector<ParticleDisplacement> ObstacleSafeRegions::carried(const Points& from) const {
+  std::vector<ParticleDisplacement> particles;
   if (!set_.moves()) return particles;
   for (Index i = 0; i < static_cast<Index>(from.cols()); ++i) {
     const Index k = leans_on(i);
@@ -31,21 +31,21 @@ std::vector<Carried> ObstacleZones::carried(const Points& from) const {
   return particles;
 }
 
-Index ObstacleZones::leans_on(Index particle) const {
+Index ObstacleSafeRegions::leans_on(Index particle) const {
   for (const PatchSlot& place : slots_of(particle)) {
-    for (const PatchZones& zones : patches_[at(place.patch)].zones) {
-      if (zones.may_lean(place.slot) && !set_.rests(zones.obstacle())) return zones.obstacle();
+    for (const PatchSafeRegions& regions : patches_[at(place.patch)].regions) {
+      if (regions.may_lean(place.slot) && !set_.rests(regions.obstacle())) return regions.obstacle();
     }
   }
   return kNone;
 }
 
-Anchor ObstacleZones::anchor(Index particle, const Vector3& from, const Vector3& position) const {
-  Anchor anchor{.particle = particle};
+KinematicAnchor ObstacleSafeRegions::anchor(Index particle, const Vector3& from, const Vector3& position) const {
+  KinematicAnchor anchor{.particle = particle};
   for (const PatchSlot& place : slots_of(particle)) {
-    for (const PatchZones& zones : patches_[at(place.patch)].zones) {
-      const Index k = zones.obstacle();
-      if (set_.rests(k) || zones.allow(place.slot, set_.local(k, position))) continue;
+    for (const PatchSafeRegions& regions : patches_[at(place.patch)].regions) {
+      const Index k = regions.obstacle();
+      if (set_.rests(k) || regions.allow(place.slot, set_.local(k, position))) continue;
       anchor.obstacle = k;
       anchor.motion = set_.after(k) * set_.before(k).inverse();
       anchor.surface = set_.shape(k).moved_triangle(set_.local_before(k, from));
@@ -58,23 +58,23 @@ Anchor ObstacleZones::anchor(Index particle, const Vector3& from, const Vector3&
   return anchor;
 }
 
-std::vector<Index> ObstacleZones::near_obstacles(Index particle) const {
+std::vector<Index> ObstacleSafeRegions::near_obstacles(Index particle) const {
   std::vector<Index> near;
   for (const PatchSlot& place : slots_of(particle)) {
-    for (const PatchZones& zones : patches_[at(place.patch)].zones) near.push_back(zones.obstacle());
+    for (const PatchSafeRegions& regions : patches_[at(place.patch)].regions) near.push_back(regions.obstacle());
   }
   std::sort(near.begin(), near.end());
   near.erase(std::unique(near.begin(), near.end()), near.end());
   return near;
 }
 
-void ObstacleZones::append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const {
+void ObstacleSafeRegions::append_carried(Index particle, const Vector3& from, std::vector<Vector3>& places) const {
   for (const Index k : near_obstacles(particle)) {
     if (!set_.rests(k)) places.push_back(set_.carried(k, from));
   }
 }
 
-std::optional<Vector3> ObstacleZones::carried(Index particle, const Vector3& from) const {
+std::optional<Vector3> ObstacleSafeRegions::carried(Index particle, const Vector3& from) const {
   for (const Index k : near_obstacles(particle)) {
     if (set_.rests(k)) continue;
     const auto carried = set_.shape(k).carried({.x = {set_.local_before(k, from)}, .count = 1}, 0.0);
@@ -86,7 +86,7 @@ std::optional<Vector3> ObstacleZones::carried(Index particle, const Vector3& fro
 }
 
 // Before each obstacle a particle goes straight from where that one carries it.
-bool ObstacleZones::leads_through_another(Index k, Index particle, const Vector3& from, const Vector3& place) const {
+bool ObstacleSafeRegions::leads_through_another(Index k, Index particle, const Vector3& from, const Vector3& place) const {
   const std::vector<Index> near = near_obstacles(particle);
   return std::any_of(near.begin(), near.end(), [&](Index other) {
     if (other == k) return false;
@@ -95,12 +95,12 @@ bool ObstacleZones::leads_through_another(Index k, Index particle, const Vector3
   });
 }
 
-void ObstacleZones::append_carried_around(Index p, const Points& from, double lift, std::vector<CarriedCorner>& corners) const {
+void ObstacleSafeRegions::append_carried_around(Index p, const Points& from, double lift, std::vector<MovedVertex>& corners) const {
   const ElementPatch& patch = surface_.patches[at(p)];
-  for (const PatchZones& zones : patches_[at(p)].zones) {
-    const Index k = zones.obstacle();
+  for (const PatchSafeRegions& regions : patches_[at(p)].regions) {
+    const Index k = regions.obstacle();
     for (Index e = 0; e < patches_[at(p)].topology.element_count() && !set_.rests(k); ++e) {
-      if (!zones.zone(e).broken) continue;
+      if (!regions.region(e).broken) continue;
       const Element& element = surface_.elements[at(patch.first_element + e)];
       ElementCorners local{.count = element.corners};
       for (std::size_t c = 0; c < at(element.corners); ++c) local.x[c] = set_.local_before(k, from.col(element.particles[c]));
@@ -114,20 +114,20 @@ void ObstacleZones::append_carried_around(Index p, const Points& from, double li
   }
 }
 
-std::vector<CarriedCorner> ObstacleZones::carried_with_elements(const Points& from, double lift) const {
-  std::vector<CarriedCorner> corners;
+std::vector<MovedVertex> ObstacleSafeRegions::carried_with_elements(const Points& from, double lift) const {
+  std::vector<MovedVertex> corners;
   for (Index p = 0; p < static_cast<Index>(patches_.size()); ++p) append_carried_around(p, from, lift, corners);
   keep_nearest(corners);
   return corners;
 }
 
-void ObstacleZones::append_pushes(Index p, const PatchZones& zones, const Way& way, std::vector<Push>& pushes) const {
+void ObstacleSafeRegions::append_pushes(Index p, const PatchSafeRegions& regions, const Way& way, std::vector<Push>& pushes) const {
   const PatchTopology& topology = patches_[at(p)].topology;
-  const Index k = zones.obstacle();
+  const Index k = regions.obstacle();
   for (Index e = 0; e < topology.element_count(); ++e) {
-    const Zone& zone = zones.zone(e);
-    if (!topology.corners(e).pinned || zone.broken || !std::isfinite(zone.distance)) continue;
-    const Vector3 normal = set_.before(k).linear() * zone.normal;
+    const SafeRegion& region = regions.region(e);
+    if (!topology.corners(e).pinned || region.broken || !std::isfinite(region.distance)) continue;
+    const Vector3 normal = set_.before(k).linear() * region.normal;
     const auto corners = corners_of(surface_.elements[at(surface_.patches[at(p)].first_element + e)]);
     double nearer = 0.0;
     for (const Index i : corners) {
@@ -135,15 +135,16 @@ void ObstacleZones::append_pushes(Index p, const PatchZones& zones, const Way& w
       nearer = std::max(nearer, normal.dot(set_.carried(k, way.from.col(i)) - way.to.col(i)));
     }
     for (const Index i : corners) {
-      if (surface_.pinned[at(i)] == 0 && nearer > 0.0) pushes.push_back({i, zone.distance, nearer * normal, patches_[at(p)].size});
+      if (surface_.pinned[at(i)] == 0 && nearer > 0.0)
+        pushes.push_back({i, region.distance, nearer * normal, patches_[at(p)].size});
     }
   }
 }
 
-std::vector<Push> ObstacleZones::pushes_at_pins(const Way& way) const {
+std::vector<Push> ObstacleSafeRegions::pushes_at_pins(const Way& way) const {
   std::vector<Push> pushes;
   for (Index p = 0; p < static_cast<Index>(patches_.size()); ++p) {
-    for (const PatchZones& zones : patches_[at(p)].zones) append_pushes(p, zones, way, pushes);
+    for (const PatchSafeRegions& regions : patches_[at(p)].regions) append_pushes(p, regions, way, pushes);
   }
   keep_nearest(pushes);
   return pushes;

@@ -21,7 +21,7 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-ObstacleZones::ObstacleZones(const ObstacleSet& set, const CollisionSurface& surface, const Points& rest, double margin)
+ObstacleSafeRegions::ObstacleSafeRegions(const ObstacleSet& set, const CollisionSurface& surface, const Points& rest, double margin)
     : set_(set),
       surface_(surface),
       margin_(margin),
@@ -41,7 +41,7 @@ ObstacleZones::ObstacleZones(const ObstacleSet& set, const CollisionSurface& sur
   }
 }
 
-void ObstacleZones::follow(const Way& way) {
+void ObstacleSafeRegions::follow(const Way& way) {
   if (set_.obstacles().empty()) return;
   const double carried = way.obstacles_rest ? 0.0 : set_.carries_at_most(way.from);
   parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
@@ -49,17 +49,17 @@ void ObstacleZones::follow(const Way& way) {
       find_near(p, way, carried);
       Patch& patch = patches_[at(p)];
       patch.restless.clear();
-      for (PatchZones& zones : patch.zones) {
-        const ObstacleShape& shape = set_.shape(zones.obstacle());
-        if (!zones.find_restless(shape, {way.to, particles_of(p), set_.into_after(zones.obstacle())})) continue;
-        zones.follow(shape, patch.topology, paths(p, zones.obstacle(), way), demand(patch, zones.obstacle(), way));
-        append_restless(p, zones);
+      for (PatchSafeRegions& regions : patch.regions) {
+        const ObstacleShape& shape = set_.shape(regions.obstacle());
+        if (!regions.find_restless(shape, {way.to, particles_of(p), set_.into_after(regions.obstacle())})) continue;
+        regions.follow(shape, patch.topology, paths(p, regions.obstacle(), way), demand(patch, regions.obstacle(), way));
+        append_restless(p, regions);
       }
     }
   });
 }
 
-void ObstacleZones::find_near(Index p, const Way& way, double carried) {
+void ObstacleSafeRegions::find_near(Index p, const Way& way, double carried) {
   Patch& patch = patches_[at(p)];
   const std::vector<Index>& particles = particles_of(p);
   patch.box = finite_bounds(way.from, particles).merged(finite_bounds(way.to, particles));
@@ -73,27 +73,28 @@ void ObstacleZones::find_near(Index p, const Way& way, double carried) {
     patch.known = grown(patch.box, reach + kStock * patch.box.diagonal().norm());
     set_.find_near(patch.known, near);
   }
-  if (std::equal(near.begin(), near.end(), patch.zones.begin(), patch.zones.end(),
-                 [](Index k, const PatchZones& zones) { return k == zones.obstacle(); })) {
+  if (std::equal(near.begin(), near.end(), patch.regions.begin(), patch.regions.end(),
+                 [](Index k, const PatchSafeRegions& regions) { return k == regions.obstacle(); })) {
     return;
   }
-  std::vector<PatchZones> zones;
+  std::vector<PatchSafeRegions> regions;
   for (const Index k : near) {
-    const auto kept = std::find_if(patch.zones.begin(), patch.zones.end(), [k](const PatchZones& z) { return z.obstacle() == k; });
-    if (kept == patch.zones.end()) {
-      zones.emplace_back(k, patch.topology);
+    const auto kept =
+        std::find_if(patch.regions.begin(), patch.regions.end(), [k](const PatchSafeRegions& z) { return z.obstacle() == k; });
+    if (kept == patch.regions.end()) {
+      regions.emplace_back(k, patch.topology);
     } else {
-      zones.push_back(std::move(*kept));
+      regions.push_back(std::move(*kept));
     }
   }
-  patch.zones = std::move(zones);
+  patch.regions = std::move(regions);
 }
 
-void ObstacleZones::append_restless(Index p, const PatchZones& zones) {
-  for (const Index slot : zones.restless()) patches_[at(p)].restless.push_back(particles_of(p)[at(slot)]);
+void ObstacleSafeRegions::append_restless(Index p, const PatchSafeRegions& regions) {
+  for (const Index slot : regions.restless()) patches_[at(p)].restless.push_back(particles_of(p)[at(slot)]);
 }
 
-std::vector<Index> ObstacleZones::restless() const {
+std::vector<Index> ObstacleSafeRegions::restless() const {
   std::vector<Index> particles;
   for (const Patch& patch : patches_) particles.insert(particles.end(), patch.restless.begin(), patch.restless.end());
   std::sort(particles.begin(), particles.end());
@@ -101,23 +102,23 @@ std::vector<Index> ObstacleZones::restless() const {
   return particles;
 }
 
-PatchPaths ObstacleZones::paths(Index p, Index k, const Way& way) const {
+PatchPaths ObstacleSafeRegions::paths(Index p, Index k, const Way& way) const {
   const RigidTransform& before = way.obstacles_rest ? set_.into_after(k) : set_.into_before(k);
   return {{way.from, particles_of(p), before}, {way.to, particles_of(p), set_.into_after(k)}};
 }
 
-ZoneDemand ObstacleZones::demand(const Patch& patch, Index k, const Way& way) const {
-  ZoneDemand demand{.size = patch.size,
-                    .gap = patch.thickness + set_.obstacle(k).material.thickness,
-                    .margin = margin_,
-                    .at_end = way.obstacles_rest,
-                    .ahead = ahead_};
+RegionDemand ObstacleSafeRegions::demand(const Patch& patch, Index k, const Way& way) const {
+  RegionDemand demand{.size = patch.size,
+                      .gap = patch.thickness + set_.obstacle(k).material.thickness,
+                      .margin = margin_,
+                      .at_end = way.obstacles_rest,
+                      .ahead = ahead_};
   demand.clearance = patch.box.isEmpty() ? 0.0 : set_.clearance(k, patch.box.min(), patch.box.max());
   demand.gap = std::max(demand.gap, demand.clearance);
   return demand;
 }
 
-void ObstacleZones::renew_around(const std::vector<Index>& particles, const Way& way) {
+void ObstacleSafeRegions::renew_around(const std::vector<Index>& particles, const Way& way) {
   const std::vector<Index> around = patches_around(particles);
   std::vector<std::vector<Index>> slots(around.size());
   for (const Index i : particles) {
@@ -129,51 +130,51 @@ void ObstacleZones::renew_around(const std::vector<Index>& particles, const Way&
   parallel_chunks(static_cast<Index>(around.size()), kPatchChunk, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       const Index p = around[at(k)];
-      for (PatchZones& zones : patches_[at(p)].zones) {
-        const ObstacleShape& shape = set_.shape(zones.obstacle());
-        const ZoneDemand demanded = demand(patches_[at(p)], zones.obstacle(), way);
-        zones.renew(shape, patches_[at(p)].topology, paths(p, zones.obstacle(), way), demanded, slots[at(k)]);
-        zones.find_restless(shape, {way.to, particles_of(p), set_.into_after(zones.obstacle())});
-        append_restless(p, zones);
+      for (PatchSafeRegions& regions : patches_[at(p)].regions) {
+        const ObstacleShape& shape = set_.shape(regions.obstacle());
+        const RegionDemand demanded = demand(patches_[at(p)], regions.obstacle(), way);
+        regions.renew(shape, patches_[at(p)].topology, paths(p, regions.obstacle(), way), demanded, slots[at(k)]);
+        regions.find_restless(shape, {way.to, particles_of(p), set_.into_after(regions.obstacle())});
+        append_restless(p, regions);
       }
     }
   });
 }
 
-bool ObstacleZones::allow(Index particle, const Vector3& position) const {
+bool ObstacleSafeRegions::allow(Index particle, const Vector3& position) const {
   for (const auto& [p, slot] : slots_of(particle)) {
     const Patch& patch = patches_[at(p)];
     if (!patch.known.isEmpty() && !patch.known.contains(position)) return false;
-    for (const PatchZones& zones : patch.zones) {
-      if (!is_passing(zones.obstacle(), particle) && !zones.allow(slot, set_.local(zones.obstacle(), position))) return false;
+    for (const PatchSafeRegions& regions : patch.regions) {
+      if (!is_passing(regions.obstacle(), particle) && !regions.allow(slot, set_.local(regions.obstacle(), position))) return false;
     }
   }
   return true;
 }
 
-bool ObstacleZones::planes_allow(Index particle, const Vector3& position) const {
+bool ObstacleSafeRegions::planes_allow(Index particle, const Vector3& position) const {
   return std::ranges::all_of(slots_of(particle), [&](const PatchSlot& place) {
-    return std::ranges::all_of(patches_[at(place.patch)].zones, [&](const PatchZones& zones) {
-      return is_passing(zones.obstacle(), particle) || zones.planes_allow(place.slot, set_.local(zones.obstacle(), position));
+    return std::ranges::all_of(patches_[at(place.patch)].regions, [&](const PatchSafeRegions& regions) {
+      return is_passing(regions.obstacle(), particle) || regions.planes_allow(place.slot, set_.local(regions.obstacle(), position));
     });
   });
 }
 
-void ObstacleZones::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
+void ObstacleSafeRegions::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
   for (const auto& [p, slot] : slots_of(particle)) {
     const Patch& patch = patches_[at(p)];
     for (int axis = 0; axis < 3 && !patch.known.isEmpty(); ++axis) {
       half_spaces.push_back({Vector3::Unit(axis), patch.known.min()[axis]});
       half_spaces.push_back({-Vector3::Unit(axis), -patch.known.max()[axis]});
     }
-    for (const PatchZones& zones : patch.zones) {
-      if (is_passing(zones.obstacle(), particle)) continue;
-      zones.append_half_spaces(slot, set_.after(zones.obstacle()), half_spaces);
+    for (const PatchSafeRegions& regions : patch.regions) {
+      if (is_passing(regions.obstacle(), particle)) continue;
+      regions.append_half_spaces(slot, set_.after(regions.obstacle()), half_spaces);
     }
   }
 }
 
-std::vector<Index> ObstacleZones::patches_around(const std::vector<Index>& particles) const {
+std::vector<Index> ObstacleSafeRegions::patches_around(const std::vector<Index>& particles) const {
   std::vector<Index> around;
   for (const Index i : particles) {
     for (const PatchSlot& place : slots_of(i)) around.push_back(place.patch);
@@ -183,7 +184,7 @@ std::vector<Index> ObstacleZones::patches_around(const std::vector<Index>& parti
   return around;
 }
 
-std::span<const PatchSlot> ObstacleZones::slots_of(Index particle) const {
+std::span<const PatchSlot> ObstacleSafeRegions::slots_of(Index particle) const {
   const auto begin = at(surface_.first_slot[at(particle)]);
   return {surface_.slots.data() + begin, at(surface_.first_slot[at(particle) + 1]) - begin};
 }

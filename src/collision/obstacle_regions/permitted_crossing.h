@@ -8,11 +8,11 @@
 namespace sprung {
 
 /// A corner of an element that an obstacle crosses.
-struct CrossedCorner {
+struct PermittedCrossing {
   Index obstacle = kNone;
   Index particle = kNone;
 };
 
-using LetThrough = std::vector<CrossedCorner>;
+using PermittedCrossings = std::vector<PermittedCrossing>;
 
 }  // namespace sprung

@@ -13,50 +13,52 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-bool ObstacleZones::crosses() const {
+bool ObstacleSafeRegions::crosses() const {
   return std::any_of(patches_.begin(), patches_.end(), [](const Patch& patch) {
-    return std::any_of(patch.zones.begin(), patch.zones.end(), [](const PatchZones& zones) { return zones.crosses(); });
+    return std::any_of(patch.regions.begin(), patch.regions.end(),
+                       [](const PatchSafeRegions& regions) { return regions.crosses(); });
   });
 }
 
-bool ObstacleZones::is_crossed(Index particle) const {
+bool ObstacleSafeRegions::is_crossed(Index particle) const {
   const auto slots = slots_of(particle);
   return std::any_of(slots.begin(), slots.end(), [&](const PatchSlot& place) {
-    const std::vector<PatchZones>& zones = patches_[at(place.patch)].zones;
-    return std::any_of(zones.begin(), zones.end(), [&](const PatchZones& z) { return z.is_crossed(place.slot); });
+    const std::vector<PatchSafeRegions>& regions = patches_[at(place.patch)].regions;
+    return std::any_of(regions.begin(), regions.end(), [&](const PatchSafeRegions& z) { return z.is_crossed(place.slot); });
   });
 }
 
 // A pin may take an element through an obstacle, and the obstacle the element's other corners along for ever. They are let through,
 // and then what they drag along in turn.
-void ObstacleZones::let_through(const Points& from) {
-  LetThrough passing;
+void ObstacleSafeRegions::permitted_crossings(const Points& from) {
+  PermittedCrossings passing;
   for (Index p = 0; p < static_cast<Index>(patches_.size()); ++p) {
-    for (const PatchZones& zones : patches_[at(p)].zones) {
-      if (zones.crosses()) append_passing(p, zones, from, passing);
+    for (const PatchSafeRegions& regions : patches_[at(p)].regions) {
+      if (regions.crosses()) append_passing(p, regions, from, passing);
     }
   }
   set_passing(std::move(passing));
 }
 
-void ObstacleZones::set_passing(LetThrough corners) {
-  for (const auto& [k, i] : let_through_) passing_[at(k)][at(i)] = 0;
+void ObstacleSafeRegions::set_passing(PermittedCrossings corners) {
+  for (const auto& [k, i] : permitted_crossings_) passing_[at(k)][at(i)] = 0;
   for (const auto& [k, i] : corners) passing_[at(k)][at(i)] = 1;
-  let_through_ = std::move(corners);
+  permitted_crossings_ = std::move(corners);
 }
 
-void ObstacleZones::forget(const LetThrough& through) {
+void ObstacleSafeRegions::forget(const PermittedCrossings& through) {
   for (Patch& patch : patches_) {
-    patch.zones.clear();
+    patch.regions.clear();
     patch.known.setEmpty();
   }
   set_passing(through);
 }
 
-void ObstacleZones::append_passing(Index p, const PatchZones& zones, const Points& from, LetThrough& passing) const {
-  const Index k = zones.obstacle();
+void ObstacleSafeRegions::append_passing(Index p, const PatchSafeRegions& regions, const Points& from,
+                                         PermittedCrossings& passing) const {
+  const Index k = regions.obstacle();
   for (Index e = 0; e < patches_[at(p)].topology.element_count(); ++e) {
-    if (!zones.zone(e).broken) continue;
+    if (!regions.region(e).broken) continue;
     const Element& element = surface_.elements[at(surface_.patches[at(p)].first_element + e)];
     const bool dragged = is_overstretched(element, from);
     for (std::size_t c = 0; c < at(element.corners); ++c) {
@@ -65,7 +67,7 @@ void ObstacleZones::append_passing(Index p, const PatchZones& zones, const Point
   }
 }
 
-bool ObstacleZones::is_overstretched(const Element& element, const Points& positions) const {
+bool ObstacleSafeRegions::is_overstretched(const Element& element, const Points& positions) const {
   for (std::size_t c = 0; c < at(element.corners); ++c) {
     const Index i = element.particles[c];
     const Index j = element.particles[(c + 1) % at(element.corners)];

@@ -45,7 +45,7 @@ Vector3 Environment::surface_velocity(Index obstacle, const Vector3& position, d
   return (carried - position + set.drift(obstacle, position, time, time + dt)) / dt;
 }
 
-std::vector<Contact> Environment::contacts(const ParticlePaths& paths) const {
+std::vector<Contact> Environment::contacts(const VertexPaths& paths) const {
   const ObstacleSet& set = implementation_->set;
   const auto count = static_cast<Index>(paths.after.cols());
   if (set.obstacles().empty()) return {};

@@ -14,7 +14,7 @@ namespace sprung {
 class ObstacleSet;
 
 /// Particles on their way through one step.
-struct ParticlePaths {
+struct VertexPaths {
   const Points& before;      ///< where they were at t [m]; outside all obstacles
   const Points& after;       ///< where they are about to be at t + dt [m]
   const Scalars& thickness;  ///< of each particle [m]; the obstacle's own is added
@@ -57,7 +57,7 @@ class Environment {
   /// the contact is at the crossing, facing where the particle came from; else it is at the surface nearest to `after`, facing
   /// outward, so that a particle that began inside a closed obstacle and ends within reach of its surface (anywhere in a primitive)
   /// is led out. Positions that are not finite have no contacts. Same result for any number of threads.
-  [[nodiscard]] std::vector<Contact> contacts(const ParticlePaths& paths) const;
+  [[nodiscard]] std::vector<Contact> contacts(const VertexPaths& paths) const;
 
   /// Smallest distance [m] of any particle from any obstacle at pose_after, if within `radius`; negative inside.
   [[nodiscard]] std::optional<double> min_distance(const Points& positions, double radius) const;

@@ -10,7 +10,7 @@ namespace sprung {
 
 namespace {
 
-// Of the clearance, which is 2^-30 of the coordinates: twice as much as what zones take for touching, so that they agree.
+// Of the clearance, which is 2^-30 of the coordinates: twice as much as what regions take for touching, so that they agree.
 constexpr double kTouching = 0x1p-10;
 
 class PatchSearch {

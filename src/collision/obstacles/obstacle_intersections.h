@@ -29,7 +29,7 @@ struct Intersections {
 };
 
 /// What is in the obstacles at the end of their interval, with the particles at `positions` [m], which are finite. Crossings of
-/// meshes and insides are judged exactly, touching by 2^-40 of the coordinates: where nothing is found, all elements have a zone.
+/// meshes and insides are judged exactly, touching by 2^-40 of the coordinates: where nothing is found, all elements have a region.
 /// Left out is what pins hold in place: pinned particles, elements of pinned particles alone, and elements that hang from a pin
 /// which is in or on the obstacle itself. With `body` only that one is looked at. Same result for any number of threads.
 [[nodiscard]] Intersections find_intersections(const ObstacleSet& obstacles, const CollisionSurface& surface,

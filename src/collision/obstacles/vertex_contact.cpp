@@ -40,7 +40,7 @@ std::optional<LocalContact> find_local(const ObstacleShape& shape, const LocalPa
 }
 
 template <class Nearest>
-std::optional<Contact> find_with(const ObstacleSet& set, Index k, const ParticlePath& path, const Nearest& nearest) {
+std::optional<Contact> find_with(const ObstacleSet& set, Index k, const VertexPath& path, const Nearest& nearest) {
   const double clearance = set.clearance(k, path.before, path.after);
   const double gap = std::max(path.thickness + set.obstacle(k).material.thickness, clearance);
   const LocalPath local = set.local_path(k, path.before, path.after);
@@ -56,11 +56,11 @@ std::optional<Contact> find_with(const ObstacleSet& set, Index k, const Particle
 
 }  // namespace
 
-std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const ParticlePath& path) {
+std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const VertexPath& path) {
   return find_with(set, k, path, [&](const Vector3& p, double reach, double) { return set.shape(k).nearest(p, reach); });
 }
 
-std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const ParticlePath& path, SurfaceMemory& memory) {
+std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const VertexPath& path, SurfaceMemory& memory) {
   return find_with(set, k, path, [&](const Vector3& p, double reach, double gap) {
     return set.shape(k).nearest_again(p, reach, kSame * gap, memory);
   });

@@ -9,7 +9,7 @@
 namespace sprung {
 
 /// A particle on its way through one step.
-struct ParticlePath {
+struct VertexPath {
   Index particle = kNone;
   Vector3 before;          ///< where it was at t [m]
   Vector3 after;           ///< where it is about to be at t + dt [m]
@@ -18,10 +18,10 @@ struct ParticlePath {
 };
 
 /// See Environment::contacts.
-[[nodiscard]] std::optional<Contact> find_contact(const ObstacleSet& set, Index obstacle, const ParticlePath& path);
+[[nodiscard]] std::optional<Contact> find_contact(const ObstacleSet& set, Index obstacle, const VertexPath& path);
 
 /// The same, begun with what was found for the particle last, in the obstacle's frame.
-[[nodiscard]] std::optional<Contact> find_contact(const ObstacleSet& set, Index obstacle, const ParticlePath& path,
+[[nodiscard]] std::optional<Contact> find_contact(const ObstacleSet& set, Index obstacle, const VertexPath& path,
                                                   SurfaceMemory& memory);
 
 }  // namespace sprung

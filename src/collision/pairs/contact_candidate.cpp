@@ -4,8 +4,8 @@
 
 namespace sprung {
 
-CandidateClosest closest_points(const ContactCandidate& candidate, const std::array<Vector3, 4>& x) {
-  CandidateClosest closest;
+ClosestFeatures closest_points(const ContactCandidate& candidate, const std::array<Vector3, 4>& x) {
+  ClosestFeatures closest;
   if (candidate.edges) {
     const SegmentPair found = closest_points_of_segments(x[0], x[1], x[2], x[3]);
     closest.weights = {1.0 - found.s, found.s, found.t - 1.0, -found.t};

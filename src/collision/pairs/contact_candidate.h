@@ -35,12 +35,12 @@ template <class Height>
 }
 
 /// The closest points of the two sides.
-struct CandidateClosest {
+struct ClosestFeatures {
   std::array<double, 4> weights{};       ///< separation = sum_i weights_i x_i; those of the second side are at most 0
   Vector3 separation = Vector3::Zero();  ///< from the second side's point to the first's [m]
 };
 
 /// `x` are the particles' positions [m].
-[[nodiscard]] CandidateClosest closest_points(const ContactCandidate& candidate, const std::array<Vector3, 4>& x);
+[[nodiscard]] ClosestFeatures closest_points(const ContactCandidate& candidate, const std::array<Vector3, 4>& x);
 
 }  // namespace sprung

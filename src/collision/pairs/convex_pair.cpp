@@ -11,7 +11,7 @@ constexpr double kSlack = 0.01;
 
 }  // namespace
 
-Vector3 direction_between(const ElementPair& pair, const Points& positions) {
+Vector3 direction_between(const ConvexPair& pair, const Points& positions) {
   std::array<Vector3, 6> x;
   for (int k = 0; k < pair.count(); ++k) {
     const auto at = static_cast<std::size_t>(k);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Index kCandidatesPerTask = 1024;
 
-// As a part of the largest coordinate: see PairPlanes.
+// As a part of the largest coordinate: see DivisionPlanes.
 constexpr double kClearance = 0x1p-30;
 
 // A direction that leans over a face by no more than this sine still counts as away from it: flat neighbours lean by rounding.
@@ -31,9 +31,9 @@ constexpr double kLongWay = 0.1;
 // What is far off is looked at again after so many steps at the latest.
 constexpr int kMostRest = 4;
 
-class SelfContacts {
+class ElementContacts {
  public:
-  SelfContacts(const CollisionSurface& surface, const SurfaceFeatures& features, const Points& before, const Points& after)
+  ElementContacts(const CollisionSurface& surface, const SurfaceTopology& features, const Points& before, const Points& after)
       : surface_(surface),
         features_(features),
         before_(before),
@@ -56,7 +56,7 @@ class SelfContacts {
     candidate.normal = meeting.closest.separation / begin;
     if (stays_apart(candidate, reach, way)) return;
     meeting = later_meeting(candidate, meeting);
-    const CandidateClosest& closest = meeting.closest;
+    const ClosestFeatures& closest = meeting.closest;
     const double distance = closest.separation.norm();
     if (!(distance > 0.0)) return;
     if (!(candidate.edges ? leads_from_edges(candidate, meeting) : leads_from_face(candidate, meeting))) return;
@@ -78,7 +78,7 @@ class SelfContacts {
   struct Meeting {
     const Points* around;      ///< where their neighbours are
     std::array<Vector3, 4> x;  ///< the candidate's particles
-    CandidateClosest closest;
+    ClosestFeatures closest;
   };
 
   [[nodiscard]] static Meeting meeting_at(const ContactCandidate& candidate, const Points& positions) {
@@ -213,7 +213,7 @@ class SelfContacts {
   }
 
   const CollisionSurface& surface_;
-  const SurfaceFeatures& features_;
+  const SurfaceTopology& features_;
   const Points& before_;
   const Points& after_;
   double clearance_;
@@ -222,10 +222,10 @@ class SelfContacts {
 
 }  // namespace
 
-void append_self_contacts(const CollisionSurface& surface, const SurfaceFeatures& features,
+void append_self_contacts(const CollisionSurface& surface, const SurfaceTopology& features,
                           std::vector<ContactCandidate>& candidates, const Points& before, const Points& after,
                           std::vector<Contact>& contacts) {
-  const SelfContacts finder(surface, features, before, after);
+  const ElementContacts finder(surface, features, before, after);
   const auto count = static_cast<Index>(candidates.size());
   std::vector<std::vector<Contact>> parts(static_cast<std::size_t>((count + kCandidatesPerTask - 1) / kCandidatesPerTask));
   parallel_chunks(count, kCandidatesPerTask, [&](Index begin, Index end) {

@@ -53,7 +53,7 @@ std::vector<double> ball_radii(const CollisionSurface& surface, const Points& re
 
 }  // namespace
 
-PairWatch::PairWatch(const CollisionSurface& surface, const Points& rest, double margin)
+NeighbourList::NeighbourList(const CollisionSurface& surface, const Points& rest, double margin)
     : surface_(surface),
       rest_(rest),
       features_(surface.elements, static_cast<Index>(rest.cols())),
@@ -81,7 +81,7 @@ PairWatch::PairWatch(const CollisionSurface& surface, const Points& rest, double
   }
 }
 
-void PairWatch::begin_step(const Points& before, const Points& after) {
+void NeighbourList::begin_step(const Points& before, const Points& after) {
   renewed_ = 0;
   age_ += 1.0;
   balls_.advance();
@@ -100,15 +100,15 @@ void PairWatch::begin_step(const Points& before, const Points& after) {
   find_candidates();
 }
 
-void PairWatch::begin_part(const Points& before, const Points& after) {
+void NeighbourList::begin_part(const Points& before, const Points& after) {
   age_ = 0.0;
   horizon_ = 1.0;
   renew(watched_, before, after);
 }
 
-void PairWatch::follow(const Points& before, const Points& ends) { renew(find_leaving(ends, 1.0), before, ends); }
+void NeighbourList::follow(const Points& before, const Points& ends) { renew(find_leaving(ends, 1.0), before, ends); }
 
-std::vector<Index> PairWatch::find_leaving(const Points& ends, double time) const {
+std::vector<Index> NeighbourList::find_leaving(const Points& ends, double time) const {
   const auto count = static_cast<Index>(watched_.size());
   std::vector<std::vector<Index>> parts(static_cast<std::size_t>((count + kParticlesPerTask - 1) / kParticlesPerTask));
   parallel_chunks(count, kParticlesPerTask, [&](Index begin, Index end) {
@@ -122,14 +122,14 @@ std::vector<Index> PairWatch::find_leaving(const Points& ends, double time) cons
   return leaving;
 }
 
-WatchCounts PairWatch::counts() const {
+NeighbourListCounts NeighbourList::counts() const {
   const auto flat = std::count(flat_.begin(), flat_.end(), char{1});
   return {static_cast<Index>(pairs_.size()), static_cast<Index>(candidates_.size()), renewed_,
           balls_.count() - static_cast<Index>(flat)};
 }
 
 /// How many steps balls that are made now had best last.
-double PairWatch::lasting_steps(const Points& before, const Points& after) const {
+double NeighbourList::lasting_steps(const Points& before, const Points& after) const {
   struct Flight {
     Vector3 sum = Vector3::Zero();
     double squares = 0.0;
@@ -155,20 +155,20 @@ double PairWatch::lasting_steps(const Points& before, const Points& after) const
   return std::max(steps, 1.0);
 }
 
-void PairWatch::renew(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
+void NeighbourList::renew(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
   if (leaving.empty()) return;
   place_balls(leaving, before, ends);
   look_at_fans();
   mark_elements();
   tree_.bound(balls_, flat_, marked_elements_, {age_, horizon_});
-  std::erase_if(pairs_, [&](const ElementPair& pair) { return has_marked(pair); });
+  std::erase_if(pairs_, [&](const ConvexPair& pair) { return has_marked(pair); });
   find_pairs(before);
   renewed_ += static_cast<Index>(marked_list_.size());
   moved_on_.insert(moved_on_.end(), marked_list_.begin(), marked_list_.end());
   clear_marks();
 }
 
-void PairWatch::find_candidates() {
+void NeighbourList::find_candidates() {
   if (moved_on_.empty()) return;
   for (const Index i : moved_on_) marked_[static_cast<std::size_t>(i)] = 1;
   marked_list_.swap(moved_on_);
@@ -182,28 +182,28 @@ void PairWatch::find_candidates() {
   clear_marks();
 }
 
-void PairWatch::find_pairs(const Points& before) {
-  const WatchTimes times{age_, horizon_};
-  const WatchState state{before, balls_, horizon_ - age_, marked_};
-  const std::vector<ElementTree::LeafPair> leaves = tree_.find_pairs(times, 0.0);
+void NeighbourList::find_pairs(const Points& before) {
+  const HorizonTimes times{age_, horizon_};
+  const NeighbourListState state{before, balls_, horizon_ - age_, marked_};
+  const std::vector<ElementBvh::LeafPair> leaves = tree_.find_pairs(times, 0.0);
   place_leaves(leaves, times);
-  const auto placed = [&](Index number) { return PlacedLeaf{tree_.leaf(number), places_[static_cast<std::size_t>(number)]}; };
+  const auto placed = [&](Index number) { return BoundedLeaf{tree_.leaf(number), places_[static_cast<std::size_t>(number)]}; };
   const auto count = static_cast<Index>(leaves.size());
-  std::vector<std::vector<ElementPair>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
+  std::vector<std::vector<ConvexPair>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
   parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {
-    std::vector<ElementMeeting> meetings;
+    std::vector<ElementIndexPair> meetings;
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
       append_meetings(placed(leaves[k].first), placed(leaves[k].second), times, meetings);
     }
-    std::vector<ElementPair>& part = parts[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
-    for (const ElementMeeting& meeting : meetings) pair_search_.append_pairs(meeting, state, part);
+    std::vector<ConvexPair>& part = parts[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
+    for (const ElementIndexPair& meeting : meetings) pair_search_.append_pairs(meeting, state, part);
   });
-  for (const std::vector<ElementPair>& part : parts) pairs_.insert(pairs_.end(), part.begin(), part.end());
+  for (const std::vector<ConvexPair>& part : parts) pairs_.insert(pairs_.end(), part.begin(), part.end());
 }
 
-void PairWatch::place_leaves(const std::vector<ElementTree::LeafPair>& pairs, WatchTimes times) {
+void NeighbourList::place_leaves(const std::vector<ElementBvh::LeafPair>& pairs, HorizonTimes times) {
   std::vector<char> needed(places_.size(), 0);
-  for (const ElementTree::LeafPair& pair : pairs) {
+  for (const ElementBvh::LeafPair& pair : pairs) {
     needed[static_cast<std::size_t>(pair.first)] = 1;
     needed[static_cast<std::size_t>(pair.second)] = 1;
   }
@@ -215,11 +215,11 @@ void PairWatch::place_leaves(const std::vector<ElementTree::LeafPair>& pairs, Wa
   });
 }
 
-bool PairWatch::has_marked(const ElementPair& pair) const {
+bool NeighbourList::has_marked(const ConvexPair& pair) const {
   return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return is_marked(i); });
 }
 
-void PairWatch::place_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
+void NeighbourList::place_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
   for (const Index i : leaving) {
     if (is_marked(i)) continue;
     marked_[static_cast<std::size_t>(i)] = 1;
@@ -231,7 +231,7 @@ void PairWatch::place_balls(const std::vector<Index>& leaving, const Points& bef
 /// A fan that is flat no more has pairs that nobody has looked at. Those that have no marked particle cannot touch all the same:
 /// while their particles are in their balls, they are where they would be if all others were in theirs of before, and the fan was
 /// flat.
-void PairWatch::look_at_fans() {
+void NeighbourList::look_at_fans() {
   std::vector<Index> middles;
   const auto visit = [&](Index i) {
     if (visited_[static_cast<std::size_t>(i)] != 0) return;
@@ -252,7 +252,7 @@ void PairWatch::look_at_fans() {
   });
 }
 
-void PairWatch::mark_elements() {
+void NeighbourList::mark_elements() {
   marked_elements_.clear();
   for (const Index i : marked_list_) {
     for (const Index e : features_.elements_at(i)) {
@@ -264,7 +264,7 @@ void PairWatch::mark_elements() {
   for (const Index e : marked_elements_) is_marked_element_[static_cast<std::size_t>(e)] = 0;
 }
 
-void PairWatch::clear_marks() {
+void NeighbourList::clear_marks() {
   for (const Index i : marked_list_) marked_[static_cast<std::size_t>(i)] = 0;
   marked_list_.clear();
 }

@@ -14,12 +14,12 @@ namespace sprung {
 /// Each particle has a ball that moves on with it. What is not listed cannot touch, or come within contact's reach, while particles
 /// are in their balls; for those that leave theirs, pairs and candidates are looked for again. All balls are made again after as
 /// many steps as they were to last, and when particles begin to move so that they had better last less.
-class PairWatch {
+class NeighbourList {
  public:
-  /// See ContactSearch. Keeps a reference to the surface.
-  PairWatch(const CollisionSurface& surface, const Points& rest, double margin);
-  PairWatch(const PairWatch&) = delete;
-  PairWatch& operator=(const PairWatch&) = delete;
+  /// See ProximitySearch. Keeps a reference to the surface.
+  NeighbourList(const CollisionSurface& surface, const Points& rest, double margin);
+  NeighbourList(const NeighbourList&) = delete;
+  NeighbourList& operator=(const NeighbourList&) = delete;
 
   /// Lists what may touch in a step from `before` to about `after` [m], 3 x n.
   void begin_step(const Points& before, const Points& after);
@@ -35,12 +35,12 @@ class PairWatch {
   void follow(const Points& before, const Points& ends);
 
   /// The normals may be changed.
-  [[nodiscard]] std::vector<ElementPair>& pairs() { return pairs_; }
+  [[nodiscard]] std::vector<ConvexPair>& pairs() { return pairs_; }
   /// Contact notes in them what it found.
   [[nodiscard]] std::vector<ContactCandidate>& candidates() { return candidates_; }
-  [[nodiscard]] const MovingBalls& balls() const { return balls_; }
-  [[nodiscard]] const SurfaceFeatures& features() const { return features_; }
-  [[nodiscard]] WatchCounts counts() const;
+  [[nodiscard]] const VertexBounds& balls() const { return balls_; }
+  [[nodiscard]] const SurfaceTopology& features() const { return features_; }
+  [[nodiscard]] NeighbourListCounts counts() const;
 
  private:
   [[nodiscard]] double lasting_steps(const Points& before, const Points& after) const;
@@ -51,22 +51,22 @@ class PairWatch {
   void look_at_fans();
   void mark_elements();
   void find_pairs(const Points& before);
-  void place_leaves(const std::vector<ElementTree::LeafPair>& pairs, WatchTimes times);
-  [[nodiscard]] bool has_marked(const ElementPair& pair) const;
+  void place_leaves(const std::vector<ElementBvh::LeafPair>& pairs, HorizonTimes times);
+  [[nodiscard]] bool has_marked(const ConvexPair& pair) const;
   void find_candidates();
   void clear_marks();
   [[nodiscard]] bool is_marked(Index i) const { return marked_[static_cast<std::size_t>(i)] != 0; }
 
   const CollisionSurface& surface_;
   Points rest_;
-  SurfaceFeatures features_;
-  SharpEdges sharp_;
-  ElementTree tree_;
-  std::vector<LeafPlaces> places_;  ///< by leaf, of those looked at last
-  MovingBalls balls_;
-  PairSearch pair_search_;
-  ContactSearch contact_search_;
-  std::vector<ElementPair> pairs_;
+  SurfaceTopology features_;
+  FeatureEdges sharp_;
+  ElementBvh tree_;
+  std::vector<LeafBounds> places_;  ///< by leaf, of those looked at last
+  VertexBounds balls_;
+  PairBuilder pair_search_;
+  ProximitySearch contact_search_;
+  std::vector<ConvexPair> pairs_;
   std::vector<ContactCandidate> candidates_;
   std::vector<Index> watched_;         ///< particles of bodies that may meet something
   std::vector<Index> watched_bodies_;  ///< theirs

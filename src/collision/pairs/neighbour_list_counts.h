@@ -5,7 +5,7 @@
 
 namespace sprung {
 
-struct WatchCounts {
+struct NeighbourListCounts {
   Index pairs = 0;       ///< that may touch
   Index candidates = 0;  ///< of contact
   Index renewed = 0;     ///< particles whose pairs were looked for since the step began, once for each time

@@ -10,22 +10,22 @@
 
 namespace sprung {
 
-class PairSearch {
+class PairBuilder {
  public:
   /// Keeps references to both.
-  PairSearch(const CollisionSurface& surface, const SurfaceFeatures& features) : surface_(surface), features_(features) {}
+  PairBuilder(const CollisionSurface& surface, const SurfaceTopology& features) : surface_(surface), features_(features) {}
 
   /// Appends the pairs of a meeting's elements that may touch within the horizon: both as wholes or, where they share a particle,
   /// each corner and face and each two edges that do not.
-  void append_pairs(const ElementMeeting& meeting, const WatchState& state, std::vector<ElementPair>& pairs) const;
+  void append_pairs(const ElementIndexPair& meeting, const NeighbourListState& state, std::vector<ConvexPair>& pairs) const;
 
  private:
-  void append_corners(Index element, Index face, const WatchState& state, std::vector<ElementPair>& pairs) const;
-  void append_edges(Index first, Index second, const WatchState& state, std::vector<ElementPair>& pairs) const;
+  void append_corners(Index element, Index face, const NeighbourListState& state, std::vector<ConvexPair>& pairs) const;
+  void append_edges(Index first, Index second, const NeighbourListState& state, std::vector<ConvexPair>& pairs) const;
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
 
   const CollisionSurface& surface_;
-  const SurfaceFeatures& features_;
+  const SurfaceTopology& features_;
 };
 
 }  // namespace sprung

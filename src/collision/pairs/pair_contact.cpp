@@ -33,14 +33,14 @@ void clean(std::span<double> weights) {
 }
 
 /// From one of them, so that it does not matter how far from the origin they are.
-std::array<Vector3, 6> corners(const ElementPair& pair, const Points& positions) {
+std::array<Vector3, 6> corners(const ConvexPair& pair, const Points& positions) {
   std::array<Vector3, 6> x;
   const Vector3 origin = positions.col(pair.particles[0]);
   for (std::size_t k = 0; k < static_cast<std::size_t>(pair.count()); ++k) x[k] = positions.col(pair.particles[k]) - origin;
   return x;
 }
 
-Sides nearest_points(const ElementPair& pair, const Points& positions) {
+Sides nearest_points(const ConvexPair& pair, const Points& positions) {
   const std::array<Vector3, 6> x = corners(pair, positions);
   const auto first_count = static_cast<std::size_t>(pair.first_count);
   Sides sides;
@@ -63,13 +63,13 @@ Sides nearest_points(const ElementPair& pair, const Points& positions) {
 
 }  // namespace
 
-std::optional<Contact> meeting_of(const ElementPair& pair, const Points& positions) {
+std::optional<Contact> meeting_of(const ConvexPair& pair, const Points& positions) {
   const Sides sides = nearest_points(pair, positions);
   Contact contact;
   contact.distance = sides.between.norm();
   if (!(contact.distance > 0.0)) return std::nullopt;
   contact.normal = sides.between / contact.distance;
-  ElementPair along = pair;
+  ConvexPair along = pair;
   along.normal = contact.normal;
   if (!(heights_at(along, positions).gap() > kSeparated * contact.distance)) return std::nullopt;
   contact.most_gap = contact.distance;

@@ -18,8 +18,8 @@ constexpr Index kLeavesPerTask = 64;
 
 }  // namespace
 
-ContactSearch::ContactSearch(const CollisionSurface& surface, const SurfaceFeatures& features, const SharpEdges& sharp,
-                             const ElementTree& tree, const Points& rest, double margin)
+ProximitySearch::ProximitySearch(const CollisionSurface& surface, const SurfaceTopology& features, const FeatureEdges& sharp,
+                                 const ElementBvh& tree, const Points& rest, double margin)
     : surface_(surface),
       features_(features),
       sharp_(sharp),
@@ -43,10 +43,10 @@ ContactSearch::ContactSearch(const CollisionSurface& surface, const SurfaceFeatu
   }
 }
 
-std::vector<ContactCandidate> ContactSearch::find_candidates(const MovingBalls& balls, const std::vector<char>& marked,
-                                                             WatchTimes times) {
+std::vector<ContactCandidate> ProximitySearch::find_candidates(const VertexBounds& balls, const std::vector<char>& marked,
+                                                               HorizonTimes times) {
   const Search search{balls, marked, times};
-  const std::vector<ElementTree::LeafPair> pairs = tree_.find_pairs(times, largest_gap_ + margin_);
+  const std::vector<ElementBvh::LeafPair> pairs = tree_.find_pairs(times, largest_gap_ + margin_);
   prepare_sides(pairs, search);
   const auto count = static_cast<Index>(pairs.size());
   std::vector<std::vector<ContactCandidate>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
@@ -66,9 +66,9 @@ std::vector<ContactCandidate> ContactSearch::find_candidates(const MovingBalls& 
   return candidates;
 }
 
-void ContactSearch::prepare_sides(const std::vector<ElementTree::LeafPair>& pairs, const Search& search) {
+void ProximitySearch::prepare_sides(const std::vector<ElementBvh::LeafPair>& pairs, const Search& search) {
   std::vector<char> needed(sides_.size(), 0);
-  for (const ElementTree::LeafPair& pair : pairs) {
+  for (const ElementBvh::LeafPair& pair : pairs) {
     needed[static_cast<std::size_t>(pair.first)] = 1;
     needed[static_cast<std::size_t>(pair.second)] = 1;
   }
@@ -79,7 +79,7 @@ void ContactSearch::prepare_sides(const std::vector<ElementTree::LeafPair>& pair
   });
 }
 
-void ContactSearch::prepare(Side& side, const Search& search) const {
+void ProximitySearch::prepare(Side& side, const Search& search) const {
   place_corners(*side.leaf, search.times, side.places);
   side.largest_radius = 0.0F;
   side.longest_way = 0.0F;
@@ -93,8 +93,8 @@ void ContactSearch::prepare(Side& side, const Search& search) const {
   prepare_edges(side, search);
 }
 
-void ContactSearch::prepare_edges(Side& side, const Search& search) const {
-  const ElementLeaf& leaf = *side.leaf;
+void ProximitySearch::prepare_edges(Side& side, const Search& search) const {
+  const ElementBvhLeaf& leaf = *side.leaf;
   side.sharp.clear();
   for (const auto& [lane, k] : side.edges) {
     if (sharp_.is_sharp(features_.edge(leaf.element[static_cast<std::size_t>(lane)], k))) side.sharp.push_back({lane, k});
@@ -122,7 +122,7 @@ void ContactSearch::prepare_edges(Side& side, const Search& search) const {
   }
 }
 
-LaneBytes ContactSearch::lanes_near(const Side& a, const Side& b, const Search& search) const {
+LaneBytes ProximitySearch::lanes_near(const Side& a, const Side& b, const Search& search) const {
   const float margin = reach_between(a, b) + b.largest_radius;
   LaneBytes near{};
   if (b.leaf->any_marked()) find_lanes_near(*a.leaf, b.leaf->marked_bounds, search.times, margin, near);
@@ -134,8 +134,8 @@ LaneBytes ContactSearch::lanes_near(const Side& a, const Side& b, const Search& 
   return either(near, both(near_all, marked));
 }
 
-void ContactSearch::append_corners(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
-                                   std::vector<ContactCandidate>& candidates) const {
+void ProximitySearch::append_corners(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
+                                     std::vector<ContactCandidate>& candidates) const {
   const auto now = static_cast<float>(search.times.now);
   const auto end = static_cast<float>(search.times.end);
   const bool any_marked = b.leaf->any_marked();
@@ -144,13 +144,13 @@ void ContactSearch::append_corners(const Side& a, const Side& b, const LaneBytes
     if (near[static_cast<std::size_t>(lane)] == 0) continue;
     const bool is_marked = search.marked[static_cast<std::size_t>(a.leaf->particle[k][lane])] != 0;
     if (!any_marked && !is_marked) continue;
-    const auto axes = [lane = lane](const Float8(&x)[3]) { return MovingBounds::Axes{x[0][lane], x[1][lane], x[2][lane]}; };
-    const MovingBounds::Axes start = axes(a.leaf->corner[k]);
-    const MovingBounds::Axes motion = axes(a.leaf->motion[k]);
-    CornerWay corner;
+    const auto axes = [lane = lane](const Float8(&x)[3]) { return KineticAabb::Axes{x[0][lane], x[1][lane], x[2][lane]}; };
+    const KineticAabb::Axes start = axes(a.leaf->corner[k]);
+    const KineticAabb::Axes motion = axes(a.leaf->motion[k]);
+    MovingVertex corner;
     corner.aside = a.leaf->radius[lane] + b.largest_radius;
     corner.reach = reach + corner.aside;
-    const MovingBounds& faces = is_marked ? b.leaf->bounds : b.leaf->marked_bounds;
+    const KineticAabb& faces = is_marked ? b.leaf->bounds : b.leaf->marked_bounds;
     if (are_apart({start, start, motion, motion}, faces, now, end, corner.reach)) continue;
     corner.particle = a.leaf->particle[k][lane];
     for (int axis = 0; axis < 3; ++axis) {
@@ -171,20 +171,21 @@ void ContactSearch::append_corners(const Side& a, const Side& b, const LaneBytes
   }
 }
 
-void ContactSearch::append_edges(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
-                                 std::vector<ContactCandidate>& candidates) const {
+void ProximitySearch::append_edges(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
+                                   std::vector<ContactCandidate>& candidates) const {
   for (std::size_t own = 0; own < a.sharp.size(); ++own) {
     if (near[static_cast<std::size_t>(a.sharp[own][0])] == 0) continue;
     append_edges_near(a, own, b, &a == &b ? own + 1 : 0, search, candidates);
   }
 }
 
-void ContactSearch::append_edges_near(const Side& a, std::size_t own, const Side& b, std::size_t from, const Search& search,
-                                      std::vector<ContactCandidate>& candidates) const {
+void ProximitySearch::append_edges_near(const Side& a, std::size_t own, const Side& b, std::size_t from, const Search& search,
+                                        std::vector<ContactCandidate>& candidates) const {
   const auto [lane, i] = a.sharp[own];
-  const EdgeWay edge = edge_way(a.sharp_lanes[own / kFloatSimdWidth], static_cast<int>(own % kFloatSimdWidth), reach_between(a, b));
+  const MovingEdge edge =
+      edge_way(a.sharp_lanes[own / kFloatSimdWidth], static_cast<int>(own % kFloatSimdWidth), reach_between(a, b));
   if (!edge.marked && !b.leaf->any_marked()) return;
-  const MovingBounds& others = edge.marked ? b.leaf->bounds : b.leaf->marked_bounds;
+  const KineticAabb& others = edge.marked ? b.leaf->bounds : b.leaf->marked_bounds;
   if (are_apart(a.leaf->lane_bounds(lane), others, static_cast<float>(search.times.now), static_cast<float>(search.times.end),
                 edge.reach))
     return;
@@ -205,8 +206,8 @@ void ContactSearch::append_edges_near(const Side& a, std::size_t own, const Side
   }
 }
 
-void ContactSearch::append_if_near(ContactCandidate candidate, const Search& search,
-                                   std::vector<ContactCandidate>& candidates) const {
+void ProximitySearch::append_if_near(ContactCandidate candidate, const Search& search,
+                                     std::vector<ContactCandidate>& candidates) const {
   const auto is_marked = [&](Index i) { return search.marked[static_cast<std::size_t>(i)] != 0; };
   if (std::ranges::none_of(candidate.particles, is_marked)) return;
   const double stray = largest_stray(candidate, search);
@@ -226,25 +227,25 @@ void ContactSearch::append_if_near(ContactCandidate candidate, const Search& sea
   candidates.push_back(candidate);
 }
 
-double ContactSearch::largest_stray(const ContactCandidate& candidate, const Search& search) {
+double ProximitySearch::largest_stray(const ContactCandidate& candidate, const Search& search) {
   const auto radius = [&](std::size_t k) { return search.balls.radius(candidate.particles[k]); };
   return candidate.edges ? std::max(radius(0), radius(1)) + std::max(radius(2), radius(3))
                          : radius(0) + std::max({radius(1), radius(2), radius(3)});
 }
 
-double ContactSearch::way_of(const ContactCandidate& candidate, const Search& search) {
+double ProximitySearch::way_of(const ContactCandidate& candidate, const Search& search) {
   double way = 0.0;
   for (const Index i : candidate.particles) way = std::max(way, search.balls.motion(i).norm() + search.balls.radius(i));
   return way;
 }
 
-float ContactSearch::reach_between(const Side& a, const Side& b) const {
+float ProximitySearch::reach_between(const Side& a, const Side& b) const {
   return static_cast<float>(largest_gap_ +
                             std::min(margin_, margin_of_step(largest_gap_, double{std::max(a.longest_way, b.longest_way)})));
 }
 
 /// Along a fixed direction what lies between them is least now or at the end.
-double ContactSearch::least_distance(ContactCandidate& candidate, const Search& search) {
+double ProximitySearch::least_distance(ContactCandidate& candidate, const Search& search) {
   std::array<Vector3, 4> x;
   for (std::size_t k = 0; k < 4; ++k) x[k] = search.balls.center(candidate.particles[k]);
   candidate.normal = closest_points(candidate, x).separation;

@@ -12,24 +12,24 @@
 
 namespace sprung {
 
-class ContactSearch {
+class ProximitySearch {
  public:
   /// Contact looks `margin` [m] beyond its gap. Within a body, what is near each other at `rest` [m], 3 x n, keeps only a part of
   /// that distance as gap and margin, so that neighbours do not push each other. Keeps references to all.
-  ContactSearch(const CollisionSurface& surface, const SurfaceFeatures& features, const SharpEdges& sharp, const ElementTree& tree,
-                const Points& rest, double margin);
+  ProximitySearch(const CollisionSurface& surface, const SurfaceTopology& features, const FeatureEdges& sharp,
+                  const ElementBvh& tree, const Points& rest, double margin);
 
   /// All with a particle that is marked that may come within contact's reach from now to the end while particles are in their
   /// balls, those that the tree bounds: corners above faces, and pairs of sharp edges. The same for any number of threads.
-  [[nodiscard]] std::vector<ContactCandidate> find_candidates(const MovingBalls& balls, const std::vector<char>& marked,
-                                                              WatchTimes times);
+  [[nodiscard]] std::vector<ContactCandidate> find_candidates(const VertexBounds& balls, const std::vector<char>& marked,
+                                                              HorizonTimes times);
 
  private:
   /// A leaf of the tree, with what of it contact looks at.
   struct Side {
-    const ElementLeaf* leaf = nullptr;
+    const ElementBvhLeaf* leaf = nullptr;
     std::vector<std::array<int, 2>> corners;  ///< lane and corner of those that the leaf's elements own
-    LeafPlaces places{};
+    LeafBounds places{};
     std::vector<std::array<int, 2>> edges;  ///< lane and edge of those
     std::vector<std::array<int, 2>> sharp;  ///< those of them that are
     std::vector<EdgeLanes> sharp_lanes{};   ///< the same, eight by eight
@@ -37,12 +37,12 @@ class ContactSearch {
     float longest_way = 0.0F;               ///< of its particles in a step, about [m]
   };
   struct Search {
-    const MovingBalls& balls;
+    const VertexBounds& balls;
     const std::vector<char>& marked;
-    WatchTimes times;
+    HorizonTimes times;
   };
 
-  void prepare_sides(const std::vector<ElementTree::LeafPair>& pairs, const Search& search);
+  void prepare_sides(const std::vector<ElementBvh::LeafPair>& pairs, const Search& search);
   void prepare(Side& side, const Search& search) const;
   void prepare_edges(Side& side, const Search& search) const;
   /// Double4 of side `a` that may have something near side `b`, with one of both marked.
@@ -67,9 +67,9 @@ class ContactSearch {
   [[nodiscard]] double thickness(Index number) const { return surface_.thickness[element(number).particles[0]]; }
 
   const CollisionSurface& surface_;
-  const SurfaceFeatures& features_;
-  const SharpEdges& sharp_;
-  const ElementTree& tree_;
+  const SurfaceTopology& features_;
+  const FeatureEdges& sharp_;
+  const ElementBvh& tree_;
   const Points& rest_;
   double margin_;
   double largest_gap_;       ///< [m]

@@ -23,7 +23,7 @@ EdgeSample crossing_of_tangents(const EdgeSample& low, const EdgeSample& high) {
   return {low.along + ahead, low.distance + low.slope * ahead, 0.0};
 }
 
-double EdgeBracket::next() {
+double ConvexLineSearch::next() {
   const int turn = steps_++ % 3;
   const double width = high_.along - low_.along;
   const double at = turn == 1 ? crossing_of_tangents(low_, high_).along : zero_of_steepness(low_, high_);

@@ -14,9 +14,9 @@ struct EdgeSample {
 [[nodiscard]] EdgeSample crossing_of_tangents(const EdgeSample& low, const EdgeSample& high);
 
 /// The part of an edge that holds the smallest distance: it falls at the begin and rises at the end.
-class EdgeBracket {
+class ConvexLineSearch {
  public:
-  EdgeBracket(const EdgeSample& low, const EdgeSample& high) : low_(low), high_(high), width_(high.along - low.along) {}
+  ConvexLineSearch(const EdgeSample& low, const EdgeSample& high) : low_(low), high_(high), width_(high.along - low.along) {}
 
   /// Where to sample next [m]: where the smallest distance would be if the shape was round, then if it had an edge there, then in
   /// the middle if that did not halve the bracket.

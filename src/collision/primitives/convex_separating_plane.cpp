@@ -62,7 +62,7 @@ class SeparationSearch {
  public:
   SeparationSearch(const Shape& shape, const ElementCorners& element) : shape_(shape), element_(element) { look_at_corner(0); }
 
-  [[nodiscard]] const Separation& best() const { return best_; }
+  [[nodiscard]] const SeparatingPlane& best() const { return best_; }
 
   void finish() {
     if (element_.count == 3 && !settled()) look_at_face();
@@ -154,7 +154,7 @@ class SeparationSearch {
     if (low.slope >= 0.0 || high.slope <= 0.0) return;
     if (crossing_of_tangents(low, high).distance >= kProven * best_.distance) return;
 
-    EdgeBracket bracket(low, high);
+    ConvexLineSearch bracket(low, high);
     Vector3 normal = begin.normal;
     for (int step = 0; step < kMostEdgeSteps; ++step) {
       const double at = bracket.next();
@@ -190,11 +190,11 @@ class SeparationSearch {
   const Shape& shape_;
   const ElementCorners& element_;
   std::array<SurfacePoint, 3> at_corner_{};
-  Separation best_;
+  SeparatingPlane best_;
 };
 
 template <class Shape>
-Separation search(const Shape& shape, const ElementCorners& element, const Box3& box) {
+SeparatingPlane search(const Shape& shape, const ElementCorners& element, const Box3& box) {
   SeparationSearch<Shape> search(shape, element);
   if (!(lowest(box, search.best().normal) > search.best().height)) search.finish();
   return search.best();
@@ -206,26 +206,26 @@ double lowest(const Box3& box, const Vector3& normal) {
   return normal.dot(box.center()) - 0.5 * normal.cwiseAbs().dot(box.sizes());
 }
 
-Separation separation(const SphereGeometry& sphere, const ElementCorners& element, const Box3& box) {
+SeparatingPlane separation(const SphereGeometry& sphere, const ElementCorners& element, const Box3& box) {
   return search(sphere, element, box);
 }
-Separation separation(const BoxGeometry& solid, const ElementCorners& element, const Box3& box) {
+SeparatingPlane separation(const BoxGeometry& solid, const ElementCorners& element, const Box3& box) {
   return search(solid, element, box);
 }
-Separation separation(const CapsuleGeometry& capsule, const ElementCorners& element, const Box3& box) {
+SeparatingPlane separation(const CapsuleGeometry& capsule, const ElementCorners& element, const Box3& box) {
   return search(capsule, element, box);
 }
-Separation separation(const CylinderGeometry& cylinder, const ElementCorners& element, const Box3& box) {
+SeparatingPlane separation(const CylinderGeometry& cylinder, const ElementCorners& element, const Box3& box) {
   return search(cylinder, element, box);
 }
-Separation separation(const ConeGeometry& cone, const ElementCorners& element, const Box3& box) {
+SeparatingPlane separation(const ConeGeometry& cone, const ElementCorners& element, const Box3& box) {
   return search(cone, element, box);
 }
-Separation separation(const EllipsoidGeometry& ellipsoid, const ElementCorners& element, const Box3& box) {
+SeparatingPlane separation(const EllipsoidGeometry& ellipsoid, const ElementCorners& element, const Box3& box) {
   return search(ellipsoid, element, box);
 }
 
-Separation separation(const HalfSpaceGeometry& half_space, const ElementCorners& element, const Box3& /*box*/) {
+SeparatingPlane separation(const HalfSpaceGeometry& half_space, const ElementCorners& element, const Box3& /*box*/) {
   const int at = lowest_corner(element, half_space.normal);
   const Vector3& x = element.x[static_cast<std::size_t>(at)];
   const double low = half_space.normal.dot(x);

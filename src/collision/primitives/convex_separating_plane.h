@@ -9,7 +9,7 @@
 namespace sprung {
 
 /// A direction, how far it separates, and the pair of points that gave it.
-struct Separation {
+struct SeparatingPlane {
   Vector3 normal = Vector3::Zero();   ///< unit length, from the shape to the element
   Vector3 point = Vector3::Zero();    ///< on the shape
   Vector3 weights = Vector3::Zero();  ///< of the element's corners, not negative; their sum is 1
@@ -31,12 +31,12 @@ struct Separation {
 /// vanishes, or within the face, where its gradient is the face's normal. Each gives a direction, and the shape's support in that
 /// direction proves the gap whatever rounding did to the search. GJK (Gilbert, Johnson and Keerthi 1988) takes its directions from
 /// differences of nearly equal points instead, which close to touching are mostly rounding.
-[[nodiscard]] Separation separation(const SphereGeometry& sphere, const ElementCorners& element, const Box3& box);
-[[nodiscard]] Separation separation(const BoxGeometry& solid, const ElementCorners& element, const Box3& box);
-[[nodiscard]] Separation separation(const CapsuleGeometry& capsule, const ElementCorners& element, const Box3& box);
-[[nodiscard]] Separation separation(const CylinderGeometry& cylinder, const ElementCorners& element, const Box3& box);
-[[nodiscard]] Separation separation(const ConeGeometry& cone, const ElementCorners& element, const Box3& box);
-[[nodiscard]] Separation separation(const EllipsoidGeometry& ellipsoid, const ElementCorners& element, const Box3& box);
-[[nodiscard]] Separation separation(const HalfSpaceGeometry& half_space, const ElementCorners& element, const Box3& box);
+[[nodiscard]] SeparatingPlane separation(const SphereGeometry& sphere, const ElementCorners& element, const Box3& box);
+[[nodiscard]] SeparatingPlane separation(const BoxGeometry& solid, const ElementCorners& element, const Box3& box);
+[[nodiscard]] SeparatingPlane separation(const CapsuleGeometry& capsule, const ElementCorners& element, const Box3& box);
+[[nodiscard]] SeparatingPlane separation(const CylinderGeometry& cylinder, const ElementCorners& element, const Box3& box);
+[[nodiscard]] SeparatingPlane separation(const ConeGeometry& cone, const ElementCorners& element, const Box3& box);
+[[nodiscard]] SeparatingPlane separation(const EllipsoidGeometry& ellipsoid, const ElementCorners& element, const Box3& box);
+[[nodiscard]] SeparatingPlane separation(const HalfSpaceGeometry& half_space, const ElementCorners& element, const Box3& box);
 
 }  // namespace sprung

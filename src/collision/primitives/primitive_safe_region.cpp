@@ -10,52 +10,52 @@ namespace sprung {
 namespace {
 
 template <class Shape>
-Zone zone_against(const Shape& shape, const ElementCorners& element, const ZoneRequest& request) {
-  Zone zone{.box = asked_box(element, request), .clear = request.reach};
-  if (!zone.box.intersects(bounds(shape))) return zone;
-  const Separation best = separation(shape, element, zone.box);
-  if (!is_touching(lowest(zone.box, best.normal) - best.height, request)) return zone;
+SafeRegion region_against(const Shape& shape, const ElementCorners& element, const SafeRegionRequest& request) {
+  SafeRegion region{.box = asked_box(element, request), .clear = request.reach};
+  if (!region.box.intersects(bounds(shape))) return region;
+  const SeparatingPlane best = separation(shape, element, region.box);
+  if (!is_touching(lowest(region.box, best.normal) - best.height, request)) return region;
 
-  zone.normal = best.normal;
+  region.normal = best.normal;
   if (is_touching(best.gap, request)) {
-    zone.broken = true;
-    zone.clear = 0.0;
-    zone.distance = best.gap;
-    zone.weights = Vector3::Unit(best.lowest_corner);
-    zone.point = element.x[static_cast<std::size_t>(best.lowest_corner)] - best.gap * best.normal;
-    return zone;
+    region.broken = true;
+    region.clear = 0.0;
+    region.distance = best.gap;
+    region.weights = Vector3::Unit(best.lowest_corner);
+    region.point = element.x[static_cast<std::size_t>(best.lowest_corner)] - best.gap * best.normal;
+    return region;
   }
-  zone.clear = best.gap;
-  zone.distance = best.distance;
-  zone.point = best.point;
-  zone.weights = best.weights;
-  zone.planes[0] = {best.normal, std::min(best.height + stand_off(best.gap, request), best.lowest)};
-  zone.plane_count = 1;
-  return zone;
+  region.clear = best.gap;
+  region.distance = best.distance;
+  region.point = best.point;
+  region.weights = best.weights;
+  region.planes[0] = {best.normal, std::min(best.height + stand_off(best.gap, request), best.lowest)};
+  region.plane_count = 1;
+  return region;
 }
 
 }  // namespace
 
-Zone find_zone(const SphereGeometry& sphere, const ElementCorners& element, const ZoneRequest& request) {
-  return zone_against(sphere, element, request);
+SafeRegion find_region(const SphereGeometry& sphere, const ElementCorners& element, const SafeRegionRequest& request) {
+  return region_against(sphere, element, request);
 }
-Zone find_zone(const BoxGeometry& box, const ElementCorners& element, const ZoneRequest& request) {
-  return zone_against(box, element, request);
+SafeRegion find_region(const BoxGeometry& box, const ElementCorners& element, const SafeRegionRequest& request) {
+  return region_against(box, element, request);
 }
-Zone find_zone(const CapsuleGeometry& capsule, const ElementCorners& element, const ZoneRequest& request) {
-  return zone_against(capsule, element, request);
+SafeRegion find_region(const CapsuleGeometry& capsule, const ElementCorners& element, const SafeRegionRequest& request) {
+  return region_against(capsule, element, request);
 }
-Zone find_zone(const CylinderGeometry& cylinder, const ElementCorners& element, const ZoneRequest& request) {
-  return zone_against(cylinder, element, request);
+SafeRegion find_region(const CylinderGeometry& cylinder, const ElementCorners& element, const SafeRegionRequest& request) {
+  return region_against(cylinder, element, request);
 }
-Zone find_zone(const ConeGeometry& cone, const ElementCorners& element, const ZoneRequest& request) {
-  return zone_against(cone, element, request);
+SafeRegion find_region(const ConeGeometry& cone, const ElementCorners& element, const SafeRegionRequest& request) {
+  return region_against(cone, element, request);
 }
-Zone find_zone(const EllipsoidGeometry& ellipsoid, const ElementCorners& element, const ZoneRequest& request) {
-  return zone_against(ellipsoid, element, request);
+SafeRegion find_region(const EllipsoidGeometry& ellipsoid, const ElementCorners& element, const SafeRegionRequest& request) {
+  return region_against(ellipsoid, element, request);
 }
-Zone find_zone(const HalfSpaceGeometry& half_space, const ElementCorners& element, const ZoneRequest& request) {
-  return zone_against(half_space, element, request);
+SafeRegion find_region(const HalfSpaceGeometry& half_space, const ElementCorners& element, const SafeRegionRequest& request) {
+  return region_against(half_space, element, request);
 }
 
 }  // namespace sprung

@@ -33,16 +33,17 @@ class PrimitiveShape final : public ObstacleShape {
                                     std::max(rounding(a), rounding(b)), a, b);
   }
 
-  void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const override {
-    zone = sprung::find_zone(geometry_, element, request);
+  void find_region(const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region) const override {
+    region = sprung::find_region(geometry_, element, request);
   }
 
-  void look_again(const ElementCorners& element, const ZoneRequest& request, bool /*fresh*/, Zone& zone) const override {
-    const Zone again = sprung::find_zone(geometry_, element, request);
+  void look_again(const ElementCorners& element, const SafeRegionRequest& request, bool /*fresh*/,
+                  SafeRegion& region) const override {
+    const SafeRegion again = sprung::find_region(geometry_, element, request);
     if (again.broken || !std::isfinite(again.distance)) return;
-    zone.point = again.point;
-    zone.normal = again.normal;
-    zone.weights = again.weights;
+    region.point = again.point;
+    region.normal = again.normal;
+    region.weights = again.weights;
   }
 
   [[nodiscard]] bool touches(const ElementCorners& element, double tolerance) const override {

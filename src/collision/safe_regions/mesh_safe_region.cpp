@@ -17,7 +17,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Sums of three products of single precision are right to this part of the largest coordinate.
 constexpr float kPlaneRounding = 0x1p-20F;
 
-// Triangles are looked for this many times the reach away: an element that has none so near keeps its zone for longer.
+// Triangles are looked for this many times the reach away: an element that has none so near keeps its region for longer.
 constexpr double kSearch = 16.0;
 
 // What is farther than this part of the squared distance that is clear is not gone into to know how far.
@@ -35,13 +35,13 @@ double box_distance(const TriangleCorners& corners, const Box3& box) {
 struct Search {
   FloatBox element{};
   FloatBox box{};
-  float normal[Zone::kMostPlanes][3]{};
-  float limit[Zone::kMostPlanes]{};
+  float normal[SafeRegion::kMostPlanes][3]{};
+  float limit[SafeRegion::kMostPlanes]{};
   int planes = 0;
   float rounding = 0.0F;  ///< of heights above planes
 };
 
-Search search_around(const MeshTree& tree, const Box3& element, const Box3& box) {
+Search search_around(const MeshBvh& tree, const Box3& element, const Box3& box) {
   const double magnitude = std::max(tree.magnitude(), box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff());
   return {.element = float_box(element), .box = float_box(box), .rounding = kPlaneRounding * static_cast<float>(magnitude)};
 }
@@ -51,15 +51,15 @@ void set_plane(int k, const Vector3& normal, double limit, Search& search) {
   search.limit[k] = float_below(limit) - search.rounding;
 }
 
-void update(const ZoneBuilder& zone, Search& search) {
-  search.box = float_box(zone.box());
-  for (; search.planes < zone.plane_count(); ++search.planes) {
-    set_plane(search.planes, zone.normal(search.planes), zone.limit(search.planes), search);
+void update(const SafeRegionBuilder& region, Search& search) {
+  search.box = float_box(region.box());
+  for (; search.planes < region.plane_count(); ++search.planes) {
+    set_plane(search.planes, region.normal(search.planes), region.limit(search.planes), search);
   }
 }
 
 /// Squared distances of a node's children from the element; infinite for those outside the box or behind a plane.
-[[gnu::always_inline]] inline void bound_children(const MeshTree::Node& node, const Search& search, Float8& bounds) {
+[[gnu::always_inline]] inline void bound_children(const MeshBvh::Node& node, const Search& search, Float8& bounds) {
   Float8 sum = {};
   for (int axis = 0; axis < 3; ++axis) {
     const Float8 before = node.min[axis] - search.element.max[axis];
@@ -82,32 +82,32 @@ void update(const ZoneBuilder& zone, Search& search) {
 }
 
 /// Visits the triangles that may be nearer than the nearest so far, and than what is clear.
-SPRUNG_KERNEL void walk_to_nearest(const MeshTree& tree, double near, const Zone& zone, ZoneBuilder& builder) {
+SPRUNG_KERNEL void walk_to_nearest(const MeshBvh& tree, double near, const SafeRegion& region, SafeRegionBuilder& builder) {
   Search search = search_around(tree, builder.element_box(), grown(builder.element_box(), builder.clear()));
   const auto limit = [&] {
-    const double nearest = std::min(zone.distance, builder.clear());
+    const double nearest = std::min(region.distance, builder.clear());
     return static_cast<float>(std::min(nearest * nearest, 1e38)) * (1.0F + 0x1p-20F);
   };
   const auto squared_near = static_cast<float>(near * near) * (1.0F + 0x1p-20F);
-  WalkStack stack(tree.stack_size());
+  TraversalStack stack(tree.stack_size());
   stack.push({0.0F, 0});
   while (!stack.empty()) {
-    const WalkEntry entry = stack.pop();
+    const TraversalEntry entry = stack.pop();
     if (entry.bound > limit()) continue;
     if (entry.bound > squared_near && entry.bound > kClearEnough * limit()) {
       builder.keep_clear((1.0 - 0x1p-20) * std::sqrt(static_cast<double>(entry.bound)));
       continue;
     }
-    if (zone.triangle != kNone) {
-      set_plane(0, zone.normal, builder.nearest_limit(), search);
+    if (region.triangle != kNone) {
+      set_plane(0, region.normal, builder.nearest_limit(), search);
       search.planes = 1;
     }
     if (entry.child < 0) {
-      const TriangleBlock& block = tree.block(~entry.child);
+      const TrianglePacket& block = tree.block(~entry.child);
       Double4 distances;
       squared_box_distances(block, builder.element_box(), distances);
       unsigned lanes = block.lanes();
-      if (zone.triangle != kNone) lanes &= triangles_above(block, zone.normal, builder.nearest_limit());
+      if (region.triangle != kNone) lanes &= triangles_above(block, region.normal, builder.nearest_limit());
       while (lanes != 0) {
         const int lane = pop_smallest_lane(distances, lanes);
         if (distances[lane] > limit()) break;
@@ -125,26 +125,26 @@ SPRUNG_KERNEL void walk_to_nearest(const MeshTree& tree, double near, const Zone
   }
 }
 
-/// Visits the triangles that may come within the zone.
-SPRUNG_KERNEL void carve(const MeshTree& tree, Index nearest, ZoneBuilder& zone) {
-  Search search = search_around(tree, zone.element_box(), zone.box());
-  update(zone, search);
-  WalkStack stack(tree.stack_size());
+/// Visits the triangles that may come within the region.
+SPRUNG_KERNEL void carve(const MeshBvh& tree, Index nearest, SafeRegionBuilder& region) {
+  Search search = search_around(tree, region.element_box(), region.box());
+  update(region, search);
+  TraversalStack stack(tree.stack_size());
   stack.push({0.0F, 0});
   while (!stack.empty()) {
-    const WalkEntry entry = stack.pop();
+    const TraversalEntry entry = stack.pop();
     if (entry.child < 0) {
-      const TriangleBlock& block = tree.block(~entry.child);
-      unsigned lanes = triangles_in_box(block, zone.box());
-      for (int k = 0; k < zone.plane_count(); ++k) lanes &= triangles_above(block, zone.normal(k), zone.limit(k));
+      const TrianglePacket& block = tree.block(~entry.child);
+      unsigned lanes = triangles_in_box(block, region.box());
+      for (int k = 0; k < region.plane_count(); ++k) lanes &= triangles_above(block, region.normal(k), region.limit(k));
       if (lanes == 0) continue;
       Double4 distances;
-      squared_box_distances(block, zone.element_box(), distances);
+      squared_box_distances(block, region.element_box(), distances);
       while (lanes != 0) {
         const int lane = pop_smallest_lane(distances, lanes);
-        if (block.triangle[lane] != nearest) zone.meet(block.corners(lane));
+        if (block.triangle[lane] != nearest) region.meet(block.corners(lane));
       }
-      update(zone, search);
+      update(region, search);
       continue;
     }
     Float8 bounds;
@@ -154,33 +154,34 @@ SPRUNG_KERNEL void carve(const MeshTree& tree, Index nearest, ZoneBuilder& zone)
 }
 
 /// Finds the nearest triangle that is nearer than `near`, begun with the last.
-void find_nearest(const MeshTree& tree, const NearestSpot& last, double near, const Zone& zone, ZoneBuilder& builder) {
+void find_nearest(const MeshBvh& tree, const NearestSpot& last, double near, const SafeRegion& region, SafeRegionBuilder& builder) {
   if (last.triangle != kNone && box_distance(tree.corners(last.triangle), builder.element_box()) < near) {
     builder.look_at(last.triangle, tree.corners(last.triangle), last.place);
   }
-  walk_to_nearest(tree, near, zone, builder);
+  walk_to_nearest(tree, near, region, builder);
 }
 
 }  // namespace
 
 // The nearest triangle's plane comes first: it rules out most of the others, and lies as the surface does.
-void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone) {
-  const NearestSpot last{zone.triangle, zone.place};
-  ZoneBuilder builder(element, request, zone);
+void find_region(const MeshBvh& tree, const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region) {
+  const NearestSpot last{region.triangle, region.place};
+  SafeRegionBuilder builder(element, request, region);
   const double near = std::max(request.exact, std::sqrt(3.0) * request.reach);
   builder.keep_clear(std::max(near, kSearch * request.reach));
-  find_nearest(tree, last, near, zone, builder);
+  find_nearest(tree, last, near, region, builder);
   if (!builder.grow_clear()) {
-    const Index nearest = zone.triangle;
+    const Index nearest = region.triangle;
     if (nearest != kNone) builder.meet(tree.corners(nearest));
     carve(tree, nearest, builder);
   }
   builder.finish();
 }
 
-NearestSpot nearest_spot(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, const NearestSpot& last) {
-  Zone found;
-  ZoneBuilder builder(element, request, found);
+NearestSpot nearest_spot(const MeshBvh& tree, const ElementCorners& element, const SafeRegionRequest& request,
+                         const NearestSpot& last) {
+  SafeRegion found;
+  SafeRegionBuilder builder(element, request, found);
   builder.keep_clear(request.exact);
   find_nearest(tree, last, request.exact, found, builder);
   return found.triangle == kNone ? last : NearestSpot{found.triangle, found.place};

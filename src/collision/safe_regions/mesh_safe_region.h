@@ -6,10 +6,10 @@
 
 namespace sprung {
 
-/// Makes the zone of an element in the mesh's frame: the nearest triangle, and each one that comes within the box and is not behind
-/// a plane already, gives a plane between, a smaller box, or, where there are many, a radius. The search for the nearest begins
-/// with the zone's triangle, left from the element's last zone.
-void find_zone(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request, Zone& zone);
+/// Makes the region of an element in the mesh's frame: the nearest triangle, and each one that comes within the box and is not
+/// behind a plane already, gives a plane between, a smaller box, or, where there are many, a radius. The search for the nearest
+/// begins with the region's triangle, left from the element's last region.
+void find_region(const MeshBvh& tree, const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region);
 
 /// Where the nearest points of an element and a mesh lie.
 struct NearestSpot {
@@ -18,7 +18,7 @@ struct NearestSpot {
 };
 
 /// That of an element which is nearer than `exact`, else the last, with which the search begins.
-[[nodiscard]] NearestSpot nearest_spot(const MeshTree& tree, const ElementCorners& element, const ZoneRequest& request,
+[[nodiscard]] NearestSpot nearest_spot(const MeshBvh& tree, const ElementCorners& element, const SafeRegionRequest& request,
                                        const NearestSpot& last);
 
 }  // namespace sprung

@@ -21,15 +21,15 @@ Box3 box_around(const ElementCorners& element, double reach) {
   return {box.min() - Vector3::Constant(reach), box.max() + Vector3::Constant(reach)};
 }
 
-Box3 asked_box(const ElementCorners& element, const ZoneRequest& request) {
+Box3 asked_box(const ElementCorners& element, const SafeRegionRequest& request) {
   const Box3 box = box_around(element, 0.0).merged(request.way);
   return {box.min() - Vector3::Constant(request.reach), box.max() + Vector3::Constant(request.reach)};
 }
 
-double stand_off(double gap, const ZoneRequest& request) {
+double stand_off(double gap, const SafeRegionRequest& request) {
   return std::min(gap, std::max(request.clearance, std::min(kStandOff * gap, 0.5 * request.gap)));
 }
 
-bool is_touching(double gap, const ZoneRequest& request) { return !(gap > kTouching * request.clearance); }
+bool is_touching(double gap, const SafeRegionRequest& request) { return !(gap > kTouching * request.clearance); }
 
 }  // namespace sprung

@@ -13,8 +13,8 @@ namespace sprung {
 /// The corners of an element in the obstacle's frame.
 using ElementCorners = Simplex;
 
-/// What a zone is asked to be. All lengths [m], > 0.
-struct ZoneRequest {
+/// What a region is asked to be. All lengths [m], > 0.
+struct SafeRegionRequest {
   double reach = 0.0;      ///< the box is that of element and way, this much larger on each side, where the obstacle lets it
   Box3 way{};              ///< where the corners are about to go; empty if nobody knows
   double gap = 0.0;        ///< what contact keeps between element and obstacle: planes stand off by at most half of it
@@ -24,15 +24,15 @@ struct ZoneRequest {
 };
 
 /// What the box and the half-spaces have in common holds the element and, at the end of the interval, nothing of the obstacle. A
-/// surface that deforms from the interval's begin, where the element is, to its end takes the zone along.
-struct Zone {
+/// surface that deforms from the interval's begin, where the element is, to its end takes the region along.
+struct SafeRegion {
   static constexpr int kMostPlanes = 4;
 
   Box3 box{};
   std::array<HalfSpace, kMostPlanes> planes{};
   int plane_count = 0;
   double free_radius = std::numeric_limits<double>::infinity();  ///< besides, no corner may move farther than this [m]
-  bool broken = false;  ///< element and obstacle touch or cross: there is no such zone, nothing is promised
+  bool broken = false;  ///< element and obstacle touch or cross: there is no such region, nothing is promised
 
   double clear = 0.0;  ///< nothing of the obstacle was nearer to the element than this [m]
 
@@ -46,9 +46,9 @@ struct Zone {
   PairPlace place{};                                          ///< of the points, on element and triangle; for that search too
 
   // Before a surface that deforms:
-  double time = std::numeric_limits<double>::quiet_NaN();  ///< end of the interval that the zone is for [s]
+  double time = std::numeric_limits<double>::quiet_NaN();  ///< end of the interval that the region is for [s]
   Vector3 drift = Vector3::Zero();                         ///< how far the surface at `point` goes in that interval [m]
-  double loss = 0.0;                                       ///< what the zone lost on each side since it was made [m]
+  double loss = 0.0;                                       ///< what the region lost on each side since it was made [m]
   Vector3 triangle_weights = Vector3::Zero();              ///< of the triangle's corners at `point`; their sum is 1
 };
 
@@ -58,14 +58,14 @@ struct Zone {
 /// The box around the element, `reach` [m] larger on each side.
 [[nodiscard]] Box3 box_around(const ElementCorners& element, double reach);
 
-/// The largest box that a zone may have.
-[[nodiscard]] Box3 asked_box(const ElementCorners& element, const ZoneRequest& request);
+/// The largest box that a region may have.
+[[nodiscard]] Box3 asked_box(const ElementCorners& element, const SafeRegionRequest& request);
 
 /// How far a plane stands off an obstacle that is `gap` [m] away: the rest is free for the element. Half of the gap that contact
 /// keeps is left to contact, and no element is asked to come nearer than it is.
-[[nodiscard]] double stand_off(double gap, const ZoneRequest& request);
+[[nodiscard]] double stand_off(double gap, const SafeRegionRequest& request);
 
 /// Whether the gap [m] is not told from touching, by rounding.
-[[nodiscard]] bool is_touching(double gap, const ZoneRequest& request);
+[[nodiscard]] bool is_touching(double gap, const SafeRegionRequest& request);
 
 }  // namespace sprung

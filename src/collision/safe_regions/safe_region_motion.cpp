@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-SPRUNG_KERNEL void mark_children(const MeshTree::Node& node, const FloatBox& box, Float8& bounds) {
+SPRUNG_KERNEL void mark_children(const MeshBvh::Node& node, const FloatBox& box, Float8& bounds) {
   bounds = Float8{};
   for (int axis = 0; axis < 3; ++axis) {
     bounds = ((node.min[axis] > box.max[axis]) | (node.max[axis] < box.min[axis])) ? Float8{} + kInfinity : bounds;
@@ -22,7 +22,7 @@ SPRUNG_KERNEL void mark_children(const MeshTree::Node& node, const FloatBox& box
 }
 
 /// The square of the farthest that a corner of the block's triangles goes otherwise than by `drift`.
-SPRUNG_KERNEL double farthest_otherwise(const TriangleBlock& before, const TriangleBlock& after, const Vector3& drift) {
+SPRUNG_KERNEL double farthest_otherwise(const TrianglePacket& before, const TrianglePacket& after, const Vector3& drift) {
   Double4 farthest{};
   for (int k = 0; k < 3; ++k) {
     Double4 squared{};
@@ -38,10 +38,10 @@ SPRUNG_KERNEL double farthest_otherwise(const TriangleBlock& before, const Trian
 }
 
 /// The farthest that a corner of any triangle near the box goes otherwise than by `drift` [m].
-double farthest_otherwise(const MeshTree& before, const MeshTree& after, const Box3& box, const Vector3& drift) {
+double farthest_otherwise(const MeshBvh& before, const MeshBvh& after, const Box3& box, const Vector3& drift) {
   const FloatBox near = float_box(box);
   double farthest2 = 0.0;
-  WalkStack stack(after.stack_size());
+  TraversalStack stack(after.stack_size());
   stack.push({0.0F, 0});
   while (!stack.empty()) {
     const std::int32_t child = stack.pop().child;
@@ -58,20 +58,20 @@ double farthest_otherwise(const MeshTree& before, const MeshTree& after, const B
 
 }  // namespace
 
-void shift(Zone& zone, const MeshTree& before, const MeshTree& after) {
-  const Vector3& drift = zone.drift;
-  const Box3 way = zone.box.merged(zone.box.translated(drift));
+void shift(SafeRegion& region, const MeshBvh& before, const MeshBvh& after) {
+  const Vector3& drift = region.drift;
+  const Box3 way = region.box.merged(region.box.translated(drift));
   const double otherwise = farthest_otherwise(before, after, way, drift);
-  zone.box = shrunk(zone.box.translated(drift), otherwise);
-  for (int k = 0; k < zone.plane_count; ++k) {
-    HalfSpace& plane = zone.planes[static_cast<std::size_t>(k)];
+  region.box = shrunk(region.box.translated(drift), otherwise);
+  for (int k = 0; k < region.plane_count; ++k) {
+    HalfSpace& plane = region.planes[static_cast<std::size_t>(k)];
     plane.offset += plane.normal.dot(drift) + otherwise;
   }
-  zone.free_radius -= otherwise;
-  zone.clear = std::max(0.0, zone.clear - otherwise);
-  zone.loss += otherwise;
-  zone.distance = std::max(0.0, zone.distance - otherwise);
-  zone.point += drift;
+  region.free_radius -= otherwise;
+  region.clear = std::max(0.0, region.clear - otherwise);
+  region.loss += otherwise;
+  region.distance = std::max(0.0, region.distance - otherwise);
+  region.point += drift;
 }
 
 }  // namespace sprung

@@ -8,7 +8,7 @@ namespace sprung {
 
 namespace {
 
-void try_axis(const Vector3& axis, const ElementCorners& element, const TriangleCorners& triangle, TriangleSeparation& best) {
+void try_axis(const Vector3& axis, const ElementCorners& element, const TriangleCorners& triangle, TriangleSeparatingPlane& best) {
   const double length = axis.norm();
   if (length == 0.0) return;
   for (const double side : {1.0 / length, -1.0 / length}) {
@@ -19,7 +19,8 @@ void try_axis(const Vector3& axis, const ElementCorners& element, const Triangle
 }
 
 /// The nearest points may be on two faces, or on two edges that cross, or on edges next to each other in one plane.
-void try_features(const ElementCorners& element, const TriangleCorners& triangle, const Vector3& line, TriangleSeparation& best) {
+void try_features(const ElementCorners& element, const TriangleCorners& triangle, const Vector3& line,
+                  TriangleSeparatingPlane& best) {
   const auto edges_of = [](const std::array<Vector3, 3>& x) {
     return std::array<Vector3, 3>{x[1] - x[0], x[2] - x[1], x[0] - x[2]};
   };
@@ -58,9 +59,9 @@ double highest_along(const Vector3& normal, const TriangleCorners& triangle) {
   return std::max({normal.dot(triangle[0]), normal.dot(triangle[1]), normal.dot(triangle[2])});
 }
 
-TriangleSeparation separation(const ElementCorners& element, const TriangleCorners& triangle, const ClosestPair& pair,
-                              double slack) {
-  TriangleSeparation best;
+TriangleSeparatingPlane separation(const ElementCorners& element, const TriangleCorners& triangle, const ClosestPair& pair,
+                                   double slack) {
+  TriangleSeparatingPlane best;
   const double distance = std::sqrt(pair.squared_distance);
   if (distance > 0.0) {
     best.normal = (pair.on_simplex - pair.on_triangle) / distance;

@@ -11,7 +11,7 @@ namespace sprung {
 using TriangleCorners = std::array<Vector3, 3>;
 
 /// The direction, from the triangle to the element, in which they are farthest apart.
-struct TriangleSeparation {
+struct TriangleSeparatingPlane {
   Vector3 normal = Vector3::Zero();  ///< unit length
   double gap =
       -std::numeric_limits<double>::infinity();  ///< between what lies lowest of the element and highest of the triangle [m]
@@ -24,7 +24,7 @@ struct TriangleSeparation {
 /// coordinates, rounding turns the line, and it is the faces' normals and the products of edges that still tell the sides apart:
 /// those are tried too where `pair` with its `slack` (see closest_pair) does not keep what it promises. A gap that is not positive
 /// says that they cross or touch.
-[[nodiscard]] TriangleSeparation separation(const ElementCorners& element, const TriangleCorners& triangle, const ClosestPair& pair,
-                                            double slack);
+[[nodiscard]] TriangleSeparatingPlane separation(const ElementCorners& element, const TriangleCorners& triangle,
+                                                 const ClosestPair& pair, double slack);
 
 }  // namespace sprung

@@ -10,7 +10,7 @@ namespace sprung {
 
 namespace {
 
-constexpr double kMostParts = 1024.0;
+constexpr double kMaxSubsteps = 1024.0;
 
 double mean_edge_length(const Points& vertices, const Triangles& triangles) {
   double sum = 0.0;
@@ -69,7 +69,7 @@ void DeformingMesh::fit_span(const MeshSequence::Moment& begin, const MeshSequen
 int DeformingMesh::parts_between(Index frame, Index next) const {
   const double farthest2 = (sequence_->frames[next] - sequence_->frames[frame]).colwise().squaredNorm().maxCoeff();
   const double parts = std::ceil(std::sqrt(farthest2) / edge_length_);
-  return std::isfinite(parts) ? static_cast<int>(std::clamp(parts, 1.0, kMostParts)) : 1;
+  return std::isfinite(parts) ? static_cast<int>(std::clamp(parts, 1.0, kMaxSubsteps)) : 1;
 }
 
 DeformingMesh::Sweep DeformingMesh::sweep() const {

@@ -80,40 +80,40 @@ Vector3 MeshShape::displacement(const Vector3& p, double t, double t_end) const 
   return triangle == kNone ? Vector3(Vector3::Zero()) : deforming_->displacement(triangle, weights, t, t_end);
 }
 
-std::optional<CarriedElement> MeshShape::carried(const ElementCorners& element, double lift) const {
+std::optional<MovedElement> MeshShape::carried(const ElementCorners& element, double lift) const {
   if (!deforms_ || deforming_->largest_displacement() == 0.0) return {{element}};
-  const Zone zone = nearest_before(element);
-  if (zone.broken || zone.triangle == kNone) return std::nullopt;
-  CarriedElement result{element, zone.distance};
-  const SpotMotion motion = deforming_->motion(zone.triangle, zone.point);
-  const Vector3 raised = lift * deforming_->largest_displacement() * (motion.turn * zone.normal).normalized();
+  const SafeRegion region = nearest_before(element);
+  if (region.broken || region.triangle == kNone) return std::nullopt;
+  MovedElement result{element, region.distance};
+  const SpotMotion motion = deforming_->motion(region.triangle, region.point);
+  const Vector3 raised = lift * deforming_->largest_displacement() * (motion.turn * region.normal).normalized();
   Vector3 nearest = Vector3::Zero();
   for (int i = 0; i < element.count; ++i) {
     Vector3& corner = result.corners.x[static_cast<std::size_t>(i)];
-    corner = motion.after + motion.turn * (corner - zone.point) + raised;
-    nearest += zone.weights[i] * corner;
+    corner = motion.after + motion.turn * (corner - region.point) + raised;
+    nearest += region.weights[i] * corner;
   }
   const auto hit = tree_->first_hit(nearest, motion.after, CrossingSides::both);
-  if (hit && hit->triangle != zone.triangle && hit->fraction < kAtSpot) return std::nullopt;
+  if (hit && hit->triangle != region.triangle && hit->fraction < kAtSpot) return std::nullopt;
   return result;
 }
 
 // What an obstacle comes to cross in the interval is no farther from it than both go.
-Zone MeshShape::nearest_before(const ElementCorners& element) const {
-  Zone zone;
+SafeRegion MeshShape::nearest_before(const ElementCorners& element) const {
+  SafeRegion region;
   if (element.count > 1) {
     const double reach = 2.0 * deforming_->largest_displacement();
-    sprung::find_zone(*tree_before_, element, {.reach = reach, .exact = reach}, zone);
-    return zone;
+    sprung::find_region(*tree_before_, element, {.reach = reach, .exact = reach}, region);
+    return region;
   }
   const auto found = tree_before_->nearest(element.x[0], std::numeric_limits<double>::infinity());
-  if (!found) return zone;  // the particle is not finite
-  zone.triangle = found->triangle;
-  zone.point = found->closest.point;
-  zone.distance = std::sqrt(found->closest.squared_distance);
-  zone.normal = (element.x[0] - zone.point).normalized();
-  zone.weights = Vector3::UnitX();
-  return zone;
+  if (!found) return region;  // the particle is not finite
+  region.triangle = found->triangle;
+  region.point = found->closest.point;
+  region.distance = std::sqrt(found->closest.squared_distance);
+  region.normal = (element.x[0] - region.point).normalized();
+  region.weights = Vector3::UnitX();
+  return region;
 }
 
 std::optional<MovedTriangle> MeshShape::moved_triangle(const Vector3& p) const {
@@ -123,7 +123,7 @@ std::optional<MovedTriangle> MeshShape::moved_triangle(const Vector3& p) const {
   return MovedTriangle{tree_before_->corners(triangle), tree_->corners(triangle)};
 }
 
-MeshShape::Spot MeshShape::nearest_spot(const MeshTree& tree, const Vector3& p) {
+MeshShape::Spot MeshShape::nearest_spot(const MeshBvh& tree, const Vector3& p) {
   const auto found = tree.nearest(p, std::numeric_limits<double>::infinity());
   if (!found) return {};  // p is not finite
   const auto [a, b, c] = tree.corners(found->triangle);
@@ -140,11 +140,11 @@ std::optional<SurfacePoint> MeshShape::nearest_again(const Vector3& p, double ra
   if (deforms_) return nearest(p, radius);
   const double moved = (p - memory.asked_at).norm();
   if (moved + radius < kClearPart * memory.clear) return std::nullopt;
-  const auto if_within = [&](const MeshTree::Nearest& found) {
+  const auto if_within = [&](const MeshBvh::Nearest& found) {
     return found.closest.squared_distance < radius * radius ? std::optional(surface_point(p, found)) : std::nullopt;
   };
   const double farther = kFarther * radius;
-  std::optional<MeshTree::Nearest> found;
+  std::optional<MeshBvh::Nearest> found;
   if (memory.triangle != kNone) {
     const auto corners = tree_->corners(memory.triangle);
     found = {memory.triangle, closest_point_on_triangle(p, corners[0], corners[1], corners[2]), corners};
@@ -157,7 +157,7 @@ std::optional<SurfacePoint> MeshShape::nearest_again(const Vector3& p, double ra
   return found ? if_within(*found) : std::nullopt;
 }
 
-SurfacePoint MeshShape::surface_point(const Vector3& p, const MeshTree::Nearest& found) const {
+SurfacePoint MeshShape::surface_point(const Vector3& p, const MeshBvh::Nearest& found) const {
   const auto& [triangle, closest, corners] = found;
   const Vector3& a = corners[0];
   const Vector3& b = corners[1];
@@ -187,52 +187,52 @@ std::optional<Crossing> MeshShape::first_crossing(const Vector3& a, const Vector
   return Crossing{hit->fraction, a + hit->fraction * (b - a), face.dot(b - a) > 0.0 ? Vector3(-face) : face};
 }
 
-void MeshShape::find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const {
-  const MeshTree& tree = deforms_ && !request.at_end ? *tree_before_ : *tree_;
-  sprung::find_zone(tree, element, request, zone);
+void MeshShape::find_region(const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region) const {
+  const MeshBvh& tree = deforms_ && !request.at_end ? *tree_before_ : *tree_;
+  sprung::find_region(tree, element, request, region);
   if (!deforms_) return;
-  zone.time = deforming_->end();
-  if (zone.triangle != kNone) weigh_point(tree, zone);
-  if (!request.at_end) follow_surface(zone);
+  region.time = deforming_->end();
+  if (region.triangle != kNone) weigh_point(tree, region);
+  if (!request.at_end) follow_surface(region);
 }
 
-void MeshShape::weigh_point(const MeshTree& tree, Zone& zone) {
-  const auto [a, b, c] = tree.corners(zone.triangle);
-  zone.triangle_weights = barycentric(closest_point_on_triangle(zone.point, a, b, c), a, b, c);
+void MeshShape::weigh_point(const MeshBvh& tree, SafeRegion& region) {
+  const auto [a, b, c] = tree.corners(region.triangle);
+  region.triangle_weights = barycentric(closest_point_on_triangle(region.point, a, b, c), a, b, c);
 }
 
-void MeshShape::look_again(const ElementCorners& element, const ZoneRequest& request, bool fresh, Zone& zone) const {
-  const MeshTree& tree = deforms_ ? *tree_before_ : *tree_;
-  NearestSpot spot{zone.triangle, zone.place};
+void MeshShape::look_again(const ElementCorners& element, const SafeRegionRequest& request, bool fresh, SafeRegion& region) const {
+  const MeshBvh& tree = deforms_ ? *tree_before_ : *tree_;
+  NearestSpot spot{region.triangle, region.place};
   if (!fresh) spot = sprung::nearest_spot(tree, element, request, spot);
   if (spot.triangle == kNone) return;
   const ClosestPair pair = closest_pair(element, tree.corners(spot.triangle), 0.0, 0.0, spot.place);
   const Vector3 between = pair.on_simplex - pair.on_triangle;
   if (!(between.squaredNorm() > 0.0)) return;
-  zone.point = pair.on_triangle;
-  zone.normal = between.normalized();
-  zone.weights = pair.weights;
-  zone.triangle = spot.triangle;
-  zone.place = pair.place;
+  region.point = pair.on_triangle;
+  region.normal = between.normalized();
+  region.weights = pair.weights;
+  region.triangle = spot.triangle;
+  region.place = pair.place;
   if (!deforms_) return;
-  weigh_point(tree, zone);
-  zone.drift = deforming_->displacement(zone.triangle, zone.triangle_weights);
-  zone.point += zone.drift;
+  weigh_point(tree, region);
+  region.drift = deforming_->displacement(region.triangle, region.triangle_weights);
+  region.point += region.drift;
 }
 
-bool MeshShape::take_along(Zone& zone) const {
-  if (!deforms_ || zone.time == deforming_->end()) return true;
-  if (zone.time != deforming_->begin()) return false;
-  zone.time = deforming_->end();
-  follow_surface(zone);
+bool MeshShape::take_along(SafeRegion& region) const {
+  if (!deforms_ || region.time == deforming_->end()) return true;
+  if (region.time != deforming_->begin()) return false;
+  region.time = deforming_->end();
+  follow_surface(region);
   return true;
 }
 
-void MeshShape::follow_surface(Zone& zone) const {
-  zone.drift.setZero();
-  if (zone.broken || deforming_->largest_displacement() == 0.0) return;
-  if (zone.triangle != kNone) zone.drift = deforming_->displacement(zone.triangle, zone.triangle_weights);
-  shift(zone, *tree_before_, *tree_);
+void MeshShape::follow_surface(SafeRegion& region) const {
+  region.drift.setZero();
+  if (region.broken || deforming_->largest_displacement() == 0.0) return;
+  if (region.triangle != kNone) region.drift = deforming_->displacement(region.triangle, region.triangle_weights);
+  shift(region, *tree_before_, *tree_);
 }
 
 bool MeshShape::touches(const ElementCorners& element, double tolerance) const {

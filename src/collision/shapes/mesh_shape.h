@@ -21,37 +21,37 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] double largest_displacement() const override { return deforms_ ? deforming_->largest_displacement() : 0.0; }
   [[nodiscard]] Vector3 displacement(const Vector3& p) const override;
   [[nodiscard]] Vector3 displacement(const Vector3& p, double t, double t_end) const override;
-  [[nodiscard]] std::optional<CarriedElement> carried(const ElementCorners& element, double lift) const override;
+  [[nodiscard]] std::optional<MovedElement> carried(const ElementCorners& element, double lift) const override;
   [[nodiscard]] std::optional<MovedTriangle> moved_triangle(const Vector3& p) const override;
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;
   [[nodiscard]] std::optional<SurfacePoint> nearest_again(const Vector3& p, double radius, double same,
                                                           SurfaceMemory& memory) const override;
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override;
-  void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const override;
-  void look_again(const ElementCorners& element, const ZoneRequest& request, bool fresh, Zone& zone) const override;
-  bool take_along(Zone& zone) const override;
+  void find_region(const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region) const override;
+  void look_again(const ElementCorners& element, const SafeRegionRequest& request, bool fresh, SafeRegion& region) const override;
+  bool take_along(SafeRegion& region) const override;
   [[nodiscard]] bool touches(const ElementCorners& element, double tolerance) const override;
   [[nodiscard]] bool contains(const Vector3& p) const override;
   [[nodiscard]] Box3 bounds() const override { return bounds_; }
   [[nodiscard]] double magnitude() const override { return magnitude_; }
   [[nodiscard]] double rounding(const Vector3& p) const override;
 
-  [[nodiscard]] const MeshTree& tree() const { return *tree_; }
+  [[nodiscard]] const MeshBvh& tree() const { return *tree_; }
 
  private:
-  void follow_surface(Zone& zone) const;
-  static void weigh_point(const MeshTree& tree, Zone& zone);
+  void follow_surface(SafeRegion& region) const;
+  static void weigh_point(const MeshBvh& tree, SafeRegion& region);
   /// A point of the surface: a triangle and the weights of its corners.
   struct Spot {
     Index triangle = kNone;
     Vector3 weights = Vector3::Zero();
   };
-  [[nodiscard]] static Spot nearest_spot(const MeshTree& tree, const Vector3& p);
-  [[nodiscard]] Zone nearest_before(const ElementCorners& element) const;
+  [[nodiscard]] static Spot nearest_spot(const MeshBvh& tree, const Vector3& p);
+  [[nodiscard]] SafeRegion nearest_before(const ElementCorners& element) const;
   [[nodiscard]] Vector3 face_normal(Index triangle) const;
   [[nodiscard]] Vector3 pseudonormal(Index triangle, TriangleFeature feature) const;
-  [[nodiscard]] SurfacePoint surface_point(const Vector3& p, const MeshTree::Nearest& found) const;
+  [[nodiscard]] SurfacePoint surface_point(const Vector3& p, const MeshBvh::Nearest& found) const;
 
   std::shared_ptr<const TriangleMesh> rigid_;  ///< none where it is a sequence
   std::optional<DeformingMesh> deforming_;
@@ -59,9 +59,9 @@ class MeshShape final : public ObstacleShape {
   bool closed_;
   Box3 bounds_;
   double magnitude_ = 0.0;
-  std::optional<MeshTree> tree_;         ///< at the interval's end
-  std::optional<MeshTree> tree_before_;  ///< at its begin; the same boxes
-  Pseudonormals pseudonormals_;          ///< of the rigid mesh
+  std::optional<MeshBvh> tree_;         ///< at the interval's end
+  std::optional<MeshBvh> tree_before_;  ///< at its begin; the same boxes
+  Pseudonormals pseudonormals_;         ///< of the rigid mesh
 };
 
 }  // namespace sprung

@@ -26,7 +26,7 @@ struct SurfaceMemory {
 };
 
 /// An element that an obstacle carries.
-struct CarriedElement {
+struct MovedElement {
   ElementCorners corners;
   double distance = 0.0;  ///< from what carries it [m]; 0 for a shape that carries all alike
 };
@@ -57,7 +57,7 @@ class ObstacleShape {
   /// Where a surface that deforms takes an element along from the interval's begin: as high above the triangle that is nearest to
   /// it, in the triangle's own axes, and higher by `lift`, a part of how far the surface goes at most. Nothing where another part
   /// of the surface comes between, or where none is near.
-  [[nodiscard]] virtual std::optional<CarriedElement> carried(const ElementCorners& element, double /*lift*/) const {
+  [[nodiscard]] virtual std::optional<MovedElement> carried(const ElementCorners& element, double /*lift*/) const {
     return {{element}};
   }
 
@@ -84,17 +84,18 @@ class ObstacleShape {
   /// there. No path, no crossing: a == b.
   [[nodiscard]] virtual std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const = 0;
 
-  /// Makes the zone of an element that the shape does not cross; `zone` comes as it was left by the element's last search.
-  virtual void find_zone(const ElementCorners& element, const ZoneRequest& request, Zone& zone) const = 0;
+  /// Makes the region of an element that the shape does not cross; `region` comes as it was left by the element's last search.
+  virtual void find_region(const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region) const = 0;
 
-  /// Finds the nearest points of the zone's element again, where it is when the interval begins: of a mesh, while it is `fresh`,
-  /// those on the same triangle. The rest of the zone stays, as do the nearest points where element and shape touch or a primitive
-  /// is not within `reach`.
-  virtual void look_again(const ElementCorners& element, const ZoneRequest& request, bool fresh, Zone& zone) const = 0;
+  /// Finds the nearest points of the region's element again, where it is when the interval begins: of a mesh, while it is `fresh`,
+  /// those on the same triangle. The rest of the region stays, as do the nearest points where element and shape touch or a
+  /// primitive is not within `reach`.
+  virtual void look_again(const ElementCorners& element, const SafeRegionRequest& request, bool fresh,
+                          SafeRegion& region) const = 0;
 
-  /// Makes a zone that was for the end of the interval before one for the end of this: where the surface deforms, it takes the zone
-  /// along. False for a zone of another time, which cannot be taken along.
-  virtual bool take_along(Zone& /*zone*/) const { return true; }
+  /// Makes a region that was for the end of the interval before one for the end of this: where the surface deforms, it takes the
+  /// region along. False for a region of another time, which cannot be taken along.
+  virtual bool take_along(SafeRegion& /*region*/) const { return true; }
 
   /// Whether the element comes within `tolerance` [m] of the surface; an element that is wholly inside need not tell. Crossings of
   /// meshes are judged exactly.

@@ -12,17 +12,17 @@ constexpr Index kEdgesPerTask = 1024;
 
 }  // namespace
 
-SharpEdges::SharpEdges(const CollisionSurface& surface, const SurfaceFeatures& features)
+FeatureEdges::FeatureEdges(const CollisionSurface& surface, const SurfaceTopology& features)
     : surface_(surface), features_(features), sharp_(static_cast<std::size_t>(features.edge_count()), 1) {}
 
-void SharpEdges::update(const Points& positions) {
+void FeatureEdges::update(const Points& positions) {
   parallel_chunks(features_.edge_count(), kEdgesPerTask, [&](Index begin, Index end) {
     for (Index edge = begin; edge < end; ++edge) sharp_[static_cast<std::size_t>(edge)] = turns(edge, positions) ? 1 : 0;
   });
 }
 
-bool SharpEdges::turns(Index edge, const Points& positions) const {
-  const SurfaceFeatures::Side side = features_.owner(edge);
+bool FeatureEdges::turns(Index edge, const Points& positions) const {
+  const SurfaceTopology::Side side = features_.owner(edge);
   const Index across = features_.across(side.element, side.edge);
   if (across == kNone) return true;
   const Element& element = surface_.elements[static_cast<std::size_t>(side.element)];

@@ -7,10 +7,10 @@
 
 namespace sprung {
 
-class SharpEdges {
+class FeatureEdges {
  public:
   /// All edges count as sharp. Keeps references to both.
-  SharpEdges(const CollisionSurface& surface, const SurfaceFeatures& features);
+  FeatureEdges(const CollisionSurface& surface, const SurfaceTopology& features);
 
   /// Looks at all edges again, with the particles at `positions` [m].
   void update(const Points& positions);
@@ -22,7 +22,7 @@ class SharpEdges {
   [[nodiscard]] bool turns(Index edge, const Points& positions) const;
 
   const CollisionSurface& surface_;
-  const SurfaceFeatures& features_;
+  const SurfaceTopology& features_;
   std::vector<char> sharp_;  ///< by edge
 };
 

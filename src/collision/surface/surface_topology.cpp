@@ -61,7 +61,7 @@ FanKind chain(std::vector<Rim> rims, std::vector<Index>& spokes) {
 
 }  // namespace
 
-SurfaceFeatures::SurfaceFeatures(const std::vector<Element>& elements, Index particles)
+SurfaceTopology::SurfaceTopology(const std::vector<Element>& elements, Index particles)
     : owned_(elements.size()), edges_(3 * elements.size(), kNone), across_(edges_.size(), kNone) {
   list_elements(elements, particles);
   give_corners(elements);
@@ -69,7 +69,7 @@ SurfaceFeatures::SurfaceFeatures(const std::vector<Element>& elements, Index par
   build_fans(elements, particles);
 }
 
-void SurfaceFeatures::list_elements(const std::vector<Element>& elements, Index particles) {
+void SurfaceTopology::list_elements(const std::vector<Element>& elements, Index particles) {
   first_element_.assign(static_cast<std::size_t>(particles) + 1, 0);
   for (const Element& element : elements) {
     for (const Index particle : corners_of(element)) ++first_element_[static_cast<std::size_t>(particle) + 1];
@@ -84,7 +84,7 @@ void SurfaceFeatures::list_elements(const std::vector<Element>& elements, Index 
   }
 }
 
-void SurfaceFeatures::give_corners(const std::vector<Element>& elements) {
+void SurfaceTopology::give_corners(const std::vector<Element>& elements) {
   for (std::size_t i = 0; i + 1 < first_element_.size(); ++i) {
     const auto around = elements_at(static_cast<Index>(i));
     if (around.empty()) continue;
@@ -95,7 +95,7 @@ void SurfaceFeatures::give_corners(const std::vector<Element>& elements) {
   }
 }
 
-void SurfaceFeatures::give_edges(const std::vector<Element>& elements) {
+void SurfaceTopology::give_edges(const std::vector<Element>& elements) {
   struct Use {
     std::array<Index, 2> ends;
     Side side;
@@ -129,13 +129,13 @@ void SurfaceFeatures::give_edges(const std::vector<Element>& elements) {
 }
 
 /// Only triangles have something across.
-void SurfaceFeatures::join(const std::vector<Element>& elements, Side side, Side other) {
+void SurfaceTopology::join(const std::vector<Element>& elements, Side side, Side other) {
   const Element& beside = elements[static_cast<std::size_t>(other.element)];
   if (beside.corners != 3 || elements[static_cast<std::size_t>(side.element)].corners != 3) return;
   across_[slot(side.element, side.edge)] = beside.particles[static_cast<std::size_t>((other.edge + 2) % 3)];
 }
 
-void SurfaceFeatures::build_fans(const std::vector<Element>& elements, Index particles) {
+void SurfaceTopology::build_fans(const std::vector<Element>& elements, Index particles) {
   fans_.resize(static_cast<std::size_t>(particles));
   first_spoke_.assign(1, 0);
   std::vector<Index> spokes;

@@ -25,9 +25,9 @@ enum class FanKind : std::uint8_t {
           element.particles[static_cast<std::size_t>((edge + 1) % element.corners)]};
 }
 
-class SurfaceFeatures {
+class SurfaceTopology {
  public:
-  SurfaceFeatures(const std::vector<Element>& elements, Index particles);
+  SurfaceTopology(const std::vector<Element>& elements, Index particles);
 
   [[nodiscard]] bool owns_corner(Index element, int corner) const { return (owned(element).corners >> corner & 1) != 0; }
   [[nodiscard]] bool owns_edge(Index element, int edge) const { return (owned(element).edges >> edge & 1) != 0; }

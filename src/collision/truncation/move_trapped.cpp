@@ -10,38 +10,38 @@ constexpr double kLifts[] = {0.0, 0.0, 1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};
 
 }  // namespace
 
-void carry_squeezed(ObstacleZones& zones, const std::vector<Index>& particles, const Points& before, Points& after,
-                    Outcomes& outcomes) {
-  if (count(outcomes, Outcome::squeezed) == 0) return;
+void move_infeasible(ObstacleSafeRegions& regions, const std::vector<Index>& particles, const Points& before, Points& after,
+                     Outcomes& outcomes) {
+  if (count(outcomes, Outcome::infeasible) == 0) return;
   std::vector<std::size_t> number(static_cast<std::size_t>(after.cols()), particles.size());
   std::vector<char> crossed_before(particles.size(), 0);
   std::vector<Index> carried;
   for (std::size_t n = 0; n < particles.size(); ++n) {
     const Index i = particles[n];
     number[static_cast<std::size_t>(i)] = n;
-    crossed_before[n] = zones.is_crossed(i) ? 1 : 0;
-    if (outcomes[n] != Outcome::squeezed) continue;
-    const auto place = zones.carried(i, before.col(i));
+    crossed_before[n] = regions.is_crossed(i) ? 1 : 0;
+    if (outcomes[n] != Outcome::infeasible) continue;
+    const auto place = regions.carried(i, before.col(i));
     if (!place) continue;
     after.col(i) = *place;
     outcomes[n] = Outcome::stopped;
     carried.push_back(i);
   }
-  zones.renew_around(carried, {after, after, true});
+  regions.renew_around(carried, {after, after, true});
   for (const double lift : kLifts) {
     if (carried.empty()) break;
     carried.clear();
-    for (const auto& [i, distance, place] : zones.carried_with_elements(before, lift)) {
+    for (const auto& [i, distance, place] : regions.carried_with_elements(before, lift)) {
       const std::size_t n = number[static_cast<std::size_t>(i)];
       if (n == particles.size() || crossed_before[n] != 0) continue;
       after.col(i) = place;
       outcomes[n] = Outcome::stopped;
       carried.push_back(i);
     }
-    zones.renew_around(carried, {after, after, true});
+    regions.renew_around(carried, {after, after, true});
   }
   for (std::size_t n = 0; n < particles.size(); ++n) {
-    if (crossed_before[n] == 0 && zones.is_crossed(particles[n])) outcomes[n] = Outcome::squeezed;
+    if (crossed_before[n] == 0 && regions.is_crossed(particles[n])) outcomes[n] = Outcome::infeasible;
   }
 }
 

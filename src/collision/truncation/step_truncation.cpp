@@ -20,99 +20,101 @@ bool meets_itself(const CollisionSurface& surface) {
 
 }  // namespace
 
-struct FreeSpace::Implementation {
+struct StepTruncation::Implementation {
   Implementation(Environment& world, CollisionSurface elements, const Points& rest, double margin)
       : environment(world),
         set(world.set()),
         surface(std::move(elements)),
-        zones(set, surface, rest, margin),
-        placement(environment, surface, zones) {
+        regions(set, surface, rest, margin),
+        placement(environment, surface, regions) {
     if (meets_itself(surface)) pairs.emplace(surface, rest, margin);
   }
 
   void begin_pairs(const Points& before, const Points& after);
-  Truncation truncate(const Points& before, Points& after, const Relax& relax);
-  void keep_apart(const Points& before, Points& after, Truncation& truncation);
+  TruncationResult truncate(const Points& before, Points& after, const Relax& relax);
+  void keep_apart(const Points& before, Points& after, TruncationResult& truncation);
 
   Environment& environment;
   const ObstacleSet& set;
   CollisionSurface surface;
-  ObstacleZones zones;
-  ObstaclePlacement placement;
-  bool ahead = false;              ///< see look_ahead
-  std::optional<SelfZones> pairs;  ///< where elements of the network may meet
+  ObstacleSafeRegions regions;
+  ObstacleTruncation placement;
+  bool ahead = false;                   ///< see look_ahead
+  std::optional<PairSeparation> pairs;  ///< where elements of the network may meet
   std::vector<Contact> contacts{};
   std::vector<Contact> pair_contacts{};  ///< of the step that follow() began
   bool pairs_began = false;
 };
 
-FreeSpace::FreeSpace(Environment& environment, CollisionSurface surface, const Points& rest, double margin)
+StepTruncation::StepTruncation(Environment& environment, CollisionSurface surface, const Points& rest, double margin)
     : implementation_(std::make_unique<Implementation>(environment, std::move(surface), rest, margin)) {}
-FreeSpace::~FreeSpace() = default;
-FreeSpace::FreeSpace(FreeSpace&&) noexcept = default;
-FreeSpace& FreeSpace::operator=(FreeSpace&&) noexcept = default;
+StepTruncation::~StepTruncation() = default;
+StepTruncation::StepTruncation(StepTruncation&&) noexcept = default;
+StepTruncation& StepTruncation::operator=(StepTruncation&&) noexcept = default;
 
-bool FreeSpace::meets_anything() const { return implementation_->pairs.has_value() || !implementation_->set.obstacles().empty(); }
+bool StepTruncation::meets_anything() const {
+  return implementation_->pairs.has_value() || !implementation_->set.obstacles().empty();
+}
 
-bool FreeSpace::bodies_may_meet() const { return bodies_meet(implementation_->surface); }
+bool StepTruncation::bodies_may_meet() const { return bodies_meet(implementation_->surface); }
 
-void FreeSpace::follow(const Points& before, const Points& after) {
-  implementation_->zones.follow({before, after});
-  implementation_->zones.let_through(before);
-  if (implementation_->ahead) implementation_->zones.renew_around(implementation_->placement.pinned(), {before, after});
+void StepTruncation::follow(const Points& before, const Points& after) {
+  implementation_->regions.follow({before, after});
+  implementation_->regions.permitted_crossings(before);
+  if (implementation_->ahead) implementation_->regions.renew_around(implementation_->placement.pinned(), {before, after});
   if (implementation_->pairs) implementation_->begin_pairs(before, after);
 }
 
-const LetThrough& FreeSpace::lets_through() const { return implementation_->zones.lets_through(); }
+const PermittedCrossings& StepTruncation::lets_through() const { return implementation_->regions.lets_through(); }
 
-void FreeSpace::forget(const LetThrough& through) {
-  implementation_->zones.forget(through);
+void StepTruncation::forget(const PermittedCrossings& through) {
+  implementation_->regions.forget(through);
   if (implementation_->pairs) implementation_->pairs->forget();
 }
 
-void FreeSpace::look_ahead(bool ahead) {
+void StepTruncation::look_ahead(bool ahead) {
   implementation_->ahead = ahead;
-  implementation_->zones.look_ahead(ahead);
+  implementation_->regions.look_ahead(ahead);
 }
 
-const std::vector<Contact>& FreeSpace::contacts(const Points& before, const Points& after) {
+const std::vector<Contact>& StepTruncation::contacts(const Points& before, const Points& after) {
   implementation_->contacts.clear();
-  implementation_->zones.find_contacts({before, after}, implementation_->contacts);
+  implementation_->regions.find_contacts({before, after}, implementation_->contacts);
   const std::vector<Contact>& of_pairs = implementation_->pair_contacts;
   implementation_->contacts.insert(implementation_->contacts.end(), of_pairs.begin(), of_pairs.end());
   return implementation_->contacts;
 }
 
-FreshContacts FreeSpace::contacts_again(const Points& before, const Points& after) {
-  return implementation_->zones.find_contacts_around(implementation_->placement.held_back(), {before, after});
+FreshContacts StepTruncation::contacts_again(const Points& before, const Points& after) {
+  return implementation_->regions.find_contacts_around(implementation_->placement.held_back(), {before, after});
 }
 
-Truncation FreeSpace::truncate(const Points& before, Points& after, const Relax& relax) {
-  Truncation truncation;
+TruncationResult StepTruncation::truncate(const Points& before, Points& after, const Relax& relax) {
+  TruncationResult truncation;
   if (!implementation_->set.obstacles().empty()) truncation = implementation_->truncate(before, after, relax);
   if (implementation_->pairs_began) implementation_->keep_apart(before, after, truncation);
   return truncation;
 }
 
 // What found no free place is not safe to go on from.
-Truncation FreeSpace::Implementation::truncate(const Points& before, Points& after, const Relax& relax) {
+TruncationResult StepTruncation::Implementation::truncate(const Points& before, Points& after, const Relax& relax) {
   Points target = after;
-  Truncation truncation = placement.place_all({before, target}, after);
+  TruncationResult truncation = placement.place_all({before, target}, after);
   if (truncation.truncated == 0 || !relax) return truncation;
-  for (Points safe = after; truncation.squeezed == 0 && relax(after); safe = after) {
+  for (Points safe = after; truncation.infeasible == 0 && relax(after); safe = after) {
     target = after;
     truncation = placement.place_all({safe, target, true}, after);
   }
   return truncation;
 }
 
-void FreeSpace::Implementation::begin_pairs(const Points& before, const Points& after) {
+void StepTruncation::Implementation::begin_pairs(const Points& before, const Points& after) {
   pair_contacts.clear();
   pairs_began = before.allFinite() && after.allFinite();
   if (pairs_began) pairs->begin_step(before, after, pair_contacts);
 }
 
-void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, Truncation& truncation) {
+void StepTruncation::Implementation::keep_apart(const Points& before, Points& after, TruncationResult& truncation) {
   if (!after.allFinite()) return;
   std::vector<Index> particles = placement.all_movable({before, after});
   const Points allowed = after;
@@ -120,35 +122,35 @@ void FreeSpace::Implementation::keep_apart(const Points& before, Points& after, 
     const std::vector<Index>& taken = pairs->taken_along();
     truncation.taken_along.insert(truncation.taken_along.end(), taken.begin(), taken.end());
   };
-  Outcomes outcomes = PairPlacement(zones, *pairs, particles).place(before, after);
+  Outcomes outcomes = PairTruncation(regions, *pairs, particles).place(before, after);
   note_taken_along();
-  std::vector<Index> squeezed = pairs->passing_pins();
+  std::vector<Index> infeasible = pairs->passing_pins();
   const bool sure = placement.look_at_pins(particles, after, outcomes);
-  if (!sure || (placement.closes_in({before, allowed}) && count(outcomes, Outcome::squeezed) > 0)) {
-    squeezed.clear();
+  if (!sure || (placement.closes_in({before, allowed}) && count(outcomes, Outcome::infeasible) > 0)) {
+    infeasible.clear();
     truncation.in_parts = true;
     truncation.taken_along.clear();
     outcomes = place_in_parts(environment, {before, allowed}, after, [&](const Way& part, Points& x) {
-      const PlacedPart among_obstacles = placement.place_part(particles, part, x);
+      const ClippedSubstep among_obstacles = placement.place_part(particles, part, x);
       pairs->begin_part(part.from, x);
-      PlacedPart placed{PairPlacement(zones, *pairs, particles).place(part.from, x), among_obstacles.sure};
+      ClippedSubstep placed{PairTruncation(regions, *pairs, particles).place(part.from, x), among_obstacles.sure};
       note_taken_along();
       const std::vector<Index> pins = pairs->passing_pins();
-      squeezed.insert(squeezed.end(), pins.begin(), pins.end());
+      infeasible.insert(infeasible.end(), pins.begin(), pins.end());
       placed.sure = placement.look_at_pins(particles, x, placed.outcomes) && placed.sure;
-      keep_squeezed(among_obstacles.outcomes, placed.outcomes);
+      keep_infeasible(among_obstacles.outcomes, placed.outcomes);
       return placed;
     });
   }
   truncation.truncated += static_cast<Index>(outcomes.size()) - count(outcomes, Outcome::free);
-  squeezed.insert(squeezed.end(), placement.squeezed().begin(), placement.squeezed().end());
+  infeasible.insert(infeasible.end(), placement.infeasible().begin(), placement.infeasible().end());
   for (std::size_t n = 0; n < particles.size(); ++n) {
-    if (outcomes[n] == Outcome::squeezed) squeezed.push_back(particles[n]);
+    if (outcomes[n] == Outcome::infeasible) infeasible.push_back(particles[n]);
   }
   const bool stops = count(outcomes, Outcome::free) < static_cast<Index>(outcomes.size());
   if (stops && !truncation.in_parts) pairs->append_meetings(before, truncation.meetings);
-  std::sort(squeezed.begin(), squeezed.end());
-  truncation.squeezed = static_cast<Index>(std::unique(squeezed.begin(), squeezed.end()) - squeezed.begin());
+  std::sort(infeasible.begin(), infeasible.end());
+  truncation.infeasible = static_cast<Index>(std::unique(infeasible.begin(), infeasible.end()) - infeasible.begin());
 }
 
 }  // namespace sprung

@@ -1,7 +1,8 @@
 // What keeps the network's elements from crossing obstacles: convex free space around each of them, kept from step to step.
 //
-// An element that stays within what its zone's box and half-spaces have in common cannot cross the obstacle, because that is
-// convex and holds nothing of it. So each particle is kept, on its own, within the zones of all elements that have it as a corner.
+// An element that stays within what its region's box and half-spaces have in common cannot cross the obstacle, because that is
+// convex and holds nothing of it. So each particle is kept, on its own, within the regions of all elements that have it as a
+// corner.
 #pragma once
 
 #include "collision/core/contact.h"
@@ -16,14 +17,14 @@
 
 namespace sprung {
 
-class FreeSpace {
+class StepTruncation {
  public:
   /// Finds contacts up to `margin` [m] beyond their gap. What is near in one body at `rest` [m], 3 x n, may stay as near. Keeps a
   /// reference to the environment.
-  FreeSpace(Environment& environment, CollisionSurface surface, const Points& rest, double margin);
-  ~FreeSpace();
-  FreeSpace(FreeSpace&&) noexcept;
-  FreeSpace& operator=(FreeSpace&&) noexcept;
+  StepTruncation(Environment& environment, CollisionSurface surface, const Points& rest, double margin);
+  ~StepTruncation();
+  StepTruncation(StepTruncation&&) noexcept;
+  StepTruncation& operator=(StepTruncation&&) noexcept;
 
   /// Whether there is anything that the network may meet: obstacles, other bodies, itself.
   [[nodiscard]] bool meets_anything() const;
@@ -31,14 +32,14 @@ class FreeSpace {
   /// Whether elements of two bodies may meet.
   [[nodiscard]] bool bodies_may_meet() const;
 
-  /// Makes the zones hold the elements on their way from `before`, where nothing crosses, to where they are about to be at the end
-  /// of the environment's interval [m].
+  /// Makes the regions hold the elements on their way from `before`, where nothing crosses, to where they are about to be at the
+  /// end of the environment's interval [m].
   void follow(const Points& before, const Points& after);
 
   /// What obstacles let through, because pins drag it through them.
-  [[nodiscard]] const LetThrough& lets_through() const;
+  [[nodiscard]] const PermittedCrossings& lets_through() const;
   /// The next step does not begin where the last one ended, but where this was let through.
-  void forget(const LetThrough& through);
+  void forget(const PermittedCrossings& through);
 
   /// Whether contacts of elements at pins are found on their whole way, wherever it begins. Truncation cannot help them, as a pin
   /// goes where it goes; but the farther off a contact is found, the more often nothing would have touched.
@@ -56,14 +57,14 @@ class FreeSpace {
   /// Moves particles once more after some were stopped [m]; returns false when it has nothing to move.
   using Relax = std::function<bool(Points& positions)>;
 
-  /// The last word on positions: moves each particle that would take an element out of its zones to a place near `after` where it
+  /// The last word on positions: moves each particle that would take an element out of its regions to a place near `after` where it
   /// does not, taking obstacles that close in on it, or on what is in its way, along in smaller parts of the interval. A particle
   /// that found none stays with an obstacle that carries it. Particles that follow their pins, and positions that
   /// are not finite, are left alone.
   ///
   /// What obstacles stop, `relax` may lead elsewhere, and its neighbours after it, again and again: all go on from where they are
   /// safe. The result tells of the last time. It may be asked again in a step, of other positions, but not after it went in parts.
-  Truncation truncate(const Points& before, Points& after, const Relax& relax = {});
+  TruncationResult truncate(const Points& before, Points& after, const Relax& relax = {});
 
  private:
   struct Implementation;

@@ -7,10 +7,10 @@
 
 namespace sprung {
 
-struct Truncation {
-  Index truncated = 0;  ///< particles stopped on their way
-  Index squeezed = 0;   ///< particles that found no free place, that pins drag through the network, or whose elements are
-                        ///< crossed, and pins of their elements that go through each other
+struct TruncationResult {
+  Index truncated = 0;   ///< particles stopped on their way
+  Index infeasible = 0;  ///< particles that found no free place, that pins drag through the network, or whose elements are
+                         ///< crossed, and pins of their elements that go through each other
   std::vector<Contact> meetings{};   ///< of bodies that stopped each other, where the step begins; none of what went in parts
   std::vector<Index> taken_along{};  ///< held particles that went along with an obstacle; some more than once
   bool in_parts = false;             ///< whether obstacles were taken along in parts of the step

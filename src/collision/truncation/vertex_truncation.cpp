@@ -22,28 +22,28 @@ Index count(const Outcomes& outcomes, Outcome wanted) {
   return static_cast<Index>(std::count(outcomes.begin(), outcomes.end(), wanted));
 }
 
-void keep_squeezed(const Outcomes& before, Outcomes& outcomes) {
+void keep_infeasible(const Outcomes& before, Outcomes& outcomes) {
   for (std::size_t n = 0; n < before.size(); ++n) {
-    if (before[n] == Outcome::squeezed) outcomes[n] = Outcome::squeezed;
+    if (before[n] == Outcome::infeasible) outcomes[n] = Outcome::infeasible;
   }
 }
 
-Outcome place(const ObstacleZones& zones, Index particle, const Way& way, Points& positions) {
+Outcome place(const ObstacleSafeRegions& regions, Index particle, const Way& way, Points& positions) {
   const Vector3 target = way.to.col(particle);
-  if (zones.allow(particle, target)) {
+  if (regions.allow(particle, target)) {
     positions.col(particle) = target;
     return Outcome::free;
   }
   std::vector<HalfSpace> bounds;
-  zones.append_half_spaces(particle, bounds);
+  regions.append_half_spaces(particle, bounds);
   const Vector3 from = way.from.col(particle);
   std::vector<Vector3> safe;
-  if (!way.obstacles_rest) zones.append_carried(particle, from, safe);
+  if (!way.obstacles_rest) regions.append_carried(particle, from, safe);
   safe.push_back(from);
   const auto found = feasible_point(bounds, target, safe);
   if (!found) {
     positions.col(particle) = safe.front();
-    return Outcome::squeezed;
+    return Outcome::infeasible;
   }
   // A particle that cannot move stays to the last bit: what projections round would wear its height away, step by step.
   const bool stays = (*found - from).cwiseAbs().maxCoeff() <= kRounding * from.cwiseAbs().maxCoeff() && is_feasible(bounds, from);
@@ -51,10 +51,10 @@ Outcome place(const ObstacleZones& zones, Index particle, const Way& way, Points
   return Outcome::stopped;
 }
 
-Outcomes place(const ObstacleZones& zones, const std::vector<Index>& particles, const Way& way, Points& positions) {
+Outcomes place(const ObstacleSafeRegions& regions, const std::vector<Index>& particles, const Way& way, Points& positions) {
   Outcomes outcomes(particles.size());
   parallel_chunks(static_cast<Index>(particles.size()), kParticleChunk, [&](Index begin, Index end) {
-    for (Index n = begin; n < end; ++n) outcomes[at(n)] = place(zones, particles[at(n)], way, positions);
+    for (Index n = begin; n < end; ++n) outcomes[at(n)] = place(regions, particles[at(n)], way, positions);
   });
   return outcomes;
 }

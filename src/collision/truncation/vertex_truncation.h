@@ -9,22 +9,22 @@ namespace sprung {
 
 /// What became of a particle on its way.
 enum class Outcome : char {
-  free,     ///< it arrived
-  stopped,  ///< it ended elsewhere, where it may be
-  squeezed  ///< no such place was found
+  free,       ///< it arrived
+  stopped,    ///< it ended elsewhere, where it may be
+  infeasible  ///< no such place was found
 };
 using Outcomes = std::vector<Outcome>;
 
 [[nodiscard]] Index count(const Outcomes& outcomes, Outcome wanted);
 
-/// Leaves squeezed what was so before.
-void keep_squeezed(const Outcomes& before, Outcomes& outcomes);
+/// Leaves infeasible what was so before.
+void keep_infeasible(const Outcomes& before, Outcomes& outcomes);
 
-/// Moves a particle to where its way leads, or to a place near there within the zones of its elements. One that finds none stays
+/// Moves a particle to where its way leads, or to a place near there within the regions of its elements. One that finds none stays
 /// with an obstacle that carries it.
-Outcome place(const ObstacleZones& zones, Index particle, const Way& way, Points& positions);
+Outcome place(const ObstacleSafeRegions& regions, Index particle, const Way& way, Points& positions);
 
 /// The same for many, each on its own.
-Outcomes place(const ObstacleZones& zones, const std::vector<Index>& particles, const Way& way, Points& positions);
+Outcomes place(const ObstacleSafeRegions& regions, const std::vector<Index>& particles, const Way& way, Points& positions);
 
 }  // namespace sprung

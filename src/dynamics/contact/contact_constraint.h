@@ -11,7 +11,7 @@ namespace sprung {
 
 /// A weighted sum of n particles that is held along a normal.
 template <std::size_t n>
-struct ContactRow {
+struct ContactConstraint {
   std::array<Index, n> particles{};
   std::array<double, n> weights{};
   std::array<double, n> shares{};  ///< what each particle changes by for a change of the sum by 1: by inverse mass
@@ -49,7 +49,7 @@ struct ContactGoal {
 /// What friction changes across the normal altogether, where `needed` would leave no slip: that while static friction holds it,
 /// else what kinetic friction gives (Coulomb).
 template <std::size_t n>
-[[nodiscard]] Vector3 friction_of(const ContactRow<n>& row, const ContactGoal& goal, const Vector3& needed) {
+[[nodiscard]] Vector3 friction_of(const ContactConstraint<n>& row, const ContactGoal& goal, const Vector3& needed) {
   const double length = needed.norm();
   if (length <= row.static_friction * goal.push) return needed;
   return std::min(1.0, row.friction * goal.push / length) * needed;
@@ -59,7 +59,7 @@ template <std::size_t n>
 /// impulses: what another contact makes needless is taken back, but never more than was given, and the friction that it gave goes
 /// with it: where many contacts share a load, each pushes more at first than in the end. Returns the change of the push.
 template <std::size_t n>
-double answer(const ContactRow<n>& row, ContactGoal& goal, Points& q) {
+double answer(const ContactConstraint<n>& row, ContactGoal& goal, Points& q) {
   const Vector3 moved = row.sum(q) - goal.origin;
   const double along = row.normal.dot(moved);
   const double change = std::max(goal.least - along, -goal.push);

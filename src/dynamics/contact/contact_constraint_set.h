@@ -13,7 +13,7 @@
 namespace sprung {
 
 template <std::size_t n>
-class ContactSet {
+class ContactConstraintSet {
  public:
   /// Holds so many contacts, the first as before; of new ones `row`, `goal` and `gap` [m] > 0 are then to be set.
   void resize(std::size_t count) {
@@ -22,12 +22,12 @@ class ContactSet {
     gaps_.resize(count);
   }
   [[nodiscard]] std::size_t count() const { return rows_.size(); }
-  [[nodiscard]] ContactRow<n>& row(std::size_t contact) { return rows_[contact]; }
+  [[nodiscard]] ContactConstraint<n>& row(std::size_t contact) { return rows_[contact]; }
   [[nodiscard]] ContactGoal& goal(std::size_t contact) { return goals_[contact]; }
   [[nodiscard]] double& gap(std::size_t contact) { return gaps_[contact]; }
 
   /// Moves the contacts of these patches, ascending, to `former`, in their order.
-  void take_out(const std::vector<Index>& patches, ContactSet& former) {
+  void take_out(const std::vector<Index>& patches, ContactConstraintSet& former) {
     former.resize(0);
     std::size_t kept = 0;
     for (std::size_t c = 0; c < rows_.size(); ++c) {
@@ -43,7 +43,7 @@ class ContactSet {
 
   /// Contacts from `begin` on take over what such of the same particles with the same obstacle have pushed and held in `former`: of
   /// several the first from the first, and so on. `first_row` has a kNone for each particle, and again afterwards.
-  void count_on(const ContactSet& former, std::size_t begin, std::vector<Index>& first_row) {
+  void count_on(const ContactConstraintSet& former, std::size_t begin, std::vector<Index>& first_row) {
     std::vector<Index> next_row(former.rows_.size());
     for (std::size_t f = former.rows_.size(); f-- > 0;) {
       next_row[f] = std::exchange(first_of(former.rows_[f], first_row), static_cast<Index>(f));
@@ -60,7 +60,7 @@ class ContactSet {
       goals_[c].held = held - rows_[c].normal.dot(held) * rows_[c].normal;  // the normal may be another
       *link = next_row[f];
     }
-    for (const ContactRow<n>& row : former.rows_) first_of(row, first_row) = kNone;
+    for (const ContactConstraint<n>& row : former.rows_) first_of(row, first_row) = kNone;
   }
 
   /// Answers on positions. Returns the largest change of a push, as a part of the gap.
@@ -79,7 +79,7 @@ class ContactSet {
     velocity_goals_.clear();
     for (std::size_t c = 0; c < rows_.size(); ++c) {
       if (!goals_[c].touches) continue;
-      const ContactRow<n>& row = rows_[c];
+      const ContactConstraint<n>& row = rows_[c];
       const Vector3 carrier = (goals_[c].origin - row.sum(motion.before)) / motion.dt;
       const double speed = row.normal.dot(row.sum(velocities) - carrier);
       const double pushed = row.normal.dot(row.sum(positions) - row.sum(motion.advanced)) / motion.dt;
@@ -118,13 +118,13 @@ class ContactSet {
  private:
   /// A push whose speed is taken answered to no load: what friction gives back of velocities with it. Positions keep it, at most
   /// friction times the way out of the gap.
-  static Vector3 friction_lost(const ContactRow<n>& row, ContactGoal goal, double taken, double dt) {
+  static Vector3 friction_lost(const ContactConstraint<n>& row, ContactGoal goal, double taken, double dt) {
     goal.push = std::max(0.0, goal.push - taken * dt);
     return (friction_of(row, goal, goal.held) - goal.held) / dt;
   }
 
   /// `v_after` is what the forces alone would have made of the speed along the normal.
-  static SpeedRange settled_speeds(const ContactRow<n>& row, const ContactGoal& goal, const StepMotion& motion,
+  static SpeedRange settled_speeds(const ContactConstraint<n>& row, const ContactGoal& goal, const StepMotion& motion,
                                    const Vector3& carrier, double v_after) {
     if (row.restitution == 0.0) return {.least = 0.0, .most = std::max(0.0, v_after)};
     return sprung::settled_speeds({.height = -goal.least,
@@ -135,32 +135,32 @@ class ContactSet {
                                   row.restitution);
   }
 
-  void append(const ContactRow<n>& row, const ContactGoal& goal, double gap) {
+  void append(const ContactConstraint<n>& row, const ContactGoal& goal, double gap) {
     resize(count() + 1);
     put(row, goal, gap, count() - 1);
   }
-  void put(const ContactRow<n>& row, const ContactGoal& goal, double gap, std::size_t c) {
+  void put(const ContactConstraint<n>& row, const ContactGoal& goal, double gap, std::size_t c) {
     rows_[c] = row;
     goals_[c] = goal;
     gaps_[c] = gap;
   }
 
-  static Index& first_of(const ContactRow<n>& row, std::vector<Index>& first_row) {
+  static Index& first_of(const ContactConstraint<n>& row, std::vector<Index>& first_row) {
     return first_row[static_cast<std::size_t>(row.particles[0])];
   }
 
-  static bool meet_the_same(const ContactRow<n>& a, const ContactRow<n>& b) {
+  static bool meet_the_same(const ContactConstraint<n>& a, const ContactConstraint<n>& b) {
     return a.particles == b.particles && a.obstacle == b.obstacle;
   }
 
   template <class Visit>
-  static void for_moved(const ContactRow<n>& row, const Visit& visit) {
+  static void for_moved(const ContactConstraint<n>& row, const Visit& visit) {
     for (std::size_t k = 0; k < n; ++k) {
       if (row.shares[k] != 0.0) visit(row.particles[k]);
     }
   }
 
-  std::vector<ContactRow<n>> rows_;
+  std::vector<ContactConstraint<n>> rows_;
   std::vector<ContactGoal> goals_;  ///< of positions
   std::vector<double> gaps_;
   std::vector<std::size_t> touching_;

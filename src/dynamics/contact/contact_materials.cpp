@@ -31,14 +31,14 @@ Scalars particle_thickness(const SpringNetwork& network) {
   return thickness;
 }
 
-PairMaterials::PairMaterials(const SpringNetwork& network, const std::vector<Obstacle>& obstacles)
+ContactMaterials::ContactMaterials(const SpringNetwork& network, const std::vector<Obstacle>& obstacles)
     : network_(network), obstacles_(obstacles) {
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
     body_of_.insert(body_of_.end(), static_cast<std::size_t>(network.bodies[b].particle_count), static_cast<Index>(b));
   }
 }
 
-const ContactMaterial& PairMaterials::of(const Contact& contact, Last& last) const {
+const ContactMaterial& ContactMaterials::of(const Contact& contact, Last& last) const {
   const Pair pair = pair_of(contact);
   if (pair == last.pair) return last.material;
   last.pair = pair;
@@ -50,7 +50,7 @@ const ContactMaterial& PairMaterials::of(const Contact& contact, Last& last) con
 }
 
 // A corner of weight 0 tells nothing of its side.
-PairMaterials::Pair PairMaterials::pair_of(const Contact& contact) const {
+ContactMaterials::Pair ContactMaterials::pair_of(const Contact& contact) const {
   Pair pair{.obstacle = contact.obstacle};
   for (int k = 0; k < contact.count; ++k) {
     const auto corner = static_cast<std::size_t>(k);

@@ -20,10 +20,10 @@ namespace sprung {
 [[nodiscard]] Scalars particle_thickness(const SpringNetwork& network);
 
 /// The materials of contacts.
-class PairMaterials {
+class ContactMaterials {
  public:
   /// Keeps references to both.
-  PairMaterials(const SpringNetwork& network, const std::vector<Obstacle>& obstacles);
+  ContactMaterials(const SpringNetwork& network, const std::vector<Obstacle>& obstacles);
 
   /// A body and what it meets: an obstacle, or else the other body.
   struct Pair {

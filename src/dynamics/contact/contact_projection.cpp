@@ -42,13 +42,14 @@ void ContactProjection::find_again(const StepMotion& motion, const Points& posit
   response_.renew(free_space_.contacts_again(motion.before, positions), motion);
 }
 
-void ContactProjection::truncate(const StepMotion& motion, Points& positions, const FreeSpace::Relax& relax) {
+void ContactProjection::truncate(const StepMotion& motion, Points& positions, const StepTruncation::Relax& relax) {
   noted_.clear();
   const bool meet = free_space_.bodies_may_meet();
-  Truncation truncation = meet ? truncate_bodies(motion, positions, relax) : free_space_.truncate(motion.before, positions, relax);
+  TruncationResult truncation =
+      meet ? truncate_bodies(motion, positions, relax) : free_space_.truncate(motion.before, positions, relax);
   taken_along_ = std::move(truncation.taken_along);
   truncated_ = truncation.truncated;
-  squeezed_ = truncation.squeezed;
+  infeasible_ = truncation.infeasible;
 }
 
 void ContactProjection::slow_down_taken_along(const StepMotion& motion, SimulationState& state,
@@ -65,15 +66,16 @@ void ContactProjection::slow_down_taken_along(const StepMotion& motion, Simulati
 // Truncation stops each of two bodies for itself, whatever the other weighs: a cube that flew into a light cloth stopped in
 // mid-air, and one that lay on it was thrown up again. What contact led them into is told to it, and it tries again. What leads on
 // where obstacles stop something notes what it did, and so is asked once, when bodies are out of each other's way.
-Truncation ContactProjection::truncate_bodies(const StepMotion& motion, Points& positions, const FreeSpace::Relax& relax) {
+TruncationResult ContactProjection::truncate_bodies(const StepMotion& motion, Points& positions,
+                                                    const StepTruncation::Relax& relax) {
   Points led = positions;
-  Truncation truncation = free_space_.truncate(motion.before, positions);
+  TruncationResult truncation = free_space_.truncate(motion.before, positions);
   for (int round = 0; round < kMeetingRounds && note_meetings(truncation.meetings, motion); ++round) {
     if (!answer_meetings(led)) break;
     positions = led;
     truncation = free_space_.truncate(motion.before, positions);
   }
-  if (!relax || truncation.truncated == 0 || truncation.squeezed > 0 || truncation.in_parts) return truncation;
+  if (!relax || truncation.truncated == 0 || truncation.infeasible > 0 || truncation.in_parts) return truncation;
   positions = led;
   return free_space_.truncate(motion.before, positions, relax);
 }

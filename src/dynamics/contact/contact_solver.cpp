@@ -41,7 +41,7 @@ void for_each_set(Sets& sets, const Visit& visit) {
 
 /// Sets the contact's particles, weights and shares; false when pins alone have it, or between two elements nearly.
 template <std::size_t n>
-bool set_particles(const Contact& contact, const Scalars& inverse_masses, ContactRow<n>& row) {
+bool set_particles(const Contact& contact, const Scalars& inverse_masses, ContactConstraint<n>& row) {
   double mobility = 0.0;
   double pinned = 0.0;
   double total = 0.0;
@@ -68,7 +68,7 @@ struct Lever {
 };
 
 template <std::size_t n>
-Lever lever(const ContactRow<n>& row, const Points& positions) {
+Lever lever(const ContactConstraint<n>& row, const Points& positions) {
   Vector3 at_pins = Vector3::Zero();
   Vector3 at_others = Vector3::Zero();
   double pinned = 0.0;
@@ -84,13 +84,13 @@ Lever lever(const ContactRow<n>& row, const Points& positions) {
 
 }  // namespace
 
-ContactResponse::ContactResponse(const SpringNetwork& network, const Environment& environment)
+ContactSolver::ContactSolver(const SpringNetwork& network, const Environment& environment)
     : network_(network),
       environment_(environment),
       materials_(network, environment.obstacles()),
       first_row_(static_cast<std::size_t>(network.particle_count()), kNone) {}
 
-void ContactResponse::start(const std::vector<Contact>& contacts, const StepMotion& motion) {
+void ContactSolver::start(const std::vector<Contact>& contacts, const StepMotion& motion) {
   carry_.clear();
   for (std::size_t k = 0; k < environment_.obstacles().size(); ++k) {
     const auto obstacle = static_cast<Index>(k);
@@ -99,7 +99,7 @@ void ContactResponse::start(const std::vector<Contact>& contacts, const StepMoti
   for_each_set(sets_, [&](auto& set) { fill(set, 0, contacts, motion); });
 }
 
-void ContactResponse::renew(const FreshContacts& fresh, const StepMotion& motion) {
+void ContactSolver::renew(const FreshContacts& fresh, const StepMotion& motion) {
   for_each_set(sets_, [&](auto& set) {
     auto& former = std::get<std::remove_reference_t<decltype(set)>>(former_sets_);
     set.take_out(fresh.patches, former);
@@ -109,19 +109,20 @@ void ContactResponse::renew(const FreshContacts& fresh, const StepMotion& motion
   });
 }
 
-void ContactResponse::add(const std::vector<Contact>& meetings, const StepMotion& motion) {
+void ContactSolver::add(const std::vector<Contact>& meetings, const StepMotion& motion) {
   for_each_set(sets_, [&](auto& set) { fill(set, set.count(), meetings, motion); });
 }
 
 template <std::size_t n>
-void ContactResponse::fill(ContactSet<n>& set, std::size_t first, const std::vector<Contact>& contacts, const StepMotion& motion) {
+void ContactSolver::fill(ContactConstraintSet<n>& set, std::size_t first, const std::vector<Contact>& contacts,
+                         const StepMotion& motion) {
   order_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     if (static_cast<std::size_t>(contacts[c].count) == n) order_.push_back(static_cast<Index>(c));
   }
   set.resize(first + order_.size());
   parallel_chunks(static_cast<Index>(order_.size()), kContactChunk, [&](Index begin, Index end) {
-    PairMaterials::Last last;
+    ContactMaterials::Last last;
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
       const Contact& contact = contacts[static_cast<std::size_t>(order_[k])];
       fill_one(contact, materials_.of(contact, last), motion, set, first + k);
@@ -130,9 +131,9 @@ void ContactResponse::fill(ContactSet<n>& set, std::size_t first, const std::vec
 }
 
 template <std::size_t n>
-void ContactResponse::fill_one(const Contact& contact, const ContactMaterial& pair, const StepMotion& motion, ContactSet<n>& set,
-                               std::size_t slot) {
-  ContactRow<n>& row = set.row(slot);
+void ContactSolver::fill_one(const Contact& contact, const ContactMaterial& pair, const StepMotion& motion,
+                             ContactConstraintSet<n>& set, std::size_t slot) {
+  ContactConstraint<n>& row = set.row(slot);
   const bool moves = set_particles(contact, network_.inverse_masses, row);
   row.obstacle = contact.obstacle;
   row.patch = contact.patch;
@@ -156,20 +157,20 @@ void ContactResponse::fill_one(const Contact& contact, const ContactMaterial& pa
 }
 
 // An obstacle that rests, and what another element is relative to, carries a position to the last bit where it was.
-Vector3 ContactResponse::carried(const Contact& contact, const Vector3& from) const {
+Vector3 ContactSolver::carried(const Contact& contact, const Vector3& from) const {
   if (contact.obstacle == kNone) return from;
   const auto k = static_cast<std::size_t>(contact.obstacle);
   if (!environment_.obstacles()[k].motion.moves()) return from + contact.drift;
   return carry_[k] * from + contact.drift;
 }
 
-double ContactResponse::project(Points& positions) {
+double ContactSolver::project(Points& positions) {
   double largest = 0.0;
   for_each_set(sets_, [&](auto& set) { largest = std::max(largest, set.project(positions)); });
   return largest;
 }
 
-void ContactResponse::settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {
+void ContactSolver::settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {
   for_each_set(sets_, [&](auto& set) { set.begin_settling(motion, state.x, state.v); });
   double first = 0.0;
   for (int pass = 0; pass < kVelocityPasses; ++pass) {
@@ -183,12 +184,12 @@ void ContactResponse::settle_velocities(const StepMotion& motion, SimulationStat
   });
 }
 
-void ContactResponse::hold_pushed(HeldDirections& held) const {
+void ContactSolver::hold_pushed(ConstrainedDirections& held) const {
   for_each_set(
       sets_, [&](const auto& set) { set.for_pushed([&](Index particle, const Vector3& normal) { held.add(particle, normal); }); });
 }
 
-Index ContactResponse::pushed_count() const {
+Index ContactSolver::pushed_count() const {
   std::vector<Index> pushed;
   for_each_set(sets_,
                [&](const auto& set) { set.for_pushed([&](Index particle, const Vector3&) { pushed.push_back(particle); }); });

@@ -18,10 +18,10 @@
 
 namespace sprung {
 
-class ContactResponse {
+class ContactSolver {
  public:
   /// Keeps references to the network and the environment.
-  ContactResponse(const SpringNetwork& network, const Environment& environment);
+  ContactSolver(const SpringNetwork& network, const Environment& environment);
 
   /// Begins a step with these contacts. Those of few particles are answered first, and those of as many in the order given; those
   /// of pinned particles alone never, nor those closer than the gap to the pins that have nearly all of them. No contact with an
@@ -47,7 +47,7 @@ class ContactResponse {
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator);
 
   /// Adds the normals along which particles were pushed in this step.
-  void hold_pushed(HeldDirections& held) const;
+  void hold_pushed(ConstrainedDirections& held) const;
 
   /// Particles that were pushed in this step.
   [[nodiscard]] Index pushed_count() const;
@@ -55,21 +55,21 @@ class ContactResponse {
  private:
   /// Contacts of n particles, from the first one on; those before it stay.
   template <std::size_t n>
-  void fill(ContactSet<n>& set, std::size_t first, const std::vector<Contact>& contacts, const StepMotion& motion);
+  void fill(ContactConstraintSet<n>& set, std::size_t first, const std::vector<Contact>& contacts, const StepMotion& motion);
   template <std::size_t n>
-  void fill_one(const Contact& contact, const ContactMaterial& pair, const StepMotion& motion, ContactSet<n>& set,
+  void fill_one(const Contact& contact, const ContactMaterial& pair, const StepMotion& motion, ContactConstraintSet<n>& set,
                 std::size_t slot);
   [[nodiscard]] Vector3 carried(const Contact& contact, const Vector3& from) const;
 
   const SpringNetwork& network_;
   const Environment& environment_;
-  PairMaterials materials_;
+  ContactMaterials materials_;
   std::vector<RigidTransform> carry_;  ///< of each obstacle, from the step's begin to its end
-  using Sets = std::tuple<ContactSet<1>, ContactSet<2>, ContactSet<3>, ContactSet<4>>;
+  using Sets = std::tuple<ContactConstraintSet<1>, ContactConstraintSet<2>, ContactConstraintSet<3>, ContactConstraintSet<4>>;
   Sets sets_;
   Sets former_sets_;              ///< what renew() takes out
   std::vector<Index> order_;      ///< contacts of as many particles as the set that is filled
-  std::vector<Index> first_row_;  ///< see ContactSet::count_on
+  std::vector<Index> first_row_;  ///< see ContactConstraintSet::count_on
 };
 
 }  // namespace sprung

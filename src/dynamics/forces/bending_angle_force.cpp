@@ -92,7 +92,8 @@ void add_products(const std::array<Index, 3>& particles, const std::array<Vector
 
 }  // namespace
 
-AngleForce::AngleForce(const SpringNetwork& network) : network_(network), blocks_(network.particle_count() / kParticleBlock + 1) {
+BendingAngleForce::BendingAngleForce(const SpringNetwork& network)
+    : network_(network), blocks_(network.particle_count() / kParticleBlock + 1) {
   const AngleBends& bends = network.angle_bends;
   for (Index element = 0; element < bends.count(); ++element) {
     for (const Index particle : particles_of(bends, element)) {
@@ -102,7 +103,7 @@ AngleForce::AngleForce(const SpringNetwork& network) : network_(network), blocks
   }
 }
 
-void AngleForce::add(const Kinematics& at, Points& forces) const {
+void BendingAngleForce::add(const Kinematics& at, Points& forces) const {
   const AngleBends& bends = network_.angle_bends;
   parallel_chunks(static_cast<Index>(blocks_.size()), 1, [&](Index begin, Index end) {
     for (Index block = begin; block < end; ++block) {
@@ -119,14 +120,14 @@ void AngleForce::add(const Kinematics& at, Points& forces) const {
   });
 }
 
-void AngleForce::couple(std::vector<ParticlePair>& pairs) const {
+void BendingAngleForce::couple(std::vector<ParticlePair>& pairs) const {
   for (Index element = 0; element < network_.angle_bends.count(); ++element) {
     const auto [before, middle, after] = particles_of(network_.angle_bends, element);
     for (const ParticlePair& pair : {ParticlePair{before, middle}, {middle, after}, {before, after}}) pairs.push_back(pair);
   }
 }
 
-void AngleForce::add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const {
+void BendingAngleForce::add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const {
   const AngleBends& bends = network_.angle_bends;
   for (Index element = 0; element < bends.count(); ++element) {
     const Bend bend(bends, element, at.x);
@@ -150,7 +151,7 @@ void AngleForce::add_derivatives(const Kinematics& at, ForceDerivatives& derivat
   }
 }
 
-double AngleForce::energy(const Points& positions) const {
+double BendingAngleForce::energy(const Points& positions) const {
   const AngleBends& bends = network_.angle_bends;
   double energy = 0.0;
   for (Index element = 0; element < bends.count(); ++element)

@@ -16,10 +16,10 @@
 
 namespace sprung {
 
-class AngleForce final : public Force {
+class BendingAngleForce final : public Force {
  public:
   /// Keeps a reference to the network.
-  explicit AngleForce(const SpringNetwork& network);
+  explicit BendingAngleForce(const SpringNetwork& network);
 
   void add(const Kinematics& at, Points& forces) const override;
   void couple(std::vector<ParticlePair>& pairs) const override;

@@ -7,7 +7,7 @@
 
 namespace sprung {
 
-class HeldDirections {
+class ConstrainedDirections {
  public:
   /// Nothing holds any of so many particles.
   void clear(Index particles) { projections_.assign(static_cast<std::size_t>(particles), Matrix3::Zero()); }

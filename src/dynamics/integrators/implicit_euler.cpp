@@ -36,7 +36,7 @@ class ImplicitEuler final : public Integrator {
 
   // One more step of Newton's method on the scheme's own equations, M (v - v(t)) = dt F(x, v), from where contact led: at once they
   // are solved to first order alone, and pushes as long as springs stretch these far beyond.
-  void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, const HeldDirections& held,
+  void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, const ConstrainedDirections& held,
                       SimulationState& state) override {
     v_ = motion.v_before;
     for_free_particles(network(), [&](Index i) {

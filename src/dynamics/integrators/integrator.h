@@ -63,7 +63,7 @@ class Integrator {
   /// Contact has pushed some particles from `from` (where `advance` or the last answer led them) to state.x [m]. A scheme that
   /// solves for the forces at the step's end leads all on to where these take them then, but none along what it is held along:
   /// what pushes it is as large as needed. Default: nothing.
-  virtual void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, const HeldDirections& held,
+  virtual void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, const ConstrainedDirections& held,
                               SimulationState& state);
 
   /// Velocities after constraints moved `advanced` (what `advance` made) to state.x; `before` are the positions at t. Default:

@@ -9,7 +9,7 @@ namespace sprung {
 namespace {
 
 // Cut by size alone; a thread is worth waking for some 10 us of work.
-constexpr Index kTaskParts = 4096 / StretchBatches::kPartSprings;
+constexpr Index kTaskParts = 4096 / SpringBatches::kPartSprings;
 
 // What lies between two chunks grows by a band with each colour, on either side; something is to be left in their middle. Of two
 // chunks alone much may lie between them: in a cloth of 64 x 64 with bend springs each has 1.2 bands for each colour, a fifth of
@@ -22,7 +22,7 @@ constexpr Index kBandsBetweenColours = 2;
 
 /// Calls `body` with each particle of a part.
 template <class Body>
-void for_particles(const StretchBatches& batches, Index part, const Body& body) {
+void for_particles(const SpringBatches& batches, Index part, const Body& body) {
   for (Index s = batches.parts[part].begin; s < batches.parts[part].end; ++s) {
     body(batches.first[s]);
     body(batches.second[s]);
@@ -31,7 +31,7 @@ void for_particles(const StretchBatches& batches, Index part, const Body& body) 
 
 class Order {
  public:
-  Order(const StretchBatches& batches, const std::vector<Index>& colour_begin, Index band, Index particles)
+  Order(const SpringBatches& batches, const std::vector<Index>& colour_begin, Index band, Index particles)
       : batches_(batches), particles_(particles) {
     for (std::size_t colour = 0; colour + 1 < colour_begin.size(); ++colour) {
       for (Index p = colour_begin[colour]; p < colour_begin[colour + 1]; ++p) {
@@ -69,8 +69,8 @@ class Order {
     end_stage();
   }
 
-  void write(StretchBatches& batches) const {
-    std::vector<StretchBatches::Part> parts;
+  void write(SpringBatches& batches) const {
+    std::vector<SpringBatches::Part> parts;
     parts.reserve(order_.size());
     for (const Index p : order_) parts.push_back(batches.parts[p]);
     batches.parts = std::move(parts);
@@ -121,7 +121,7 @@ class Order {
     if (tasks > stage_begin_.back()) stage_begin_.push_back(tasks);
   }
 
-  const StretchBatches& batches_;
+  const SpringBatches& batches_;
   Index particles_;
   std::vector<Index> waiting_;  ///< in the order of their colours
   std::vector<Index> places_;
@@ -132,7 +132,7 @@ class Order {
 
 }  // namespace
 
-void order_by_colour(const std::vector<Index>& colour_begin, StretchBatches& batches) {
+void order_by_colour(const std::vector<Index>& colour_begin, SpringBatches& batches) {
   for (std::size_t colour = 0; colour + 1 < colour_begin.size(); ++colour) {
     for (Index p = colour_begin[colour]; p < colour_begin[colour + 1]; p = batches.task_begin.back()) {
       batches.task_begin.push_back(std::min(p + kTaskParts, colour_begin[colour + 1]));
@@ -141,7 +141,7 @@ void order_by_colour(const std::vector<Index>& colour_begin, StretchBatches& bat
   }
 }
 
-void order_by_place(const std::vector<Index>& colour_begin, Index band, Index particles, StretchBatches& batches) {
+void order_by_place(const std::vector<Index>& colour_begin, Index band, Index particles, SpringBatches& batches) {
   const auto colours = static_cast<Index>(colour_begin.size()) - 1;
   const Index least = static_cast<Index>(batches.parts.size()) >= kPartsForTwo ? 2 : 1;
   const Index chunks = std::max(least, particles / std::max(1, kBandsPerColour * colours * band));

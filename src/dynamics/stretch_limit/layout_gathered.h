@@ -13,7 +13,7 @@ namespace sprung {
 struct GatheredGroup {
   using Lanes = Double4;
 
-  [[gnu::always_inline]] static void find_squared(const StretchBatches& batches, Index s, const double* positions, Lanes& squared) {
+  [[gnu::always_inline]] static void find_squared(const SpringBatches& batches, Index s, const double* positions, Lanes& squared) {
     Lanes squares[kSimdWidth];
     for (Index k = 0; k < kSimdWidth; ++k) {
       Lanes between;
@@ -28,7 +28,7 @@ struct GatheredGroup {
   }
 
   template <class Pushes>
-  [[gnu::always_inline]] static void move(const StretchBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
+  [[gnu::always_inline]] static void move(const SpringBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
                                           const double* before, double* positions) {
     Lanes first[kSimdWidth];
     Lanes second[kSimdWidth];
@@ -52,7 +52,7 @@ struct GatheredGroup {
   }
 
  private:
-  [[gnu::always_inline]] static void find_between(const StretchBatches& batches, Index s, const double* positions, Lanes& between) {
+  [[gnu::always_inline]] static void find_between(const SpringBatches& batches, Index s, const double* positions, Lanes& between) {
     Lanes first;
     load_one(positions + place_of(batches.first[s]), first);
     load_one(positions + place_of(batches.second[s]), between);

@@ -10,12 +10,12 @@
 namespace sprung {
 
 /// Springs that join consecutive particles two by two, half of them those of some, half those of others: see
-/// StretchBatches::Layout.
+/// SpringBatches::Layout.
 template <class PackedVectors4>
 struct PairGroup {
   using Lanes = typename PackedVectors4::Lanes;
 
-  [[gnu::always_inline]] static void find_squared(const StretchBatches& batches, Index s, const double* positions, Lanes& squared) {
+  [[gnu::always_inline]] static void find_squared(const SpringBatches& batches, Index s, const double* positions, Lanes& squared) {
     Lanes of_others;
     find_squared_of_half(positions + place_of(batches.first[s]), squared);
     find_squared_of_half(positions + place_of(start_of_others(batches, s)), of_others);
@@ -23,7 +23,7 @@ struct PairGroup {
   }
 
   template <class Pushes>
-  [[gnu::always_inline]] static void move(const StretchBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
+  [[gnu::always_inline]] static void move(const SpringBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
                                           const double* before, double* positions) {
     const std::ptrdiff_t some_at = place_of(batches.first[s]);
     const std::ptrdiff_t others_at = place_of(start_of_others(batches, s));
@@ -50,7 +50,7 @@ struct PairGroup {
   }
 
  private:
-  [[gnu::always_inline]] static Index start_of_others(const StretchBatches& batches, Index s) {
+  [[gnu::always_inline]] static Index start_of_others(const SpringBatches& batches, Index s) {
     return kCountOf<Lanes> == kWideSimdWidth ? batches.first[s + kSimdWidth] : batches.first[s] + kSimdWidth;
   }
 

@@ -14,7 +14,7 @@ template <class PackedVectors4>
 struct RunGroup {
   using Lanes = typename PackedVectors4::Lanes;
 
-  [[gnu::always_inline]] static void find_squared(const StretchBatches& batches, Index s, const double* positions, Lanes& squared) {
+  [[gnu::always_inline]] static void find_squared(const SpringBatches& batches, Index s, const double* positions, Lanes& squared) {
     PackedVectors4 between;
     find_between(batches, s, positions, between);
     square(between);
@@ -24,7 +24,7 @@ struct RunGroup {
   }
 
   template <class Pushes>
-  [[gnu::always_inline]] static void move(const StretchBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
+  [[gnu::always_inline]] static void move(const SpringBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
                                           const double* before, double* positions) {
     double* const first_at = positions + place_of(batches.first[s]);
     double* const second_at = positions + place_of(batches.second[s]);
@@ -44,7 +44,7 @@ struct RunGroup {
   }
 
  private:
-  [[gnu::always_inline]] static void find_between(const StretchBatches& batches, Index s, const double* positions,
+  [[gnu::always_inline]] static void find_between(const SpringBatches& batches, Index s, const double* positions,
                                                   PackedVectors4& between) {
     PackedVectors4 first;
     load(positions + place_of(batches.first[s]), first);

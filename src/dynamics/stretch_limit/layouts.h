@@ -1,4 +1,4 @@
-// What kernels move springs by, and where particles lie. The layouts of StretchBatches have a group each, `find_squared`, the
+// What kernels move springs by, and where particles lie. The layouts of SpringBatches have a group each, `find_squared`, the
 // springs' squared lengths, and `move`, which moves their ends towards each other, or away along where they were before: see
 // stretch_runs.h, stretch_pairs.h, stretch_gathered.h. For the .cpp files of kernels, as lanes.h.
 #pragma once

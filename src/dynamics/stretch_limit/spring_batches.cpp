@@ -32,7 +32,7 @@ struct Piece {
 /// How many springs from `limited[i]` on join consecutive particles, each of them once.
 Index run_length(const Springs& springs, const std::vector<Index>& limited, std::size_t i) {
   const Index s = limited[i];
-  const Index most = std::min(springs.second[s] - springs.first[s], StretchBatches::kPartSprings);
+  const Index most = std::min(springs.second[s] - springs.first[s], SpringBatches::kPartSprings);
   Index count = 1;
   while (count < most && i + count < limited.size() && limited[i + count] == s + count &&
          springs.first[s + count] == springs.first[s] + count && springs.second[s + count] == springs.second[s] + count) {
@@ -101,7 +101,7 @@ Index bandwidth(const Springs& springs, const std::vector<Index>& limited) {
 class Filler {
  public:
   /// The first ends of a part's springs are at most about `span` apart.
-  Filler(const SpringNetwork& network, Index span, StretchBatches& batches) : network_(network), span_(span), batches_(batches) {}
+  Filler(const SpringNetwork& network, Index span, SpringBatches& batches) : network_(network), span_(span), batches_(batches) {}
 
   void add_colour(Colour& colour) {
     add_runs(colour.runs);
@@ -114,7 +114,7 @@ class Filler {
     for (const Piece& run : runs) {
       const Index from = batches_.count();
       for (Index s = run.begin; s < run.begin + run.count; ++s) append(s);
-      add_part(from, StretchBatches::Layout::run);
+      add_part(from, SpringBatches::Layout::run);
     }
   }
 
@@ -129,11 +129,11 @@ class Filler {
       for (const std::size_t k : {0, 2, 1, 3}) pairs.push_back(singles[i + k].begin);
       i += kSimdWidth;
     }
-    add_parts(pairs, StretchBatches::Layout::pairs);
-    add_parts(others, StretchBatches::Layout::gathered);
+    add_parts(pairs, SpringBatches::Layout::pairs);
+    add_parts(others, SpringBatches::Layout::gathered);
   }
 
-  void add_parts(const std::vector<Index>& springs, StretchBatches::Layout layout) {
+  void add_parts(const std::vector<Index>& springs, SpringBatches::Layout layout) {
     for (std::size_t begin = 0; begin < springs.size();) {
       const Index from = batches_.count();
       const std::size_t end = part_end(springs, begin);
@@ -147,7 +147,7 @@ class Filler {
   /// Whole groups, as far as springs go.
   [[nodiscard]] std::size_t part_end(const std::vector<Index>& springs, std::size_t begin) const {
     const auto first = [&](std::size_t i) { return network_.springs.first[springs[i]]; };
-    const std::size_t most = std::min(springs.size(), begin + StretchBatches::kPartSprings);
+    const std::size_t most = std::min(springs.size(), begin + SpringBatches::kPartSprings);
     std::size_t end = std::min(most, begin + kSimdWidth);
     while (end < most && first(end) - first(begin) <= span_) end = std::min(most, end + kSimdWidth);
     return end;
@@ -163,7 +163,7 @@ class Filler {
     batches_.first_share.push_back(network_.inverse_masses[a] / (network_.inverse_masses[a] + network_.inverse_masses[b]));
   }
 
-  void add_part(Index from, StretchBatches::Layout layout) {
+  void add_part(Index from, SpringBatches::Layout layout) {
     const auto same = [&](const std::vector<double>& values) {
       return std::all_of(values.begin() + from, values.end(), [&](double value) { return value == values[from]; });
     };
@@ -172,12 +172,12 @@ class Filler {
 
   const SpringNetwork& network_;
   Index span_;
-  StretchBatches& batches_;
+  SpringBatches& batches_;
 };
 
 }  // namespace
 
-StretchBatches::StretchBatches(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
+SpringBatches::SpringBatches(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
   const std::vector<Index> limited = limited_springs(network, kinds);
   const Index band = bandwidth(network.springs, limited);
   const bool is_narrow = band <= network.particle_count() / kNarrow;

@@ -9,7 +9,7 @@ namespace sprung {
 
 /// Entry s of each array belongs to limited spring s. The springs of a part follow each other; a part is filled to a multiple of
 /// kSimdWidth by its last spring.
-struct StretchBatches {
+struct SpringBatches {
   std::vector<Index> first;
   std::vector<Index> second;
   std::vector<double> rest_length;  ///< d [m], > 0
@@ -39,7 +39,7 @@ struct StretchBatches {
   std::vector<Index> stage_begin{0};
 
   /// Springs of the given kinds that have a rest length and at least one free end.
-  StretchBatches(const SpringNetwork& network, const std::vector<SpringKind>& kinds);
+  SpringBatches(const SpringNetwork& network, const std::vector<SpringKind>& kinds);
 
   [[nodiscard]] Index count() const { return static_cast<Index>(first.size()); }
 };

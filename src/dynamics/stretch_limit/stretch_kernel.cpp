@@ -11,8 +11,8 @@
 namespace sprung {
 namespace {
 
-using Layout = StretchBatches::Layout;
-using Part = StretchBatches::Part;
+using Layout = SpringBatches::Layout;
+using Part = SpringBatches::Part;
 
 /// The longest and the shortest of the springs in each lane, squared: only at the end all lanes are looked at.
 template <class Lanes>
@@ -68,7 +68,7 @@ struct AllExtremes {
 /// Squared lengths of a part's springs from `s` on, as parts of the rest length, as long as they fill a group; returns where they
 /// do not. Without `lengths` only the extremes are kept.
 template <class Group>
-[[gnu::always_inline]] inline Index find_squared(const StretchBatches& batches, const Part& part, Index s, const double* positions,
+[[gnu::always_inline]] inline Index find_squared(const SpringBatches& batches, const Part& part, Index s, const double* positions,
                                                  double* lengths, Extremes<typename Group::Lanes>& extremes) {
   using Lanes = typename Group::Lanes;
   if (s + kCountOf < Lanes >> part.end) return s;
@@ -115,7 +115,7 @@ template <class Lanes>
 }
 
 template <class Group>
-[[gnu::always_inline]] inline Index move(const StretchBatches& batches, const Part& part, Index s, const double* too_long,
+[[gnu::always_inline]] inline Index move(const SpringBatches& batches, const Part& part, Index s, const double* too_long,
                                          const double* too_short, const double* before, double* positions) {
   using Lanes = typename Group::Lanes;
   if (s + kCountOf < Lanes >> part.end) return s;
@@ -139,9 +139,9 @@ template <class Group>
 // Three sweeps over a part, which is in the first-level cache: in one, each spring would wait for its own root, and the machine
 // does not look far enough ahead to do another meanwhile. What does not fill a wide group is left to narrow ones.
 template <class Wide, class Narrow, class All>
-[[gnu::always_inline]] inline void project(const StretchBatches& batches, const Part& part, const LengthRange& range,
+[[gnu::always_inline]] inline void project(const SpringBatches& batches, const Part& part, const LengthRange& range,
                                            double relaxation, const double* before, double* positions, All& extremes) {
-  alignas(Double8) double lengths[StretchBatches::kPartSprings];
+  alignas(Double8) double lengths[SpringBatches::kPartSprings];
   Extremes<typename Wide::Lanes> of_wide;
   Extremes<typename Narrow::Lanes> of_narrow;
   const Index measured = find_squared<Wide>(batches, part, part.begin, positions, lengths, of_wide);
@@ -151,7 +151,7 @@ template <class Wide, class Narrow, class All>
   extremes.include(of_narrow);
 
   const LengthRange least_alone{.least = range.least, .most = HUGE_VAL};
-  alignas(Double8) double pushes[StretchBatches::kPartSprings];
+  alignas(Double8) double pushes[SpringBatches::kPartSprings];
   double* const too_short = are_beyond(least_alone, of_wide) || are_beyond(least_alone, of_narrow) ? pushes : nullptr;
   const Index count = part.end - part.begin;
   const Index found = find_beyond<typename Wide::Lanes>(range, relaxation, 0, count, lengths, too_short);
@@ -162,7 +162,7 @@ template <class Wide, class Narrow, class All>
 
 /// Calls `body` with the groups of each part.
 template <class Widest, class Body>
-[[gnu::always_inline]] inline void for_parts(const StretchBatches& batches, const Parts& parts, const Body& body) {
+[[gnu::always_inline]] inline void for_parts(const SpringBatches& batches, const Parts& parts, const Body& body) {
   for (Index p = parts.begin; p < parts.end; ++p) {
     const Part& part = batches.parts[p];
     switch (part.layout) {
@@ -179,7 +179,7 @@ template <class Widest, class Body>
 }
 
 template <class Widest>
-[[gnu::always_inline]] inline SquaredLengths project_parts(const StretchBatches& batches, const Parts& parts,
+[[gnu::always_inline]] inline SquaredLengths project_parts(const SpringBatches& batches, const Parts& parts,
                                                            const LengthRange& range, double relaxation, const double* before,
                                                            double* positions) {
   AllExtremes<typename Widest::Lanes> extremes;
@@ -191,7 +191,7 @@ template <class Widest>
 }
 
 template <class Widest>
-[[gnu::always_inline]] inline SquaredLengths measure_parts(const StretchBatches& batches, const Parts& parts,
+[[gnu::always_inline]] inline SquaredLengths measure_parts(const SpringBatches& batches, const Parts& parts,
                                                            const double* positions) {
   AllExtremes<typename Widest::Lanes> extremes;
   for_parts<Widest>(
@@ -207,24 +207,24 @@ template <class Widest>
 }  // namespace
 
 SPRUNG_KERNEL
-SquaredLengths project_springs_narrow(const StretchBatches& batches, const Parts& parts, const LengthRange& range,
-                                      double relaxation, const double* before, double* positions) {
+SquaredLengths project_springs_narrow(const SpringBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
+                                      const double* before, double* positions) {
   return project_parts<PackedVectors4>(batches, parts, range, relaxation, before, positions);
 }
 
 SPRUNG_KERNEL
-SquaredLengths measure_springs_narrow(const StretchBatches& batches, const Parts& parts, const double* positions) {
+SquaredLengths measure_springs_narrow(const SpringBatches& batches, const Parts& parts, const double* positions) {
   return measure_parts<PackedVectors4>(batches, parts, positions);
 }
 
 SPRUNG_WIDE_KERNEL
-SquaredLengths project_springs_wide(const StretchBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
+SquaredLengths project_springs_wide(const SpringBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
                                     const double* before, double* positions) {
   return project_parts<PackedVectors8>(batches, parts, range, relaxation, before, positions);
 }
 
 SPRUNG_WIDE_KERNEL
-SquaredLengths measure_springs_wide(const StretchBatches& batches, const Parts& parts, const double* positions) {
+SquaredLengths measure_springs_wide(const SpringBatches& batches, const Parts& parts, const double* positions) {
   return measure_parts<PackedVectors8>(batches, parts, positions);
 }
 

@@ -41,23 +41,23 @@ struct Parts {
 /// numbers a particle [m]. Returns the lengths that it met. What is too short is pushed along what it was from end to end `before`,
 /// where the step began, by at most that: what turns meanwhile is pushed short of its limit by the square of the angle, which
 /// further passes take. Neither a push nor a pull has a direction where that has no length.
-SquaredLengths project_springs_narrow(const StretchBatches& batches, const Parts& parts, const LengthRange& range,
-                                      double relaxation, const double* before, double* positions);
+SquaredLengths project_springs_narrow(const SpringBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
+                                      const double* before, double* positions);
 
 /// Lengths of springs.
-SquaredLengths measure_springs_narrow(const StretchBatches& batches, const Parts& parts, const double* positions);
+SquaredLengths measure_springs_narrow(const SpringBatches& batches, const Parts& parts, const double* positions);
 
 /// The same bits, with twice as many lanes. Require has_wide_lanes().
-SquaredLengths project_springs_wide(const StretchBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
+SquaredLengths project_springs_wide(const SpringBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
                                     const double* before, double* positions);
-SquaredLengths measure_springs_wide(const StretchBatches& batches, const Parts& parts, const double* positions);
+SquaredLengths measure_springs_wide(const SpringBatches& batches, const Parts& parts, const double* positions);
 
 /// Whichever the machine has.
-inline SquaredLengths project_springs(const StretchBatches& batches, const Parts& parts, const LengthRange& range,
-                                      double relaxation, const double* before, double* positions) {
+inline SquaredLengths project_springs(const SpringBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
+                                      const double* before, double* positions) {
   return (has_wide_lanes() ? project_springs_wide : project_springs_narrow)(batches, parts, range, relaxation, before, positions);
 }
-inline SquaredLengths measure_springs(const StretchBatches& batches, const Parts& parts, const double* positions) {
+inline SquaredLengths measure_springs(const SpringBatches& batches, const Parts& parts, const double* positions) {
   return (has_wide_lanes() ? measure_springs_wide : measure_springs_narrow)(batches, parts, positions);
 }
 

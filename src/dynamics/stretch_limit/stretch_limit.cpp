@@ -23,7 +23,7 @@ constexpr double kLeastPlay = 0.1;
 
 /// Extremes of what `lengths_of` says of tasks [begin, end).
 template <class LengthsOf>
-SquaredLengths extremes(const StretchBatches& batches, Index begin, Index end, const LengthsOf& lengths_of) {
+SquaredLengths extremes(const SpringBatches& batches, Index begin, Index end, const LengthsOf& lengths_of) {
   std::vector<SquaredLengths> of_tasks(end - begin);
   parallel_chunks(end - begin, 1, [&](Index first, Index last) {
     for (Index task = first; task < last; ++task) {
@@ -51,8 +51,8 @@ double wanted_excess(const StretchLimitSettings& settings) {
 }
 
 StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use)
-    : network_(network), settings_(settings), batches_(std::make_unique<StretchBatches>(network, settings.kinds)) {
-  if (settings.tethers) tethers_ = std::make_unique<Tethers>(network, settings.kinds, settings.max_stretch);
+    : network_(network), settings_(settings), batches_(std::make_unique<SpringBatches>(network, settings.kinds)) {
+  if (settings.tethers) tethers_ = std::make_unique<LongRangeAttachments>(network, settings.kinds, settings.max_stretch);
   if (settings.solver == StretchLimitSettings::Solver::gauss_seidel) return;
   newton_ = std::make_unique<StretchNewton>(network, settings, use);
 }
@@ -71,7 +71,7 @@ double StretchLimit::project(const Points& before, Points& positions, double rel
 }
 
 std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double fall,
-                                       const std::vector<StretchHold>& holds) const {
+                                       const std::vector<StretchHandover>& holds) const {
   return newton_ ? newton_->solve(before, positions, fall, holds) : std::nullopt;
 }
 
@@ -134,7 +134,7 @@ double StretchLimit::suggested_step(double acceleration) const {
   return smallest;
 }
 
-bool StretchLimit::follows_turn(const std::vector<StretchHold>& holds) const {
+bool StretchLimit::follows_turn(const std::vector<StretchHandover>& holds) const {
   if (!newton_ || settings_.max_compression < 1.0) return false;
   for (std::size_t b = 0; b < network_.bodies.size(); ++b) {
     const bool handed_over = !holds.empty() && holds[b].solved_since && newton_->may_take_over(b);
@@ -144,7 +144,7 @@ bool StretchLimit::follows_turn(const std::vector<StretchHold>& holds) const {
 }
 
 bool StretchLimit::may_follow_turn() const {
-  return !follows_turn() && follows_turn(std::vector<StretchHold>(network_.bodies.size(), {.solved_since = 0}));
+  return !follows_turn() && follows_turn(std::vector<StretchHandover>(network_.bodies.size(), {.solved_since = 0}));
 }
 
 double StretchLimit::turn() const { return newton_ ? newton_->turn() : 0.0; }

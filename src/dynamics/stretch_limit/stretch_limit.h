@@ -12,9 +12,9 @@
 
 namespace sprung {
 
-struct StretchBatches;
+struct SpringBatches;
 class StretchNewton;
-class Tethers;
+class LongRangeAttachments;
 
 /// The excess over the limit, as a part of the rest length, that automatic steps are chosen for: half of `max_stretch` plus
 /// `tolerance`, and at least a thousandth.
@@ -44,7 +44,8 @@ class StretchLimit {
   /// does. `before` is where the step began; `fall` [m] is a dt^2 with the largest steady acceleration a, of gravity and wind;
   /// `holds` tells of each body whether it was handed over, and is empty when none was. Returns how many linear systems were
   /// solved in turn; none when no spring that is solved for was too long.
-  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHold>& holds = {}) const;
+  std::optional<int> solve(const Points& before, Points& positions, double fall,
+                           const std::vector<StretchHandover>& holds = {}) const;
 
   /// The largest excess over the limits, as a part of the rest length; changes nothing.
   [[nodiscard]] double excess(const Points& positions) const;
@@ -73,7 +74,7 @@ class StretchLimit {
 
   /// Whether a global solve holds all springs, with those of bodies that were handed over: it does at any step, but the larger a
   /// part of its extent a body turns by in one, the more of its motion that takes. Steps are to be chosen by `turn`.
-  [[nodiscard]] bool follows_turn(const std::vector<StretchHold>& holds = {}) const;
+  [[nodiscard]] bool follows_turn(const std::vector<StretchHandover>& holds = {}) const;
 
   /// Whether it does not at the start, but will once all bodies are handed over that may be: then it no longer needs the small
   /// steps of passes.
@@ -86,8 +87,8 @@ class StretchLimit {
  private:
   const SpringNetwork& network_;
   StretchLimitSettings settings_;
-  std::unique_ptr<const StretchBatches> batches_;
-  std::unique_ptr<const Tethers> tethers_;  ///< none unless the settings say so
+  std::unique_ptr<const SpringBatches> batches_;
+  std::unique_ptr<const LongRangeAttachments> tethers_;  ///< none unless the settings say so
   std::unique_ptr<StretchNewton> newton_;
 };
 

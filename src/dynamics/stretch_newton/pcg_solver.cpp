@@ -38,14 +38,14 @@ BlockMatrix pattern_of(const StretchComponent& component) {
 
 }  // namespace
 
-SparseSolver::SparseSolver(const StretchComponent& component)
+PcgSolver::PcgSolver(const StretchComponent& component)
     : component_(component),
       matrix_(pattern_of(component)),
       rough_(matrix_),
       ways_{Roughly{.raise = 0.0, .patience = {.most_iterations = kMostIterations, .slowest = kSlowest}},
             Roughly{.raise = kRaise, .patience = {.most_iterations = kMostIterationsRaised, .slowest = kSlowestRaised}}} {}
 
-double SparseSolver::solve(const StretchSystem& system, Points& step) {
+double PcgSolver::solve(const StretchSystem& system, Points& step) {
   assemble(system);
   if (system.is_like_last) {
     if (const auto left = solve_as_last(system, step)) return *left;
@@ -61,7 +61,7 @@ double SparseSolver::solve(const StretchSystem& system, Points& step) {
   return 0.0;
 }
 
-void SparseSolver::solve_again(const StretchSystem& system, Points& step) {
+void PcgSolver::solve_again(const StretchSystem& system, Points& step) {
   if (kept_ == Kept::nothing) {
     step.setZero(3, component_.free_count);
     return;
@@ -70,7 +70,7 @@ void SparseSolver::solve_again(const StretchSystem& system, Points& step) {
   if (component_.pin_count() == 0) keep_momentum(system.residual, step);
 }
 
-std::optional<double> SparseSolver::solve_as_last(const StretchSystem& system, Points& step) {
+std::optional<double> PcgSolver::solve_as_last(const StretchSystem& system, Points& step) {
   // What changes so fast mostly does so the next time too.
   if (std::exchange(led_nowhere_, false)) return std::nullopt;
   const Patience patience{.most_iterations = kMostIterations, .slowest = kSlowest, .may_be_left = system.may_be_left};
@@ -80,7 +80,7 @@ std::optional<double> SparseSolver::solve_as_last(const StretchSystem& system, P
   return left;
 }
 
-void SparseSolver::solve_with_kept(const Points& right, Points& solution) {
+void PcgSolver::solve_with_kept(const Points& right, Points& solution) {
   if (kept_ == Kept::rough) {
     rough_.solve(right, solution);
   } else if (kept_ == Kept::exact) {
@@ -89,7 +89,7 @@ void SparseSolver::solve_with_kept(const Points& right, Points& solution) {
 }
 
 // Links push one end as the other: what all move in common has an equation of its own, in which nothing needs to be left.
-void SparseSolver::keep_momentum(const Points& right, Points& step) const {
+void PcgSolver::keep_momentum(const Points& right, Points& step) const {
   Vector3 missing = right.rowwise().sum();
   double mass = 0.0;
   for (Index i = 0; i < component_.free_count; ++i) {
@@ -99,7 +99,7 @@ void SparseSolver::keep_momentum(const Points& right, Points& step) const {
   step.colwise() += missing / mass;
 }
 
-std::optional<double> SparseSolver::approach_with_kept(const Patience& patience, const Points& right, Points& step) {
+std::optional<double> PcgSolver::approach_with_kept(const Patience& patience, const Points& right, Points& step) {
   if (kept_ == Kept::nothing) return std::nullopt;
   const auto left = approach(patience, right, step);
   if (left && component_.pin_count() == 0) keep_momentum(right, step);
@@ -108,7 +108,7 @@ std::optional<double> SparseSolver::approach_with_kept(const Patience& patience,
 
 /// Conjugate gradients with the factor that is kept as preconditioner; `towards_` is its solution for `right`, the first direction.
 /// Returns what they left to gain, if that is little enough.
-std::optional<double> SparseSolver::approach(const Patience& patience, const Points& right, Points& step) {
+std::optional<double> PcgSolver::approach(const Patience& patience, const Points& right, Points& step) {
   step.setZero(3, component_.free_count);
   left_ = right;
   double gained = 0.0;
@@ -138,26 +138,26 @@ std::optional<double> SparseSolver::approach(const Patience& patience, const Poi
 }
 
 /// Of any particle beside its mass.
-double SparseSolver::stiffest() const {
+double PcgSolver::stiffest() const {
   double most = 0.0;
   for (Index i = 0; i < component_.free_count; ++i) most = std::max(most, matrix_.diagonal(i).trace() / component_.masses[i]);
   return most;
 }
 
 /// Of what is left, by masses alone: stiffness only makes it smaller.
-double SparseSolver::largest_size() const {
+double PcgSolver::largest_size() const {
   double size = 0.0;
   for (Index i = 0; i < component_.free_count; ++i) size += left_.col(i).squaredNorm() / component_.masses[i];
   return size;
 }
 
-void SparseSolver::solve_exactly(const Points& right, Points& step) {
+void PcgSolver::solve_exactly(const Points& right, Points& step) {
   if (!exact_) exact_ = std::make_unique<BlockCholesky<double>>(matrix_);
   kept_ = exact_->factor_and_solve(matrix_, 0.0, right, step) ? Kept::exact : Kept::nothing;
   if (kept_ == Kept::nothing) step.setConstant(3, component_.free_count, std::numeric_limits<double>::quiet_NaN());
 }
 
-void SparseSolver::assemble(const StretchSystem& system) {
+void PcgSolver::assemble(const StretchSystem& system) {
   matrix_.set_zero();
   for (Index i = 0; i < component_.free_count; ++i) matrix_.add(i, i, component_.masses[i] * Matrix3::Identity());
   for (std::size_t s = 0; s < component_.links.size(); ++s) {

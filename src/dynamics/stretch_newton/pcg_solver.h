@@ -17,10 +17,10 @@ namespace sprung {
 /// before, in their later digits; the same systems one after the other have the same bits. What single precision cannot tell from
 /// singular has its diagonal raised for the factor, a little above its rounding, and if that does not do, a factor in double
 /// precision.
-class SparseSolver final : public StretchSystemSolver {
+class PcgSolver final : public StretchSystemSolver {
  public:
   /// Keeps a reference to the component.
-  explicit SparseSolver(const StretchComponent& component);
+  explicit PcgSolver(const StretchComponent& component);
   double solve(const StretchSystem& system, Points& step) override;
   void solve_again(const StretchSystem& system, Points& step) override;
 

@@ -43,7 +43,7 @@ StretchNewton::StretchNewton(const SpringNetwork& network, const StretchLimitSet
 StretchNewton::~StretchNewton() = default;
 
 std::optional<int> StretchNewton::solve(const Points& before, Points& positions, double fall,
-                                        const std::vector<StretchHold>& holds) {
+                                        const std::vector<StretchHandover>& holds) {
   std::vector<std::optional<int>> iterations(parts_.size());
   parallel_chunks(static_cast<Index>(parts_.size()), 1, [&](Index begin, Index end) {
     for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p) {

@@ -29,7 +29,7 @@ class StretchNewton {
   /// weighted movement as that takes. `before` is where the step began; pins are where they shall be in `positions`. `fall` as
   /// ComponentSolver's; `holds` of bodies, or empty. Returns the most linear systems that a component took; none when nothing was
   /// too long.
-  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHold>& holds = {});
+  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& holds = {});
 
   /// Whether all limited springs of a body are solved for from the start.
   [[nodiscard]] bool holds(const Body& body) const;

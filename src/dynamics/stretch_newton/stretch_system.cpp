@@ -7,7 +7,7 @@ namespace sprung {
 
 std::unique_ptr<StretchSystemSolver> make_system_solver(const StretchComponent& component) {
   if (component.is_tree) return std::make_unique<TreeSolver>(component);
-  return std::make_unique<SparseSolver>(component);
+  return std::make_unique<PcgSolver>(component);
 }
 
 }  // namespace sprung

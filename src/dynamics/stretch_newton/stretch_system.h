@@ -31,7 +31,7 @@ class StretchSystemSolver {
   virtual void solve_again(const StretchSystem& system, Points& step) = 0;
 };
 
-/// TreeSolver for trees, else SparseSolver. Keeps a reference to the component.
+/// TreeSolver for trees, else PcgSolver. Keeps a reference to the component.
 [[nodiscard]] std::unique_ptr<StretchSystemSolver> make_system_solver(const StretchComponent& component);
 
 }  // namespace sprung

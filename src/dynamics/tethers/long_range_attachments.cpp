@@ -16,7 +16,7 @@ constexpr Index kBlocksPerChunk = 4;
 Index block_of(const Tether& tether) { return tether.particle / kBlock; }
 
 /// The longest run from tether t on.
-TetherRun run_from(const std::vector<Tether>& tethers, std::size_t t) {
+LraRun run_from(const std::vector<Tether>& tethers, std::size_t t) {
   const Tether& first = tethers[t];
   const auto follows = [&](std::size_t i, bool one_pin) {
     if (t + i >= tethers.size()) return false;
@@ -33,7 +33,7 @@ TetherRun run_from(const std::vector<Tether>& tethers, std::size_t t) {
 
 }  // namespace
 
-Tethers::Tethers(const SpringNetwork& network, const std::vector<SpringKind>& kinds, double max_stretch) {
+LongRangeAttachments::LongRangeAttachments(const SpringNetwork& network, const std::vector<SpringKind>& kinds, double max_stretch) {
   std::vector<Tether> tethers = find_tethers(network, kinds);
   if (tethers.empty()) return;
   std::ranges::stable_sort(tethers, {},
@@ -47,7 +47,7 @@ Tethers::Tethers(const SpringNetwork& network, const std::vector<SpringKind>& ki
   begin_.push_back(static_cast<Index>(runs_.size()));
 }
 
-void Tethers::project(Points& positions) const {
+void LongRangeAttachments::project(Points& positions) const {
   if (runs_.empty()) return;
   parallel_chunks(static_cast<Index>(begin_.size()) - 1, kBlocksPerChunk, [&](Index begin, Index end) {
     for (Index run = begin_[begin]; run < begin_[end]; ++run) project_tethers(runs_[run], lengths_.data(), positions.data());

@@ -54,7 +54,7 @@ template <class PackedVectors4>
 
 /// Tethers of a run from `begin` on, as long as they fill the lanes; returns where they do not.
 template <class PackedVectors4>
-[[gnu::always_inline]] inline Index project_whole(const TetherRun& run, Index begin, const double* lengths, double* positions) {
+[[gnu::always_inline]] inline Index project_whole(const LraRun& run, Index begin, const double* lengths, double* positions) {
   constexpr Index kCount = kCountOf<typename PackedVectors4::Lanes>;
   PackedVectors4 pins;
   repeat(positions + 3 * run.pin, pins);
@@ -68,7 +68,7 @@ template <class PackedVectors4>
 
 // The last four tethers of a run may be projected twice, which changes nothing but rounding.
 template <class Widest>
-[[gnu::always_inline]] inline void project_run(const TetherRun& run, const double* lengths, double* positions) {
+[[gnu::always_inline]] inline void project_run(const LraRun& run, const double* lengths, double* positions) {
   const Index wide = project_whole<Widest>(run, 0, lengths, positions);
   const Index whole = project_whole<PackedVectors4>(run, wide, lengths, positions);
   if (whole == run.count) return;
@@ -85,12 +85,12 @@ template <class Widest>
 }  // namespace
 
 SPRUNG_KERNEL
-void project_tethers_narrow(const TetherRun& run, const double* lengths, double* positions) {
+void project_tethers_narrow(const LraRun& run, const double* lengths, double* positions) {
   project_run<PackedVectors4>(run, lengths, positions);
 }
 
 SPRUNG_WIDE_KERNEL
-void project_tethers_wide(const TetherRun& run, const double* lengths, double* positions) {
+void project_tethers_wide(const LraRun& run, const double* lengths, double* positions) {
   project_run<PackedVectors8>(run, lengths, positions);
 }
 

@@ -7,7 +7,7 @@
 namespace sprung {
 
 /// Tethers of consecutive particles. Tether + i holds particle + i, by one pin or by consecutive ones.
-struct TetherRun {
+struct LraRun {
   Index particle;
   Index pin;
   Index tether;
@@ -17,13 +17,13 @@ struct TetherRun {
 
 /// Moves particles that are farther from their pins than `lengths` [m] allow towards them; `positions` holds 3 numbers a particle
 /// [m].
-void project_tethers_narrow(const TetherRun& run, const double* lengths, double* positions);
+void project_tethers_narrow(const LraRun& run, const double* lengths, double* positions);
 
 /// The same bits, with twice as many lanes. Requires has_wide_lanes().
-void project_tethers_wide(const TetherRun& run, const double* lengths, double* positions);
+void project_tethers_wide(const LraRun& run, const double* lengths, double* positions);
 
 /// Whichever the machine has.
-inline void project_tethers(const TetherRun& run, const double* lengths, double* positions) {
+inline void project_tethers(const LraRun& run, const double* lengths, double* positions) {
   (has_wide_lanes() ? project_tethers_wide : project_tethers_narrow)(run, lengths, positions);
 }
 

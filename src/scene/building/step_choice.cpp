@@ -45,7 +45,7 @@ double largest_auto_step(const Scene& scene, const LimitUse& use, const std::opt
 /// smaller; 1 where there must be none.
 int parts_for_passes(const Scene& scene, const std::optional<StretchLimit>& limit, int needed, int most) {
   if (!limit || !limit->may_follow_turn() || damps_steps(scene.settings.integrator)) return 1;
-  return std::min(1 << std::ilogb(static_cast<double>(needed) / most), kMostParts);
+  return std::min(1 << std::ilogb(static_cast<double>(needed) / most), kMaxSubsteps);
 }
 
 std::string advice_for_unstable(const Scene& scene, double largest_stable) {
@@ -86,7 +86,7 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
     const int parts = parts_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));
     choice.steps_per_frame = 1 + (*steps - 1) / parts;
     choice.step = step_of(scene.frame_rate, choice.steps_per_frame);
-    choice.most_parts = may_be_in_parts(scene, limit) ? kAutoParts : parts;
+    choice.max_substeps = may_be_in_parts(scene, limit) ? kAutoParts : parts;
     choice.warning = many_steps_warning(scene, network, choice, for_passes < without_passes);
   } else {
     problems.push_back({scene.file.string(), "step", "\"auto\"",

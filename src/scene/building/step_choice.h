@@ -22,7 +22,7 @@ inline constexpr int kAutoParts = 8;
 struct StepChoice {
   double step = 0.0;  ///< [s]
   int steps_per_frame = 1;
-  int most_parts = 1;                    ///< of a step, where it misses the stretch limit or turns too much
+  int max_substeps = 1;                  ///< of a step, where it misses the stretch limit or turns too much
   double largest_stable = 0.0;           ///< [s]; infinity when any is stable
   std::optional<std::string> warning{};  ///< of very many steps a frame
 };

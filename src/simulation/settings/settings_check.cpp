@@ -74,7 +74,7 @@ SimulatorSettings checked_settings(SimulatorSettings settings) {
     rules.require_between("stretch_limit.iterations", limit->iterations, 1.0, kInfinity);
     rules.require_between("stretch_limit.tolerance", limit->tolerance, 0.0, kInfinity);
   }
-  rules.require_between("most_parts", settings.most_parts, 1.0, kMostParts);
+  rules.require_between("max_substeps", settings.max_substeps, 1.0, kMaxSubsteps);
   rules.require_between("contact.stiffness", settings.contact.stiffness, 0.0, kInfinity);
   rules.require_between("contact.damping", settings.contact.damping, 0.0, kInfinity);
   rules.throw_if_broken();

@@ -26,7 +26,7 @@ struct ContactSettings {
 enum class StabilityCheck : std::uint8_t { refuse, warn };
 
 /// A step is not made in more parts.
-inline constexpr int kMostParts = 1 << 16;
+inline constexpr int kMaxSubsteps = 1 << 16;
 
 struct SimulatorSettings {
   double step = 1.0e-3;              ///< dt [s]
@@ -37,9 +37,9 @@ struct SimulatorSettings {
   std::optional<StretchLimitSettings> stretch_limit{};
   ContactSettings contact{};
   StabilityCheck stability = StabilityCheck::refuse;
-  /// In [1, kMostParts]: steps are made in up to so many parts, see StepRefinement; in all of them while passes hold a limit that
+  /// In [1, kMaxSubsteps]: steps are made in up to so many parts, see StepRefinement; in all of them while passes hold a limit that
   /// may be handed over to a global solve, which then needs fewer.
-  int most_parts = 1;
+  int max_substeps = 1;
 };
 
 }  // namespace sprung

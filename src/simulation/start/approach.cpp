@@ -73,7 +73,7 @@ Points WayBack::walk(const Points& free, const Points& wanted) {
       advanced.col(i) = distance <= lengths[i] ? Vector3(wanted.col(i)) : Vector3(x.col(i) + lengths[i] / distance * left);
     }
     if (stride(x, advanced) <= kArrived * longest) break;
-    // What is stopped is not pulled at in vain: zones for long ways hold much of an obstacle.
+    // What is stopped is not pulled at in vain: regions for long ways hold much of an obstacle.
     lengths = (2.0 * (x - before).colwise().norm().transpose()).cwiseMax(kShortest * longest).cwiseMin(longest);
   }
   for (int k = 0; k < kMostSettling; ++k) {

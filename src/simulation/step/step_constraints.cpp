@@ -21,8 +21,8 @@ constexpr double kRelaxation = 1.8;
 constexpr int kAnswers = 6;
 
 // Where surfaces stop particles short of where the passes led them, springs lead them and their neighbours on, at most so often,
-// by so many passes each time, as many in all as the limit has: zones are made again before particles are far from where they were
-// safe.
+// by so many passes each time, as many in all as the limit has: regions are made again before particles are far from where they
+// were safe.
 constexpr int kRelaxRounds = 16;
 constexpr int kRelaxPasses = 2;
 
@@ -101,7 +101,7 @@ void StepConstraints::truncate(SimulationState& state, const Forces& forces, Ste
   const int relax_rounds = limit_ ? std::min(kRelaxRounds, limit_->settings().iterations / kRelaxPasses) : 0;
   const int most_rounds = answers ? kAnswers : relax_rounds;
   int rounds = 0;
-  const FreeSpace::Relax lead_on = [&](Points& positions) {
+  const StepTruncation::Relax lead_on = [&](Points& positions) {
     if (rounds++ >= most_rounds) return false;
     return answers ? answer_truncation(state, forces) : relax(positions, report.stretch_excess);
   };
@@ -111,7 +111,7 @@ void StepConstraints::truncate(SimulationState& state, const Forces& forces, Ste
   if (meets) contacts_.slow_down_taken_along(motion(), state, integrator_);
   if (meets) contacts_.settle_velocities(motion(), state, integrator_);
   report.truncated = contacts_.truncated_count();
-  report.squeezed = contacts_.squeezed_count();
+  report.infeasible = contacts_.infeasible_count();
   if (limit_ && (rounds > 0 || report.truncated > 0)) report.stretch_excess = limit_->excess(state.x);
 }
 

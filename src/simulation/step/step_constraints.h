@@ -21,9 +21,9 @@ class StepConstraints {
   /// Takes down where a step begins. It is for what comes before hold(): forces, and pins that move.
   void begin(const SimulationState& state);
 
-  /// See FreeSpace.
-  [[nodiscard]] const LetThrough& lets_through() const { return contacts_.lets_through(); }
-  void forget(const LetThrough& through) { contacts_.forget(through); }
+  /// See StepTruncation.
+  [[nodiscard]] const PermittedCrossings& lets_through() const { return contacts_.lets_through(); }
+  void forget(const PermittedCrossings& through) { contacts_.forget(through); }
   void look_ahead(bool ahead) { contacts_.look_ahead(ahead); }
 
   /// Leads the state on from where forces and pins have led it in `dt` [s]: by contact, the stretch limit and truncation, to the
@@ -63,11 +63,11 @@ class StepConstraints {
   ContactProjection contacts_;
 
   // Of the step at hand: where it began, and where forces and pins alone would have ended it.
-  Points before_;        ///< for contact, and where the integrator does not keep them
-  Points v_before_;      ///< for contact alone
-  Points advanced_;      ///< for contact, and for integrators that need it
-  HeldDirections held_;  ///< those of the last answer to contact
-  Points answered_;      ///< where the last answer to contact led, for integrators that give one
+  Points before_;               ///< for contact, and where the integrator does not keep them
+  Points v_before_;             ///< for contact alone
+  Points advanced_;             ///< for contact, and for integrators that need it
+  ConstrainedDirections held_;  ///< those of the last answer to contact
+  Points answered_;             ///< where the last answer to contact led, for integrators that give one
   double dt_ = 0.0;
 };
 

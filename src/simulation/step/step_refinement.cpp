@@ -20,13 +20,13 @@ constexpr double kMostTurn = 1.0 / 70.0;
 
 }  // namespace
 
-StepRefinement::StepRefinement(const StretchLimitSettings& limit, int most_parts)
-    : bound_(kMargin * wanted_excess(limit)), most_parts_(most_parts) {}
+StepRefinement::StepRefinement(const StretchLimitSettings& limit, int max_substeps)
+    : bound_(kMargin * wanted_excess(limit)), max_substeps_(max_substeps) {}
 
 void StepRefinement::choose(double excess, SimulationState& state) const {
   if (excess > bound_) {
     const int halvings = 1 + std::ilogb(excess / bound_);
-    state.parts = static_cast<int>(std::min(std::ldexp(state.parts, halvings), static_cast<double>(most_parts_)));
+    state.parts = static_cast<int>(std::min(std::ldexp(state.parts, halvings), static_cast<double>(max_substeps_)));
     state.calm_steps = 0;
     return;
   }
@@ -38,7 +38,8 @@ void StepRefinement::choose(double excess, SimulationState& state) const {
 
 void StepRefinement::choose_by_turn(double turn, SimulationState& state) const {
   const double needed = std::ceil(turn * state.parts / kMostTurn);
-  state.parts = needed > 1.0 ? static_cast<int>(std::min(needed, static_cast<double>(most_parts_))) : 1;  // 1 for what is no number
+  state.parts =
+      needed > 1.0 ? static_cast<int>(std::min(needed, static_cast<double>(max_substeps_))) : 1;  // 1 for what is no number
 }
 
 }  // namespace sprung

@@ -11,20 +11,20 @@ namespace sprung {
 /// quarter of the bound is not reached.
 class StepRefinement {
  public:
-  /// A step is made in `most_parts` at most, >= 1.
-  StepRefinement(const StretchLimitSettings& limit, int most_parts);
+  /// A step is made in `max_substeps` at most, >= 1.
+  StepRefinement(const StretchLimitSettings& limit, int max_substeps);
 
   /// Chooses the parts of the step to come when one has left `excess` over the limit, as a part of the rest length.
   void choose(double excess, SimulationState& state) const;
 
   /// Chooses them when a part of the step has turned something by `turn`, as StretchLimit::turn says: so many that a part turns it
-  /// by no more than a seventieth, where `most_parts` lets it. Of a motion that changes little from step to step none is made too
+  /// by no more than a seventieth, where `max_substeps` lets it. Of a motion that changes little from step to step none is made too
   /// large.
   void choose_by_turn(double turn, SimulationState& state) const;
 
  private:
   double bound_;  ///< of the excess
-  int most_parts_;
+  int max_substeps_;
 };
 
 }  // namespace sprung

@@ -14,8 +14,8 @@ struct StepReport {
   int limit_solves = 0;         ///< linear systems that the stretch limit solved in turn
   double stretch_excess = 0.0;  ///< beyond the stretch limit at the end of a part, as a part of the rest length
   Index truncated = 0;          ///< particles stopped at a surface
-  Index squeezed = 0;           ///< particles that found no free place between obstacles, pins and each other
-  Index most_squeezed = 0;      ///< of those, the most in one part
+  Index infeasible = 0;         ///< particles that found no free place between obstacles, pins and each other
+  Index max_infeasible = 0;     ///< of those, the most in one part
   double turn = 0.0;            ///< of what a global solve holds, in a part at the pace of the last one, see StretchLimit::turn
 
   StepReport& operator+=(const StepReport& part);

@@ -30,7 +30,7 @@ class BallsOfFiveParticles : public ::testing::Test {
   Points positions_{3, 7};
   std::vector<Index> particles_{6, 1, 5, 2, 3};
   RigidTransform into_;
-  Balls balls_{5};
+  SphereSet balls_{5};
 };
 
 TEST_F(BallsOfFiveParticles, HoldParticlesThatStay) { EXPECT_THAT(outside(0.0), ElementsAre()); }
@@ -63,9 +63,9 @@ TEST_F(BallsOfFiveParticles, AParticleThatIsNotFiniteIsOutside) {
   EXPECT_THAT(outside(0.0), ElementsAre(0));
 }
 
-TEST(Balls, HoldNothingAtFirst) {
+TEST(SphereSet, HoldNothingAtFirst) {
   std::vector<Index> found;
-  Balls(2).find_outside({Points::Zero(3, 2), {0, 1}, RigidTransform::Identity()}, 0.0, found);
+  SphereSet(2).find_outside({Points::Zero(3, 2), {0, 1}, RigidTransform::Identity()}, 0.0, found);
   EXPECT_THAT(found, ElementsAre(0, 1));
 }
 

@@ -17,11 +17,11 @@ std::size_t near_pairs(const Vector3& way) {
     network.add_cloth(10, way + height * kGrid * Vector3::UnitY(), kGrid * Vector3::UnitX(), kGrid * Vector3::UnitZ());
   }
   const CollisionSurface surface = network.surface(0.0);
-  MovingBalls balls(std::vector<double>(static_cast<std::size_t>(network.count()), 0x1p-3 * kGrid));
+  VertexBounds balls(std::vector<double>(static_cast<std::size_t>(network.count()), 0x1p-3 * kGrid));
   for (Index i = 0; i < network.count(); ++i) balls.place(i, network.positions.col(i), network.positions.col(i));
   std::vector<Index> all(network.elements.size());
   std::iota(all.begin(), all.end(), 0);
-  ElementTree tree(surface, network.positions);
+  ElementBvh tree(surface, network.positions);
   tree.bound(balls, std::vector<char>(static_cast<std::size_t>(network.count()), 0), all, {.now = 0.0, .end = 1.0});
   return tree.find_pairs({.now = 0.0, .end = 1.0}, 0x1p-3 * kGrid).size();
 }
@@ -30,7 +30,7 @@ std::size_t near_pairs(const Vector3& way) {
 // precision from the world's origin would be coarser there than the cloths are apart, and all would seem near. Thirds of
 // coordinates, by which elements are sorted into leaves, are rounded, so that some have other neighbours: a sixteenth more pairs
 // of leaves were seen.
-TEST(ElementTree, FindsNoMoreFarFromTheOrigin) {
+TEST(ElementBvh, FindsNoMoreFarFromTheOrigin) {
   const std::size_t near = near_pairs(Vector3::Zero());
   EXPECT_GT(near, 0u);
   EXPECT_LT(near_pairs({0x1p22, -0x1p22, 0x1p20}), near + near / 8);

@@ -20,9 +20,9 @@ using test::random_meeting;
 constexpr double kKept = 1e-3;
 
 /// As far along `way` [m] as the particle's bounds let it go.
-Vector3 farthest(const std::vector<PairPlanes::Bound>& bounds, Index particle, const Vector3& from, const Vector3& way) {
+Vector3 farthest(const std::vector<DivisionPlanes::Bound>& bounds, Index particle, const Vector3& from, const Vector3& way) {
   double fraction = 1.0;
-  for (const PairPlanes::Bound& bound : bounds) {
+  for (const DivisionPlanes::Bound& bound : bounds) {
     const double approach = -bound.half_space.normal.dot(way);
     if (bound.particle != particle || !(approach > 0.0)) continue;
     fraction = std::min(fraction, std::max(0.0, bound.half_space.normal.dot(from) - bound.half_space.offset) / approach);
@@ -44,15 +44,15 @@ Step random_step(Random& random) {
   return step;
 }
 
-TEST(PairPlanes, WithinTheirBoundsSidesDoNotCrossOnTheWay) {
+TEST(DivisionPlanes, WithinTheirBoundsSidesDoNotCrossOnTheWay) {
   Random random(1);
-  const Carriers nothing_carried;
+  const ParticleDisplacements nothing_carried;
   int gave_way = 0;
   int crossed = 0;
   for (int n = 0; n < 4000; ++n) {
     const Step step = random_step(random);
-    PairPlanes planes(step.meeting.before, step.targets, step.pinned, nothing_carried, kKept);
-    std::vector<ElementPair> pairs{step.meeting.pair};
+    DivisionPlanes planes(step.meeting.before, step.targets, step.pinned, nothing_carried, kKept);
+    std::vector<ConvexPair> pairs{step.meeting.pair};
     while (planes.hold(pairs)) {
     }
     const bool draws = !planes.passing().empty();
@@ -61,7 +61,7 @@ TEST(PairPlanes, WithinTheirBoundsSidesDoNotCrossOnTheWay) {
     if (!planes.passing().empty()) continue;
     gave_way += draws ? 1 : 0;
     crossed += cross_on_the_way(step.meeting.before, step.targets) ? 1 : 0;
-    const std::vector<PairPlanes::Bound> bounds = planes.bounds(pairs);
+    const std::vector<DivisionPlanes::Bound> bounds = planes.bounds(pairs);
     for (int trial = 0; trial < 8; ++trial) {
       Points ends = planes.ends();
       for (const Index i : planes.held())
@@ -88,8 +88,8 @@ struct Stack {
     }
   }
 
-  [[nodiscard]] std::vector<ElementPair> pairs() const {
-    std::vector<ElementPair> all;
+  [[nodiscard]] std::vector<ConvexPair> pairs() const {
+    std::vector<ConvexPair> all;
     for (int high = 0; high < kLayers; ++high) {
       for (int low = 0; low < high; ++low) {
         all.push_back({.first_count = 3, .second_count = 3});
@@ -115,15 +115,15 @@ struct Stack {
 };
 
 // Where the layers are there is room. Of those that pins draw, places are not found for 22 in 100; 29 if none begins at rest.
-TEST(PairPlanes, MostOfWhatPinsDrawFindsItsPlace) {
+TEST(DivisionPlanes, MostOfWhatPinsDrawFindsItsPlace) {
   Random random(2);
-  const Carriers nothing_carried;
+  const ParticleDisplacements nothing_carried;
   int drawn = 0;
   int told = 0;
   for (int n = 0; n < 2000; ++n) {
     const Stack stack(random);
-    PairPlanes planes(stack.before, stack.targets, stack.pinned, nothing_carried, kKept);
-    std::vector<ElementPair> pairs = stack.pairs();
+    DivisionPlanes planes(stack.before, stack.targets, stack.pinned, nothing_carried, kKept);
+    std::vector<ConvexPair> pairs = stack.pairs();
     while (planes.hold(pairs)) {
     }
     drawn += planes.passing().empty() ? 0 : 1;

@@ -17,9 +17,9 @@ using test::Random;
 using test::random_ends;
 using test::random_meeting;
 
-constexpr GapRule kRule{.thickness_kept = 1e-3, .clearance = 1e-9};
+constexpr SeparationTolerance kRule{.thickness_kept = 1e-3, .clearance = 1e-9};
 
-TEST(GivingWay, WhatItsPlanesKeepApartDoesNotCrossOnTheWay) {
+TEST(HalfSpaceRelaxation, WhatItsPlanesKeepApartDoesNotCrossOnTheWay) {
   Random random(1);
   int kept = 0;
   int crossed = 0;
@@ -29,7 +29,7 @@ TEST(GivingWay, WhatItsPlanesKeepApartDoesNotCrossOnTheWay) {
     const Points ends = random_ends(meeting.before, random.between(0.0, 0.5), std::pow(10.0, random.between(-5.0, 0.3)), random);
     const bool crosses = cross_on_the_way(meeting.before, ends);
     crossed += crosses ? 1 : 0;
-    if (GivingWay(meeting.before, pinned, kRule).passes(meeting.pair, ends)) continue;
+    if (HalfSpaceRelaxation(meeting.before, pinned, kRule).passes(meeting.pair, ends)) continue;
     ++kept;
     ASSERT_FALSE(crosses) << n;
   }
@@ -39,7 +39,7 @@ TEST(GivingWay, WhatItsPlanesKeepApartDoesNotCrossOnTheWay) {
 
 // With the angle t, axis u, normal n and a way d from side to side the gap midway is cos(t) n.d + (1 - cos(t)) (n.u) (u.d), of
 // which the last is at most t^2 |d| / 4, with |d| < 3. A plane of which the normal stays would need a gap of t |d|.
-TEST(GivingWay, WhatTurnsTogetherDoesNotPass) {
+TEST(HalfSpaceRelaxation, WhatTurnsTogetherDoesNotPass) {
   Random random(2);
   for (const int side : {2, 3}) {
     const std::vector<char> pinned(static_cast<std::size_t>(2 * side), 0);
@@ -47,13 +47,13 @@ TEST(GivingWay, WhatTurnsTogetherDoesNotPass) {
       const Meeting meeting = random_meeting(side, random);
       const double gap = heights_at(meeting.pair, meeting.before).gap();
       const Points ends = random_ends(meeting.before, std::min(0.5, std::sqrt(gap)), 0.0, random);
-      EXPECT_FALSE(GivingWay(meeting.before, pinned, kRule).passes(meeting.pair, ends)) << side << ", " << n;
+      EXPECT_FALSE(HalfSpaceRelaxation(meeting.before, pinned, kRule).passes(meeting.pair, ends)) << side << ", " << n;
     }
   }
 }
 
 // A particle between the pins of two sheets that close in on it from both sides, but leave it room.
-TEST(GivingWay, AParticleBetweenPinsGoesWhereTheyLeaveRoom) {
+TEST(HalfSpaceRelaxation, AParticleBetweenPinsGoesWhereTheyLeaveRoom) {
   Points before(3, 7);
   before << 0.0, -1.0, 1.0, 0.0, -1.0, 1.0, 0.0,  //
       0.5, 0.5, 0.5, -0.5, -0.5, -0.5, 0.45,      //
@@ -61,18 +61,18 @@ TEST(GivingWay, AParticleBetweenPinsGoesWhereTheyLeaveRoom) {
   Points ends = before;
   ends.row(1).head(3).setConstant(-0.3);
   const std::vector<char> pinned{1, 1, 1, 1, 1, 1, 0};
-  std::vector<ElementPair> pairs(2);
+  std::vector<ConvexPair> pairs(2);
   pairs[0] = {.particles = {6, 0, 1, 2}, .first_count = 1, .second_count = 3, .normal = -Vector3::UnitY()};
   pairs[1] = {.particles = {6, 3, 4, 5}, .first_count = 1, .second_count = 3, .normal = Vector3::UnitY()};
-  const GivingWay way(before, pinned, kRule);
+  const HalfSpaceRelaxation way(before, pinned, kRule);
   ASSERT_TRUE(way.passes(pairs[0], ends));
   EXPECT_EQ(way.move_apart(pairs, ends), std::vector<Index>{6});
-  for (const ElementPair& pair : pairs) EXPECT_FALSE(way.passes(pair, ends));
+  for (const ConvexPair& pair : pairs) EXPECT_FALSE(way.passes(pair, ends));
   EXPECT_LT(ends(1, 6), -0.3);
   EXPECT_GT(ends(1, 6), -0.5);
 }
 
-TEST(GivingWay, PinsAreNotMoved) {
+TEST(HalfSpaceRelaxation, PinsAreNotMoved) {
   Points before(3, 4);
   before << 0.0, 0.0, -1.0, 1.0,  //
       0.1, 0.0, 0.0, 0.0,         //
@@ -80,9 +80,8 @@ TEST(GivingWay, PinsAreNotMoved) {
   Points ends = before;
   ends(1, 0) = -0.1;
   const std::vector<char> pinned(4, 1);
-  const std::vector<ElementPair> pairs{
-      {.particles = {0, 1, 2, 3}, .first_count = 1, .second_count = 3, .normal = Vector3::UnitY()}};
-  const GivingWay way(before, pinned, kRule);
+  const std::vector<ConvexPair> pairs{{.particles = {0, 1, 2, 3}, .first_count = 1, .second_count = 3, .normal = Vector3::UnitY()}};
+  const HalfSpaceRelaxation way(before, pinned, kRule);
   const Points asked = ends;
   EXPECT_TRUE(way.move_apart(pairs, ends).empty());
   EXPECT_EQ(ends, asked);

@@ -9,14 +9,14 @@ namespace {
 // Each term is of the size 1, and there are less than 64.
 constexpr double kRounding = 64 * 0x1p-52;
 
-TEST(CarriedPlane, WhatGoesAlongIsApartByTheVolumeTimesTheGap) {
+TEST(MovedPlane, WhatGoesAlongIsApartByTheVolumeTimesTheGap) {
   test::Random random(1);
   for (int n = 0; n < 1000; ++n) {
     Matrix3 F = Eigen::AngleAxisd(random.between(0.0, 1.5), random.direction()).toRotationMatrix();
     for (int axis = 0; axis < 3; ++axis) F.col(axis) += random.between(0.0, 0.3) * random.direction();
     const Vector3 normal = random.direction();
     const Vector3 way = random.direction();
-    const CarriedPlane plane = carried_plane(normal, F);
+    const MovedPlane plane = moved_plane(normal, F);
     for (const double t : {0.0, 0.1, 0.5, 0.8, 1.0}) {
       const Matrix3 A = (1.0 - t) * Matrix3::Identity() + t * F;
       const Vector3 at_time = (1.0 - t) * (1.0 - t) * plane.begin + 2.0 * t * (1.0 - t) * plane.middle + t * t * plane.end;
@@ -25,8 +25,8 @@ TEST(CarriedPlane, WhatGoesAlongIsApartByTheVolumeTimesTheGap) {
   }
 }
 
-TEST(CarriedPlane, ATranslationLeavesIt) {
-  const CarriedPlane plane = carried_plane(Vector3::UnitY(), Matrix3::Identity());
+TEST(MovedPlane, ATranslationLeavesIt) {
+  const MovedPlane plane = moved_plane(Vector3::UnitY(), Matrix3::Identity());
   EXPECT_TRUE(plane.stays());
   EXPECT_EQ(plane.middle, plane.begin);
 }

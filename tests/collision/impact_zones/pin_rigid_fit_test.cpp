@@ -13,8 +13,8 @@ namespace {
 
 using test::Random;
 
-std::vector<PinWay> ways(const RigidTransform& motion, const std::vector<Vector3>& pins) {
-  std::vector<PinWay> ways;
+std::vector<PinDisplacement> ways(const RigidTransform& motion, const std::vector<Vector3>& pins) {
+  std::vector<PinDisplacement> ways;
   for (const Vector3& pin : pins) ways.push_back({pin, motion * pin});
   return ways;
 }
@@ -37,10 +37,10 @@ TEST(PinMotion, TakesPinsThatMoveRigidlyWhereTheyGo) {
                                                   {{0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}, {1.0, 0.2, 0.0}, {0.3, 0.8, 0.5}}};
   for (const std::vector<Vector3>& pins : sets) {
     for (int k = 0; k < 100; ++k) {
-      const std::vector<PinWay> pin_ways = ways(random_motion(random, 1.5), pins);
+      const std::vector<PinDisplacement> pin_ways = ways(random_motion(random, 1.5), pins);
       const auto motion = common_turn(pin_ways);
       ASSERT_TRUE(motion) << pins.size();
-      for (const PinWay& pin : pin_ways) EXPECT_LT((*motion * pin.from - pin.to).norm(), kRounding) << pins.size();
+      for (const PinDisplacement& pin : pin_ways) EXPECT_LT((*motion * pin.from - pin.to).norm(), kRounding) << pins.size();
       EXPECT_NEAR(motion->linear().determinant(), 1.0, kRounding);
     }
   }
@@ -55,10 +55,10 @@ TEST(PinMotion, TakesPinsOfNarrowStripsAlongToRounding) {
       for (const double side : {-0.5, 0.5}) pins.emplace_back(k / 23.0, side * width, 0.0);
     }
     for (int k = 0; k < 50; ++k) {
-      const std::vector<PinWay> pin_ways = ways(random_motion(random, 0.3), pins);
+      const std::vector<PinDisplacement> pin_ways = ways(random_motion(random, 0.3), pins);
       const auto motion = common_turn(pin_ways);
       ASSERT_TRUE(motion) << width;
-      for (const PinWay& pin : pin_ways) {
+      for (const PinDisplacement& pin : pin_ways) {
         EXPECT_LT((*motion * pin.from - pin.to).norm(), std::min(kRounding / width, width)) << width;
       }
     }
@@ -87,8 +87,8 @@ TEST(PinMotion, OfPinsThatRestOrGoTheSameWayIsNone) {
 
 TEST(PinMotion, OfPinsThatGoWaysOfTheirOwnIsNone) {
   // They pass each other, and one goes on alone.
-  EXPECT_FALSE(common_turn(std::vector<PinWay>{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {-0.5, 0.0, 0.0}}}));
-  EXPECT_FALSE(common_turn(std::vector<PinWay>{{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {1.5, 0.0, 0.0}}}));
+  EXPECT_FALSE(common_turn(std::vector<PinDisplacement>{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {-0.5, 0.0, 0.0}}}));
+  EXPECT_FALSE(common_turn(std::vector<PinDisplacement>{{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {1.5, 0.0, 0.0}}}));
 }
 
 }  // namespace

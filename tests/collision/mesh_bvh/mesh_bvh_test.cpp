@@ -20,10 +20,10 @@ Box3 box_of(const TriangleMesh& mesh, Index triangle) {
 /// Collects the triangles below a node and sees that its boxes hold them.
 class TreeInspector {
  public:
-  TreeInspector(const TriangleMesh& mesh, const MeshTree& tree) : mesh_(mesh), tree_(tree) {}
+  TreeInspector(const TriangleMesh& mesh, const MeshBvh& tree) : mesh_(mesh), tree_(tree) {}
 
   Box3 inspect_node(std::int32_t number) {
-    const MeshTree::Node& node = tree_.node(number);
+    const MeshBvh::Node& node = tree_.node(number);
     Box3 all;
     for (int lane = 0; lane < kFloatSimdWidth; ++lane) {
       if (!(node.min[0][lane] <= node.max[0][lane])) continue;  // no child
@@ -43,7 +43,7 @@ class TreeInspector {
   }
 
   Box3 inspect_block(std::int32_t number) {
-    const TriangleBlock& block = tree_.block(number);
+    const TrianglePacket& block = tree_.block(number);
     EXPECT_GE(block.count, 1);
     EXPECT_LE(block.count, kSimdWidth);
     Box3 all;
@@ -64,7 +64,7 @@ class TreeInspector {
 
  private:
   const TriangleMesh& mesh_;
-  const MeshTree& tree_;
+  const MeshBvh& tree_;
   std::set<std::int32_t> nodes_;
   std::vector<Index> triangles_;
 };
@@ -80,9 +80,9 @@ std::vector<TriangleMesh> samples() {
   return {one, pile, points, test::flat_sheet(1), test::flat_sheet(20), test::torus(1.0, 0.3, 40, 20), test::needles(24)};
 }
 
-TEST(MeshTree, HoldsEachTriangleOnceInBoxesAroundIt) {
+TEST(MeshBvh, HoldsEachTriangleOnceInBoxesAroundIt) {
   for (const TriangleMesh& mesh : samples()) {
-    const MeshTree tree(mesh);
+    const MeshBvh tree(mesh);
     TreeInspector inspector(mesh, tree);
     inspector.inspect_node(0);
     std::vector<Index> every(static_cast<std::size_t>(mesh.triangles.cols()));
@@ -91,10 +91,10 @@ TEST(MeshTree, HoldsEachTriangleOnceInBoxesAroundIt) {
   }
 }
 
-TEST(MeshTree, NearestHasTheLeastOfAllTrianglesDistancesToTheLastBit) {
+TEST(MeshBvh, NearestHasTheLeastOfAllTrianglesDistancesToTheLastBit) {
   Random random(8);
   for (const TriangleMesh& mesh : samples()) {
-    const MeshTree tree(mesh);
+    const MeshBvh tree(mesh);
     for (int i = 0; i < 300; ++i) {
       const Vector3 p = test::near_surface(mesh, random, std::pow(10.0, -random.between(0.0, 9.0)));
       double least = std::numeric_limits<double>::infinity();

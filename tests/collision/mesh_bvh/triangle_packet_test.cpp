@@ -12,8 +12,8 @@ using test::Random;
 
 using Corners = std::array<Vector3, 3>;
 
-TriangleBlock block_of(const std::array<Corners, kSimdWidth>& triangles) {
-  TriangleBlock block{};
+TrianglePacket block_of(const std::array<Corners, kSimdWidth>& triangles) {
+  TrianglePacket block{};
   block.count = kSimdWidth;
   for (int lane = 0; lane < kSimdWidth; ++lane) {
     block.triangle[lane] = lane;
@@ -42,13 +42,13 @@ Corners some_triangle(Random& random) {
   }
 }
 
-TEST(TriangleBlock, DistancesAreThoseOfEachTriangleToTheLastBit) {
+TEST(TrianglePacket, DistancesAreThoseOfEachTriangleToTheLastBit) {
   Random random(2);
   std::array<int, 7> met{};
   for (int i = 0; i < 20000; ++i) {
     std::array<Corners, kSimdWidth> triangles;
     for (Corners& triangle : triangles) triangle = some_triangle(random);
-    const TriangleBlock block = block_of(triangles);
+    const TrianglePacket block = block_of(triangles);
     // A third of the positions is above the inside of a triangle, a few are on a corner.
     Vector3 p = anywhere(random, 2.0);
     if (i % 3 == 0) p = (triangles[0][0] + triangles[0][1] + triangles[0][2]) / 3.0 + anywhere(random, 0.1);
@@ -65,13 +65,13 @@ TEST(TriangleBlock, DistancesAreThoseOfEachTriangleToTheLastBit) {
   for (const int times : met) EXPECT_GT(times, 1000);
 }
 
-TEST(TriangleBlock, TrianglesInABoxAreThoseWhoseOwnBoxMeetsIt) {
+TEST(TrianglePacket, TrianglesInABoxAreThoseWhoseOwnBoxMeetsIt) {
   Random random(3);
   int found = 0;
   for (int i = 0; i < 5000; ++i) {
     std::array<Corners, kSimdWidth> triangles;
     for (Corners& triangle : triangles) triangle = some_triangle(random);
-    TriangleBlock block = block_of(triangles);
+    TrianglePacket block = block_of(triangles);
     block.count = 1 + random.below(kSimdWidth);
     Box3 box(anywhere(random, 1.0));
     // Half of the boxes touch a corner of a triangle, no more.
@@ -88,13 +88,13 @@ TEST(TriangleBlock, TrianglesInABoxAreThoseWhoseOwnBoxMeetsIt) {
   EXPECT_GT(found, 2500);
 }
 
-TEST(TriangleBlock, TrianglesAboveAPlaneAreThoseWithACornerThere) {
+TEST(TrianglePacket, TrianglesAboveAPlaneAreThoseWithACornerThere) {
   Random random(4);
   int found = 0;
   for (int i = 0; i < 5000; ++i) {
     std::array<Corners, kSimdWidth> triangles;
     for (Corners& triangle : triangles) triangle = some_triangle(random);
-    TriangleBlock block = block_of(triangles);
+    TrianglePacket block = block_of(triangles);
     block.count = 1 + random.below(kSimdWidth);
     const Vector3 normal = random.direction();
     const double limit = random.between(-1.0, 1.0);

@@ -31,7 +31,7 @@ TriangleMesh box_mesh(const Vector3& low, const Vector3& high) { return obstacle
 TEST(MeshInside, WindingNumberIsThatOfSolidAngles) {
   const TriangleMesh tori = together(test::torus(1.0, 0.3, 24, 12), moved(test::torus(0.9, 0.4, 20, 10), Vector3(0.5, 0.1, 0.2)));
   for (const TriangleMesh& mesh : {test::torus(1.0, 0.3, 40, 20), test::needles(24), tori}) {
-    const MeshTree tree(mesh);
+    const MeshBvh tree(mesh);
     const Box3 box = bounds(mesh.vertices);
     Random random(1);
     std::array<int, 3> seen{};
@@ -53,7 +53,7 @@ TEST(MeshInside, RaysThroughEdgesAndVerticesCountOnce) {
   const Box3 first(Vector3(0, 0, 0), Vector3(4, 2, 4));
   const Box3 second(Vector3(2, 1, -1), Vector3(6, 3, 3));
   const auto mesh_of = [](const Box3& box) { return moved(box_mesh(box.min(), box.max()), box.center()); };
-  const MeshTree tree(together(mesh_of(first), mesh_of(second)));
+  const MeshBvh tree(together(mesh_of(first), mesh_of(second)));
   const auto strictly_within = [](const Box3& box, const Vector3& p) {
     return (p.array() > box.min().array()).all() && (p.array() < box.max().array()).all();
   };
@@ -86,7 +86,7 @@ TEST(MeshInside, OverlapOfComponentsIsInside) {
 
 TEST(MeshInside, BoxFindsTheTrianglesThatItMeets) {
   const TriangleMesh mesh = test::torus(1.0, 0.3, 40, 20);
-  const MeshTree tree(mesh);
+  const MeshBvh tree(mesh);
   Random random(2);
   std::vector<Index> found;
   for (int i = 0; i < 300; ++i) {

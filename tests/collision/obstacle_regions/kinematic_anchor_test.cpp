@@ -24,13 +24,13 @@ MovedTriangle moved_triangle(const AffineTransform& map, Random& random) {
 }
 
 TEST(CommonMotion, OfAnObstacleThatIsRigidIsItsOwn) {
-  const std::vector<Anchor> anchors{
+  const std::vector<KinematicAnchor> anchors{
       {.particle = 0}, {.particle = 1, .obstacle = 0, .motion = kPose}, {.particle = 2, .obstacle = 1}};
   EXPECT_EQ(common_motion(anchors).matrix(), kPose.matrix());
 }
 
 TEST(CommonMotion, OfObstaclesThatRestIsNone) {
-  const std::vector<Anchor> anchors{{.particle = 0}, {.particle = 1}};
+  const std::vector<KinematicAnchor> anchors{{.particle = 0}, {.particle = 1}};
   EXPECT_EQ(common_motion(anchors).matrix(), AffineTransform::Identity().matrix());
 }
 
@@ -41,7 +41,7 @@ TEST(CommonMotion, TakesASurfaceThatStretchesAndShearsAlong) {
   for (int trial = 0; trial < 100; ++trial) {
     AffineTransform map(kPose);
     for (double& entry : map.linear().reshaped()) entry += random.between(-0.1, 0.1);
-    std::vector<Anchor> anchors;
+    std::vector<KinematicAnchor> anchors;
     for (Index k = 0; k < 2; ++k) {
       anchors.push_back({.particle = k, .obstacle = 0, .motion = kPose, .surface = moved_triangle(map, random)});
     }
@@ -55,7 +55,7 @@ TEST(CommonMotion, TakesASingleTriangleAlong) {
   AffineTransform map(kPose);
   map.linear() *= 1.2;
   const MovedTriangle triangle = moved_triangle(map, random);
-  const std::vector<Anchor> anchors{{.particle = 0, .obstacle = 0, .motion = kPose, .surface = triangle}};
+  const std::vector<KinematicAnchor> anchors{{.particle = 0, .obstacle = 0, .motion = kPose, .surface = triangle}};
   const AffineTransform found = common_motion(anchors);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_LT((found * triangle.before[k] - triangle.after[k]).norm(), 1e-12);
   const Vector3 across = (triangle.before[1] - triangle.before[0]).cross(triangle.before[2] - triangle.before[0]);
@@ -67,7 +67,7 @@ TEST(CommonMotion, NeverTurnsInsideOut) {
   Random random(5);
   AffineTransform mirror = AffineTransform::Identity();
   mirror.linear()(0, 0) = -1.0;
-  std::vector<Anchor> anchors;
+  std::vector<KinematicAnchor> anchors;
   for (Index k = 0; k < 3; ++k) anchors.push_back({.particle = k, .obstacle = 0, .surface = moved_triangle(mirror, random)});
   EXPECT_GT(common_motion(anchors).linear().determinant(), 0.0);
 }

@@ -14,31 +14,31 @@
 namespace sprung {
 namespace {
 
-// Obstacles are looked for where elements are about to go. What is elsewhere has no zones, and nothing may be led there.
-TEST(ObstacleZones, AllowNoPlaceWhereNoObstacleWasLookedFor) {
+// Obstacles are looked for where elements are about to go. What is elsewhere has no regions, and nothing may be led there.
+TEST(ObstacleSafeRegions, AllowNoPlaceWhereNoObstacleWasLookedFor) {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.5}};
   ball.placed.translation() = Vector3(10.0, 0.0, 0.0);
   Environment environment({ball});
   environment.set_interval(0.0, 0.01);
   const CollisionSurface surface = test::particle_surface({0});
   const Points here = Points::Zero(3, 1);
-  ObstacleZones zones(environment.set(), surface, here, 0.01);
-  zones.follow({here, here});
+  ObstacleSafeRegions regions(environment.set(), surface, here, 0.01);
+  regions.follow({here, here});
   std::vector<HalfSpace> half_spaces;
-  zones.append_half_spaces(0, half_spaces);
+  regions.append_half_spaces(0, half_spaces);
   const auto is_within = [&](const Vector3& p) {
     return std::ranges::all_of(half_spaces, [&](const HalfSpace& bound) { return bound.normal.dot(p) >= bound.offset; });
   };
-  EXPECT_TRUE(zones.allow(0, here.col(0)));
+  EXPECT_TRUE(regions.allow(0, here.col(0)));
   EXPECT_TRUE(is_within(here.col(0)));
-  EXPECT_FALSE(zones.allow(0, ball.placed.translation()));
+  EXPECT_FALSE(regions.allow(0, ball.placed.translation()));
   EXPECT_FALSE(is_within(ball.placed.translation()));
 }
 
-// A zone that is made again because one of its corners leaves has other planes, which may not hold another corner on its way
-// although its old zone did: that one has to be looked at too. A cloth moves at random over rough ground; whoever is not restless
+// A region that is made again because one of its corners leaves has other planes, which may not hold another corner on its way
+// although its old region did: that one has to be looked at too. A cloth moves at random over rough ground; whoever is not restless
 // goes where it wants.
-TEST(ObstacleZones, WhomNewZonesDoNotHoldIsRestless) {
+TEST(ObstacleSafeRegions, WhomNewZonesDoNotHoldIsRestless) {
   constexpr Index kSide = 10;
   constexpr int kSteps = 1000;
   constexpr double kFarthest = 0.1;
@@ -50,18 +50,18 @@ TEST(ObstacleZones, WhomNewZonesDoNotHoldIsRestless) {
   test::SelfNetwork cloth;
   cloth.add_cloth(kSide, {-4.0, 1.1, -4.0}, {0.8, 0.0, 0.0}, {0.0, 0.0, 0.8});
   const CollisionSurface surface = cloth.surface(0.05);
-  ObstacleZones zones(environment.set(), surface, cloth.positions, 0.05);
+  ObstacleSafeRegions regions(environment.set(), surface, cloth.positions, 0.05);
   Points from = cloth.positions;
   for (int step = 0; step < kSteps; ++step) {
     Points to = from;
     for (Index i = 0; i < cloth.count(); ++i) {
       to.col(i) += random.between(0.0, kFarthest) * random.direction() - Vector3(0.0, 0.2 * kFarthest, 0.0);
     }
-    zones.follow({from, to});
-    const std::vector<Index> restless = zones.restless();
+    regions.follow({from, to});
+    const std::vector<Index> restless = regions.restless();
     for (Index i = 0; i < cloth.count(); ++i) {
       if (std::ranges::binary_search(restless, i)) continue;
-      ASSERT_TRUE(zones.allow(i, to.col(i))) << "particle " << i << " in step " << step;
+      ASSERT_TRUE(regions.allow(i, to.col(i))) << "particle " << i << " in step " << step;
       from.col(i) = to.col(i);
     }
   }
@@ -103,13 +103,13 @@ struct SquareAbove {
   SquareAbove(const Obstacle& obstacle, const Vector3& corner) : environment({obstacle}) {
     square.add_cloth(1, corner, Vector3::UnitX(), Vector3::UnitZ());
     surface = square.surface(kGap);
-    zones.emplace(environment.set(), surface, square.positions, 0.5 * kGap);
+    regions.emplace(environment.set(), surface, square.positions, 0.5 * kGap);
   }
 
   std::vector<Contact> step(const Points& from, const Points& to) {
-    zones->follow({from, to});
+    regions->follow({from, to});
     std::vector<Contact> contacts;
-    zones->find_contacts({from, to}, contacts);
+    regions->find_contacts({from, to}, contacts);
     return contacts;
   }
 
@@ -117,7 +117,7 @@ struct SquareAbove {
   Environment environment;
   test::SelfNetwork square;
   CollisionSurface surface;
-  std::optional<ObstacleZones> zones;
+  std::optional<ObstacleSafeRegions> regions;
 };
 
 class ElementOverTop : public ::testing::TestWithParam<Top> {};
@@ -174,7 +174,7 @@ TEST(ElementOverTops, MeetsATipThatDeforms) {
   }
 }
 
-// The square slides off one tip, within the zone that it has, and lies on another one then.
+// The square slides off one tip, within the region that it has, and lies on another one then.
 TEST(ElementOverTops, MeetsTheNextOneOnceItLeftTheFirst) {
   constexpr double kGap = SquareAbove::kGap;
   const Vector3 next(0.3, -0.1 * kGap, 0.3);

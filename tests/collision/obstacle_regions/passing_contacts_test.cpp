@@ -32,8 +32,8 @@ Step step_of_sheets(const Eigen::Quaterniond& turn, double height, const Vector3
   step.after = x;
   step.after.rightCols(x.cols() - below).colwise() += way;
   const CollisionSurface surface = step.network.surface(kGap);
-  SelfZones zones(surface, x, 0.5 * kGap);
-  zones.begin_step(x, step.after, step.contacts);
+  PairSeparation regions(surface, x, 0.5 * kGap);
+  regions.begin_step(x, step.after, step.contacts);
   return step;
 }
 

@@ -17,7 +17,7 @@ std::size_t contacts(const std::vector<double>& heights, const std::vector<doubl
                             .geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = 0.0},
                             .material = {.thickness = kGap}}});
   environment.set_interval(0.0, 0.01);
-  FreeSpace space = test::single_particles(environment, std::vector<char>(heights.size(), 0), 0.5 * kGap);
+  StepTruncation space = test::single_particles(environment, std::vector<char>(heights.size(), 0), 0.5 * kGap);
   Points after = Points::Zero(3, static_cast<Index>(heights.size()));
   Points before = after;
   for (std::size_t i = 0; i < heights.size(); ++i) {
@@ -56,7 +56,7 @@ TEST(ContactsAgain, AreFoundAnewAroundWhatWasStopped) {
                             .geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = 0.0},
                             .material = {.thickness = kGap}}});
   environment.set_interval(0.0, 0.01);
-  FreeSpace space = test::single_particles(environment, std::vector<char>(kParticles, 0), 0.5 * kGap);
+  StepTruncation space = test::single_particles(environment, std::vector<char>(kParticles, 0), 0.5 * kGap);
   Points before = Points::Zero(3, kParticles);
   before.row(1).setConstant(kGap);
   Points after = before;

@@ -130,7 +130,7 @@ TEST(Environment, SameBitsForAnyNumberOfThreads) {
     std::vector<Contact> contacts;
     Points after;
     Index truncated = 0;
-    Index squeezed = 0;
+    Index infeasible = 0;
     std::optional<double> distance;
   };
   const auto run = [&](int threads) {
@@ -138,9 +138,9 @@ TEST(Environment, SameBitsForAnyNumberOfThreads) {
     Run result;
     result.contacts = environment.contacts({particles.before, particles.after, particles.thickness, 0.05});
     result.after = particles.after;
-    const Truncation truncation = test::single_particles(environment, 20000).truncate(particles.before, result.after);
+    const TruncationResult truncation = test::single_particles(environment, 20000).truncate(particles.before, result.after);
     result.truncated = truncation.truncated;
-    result.squeezed = truncation.squeezed;
+    result.infeasible = truncation.infeasible;
     result.distance = environment.min_distance(result.after, 0.5);
     return result;
   };
@@ -156,7 +156,7 @@ TEST(Environment, SameBitsForAnyNumberOfThreads) {
   }
   EXPECT_EQ(one.after, two.after);
   EXPECT_EQ(one.truncated, two.truncated);
-  EXPECT_EQ(one.squeezed, two.squeezed);
+  EXPECT_EQ(one.infeasible, two.infeasible);
   EXPECT_EQ(one.distance, two.distance);
 }
 

@@ -12,7 +12,7 @@ namespace {
 using test::Random;
 
 struct Sides {
-  ElementPair pair;
+  ConvexPair pair;
   Points positions;
 };
 
@@ -49,7 +49,7 @@ TEST(DirectionBetween, SeparatesWhatHardlyRoundingTellsApart) {
 }
 
 TEST(DirectionBetween, LeavesNoGapWhereSidesTouch) {
-  ElementPair pair{.particles = {0, 1, 2, 3}, .first_count = 1, .second_count = 3};
+  ConvexPair pair{.particles = {0, 1, 2, 3}, .first_count = 1, .second_count = 3};
   Points positions(3, 4);
   positions << 0, 0, 1, 0,  //
       0, 0, 0, 1,           //

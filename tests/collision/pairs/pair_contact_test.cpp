@@ -9,9 +9,9 @@ namespace sprung {
 namespace {
 
 /// Sides of so many corners each, 0.1 m and more apart.
-ElementPair random_pair(int first_count, int second_count, std::mt19937& random, Points& positions) {
+ConvexPair random_pair(int first_count, int second_count, std::mt19937& random, Points& positions) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  ElementPair pair{.particles = {}, .first_count = first_count, .second_count = second_count};
+  ConvexPair pair{.particles = {}, .first_count = first_count, .second_count = second_count};
   std::iota(pair.particles.begin(), pair.particles.end(), 0);
   positions = Points::Zero(3, pair.count());
   for (double& coordinate : positions.reshaped()) coordinate = unit(random);
@@ -28,7 +28,7 @@ TEST_P(MeetingOfAPair, IsWhereItsSidesAreNearest) {
   std::mt19937 random(3);
   for (int trial = 0; trial < 1000; ++trial) {
     Points x;
-    ElementPair pair = random_pair(first_count, second_count, random, x);
+    ConvexPair pair = random_pair(first_count, second_count, random, x);
     const auto meeting = meeting_of(pair, x);
     ASSERT_TRUE(meeting);
     ASSERT_LE(meeting->count, Contact::kMostParticles);
@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Sides, MeetingOfAPair,
 
 TEST(MeetingOfAPair, IsNoneWhereTheyTouch) {
   const Points x = (Points(3, 4) << 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0).finished();
-  const ElementPair pair{.particles = {0, 1, 2, 3}, .first_count = 1, .second_count = 3};
+  const ConvexPair pair{.particles = {0, 1, 2, 3}, .first_count = 1, .second_count = 3};
   EXPECT_FALSE(meeting_of(pair, x));
 }
 

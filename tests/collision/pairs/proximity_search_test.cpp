@@ -20,7 +20,7 @@ constexpr double kEdge = 0.01;      // [m]
 constexpr double kGap = 0.003;      // [m]
 constexpr double kRadius = 0.0005;  // [m]
 constexpr double kFar = 1.0;        // [m]
-constexpr WatchTimes kTimes{.now = 2.0, .end = 7.0};
+constexpr HorizonTimes kTimes{.now = 2.0, .end = 7.0};
 
 using Key = std::tuple<bool, Index, Index, Index, Index>;
 
@@ -44,10 +44,10 @@ class Crumpled {
     network_.add_rope(20, {0.0, 0.02, 0.0}, kEdge * Vector3::UnitX());
     network_.add_single_particle({0.0, 0.05, 0.0});
     surface_ = std::make_unique<CollisionSurface>(network_.surface(kGap));
-    features_ = std::make_unique<SurfaceFeatures>(surface_->elements, network_.count());
-    sharp_ = std::make_unique<SharpEdges>(*surface_, *features_);
-    tree_ = std::make_unique<ElementTree>(*surface_, network_.positions);
-    balls_ = std::make_unique<MovingBalls>(std::vector<double>(static_cast<std::size_t>(network_.count()), kRadius));
+    features_ = std::make_unique<SurfaceTopology>(surface_->elements, network_.count());
+    sharp_ = std::make_unique<FeatureEdges>(*surface_, *features_);
+    tree_ = std::make_unique<ElementBvh>(*surface_, network_.positions);
+    balls_ = std::make_unique<VertexBounds>(std::vector<double>(static_cast<std::size_t>(network_.count()), kRadius));
     for (Index i = 0; i < network_.count(); ++i) {
       const Vector3 place = network_.positions.col(i) + random_.between(0.0, 2.0 * kEdge) * random_.direction();
       balls_->place(i, place, place + random_.between(0.0, 0.03 * kEdge) * random_.direction());
@@ -66,7 +66,7 @@ class Crumpled {
   [[nodiscard]] std::vector<ContactCandidate> find(const std::vector<char>& marked) {
     mark_elements(marked);
     tree_->mark(marked_elements_);
-    ContactSearch search(*surface_, *features_, *sharp_, *tree_, network_.positions, 0.5 * kGap);
+    ProximitySearch search(*surface_, *features_, *sharp_, *tree_, network_.positions, 0.5 * kGap);
     return search.find_candidates(*balls_, marked, kTimes);
   }
 
@@ -135,10 +135,10 @@ class Crumpled {
   test::Random random_;
   SelfNetwork network_;
   std::unique_ptr<CollisionSurface> surface_;
-  std::unique_ptr<SurfaceFeatures> features_;
-  std::unique_ptr<SharpEdges> sharp_;
-  std::unique_ptr<ElementTree> tree_;
-  std::unique_ptr<MovingBalls> balls_;
+  std::unique_ptr<SurfaceTopology> features_;
+  std::unique_ptr<FeatureEdges> sharp_;
+  std::unique_ptr<ElementBvh> tree_;
+  std::unique_ptr<VertexBounds> balls_;
   std::vector<Index> marked_elements_;
 };
 
@@ -148,7 +148,7 @@ std::set<Key> keys_of(const std::vector<ContactCandidate>& candidates) {
   return keys;
 }
 
-TEST(ContactSearch, MissesNothingThatComesNearerThanTheGap) {
+TEST(ProximitySearch, MissesNothingThatComesNearerThanTheGap) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     Crumpled crumpled(seed);
     const std::set<Key> found = keys_of(crumpled.find(crumpled.all()));
@@ -158,19 +158,19 @@ TEST(ContactSearch, MissesNothingThatComesNearerThanTheGap) {
   }
 }
 
-TEST(ContactSearch, NamesEachOnce) {
+TEST(ProximitySearch, NamesEachOnce) {
   Crumpled crumpled(4);
   const std::vector<ContactCandidate> found = crumpled.find(crumpled.all());
   EXPECT_EQ(keys_of(found).size(), found.size());
 }
 
-TEST(ContactSearch, LooksAtLittleElse) {
+TEST(ProximitySearch, LooksAtLittleElse) {
   Crumpled crumpled(5);
   // What comes as near as gap and margin, by bounds that hold from begin to end: 1.4 times as many were seen.
   EXPECT_LT(crumpled.find(crumpled.all()).size(), 2 * crumpled.nearer_than_the_gap().size());
 }
 
-TEST(ContactSearch, AroundMarkedParticlesFindsWhatTheWholeSearchFindsThere) {
+TEST(ProximitySearch, AroundMarkedParticlesFindsWhatTheWholeSearchFindsThere) {
   Crumpled crumpled(6);
   const std::vector<ContactCandidate> whole = crumpled.find(crumpled.all());
   for (const int parts : {2, 10, 100}) {

@@ -42,19 +42,19 @@ std::vector<Sample> primitives(double scale) {
   return all;
 }
 
-Zone zone_against(const ObstacleGeometry& geometry, const ElementCorners& element, const ZoneRequest& request) {
+SafeRegion region_against(const ObstacleGeometry& geometry, const ElementCorners& element, const SafeRegionRequest& request) {
   return std::visit(
       [&](const auto& shape) {
-        if constexpr (requires { find_zone(shape, element, request); }) {
-          return find_zone(shape, element, request);
+        if constexpr (requires { find_region(shape, element, request); }) {
+          return find_region(shape, element, request);
         } else {
-          return Zone{};  // meshes are no primitives
+          return SafeRegion{};  // meshes are no primitives
         }
       },
       geometry);
 }
 
-ZoneRequest wide(double scale) { return {.reach = 10.0 * scale, .gap = 0.01 * scale, .clearance = 0x1p-30 * scale}; }
+SafeRegionRequest wide(double scale) { return {.reach = 10.0 * scale, .gap = 0.01 * scale, .clearance = 0x1p-30 * scale}; }
 
 Vector3 weighted(const ElementCorners& element, const Vector3& weights) {
   Vector3 sum = Vector3::Zero();
@@ -143,19 +143,19 @@ TEST(ConvexZone, DistanceIsTheSmallestOverTheElement) {
       for (int i = 0; i < 120; ++i) {
         const ElementCorners element = random_element(random, 1 + i % 3, scale);
         const double exact = least_distance(*shape, element);
-        const Zone zone = zone_against(geometry, element, wide(scale));
-        ASSERT_EQ(zone.broken, exact <= 0.0) << name << " element " << i << " distance " << exact;
-        if (zone.broken) continue;
+        const SafeRegion region = region_against(geometry, element, wide(scale));
+        ASSERT_EQ(region.broken, exact <= 0.0) << name << " element " << i << " distance " << exact;
+        if (region.broken) continue;
         ++apart;
-        ASSERT_LE(zone.clear, exact + 1e-15 * scale) << name;
-        ASSERT_GE(zone.clear, (1.0 - 5e-3) * exact) << name;
+        ASSERT_LE(region.clear, exact + 1e-15 * scale) << name;
+        ASSERT_GE(region.clear, (1.0 - 5e-3) * exact) << name;
         // The search may stop 0.2 % too high; the oracle's own error is 4e-9 of sizes up to 4.
-        ASSERT_NEAR(zone.distance, exact, 2.1e-3 * exact + 2e-8 * scale) << name << " element " << i;
-        ASSERT_NEAR((weighted(element, zone.weights) - zone.point).norm(), zone.distance, 1e-14 * scale)
+        ASSERT_NEAR(region.distance, exact, 2.1e-3 * exact + 2e-8 * scale) << name << " element " << i;
+        ASSERT_NEAR((weighted(element, region.weights) - region.point).norm(), region.distance, 1e-14 * scale)
             << name << " element " << i;
-        ASSERT_NEAR(zone.weights.sum(), 1.0, 1e-14) << name;
-        ASSERT_GE(zone.weights.minCoeff(), 0.0) << name;
-        ASSERT_NEAR(shape->nearest(zone.point, kEverything)->distance, 0.0, 1e-13 * scale) << name;
+        ASSERT_NEAR(region.weights.sum(), 1.0, 1e-14) << name;
+        ASSERT_GE(region.weights.minCoeff(), 0.0) << name;
+        ASSERT_NEAR(shape->nearest(region.point, kEverything)->distance, 0.0, 1e-13 * scale) << name;
       }
       ASSERT_GT(apart, 30) << name;
     }
@@ -170,19 +170,19 @@ TEST(ConvexZone, PlaneSeparatesByTheDistance) {
       Random random(2);
       for (int i = 0; i < 600; ++i) {
         const ElementCorners element = random_element(random, 1 + i % 3, scale);
-        const ZoneRequest request = wide(scale);
-        const Zone zone = zone_against(geometry, element, request);
-        if (zone.broken) continue;
-        ASSERT_EQ(zone.plane_count, 1) << name;
-        const HalfSpace& plane = zone.planes[0];
+        const SafeRegionRequest request = wide(scale);
+        const SafeRegion region = region_against(geometry, element, request);
+        if (region.broken) continue;
+        ASSERT_EQ(region.plane_count, 1) << name;
+        const HalfSpace& plane = region.planes[0];
         ASSERT_NEAR(plane.normal.norm(), 1.0, 1e-15) << name;
-        ASSERT_EQ(plane.normal, zone.normal) << name;
+        ASSERT_EQ(plane.normal, region.normal) << name;
         ASSERT_GE(lowest_corner(element, plane.normal), plane.offset) << name;
         // Half of the gap that contact keeps, or 0.3 of what there is.
-        const double stand_off = std::min(0.5 * request.gap, 0.3 * zone.distance);
+        const double stand_off = std::min(0.5 * request.gap, 0.3 * region.distance);
         const double highest = plane.offset - stand_off;
-        for (const Vector3& point : surface) ASSERT_LE(plane.normal.dot(point), highest + 1e-3 * zone.distance) << name;
-        ASSERT_GE(lowest_corner(element, plane.normal) - highest, (1.0 - 5e-3) * zone.distance) << name << " element " << i;
+        for (const Vector3& point : surface) ASSERT_LE(plane.normal.dot(point), highest + 1e-3 * region.distance) << name;
+        ASSERT_GE(lowest_corner(element, plane.normal) - highest, (1.0 - 5e-3) * region.distance) << name << " element " << i;
       }
     }
   }
@@ -197,20 +197,20 @@ TEST(ConvexZone, BoxIsFreeWithoutPlanes) {
       int free = 0;
       for (int i = 0; i < 600; ++i) {
         const ElementCorners element = random_element(random, 1 + i % 3, scale);
-        const ZoneRequest request{.reach = 0.05 * scale, .gap = 0.01 * scale, .clearance = 0x1p-30 * scale};
-        const Zone zone = zone_against(geometry, element, request);
+        const SafeRegionRequest request{.reach = 0.05 * scale, .gap = 0.01 * scale, .clearance = 0x1p-30 * scale};
+        const SafeRegion region = region_against(geometry, element, request);
         Box3 box;
         for (int k = 0; k < element.count; ++k) box.extend(element.x[static_cast<std::size_t>(k)]);
-        ASSERT_EQ(zone.box.min(), box.min() - Vector3::Constant(request.reach));
-        ASSERT_EQ(zone.box.max(), box.max() + Vector3::Constant(request.reach));
-        if (zone.broken || zone.plane_count > 0) {
-          ASSERT_LT(zone.distance, 2.0 * scale) << name;
+        ASSERT_EQ(region.box.min(), box.min() - Vector3::Constant(request.reach));
+        ASSERT_EQ(region.box.max(), box.max() + Vector3::Constant(request.reach));
+        if (region.broken || region.plane_count > 0) {
+          ASSERT_LT(region.distance, 2.0 * scale) << name;
           continue;
         }
         ++free;
-        ASSERT_EQ(zone.distance, kEverything) << name;
-        ASSERT_LE(zone.clear, least_distance(*shape, element)) << name;
-        for (const Vector3& point : surface) ASSERT_FALSE(zone.box.contains(point)) << name << " element " << i;
+        ASSERT_EQ(region.distance, kEverything) << name;
+        ASSERT_LE(region.clear, least_distance(*shape, element)) << name;
+        for (const Vector3& point : surface) ASSERT_FALSE(region.box.contains(point)) << name << " element " << i;
       }
       ASSERT_GT(free, 100) << name;
     }
@@ -240,17 +240,17 @@ TEST(ConvexZone, IsFoundDownToTheClearance) {
       const auto shape = make_shape(geometry);
       Random random(4);
       for (int i = 0; i < 900; ++i) {
-        const ZoneRequest request{.reach = 0.1 * scale, .gap = 0.0, .clearance = 0x1p-30 * scale};
+        const SafeRegionRequest request{.reach = 0.1 * scale, .gap = 0.0, .clearance = 0x1p-30 * scale};
         const double distance = request.clearance * (i % 2 == 0 ? 1.0 : 1000.0);
         const ElementCorners element = tangent_element(random, *shape, 1 + i % 3, distance, scale);
-        const Zone zone = zone_against(geometry, element, request);
-        ASSERT_FALSE(zone.broken) << name << " element " << i;
+        const SafeRegion region = region_against(geometry, element, request);
+        ASSERT_FALSE(region.broken) << name << " element " << i;
         // Coordinates up to 3 are rounded to 4e-16, the tangent plane's directions to as much: 2e-15 of 9e-10 in all.
-        ASSERT_NEAR(zone.distance, distance, 3e-3 * distance + 4e-15 * scale) << name << " element " << i;
-        const double gap = lowest_corner(element, zone.normal) - zone.normal.dot(zone.point);
+        ASSERT_NEAR(region.distance, distance, 3e-3 * distance + 4e-15 * scale) << name << " element " << i;
+        const double gap = lowest_corner(element, region.normal) - region.normal.dot(region.point);
         ASSERT_GE(gap, (1.0 - 5e-3) * distance - 4e-15 * scale) << name << " element " << i;
-        ASSERT_GE(lowest_corner(element, zone.normal), zone.planes[0].offset);
-        ASSERT_GE(zone.planes[0].offset - zone.normal.dot(zone.point), (1.0 - 5e-3) * request.clearance) << name;
+        ASSERT_GE(lowest_corner(element, region.normal), region.planes[0].offset);
+        ASSERT_GE(region.planes[0].offset - region.normal.dot(region.point), (1.0 - 5e-3) * request.clearance) << name;
       }
     }
   }
@@ -262,23 +262,23 @@ TEST(ConvexZone, ElementsThatTouchAreBroken) {
       const auto shape = make_shape(geometry);
       Random random(5);
       for (int i = 0; i < 300; ++i) {
-        const ZoneRequest request{.reach = 0.1 * scale, .gap = 0.01 * scale, .clearance = 0x1p-30 * scale};
+        const SafeRegionRequest request{.reach = 0.1 * scale, .gap = 0.01 * scale, .clearance = 0x1p-30 * scale};
         const double depth = i % 2 == 0 ? 0.0 : 1e-6 * scale;
-        const Zone zone = zone_against(geometry, tangent_element(random, *shape, 1 + i % 3, -depth, scale), request);
-        ASSERT_TRUE(zone.broken) << name << " element " << i;
-        ASSERT_EQ(zone.plane_count, 0);
-        ASSERT_LE(zone.distance, 1e-15 * scale) << name << " element " << i;
+        const SafeRegion region = region_against(geometry, tangent_element(random, *shape, 1 + i % 3, -depth, scale), request);
+        ASSERT_TRUE(region.broken) << name << " element " << i;
+        ASSERT_EQ(region.plane_count, 0);
+        ASSERT_LE(region.distance, 1e-15 * scale) << name << " element " << i;
       }
     }
   }
 }
 
 TEST(ConvexZone, FaceThatAShapePiercesBetweenItsEdgesIsBroken) {
-  const ZoneRequest request{.reach = 0.1, .gap = 0.01, .clearance = 0x1p-30};
+  const SafeRegionRequest request{.reach = 0.1, .gap = 0.01, .clearance = 0x1p-30};
   const ElementCorners face{{Vector3(-2, 0, -2), Vector3(3, 0, -2), Vector3(0, 0, 3)}, 3};
-  for (const auto& [name, geometry] : solids(1.0)) EXPECT_TRUE(zone_against(geometry, face, request).broken) << name;
+  for (const auto& [name, geometry] : solids(1.0)) EXPECT_TRUE(region_against(geometry, face, request).broken) << name;
   const ElementCorners inside{{Vector3(0, 0, 0), Vector3(0.004, 0, 0), Vector3(0, 0, 0.004)}, 3};
-  for (const auto& [name, geometry] : solids(1.0)) EXPECT_TRUE(zone_against(geometry, inside, request).broken) << name;
+  for (const auto& [name, geometry] : solids(1.0)) EXPECT_TRUE(region_against(geometry, inside, request).broken) << name;
 }
 
 TEST(ConvexZone, BrokenElementIsFreeOnceItWentItsDistanceAlongTheNormal) {
@@ -287,13 +287,13 @@ TEST(ConvexZone, BrokenElementIsFreeOnceItWentItsDistanceAlongTheNormal) {
     int broken = 0;
     for (int i = 0; i < 600; ++i) {
       ElementCorners element = random_element(random, 1 + i % 3, 1.0);
-      const ZoneRequest request = wide(1.0);
-      const Zone zone = zone_against(geometry, element, request);
-      if (!zone.broken) continue;
+      const SafeRegionRequest request = wide(1.0);
+      const SafeRegion region = region_against(geometry, element, request);
+      if (!region.broken) continue;
       ++broken;
-      ASSERT_NEAR(zone.normal.dot(weighted(element, zone.weights) - zone.point), zone.distance, 1e-15) << name;
-      for (Vector3& corner : element.x) corner += (1e-6 - zone.distance) * zone.normal;
-      ASSERT_FALSE(zone_against(geometry, element, request).broken) << name << " element " << i;
+      ASSERT_NEAR(region.normal.dot(weighted(element, region.weights) - region.point), region.distance, 1e-15) << name;
+      for (Vector3& corner : element.x) corner += (1e-6 - region.distance) * region.normal;
+      ASSERT_FALSE(region_against(geometry, element, request).broken) << name << " element " << i;
     }
     ASSERT_GT(broken, 10) << name;
   }
@@ -306,19 +306,19 @@ TEST(ConvexZone, TrianglesWithoutAreaAreTheirSegments) {
       const ElementCorners segment = random_element(random, 2, 1.0);
       const auto& [a, b, unused] = segment.x;
       const Vector3 between = a + random.between(0.0, 1.0) * (b - a);
-      const Zone expected = zone_against(geometry, segment, wide(1.0));
+      const SafeRegion expected = region_against(geometry, segment, wide(1.0));
       for (const Vector3& third : {a, b, between, Vector3(between + 1e-12 * random.direction())}) {
-        const Zone zone = zone_against(geometry, {{a, b, third}, 3}, wide(1.0));
-        ASSERT_EQ(zone.broken, expected.broken) << name;
-        if (zone.broken) continue;
+        const SafeRegion region = region_against(geometry, {{a, b, third}, 3}, wide(1.0));
+        ASSERT_EQ(region.broken, expected.broken) << name;
+        if (region.broken) continue;
         // Both are within 0.2 % of the distance.
-        ASSERT_NEAR(zone.distance, expected.distance, 4e-3 * std::abs(expected.distance) + 2e-12) << name << " element " << i;
+        ASSERT_NEAR(region.distance, expected.distance, 4e-3 * std::abs(expected.distance) + 2e-12) << name << " element " << i;
       }
     }
     const Vector3 p(0.2, 2.0, -1.0);
-    const double distance = zone_against(geometry, {{p, p, p}, 1}, wide(1.0)).distance;
-    EXPECT_EQ(zone_against(geometry, {{p, p, p}, 2}, wide(1.0)).distance, distance) << name;
-    EXPECT_EQ(zone_against(geometry, {{p, p, p}, 3}, wide(1.0)).distance, distance) << name;
+    const double distance = region_against(geometry, {{p, p, p}, 1}, wide(1.0)).distance;
+    EXPECT_EQ(region_against(geometry, {{p, p, p}, 2}, wide(1.0)).distance, distance) << name;
+    EXPECT_EQ(region_against(geometry, {{p, p, p}, 3}, wide(1.0)).distance, distance) << name;
   }
 }
 
@@ -326,11 +326,11 @@ TEST(ConvexZone, PlaneNeverAsksTheElementToComeNearer) {
   const SphereGeometry sphere{1.0};
   for (const double distance : {1e-12, 1e-10, 1e-9, 1e-3, 0.5}) {
     const ElementCorners point{{Vector3(0.0, 1.0 + distance, 0.0)}, 1};
-    const ZoneRequest request{.reach = 1.0, .gap = 0.01, .clearance = 0x1p-30};
-    const Zone zone = find_zone(sphere, point, request);
-    ASSERT_EQ(zone.plane_count, 1);
-    const double stand_off = zone.planes[0].offset - 1.0;
-    EXPECT_LE(zone.planes[0].offset, point.x[0].y());
+    const SafeRegionRequest request{.reach = 1.0, .gap = 0.01, .clearance = 0x1p-30};
+    const SafeRegion region = find_region(sphere, point, request);
+    ASSERT_EQ(region.plane_count, 1);
+    const double stand_off = region.planes[0].offset - 1.0;
+    EXPECT_LE(region.planes[0].offset, point.x[0].y());
     EXPECT_LE(stand_off, std::max(0.5 * request.gap, request.clearance));
     EXPECT_NEAR(stand_off, std::min({distance, 0.5 * request.gap, std::max(0.3 * distance, request.clearance)}), 1e-15);
   }
@@ -345,12 +345,12 @@ TEST(ConvexZone, ScalingByAPowerOfTwoScalesEveryBit) {
       const ElementCorners element = random_element(random, 1 + i % 3, 1.0);
       ElementCorners scaled = element;
       for (Vector3& corner : scaled.x) corner *= 128.0;
-      const Zone zone = zone_against(small[k].geometry, element, wide(1.0));
-      const Zone scaled_zone = zone_against(large[k].geometry, scaled, wide(128.0));
-      ASSERT_EQ(128.0 * zone.distance, scaled_zone.distance) << small[k].name;
-      ASSERT_EQ(128.0 * zone.point, scaled_zone.point) << small[k].name;
-      ASSERT_EQ(zone.normal, scaled_zone.normal) << small[k].name;
-      ASSERT_EQ(128.0 * zone.planes[0].offset, scaled_zone.planes[0].offset) << small[k].name;
+      const SafeRegion region = region_against(small[k].geometry, element, wide(1.0));
+      const SafeRegion scaled_region = region_against(large[k].geometry, scaled, wide(128.0));
+      ASSERT_EQ(128.0 * region.distance, scaled_region.distance) << small[k].name;
+      ASSERT_EQ(128.0 * region.point, scaled_region.point) << small[k].name;
+      ASSERT_EQ(region.normal, scaled_region.normal) << small[k].name;
+      ASSERT_EQ(128.0 * region.planes[0].offset, scaled_region.planes[0].offset) << small[k].name;
     }
   }
 }

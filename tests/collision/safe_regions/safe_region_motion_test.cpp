@@ -45,12 +45,12 @@ ElementCorners between(const ElementCorners& a, const ElementCorners& b, double 
 }
 
 struct Tally {
-  int zones = 0;
+  int regions = 0;
   int moves = 0;
 };
 
-/// The law of zones before a surface that deforms: whatever begins in the zone's element and ends in the zone, with the surface
-/// going straight meanwhile, crosses it at no time.
+/// The law of regions before a surface that deforms: whatever begins in the region's element and ends in the region, with the
+/// surface going straight meanwhile, crosses it at no time.
 Tally expect_no_crossing(const Transition& transition, double begin, double end, int trials) {
   MeshShape shape = transition.shape();
   shape.set_interval(begin, end);
@@ -59,20 +59,20 @@ Tally expect_no_crossing(const Transition& transition, double begin, double end,
   Tally tally;
   for (int trial = 0; trial < trials; ++trial) {
     const ElementCorners element = test::random_element(before, random, 1 + trial % 3, 0.2, 0.2);
-    const ZoneRequest request{
+    const SafeRegionRequest request{
         .reach = random.between(0.05, 0.4), .gap = random.between(0.0, 0.05), .clearance = 1e-9, .exact = 0.1};
-    Zone zone;
-    shape.find_zone(element, request, zone);
-    EXPECT_EQ(zone.broken, crosses(element, before)) << "trial " << trial;
-    if (zone.broken) continue;
-    ++tally.zones;
+    SafeRegion region;
+    shape.find_region(element, request, region);
+    EXPECT_EQ(region.broken, crosses(element, before)) << "trial " << trial;
+    if (region.broken) continue;
+    ++tally.regions;
     for (int move = 0; move < 4; ++move) {
       ElementCorners moved = element;
       bool inside = true;
       for (int i = 0; i < element.count; ++i) {
         Vector3& corner = moved.x[static_cast<std::size_t>(i)];
-        corner = test::moved_within(zone, corner + zone.drift, request.reach, random);
-        inside = inside && test::holds(zone, element.x[static_cast<std::size_t>(i)] + zone.drift, corner);
+        corner = test::moved_within(region, corner + region.drift, request.reach, random);
+        inside = inside && test::holds(region, element.x[static_cast<std::size_t>(i)] + region.drift, corner);
       }
       if (!inside) continue;  // the surface came too near to leave room
       ++tally.moves;
@@ -87,12 +87,12 @@ Tally expect_no_crossing(const Transition& transition, double begin, double end,
 
 TEST(ZoneDrift, NothingCrossesASurfaceThatWobbles) {
   const Tally tally = expect_no_crossing(wobbling_torus(Vector3::Zero(), 0.05), 0.25, 0.75, 400);
-  EXPECT_GT(tally.moves, 2 * tally.zones) << "most elements have room to move";
+  EXPECT_GT(tally.moves, 2 * tally.regions) << "most elements have room to move";
 }
 
 TEST(ZoneDrift, NothingCrossesASurfaceThatGoesFartherThanItsTrianglesAreLarge) {
   const Tally tally = expect_no_crossing(wobbling_torus({0.7, -0.5, 0.3}, 0.02), 0.0, 1.0, 400);
-  EXPECT_GT(tally.moves, 2 * tally.zones) << "most elements go along with it";
+  EXPECT_GT(tally.moves, 2 * tally.regions) << "most elements go along with it";
 }
 
 TEST(ZoneDrift, NothingCrossesASurfaceThatGrowsAndTurns) {
@@ -101,7 +101,7 @@ TEST(ZoneDrift, NothingCrossesASurfaceThatGrowsAndTurns) {
   transition.to.vertices = 1.1 * turn * transition.to.vertices;
   EXPECT_GT(expect_no_crossing(transition, 0.0, 0.5, 400).moves, 0);
   const Tally slow = expect_no_crossing(transition, 0.4, 0.45, 400);
-  EXPECT_GT(slow.moves, 3 * slow.zones);
+  EXPECT_GT(slow.moves, 3 * slow.regions);
 }
 
 TEST(ZoneDrift, NothingCrossesWhatASurfaceGoesTo) {
@@ -127,20 +127,20 @@ TEST(ZoneDrift, ASurfaceThatOnlyGoesAlongLeavesElementsTheirPlace) {
   Random random(19);
   for (int trial = 0; trial < 200; ++trial) {
     const ElementCorners element = test::random_element(still.from, random, 1 + trial % 3, 0.2, 0.2);
-    const ZoneRequest request{.reach = 0.3, .gap = 0.02, .clearance = 1e-9, .exact = 0.1};
-    Zone expected;
-    Zone zone;
-    rigid.find_zone(element, request, expected);
-    shape.find_zone(element, request, zone);
-    ASSERT_EQ(zone.broken, expected.broken);
-    if (zone.broken || zone.triangle == kNone) continue;
+    const SafeRegionRequest request{.reach = 0.3, .gap = 0.02, .clearance = 1e-9, .exact = 0.1};
+    SafeRegion expected;
+    SafeRegion region;
+    rigid.find_region(element, request, expected);
+    shape.find_region(element, request, region);
+    ASSERT_EQ(region.broken, expected.broken);
+    if (region.broken || region.triangle == kNone) continue;
     // Coordinates up to 2 m carry roundings of 4e-16 m, sums of them a few.
-    ASSERT_LT((zone.drift - drift).norm(), 1e-15);
-    ASSERT_LT((zone.point - expected.point - drift).norm(), 1e-14);
-    ASSERT_NEAR(zone.distance, expected.distance, 1e-14);
+    ASSERT_LT((region.drift - drift).norm(), 1e-15);
+    ASSERT_LT((region.point - expected.point - drift).norm(), 1e-14);
+    ASSERT_NEAR(region.distance, expected.distance, 1e-14);
     for (int i = 0; i < element.count; ++i) {
       const Vector3 along = element.x[static_cast<std::size_t>(i)] + drift;
-      ASSERT_TRUE(test::holds(zone, along, along + 2e-15 * zone.normal)) << "trial " << trial;
+      ASSERT_TRUE(test::holds(region, along, along + 2e-15 * region.normal)) << "trial " << trial;
     }
   }
 }
@@ -152,11 +152,11 @@ TEST(ZoneDrift, AnElementThatIsAtTheEndAlreadyIsNotTakenAlong) {
   Random random(20);
   for (int trial = 0; trial < 200; ++trial) {
     const ElementCorners element = test::random_element(transition.to, random, 3, 0.2, 0.2);
-    Zone zone;
-    shape.find_zone(element, {.reach = 0.3, .gap = 0.02, .clearance = 1e-9, .exact = 0.1, .at_end = true}, zone);
-    ASSERT_EQ(zone.broken, crosses(element, transition.to));
-    EXPECT_EQ(zone.drift, Vector3::Zero());
-    for (std::size_t i = 0; !zone.broken && i < 3; ++i) ASSERT_TRUE(test::holds(zone, element.x[i], element.x[i]));
+    SafeRegion region;
+    shape.find_region(element, {.reach = 0.3, .gap = 0.02, .clearance = 1e-9, .exact = 0.1, .at_end = true}, region);
+    ASSERT_EQ(region.broken, crosses(element, transition.to));
+    EXPECT_EQ(region.drift, Vector3::Zero());
+    for (std::size_t i = 0; !region.broken && i < 3; ++i) ASSERT_TRUE(test::holds(region, element.x[i], element.x[i]));
   }
 }
 
@@ -168,16 +168,16 @@ TEST(ZoneDrift, NearestPointsGoWithTheSurface) {
   shape.set_interval(0.0, 0.25);
   ElementCorners element{.count = 1};
   element.x[0] = Vector3(1.2, 0.1, 0.3);
-  Zone zone;
-  shape.find_zone(element, {.reach = 0.5, .gap = 0.1, .clearance = 1e-9, .exact = 0.3}, zone);
-  EXPECT_LT((zone.point - Vector3(1.5, 0.0, 0.3)).norm(), 1e-15);
+  SafeRegion region;
+  shape.find_region(element, {.reach = 0.5, .gap = 0.1, .clearance = 1e-9, .exact = 0.3}, region);
+  EXPECT_LT((region.point - Vector3(1.5, 0.0, 0.3)).norm(), 1e-15);
   shape.set_interval(0.25, 0.5);
-  ASSERT_TRUE(shape.take_along(zone));
-  EXPECT_LT((zone.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15);
-  ASSERT_TRUE(shape.take_along(zone));
-  EXPECT_LT((zone.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15) << "once an interval";
+  ASSERT_TRUE(shape.take_along(region));
+  EXPECT_LT((region.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15);
+  ASSERT_TRUE(shape.take_along(region));
+  EXPECT_LT((region.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15) << "once an interval";
   shape.set_interval(0.75, 1.0);
-  EXPECT_FALSE(shape.take_along(zone)) << "it was never told where the surface went between";
+  EXPECT_FALSE(shape.take_along(region)) << "it was never told where the surface went between";
 }
 
 }  // namespace

@@ -157,19 +157,19 @@ TEST(MeshShape, RefusesWhatFclMustNotSee) {
   EXPECT_THAT(rules_broken_by({}), testing::ElementsAre("mesh: must be given"));
 }
 
-// Where points touch there is no direction between them: the zone keeps those that it has, and the triangle that they are on.
+// Where points touch there is no direction between them: the region keeps those that it has, and the triangle that they are on.
 TEST(MeshShape, WhatTouchesWhereItLooksAgainStaysWithWhatItHad) {
   TriangleMesh mesh{Points(3, 6), Triangles(3, 2)};
   mesh.vertices << 0, 1, 0, 2, 3, 2, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1;
   mesh.triangles << 0, 3, 1, 4, 2, 5;
   const auto shape = shape_of(mesh, false);
-  Zone zone;
-  shape->find_zone({.x = {Vector3(0.2, 0.5, 0.3)}, .count = 1}, {.reach = 1.0, .gap = 0.1, .exact = 1.0}, zone);
-  const Vector3 point = zone.point;
-  ASSERT_EQ(zone.triangle, 0);
-  shape->look_again({.x = {Vector3(2.2, 0.0, 0.3)}, .count = 1}, {.reach = 1.0, .gap = 0.1, .exact = 1.0}, false, zone);
-  EXPECT_EQ(zone.triangle, 0);
-  EXPECT_EQ(zone.point, point);
+  SafeRegion region;
+  shape->find_region({.x = {Vector3(0.2, 0.5, 0.3)}, .count = 1}, {.reach = 1.0, .gap = 0.1, .exact = 1.0}, region);
+  const Vector3 point = region.point;
+  ASSERT_EQ(region.triangle, 0);
+  shape->look_again({.x = {Vector3(2.2, 0.0, 0.3)}, .count = 1}, {.reach = 1.0, .gap = 0.1, .exact = 1.0}, false, region);
+  EXPECT_EQ(region.triangle, 0);
+  EXPECT_EQ(region.point, point);
 }
 
 }  // namespace

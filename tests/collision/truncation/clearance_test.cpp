@@ -32,15 +32,15 @@ ObstacleGeometry mesh_of(const TriangleMesh& mesh, bool closed) {
 ObstacleGeometry mesh_of(const ObstacleGeometry& primitive) { return mesh_of(obstacle_mesh(primitive, 0.0), true); }
 
 /// One step without thickness: each particle is led in front of its contacts' planes, then cut. Returns the number of cuts.
-Index step_to(const Environment& environment, FreeSpace& space, Points& x, const Points& wanted) {
+Index step_to(const Environment& environment, StepTruncation& space, Points& x, const Points& wanted) {
   Points after = wanted;
   for (const Contact& contact : environment.contacts({x, wanted, Scalars::Zero(x.cols()), 0.0})) {
     auto position = after.col(contact.particles[0]);
     const double depth = contact.clearance - contact.normal.dot(position - contact.point);
     if (depth > 0.0) position += depth * contact.normal;
   }
-  const Truncation truncation = space.truncate(x, after);
-  EXPECT_EQ(truncation.squeezed, 0);
+  const TruncationResult truncation = space.truncate(x, after);
+  EXPECT_EQ(truncation.infeasible, 0);
   x = after;
   return truncation.truncated;
 }
@@ -70,7 +70,7 @@ TEST(Clearance, PressedParticlesSlideAlongLevelSurfacesUncut) {
       const RigidTransform& pose = environment.pose_after(0);
       const Vector3 motion = pose.linear() * Vector3(0.013, -0.02, 0.007);
       const Vector3 start(-1.5, slide.top + 0.01, -1.0);
-      FreeSpace space = test::single_particles(environment, 1);
+      StepTruncation space = test::single_particles(environment, 1);
       Points x = pose * start;
       for (int step = 1; step <= 200; ++step) {
         ASSERT_EQ(step_to(environment, space, x, x + motion), 0U) << step;
@@ -99,7 +99,7 @@ TEST(Clearance, PressedParticlesSlideRoundConvexBodiesUncut) {
     Environment environment({obstacle(bodies[k], Vector3(0.7, 0.2, -0.4), Vector3(10.0, 20.0, 30.0))});
     const Vector3 centre = environment.pose_after(0).translation();
     const Vector3 axis = Vector3(0.3, -0.2, 1.0).normalized();
-    FreeSpace space = test::single_particles(environment, 1);
+    StepTruncation space = test::single_particles(environment, 1);
     Points x = centre + 3.0 * Vector3::UnitY();
     double turned = 0.0;
     for (int step = 0; step < 2000; ++step) {
@@ -120,7 +120,7 @@ TEST(Clearance, CutsNeverWearTheHeightAway) {
     SCOPED_TRACE(slide.name);
     Environment environment({obstacle(slide.geometry)});
     Points x = Vector3(0.0, slide.top + 0.01, 0.0);
-    FreeSpace space = test::single_particles(environment, 1);
+    StepTruncation space = test::single_particles(environment, 1);
     double settled = 0.0;
     for (int step = 0; step < 5000; ++step) {
       Points after = x - 0.05 * Vector3::UnitY();
@@ -140,7 +140,7 @@ TEST(Clearance, BesideARestingObstacleAParticleStaysToTheLastBit) {
     const RigidTransform& pose = environment.pose_after(0);
     const Vector3 down = pose.linear() * -Vector3::UnitY();
     Points x = pose * Vector3(0.2, slide.top + 0.01, 0.3);
-    FreeSpace space = test::single_particles(environment, 1);
+    StepTruncation space = test::single_particles(environment, 1);
     for (int step = 0; step < 100; ++step) {
       Points after = x + 0.05 * down;
       space.truncate(x, after);
@@ -159,12 +159,12 @@ TEST(Clearance, AMovingObstacleCarriesAParticleForEverAtItsClearance) {
     carousel.motion.spin = Vector3(300.0, 700.0, -500.0);
     Environment environment({carousel});
     Points x = environment.pose_after(0) * Vector3(0.2, slide.top + 0.01, 0.3);
-    FreeSpace space = test::single_particles(environment, 1);
+    StepTruncation space = test::single_particles(environment, 1);
     for (int step = 0; step < 20000; ++step) {
       environment.set_interval(0.001 * step, 0.001 * (step + 1));
       const Vector3 carried = environment.pose_after(0) * (environment.pose_before(0).inverse() * x.col(0));
       Points after = carried - 0.05 * (environment.pose_after(0).linear() * Vector3::UnitY());
-      ASSERT_EQ(space.truncate(x, after).squeezed, 0);
+      ASSERT_EQ(space.truncate(x, after).infeasible, 0);
       x = after;
       const Vector3 local = environment.pose_after(0).inverse() * x.col(0);
       ASSERT_GT(local.y() - slide.top, kLeast * x.cwiseAbs().maxCoeff()) << step;
@@ -188,7 +188,7 @@ Points scaled_run(double scale) {
   obstacles.back().motion.spin = Vector3(0.0, 500.0, 100.0);
   Environment environment(obstacles);
   Random random(41);
-  FreeSpace space = test::single_particles(environment, 300);
+  StepTruncation space = test::single_particles(environment, 300);
   Points x(3, 300);
   for (Index i = 0; i < x.cols(); ++i) x.col(i) = scale * random.in_box({Vector3(-2.0, 2.5, -2.0), Vector3(2.0, 4.0, 2.0)});
   for (int step = 0; step < 60; ++step) {

@@ -67,7 +67,7 @@ void expect_free(const Obstacle& obstacle, double kick, std::uint64_t seed) {
   network.add_rope(6, {-0.03, 0.02, 0.001}, kEdge * kX);
   Environment environment({obstacle});
   environment.set_interval(0.0, 0.0);
-  FreeSpace space(environment, network.surface(0.0), network.positions, kMargin);
+  StepTruncation space(environment, network.surface(0.0), network.positions, kMargin);
   Random random(seed);
   Points x = network.positions;
   for (int step = 0; step < 30; ++step) {
@@ -76,7 +76,7 @@ void expect_free(const Obstacle& obstacle, double kick, std::uint64_t seed) {
     Points after = x;
     for (auto p : after.colwise()) p += random.between(0.0, kick) * random.direction() + 0.3 * (pose.translation() - p);
     space.follow(x, after);
-    EXPECT_EQ(space.truncate(x, after).squeezed, 0) << "step " << step;
+    EXPECT_EQ(space.truncate(x, after).infeasible, 0) << "step " << step;
     ASSERT_EQ(test::count_crossings(network.elements, after), 0) << "step " << step;
     ASSERT_EQ(count_crossings(network.elements, pose.inverse() * after, obstacle_mesh(obstacle.geometry, 0.0, 0.01 * (step + 1))),
               0)
@@ -89,20 +89,20 @@ Motion motion_to(const Vector3& position, const Vector3& rotation) {
   return {.keyframes = {{.time = 0.0}, {.time = 1.0, .position = position, .rotation = rotation}}};
 }
 
-TEST(PairPlacement, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatRests) {
+TEST(PairTruncation, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatRests) {
   for (const double kick : {0.002, 0.02}) expect_free(torus({}), kick, 1);
 }
 
 /// 1 m/s is an edge's length a step.
-TEST(PairPlacement, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatMoves) {
+TEST(PairTruncation, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatMoves) {
   for (const double speed : {0.3, 30.0}) expect_free(torus(motion_to({0.0, speed, 0.2 * speed}, Vector3::Zero())), 0.002, 2);
 }
 
-TEST(PairPlacement, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatTurns) {
+TEST(PairTruncation, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatTurns) {
   for (const double degrees : {100.0, 3000.0}) expect_free(torus(motion_to({0.0, 1.0, 0.0}, {degrees, 0.0, 0.0})), 0.002, 3);
 }
 
-TEST(PairPlacement, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatStretches) {
+TEST(PairTruncation, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatStretches) {
   for (const double strain : {0.05, 0.2})
     expect_free(deforming_torus(strain, motion_to({0.0, 0.3, 0.0}, {100.0, 0.0, 0.0})), 0.002, 4);
 }

@@ -53,7 +53,7 @@ void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double
     odd[static_cast<std::size_t>(i)] = triangles_above(mesh, p) % 2 == 1;
     x.col(i) = start * p;
   }
-  FreeSpace space = test::single_particles(environment, count);
+  StepTruncation space = test::single_particles(environment, count);
   Index stopped = 0;
   for (int step = 0; step < steps; ++step) {
     environment.set_interval(0.01 * step, 0.01 * (step + 1));
@@ -66,9 +66,9 @@ void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double
       after.col(i) += i % 3 == 0 ? Vector3(kick * random.direction()) : Vector3(random.between(0.0, 2.0) * at);
       after.col(i) = pose * within(pose.inverse() * after.col(i));
     }
-    const Truncation truncation = space.truncate(x, after);
+    const TruncationResult truncation = space.truncate(x, after);
     stopped += truncation.truncated;
-    ASSERT_EQ(truncation.squeezed, 0);
+    ASSERT_EQ(truncation.infeasible, 0);
     for (Index i = 0; i < count; ++i) {
       ASSERT_EQ(triangles_above(mesh, pose.inverse() * after.col(i)) % 2 == 1, odd[static_cast<std::size_t>(i)])
           << "particle " << i << " in step " << step;
@@ -78,18 +78,18 @@ void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double
   EXPECT_GT(stopped, count);
 }
 
-TEST(Truncation, NothingPassesAClosedMesh) {
+TEST(TruncationResult, NothingPassesAClosedMesh) {
   expect_no_crossing(mesh_obstacle(test::torus(1.0, 0.3, 20, 10), true), 200, 40, 1.0, 10.0);
 }
 
-TEST(Truncation, NothingPassesNeedles) { expect_no_crossing(mesh_obstacle(test::needles(12), true), 200, 40, 0.5, 10.0); }
+TEST(TruncationResult, NothingPassesNeedles) { expect_no_crossing(mesh_obstacle(test::needles(12), true), 200, 40, 0.5, 10.0); }
 
-TEST(Truncation, NothingPassesAnOpenMesh) {
+TEST(TruncationResult, NothingPassesAnOpenMesh) {
   expect_no_crossing(mesh_obstacle(test::terrain(24, [](Index i, Index j) { return 0.3 * ((i + 2 * j) % 3); }), false), 200, 40,
                      1.0, 2.9);
 }
 
-TEST(Truncation, NothingPassesATurningMesh) {
+TEST(TruncationResult, NothingPassesATurningMesh) {
   Obstacle wheel = mesh_obstacle(test::torus(1.0, 0.3, 20, 10), true);
   wheel.motion.spin = Vector3(400.0, 900.0, -300.0);
   wheel.motion.keyframes = {{0.0}, {0.2, Vector3(4.0, 0.0, 0.0)}, {0.4}};
@@ -105,10 +105,10 @@ void expect_no_element_crosses(const TriangleMesh& mesh, bool closed, int steps)
   const Index count = network.count();
   const std::vector<char> alone(static_cast<std::size_t>(network.bodies), 0);
   Environment environment({mesh_obstacle(mesh, closed)});
-  FreeSpace space(environment,
-                  make_collision_surface(network.elements, network.positions, network.body_of, Scalars::Zero(count), network.pinned,
-                                         alone, alone),
-                  network.positions, 0.0);
+  StepTruncation space(environment,
+                       make_collision_surface(network.elements, network.positions, network.body_of, Scalars::Zero(count),
+                                              network.pinned, alone, alone),
+                       network.positions, 0.0);
   auto crossings = [&, everything = Points(3, count + mesh.vertices.cols())](const Points& positions) mutable {
     everything << positions, mesh.vertices;
     int found = 0;
@@ -130,49 +130,49 @@ void expect_no_element_crosses(const TriangleMesh& mesh, bool closed, int steps)
       const bool far = random.below(8) == 0;
       after.col(i) += far ? Vector3(random.between(0.0, 1.5) * (at - x.col(i))) : Vector3(0.01 * random.direction());
     }
-    const Truncation truncation = space.truncate(x, after);
+    const TruncationResult truncation = space.truncate(x, after);
     stopped += truncation.truncated;
-    ASSERT_EQ(truncation.squeezed, 0);
+    ASSERT_EQ(truncation.infeasible, 0);
     ASSERT_EQ(crossings(after), 0) << "in step " << step;
     x = after;
   }
   EXPECT_GT(stopped, count);
 }
 
-TEST(Truncation, NoElementCrossesNeedles) { expect_no_element_crosses(test::needles(12), true, 300); }
+TEST(TruncationResult, NoElementCrossesNeedles) { expect_no_element_crosses(test::needles(12), true, 300); }
 
-TEST(Truncation, NoElementCrossesARing) { expect_no_element_crosses(test::torus(0.8, 0.1, 16, 6), true, 300); }
+TEST(TruncationResult, NoElementCrossesARing) { expect_no_element_crosses(test::torus(0.8, 0.1, 16, 6), true, 300); }
 
-TEST(Truncation, ThinSheetHoldsAt500MetresPerSecondFromEitherSide) {
+TEST(TruncationResult, ThinSheetHoldsAt500MetresPerSecondFromEitherSide) {
   Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
   constexpr double kMove = 500.0 / 60.0;
   Points before(3, 4);
   before << 0.3, 0.3, 0.0, 0.5, 0.01, -0.01, 0.01, -0.01, 0.4, 0.4, 0.0, 0.5;  // the last two over a vertex and an edge
   Points after = before;
   after.row(1) -= Eigen::RowVector4d(kMove, -kMove, kMove, -kMove);
-  const Truncation truncation = test::single_particles(environment, 4).truncate(before, after);
+  const TruncationResult truncation = test::single_particles(environment, 4).truncate(before, after);
   EXPECT_EQ(truncation.truncated, 4);
-  EXPECT_EQ(truncation.squeezed, 0);
+  EXPECT_EQ(truncation.infeasible, 0);
   for (Index i = 0; i < 4; ++i) EXPECT_GT(after(1, i) * before(1, i), 0.0) << i;
 }
 
-TEST(Truncation, PressedForEverAParticleStaysInFront) {
+TEST(TruncationResult, PressedForEverAParticleStaysInFront) {
   Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
-  FreeSpace space = test::single_particles(environment, 1);
+  StepTruncation space = test::single_particles(environment, 1);
   Points x = Vector3(0.3, 0.01, 0.4);
   for (int step = 0; step < 10000; ++step) {
     Points after = x;
     after(1, 0) -= 0.05;
     after(0, 0) += 0.01 * ((step / 50) % 2 == 0 ? 1 : -1);
-    ASSERT_EQ(space.truncate(x, after).squeezed, 0);
+    ASSERT_EQ(space.truncate(x, after).infeasible, 0);
     x = after;
     ASSERT_GT(x(1, 0), 0.0) << step;
   }
 }
 
-TEST(Truncation, WhatIsStoppedIsLedOnFromWhereItIsSafe) {
+TEST(TruncationResult, WhatIsStoppedIsLedOnFromWhereItIsSafe) {
   Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
-  FreeSpace space = test::single_particles(environment, 2);
+  StepTruncation space = test::single_particles(environment, 2);
   Points before(3, 2);
   before << 0.3, -0.3, 0.01, 0.5, 0.4, 0.4;
   Points after = before;
@@ -185,14 +185,14 @@ TEST(Truncation, WhatIsStoppedIsLedOnFromWhereItIsSafe) {
     if (times == 4) x.col(0) = Vector3(0.5, 0.5, 0.4);
     return times <= 4;
   };
-  const Truncation truncation = space.truncate(before, after, lead_on);
+  const TruncationResult truncation = space.truncate(before, after, lead_on);
   EXPECT_EQ(times, 5);
   EXPECT_EQ(truncation.truncated, 0);
   EXPECT_EQ(after.col(0), Vector3(0.5, 0.5, 0.4));
   EXPECT_GT(after(1, 1), 0.0) << "it was to pass the sheet when another had been stopped";
 }
 
-TEST(Truncation, WhereNothingIsStoppedNothingIsLedOn) {
+TEST(TruncationResult, WhereNothingIsStoppedNothingIsLedOn) {
   Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
   Points after = Vector3(0.3, 0.02, 0.4);
   test::single_particles(environment, 1).truncate(Vector3(0.3, 0.01, 0.4), after, [](Points&) {
@@ -202,7 +202,7 @@ TEST(Truncation, WhereNothingIsStoppedNothingIsLedOn) {
   EXPECT_EQ(after, Vector3(0.3, 0.02, 0.4));
 }
 
-TEST(Truncation, AnObstacleThatComesCarriesARestingParticle) {
+TEST(TruncationResult, AnObstacleThatComesCarriesARestingParticle) {
   Obstacle sheet = mesh_obstacle(test::flat_sheet(4), false);
   sheet.placed.translation() = Vector3(0.0, -1.0, 0.0);
   sheet.motion.keyframes = {{0.0}, {0.1, Vector3(0.0, 50.0, 0.0)}};
@@ -210,14 +210,14 @@ TEST(Truncation, AnObstacleThatComesCarriesARestingParticle) {
   environment.set_interval(0.0, 0.1);
   const Points rest = Vector3(0.1, 0.0, 0.2);
   Points after = rest;
-  const Truncation truncation = test::single_particles(environment, 1).truncate(rest, after);
+  const TruncationResult truncation = test::single_particles(environment, 1).truncate(rest, after);
   EXPECT_EQ(truncation.truncated, 1);
-  EXPECT_EQ(truncation.squeezed, 0);
+  EXPECT_EQ(truncation.infeasible, 0);
   EXPECT_GT(after(1, 0), 49.0);
   EXPECT_LT(after(1, 0), 50.0);
 }
 
-TEST(Truncation, HeldParticlesAreLeftAloneAndFreePathsKeepEveryBit) {
+TEST(TruncationResult, HeldParticlesAreLeftAloneAndFreePathsKeepEveryBit) {
   Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
   Points before(3, 2);
   before << 0.3, 0.3, 1.0, 1.0, 0.4, 0.4;
@@ -229,7 +229,7 @@ TEST(Truncation, HeldParticlesAreLeftAloneAndFreePathsKeepEveryBit) {
   EXPECT_EQ(after, wanted);
 }
 
-TEST(Truncation, ObstaclesThatCloseInAreReported) {
+TEST(TruncationResult, ObstaclesThatCloseInAreReported) {
   Obstacle upper = mesh_obstacle(test::flat_sheet(4), false);
   Obstacle lower = upper;
   upper.placed.translation() = Vector3(0.0, 1.0, 0.0);
@@ -240,9 +240,9 @@ TEST(Truncation, ObstaclesThatCloseInAreReported) {
   environment.set_interval(0.0, 1.0);
   const Points rest = Vector3(0.1, 0.0, 0.2);
   Points after = rest;
-  const Truncation truncation = test::single_particles(environment, 1).truncate(rest, after);
+  const TruncationResult truncation = test::single_particles(environment, 1).truncate(rest, after);
   EXPECT_EQ(truncation.truncated, 1);
-  EXPECT_EQ(truncation.squeezed, 1);
+  EXPECT_EQ(truncation.infeasible, 1);
 }
 
 /// A sheet that goes to `deform(position)` of it in one second.
@@ -254,7 +254,7 @@ Obstacle deforming_obstacle(const TriangleMesh& mesh, const Deform& deform) {
 }
 
 // In one step it turns by 45 degrees, so that no plane above it at the begin is above it at the end.
-TEST(Truncation, ParticlesGoWithASurfaceThatTurnsUnderThem) {
+TEST(TruncationResult, ParticlesGoWithASurfaceThatTurnsUnderThem) {
   Environment environment(
       {deforming_obstacle(test::flat_sheet(8), [](const Vector3& x) { return Vector3(x.x(), x.x() + 0.1 * x.z(), x.z()); })});
   environment.set_interval(0.0, 1.0);
@@ -266,12 +266,12 @@ TEST(Truncation, ParticlesGoWithASurfaceThatTurnsUnderThem) {
         std::exp2(-20.0 * random.between(0.1, 1.0)) * Vector3::UnitY();
   }
   Points after = rest;
-  EXPECT_EQ(test::single_particles(environment, kCount).truncate(rest, after).squeezed, 0);
+  EXPECT_EQ(test::single_particles(environment, kCount).truncate(rest, after).infeasible, 0);
   for (const auto& p : after.colwise()) EXPECT_GT(p.y(), p.x() + 0.1 * p.z());
 }
 
 // In one step the upper sheet comes nearer to the lower one than the particle was.
-TEST(Truncation, ParticlesStayBetweenSheetsOfOneMesh) {
+TEST(TruncationResult, ParticlesStayBetweenSheetsOfOneMesh) {
   const TriangleMesh sheet = test::flat_sheet(4);
   const Eigen::Index vertices = sheet.vertices.cols();
   TriangleMesh sheets{Points(3, 2 * vertices), Triangles(3, 2 * sheet.triangles.cols())};
@@ -281,12 +281,12 @@ TEST(Truncation, ParticlesStayBetweenSheetsOfOneMesh) {
   environment.set_interval(0.0, 1.0);
   const Points rest = Vector3(0.1, 0.4, 0.2);
   Points after = rest;
-  EXPECT_EQ(test::single_particles(environment, 1).truncate(rest, after).squeezed, 0);
+  EXPECT_EQ(test::single_particles(environment, 1).truncate(rest, after).infeasible, 0);
   EXPECT_GT(after(1, 0), 0.0);
   EXPECT_LT(after(1, 0), 0.2);
 }
 
-TEST(Truncation, WhatPinsTakeThroughAnObstacleIsReportedInTheSameStep) {
+TEST(TruncationResult, WhatPinsTakeThroughAnObstacleIsReportedInTheSameStep) {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.2}};
   ball.placed.translation() = Vector3(-1.0, 0.0, 0.0);
   ball.motion.keyframes = {{0.0}, {1.0, Vector3(1.0, 0.0, 0.0)}, {2.0, Vector3(1.0, 1.0, 0.0)}};
@@ -294,33 +294,33 @@ TEST(Truncation, WhatPinsTakeThroughAnObstacleIsReportedInTheSameStep) {
   test::SelfNetwork segment;
   segment.add_rope(1, Vector3::Zero(), Vector3(0.6, 0.0, 0.0));
   segment.pinned[0] = 1;
-  FreeSpace space(
+  StepTruncation space(
       environment,
       make_collision_surface(segment.elements, segment.positions, segment.body_of, Scalars::Zero(2), segment.pinned, {0}, {0}),
       segment.positions, 0.0);
-  const auto squeezed_until = [&](double time) {
+  const auto infeasible_until = [&](double time) {
     environment.set_interval(time - 1.0, time);
     Points after = segment.positions;
-    return space.truncate(segment.positions, after).squeezed;
+    return space.truncate(segment.positions, after).infeasible;
   };
-  EXPECT_EQ(squeezed_until(1.0), 2) << "both ends of what the ball crosses";
-  squeezed_until(2.0);
-  EXPECT_EQ(squeezed_until(3.0), 0) << "the ball has left it";
+  EXPECT_EQ(infeasible_until(1.0), 2) << "both ends of what the ball crosses";
+  infeasible_until(2.0);
+  EXPECT_EQ(infeasible_until(3.0), 0) << "the ball has left it";
 }
 
-TEST(Truncation, InAWedgeOfTwoObstaclesAParticleFindsAPlace) {
+TEST(TruncationResult, InAWedgeOfTwoObstaclesAParticleFindsAPlace) {
   Obstacle left = mesh_obstacle(test::flat_sheet(8), false);
   Obstacle right = left;
   left.placed.linear() = rotation_from_degrees(Vector3(0.0, 0.0, -60.0));
   right.placed.linear() = rotation_from_degrees(Vector3(0.0, 0.0, 60.0));
   Environment environment({left, right});
   Random random(33);
-  FreeSpace space = test::single_particles(environment, 1);
+  StepTruncation space = test::single_particles(environment, 1);
   Points x = Vector3(0.0, 1.0, 0.1);
   for (int step = 0; step < 1000; ++step) {
     Points after = x + 0.5 * random.direction() - 0.3 * Vector3::UnitY();
     after(2, 0) = std::clamp(after(2, 0), -1.0, 1.0);
-    ASSERT_EQ(space.truncate(x, after).squeezed, 0);
+    ASSERT_EQ(space.truncate(x, after).infeasible, 0);
     for (Index k = 0; k < 2; ++k) {
       ASSERT_GT((environment.pose_after(k).inverse() * after.col(0)).y(), 0.0) << step;
     }

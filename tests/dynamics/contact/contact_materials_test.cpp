@@ -28,8 +28,8 @@ TEST(ContactPair, MaterialsOfContactsAreThoseOfTheirSides) {
   for (int i = 0; i < 3; ++i) builder.add_particle(Vector3::Zero(), 1.0);
   const SpringNetwork network = builder.build();
   const std::vector<Obstacle> obstacles{{.name = "floor", .geometry = HalfSpaceGeometry{}, .material = {.thickness = 0.5}}};
-  const PairMaterials materials(network, obstacles);
-  PairMaterials::Last last;
+  const ContactMaterials materials(network, obstacles);
+  ContactMaterials::Last last;
 
   EXPECT_EQ(materials.of(particle_contact(0, 0, Vector3::Zero(), Vector3::UnitY()), last).thickness, 0.52);
   EXPECT_EQ(materials.of(particle_contact(2, 0, Vector3::Zero(), Vector3::UnitY()), last).thickness, 0.54);

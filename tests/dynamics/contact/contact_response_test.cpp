@@ -55,7 +55,7 @@ class World {
   double dt;  ///< [s]
   SpringNetwork network;
   Environment environment;
-  ContactResponse response;
+  ContactSolver response;
   std::unique_ptr<Integrator> integrator;
   Forces forces;
   SimulationState state;
@@ -163,7 +163,7 @@ TEST_P(ContactResponseLaws, PointOfATriangleStopsAfterItsStoppingDistance) {
   EXPECT_NEAR(world.state.v.col(0).norm(), 0.0, 1.01 * kGravity * kStep);
 }
 
-TEST(ContactResponse, PushIsSharedByWeightAndInverseMass) {
+TEST(ContactSolver, PushIsSharedByWeightAndInverseMass) {
   NetworkBuilder builder;
   add_body(builder, "triangle", triangle_at(0.0), {0.1, 0.2, 0.4}, Vector3::Zero(), {.thickness = kGap});
   World world(builder.build(), 0.0);
@@ -174,7 +174,7 @@ TEST(ContactResponse, PushIsSharedByWeightAndInverseMass) {
   for (Index i = 0; i < 3; ++i) EXPECT_NEAR(world.state.x(1, i), expected[i], 1e-15);
 }
 
-TEST(ContactResponse, PushThatAnotherMakesNeedlessIsTakenBack) {
+TEST(ContactSolver, PushThatAnotherMakesNeedlessIsTakenBack) {
   NetworkBuilder builder;
   add_body(builder, "triangle", triangle_at(0.0), {0.1, 0.1, 0.1}, Vector3::Zero(), {.thickness = kGap});
   World world(builder.build(), 0.0);
@@ -217,7 +217,7 @@ TEST_P(ContactResponseLaws, PushOutOfTheGapSlowsNothingDown) {
 
 // Speeds that are ways through a step's length give back other ways, by rounding: a push that is taken whole must not be less than
 // nothing. Steps are of many lengths.
-TEST(ContactResponse, WhatGoesStraightOutOfTheGapStaysFinite) {
+TEST(ContactSolver, WhatGoesStraightOutOfTheGapStaysFinite) {
   const ContactMaterial rough{.thickness = kGap, .friction = 0.5, .static_friction = 0.5};
   for (int k = 1; k < 1000; ++k) {
     NetworkBuilder builder;
@@ -229,10 +229,10 @@ TEST(ContactResponse, WhatGoesStraightOutOfTheGapStaysFinite) {
 }
 
 // What held along one surface does not push along another one's normal.
-TEST(ContactResponse, FoundAgainWithAnotherNormalAContactHoldsNothingAlongIt) {
-  ContactSet<1> former;
-  ContactSet<1> again;
-  for (ContactSet<1>* set : {&former, &again}) {
+TEST(ContactSolver, FoundAgainWithAnotherNormalAContactHoldsNothingAlongIt) {
+  ContactConstraintSet<1> former;
+  ContactConstraintSet<1> again;
+  for (ContactConstraintSet<1>* set : {&former, &again}) {
     set->resize(1);
     set->row(0).particles = {0};
     set->row(0).obstacle = 0;
@@ -245,7 +245,7 @@ TEST(ContactResponse, FoundAgainWithAnotherNormalAContactHoldsNothingAlongIt) {
   EXPECT_EQ(again.goal(0).held, Vector3(0.0, 0.0, 0.2));
 }
 
-TEST(ContactResponse, FoundAgainAContactCountsOnWhatItPushedAndHeld) {
+TEST(ContactSolver, FoundAgainAContactCountsOnWhatItPushedAndHeld) {
   const auto slide = [](bool again) {
     NetworkBuilder builder;
     const ContactMaterial rough{.thickness = kGap, .friction = 0.5, .static_friction = 0.5};
@@ -265,7 +265,7 @@ TEST(ContactResponse, FoundAgainAContactCountsOnWhatItPushedAndHeld) {
 
 // Contacts of another patch, and pairs, go on as if nobody had looked at the first one again: each has a height, a mass and a gap
 // of its own.
-TEST(ContactResponse, FoundAgainInOnePatchTheOthersGoOn) {
+TEST(ContactSolver, FoundAgainInOnePatchTheOthersGoOn) {
   const auto slide = [](bool again) {
     NetworkBuilder builder;
     const ContactMaterial rough{.thickness = kGap, .friction = 0.5, .static_friction = 0.5};
@@ -289,7 +289,7 @@ TEST(ContactResponse, FoundAgainInOnePatchTheOthersGoOn) {
   EXPECT_EQ(slide(true).v, slide(false).v);
 }
 
-TEST(ContactResponse, FoundNoMoreInAPatchNothingIsPushedThere) {
+TEST(ContactSolver, FoundNoMoreInAPatchNothingIsPushedThere) {
   NetworkBuilder builder;
   add_body(builder, "balls", {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {0.1, 0.1}, Vector3::Zero(), {.thickness = kGap});
   World world(builder.build(), 0.0);
@@ -304,7 +304,7 @@ TEST(ContactResponse, FoundNoMoreInAPatchNothingIsPushedThere) {
   EXPECT_NEAR(world.state.x(1, 1), kGap, 1e-15);
 }
 
-TEST(ContactResponse, PinnedCornersLeaveThePushToTheOthers) {
+TEST(ContactSolver, PinnedCornersLeaveThePushToTheOthers) {
   NetworkBuilder builder;
   add_body(builder, "triangle", triangle_at(0.0), {0.1, 0.2, 0.4}, Vector3::Zero(), {.thickness = kGap});
   builder.pin({0, 2});
@@ -318,7 +318,7 @@ TEST(ContactResponse, PinnedCornersLeaveThePushToTheOthers) {
 
 // The other end of a rod of 1 m that is lifted close to its pin goes as many times as far as it is longer than that lever; a pin
 // that is within the gap itself is left alone, and no contact turns the rod by more than a radian.
-TEST(ContactResponse, OnALeverBesideAPinTheOtherEndGoesFarther) {
+TEST(ContactSolver, OnALeverBesideAPinTheOtherEndGoesFarther) {
   const auto lift = [](double lever, double depth) {
     NetworkBuilder builder;
     add_body(builder, "rod", {{0.0, kGap - depth, 0.0}, {1.0, kGap - depth, 0.0}}, {0.1, 0.1}, Vector3::Zero(),
@@ -334,7 +334,7 @@ TEST(ContactResponse, OnALeverBesideAPinTheOtherEndGoesFarther) {
   EXPECT_NEAR(lift(0.02, 0.1), 1.0, 1e-12);
 }
 
-TEST(ContactResponse, BetweenElementsMomentumIsKept) {
+TEST(ContactSolver, BetweenElementsMomentumIsKept) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(0.1, 1.0);
   for (int trial = 0; trial < 100; ++trial) {
@@ -368,7 +368,7 @@ TEST_P(ContactResponseLaws, BallAndTriangleMeetAsTwoBallsDo) {
   for (Index i = 0; i < 3; ++i) EXPECT_NEAR(world.state.v(1, i), -1.0 - relative * 0.6 / 0.9, 1e-12);
 }
 
-TEST(ContactResponse, ElementsRubOnEachOtherRelativeToEachOther) {
+TEST(ContactSolver, ElementsRubOnEachOtherRelativeToEachOther) {
   const double mu = 0.25;
   const ContactMaterial rough{.thickness = kGap, .friction = mu, .static_friction = mu};
   NetworkBuilder builder;
@@ -383,7 +383,7 @@ TEST(ContactResponse, ElementsRubOnEachOtherRelativeToEachOther) {
   for (Index i = 0; i < 3; ++i) EXPECT_NEAR(world.state.v(0, i), 1.0 + change * 0.6 / 0.9, 1e-12);
 }
 
-TEST(ContactResponse, WhatStandsOnTheFloorIsNotPushedIntoIt) {
+TEST(ContactSolver, WhatStandsOnTheFloorIsNotPushedIntoIt) {
   const double e = 0.5;
   const ContactMaterial elastic{.thickness = kGap, .restitution = e};
   NetworkBuilder builder;

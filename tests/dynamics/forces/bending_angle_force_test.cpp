@@ -31,25 +31,25 @@ Points random_points(Index count, unsigned seed, double size) {
 
 Points forces_of(const SpringNetwork& network, const Points& x, const Points& v) {
   Points forces = Points::Zero(3, x.cols());
-  AngleForce(network).add({.x = x, .v = v}, forces);
+  BendingAngleForce(network).add({.x = x, .v = v}, forces);
   return forces;
 }
 
 Points forces_of(const SpringNetwork& network, const Points& x) { return forces_of(network, x, Points::Zero(3, x.cols())); }
 
-TEST(AngleForce, RightAngleTurnsBondsByItsMoment) {
+TEST(BendingAngleForce, RightAngleTurnsBondsByItsMoment) {
   // k pi / 2, divided by the bonds' lengths, towards the line.
   const Points x = (Points(3, 3) << 0, 1, 1, 0, 0, 2, 0, 0, 0).finished();
   const Points forces = forces_of(hinge(), x);
   const double moment = kStiffness * std::numbers::pi / 2.0;
   EXPECT_LT((forces.col(0) - Vector3(0, -moment, 0)).norm(), 1e-14);
   EXPECT_LT((forces.col(2) - Vector3(moment / 2.0, 0, 0)).norm(), 1e-14);
-  EXPECT_DOUBLE_EQ(AngleForce(hinge()).energy(x), 0.5 * kStiffness * std::pow(std::numbers::pi / 2.0, 2));
+  EXPECT_DOUBLE_EQ(BendingAngleForce(hinge()).energy(x), 0.5 * kStiffness * std::pow(std::numbers::pi / 2.0, 2));
 }
 
-TEST(AngleForce, IsTheNegativeGradientOfItsEnergy) {
+TEST(BendingAngleForce, IsTheNegativeGradientOfItsEnergy) {
   const SpringNetwork network = hinge();
-  const AngleForce force(network);
+  const BendingAngleForce force(network);
   // In a box of 3 m bonds are of any length; in one of 0.3 m they are shorter than half of that at rest.
   for (unsigned trial = 0; trial < 60; ++trial) {
     const double size = trial % 2 == 0 ? 3.0 : 0.3;
@@ -68,7 +68,7 @@ TEST(AngleForce, IsTheNegativeGradientOfItsEnergy) {
   }
 }
 
-TEST(AngleForce, HasNoNetForceAndNoNetTorque) {
+TEST(BendingAngleForce, HasNoNetForceAndNoNetTorque) {
   for (unsigned trial = 0; trial < 20; ++trial) {
     const Points x = random_points(3, trial, trial % 2 == 0 ? 2.0 : 0.3);
     const Points forces = forces_of(hinge(kDamping), x, random_points(3, 100 + trial, 1.0));
@@ -80,21 +80,21 @@ TEST(AngleForce, HasNoNetForceAndNoNetTorque) {
   }
 }
 
-TEST(AngleForce, StraightIsAtRestHoweverLong) {
+TEST(BendingAngleForce, StraightIsAtRestHoweverLong) {
   const SpringNetwork network = hinge();
   for (const double stretch : {0.1, 1.0, 7.0}) {
     const Points x = stretch * network.positions;
     EXPECT_EQ(forces_of(network, x), Points::Zero(3, 3));
-    EXPECT_EQ(AngleForce(network).energy(x), 0.0);
+    EXPECT_EQ(BendingAngleForce(network).energy(x), 0.0);
   }
 }
 
-TEST(AngleForce, RigidMotionsCostNothing) {
+TEST(BendingAngleForce, RigidMotionsCostNothing) {
   const SpringNetwork network = hinge(kDamping);
   const Points x = (Points(3, 3) << 0, 1, 1.5, 0, 0, 1, 0, 0.2, 1).finished();
   const Eigen::Matrix3d turn = rotation_from_degrees({20, 50, -70});
   const Points turned = (turn * x).colwise() + Vector3(3, -2, 1);
-  EXPECT_NEAR(AngleForce(network).energy(turned), AngleForce(network).energy(x), 1e-13);
+  EXPECT_NEAR(BendingAngleForce(network).energy(turned), BendingAngleForce(network).energy(x), 1e-13);
   EXPECT_LT((forces_of(network, turned) - turn * forces_of(network, x)).norm(), 1e-13);
   // Nor does damping see them: v = omega x r + a drift.
   const Vector3 omega(0.3, -1.0, 2.0);
@@ -103,7 +103,7 @@ TEST(AngleForce, RigidMotionsCostNothing) {
   EXPECT_LT((forces_of(network, x, v) - forces_of(network, x)).norm(), 1e-14);
 }
 
-TEST(AngleForce, DampingTakesTheSquareOfTheAnglesRate) {
+TEST(BendingAngleForce, DampingTakesTheSquareOfTheAnglesRate) {
   const Points x = (Points(3, 3) << 0, 1, 1.5, 0, 0, 1, 0, 0.2, 1).finished();
   const Points v = random_points(3, 5, 1.0);
   const auto angle = [&](double time) {
@@ -117,7 +117,7 @@ TEST(AngleForce, DampingTakesTheSquareOfTheAnglesRate) {
   EXPECT_NEAR(power, -kDamping * rate * rate, 1e-8);
 }
 
-TEST(AngleForce, FoldedAndCollapsedBondsHaveFiniteForces) {
+TEST(BendingAngleForce, FoldedAndCollapsedBondsHaveFiniteForces) {
   const double tiny = 1e-200;
   const std::vector<Points> states{(Points(3, 3) << 0, 1, 0, 0, 0, 0, 0, 0, 0).finished(),     // folded back onto itself
                                    (Points(3, 3) << 0, 1, 0, 0, 0, 1e-9, 0, 0, 0).finished(),  // almost
@@ -132,7 +132,7 @@ TEST(AngleForce, FoldedAndCollapsedBondsHaveFiniteForces) {
     const Points forces = forces_of(hinge(kDamping), x);
     EXPECT_TRUE(forces.allFinite()) << x;
     EXPECT_LT(forces.norm(), largest) << x;
-    EXPECT_TRUE(std::isfinite(AngleForce(hinge()).energy(x))) << x;
+    EXPECT_TRUE(std::isfinite(BendingAngleForce(hinge()).energy(x))) << x;
   }
 }
 
@@ -146,7 +146,7 @@ SpringNetwork large_cloth() {
   return builder.build();
 }
 
-TEST(AngleForce, HasTheSameBitsForAnyNumberOfThreads) {
+TEST(BendingAngleForce, HasTheSameBitsForAnyNumberOfThreads) {
   const SpringNetwork cloth = large_cloth();
   const Points x = cloth.positions + random_points(cloth.particle_count(), 3, 0.005);
   const Points v = random_points(cloth.particle_count(), 4, 1.0);
@@ -157,7 +157,7 @@ TEST(AngleForce, HasTheSameBitsForAnyNumberOfThreads) {
 }
 
 // Rounding of as many sums as there are particles, of forces as large as the largest.
-TEST(AngleForce, OfALargeClothHasNoNetForce) {
+TEST(BendingAngleForce, OfALargeClothHasNoNetForce) {
   const SpringNetwork cloth = large_cloth();
   const Index count = cloth.particle_count();
   const Points forces = forces_of(cloth, cloth.positions + random_points(count, 3, 0.005), random_points(count, 4, 1.0));

@@ -246,14 +246,14 @@ SpringNetwork make_hinge(double angle, double damping = 0.0) {
 
 TEST(ForceDerivatives, OfAngleBendsInLineAreTheDifferencesOfTheirForces) {
   const SpringNetwork network = make_hinge(0.0);
-  const Case bend(network, std::in_place_type<AngleForce>);
+  const Case bend(network, std::in_place_type<BendingAngleForce>);
   expect_near(bend.derivatives().by_position, bend.differences_by_position());
 }
 
 // What is left out, forces turning with their bonds, grows with the angle: some k theta / length^2.
 TEST(ForceDerivatives, OfAngleBendsNearlyInLineAreNearlyTheDifferences) {
   const SpringNetwork network = make_hinge(0.01);
-  const Case bend(network, std::in_place_type<AngleForce>);
+  const Case bend(network, std::in_place_type<BendingAngleForce>);
   const Eigen::MatrixXd differences = bend.differences_by_position();
   EXPECT_LT((dense(bend.derivatives().by_position) - differences).norm(), 0.03 * differences.norm());
 }
@@ -261,7 +261,7 @@ TEST(ForceDerivatives, OfAngleBendsNearlyInLineAreNearlyTheDifferences) {
 TEST(ForceDerivatives, OfAngleBendsNeverPushOn) {
   for (const double angle : {0.0, 0.3, 1.5, 3.0, std::numbers::pi}) {
     const SpringNetwork network = make_hinge(angle, 0.5);
-    const ForceDerivatives derivatives = Case(network, std::in_place_type<AngleForce>).derivatives();
+    const ForceDerivatives derivatives = Case(network, std::in_place_type<BendingAngleForce>).derivatives();
     for (const BlockMatrix* matrix : {&derivatives.by_position, &derivatives.by_velocity}) {
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(*matrix), Eigen::EigenvaluesOnly);
       EXPECT_LT(solver.eigenvalues().maxCoeff(), 1e-12 * (1.0 + solver.eigenvalues().cwiseAbs().maxCoeff())) << angle;
@@ -271,7 +271,7 @@ TEST(ForceDerivatives, OfAngleBendsNeverPushOn) {
 
 TEST(ForceDerivatives, OfDampedAngleBendsAreTheDifferencesOfTheirForces) {
   const SpringNetwork network = make_hinge(1.2, 0.5);
-  const Case bend(network, std::in_place_type<AngleForce>);
+  const Case bend(network, std::in_place_type<BendingAngleForce>);
   expect_near(bend.derivatives().by_velocity, bend.differences_by_velocity());
 }
 
@@ -294,7 +294,7 @@ TEST(ForceDerivatives, OfAngleBendsLetImplicitStepsBeLarge) {
   }
   Forces forces;
   forces.push_back(std::make_unique<SpringForce>(rod));
-  forces.push_back(std::make_unique<AngleForce>(rod));
+  forces.push_back(std::make_unique<BendingAngleForce>(rod));
   const double step = 100.0 * largest_stable_step(SymplecticEulerSettings{}, spectral_bounds(rod));
   const auto integrator = make_integrator(ImplicitEulerSettings{}, rod);
   integrator->start(state, forces, step);

@@ -354,7 +354,7 @@ TEST(SpectralBounds, OfALongRodAreTheZigzags) {
 
 /// The largest eigenvalue of M^-1 times the second derivative of the angle bends' energy, by differences of forces.
 double bent_eigenvalue(const SpringNetwork& network, const Points& x) {
-  const AngleForce force(network);
+  const BendingAngleForce force(network);
   const Points v = Points::Zero(3, x.cols());
   Eigen::MatrixXd stiffness(x.size(), x.size());
   const double h = 1e-6 / static_cast<double>(x.cols());
@@ -400,7 +400,7 @@ TEST(LargestStableStep, IsWhereARodWithAngleBendsBlowsUp) {
   const auto amplitude = [&](double step) {
     Forces forces;
     forces.push_back(std::make_unique<SpringForce>(rod));
-    forces.push_back(std::make_unique<AngleForce>(rod));
+    forces.push_back(std::make_unique<BendingAngleForce>(rod));
     SimulationState state = initial_state(rod);
     for (Index i = 0; i < 60; ++i) state.x(1, i) += (i % 2 == 0 ? 1e-7 : -1e-7) * (1.0 + 0.1 * std::sin(i));
     const auto integrator = make_integrator(SymplecticEulerSettings{}, rod);

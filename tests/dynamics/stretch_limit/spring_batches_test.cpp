@@ -16,7 +16,7 @@ namespace {
 const std::vector<SpringKind> kAllKinds{SpringKind::structural, SpringKind::shear, SpringKind::bend};
 
 /// Springs of a part, those that fill it but once.
-std::vector<Index> springs_of(const StretchBatches& batches, Index part) {
+std::vector<Index> springs_of(const SpringBatches& batches, Index part) {
   std::vector<Index> springs;
   for (Index s = batches.parts[part].begin; s < batches.parts[part].end; ++s) {
     const bool fills = s % kSimdWidth > 0 && batches.first[s] == batches.first[s - 1] && batches.second[s] == batches.second[s - 1];
@@ -27,7 +27,7 @@ std::vector<Index> springs_of(const StretchBatches& batches, Index part) {
 
 /// Calls `body(task, part)` for all parts of a stage.
 template <class Body>
-void for_parts_of_stage(const StretchBatches& batches, std::size_t stage, const Body& body) {
+void for_parts_of_stage(const SpringBatches& batches, std::size_t stage, const Body& body) {
   for (Index task = batches.stage_begin[stage]; task < batches.stage_begin[stage + 1]; ++task) {
     for (Index part = batches.task_begin[task]; part < batches.task_begin[task + 1]; ++part) body(task, part);
   }
@@ -39,9 +39,9 @@ std::vector<SpringNetwork> networks() {
           make_random_network(300, 6000)};
 }
 
-TEST(StretchBatches, HoldEachSpringOnce) {
+TEST(SpringBatches, HoldEachSpringOnce) {
   for (const SpringNetwork& network : networks()) {
-    const StretchBatches batches(network, kAllKinds);
+    const SpringBatches batches(network, kAllKinds);
     std::multiset<std::pair<Index, Index>> expected;
     for (Index s = 0; s < network.springs.count(); ++s) {
       const std::pair ends{network.springs.first[s], network.springs.second[s]};
@@ -57,9 +57,9 @@ TEST(StretchBatches, HoldEachSpringOnce) {
   }
 }
 
-TEST(StretchBatches, PartsAndTasksOfAStageShareNoParticle) {
+TEST(SpringBatches, PartsAndTasksOfAStageShareNoParticle) {
   for (const SpringNetwork& network : networks()) {
-    const StretchBatches batches(network, kAllKinds);
+    const SpringBatches batches(network, kAllKinds);
     for (std::size_t stage = 0; stage + 1 < batches.stage_begin.size(); ++stage) {
       std::vector<Index> task_of(network.particle_count(), kNone);
       std::vector<Index> part_of(network.particle_count(), kNone);
@@ -78,13 +78,13 @@ TEST(StretchBatches, PartsAndTasksOfAStageShareNoParticle) {
 }
 
 // So that two threads have something to do. Bend springs reach two rows far, and make more colours.
-TEST(StretchBatches, ManySpringsMakeTwoTasksAtLeast) {
-  EXPECT_GE(StretchBatches(make_test_cloth(100, 0.0, 0.0), {SpringKind::structural, SpringKind::shear}).stage_begin[1], 2);
-  EXPECT_GE(StretchBatches(make_test_cloth(64, 0.0, 0.0), kAllKinds).stage_begin[1], 2);
+TEST(SpringBatches, ManySpringsMakeTwoTasksAtLeast) {
+  EXPECT_GE(SpringBatches(make_test_cloth(100, 0.0, 0.0), {SpringKind::structural, SpringKind::shear}).stage_begin[1], 2);
+  EXPECT_GE(SpringBatches(make_test_cloth(64, 0.0, 0.0), kAllKinds).stage_begin[1], 2);
 }
 
 /// Springs that share a particle, in the order in which a pass comes to them.
-std::vector<std::vector<std::pair<Index, Index>>> springs_in_order(const StretchBatches& batches, Index particles) {
+std::vector<std::vector<std::pair<Index, Index>>> springs_in_order(const SpringBatches& batches, Index particles) {
   std::vector<std::vector<std::pair<Index, Index>>> at(static_cast<std::size_t>(particles));
   for (Index part = 0; part < static_cast<Index>(batches.parts.size()); ++part) {
     for (const Index s : springs_of(batches, part)) {
@@ -96,9 +96,9 @@ std::vector<std::vector<std::pair<Index, Index>>> springs_in_order(const Stretch
   return at;
 }
 
-TEST(StretchBatches, OrderByPlaceKeepsTheOrderOfColoursAtEachParticle) {
+TEST(SpringBatches, OrderByPlaceKeepsTheOrderOfColoursAtEachParticle) {
   const SpringNetwork network = make_test_cloth(70, 0.0, 0.0);
-  StretchBatches batches(network, {SpringKind::structural, SpringKind::shear});
+  SpringBatches batches(network, {SpringKind::structural, SpringKind::shear});
   // Each part a colour of its own: then no two parts that share a particle may change places.
   std::vector<Index> colour_begin;
   for (Index part = 0; part <= static_cast<Index>(batches.parts.size()); ++part) colour_begin.push_back(part);

@@ -39,7 +39,7 @@ SpringNetwork springs_of_all_layouts(Index row, bool same, std::mt19937& random)
 }
 
 /// A pass spring by spring, with the machine's own square root. Returns the largest excess it met.
-double project_by_hand(const SpringNetwork& network, const StretchBatches& batches, const LengthRange& range, double relaxation,
+double project_by_hand(const SpringNetwork& network, const SpringBatches& batches, const LengthRange& range, double relaxation,
                        const Points& before, Points& x) {
   double excess = 0.0;
   for (Index s = 0; s < batches.count(); ++s) {
@@ -73,8 +73,8 @@ TEST(StretchKernel, ProjectsAsPlainCodeDoes) {
   std::array<Index, 3> layouts{};
   for (Index row = 2; row < 80; ++row) {
     const SpringNetwork network = springs_of_all_layouts(row, row % 2 == 0, random);
-    const StretchBatches batches(network, kStructural);
-    for (const StretchBatches::Part& part : batches.parts) ++layouts[static_cast<std::size_t>(part.layout)];
+    const SpringBatches batches(network, kStructural);
+    for (const SpringBatches::Part& part : batches.parts) ++layouts[static_cast<std::size_t>(part.layout)];
     const Parts all{0, static_cast<Index>(batches.parts.size())};
     for (const LengthRange& range : kRanges) {
       for (const double relaxation : {1.0, 1.8}) {
@@ -97,7 +97,7 @@ TEST(StretchKernel, HasTheSameBitsWhateverTheMachineTakes) {
   std::mt19937 random(12);
   for (Index row = 2; row < 80; ++row) {
     const SpringNetwork network = springs_of_all_layouts(row, row % 2 == 0, random);
-    const StretchBatches batches(network, kStructural);
+    const SpringBatches batches(network, kStructural);
     const Parts all{0, static_cast<Index>(batches.parts.size())};
     for (const LengthRange& range : kRanges) {
       Points narrow = network.positions;
@@ -117,7 +117,7 @@ TEST(StretchKernel, MeasuresTheLongestAndTheShortest) {
   std::mt19937 random(13);
   for (const Index row : {3, 9, 33, 70}) {
     const SpringNetwork network = springs_of_all_layouts(row, false, random);
-    const StretchBatches batches(network, kStructural);
+    const SpringBatches batches(network, kStructural);
     SquaredLengths expected;
     for (Index s = 0; s < batches.count(); ++s) {
       const double length = (network.positions.col(batches.first[s]) - network.positions.col(batches.second[s])).norm();
@@ -135,7 +135,7 @@ TEST(StretchKernel, MeasuresTheLongestAndTheShortest) {
 TEST(StretchKernel, LeavesSpringsWithinTheirLimitsBitForBit) {
   std::mt19937 random(14);
   const SpringNetwork network = springs_of_all_layouts(70, false, random);
-  const StretchBatches batches(network, kStructural);
+  const SpringBatches batches(network, kStructural);
   Points x = network.positions;
   const Parts all{0, static_cast<Index>(batches.parts.size())};
   project_springs(batches, all, {0.0, 100.0}, 1.0, network.velocities.data(), x.data());

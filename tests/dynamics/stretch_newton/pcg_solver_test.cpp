@@ -40,7 +40,7 @@ class SparseSolverOfACloth : public ::testing::Test {
 
   SpringNetwork network_ = make_test_cloth(9, 0.0, 0.0);
   StretchComponent component_ = stretch_components(network_, {SpringKind::structural}).front();
-  SparseSolver solver_{component_};
+  PcgSolver solver_{component_};
   std::mt19937 random_{3};
 };
 
@@ -91,7 +91,7 @@ TEST_F(SparseSolverOfACloth, DoesNotMoveAgainWithoutAFactor) {
 }
 
 // What nothing holds takes up all of its momentum, whatever else is left: to the rounding of double precision.
-TEST(SparseSolver, KeepsMomentum) {
+TEST(PcgSolver, KeepsMomentum) {
   const SpringNetwork network = make_test_cloth(6, 0.0, 0.0, false);
   const StretchComponent component = stretch_components(network, {SpringKind::structural}).front();
   StretchSystem system;
@@ -103,7 +103,7 @@ TEST(SparseSolver, KeepsMomentum) {
     for (Index i = 0; i < component.free_count; ++i) momentum += component.masses[i] * step.col(i);
     EXPECT_LT((momentum - system.residual.rowwise().sum()).norm(), 1.0e-13 * system.residual.cwiseAbs().sum());
   };
-  SparseSolver solver(component);
+  PcgSolver solver(component);
   solver.solve(system, step);
   expect_momentum();
   system.residual = Points::Random(3, component.free_count);

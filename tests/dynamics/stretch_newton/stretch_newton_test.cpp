@@ -143,11 +143,11 @@ TEST(StretchNewton, TheSameStepsHaveTheSameBits) {
 
 // Each solve leaves a tenth of the residual, as M + K measures it, or less: so near is the displacement to that of a new factor.
 // The second and third systems are near the first; the fourth, of another weight by a thousand, is not.
-TEST(SparseSolver, OldFactorsLeadNearEnough) {
+TEST(PcgSolver, OldFactorsLeadNearEnough) {
   StretchedCloth cloth;
   const StretchComponent component = stretch_components(cloth.network, {SpringKind::structural}).front();
   StretchEnergy energy(component, {.max_stretch = 0.0});
-  SparseSolver used(component);
+  PcgSolver used(component);
   for (const double weight : {1.0, 1.0, 1.0, 1000.0}) {
     energy.set_weight(weight);
     const Points x = cloth.next();
@@ -169,7 +169,7 @@ TEST(SparseSolver, OldFactorsLeadNearEnough) {
 // in each iteration then, a tenth after six; steepest descent leaves fifteen seventeenths. What they say is left to gain is half of
 // the residual's square as the old factor measures it before the last iteration, up to sixteen times as much as there is and never
 // less. A new factor leaves less than a ten-thousandth.
-TEST(SparseSolver, OldFactorsLeadThereByConjugateGradients) {
+TEST(PcgSolver, OldFactorsLeadThereByConjugateGradients) {
   StretchedCloth cloth;
   const StretchComponent component = stretch_components(cloth.network, {SpringKind::structural}).front();
   Points points(3, component.points.size());
@@ -181,7 +181,7 @@ TEST(SparseSolver, OldFactorsLeadThereByConjugateGradients) {
     energy.set_weight(weight);
     energy.linearise(points, points, NearLimit::slack, system);
   };
-  SparseSolver used(component);
+  PcgSolver used(component);
   Points step;
   of_weight(1.0);
   used.solve(system, step);
@@ -193,7 +193,7 @@ TEST(SparseSolver, OldFactorsLeadThereByConjugateGradients) {
   const Scalars exact = matrix.ldlt().solve(now);
   const Scalars missed = step.reshaped() - exact;
   Points by_new_factor;
-  SparseSolver(component).solve(system, by_new_factor);
+  PcgSolver(component).solve(system, by_new_factor);
   EXPECT_NE(step, by_new_factor) << "the old factor was given up";
   EXPECT_LE(0.5 * missed.dot(matrix * missed), left);
   EXPECT_LE(left, 0.01 * 16.0 * 0.5 * now.dot(exact));
@@ -201,7 +201,7 @@ TEST(SparseSolver, OldFactorsLeadThereByConjugateGradients) {
 
 // A factor of M + K measures what M + 16 K leaves to gain as up to sixteen times as much: all of it may be left, so the first
 // iteration is the last. With nothing that may be left they go on to a hundredth.
-TEST(SparseSolver, OldFactorsLeaveWhatMayBeLeft) {
+TEST(PcgSolver, OldFactorsLeaveWhatMayBeLeft) {
   StretchedCloth cloth;
   const StretchComponent component = stretch_components(cloth.network, {SpringKind::structural}).front();
   Points points(3, component.points.size());
@@ -210,7 +210,7 @@ TEST(SparseSolver, OldFactorsLeaveWhatMayBeLeft) {
   const auto left_of = [&](double part_that_may_be_left) {
     StretchEnergy energy(component, {.max_stretch = 0.0});
     StretchSystem system;
-    SparseSolver used(component);
+    PcgSolver used(component);
     Points step;
     energy.set_weight(1.0);
     energy.linearise(points, points, NearLimit::slack, system);

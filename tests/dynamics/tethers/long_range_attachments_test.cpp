@@ -112,12 +112,12 @@ Points blown_up(const SpringNetwork& network) {
   return x;
 }
 
-TEST(Tethers, LeadBackToWithinReachOfAPin) {
+TEST(LongRangeAttachments, LeadBackToWithinReachOfAPin) {
   for (const Index side : {2, 3, 9, 70}) {
     SpringNetwork network = make_test_cloth(side, 0.0, 0.0);
     network.inverse_masses[side * (side - 1)] = 1.0;  // one pin is left
     Points x = blown_up(network);
-    Tethers(network, kStructural, 0.05).project(x);
+    LongRangeAttachments(network, kStructural, 0.05).project(x);
     const std::vector<double> length = lengths_from(network, side * side - 1);
     for (Index i = 0; i + 1 < side * side; ++i) {
       const double distance = (x.col(i) - x.col(side * side - 1)).norm();
@@ -127,14 +127,14 @@ TEST(Tethers, LeadBackToWithinReachOfAPin) {
   }
 }
 
-TEST(Tethers, PullStraightTowardsThePin) {
+TEST(LongRangeAttachments, PullStraightTowardsThePin) {
   SpringNetwork network = make_test_rope(40, 0.0);
   Points x = network.positions;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-3.0, 3.0);
   for (Index i = 1; i < 40; ++i) x.col(i) = Vector3(unit(random), unit(random), unit(random));
   const Points before = x;
-  Tethers(network, kStructural, 0.0).project(x);
+  LongRangeAttachments(network, kStructural, 0.0).project(x);
   for (Index i = 1; i < 40; ++i) {
     const double reach = static_cast<double>(i) / 39.0;
     const double scale = std::min(1.0, reach / before.col(i).norm());
@@ -142,7 +142,7 @@ TEST(Tethers, PullStraightTowardsThePin) {
   }
 }
 
-TEST(Tethers, LeaveWhatIsWithinReachAlone) {
+TEST(LongRangeAttachments, LeaveWhatIsWithinReachAlone) {
   const SpringNetwork network = make_test_cloth(30, 0.0, 0.0);
   Points x = network.positions;
   for (Index i = 0; i < network.particle_count(); ++i) {
@@ -150,29 +150,29 @@ TEST(Tethers, LeaveWhatIsWithinReachAlone) {
   }
   const Points before = x;
   // The springs of 1/29 m are 4.2 % longer when their ends differ by 0.01 m across.
-  Tethers(network, kStructural, 0.05).project(x);
+  LongRangeAttachments(network, kStructural, 0.05).project(x);
   EXPECT_TRUE(x == before);
 }
 
-TEST(Tethers, FollowPinsThatMove) {
+TEST(LongRangeAttachments, FollowPinsThatMove) {
   SpringNetwork network = make_test_rope(20, 0.0);
   Points x = network.positions;
   x.col(0) = Vector3(0.0, 5.0, 0.0);
-  Tethers(network, kStructural, 0.0).project(x);
+  LongRangeAttachments(network, kStructural, 0.0).project(x);
   for (Index i = 1; i < 20; ++i) EXPECT_NEAR((x.col(i) - x.col(0)).norm(), i / 19.0, 32 * kEpsilon) << i;
 }
 
-TEST(Tethers, DoNothingWithoutPins) {
+TEST(LongRangeAttachments, DoNothingWithoutPins) {
   const SpringNetwork network = make_test_cloth(10, 0.0, 0.0, false);
   Points x = 3.0 * network.positions;
   const Points before = x;
-  Tethers(network, kStructural, 0.0).project(x);
+  LongRangeAttachments(network, kStructural, 0.0).project(x);
   EXPECT_TRUE(x == before);
 }
 
-TEST(Tethers, HaveTheSameBitsForAnyNumberOfThreads) {
+TEST(LongRangeAttachments, HaveTheSameBitsForAnyNumberOfThreads) {
   const SpringNetwork network = make_test_cloth(150, 0.0, 0.0);
-  const Tethers tethers(network, kStructural, 0.01);
+  const LongRangeAttachments tethers(network, kStructural, 0.01);
   const auto project = [&](int threads) {
     const ThreadLimit at_most(threads);
     Points x = blown_up(network);
@@ -185,12 +185,12 @@ TEST(Tethers, HaveTheSameBitsForAnyNumberOfThreads) {
 }
 
 // What the machine takes has twice as many lanes where it has AVX-512.
-TEST(Tethers, HaveTheSameBitsWhateverTheMachineTakes) {
+TEST(LongRangeAttachments, HaveTheSameBitsWhateverTheMachineTakes) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   for (Index count = 1; count < 40; ++count) {
     for (const bool one_pin : {false, true}) {
-      const TetherRun run{.particle = 50, .pin = 3, .tether = 2, .count = count, .one_pin = one_pin};
+      const LraRun run{.particle = 50, .pin = 3, .tether = 2, .count = count, .one_pin = one_pin};
       Points narrow(3, 100);
       for (double& number : narrow.reshaped()) number = unit(random);
       Points taken = narrow;

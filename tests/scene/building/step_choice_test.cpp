@@ -130,7 +130,7 @@ TEST(StepChoice, AutoMayMakePartsOfStepsOfClothsThatBearIt) {
         "tethers": true}, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [8, 8]}, "mass": 1,
         "springs": {"structural": {"stiffness": 0}, "shear": {"stiffness": 0}},
         "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
-    return build_scene(folder.read(text, changes)).settings.most_parts;
+    return build_scene(folder.read(text, changes)).settings.max_substeps;
   };
   EXPECT_EQ(parts({}), kAutoParts);
   EXPECT_EQ(parts({"frame_rate=10", "step=0.001"}), 1);
@@ -150,12 +150,12 @@ TEST(StepChoice, AutoIsAFrameForWhatAGlobalSolveHoldsAndMeetsNothing) {
   };
   for (const std::string solver : {"newton", "auto"}) {
     EXPECT_EQ(built({"stretch_limit.solver=" + solver}).steps_per_frame, 1);
-    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).settings.most_parts, kAutoParts);
+    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).settings.max_substeps, kAutoParts);
   }
   EXPECT_EQ(built({"obstacles.floor.shape={\"type\":\"half_space\",\"offset\":-5}"}).steps_per_frame, 8);
   EXPECT_EQ(built({"bodies.cloth.self_contact=true"}).steps_per_frame, 8);
   EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).steps_per_frame, 8) << "which takes its part of each step";
-  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).settings.most_parts, 1);
+  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).settings.max_substeps, 1);
   const std::string second = R"(bodies.other={"shape": {"type": "cloth", "size": [1, 1], "resolution": [2, 2]}, "mass": 1,
       "place": {"position": [0, 0, 1]}, "springs": {"structural": {"stiffness": 0}})";
   EXPECT_EQ(built({second + "}"}).steps_per_frame, 8);
@@ -174,16 +174,16 @@ TEST(StepChoice, AutoIsMadeInPartsForPassesThatMayBeGivenUp) {
   };
   const BuiltScene passes = built({"stretch_limit.solver=gauss_seidel"});
   const BuiltScene automatic = built({});
-  const int parts = automatic.settings.most_parts;
+  const int parts = automatic.settings.max_substeps;
   const int at_least = built({"stretch_limit.solver=newton"}).steps_per_frame;
-  EXPECT_EQ(passes.settings.most_parts, 1);
+  EXPECT_EQ(passes.settings.max_substeps, 1);
   EXPECT_GT(parts, 1);
   EXPECT_GE(automatic.steps_per_frame, at_least);
   EXPECT_LT(automatic.steps_per_frame, 2 * at_least);
   EXPECT_GE(automatic.steps_per_frame * parts, passes.steps_per_frame);
   EXPECT_LT((automatic.steps_per_frame - 1) * parts, passes.steps_per_frame);
   const std::string damping = R"(integrator={"type": "verlet", "damping": 0.01})";
-  EXPECT_EQ(built({damping}).settings.most_parts, 1) << "which takes its part of each step";
+  EXPECT_EQ(built({damping}).settings.max_substeps, 1) << "which takes its part of each step";
   EXPECT_EQ(built({damping}).steps_per_frame, passes.steps_per_frame);
 }
 

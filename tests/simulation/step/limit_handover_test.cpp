@@ -45,8 +45,8 @@ struct Outcome {
 };
 
 Outcome run(const SpringNetwork& network, Solver solver, int steps, const std::vector<Obstacle>& obstacles = {},
-            int most_parts = 1) {
-  Simulator simulator(network, {.step = 1.0 / kRate, .stretch_limit = limit_of(solver), .most_parts = most_parts}, obstacles);
+            int max_substeps = 1) {
+  Simulator simulator(network, {.step = 1.0 / kRate, .stretch_limit = limit_of(solver), .max_substeps = max_substeps}, obstacles);
   Outcome outcome;
   for (int step = 0; step < steps; ++step) {
     const StepReport report = simulator.step();
@@ -161,7 +161,7 @@ TEST_F(OverABall, HasTheSameBitsForAnyNumberOfThreads) {
 TEST_F(OverABall, NeedsTheSmallStepsOfPassesNoMore) {
   StretchLimitSettings limit = limit_of(Solver::automatic);
   limit.iterations = 1;
-  Simulator simulator(cloth_, {.step = 1.0 / kRate, .stretch_limit = limit, .most_parts = 4}, ball_);
+  Simulator simulator(cloth_, {.step = 1.0 / kRate, .stretch_limit = limit, .max_substeps = 4}, ball_);
   std::vector<int> parts;
   for (int step = 0; step < 60; ++step) parts.push_back(simulator.step().parts);
   const auto since = simulator.state().stretch_holds.front().solved_since;

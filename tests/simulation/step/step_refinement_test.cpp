@@ -110,18 +110,18 @@ struct Swing {
   Points x;
   double energy = 0.0;        ///< of motion and height [J]
   double worst_excess = 0.0;  ///< after any step
-  int most_parts = 0;
+  int max_substeps = 0;
 };
 
 /// For a second and a half, by steps of which a frame takes so many.
-Swing swing(const SpringNetwork& network, int steps_a_frame, int most_parts, const StretchLimitSettings& limit = both_ways()) {
-  Simulator simulator(network, {.step = 1.0 / (kRate * steps_a_frame), .stretch_limit = limit, .most_parts = most_parts});
+Swing swing(const SpringNetwork& network, int steps_a_frame, int max_substeps, const StretchLimitSettings& limit = both_ways()) {
+  Simulator simulator(network, {.step = 1.0 / (kRate * steps_a_frame), .stretch_limit = limit, .max_substeps = max_substeps});
   Swing swing;
   for (int step = 1; step <= 90 * steps_a_frame; ++step) {
     const StepReport report = simulator.step();
     EXPECT_EQ(simulator.time(), step * simulator.settings().step);
     swing.worst_excess = std::max(swing.worst_excess, report.stretch_excess);
-    swing.most_parts = std::max(swing.most_parts, report.parts);
+    swing.max_substeps = std::max(swing.max_substeps, report.parts);
   }
   swing.x = simulator.positions();
   swing.energy = 0.5 * network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose()) + simulator.gravity_energy();
@@ -133,8 +133,8 @@ TEST(StepRefinement, HoldsTheLimitOfWhatSwingsAndItsEnergy) {
   const Swing coarse = swing(cloth, 8, 1);
   const Swing refined = swing(cloth, 8, 8);
   const Swing fine = swing(cloth, 80, 1);
-  EXPECT_EQ(coarse.most_parts, 1);
-  EXPECT_EQ(refined.most_parts, 8);
+  EXPECT_EQ(coarse.max_substeps, 1);
+  EXPECT_EQ(refined.max_substeps, 8);
   EXPECT_GT(coarse.worst_excess, 0.05);
   EXPECT_LT(refined.worst_excess, 0.04);
   const double height = 0.2 * testing::kGravity * 1.0;  // what the cloth's lower edge may fall by
@@ -148,7 +148,7 @@ TEST(StepRefinement, KeepsTheEnergyOfWhatTurns) {
   const Swing coarse = swing(cloth, 1, 1, limit);
   const Swing refined = swing(cloth, 1, 8, limit);
   const Swing fine = swing(cloth, 10, 1, limit);
-  EXPECT_GT(refined.most_parts, 2);
+  EXPECT_GT(refined.max_substeps, 2);
   for (const Swing& held : {coarse, refined, fine}) EXPECT_LT(held.worst_excess, 0.02);
   const double fall = 0.2 * testing::kGravity * 0.5;  // by half its length
   EXPECT_LT(coarse.energy, fine.energy - 0.2 * fall);
@@ -160,7 +160,7 @@ TEST(StepRefinement, BeginsWithTheSmallestPartsOfWhatMoves) {
   const Vector3 velocity(0.0, 0.0, 10.0);
   const Index first = builder.add_particle({0.0, 0.0, 0.0}, 1.0, velocity);
   builder.add_spring(first, builder.add_particle({1.0, 0.0, 0.0}, 1.0, velocity), 0.0, 1.0, 0.0);
-  SimulatorSettings settings{.step = 1.0 / kRate, .stretch_limit = StretchLimitSettings{}, .most_parts = 8};
+  SimulatorSettings settings{.step = 1.0 / kRate, .stretch_limit = StretchLimitSettings{}, .max_substeps = 8};
   EXPECT_EQ(Simulator(builder.build(), settings).step().parts, 1) << "passes follow what they miss";
   settings.stretch_limit->solver = StretchLimitSettings::Solver::automatic;
   Simulator simulator(builder.build(), settings);
@@ -183,10 +183,10 @@ TEST(StepRefinement, APartAtTheStartIsAStepOfItsLength) {
   const Vector3 velocity(1.0, 0.0, 0.0);
   const Index first = builder.add_particle({0.0, 0.005, 0.0}, 1.0, velocity);
   builder.add_spring(first, builder.add_particle({1.0, 0.005, 0.0}, 1.0, velocity), 0.0, 1.0);
-  const auto after_a_frame = [&](int most_parts, int steps) {
+  const auto after_a_frame = [&](int max_substeps, int steps) {
     SimulatorSettings settings{.step = 1.0 / (kRate * steps),
                                .stretch_limit = StretchLimitSettings{.solver = StretchLimitSettings::Solver::newton},
-                               .most_parts = most_parts};
+                               .max_substeps = max_substeps};
     settings.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1000.0};
     Simulator simulator(builder.build(), settings, {testing::ground(rough)});
     for (int step = 0; step < steps; ++step) EXPECT_EQ(simulator.step().parts, 8 / steps);
@@ -202,7 +202,7 @@ TEST(StepRefinement, LeavesWhatHangsAlone) {
   cloth.positions.row(1) = -cloth.positions.row(2);
   cloth.positions.row(2).setZero();
   ASSERT_GT(cloth.positions(1, cloth.pins[0].particles[0]), cloth.positions(1, 0));
-  EXPECT_EQ(swing(cloth, 27, 8).most_parts, 1);
+  EXPECT_EQ(swing(cloth, 27, 8).max_substeps, 1);
 }
 
 // Dampers see it; a chord of the wheel's arc is the longer, and points the more inwards, the longer the step.
@@ -214,7 +214,7 @@ TEST(StepRefinement, PinsHaveTheVelocityOfTheStepToCome) {
   const auto held_at = [&](double time) -> Vector3 {
     return pin.motion.pose(RigidTransform::Identity(), time) * cloth.positions.col(held);
   };
-  Simulator simulator(cloth, {.step = 1.0 / (8 * kRate), .stretch_limit = both_ways(), .most_parts = 8});
+  Simulator simulator(cloth, {.step = 1.0 / (8 * kRate), .stretch_limit = both_ways(), .max_substeps = 8});
   int changes = 0;
   for (int step = 0, parts = 1; step < 500; ++step) {
     simulator.step();
@@ -239,12 +239,12 @@ TEST(StepRefinement, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(StepRefinement, PartsOutOfTheirBoundsAreRefused) {
-  for (const int parts : {0, kMostParts + 1}) {
+  for (const int parts : {0, kMaxSubsteps + 1}) {
     try {
-      const Simulator simulator(testing::one_particle(Vector3::Zero()), {.most_parts = parts});
+      const Simulator simulator(testing::one_particle(Vector3::Zero()), {.max_substeps = parts});
       FAIL() << parts;
     } catch (const InputError& error) {
-      EXPECT_EQ(error.problems().front().key, "most_parts");
+      EXPECT_EQ(error.problems().front().key, "max_substeps");
     }
   }
 }
