@@ -4,7 +4,7 @@
 #include "collision/mesh_bvh/segment_triangle_crossing.h"
 #include "collision/safe_regions/safe_region.h"
 #include "collision/safe_regions/triangle_separating_plane.h"
-#include "sample_meshes.h"
+#include "collision/sample_meshes.h"
 
 namespace sprung::test {
 

@@ -1,6 +1,6 @@
 #include "collision/shapes/mesh_shape.h"
-#include "sample_meshes.h"
-#include "zone_trials.h"
+#include "collision/sample_meshes.h"
+#include "collision/zone_trials.h"
 
 #include <gtest/gtest.h>
 
