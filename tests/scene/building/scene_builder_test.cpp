@@ -1,7 +1,7 @@
 #include "scene/building/scene_builder.h"
 
 #include "geometry/mesh/polygon_mesh.h"
-#include "scene_text.h"
+#include "scene/scene_text.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 #include "scene/building/step_choice.h"
 #include "scene/building/scene_builder.h"
-#include "scene_text.h"
+#include "scene/scene_text.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 #include "scene/format/file_wildcard.h"
 
-#include "scene_text.h"
+#include "scene/scene_text.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 #include "scene/reading/scene_reader.h"
 
 #include "base/as_nobody.h"
-#include "scene_text.h"
+#include "scene/scene_text.h"
 
 #include <gmock/gmock.h>
 

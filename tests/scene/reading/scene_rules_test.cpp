@@ -1,9 +1,9 @@
 // Every rule of a scene has a scene that breaks it.
-#include "broken_scenes.h"
+#include "scene/broken_scenes.h"
 #include "scene/json/nearest_name.h"
 #include "scene/json/overrides.h"
 #include "scene/reading/scene_schema.h"
-#include "scene_text.h"
+#include "scene/scene_text.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 // The published schema and the rules know the same keys, and accept the same scenes.
 #include "scene/reading/scene_schema.h"
 
-#include "scene_text.h"
+#include "scene/scene_text.h"
 
 #include <gmock/gmock.h>
 
