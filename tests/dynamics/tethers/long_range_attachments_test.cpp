@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "dynamics/tethers/lra_paths.h"
-#include "networks.h"
+#include "dynamics/networks.h"
 
 #include <gmock/gmock.h>
 
