@@ -69,8 +69,8 @@ bool Simulator::Implementation::anything_moves() const {
 }
 
 StepReport Simulator::Implementation::step() {
-  if (constraints.contacts().meets_anything()) {
-    begun = {state, energy_watch, constraints.lets_through()};
+  if (constraints.contacts().can_collide()) {
+    begun = {state, energy_watch, constraints.permitted_crossings()};
   }
   kept_contacts.reset();
   const int more = parts_by_turn();

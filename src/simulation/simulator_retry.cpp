@@ -19,7 +19,7 @@ StepReport Simulator::Implementation::make_again(const StepReport& first, int mo
     if (report) best = made(*report);
   }
   constraints.look_ahead(false);
-  constraints.forget(best.through);
+  constraints.roll_back(best.through);
   state = std::move(best.state);
   environment.set_interval(time(), time());
   energy_watch = best.watch;
@@ -29,14 +29,14 @@ StepReport Simulator::Implementation::make_again(const StepReport& first, int mo
 }
 
 Made Simulator::Implementation::made(const StepReport& report) const {
-  return {state, energy_watch, constraints.lets_through(), report, contacts()};
+  return {state, energy_watch, constraints.permitted_crossings(), report, contacts()};
 }
 
 /// None when it diverges, or squeezes too many particles.
 std::optional<StepReport> Simulator::Implementation::attempt(int more, Index too_many) {
   state = begun.state;
   energy_watch = begun.watch;
-  constraints.forget(begun.through);
+  constraints.roll_back(begun.through);
   environment.set_interval(time(), time());
   try {
     const StepReport report = make_step(more, too_many);

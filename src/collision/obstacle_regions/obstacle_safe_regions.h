@@ -29,10 +29,10 @@ class ObstacleSafeRegions {
   /// Makes regions where elements are near obstacles and have none that holds them on their way.
   void follow(const Way& way);
 
-  /// What permitted_crossings() let through last.
-  [[nodiscard]] const PermittedCrossings& lets_through() const { return permitted_crossings_; }
+  /// What permit_crossings() let through last.
+  [[nodiscard]] const PermittedCrossings& permitted_crossings() const { return permitted_crossings_; }
   /// Drops all regions: the next way does not begin where the last one ended, but where this was let through.
-  void forget(const PermittedCrossings& through);
+  void roll_back(const PermittedCrossings& permitted);
 
   /// Whether elements at pins are near whatever comes near them on their way, for regions that are made from now on.
   void look_ahead(bool ahead) { ahead_ = ahead; }
@@ -43,7 +43,7 @@ class ObstacleSafeRegions {
 
   /// Lets corners of elements that an obstacle crosses and drags along through it, until they are free of it: for them there are no
   /// regions and no contacts. Requires follow() for a way that begins at `from`.
-  void permitted_crossings(const Points& from);
+  void permit_crossings(const Points& from);
 
   /// Makes the regions of all elements around these particles again, where they are when the way begins.
   void renew_around(const std::vector<Index>& particles, const Way& way);

@@ -30,7 +30,7 @@ bool ObstacleSafeRegions::is_crossed(Index particle) const {
 
 // A pin may take an element through an obstacle, and the obstacle the element's other corners along for ever. They are let through,
 // and then what they drag along in turn.
-void ObstacleSafeRegions::permitted_crossings(const Points& from) {
+void ObstacleSafeRegions::permit_crossings(const Points& from) {
   PermittedCrossings passing;
   for (Index p = 0; p < static_cast<Index>(patches_.size()); ++p) {
     for (const PatchSafeRegions& regions : patches_[at(p)].regions) {
@@ -46,12 +46,12 @@ void ObstacleSafeRegions::set_passing(PermittedCrossings corners) {
   permitted_crossings_ = std::move(corners);
 }
 
-void ObstacleSafeRegions::forget(const PermittedCrossings& through) {
+void ObstacleSafeRegions::roll_back(const PermittedCrossings& permitted) {
   for (Patch& patch : patches_) {
     patch.regions.clear();
     patch.known.setEmpty();
   }
-  set_passing(through);
+  set_passing(permitted);
 }
 
 void ObstacleSafeRegions::append_passing(Index p, const PatchSafeRegions& regions, const Points& from,

@@ -63,7 +63,7 @@ TruncationResult ObstacleTruncation::place_all(const Way& way, Points& after) {
     }
   }
   TruncationResult truncation = lead_on(particles, outcomes, way, after);
-  truncation.in_parts = in_parts;
+  truncation.subdivided = in_parts;
   return truncation;
 }
 

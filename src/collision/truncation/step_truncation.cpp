@@ -52,23 +52,21 @@ StepTruncation::~StepTruncation() = default;
 StepTruncation::StepTruncation(StepTruncation&&) noexcept = default;
 StepTruncation& StepTruncation::operator=(StepTruncation&&) noexcept = default;
 
-bool StepTruncation::meets_anything() const {
-  return implementation_->pairs.has_value() || !implementation_->set.obstacles().empty();
-}
+bool StepTruncation::can_collide() const { return implementation_->pairs.has_value() || !implementation_->set.obstacles().empty(); }
 
-bool StepTruncation::bodies_may_meet() const { return bodies_meet(implementation_->surface); }
+bool StepTruncation::bodies_can_collide() const { return bodies_meet(implementation_->surface); }
 
 void StepTruncation::follow(const Points& before, const Points& after) {
   implementation_->regions.follow({before, after});
-  implementation_->regions.permitted_crossings(before);
+  implementation_->regions.permit_crossings(before);
   if (implementation_->ahead) implementation_->regions.renew_around(implementation_->placement.pinned(), {before, after});
   if (implementation_->pairs) implementation_->begin_pairs(before, after);
 }
 
-const PermittedCrossings& StepTruncation::lets_through() const { return implementation_->regions.lets_through(); }
+const PermittedCrossings& StepTruncation::permitted_crossings() const { return implementation_->regions.permitted_crossings(); }
 
-void StepTruncation::forget(const PermittedCrossings& through) {
-  implementation_->regions.forget(through);
+void StepTruncation::roll_back(const PermittedCrossings& permitted) {
+  implementation_->regions.roll_back(permitted);
   if (implementation_->pairs) implementation_->pairs->forget();
 }
 
@@ -85,7 +83,7 @@ const std::vector<Contact>& StepTruncation::contacts(const Points& before, const
   return implementation_->contacts;
 }
 
-FreshContacts StepTruncation::contacts_again(const Points& before, const Points& after) {
+FreshContacts StepTruncation::renewed_contacts(const Points& before, const Points& after) {
   return implementation_->regions.find_contacts_around(implementation_->placement.held_back(), {before, after});
 }
 
@@ -120,7 +118,7 @@ void StepTruncation::Implementation::keep_apart(const Points& before, Points& af
   const Points allowed = after;
   const auto note_taken_along = [&] {
     const std::vector<Index>& taken = pairs->taken_along();
-    truncation.taken_along.insert(truncation.taken_along.end(), taken.begin(), taken.end());
+    truncation.moved_with_obstacles.insert(truncation.moved_with_obstacles.end(), taken.begin(), taken.end());
   };
   Outcomes outcomes = PairTruncation(regions, *pairs, particles).place(before, after);
   note_taken_along();
@@ -128,8 +126,8 @@ void StepTruncation::Implementation::keep_apart(const Points& before, Points& af
   const bool sure = placement.look_at_pins(particles, after, outcomes);
   if (!sure || (placement.closes_in({before, allowed}) && count(outcomes, Outcome::infeasible) > 0)) {
     infeasible.clear();
-    truncation.in_parts = true;
-    truncation.taken_along.clear();
+    truncation.subdivided = true;
+    truncation.moved_with_obstacles.clear();
     outcomes = place_in_parts(environment, {before, allowed}, after, [&](const Way& part, Points& x) {
       const ClippedSubstep among_obstacles = placement.place_part(particles, part, x);
       pairs->begin_part(part.from, x);
@@ -148,7 +146,7 @@ void StepTruncation::Implementation::keep_apart(const Points& before, Points& af
     if (outcomes[n] == Outcome::infeasible) infeasible.push_back(particles[n]);
   }
   const bool stops = count(outcomes, Outcome::free) < static_cast<Index>(outcomes.size());
-  if (stops && !truncation.in_parts) pairs->append_meetings(before, truncation.meetings);
+  if (stops && !truncation.subdivided) pairs->append_meetings(before, truncation.body_contacts);
   std::sort(infeasible.begin(), infeasible.end());
   truncation.infeasible = static_cast<Index>(std::unique(infeasible.begin(), infeasible.end()) - infeasible.begin());
 }

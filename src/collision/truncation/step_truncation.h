@@ -27,19 +27,19 @@ class StepTruncation {
   StepTruncation& operator=(StepTruncation&&) noexcept;
 
   /// Whether there is anything that the network may meet: obstacles, other bodies, itself.
-  [[nodiscard]] bool meets_anything() const;
+  [[nodiscard]] bool can_collide() const;
 
   /// Whether elements of two bodies may meet.
-  [[nodiscard]] bool bodies_may_meet() const;
+  [[nodiscard]] bool bodies_can_collide() const;
 
   /// Makes the regions hold the elements on their way from `before`, where nothing crosses, to where they are about to be at the
   /// end of the environment's interval [m].
   void follow(const Points& before, const Points& after);
 
   /// What obstacles let through, because pins drag it through them.
-  [[nodiscard]] const PermittedCrossings& lets_through() const;
+  [[nodiscard]] const PermittedCrossings& permitted_crossings() const;
   /// The next step does not begin where the last one ended, but where this was let through.
-  void forget(const PermittedCrossings& through);
+  void roll_back(const PermittedCrossings& permitted);
 
   /// Whether contacts of elements at pins are found on their whole way, wherever it begins. Truncation cannot help them, as a pin
   /// goes where it goes; but the farther off a contact is found, the more often nothing would have touched.
@@ -52,7 +52,7 @@ class StepTruncation {
   [[nodiscard]] const std::vector<Contact>& contacts(const Points& before, const Points& after);
 
   /// Contacts with obstacles around what truncate() has stopped, found anew while it relaxes.
-  [[nodiscard]] FreshContacts contacts_again(const Points& before, const Points& after);
+  [[nodiscard]] FreshContacts renewed_contacts(const Points& before, const Points& after);
 
   /// Moves particles once more after some were stopped [m]; returns false when it has nothing to move.
   using Relax = std::function<bool(Points& positions)>;

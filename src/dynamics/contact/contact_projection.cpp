@@ -39,15 +39,15 @@ void ContactProjection::find(const StepMotion& motion) {
 }
 
 void ContactProjection::find_again(const StepMotion& motion, const Points& positions) {
-  response_.renew(free_space_.contacts_again(motion.before, positions), motion);
+  response_.renew(free_space_.renewed_contacts(motion.before, positions), motion);
 }
 
 void ContactProjection::truncate(const StepMotion& motion, Points& positions, const StepTruncation::Relax& relax) {
   noted_.clear();
-  const bool meet = free_space_.bodies_may_meet();
+  const bool meet = free_space_.bodies_can_collide();
   TruncationResult truncation =
       meet ? truncate_bodies(motion, positions, relax) : free_space_.truncate(motion.before, positions, relax);
-  taken_along_ = std::move(truncation.taken_along);
+  taken_along_ = std::move(truncation.moved_with_obstacles);
   truncated_ = truncation.truncated;
   infeasible_ = truncation.infeasible;
 }
@@ -70,12 +70,12 @@ TruncationResult ContactProjection::truncate_bodies(const StepMotion& motion, Po
                                                     const StepTruncation::Relax& relax) {
   Points led = positions;
   TruncationResult truncation = free_space_.truncate(motion.before, positions);
-  for (int round = 0; round < kMeetingRounds && note_meetings(truncation.meetings, motion); ++round) {
+  for (int round = 0; round < kMeetingRounds && note_meetings(truncation.body_contacts, motion); ++round) {
     if (!answer_meetings(led)) break;
     positions = led;
     truncation = free_space_.truncate(motion.before, positions);
   }
-  if (!relax || truncation.truncated == 0 || truncation.infeasible > 0 || truncation.in_parts) return truncation;
+  if (!relax || truncation.truncated == 0 || truncation.infeasible > 0 || truncation.subdivided) return truncation;
   positions = led;
   return free_space_.truncate(motion.before, positions, relax);
 }

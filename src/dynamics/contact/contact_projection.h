@@ -18,7 +18,7 @@ class ContactProjection {
   ContactProjection(const SpringNetwork& network, Environment& environment);
 
   /// Whether there is anything that the network may meet: obstacles, other bodies, itself.
-  [[nodiscard]] bool meets_anything() const { return free_space_.meets_anything(); }
+  [[nodiscard]] bool can_collide() const { return free_space_.can_collide(); }
 
   /// Finds the contacts of a step. Requires that the environment's interval is the step's.
   void find(const StepMotion& motion);
@@ -28,8 +28,8 @@ class ContactProjection {
   void find_again(const StepMotion& motion, const Points& positions);
 
   /// See StepTruncation.
-  [[nodiscard]] const PermittedCrossings& lets_through() const { return free_space_.lets_through(); }
-  void forget(const PermittedCrossings& through) { free_space_.forget(through); }
+  [[nodiscard]] const PermittedCrossings& permitted_crossings() const { return free_space_.permitted_crossings(); }
+  void roll_back(const PermittedCrossings& permitted) { free_space_.roll_back(permitted); }
   void look_ahead(bool ahead) { free_space_.look_ahead(ahead); }
 
   /// See ContactSolver.

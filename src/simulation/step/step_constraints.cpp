@@ -37,12 +37,12 @@ StepConstraints::StepConstraints(const SpringNetwork& network, const SimulatorSe
 
 void StepConstraints::begin(const SimulationState& state) {
   if (copies_positions()) before_ = state.x;
-  if (contacts_.meets_anything()) v_before_ = state.v;
+  if (contacts_.can_collide()) v_before_ = state.v;
 }
 
 void StepConstraints::hold(SimulationState& state, const Forces& forces, double dt, StepReport& report) {
-  if (!contacts_.meets_anything() && !limit_) return;
-  if (contacts_.meets_anything() || integrator_.needs_advanced()) advanced_ = state.x;
+  if (!contacts_.can_collide() && !limit_) return;
+  if (contacts_.can_collide() || integrator_.needs_advanced()) advanced_ = state.x;
   dt_ = dt;
   constrain(state, forces, report);
   report.stretch_excess = limit_ ? limit_->excess(state.x) : 0.0;
@@ -96,7 +96,7 @@ StepConstraints::PushOut StepConstraints::push_out(Points& positions, int most_p
 }
 
 void StepConstraints::truncate(SimulationState& state, const Forces& forces, StepReport& report) {
-  const bool meets = contacts_.meets_anything();
+  const bool meets = contacts_.can_collide();
   const bool answers = !limit_ && integrator_.answers_contact() && projects_contacts();
   const int relax_rounds = limit_ ? std::min(kRelaxRounds, limit_->settings().iterations / kRelaxPasses) : 0;
   const int most_rounds = answers ? kAnswers : relax_rounds;
@@ -141,7 +141,7 @@ bool StepConstraints::answer_truncation(SimulationState& state, const Forces& fo
 }
 
 bool StepConstraints::projects_contacts() const {
-  return settings_.contact.response == ContactSettings::Response::projection && contacts_.meets_anything();
+  return settings_.contact.response == ContactSettings::Response::projection && contacts_.can_collide();
 }
 
 }  // namespace sprung

@@ -22,8 +22,8 @@ class StepConstraints {
   void begin(const SimulationState& state);
 
   /// See StepTruncation.
-  [[nodiscard]] const PermittedCrossings& lets_through() const { return contacts_.lets_through(); }
-  void forget(const PermittedCrossings& through) { contacts_.forget(through); }
+  [[nodiscard]] const PermittedCrossings& permitted_crossings() const { return contacts_.permitted_crossings(); }
+  void roll_back(const PermittedCrossings& permitted) { contacts_.roll_back(permitted); }
   void look_ahead(bool ahead) { contacts_.look_ahead(ahead); }
 
   /// Leads the state on from where forces and pins have led it in `dt` [s]: by contact, the stretch limit and truncation, to the
@@ -53,7 +53,7 @@ class StepConstraints {
   [[nodiscard]] bool relax(Points& positions, double excess_before);
   [[nodiscard]] bool answer_truncation(SimulationState& state, const Forces& forces);
   [[nodiscard]] bool projects_contacts() const;
-  [[nodiscard]] bool copies_positions() const { return contacts_.meets_anything() || !integrator_.keeps_positions(); }
+  [[nodiscard]] bool copies_positions() const { return contacts_.can_collide() || !integrator_.keeps_positions(); }
   [[nodiscard]] StepMotion motion() const { return {before_, v_before_, advanced_, dt_}; }
 
   const SimulatorSettings& settings_;

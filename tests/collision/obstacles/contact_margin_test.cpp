@@ -71,7 +71,7 @@ TEST(ContactsAgain, AreFoundAnewAroundWhatWasStopped) {
   space.truncate(before, after, [&](Points& positions) {
     if (!again.empty()) return false;
     positions.row(1).tail(kParticles - 1).array() += 4.0 * kGap;
-    FreshContacts fresh = space.contacts_again(before, positions);
+    FreshContacts fresh = space.renewed_contacts(before, positions);
     again = std::move(fresh.contacts);
     patches = std::move(fresh.patches);
     return true;
