@@ -2,14 +2,21 @@
 
 #include "base/format.h"
 #include "scenarios/judge.h"
+#include "scenarios/position_hash.h"
 #include "scene/reading/scene_reader.h"
+
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iomanip>
 #include <limits>
 #include <memory>
 #include <ostream>
+#include <sstream>
 #include <utility>
 
 namespace sprung::testing {
@@ -61,6 +68,34 @@ class FrameJudge {
   bool self_;
 };
 
+/// Appends one line to the file that SPRUNG_SCENARIO_HASHES names, when the run ends or throws: the hash of the positions of all
+/// frames, the number of frames, and the test. tests/compare_scenarios.sh compares two such files.
+class RunRecord {
+ public:
+  RunRecord() : file_(std::getenv("SPRUNG_SCENARIO_HASHES")) {}
+  RunRecord(const RunRecord&) = delete;
+  RunRecord& operator=(const RunRecord&) = delete;
+  ~RunRecord() {
+    if (file_ == nullptr) return;
+    const ::testing::TestInfo& test = *::testing::UnitTest::GetInstance()->current_test_info();
+    std::ostringstream line;
+    line << std::hex << std::setw(16) << std::setfill('0') << hash_.value() << std::dec << ' ' << frames_ << ' '
+         << test.test_suite_name() << '.' << test.name() << '\n';
+    std::ofstream(file_, std::ios::app) << line.str();
+  }
+
+  void add(const Points& positions) {
+    if (file_ == nullptr) return;
+    hash_.add(positions);
+    ++frames_;
+  }
+
+ private:
+  const char* file_;
+  PositionHash hash_;
+  int frames_ = 0;
+};
+
 }  // namespace
 
 BuiltScene load_scenario(const std::string& name, const std::vector<std::string>& overrides, double step_factor) {
@@ -96,10 +131,12 @@ ScenarioReport run_scenario(BuiltScene scene, const Watch& watch, Judge judge) {
   Simulator simulator(std::move(scene.network), scene.settings, std::move(scene.obstacles));
   FrameRunner runner(simulator, scene.steps_per_frame);
   FrameJudge frame_judge(simulator, judge);
+  RunRecord record;
   ScenarioReport report{.step = scene.settings.step};
   for (int number = 1; number <= scene.frames; ++number) {
     const FrameDiagnostics frame = number == 1 ? runner.first_frame() : runner.next_frame();
     report.frames = number;
+    record.add(simulator.positions());
     report.max_stretch = std::max(report.max_stretch, frame.max_stretch);
     report.truncated += frame.truncated;
     report.infeasible += frame.infeasible;
