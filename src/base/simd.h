@@ -27,11 +27,11 @@ using Double4 = SimdOf<double, kSimdWidth>::Type;
 using Double8 = SimdOf<double, kWideSimdWidth>::Type;
 using Float8 = SimdOf<float, kFloatSimdWidth>::Type;
 
-/// Results of comparisons.
+/// Masks: results of comparisons.
 using Mask4 = std::int64_t __attribute__((vector_size(kSimdWidth * sizeof(std::int64_t))));
 using FloatMask8 = std::int32_t __attribute__((vector_size(kFloatSimdWidth * sizeof(std::int32_t))));
 
-/// The bits of as many numbers.
+/// The integer type with as many bits.
 template <class Lanes>
 struct BitsOf;
 template <>
@@ -49,7 +49,7 @@ using NumberOf = std::remove_cvref_t<decltype(std::declval<Lanes>()[0])>;
 template <class Lanes>
 inline constexpr Index kCountOf = sizeof(Lanes) / sizeof(NumberOf<Lanes>);
 
-/// The same wherever they lie in memory.
+/// The unaligned type in memory.
 template <class Lanes>
 using StoredSimd = typename SimdOf<NumberOf<Lanes>, kCountOf<Lanes>>::Stored;
 
@@ -77,9 +77,9 @@ template <class Lanes>
   return (some[0] | some[1] | some[2] | some[3]) != 0;
 }
 
-/// 1 / sqrt(of) but for its last bit, and some large number where `of` is 0. A first guess from the bits, good to 3.5 %; a cubic
-/// that is best on what that leaves, good to 7.5e-7; and a step of Halley's. Machines' own square roots and quotients take longer,
-/// one after the other, and their own guesses differ from maker to maker.
+/// Approximates 1 / sqrt(of) up to its last bit; some large number where `of` is 0. The steps are a first guess from the bits
+/// (error 3.5 %), a cubic polynomial fitted to the rest (7.5e-7), and one Halley step. Square roots and divisions of the hardware
+/// take longer, and its own estimates differ between makers.
 template <class Lanes>
 [[gnu::always_inline]] inline void inverse_root(const Lanes& of, Lanes& root) {
   using Bits = typename BitsOf<Lanes>::Type;
@@ -104,14 +104,14 @@ template <class Lanes>
   return static_cast<unsigned>(two[0] | two[1]);
 }
 
-/// Takes the lowest of the lanes out of the set, which must not be empty, and returns it.
+/// Removes the lowest lane from a non-empty set and returns it.
 [[gnu::always_inline]] inline int pop_lane(unsigned& lanes) {
   const int lane = std::countr_zero(lanes);
   lanes &= lanes - 1;
   return lane;
 }
 
-/// The same for the lane with the smallest of the numbers.
+/// Removes the lane with the smallest number from a non-empty set and returns it.
 [[gnu::always_inline]] inline int pop_smallest_lane(const Double4& numbers, unsigned& lanes) {
   unsigned others = lanes;
   int smallest = pop_lane(others);
@@ -147,7 +147,7 @@ struct Vector3x4 {
   to.z = a.z - b.z;
 }
 
-/// In Eigen's order.
+/// Adds in Eigen's order.
 [[gnu::always_inline]] inline void dot(const Vector3x4& a, const Vector3x4& b, Double4& to) {
   to = a.x * b.x + a.y * b.y + a.z * b.z;
 }

@@ -96,7 +96,7 @@ int Simulator::Implementation::parts_by_turn() const {
 /// In so many times as many parts. A part that squeezes too many particles is the last.
 StepReport Simulator::Implementation::make_step(int more, Index too_many) {
   const int parts = state.parts;
-  integrator->set_part(1.0 / more);
+  integrator->set_fraction(1.0 / more);
   set_parts(more * parts);
   StepReport report;
   for (const std::int64_t step = state.step; state.step == step && report.max_infeasible < too_many;) {
@@ -104,7 +104,7 @@ StepReport Simulator::Implementation::make_step(int more, Index too_many) {
     report += make_part();
   }
   if (const StretchLimit* limit = constraints.limit()) report.turn = more * limit->turn();
-  integrator->set_part(1.0);
+  integrator->set_fraction(1.0);
   set_parts(parts);
   return report;
 }

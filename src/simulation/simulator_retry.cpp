@@ -42,7 +42,7 @@ std::optional<StepReport> Simulator::Implementation::attempt(int more, Index too
     const StepReport report = make_step(more, too_many);
     return report.max_infeasible < too_many ? std::optional(report) : std::nullopt;
   } catch (const StepError&) {
-    integrator->set_part(1.0);
+    integrator->set_fraction(1.0);
     set_parts(begun.state.parts);
     return std::nullopt;
   }

@@ -9,10 +9,10 @@
 namespace sprung {
 namespace {
 
-// Particles of a block belong to one thread, which computes each element that touches them: those across two blocks twice.
+// One thread computes all elements that touch a block of particles. Elements across two blocks are computed twice.
 constexpr Index kParticleBlock = 2048;
 
-/// f(bond), and how it changes with the bond: f's gradient is `slope` times the bond.
+/// f(bond) and its derivative: the gradient of f is `slope` times the bond.
 struct Fullness {
   double value = 1.0;
   double slope = 0.0;  ///< [1/m^2]
@@ -46,7 +46,7 @@ struct Bend {
   Fullness full_b;
 };
 
-/// The gradient of the angle at before, middle and after [1/m]. Requires a sine that is not 0.
+/// The gradient of the angle at before, middle and after [1/m]. Requires a non-zero sine.
 std::array<Vector3, 3> turns(const Bend& bend) {
   const Vector3 before = (1.0 / (bend.sine * bend.a.squaredNorm())) * bend.normal.cross(bend.a);
   const Vector3 after = (1.0 / (bend.sine * bend.b.squaredNorm())) * bend.normal.cross(bend.b);
@@ -57,7 +57,7 @@ std::array<Index, 3> particles_of(const AngleBends& bends, Index element) {
   return {bends.before[element], bends.middle[element], bends.after[element]};
 }
 
-/// Forces on before and after; the middle has minus their sum.
+/// Forces on before and after; the force on the middle is minus their sum.
 std::array<Vector3, 2> bend_forces(const AngleBends& bends, Index element, const Kinematics& at) {
   const Bend bend(bends, element, at.x);
   if (!(bend.sine > 0.0)) return {Vector3::Zero(), Vector3::Zero()};

@@ -24,8 +24,8 @@ class BendingAngleForce final : public Force {
   void add(const Kinematics& at, Points& forces) const override;
   void couple(std::vector<ParticlePair>& pairs) const override;
 
-  /// Of the angle's own change k times the square of its gradient g, g g^T, and across the plane of the bend 1/2 k theta cot(theta
-  /// / 2) w w^T with w = (1 / |a|, -1 / |a| - 1 / |b|, 1 / |b|). In line the two are the whole of it.
+  /// Two terms. The first is k g g^T, where g is the gradient of the angle. The second acts across the plane of the bend: 1/2 k
+  /// theta cot(theta / 2) w w^T with w = (1 / |a|, -1 / |a| - 1 / |b|, 1 / |b|). In the straight configuration the two are exact.
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
   /// sum 1/2 k theta^2 f(a) f(b) [J]

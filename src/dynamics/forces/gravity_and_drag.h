@@ -1,4 +1,4 @@
-// Gravity and air.
+// Gravity and air drag.
 #pragma once
 
 #include "dynamics/forces/force.h"

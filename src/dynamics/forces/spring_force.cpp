@@ -12,7 +12,7 @@ namespace {
 
 using Repeated = std::array<double, kSimdWidth>;
 
-/// A constant of a run: read from the network's array, or once when all are the same.
+/// A constant of a run: the network's array, or one repeated value if all are the same.
 SpringConstant constant_of(const std::vector<double>& values, Index spring, bool same, Repeated& repeated) {
   if (!same) return {&values[spring], false};
   repeated.fill(values[spring]);
@@ -35,7 +35,7 @@ void add_run(const SpringPlan::Run& run, const Springs& springs, const Kinematic
                   .damping = constant_of(springs.damping, run.spring, run.same_damping, damping)});
 }
 
-/// Springs gathered one by one. Entries beyond the last spring give forces that nobody reads.
+/// Springs gathered one by one. Padding entries give forces that nobody reads.
 struct GatheredBatch {
   using Vectors = Eigen::Matrix<double, 3, kSpringBatch>;
   Vectors difference = Vectors::Zero();
@@ -76,8 +76,8 @@ void add_singles(const SpringPlan::Block& block, const Springs& springs, const K
   }
 }
 
-/// What a spring pulls back sideways, as a part of its stiffness. One of no length has no direction: it pulls back all ways alike
-/// if that is its rest length, and else not at all.
+/// A spring's sideways stiffness relative to its stiffness. A spring of zero length has no direction: if its rest length is zero
+/// it restores equally in all directions, otherwise not at all.
 double sideways_part(double length, double rest_length) {
   if (length == 0.0) return rest_length == 0.0 ? 1.0 : 0.0;
   return std::max(0.0, 1.0 - rest_length / length);
@@ -88,7 +88,7 @@ double sideways_part(double length, double rest_length) {
 SpringForce::SpringForce(const SpringNetwork& network) : network_(network), plan_(std::make_unique<SpringPlan>(network)) {}
 SpringForce::~SpringForce() = default;
 
-// Nothing pulls.
+// There are no springs with stiffness or damping.
 bool SpringForce::is_constant() const { return plan_->blocks.empty(); }
 
 void SpringForce::add(const Kinematics& at, Points& forces) const {

@@ -27,9 +27,8 @@ class SpringForce final : public Force {
 
   void couple(std::vector<ParticlePair>& pairs) const override;
 
-  /// On particle 1, by its own position -k_s (e e^T + (1 - d / |s|) (I - e e^T)), with 1 - d / |s| taken as 0 where it is less
-  /// (Baraff and Witkin 1998), and by its own velocity -k_d e e^T. How the damper turns with the spring is left out: it is not
-  /// symmetric.
+  /// On particle 1: by its position -k_s (e e^T + max(0, 1 - d / |s|) (I - e e^T)) (Baraff and Witkin 1998), by its velocity -k_d
+  /// e e^T. The rotation of the damper's direction is left out, as it is not symmetric.
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
   /// sum 1/2 k_s (|s| - d)^2 [J]

@@ -35,8 +35,8 @@ namespace {
 
 }  // namespace
 
-// The last four springs may be computed twice. The ends of a run may overlap, so all of the one are written before any of the
-// other.
+// The last four springs may be computed twice. The two ends of a run may overlap, so all forces on one end are written before
+// those on the other.
 SPRUNG_KERNEL
 void add_run_forces(const SpringRun& run, const SpringConstants& constants) {
   double force[3 * kSpringBatch];

@@ -6,16 +6,16 @@
 namespace sprung {
 namespace {
 
-// A block's particles stay in the second-level cache; smaller blocks compute more springs twice.
+// The particles of a block stay in the second-level cache. Smaller blocks compute more springs twice.
 constexpr Index kSmallestBlock = 1024;
 constexpr Index kLargestBlock = 16384;
 constexpr Index kWantedBlocks = 16;
 
-// Shorter runs cost more than gathering their particles one by one.
+// Shorter runs cost more than gathering the particles one by one.
 constexpr Index kShortestRun = 8;
 static_assert(kShortestRun >= kSimdWidth && kSpringBatch >= 2 * kSimdWidth);
 
-/// A power of two, from the number of particles alone.
+/// A power of two that depends on the number of particles alone.
 Index block_size(Index particles) {
   const auto share = std::bit_ceil(static_cast<std::uint32_t>(particles / kWantedBlocks));
   return std::clamp(static_cast<Index>(share), kSmallestBlock, kLargestBlock);
@@ -30,7 +30,7 @@ struct Line {
   Index end;
 };
 
-/// Springs that only a stretch limit holds pull at nothing.
+/// Springs of a stretch limit alone have no stiffness and no damping, hence no force.
 bool pulls(const Springs& springs, Index spring) { return springs.stiffness[spring] > 0.0 || springs.damping[spring] > 0.0; }
 
 /// The longest line of springs that begins with `spring`.
@@ -50,7 +50,7 @@ class Planner {
   Planner(const Springs& springs, Index block_size, std::vector<SpringPlan::Block>& blocks)
       : springs_(springs), size_(block_size), blocks_(blocks) {}
 
-  // Cuts a line where either end enters another block: in between, a part concerns the same one or two blocks.
+  // Cuts a line where one of its ends enters another block. Each piece then concerns one pair of blocks.
   void add(const Line& line) {
     for (Index i = line.begin; i < line.end;) {
       const Index first_block = (line.first + i) / size_;
@@ -81,7 +81,7 @@ class Planner {
     }
   }
 
-  // What is left over must fill the kernel's lanes too.
+  // The rest must fill the kernel's registers too.
   static Index batch_size(Index springs) {
     if (springs <= kSpringBatch) return springs;
     return std::min(kSpringBatch, springs - kSimdWidth);
@@ -113,8 +113,8 @@ SpringPlan::SpringPlan(const SpringNetwork& network) {
     s += line.end;
   }
   std::erase_if(blocks, [](const Block& block) { return block.runs.empty() && block.singles.empty(); });
-  // Springs of all kinds that begin at the same particles follow each other, so that a particle is in the first-level cache for
-  // all.
+  // Springs of all kinds that begin at the same particles follow each other, so that the particles are in the first-level cache
+  // for all of them.
   for (Block& block : blocks) {
     std::ranges::stable_sort(block.runs, {}, &Run::first);
     std::ranges::stable_sort(block.singles, {}, &Single::first);

@@ -1,6 +1,6 @@
-// How a network's springs are walked: particles in blocks, and for each block the springs that touch it. A spring between two
-// blocks is computed in both and written to the block's own end, so that no two threads write to the same place, and the bits do
-// not depend on their number.
+// The order in which a network's springs are evaluated: particles in blocks, and for each block the springs that touch it. A
+// spring between two blocks is evaluated in both, and each block writes its own end only. So no two threads write to the same
+// particle, and the bits do not depend on the number of threads.
 #pragma once
 
 #include "dynamics/forces/spring_kernel.h"
@@ -19,12 +19,12 @@ struct SpringPlan {
     Index count;
     bool writes_first;
     bool writes_second;
-    bool same_rest_length;  ///< of all springs of the run; the constants are then read once
+    bool same_rest_length;  ///< all springs of the run have this in common; the constant is then read once
     bool same_stiffness;
     bool same_damping;
   };
 
-  /// A spring that is in no run.
+  /// A spring outside of all runs.
   struct Single {
     Index first;
     Index second;
@@ -41,7 +41,7 @@ struct SpringPlan {
   /// Springs without stiffness and damping are left out.
   explicit SpringPlan(const SpringNetwork& network);
 
-  std::vector<Block> blocks;  ///< that any spring touches
+  std::vector<Block> blocks;  ///< blocks that a spring touches
 };
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// In which directions particles are kept from going.
+// The directions in which contact constrains particles.
 #pragma once
 
 #include "base/types.h"
@@ -9,19 +9,19 @@ namespace sprung {
 
 class ConstrainedDirections {
  public:
-  /// Nothing holds any of so many particles.
+  /// Removes all constraints, for this number of particles.
   void clear(Index particles) { projections_.assign(static_cast<std::size_t>(particles), Matrix3::Zero()); }
 
-  /// Holds a particle along this direction of any length too. One within 30 degrees of what those that are held span adds nothing:
-  /// several contacts with what is round would hold it altogether.
+  /// Constrains a particle along `direction`, of any length. A direction within 30 degrees of those already constrained is
+  /// ignored: several contacts with a round surface would otherwise fix the particle.
   void add(Index particle, const Vector3& direction) {
-    constexpr double kAnother = 0.5;  // sine of that
+    constexpr double kAnother = 0.5;  // sine of 30 degrees
     Matrix3& held = projections_[static_cast<std::size_t>(particle)];
     const Vector3 another = direction - held * direction;
     if (another.norm() > kAnother * direction.norm()) held += another.normalized() * another.normalized().transpose();
   }
 
-  /// Projects to all directions that the particle is held along.
+  /// The projection onto the constrained directions of a particle.
   [[nodiscard]] const Matrix3& projection(Index particle) const { return projections_[static_cast<std::size_t>(particle)]; }
 
  private:

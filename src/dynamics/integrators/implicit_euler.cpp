@@ -16,7 +16,7 @@ class ImplicitEuler final : public Integrator {
     system_.emplace(network(), derivatives_);
   }
 
-  // Pins do not change their velocity in the step, but by h dF/dx v their neighbours know where they go.
+  // Pins do not change their velocity in the step, but their neighbours see their motion by h dF/dx v.
   void advance(SimulationState& state, const Forces& forces, double dt) override {
     pushed_.setZero(3, network().particle_count());
     const Kinematics at{.x = state.x, .v = state.v, .time = step_begin(state, dt) + dt};
@@ -34,8 +34,8 @@ class ImplicitEuler final : public Integrator {
 
   [[nodiscard]] bool answers_contact() const override { return true; }
 
-  // One more step of Newton's method on the scheme's own equations, M (v - v(t)) = dt F(x, v), from where contact led: at once they
-  // are solved to first order alone, and pushes as long as springs stretch these far beyond.
+  // One more Newton step on the scheme's own equations, M (v - v(t)) = dt F(x, v), from the positions that contact gave. A
+  // response to first order alone would let contact stretch the springs far too much.
   void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, const ConstrainedDirections& held,
                       SimulationState& state) override {
     v_ = motion.v_before;
@@ -60,7 +60,7 @@ class ImplicitEuler final : public Integrator {
   ForceDerivatives derivatives_;
   std::optional<ImplicitSystem> system_;
   Points gained_;  // momentum, then velocity
-  Points pushed_;  // impulses of contact in this step [N s], friction's too
+  Points pushed_;  // impulses of contact in this step [N s], including friction
   Points v_;
 };
 

@@ -6,7 +6,7 @@
 namespace sprung {
 namespace {
 
-// What is held weighs so many times what its particle's equations do: they move it by a millionth, and 10 digits remain.
+// The weight of a constraint relative to its particle's equations. They then violate it by a millionth, and 10 digits remain.
 constexpr double kHoldWeight = 1 << 20;
 
 std::vector<bool> pins_of(const SpringNetwork& network) {

@@ -1,4 +1,4 @@
-// The linear equations of an implicit step.
+// The linear system of an implicit step.
 #pragma once
 
 #include "dynamics/forces/force.h"
@@ -7,28 +7,29 @@
 
 namespace sprung {
 
-/// (M - h dF/dv - h^2 dF/dx) y = b among free particles, by a sparse factor whose pattern is found once. It needs no tolerance,
-/// unlike conjugate gradients; its time grows with about the 3/2th power of a cloth's particles. One thread.
+/// (M - h dF/dv - h^2 dF/dx) y = b for the free particles, solved by a sparse factor. The pattern is found once. Unlike conjugate
+/// gradients, the factor needs no tolerance; for a cloth its time grows with about the power 3/2 of the particles. Runs on one
+/// thread.
 class ImplicitSystem {
  public:
-  /// Keeps a reference to the network. `derivatives` are those of `make_derivatives`, for the pattern.
+  /// Keeps a reference to the network. `derivatives`, from `make_derivatives`, give the pattern.
   ImplicitSystem(const SpringNetwork& network, const ForceDerivatives& derivatives);
 
-  /// Writes the matrix; `dt` is h [s].
+  /// Computes the matrix; `dt` is h [s].
   void assemble(const ForceDerivatives& derivatives, double dt);
 
-  /// Keeps the solution of a free particle from going where this projects to, whatever its equations say; elsewhere it stays free
-  /// (the constraints of Baraff and Witkin 1998, by weight). Thread-safe for different particles; for each after `assemble`, once
-  /// at most. Zero holds nothing.
+  /// Constrains the solution of a free particle to have no component in the range of `projection`, by a large weight (the
+  /// constraints of Baraff and Witkin 1998). A zero projection constrains nothing. Call after `assemble`, at most once per
+  /// particle. Thread-safe for different particles.
   void hold(Index particle, const Matrix3& projection);
 
-  /// Replaces the right-hand sides b of free particles by the solution y, and those of pinned particles by zero; 3 x n. Not finite
-  /// when the matrix is not.
+  /// Replaces the right-hand sides b of free particles by the solution y, and those of pinned particles by zero; 3 x n. The result
+  /// is not finite if the matrix is not.
   void solve(Points& vectors);
 
  private:
   const SpringNetwork& network_;
-  BlockMatrix matrix_;  ///< of the whole network, pinned particles included
+  BlockMatrix matrix_;  ///< of the whole network, including pinned particles
   BlockCholesky<double> factor_;
 };
 

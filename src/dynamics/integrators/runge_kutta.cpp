@@ -5,7 +5,7 @@
 namespace sprung {
 namespace {
 
-/// Of a stage: when it is within the step, its weight in the step's mean, and how far its slope leads to the next stage.
+/// A stage: its time as a fraction of the step, its weight in the mean, and the fraction of the step to the next stage.
 struct Stage {
   double time;
   double weight;
@@ -35,7 +35,7 @@ class RungeKutta4 final : public Integrator {
   }
 
  private:
-  /// Adds the stage's slope to the mean, and goes to the next stage.
+  /// Adds the stage's slope to the mean and moves to the next stage.
   void add_slope(const Stage& stage, const SimulationState& state, double dt) {
     const double reach = stage.reach * dt;
     for_particles(network(), [&](Index i) {

@@ -1,4 +1,4 @@
-// What the schemes share, and how each is made. A source a family of schemes.
+// Makers of the schemes, and what the schemes share. Each source file holds one family of schemes.
 #pragma once
 
 #include "base/parallel.h"
@@ -14,15 +14,15 @@ namespace sprung {
 [[nodiscard]] std::unique_ptr<Integrator> make_runge_kutta4(const SpringNetwork& network);
 [[nodiscard]] std::unique_ptr<Integrator> make_implicit_euler(const SpringNetwork& network);
 
-/// Time [s] at the begin of the step, or part of one, of dt [s] that a state is about to make.
+/// Time [s] at the beginning of the step or substep of `dt` [s] that the state makes next.
 [[nodiscard]] inline double step_begin(const SimulationState& state, double dt) { return steps_done(state) * (state.parts * dt); }
 
-/// Forces [N] at the begin of the step, 3 x n, written to `total`.
+/// Writes the forces [N] at the beginning of the step, 3 x n, to `total`.
 inline void evaluate(const SimulationState& state, const Forces& forces, double dt, Points& total) {
   sum_forces(forces, {.x = state.x, .v = state.v, .time = step_begin(state, dt)}, total);
 }
 
-/// Calls `body(i)` for each particle, pinned or not, possibly at the same time.
+/// Calls `body(i)` for each particle, including pinned ones, possibly in parallel.
 template <class Body>
 void for_particles(const SpringNetwork& network, Body&& body) {
   constexpr Index kParticleChunk = 8192;
@@ -31,7 +31,7 @@ void for_particles(const SpringNetwork& network, Body&& body) {
   });
 }
 
-/// Calls `body(i)` for each particle that is not pinned, possibly at the same time.
+/// Calls `body(i)` for each particle that is not pinned, possibly in parallel.
 template <class Body>
 void for_free_particles(const SpringNetwork& network, Body&& body) {
   for_particles(network, [&](Index i) {

@@ -14,14 +14,14 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Lanczos ends when the residual, which bounds how far the estimate is from an eigenvalue, is this part of it.
+// Lanczos ends when the residual is this fraction of the estimate. The residual bounds the distance to an eigenvalue.
 constexpr double kResidual = 0.01;
 constexpr int kMostIterations = 100;
 
-// The residual of a start vector without any part in the fastest mode would mislead; this much is added whatever it says.
+// A start vector without a component in the fastest mode would have a misleading residual. This margin is always added.
 constexpr double kMargin = 1.005;
 
-/// M^-1/2 L M^-1/2, which has the eigenvalues of M^-1 L, of the springs whose weight is not 0. Pinned particles are left out.
+/// M^-1/2 L M^-1/2, which has the eigenvalues of M^-1 L, of the springs with non-zero weight. Pinned particles are left out.
 class Laplacian {
  public:
   Laplacian(const SpringNetwork& network, const std::vector<double>& weights)
@@ -39,7 +39,7 @@ class Laplacian {
     return result;
   }
 
-  /// An upper bound: the largest row sum of the matrix that acts on springs instead of particles, K B^T M^-1 B.
+  /// An upper bound: the largest row sum of K B^T M^-1 B, the matrix that acts on springs instead of particles.
   [[nodiscard]] double row_sum_bound() const {
     Scalars diagonal = Scalars::Zero(root_.size());
     for (std::size_t s = 0; s < weights_.size(); ++s) {
@@ -62,8 +62,9 @@ class Laplacian {
   Scalars root_;
 };
 
-/// M^-1/2 K M^-1/2 of angle bends in line: the sum of w^T w weighted by stiffness or damping, w = (1/a, -1/a - 1/b, 1/b) with bonds
-/// a and b at rest. No bent shape of bonds that long turns faster: none of w grows, and its signs are those of a zigzag already.
+/// M^-1/2 K M^-1/2 of straight angle bends: the sum of w^T w weighted by stiffness or damping, w = (1/a, -1/a - 1/b, 1/b) with
+/// bonds a and b at rest. No bent configuration with such bonds has a faster mode: no entry of w grows, and the signs already
+/// alternate.
 class AngleBendMatrix {
  public:
   AngleBendMatrix(const SpringNetwork& network, const std::vector<double>& weights)
@@ -112,7 +113,7 @@ class AngleBendMatrix {
   Scalars root_;
 };
 
-/// The same vector in every run. Zero where particles are pinned, so that it stays among the free ones.
+/// The same vector in every run. Zero for pinned particles, so that iterations stay among the free ones.
 Scalars start_vector(const Scalars& root) {
   std::mt19937 random;  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same bits in every run are what is wanted
   Scalars y(root.size());
@@ -123,7 +124,7 @@ Scalars start_vector(const Scalars& root) {
   return y;
 }
 
-/// Power iteration that keeps what it saw: Lanczos' tridiagonal matrix.
+/// Lanczos' method: power iteration that keeps the tridiagonal matrix of what it saw.
 template <class Matrix>
 double largest_eigenvalue(const Matrix& matrix) {
   const double bound = matrix.row_sum_bound();
@@ -150,7 +151,7 @@ double largest_eigenvalue(const Matrix& matrix) {
   return std::min(bound, kMargin * estimate);
 }
 
-/// The stiffness of what damps motion of this omega [1/s] hardly, 0 of the rest; `drag` [1/s] damps all.
+/// The stiffness of springs that hardly damp motion of this omega [1/s], and 0 for the others; `drag` [1/s] damps all.
 std::vector<double> hardly_damped(const std::vector<double>& stiffness, const std::vector<double>& damping, double omega,
                                   double drag) {
   std::vector<double> weights(stiffness.size(), 0.0);
@@ -161,7 +162,7 @@ std::vector<double> hardly_damped(const std::vector<double>& stiffness, const st
   return weights;
 }
 
-/// The least damping / stiffness [s] of what has stiffness; infinity when nothing has.
+/// The smallest damping / stiffness [s] of elements with stiffness; infinity if there is none.
 double least_damping_time(const std::vector<double>& stiffness, const std::vector<double>& damping) {
   double least = kInfinity;
   for (std::size_t i = 0; i < stiffness.size(); ++i) {

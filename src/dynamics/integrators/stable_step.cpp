@@ -19,7 +19,8 @@ struct LargestStep {
   double elastic;
   double damping;
 
-  // z^2 - (2 - c dt) z + 1 - c dt + k dt^2 is positive at z = -1, whatever part of the stiffness the damped mode has, below 2 / c.
+  // z^2 - (2 - c dt) z + 1 - c dt + k dt^2 is positive at z = -1 below 2 / c, whatever fraction of the stiffness the damped mode
+  // has.
   double operator()(const ExplicitEulerSettings&) const {
     const double rate = std::max(std::sqrt(elastic), damping);
     return rate > 0.0 ? 2.0 / rate : kInfinity;
@@ -28,7 +29,7 @@ struct LargestStep {
   // z^2 - (2 - c dt - k dt^2) z + 1 - c dt is stable while its value at z = -1 is positive.
   double operator()(const SymplecticEulerSettings&) const { return positive_root(elastic, damping, 4.0); }
 
-  // The same with z^2 - (2 - d - c dt - k dt^2) z + 1 - d - c dt, where d itself may depend on the step: 4 - 2 d falls with it, so
+  // The same with z^2 - (2 - d - c dt - k dt^2) z + 1 - d - c dt. Here d may depend on the step, and 4 - 2 d decreases with it, so
   // the bound is where the two curves meet.
   double operator()(const VerletSettings& verlet) const {
     double unstable = positive_root(elastic, damping, 4.0 - 2.0 * damping_per_step(verlet, 0.0));
@@ -61,7 +62,7 @@ struct LargestStep {
     return std::min(std::max(slightly_damped, 2.615 / omega), 2.785 / damping);
   }
 
-  // 1 / (1 + c dt + k dt^2) is what it makes of a mode's energy at most.
+  // It multiplies the energy of a mode by at most 1 / (1 + c dt + k dt^2).
   double operator()(const ImplicitEulerSettings&) const { return kInfinity; }
 };
 
@@ -71,7 +72,7 @@ double largest_stable_step(const IntegratorSettings& settings, const SpectralBou
   return std::visit(LargestStep{bounds.elastic, bounds.damping + bounds.drag}, settings);
 }
 
-// A turn of n steps has omega dt = 2 sin(pi / n).
+// A period of n steps has omega dt = 2 sin(pi / n).
 double resonant_step(const IntegratorSettings& settings, const SpectralBounds& bounds) {
   const bool leaps = !std::holds_alternative<ExplicitEulerSettings>(settings) &&
                      !std::holds_alternative<RungeKutta4Settings>(settings) &&

@@ -1,11 +1,11 @@
-// A step on its way, before constraints and contact answer.
+// The motion of a step before constraints and contact respond.
 #pragma once
 
 #include "base/types.h"
 
 namespace sprung {
 
-/// A step of `dt` [s] that began with positions `before` [m] and velocities `v_before` [m/s], and whose forces alone would end in
+/// A step of `dt` [s] that begins at positions `before` [m] with velocities `v_before` [m/s]; forces alone would end it at
 /// `advanced` [m].
 struct StepMotion {
   const Points& before;

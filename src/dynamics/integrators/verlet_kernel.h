@@ -1,4 +1,4 @@
-// Verlet's step on coordinates one after another: x, y and z of consecutive particles.
+// Verlet's step on contiguous coordinates: x, y and z of consecutive particles.
 #pragma once
 
 #include "base/types.h"
@@ -6,16 +6,16 @@
 namespace sprung {
 
 struct VerletStep {
-  double kept;    ///< part of the movement of the step before that goes on
+  double kept;    ///< fraction of the last step's movement that is kept: 1 - damping
   double per_dt;  ///< 1 / dt [1/s]
 };
 
-/// x += kept (x - x_previous) + gains forces, with gains dt^2 / m [s^2/kg]; x_previous becomes what x was, v what it moved per
-/// time.
+/// x += kept (x - x_previous) + gains * forces, where gains are dt^2 / m [s^2/kg]. x_previous becomes the old x, and v the
+/// movement per time.
 void advance_verlet(Index count, const VerletStep& step, const double* gains, const double* forces, double* x, double* x_previous,
                     double* v);
 
-/// The same with gains forces = gained [m].
+/// The same with the product `gained` = gains * forces [m] given.
 void advance_verlet(Index count, const VerletStep& step, const double* gained, double* x, double* x_previous, double* v);
 
 /// v = (x - before) per_dt

@@ -7,7 +7,7 @@
 namespace sprung {
 namespace {
 
-/// Consecutive particles of which none is pinned.
+/// Consecutive particles without a pinned one.
 struct FreeRun {
   Index begin;
   Index count;
@@ -36,7 +36,7 @@ std::vector<Index> pinned_particles(const SpringNetwork& network) {
   return pinned;
 }
 
-// Between steps state.v is (x - x_previous) / dt, so that forces and dampers of neighbours see Verlet's velocity without more ado.
+// Between steps state.v is (x - x_previous) / dt, so that forces and the dampers of neighbours see Verlet's velocity.
 class Verlet final : public Integrator {
  public:
   Verlet(const VerletSettings& settings, const SpringNetwork& network)
@@ -78,7 +78,7 @@ class Verlet final : public Integrator {
   [[nodiscard]] bool keeps_positions() const override { return true; }
   [[nodiscard]] bool needs_advanced() const override { return false; }
 
-  void set_part(double part) override { part_ = part; }
+  void set_fraction(double fraction) override { fraction_ = fraction; }
 
   void step_changed(SimulationState& state, const Forces& forces, double dt_before, double dt) override {
     if (!forces_are_constant_) evaluate(state, forces, dt, total_);
@@ -93,13 +93,13 @@ class Verlet final : public Integrator {
   }
 
  private:
-  /// Of the movement.
+  /// The fraction of the movement that is kept.
   [[nodiscard]] double kept(double dt) const {
     const double of_step = 1.0 - damping_per_step(settings_, dt);
-    return part_ < 1.0 && settings_.damping_rate == 0.0 ? std::pow(of_step, part_) : of_step;
+    return fraction_ < 1.0 && settings_.damping_rate == 0.0 ? std::pow(of_step, fraction_) : of_step;
   }
 
-  /// dt^2 / m for each coordinate, and what constant forces make of it.
+  /// dt^2 / m for each coordinate, and its product with constant forces.
   void set_gains(double dt) {
     if (dt == dt_of_gains_) return;
     dt_of_gains_ = dt;
@@ -115,7 +115,7 @@ class Verlet final : public Integrator {
   }
 
   VerletSettings settings_;
-  double part_ = 1.0;  ///< see set_part
+  double fraction_ = 1.0;  ///< see set_fraction
   std::vector<FreeRun> free_runs_;
   std::vector<Index> pinned_;
   Points total_;
@@ -125,7 +125,7 @@ class Verlet final : public Integrator {
   double dt_of_gains_ = 0.0;
 };
 
-// The acceleration at the step's end is not kept for the next one: dampers, constraints and contact change what it depends on.
+// The acceleration at the end of a step is not reused: dampers, constraints and contact change what it depends on.
 class VelocityVerlet final : public Integrator {
  public:
   explicit VelocityVerlet(const SpringNetwork& network) : Integrator(network) {}
@@ -146,7 +146,7 @@ class VelocityVerlet final : public Integrator {
     });
   }
 
-  // What constraints took back of a stretch must not be what springs pull with as well (Andersen 1983, RATTLE).
+  // Springs must not pull with a stretch that constraints removed (RATTLE, Andersen 1983).
   void recover_velocities(SimulationState& state, const Forces& forces, const Points& before, const Points& advanced,
                           double dt) override {
     if (state.x == advanced) return;
@@ -159,11 +159,11 @@ class VelocityVerlet final : public Integrator {
   }
 
  private:
-  // At the end of the step that was advanced last: where that led, and what velocities would be there if forces did not change.
+  // The end of the last step as `advance` left it, and the velocities there if the forces did not change.
   Points x_;
   Points v_;
   Points total_;        // forces there
-  Points constrained_;  // and where constraints led it
+  Points constrained_;  // and the positions after constraints
 };
 
 }  // namespace

@@ -13,13 +13,14 @@ using Front = FrontLayout::Front;
 using Child = FrontLayout::Child;
 using Entry = FrontLayout::Entry;
 
-/// 1 / the power of two next below `largest`, or 1 where there is none.
+/// The inverse of the largest power of two below `largest`, or 1 if there is none.
 double scale_to_one(double largest) {
   if (!(largest > 0.0) || !std::isfinite(largest)) return 1.0;
   return std::ldexp(1.0, -std::ilogb(largest));
 }
 
-// Blocks lie in the order of particles, entries in that of elimination: they are on their way so many entries before.
+// Entries are read in the order of elimination, blocks lie in the order of particles. Each block is prefetched this many entries
+// ahead.
 constexpr std::size_t kAhead = 8;
 
 const Matrix3& block_of(const Entry& entry, const BlockMatrix& matrix) {
@@ -32,16 +33,16 @@ void add_entry(const Entry& entry, const BlockMatrix& matrix, double scale, doub
   if (entry.transposed) block.transposeInPlace();
   if (entry.on_diagonal) block.diagonal() += raise * block.diagonal();
   for (Index r = 0; r < 3; ++r) {
-    Number* const row = panel + shape.place(entry.row + r, entry.column);
+    Number* const row = panel + shape.index(entry.row + r, entry.column);
     for (Index c = 0; c < 3; ++c) row[c * kSimdWidth] = static_cast<Number>(scale * block(r, c));
   }
 }
 
-// What is read backwards no machine fetches ahead. The first of a large panel are enough: then it sees where reading goes.
+// Hardware does not prefetch backward reads. Once the first bytes of a large panel are read, it continues by itself.
 constexpr std::size_t kFetched = 16384;  // [bytes]
 constexpr std::size_t kCacheLine = 64;
 
-// Inlined, as compilers leave out calls of what does nothing but fetch.
+// Inlined: compilers drop calls of a function that only prefetches.
 template <class Number>
 [[gnu::always_inline]] inline void fetch_panel(const Front& front, const Number* panels) {
   const Number* const panel = panels + front.panel;
@@ -92,7 +93,7 @@ void BlockCholesky<Number>::solve(const Points& right, Points& solution) {
   give(scale, solution);
 }
 
-/// Calls `and_then` with each front while its panel is near.
+/// Calls `and_then` with each front while its panel is in the cache.
 template <class Number>
 template <class AndThen>
 bool BlockCholesky<Number>::eliminate(const BlockMatrix& matrix, double raise, const AndThen& and_then) {
@@ -104,7 +105,7 @@ bool BlockCholesky<Number>::eliminate(const BlockMatrix& matrix, double raise, c
     const Front& front = fronts[f];
     assemble(f, matrix, raise);
     Number* const update = updates_.data() + front.update;
-    if (!eliminate_front(front.shape, &panels_[front.panel], &inverse_[front.first_place], update, row_.data())) return false;
+    if (!eliminate_front(front.shape, &panels_[front.panel], &inverse_[front.first_slot], update, row_.data())) return false;
     and_then(front);
     for (const Child& child : layout_.children_of(front)) {
       add_to_update(layout_.runs_of(child), updates_.data() + child.update, child.height, front.shape.lower_height(), update);
@@ -119,7 +120,7 @@ void BlockCholesky<Number>::assemble(std::size_t number, const BlockMatrix& matr
   const FrontShape& shape = front.shape;
   Number* const panel = &panels_[front.panel];
   std::fill_n(panel, shape.size(), Number{});
-  for (Index k = front.own_rows; k < shape.width(); ++k) panel[shape.place(k, k)] = 1;
+  for (Index k = front.own_rows; k < shape.width(); ++k) panel[shape.index(k, k)] = 1;
   const std::vector<Entry>& entries = layout_.entries;
   for (std::size_t e = number == 0 ? 0 : layout_.fronts[number - 1].end_entry; e < front.end_entry; ++e) {
     __builtin_prefetch(block_of(entries[std::min(e + kAhead, entries.size() - 1)], matrix).data());
@@ -130,20 +131,20 @@ void BlockCholesky<Number>::assemble(std::size_t number, const BlockMatrix& matr
   }
 }
 
-/// Returns by what numbers are scaled on their way in.
+/// Returns the scale that numbers are multiplied by when they are read.
 template <class Number>
 double BlockCholesky<Number>::take(const Points& right) {
   const double scale = scale_to_one(right.size() > 0 ? right.cwiseAbs().maxCoeff() : 0.0);
   std::ranges::fill(vector_, Number{});
   for (Index i = 0; i < right.cols(); ++i) {
-    if (layout_.place[i] != kNone) Part::Map(&vector_[layout_.place[i]]) = (scale * right.col(i)).template cast<Number>();
+    if (layout_.slot[i] != kNone) Part::Map(&vector_[layout_.slot[i]]) = (scale * right.col(i)).template cast<Number>();
   }
   return scale;
 }
 
 template <class Number>
 void BlockCholesky<Number>::substitute(const Front& front) {
-  solve_front(front.shape, &panels_[front.panel], &vector_[front.first_place], below_.data());
+  solve_front(front.shape, &panels_[front.panel], &vector_[front.first_slot], below_.data());
   const std::span<const Index> lower = layout_.lower_of(front);
   for (std::size_t k = 0; k < lower.size(); ++k) Part::Map(&vector_[lower[k]]) -= Part::Map(&below_[3 * k]);
 }
@@ -153,11 +154,11 @@ void BlockCholesky<Number>::substitute_back() {
   for (std::size_t f = layout_.fronts.size(); f-- > 0;) {
     const Front& front = layout_.fronts[f];
     if (f > 0) fetch_panel(layout_.fronts[f - 1], panels_.data());
-    // The rows that fill up the last tile are zero in L, but zero times what is not finite is not.
+    // Padding rows are zero in L, but zero times a non-finite number is not zero.
     std::fill_n(below_.begin(), front.shape.lower_height(), Number{});
     const std::span<const Index> lower = layout_.lower_of(front);
     for (std::size_t k = 0; k < lower.size(); ++k) Part::Map(&below_[3 * k]) = Part::Map(&vector_[lower[k]]);
-    solve_front_transposed(front.shape, &panels_[front.panel], &inverse_[front.first_place], &vector_[front.first_place],
+    solve_front_transposed(front.shape, &panels_[front.panel], &inverse_[front.first_slot], &vector_[front.first_slot],
                            below_.data(), row_.data());
   }
 }
@@ -165,13 +166,13 @@ void BlockCholesky<Number>::substitute_back() {
 template <class Number>
 void BlockCholesky<Number>::give(double scale, Points& solution) const {
   const double back = scale_ / scale;
-  const auto count = static_cast<Index>(layout_.place.size());
+  const auto count = static_cast<Index>(layout_.slot.size());
   solution.resize(Eigen::NoChange, count);
   for (Index i = 0; i < count; ++i) {
-    if (layout_.place[i] == kNone) {
+    if (layout_.slot[i] == kNone) {
       solution.col(i).setZero();
     } else {
-      solution.col(i) = back * Part::Map(&vector_[layout_.place[i]]).template cast<double>();
+      solution.col(i) = back * Part::Map(&vector_[layout_.slot[i]]).template cast<double>();
     }
   }
 }

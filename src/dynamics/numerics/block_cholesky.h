@@ -9,32 +9,33 @@
 
 namespace sprung {
 
-/// L D L^T of a positive definite matrix, eliminated by supernodes as dense work (multifrontal: Duff and Reid 1983), in double or
-/// single precision (Number). Order and pattern are found once. One thread. Matrices and vectors times powers of two have the same
-/// bits.
+/// L D L^T of a positive definite matrix, in double or single precision (`Number`). Supernodes are eliminated as dense blocks
+/// (multifrontal: Duff and Reid 1983). The constructor finds the order and the pattern once. Runs on one thread. Scaling the
+/// matrix or a vector by a power of two scales the result and changes no other bit.
 template <class Number>
 class BlockCholesky {
  public:
-  /// For matrices of the same pairs as `pattern`, without the rows and columns of the particles of which `left_out` has the flag;
-  /// none has when it is empty.
+  /// For matrices with the pairs of `pattern`. Rows and columns of particles flagged in `left_out` are excluded; an empty vector
+  /// excludes none.
   explicit BlockCholesky(const BlockMatrix& pattern, const std::vector<bool>& left_out = {});
 
-  /// Factors the matrix with its diagonal numbers made larger by the part `raise` of them. Returns whether that is positive
-  /// definite, as far as rounding tells. Before `solve`, which is not to be called when not.
+  /// Factors the matrix with its diagonal multiplied by 1 + `raise`. Returns false where rounding no longer shows that the result
+  /// is positive definite; do not call `solve` then.
   [[nodiscard]] bool factor(const BlockMatrix& matrix, double raise = 0.0);
 
-  /// Writes x of A x = `right`, 3 x particles, to `solution`, which may be the same; zero for what is left out.
+  /// Solves A x = `right`, both 3 x particles. `solution` may be `right` itself. Excluded particles get zero.
   void solve(const Points& right, Points& solution);
 
-  /// Both, with the same bits, and less to read: half of the solve is made on the way. Writes no solution where it returns false.
+  /// Does `factor` and `solve` with the same bits and reads less memory: it makes half of the solve while it factors. Writes no
+  /// solution where it returns false.
   [[nodiscard]] bool factor_and_solve(const BlockMatrix& matrix, double raise, const Points& right, Points& solution);
 
  private:
   using Part = Eigen::Matrix<Number, 3, 1>;
   using Front = FrontLayout::Front;
 
-  // Where springs hardly push, what one particle hands on to the next falls off until it is next to nothing: all of this is to be
-  // done with TinyNumbersAreZero.
+  // Loosely coupled particles pass on smaller and smaller numbers, down to denormal ones, which are slow. Callers keep a
+  // TinyNumbersAreZero alive.
   template <class AndThen>
   [[nodiscard]] bool eliminate(const BlockMatrix& matrix, double raise, const AndThen& and_then);
   void assemble(std::size_t front, const BlockMatrix& matrix, double raise);
@@ -44,10 +45,10 @@ class BlockCholesky {
   void give(double scale, Points& solution) const;
 
   FrontLayout layout_;
-  double scale_ = 1.0;           ///< of the matrix that was factored to the one that was given, a power of two
+  double scale_ = 1.0;           ///< a power of two: scale of the factored matrix relative to the given one
   LargeVector<Number> panels_;   ///< L
   std::vector<Number> inverse_;  ///< 1 / D
-  // Of a factor or a solve.
+  // Scratch of one factor or one solve.
   LargeVector<Number> updates_;
   std::vector<Number> vector_;
   std::vector<Number> below_;

@@ -8,7 +8,7 @@ namespace sprung {
 
 BlockMatrix::BlockMatrix(Index particles, std::vector<ParticlePair> pairs)
     : diagonal_(static_cast<std::size_t>(particles), Matrix3::Zero()), begin_(static_cast<std::size_t>(particles) + 1) {
-  // The first of a pair becomes the column, the second the row below the diagonal.
+  // The first particle of a pair becomes the column, the second the row below the diagonal.
   for (ParticlePair& pair : pairs) {
     if (pair.first > pair.second) std::swap(pair.first, pair.second);
   }

@@ -6,7 +6,7 @@
 namespace sprung {
 namespace {
 
-/// Rows of L D from those of the matrix, left of tile column `columns`: what the columns before have in them is taken out.
+/// Computes rows of L D left of tile column `columns`: subtracts the contribution of the columns before.
 template <class Lanes, int kVectors>
 [[gnu::always_inline]] inline void solve_rows(const NumberOf<Lanes>* panel, std::size_t stride, const NumberOf<Lanes>* from,
                                               Index columns, NumberOf<Lanes>* row) {
@@ -29,7 +29,7 @@ template <class Lanes, int kVectors>
   }
 }
 
-/// Rows of L from those of L D.
+/// Computes rows of L from rows of L D.
 template <class Lanes, int kVectors>
 [[gnu::always_inline]] inline void scale_rows(const NumberOf<Lanes>* row, std::size_t stride, const NumberOf<Lanes>* inverse,
                                               Index columns, NumberOf<Lanes>* to) {
@@ -43,7 +43,7 @@ template <class Lanes, int kVectors>
   }
 }
 
-/// L D L^T of a tile on the diagonal.
+/// Factors a diagonal tile into L D L^T.
 template <class Lanes>
 [[gnu::always_inline]] inline bool eliminate_tile(Tiles<Lanes, 1>& tile, NumberOf<Lanes>* inverse) {
   bool positive = true;
@@ -59,7 +59,7 @@ template <class Lanes>
   return positive;
 }
 
-/// Some tiles of a supernode's own, when what the columns before have in them has been taken out.
+/// Eliminates some tiles of a supernode's own rows after the columns before were subtracted.
 template <class Number>
 [[gnu::always_inline]] inline bool eliminate_corner(Index tiles, std::size_t stride, Number* panel, Number* inverse, Number* row) {
   using Lanes = typename SimdOf<Number, kSimdWidth>::Type;
@@ -76,7 +76,7 @@ template <class Number>
   return true;
 }
 
-/// The supernode's own rows of tiles from `t` on, as many as are left in whole Tiles.
+/// Eliminates the supernode's own rows of tiles from `t` on, as many as fill whole Tiles.
 template <class Lanes, int kVectors, class Number>
 [[gnu::always_inline]] inline bool eliminate_own(const FrontShape& shape, std::size_t stride, Index& t, Number* panel,
                                                  Number* inverse, Number* row) {
@@ -96,7 +96,7 @@ template <class Lanes, int kVectors, class Number>
   return true;
 }
 
-/// Rows of tiles below, from `t` on, as many as are left in whole Tiles, and what they hand on.
+/// Eliminates the rows of tiles below from `t` on, as many as fill whole Tiles, and computes their update.
 template <class Lanes, int kVectors, class Number>
 [[gnu::always_inline]] inline void eliminate_lower(const FrontShape& shape, std::size_t stride, Index& t, Number* panel,
                                                    const Number* inverse, Number* update, Number* row) {
@@ -117,7 +117,7 @@ template <class Lanes, int kVectors, class Number>
   }
 }
 
-/// By lanes of kCount and then, for the rows that are left, of half and half as many.
+/// Uses registers of kCount lanes, then half as many for the rows that are left.
 template <Index kCount, int kVectors, class Number>
 [[gnu::always_inline]] inline bool eliminate_own_rows(const FrontShape& shape, std::size_t stride, Index t, Number* panel,
                                                       Number* inverse, Number* row) {
@@ -171,7 +171,7 @@ template <class Number>
   for (; k < count; ++k) to[k] += from[k];
 }
 
-// Rows above the diagonal that share a tile with others are added too: they are not meant, before and after.
+// Adds rows above the diagonal of a shared tile too: their entries are unused before and after.
 template <class Number>
 [[gnu::always_inline]] inline void add_panel(std::span<const Index> columns, const PanelRows& rows, const Number* child,
                                              Index child_height, Number* panel) {

@@ -10,7 +10,7 @@ namespace {
 
 Index tiles_of(std::size_t particles) { return static_cast<Index>((3 * particles + kSimdWidth - 1) / kSimdWidth); }
 
-/// Who is coupled to whom among the particles that are in, by their numbers.
+/// The coupling of the included particles, by their numbers.
 MatrixGraph graph_of(const BlockMatrix& pattern, const std::vector<Index>& number, std::size_t count) {
   std::vector<std::vector<Index>> others(count);
   for (Index j = 0; j < pattern.size(); ++j) {
@@ -54,40 +54,40 @@ Index count_of(const std::vector<T>& list) {
 }  // namespace
 
 Index FrontLayout::row_of(const Front& front, Index at) const {
-  if (at < front.first_place + front.shape.width()) return at - front.first_place;
+  if (at < front.first_slot + front.shape.width()) return at - front.first_slot;
   const std::span<const Index> below = lower_of(front);
   return front.shape.width() + 3 * static_cast<Index>(std::ranges::lower_bound(below, at) - below.begin());
 }
 
-FrontLayout::FrontLayout(const BlockMatrix& pattern, const std::vector<bool>& left_out) : place(pattern.size(), kNone) {
+FrontLayout::FrontLayout(const BlockMatrix& pattern, const std::vector<bool>& left_out) : slot(pattern.size(), kNone) {
   const std::vector<Supernode> nodes = supernodes_of(pattern, left_out);
-  place_fronts(nodes);
-  place_updates(nodes);  // parents note where their children's are
+  make_fronts(nodes);
+  position_updates(nodes);  // parents record where their children's updates are
   join_with_parents(nodes);
-  place_entries(pattern, nodes);
+  make_entries(pattern, nodes);
 }
 
-void FrontLayout::place_fronts(const std::vector<Supernode>& nodes) {
+void FrontLayout::make_fronts(const std::vector<Supernode>& nodes) {
   for (const Supernode& node : nodes) {
     Front& front = fronts.emplace_back();
     front.shape = {.own_tiles = tiles_of(node.columns.size()), .lower_tiles = tiles_of(node.rows.size())};
     front.own_rows = 3 * count_of(node.columns);
-    front.first_place = static_cast<Index>(vector_size);
+    front.first_slot = static_cast<Index>(vector_size);
     front.panel = panel_size;
-    for (std::size_t k = 0; k < node.columns.size(); ++k) place[node.columns[k]] = front.first_place + 3 * static_cast<Index>(k);
+    for (std::size_t k = 0; k < node.columns.size(); ++k) slot[node.columns[k]] = front.first_slot + 3 * static_cast<Index>(k);
     vector_size += static_cast<std::size_t>(front.shape.width());
     panel_size += front.shape.size();
   }
   for (std::size_t f = 0; f < fronts.size(); ++f) {
     fronts[f].lower.begin = count_of(lower);
-    for (const Index row : nodes[f].rows) lower.push_back(place[row]);
+    for (const Index row : nodes[f].rows) lower.push_back(slot[row]);
     fronts[f].lower.end = count_of(lower);
   }
 }
 
-// Updates are taken in the reverse order of their making, but a front's is made while its children's are still there. Fronts at
-// even and odd depths of the tree have a stack each, so that theirs can go first.
-void FrontLayout::place_updates(const std::vector<Supernode>& nodes) {
+// Updates are consumed in the reverse order of their creation, but a front's update is created while its children's still exist.
+// Fronts at even and odd depths of the tree therefore use two stacks.
+void FrontLayout::position_updates(const std::vector<Supernode>& nodes) {
   std::vector<Index> depth(fronts.size(), 0);
   std::vector<Index> first_child(fronts.size(), kNone);
   for (std::size_t f = fronts.size(); f-- > 0;) {
@@ -154,27 +154,27 @@ void FrontLayout::add_child(const Front& parent, const Front& child) {
   children.push_back(handed);
 }
 
-/// Of rows that ascend.
+/// Requires ascending rows.
 void FrontLayout::add_rows(const FrontShape& parent, const std::vector<Index>& rows) {
   for (std::size_t k = 0; k < rows.size();) {
     const std::size_t last = k + kSimdWidth - 1;
     const bool fills = rows[k] % kSimdWidth == 0 && last < rows.size() && rows[last] == rows[k] + kSimdWidth - 1;
-    (fills ? whole : single).push_back({static_cast<Index>(k), static_cast<Index>(parent.place(rows[k], 0))});
+    (fills ? whole : single).push_back({static_cast<Index>(k), static_cast<Index>(parent.index(rows[k], 0))});
     k += fills ? kSimdWidth : 1;
   }
 }
 
-void FrontLayout::place_entries(const BlockMatrix& pattern, const std::vector<Supernode>& nodes) {
+void FrontLayout::make_entries(const BlockMatrix& pattern, const std::vector<Supernode>& nodes) {
   std::vector<std::vector<Entry>> entries_of(pattern.size());
   Index block = 0;
   for (Index j = 0; j < pattern.size(); ++j) {
-    if (place[j] != kNone)
-      entries_of[j].push_back({.block = j, .row = place[j], .column = place[j], .on_diagonal = true, .transposed = false});
+    if (slot[j] != kNone)
+      entries_of[j].push_back({.block = j, .row = slot[j], .column = slot[j], .on_diagonal = true, .transposed = false});
     pattern.for_column(j, [&](Index i, const Matrix3&) {
       const Index number = block++;
-      if (place[i] == kNone || place[j] == kNone) return;
-      const bool transposed = place[i] < place[j];
-      const auto [column, row] = std::minmax(place[i], place[j]);
+      if (slot[i] == kNone || slot[j] == kNone) return;
+      const bool transposed = slot[i] < slot[j];
+      const auto [column, row] = std::minmax(slot[i], slot[j]);
       entries_of[transposed ? i : j].push_back(
           {.block = number, .row = row, .column = column, .on_diagonal = false, .transposed = transposed});
     });
@@ -183,7 +183,7 @@ void FrontLayout::place_entries(const BlockMatrix& pattern, const std::vector<Su
     for (const Index particle : nodes[f].columns) {
       for (Entry entry : entries_of[particle]) {
         entry.row = row_of(fronts[f], entry.row);
-        entry.column -= fronts[f].first_place;
+        entry.column -= fronts[f].first_slot;
         entries.push_back(entry);
       }
     }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr Index kTile = kSimdWidth * kSimdWidth;
 
-/// Subtracts L of some rows of tiles, `stride` numbers apart, times a vector's first `columns` numbers.
+/// Subtracts L of some rows of tiles, `stride` numbers apart, times the first `columns` numbers of a vector.
 template <Index kRows, class Lanes>
 [[gnu::always_inline]] inline void subtract_rows(const NumberOf<Lanes>* rows, std::size_t stride, Index columns,
                                                  const NumberOf<Lanes>* x, Lanes (&from)[kRows]) {
@@ -22,7 +22,7 @@ template <Index kRows, class Lanes>
   }
 }
 
-/// Solves for kRows rows of tiles from `t` on, those before being solved.
+/// Solves for kRows rows of tiles from `t` on. Requires that the rows before are solved.
 template <Index kRows, class Number>
 [[gnu::always_inline]] inline void solve_own(const Number* panel, std::size_t stride, Index& t, Index tiles, Number* own) {
   using Lanes = typename SimdOf<Number, kSimdWidth>::Type;
@@ -45,7 +45,7 @@ template <Index kRows, class Number>
   }
 }
 
-/// Writes L of kRows rows of tiles times the front's own part.
+/// Writes L of kRows rows of tiles times the front's own slice.
 template <Index kRows, class Number>
 [[gnu::always_inline]] inline void multiply_lower(const Number* lower, std::size_t stride, Index& t, Index tiles, Index width,
                                                   const Number* own, Number* below) {
@@ -80,7 +80,7 @@ template <class Number>
   multiply_lower<1>(lower, stride, t, shape.lower_tiles, shape.width(), own, below);
 }
 
-/// Adds kRows rows of tiles, transposed, times x to what each lane sums of each column, row after row.
+/// Adds kRows rows of tiles, transposed, times x to the sums of each lane and column, row after row.
 template <Index kRows, class Number>
 [[gnu::always_inline]] inline void add_transposed(const Number* rows, std::size_t stride, Index columns, const Number* x,
                                                   Number* sums) {
@@ -102,7 +102,7 @@ template <Index kRows, class Number>
   }
 }
 
-// Each lane sums its own rows; lanes are added at the end.
+// Each lane sums its own rows; the lanes are added at the end.
 template <class Number>
 [[gnu::always_inline]] inline void solve_transposed(const FrontShape& shape, const Number* panel, const Number* inverse,
                                                     Number* own, const Number* below, Number* sums) {

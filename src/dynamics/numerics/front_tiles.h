@@ -1,4 +1,4 @@
-// Tiles of a front, in as many lanes as the machine has. For the .cpp files of kernels, as lanes.h.
+// Tiles of a front in SIMD registers. For the .cpp files of kernels alone, as simd.h.
 #pragma once
 
 #include "base/simd.h"
@@ -7,9 +7,8 @@ namespace sprung {
 
 inline constexpr Index kTile = kSimdWidth * kSimdWidth;
 
-/// Four columns of kVectors vectors of rows: one row of tiles where Lanes are four, two where they are eight, four where they are
-/// sixteen. Such rows are worked on side by side, number by number in the same order, so that results do not depend on how many
-/// they are.
+/// Four columns of `kVectors` registers of rows: one row of tiles if a register has four lanes, two if eight, four if sixteen.
+/// Each number is computed in the same order whatever the width, so that the bits do not depend on it.
 template <class Lanes, int kVectors>
 struct Tiles {
   static constexpr int kRows = kVectors * kCountOf<Lanes> / kSimdWidth;
@@ -20,7 +19,7 @@ struct Tiles {
 template <class Lanes>
 using HalfOf = typename SimdOf<NumberOf<Lanes>, kCountOf<Lanes> / 2>::Type;
 
-/// Rows of tiles lie `stride` numbers apart.
+/// Rows of tiles are `stride` numbers apart.
 template <class Lanes>
 [[gnu::always_inline]] inline void gather(const NumberOf<Lanes>* from, std::size_t stride, Lanes& to) {
   if constexpr (kCountOf<Lanes> == kSimdWidth) {
@@ -54,7 +53,7 @@ template <class Lanes>
   }
 }
 
-/// Where vector v begins among rows of tiles that lie `stride` numbers apart.
+/// Where register v begins in rows of tiles that are `stride` numbers apart.
 template <class Lanes>
 [[gnu::always_inline]] inline std::size_t vector_begin(int v, std::size_t stride) {
   return static_cast<std::size_t>(v * (kCountOf<Lanes> / kSimdWidth)) * stride;
@@ -74,7 +73,7 @@ template <class Lanes, int kVectors>
   }
 }
 
-/// Subtracts A B^T of `depth` columns. Those of A are one after the other, all rows that are worked on side by side.
+/// Subtracts A B^T over `depth` columns. Columns of A are contiguous and hold all rows of the Tiles.
 template <class Lanes, int kVectors>
 [[gnu::always_inline]] inline void subtract_product(const NumberOf<Lanes>* a, const NumberOf<Lanes>* b, Index depth,
                                                     Tiles<Lanes, kVectors>& from) {

@@ -1,8 +1,7 @@
-// Four or eight vectors as they lie in memory, three registers for twelve or twenty-four numbers. For the .cpp files of kernels, as
-// lanes.h.
+// Four or eight 3-vectors as they lie in memory: three registers for twelve or twenty-four numbers. For the .cpp files of kernels
+// alone, as simd.h.
 //
-// The compiler vectorises loops over x, y, z by itself too, but shuffles three times as much, and shuffles are what such loops wait
-// for.
+// The compiler also vectorises loops over x, y, z, but with three times as many shuffles, and shuffles bound these loops.
 #pragma once
 
 #include "base/simd.h"
@@ -13,7 +12,7 @@ template <class L>
 struct PackedSimd {
   using Lanes = L;
 
-  Lanes low;     ///< of four: x0 y0 z0 x1; of eight: x0 y0 z0 ... x2 y2
+  Lanes low;     ///< four vectors: x0 y0 z0 x1; eight: x0 y0 z0 ... x2 y2
   Lanes middle;  ///< y1 z1 x2 y2; z2 x3 ... z4 x5
   Lanes high;    ///< z2 x3 y3 z3; y5 z5 ... y7 z7
 };
@@ -73,7 +72,7 @@ template <class Lanes>
   z = __builtin_shufflevector(z, from.high, 0, 1, 2, 3, 4, 9, 12, 15);
 }
 
-/// Each vector times its own number.
+/// Multiplies each vector by its own number.
 [[gnu::always_inline]] inline void multiply(PackedVectors4& vectors, const Double4& scale) {
   vectors.low *= __builtin_shufflevector(scale, scale, 0, 0, 0, 1);
   vectors.middle *= __builtin_shufflevector(scale, scale, 1, 1, 2, 2);
@@ -86,7 +85,7 @@ template <class Lanes>
   vectors.high *= __builtin_shufflevector(scale, scale, 5, 5, 6, 6, 6, 7, 7, 7);
 }
 
-/// The vector after each, as far as it is among them; the last one's is anything. `from` is where they lie.
+/// Loads the successor of each vector; the successor of the last one is undefined. `from` is where the vectors lie.
 [[gnu::always_inline]] inline void load_next(const double* from, const PackedVectors4& vectors, PackedVectors4& next) {
   load_simd(from + 3, next.low);
   load_simd(from + 7, next.middle);
@@ -99,7 +98,7 @@ template <class Lanes>
   next.high = __builtin_shufflevector(vectors.high, vectors.high, 3, 4, 5, 6, 7, 7, 7, 7);
 }
 
-/// 0 with 1, 2 with 3 and so on change places.
+/// Swaps vectors 0 and 1, 2 and 3, and so on.
 [[gnu::always_inline]] inline void swap_neighbours(const PackedVectors4& from, PackedVectors4& to) {
   to.low = __builtin_shufflevector(from.low, from.middle, 3, 4, 5, 0);
   to.middle = __builtin_shufflevector(from.low, from.high, 1, 2, 5, 6);

@@ -9,7 +9,7 @@
 namespace sprung {
 namespace {
 
-/// order[k] is the row that is eliminated as the k-th.
+/// order[k] is the row that is eliminated k-th.
 std::vector<Index> minimum_degree_order(const MatrixGraph& graph) {
   std::vector<Eigen::Triplet<double>> entries;
   for (Index i = 0; i < graph.size(); ++i) {
@@ -24,21 +24,21 @@ std::vector<Index> minimum_degree_order(const MatrixGraph& graph) {
 }
 
 std::vector<Index> inverse(const std::vector<Index>& order) {
-  std::vector<Index> place(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = static_cast<Index>(k);
-  return place;
+  std::vector<Index> position(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) position[order[k]] = static_cast<Index>(k);
+  return position;
 }
 
-/// Supernodes of one column each, numbered as they are eliminated; rows are such numbers too, not sorted.
+/// Supernodes of one column each, numbered in the order of elimination. Their rows use the same numbers and are not sorted.
 class EliminationTree {
  public:
   EliminationTree(const MatrixGraph& graph, const std::vector<Index>& order)
       : nodes_(order.size()), children_(order.size()), seen_by_(order.size(), kNone) {
-    const std::vector<Index> place = inverse(order);
+    const std::vector<Index> position = inverse(order);
     for (Index j = 0; j < graph.size(); ++j) {
       nodes_[j].columns = {j};
-      for (Index k = graph.begin[order[j]]; k < graph.begin[order[j] + 1]; ++k) see(place[graph.others[k]], j);
-      // Whoever is eliminated couples all that it was coupled to.
+      for (Index k = graph.begin[order[j]]; k < graph.begin[order[j] + 1]; ++k) see(position[graph.others[k]], j);
+      // An eliminated row couples all rows that it was coupled to.
       for (const Index child : children_[j]) {
         for (const Index row : nodes_[child].rows) see(row, j);
       }
@@ -63,17 +63,17 @@ class EliminationTree {
   std::vector<Index> seen_by_;
 };
 
-/// About the time that a supernode takes, in products: its panel, the products it hands on, and their sums.
+/// Estimates the work of a supernode in multiplications: its panel, the products of its update, and their sums.
 double cost(std::size_t columns, std::size_t rows) {
-  constexpr double kSum = 6.0;       // a sum somewhere in the parent takes as long as so many products
-  constexpr double kStart = 2000.0;  // what a supernode takes however small it is; half or twice these makes no difference
+  constexpr double kSum = 6.0;       // a scattered sum in the parent costs as much as this many products
+  constexpr double kStart = 2000.0;  // fixed cost of a supernode; half or twice this value makes no measurable difference
   const double width = 3.0 * static_cast<double>(columns);
   const double below = 3.0 * static_cast<double>(rows);
   return width * (width * width / 6.0 + 0.5 * below * (width + below)) +
          kSum * (0.5 * below * below + width * (0.5 * width + below)) + kStart;
 }
 
-/// Joins children with their parents where that costs less; what was joined has no columns left.
+/// Merges children into their parents where that costs less. A merged supernode has no columns.
 void join(std::vector<Supernode>& nodes, const std::vector<std::vector<Index>>& children) {
   std::vector<std::vector<Index>> left = children;
   for (std::size_t j = 0; j < nodes.size(); ++j) {
@@ -90,7 +90,7 @@ void join(std::vector<Supernode>& nodes, const std::vector<std::vector<Index>>& 
       child.columns.insert(child.columns.end(), parent.columns.begin(), parent.columns.end());
       parent.columns = std::exchange(child.columns, {});
       child.rows.clear();
-      // They may join the parent in their turn.
+      // The grandchildren may be merged with the parent in turn.
       left[j].insert(left[j].end(), left[left[j][c]].begin(), left[left[j][c]].end());
     }
     left[j] = kept;
@@ -98,7 +98,7 @@ void join(std::vector<Supernode>& nodes, const std::vector<std::vector<Index>>& 
   }
 }
 
-/// What is left of the nodes, children right before their parents.
+/// The supernodes that are left, children right before their parents.
 std::vector<Index> postorder(const std::vector<Supernode>& nodes) {
   std::vector<std::vector<Index>> children(nodes.size());
   std::vector<Index> open;
@@ -106,7 +106,7 @@ std::vector<Index> postorder(const std::vector<Supernode>& nodes) {
     if (nodes[j].columns.empty()) continue;
     (nodes[j].parent == kNone ? open : children[nodes[j].parent]).push_back(static_cast<Index>(j));
   }
-  // Parents first and their last children next: the wrong way round.
+  // This order is reversed: parents first, their last children next.
   std::vector<Index> order;
   while (!open.empty()) {
     const Index node = open.back();
@@ -128,17 +128,17 @@ std::vector<Supernode> find_supernodes(const MatrixGraph& graph) {
 
   const std::vector<Index> left = postorder(nodes);
   std::vector<Index> number(nodes.size(), kNone);
-  std::vector<Index> place(nodes.size());
+  std::vector<Index> position(nodes.size());
   Index eliminated = 0;
   for (std::size_t k = 0; k < left.size(); ++k) {
     number[left[k]] = static_cast<Index>(k);
-    for (const Index column : nodes[left[k]].columns) place[column] = eliminated++;
+    for (const Index column : nodes[left[k]].columns) position[column] = eliminated++;
   }
   std::vector<Supernode> found;
   for (const Index j : left) {
     Supernode& node = found.emplace_back(std::move(nodes[j]));
     if (node.parent != kNone) node.parent = number[node.parent];
-    std::ranges::sort(node.rows, {}, [&](Index row) { return place[row]; });
+    std::ranges::sort(node.rows, {}, [&](Index row) { return position[row]; });
     for (std::vector<Index>* const rows : {&node.columns, &node.rows}) {
       for (Index& row : *rows) row = order[row];
     }

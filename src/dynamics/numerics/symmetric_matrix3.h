@@ -1,4 +1,4 @@
-// Symmetric 3 x 3 matrices by their six numbers, for solvers that invert one a particle.
+// Symmetric 3 x 3 matrices stored as six numbers, for solvers that invert one per particle.
 #pragma once
 
 #include "base/types.h"
@@ -22,7 +22,7 @@ struct SymmetricMatrix3 {
     return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(), xz * v.x() + yz * v.y() + zz * v.z()};
   }
 
-  /// Requires that the matrix is not singular.
+  /// Requires a regular matrix.
   [[nodiscard]] SymmetricMatrix3 inverse() const {
     const double a = yy * zz - yz * yz;
     const double b = xz * yz - xy * zz;
@@ -40,7 +40,7 @@ struct SymmetricMatrix3 {
   }
 };
 
-/// A B C, of which the caller knows that it is symmetric.
+/// A B C; the caller knows that the product is symmetric.
 [[nodiscard]] inline SymmetricMatrix3 symmetric_product(const SymmetricMatrix3& a, const SymmetricMatrix3& b,
                                                         const SymmetricMatrix3& c) {
   const Vector3 x = b * Vector3(c.xx, c.xy, c.xz);

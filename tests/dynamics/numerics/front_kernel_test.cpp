@@ -29,7 +29,7 @@ Eliminated<Number> eliminated(const FrontShape& shape, std::vector<Number> panel
   result.positive = eliminate(shape, panel.data(), inverse.data(), update.data(), row.data());
   result.numbers = inverse;
   for (Index c = 0; c < shape.width(); ++c) {
-    for (Index r = c + 1; r < shape.width() + shape.lower_height(); ++r) result.numbers.push_back(panel[shape.place(r, c)]);
+    for (Index r = c + 1; r < shape.width() + shape.lower_height(); ++r) result.numbers.push_back(panel[shape.index(r, c)]);
   }
   for (std::size_t c = 0; c < height; ++c)
     result.numbers.insert(result.numbers.end(), &update[c * height + c], &update[c * height] + height);
@@ -47,7 +47,7 @@ void expect_the_same_bits() {
       const FrontShape shape{own, lower};
       std::vector<Number> panel(shape.size());
       for (Number& number : panel) number = unit(random);
-      for (Index i = 0; i < shape.width(); ++i) panel[shape.place(i, i)] = static_cast<Number>(1 + shape.width());
+      for (Index i = 0; i < shape.width(); ++i) panel[shape.index(i, i)] = static_cast<Number>(1 + shape.width());
       const auto narrow = eliminated<Number>(shape, panel, eliminate_front_narrow);
       const auto taken = eliminated<Number>(shape, panel, eliminate_front<Number>);
       EXPECT_TRUE(narrow.positive && taken.positive);
