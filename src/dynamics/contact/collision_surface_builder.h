@@ -1,4 +1,4 @@
-// The network as contact sees it.
+// The collision surface of a network.
 #pragma once
 
 #include "collision/surface/collision_surface.h"
@@ -6,8 +6,8 @@
 
 namespace sprung {
 
-/// The triangles and segments of each body's surface, and each particle that neither has as an element of its own: those inside a
-/// solid too, which so cannot be left behind in an obstacle.
+/// The triangles and segments of each body's surface, and each particle that is in none of them as an element of its own.
+/// Particles inside a solid are elements too, so that an obstacle cannot separate them from their body.
 [[nodiscard]] CollisionSurface contact_surface(const SpringNetwork& network);
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// A contact as the passes of a step see it: the same for positions and for velocities.
+// A contact as a constraint on positions or velocities.
 #pragma once
 
 #include "base/types.h"
@@ -9,14 +9,14 @@
 
 namespace sprung {
 
-/// A weighted sum of n particles that is held along a normal.
+/// A weighted sum of n particles that is constrained along a normal.
 template <std::size_t n>
 struct ContactConstraint {
   std::array<Index, n> particles{};
   std::array<double, n> weights{};
-  std::array<double, n> shares{};  ///< what each particle changes by for a change of the sum by 1: by inverse mass
+  std::array<double, n> shares{};  ///< change of each particle for a unit change of the sum, by inverse mass
   Index obstacle = kNone;          ///< kNone between elements of the network
-  Index patch = kNone;             ///< that it was found with
+  Index patch = kNone;             ///< of the surface that found it
   Vector3 normal = Vector3::Zero();
   double static_friction = 0.0;
   double friction = 0.0;
@@ -35,19 +35,20 @@ struct ContactConstraint {
   }
 };
 
-/// What the sum of a row shall keep: normal . (sum - origin) >= least. Of positions [m] the origin is where the sum would be had it
-/// gone along with what it meets, of velocities [m/s] the velocity of that: what is left across the normal is slip.
+/// The goal of a constraint: normal . (sum - origin) >= least. For positions [m] the origin is where the sum would be if it moved
+/// with the surface that it touches; for velocities [m/s] it is the velocity of that surface. What remains across the normal is
+/// slip.
 struct ContactGoal {
   Vector3 origin = Vector3::Zero();
   double least = 0.0;
-  double touch = 0.0;              ///< within this much of its least the row touches, without being pushed too
-  double push = 0.0;               ///< change along the normal so far, >= 0
-  Vector3 held = Vector3::Zero();  ///< change across it by friction so far
-  bool touches = false;            ///< as it was found last
+  double touch = 0.0;              ///< the constraint touches if it is within this distance of `least`, even without a push
+  double push = 0.0;               ///< accumulated change along the normal, >= 0
+  Vector3 held = Vector3::Zero();  ///< accumulated change by friction across the normal
+  bool touches = false;            ///< result of the last projection
 };
 
-/// What friction changes across the normal altogether, where `needed` would leave no slip: that while static friction holds it,
-/// else what kinetic friction gives (Coulomb).
+/// The total change that friction makes across the normal, where `needed` would leave no slip: `needed` itself while static
+/// friction suffices, otherwise what kinetic friction gives (Coulomb).
 template <std::size_t n>
 [[nodiscard]] Vector3 friction_of(const ContactConstraint<n>& row, const ContactGoal& goal, const Vector3& needed) {
   const double length = needed.norm();
@@ -55,15 +56,15 @@ template <std::size_t n>
   return std::min(1.0, row.friction * goal.push / length) * needed;
 }
 
-/// Brings the row to its least and lets friction answer to the push. The push is a Lagrange multiplier in the sense of sequential
-/// impulses: what another contact makes needless is taken back, but never more than was given, and the friction that it gave goes
-/// with it: where many contacts share a load, each pushes more at first than in the end. Returns the change of the push.
+/// Projects the constraint and applies friction. The push is a Lagrange multiplier (sequential impulses): a push that another
+/// contact made unnecessary is taken back, never more than was given, together with its friction. So contacts that share a load
+/// may push more at first than in the end. Returns the change of the push.
 template <std::size_t n>
 double answer(const ContactConstraint<n>& row, ContactGoal& goal, Points& q) {
   const Vector3 moved = row.sum(q) - goal.origin;
   const double along = row.normal.dot(moved);
   const double change = std::max(goal.least - along, -goal.push);
-  // Most contacts stay apart, and nothing is written for them. What another one pushed off what it meets touches no more.
+  // Most contacts stay apart; nothing is written for them. A contact that another one pushed off its surface no longer touches.
   const bool touches = goal.push + change > 0.0 || along <= goal.least + goal.touch;
   if (touches != goal.touches) goal.touches = touches;
   if (change == 0.0 && goal.push == 0.0) return 0.0;

@@ -1,4 +1,4 @@
-// Contacts of n particles each, in flat arrays: the passes of a step over positions, then over velocities. Internal to dynamics/.
+// Contacts of n particles each, in flat arrays, with their passes over positions and velocities. Internal to dynamics/.
 #pragma once
 
 #include "dynamics/contact/contact_constraint.h"
@@ -15,7 +15,7 @@ namespace sprung {
 template <std::size_t n>
 class ContactConstraintSet {
  public:
-  /// Holds so many contacts, the first as before; of new ones `row`, `goal` and `gap` [m] > 0 are then to be set.
+  /// Resizes the set to `count` contacts and keeps the first ones. The caller sets `row`, `goal` and `gap` [m] > 0 of new ones.
   void resize(std::size_t count) {
     rows_.resize(count);
     goals_.resize(count);
@@ -41,8 +41,8 @@ class ContactConstraintSet {
     resize(kept);
   }
 
-  /// Contacts from `begin` on take over what such of the same particles with the same obstacle have pushed and held in `former`: of
-  /// several the first from the first, and so on. `first_row` has a kNone for each particle, and again afterwards.
+  /// Contacts from `begin` on take over the accumulated push and friction of contacts in `former` with the same particles and
+  /// obstacle, in their order. `first_row` holds kNone for each particle, before and after the call.
   void count_on(const ContactConstraintSet& former, std::size_t begin, std::vector<Index>& first_row) {
     std::vector<Index> next_row(former.rows_.size());
     for (std::size_t f = former.rows_.size(); f-- > 0;) {
@@ -57,13 +57,13 @@ class ContactConstraintSet {
       const auto f = static_cast<std::size_t>(*link);
       goals_[c].push = former.goals_[f].push;
       const Vector3& held = former.goals_[f].held;
-      goals_[c].held = held - rows_[c].normal.dot(held) * rows_[c].normal;  // the normal may be another
+      goals_[c].held = held - rows_[c].normal.dot(held) * rows_[c].normal;  // the normal may differ
       *link = next_row[f];
     }
     for (const ContactConstraint<n>& row : former.rows_) first_of(row, first_row) = kNone;
   }
 
-  /// Answers on positions. Returns the largest change of a push, as a part of the gap.
+  /// Projects positions. Returns the largest change of a push relative to the gap.
   double project(Points& positions) {
     double largest = 0.0;
     for (std::size_t c = 0; c < rows_.size(); ++c) {
@@ -73,7 +73,7 @@ class ContactConstraintSet {
     return largest;
   }
 
-  /// Finds what touches, and takes from its velocities what a push out of the gap has made too fast.
+  /// Finds the touching contacts, and removes from their velocities the excess that a push out of the gap produced.
   void begin_settling(const StepMotion& motion, const Points& positions, Points& velocities) {
     touching_.clear();
     velocity_goals_.clear();
@@ -84,7 +84,7 @@ class ContactConstraintSet {
       const double speed = row.normal.dot(row.sum(velocities) - carrier);
       const double pushed = row.normal.dot(row.sum(positions) - row.sum(motion.advanced)) / motion.dt;
       const SpeedRange range = settled_speeds(row, goals_[c], motion, carrier, speed - pushed);
-      // No more than it pushed: what others pushed too is theirs to take.
+      // At most its own push: other contacts remove theirs.
       const double taken = std::min(speed - range.most, goals_[c].push / motion.dt);
       if (taken > 0.0) row.change_sum(-taken * row.normal + friction_lost(row, goals_[c], taken, motion.dt), velocities);
       touching_.push_back(c);
@@ -92,7 +92,7 @@ class ContactConstraintSet {
     }
   }
 
-  /// Answers on velocities. Returns the largest change of one [m/s].
+  /// Projects velocities. Returns the largest change of a velocity [m/s].
   double settle(Points& velocities) {
     double largest = 0.0;
     for (std::size_t t = 0; t < touching_.size(); ++t) {
@@ -101,13 +101,13 @@ class ContactConstraintSet {
     return largest;
   }
 
-  /// Calls `visit(particle)` for each particle that what touches can move, several times for one that several do.
+  /// Calls `visit(particle)` for each particle that a touching contact can move, once per contact.
   template <class Visit>
   void for_touching(const Visit& visit) const {
     for (const std::size_t c : touching_) for_moved(rows_[c], visit);
   }
 
-  /// Calls `visit(particle, normal)` in the same way for contacts that have pushed.
+  /// Calls `visit(particle, normal)` likewise for contacts that pushed.
   template <class Visit>
   void for_pushed(const Visit& visit) const {
     for (std::size_t c = 0; c < rows_.size(); ++c) {
@@ -116,14 +116,14 @@ class ContactConstraintSet {
   }
 
  private:
-  /// A push whose speed is taken answered to no load: what friction gives back of velocities with it. Positions keep it, at most
-  /// friction times the way out of the gap.
+  /// The friction that velocities lose with a removed push, because no load caused it. Positions keep it: at most friction times
+  /// the displacement out of the gap.
   static Vector3 friction_lost(const ContactConstraint<n>& row, ContactGoal goal, double taken, double dt) {
     goal.push = std::max(0.0, goal.push - taken * dt);
     return (friction_of(row, goal, goal.held) - goal.held) / dt;
   }
 
-  /// `v_after` is what the forces alone would have made of the speed along the normal.
+  /// `v_after` is the speed along the normal that forces alone would give.
   static SpeedRange settled_speeds(const ContactConstraint<n>& row, const ContactGoal& goal, const StepMotion& motion,
                                    const Vector3& carrier, double v_after) {
     if (row.restitution == 0.0) return {.least = 0.0, .most = std::max(0.0, v_after)};
@@ -164,7 +164,7 @@ class ContactConstraintSet {
   std::vector<ContactGoal> goals_;  ///< of positions
   std::vector<double> gaps_;
   std::vector<std::size_t> touching_;
-  std::vector<ContactGoal> velocity_goals_;  ///< of those that touch
+  std::vector<ContactGoal> velocity_goals_;  ///< of touching contacts
 };
 
 }  // namespace sprung

@@ -49,7 +49,7 @@ const ContactMaterial& ContactMaterials::of(const Contact& contact, Last& last) 
   return last.material;
 }
 
-// A corner of weight 0 tells nothing of its side.
+// A corner of weight 0 does not tell the body of its side.
 ContactMaterials::Pair ContactMaterials::pair_of(const Contact& contact) const {
   Pair pair{.obstacle = contact.obstacle};
   for (int k = 0; k < contact.count; ++k) {

@@ -1,4 +1,4 @@
-// What those who meet are to each other.
+// The combined materials of two bodies, or of a body and an obstacle.
 #pragma once
 
 #include "base/contact_material.h"
@@ -13,26 +13,26 @@ namespace sprung {
 /// Gap, frictions and restitution of a body and an obstacle (see ContactMaterial).
 [[nodiscard]] ContactMaterial combine(const ContactMaterial& body, const ContactMaterial& obstacle);
 
-/// The same of two bodies, or of a body and itself: their gap is the mean of their thicknesses.
+/// The same for two bodies, or for a body and itself: the gap is the mean of their thicknesses.
 [[nodiscard]] ContactMaterial combine_bodies(const ContactMaterial& first, const ContactMaterial& second);
 
 /// Each particle's share of the gap [m]: the thickness of its body.
 [[nodiscard]] Scalars particle_thickness(const SpringNetwork& network);
 
-/// The materials of contacts.
+/// Combined materials by contact.
 class ContactMaterials {
  public:
   /// Keeps references to both.
   ContactMaterials(const SpringNetwork& network, const std::vector<Obstacle>& obstacles);
 
-  /// A body and what it meets: an obstacle, or else the other body.
+  /// A body and an obstacle, or two bodies.
   struct Pair {
     Index body = kNone;
     Index obstacle = kNone;
     Index other_body = kNone;
     bool operator==(const Pair&) const = default;
   };
-  /// The pair that was asked for last: contacts mostly come one after another of the same.
+  /// The last pair asked for: consecutive contacts mostly share their pair.
   struct Last {
     Pair pair{};
     ContactMaterial material{};

@@ -10,28 +10,28 @@
 namespace sprung {
 namespace {
 
-// Impulses of contacts that share particles, or stand on each other, settle within a few passes; what is left the next step finds.
+// Impulses of contacts that share particles or are stacked settle within a few passes; the next step finds the rest.
 constexpr int kVelocityPasses = 8;
 
-// Passes end when none changes a velocity by more than this part of what the first one did.
+// Passes end when none changes a velocity by more than this fraction of the first pass's change.
 constexpr double kVelocityTolerance = 1.0e-3;
 
-// A touching contact is this part of its gap above it at most: what rounding leaves of a projection.
+// A touching contact is above its gap by at most this fraction of it: rounding of the projection.
 constexpr double kTouch = 1.0e-9;
 
-// The least of contacts that are left to pins.
+// `least` of contacts that are left to pins.
 constexpr double kNothingToDo = -std::numeric_limits<double>::infinity();
 
-// What pins have more than this part of the weights of is left to them where the pins are in the way themselves, or before another
-// element.
+// A contact is left to pins if they carry more than this fraction of its weights, and if they violate the contact themselves or
+// the other side is an element.
 constexpr double kMostPinned = 0.9;
 
-// What a contact finds within its gap when the step begins, as truncation or the stretch limit left it, goes out of it as if it
-// were accelerated to take this time for the whole gap [s]. In one short step it would go so fast that what links at their limit
-// draw after it, and no contact slows again, would get the more energy the shorter the step is.
+// A contact that begins inside its gap, as truncation or the stretch limit left it, leaves it with the acceleration that takes
+// this time for the whole gap [s]. If it left in one short step, springs at their limit would be pulled along, no contact would
+// slow them, and they would gain more energy the shorter the step.
 constexpr double kRecovery = 0x1p-9;
 
-// Contacts that one task sets up.
+// Contacts per parallel task.
 constexpr Index kContactChunk = 256;
 
 template <class Sets, class Visit>
@@ -39,7 +39,7 @@ void for_each_set(Sets& sets, const Visit& visit) {
   std::apply([&](auto&... set) { (visit(set), ...); }, sets);
 }
 
-/// Sets the contact's particles, weights and shares; false when pins alone have it, or between two elements nearly.
+/// Sets the contact's particles, weights and shares. Returns false if all weight is on pins, or nearly all between two elements.
 template <std::size_t n>
 bool set_particles(const Contact& contact, const Scalars& inverse_masses, ContactConstraint<n>& row) {
   double mobility = 0.0;
@@ -63,8 +63,9 @@ bool set_particles(const Contact& contact, const Scalars& inverse_masses, Contac
 
 /// How an element before an obstacle turns about its pins.
 struct Lever {
-  double arm = std::numeric_limits<double>::infinity();  ///< of the contact's point [m]: farther than that it turns by a radian
-  double part = 1.0;                                     ///< of the way of corners that are not pinned the point goes
+  double arm = std::numeric_limits<double>::infinity();  ///< lever arm of the contact's point [m]: a displacement of this length
+                                                         ///< turns it by a radian
+  double share = 1.0;                                    ///< displacement of the point relative to that of the free corners
 };
 
 template <std::size_t n>
@@ -91,10 +92,10 @@ ContactSolver::ContactSolver(const SpringNetwork& network, const Environment& en
       first_row_(static_cast<std::size_t>(network.particle_count()), kNone) {}
 
 void ContactSolver::start(const std::vector<Contact>& contacts, const StepMotion& motion) {
-  carry_.clear();
+  obstacle_motions_.clear();
   for (std::size_t k = 0; k < environment_.obstacles().size(); ++k) {
     const auto obstacle = static_cast<Index>(k);
-    carry_.push_back(environment_.pose_after(obstacle) * environment_.pose_before(obstacle).inverse());
+    obstacle_motions_.push_back(environment_.pose_after(obstacle) * environment_.pose_before(obstacle).inverse());
   }
   for_each_set(sets_, [&](auto& set) { fill(set, 0, contacts, motion); });
 }
@@ -145,23 +146,23 @@ void ContactSolver::fill_one(const Contact& contact, const ContactMaterial& pair
   const double gap = std::max(std::min(pair.thickness, contact.most_gap), contact.clearance);
   set.gap(slot) = gap;
   ContactGoal& goal = set.goal(slot);
-  goal = {.origin = carried(contact, row.sum(motion.before)), .touch = kTouch * gap};
+  goal = {.origin = moved_with_obstacle(contact, row.sum(motion.before)), .touch = kTouch * gap};
   const double recovery = std::min(1.0, (motion.dt / kRecovery) * (motion.dt / kRecovery));
   const double back = gap - contact.normal.dot(goal.origin - contact.point);
   goal.least = moves ? std::min(back, std::max(back - gap, 0.0) + recovery * gap) : kNothingToDo;
   if (!moves || contact.obstacle == kNone) return;
-  const auto [arm, part] = lever(row, motion.before);
-  const bool pins_are_in_the_way = arm <= gap && part < 1.0 - kMostPinned;
+  const auto [arm, share] = lever(row, motion.before);
+  const bool pins_block = arm <= gap && share < 1.0 - kMostPinned;
   const double advanced = contact.normal.dot(row.sum(motion.advanced) - goal.origin);
-  goal.least = pins_are_in_the_way ? kNothingToDo : std::min(goal.least, advanced + arm);
+  goal.least = pins_block ? kNothingToDo : std::min(goal.least, advanced + arm);
 }
 
-// An obstacle that rests, and what another element is relative to, carries a position to the last bit where it was.
-Vector3 ContactSolver::carried(const Contact& contact, const Vector3& from) const {
+// Exactly `from` for an obstacle at rest, and between elements.
+Vector3 ContactSolver::moved_with_obstacle(const Contact& contact, const Vector3& from) const {
   if (contact.obstacle == kNone) return from;
   const auto k = static_cast<std::size_t>(contact.obstacle);
   if (!environment_.obstacles()[k].motion.moves()) return from + contact.drift;
-  return carry_[k] * from + contact.drift;
+  return obstacle_motions_[k] * from + contact.drift;
 }
 
 double ContactSolver::project(Points& positions) {

@@ -19,12 +19,12 @@ void PenaltyContact::prepare(double time) {
   if (interval.begin != time || interval.end != time) environment_.set_interval(time, time);
 }
 
-/// What an obstacle does to a particle: it feels push * normal - rub * along.
+/// The force of an obstacle on a particle: push * normal - rub * along.
 struct PenaltyContact::Touch {
   double push = 0.0;                ///< [N]
-  double rub = 0.0;                 ///< friction by velocity [N s/m]
+  double rub = 0.0;                 ///< friction coefficient on velocity [N s/m]
   Vector3 along = Vector3::Zero();  ///< velocity along the surface [m/s]
-  bool slides = false;              ///< friction is not enough to stop it within a step
+  bool slides = false;              ///< friction cannot stop it within a step
 };
 
 PenaltyContact::Touch PenaltyContact::touch(const Contact& contact, const Kinematics& at) const {

@@ -7,25 +7,25 @@
 
 namespace sprung {
 
-/// A particle deeper than its gap by p feels k p - c v_n along the surface's normal (never a pull), and Coulomb friction of at most
-/// friction times that, and at most what stops it within a step.
+/// A particle at depth p below its gap feels k p - c v_n along the surface's normal, never a pull. Coulomb friction is at most
+/// friction times that force, and at most what stops the particle within a step.
 class PenaltyContact final : public Force {
  public:
-  /// `stiffness` k [N/m] > 0, `damping` c [N s/m] >= 0, `dt` [s] the step. Keeps references to the network and to the environment.
+  /// `stiffness` k [N/m] > 0, `damping` c [N s/m] >= 0, `dt` [s] is the step. Keeps references to the network and the environment.
   PenaltyContact(const SpringNetwork& network, Environment& environment, double stiffness, double damping, double dt);
 
-  /// Obstacles go where they are at `time`: the environment's interval becomes (time, time).
-  /// Steps are of length `dt` [s] from now on.
+  /// Steps are `dt` [s] long from now on.
   void set_step(double dt) { dt_ = dt; }
 
+  /// Moves the obstacles to `time`: the environment's interval becomes (time, time).
   void prepare(double time) override;
   void add(const Kinematics& at, Points& forces) const override;
 
-  /// As if the surface were the plane that it is nearest, and without what a push does to the friction that it allows: that is not
+  /// The derivatives for a plane at the nearest point. The change of the friction bound with the push is left out, as it is not
   /// symmetric.
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
-  /// How many particles are nearer to an obstacle than their gap.
+  /// Number of particles nearer to an obstacle than their gap.
   [[nodiscard]] Index contact_count(const Points& positions) const;
 
  private:

@@ -6,10 +6,10 @@
 namespace sprung {
 namespace {
 
-// An approach slower than this many times what the forces add in one step is rest, not an impact.
+// An approach slower than this many times the speed that forces add in a step is rest, not an impact.
 constexpr double kRestSteps = 2.0;
 
-/// The speed towards the surface at which the parabola reaches the gap, or at which it is nearest to it.
+/// The speed towards the surface at which the parabola reaches the gap, or comes nearest to it.
 double approach_speed(const FreeFlight& flight, double begin, double gain) {
   const double end = begin + gain;
   if (flight.height < 0.0) return std::max(0.0, -begin);
@@ -25,7 +25,7 @@ SpeedRange settled_speeds(const FreeFlight& flight, double restitution) {
   const double approach = approach_speed(flight, mean - 0.5 * gain, gain);
   const double bounce = restitution * approach;
 
-  // A bounce that the forces end within the step does not get off the surface.
+  // A bounce that forces end within the step does not leave the surface.
   const bool impact = approach > kRestSteps * std::abs(gain) && bounce > -0.5 * gain;
   const double scheme_ahead = 0.5 * (flight.v_before + flight.v_after) - mean;
   const double least = impact ? std::max(0.0, bounce + scheme_ahead) : 0.0;

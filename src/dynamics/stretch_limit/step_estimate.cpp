@@ -15,7 +15,7 @@ constexpr double kShare = 8.0;
 
 struct Farthest {
   Index particle;
-  Index springs;  ///< on the way there
+  Index springs;  ///< on the edge there
 };
 
 /// Counted from the nearest of `starts`, which are particles of the body.
@@ -26,16 +26,16 @@ Farthest farthest_from(const Body& body, const SpringGraph& graph, const std::ve
   for (const Index start : starts) springs_to(start) = 0;
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const Index i = queue[head];
-    for (const SpringGraph::Way& way : graph.at(i)) {
-      if (springs_to(way.to) != kNone) continue;
-      springs_to(way.to) = springs_to(i) + 1;
-      queue.push_back(way.to);
+    for (const SpringGraph::Edge& edge : graph.at(i)) {
+      if (springs_to(edge.to) != kNone) continue;
+      springs_to(edge.to) = springs_to(i) + 1;
+      queue.push_back(edge.to);
     }
   }
   return {queue.back(), springs_to(queue.back())};
 }
 
-/// Half the springs on the way between two ends of the body that are far apart.
+/// Half the springs on the edge between two ends of the body that are far apart.
 double half_way(const Body& body, const SpringGraph& graph, Index start) {
   const Index end = farthest_from(body, graph, {start}).particle;
   return 0.5 * farthest_from(body, graph, {end}).springs;
@@ -75,8 +75,8 @@ double largest_load(const SpringNetwork& network, const Body& body, const Spring
     if (graph.at(i).empty()) continue;
     joined = i;
     if (network.is_pinned(i)) pins.push_back(i);
-    for (const SpringGraph::Way& way : graph.at(i)) {
-      const double length = network.springs.rest_length[way.spring];
+    for (const SpringGraph::Edge& edge : graph.at(i)) {
+      const double length = network.springs.rest_length[edge.spring];
       shortest = std::min(shortest, length);
       if (network.is_pinned(i)) shortest_at_pin = std::min(shortest_at_pin, length);
     }

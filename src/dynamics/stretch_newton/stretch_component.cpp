@@ -44,17 +44,17 @@ class Finder {
     std::vector<Index> queue{start};
     seen_[start] = true;
     for (std::size_t head = 0; head < queue.size(); ++head) {
-      for (const SpringGraph::Way& way : graph_.at(queue[head])) {
-        if (seen_[way.to] || network_.is_pinned(way.to)) continue;
-        seen_[way.to] = true;
-        queue.push_back(way.to);
+      for (const SpringGraph::Edge& edge : graph_.at(queue[head])) {
+        if (seen_[edge.to] || network_.is_pinned(edge.to)) continue;
+        seen_[edge.to] = true;
+        queue.push_back(edge.to);
       }
     }
     return queue;
   }
 
   [[nodiscard]] bool hangs_on_pin(Index particle) const {
-    return std::ranges::any_of(graph_.at(particle), [&](const SpringGraph::Way& way) { return network_.is_pinned(way.to); });
+    return std::ranges::any_of(graph_.at(particle), [&](const SpringGraph::Edge& edge) { return network_.is_pinned(edge.to); });
   }
 
   /// The same particles, from the tips to one that hangs on a pin.

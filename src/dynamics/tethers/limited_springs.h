@@ -1,4 +1,4 @@
-// Which springs a stretch limit holds.
+// The springs that a stretch limit constrains.
 #pragma once
 
 #include "network/spring_network.h"
@@ -10,10 +10,10 @@ namespace sprung {
 /// Whether a spring is of one of the given kinds, has a rest length and at least one free end.
 [[nodiscard]] bool is_limited(const SpringNetwork& network, const std::vector<SpringKind>& kinds, Index spring);
 
-/// The springs of the given kinds that have a rest length, those between pins too, in the network's order.
+/// The springs of the given kinds with a non-zero rest length, in the network's order; springs between pins included.
 [[nodiscard]] std::vector<Index> measurable_springs(const SpringNetwork& network, const std::vector<SpringKind>& kinds);
 
-/// Those of them that have at least one free end.
+/// Those of them with at least one free end.
 [[nodiscard]] std::vector<Index> limited_springs(const SpringNetwork& network, const std::vector<SpringKind>& kinds);
 
 }  // namespace sprung

@@ -9,7 +9,7 @@
 namespace sprung {
 namespace {
 
-// A block's particles stay in the first-level cache while one group of pins after the other holds them.
+// The particles of a block stay in the first-level cache while all groups of pins act on them.
 constexpr Index kBlock = 1024;
 constexpr Index kBlocksPerChunk = 4;
 

@@ -8,20 +8,20 @@
 
 namespace sprung {
 
-/// Springs that are within their limits keep each particle within (1 + max_stretch) times its distance along them from each pin;
-/// here from the nearest pin of each of the kMostTethers nearest groups.
-/// Passes of projection hand that on from spring to spring; tethers know it at once. They pull, and never push.
+/// Springs within their limits keep each particle within (1 + max_stretch) times its distance along the springs from each pin. A
+/// tether enforces this bound directly, where passes propagate it from spring to spring. Each particle has tethers to the nearest
+/// pin of each of its kMostTethers nearest groups of pins. Tethers pull and never push.
 class LongRangeAttachments {
  public:
   /// Tethers along springs of these kinds. Pins may move.
   LongRangeAttachments(const SpringNetwork& network, const std::vector<SpringKind>& kinds, double max_stretch);
 
-  /// Moves each particle that is too far from a pin straight towards it, one pin after the other. Same bits for any number of
-  /// threads.
+  /// Moves each particle that is too far from a pin straight towards it, one pin after the other. Gives the same bits for any
+  /// number of threads.
   void project(Points& positions) const;
 
  private:
-  std::vector<double> lengths_;  ///< allowed, of each tether [m]
+  std::vector<double> lengths_;  ///< allowed length of each tether [m]
   std::vector<LraRun> runs_;
   std::vector<Index> begin_;  ///< block b of particles holds runs [begin[b], begin[b + 1])
 };

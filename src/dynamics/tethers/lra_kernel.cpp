@@ -7,7 +7,7 @@
 namespace sprung {
 namespace {
 
-/// One vector as often as there are lanes.
+/// Repeats one vector in all lanes.
 [[gnu::always_inline]] inline void repeat(const double* from, PackedVectors4& to) {
   to.low = Double4{from[0], from[1], from[2], from[0]};
   to.middle = Double4{from[1], from[2], from[0], from[1]};
@@ -20,7 +20,7 @@ namespace {
   to.high = Double8{from[1], from[2], from[0], from[1], from[2], from[0], from[1], from[2]};
 }
 
-/// As many tethers as there are lanes, some of which are to be held.
+/// Projects a register of tethers, of which some are active.
 template <class PackedVectors4>
 [[gnu::always_inline]] inline void project(const PackedVectors4& pins, const double* lengths, double* positions) {
   using Lanes = typename PackedVectors4::Lanes;
@@ -52,7 +52,7 @@ template <class PackedVectors4>
   position[2] -= part * z;
 }
 
-/// Tethers of a run from `begin` on, as long as they fill the lanes; returns where they do not.
+/// Projects the tethers of a run from `begin` on while they fill a register. Returns the first that does not.
 template <class PackedVectors4>
 [[gnu::always_inline]] inline Index project_whole(const LraRun& run, Index begin, const double* lengths, double* positions) {
   constexpr Index kCount = kCountOf<typename PackedVectors4::Lanes>;
@@ -66,7 +66,7 @@ template <class PackedVectors4>
   return i;
 }
 
-// The last four tethers of a run may be projected twice, which changes nothing but rounding.
+// The last four tethers of a run may be projected twice, which changes rounding only.
 template <class Widest>
 [[gnu::always_inline]] inline void project_run(const LraRun& run, const double* lengths, double* positions) {
   const Index wide = project_whole<Widest>(run, 0, lengths, positions);

@@ -1,4 +1,4 @@
-// Projection of particles onto the reach of their pins: the hot loop of Tethers.
+// Projection of particles into the reach of their pins: the inner loop of LongRangeAttachments.
 #pragma once
 
 #include "base/kernel.h"
@@ -6,23 +6,22 @@
 
 namespace sprung {
 
-/// Tethers of consecutive particles. Tether + i holds particle + i, by one pin or by consecutive ones.
+/// Tethers of consecutive particles. Tether + i constrains particle + i by one common pin or by consecutive pins.
 struct LraRun {
   Index particle;
   Index pin;
   Index tether;
   Index count;
-  bool one_pin;  ///< otherwise by pin + i
+  bool one_pin;  ///< all use the same pin; otherwise pin + i
 };
 
-/// Moves particles that are farther from their pins than `lengths` [m] allow towards them; `positions` holds 3 numbers a particle
-/// [m].
+/// Moves particles that are farther from their pins than `lengths` [m] towards them. `positions` [m] holds 3 numbers a particle.
 void project_tethers_narrow(const LraRun& run, const double* lengths, double* positions);
 
-/// The same bits, with twice as many lanes. Requires has_wide_lanes().
+/// The same bits with registers twice as wide. Requires has_wide_lanes().
 void project_tethers_wide(const LraRun& run, const double* lengths, double* positions);
 
-/// Whichever the machine has.
+/// Chooses the version for this machine.
 inline void project_tethers(const LraRun& run, const double* lengths, double* positions) {
   (has_wide_lanes() ? project_tethers_wide : project_tethers_narrow)(run, lengths, positions);
 }

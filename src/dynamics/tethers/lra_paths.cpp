@@ -12,7 +12,7 @@
 namespace sprung {
 namespace {
 
-/// The group of each pinned particle; kNone for those that are not.
+/// The group of each pinned particle; kNone for free ones.
 std::vector<Index> pin_groups(const SpringNetwork& network, const SpringGraph& graph) {
   std::vector<Index> groups(network.particle_count(), kNone);
   Index count = 0;
@@ -23,10 +23,10 @@ std::vector<Index> pin_groups(const SpringNetwork& network, const SpringGraph& g
     while (!reached.empty()) {
       const Index pin = reached.back();
       reached.pop_back();
-      for (const SpringGraph::Way& way : graph.at(pin)) {
-        if (!network.is_pinned(way.to) || groups[way.to] != kNone) continue;
-        groups[way.to] = count;
-        reached.push_back(way.to);
+      for (const SpringGraph::Edge& edge : graph.at(pin)) {
+        if (!network.is_pinned(edge.to) || groups[edge.to] != kNone) continue;
+        groups[edge.to] = count;
+        reached.push_back(edge.to);
       }
     }
     ++count;
@@ -64,9 +64,9 @@ class Search {
 
  private:
   void go_on_from(const Tether& tether) {
-    for (const SpringGraph::Way& way : graph_.at(tether.particle)) {
-      const Tether next{way.to, tether.pin, tether.group, tether.length + network_.springs.rest_length[way.spring]};
-      if (!network_.is_pinned(way.to) && is_wanted(next)) ahead_.push(next);
+    for (const SpringGraph::Edge& edge : graph_.at(tether.particle)) {
+      const Tether next{edge.to, tether.pin, tether.group, tether.length + network_.springs.rest_length[edge.spring]};
+      if (!network_.is_pinned(edge.to) && is_wanted(next)) ahead_.push(next);
     }
   }
 
@@ -92,7 +92,7 @@ std::vector<Tether> find_tethers(const SpringNetwork& network, const std::vector
 }
 
 bool are_pins_taut(const SpringNetwork& network, const Body& body, const std::vector<Tether>& tethers, double max_stretch) {
-  constexpr double kRounding = 1.0 + 1.0e-9;  // lengths along springs are sums of as many as there are
+  constexpr double kRounding = 1.0 + 1.0e-9;  // covers the rounding of sums of lengths
   const auto is_of_body = [&](Index i) { return i >= body.first_particle && i < body.first_particle + body.particle_count; };
   const auto moves = [&](const Pin& pin) { return pin.motion.moves() && std::ranges::any_of(pin.particles, is_of_body); };
   if (std::ranges::any_of(network.pins, moves)) return false;
@@ -108,8 +108,8 @@ bool are_pins_taut(const SpringNetwork& network, const Body& body, const std::ve
       if (way_between(tethers[a], tethers[b]) < way_between(nearest.first, nearest.second)) nearest = between;
     }
   }
-  const auto is_taut = [&](const auto& way) {
-    const auto& [a, b] = way.second;
+  const auto is_taut = [&](const auto& edge) {
+    const auto& [a, b] = edge.second;
     const double straight = (network.positions.col(a.pin) - network.positions.col(b.pin)).norm();
     return (1.0 + max_stretch) * way_between(a, b) <= kRounding * straight;
   };

@@ -5,7 +5,7 @@
 namespace sprung {
 
 SpringGraph::SpringGraph(const SpringNetwork& network, const std::vector<Index>& springs)
-    : begin_(network.particle_count() + 1, 0), ways_(2 * springs.size()) {
+    : begin_(network.particle_count() + 1, 0), edges_(2 * springs.size()) {
   const Springs& all = network.springs;
   for (const Index s : springs) {
     ++begin_[all.first[s] + 1];
@@ -14,8 +14,8 @@ SpringGraph::SpringGraph(const SpringNetwork& network, const std::vector<Index>&
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   std::vector<Index> next(begin_.begin(), begin_.end() - 1);
   for (const Index s : springs) {
-    ways_[next[all.first[s]]++] = {s, all.second[s]};
-    ways_[next[all.second[s]]++] = {s, all.first[s]};
+    edges_[next[all.first[s]]++] = {s, all.second[s]};
+    edges_[next[all.second[s]]++] = {s, all.first[s]};
   }
 }
 
