@@ -1,5 +1,6 @@
 // Scenes that nobody thought of: random networks thrown at random obstacles that move, turn and deform, at random steps.
 #include "base/error.h"
+#include "base/test_seed.h"
 #include "collision/sample_meshes.h"
 #include "collision/shapes/obstacle_shape.h"
 #include "mesh_shapes.h"
@@ -156,7 +157,7 @@ template <class Make, class Wanted>
 Reports run_scenes(std::uint64_t scenes, Judge judge, const Make& make, const Wanted& wanted) {
   Reports reports;
   for (std::uint64_t number = 0; number < scenes; ++number) {
-    Random random(number);
+    Random random(test::seeded(number));
     BuiltScene scene = make(random);
     if (!wanted(scene)) continue;
     try {
@@ -260,14 +261,16 @@ BuiltScene scene_above_floor(Random& random) {
   return random_scene(random, builder, swing_above_floor(random));
 }
 
-TEST(RandomScenes, NothingCrossesAnyObstacleInAnyStep) {
+class RandomScenes : public test::SeededTest {};
+
+TEST_F(RandomScenes, NothingCrossesAnyObstacleInAnyStep) {
   const Reports reports = run_scenes(500, Judge::obstacles, scene_of_one, [](const BuiltScene&) { return true; });
   for (const auto& [number, report] : reports) EXPECT_TRUE(report.is_free()) << "scene " << number << ": " << report;
   EXPECT_GT(reports.size(), 250);
 }
 
 /// Before one rigid obstacle there always is a place.
-TEST(RandomScenes, NothingCrossesItselfOrAnotherOrARigidObstacleInAnyStep) {
+TEST_F(RandomScenes, NothingCrossesItselfOrAnotherOrARigidObstacleInAnyStep) {
   const Reports reports =
       run_scenes(200, Judge::obstacles_and_self, scene_of_three, [](const BuiltScene& scene) { return !deforms(scene); });
   for (const auto& [number, report] : reports) {
@@ -277,7 +280,7 @@ TEST(RandomScenes, NothingCrossesItselfOrAnotherOrARigidObstacleInAnyStep) {
 }
 
 /// Between them there is room, which may be found in small parts of the step only.
-TEST(RandomScenes, NothingCrossesItselfOrAnotherBetweenAnObstacleThatMovesAndAFloor) {
+TEST_F(RandomScenes, NothingCrossesItselfOrAnotherBetweenAnObstacleThatMovesAndAFloor) {
   const Reports reports = run_scenes(200, Judge::obstacles_and_self, scene_above_floor, [](const BuiltScene&) { return true; });
   for (const auto& [number, report] : reports) {
     EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
@@ -286,7 +289,7 @@ TEST(RandomScenes, NothingCrossesItselfOrAnotherBetweenAnObstacleThatMovesAndAFl
 }
 
 /// A pin's neighbours go farther than the obstacle does that leads them round the pin.
-TEST(RandomScenes, NothingCrossesBesideItsPins) {
+TEST_F(RandomScenes, NothingCrossesBesideItsPins) {
   const auto make = [](Random& random) { return scene_with_pins(random, false); };
   const Reports reports = run_scenes(1000, Judge::obstacles, make, leaves_pins_alone);
   for (const auto& [number, report] : reports) {
@@ -296,7 +299,7 @@ TEST(RandomScenes, NothingCrossesBesideItsPins) {
 }
 
 /// What is knotted at a pin goes with it as it is, and has no place where it meets the obstacle so: that is rare, and told.
-TEST(RandomScenes, NothingCrossesItselfBesideItsPins) {
+TEST_F(RandomScenes, NothingCrossesItselfBesideItsPins) {
   const auto make = [](Random& random) { return scene_with_pins(random, true); };
   const Reports reports = run_scenes(300, Judge::obstacles_and_self, make, leaves_pins_alone);
   std::size_t infeasible = 0;
@@ -308,7 +311,7 @@ TEST(RandomScenes, NothingCrossesItselfBesideItsPins) {
   EXPECT_GT(reports.size(), 100);
 }
 
-TEST(RandomScenes, NothingCrossesItselfOrAnotherBeforeASurfaceThatDeforms) {
+TEST_F(RandomScenes, NothingCrossesItselfOrAnotherBeforeASurfaceThatDeforms) {
   const Reports reports = run_scenes(200, Judge::obstacles_and_self, scene_of_three, deforms);
   for (const auto& [number, report] : reports) EXPECT_TRUE(report.is_free()) << "scene " << number << ": " << report;
   EXPECT_GT(reports.size(), 10);
