@@ -1,5 +1,6 @@
 // The promise of self-contact: what does not cross at a step's begin does not at its end, whatever the targets are.
 #include "base/parallel.h"
+#include "base/test_seed.h"
 #include "collision/self_networks.h"
 
 #include <gmock/gmock.h>
@@ -317,7 +318,7 @@ TEST(PairSeparation, ACrumplingClothNeverCrossesItselfAtPinsThatRestOrMoveRigidl
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
       PairSeparation regions(surface, network.positions, kMargin);
       const auto moved = [&](const Vector3& pin) -> Vector3 { return motion * pin; };
-      test::run(network, regions, 60, led(crumpling(2.0 * kEdge, seed), network, moved), [&](const Points& x) {
+      test::run(network, regions, 60, led(crumpling(2.0 * kEdge, test::seeded(seed)), network, moved), [&](const Points& x) {
         ASSERT_EQ(test::count_crossings(network.elements, x), 0) << "seed " << seed << ", " << motion.matrix();
       });
     }
@@ -330,10 +331,10 @@ TEST(PairSeparation, WhatPinsDragThroughEachOtherIsTold) {
   const CollisionSurface surface = network.surface(kThickness);
   int crossed = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    test::Random random(seed);
+    test::Random random(test::seeded(seed));
     PairSeparation regions(surface, network.positions, kMargin);
     const auto apart = [&](const Vector3& pin) -> Vector3 { return pin + 3.0 * kEdge * random.direction(); };
-    const auto move = led(crumpling(kEdge, seed), network, apart);
+    const auto move = led(crumpling(kEdge, test::seeded(seed)), network, apart);
     Points x = network.positions;
     std::vector<Contact> contacts;
     for (int step = 0; step < 40 && test::count_crossings(network.elements, x) == 0; ++step) {
