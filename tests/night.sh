@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# Searches for faults that CI's fixed seeds do not show, for as long as it is told: tests/night.sh MINUTES
+#
+# A third of the time each goes to the thread sanitizer over all tests, to the fuzzers with new seeds, and to random tests with new
+# seeds. Builds count. Prints for each failure the command that repeats it, and at the end how many there were; exit status 1 when
+# there were any. Needs what tests/run.sh installs. Logs stay in build/night/.
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+if [[ ! ${1:-} =~ ^[1-9][0-9]*$ ]]; then
+  echo "usage: tests/night.sh MINUTES" >&2
+  exit 2
+fi
+
+SECONDS=0
+total=$((60 * $1))
+logs=build/night
+failures=0
+mkdir -p $logs
+
+report() {
+  echo "FAILED, to repeat: $1    (log: $2)"
+  failures=$((failures + 1))
+}
+
+# Runs a command until this second of the night; 124 when it was stopped, 125 when no time was left.
+until_second() {
+  local left=$(($1 - SECONDS))
+  shift
+  if [[ $left -le 0 ]]; then return 125; fi
+  timeout "$left" "$@"
+}
+
+# Reports each test that ctest's log names as failed, also when ctest was stopped: failed_tests LOG PREFIX PRESET
+failed_tests() {
+  local name
+  while read -r name; do
+    report "$2ctest --preset $3 --tests-regex '^${name//[^[:alnum:]_\/]/.}\$'" "$1"
+  done < <(sed -nE 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: (.*[^ .]) *\.*\*\*\*(Failed|Exception|Timeout).*/\1/p' "$1")
+}
+
+# Configures and builds a preset until that second: build_preset SECOND PRESET
+build_preset() {
+  local log=$logs/build_$2.txt code=0
+  { until_second "$1" cmake --preset "$2" && until_second "$1" cmake --build --preset "$2"; } > "$log" 2>&1 || code=$?
+  case $code in
+    0) return 0 ;;
+    124 | 125) echo "$2: the time did not suffice for the build" ;;
+    *) report "cmake --build --preset $2" "$log" ;;
+  esac
+  return 1
+}
+
+third=$((total / 3))
+if build_preset $third tsan; then
+  until_second $third ctest --preset tsan --parallel "$(nproc)" > $logs/tsan.txt 2>&1
+  failed_tests $logs/tsan.txt "" tsan
+  echo "thread sanitizer: $(grep -c ' Passed ' $logs/tsan.txt) tests passed"
+fi
+
+if [[ -x tests/fuzz.sh ]]; then
+  # The script takes the seconds of each target.
+  targets=$(find tests/fuzz -name '*_fuzz.cpp' | wc -l)
+  each=$(((2 * third - SECONDS) / (targets > 0 ? targets : 1)))
+  if [[ $each -gt 0 ]] && ! tests/fuzz.sh "$each" > $logs/fuzz.txt 2>&1; then
+    report "the command at the end of the log" $logs/fuzz.txt
+  fi
+  echo "fuzzers: done after $((SECONDS / 60)) min"
+fi
+
+seeds=0
+if build_preset $total release; then
+  while [[ $SECONDS -lt $total ]]; do
+    seed=$(od -An -N4 -tu4 /dev/urandom | tr -d ' ')
+    log=$logs/seed_$seed.txt
+    SPRUNG_TEST_SEED=$seed until_second $total ctest --preset release --parallel "$(nproc)" \
+      --tests-regex '^(RandomScenes|PairSeparation)\.' > "$log" 2>&1
+    code=$?
+    if [[ $code -eq 0 ]]; then rm "$log"; fi
+    if [[ $code -ne 124 && $code -ne 125 ]]; then seeds=$((seeds + 1)); fi
+    if [[ $code -ne 0 && $code -ne 124 && $code -ne 125 ]]; then failed_tests "$log" "SPRUNG_TEST_SEED=$seed " release; fi
+  done
+fi
+echo "random tests: $seeds new seeds"
+echo "$failures failures"
+[[ $failures -eq 0 ]]
