@@ -104,7 +104,7 @@ void RunWatch::see_handovers() {
 
 void RunWatch::see_held_back(const FrameDiagnostics& frame) {
   ++frames_;
-  const double particles = static_cast<double>(frame.parts) * static_cast<double>(simulator_.network().particle_count());
+  const double particles = static_cast<double>(frame.substeps) * static_cast<double>(simulator_.network().particle_count());
   // What closes in on bodies holds them back too, whatever their thickness.
   if (frame.infeasible == 0 && static_cast<double>(frame.truncated) > kManyParticles * particles) ++held_back_;
 }

@@ -16,8 +16,8 @@ struct StretchHandover {
 
 struct SimulationState {
   std::int64_t step = 0;        ///< steps that are done
-  int parts = 1;                ///< the step at hand is made in so many equal parts
-  int part = 0;                 ///< of which so many are done
+  int substeps = 1;             ///< the step at hand is made in so many equal parts
+  int substep = 0;              ///< of which so many are done
   int calm_steps = 0;           ///< so many in a row did not need their parts
   int free_steps = 0;           ///< so many in a row infeasible nothing
   std::int64_t retry_from = 0;  ///< steps before this one are not made again where they squeeze anything
@@ -32,7 +32,7 @@ struct SimulationState {
 /// How many steps the state has behind it, with the parts of the one at hand: time is this times their length, to the last bit what
 /// it is in whole steps.
 [[nodiscard]] inline double steps_done(const SimulationState& state) {
-  return static_cast<double>(state.step) + static_cast<double>(state.part) / state.parts;
+  return static_cast<double>(state.step) + static_cast<double>(state.substep) / state.substeps;
 }
 
 /// The state at time 0. Verlet's x_previous is set by the integrator, which knows the step.

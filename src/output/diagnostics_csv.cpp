@@ -28,7 +28,7 @@ const std::array<Column, 14> kColumns{{
     {"truncated", [](const Frame& frame) { return std::to_string(frame.truncated); }},
     {"infeasible", [](const Frame& frame) { return std::to_string(frame.infeasible); }},
     {"limit_solves", [](const Frame& frame) { return std::to_string(frame.limit_solves); }},
-    {"parts", [](const Frame& frame) { return std::to_string(frame.parts); }},
+    {"substeps", [](const Frame& frame) { return std::to_string(frame.substeps); }},
 }};
 
 template <class Field>

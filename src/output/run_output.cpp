@@ -42,10 +42,10 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
   std::vector<std::string> written;
   ++progress_.frames_written;
   progress_.steps = simulator.state().step;
-  progress_.parts += diagnostics.parts;
-  if (diagnostics.parts > 0) {
+  progress_.substeps += diagnostics.substeps;
+  if (diagnostics.substeps > 0) {
     progress_.smallest_step =
-        before.parts > 0 ? std::min(before.smallest_step, diagnostics.smallest_step) : diagnostics.smallest_step;
+        before.substeps > 0 ? std::min(before.smallest_step, diagnostics.smallest_step) : diagnostics.smallest_step;
   }
   progress_.limit_solves += diagnostics.limit_solves;
   progress_.newton_from = handed_over(simulator);

@@ -37,7 +37,7 @@ RunRecord::RunRecord(const RunFacts& facts, double step, const std::vector<std::
                      {"step", step},
                      {"steps_per_frame", facts.steps_per_frame},
                      {"steps", 0},
-                     {"parts", 0},
+                     {"substeps", 0},
                      {"smallest_step", 0.0},
                      {"seed", facts.seed},
                      {"threads", facts.threads},
@@ -59,7 +59,7 @@ std::string RunRecord::text(const RunProgress& progress) const {
   json["outcome"] = progress.outcome;
   json["frames_written"] = progress.frames_written;
   json["steps"] = progress.steps;
-  json["parts"] = progress.parts;
+  json["substeps"] = progress.substeps;
   json["smallest_step"] = progress.smallest_step;
   json["newton_from"] = Json::array();
   for (const NewtonFrom& from : progress.newton_from) {

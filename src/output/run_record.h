@@ -35,7 +35,7 @@ struct RunProgress {
   std::string outcome = "running";  ///< `running`, `done`, `interrupted`, `diverged: ...`
   int frames_written = 0;
   std::int64_t steps = 0;
-  std::int64_t parts = 0;         ///< in which the steps were made
+  std::int64_t substeps = 0;      ///< in which the steps were made
   double smallest_step = 0.0;     ///< length of the smallest of them [s]; 0 when no step was made
   std::int64_t limit_solves = 0;  ///< linear systems of the stretch limit
   std::vector<NewtonFrom> newton_from{};

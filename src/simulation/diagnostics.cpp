@@ -56,7 +56,7 @@ FrameDiagnostics FrameRunner::next_frame() {
   int max_substeps = 1;
   for (int step = 0; step < steps_per_frame_; ++step) {
     const StepReport report = simulator_.step();
-    max_substeps = std::max(max_substeps, report.parts);
+    max_substeps = std::max(max_substeps, report.substeps);
     all += report;
   }
   simulator_.check();
@@ -66,7 +66,7 @@ FrameDiagnostics FrameRunner::next_frame() {
   diagnostics.stretch_excess = all.stretch_excess;
   diagnostics.truncated = all.truncated;
   diagnostics.infeasible = all.infeasible;
-  diagnostics.parts = all.parts;
+  diagnostics.substeps = all.substeps;
   diagnostics.smallest_step = simulator_.settings().step / max_substeps;
   diagnostics.limit_solves = all.limit_solves;
   diagnostics.frame_ms = elapsed.count();

@@ -20,7 +20,7 @@ struct FrameDiagnostics {
                                        ///< all are farther than the network is large
   Index truncated = 0;                 ///< in all of the frame's steps
   Index infeasible = 0;                ///< in all of the frame's steps
-  std::int64_t parts = 0;              ///< in which the frame's steps were made
+  std::int64_t substeps = 0;           ///< in which the frame's steps were made
   double smallest_step = 0.0;          ///< length of the smallest [s]; 0 when no step was made
   std::int64_t limit_solves = 0;       ///< linear systems of the stretch limit, in all of the frame's steps
   double frame_ms = 0.0;               ///< wall time of computing the frame

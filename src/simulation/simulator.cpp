@@ -43,7 +43,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   const StretchLimit* limit = constraints.limit();
   if (limit != nullptr && settings.max_substeps > 1) {
     refinement.emplace(limit->settings(), settings.max_substeps);
-    if (waits_for_turn || (limit->follows_turn() && anything_moves())) state.parts = settings.max_substeps;
+    if (waits_for_turn || (limit->follows_turn() && anything_moves())) state.substeps = settings.max_substeps;
   }
   gravity = add_force<Gravity>(settings.gravity);
   springs = add_force<SpringForce>();
@@ -73,63 +73,64 @@ StepReport Simulator::Implementation::step() {
     begun = {state, energy_watch, constraints.permitted_crossings()};
   }
   kept_contacts.reset();
-  const int more = parts_by_turn();
+  const int more = substeps_by_turn();
   StepReport report = make_step(more, std::numeric_limits<Index>::max());
   if (may_retry(report.max_infeasible, begun.state)) report = make_again(report, more);
   note_step(report.infeasible, state);
-  if (refinement) choose_parts(report);
+  if (refinement) choose_substeps(report);
   if (const StretchLimit* limit = constraints.limit()) hand_over_missed(network, *limit, report.stretch_excess, state);
   return report;
 }
 
 /// Seen from what turns, particles go straight from where a part begins to where it ends: by half a turn, through its middle.
-int Simulator::Implementation::parts_by_turn() const {
+int Simulator::Implementation::substeps_by_turn() const {
   const double begin = time();
   double turn = 0.0;
   for (const Obstacle& obstacle : environment.obstacles())
     turn = std::max(turn, obstacle.motion.turn(begin, begin + settings.step));
   for (const Pin& pin : network.pins) turn = std::max(turn, pin.motion.turn(begin, begin + settings.step));
-  const double needed = std::ceil(turn / (kMostTurn * state.parts));
-  return static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(std::min(kRetryParts.back(), kMaxSubsteps / state.parts))));
+  const double needed = std::ceil(turn / (kMostTurn * state.substeps));
+  return static_cast<int>(
+      std::clamp(needed, 1.0, static_cast<double>(std::min(kRetryFactors.back(), kMaxSubsteps / state.substeps))));
 }
 
 /// In so many times as many parts. A part that squeezes too many particles is the last.
 StepReport Simulator::Implementation::make_step(int more, Index too_many) {
-  const int parts = state.parts;
+  const int substeps = state.substeps;
   integrator->set_fraction(1.0 / more);
-  set_parts(more * parts);
+  set_substeps(more * substeps);
   StepReport report;
   for (const std::int64_t step = state.step; state.step == step && report.max_infeasible < too_many;) {
     if (stops && stops()) throw StoppedError();
-    report += make_part();
+    report += make_substep();
   }
   if (const StretchLimit* limit = constraints.limit()) report.turn = more * limit->turn();
   integrator->set_fraction(1.0);
-  set_parts(parts);
+  set_substeps(substeps);
   return report;
 }
 
-StepReport Simulator::Implementation::make_part() {
+StepReport Simulator::Implementation::make_substep() {
   const double t = time();
-  const double t_end = (static_cast<double>(state.step) + static_cast<double>(state.part + 1) / state.parts) * settings.step;
+  const double t_end = (static_cast<double>(state.step) + static_cast<double>(state.substep + 1) / state.substeps) * settings.step;
   constraints.begin(state);
   integrator->advance(state, forces, dt());
   environment.set_interval(t, t_end);
   move_pins(t_end);
   energy_watch.note_obstacle(environment.set().carries_at_most(state.x) / dt());
 
-  StepReport report{.parts = 1};
+  StepReport report{.substeps = 1};
   constraints.hold(state, forces, dt(), report);
-  if (++state.part == state.parts) {
+  if (++state.substep == state.substeps) {
     ++state.step;
-    state.part = 0;
+    state.substep = 0;
   }
   if (penalty != nullptr) environment.set_interval(t_end, t_end);
   check_state();
   return report;
 }
 
-void Simulator::Implementation::choose_parts(const StepReport& report) {
+void Simulator::Implementation::choose_substeps(const StepReport& report) {
   const double dt_before = dt();
   const StretchLimit& limit = *constraints.limit();
   if (limit.follows_turn(state.stretch_holds)) {
@@ -140,9 +141,9 @@ void Simulator::Implementation::choose_parts(const StepReport& report) {
   length_changed(dt_before);
 }
 
-void Simulator::Implementation::set_parts(int parts) {
+void Simulator::Implementation::set_substeps(int substeps) {
   const double dt_before = dt();
-  state.parts = parts;
+  state.substeps = substeps;
   length_changed(dt_before);
 }
 
@@ -216,14 +217,14 @@ void Simulator::Implementation::fail(StepFailure failure) const {
   throw StepError(std::move(failure));
 }
 
-StepReport& StepReport::operator+=(const StepReport& part) {
-  parts += part.parts;
-  iterations += part.iterations;
-  limit_solves += part.limit_solves;
-  stretch_excess = std::max(stretch_excess, part.stretch_excess);
-  truncated += part.truncated;
-  infeasible += part.infeasible;
-  max_infeasible = std::max(max_infeasible, part.infeasible);
+StepReport& StepReport::operator+=(const StepReport& substep) {
+  substeps += substep.substeps;
+  iterations += substep.iterations;
+  limit_solves += substep.limit_solves;
+  stretch_excess = std::max(stretch_excess, substep.stretch_excess);
+  truncated += substep.truncated;
+  infeasible += substep.infeasible;
+  max_infeasible = std::max(max_infeasible, substep.infeasible);
   return *this;
 }
 

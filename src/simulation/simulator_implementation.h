@@ -48,14 +48,14 @@ struct Simulator::Implementation {
 
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
-  [[nodiscard]] int parts_by_turn() const;
+  [[nodiscard]] int substeps_by_turn() const;
   StepReport make_step(int more, Index too_many);
   [[nodiscard]] Made made(const StepReport& report) const;
   StepReport make_again(const StepReport& first, int more_at_first);
   std::optional<StepReport> attempt(int more, Index too_many);
-  StepReport make_part();
-  void choose_parts(const StepReport& report);
-  void set_parts(int parts);
+  StepReport make_substep();
+  void choose_substeps(const StepReport& report);
+  void set_substeps(int substeps);
   void length_changed(double dt_before);
   void move_pins(double time);
   [[nodiscard]] double elastic_energy() const;
@@ -64,7 +64,7 @@ struct Simulator::Implementation {
   void check_state();
   void check_energy(const Energies& now) const;
   void fail(StepFailure failure) const;
-  [[nodiscard]] double dt() const { return settings.step / state.parts; }
+  [[nodiscard]] double dt() const { return settings.step / state.substeps; }
   [[nodiscard]] double time() const { return steps_done(state) * settings.step; }
 
   SpringNetwork network;

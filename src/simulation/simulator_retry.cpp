@@ -12,8 +12,8 @@ namespace sprung {
 StepReport Simulator::Implementation::make_again(const StepReport& first, int more_at_first) {
   Made best = made(first);
   constraints.look_ahead(true);
-  for (const int more : kRetryParts) {
-    if (best.report.max_infeasible == 0 || begun.state.parts > kMaxSubsteps / more) break;
+  for (const int more : kRetryFactors) {
+    if (best.report.max_infeasible == 0 || begun.state.substeps > kMaxSubsteps / more) break;
     if (more <= more_at_first) continue;
     const auto report = attempt(more, (best.report.max_infeasible + 1) / 2);
     if (report) best = made(*report);
@@ -43,7 +43,7 @@ std::optional<StepReport> Simulator::Implementation::attempt(int more, Index too
     return report.max_infeasible < too_many ? std::optional(report) : std::nullopt;
   } catch (const StepError&) {
     integrator->set_fraction(1.0);
-    set_parts(begun.state.parts);
+    set_substeps(begun.state.substeps);
     return std::nullopt;
   }
 }

@@ -8,7 +8,7 @@ namespace {
 TEST(DiagnosticsCsv, ColumnsAreThoseOfTheContract) {
   EXPECT_EQ(csv_head(),
             "frame,time,kinetic_energy,elastic_energy,gravity_energy,max_stretch,contacts,min_distance,frame_ms,"
-            "stretch_excess,truncated,infeasible,limit_solves,parts\n");
+            "stretch_excess,truncated,infeasible,limit_solves,substeps\n");
 }
 
 TEST(DiagnosticsCsv, RowHoldsTheShortestNumbersInTheColumnsOrder) {
@@ -23,7 +23,7 @@ TEST(DiagnosticsCsv, RowHoldsTheShortestNumbersInTheColumnsOrder) {
                                .min_distance = 0.005,
                                .truncated = 6,
                                .infeasible = 7,
-                               .parts = 10,
+                               .substeps = 10,
                                .limit_solves = 9,
                                .frame_ms = 8.5};
   EXPECT_EQ(csv_row(frame), "12,0.1,0.3333333333333333,2,-3.5,1e-20,4,0.005,8.5,0.25,6,7,9,10\n");

@@ -229,7 +229,7 @@ TEST_F(RunOutputFiles, RecordTellsHowFarTheRunCame) {
   EXPECT_EQ(json["frames_written"], 2);
   EXPECT_EQ(json["steps"], 2);
   EXPECT_EQ(json["step"], 0.01);
-  EXPECT_EQ(json["parts"], 2);
+  EXPECT_EQ(json["substeps"], 2);
   EXPECT_EQ(json["smallest_step"], 0.01);
   EXPECT_EQ(json["threads"], 3);
   EXPECT_EQ(json["scene"]["duration"], 0.1);

@@ -55,12 +55,12 @@ TEST(LiftedBesidePins, AStepThatWouldSqueezeIsMadeAgainInParts) {
                                               "obstacles.bar.motion.keyframes[1].time=0.05"};
   BuiltScene scene = load_scenario("lifted_beside_pins", overrides);
   const std::int64_t steps = static_cast<std::int64_t>(scene.frames - 1) * scene.steps_per_frame;
-  std::int64_t parts = 0;
+  std::int64_t substeps = 0;
   const ScenarioReport report =
-      run_scenario(std::move(scene), [&](const Simulator&, const FrameDiagnostics& frame) { parts += frame.parts; });
+      run_scenario(std::move(scene), [&](const Simulator&, const FrameDiagnostics& frame) { substeps += frame.substeps; });
   EXPECT_EQ(report.infeasible, 0) << report;
-  EXPECT_GT(parts, steps);
-  EXPECT_LT(parts, steps + 2 * 64) << "few steps are made in more parts than one";
+  EXPECT_GT(substeps, steps);
+  EXPECT_LT(substeps, steps + 2 * 64) << "few steps are made in more parts than one";
 }
 
 // A rope that is pinned at both ends beside the cloth, at several heights, leaves the bar no way: it is infeasible for good, a step
@@ -94,24 +94,24 @@ std::pair<Vector3, std::int64_t> flight_far_off(const std::string& integrator, c
       R"(bodies.far={"shape": {"type": "cloth", "size": [1, 1], "resolution": [2, 2]}, "mass": 1, "velocity": [1, 0, 0],)"
       R"("springs": {"structural": {"stiffness": 0}}, "place": {"position": [0, 9, 0]}})"};
   Vector3 velocity;
-  std::int64_t parts = 0;
+  std::int64_t substeps = 0;
   run_scenario(
       load_scenario("lifted_beside_pins", overrides),
       [&](const Simulator& simulator, const FrameDiagnostics& frame) {
         velocity = simulator.state().v.rightCols(4).rowwise().mean();
-        parts += frame.parts;
+        substeps += frame.substeps;
       },
       Judge::nothing);
-  return {velocity, parts};
+  return {velocity, substeps};
 }
 
-// Verlet's damping is one of each step, in whatever parts it is made.
+// Verlet's damping is one of each step, in whatever substeps it is made.
 TEST(LiftedBesidePins, AStepThatIsMadeAgainDampsWhatIsFarOffOnce) {
   for (const char* integrator : {R"({"type": "verlet", "damping": 0.05})", R"({"type": "verlet", "damping_rate": 3})",
                                  R"({"type": "verlet"})", R"({"type": "symplectic_euler"})"}) {
-    const auto [with_bar, parts] = flight_far_off(integrator, "[-0.97, 0, -0.05]");
+    const auto [with_bar, substeps] = flight_far_off(integrator, "[-0.97, 0, -0.05]");
     const auto [without, steps] = flight_far_off(integrator, "[-0.97, 50, -0.05]");
-    EXPECT_GT(parts, steps) << integrator;
+    EXPECT_GT(substeps, steps) << integrator;
     EXPECT_NEAR(with_bar.x(), without.x(), 1e-9) << integrator;
   }
 }

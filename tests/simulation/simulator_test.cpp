@@ -50,7 +50,7 @@ TEST(Simulator, StopsBetweenThePartsOfAStep) {
   Simulator simulator(builder.build(), {.step = 1e-3});
   int asked = 0;
   simulator.stop_when([&] { return ++asked == 30; });
-  EXPECT_EQ(simulator.step().parts, 20);
+  EXPECT_EQ(simulator.step().substeps, 20);
   EXPECT_THROW(simulator.step(), StoppedError);
   EXPECT_EQ(asked, 30);
 }
@@ -402,7 +402,7 @@ TEST(Simulator, WhatSqueezesInAnyPartsLeavesNothingBehind) {
     for (int step = 0; step < 100; ++step) {
       const StepReport report = simulator.step();
       alone.step();
-      EXPECT_EQ(report.parts, 1);
+      EXPECT_EQ(report.substeps, 1);
       infeasible += report.infeasible > 0 ? 1 : 0;
       ASSERT_EQ(simulator.positions().col(2), alone.positions().col(2)) << step;
     }
@@ -440,7 +440,7 @@ TEST(Simulator, WhatSpinsFastMeetsOnlyWhatItReaches) {
         .name = "blade", .geometry = BoxGeometry{.size = {0.2, 0.2, 0.8}}, .motion = {.spin = {0.0, degrees / kStep, 0.0}}};
     Simulator simulator(network, {.step = kStep, .gravity = Vector3::Zero()}, {blade});
     const StepReport report = simulator.step();
-    EXPECT_EQ(report.parts, static_cast<int>(degrees / 45.0));
+    EXPECT_EQ(report.substeps, static_cast<int>(degrees / 45.0));
     EXPECT_EQ(simulator.positions().leftCols(2), network.positions.leftCols(2)) << degrees;
     EXPECT_GT((simulator.positions().col(2) - network.positions.col(2)).norm(), 0.1) << "the blade sweeps over it";
   }

@@ -15,7 +15,9 @@ namespace sprung {
 [[nodiscard]] std::unique_ptr<Integrator> make_implicit_euler(const SpringNetwork& network);
 
 /// Time [s] at the beginning of the step or substep of `dt` [s] that the state makes next.
-[[nodiscard]] inline double step_begin(const SimulationState& state, double dt) { return steps_done(state) * (state.parts * dt); }
+[[nodiscard]] inline double step_begin(const SimulationState& state, double dt) {
+  return steps_done(state) * (state.substeps * dt);
+}
 
 /// Writes the forces [N] at the beginning of the step, 3 x n, to `total`.
 inline void evaluate(const SimulationState& state, const Forces& forces, double dt, Points& total) {

@@ -26,19 +26,19 @@ StepRefinement::StepRefinement(const StretchLimitSettings& limit, int max_subste
 void StepRefinement::choose(double excess, SimulationState& state) const {
   if (excess > bound_) {
     const int halvings = 1 + std::ilogb(excess / bound_);
-    state.parts = static_cast<int>(std::min(std::ldexp(state.parts, halvings), static_cast<double>(max_substeps_)));
+    state.substeps = static_cast<int>(std::min(std::ldexp(state.substeps, halvings), static_cast<double>(max_substeps_)));
     state.calm_steps = 0;
     return;
   }
   state.calm_steps = excess < kRoom * bound_ ? state.calm_steps + 1 : 0;
-  if (state.calm_steps < kCalmSteps || state.parts == 1) return;
-  state.parts /= 2;
+  if (state.calm_steps < kCalmSteps || state.substeps == 1) return;
+  state.substeps /= 2;
   state.calm_steps = 0;
 }
 
 void StepRefinement::choose_by_turn(double turn, SimulationState& state) const {
-  const double needed = std::ceil(turn * state.parts / kMostTurn);
-  state.parts =
+  const double needed = std::ceil(turn * state.substeps / kMostTurn);
+  state.substeps =
       needed > 1.0 ? static_cast<int>(std::min(needed, static_cast<double>(max_substeps_))) : 1;  // 1 for what is no number
 }
 

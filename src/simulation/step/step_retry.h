@@ -8,7 +8,7 @@
 namespace sprung {
 
 /// It is made again in so many times as many parts, until it squeezes nothing.
-inline constexpr std::array<int, 3> kRetryParts{4, 16, 64};
+inline constexpr std::array<int, 3> kRetryFactors{4, 16, 64};
 
 /// Whether a step that began at the state and infeasible so many particles is. Where that did not help at all it is not tried for
 /// some steps, each time for twice as many, unless more are infeasible than were left since it did: it may be something else.

@@ -113,10 +113,10 @@ TEST(LimitHandover, IsNotForSolidsNorForWhatMayNotShrinkNorForPassesByName) {
 
 TEST(LimitHandover, AutomaticHasTheBitsOfNewtonWhereNothingIsInTheWay) {
   const SpringNetwork cloth = limp_cloth(16, true);
-  for (const int parts : {1, 8}) {
-    const Outcome automatic = run(cloth, Solver::automatic, 60, {}, parts);
-    EXPECT_EQ(automatic.x, run(cloth, Solver::newton, 60, {}, parts).x);
-    EXPECT_NE(automatic.x, run(cloth, Solver::gauss_seidel, 60, {}, parts).x);
+  for (const int substeps : {1, 8}) {
+    const Outcome automatic = run(cloth, Solver::automatic, 60, {}, substeps);
+    EXPECT_EQ(automatic.x, run(cloth, Solver::newton, 60, {}, substeps).x);
+    EXPECT_NE(automatic.x, run(cloth, Solver::gauss_seidel, 60, {}, substeps).x);
   }
 }
 
@@ -162,12 +162,12 @@ TEST_F(OverABall, NeedsTheSmallStepsOfPassesNoMore) {
   StretchLimitSettings limit = limit_of(Solver::automatic);
   limit.iterations = 1;
   Simulator simulator(cloth_, {.step = 1.0 / kRate, .stretch_limit = limit, .max_substeps = 4}, ball_);
-  std::vector<int> parts;
-  for (int step = 0; step < 60; ++step) parts.push_back(simulator.step().parts);
+  std::vector<int> substeps;
+  for (int step = 0; step < 60; ++step) substeps.push_back(simulator.step().substeps);
   const auto since = simulator.state().stretch_holds.front().solved_since;
   ASSERT_TRUE(since);
-  for (int step = 0; step <= *since; ++step) EXPECT_EQ(parts[static_cast<std::size_t>(step)], 4) << step;
-  EXPECT_EQ(parts.back(), 1);
+  for (int step = 0; step <= *since; ++step) EXPECT_EQ(substeps[static_cast<std::size_t>(step)], 4) << step;
+  EXPECT_EQ(substeps.back(), 1);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ int parts_after(const std::vector<double>& excesses, int most = 8) {
   const StepRefinement refinement(both_ways(), most);
   SimulationState state;
   for (const double excess : excesses) refinement.choose(excess, state);
-  return state.parts;
+  return state.substeps;
 }
 
 TEST(StepRefinement, HalvesAsOftenAsTheExcessIsTooLarge) {
@@ -64,7 +64,7 @@ TEST(StepRefinement, MakesAsManyPartsAsTurnLittleEnough) {
   SimulationState state;
   const auto parts_after_turn = [&](double turn) {
     refinement.choose_by_turn(turn, state);
-    return state.parts;
+    return state.substeps;
   };
   EXPECT_EQ(parts_after_turn(1.0 / 71.0), 1);
   EXPECT_EQ(parts_after_turn(1.0 / 69.0), 2);
@@ -85,10 +85,10 @@ TEST(StepRefinement, LeavesVerletOnTheParabola) {
   constexpr double kStep = 0.01;
   integrator->start(state, forces, kStep);
   for (; state.step < 5; ++state.step) integrator->advance(state, forces, kStep);
-  state.parts = 4;
+  state.substeps = 4;
   integrator->step_changed(state, forces, kStep, 0.25 * kStep);
-  for (int part = 0; part < 12; ++part) integrator->advance(state, forces, 0.25 * kStep);
-  state.parts = 1;
+  for (int substep = 0; substep < 12; ++substep) integrator->advance(state, forces, 0.25 * kStep);
+  state.substeps = 1;
   integrator->step_changed(state, forces, 0.25 * kStep, kStep);
   for (int step = 0; step < 4; ++step) integrator->advance(state, forces, kStep);
   const double t = 12 * kStep;
@@ -121,7 +121,7 @@ Swing swing(const SpringNetwork& network, int steps_a_frame, int max_substeps, c
     const StepReport report = simulator.step();
     EXPECT_EQ(simulator.time(), step * simulator.settings().step);
     swing.worst_excess = std::max(swing.worst_excess, report.stretch_excess);
-    swing.max_substeps = std::max(swing.max_substeps, report.parts);
+    swing.max_substeps = std::max(swing.max_substeps, report.substeps);
   }
   swing.x = simulator.positions();
   swing.energy = 0.5 * network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose()) + simulator.gravity_energy();
@@ -161,17 +161,17 @@ TEST(StepRefinement, BeginsWithTheSmallestPartsOfWhatMoves) {
   const Index first = builder.add_particle({0.0, 0.0, 0.0}, 1.0, velocity);
   builder.add_spring(first, builder.add_particle({1.0, 0.0, 0.0}, 1.0, velocity), 0.0, 1.0, 0.0);
   SimulatorSettings settings{.step = 1.0 / kRate, .stretch_limit = StretchLimitSettings{}, .max_substeps = 8};
-  EXPECT_EQ(Simulator(builder.build(), settings).step().parts, 1) << "passes follow what they miss";
+  EXPECT_EQ(Simulator(builder.build(), settings).step().substeps, 1) << "passes follow what they miss";
   settings.stretch_limit->solver = StretchLimitSettings::Solver::automatic;
   Simulator simulator(builder.build(), settings);
-  EXPECT_EQ(simulator.step().parts, 8);
-  EXPECT_EQ(simulator.step().parts, 1) << "it flies, and does not turn";
+  EXPECT_EQ(simulator.step().substeps, 8);
+  EXPECT_EQ(simulator.step().substeps, 1) << "it flies, and does not turn";
   SpringNetwork resting = builder.build();
   resting.velocities.setZero();
-  EXPECT_EQ(Simulator(resting, settings).step().parts, 1);
+  EXPECT_EQ(Simulator(resting, settings).step().substeps, 1);
   resting.pins.push_back({.particles = {first}, .origin = Vector3::Zero(), .motion = {.spin = {0.0, 90.0, 0.0}}});
   resting.inverse_masses[first] = 0.0;
-  EXPECT_EQ(Simulator(resting, settings).step().parts, 8);
+  EXPECT_EQ(Simulator(resting, settings).step().substeps, 8);
 }
 
 // Eight parts are eight steps: for Verlet's first, and for the friction of a penalty, which stops what slides within a step if it
@@ -189,7 +189,7 @@ TEST(StepRefinement, APartAtTheStartIsAStepOfItsLength) {
                                .max_substeps = max_substeps};
     settings.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1000.0};
     Simulator simulator(builder.build(), settings, {testing::ground(rough)});
-    for (int step = 0; step < steps; ++step) EXPECT_EQ(simulator.step().parts, 8 / steps);
+    for (int step = 0; step < steps; ++step) EXPECT_EQ(simulator.step().substeps, 8 / steps);
     EXPECT_GT(simulator.contact_count(), 0);
     return simulator.positions();
   };
@@ -219,8 +219,8 @@ TEST(StepRefinement, PinsHaveTheVelocityOfTheStepToCome) {
   for (int step = 0, parts = 1; step < 500; ++step) {
     simulator.step();
     const SimulationState& state = simulator.state();
-    changes += state.parts != parts ? 1 : 0;
-    parts = state.parts;
+    changes += state.substeps != parts ? 1 : 0;
+    parts = state.substeps;
     const double dt = simulator.settings().step / parts;
     const Vector3 expected = (held_at(simulator.time() + dt) - held_at(simulator.time())) / dt;
     // Positions of less than 2 m are rounded before their difference is divided by the step.
