@@ -1,7 +1,7 @@
 // Two triangles, or two segments, near each other, where they go in a step, and whether they cross on the way by brute force.
 #pragma once
 
-#include "collision/pairs/convex_pair.h"
+#include "collision/pairs/contact_stencil.h"
 #include "collision/sample_meshes.h"
 #include "collision/self_networks.h"
 
@@ -11,7 +11,7 @@ namespace sprung::test {
 
 /// Two triangles, or two segments, a gap of up to a hundredth of their size apart.
 struct Meeting {
-  ConvexPair pair;
+  ContactStencil pair;
   Points before;
 };
 
@@ -27,7 +27,7 @@ inline Meeting random_meeting(int side, Random& random) {
     meeting.before.col(k) = height * normal + random.between(-1.0, 1.0) * u + random.between(-1.0, 1.0) * v;
     meeting.pair.particles[static_cast<std::size_t>(k)] = k;
   }
-  meeting.pair.normal = direction_between(meeting.pair, meeting.before);
+  meeting.pair.normal = separating_direction(meeting.pair, meeting.before);
   return meeting;
 }
 

@@ -43,11 +43,11 @@ DivisionPlanes::DivisionPlanes(const Points& before, const Points& targets, cons
       way_(before, pinned, rule_),
       is_aside_(static_cast<std::size_t>(before.cols()), 0) {}
 
-bool DivisionPlanes::hold(std::vector<ConvexPair>& pairs) {
+bool DivisionPlanes::hold(std::vector<ContactStencil>& pairs) {
   bool changed = false;
   passing_.clear();
-  for (const Index k : find_passing(pairs, [&](const ConvexPair& pair) { return passes(pair); })) {
-    const ConvexPair& pair = pairs[static_cast<std::size_t>(k)];
+  for (const Index k : find_passing(pairs, [&](const ContactStencil& pair) { return passes(pair); })) {
+    const ContactStencil& pair = pairs[static_cast<std::size_t>(k)];
     changed = groups_.unite({pair.particles.data(), static_cast<std::size_t>(pair.count())}) || changed;
     note_passing(pair);
   }
@@ -58,24 +58,24 @@ bool DivisionPlanes::hold(std::vector<ConvexPair>& pairs) {
   return true;
 }
 
-void DivisionPlanes::renew_normals(std::vector<ConvexPair>& pairs) const {
+void DivisionPlanes::renew_normals(std::vector<ContactStencil>& pairs) const {
   parallel_chunks(static_cast<Index>(pairs.size()), kPairsPerTask, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
-      ConvexPair& pair = pairs[static_cast<std::size_t>(k)];
-      if (!(heights_at(pair, before_).gap() > 0.0)) pair.normal = direction_between(pair, before_);
+      ContactStencil& pair = pairs[static_cast<std::size_t>(k)];
+      if (!(heights_at(pair, before_).gap() > 0.0)) pair.normal = separating_direction(pair, before_);
     }
   });
 }
 
 template <class Passes>
-std::vector<Index> DivisionPlanes::find_passing(std::vector<ConvexPair>& pairs, const Passes& passes) const {
+std::vector<Index> DivisionPlanes::find_passing(std::vector<ContactStencil>& pairs, const Passes& passes) const {
   const auto count = static_cast<Index>(pairs.size());
   std::vector<std::vector<Index>> parts(static_cast<std::size_t>((count + kPairsPerTask - 1) / kPairsPerTask));
   parallel_chunks(count, kPairsPerTask, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
-      ConvexPair& pair = pairs[static_cast<std::size_t>(k)];
+      ContactStencil& pair = pairs[static_cast<std::size_t>(k)];
       if (!(heights_at(pair, ends_).gap() < rule_.least())) continue;
-      pair.normal = direction_between(pair, before_);
+      pair.normal = separating_direction(pair, before_);
       if (passes(pair) && !is_carried(pair)) parts[static_cast<std::size_t>(begin / kPairsPerTask)].push_back(k);
     }
   });
@@ -85,7 +85,7 @@ std::vector<Index> DivisionPlanes::find_passing(std::vector<ConvexPair>& pairs, 
 }
 
 /// A turn by less than a right angle leaves seven tenths of the gap, whatever normal that was along.
-bool DivisionPlanes::is_carried(const ConvexPair& pair) const {
+bool DivisionPlanes::is_carried(const ContactStencil& pair) const {
   std::vector<PinDisplacement> ways;
   for (int k = 0; k < pair.count(); ++k) {
     const Index i = pair.particles[static_cast<std::size_t>(k)];
@@ -98,14 +98,14 @@ bool DivisionPlanes::is_carried(const ConvexPair& pair) const {
                        ways, [&](const PinDisplacement& way) { return (*motion * way.from - way.to).norm() <= kOfPins * gap; });
 }
 
-void DivisionPlanes::note_passing(const ConvexPair& pair) {
+void DivisionPlanes::note_passing(const ContactStencil& pair) {
   passing_.insert(passing_.end(), pair.particles.begin(), pair.particles.begin() + pair.count());
 }
 
-bool DivisionPlanes::give_way(std::vector<ConvexPair>& pairs) {
+bool DivisionPlanes::give_way(std::vector<ContactStencil>& pairs) {
   gives_way_ = true;
   passing_.clear();
-  const auto passes = [&](const ConvexPair& pair) { return way_.passes(pair, ends_); };
+  const auto passes = [&](const ContactStencil& pair) { return way_.passes(pair, ends_); };
   for (const Index k : find_passing(pairs, passes)) note_passing(pairs[static_cast<std::size_t>(k)]);
   if (passing_.empty() || ++rounds_ > 2 * kRoundsEach) return false;
   if (rounds_ == kRoundsEach + 1) begin_at_rest();
@@ -144,7 +144,7 @@ std::vector<Index> DivisionPlanes::taken_along() const {
 
 /// Whether the sides end nearer than they ever may. What touched when the step began has no plane to keep, what moves rigidly needs
 /// none.
-bool DivisionPlanes::passes(const ConvexPair& pair) const {
+bool DivisionPlanes::passes(const ContactStencil& pair) const {
   const double begun = heights_at(pair, before_).gap();
   if (!(begun > 0.0)) return false;
   const Index group = group_of(pair, begun);
@@ -155,14 +155,14 @@ bool DivisionPlanes::passes(const ConvexPair& pair) const {
   return end < rule_.needed(begun);
 }
 
-ConvexPair DivisionPlanes::turned(ConvexPair pair, Index group) const {
+ContactStencil DivisionPlanes::turned(ContactStencil pair, Index group) const {
   pair.normal = groups_.carried(group, pair.normal).end.normalized();
   return pair;
 }
 
 // On straight ways a turn by less than a right angle leaves seven tenths of a gap, the strain of an anchored group half of it: a
 // quarter is a pin's to go elsewhere.
-Index DivisionPlanes::group_of(const ConvexPair& pair, double gap) const {
+Index DivisionPlanes::group_of(const ContactStencil& pair, double gap) const {
   Index group = kNone;
   for (int k = 0; k < pair.count(); ++k) group = std::max(group, groups_.group(pair.particles[static_cast<std::size_t>(k)]));
   const auto is_of = [&](Index i) {
@@ -172,8 +172,8 @@ Index DivisionPlanes::group_of(const ConvexPair& pair, double gap) const {
 }
 
 /// Along their ways the gap of a group's pair is at least the linear function between its values at both ends.
-void DivisionPlanes::limit_groups(const std::vector<ConvexPair>& pairs) {
-  for (const ConvexPair& pair : pairs) {
+void DivisionPlanes::limit_groups(const std::vector<ContactStencil>& pairs) {
+  for (const ContactStencil& pair : pairs) {
     Index group = kNone;
     bool inner = true;
     for (int k = 0; k < pair.count(); ++k) {
@@ -192,9 +192,9 @@ void DivisionPlanes::limit_groups(const std::vector<ConvexPair>& pairs) {
   }
 }
 
-std::vector<DivisionPlanes::Bound> DivisionPlanes::bounds(const std::vector<ConvexPair>& pairs) const {
+std::vector<DivisionPlanes::Bound> DivisionPlanes::bounds(const std::vector<ContactStencil>& pairs) const {
   std::vector<Bound> found;
-  for (const ConvexPair& pair : pairs) {
+  for (const ContactStencil& pair : pairs) {
     if (std::none_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return is_held(i); })) continue;
     const double begun = heights_at(pair, before_).gap();
     if (!(begun > 0.0)) continue;
@@ -207,12 +207,12 @@ std::vector<DivisionPlanes::Bound> DivisionPlanes::bounds(const std::vector<Conv
   return sorted(found, static_cast<Index>(before_.cols()));
 }
 
-void DivisionPlanes::append_bounds(const ConvexPair& pair, const RotatingPlane& plane, std::vector<Bound>& found) const {
+void DivisionPlanes::append_bounds(const ContactStencil& pair, const RotatingPlane& plane, std::vector<Bound>& found) const {
   append_bounds(pair, plane.end, Vector3::Zero(), found);
   if (plane.end != plane.begin) append_bounds(pair, plane.begin, plane.end, found);
 }
 
-void DivisionPlanes::append_bounds(const ConvexPair& pair, const MovedPlane& plane, std::vector<Bound>& found) const {
+void DivisionPlanes::append_bounds(const ContactStencil& pair, const MovedPlane& plane, std::vector<Bound>& found) const {
   append_bounds(pair, plane.end, Vector3::Zero(), found);
   if (plane.stays()) return;
   append_bounds(pair, plane.begin, 2.0 * plane.middle, found);
@@ -220,7 +220,7 @@ void DivisionPlanes::append_bounds(const ConvexPair& pair, const MovedPlane& pla
 }
 
 /// Bounds of what `after` . x1 + `earlier` . x0 is of each particle.
-void DivisionPlanes::append_bounds(const ConvexPair& pair, const Vector3& after, const Vector3& earlier,
+void DivisionPlanes::append_bounds(const ContactStencil& pair, const Vector3& after, const Vector3& earlier,
                                    std::vector<Bound>& found) const {
   const double length = after.norm();
   const Vector3 normal = after / length;
@@ -232,8 +232,8 @@ void DivisionPlanes::append_bounds(const ConvexPair& pair, const Vector3& after,
     });
   };
   const double room = 0.5 * rule_.kept(heights_at(pair, before_).gap());
-  const PairHeights end = heights(ends_);
-  const PairHeights target = heights(targets_);
+  const SideHeights end = heights(ends_);
+  const SideHeights target = heights(targets_);
   const double least = 0.5 * std::clamp(end.gap(), 0.0, rule_.least());
   const double highest = std::max(end.first, end.second) - least;
   const double middle = std::max(end.second + least, std::min(0.5 * (target.first + target.second), highest));

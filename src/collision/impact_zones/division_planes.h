@@ -26,17 +26,17 @@ class DivisionPlanes {
   /// Holds the particles of pairs that would pass each other where they are to end now. Returns whether any end has changed: then
   /// it is to be called again, with the pairs that these ends may touch.
   /// Pairs whose plane does not do any more get a better one, if there is one.
-  [[nodiscard]] bool hold(std::vector<ConvexPair>& pairs);
+  [[nodiscard]] bool hold(std::vector<ContactStencil>& pairs);
 
   /// Lets those that pins drag through each other give way instead, and what is then in their way. Returns whether any end has
   /// changed: then it is to be called again, with the pairs that these ends may touch. Requires that hold() returned false.
-  [[nodiscard]] bool give_way(std::vector<ConvexPair>& pairs);
+  [[nodiscard]] bool give_way(std::vector<ContactStencil>& pairs);
 
   /// Whether pairs were turned, and their normals not.
   [[nodiscard]] bool turns() const { return gives_way_ || groups_.turn(); }
 
   /// Gives a new normal to those pairs whose own does not separate them where the step begins.
-  void renew_normals(std::vector<ConvexPair>& pairs) const;
+  void renew_normals(std::vector<ContactStencil>& pairs) const;
 
   /// Where particles may end: their targets, or, for those that are held, a place on the way [m].
   [[nodiscard]] const Points& ends() const { return ends_; }
@@ -57,29 +57,29 @@ class DivisionPlanes {
     HalfSpace half_space;
   };
   /// The planes of all pairs that have a held particle, as bounds of the held ones, ascending by particle. All ends are within.
-  [[nodiscard]] std::vector<Bound> bounds(const std::vector<ConvexPair>& pairs) const;
+  [[nodiscard]] std::vector<Bound> bounds(const std::vector<ContactStencil>& pairs) const;
 
  private:
   /// Numbers of the pairs that their own normals do not keep apart, and that pass each other. They get better normals, if there are
   /// any.
   template <class Passes>
-  [[nodiscard]] std::vector<Index> find_passing(std::vector<ConvexPair>& pairs, const Passes& passes) const;
-  [[nodiscard]] bool passes(const ConvexPair& pair) const;
+  [[nodiscard]] std::vector<Index> find_passing(std::vector<ContactStencil>& pairs, const Passes& passes) const;
+  [[nodiscard]] bool passes(const ContactStencil& pair) const;
   /// Whether the pair is pins alone, which go as one rigid thing.
-  [[nodiscard]] bool is_carried(const ConvexPair& pair) const;
+  [[nodiscard]] bool is_carried(const ContactStencil& pair) const;
   [[nodiscard]] bool is_pinned(Index i) const { return pinned_[static_cast<std::size_t>(i)] != 0; }
   [[nodiscard]] bool is_held(Index i) const { return groups_.holds(i) || is_aside_[static_cast<std::size_t>(i)] != 0; }
   /// The group that all of the pair is in, or that takes along what of it is pinned; kNone if there is none. The sides are `gap`
   /// [m] apart when the step begins.
-  [[nodiscard]] Index group_of(const ConvexPair& pair, double gap) const;
+  [[nodiscard]] Index group_of(const ContactStencil& pair, double gap) const;
   /// With the normal that it has after its group's motion.
-  [[nodiscard]] ConvexPair turned(ConvexPair pair, Index group) const;
-  void limit_groups(const std::vector<ConvexPair>& pairs);
+  [[nodiscard]] ContactStencil turned(ContactStencil pair, Index group) const;
+  void limit_groups(const std::vector<ContactStencil>& pairs);
   void begin_at_rest();
-  void note_passing(const ConvexPair& pair);
-  void append_bounds(const ConvexPair& pair, const RotatingPlane& plane, std::vector<Bound>& found) const;
-  void append_bounds(const ConvexPair& pair, const MovedPlane& plane, std::vector<Bound>& found) const;
-  void append_bounds(const ConvexPair& pair, const Vector3& after, const Vector3& earlier, std::vector<Bound>& found) const;
+  void note_passing(const ContactStencil& pair);
+  void append_bounds(const ContactStencil& pair, const RotatingPlane& plane, std::vector<Bound>& found) const;
+  void append_bounds(const ContactStencil& pair, const MovedPlane& plane, std::vector<Bound>& found) const;
+  void append_bounds(const ContactStencil& pair, const Vector3& after, const Vector3& earlier, std::vector<Bound>& found) const;
 
   const Points& before_;
   const Points& targets_;

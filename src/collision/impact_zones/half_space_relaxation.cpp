@@ -7,7 +7,7 @@ namespace {
 // Times that each inequality is looked at.
 constexpr int kSweeps = 16;
 
-Index particle(const ConvexPair& pair, int k) { return pair.particles[static_cast<std::size_t>(k)]; }
+Index particle(const ContactStencil& pair, int k) { return pair.particles[static_cast<std::size_t>(k)]; }
 
 /// What keeps sides apart at one of the coefficients.
 template <class Height>
@@ -26,7 +26,7 @@ class Sweep {
       : before_(before), pinned_(pinned), rule_(rule), ends_(ends), moved_at_(static_cast<std::size_t>(before.cols()), 0) {}
 
   /// Whether the sides were apart.
-  bool push_apart(const ConvexPair& pair, int number) {
+  bool push_apart(const ContactStencil& pair, int number) {
     const double own = heights_at(pair, ends_).gap();
     if (own >= rule_.least()) return true;
     const double begun = heights_at(pair, before_).gap();
@@ -38,7 +38,7 @@ class Sweep {
     return push(pair, begun, Side{midway, plane.begin, 0.5}, number) && apart_at_end;
   }
 
-  [[nodiscard]] bool has_moved(const ConvexPair& pair, int since) const {
+  [[nodiscard]] bool has_moved(const ContactStencil& pair, int since) const {
     return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(),
                        [&](Index i) { return moved_at_[static_cast<std::size_t>(i)] >= since; });
   }
@@ -47,7 +47,7 @@ class Sweep {
 
  private:
   template <class Height>
-  bool push(const ConvexPair& pair, double begun, const Side<Height>& side, int number) {
+  bool push(const ContactStencil& pair, double begun, const Side<Height>& side, int number) {
     int low = 0;
     for (int k = 1; k < pair.first_count; ++k) low = side.height(k) < side.height(low) ? k : low;
     int high = pair.first_count;
@@ -85,14 +85,14 @@ class Sweep {
 HalfSpaceRelaxation::HalfSpaceRelaxation(const Points& before, const std::vector<char>& pinned, const SeparationTolerance& rule)
     : before_(before), pinned_(pinned), rule_(rule) {}
 
-std::optional<RotatingPlane> HalfSpaceRelaxation::plane(const ConvexPair& pair, const Points& ends) const {
+std::optional<RotatingPlane> HalfSpaceRelaxation::plane(const ContactStencil& pair, const Points& ends) const {
   const double begun = heights_at(pair, before_).gap();
   if (!(begun > 0.0)) return std::nullopt;
   if (heights_at(pair, ends).gap() >= rule_.needed(begun)) return RotatingPlane{pair.normal, pair.normal};
   return turning_plane(pair, before_, ends, pinned_);
 }
 
-bool HalfSpaceRelaxation::passes(const ConvexPair& pair, const Points& ends) const {
+bool HalfSpaceRelaxation::passes(const ContactStencil& pair, const Points& ends) const {
   const std::optional<RotatingPlane> turning = plane(pair, ends);
   if (!turning) return false;
   const auto at_end = [&](int k) { return turning->end.dot(ends.col(particle(pair, k))); };
@@ -101,12 +101,12 @@ bool HalfSpaceRelaxation::passes(const ConvexPair& pair, const Points& ends) con
   return heights_of(pair, at_end).gap() < needed || heights_of(pair, midway).gap() < needed;
 }
 
-std::vector<Index> HalfSpaceRelaxation::move_apart(const std::vector<ConvexPair>& pairs, Points& ends) const {
+std::vector<Index> HalfSpaceRelaxation::move_apart(const std::vector<ContactStencil>& pairs, Points& ends) const {
   Sweep sweep(before_, pinned_, rule_, ends);
   bool apart = false;
   for (int number = 1; number <= kSweeps && !apart; ++number) {
     apart = true;
-    for (const ConvexPair& pair : pairs) {
+    for (const ContactStencil& pair : pairs) {
       if (number > 1 && !sweep.has_moved(pair, number - 1)) continue;
       apart = sweep.push_apart(pair, number) && apart;
     }

@@ -18,14 +18,14 @@ class HalfSpaceRelaxation {
 
   /// A plane for the way to `ends` [m]: with the pair's normal if that does, else one that turns; none if the sides touch where the
   /// step begins.
-  [[nodiscard]] std::optional<RotatingPlane> plane(const ConvexPair& pair, const Points& ends) const;
+  [[nodiscard]] std::optional<RotatingPlane> plane(const ContactStencil& pair, const Points& ends) const;
 
   /// Whether there is one, and it does not keep the sides apart.
-  [[nodiscard]] bool passes(const ConvexPair& pair, const Points& ends) const;
+  [[nodiscard]] bool passes(const ContactStencil& pair, const Points& ends) const;
 
   /// Moves the ends of sides apart that would pass each other, and of those that are then in the way. Returns which were moved, in
   /// any order; of some, sides may still pass.
-  [[nodiscard]] std::vector<Index> move_apart(const std::vector<ConvexPair>& pairs, Points& ends) const;
+  [[nodiscard]] std::vector<Index> move_apart(const std::vector<ContactStencil>& pairs, Points& ends) const;
 
  private:
   const Points& before_;

@@ -1,9 +1,9 @@
 #include "collision/impact_zones/pair_separation.h"
 
 #include "collision/impact_zones/division_planes.h"
+#include "collision/pairs/contact_stencil.h"
 #include "collision/pairs/element_contacts.h"
 #include "collision/pairs/neighbour_list.h"
-#include "collision/pairs/pair_contact.h"
 
 #include <algorithm>
 
@@ -115,11 +115,11 @@ bool PairSeparation::allows(Index particle, const Vector3& p) const {
 void PairSeparation::append_meetings(const Points& before, std::vector<Contact>& meetings) {
   Implementation& self = *implementation_;
   const auto is_held = [&](Index i) { return std::binary_search(self.held.begin(), self.held.end(), i); };
-  for (const ConvexPair& pair : self.watch.pairs()) {
+  for (const ContactStencil& pair : self.watch.pairs()) {
     const std::span particles(pair.particles.data(), static_cast<std::size_t>(pair.count()));
     const bool within_a_body = self.body_at(particles.front()) == self.body_at(particles.back());
     if (within_a_body || std::ranges::none_of(particles, is_held)) continue;
-    if (const auto meeting = meeting_of(pair, before)) meetings.push_back(*meeting);
+    if (const auto meeting = closest_contact(pair, before)) meetings.push_back(*meeting);
   }
 }
 

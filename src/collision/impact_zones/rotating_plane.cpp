@@ -11,7 +11,7 @@ constexpr double kWeightOfPins = 1024.0;
 
 }  // namespace
 
-RotatingPlane turning_plane(const ConvexPair& pair, const Points& before, const Points& ends, const std::vector<char>& pinned) {
+RotatingPlane turning_plane(const ContactStencil& pair, const Points& before, const Points& ends, const std::vector<char>& pinned) {
   const auto weight = [&](Index i) { return pinned[static_cast<std::size_t>(i)] != 0 ? kWeightOfPins : 1.0; };
   Vector3 middle_before = Vector3::Zero();
   Vector3 middle_after = Vector3::Zero();

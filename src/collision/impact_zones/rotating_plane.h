@@ -5,7 +5,7 @@
 // time. Where n1 is n0, the second does if the others do.
 #pragma once
 
-#include "collision/pairs/convex_pair.h"
+#include "collision/pairs/contact_stencil.h"
 
 #include <vector>
 
@@ -23,7 +23,7 @@ struct RotatingPlane {
 
 /// Begins with the pair's normal, and turns as its particles do on their way from `before` to `ends` [m]. Pinned ones count for
 /// most: they give no way.
-[[nodiscard]] RotatingPlane turning_plane(const ConvexPair& pair, const Points& before, const Points& ends,
+[[nodiscard]] RotatingPlane turning_plane(const ContactStencil& pair, const Points& before, const Points& ends,
                                           const std::vector<char>& pinned);
 
 }  // namespace sprung

@@ -1,46 +1,28 @@
-// A corner before a face, or two edges, of the network that contact keeps an eye on.
+// Candidates of contact between elements.
 #pragma once
 
-#include "base/types.h"
+#include "collision/pairs/contact_stencil.h"
 
-#include <algorithm>
 #include <array>
 
 namespace sprung {
 
+/// A vertex and a face, or two edges, that contact checks in every step.
 struct ContactCandidate {
-  std::array<Index, 4> particles{};  ///< the corner and then the face's, or those of the edges
-  bool edges = false;                ///< two edges
-  std::array<Index, 2> elements{};   ///< that have the sides; of a corner, the one that owns it
-  std::array<int, 2> edge{};         ///< of two edges: their numbers in these elements
-  double gap = 0.0;                  ///< that contact keeps between them [m]
-  double reach = 0.0;                ///< contact looks at them when they are nearer than this [m]
-  Vector3 normal = Vector3::Zero();  ///< unit length or 0: the direction of their separation when they were measured last
-  int rest = 0;                      ///< steps in which they need not be looked at
+  ContactStencil stencil;           ///< its normal is the direction of the last measured separation
+  std::array<Index, 2> elements{};  ///< of the two sides; for a vertex, the element that owns it
+  std::array<int, 2> edge{};        ///< of an edge-edge stencil: each edge's number in its element
+  double gap = 0.0;                 ///< that contact keeps between the sides [m]
+  double reach = 0.0;               ///< below this distance contact looks at the sides [m]
+  int rest = 0;                     ///< steps that may skip the candidate, because its sides are far apart
 };
 
-/// How far beyond its gap [m] contact looks in a step in which the forces alone lead its particles up to `way` [m]: passes lead
-/// them less far. What is farther off than a part of the gap, and of that way, would not be touched.
-[[nodiscard]] inline double margin_of_step(double gap, double way) {
+/// How far beyond its gap [m] contact looks in a step whose forces displace the particles by up to `displacement` [m]. Solver
+/// passes move them less than that, so contacts farther away would stay inactive.
+[[nodiscard]] inline double margin_of_step(double gap, double displacement) {
   constexpr double kMarginOfGap = 0.1;
   constexpr double kMarginOfMotion = 0.5;
-  return kMarginOfGap * gap + kMarginOfMotion * way;
+  return kMarginOfGap * gap + kMarginOfMotion * displacement;
 }
-
-/// What lies between the sides along a direction, negative where they overlap; `height(k)` is how far up particle k is.
-template <class Height>
-[[nodiscard]] double gap_along(const ContactCandidate& candidate, const Height& height) {
-  return candidate.edges ? std::min(height(0), height(1)) - std::max(height(2), height(3))
-                         : height(0) - std::max({height(1), height(2), height(3)});
-}
-
-/// The closest points of the two sides.
-struct ClosestFeatures {
-  std::array<double, 4> weights{};       ///< separation = sum_i weights_i x_i; those of the second side are at most 0
-  Vector3 separation = Vector3::Zero();  ///< from the second side's point to the first's [m]
-};
-
-/// `x` are the particles' positions [m].
-[[nodiscard]] ClosestFeatures closest_points(const ContactCandidate& candidate, const std::array<Vector3, 4>& x);
 
 }  // namespace sprung

@@ -11,25 +11,26 @@ namespace {
 
 constexpr Index kCandidatesPerTask = 1024;
 
-// As a part of the largest coordinate: see DivisionPlanes.
+// Relative to the largest coordinate: see DivisionPlanes.
 constexpr double kClearance = 0x1p-30;
 
-// A direction that leans over a face by no more than this sine still counts as away from it: flat neighbours lean by rounding.
+// A direction that leans over a face by up to this sine still counts as pointing away from it: flat neighbours lean by rounding.
 constexpr double kLean = 0x1p-10;
 
-// Edges of nearly flat neighbours hardly have a direction that leans over neither face.
+// Between nearly flat neighbours of an edge, hardly any direction leans over neither of them.
 constexpr double kEdgeLean = 0.1;
 
-// In steps with ways of more than this part of the gap, what passes by has its nearest points where forces lead: older ones lie
-// askew by then, and lift and hold what slides. All faces around a point are to see it at the same time, to tell whose it is. But
-// not within a body: cloths that fell on their edge, and folded evenly, came to lie crumpled.
-constexpr double kFreshWay = 0.05;
+// If a particle moves farther in the step than this fraction of the gap, contacts between bodies use the closest points at the
+// step's end. The closest points of the begin would be askew by then, and would lift and stop a sliding body. All faces around a
+// point need the same time, so that one of them claims the contact. Contacts within a body keep the begin: with the end, cloths
+// that fell on their edge came to lie crumpled instead of folding evenly.
+constexpr double kSlidingDisplacement = 0.05;
 
-// What comes nearer than its gap by more than this part of it meets where it passes the gap.
-constexpr double kLongWay = 0.1;
+// A contact that ends deeper in its gap than this fraction is measured where it enters the gap.
+constexpr double kDeepEntry = 0.1;
 
-// What is far off is looked at again after so many steps at the latest.
-constexpr int kMostRest = 4;
+// A candidate that is far apart is checked again after at most this many steps.
+constexpr int kMaxRest = 4;
 
 class ElementContacts {
  public:
@@ -39,34 +40,34 @@ class ElementContacts {
         before_(before),
         after_(after),
         clearance_(kClearance * before.cwiseAbs().maxCoeff()),
-        longest_way_(std::sqrt((after - before).colwise().squaredNorm().maxCoeff())) {}
+        largest_displacement_(std::sqrt((after - before).colwise().squaredNorm().maxCoeff())) {}
 
   void append(ContactCandidate& candidate, std::vector<Contact>& contacts) const {
     if (candidate.rest > 0) {
       --candidate.rest;
       return;
     }
-    const double way = longest_way(candidate);
-    const double most_margin = candidate.reach - candidate.gap;
-    const double reach = candidate.gap + std::min(most_margin, margin_of_step(candidate.gap, way));
-    if (stays_apart(candidate, reach, way)) return;
-    Meeting meeting = meeting_at(candidate, before_);
-    const double begin = meeting.closest.separation.norm();
+    ContactStencil& stencil = candidate.stencil;
+    const double displacement = largest_displacement(stencil);
+    const double max_margin = candidate.reach - candidate.gap;
+    const double reach = candidate.gap + std::min(max_margin, margin_of_step(candidate.gap, displacement));
+    if (stays_apart(candidate, reach, displacement)) return;
+    const Configuration first = configuration_at(stencil, before_);
+    const double begin = first.separation.norm();
     if (!(begin > 0.0)) return;
-    candidate.normal = meeting.closest.separation / begin;
-    if (stays_apart(candidate, reach, way)) return;
-    meeting = later_meeting(candidate, meeting);
-    const ClosestFeatures& closest = meeting.closest;
-    const double distance = closest.separation.norm();
-    if (!(distance > 0.0)) return;
-    if (!(candidate.edges ? leads_from_edges(candidate, meeting) : leads_from_face(candidate, meeting))) return;
+    stencil.normal = first.separation / begin;
+    if (stays_apart(candidate, reach, displacement)) return;
+    const Configuration contact_time = configuration_of_contact(candidate, first);
+    const double distance = contact_time.separation.norm();
+    if (!(distance > 0.0) || !is_representative(candidate, contact_time)) return;
     Contact contact;
-    contact.count = 4;
-    contact.particles = candidate.particles;
-    contact.weights = closest.weights;
-    contact.normal = closest.separation / distance;
-    for (std::size_t k = 0; k < 4; ++k)
-      contact.distance += closest.weights[k] * contact.normal.dot(after_.col(candidate.particles[k]));
+    contact.count = Contact::kMostParticles;
+    contact.normal = contact_time.separation / distance;
+    for (std::size_t k = 0; k < Contact::kMostParticles; ++k) {
+      contact.particles[k] = stencil.particles[k];
+      contact.weights[k] = contact_time.weights[k];
+      contact.distance += contact.weights[k] * contact.normal.dot(after_.col(contact.particles[k]));
+    }
     if (!(contact.distance < reach)) return;
     contact.most_gap = candidate.gap;
     contact.clearance = clearance_;
@@ -74,142 +75,153 @@ class ElementContacts {
   }
 
  private:
-  /// The sides of a candidate at some time.
-  struct Meeting {
-    const Points* around;      ///< where their neighbours are
-    std::array<Vector3, 4> x;  ///< the candidate's particles
-    ClosestFeatures closest;
+  using Corners = ContactStencil::PerParticle<Vector3>;
+
+  /// A candidate's sides at one time of the step.
+  struct Configuration {
+    Configuration(const ContactStencil& stencil, const Corners& corners, const Points& neighbours)
+        : x(corners), around(neighbours) {
+      const ClosestFeatures closest = closest_points(stencil, x);
+      weights = closest.weights;
+      separation = closest.separation();
+    }
+
+    Corners x;             ///< positions of the candidate's particles [m]
+    const Points& around;  ///< positions of their neighbours [m]
+    ContactStencil::PerParticle<double> weights{};
+    Vector3 separation = Vector3::Zero();
   };
 
-  [[nodiscard]] static Meeting meeting_at(const ContactCandidate& candidate, const Points& positions) {
-    std::array<Vector3, 4> x;
-    for (std::size_t k = 0; k < 4; ++k) x[k] = positions.col(candidate.particles[k]);
-    return {&positions, x, closest_points(candidate, x)};
+  [[nodiscard]] static Configuration configuration_at(const ContactStencil& stencil, const Points& positions) {
+    return {stencil, corners_at(stencil, positions), positions};
   }
 
-  /// Where they are after this part of the way. Their neighbours stay.
-  [[nodiscard]] Meeting meeting_on_way(const ContactCandidate& candidate, double part) const {
-    std::array<Vector3, 4> x;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Index i = candidate.particles[k];
-      x[k] = before_.col(i) + part * (after_.col(i) - before_.col(i));
+  /// After this fraction of the step. Neighbours stay at its begin.
+  [[nodiscard]] Configuration configuration_within(const ContactStencil& stencil, double fraction) const {
+    Corners x;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(stencil.count()); ++k) {
+      const Index i = stencil.particles[k];
+      x[k] = before_.col(i) + fraction * (after_.col(i) - before_.col(i));
     }
-    return {&before_, x, closest_points(candidate, x)};
+    return {stencil, x, before_};
   }
 
-  /// At the end of a step in which they pass by each other; where they pass the gap, if they come much nearer than that; or at
-  /// first.
-  [[nodiscard]] Meeting later_meeting(const ContactCandidate& candidate, const Meeting& first) const {
+  /// The configuration that the contact is derived from: the step's end if the sides slide past each other; else where they enter
+  /// the gap, if they end deep in it; else the step's begin.
+  [[nodiscard]] Configuration configuration_of_contact(const ContactCandidate& candidate, const Configuration& first) const {
     const bool may_slide = element(candidate.elements[0]).body != element(candidate.elements[1]).body;
-    if (may_slide && longest_way_ > kFreshWay * candidate.gap) {
-      const Meeting last = meeting_at(candidate, after_);
-      if (separated(candidate, last)) return last;
+    if (may_slide && largest_displacement_ > kSlidingDisplacement * candidate.gap) {
+      const Configuration last = configuration_at(candidate.stencil, after_);
+      if (separated_at_begin(candidate.stencil, last)) return last;
     }
-    const double begin = first.closest.separation.norm();
-    const double end = gap_at(candidate, after_);
-    if (!(begin > candidate.gap && end < (1.0 - kLongWay) * candidate.gap)) return first;
-    return meeting_on_way(candidate, (begin - candidate.gap) / (begin - end));
+    const double begin = first.separation.norm();
+    const double end = heights_at(candidate.stencil, after_).gap();
+    if (!(begin > candidate.gap && end < (1.0 - kDeepEntry) * candidate.gap)) return first;
+    return configuration_within(candidate.stencil, (begin - candidate.gap) / (begin - end));
   }
 
-  /// Whether the plane across these nearest points, at the step's end, had the sides on either side of it at its begin: then they
-  /// did not go through each other in between.
-  [[nodiscard]] bool separated(ContactCandidate candidate, const Meeting& last) const {
-    candidate.normal = last.closest.separation;
-    return gap_at(candidate, before_) > 0.0;
+  /// Whether the plane between the closest points of the step's end has the sides on either side of it at the begin, too. Then they
+  /// did not pass through each other.
+  [[nodiscard]] bool separated_at_begin(ContactStencil stencil, const Configuration& last) const {
+    stencil.normal = last.separation;
+    return heights_at(stencil, before_).gap() > 0.0;
   }
 
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
 
-  /// The longest of its particles [m].
-  [[nodiscard]] double longest_way(const ContactCandidate& candidate) const {
-    double way2 = 0.0;
-    for (const Index i : candidate.particles) way2 = std::max(way2, (after_.col(i) - before_.col(i)).squaredNorm());
-    return std::sqrt(way2);
+  /// Of the stencil's particles in the step [m].
+  [[nodiscard]] double largest_displacement(const ContactStencil& stencil) const {
+    double largest2 = 0.0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(stencil.count()); ++k) {
+      const Index i = stencil.particles[k];
+      largest2 = std::max(largest2, (after_.col(i) - before_.col(i)).squaredNorm());
+    }
+    return std::sqrt(largest2);
   }
 
-  [[nodiscard]] static double gap_at(const ContactCandidate& candidate, const Points& positions) {
-    return gap_along(candidate, [&](std::size_t k) { return candidate.normal.dot(positions.col(candidate.particles[k])); });
-  }
-
-  /// Whether they are apart along the normal all the time, by more than they are to be looked at. Then they rest while they could
-  /// come no nearer if they came nearer by as much in each step, and one of them by its whole way: what flies beside it may be
-  /// stopped.
-  [[nodiscard]] bool stays_apart(ContactCandidate& candidate, double reach, double way) const {
-    const double begin = gap_at(candidate, before_);
-    const double end = gap_at(candidate, after_);
+  /// Whether the gap along the normal exceeds `reach` throughout the step. Then the candidate rests for as long as its sides stay
+  /// apart even if they approach in each step as fast as in this one plus one side's whole displacement: a body that moves
+  /// alongside may be stopped.
+  [[nodiscard]] bool stays_apart(ContactCandidate& candidate, double reach, double displacement) const {
+    const double begin = heights_at(candidate.stencil, before_).gap();
+    const double end = heights_at(candidate.stencil, after_).gap();
     const double slack = std::min(begin, end) - reach;
     if (!(slack >= 0.0)) return false;
-    const double nearer = std::max(begin - end, 0.0) + way;
-    candidate.rest = slack < kMostRest * nearer ? static_cast<int>(slack / nearer) : kMostRest;
+    const double approach = std::max(begin - end, 0.0) + displacement;
+    candidate.rest = slack < kMaxRest * approach ? static_cast<int>(slack / approach) : kMaxRest;
     return true;
   }
 
-  /// Whether a direction from a point of an element leans over what ends at `other` by no more than `lean`.
-  [[nodiscard]] static bool leans(const Vector3& direction, const Vector3& toward, double lean) {
-    return direction.dot(toward) > lean * direction.norm() * toward.norm();
+  /// Whether the sine between `direction` and `toward`, which points into a neighbour, shows that the direction leans over it.
+  [[nodiscard]] static bool leans(const Vector3& direction, const Vector3& toward, double max_sine) {
+    return direction.dot(toward) > max_sine * direction.norm() * toward.norm();
   }
 
-  /// Whether all that meets at a particle, which is at x, leads away from the direction in which `met` is. What leads to a particle
-  /// of that is not asked: it is no pair with it, and nothing else would speak for a segment that folds back onto the one before.
-  [[nodiscard]] bool leads_from_corner(Index particle, const Points& around, const Vector3& x, const Vector3& direction,
-                                       std::span<const Index> met) const {
+  /// Several features share a closest point on a vertex or an edge. Exactly one of them makes the contact, and only if the surface
+  /// around the point faces the other side.
+  [[nodiscard]] bool is_representative(const ContactCandidate& candidate, const Configuration& at) const {
+    return candidate.stencil.is_edge_edge() ? edges_are_representative(candidate, at) : face_is_representative(candidate, at);
+  }
+
+  /// Whether no edge at a particle, which is at x, leans towards `direction`. Edges to a particle of `excluded` do not count: such
+  /// a pair of elements has no stencil, and nothing else would make the contact of a segment that folds back onto the one before.
+  [[nodiscard]] bool vertex_faces(Index particle, const Points& around, const Vector3& x, const Vector3& direction,
+                                  std::span<const Index> excluded) const {
     for (const Index e : features_.elements_at(particle)) {
       for (const Index other : corners_of(element(e))) {
-        if (other == particle || std::ranges::find(met, other) != met.end()) continue;
+        if (other == particle || std::ranges::find(excluded, other) != excluded.end()) continue;
         if (leans(direction, around.col(other) - x, kLean)) return false;
       }
     }
     return true;
   }
 
-  /// Of the faces that share the point, the one that owns it speaks for it.
-  [[nodiscard]] bool leads_from_face(const ContactCandidate& candidate, const Meeting& meeting) const {
-    const auto& [around, x, closest] = meeting;
+  /// The face owns its closest point, which faces the vertex.
+  [[nodiscard]] bool face_is_representative(const ContactCandidate& candidate, const Configuration& at) const {
     const Index face = candidate.elements[1];
     int used = 0;
     int corner = 0;
     int unused = 0;
     for (int k = 0; k < 3; ++k) {
-      const bool is_used = closest.weights[static_cast<std::size_t>(k) + 1] != 0.0;
+      const bool is_used = at.weights[static_cast<std::size_t>(k) + 1] != 0.0;
       used += is_used ? 1 : 0;
       (is_used ? corner : unused) = k;
     }
     if (used == 3) return true;
     if (used == 1) {
-      const auto at = static_cast<std::size_t>(corner) + 1;
+      const auto slot = static_cast<std::size_t>(corner) + 1;
       return features_.owns_corner(face, corner) &&
-             leads_from_corner(candidate.particles[at], *around, x[at], closest.separation, {});
+             vertex_faces(candidate.stencil.particles[slot], at.around, at.x[slot], at.separation, {});
     }
     const int edge = (unused + 1) % 3;
     if (!features_.owns_edge(face, edge)) return false;
     const Index across = features_.across(face, edge);
-    return across == kNone || !leans(closest.separation, around->col(across) - (x[0] - closest.separation), kLean);
+    return across == kNone || !leans(at.separation, at.around.col(across) - (at.x[0] - at.separation), kLean);
   }
 
-  /// The nearest points are within both edges, or at a corner that no face speaks for.
-  [[nodiscard]] bool leads_from_edges(const ContactCandidate& candidate, const Meeting& meeting) const {
-    const auto& [around, x, closest] = meeting;
-    for (std::size_t side = 0; side < 2; ++side) {
-      const Vector3 direction = side == 0 ? Vector3(-closest.separation) : closest.separation;
-      const std::size_t first = 2 * side;
-      const Element& own = element(candidate.elements[side]);
-      const Element& other = element(candidate.elements[1 - side]);
-      if (closest.weights[first] == 0.0 || closest.weights[first + 1] == 0.0) {
-        const std::size_t at = closest.weights[first] == 0.0 ? first + 1 : first;
-        const int corner = (candidate.edge[side] + (at == first ? 0 : 1)) % own.corners;
-        if (other.corners == 3 || !features_.owns_corner(candidate.elements[side], corner)) return false;
-        if (!leads_from_corner(candidate.particles[at], *around, x[at], direction, corners_of(other))) return false;
-        continue;
-      }
-      if (own.corners != 3) continue;
-      const double sign = side == 0 ? 1.0 : -1.0;
-      const Vector3 at = sign * (closest.weights[first] * x[first] + closest.weights[first + 1] * x[first + 1]);
-      const Index third = own.particles[static_cast<std::size_t>((candidate.edge[side] + 2) % 3)];
-      const Index across = features_.across(candidate.elements[side], candidate.edge[side]);
-      if (leans(direction, around->col(third) - at, kEdgeLean)) return false;
-      if (across != kNone && leans(direction, around->col(across) - at, kEdgeLean)) return false;
+  /// The closest points are inside both edges, or at a vertex that no face stencil covers.
+  [[nodiscard]] bool edges_are_representative(const ContactCandidate& candidate, const Configuration& at) const {
+    return edge_is_representative(candidate, at, 0) && edge_is_representative(candidate, at, 1);
+  }
+
+  [[nodiscard]] bool edge_is_representative(const ContactCandidate& candidate, const Configuration& at, std::size_t side) const {
+    const Vector3 direction = side == 0 ? Vector3(-at.separation) : at.separation;
+    const std::size_t first = 2 * side;
+    const Element& own = element(candidate.elements[side]);
+    const Element& other = element(candidate.elements[1 - side]);
+    if (at.weights[first] == 0.0 || at.weights[first + 1] == 0.0) {
+      const std::size_t slot = at.weights[first] == 0.0 ? first + 1 : first;
+      const int corner = (candidate.edge[side] + (slot == first ? 0 : 1)) % own.corners;
+      if (other.corners == 3 || !features_.owns_corner(candidate.elements[side], corner)) return false;
+      return vertex_faces(candidate.stencil.particles[slot], at.around, at.x[slot], direction, corners_of(other));
     }
-    return true;
+    if (own.corners != 3) return true;
+    const double sign = side == 0 ? 1.0 : -1.0;
+    const Vector3 point = sign * (at.weights[first] * at.x[first] + at.weights[first + 1] * at.x[first + 1]);
+    const Index third = own.particles[static_cast<std::size_t>((candidate.edge[side] + 2) % 3)];
+    const Index across = features_.across(candidate.elements[side], candidate.edge[side]);
+    if (leans(direction, at.around.col(third) - point, kEdgeLean)) return false;
+    return across == kNone || !leans(direction, at.around.col(across) - point, kEdgeLean);
   }
 
   const CollisionSurface& surface_;
@@ -217,7 +229,7 @@ class ElementContacts {
   const Points& before_;
   const Points& after_;
   double clearance_;
-  double longest_way_;  ///< of any particle in the step [m]
+  double largest_displacement_;  ///< of any particle in the step [m]
 };
 
 }  // namespace
@@ -227,13 +239,13 @@ void append_self_contacts(const CollisionSurface& surface, const SurfaceTopology
                           std::vector<Contact>& contacts) {
   const ElementContacts finder(surface, features, before, after);
   const auto count = static_cast<Index>(candidates.size());
-  std::vector<std::vector<Contact>> parts(static_cast<std::size_t>((count + kCandidatesPerTask - 1) / kCandidatesPerTask));
+  std::vector<std::vector<Contact>> batches(static_cast<std::size_t>((count + kCandidatesPerTask - 1) / kCandidatesPerTask));
   parallel_chunks(count, kCandidatesPerTask, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
-      finder.append(candidates[static_cast<std::size_t>(k)], parts[static_cast<std::size_t>(begin / kCandidatesPerTask)]);
+      finder.append(candidates[static_cast<std::size_t>(k)], batches[static_cast<std::size_t>(begin / kCandidatesPerTask)]);
     }
   });
-  for (const std::vector<Contact>& part : parts) contacts.insert(contacts.end(), part.begin(), part.end());
+  for (const std::vector<Contact>& batch : batches) contacts.insert(contacts.end(), batch.begin(), batch.end());
 }
 
 }  // namespace sprung

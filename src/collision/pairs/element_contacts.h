@@ -10,9 +10,9 @@
 
 namespace sprung {
 
-/// Appends a contact for each candidate that comes within its reach on the way from `before` to `after` [m], 3 x n, and whose
-/// points are as near as the surfaces around them: others, such as a corner beside a face with another face right below it, would
-/// push it aside. In the order of the candidates, which note for how long they are too far apart to be looked at.
+/// Appends a contact for each candidate that comes within its reach between `before` and `after` [m], 3 x n, and whose closest
+/// points face each other. A vertex beside a face, with another face right below it, makes none: it would be pushed aside. Contacts
+/// have the order of their candidates. Candidates that are far apart note how many steps may skip them.
 void append_self_contacts(const CollisionSurface& surface, const SurfaceTopology& features,
                           std::vector<ContactCandidate>& candidates, const Points& before, const Points& after,
                           std::vector<Contact>& contacts);

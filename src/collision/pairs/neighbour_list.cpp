@@ -161,7 +161,7 @@ void NeighbourList::renew(const std::vector<Index>& leaving, const Points& befor
   look_at_fans();
   mark_elements();
   tree_.bound(balls_, flat_, marked_elements_, {age_, horizon_});
-  std::erase_if(pairs_, [&](const ConvexPair& pair) { return has_marked(pair); });
+  std::erase_if(pairs_, [&](const ContactStencil& pair) { return has_marked(pair); });
   find_pairs(before);
   renewed_ += static_cast<Index>(marked_list_.size());
   moved_on_.insert(moved_on_.end(), marked_list_.begin(), marked_list_.end());
@@ -174,9 +174,7 @@ void NeighbourList::find_candidates() {
   marked_list_.swap(moved_on_);
   mark_elements();
   tree_.mark(marked_elements_);
-  std::erase_if(candidates_, [&](const ContactCandidate& candidate) {
-    return std::ranges::any_of(candidate.particles, [&](Index i) { return is_marked(i); });
-  });
+  std::erase_if(candidates_, [&](const ContactCandidate& candidate) { return has_marked(candidate.stencil); });
   const std::vector<ContactCandidate> found = contact_search_.find_candidates(balls_, marked_, {age_, horizon_});
   candidates_.insert(candidates_.end(), found.begin(), found.end());
   clear_marks();
@@ -189,16 +187,16 @@ void NeighbourList::find_pairs(const Points& before) {
   place_leaves(leaves, times);
   const auto placed = [&](Index number) { return BoundedLeaf{tree_.leaf(number), places_[static_cast<std::size_t>(number)]}; };
   const auto count = static_cast<Index>(leaves.size());
-  std::vector<std::vector<ConvexPair>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
+  std::vector<std::vector<ContactStencil>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
   parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {
     std::vector<ElementIndexPair> meetings;
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
       append_meetings(placed(leaves[k].first), placed(leaves[k].second), times, meetings);
     }
-    std::vector<ConvexPair>& part = parts[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
+    std::vector<ContactStencil>& part = parts[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
     for (const ElementIndexPair& meeting : meetings) pair_search_.append_pairs(meeting, state, part);
   });
-  for (const std::vector<ConvexPair>& part : parts) pairs_.insert(pairs_.end(), part.begin(), part.end());
+  for (const std::vector<ContactStencil>& part : parts) pairs_.insert(pairs_.end(), part.begin(), part.end());
 }
 
 void NeighbourList::place_leaves(const std::vector<ElementBvh::LeafPair>& pairs, HorizonTimes times) {
@@ -215,8 +213,8 @@ void NeighbourList::place_leaves(const std::vector<ElementBvh::LeafPair>& pairs,
   });
 }
 
-bool NeighbourList::has_marked(const ConvexPair& pair) const {
-  return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(), [&](Index i) { return is_marked(i); });
+bool NeighbourList::has_marked(const ContactStencil& pair) const {
+  return pair.any_of([&](Index i) { return is_marked(i); });
 }
 
 void NeighbourList::place_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends) {

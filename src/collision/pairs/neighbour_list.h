@@ -35,7 +35,7 @@ class NeighbourList {
   void follow(const Points& before, const Points& ends);
 
   /// The normals may be changed.
-  [[nodiscard]] std::vector<ConvexPair>& pairs() { return pairs_; }
+  [[nodiscard]] std::vector<ContactStencil>& pairs() { return pairs_; }
   /// Contact notes in them what it found.
   [[nodiscard]] std::vector<ContactCandidate>& candidates() { return candidates_; }
   [[nodiscard]] const VertexBounds& balls() const { return balls_; }
@@ -52,7 +52,7 @@ class NeighbourList {
   void mark_elements();
   void find_pairs(const Points& before);
   void place_leaves(const std::vector<ElementBvh::LeafPair>& pairs, HorizonTimes times);
-  [[nodiscard]] bool has_marked(const ConvexPair& pair) const;
+  [[nodiscard]] bool has_marked(const ContactStencil& pair) const;
   void find_candidates();
   void clear_marks();
   [[nodiscard]] bool is_marked(Index i) const { return marked_[static_cast<std::size_t>(i)] != 0; }
@@ -66,7 +66,7 @@ class NeighbourList {
   VertexBounds balls_;
   PairBuilder pair_search_;
   ProximitySearch contact_search_;
-  std::vector<ConvexPair> pairs_;
+  std::vector<ContactStencil> pairs_;
   std::vector<ContactCandidate> candidates_;
   std::vector<Index> watched_;         ///< particles of bodies that may meet something
   std::vector<Index> watched_bodies_;  ///< theirs

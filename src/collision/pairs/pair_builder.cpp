@@ -6,8 +6,8 @@
 namespace sprung {
 namespace {
 
-ConvexPair sides_of(std::span<const Index> first, std::span<const Index> second) {
-  ConvexPair pair;
+ContactStencil sides_of(std::span<const Index> first, std::span<const Index> second) {
+  ContactStencil pair;
   const auto next = std::copy(first.begin(), first.end(), pair.particles.begin());
   std::copy(second.begin(), second.end(), next);
   pair.first_count = static_cast<int>(first.size());
@@ -20,7 +20,7 @@ bool share_particle(std::span<const Index> a, std::span<const Index> b) {
 }
 
 /// What lies between the balls of both sides along the normal: the least of now and the horizon, which is the least in between too.
-double least_gap(const ConvexPair& pair, const NeighbourListState& state) {
+double least_gap(const ContactStencil& pair, const NeighbourListState& state) {
   const auto at = [&](double time) {
     return heights_of(pair,
                       [&](int k) {
@@ -34,7 +34,7 @@ double least_gap(const ConvexPair& pair, const NeighbourListState& state) {
 }
 
 /// Where most corners, edges and faces next to each other are apart.
-Vector3 direction_between_middles(const ConvexPair& pair, const Points& positions) {
+Vector3 direction_between_middles(const ContactStencil& pair, const Points& positions) {
   Vector3 first = Vector3::Zero();
   Vector3 second = Vector3::Zero();
   for (int k = 0; k < pair.count(); ++k)
@@ -42,17 +42,16 @@ Vector3 direction_between_middles(const ConvexPair& pair, const Points& position
   return (first / pair.first_count - second / pair.second_count).normalized();
 }
 
-void append_if_near(ConvexPair pair, const NeighbourListState& state, std::vector<ConvexPair>& pairs) {
-  pair.normal = direction_between(pair, state.positions);
+void append_if_near(ContactStencil pair, const NeighbourListState& state, std::vector<ContactStencil>& pairs) {
+  pair.normal = separating_direction(pair, state.positions);
   if (!(least_gap(pair, state) > 0.0)) pairs.push_back(pair);
 }
 
-bool is_marked(const ConvexPair& pair, const NeighbourListState& state) {
-  return std::any_of(pair.particles.begin(), pair.particles.begin() + pair.count(),
-                     [&](Index i) { return state.marked[static_cast<std::size_t>(i)] != 0; });
+bool is_marked(const ContactStencil& pair, const NeighbourListState& state) {
+  return pair.any_of([&](Index i) { return state.marked[static_cast<std::size_t>(i)] != 0; });
 }
 
-void append_part_if_near(ConvexPair pair, const NeighbourListState& state, std::vector<ConvexPair>& pairs) {
+void append_part_if_near(ContactStencil pair, const NeighbourListState& state, std::vector<ContactStencil>& pairs) {
   if (!is_marked(pair, state)) return;
   pair.normal = direction_between_middles(pair, state.positions);
   if (!(least_gap(pair, state) > 0.0)) append_if_near(pair, state, pairs);
@@ -61,7 +60,7 @@ void append_part_if_near(ConvexPair pair, const NeighbourListState& state, std::
 }  // namespace
 
 void PairBuilder::append_pairs(const ElementIndexPair& meeting, const NeighbourListState& state,
-                               std::vector<ConvexPair>& pairs) const {
+                               std::vector<ContactStencil>& pairs) const {
   // The second side is to be the one with more corners.
   const bool swap = element(meeting.first).corners > element(meeting.second).corners;
   const Index first = swap ? meeting.second : meeting.first;
@@ -79,7 +78,7 @@ void PairBuilder::append_pairs(const ElementIndexPair& meeting, const NeighbourL
 }
 
 void PairBuilder::append_corners(Index element_number, Index face, const NeighbourListState& state,
-                                 std::vector<ConvexPair>& pairs) const {
+                                 std::vector<ContactStencil>& pairs) const {
   const auto corners = corners_of(element(element_number));
   const auto b = corners_of(element(face));
   if (b.size() != 3) return;
@@ -91,7 +90,8 @@ void PairBuilder::append_corners(Index element_number, Index face, const Neighbo
   }
 }
 
-void PairBuilder::append_edges(Index first, Index second, const NeighbourListState& state, std::vector<ConvexPair>& pairs) const {
+void PairBuilder::append_edges(Index first, Index second, const NeighbourListState& state,
+                               std::vector<ContactStencil>& pairs) const {
   for (int i = 0; i < edges_of(element(first)); ++i) {
     if (!features_.owns_edge(first, i)) continue;
     const auto a = ends_of(element(first), i);

@@ -10,8 +10,8 @@ namespace {
 
 // Parts of the distance at rest that contact within a body keeps at most, and looks beyond it: a flat sheet is far from contact,
 // one that folds keeps its thickness as far as its elements are large enough for it.
-constexpr double kMostGap = 0.4;
-constexpr double kMostMargin = 0.1;
+constexpr double kMaxGapOfRest = 0.4;
+constexpr double kMaxMarginOfRest = 0.1;
 
 constexpr Index kLeafPairsPerTask = 16;
 constexpr Index kLeavesPerTask = 64;
@@ -163,8 +163,7 @@ void ProximitySearch::append_corners(const Side& a, const Side& b, const LaneByt
       if (met[other] == 0) continue;
       const Index face = b.leaf->element[other];
       const auto& x = element(face).particles;
-      append_if_near({.particles = {corner.particle, x[0], x[1], x[2]},
-                      .edges = false,
+      append_if_near({.stencil = {.particles = {corner.particle, x[0], x[1], x[2]}, .first_count = 1, .second_count = 3},
                       .elements = {a.leaf->element[static_cast<std::size_t>(lane)], face}},
                      search, candidates);
     }
@@ -200,7 +199,9 @@ void ProximitySearch::append_edges_near(const Side& a, std::size_t own, const Si
       const Index second = b.leaf->element[static_cast<std::size_t>(other_lane)];
       const auto x = ends_of(element(first), i);
       const auto y = ends_of(element(second), other_edge);
-      append_if_near({.particles = {x[0], x[1], y[0], y[1]}, .edges = true, .elements = {first, second}, .edge = {i, other_edge}},
+      append_if_near({.stencil = {.particles = {x[0], x[1], y[0], y[1]}, .first_count = 2, .second_count = 2},
+                      .elements = {first, second},
+                      .edge = {i, other_edge}},
                      search, candidates);
     }
   }
@@ -209,34 +210,39 @@ void ProximitySearch::append_edges_near(const Side& a, std::size_t own, const Si
 void ProximitySearch::append_if_near(ContactCandidate candidate, const Search& search,
                                      std::vector<ContactCandidate>& candidates) const {
   const auto is_marked = [&](Index i) { return search.marked[static_cast<std::size_t>(i)] != 0; };
-  if (std::ranges::none_of(candidate.particles, is_marked)) return;
-  const double stray = largest_stray(candidate, search);
+  if (!candidate.stencil.any_of(is_marked)) return;
+  const double stray = largest_stray(candidate.stencil, search);
   candidate.gap = 0.5 * (thickness(candidate.elements[0]) + thickness(candidate.elements[1]));
-  const double margin = std::min(margin_, margin_of_step(candidate.gap, way_of(candidate, search)));
+  const double margin = std::min(margin_, margin_of_step(candidate.gap, largest_displacement(candidate.stencil, search)));
   candidate.reach = candidate.gap + margin;
-  const double distance = least_distance(candidate, search);
+  const double distance = least_distance(candidate.stencil, search);
   if (distance - stray > candidate.reach) return;
   if (element(candidate.elements[0]).body == element(candidate.elements[1]).body) {
-    std::array<Vector3, 4> rest;
-    for (std::size_t k = 0; k < 4; ++k) rest[k] = rest_.col(candidate.particles[k]);
-    const double at_rest = closest_points(candidate, rest).separation.norm();
-    candidate.gap = std::min(candidate.gap, kMostGap * at_rest);
-    candidate.reach = candidate.gap + std::min(margin, kMostMargin * at_rest);
+    const double at_rest = closest_points(candidate.stencil, corners_at(candidate.stencil, rest_)).separation().norm();
+    candidate.gap = std::min(candidate.gap, kMaxGapOfRest * at_rest);
+    candidate.reach = candidate.gap + std::min(margin, kMaxMarginOfRest * at_rest);
     if (distance - stray > candidate.reach) return;
   }
   candidates.push_back(candidate);
 }
 
-double ProximitySearch::largest_stray(const ContactCandidate& candidate, const Search& search) {
-  const auto radius = [&](std::size_t k) { return search.balls.radius(candidate.particles[k]); };
-  return candidate.edges ? std::max(radius(0), radius(1)) + std::max(radius(2), radius(3))
-                         : radius(0) + std::max({radius(1), radius(2), radius(3)});
+double ProximitySearch::largest_stray(const ContactStencil& stencil, const Search& search) {
+  double first = 0.0;
+  double second = 0.0;
+  for (int k = 0; k < stencil.count(); ++k) {
+    double& largest = k < stencil.first_count ? first : second;
+    largest = std::max(largest, search.balls.radius(stencil.particles[static_cast<std::size_t>(k)]));
+  }
+  return first + second;
 }
 
-double ProximitySearch::way_of(const ContactCandidate& candidate, const Search& search) {
-  double way = 0.0;
-  for (const Index i : candidate.particles) way = std::max(way, search.balls.motion(i).norm() + search.balls.radius(i));
-  return way;
+double ProximitySearch::largest_displacement(const ContactStencil& stencil, const Search& search) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(stencil.count()); ++k) {
+    const Index i = stencil.particles[k];
+    largest = std::max(largest, search.balls.motion(i).norm() + search.balls.radius(i));
+  }
+  return largest;
 }
 
 float ProximitySearch::reach_between(const Side& a, const Side& b) const {
@@ -244,19 +250,20 @@ float ProximitySearch::reach_between(const Side& a, const Side& b) const {
                             std::min(margin_, margin_of_step(largest_gap_, double{std::max(a.longest_way, b.longest_way)})));
 }
 
-/// Along a fixed direction what lies between them is least now or at the end.
-double ProximitySearch::least_distance(ContactCandidate& candidate, const Search& search) {
-  std::array<Vector3, 4> x;
-  for (std::size_t k = 0; k < 4; ++k) x[k] = search.balls.center(candidate.particles[k]);
-  candidate.normal = closest_points(candidate, x).separation;
-  const double distance = candidate.normal.norm();
+// Centers move linearly, so that the gap along a fixed direction is smallest at one end of the interval.
+double ProximitySearch::least_distance(ContactStencil& stencil, const Search& search) {
+  ContactStencil::PerParticle<Vector3> x;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(stencil.count()); ++k) x[k] = search.balls.center(stencil.particles[k]);
+  stencil.normal = closest_points(stencil, x).separation();
+  const double distance = stencil.normal.norm();
   if (!(distance > 0.0)) return 0.0;
-  candidate.normal /= distance;
+  stencil.normal /= distance;
   const double duration = search.times.end - search.times.now;
-  const auto height_at_end = [&](std::size_t k) {
-    return candidate.normal.dot(x[k] + duration * search.balls.motion(candidate.particles[k]));
+  const auto height_at_end = [&](int k) {
+    const auto at = static_cast<std::size_t>(k);
+    return stencil.normal.dot(x[at] + duration * search.balls.motion(stencil.particles[at]));
   };
-  return std::min(distance, gap_along(candidate, height_at_end));
+  return std::min(distance, heights_of(stencil, height_at_end).gap());
 }
 
 }  // namespace sprung

@@ -55,14 +55,14 @@ class ProximitySearch {
   void append_edges_near(const Side& a, std::size_t own, const Side& b, std::size_t from, const Search& search,
                          std::vector<ContactCandidate>& candidates) const;
   void append_if_near(ContactCandidate candidate, const Search& search, std::vector<ContactCandidate>& candidates) const;
-  /// How far particles go in a step, about [m]: as their ball does, and by its radius beside it.
-  [[nodiscard]] static double way_of(const ContactCandidate& candidate, const Search& search);
-  /// Between balls of two sides [m].
+  /// Largest displacement of a particle of the stencil in a step, estimated as its ball's motion plus the ball's radius [m].
+  [[nodiscard]] static double largest_displacement(const ContactStencil& stencil, const Search& search);
+  /// Upper bound of the reach between a vertex or edge of `a` and one of `b` [m].
   [[nodiscard]] float reach_between(const Side& a, const Side& b) const;
-  /// By how much particles in their balls may be nearer to each other than the balls' centers [m].
-  [[nodiscard]] static double largest_stray(const ContactCandidate& candidate, const Search& search);
-  /// A lower bound of the distance of their balls' centers until the end; sets the normal.
-  [[nodiscard]] static double least_distance(ContactCandidate& candidate, const Search& search);
+  /// How much closer to each other the particles may be than the centers of their balls [m].
+  [[nodiscard]] static double largest_stray(const ContactStencil& stencil, const Search& search);
+  /// Lower bound of the distance between the balls' centers over the interval [m]; sets the stencil's normal.
+  [[nodiscard]] static double least_distance(ContactStencil& stencil, const Search& search);
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
   [[nodiscard]] double thickness(Index number) const { return surface_.thickness[element(number).particles[0]]; }
 

@@ -52,7 +52,7 @@ TEST(DivisionPlanes, WithinTheirBoundsSidesDoNotCrossOnTheWay) {
   for (int n = 0; n < 4000; ++n) {
     const Step step = random_step(random);
     DivisionPlanes planes(step.meeting.before, step.targets, step.pinned, nothing_carried, kKept);
-    std::vector<ConvexPair> pairs{step.meeting.pair};
+    std::vector<ContactStencil> pairs{step.meeting.pair};
     while (planes.hold(pairs)) {
     }
     const bool draws = !planes.passing().empty();
@@ -88,8 +88,8 @@ struct Stack {
     }
   }
 
-  [[nodiscard]] std::vector<ConvexPair> pairs() const {
-    std::vector<ConvexPair> all;
+  [[nodiscard]] std::vector<ContactStencil> pairs() const {
+    std::vector<ContactStencil> all;
     for (int high = 0; high < kLayers; ++high) {
       for (int low = 0; low < high; ++low) {
         all.push_back({.first_count = 3, .second_count = 3});
@@ -97,7 +97,7 @@ struct Stack {
           all.back().particles[static_cast<std::size_t>(k)] = 3 * high + k;
           all.back().particles[static_cast<std::size_t>(3 + k)] = 3 * low + k;
         }
-        all.back().normal = direction_between(all.back(), before);
+        all.back().normal = separating_direction(all.back(), before);
       }
     }
     return all;
@@ -123,7 +123,7 @@ TEST(DivisionPlanes, MostOfWhatPinsDrawFindsItsPlace) {
   for (int n = 0; n < 2000; ++n) {
     const Stack stack(random);
     DivisionPlanes planes(stack.before, stack.targets, stack.pinned, nothing_carried, kKept);
-    std::vector<ConvexPair> pairs = stack.pairs();
+    std::vector<ContactStencil> pairs = stack.pairs();
     while (planes.hold(pairs)) {
     }
     drawn += planes.passing().empty() ? 0 : 1;

@@ -61,13 +61,13 @@ TEST(HalfSpaceRelaxation, AParticleBetweenPinsGoesWhereTheyLeaveRoom) {
   Points ends = before;
   ends.row(1).head(3).setConstant(-0.3);
   const std::vector<char> pinned{1, 1, 1, 1, 1, 1, 0};
-  std::vector<ConvexPair> pairs(2);
+  std::vector<ContactStencil> pairs(2);
   pairs[0] = {.particles = {6, 0, 1, 2}, .first_count = 1, .second_count = 3, .normal = -Vector3::UnitY()};
   pairs[1] = {.particles = {6, 3, 4, 5}, .first_count = 1, .second_count = 3, .normal = Vector3::UnitY()};
   const HalfSpaceRelaxation way(before, pinned, kRule);
   ASSERT_TRUE(way.passes(pairs[0], ends));
   EXPECT_EQ(way.move_apart(pairs, ends), std::vector<Index>{6});
-  for (const ConvexPair& pair : pairs) EXPECT_FALSE(way.passes(pair, ends));
+  for (const ContactStencil& pair : pairs) EXPECT_FALSE(way.passes(pair, ends));
   EXPECT_LT(ends(1, 6), -0.3);
   EXPECT_GT(ends(1, 6), -0.5);
 }
@@ -80,7 +80,7 @@ TEST(HalfSpaceRelaxation, PinsAreNotMoved) {
   Points ends = before;
   ends(1, 0) = -0.1;
   const std::vector<char> pinned(4, 1);
-  const std::vector<ConvexPair> pairs{{.particles = {0, 1, 2, 3}, .first_count = 1, .second_count = 3, .normal = Vector3::UnitY()}};
+  const std::vector<ContactStencil> pairs{{.particles = {0, 1, 2, 3}, .first_count = 1, .second_count = 3, .normal = Vector3::UnitY()}};
   const HalfSpaceRelaxation way(before, pinned, kRule);
   const Points asked = ends;
   EXPECT_TRUE(way.move_apart(pairs, ends).empty());
