@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// More is left of a cloth of which pins keep many rows and columns than is worth it.
+// If pins keep more than this fraction of the particles, coarsening is not worth it.
 constexpr double kMostLeft = 0.5;
 
 double squared(double x) { return x * x; }
@@ -32,10 +32,10 @@ bool insert(Index row, std::vector<Index>& rows) {
   return true;
 }
 
-/// Where a row lies between coarse ones.
+/// The position of a row between coarse rows.
 struct Along {
-  Index before;   ///< number of the coarse row at or before it, never the last
-  double beyond;  ///< how far it is from there to the next, as a part
+  Index before;   ///< the coarse row at or before it, never the last
+  double beyond;  ///< distance from there, as a fraction of the cell
 };
 
 Along locate(Index row, const std::vector<Index>& rows) {
@@ -87,13 +87,13 @@ class Coarsener {
       case SpringKind::shear:
         ++shear_count_;
         break;
-      case SpringKind::bend:  // as long as two structural ones in line, which hold it
+      case SpringKind::bend:  // as long as two consecutive structural springs, which imply it
         has_others_ = has_others_ || !(apart == 2 || apart == 2 * columns_);
         break;
     }
   }
 
-  /// Whether neighbours along all rows and columns are joined, and across all cells both ways or across none, and no others are.
+  /// Whether neighbours along all rows and columns are joined, all cells or none have both diagonals, and nothing else is joined.
   [[nodiscard]] bool is_lattice() const {
     const auto known = [](const std::vector<double>& lengths) {
       return std::ranges::count_if(lengths, [](double length) { return !std::isnan(length); });
@@ -109,7 +109,8 @@ class Coarsener {
     return columns_ * rows_ == body_.particle_count && component.free_count == free;
   }
 
-  /// A pin is followed by what lies between coarse points if it is one, or if they all are pins. Returns whether any became one.
+  /// Makes coarse points pins until the coarse cloth constrains every pin: a pin is represented if it is a coarse point, or if all
+  /// points of its cell are pins. Returns whether any point became a pin.
   bool keep_pins() {
     bool any = false;
     for (Index y = 0; y < rows_; ++y) {
@@ -190,7 +191,7 @@ class Coarsener {
     }
   }
 
-  /// Two pins are not. The component gets a pin with its first link: those that hold nothing share no load.
+  /// Links between two pins are left out. A pin enters the component with its first link; a pin without links carries no load.
   void join(Index a, Index b, double length, std::vector<std::vector<StretchComponent::Link>>& of_first) {
     if (network_.is_pinned(cloth_.particles[a]) && network_.is_pinned(cloth_.particles[b])) return;
     for (const Index q : {a, b}) {
@@ -217,12 +218,12 @@ class Coarsener {
   Index columns_;
   Index rows_;
   Index shear_count_ = 0;                ///< of limited springs
-  bool has_others_ = false;              ///< limited springs that make_cloth makes none of, or twice
-  std::vector<double> length_to_right_;  ///< of the structural spring from each particle of the body to the next
+  bool has_others_ = false;              ///< limited springs that make_cloth does not make, or that occur twice
+  std::vector<double> length_to_right_;  ///< of the structural spring from each particle to the next in its row
   std::vector<double> length_upwards_;   ///< and to the one in the next row
   std::vector<Index> xs_;                ///< coarse columns
   std::vector<Index> ys_;                ///< coarse rows
-  std::vector<Index> point_;             ///< by coarse point, as the component counts them
+  std::vector<Index> point_;             ///< by coarse point: its number in the component
   CoarseCloth cloth_;
 };
 

@@ -1,4 +1,4 @@
-// A cloth of every other row and column of another.
+// A coarse copy of a cloth: about every other row and column.
 #pragma once
 
 #include "dynamics/stretch_newton/stretch_component.h"
@@ -9,25 +9,25 @@
 
 namespace sprung {
 
-/// A cloth of fewer particles in place of another, and where those of the other lie in it.
+/// A cloth with fewer particles, and the interpolation from its points to the particles of the fine cloth.
 struct CoarseCloth {
-  /// Where a free particle of the cloth lies among the points of the coarse one.
+  /// The interpolation of a free fine particle from coarse points.
   struct Place {
-    std::array<Index, 4> points;    ///< the corners of the cell that it lies in
-    std::array<double, 4> weights;  ///< of them, dimensionless; their sum is 1
+    std::array<Index, 4> points;    ///< corners of the coarse cell that contains it
+    std::array<double, 4> weights;  ///< of the points [1]; their sum is 1
   };
 
-  StretchComponent component;    ///< its particles are coarse points, numbered row by row; masses are shared out by weights
+  StretchComponent component;    ///< its points are coarse points, numbered row by row; masses are distributed by weights
   std::vector<Index> particles;  ///< of the network, by coarse point
-  std::vector<Index> pins;       ///< coarse points that are pinned; the component has those that links join to free ones
-  std::vector<Place> places;     ///< of the free points of the cloth that it was made of
+  std::vector<Index> pins;       ///< coarse points that are pinned; the component contains those linked to free ones
+  std::vector<Place> places;     ///< of the free points of the fine cloth
 };
 
-/// Of a component of the network that springs of `kinds` join. Coarse rows and columns are about two apart, nearer where a pin lies
-/// that is not among others. Links join neighbours along them, and across cells where shear springs are limited; they are as long
-/// as what they take the place of: while those hold, so do they. None for what is not all free particles of a cloth, joined as by
-/// make_cloth with structural springs among those that are limited and by no others, or has so many pins that half of its particles
-/// would be left.
+/// Makes the coarse copy of a component of the network that springs of `kinds` join. Coarse rows and columns are about two apart,
+/// closer beside an isolated pin. Links join neighbours along rows and columns, and across cells where shear springs are limited.
+/// Each link is as long as the springs that it replaces, so it holds while they hold. Returns none unless the component is all
+/// free particles of a cloth from make_cloth whose limited springs include the structural ones and no other kinds, and if pins
+/// would keep more than half of its particles.
 [[nodiscard]] std::optional<CoarseCloth> coarsen(const SpringNetwork& network, const StretchComponent& component,
                                                  const std::vector<SpringKind>& kinds);
 

@@ -10,41 +10,41 @@
 namespace sprung {
 namespace {
 
-// A few are enough mostly; what goes by many times the length of its links in a step takes about 200 of a chain of 2,000 particles,
-// 45 of a strip. Ended after 20 it stayed near where the step began, and fell a third as far as it should.
+// Mostly a few suffice. A body that moves by many link lengths in a step needs about 200 for a chain of 2,000 particles and 45 for
+// a strip. With a limit of 20 it stayed near the beginning of the step and fell a third as far as it should.
 constexpr int kMostIterations = 200;
 constexpr int kMostHalvings = 10;
 
-// In a crumpled cloth that neither stretches nor shears each whole step takes other links beyond their limit, and little is left of
-// it. From this iteration on all that ever were stay stiff; where fewer are enough that would only hold them up.
+// In a crumpled cloth without stretch and shear, each full step overshoots the limit of other links, so line searches shorten it.
+// From this iteration on, links that ever overshot stay stiff. Earlier that would only slow convergence.
 constexpr int kFreeIterations = 5;
 
-// A step that turns links makes them longer, which its equations do not know. Corrections are made while each takes off half of the
-// energy, and are worth it where half of the forecast is gained at the end.
+// A step that rotates links lengthens them, which the linear system does not know. Corrections continue while each removes half of
+// the energy, and are kept if half of the forecast is gained.
 constexpr int kMostCorrections = 5;
 constexpr double kWorthwhile = 0.5;
 
-// Iterations end when one lowered the energy as it forecast, but for this part of the energy and of what the way to where
-// forces led was worth at first, and its solve left no more: what is left to gain is about that much, and no other solve is needed
-// to say so. Chains need more iterations, and have them cheaply. What springs store of the error comes back: a cloth of soft
-// springs that hangs by its limit never comes to rest with a tenth, and gains energy as it swings out with a hundredth.
+// Iterations end when one lowered the energy as forecast, up to this fraction of the energy and the initial inertia term, and its
+// solve left no more. The remaining gain is about that much, which needs no other solve to confirm. Chains need more iterations,
+// which are cheap. Springs return the error that they store: a cloth of soft springs that hangs by its limit never comes to rest
+// with 0.1, and gains energy as it swings with 0.01.
 constexpr double kForecastOfChains = 1.0e-4;
 constexpr double kForecastOfCloths = 0.1;
 constexpr double kForecastOfElasticCloths = 1.0e-3;
 
-// What was corrected is near the forecast by chance at times.
+// A corrected step sometimes meets its forecast by chance.
 constexpr double kCorrectedPart = 0.3;
 
-// What turned by less than this and took one iteration the step before hardly changes: of what moves an old factor, to which other
-// springs were slack, takes too much of the motion.
+// A component with less relative deformation than this that took one iteration in the previous step hardly changes. For a moving
+// one, an old factor, made with other slack links, would remove too much of the motion.
 constexpr double kCalmTurn = 1.0 / 240.0;
 
-// The part of the tolerance that clipped links keep, and what they keep clear of the limit where it has none: they shall not be
-// beyond it by rounding.
+// Clipped links keep this fraction of the tolerance, so that rounding does not put them beyond the limit; without a tolerance the
+// second constant applies.
 constexpr double kClipPart = 0.99;
 constexpr double kClipRounding = 1.0 - 0x1p-40;
 
-// Where all moved in common it is the same place but for rounding, which this part of the extent bounds far from the origin too.
+// Positions are equal if they differ by rounding alone; this fraction of the extent bounds it far from the origin too.
 constexpr double kSamePlace = 0x1p-40;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
@@ -86,9 +86,9 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
   const double weight = carried_weight(fall);
   energy_.set_weight(weight);
   energy_.find_near(led_);
-  // An order of elimination takes its time, and what only asks for the step, or is never handed over, needs none.
+  // Ordering takes time, and a component that is never solved needs none.
   if (!solver_) solver_ = make_system_solver(component_);
-  // Where forces led nothing is to be moved: all of the energy is that of links, in proportion to the weight.
+  // At the target of the forces the inertia term is zero: all energy is in links and proportional to the load.
   const int iterations = minimise(weight * beyond);
   last_iterations_ = iterations;
   if (clips_) clip();
@@ -113,7 +113,7 @@ void ComponentNewton::gather(const Points& before, const Points& positions) {
   extent_ = bounds(before_).diagonal().norm();
 }
 
-/// Where the pins went, or what moves as it likes: so its momentum is right from the start.
+/// The displacement of the pins, or of a free body, whose momentum is then right from the start.
 Vector3 ComponentNewton::common_move() const {
   if (const Index pins = component_.pin_count(); pins > 0) return (led_ - before_).rightCols(pins).rowwise().mean();
   Vector3 moved = Vector3::Zero();
@@ -121,9 +121,9 @@ Vector3 ComponentNewton::common_move() const {
   return moved / mass_;
 }
 
-// What moves by u in a step, on a circle of radius r, is pulled inwards as by an acceleration of u^2 / r. Where nothing pulls,
-// links that are too long do. In small steps what swings on a link would take more from it than it gave, as the link is stiffer the
-// faster all move: one whose stiffness is as large as the masses stops it within a step.
+// The load follows from the acceleration. A particle that moves by u in a step on a circle of radius r has the centripetal
+// acceleration u^2 / r; without one, the excess of links gives it. A link that is too stiff for a small step would take more from
+// a swing than it stores: with a stiffness as large as the masses it stops the swing within a step.
 double ComponentNewton::carried_weight(double fall) const {
   const double inwards = extent_ > 0.0 ? farthest_squared_ / extent_ : 0.0;
   return mass_ / std::max(component_.pin_count(), Index{1}) *
@@ -145,17 +145,16 @@ int ComponentNewton::minimise(double energy_where_led) {
   double energy = start(energy_where_led);
   const double at_first = inertia();
   const double negligible = kBalanced * at_first;
-  // Masses alone count what is out of balance along links for far too much: an iteration may tell that it is less.
+  // Masses alone overestimate the imbalance along links; an iteration may show that it is smaller.
   if (imbalance() <= negligible) {
     note_balance(energy);
     return 0;
   }
-  // Where contact moved something since, links are to store as much as then.
+  // If contact moved a particle since, links store a different energy.
   if (led_apart() <= negligible && std::abs(energy - balanced_energy_) <= negligible) return 0;
   const bool is_calm = last_iterations_ <= 1 && turn() <= kCalmTurn;
   const double close = close_enough(component_);
-  // Links that are nearly at their limit will mostly be at it: were they left out at first, each iteration would find only the next
-  // few of them.
+  // Links near their limit will mostly reach it. If they were slack at first, each iteration would add only a few of them.
   double modelled = energy_.linearise(x_, led_, NearLimit::pushing, system_);
   bool is_too_stiff = false;
   energy_.forget_overshot();
@@ -171,8 +170,8 @@ int ComponentNewton::minimise(double energy_where_led) {
     const double enough = (corrected ? kCorrectedPart : 1.0) * close * (at_first + energy);
     if (part > 0.0 && !is_too_stiff && std::abs(energy - forecast) + left <= enough) return iteration;
     if (part == 0.0 && iteration > 1) return iteration;
-    // What was slack stopped the step short, or what counted as if it pushed was not worth it. A forecast with links that are stiff
-    // but do not pull tells less than can be gained.
+    // The step was shortened by slack links, or pushing links made it worthless. A forecast with stiff links that do not pull
+    // underestimates the gain.
     const bool restrains = iteration >= kFreeIterations && energy_.knows_overshot();
     is_too_stiff = part < 1.0 && !restrains;
     if (restrains) {
@@ -185,13 +184,14 @@ int ComponentNewton::minimise(double energy_where_led) {
   return kMostIterations;
 }
 
-/// In motion where the step began is mostly nearer to the minimum than where forces led: there springs are not too long.
+/// In motion, the beginning of the step is mostly nearer to the minimum than the target of the forces: there no spring is too
+/// long.
 void ComponentNewton::begin_beside_led() {
   x_ = before_.colwise() + common_move_;
   x_.rightCols(component_.pin_count()) = led_.rightCols(component_.pin_count());
 }
 
-/// Linearises where the solve begins, if that is not where forces led; returns the energy there.
+/// Linearises at the initial iterate if it is not the target; returns the energy there.
 double ComponentNewton::start(double energy_where_led) {
   const double energy = energy_.linearise(x_, led_, NearLimit::slack, system_);
   if (energy <= energy_where_led) return energy;
@@ -205,7 +205,7 @@ void ComponentNewton::note_balance(double energy) {
   balanced_led_ = led_;
 }
 
-/// What nothing moved since but all in common, and forces lead to nearly where they led then.
+/// Whether nothing has moved since except in common, and the forces' target is nearly the same.
 bool ComponentNewton::rests_in_place() const {
   if (balanced_energy_ == kUnknown) return false;
   const Vector3 carried = x_.col(0) - balanced_.col(0);
@@ -213,8 +213,8 @@ bool ComponentNewton::rests_in_place() const {
   return moved <= kSamePlace * extent_ && led_apart() <= kBalanced * inertia();
 }
 
-/// How far from where they led when it came to rest, seen from where each particle is, by masses. E is convex: its minimum goes no
-/// farther than that (Moreau 1965).
+/// Distance of the target from the one at rest, relative to the particles and weighted by mass. E is convex, so its minimum moves
+/// no farther than that (Moreau 1965).
 double ComponentNewton::led_apart() const {
   if (balanced_energy_ == kUnknown) return kUnknown;
   double sum = 0.0;
@@ -236,7 +236,7 @@ double ComponentNewton::imbalance() const {
   return sum;
 }
 
-// The system is that of where the whole step led, if it was made; any other is linearised anew.
+// After a full step the system is linearised there; after a shortened one it is linearised anew.
 ComponentNewton::Descent ComponentNewton::descend(double& energy, double forecast) {
   const auto go = [&](double reached) {
     energy = reached;
@@ -268,7 +268,7 @@ ComponentNewton::Descent ComponentNewton::descend(double& energy, double forecas
   return {.part = 0.0, .corrected = false};
 }
 
-/// Bends the step to what is tried after the links that it turned; returns the energy there.
+/// Corrects the trial step for the links that it rotated; returns the energy there.
 double ComponentNewton::correct(double reached) {
   for (int correction = 0; correction < kMostCorrections; ++correction) {
     energy_.take_turning(x_, tried_, system_);

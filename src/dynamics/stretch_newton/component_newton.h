@@ -11,7 +11,7 @@
 
 namespace sprung {
 
-/// Minimises StretchEnergy by Newton's method with a halving line search.
+/// Minimises StretchEnergy by Newton's method with a backtracking line search.
 class ComponentNewton final : public ComponentSolver {
  public:
   ComponentNewton(StretchComponent component, const StretchLimitSettings& settings);
@@ -19,17 +19,17 @@ class ComponentNewton final : public ComponentSolver {
   ComponentNewton(const ComponentNewton&) = delete;
   ComponentNewton& operator=(const ComponentNewton&) = delete;
 
-  /// To the minimum. Links are made stiff enough to carry the component against `fall`, and against the motion it has. Of a chain
-  /// or tree that hangs on one link, no link is beyond the tolerance then.
+  /// Solves to the minimum. Links are stiff enough to carry the component against `fall` and its own motion. In a chain or tree
+  /// that hangs on one link, no link exceeds the tolerance afterwards.
   std::optional<int> solve(const Points& before, Points& positions, double fall) override;
 
   [[nodiscard]] double turn() const override;
 
-  /// How stiff each link's pull makes it against turning, where the last solve ended [kg]; 0 of links that do not pull.
+  /// Each link's stiffness across its direction at the end of the last solve [kg]; 0 for slack links.
   [[nodiscard]] std::vector<double> stiffness_across() const { return energy_.stiffness_across(x_); }
 
  private:
-  /// How much of a step was made, and whether it was bent after links that it turned.
+  /// The fraction of a step that was taken, and whether it was corrected for links that it rotated.
   struct Descent {
     double part;
     bool corrected;
@@ -55,19 +55,19 @@ class ComponentNewton final : public ComponentSolver {
   StretchComponent component_;
   StretchLimitSettings settings_;
   StretchEnergy energy_;
-  std::unique_ptr<StretchSystemSolver> solver_;  ///< from the first solve on
+  std::unique_ptr<StretchSystemSolver> solver_;  ///< made by the first solve
   bool clips_;
-  int last_iterations_ = std::numeric_limits<int>::max();             ///< of the solve before, if there was one
+  int last_iterations_ = std::numeric_limits<int>::max();             ///< of the previous solve, if any
   double mass_ = 0.0;                                                 ///< of all free points [kg]
-  double balanced_energy_ = std::numeric_limits<double>::infinity();  ///< of where it came to rest, while it does [kg m^2]
-  Points balanced_;                                                   ///< where that is, 3 x points,
-  Points balanced_led_;                                               ///< and where forces led from there
+  double balanced_energy_ = std::numeric_limits<double>::infinity();  ///< where the component came to rest, while it rests [kg m^2]
+  Points balanced_;                                                   ///< positions at rest, 3 x points
+  Points balanced_led_;                                               ///< the target of the forces when it came to rest
 
   Vector3 common_move_ = Vector3::Zero();  ///< of the last solve [m]
-  double farthest_squared_ = 0.0;          ///< that a point was led, apart from the common move [m^2]
-  double extent_ = 0.0;                    ///< where the step began [m]
+  double farthest_squared_ = 0.0;          ///< largest displacement of a point by forces, minus the common displacement [m^2]
+  double extent_ = 0.0;                    ///< of the component at the beginning of the step [m]
 
-  // Of a solve, 3 x points: where the step began, where forces led, where the solve is.
+  // Of a solve, 3 x points: the beginning of the step, the target of the forces, and the current iterate.
   Points before_;
   Points led_;
   Points x_;

@@ -1,4 +1,4 @@
-// What brings the limited springs of one component within their limit.
+// The interface of solvers that enforce the limit of one component.
 #pragma once
 
 #include "base/types.h"
@@ -7,24 +7,25 @@
 
 namespace sprung {
 
-/// What would lead all points by a six hundredth of the way from where forces led is worth this part of the inertia at first, and
-/// not moved: what gravity pulls back that hangs a tenth of a degree askew. With a hundredth cloths stopped where they turned
-/// round, nearly a degree askew, and leaned 38 % too far in a light wind. Of the energy it would be far more, as links' part of
-/// that grows the smaller the steps, and need not fall: what was drawn taut stopped 10 degrees askew.
+/// Threshold below which a component rests, as a fraction of the initial inertia term: it ignores a displacement of all points by
+/// 1/600 of the force displacement, which is what gravity restores at an inclination of a tenth of a degree. With 1/100 cloths
+/// stopped nearly a degree before their turning point and leaned 38 % too far in light wind. A threshold on the total energy would
+/// not do: the links' share of it grows as the step shrinks, and taut bodies stopped 10 degrees askew.
 inline constexpr double kBalanced = 2.0 / (600.0 * 600.0);
 
-/// What brings the free particles of one component towards the limit of its links, all at once, before the passes do.
+/// Enforces the limit of one component's links globally, before the passes.
 class ComponentSolver {
  public:
   virtual ~ComponentSolver() = default;
 
-  /// Leads the component's free particles on from where forces led them, `positions` [m], 3 x particles, to where no link is much
-  /// too long; `before` is where the step began, `fall` [m] how far the largest steady acceleration leads a particle at rest in a
-  /// step, |g| dt^2. Returns how many linear systems were solved; none when no link that it solves for was too long.
+  /// Moves the component's free particles from the target of the forces, `positions` [m], 3 x particles, to where no link is much
+  /// too long. `before` are the positions at the beginning of the step. `fall` [m] is the displacement of a particle at rest by
+  /// the largest steady acceleration in a step, |g| dt^2. Returns the number of linear systems solved; none if no link was too
+  /// long.
   virtual std::optional<int> solve(const Points& before, Points& positions, double fall) = 0;
 
-  /// How far the point that goes farthest by itself was led by the forces of the last `solve`, as a part of the component's extent:
-  /// of what swings about its pins, the angle of a step.
+  /// Largest relative deformation in the last solve() [1]: the largest displacement of a point by forces minus the common
+  /// displacement, divided by the component's extent. For a body that swings about its pins this is the angle of the step.
   [[nodiscard]] virtual double turn() const = 0;
 };
 

@@ -8,24 +8,23 @@
 namespace sprung {
 namespace {
 
-// A factor takes as long as six to eight solves with it. One that is worth something takes more off in each iteration; but where
-// the diagonal was raised, what hardly any link holds comes late, and an iteration may bring up more of it than it takes off.
+// A factor takes as long as six to eight solves with it. A useful factor reduces the error in each iteration. With a raised
+// diagonal, weakly constrained modes converge last, and an iteration may increase the error.
 constexpr int kMostIterations = 8;
 constexpr double kSlowest = 0.8;
 constexpr int kMostIterationsRaised = 16;
 constexpr double kSlowestRaised = std::numeric_limits<double>::infinity();
 
-// So many roundings of single precision: with half as many some diagonals of cloths became negative.
+// Rounding units of single precision; with half as many some diagonals of cloths became negative.
 constexpr double kRaise = 4.0 * 0x1p-24;
 
-// Sizes are those of residuals, squared, as the factor at hand measures them: less than a tenth is left at the end of what they
-// would have been at first, had the factor been exact.
+// On squared residuals in the factor's norm: with an exact factor, less than a tenth of the initial error remains.
 constexpr double kNearEnough = 0.01;
 
-// As the masses measure them, who mostly count it for far too much.
+// In the norm of the masses, which mostly overestimates it.
 constexpr double kSurelyNear = 1.0e-4;
 
-// Single precision is not tried again where links are nearly as stiff, beside masses, as once when it failed.
+// Single precision is not tried again above this fraction of the stiffness at which it failed, relative to the masses.
 constexpr double kBearablePart = 0.5;
 
 BlockMatrix pattern_of(const StretchComponent& component) {
@@ -71,7 +70,7 @@ void PcgSolver::solve_again(const StretchSystem& system, Points& step) {
 }
 
 std::optional<double> PcgSolver::solve_as_last(const StretchSystem& system, Points& step) {
-  // What changes so fast mostly does so the next time too.
+  // A system that changes this fast mostly does so the next time too.
   if (std::exchange(led_nowhere_, false)) return std::nullopt;
   const Patience patience{.most_iterations = kMostIterations, .slowest = kSlowest, .may_be_left = system.may_be_left};
   solve_with_kept(system.residual, towards_);
@@ -88,7 +87,7 @@ void PcgSolver::solve_with_kept(const Points& right, Points& solution) {
   }
 }
 
-// Links push one end as the other: what all move in common has an equation of its own, in which nothing needs to be left.
+// Links push both ends equally, so the common motion has an equation of its own, which is solved exactly.
 void PcgSolver::keep_momentum(const Points& right, Points& step) const {
   Vector3 missing = right.rowwise().sum();
   double mass = 0.0;
@@ -106,8 +105,8 @@ std::optional<double> PcgSolver::approach_with_kept(const Patience& patience, co
   return left;
 }
 
-/// Conjugate gradients with the factor that is kept as preconditioner; `towards_` is its solution for `right`, the first direction.
-/// Returns what they left to gain, if that is little enough.
+/// Conjugate gradients preconditioned by the kept factor. `towards_` is its solution for `right`, the first direction. Returns the
+/// remaining gain if that is small enough.
 std::optional<double> PcgSolver::approach(const Patience& patience, const Points& right, Points& step) {
   step.setZero(3, component_.free_count);
   left_ = right;
@@ -130,21 +129,21 @@ std::optional<double> PcgSolver::approach(const Patience& patience, const Points
     gained += length * size;
     step += length * direction_;
     left_ -= length * pushed_;
-    // The way is made before its end would be measured: it costs less than that, and what is left only falls.
+    // Takes the step before its end would be measured: it costs less than measuring, and the error only decreases.
     if (0.5 * size <= patience.may_be_left || (iteration > 1 && size <= kNearEnough * gained)) return 0.5 * size;
     if (const double most = largest_size(); most <= kSurelyNear * gained) return 0.5 * most;
   }
   return std::nullopt;
 }
 
-/// Of any particle beside its mass.
+/// Largest stiffness of a particle relative to its mass.
 double PcgSolver::stiffest() const {
   double most = 0.0;
   for (Index i = 0; i < component_.free_count; ++i) most = std::max(most, matrix_.diagonal(i).trace() / component_.masses[i]);
   return most;
 }
 
-/// Of what is left, by masses alone: stiffness only makes it smaller.
+/// Upper bound on the size of the residual, by masses alone: stiffness only reduces it.
 double PcgSolver::largest_size() const {
   double size = 0.0;
   for (Index i = 0; i < component_.free_count; ++i) size += left_.col(i).squaredNorm() / component_.masses[i];

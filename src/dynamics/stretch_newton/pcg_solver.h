@@ -1,4 +1,4 @@
-// Sparse factors for cloths and solids.
+// Preconditioned conjugate gradients for cloths and solids.
 #pragma once
 
 #include "dynamics/numerics/block_cholesky.h"
@@ -12,11 +12,10 @@
 
 namespace sprung {
 
-/// Conjugate gradients in double precision, with a factor in single precision as preconditioner: a new one for each system, or the
-/// last one for a system that is like the one before, where few iterations come near enough. So solutions depend on the systems
-/// before, in their later digits; the same systems one after the other have the same bits. What single precision cannot tell from
-/// singular has its diagonal raised for the factor, a little above its rounding, and if that does not do, a factor in double
-/// precision.
+/// Conjugate gradients in double precision, preconditioned by a factor in single precision. The factor is made for each system, or
+/// kept from the previous one if the systems are alike and few iterations suffice. Solutions therefore depend on earlier systems
+/// in their last digits; the same sequence of systems gives the same bits. Where single precision sees a singular matrix, the
+/// factor's diagonal is raised slightly above rounding; if that fails, the factor is in double precision.
 class PcgSolver final : public StretchSystemSolver {
  public:
   /// Keeps a reference to the component.
@@ -27,18 +26,18 @@ class PcgSolver final : public StretchSystemSolver {
  private:
   enum class Kept : std::uint8_t { nothing, rough, exact };
 
-  /// How long conjugate gradients go on.
+  /// The end of conjugate gradients.
   struct Patience {
     int most_iterations;
-    double slowest;            ///< what may be left by an iteration of what was there before it
-    double may_be_left = 0.0;  ///< when it is surely near enough [kg m^2]
+    double slowest;            ///< largest ratio of the remaining error between two iterations
+    double may_be_left = 0.0;  ///< remaining error that is always accepted [kg m^2]
   };
 
   /// A factor in single precision.
   struct Roughly {
-    double raise;  ///< of the diagonal, as BlockCholesky has it
+    double raise;  ///< of the diagonal, as in BlockCholesky
     Patience patience;
-    double bearable = std::numeric_limits<double>::infinity();  ///< what is less stiff is tried so
+    double bearable = std::numeric_limits<double>::infinity();  ///< systems stiffer than this skip the attempt
   };
 
   void assemble(const StretchSystem& system);
@@ -54,12 +53,12 @@ class PcgSolver final : public StretchSystemSolver {
   const StretchComponent& component_;
   BlockMatrix matrix_;  ///< M + K
   BlockCholesky<float> rough_;
-  std::unique_ptr<BlockCholesky<double>> exact_;  ///< once it was needed
-  Kept kept_ = Kept::nothing;                     ///< the factor of this system or of the last
+  std::unique_ptr<BlockCholesky<double>> exact_;  ///< made when it was needed
+  Kept kept_ = Kept::nothing;                     ///< the factor of this system or of the previous one
   std::array<Roughly, 2> ways_;
-  bool led_nowhere_ = false;  ///< the factor of a system that was much like this one
+  bool led_nowhere_ = false;  ///< the kept factor failed on a system like this one
 
-  // Of conjugate gradients, 3 x free.
+  // Scratch of conjugate gradients, 3 x free.
   Points left_;
   Points towards_;
   Points direction_;

@@ -39,7 +39,7 @@ class Finder {
   }
 
  private:
-  /// Free particles reached from one, nearest first.
+  /// Free particles reachable from one, nearest first.
   std::vector<Index> outward_from(Index start) {
     std::vector<Index> queue{start};
     seen_[start] = true;
@@ -57,7 +57,7 @@ class Finder {
     return std::ranges::any_of(graph_.at(particle), [&](const SpringGraph::Edge& edge) { return network_.is_pinned(edge.to); });
   }
 
-  /// The same particles, from the tips to one that hangs on a pin.
+  /// The same particles, from the leaves to one that is linked to a pin.
   std::vector<Index> inward(const std::vector<Index>& particles) {
     const auto root = std::ranges::find_if(particles, [&](Index i) { return hangs_on_pin(i); });
     for (const Index i : particles) seen_[i] = false;

@@ -6,20 +6,20 @@
 namespace sprung {
 namespace {
 
-// A link that carries its component's weight is longer than its limit by this part of the tolerance; in motion it carries a few
-// times as much. Chains and trees that hang on one link are clipped besides; in cloths the load gathers at the pins.
+// A link that carries its component's load exceeds its limit by this fraction of the tolerance; in motion the load is a few times
+// larger. Chains and trees that hang on one link are clipped as well; in cloths the load concentrates at the pins.
 constexpr double kPartForChains = 0.25;
 constexpr double kPartForCloths = 0.1;
 
-// Links are near their limit from this part of it.
+// Links are near their limit from this fraction of it.
 constexpr double kNear = 0.9;
 
-// Springs with stiffness keep most links nearly as long as they may be. There a link hands half of what it is too long on to each
-// neighbour, and what is shorter by more than that stays slack: counted as if it pushed it took a cloth 11 iterations a step to
-// undo that instead of 2, and those that ended sooner gave it energy.
+// Springs with stiffness keep most links nearly at their limit. There a link passes half of its excess to each neighbour, and a
+// link with more slack than that stays slack. Treating it as pushing cost a cloth 11 iterations a step instead of 2, and solves
+// that ended sooner added energy.
 constexpr double kHandedOn = 0.5;
 
-// Without a tolerance there is still some give: stiffer links take more iterations.
+// The smallest tolerance that sets the links' stiffness: stiffer links take more iterations.
 constexpr double kLeastTolerance = 4.0e-4;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a global solve of a stretch limit minimises.
+// The objective of a global solve of the stretch limit.
 #pragma once
 
 #include "dynamics/stretch_newton/stretch_system.h"
@@ -8,51 +8,51 @@
 
 namespace sprung {
 
-/// What links count as that are shorter than the longest they may be. Stiff ones are as stiff as those that are too long, though
-/// they neither pull nor push.
+/// How the linear system treats links that are shorter than their limit. A stiff link gets the stiffness of a link at its limit,
+/// but no force.
 enum class NearLimit : std::uint8_t {
-  slack,     ///< what they are
-  overshot,  ///< stiff where note_overshot() was told of them
-  stiff,     ///< stiff where they are near it, as find_near() has it
-  pushing    ///< near it as if they held both ways
+  slack,     ///< without stiffness
+  overshot,  ///< stiff if note_overshot() recorded them
+  stiff,     ///< stiff if they are near the limit, see find_near()
+  pushing    ///< near the limit they both pull and push
 };
 
-/// E(x) = 1/2 sum m |x - y|^2 + 1/2 sum k max(0, |d| - L)^2 over free points and links of a component: y is where forces led, L the
-/// longest a link may be, and k = W / (e d) for what the links carry, W [kg m], the rest length d and the part of it, e, by which a
-/// link that carries all of W is longer than L. Times 1 / dt^2 these are joules.
+/// E(x) = 1/2 sum m |x - y|^2 + 1/2 sum k max(0, |d| - L)^2 over the free points and links of a component. y is the target of the
+/// forces and L the largest length of a link. k = W / (e d) with the load W [kg m], the rest length d, and the relative excess e
+/// of a link that carries all of W. Multiplied by 1 / dt^2 these are joules.
 class StretchEnergy {
  public:
   /// Keeps a reference to the component.
   StretchEnergy(const StretchComponent& component, const StretchLimitSettings& settings);
 
-  /// Requires weight > 0. [kg m]
+  /// Sets the load W [kg m] > 0.
   void set_weight(double weight) { weight_ = weight; }
 
-  /// How much longer than its longest a link is that carries the weight, at most [m].
+  /// The largest excess length of a link that carries the load [m].
   [[nodiscard]] double give() const { return give_; }
 
-  /// Links are near their limit that are shorter by less than a tenth of it; where springs or angle bends have stiffness, after
-  /// this also by less than half of what the longest is too long at `y`, where forces led.
+  /// Marks the links near their limit: those shorter by less than a tenth of it and, where springs or angle bends have stiffness,
+  /// by less than half of the largest excess at the target `y`.
   void find_near(const Points& y);
 
   /// E at `x`; both 3 x points.
   [[nodiscard]] double value(const Points& x, const Points& y) const;
 
-  /// Links that are too long at `x` are stiff with NearLimit::overshot until all are forgotten.
+  /// Marks links that are too long at `x`: they are stiff with NearLimit::overshot until the marks are cleared.
   void note_overshot(const Points& x);
   void forget_overshot() { overshot_.clear(); }
   [[nodiscard]] bool knows_overshot() const { return !overshot_.empty(); }
 
-  /// E, its negative gradient as the residual, and its second derivatives, of which those are left out that would make a block
-  /// indefinite. What links near the limit count as if they pushed is in what is returned too.
+  /// Computes E, its negative gradient (the residual) and its second derivatives without the parts that would make a block
+  /// indefinite. The returned energy includes links near the limit that push.
   double linearise(const Points& x, const Points& y, NearLimit near, StretchSystem& system) const;
 
-  /// Of each link k max(0, 1 - L / |d|) at `x`, what its pull adds to the second derivatives across it [kg].
+  /// For each link k max(0, 1 - L / |d|) at `x`: its contribution to the second derivatives across its direction [kg].
   [[nodiscard]] std::vector<double> stiffness_across(const Points& x) const;
 
-  /// What links pull on the way from `x`, where the system is linearised, to `tried` that it does not know of: as much as turning
-  /// made them longer, along their directions at `x`; links that count and are too long at `tried`, at most by that. Replaces the
-  /// residual: the step of a second-order correction (Nocedal and Wright 2006, chapter 18).
+  /// Replaces the residual by what the linearisation at `x` missed on the step to `tried`: links that became longer because the
+  /// step rotated them pull along their directions at `x`, at most by their excess at `tried`. This is a second-order correction
+  /// (Nocedal and Wright 2006, chapter 18).
   void take_turning(const Points& x, const Points& tried, StretchSystem& system) const;
 
  private:
@@ -63,10 +63,10 @@ class StretchEnergy {
 
   const StretchComponent& component_;
   std::vector<Limit> limits_;   ///< of links
-  std::vector<char> overshot_;  ///< links; empty while none is known
+  std::vector<char> overshot_;  ///< a flag per link; empty while none is marked
   double weight_ = 0.0;
   double give_ = 0.0;
-  double near_;  ///< the part of their limit from which links are near it
+  double near_;  ///< links are near their limit from this fraction of it
 };
 
 }  // namespace sprung

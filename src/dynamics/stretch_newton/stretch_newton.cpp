@@ -11,9 +11,9 @@ namespace {
 
 enum class Taken : std::uint8_t { from_start, when_handed_over, never };
 
-// A solid of 8 particles a side that hung took 50 times as long as with passes, of 16 a side 450 times: factors of solids fill.
-// What particles added one by one are like is not known. What may not shrink either keeps the small steps of its passes, at which
-// solves take many times as long. So do small steps for springs' sake: flags took 30 to 200 times as long as with passes.
+// Solids are left to passes, as their factors fill: a hanging solid of 8 particles a side took 50 times as long as with passes, of
+// 16 a side 450 times. Particles added one by one have unknown structure. Bodies that may not shrink, and bodies whose springs
+// need small steps anyway, keep passes: at such steps solves took 30 to 200 times as long.
 Taken taken_by_itself(const StretchComponent& component, const Body& body, const StretchLimitSettings& settings,
                       const LimitUse& use) {
   if (component.is_tree) return Taken::from_start;

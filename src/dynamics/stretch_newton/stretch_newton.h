@@ -1,4 +1,4 @@
-// A stretch limit by global solves: springs that hang together are brought within it all at once.
+// The stretch limit by global solves.
 #pragma once
 
 #include "dynamics/tethers/stretch_limit_settings.h"
@@ -13,40 +13,40 @@ namespace sprung {
 class ComponentSolver;
 struct StretchComponent;
 
-/// Newton's method on each component of limited springs: chains and trees by elimination, others by a sparse factor, large
-/// cloths on two levels. Only max_stretch is held, not max_compression. Same bits for any number of threads. Of what is not a chain
-/// or a tree a step's later digits depend on the steps before, whose factors it may use: the same steps one after the other have
-/// the same bits.
+/// Newton's method on each component of limited springs: chains and trees by elimination, others by a sparse factor, large cloths
+/// on two levels. Enforces max_stretch only, not max_compression. Gives the same bits for any number of threads. Except for chains
+/// and trees, the last digits depend on earlier steps, whose factors may be reused; the same sequence of steps gives the same
+/// bits.
 class StretchNewton {
  public:
-  /// Takes all components from the start, or, when `settings.solver` is automatic, chains and trees, and those of ropes and
-  /// surfaces that shrink freely and for which `use` asks no passes; the rest of those it takes once their body is handed over, and
-  /// others never.
+  /// Solves for all components from the start if `settings.solver` is newton. If it is automatic: from the start for chains,
+  /// trees, ropes, and surfaces that may shrink freely and that `use` does not reserve for passes; for other ropes and surfaces
+  /// after their body was handed over; never for the rest.
   StretchNewton(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use = {});
   ~StretchNewton();
 
-  /// Leads free particles from where forces led them, `positions`, to where no limited spring is much too long, with as little
-  /// weighted movement as that takes. `before` is where the step began; pins are where they shall be in `positions`. `fall` as
-  /// ComponentSolver's; `holds` of bodies, or empty. Returns the most linear systems that a component took; none when nothing was
-  /// too long.
+  /// Moves free particles from the target of the forces, `positions`, to where no limited spring is much too long, with the least
+  /// weighted displacement. `before` are the positions at the beginning of the step; `positions` holds the final positions of
+  /// pins. `fall` is that of ComponentSolver. `holds` has an entry per body or is empty. Returns the largest number of linear
+  /// systems of a component; none if nothing was too long.
   std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& holds = {});
 
   /// Whether all limited springs of a body are solved for from the start.
   [[nodiscard]] bool holds(const Body& body) const;
-  /// Whether there is anything that is or may be solved for.
+  /// Whether any component is or may be solved for.
   [[nodiscard]] bool takes_any() const { return !parts_.empty(); }
   [[nodiscard]] bool holds_all() const { return left_.empty(); }
 
-  /// Whether any of a body, by its number, is solved for from the start, and whether more can be once it is handed over.
+  /// Whether any component of a body, by its number, is solved for from the start, and whether more can be after a handover.
   [[nodiscard]] bool takes_any_of(std::size_t body) const;
   [[nodiscard]] bool may_take_over(std::size_t body) const;
   [[nodiscard]] bool may_take_over_any() const;
 
-  /// The largest turn of a component in the last solve; see ComponentSolver. None is 0.
+  /// The largest relative deformation of a component in the last solve, see ComponentSolver; 0 without components.
   [[nodiscard]] double turn() const;
 
  private:
-  /// What is or may be solved for.
+  /// A component that is or may be solved for.
   struct Part {
     std::unique_ptr<ComponentSolver> solver;
     std::size_t body;
@@ -54,7 +54,7 @@ class StretchNewton {
   };
 
   std::vector<Part> parts_;
-  std::vector<Index> left_;  ///< particles that are not solved for from the start, in ascending order
+  std::vector<Index> left_;  ///< particles that are not solved for from the start, ascending
 };
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// The linear equations of a Newton iteration on a stretch component, and what solves them.
+// The linear system of a Newton iteration on a component, and the interface of its solvers.
 #pragma once
 
 #include "dynamics/numerics/symmetric_matrix3.h"
@@ -9,29 +9,29 @@
 
 namespace sprung {
 
-/// (M + K) dx = residual: M has the masses of free points, and K the block of each link, added at its ends and subtracted between
-/// them. Pinned points do not move.
+/// (M + K) dx = residual. M holds the masses of free points. K holds the block of each link, added at its ends and subtracted
+/// between them. Pinned points do not move.
 struct StretchSystem {
   std::vector<SymmetricMatrix3> blocks;  ///< of links, positive semidefinite [kg]
-  Points residual;                       ///< what is out of balance at free points [kg m], 3 x free
-  bool is_like_last = false;             ///< whether the system before was much the same: its factor may do,
-  double may_be_left = 0.0;              ///< and so may a displacement that leaves this much to gain [kg m^2]
+  Points residual;                       ///< imbalance at free points [kg m], 3 x free
+  bool is_like_last = false;             ///< the previous system was similar: its factor may be reused,
+  double may_be_left = 0.0;              ///< and a solution may leave this much unused energy [kg m^2]
 };
 
 class StretchSystemSolver {
  public:
   virtual ~StretchSystemSolver() = default;
 
-  /// Writes the free points' displacements [m] to `step`, 3 x free; exact for trees, of others a tenth of the residual may be left.
-  /// Not finite when the system is not. Returns about how much of the energy that the system models another displacement would gain
-  /// [kg m^2]: 0 where it is exact.
+  /// Writes the displacements [m] of free points to `step`, 3 x free. Exact for trees; otherwise up to a tenth of the residual may
+  /// remain. Not finite if the system is not. Returns an estimate of the modelled energy that a better displacement would still
+  /// gain [kg m^2]; 0 if exact.
   virtual double solve(const StretchSystem& system, Points& step) = 0;
 
-  /// The same for another residual beside the blocks that were solved last, as near as their factor comes at once.
+  /// Solves with the blocks of the last system and another residual, by one application of their factor.
   virtual void solve_again(const StretchSystem& system, Points& step) = 0;
 };
 
-/// TreeSolver for trees, else PcgSolver. Keeps a reference to the component.
+/// TreeSolver for trees, otherwise PcgSolver. Keeps a reference to the component.
 [[nodiscard]] std::unique_ptr<StretchSystemSolver> make_system_solver(const StretchComponent& component);
 
 }  // namespace sprung

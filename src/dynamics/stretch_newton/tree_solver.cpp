@@ -19,8 +19,8 @@ double TreeSolver::solve(const StretchSystem& system, Points& step) {
   return 0.0;
 }
 
-// What a point adds to its parent is U - U (S + U)^-1 U for the block U between them and the point's own stiffness S. As
-// U (S + U)^-1 S it loses no digits when U is much the larger.
+// A point adds U - U (S + U)^-1 U to its parent, for the block U between them and the point's own stiffness S. The form U (S +
+// U)^-1 S loses no digits when U is much larger.
 void TreeSolver::eliminate(const StretchSystem& system, Points& step) {
   for (Index i = 0; i < component_.free_count; ++i)
     nodes_[i].own = SymmetricMatrix3::along(component_.masses[i], 0.0, Vector3::Zero());

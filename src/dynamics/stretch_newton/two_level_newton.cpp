@@ -6,16 +6,17 @@
 namespace sprung {
 namespace {
 
-// A cloth of 64 x 64 hangs in less than a millisecond a frame by itself; one of 128 x 128 takes a third of its time in two levels.
+// Smaller cloths do not need it: one level solves a hanging cloth of 64 x 64 in less than a millisecond a frame. Two levels take a
+// third of the time at 128 x 128.
 constexpr Index kLeastParticles = 8192;
 
-// Between coarse points a cloth that turns is longer than they tell, by some tenths of a per cent. Passes mend that, but come to
-// rest only where coarse links keep well within the tolerance.
+// Between coarse points a rotating cloth is longer than they show, by some tenths of a per cent. Passes correct that, but they
+// come to rest only where coarse links stay well within the tolerance.
 constexpr double kLeastTolerance = 0.005;
 constexpr double kPartOfTolerance = 0.25;
 
-// What is drawn taut is straightened by this part of the fall a step at most: as by as small a part of gravity. By all of it a
-// cloth of 128 x 128 that swings gained 0.4 % of what its fall had set free, in steps of 1/960 s; by this part a thousandth of a
+// Taut parts are straightened by at most this fraction of the fall per step, as by the same fraction of gravity. With the whole
+// fall a swinging cloth of 128 x 128 gained 0.4 % of its released energy in steps of 1/960 s; with this fraction a thousandth of a
 // per cent.
 constexpr double kStraightenedOfFall = 1.0 / 16.0;
 
@@ -59,8 +60,8 @@ std::optional<int> TwoLevelNewton::solve(const Points& before, Points& positions
   return iterations;
 }
 
-// With means by mass what the coarse level takes from the motion the fine one loses: did coarse points go as the particles that
-// they are, cloths in small steps gained energy.
+// Averages by mass, so that the fine level loses exactly the motion that the coarse level removes. With the coarse points' own
+// particles instead, cloths in small steps gained energy.
 void TwoLevelNewton::gather(const Points& before, const Points& positions) {
   const auto count = static_cast<Index>(particles_.size());
   const auto coarse_count = static_cast<Index>(coarse_.particles.size());
@@ -89,7 +90,7 @@ void TwoLevelNewton::note_tautness() {
   }
 }
 
-// Most fine links are half as long as coarse ones and carry half as much: they are as stiff across.
+// Most fine links are half as long as coarse ones and carry half as much: their stiffness across is equal.
 void TwoLevelNewton::lead_along(double fall) {
   x_.resizeLike(led_);
   for (Index n = 0; n < static_cast<Index>(x_.cols()); ++n) {
@@ -117,7 +118,7 @@ Vector3 TwoLevelNewton::common_move() const {
   return coarse_x_.col(free_point) - coarse_before_.col(free_point);
 }
 
-/// As the coarse cloth, which does: what moves beside it is as little.
+/// The fine level rests when the coarse cloth rests: the motion relative to it is as small.
 bool TwoLevelNewton::rests() const {
   double moved = 0.0;
   double inertia = 0.0;
@@ -131,7 +132,7 @@ bool TwoLevelNewton::rests() const {
 
 void TwoLevelNewton::stay_still() { x_ = before_.colwise() + common_move(); }
 
-// Links push one end as the other, coarse ones too; what else was taken goes to all.
+// Links push both ends equally on both levels; any other loss of momentum is distributed over all particles.
 void TwoLevelNewton::keep_momentum() {
   Vector3 missing = Vector3::Zero();
   double mass = 0.0;
@@ -144,7 +145,7 @@ void TwoLevelNewton::keep_momentum() {
 
 std::unique_ptr<ComponentSolver> make_component_solver(const SpringNetwork& network, StretchComponent component,
                                                        const StretchLimitSettings& settings, const LimitUse& use) {
-  // What lies on something was thrown up by what the coarse level did not know of.
+  // Bodies that may collide are excluded: contact below the coarse level's resolution threw them up.
   const bool is_limp = !component.is_tree && !component.is_elastic && !use.may_meet_anything;
   if (is_limp && component.free_count >= kLeastParticles && settings.tolerance >= kLeastTolerance) {
     if (auto coarse = coarsen(network, component, settings.kinds)) {
