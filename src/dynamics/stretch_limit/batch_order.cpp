@@ -8,22 +8,23 @@
 namespace sprung {
 namespace {
 
-// Cut by size alone; a thread is worth waking for some 10 us of work.
-constexpr Index kTaskParts = 4096 / SpringBatches::kPartSprings;
+// Tasks are cut by size alone; some 10 us of work are worth waking a thread for.
+constexpr Index kTaskBatches = 4096 / SpringBatches::kBatchSprings;
 
-// What lies between two chunks grows by a band with each colour, on either side; something is to be left in their middle. Of two
-// chunks alone much may lie between them: in a cloth of 64 x 64 with bend springs each has 1.2 bands for each colour, a fifth of
-// the springs come alone, and two threads take a third less in a drape. Of fewer parts than so many, waiting takes what that saves.
+// The springs between two chunks extend by a band with each colour on either side, and the chunks must keep some in their middle.
+// With two chunks much may lie between them: in a cloth of 64 x 64 with bend springs each chunk has 1.2 bands per colour, a fifth
+// of the springs remain serial, and two threads save a third of a drape. With fewer batches than this, waiting costs what
+// parallelism saves.
 constexpr Index kBandsPerColour = 3;
-constexpr Index kPartsForTwo = 4 * kTaskParts;
+constexpr Index kBatchesForTwo = 4 * kTaskBatches;
 
-// A part that reads what the one before has just written waits for it: colours follow each other at a distance of so many bands.
+// A batch that reads what the previous one has just written stalls: colours follow each other at a distance of this many bands.
 constexpr Index kBandsBetweenColours = 2;
 
-/// Calls `body` with each particle of a part.
+/// Calls `body` with each particle of a batch.
 template <class Body>
-void for_particles(const SpringBatches& batches, Index part, const Body& body) {
-  for (Index s = batches.parts[part].begin; s < batches.parts[part].end; ++s) {
+void for_particles(const SpringBatches& batches, Index b, const Body& body) {
+  for (Index s = batches.batch[b].begin; s < batches.batch[b].end; ++s) {
     body(batches.first[s]);
     body(batches.second[s]);
   }
@@ -41,14 +42,14 @@ class Order {
     }
   }
 
-  /// A stage of what concerns one of the chunks of particles, which begin at `offset` before the first, and nothing that waits
-  /// still.
+  /// Adds a stage of the batches that concern one chunk of particles alone and no waiting batch. The chunks begin at `offset`
+  /// before the first particle.
   void add_chunks(Index chunk, Index offset) {
     std::vector<std::vector<Index>> of_chunks((particles_ + offset - 1) / chunk + 1);
     std::vector<bool> waits_for(particles_, false);
     std::vector<Index> left;
     for (const Index p : waiting_) {
-      const Index owner = (batches_.first[batches_.parts[p].begin] + offset) / chunk;
+      const Index owner = (batches_.first[batches_.batch[p].begin] + offset) / chunk;
       bool alone = true;
       for_particles(batches_, p, [&](Index i) { alone = alone && (i + offset) / chunk == owner && !waits_for[i]; });
       if (alone) {
@@ -63,36 +64,36 @@ class Order {
     end_stage();
   }
 
-  /// A stage of one task, of all that is left.
+  /// Adds a stage of one task with all batches that are left.
   void add_rest() {
     add_task(waiting_);
     end_stage();
   }
 
   void write(SpringBatches& batches) const {
-    std::vector<SpringBatches::Part> parts;
-    parts.reserve(order_.size());
-    for (const Index p : order_) parts.push_back(batches.parts[p]);
-    batches.parts = std::move(parts);
+    std::vector<SpringBatches::Batch> ordered;
+    ordered.reserve(order_.size());
+    for (const Index p : order_) ordered.push_back(batches.batch[p]);
+    batches.batch = std::move(ordered);
     batches.task_begin = task_begin_;
     batches.stage_begin = stage_begin_;
   }
 
  private:
-  [[nodiscard]] Index lowest_particle(Index part) const {
+  [[nodiscard]] Index lowest_particle(Index b) const {
     Index lowest = particles_;
-    for_particles(batches_, part, [&](Index i) { lowest = std::min(lowest, i); });
+    for_particles(batches_, b, [&](Index i) { lowest = std::min(lowest, i); });
     return lowest;
   }
 
-  /// `parts` by their places, as far as each is after those before it with which it shares a particle.
-  void add_task(const std::vector<Index>& parts) {
-    if (parts.empty()) return;
-    std::vector<std::vector<std::size_t>> followers(parts.size());
-    std::vector<int> missing(parts.size(), 0);
+  /// Orders the batches by position, but keeps each after those before it with a common particle.
+  void add_task(const std::vector<Index>& members) {
+    if (members.empty()) return;
+    std::vector<std::vector<std::size_t>> followers(members.size());
+    std::vector<int> missing(members.size(), 0);
     std::vector<Index> last_at(particles_, kNone);
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      for_particles(batches_, parts[k], [&](Index i) {
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      for_particles(batches_, members[k], [&](Index i) {
         const auto last = std::exchange(last_at[i], static_cast<Index>(k));
         if (last == kNone || last == static_cast<Index>(k)) return;
         followers[last].push_back(k);
@@ -101,14 +102,14 @@ class Order {
     }
     using Entry = std::pair<Index, std::size_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> ready;
-    const auto make_ready = [&](std::size_t k) { ready.emplace(places_[parts[k]], k); };
-    for (std::size_t k = 0; k < parts.size(); ++k) {
+    const auto make_ready = [&](std::size_t k) { ready.emplace(places_[members[k]], k); };
+    for (std::size_t k = 0; k < members.size(); ++k) {
       if (missing[k] == 0) make_ready(k);
     }
     while (!ready.empty()) {
       const std::size_t next = ready.top().second;
       ready.pop();
-      order_.push_back(parts[next]);
+      order_.push_back(members[next]);
       for (const std::size_t follower : followers[next]) {
         if (--missing[follower] == 0) make_ready(follower);
       }
@@ -135,7 +136,7 @@ class Order {
 void order_by_colour(const std::vector<Index>& colour_begin, SpringBatches& batches) {
   for (std::size_t colour = 0; colour + 1 < colour_begin.size(); ++colour) {
     for (Index p = colour_begin[colour]; p < colour_begin[colour + 1]; p = batches.task_begin.back()) {
-      batches.task_begin.push_back(std::min(p + kTaskParts, colour_begin[colour + 1]));
+      batches.task_begin.push_back(std::min(p + kTaskBatches, colour_begin[colour + 1]));
     }
     batches.stage_begin.push_back(static_cast<Index>(batches.task_begin.size()) - 1);
   }
@@ -143,7 +144,7 @@ void order_by_colour(const std::vector<Index>& colour_begin, SpringBatches& batc
 
 void order_by_place(const std::vector<Index>& colour_begin, Index band, Index particles, SpringBatches& batches) {
   const auto colours = static_cast<Index>(colour_begin.size()) - 1;
-  const Index least = static_cast<Index>(batches.parts.size()) >= kPartsForTwo ? 2 : 1;
+  const Index least = static_cast<Index>(batches.batch.size()) >= kBatchesForTwo ? 2 : 1;
   const Index chunks = std::max(least, particles / std::max(1, kBandsPerColour * colours * band));
   const Index chunk = (particles + chunks - 1) / chunks;
   Order order(batches, colour_begin, band, particles);

@@ -1,17 +1,17 @@
-// In which order a pass takes the parts of SpringBatches. Parts that share no particle may change places without changing a bit:
-// so much order as colours have is kept between those that do.
+// The order in which a pass takes the batches of SpringBatches. Batches without a common particle may be swapped without changing
+// a bit. Batches with one keep the order of their colours.
 #pragma once
 
 #include "dynamics/stretch_limit/spring_batches.h"
 
 namespace sprung {
 
-/// One colour after the other, `colour_begin` as the parts lie: a stage each.
+/// One colour after the other; each colour is a stage.
 void order_by_colour(const std::vector<Index>& colour_begin, SpringBatches& batches);
 
 /// For narrow networks, whose springs join particles at most `band` apart: all colours of some particles before those of the next,
-/// while they are in the cache. Particles are cut into chunks; what concerns one chunk alone can be done at the same time as what
-/// concerns others, and then what lies between them.
+/// while the particles are in the cache. Particles are cut into chunks. Batches of one chunk alone run in parallel with those of
+/// other chunks; the batches between chunks follow.
 void order_by_place(const std::vector<Index>& colour_begin, Index band, Index particles, SpringBatches& batches);
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// Springs between any particles, as kernels read and write them at a time. See stretch_groups.h.
+// Kernel access to springs between arbitrary particles. See layouts.h.
 #pragma once
 
 #include "dynamics/numerics/simd_packed.h"
@@ -9,7 +9,7 @@
 
 namespace sprung {
 
-/// Four springs between any particles.
+/// Four springs between arbitrary particles.
 struct GatheredGroup {
   using Lanes = Double4;
 
@@ -62,7 +62,7 @@ struct GatheredGroup {
   using Pair = double __attribute__((vector_size(2 * sizeof(double))));
   using StoredPair = double __attribute__((vector_size(2 * sizeof(double)), aligned(alignof(double)), may_alias));
 
-  // Four lanes, the last one 0: fewer shuffles than gathering x, y and z of four particles.
+  // Loads four lanes, the last one 0: this takes fewer shuffles than gathering x, y and z of four particles.
   [[gnu::always_inline]] static void load_one(const double* from, Lanes& to) {
     const Pair xy = *reinterpret_cast<const StoredPair*>(from);
     const Pair z{from[2], 0.0};

@@ -1,4 +1,4 @@
-// Springs between two runs of particles, as kernels read and write them at a time. See stretch_groups.h.
+// Kernel access to springs between two runs of particles. See layouts.h.
 #pragma once
 
 #include "dynamics/numerics/simd_packed.h"
@@ -9,7 +9,7 @@
 
 namespace sprung {
 
-/// Springs between consecutive particles and consecutive others.
+/// Springs between consecutive particles and other consecutive particles.
 template <class PackedVectors4>
 struct RunGroup {
   using Lanes = typename PackedVectors4::Lanes;

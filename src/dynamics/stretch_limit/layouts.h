@@ -1,6 +1,6 @@
-// What kernels move springs by, and where particles lie. The layouts of SpringBatches have a group each, `find_squared`, the
-// springs' squared lengths, and `move`, which moves their ends towards each other, or away along where they were before: see
-// stretch_runs.h, stretch_pairs.h, stretch_gathered.h. For the .cpp files of kernels, as lanes.h.
+// The interface between kernels and the memory layouts of SpringBatches. Each layout has a group type with `find_squared`, the
+// squared lengths of the springs, and `move`, which moves their ends towards each other, or apart along their earlier direction:
+// see layout_runs.h, layout_pairs.h, layout_gathered.h. For the .cpp files of kernels alone, as simd.h.
 #pragma once
 
 #include "base/types.h"
@@ -9,14 +9,14 @@
 
 namespace sprung {
 
-/// What ends move, as parts of the way to the other.
+/// Displacements of the ends, as fractions of the vector between them.
 template <class Lanes>
 struct Moves {
   Lanes first;
   Lanes second;
 };
 
-/// No moves along where springs were before.
+/// No displacements along the earlier direction.
 struct NoPushes {};
 
 [[gnu::always_inline]] inline std::ptrdiff_t place_of(Index particle) { return std::ptrdiff_t{3} * particle; }

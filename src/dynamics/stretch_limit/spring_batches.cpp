@@ -17,22 +17,23 @@ namespace {
 
 constexpr int kColours = 64;
 
-// A network is narrow when springs join particles no farther apart, by number, than this part of all: rows of a cloth.
+// A network is narrow if springs join particles whose numbers differ by at most one part in this many of all: rows of a cloth.
 constexpr Index kNarrow = 32;
 
-// Of a narrow network a part has springs of some rows only: longer parts are cheaper, shorter ones can be done when their rows are.
+// In a narrow network a batch holds springs of a few rows only: longer batches are cheaper, shorter ones can run as soon as their
+// rows are ready.
 constexpr Index kSpan = 4;
 
-/// Springs [begin, begin + count) of the network: one, or a run that fills the kernel's lanes.
+/// Springs [begin, begin + count) of the network: a single one, or a run that fills the kernel's registers.
 struct Piece {
   Index begin;
   Index count;
 };
 
-/// How many springs from `limited[i]` on join consecutive particles, each of them once.
+/// Number of springs from `limited[i]` on that join consecutive particles, each particle once.
 Index run_length(const Springs& springs, const std::vector<Index>& limited, std::size_t i) {
   const Index s = limited[i];
-  const Index most = std::min(springs.second[s] - springs.first[s], SpringBatches::kPartSprings);
+  const Index most = std::min(springs.second[s] - springs.first[s], SpringBatches::kBatchSprings);
   Index count = 1;
   while (count < most && i + count < limited.size() && limited[i + count] == s + count &&
          springs.first[s + count] == springs.first[s] + count && springs.second[s + count] == springs.second[s] + count) {
@@ -57,7 +58,7 @@ struct Colour {
 };
 using Colouring = std::array<Colour, kColours>;
 
-/// Gives pieces the lowest colour that none of their particles has, in their order; returns those for which none was left.
+/// Gives pieces, in their order, the lowest colour that none of their particles has. Returns those without a free colour.
 std::vector<Piece> colour(const SpringNetwork& network, const std::vector<Piece>& pieces, Colouring& colours) {
   std::vector<std::uint64_t> used(network.particle_count(), 0);
   std::vector<Piece> left;
@@ -91,7 +92,7 @@ bool are_pairs(const Springs& springs, std::span<const Piece> singles, std::size
   return true;
 }
 
-/// How far apart the particles are, by number, that a spring joins.
+/// The largest difference of the numbers of two particles that a spring joins.
 Index bandwidth(const Springs& springs, const std::vector<Index>& limited) {
   Index widest = 1;
   for (const Index s : limited) widest = std::max(widest, std::abs(springs.second[s] - springs.first[s]));
@@ -100,7 +101,7 @@ Index bandwidth(const Springs& springs, const std::vector<Index>& limited) {
 
 class Filler {
  public:
-  /// The first ends of a part's springs are at most about `span` apart.
+  /// The first ends of a batch's springs are at most about `span` apart.
   Filler(const SpringNetwork& network, Index span, SpringBatches& batches) : network_(network), span_(span), batches_(batches) {}
 
   void add_colour(Colour& colour) {
@@ -129,14 +130,14 @@ class Filler {
       for (const std::size_t k : {0, 2, 1, 3}) pairs.push_back(singles[i + k].begin);
       i += kSimdWidth;
     }
-    add_parts(pairs, SpringBatches::Layout::pairs);
-    add_parts(others, SpringBatches::Layout::gathered);
+    add_batches(pairs, SpringBatches::Layout::pairs);
+    add_batches(others, SpringBatches::Layout::gathered);
   }
 
-  void add_parts(const std::vector<Index>& springs, SpringBatches::Layout layout) {
+  void add_batches(const std::vector<Index>& springs, SpringBatches::Layout layout) {
     for (std::size_t begin = 0; begin < springs.size();) {
       const Index from = batches_.count();
-      const std::size_t end = part_end(springs, begin);
+      const std::size_t end = batch_end(springs, begin);
       for (std::size_t i = begin; i < end; ++i) append(springs[i]);
       while (batches_.count() % kSimdWidth != 0) append(springs[end - 1]);
       add_part(from, layout);
@@ -144,10 +145,10 @@ class Filler {
     }
   }
 
-  /// Whole groups, as far as springs go.
-  [[nodiscard]] std::size_t part_end(const std::vector<Index>& springs, std::size_t begin) const {
+  /// The end of the largest batch of whole groups.
+  [[nodiscard]] std::size_t batch_end(const std::vector<Index>& springs, std::size_t begin) const {
     const auto first = [&](std::size_t i) { return network_.springs.first[springs[i]]; };
-    const std::size_t most = std::min(springs.size(), begin + SpringBatches::kPartSprings);
+    const std::size_t most = std::min(springs.size(), begin + SpringBatches::kBatchSprings);
     std::size_t end = std::min(most, begin + kSimdWidth);
     while (end < most && first(end) - first(begin) <= span_) end = std::min(most, end + kSimdWidth);
     return end;
@@ -167,7 +168,7 @@ class Filler {
     const auto same = [&](const std::vector<double>& values) {
       return std::all_of(values.begin() + from, values.end(), [&](double value) { return value == values[from]; });
     };
-    batches_.parts.push_back({from, batches_.count(), layout, same(batches_.rest_length) && same(batches_.first_share)});
+    batches_.batch.push_back({from, batches_.count(), layout, same(batches_.rest_length) && same(batches_.first_share)});
   }
 
   const SpringNetwork& network_;
@@ -189,7 +190,7 @@ SpringBatches::SpringBatches(const SpringNetwork& network, const std::vector<Spr
     for (Colour& of_colour : colours) {
       if (of_colour.runs.empty() && of_colour.singles.empty()) break;
       filler.add_colour(of_colour);
-      colour_begin.push_back(static_cast<Index>(parts.size()));
+      colour_begin.push_back(static_cast<Index>(batch.size()));
     }
   }
   if (is_narrow) {

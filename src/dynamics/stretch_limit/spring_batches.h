@@ -1,4 +1,4 @@
-// The springs that a stretch limit holds, in parts without shared particles.
+// The springs of a stretch limit in batches without common particles.
 #pragma once
 
 #include "network/spring_network.h"
@@ -7,34 +7,34 @@
 
 namespace sprung {
 
-/// Entry s of each array belongs to limited spring s. The springs of a part follow each other; a part is filled to a multiple of
-/// kSimdWidth by its last spring.
+/// Entry s of each array belongs to limited spring s. The springs of a batch are contiguous; its last spring is repeated to fill a
+/// multiple of kSimdWidth.
 struct SpringBatches {
   std::vector<Index> first;
   std::vector<Index> second;
   std::vector<double> rest_length;  ///< d [m], > 0
   std::vector<double> per_length;   ///< 1 / d [1/m]
-  std::vector<double> first_share;  ///< part of a correction that the first end takes: w_1 / (w_1 + w_2) with inverse masses w
+  std::vector<double> first_share;  ///< fraction of a correction that the first end takes: w_1 / (w_1 + w_2) with inverse masses w
 
-  /// How a part's springs lie in memory.
+  /// How the particles of a batch's springs lie in memory.
   enum class Layout : std::uint8_t {
     run,      ///< begin + i joins first[begin] + i and second[begin] + i
     pairs,    ///< in each group of kSimdWidth, from s on, spring s + i joins first[s] + k and first[s] + k + 1: k = 0, 4, 2, 6
-    gathered  ///< anyhow
+    gathered  ///< arbitrary
   };
 
-  /// Springs [begin, end), at most kPartSprings.
-  struct Part {
+  /// Springs [begin, end), at most kBatchSprings.
+  struct Batch {
     Index begin;
     Index end;
     Layout layout;
-    bool same;  ///< all have the constants of the first
+    bool same;  ///< all springs have the constants of the first
   };
-  static constexpr Index kPartSprings = 64;
-  std::vector<Part> parts;
+  static constexpr Index kBatchSprings = 64;
+  std::vector<Batch> batch;
 
-  /// Task t is to go through parts [task_begin[t], task_begin[t + 1]), one after the other; stage s holds tasks [stage_begin[s],
-  /// stage_begin[s + 1]), of which no two share a particle. The bits are those of one colour of springs after the other.
+  /// Task t takes batches [task_begin[t], task_begin[t + 1]) in order. Stage s holds tasks [stage_begin[s], stage_begin[s + 1]),
+  /// no two of which share a particle. The bits are those of one colour of springs after the other.
   std::vector<Index> task_begin{0};
   std::vector<Index> stage_begin{0};
 

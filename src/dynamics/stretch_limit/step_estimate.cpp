@@ -9,16 +9,16 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Of what surfaces that hold their shape carry, with or without tethers, measured as the comment of largest_load tells.
+// The load of rigid surfaces relative to that of others, measured as the comment of largest_load says.
 constexpr double kTetheredShare = 5.0;
 constexpr double kShare = 8.0;
 
 struct Farthest {
   Index particle;
-  Index springs;  ///< on the edge there
+  Index springs;  ///< on the path there
 };
 
-/// Counted from the nearest of `starts`, which are particles of the body.
+/// Distances in springs from the nearest of `starts`, which are particles of the body.
 Farthest farthest_from(const Body& body, const SpringGraph& graph, const std::vector<Index>& starts) {
   std::vector<Index> away(body.particle_count, kNone);
   const auto springs_to = [&](Index particle) -> Index& { return away[particle - body.first_particle]; };
@@ -35,13 +35,13 @@ Farthest farthest_from(const Body& body, const SpringGraph& graph, const std::ve
   return {queue.back(), springs_to(queue.back())};
 }
 
-/// Half the springs on the edge between two ends of the body that are far apart.
+/// Half the springs on the path between two distant ends of the body.
 double half_way(const Body& body, const SpringGraph& graph, Index start) {
   const Index end = farthest_from(body, graph, {start}).particle;
   return 0.5 * farthest_from(body, graph, {end}).springs;
 }
 
-/// How often springs of the body end at its particles.
+/// Number of spring ends at the body's particles.
 Index count_ends(const Body& body, const SpringGraph& graph) {
   Index ends = 0;
   for (Index i = 0; i < body.particle_count; ++i) ends += static_cast<Index>(graph.at(body.first_particle + i).size());
@@ -54,18 +54,18 @@ bool holds_shape(const Body& body, const SpringGraph& graph) {
   return body.dimension == 2 && count_ends(body, graph) / 2 >= 2 * body.particle_count - 3;
 }
 
-// Passes spread excess like diffusion: what moves down by u at n particles leaves on average n u / d at the pin. But a spring has
-// none right after its own projection, and its neighbours' take turns in adding some again: the last of those that meet at a
-// particle holds what all of them hold on average. Hanging ropes, 2 springs a particle, showed 1.8 to 1.9 times the average,
-// cloths, 4 springs, 4.0 times.
+// Passes spread excess like diffusion: a displacement u of n particles leaves on average n u / d at the pin. A spring has no
+// excess right after its own projection, but its neighbours add some again: the last of the springs that meet at a particle holds
+// what all of them hold on average. Measured: 1.8 to 1.9 times the average for hanging ropes (2 springs a particle), 4.0 for
+// cloths (4 springs).
 //
-// Tethers hand on at once what hangs straight from a pin; what hangs askew its strand still carries. Cloths of 24, 48 and 64
-// particles a side, by two corners, one pass a step, showed 0.8, 0.8 and 0.6 of what a rope of so many springs would.
+// Tethers pass on the load that hangs straight below a pin; a strand still carries what hangs sideways. Measured with one pass a
+// step: cloths of 24, 48 and 64 particles a side on two corners showed 0.8, 0.8 and 0.6 of a rope with as many springs.
 //
-// What may shrink necks and folds until few springs carry all. Cloths that may not share it: by two corners, one pass a step,
-// without tethers structural and shear springs (7.3 to 7.6 a particle) of 16 and 32 particles a side showed 1.0 of carried / d,
-// with bend springs (10.8 and 11.3) 0.26; with tethers 0.37, 0.48, 0.56 and 0.65 of 16, 32, 64 and 128 a side, with bend 0.21, 0.29
-// and 0.39.
+// A cloth that may shrink necks and folds until few springs carry all. One that may not shares the load. Measured on two corners
+// with one pass a step: without tethers, structural and shear springs (7.3 to 7.6 a particle) with 16 and 32 particles a side 1.0
+// of carried / d, with bend springs (10.8 and 11.3) 0.26; with tethers 0.37, 0.48, 0.56 and 0.65 for 16, 32, 64 and 128 a side,
+// with bend springs 0.21, 0.29 and 0.39.
 double largest_load(const SpringNetwork& network, const Body& body, const SpringGraph& graph, const LoadCase& load_case) {
   double shortest = kInfinity;
   double shortest_at_pin = kInfinity;

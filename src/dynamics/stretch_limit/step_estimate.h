@@ -1,25 +1,25 @@
-// What the springs that hold a body must hand on to its pins.
+// The load that a body's springs pass on to its pins.
 #pragma once
 
 #include "dynamics/tethers/spring_graph.h"
 
 namespace sprung {
 
-/// How a body is held.
+/// How a body is suspended.
 struct LoadCase {
-  bool tethers;  ///< to pins that are taut
-  bool shared;   ///< springs neither stretch nor shrink, and hold the shape: what many of them bear is not left to a few
+  bool tethers;  ///< long range attachments to taut pins
+  bool shared;   ///< springs neither stretch nor shrink and make the shape rigid, so that many springs share the load
 };
 
-/// Whether the limited springs of a surface are enough to hold its shape within itself: 2 n - 3 for n particles (Maxwell 1864).
+/// Whether the limited springs of a surface make it rigid within itself: 2 n - 3 springs for n particles (Maxwell 1864).
 [[nodiscard]] bool holds_shape(const Body& body, const SpringGraph& graph);
 
-/// By how much a Gauss-Seidel pass leaves the most loaded limited spring of a body too long when each particle moves down by 1 m
-/// before it, as a part of the spring's rest length [1/m]; 0 without limited springs. That is particles carried, times springs that
-/// meet at a particle, over the rest length. With pins the free particles are shared evenly by the pinned ones that have limited
-/// springs; with tethers one carries the springs of the longest strand that leads to it. Without pins the body may
-/// hang over an obstacle by its middle: half the springs on the way between its farthest ends. `graph` is that of the limited
-/// springs. Where the load is shared it falls with the number of springs that meet.
+/// The relative excess of a body's most loaded limited spring after a Gauss-Seidel pass, per metre that each particle moved down
+/// before it [1/m]; 0 without limited springs. It is the number of carried particles, times the springs that meet at a particle,
+/// divided by the rest length. With pins, the pinned particles with limited springs share the free particles equally; with
+/// tethers, each carries the springs of the longest strand that leads to it. Without pins the body may hang over an obstacle by
+/// its middle: half the springs on the path between its farthest ends. A shared load decreases with the number of springs that
+/// meet. `graph` is that of the limited springs.
 double largest_load(const SpringNetwork& network, const Body& body, const SpringGraph& graph, const LoadCase& load_case);
 
 }  // namespace sprung

@@ -12,9 +12,9 @@ namespace sprung {
 namespace {
 
 using Layout = SpringBatches::Layout;
-using Part = SpringBatches::Part;
+using Batch = SpringBatches::Batch;
 
-/// The longest and the shortest of the springs in each lane, squared: only at the end all lanes are looked at.
+/// Squares of the longest and the shortest spring in each lane; the lanes are combined only at the end.
 template <class Lanes>
 struct Extremes {
   Lanes longest{};
@@ -30,7 +30,7 @@ struct Extremes {
   }
 };
 
-/// Of parts whose springs fill `Wide` groups, and of what is left over.
+/// For batches whose springs fill `Wide` groups, and for the rest.
 template <class Wide>
 struct AllExtremes {
   Extremes<Wide> of_wide;
@@ -65,28 +65,28 @@ struct AllExtremes {
   return are_beyond(range, some);
 }
 
-/// Squared lengths of a part's springs from `s` on, as parts of the rest length, as long as they fill a group; returns where they
-/// do not. Without `lengths` only the extremes are kept.
+/// Squared lengths of a batch's springs from `s` on, relative to the rest length, while they fill a group. Returns the first that
+/// does not. Without `lengths` only the extremes are kept.
 template <class Group>
-[[gnu::always_inline]] inline Index find_squared(const SpringBatches& batches, const Part& part, Index s, const double* positions,
+[[gnu::always_inline]] inline Index find_squared(const SpringBatches& batches, const Batch& batch, Index s, const double* positions,
                                                  double* lengths, Extremes<typename Group::Lanes>& extremes) {
   using Lanes = typename Group::Lanes;
-  if (s + kCountOf < Lanes >> part.end) return s;
+  if (s + kCountOf < Lanes >> batch.end) return s;
   Lanes per_length;
   load_simd(&batches.per_length[s], per_length);
-  for (; s + kCountOf<Lanes> <= part.end; s += kCountOf<Lanes>) {
-    if (!part.same) load_simd(&batches.per_length[s], per_length);
+  for (; s + kCountOf<Lanes> <= batch.end; s += kCountOf<Lanes>) {
+    if (!batch.same) load_simd(&batches.per_length[s], per_length);
     Lanes squared;
     Group::find_squared(batches, s, positions, squared);
     squared *= per_length * per_length;
     extremes.include(squared, squared);
-    if (lengths != nullptr) store_simd(squared, lengths + (s - part.begin));
+    if (lengths != nullptr) store_simd(squared, lengths + (s - batch.begin));
   }
   return s;
 }
 
-/// From squared lengths to how much of each spring is beyond its limits: 1 - allowed / length, of what is too long in `lengths`,
-/// and of what is too short in `pushes`, at most its own length, unless there is none of these.
+/// Turns squared lengths into corrections 1 - allowed / length: of springs that are too long in `lengths`, and of those that are
+/// too short in `pushes`, at most their own length, unless there are none.
 template <class Lanes>
 [[gnu::always_inline]] inline Index find_beyond(const LengthRange& range, double relaxation, Index i, Index count, double* lengths,
                                                 double* pushes) {
@@ -106,7 +106,7 @@ template <class Lanes>
   return i;
 }
 
-/// What ends move of what is beyond their limits.
+/// The displacements of the ends.
 template <class Lanes>
 [[gnu::always_inline]] inline void load_moves(const double* beyond, const Lanes& first_share, Moves<Lanes>& moves) {
   load_simd(beyond, moves.second);
@@ -115,91 +115,91 @@ template <class Lanes>
 }
 
 template <class Group>
-[[gnu::always_inline]] inline Index move(const SpringBatches& batches, const Part& part, Index s, const double* too_long,
+[[gnu::always_inline]] inline Index move(const SpringBatches& batches, const Batch& batch, Index s, const double* too_long,
                                          const double* too_short, const double* before, double* positions) {
   using Lanes = typename Group::Lanes;
-  if (s + kCountOf < Lanes >> part.end) return s;
+  if (s + kCountOf < Lanes >> batch.end) return s;
   Lanes first_share;
   load_simd(&batches.first_share[s], first_share);
-  for (; s + kCountOf<Lanes> <= part.end; s += kCountOf<Lanes>) {
-    if (!part.same) load_simd(&batches.first_share[s], first_share);
+  for (; s + kCountOf<Lanes> <= batch.end; s += kCountOf<Lanes>) {
+    if (!batch.same) load_simd(&batches.first_share[s], first_share);
     Moves<Lanes> pulls;
-    load_moves(too_long + (s - part.begin), first_share, pulls);
+    load_moves(too_long + (s - batch.begin), first_share, pulls);
     if (too_short == nullptr) {
       Group::move(batches, s, pulls, NoPushes{}, before, positions);
       continue;
     }
     Moves<Lanes> pushes;
-    load_moves(too_short + (s - part.begin), first_share, pushes);
+    load_moves(too_short + (s - batch.begin), first_share, pushes);
     Group::move(batches, s, pulls, pushes, before, positions);
   }
   return s;
 }
 
-// Three sweeps over a part, which is in the first-level cache: in one, each spring would wait for its own root, and the machine
-// does not look far enough ahead to do another meanwhile. What does not fill a wide group is left to narrow ones.
+// Three sweeps over a batch, which stays in the first-level cache. In a single sweep each spring would wait for its own square
+// root, and hardware does not look far enough ahead to start the next. Springs that do not fill a wide group use narrow ones.
 template <class Wide, class Narrow, class All>
-[[gnu::always_inline]] inline void project(const SpringBatches& batches, const Part& part, const LengthRange& range,
+[[gnu::always_inline]] inline void project(const SpringBatches& batches, const Batch& batch, const LengthRange& range,
                                            double relaxation, const double* before, double* positions, All& extremes) {
-  alignas(Double8) double lengths[SpringBatches::kPartSprings];
+  alignas(Double8) double lengths[SpringBatches::kBatchSprings];
   Extremes<typename Wide::Lanes> of_wide;
   Extremes<typename Narrow::Lanes> of_narrow;
-  const Index measured = find_squared<Wide>(batches, part, part.begin, positions, lengths, of_wide);
-  find_squared<Narrow>(batches, part, measured, positions, lengths, of_narrow);
+  const Index measured = find_squared<Wide>(batches, batch, batch.begin, positions, lengths, of_wide);
+  find_squared<Narrow>(batches, batch, measured, positions, lengths, of_narrow);
   if (!are_beyond(range, of_wide) && !are_beyond(range, of_narrow)) return;
   extremes.include(of_wide);
   extremes.include(of_narrow);
 
   const LengthRange least_alone{.least = range.least, .most = HUGE_VAL};
-  alignas(Double8) double pushes[SpringBatches::kPartSprings];
+  alignas(Double8) double pushes[SpringBatches::kBatchSprings];
   double* const too_short = are_beyond(least_alone, of_wide) || are_beyond(least_alone, of_narrow) ? pushes : nullptr;
-  const Index count = part.end - part.begin;
+  const Index count = batch.end - batch.begin;
   const Index found = find_beyond<typename Wide::Lanes>(range, relaxation, 0, count, lengths, too_short);
   find_beyond<typename Narrow::Lanes>(range, relaxation, found, count, lengths, too_short);
-  const Index moved = move<Wide>(batches, part, part.begin, lengths, too_short, before, positions);
-  move<Narrow>(batches, part, moved, lengths, too_short, before, positions);
+  const Index moved = move<Wide>(batches, batch, batch.begin, lengths, too_short, before, positions);
+  move<Narrow>(batches, batch, moved, lengths, too_short, before, positions);
 }
 
-/// Calls `body` with the groups of each part.
+/// Calls `body` with the groups of each batch.
 template <class Widest, class Body>
-[[gnu::always_inline]] inline void for_parts(const SpringBatches& batches, const Parts& parts, const Body& body) {
-  for (Index p = parts.begin; p < parts.end; ++p) {
-    const Part& part = batches.parts[p];
-    switch (part.layout) {
+[[gnu::always_inline]] inline void for_batches(const SpringBatches& batches, const BatchRange& batch_range, const Body& body) {
+  for (Index p = batch_range.begin; p < batch_range.end; ++p) {
+    const Batch& batch = batches.batch[p];
+    switch (batch.layout) {
       case Layout::run:
-        body.template operator()<RunGroup<Widest>, RunGroup<PackedVectors4>>(part);
+        body.template operator()<RunGroup<Widest>, RunGroup<PackedVectors4>>(batch);
         break;
       case Layout::pairs:
-        body.template operator()<PairGroup<Widest>, PairGroup<PackedVectors4>>(part);
+        body.template operator()<PairGroup<Widest>, PairGroup<PackedVectors4>>(batch);
         break;
       default:
-        body.template operator()<GatheredGroup, GatheredGroup>(part);
+        body.template operator()<GatheredGroup, GatheredGroup>(batch);
     }
   }
 }
 
 template <class Widest>
-[[gnu::always_inline]] inline SquaredLengths project_parts(const SpringBatches& batches, const Parts& parts,
-                                                           const LengthRange& range, double relaxation, const double* before,
-                                                           double* positions) {
+[[gnu::always_inline]] inline SquaredLengths project_batches(const SpringBatches& batches, const BatchRange& batch_range,
+                                                             const LengthRange& range, double relaxation, const double* before,
+                                                             double* positions) {
   AllExtremes<typename Widest::Lanes> extremes;
-  for_parts<Widest>(
-      batches, parts, [&]<class Wide, class Narrow>(const Part& part) __attribute__((always_inline)) {
-        project<Wide, Narrow>(batches, part, range, relaxation, before, positions, extremes);
+  for_batches<Widest>(
+      batches, batch_range, [&]<class Wide, class Narrow>(const Batch& batch) __attribute__((always_inline)) {
+        project<Wide, Narrow>(batches, batch, range, relaxation, before, positions, extremes);
       });
   return extremes.lengths();
 }
 
 template <class Widest>
-[[gnu::always_inline]] inline SquaredLengths measure_parts(const SpringBatches& batches, const Parts& parts,
-                                                           const double* positions) {
+[[gnu::always_inline]] inline SquaredLengths measure_batches(const SpringBatches& batches, const BatchRange& batch_range,
+                                                             const double* positions) {
   AllExtremes<typename Widest::Lanes> extremes;
-  for_parts<Widest>(
-      batches, parts, [&]<class Wide, class Narrow>(const Part& part) __attribute__((always_inline)) {
+  for_batches<Widest>(
+      batches, batch_range, [&]<class Wide, class Narrow>(const Batch& batch) __attribute__((always_inline)) {
         Extremes<typename Wide::Lanes> of_wide;
-        const Index measured = find_squared<Wide>(batches, part, part.begin, positions, nullptr, of_wide);
+        const Index measured = find_squared<Wide>(batches, batch, batch.begin, positions, nullptr, of_wide);
         extremes.include(of_wide);
-        find_squared<Narrow>(batches, part, measured, positions, nullptr, extremes.of_narrow);
+        find_squared<Narrow>(batches, batch, measured, positions, nullptr, extremes.of_narrow);
       });
   return extremes.lengths();
 }
@@ -207,25 +207,25 @@ template <class Widest>
 }  // namespace
 
 SPRUNG_KERNEL
-SquaredLengths project_springs_narrow(const SpringBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
-                                      const double* before, double* positions) {
-  return project_parts<PackedVectors4>(batches, parts, range, relaxation, before, positions);
+SquaredLengths project_springs_narrow(const SpringBatches& batches, const BatchRange& batch_range, const LengthRange& range,
+                                      double relaxation, const double* before, double* positions) {
+  return project_batches<PackedVectors4>(batches, batch_range, range, relaxation, before, positions);
 }
 
 SPRUNG_KERNEL
-SquaredLengths measure_springs_narrow(const SpringBatches& batches, const Parts& parts, const double* positions) {
-  return measure_parts<PackedVectors4>(batches, parts, positions);
+SquaredLengths measure_springs_narrow(const SpringBatches& batches, const BatchRange& batch_range, const double* positions) {
+  return measure_batches<PackedVectors4>(batches, batch_range, positions);
 }
 
 SPRUNG_WIDE_KERNEL
-SquaredLengths project_springs_wide(const SpringBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
-                                    const double* before, double* positions) {
-  return project_parts<PackedVectors8>(batches, parts, range, relaxation, before, positions);
+SquaredLengths project_springs_wide(const SpringBatches& batches, const BatchRange& batch_range, const LengthRange& range,
+                                    double relaxation, const double* before, double* positions) {
+  return project_batches<PackedVectors8>(batches, batch_range, range, relaxation, before, positions);
 }
 
 SPRUNG_WIDE_KERNEL
-SquaredLengths measure_springs_wide(const SpringBatches& batches, const Parts& parts, const double* positions) {
-  return measure_parts<PackedVectors8>(batches, parts, positions);
+SquaredLengths measure_springs_wide(const SpringBatches& batches, const BatchRange& batch_range, const double* positions) {
+  return measure_batches<PackedVectors8>(batches, batch_range, positions);
 }
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// Projection of springs onto their limits: the hot loop of StretchLimit.
+// Projection of springs onto their limits: the inner loop of StretchLimit.
 #pragma once
 
 #include "base/kernel.h"
@@ -9,13 +9,13 @@
 
 namespace sprung {
 
-/// Allowed lengths as parts of the rest length.
+/// Allowed lengths relative to the rest length.
 struct LengthRange {
   double least;
   double most;
 };
 
-/// Squares of the longest and the shortest length of some springs, as parts of the rest length.
+/// Squares of the largest and the smallest length of some springs, relative to the rest length.
 struct SquaredLengths {
   double longest = 0.0;
   double shortest = HUGE_VAL;
@@ -25,40 +25,41 @@ struct SquaredLengths {
     shortest = std::min(shortest, others.shortest);
   }
 
-  /// How far they are beyond `range`, as a part of the rest length.
+  /// The largest excess beyond `range`, relative to the rest length.
   [[nodiscard]] double excess(const LengthRange& range) const {
     return std::max({0.0, std::sqrt(longest) - range.most, range.least - std::sqrt(shortest)});
   }
 };
 
-/// Parts [begin, end) of batches.
-struct Parts {
+/// Batches [begin, end).
+struct BatchRange {
   Index begin;
   Index end;
 };
 
-/// Moves the ends of springs by `relaxation` times what makes their lengths lie in `range`, part after part; `positions` holds 3
-/// numbers a particle [m]. Returns the lengths that it met. What is too short is pushed along what it was from end to end `before`,
-/// where the step began, by at most that: what turns meanwhile is pushed short of its limit by the square of the angle, which
-/// further passes take. Neither a push nor a pull has a direction where that has no length.
-SquaredLengths project_springs_narrow(const SpringBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
-                                      const double* before, double* positions);
+/// Projects springs onto `range`, batch after batch: moves their ends by `relaxation` times the correction. `positions` [m] holds
+/// 3 numbers a particle. Returns the lengths before the projection. A spring that is too short is pushed along its vector `before`
+/// the step, by at most its length. If it rotated meanwhile, the push falls short by the square of the angle, which further passes
+/// correct. A spring whose vector has no length is not moved.
+SquaredLengths project_springs_narrow(const SpringBatches& batches, const BatchRange& batch_range, const LengthRange& range,
+                                      double relaxation, const double* before, double* positions);
 
-/// Lengths of springs.
-SquaredLengths measure_springs_narrow(const SpringBatches& batches, const Parts& parts, const double* positions);
+/// Measures the lengths of springs.
+SquaredLengths measure_springs_narrow(const SpringBatches& batches, const BatchRange& batch_range, const double* positions);
 
-/// The same bits, with twice as many lanes. Require has_wide_lanes().
-SquaredLengths project_springs_wide(const SpringBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
-                                    const double* before, double* positions);
-SquaredLengths measure_springs_wide(const SpringBatches& batches, const Parts& parts, const double* positions);
+/// The same bits with registers twice as wide. Require has_wide_lanes().
+SquaredLengths project_springs_wide(const SpringBatches& batches, const BatchRange& batch_range, const LengthRange& range,
+                                    double relaxation, const double* before, double* positions);
+SquaredLengths measure_springs_wide(const SpringBatches& batches, const BatchRange& batch_range, const double* positions);
 
-/// Whichever the machine has.
-inline SquaredLengths project_springs(const SpringBatches& batches, const Parts& parts, const LengthRange& range, double relaxation,
-                                      const double* before, double* positions) {
-  return (has_wide_lanes() ? project_springs_wide : project_springs_narrow)(batches, parts, range, relaxation, before, positions);
+/// Chooses the version for this machine.
+inline SquaredLengths project_springs(const SpringBatches& batches, const BatchRange& batch_range, const LengthRange& range,
+                                      double relaxation, const double* before, double* positions) {
+  return (has_wide_lanes() ? project_springs_wide : project_springs_narrow)(batches, batch_range, range, relaxation, before,
+                                                                            positions);
 }
-inline SquaredLengths measure_springs(const SpringBatches& batches, const Parts& parts, const double* positions) {
-  return (has_wide_lanes() ? measure_springs_wide : measure_springs_narrow)(batches, parts, positions);
+inline SquaredLengths measure_springs(const SpringBatches& batches, const BatchRange& batch_range, const double* positions) {
+  return (has_wide_lanes() ? measure_springs_wide : measure_springs_narrow)(batches, batch_range, positions);
 }
 
 }  // namespace sprung

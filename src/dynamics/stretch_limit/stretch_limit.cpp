@@ -15,19 +15,19 @@
 namespace sprung {
 namespace {
 
-// A limit without play and without tolerance is never held quite: this is what steps are chosen for then.
+// Without any tolerance a limit is never met exactly: steps are chosen for this excess then.
 constexpr double kLeastExcess = 1.0e-3;
 
-// Springs that may shrink by no more than this part of the excess hardly let a surface neck.
+// Springs that may shrink by no more than this fraction of the excess hardly let a surface neck.
 constexpr double kLeastPlay = 0.1;
 
-/// Extremes of what `lengths_of` says of tasks [begin, end).
+/// Extremes of the lengths that `lengths_of` measures in tasks [begin, end).
 template <class LengthsOf>
 SquaredLengths extremes(const SpringBatches& batches, Index begin, Index end, const LengthsOf& lengths_of) {
   std::vector<SquaredLengths> of_tasks(end - begin);
   parallel_chunks(end - begin, 1, [&](Index first, Index last) {
     for (Index task = first; task < last; ++task) {
-      of_tasks[task] = lengths_of(Parts{batches.task_begin[begin + task], batches.task_begin[begin + task + 1]});
+      of_tasks[task] = lengths_of(BatchRange{batches.task_begin[begin + task], batches.task_begin[begin + task + 1]});
     }
   });
   SquaredLengths all;
@@ -39,7 +39,7 @@ LengthRange length_range(const StretchLimitSettings& settings) {
   return {.least = 1.0 - settings.max_compression, .most = 1.0 + settings.max_stretch};
 }
 
-/// Whether springs may not shrink either, by more than a part of the wanted excess.
+/// Whether springs may shrink by no more than a fraction of the wanted excess.
 bool holds_both_ways(const StretchLimitSettings& settings) {
   return settings.max_compression <= kLeastPlay * wanted_excess(settings);
 }
@@ -63,9 +63,10 @@ double StretchLimit::project(const Points& before, Points& positions, double rel
   const LengthRange range = length_range(settings_);
   SquaredLengths met;
   for (std::size_t stage = 0; stage + 1 < batches_->stage_begin.size(); ++stage) {
-    met.include(extremes(*batches_, batches_->stage_begin[stage], batches_->stage_begin[stage + 1], [&](const Parts& parts) {
-      return project_springs(*batches_, parts, range, relaxation, before.data(), positions.data());
-    }));
+    met.include(
+        extremes(*batches_, batches_->stage_begin[stage], batches_->stage_begin[stage + 1], [&](const BatchRange& batch_range) {
+          return project_springs(*batches_, batch_range, range, relaxation, before.data(), positions.data());
+        }));
   }
   return met.excess(range);
 }
@@ -76,7 +77,7 @@ std::optional<int> StretchLimit::solve(const Points& before, Points& positions, 
 }
 
 double StretchLimit::excess(const Points& positions) const {
-  const auto lengths_of = [&](const Parts& parts) { return measure_springs(*batches_, parts, positions.data()); };
+  const auto lengths_of = [&](const BatchRange& batch_range) { return measure_springs(*batches_, batch_range, positions.data()); };
   return extremes(*batches_, 0, batches_->stage_begin.back(), lengths_of).excess(length_range(settings_));
 }
 
@@ -86,8 +87,8 @@ double StretchLimit::excess(const Points& positions, const Body& body) const {
   for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
     if (!is_limited(network_, settings_.kinds, s)) continue;
     const double squared = (positions.col(springs.second[s]) - positions.col(springs.first[s])).squaredNorm();
-    const double part = squared / (springs.rest_length[s] * springs.rest_length[s]);
-    met.include({.longest = part, .shortest = part});
+    const double relative = squared / (springs.rest_length[s] * springs.rest_length[s]);
+    met.include({.longest = relative, .shortest = relative});
   }
   return met.excess(length_range(settings_));
 }
@@ -109,10 +110,9 @@ std::string StretchLimit::chosen_solver() const {
 
 bool StretchLimit::may_be_handed_over(std::size_t body) const { return newton_ && newton_->may_take_over(body); }
 
-// At rest each step adds g dt^2 to each particle, and each of its passes hands on a part of it. Where tethers have handed on
-// theirs, passes gain less: hanging cloths showed 4 passes to be worth 2.6, and 32 to be worth 10. Where springs may
-// not shrink either, over-relaxed passes gain more: 2, 4, 8 and 32 were worth 2, 10, 29 and 280. What sags between its pins hangs
-// askew from all of them: there tethers gain nothing.
+// At rest each step adds g dt^2 to each particle, and each pass passes on a fraction of it. Measured on hanging cloths: after
+// tethers 4 passes were worth 2.6 and 32 worth 10; where springs may not shrink, 2, 4, 8 and 32 over-relaxed passes were worth 2,
+// 10, 29 and 280. A body that sags between its pins gains nothing from tethers.
 double StretchLimit::suggested_step(double acceleration) const {
   const SpringGraph graph(network_, limited_springs(network_, settings_.kinds));
   const std::vector<Tether> tethers = settings_.tethers ? find_tethers(network_, settings_.kinds) : std::vector<Tether>{};
@@ -149,9 +149,9 @@ bool StretchLimit::may_follow_turn() const {
 
 double StretchLimit::turn() const { return newton_ ? newton_->turn() : 0.0; }
 
-// Without halving, a cloth of 32 particles a side that swings from its corners held its energy as one at a tenth of its step did,
-// within 10 %. Halved up to three times it does so too, but not with structural springs alone, with which it got as much energy as
-// its fall had given it, nor without tethers, where it got 15 % for a while.
+// Measured on a cloth of 32 particles a side that swings from its corners: without refinement it kept the energy of a run with a
+// tenth of the step within 10 %, and so with steps halved up to three times. With structural springs alone refinement doubled its
+// energy; without tethers it added 15 % for a while.
 bool StretchLimit::bears_smaller_steps() const {
   if (!tethers_ || !holds_both_ways(settings_)) return false;
   const SpringGraph graph(network_, limited_springs(network_, settings_.kinds));

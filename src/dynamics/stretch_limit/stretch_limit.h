@@ -16,72 +16,72 @@ struct SpringBatches;
 class StretchNewton;
 class LongRangeAttachments;
 
-/// The excess over the limit, as a part of the rest length, that automatic steps are chosen for: half of `max_stretch` plus
-/// `tolerance`, and at least a thousandth.
+/// The relative excess over the limit that automatic steps are chosen for: half of `max_stretch` plus `tolerance`, and at least
+/// 0.001.
 [[nodiscard]] double wanted_excess(const StretchLimitSettings& settings);
 
 class StretchLimit {
  public:
-  /// Keeps a reference to the network. Springs of rest length 0 cannot be measured in parts of it and are left out.
+  /// Keeps a reference to the network. Springs of rest length 0 have no relative length and are left out.
   StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use = {});
   ~StretchLimit();
 
-  /// One Gauss-Seidel pass in batches without shared particles: each spring beyond its limits is projected onto them, both ends
-  /// weighted by inverse mass; pinned particles do not move. Tethers come first. Same bits for any number of threads. Returns the
-  /// largest excess it met, as a part of the rest length.
+  /// One Gauss-Seidel pass in batches without common particles. Each spring beyond its limits is projected onto them, both ends
+  /// weighted by inverse mass; pinned particles do not move. Tethers come first. Gives the same bits for any number of threads.
+  /// Returns the largest relative excess before the projection.
   ///
-  /// What is too short is pushed along the direction it had `before`, where the step began (as SHAKE does: Ryckaert, Ciccotti and
-  /// Berendsen 1977). Along the one it has now a push on what turns would do work, and gave a cube that swung from an edge as much
-  /// energy in ten seconds as its swing had; a pull takes energy so, and keeps what turns far in a step at its length.
+  /// A spring that is too short is pushed along its direction `before` the step (as in SHAKE: Ryckaert, Ciccotti and Berendsen
+  /// 1977). A push along its present direction does work on a rotating body: it gave a cube that swung from an edge as much energy
+  /// in ten seconds as its swing had. A pull along the present direction removes energy, and keeps the length of springs that
+  /// rotate far in a step.
   ///
-  /// With a `relaxation` other than 1, in (0, 2), corrections are so many times as large. Passes converge all the same, on lengths
-  /// that are not too long because these are a convex set (Agmon 1954; Motzkin and Schoenberg 1954), and hand excess on faster
-  /// where many springs share it.
+  /// `relaxation`, in (0, 2), scales the corrections. Passes still converge on lengths that are not too long, because these are a
+  /// convex set (Agmon 1954; Motzkin and Schoenberg 1954). Over-relaxation spreads the excess faster where many springs share it.
   double project(const Points& before, Points& positions, double relaxation = 1.0) const;
 
-  /// Newton's method on all that is too long at once, as `solver` chooses: leads free particles to where springs are within
-  /// their limits, with as little weighted movement as that takes. What is left is for the passes: compression, and what contact
-  /// does. `before` is where the step began; `fall` [m] is a dt^2 with the largest steady acceleration a, of gravity and wind;
-  /// `holds` tells of each body whether it was handed over, and is empty when none was. Returns how many linear systems were
-  /// solved in turn; none when no spring that is solved for was too long.
+  /// Newton's method on all springs that are too long, for the components that `solver` chooses: moves free particles to where
+  /// springs are within max_stretch, with the least weighted displacement. Compression and contact are left to the passes.
+  /// `before` are the positions at the beginning of the step. `fall` [m] is a dt^2 with the largest steady acceleration a of
+  /// gravity and wind. `holds` says for each body whether it was handed over; it may be empty. Returns the largest number of
+  /// linear systems of a component; none if nothing was too long.
   std::optional<int> solve(const Points& before, Points& positions, double fall,
                            const std::vector<StretchHandover>& holds = {}) const;
 
-  /// The largest excess over the limits, as a part of the rest length; changes nothing.
+  /// The largest relative excess over the limits.
   [[nodiscard]] double excess(const Points& positions) const;
 
-  /// That of the springs of one body.
+  /// The largest relative excess of one body's springs.
   [[nodiscard]] double excess(const Points& positions, const Body& body) const;
 
   [[nodiscard]] const StretchLimitSettings& settings() const;
 
-  /// What `solver` comes to for this network: `newton`, `gauss_seidel`, or both and for which bodies, or when.
+  /// The solver that `solver` stands for in this network: `newton`, `gauss_seidel`, or both with the bodies and the step of a
+  /// handover.
   [[nodiscard]] std::string chosen_solver() const;
 
-  /// Whether a global solve may take over from passes that miss the limit of a body, by its number.
+  /// Whether a body, by its number, may be handed over to Newton's method if passes miss its limit.
   [[nodiscard]] bool may_be_handed_over(std::size_t body) const;
 
-  /// The step [s] at which `iterations` passes a step keep the excess at about `wanted_excess` when each
-  /// body hangs at rest under `acceleration` [m/s^2] by its pins, or over an obstacle: in each step gravity adds g dt^2 per carried
-  /// particle, and the passes must hand it on. Larger with tethers to pins that are taut (see are_pins_taut). Infinity when nothing
-  /// is limited, and for what a global solve holds, which needs no small steps.
+  /// The step [s] at which `iterations` passes a step keep the excess at about `wanted_excess` while each body hangs at rest under
+  /// `acceleration` [m/s^2] by its pins or over an obstacle: in each step gravity adds g dt^2 per carried particle, which the
+  /// passes must pass on. It is larger with tethers to taut pins (see are_pins_taut). Infinity if nothing is limited, and for
+  /// bodies that Newton's method solves, which need no small steps.
   [[nodiscard]] double suggested_step(double acceleration) const;
 
-  /// Whether steps may become smaller where the limit is missed. What a smaller step takes back of the excess gives springs speed:
-  /// surfaces whose springs neither stretch nor shrink, hold the shape and have tethers lose it within themselves, others go slack
-  /// and are thrown.
+  /// Whether steps may be refined where the limit is missed. The correction of an excess in a smaller step gives springs more
+  /// speed. Surfaces whose springs neither stretch nor shrink, that are rigid within themselves and have tethers dissipate it;
+  /// others become slack and are thrown.
   [[nodiscard]] bool bears_smaller_steps() const;
 
-  /// Whether a global solve holds all springs, with those of bodies that were handed over: it does at any step, but the larger a
-  /// part of its extent a body turns by in one, the more of its motion that takes. Steps are to be chosen by `turn`.
+  /// Whether Newton's method solves for all springs, counting the bodies that were handed over. It holds the limit at any step,
+  /// but removes more motion the larger the relative deformation in a step, so that steps are chosen by `turn`.
   [[nodiscard]] bool follows_turn(const std::vector<StretchHandover>& holds = {}) const;
 
-  /// Whether it does not at the start, but will once all bodies are handed over that may be: then it no longer needs the small
-  /// steps of passes.
+  /// Whether that holds once all bodies that may be handed over are; the small steps of passes are then no longer needed.
   [[nodiscard]] bool may_follow_turn() const;
 
-  /// That of the last `solve`: how far a particle was led by forces as a part of the extent of what it belongs to, apart from what
-  /// all of that has in common; the largest of all that is solved for.
+  /// Largest relative deformation in the last solve() [1]: per component, the largest displacement minus the common displacement,
+  /// divided by the component's extent.
   [[nodiscard]] double turn() const;
 
  private:

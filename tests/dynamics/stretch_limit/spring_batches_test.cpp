@@ -18,7 +18,7 @@ const std::vector<SpringKind> kAllKinds{SpringKind::structural, SpringKind::shea
 /// Springs of a part, those that fill it but once.
 std::vector<Index> springs_of(const SpringBatches& batches, Index part) {
   std::vector<Index> springs;
-  for (Index s = batches.parts[part].begin; s < batches.parts[part].end; ++s) {
+  for (Index s = batches.batch[part].begin; s < batches.batch[part].end; ++s) {
     const bool fills = s % kSimdWidth > 0 && batches.first[s] == batches.first[s - 1] && batches.second[s] == batches.second[s - 1];
     if (!fills) springs.push_back(s);
   }
@@ -86,7 +86,7 @@ TEST(SpringBatches, ManySpringsMakeTwoTasksAtLeast) {
 /// Springs that share a particle, in the order in which a pass comes to them.
 std::vector<std::vector<std::pair<Index, Index>>> springs_in_order(const SpringBatches& batches, Index particles) {
   std::vector<std::vector<std::pair<Index, Index>>> at(static_cast<std::size_t>(particles));
-  for (Index part = 0; part < static_cast<Index>(batches.parts.size()); ++part) {
+  for (Index part = 0; part < static_cast<Index>(batches.batch.size()); ++part) {
     for (const Index s : springs_of(batches, part)) {
       for (const Index particle : {batches.first[s], batches.second[s]}) {
         at[static_cast<std::size_t>(particle)].emplace_back(batches.first[s], batches.second[s]);
@@ -101,7 +101,7 @@ TEST(SpringBatches, OrderByPlaceKeepsTheOrderOfColoursAtEachParticle) {
   SpringBatches batches(network, {SpringKind::structural, SpringKind::shear});
   // Each part a colour of its own: then no two parts that share a particle may change places.
   std::vector<Index> colour_begin;
-  for (Index part = 0; part <= static_cast<Index>(batches.parts.size()); ++part) colour_begin.push_back(part);
+  for (Index part = 0; part <= static_cast<Index>(batches.batch.size()); ++part) colour_begin.push_back(part);
   const auto expected = springs_in_order(batches, network.particle_count());
   order_by_place(colour_begin, 1, network.particle_count(), batches);
   EXPECT_EQ(springs_in_order(batches, network.particle_count()), expected);

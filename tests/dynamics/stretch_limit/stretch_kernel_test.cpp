@@ -75,8 +75,8 @@ TEST(StretchKernel, ProjectsAsPlainCodeDoes) {
   for (Index row = 2; row < 80; ++row) {
     const SpringNetwork network = springs_of_all_layouts(row, row % 2 == 0, random);
     const SpringBatches batches(network, kStructural);
-    for (const SpringBatches::Part& part : batches.parts) ++layouts[static_cast<std::size_t>(part.layout)];
-    const Parts all{0, static_cast<Index>(batches.parts.size())};
+    for (const SpringBatches::Batch& part : batches.batch) ++layouts[static_cast<std::size_t>(part.layout)];
+    const BatchRange all{0, static_cast<Index>(batches.batch.size())};
     for (const LengthRange& range : kRanges) {
       for (const double relaxation : {1.0, 1.8}) {
         Points x = network.positions;
@@ -100,7 +100,7 @@ TEST(StretchKernel, HasTheSameBitsWhateverTheMachineTakes) {
   for (Index row = 2; row < 80; ++row) {
     const SpringNetwork network = springs_of_all_layouts(row, row % 2 == 0, random);
     const SpringBatches batches(network, kStructural);
-    const Parts all{0, static_cast<Index>(batches.parts.size())};
+    const BatchRange all{0, static_cast<Index>(batches.batch.size())};
     for (const LengthRange& range : kRanges) {
       Points narrow = network.positions;
       Points taken = network.positions;
@@ -126,7 +126,7 @@ TEST(StretchKernel, MeasuresTheLongestAndTheShortest) {
       const double part = length / batches.rest_length[s];
       expected.include({part * part, part * part});
     }
-    const Parts all{0, static_cast<Index>(batches.parts.size())};
+    const BatchRange all{0, static_cast<Index>(batches.batch.size())};
     const SquaredLengths measured = measure_springs(batches, all, network.positions.data());
     // A few roundings of each.
     EXPECT_NEAR(measured.longest, expected.longest, 1.0e-14 * expected.longest);
@@ -139,7 +139,7 @@ TEST(StretchKernel, LeavesSpringsWithinTheirLimitsBitForBit) {
   const SpringNetwork network = springs_of_all_layouts(70, false, random);
   const SpringBatches batches(network, kStructural);
   Points x = network.positions;
-  const Parts all{0, static_cast<Index>(batches.parts.size())};
+  const BatchRange all{0, static_cast<Index>(batches.batch.size())};
   project_springs(batches, all, {0.0, 100.0}, 1.0, network.velocities.data(), x.data());
   EXPECT_EQ(x, network.positions);
 }
