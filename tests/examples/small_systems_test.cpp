@@ -54,7 +54,7 @@ EnergyGain energy_gain(const std::string& scheme) {
   return gain;
 }
 
-// What README's table says. The rope falls a metre: 5 J.
+// The table of energies in examples/README.md. The rope falls a metre: 5 J.
 TEST(SixSchemes, TreatEnergyAsTheReadmeTells) {
   EXPECT_EQ(ExampleRun("six_schemes", {"--set", "integrator.type=explicit_euler"}).exit_code(), 4);
   EXPECT_LT(energy_gain("symplectic_euler").most, 0.11);
