@@ -5,11 +5,12 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <utility>
 
 namespace sprung::meshes {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "all three binary formats are little-endian");
+static_assert(std::endian::native == std::endian::little, "all binary formats are written little-endian");
 
 template <class Value>
 void append(std::string& bytes, Value value) {
@@ -39,6 +40,41 @@ std::string float_list(const Vector3& vector) {
   return text + "]";
 }
 
+// The lines of the vertices, then those of the faces.
+std::string element_lines(const TriangleMesh& mesh) {
+  std::string text;
+  for (const auto& vertex : mesh.vertices.colwise()) {
+    for (Index k = 0; k < 3; ++k) text += format_number(vertex[k]) + (k < 2 ? ' ' : '\n');
+  }
+  for (const auto& triangle : mesh.triangles.colwise()) {
+    text += '3';
+    for (const Index vertex : triangle) text += ' ' + std::to_string(vertex);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string ply_header(const std::string& format, const TriangleMesh& mesh) {
+  return "ply\nformat " + format + " 1.0\ncomment metres, Y up\nelement vertex " + std::to_string(mesh.vertices.cols()) +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(mesh.triangles.cols()) +
+         "\nproperty list uchar int vertex_indices\nend_header\n";
+}
+
+void append_glb_chunk(std::string& bytes, const char* type, std::string content, char filler) {
+  content.resize((content.size() + 3) / 4 * 4, filler);
+  append(bytes, static_cast<std::uint32_t>(content.size()));
+  bytes.append(type, 4);
+  bytes += content;
+}
+
+// A chunk's size counts its own header.
+std::string three_ds_chunk(std::uint16_t id, const std::string& content) {
+  std::string bytes;
+  append(bytes, id);
+  append(bytes, static_cast<std::uint32_t>(content.size() + 6));
+  return bytes + content;
+}
+
 std::string node_place(const Place& place) {
   return R"("scale": )" + place.scale + R"(, "rotation": )" + place.rotation + R"(, "translation": )" + place.translation;
 }
@@ -57,11 +93,22 @@ std::string stl_bytes(const TriangleMesh& mesh) {
   return bytes;
 }
 
+std::string stl_text(const TriangleMesh& mesh) {
+  std::string text = "solid shape\n";
+  for (const auto& triangle : mesh.triangles.colwise()) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const Index vertex : triangle) {
+      text += "vertex";
+      for (const double x : mesh.vertices.col(vertex)) append_number(text += ' ', x);
+      text += '\n';
+    }
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid\n";
+}
+
 std::string ply_bytes(const TriangleMesh& mesh) {
-  std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment metres, Y up\nelement vertex " +
-                      std::to_string(mesh.vertices.cols()) +
-                      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                      std::to_string(mesh.triangles.cols()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string bytes = ply_header("binary_little_endian", mesh);
   for (const auto& vertex : mesh.vertices.colwise()) append_floats(bytes, vertex);
   for (const auto& triangle : mesh.triangles.colwise()) {
     append(bytes, std::uint8_t{3});
@@ -70,18 +117,11 @@ std::string ply_bytes(const TriangleMesh& mesh) {
   return bytes;
 }
 
+std::string ply_text(const TriangleMesh& mesh) { return ply_header("ascii", mesh) + element_lines(mesh); }
+
 std::string off_text(const TriangleMesh& mesh) {
-  std::string text =
-      "OFF\n# metres, Y up\n" + std::to_string(mesh.vertices.cols()) + ' ' + std::to_string(mesh.triangles.cols()) + " 0\n";
-  for (const auto& vertex : mesh.vertices.colwise()) {
-    for (Index k = 0; k < 3; ++k) text += format_number(vertex[k]) + (k < 2 ? ' ' : '\n');
-  }
-  for (const auto& triangle : mesh.triangles.colwise()) {
-    text += '3';
-    for (const Index vertex : triangle) text += ' ' + std::to_string(vertex);
-    text += '\n';
-  }
-  return text;
+  return "OFF\n# metres, Y up\n" + std::to_string(mesh.vertices.cols()) + ' ' + std::to_string(mesh.triangles.cols()) + " 0\n" +
+         element_lines(mesh);
 }
 
 std::string gltf_text(const TriangleMesh& mesh, const Place& outer, const Place& inner) {
@@ -121,6 +161,36 @@ std::string gltf_text(const TriangleMesh& mesh, const Place& outer, const Place&
          size + R"(, "uri": "data:application/octet-stream;base64,)" + base64(buffer) + R"(" } ]
 }
 )";
+}
+
+std::string glb_bytes(std::string json, std::string buffer) {
+  std::string chunks;
+  append_glb_chunk(chunks, "JSON", std::move(json), ' ');
+  if (!buffer.empty()) append_glb_chunk(chunks, "BIN\0", std::move(buffer), '\0');
+  std::string bytes = "glTF";
+  append(bytes, std::uint32_t{2});
+  append(bytes, static_cast<std::uint32_t>(chunks.size() + 12));
+  return bytes + chunks;
+}
+
+std::string three_ds_bytes(const TriangleMesh& mesh) {
+  std::string vertices;
+  append(vertices, static_cast<std::uint16_t>(mesh.vertices.cols()));
+  for (const auto& vertex : mesh.vertices.colwise()) append_floats(vertices, Vector3(vertex.x(), -vertex.z(), vertex.y()));
+  std::string faces;
+  append(faces, static_cast<std::uint16_t>(mesh.triangles.cols()));
+  for (const auto& triangle : mesh.triangles.colwise()) {
+    for (const Index vertex : triangle) append(faces, static_cast<std::uint16_t>(vertex));
+    append(faces, std::uint16_t{0});
+  }
+  std::string name = "shape";
+  name += '\0';
+  std::string node = name;
+  append(node, std::uint32_t{0});
+  append(node, std::uint16_t{0xffff});  // no parent
+  const std::string shape = three_ds_chunk(0x4100, three_ds_chunk(0x4110, vertices) + three_ds_chunk(0x4120, faces));
+  const std::string objects = three_ds_chunk(0x3d3d, three_ds_chunk(0x4000, name + shape));
+  return three_ds_chunk(0x4d4d, objects + three_ds_chunk(0xb000, three_ds_chunk(0xb002, three_ds_chunk(0xb010, node))));
 }
 
 }  // namespace sprung::meshes

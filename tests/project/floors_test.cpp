@@ -72,7 +72,7 @@ const std::vector<Library> kLibraries = {
     {"tiny_obj_loader.h", {"geometry"}, true},
     {"fcl/", {"collision"}},
     {"ccd/", {"collision"}},
-    {"nlohmann/", {"scene", "output"}},
+    {"nlohmann/", {"geometry", "scene", "output"}},
     {"valijson/", {"scene"}},
     {"CLI/", {"app"}},
     {"fmt/", {"app"}},

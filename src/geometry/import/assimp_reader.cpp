@@ -70,15 +70,6 @@ std::string shortened(const std::string& text) {
   return text.size() <= kReadable ? text : text.substr(0, kReadable) + "...";
 }
 
-void check_extension(const Assimp::Importer& importer, const std::filesystem::path& file) {
-  if (importer.IsExtensionSupported(file.extension().string())) return;
-  throw InputError(
-      Problem{.file = file.string(),
-              .value = file.extension().string(),
-              .rule = "is no known mesh format",
-              .remedy = "use .obj, .stl, .ply, .off, .gltf, .glb, .3ds, .dae, .fbx or another format that assimp reads"});
-}
-
 void check_mesh(const aiMesh& mesh, FileProblems& problems) {
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     const aiVector3D& p = mesh.mVertices[i];
@@ -144,9 +135,8 @@ class Collector {
 
 // No post-processing but triangulation: JoinIdenticalVertices and the like work with absolute tolerances, and PreTransformVertices
 // rounds to float. Indices are checked before it, as it follows them blindly.
-TriangleMesh read_with_assimp(const std::filesystem::path& file, const std::string& text) {
+TriangleMesh read_with_assimp(const std::filesystem::path& file, const CheckedFile& checked) {
   Assimp::Importer importer;
-  check_extension(importer, file);
   FileProblems problems(file);
   std::vector<std::string> losses;
   const LogScope log(losses);
@@ -154,9 +144,7 @@ TriangleMesh read_with_assimp(const std::filesystem::path& file, const std::stri
     for (const std::string& loss : losses) problems.add("", "", "is damaged: " + shortened(loss), "export it again");
     problems.throw_if_any();
   };
-  const aiScene* scene = text.empty()
-                             ? importer.ReadFile(file.string(), 0)
-                             : importer.ReadFileFromMemory(text.data(), text.size(), 0, lower_case_extension(file).c_str() + 1);
+  const aiScene* scene = importer.ReadFileFromMemory(checked.bytes.data(), checked.bytes.size(), 0, checked.extension.c_str());
   if (scene == nullptr && losses.empty()) losses.emplace_back(importer.GetErrorString());
   report_losses();
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) check_mesh(*scene->mMeshes[m], problems);
@@ -166,7 +154,10 @@ TriangleMesh read_with_assimp(const std::filesystem::path& file, const std::stri
   report_losses();
   Collector collector(*scene);
   if (scene->mRootNode != nullptr) collector.add_node(*scene->mRootNode, Eigen::Matrix4d::Identity());
-  return collector.mesh();
+  TriangleMesh mesh = collector.mesh();
+  if (!mesh.vertices.allFinite()) problems.add("", "", "its nodes move vertices to positions that are not finite");
+  problems.throw_if_any();
+  return mesh;
 }
 
 }  // namespace sprung

@@ -1,16 +1,15 @@
-// Triangles from any format that assimp knows.
+// Triangles from a file that was checked.
 #pragma once
 
+#include "geometry/import/mesh_check.h"
 #include "geometry/mesh/triangle_mesh.h"
 
 #include <filesystem>
-#include <string>
 
 namespace sprung {
 
 /// Reads all meshes of a file, each as often as its nodes place it, with their transforms applied; points and lines are left out,
-/// nothing is welded. Throws InputError when the extension is unknown or the file cannot be read whole, or holds a position that is
-/// not finite or an index out of range. `text`, if it is not empty, is read in place of the file's bytes.
-[[nodiscard]] TriangleMesh read_with_assimp(const std::filesystem::path& file, const std::string& text = "");
+/// nothing is welded. Throws InputError, naming `file`, when assimp cannot read what was checked, or a position is not finite.
+[[nodiscard]] TriangleMesh read_with_assimp(const std::filesystem::path& file, const CheckedFile& checked);
 
 }  // namespace sprung

@@ -131,21 +131,6 @@ std::string plain_obj_text(const std::string& text) {
   return plain;
 }
 
-std::string text_for_assimp(const std::string& plain_text) {
-  std::string text;
-  text.reserve(plain_text.size());
-  for (std::string_view rest = plain_text; !rest.empty();) {
-    std::string_view line = take_line(rest);
-    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-    for (const char c : line) {
-      if (line.front() == 'v' && c == '.' && is_blank(text.back())) text += '0';
-      text += c;
-    }
-    text += '\n';
-  }
-  return text;
-}
-
 ObjNumbers read_obj_numbers(const std::filesystem::path& file, const std::string& plain_text) {
   Scanner scanner(file);
   for (std::string_view rest = plain_text; !rest.empty();) scanner.scan(take_line(rest));

@@ -21,9 +21,6 @@ struct ObjNumbers {
 /// kept.
 [[nodiscard]] std::string plain_obj_text(const std::string& text);
 
-/// Plain text of which assimp reads all: it leaves out lines that begin with blanks, and vertices with coordinates like `.5`.
-[[nodiscard]] std::string text_for_assimp(const std::string& plain_text);
-
 /// Requires plain text. Throws InputError, naming `file` and each line, when a number or an index is malformed or not finite,
 /// a face has fewer than three corners, or a line element refers to a vertex that is not there.
 [[nodiscard]] ObjNumbers read_obj_numbers(const std::filesystem::path& file, const std::string& plain_text);

@@ -13,13 +13,19 @@ class OffChecker {
  public:
   OffChecker(const std::filesystem::path& file, std::string_view text) : problems_(file), rest_(text) {}
 
-  void check() {
+  CheckedFile check() {
     if (!next_line() || !words_[0].ends_with("OFF")) {
       problems_.add("", "", "must begin with OFF");
-    } else if (words_.size() < 2 || words_[1] != "BINARY") {
+    } else if (words_.size() > 1 && words_[1] == "BINARY") {
+      problems_.add("", "", "is binary OFF, which is not read", "export it as text");
+    } else if (words_[0].find_first_of("4n") != std::string_view::npos) {
+      problems_.add("", std::string(words_[0]), "has vertices of another dimension than 3",
+                    "export it with three coordinates a vertex");
+    } else {
       check_elements();
     }
     problems_.throw_if_any();
+    return writer_.finish();
   }
 
  private:
@@ -43,11 +49,11 @@ class OffChecker {
     if (vertices < 0 || faces < 0) return report("must begin with the counts of vertices and faces");
     for (std::int64_t i = 0; i < vertices; ++i) {
       if (!next_line()) return truncated("vertices", vertices, i);
-      check_vertex();
+      add_vertex();
     }
     for (std::int64_t i = 0; i < faces; ++i) {
       if (!next_line()) return truncated("faces", faces, i);
-      check_face(vertices);
+      add_face(vertices);
     }
   }
 
@@ -55,19 +61,24 @@ class OffChecker {
     return word < words_.size() ? parse_number<std::int64_t>(words_[word]).value_or(-1) : -1;
   }
 
-  void check_vertex() {
+  void add_vertex() {
     for (std::size_t word = 0; word < 3; ++word) {
-      if (word >= words_.size() || !parse_number<double>(words_[word])) return report("a vertex must have three coordinates");
+      if (word >= words_.size() || !is_finite_number(words_[word])) return report("a vertex must have three finite coordinates");
     }
+    writer_.add_vertex(words_[0], words_[1], words_[2]);
   }
 
-  void check_face(std::int64_t vertices) {
+  void add_face(std::int64_t vertices) {
     const std::int64_t corners = count(0);
     if (corners < 1 || corners >= std::ssize(words_)) return report("a face must have its number of corners, then the corners");
+    if (corners > kMostCorners) return report(kMostCornersRule);
+    corners_.clear();
     for (std::int64_t corner = 1; corner <= corners; ++corner) {
-      const std::int64_t vertex = count(corner);
-      if (vertex < 0 || vertex >= vertices) return report("a corner must be a vertex number below " + std::to_string(vertices));
+      corners_.push_back(count(static_cast<std::size_t>(corner)));
+      if (corners_.back() >= 0 && corners_.back() < vertices) continue;
+      return report("a corner must be a vertex number below " + std::to_string(vertices));
     }
+    writer_.add_face(corners_);
   }
 
   void report(const std::string& rule) { problems_.add("line " + std::to_string(line_number_), "", rule); }
@@ -81,11 +92,13 @@ class OffChecker {
   FileProblems problems_;
   std::string_view rest_;
   std::vector<std::string_view> words_;
+  std::vector<std::int64_t> corners_;
+  PlyWriter writer_{PlyWriter::Kind::ascii};
   std::size_t line_number_ = 0;
 };
 
 }  // namespace
 
-void check_off(const std::filesystem::path& file, const std::string& text) { OffChecker(file, text).check(); }
+CheckedFile checked_off(const std::filesystem::path& file, const std::string& text) { return OffChecker(file, text).check(); }
 
 }  // namespace sprung

@@ -3,6 +3,8 @@
 #include "geometry/import/text_words.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -12,9 +14,18 @@
 namespace sprung {
 namespace {
 
+enum class Kind { integer, natural, real };
+
+struct Type {
+  std::size_t size = 0;  // bytes of a binary value
+  Kind kind = Kind::real;
+};
+
 struct Property {
-  std::size_t size = 0;        // bytes of a binary value
-  std::size_t count_size = 0;  // bytes of a list's count; 0: not a list
+  std::string name;
+  std::string type_name;
+  Type type;
+  std::optional<Type> count;  // of a list
 };
 
 struct Element {
@@ -26,21 +37,28 @@ struct Element {
 enum class Format { ascii, little_endian, big_endian };
 
 struct Header {
-  Format format = Format::ascii;
+  std::optional<Format> format;
   std::vector<Element> elements;
 };
+
+const Element* find(const Header& header, std::string_view name) {
+  const auto found = std::find_if(header.elements.begin(), header.elements.end(), [&](const Element& e) { return e.name == name; });
+  return found == header.elements.end() ? nullptr : &*found;
+}
 
 class InvalidPly : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-std::size_t size_of(std::string_view type) {
-  static const std::map<std::string_view, std::size_t> kSizes{
-      {"char", 1}, {"uchar", 1}, {"short", 2}, {"ushort", 2}, {"int", 4},   {"uint", 4},   {"float", 4},   {"double", 8},
-      {"int8", 1}, {"uint8", 1}, {"int16", 2}, {"uint16", 2}, {"int32", 4}, {"uint32", 4}, {"float32", 4}, {"float64", 8}};
-  const auto found = kSizes.find(type);
-  if (found == kSizes.end()) throw InvalidPly("its header has the unknown type \"" + std::string(type) + "\"");
+Type type_of(std::string_view name) {
+  static const std::map<std::string_view, Type> kTypes{
+      {"char", {1, Kind::integer}},  {"uchar", {1, Kind::natural}},  {"short", {2, Kind::integer}}, {"ushort", {2, Kind::natural}},
+      {"int", {4, Kind::integer}},   {"uint", {4, Kind::natural}},   {"float", {4, Kind::real}},    {"double", {8, Kind::real}},
+      {"int8", {1, Kind::integer}},  {"uint8", {1, Kind::natural}},  {"int16", {2, Kind::integer}}, {"uint16", {2, Kind::natural}},
+      {"int32", {4, Kind::integer}}, {"uint32", {4, Kind::natural}}, {"float32", {4, Kind::real}},  {"float64", {8, Kind::real}}};
+  const auto found = kTypes.find(name);
+  if (found == kTypes.end()) throw InvalidPly("its header has the unknown type \"" + std::string(name) + "\"");
   return found->second;
 }
 
@@ -51,19 +69,26 @@ Format format_of(std::string_view word) {
   throw InvalidPly("its header has the unknown format \"" + std::string(word) + "\"");
 }
 
+Property property_of(const std::vector<std::string_view>& words) {
+  if (words[1] != "list") return {std::string(words[2]), std::string(words[1]), type_of(words[1]), std::nullopt};
+  if (words.size() < 5) throw InvalidPly("its header has a list property without types and name");
+  const Type count = type_of(words[2]);
+  if (count.kind == Kind::real) throw InvalidPly("its header has a list property whose count is no integer");
+  return {std::string(words[4]), std::string(words[3]), type_of(words[3]), count};
+}
+
 void read_header_line(const std::vector<std::string_view>& words, Header& header) {
   if (words[0] == "format" && words.size() > 1) header.format = format_of(words[1]);
   if (words[0] == "element" && words.size() > 2) {
     const std::int64_t count = parse_number<std::int64_t>(words[2]).value_or(-1);
     if (count < 0) throw InvalidPly("its header must give the number of each element");
+    if (words[1] == "tristrips") throw InvalidPly("holds strips of triangles, which are not read");
+    if (find(header, words[1]) != nullptr) throw InvalidPly("its header has two elements \"" + std::string(words[1]) + "\"");
     header.elements.push_back({.name = std::string(words[1]), .count = count, .properties = {}});
   }
   if (words[0] == "property" && words.size() > 2) {
     if (header.elements.empty()) throw InvalidPly("its header has a property before the first element");
-    const bool list = words[1] == "list";
-    if (list && words.size() < 5) throw InvalidPly("its header has a list property without types and name");
-    header.elements.back().properties.push_back(list ? Property{size_of(words[3]), size_of(words[2])}
-                                                     : Property{size_of(words[1]), 0});
+    header.elements.back().properties.push_back(property_of(words));
   }
 }
 
@@ -74,34 +99,53 @@ Header take_header(std::string_view& rest) {
   while (!rest.empty()) {
     split_words(take_line(rest), words);
     if (words.empty()) continue;
-    if (words[0] == "end_header") return header;
+    if (words[0] == "end_header") {
+      if (!header.format) throw InvalidPly("its header does not say whether it is ascii or binary");
+      return header;
+    }
     read_header_line(words, header);
   }
   throw InvalidPly("is truncated: its header has no end");
 }
 
-// The values after the header, one after the other; false or nothing at the end of the file.
+// The values after the header, one after the other; none at the end of the file, or where a word is no number of the type.
 class Body {
  public:
   Body(Format format, std::string_view rest) : format_(format), rest_(rest) {}
 
-  bool skip(std::size_t size) {
+  bool skip(const Type& type) {
     if (format_ == Format::ascii) return parse_number<double>(take_word()).has_value();
-    if (rest_.size() < size) return false;
-    rest_.remove_prefix(size);
+    if (rest_.size() < type.size) return false;
+    rest_.remove_prefix(type.size);
     return true;
   }
 
-  std::optional<std::int64_t> count(std::size_t size) {
+  std::optional<std::int64_t> integer(const Type& type) {
+    if (type.kind == Kind::real) return std::nullopt;
     if (format_ == Format::ascii) return parse_number<std::int64_t>(take_word());
-    if (rest_.size() < size) return std::nullopt;
-    std::int64_t value = 0;
-    for (std::size_t byte = 0; byte < size; ++byte) {
-      const std::size_t place = format_ == Format::big_endian ? size - 1 - byte : byte;
-      value |= static_cast<std::int64_t>(static_cast<unsigned char>(rest_[byte])) << (8 * place);
+    const std::optional<std::uint64_t> bits = take_bits(type.size);
+    if (!bits) return std::nullopt;
+    const auto value = static_cast<std::int64_t>(*bits);
+    const std::int64_t range = std::int64_t{1} << (8 * type.size);
+    return type.kind == Kind::integer && value >= range / 2 ? value - range : value;
+  }
+
+  std::optional<float> number(const Type& type) {
+    if (type.kind != Kind::real) {
+      const std::optional<std::int64_t> value = integer(type);
+      return value ? std::optional<float>(static_cast<float>(*value)) : std::nullopt;
     }
-    rest_.remove_prefix(size);
-    return value;
+    const std::optional<std::uint64_t> bits = take_bits(type.size);
+    if (!bits) return std::nullopt;
+    return type.size == sizeof(float) ? std::bit_cast<float>(static_cast<std::uint32_t>(*bits))
+                                      : static_cast<float>(std::bit_cast<double>(*bits));
+  }
+
+  /// The next word of an ASCII body as it is written; none unless it is a finite number of the type.
+  std::optional<std::string_view> word(const Type& type) {
+    const std::string_view text = take_word();
+    const bool fits = type.kind == Kind::real ? is_finite_number(text) : parse_number<std::int32_t>(text).has_value();
+    return fits ? std::optional(text) : std::nullopt;
   }
 
  private:
@@ -113,49 +157,145 @@ class Body {
     return {begin, end};
   }
 
+  std::optional<std::uint64_t> take_bits(std::size_t size) {
+    if (rest_.size() < size) return std::nullopt;
+    std::uint64_t bits = 0;
+    for (std::size_t byte = 0; byte < size; ++byte) {
+      const std::size_t place = format_ == Format::big_endian ? size - 1 - byte : byte;
+      bits |= static_cast<std::uint64_t>(static_cast<unsigned char>(rest_[byte])) << (8 * place);
+    }
+    rest_.remove_prefix(size);
+    return bits;
+  }
+
   Format format_;
   std::string_view rest_;
 };
 
-bool skip_element(Body& body, const Element& element) {
-  for (const Property& property : element.properties) {
-    std::int64_t values = 1;
-    if (property.count_size > 0) {
-      const std::optional<std::int64_t> count = body.count(property.count_size);
-      if (!count || *count < 0) return false;
-      values = *count;
-    }
-    for (std::int64_t i = 0; i < values; ++i) {
-      if (!body.skip(property.size)) return false;
-    }
+// Reads the elements in the order of the file and writes vertices and faces.
+class Elements {
+ public:
+  Elements(const Header& header, std::string_view rest)
+      : header_(header), ascii_(header.format == Format::ascii), body_(*header.format, rest), writer_(writer_of(header)) {
+    vertices_ = find(header, "vertex")->count;
   }
-  return true;
-}
 
-void check_body(const Header& header, std::string_view rest) {
-  Body body(header.format, rest);
-  for (const Element& element : header.elements) {
-    if (element.properties.empty()) continue;
-    for (std::int64_t i = 0; i < element.count; ++i) {
-      if (skip_element(body, element)) continue;
-      throw InvalidPly("is truncated or malformed: it declares " + std::to_string(element.count) + " elements \"" + element.name +
-                       "\", but number " + std::to_string(i + 1) + " cannot be read");
+  CheckedFile read() {
+    for (const Element& element : header_.elements) {
+      if (element.properties.empty()) continue;
+      for (std::int64_t i = 0; i < element.count; ++i) {
+        if (read_one(element)) continue;
+        throw InvalidPly("is truncated or malformed: it declares " + std::to_string(element.count) + " elements \"" + element.name +
+                         "\", but number " + std::to_string(i + 1) + " cannot be read");
+      }
     }
+    return writer_.finish();
   }
-}
+
+ private:
+  // The type of a coordinate; none is 0 where a file has none.
+  static PlyWriter writer_of(const Header& header) {
+    const Element* vertex = find(header, "vertex");
+    if (vertex == nullptr) throw InvalidPly("has no vertices");
+    std::array<std::string, 3> types;
+    for (const Property& property : vertex->properties) {
+      const std::size_t axis = axis_of(property);
+      if (axis < 3 && !types[axis].empty()) throw InvalidPly("its header has the property \"" + property.name + "\" twice");
+      if (axis < 3) types[axis] = property.type_name;
+    }
+    for (const std::string& type : types) {
+      if (type.empty()) throw InvalidPly("its vertices must have x, y and z");
+    }
+    if (header.format == Format::ascii) return PlyWriter(PlyWriter::Kind::ascii, types[0], types[1], types[2]);
+    return PlyWriter(PlyWriter::Kind::binary);
+  }
+
+  static std::size_t axis_of(const Property& property) {
+    return property.count || property.name.size() != 1 ? 3 : std::min<std::size_t>(std::string_view("xyz").find(property.name), 3);
+  }
+
+  bool read_one(const Element& element) {
+    if (element.name == "vertex") return read_vertex(element);
+    corners_.clear();
+    for (const Property& property : element.properties) {
+      const bool is_face = element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index");
+      if (property.count && is_face ? !read_corners(property) : !skip(property)) return false;
+    }
+    writer_.add_face(corners_);
+    return true;
+  }
+
+  bool read_vertex(const Element& element) {
+    std::array<std::string_view, 3> words;
+    std::array<float, 3> x{};
+    for (const Property& property : element.properties) {
+      const std::size_t axis = axis_of(property);
+      if (axis == 3) {
+        if (!skip(property)) return false;
+      } else if (ascii_) {
+        const std::optional<std::string_view> word = body_.word(property.type);
+        if (!word) return false;
+        words[axis] = *word;
+      } else {
+        const std::optional<float> value = body_.number(property.type);
+        if (!value) return false;
+        x[axis] = *value;
+      }
+    }
+    ascii_ ? writer_.add_vertex(words[0], words[1], words[2]) : writer_.add_vertex(x[0], x[1], x[2]);
+    return true;
+  }
+
+  bool read_corners(const Property& list) {
+    ++face_;
+    const std::optional<std::int64_t> count = body_.integer(*list.count);
+    if (!count) return false;
+    if (*count < 1 || *count > kMostCorners || !corners_.empty()) {
+      throw InvalidPly("face " + std::to_string(face_) + " must have one list of 1 to " + std::to_string(kMostCorners) +
+                       " corners");
+    }
+    for (std::int64_t k = 0; k < *count; ++k) {
+      const std::optional<std::int64_t> corner = body_.integer(list.type);
+      if (!corner) return false;
+      if (*corner < 0 || *corner >= vertices_) {
+        throw InvalidPly("face " + std::to_string(face_) + " must refer to one of the " + std::to_string(vertices_) + " vertices");
+      }
+      corners_.push_back(*corner);
+    }
+    return true;
+  }
+
+  bool skip(const Property& property) {
+    const std::optional<std::int64_t> count = property.count ? body_.integer(*property.count) : 1;
+    if (!count || *count < 0) return false;
+    for (std::int64_t i = 0; i < *count; ++i) {
+      if (!body_.skip(property.type)) return false;
+    }
+    return true;
+  }
+
+  const Header& header_;
+  bool ascii_;
+  Body body_;
+  PlyWriter writer_;
+  std::int64_t vertices_ = 0;
+  std::int64_t face_ = 0;
+  std::vector<std::int64_t> corners_;
+};
 
 }  // namespace
 
-void check_ply(const std::filesystem::path& file, const std::string& bytes) {
+CheckedFile checked_ply(const std::filesystem::path& file, const std::string& bytes) {
   FileProblems problems(file);
   try {
     std::string_view rest = bytes;
     const Header header = take_header(rest);
-    check_body(header, rest);
+    return Elements(header, rest).read();
   } catch (const InvalidPly& invalid) {
     problems.add("", "", invalid.what(), "export it again");
   }
   problems.throw_if_any();
+  return {};
 }
 
 }  // namespace sprung

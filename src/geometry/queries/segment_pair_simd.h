@@ -61,7 +61,8 @@ namespace detail {
   apart.y = between.y + pairs.s * along_a.y - pairs.t * along_b.y;
   apart.z = between.z + pairs.s * along_a.z - pairs.t * along_b.z;
   dot(apart, apart, pairs.squared_distance);
-  return mask_bits((aa == zero) | (bb == zero));
+  const Mask4 is_point = (aa == zero) | (bb == zero);  // named, because to clang the comparison has a type of its own
+  return mask_bits(is_point);
 }
 
 }  // namespace sprung

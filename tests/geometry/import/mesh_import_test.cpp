@@ -72,28 +72,6 @@ void expect_same_surface(const TriangleMesh& mesh, const TriangleMesh& expected)
   EXPECT_EQ(face_set(mesh.triangles, number), face_set(expected.triangles, same));
 }
 
-std::string ascii_stl(const TriangleMesh& mesh) {
-  std::string text = "solid shape\n";
-  for (const auto& triangle : mesh.triangles.colwise()) {
-    text += "facet normal 0 0 0\nouter loop\n";
-    for (const Index vertex : triangle) {
-      text += "vertex";
-      for (const double x : mesh.vertices.col(vertex)) append_number(text += ' ', x);
-      text += '\n';
-    }
-    text += "endloop\nendfacet\n";
-  }
-  return text + "endsolid\n";
-}
-
-std::string ascii_ply(const TriangleMesh& mesh) {
-  const std::string off = meshes::off_text(mesh);
-  const std::size_t counts_end = off.find('\n', off.find(" 0\n"));
-  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.vertices.cols()) +
-         "\nproperty double x\nproperty double y\nproperty double z\nelement face " + std::to_string(mesh.triangles.cols()) +
-         "\nproperty list uchar int vertex_indices\nend_header" + off.substr(counts_end);
-}
-
 std::string big_endian_ply(const TriangleMesh& mesh) {
   std::string bytes = meshes::ply_bytes(mesh);
   bytes.replace(bytes.find("little"), 6, "big");
@@ -114,6 +92,8 @@ std::string obj(const TriangleMesh& mesh) { return obj_text(mesh.vertices, to_po
 const meshes::Place kHere{"[1, 1, 1]", "[0, 0, 0, 1]", "[0, 0, 0]"};
 
 std::string gltf(const TriangleMesh& mesh) { return meshes::gltf_text(mesh, kHere, kHere); }
+
+std::string glb(const TriangleMesh& mesh) { return meshes::glb_bytes(gltf(mesh)); }
 
 struct Format {
   const char* name;
@@ -170,9 +150,10 @@ TEST_P(ImportFormat, SurvivesDamage) {
 
 INSTANTIATE_TEST_SUITE_P(All, ImportFormat,
                          testing::Values(Format{"shape.obj", obj}, Format{"shape.stl", meshes::stl_bytes},
-                                         Format{"shape_ascii.stl", ascii_stl}, Format{"shape.ply", meshes::ply_bytes},
-                                         Format{"shape_ascii.ply", ascii_ply}, Format{"shape_big.ply", big_endian_ply},
-                                         Format{"shape.off", meshes::off_text}, Format{"shape.gltf", gltf}),
+                                         Format{"shape_ascii.stl", meshes::stl_text}, Format{"shape.ply", meshes::ply_bytes},
+                                         Format{"shape_ascii.ply", meshes::ply_text}, Format{"shape_big.ply", big_endian_ply},
+                                         Format{"shape.off", meshes::off_text}, Format{"shape.gltf", gltf},
+                                         Format{"shape.glb", glb}, Format{"shape.3ds", meshes::three_ds_bytes}),
                          [](const auto& parameter) {
                            std::string name = parameter.param.name;
                            std::replace(name.begin(), name.end(), '.', '_');
@@ -276,9 +257,13 @@ TEST_F(ImportMesh, RefusesWhatItMayNotRead) {
   EXPECT_THAT(error_of(file), HasSubstr("cannot be read: Permission denied"));
 }
 
-TEST_F(ImportMesh, ListsFormatsForAnUnknownOne) {
-  EXPECT_THAT(error_of("cube.step9", "x"), testing::AllOf(HasSubstr(".step9"), HasSubstr(".obj, .stl, .ply")));
-  EXPECT_THAT(error_of("cube", "x"), HasSubstr("is no known mesh format"));
+TEST_F(ImportMesh, RefusesOtherFormatsAndListsThoseItReads) {
+  for (const std::string extension : {".raw", ".dae", ".fbx", ".blend", ".x", ".step9", ""}) {
+    EXPECT_THAT(
+        error_of("cube" + extension, "slab\n1 0 0 0 0 0\n"),
+        testing::AllOf(HasSubstr(extension + ": must be a mesh in one of the formats .obj, .stl, .ply, .off, .gltf, .glb, .3ds"),
+                       HasSubstr("convert it to OBJ")));
+  }
 }
 
 TEST_F(ImportMesh, RefusesWhatHasNoSurface) {
@@ -290,22 +275,23 @@ TEST_F(ImportMesh, RefusesIndicesOutOfRange) {
   const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
   EXPECT_THAT(error_of("a.off", off + "3 0 1 3\n"), HasSubstr("line 6"));
   EXPECT_THAT(error_of("a.off", off + "3 0 -1 2\n"), HasSubstr("line 6"));
-  EXPECT_THAT(error_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"), HasSubstr("out of range"));
+  EXPECT_THAT(error_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"), HasSubstr("one of the 3 vertices"));
   EXPECT_THAT(error_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4294967299\n"), HasSubstr("line 4"));
   TriangleMesh cube = test::make_cube();
   cube.triangles(2, 5) = 8;
-  EXPECT_THAT(error_of("a.ply", meshes::ply_bytes(cube)), HasSubstr("face 6: must refer to one of the 8 vertices"));
-  EXPECT_THAT(error_of("a.gltf", gltf(cube)), HasSubstr("out-of-range"));
+  EXPECT_THAT(error_of("a.ply", meshes::ply_bytes(cube)), HasSubstr("face 6 must refer to one of the 8 vertices"));
+  EXPECT_THAT(error_of("a.gltf", gltf(cube)), HasSubstr("must refer to one of the 8 vertices"));
+  EXPECT_THAT(error_of("a.3ds", meshes::three_ds_bytes(cube)), HasSubstr("face 6 must refer to one of the 8 vertices"));
 }
 
 TEST_F(ImportMesh, RefusesHeadersThatPromiseTooMuch) {
   EXPECT_THAT(error_of("a.off", "OFF\n4000000000 1 0\n0 0 0\n"), HasSubstr("is truncated"));
-  std::string ply = ascii_ply(test::make_cube());
+  std::string ply = meshes::ply_text(test::make_cube());
   EXPECT_THAT(error_of("a.ply", ply.replace(ply.find("vertex 8"), 8, "vertex 4000000000")), HasSubstr("4000000000"));
   EXPECT_THAT(error_of("b.ply", "ply\nformat ascii 1.0\nelement ver"), HasSubstr("header"));
   std::string stl = meshes::stl_bytes(test::make_cube());
   stl[83] = '\x7f';
-  EXPECT_THAT(error_of("a.stl", stl), HasSubstr("is damaged"));
+  EXPECT_THAT(error_of("a.stl", stl), HasSubstr("it declares 2130706444 faces"));
 }
 
 }  // namespace
