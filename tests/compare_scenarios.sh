@@ -15,7 +15,8 @@ fi
 
 # Each file's hashes are counted, because one run may be in several tests.
 awk 'NR == FNR { before[$1, ++count[$1]] = $0; next }
-     (key = $1 SUBSEP ++seen[$1]) in before { delete before[key]; ++same; next }
+     { ++seen[$1] }
+     ($1, seen[$1]) in before { delete before[$1, seen[$1]]; ++same; next }
      { print "> " $2 " frames of " $3; ++different }
      END {
        for (key in before) { split(before[key], run, " "); print "< " run[2] " frames of " run[3]; ++different }
