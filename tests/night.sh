@@ -57,14 +57,13 @@ if build_preset $third tsan; then
   echo "thread sanitizer: $(grep -c ' Passed ' $logs/tsan.txt) tests passed"
 fi
 
-if [[ -x tests/fuzz.sh ]]; then
-  # The script takes the seconds of each target.
-  targets=$(find tests/fuzz -name '*_fuzz.cpp' | wc -l)
-  each=$(((2 * third - SECONDS) / (targets > 0 ? targets : 1)))
-  if [[ $each -gt 0 ]] && ! tests/fuzz.sh "$each" > $logs/fuzz.txt 2>&1; then
-    report "the command at the end of the log" $logs/fuzz.txt
+if examples/install_packages.sh run fuzz > $logs/packages.txt 2>&1 && build_preset $((2 * third)) fuzz; then
+  targets=$(grep -o 'TARGETS:-[^}]*' tests/fuzz.sh | wc -w)
+  each=$(((2 * third - SECONDS) / targets)) # seconds
+  if [[ $each -gt 0 ]] && ! tests/fuzz.sh $each > $logs/fuzz.txt 2>&1; then
+    while read -r command; do report "$command" $logs/fuzz.txt; done < <(sed -n 's/.* failed\. .*To repeat: //p' $logs/fuzz.txt)
   fi
-  echo "fuzzers: done after $((SECONDS / 60)) min"
+  echo "fuzzers: $targets targets, $each s each"
 fi
 
 seeds=0
