@@ -61,7 +61,8 @@ if examples/install_packages.sh run fuzz > $logs/packages.txt 2>&1 && build_pres
   targets=$(grep -o 'TARGETS:-[^}]*' tests/fuzz.sh | wc -w)
   each=$(((2 * third - SECONDS) / targets)) # seconds
   if [[ $each -gt 0 ]] && ! tests/fuzz.sh $each > $logs/fuzz.txt 2>&1; then
-    while read -r command; do report "$command" $logs/fuzz.txt; done < <(sed -n 's/.* failed\. .*To repeat: //p' $logs/fuzz.txt)
+    commands=$(sed -n 's/.* failed\. .*To repeat: //p' $logs/fuzz.txt)
+    while read -r command; do report "$command" $logs/fuzz.txt; done <<< "${commands:-tests/fuzz.sh $each}"
   fi
   echo "fuzzers: $targets targets, $each s each"
 fi
