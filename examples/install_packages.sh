@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing of the named sections of packages.txt: install_packages.sh run test
+# Installs the missing packages of sections of packages.txt: install_packages.sh run test
 set -euo pipefail
 
 list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
@@ -24,7 +24,7 @@ echo "Installing ${missing[*]}"
 as_root=()
 if ((EUID != 0)); then
   if ! command -v sudo >/dev/null; then
-    echo "These Debian packages are missing and only root can install them. As root, run:" >&2
+    echo "Debian packages are missing, and only root can install them. Run this as root:" >&2
     echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
     exit 1
   fi

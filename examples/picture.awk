@@ -1,5 +1,5 @@
-# Joins OBJ files that follow one another after `usemtl` lines into one: indices shifted, UVs dropped, `l` elements drawn as prisms and
-# beads of `radius`. `shift X` moves all that follows X further along x.
+# Joins OBJ files into one. The input is a sequence of files, each after a `usemtl` line. Indices are shifted and UVs dropped. `l` elements
+# become prisms and beads of `radius`. A line `shift X` moves all files after it by X along x.
 $1 == "shift" { moved += $2; next }
 $1 == "usemtl" { offset = total; print; next }
 $1 == "v" { ++total; x[total] = $2 + moved; y[total] = $3; z[total] = $4; number[total] = vertex(x[total], y[total], z[total]); next }

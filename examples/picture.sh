@@ -1,18 +1,19 @@
 #!/usr/bin/env bash
-# Makes a picture of some frames of a run, side by side: bodies red, obstacles grey, ropes as tubes and beads.
+# Makes a picture of some frames of a run, side by side. Bodies are red, obstacles grey. Ropes are tubes with beads.
 #   examples/picture.sh FRAMES_FOLDER PICTURE.png FRAME...
-# SHIFT sets the frames that far apart [m] in one view, at one scale; without it each is a view of its own. HIDE="floor wall" leaves
-# obstacles out; AZIMUTH and ELEVATION turn the camera [degrees]; RADIUS is a tube's [m]; SIZE a view's in pixels.
+# Environment variables: SHIFT [m] draws all frames in one view at one scale, this distance apart; without it each frame has its own
+# view. HIDE="floor wall" hides obstacles. AZIMUTH and ELEVATION [degrees] turn the camera. RADIUS [m] is that of tubes. SIZE is the
+# size of a view in pixels, for example 360,320.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 if (($# < 3)); then
-  sed -n '2,5s/^# //p' "${BASH_SOURCE[0]}" >&2
+  sed -n '2,6s/^# //p' "${BASH_SOURCE[0]}" >&2
   exit 2
 fi
 folder=$1 picture=$2
 shift 2
-[ -f "$folder/run.json" ] || { echo "picture.sh: $folder: is no folder that sprung wrote a run to" >&2; exit 2; }
+[ -f "$folder/run.json" ] || { echo "picture.sh: $folder: not the output folder of a run (it has no run.json)" >&2; exit 2; }
 "$here/install_packages.sh" picture
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -26,18 +27,18 @@ TXT
 
 hidden() { case " ${HIDE:-} " in *" $1 "*) return 0 ;; *) return 1 ;; esac; }
 
-# The file of a body's or a moving obstacle's folder that holds a frame, whatever the number of its digits.
+# The file of a frame in the folder of a body or a moving obstacle. The number of digits may vary.
 frame_file() { find "$1" -name "$(basename "$1").*.obj" | grep -E "\.0*$2\.obj$" || true; }
 
 for frame in "$@"; do
   for path in "$folder"/*/; do
     if [ "$(basename "$path")" = obstacles ] || [ -n "$(frame_file "${path%/}" "$frame")" ]; then continue; fi
-    echo "picture.sh: $path: has no frame $frame" >&2
+    echo "picture.sh: $path: there is no frame $frame" >&2
     exit 2
   done
 done
 
-# All that a frame shows, for picture.awk.
+# All bodies and obstacles of a frame, as input of picture.awk.
 frame_parts() {
   local frame=$1 path name
   for path in "$folder"/*/ "$folder"/obstacles/*; do
@@ -50,7 +51,7 @@ frame_parts() {
   done
 }
 
-# Standard input to a picture.
+# Draws standard input as a picture.
 render() {
   { echo "mtllib scene.mtl"; awk -v radius="${RADIUS:-0.01}" -f "$here/picture.awk"; } > "$work/scene.obj"
   xvfb-run -a f3d --output="$1" --resolution="${SIZE:-360,320}" --up=+Y --bg-color=1,1,1 --fxaa --ssao --tone-mapping --quiet \

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs the examples and makes README's pictures of them: pictures.sh [SCENE...]
+# Runs the examples and makes the pictures of examples/README.md: pictures.sh [SCENE...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 examples/install_packages.sh run
@@ -35,7 +35,7 @@ mkdir -p examples/pictures
 (($#)) || set -- "${!frames[@]}"
 for scene in "$@"; do
   output="build/frames/$scene"
-  # A scene that diverges, as too_large_step_warned must, leaves its good frames.
+  # A scene that diverges (exit code 4) keeps the frames before. too_large_step_warned is meant to diverge.
   build/release/bin/sprung run "examples/$scene.json" --out "$output" --overwrite --mesh-path /usr/share/glmark2/models || (($? == 4))
   # shellcheck disable=SC2086
   env ${look[$scene]} examples/picture.sh "$output" "examples/pictures/$scene.png" ${frames[$scene]}

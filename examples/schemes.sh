@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs six_schemes.json with each scheme and plots what becomes of its energy: examples/pictures/six_schemes.png
+# Runs six_schemes.json with each integrator and plots the change of energy: examples/pictures/six_schemes.png
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 examples/install_packages.sh run picture
@@ -10,7 +10,7 @@ schemes=(explicit_euler symplectic_euler verlet velocity_verlet rk4 implicit_eul
 frames=build/frames/schemes
 picture=examples/pictures/six_schemes.png
 for scheme in "${schemes[@]}"; do
-  if [[ $scheme == explicit_euler ]]; then echo "Explicit Euler is to diverge, and leaves its good frames:"; fi
+  if [[ $scheme == explicit_euler ]]; then echo "Explicit Euler diverges, as expected. The frames before the divergence are kept:"; fi
   build/release/bin/sprung run examples/six_schemes.json --out "$frames/$scheme" --overwrite --quiet \
     --set "integrator.type=$scheme" || (($? == 4))
 done
