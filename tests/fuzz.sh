@@ -1,10 +1,16 @@
 #!/usr/bin/env bash
 # Feeds the readers of meshes and scenes with damaged files: fuzz.sh [SECONDS]. Without an argument each reader gets a fixed number
 # of files from a fixed seed, as in CI; with one, it gets files for that many seconds from a new seed, and what was found is kept
-# for the next time. The environment variable SEED repeats a run, TARGETS="ply scene" runs some of the readers.
+# for the next time. The environment variable SEED repeats a run, TARGETS="ply scene" runs some of the readers. fuzz.sh --list
+# prints their names.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+readonly targets="${TARGETS:-obj stl ply off gltf glb 3ds scene}"
+if [[ "${1:-}" == --list ]]; then
+  tr ' ' '\n' <<<"$targets"
+  exit
+fi
 readonly seconds="${1:-}"
 readonly programs=build/fuzz/bin
 readonly corpus=build/fuzz/corpus
@@ -26,7 +32,7 @@ fi
 
 mkdir -p "$crashes"
 failed=()
-for target in ${TARGETS:-obj stl ply off gltf glb 3ds scene}; do
+for target in $targets; do
   mkdir -p "$found/$target"
   # A scene, and a body beside an environment, take longer than a mesh of four triangles.
   runs=12000

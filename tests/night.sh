@@ -58,7 +58,7 @@ if build_preset $third tsan; then
 fi
 
 if examples/install_packages.sh run fuzz > $logs/packages.txt 2>&1 && build_preset $((2 * third)) fuzz; then
-  targets=$(grep -o 'TARGETS:-[^}]*' tests/fuzz.sh | wc -w)
+  targets=$(tests/fuzz.sh --list | wc -l)
   each=$(((2 * third - SECONDS) / targets)) # seconds
   if [[ $each -gt 0 ]] && ! tests/fuzz.sh $each > $logs/fuzz.txt 2>&1; then
     commands=$(sed -n 's/.* failed\. .*To repeat: //p' $logs/fuzz.txt)

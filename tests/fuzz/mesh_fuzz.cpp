@@ -1,6 +1,7 @@
 // Reads its input as a mesh file with the extension SPRUNG_FUZZ_EXTENSION. A file is refused with an InputError, or it gives a
 // mesh that keeps what `mesh_import.h` and `polygon_mesh.h` promise.
 #include "base/error.h"
+#include "base/parallel.h"
 #include "fuzz/fuzz_file.h"
 #include "geometry/import/mesh_file.h"
 #include "geometry/import/mesh_import.h"
@@ -66,6 +67,7 @@ void check_sequence(const std::filesystem::path& file) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace sprung::fuzz;
+  static const sprung::ThreadLimit kOneThread(1);  // meshes are small, and libFuzzer repeats what one thread does
   const std::filesystem::path file = own_file("mesh" + std::string(kExtension));
   write_bytes(file, bytes, size);
   check_environment(file);
