@@ -8,48 +8,49 @@ namespace sprung {
 
 namespace {
 
-// A map that deforms more than this is not the one that was looked for: it could turn what it maps inside out from 1 on.
-constexpr double kMostStrain = 0.5;
+// From a strain of 1 on a map may turn its group inside out. A fit with more strain than this is rejected.
+constexpr double kMaxStrain = 0.5;
 
-// Triangles in one plane say nothing about the direction across it: that in which corners spread by less than this part of the
-// widest.
-constexpr double kLeastSpread = 0x1p-10;
+// Triangles in one plane do not determine the map across the plane. A direction counts as across if the corners' spread along it is
+// less than this fraction of the largest spread.
+constexpr double kMinSpread = 0x1p-10;
 
-/// The inverse in the directions in which a symmetric matrix is not next to nothing.
-Matrix3 inverse_where_spread(const Matrix3& squares) {
+/// The pseudo-inverse of a symmetric matrix: directions of small eigenvalues stay zero.
+Matrix3 pseudo_inverse(const Matrix3& squares) {
   const Eigen::SelfAdjointEigenSolver<Matrix3> solver(squares);
-  const double least = kLeastSpread * kLeastSpread * solver.eigenvalues()[2];
+  const double threshold = kMinSpread * kMinSpread * solver.eigenvalues()[2];
   Matrix3 inverse = Matrix3::Zero();
   for (int k = 0; k < 3; ++k) {
     const double square = solver.eigenvalues()[k];
-    if (!(square > least)) continue;
+    if (!(square > threshold)) continue;
     const Vector3 axis = solver.eigenvectors().col(k);
     inverse += axis * axis.transpose() / square;
   }
   return inverse;
 }
 
+/// The least-squares affine map of the triangles' corners that corrects the rigid motion.
 AffineTransform fit(const RigidTransform& rigid, const std::vector<MovedTriangle>& triangles) {
-  const double part = 1.0 / static_cast<double>(3 * triangles.size());
-  Vector3 before = Vector3::Zero();
-  Vector3 after = Vector3::Zero();
+  const double weight = 1.0 / static_cast<double>(3 * triangles.size());
+  Vector3 center_before = Vector3::Zero();
+  Vector3 center_after = Vector3::Zero();
   for (const MovedTriangle& triangle : triangles) {
-    for (const Vector3& corner : triangle.before) before += part * corner;
-    for (const Vector3& corner : triangle.after) after += part * corner;
+    for (const Vector3& corner : triangle.before) center_before += weight * corner;
+    for (const Vector3& corner : triangle.after) center_after += weight * corner;
   }
   AffineTransform map(rigid);
   Matrix3 squares = Matrix3::Zero();
-  Matrix3 missed = Matrix3::Zero();
+  Matrix3 residual = Matrix3::Zero();
   for (const MovedTriangle& triangle : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3 beside = triangle.before[k] - before;
-      squares += beside * beside.transpose();
-      missed += (triangle.after[k] - after - map.linear() * beside) * beside.transpose();
+      const Vector3 offset = triangle.before[k] - center_before;
+      squares += offset * offset.transpose();
+      residual += (triangle.after[k] - center_after - map.linear() * offset) * offset.transpose();
     }
   }
-  const Matrix3 strain = missed * inverse_where_spread(squares);
-  if (strain.norm() < kMostStrain) map.linear() += strain;
-  map.translation() = after - map.linear() * before;
+  const Matrix3 strain = residual * pseudo_inverse(squares);
+  if (strain.norm() < kMaxStrain) map.linear() += strain;
+  map.translation() = center_after - map.linear() * center_before;
   return map;
 }
 

@@ -1,4 +1,4 @@
-// Particles that obstacles hold fast, and the motions with which these take whole groups along.
+// Particles that obstacles constrain, and the motion that a group of them has in common.
 #pragma once
 
 #include "collision/shapes/moved_triangle.h"
@@ -10,26 +10,26 @@ namespace sprung {
 
 using AffineTransform = Eigen::Affine3d;
 
-/// A particle that obstacles leave no place where its group would take it.
+/// A particle that has no admissible position at its group's target, and the obstacle that it moves with instead.
 struct KinematicAnchor {
   Index particle = kNone;
-  Index obstacle = kNone;                              ///< which moves and is in its way; kNone: it stays
-  RigidTransform motion = RigidTransform::Identity();  ///< of the obstacle, but for its deforming
-  std::optional<MovedTriangle> surface{};              ///< that is nearest to the particle, where the obstacle deforms
+  Index obstacle = kNone;                              ///< the moving obstacle that blocks the particle; kNone: the anchor rests
+  RigidTransform motion = RigidTransform::Identity();  ///< of the obstacle's frame in this interval
+  std::optional<MovedTriangle> surface{};              ///< nearest triangle of a deforming obstacle, in world coordinates
 
   [[nodiscard]] bool moves() const { return obstacle != kNone; }
 };
 
-/// A particle that leans on an obstacle, and how far that carries it in this step [m].
+/// The displacement [m] that a moving obstacle gives to a particle in this interval.
 struct ParticleDisplacement {
   Index particle = kNone;
   Vector3 motion = Vector3::Zero();
 };
 
-/// A motion for all that hangs together with these anchors, as if it were a part of the obstacle that the first is at (the first
-/// that moves, if one does): the obstacle's own if that is rigid; else the affine map, near its rigid part, that takes the surface
-/// at its anchors along with the least squares of what it misses. What does not cross before an affine map does not cross after
-/// it. Requires an anchor.
+/// The motion of a group with these anchors, as if the group were attached to the obstacle of the first moving anchor (of the first
+/// anchor if none moves). For a rigid obstacle this is the motion of its frame. For a deforming one it is the affine map that fits
+/// the anchors' triangles by least squares, close to the motion of the frame. Elements that do not cross before an affine map do
+/// not cross after it. Requires at least one anchor.
 [[nodiscard]] AffineTransform common_motion(std::span<const KinematicAnchor> anchors);
 
 }  // namespace sprung

@@ -11,11 +11,12 @@ namespace {
 
 constexpr Index kPatchChunk = 4;
 
-// Obstacles may lead particles out of the box around their patch's ways, by this part of its diagonal before they are stopped.
-constexpr double kAside = 0.125;
+// Contact may push particles out of the box around their patch's paths, by this fraction of its diagonal. Farther ones are clipped.
+constexpr double kDetour = 0.125;
 
-// Where no obstacle moves the broad phase is asked for more than is needed, by this part of the diagonal, to be asked less often.
-constexpr double kStock = 0.25;
+// Where no obstacle moves the broad phase is asked for a box that is larger by this fraction of the diagonal, to be asked less
+// often.
+constexpr double kReserve = 0.25;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -26,7 +27,7 @@ ObstacleSafeRegions::ObstacleSafeRegions(const ObstacleSet& set, const Collision
       surface_(surface),
       margin_(margin),
       rest_(rest),
-      passing_(set.obstacles().size(), std::vector<char>(surface.pinned.size(), 0)) {
+      permitted_(set.obstacles().size(), std::vector<char>(surface.pinned.size(), 0)) {
   for (std::size_t p = 0; p < surface.patches.size(); ++p) {
     const ElementPatch& elements = surface.patches[p];
     Patch patch{.topology = PatchTopology(surface, elements)};
@@ -41,36 +42,36 @@ ObstacleSafeRegions::ObstacleSafeRegions(const ObstacleSet& set, const Collision
   }
 }
 
-void ObstacleSafeRegions::follow(const Way& way) {
+void ObstacleSafeRegions::update(const StepPaths& paths) {
   if (set_.obstacles().empty()) return;
-  const double carried = way.obstacles_rest ? 0.0 : set_.carries_at_most(way.from);
+  const double max_displacement = paths.obstacles_rest ? 0.0 : set_.carries_at_most(paths.from);
   parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
     for (Index p = begin; p < end; ++p) {
-      find_near(p, way, carried);
+      find_near(p, paths, max_displacement);
       Patch& patch = patches_[at(p)];
-      patch.restless.clear();
+      patch.leaving.clear();
       for (PatchSafeRegions& regions : patch.regions) {
         const ObstacleShape& shape = set_.shape(regions.obstacle());
-        if (!regions.find_restless(shape, {way.to, particles_of(p), set_.into_after(regions.obstacle())})) continue;
-        regions.follow(shape, patch.topology, paths(p, regions.obstacle(), way), demand(patch, regions.obstacle(), way));
-        append_restless(p, regions);
+        if (!regions.find_leaving(shape, {paths.to, particles_of(p), set_.into_after(regions.obstacle())})) continue;
+        regions.update(shape, patch.topology, patch_paths(p, regions.obstacle(), paths), demand(patch, regions.obstacle(), paths));
+        append_leaving(p, regions);
       }
     }
   });
 }
 
-void ObstacleSafeRegions::find_near(Index p, const Way& way, double carried) {
+void ObstacleSafeRegions::find_near(Index p, const StepPaths& paths, double max_displacement) {
   Patch& patch = patches_[at(p)];
   const std::vector<Index>& particles = particles_of(p);
-  patch.box = finite_bounds(way.from, particles).merged(finite_bounds(way.to, particles));
+  patch.box = finite_bounds(paths.from, particles).merged(finite_bounds(paths.to, particles));
   std::vector<Index> near;
   if (!patch.box.isEmpty()) {
     const double gap = std::max(patch.thickness + set_.max_thickness(), set_.max_clearance(patch.box));
-    // Once for the way in the frame of an obstacle that comes, once more where another has carried the particle.
-    const double aside = kAside * patch.box.diagonal().norm();
-    const double reach = gap + margin_ + 2.0 * carried + aside;
+    // Twice: in the frame of an approaching obstacle the path is longer by its motion, and another obstacle may move the particle.
+    const double detour = kDetour * patch.box.diagonal().norm();
+    const double reach = gap + margin_ + 2.0 * max_displacement + detour;
     if (!set_.moves() && patch.known.contains(grown(patch.box, reach))) return;
-    patch.known = grown(patch.box, reach + kStock * patch.box.diagonal().norm());
+    patch.known = grown(patch.box, reach + kReserve * patch.box.diagonal().norm());
     set_.find_near(patch.known, near);
   }
   if (std::equal(near.begin(), near.end(), patch.regions.begin(), patch.regions.end(),
@@ -79,8 +80,8 @@ void ObstacleSafeRegions::find_near(Index p, const Way& way, double carried) {
   }
   std::vector<PatchSafeRegions> regions;
   for (const Index k : near) {
-    const auto kept =
-        std::find_if(patch.regions.begin(), patch.regions.end(), [k](const PatchSafeRegions& z) { return z.obstacle() == k; });
+    const auto kept = std::find_if(patch.regions.begin(), patch.regions.end(),
+                                   [k](const PatchSafeRegions& candidate) { return candidate.obstacle() == k; });
     if (kept == patch.regions.end()) {
       regions.emplace_back(k, patch.topology);
     } else {
@@ -90,41 +91,41 @@ void ObstacleSafeRegions::find_near(Index p, const Way& way, double carried) {
   patch.regions = std::move(regions);
 }
 
-void ObstacleSafeRegions::append_restless(Index p, const PatchSafeRegions& regions) {
-  for (const Index slot : regions.restless()) patches_[at(p)].restless.push_back(particles_of(p)[at(slot)]);
+void ObstacleSafeRegions::append_leaving(Index p, const PatchSafeRegions& regions) {
+  for (const Index slot : regions.leaving()) patches_[at(p)].leaving.push_back(particles_of(p)[at(slot)]);
 }
 
-std::vector<Index> ObstacleSafeRegions::restless() const {
+std::vector<Index> ObstacleSafeRegions::leaving() const {
   std::vector<Index> particles;
-  for (const Patch& patch : patches_) particles.insert(particles.end(), patch.restless.begin(), patch.restless.end());
+  for (const Patch& patch : patches_) particles.insert(particles.end(), patch.leaving.begin(), patch.leaving.end());
   std::sort(particles.begin(), particles.end());
   particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
   return particles;
 }
 
-PatchPaths ObstacleSafeRegions::paths(Index p, Index k, const Way& way) const {
-  const RigidTransform& before = way.obstacles_rest ? set_.into_after(k) : set_.into_before(k);
-  return {{way.from, particles_of(p), before}, {way.to, particles_of(p), set_.into_after(k)}};
+PatchPaths ObstacleSafeRegions::patch_paths(Index p, Index k, const StepPaths& paths) const {
+  const RigidTransform& before = paths.obstacles_rest ? set_.into_after(k) : set_.into_before(k);
+  return {{paths.from, particles_of(p), before}, {paths.to, particles_of(p), set_.into_after(k)}};
 }
 
-RegionDemand ObstacleSafeRegions::demand(const Patch& patch, Index k, const Way& way) const {
+RegionDemand ObstacleSafeRegions::demand(const Patch& patch, Index k, const StepPaths& paths) const {
   RegionDemand demand{.size = patch.size,
                       .gap = patch.thickness + set_.obstacle(k).material.thickness,
                       .margin = margin_,
-                      .at_end = way.obstacles_rest,
+                      .at_end = paths.obstacles_rest,
                       .ahead = ahead_};
   demand.clearance = patch.box.isEmpty() ? 0.0 : set_.clearance(k, patch.box.min(), patch.box.max());
   demand.gap = std::max(demand.gap, demand.clearance);
   return demand;
 }
 
-void ObstacleSafeRegions::renew_around(const std::vector<Index>& particles, const Way& way) {
+void ObstacleSafeRegions::renew_around(const std::vector<Index>& particles, const StepPaths& paths) {
   const std::vector<Index> around = patches_around(particles);
   std::vector<std::vector<Index>> slots(around.size());
   for (const Index i : particles) {
-    for (const PatchSlot& place : slots_of(i)) {
-      const auto k = std::lower_bound(around.begin(), around.end(), place.patch) - around.begin();
-      slots[static_cast<std::size_t>(k)].push_back(place.slot);
+    for (const PatchSlot& entry : slots_of(i)) {
+      const auto k = std::lower_bound(around.begin(), around.end(), entry.patch) - around.begin();
+      slots[static_cast<std::size_t>(k)].push_back(entry.slot);
     }
   }
   parallel_chunks(static_cast<Index>(around.size()), kPatchChunk, [&](Index begin, Index end) {
@@ -132,10 +133,10 @@ void ObstacleSafeRegions::renew_around(const std::vector<Index>& particles, cons
       const Index p = around[at(k)];
       for (PatchSafeRegions& regions : patches_[at(p)].regions) {
         const ObstacleShape& shape = set_.shape(regions.obstacle());
-        const RegionDemand demanded = demand(patches_[at(p)], regions.obstacle(), way);
-        regions.renew(shape, patches_[at(p)].topology, paths(p, regions.obstacle(), way), demanded, slots[at(k)]);
-        regions.find_restless(shape, {way.to, particles_of(p), set_.into_after(regions.obstacle())});
-        append_restless(p, regions);
+        const RegionDemand demanded = demand(patches_[at(p)], regions.obstacle(), paths);
+        regions.renew(shape, patches_[at(p)].topology, patch_paths(p, regions.obstacle(), paths), demanded, slots[at(k)]);
+        regions.find_leaving(shape, {paths.to, particles_of(p), set_.into_after(regions.obstacle())});
+        append_leaving(p, regions);
       }
     }
   });
@@ -146,16 +147,18 @@ bool ObstacleSafeRegions::allow(Index particle, const Vector3& position) const {
     const Patch& patch = patches_[at(p)];
     if (!patch.known.isEmpty() && !patch.known.contains(position)) return false;
     for (const PatchSafeRegions& regions : patch.regions) {
-      if (!is_passing(regions.obstacle(), particle) && !regions.allow(slot, set_.local(regions.obstacle(), position))) return false;
+      if (!is_permitted(regions.obstacle(), particle) && !regions.allow(slot, set_.local(regions.obstacle(), position)))
+        return false;
     }
   }
   return true;
 }
 
 bool ObstacleSafeRegions::planes_allow(Index particle, const Vector3& position) const {
-  return std::ranges::all_of(slots_of(particle), [&](const PatchSlot& place) {
-    return std::ranges::all_of(patches_[at(place.patch)].regions, [&](const PatchSafeRegions& regions) {
-      return is_passing(regions.obstacle(), particle) || regions.planes_allow(place.slot, set_.local(regions.obstacle(), position));
+  return std::ranges::all_of(slots_of(particle), [&](const PatchSlot& entry) {
+    return std::ranges::all_of(patches_[at(entry.patch)].regions, [&](const PatchSafeRegions& regions) {
+      return is_permitted(regions.obstacle(), particle) ||
+             regions.planes_allow(entry.slot, set_.local(regions.obstacle(), position));
     });
   });
 }
@@ -168,7 +171,7 @@ void ObstacleSafeRegions::append_half_spaces(Index particle, std::vector<HalfSpa
       half_spaces.push_back({-Vector3::Unit(axis), -patch.known.max()[axis]});
     }
     for (const PatchSafeRegions& regions : patch.regions) {
-      if (is_passing(regions.obstacle(), particle)) continue;
+      if (is_permitted(regions.obstacle(), particle)) continue;
       regions.append_half_spaces(slot, set_.after(regions.obstacle()), half_spaces);
     }
   }
@@ -177,7 +180,7 @@ void ObstacleSafeRegions::append_half_spaces(Index particle, std::vector<HalfSpa
 std::vector<Index> ObstacleSafeRegions::patches_around(const std::vector<Index>& particles) const {
   std::vector<Index> around;
   for (const Index i : particles) {
-    for (const PatchSlot& place : slots_of(i)) around.push_back(place.patch);
+    for (const PatchSlot& entry : slots_of(i)) around.push_back(entry.patch);
   }
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());

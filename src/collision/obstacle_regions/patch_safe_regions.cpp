@@ -10,54 +10,49 @@ namespace sprung {
 
 namespace {
 
-// A region's box is this part of an element's size, or of the gap, larger than the element on each side: larger ones meet more
-// triangles, smaller ones are left sooner.
+// A region's box is larger than its element on each side by this fraction of the element's size, or of the gap. Larger boxes
+// intersect more triangles, smaller ones are left sooner.
 constexpr double kReachOfSize = 0.25;
 constexpr double kReachOfGap = 0.8;
 
-// It holds the corners' way too, and is larger by this part of it, since constraints lead them elsewhere.
+// The box also contains the corners' targets and is larger by this fraction of their displacement, since constraints change the
+// targets later.
 constexpr double kReachOfMotion = 0.5;
 
-// Nearest points are looked for again after a way of this part of the gap: what slides goes over others.
-constexpr double kFreshPart = 1.0;
+// A region that lost this fraction of the gap as it moved with a deforming surface is replaced: it may block its element, and its
+// closest points may be other ones.
+constexpr double kMaxLoss = 0.3;
 
-// And after one of this part on the same triangle: the plane there lets the element go on straight where the surface is round, and
-// what slid down an ear stuck to it.
-constexpr double kSeenPart = 0.02;
-
-// Zones that a surface that deforms takes along are made again when they lost this part of the gap.
-constexpr double kMostLoss = 0.3;
-
-// Calm balls are this part of what they could be, which is more than rounding.
-constexpr double kCalmPart = 1.0 - 0x1p-20;
+// An inner sphere has this fraction of the largest possible radius, so that rounding does not let it reach out of a region.
+constexpr double kInnerSphereScale = 1.0 - 0x1p-20;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// The ways of an element's corners.
-struct ElementWay {
-  ElementWay(const PatchPaths& paths, const PatchTopology::Corners& corners) {
+/// The paths of an element's corners.
+struct ElementPath {
+  ElementPath(const PatchPaths& paths, const PatchTopology::Corners& corners) {
     from.count = corners.count;
     for (std::size_t k = 0; k < at(corners.count); ++k) {
       const Vector3 end = paths.to(corners.slots[k]);
       from.x[k] = paths.from(corners.slots[k]);
       to.extend(end);
       const double moved = (end - from.x[k]).norm();
-      longest = moved <= longest ? longest : moved;  // what is not finite stays
+      longest = moved <= longest ? longest : moved;  // a value that is not finite stays
     }
   }
 
   ElementCorners from{};
-  Box3 to{};             ///< around where the corners go
-  double longest = 0.0;  ///< [m]; not finite where a corner is not
+  Box3 to{};             ///< around the targets
+  double longest = 0.0;  ///< largest displacement [m]; not finite if a corner is not
 };
 
-SafeRegionRequest request(const RegionDemand& demand, bool pinned, const ElementWay& way) {
-  const double least_reach = std::max(kReachOfSize * demand.size, kReachOfGap * demand.gap);
-  return {.reach = least_reach + kReachOfMotion * way.longest,
-          .way = way.to,
+SafeRegionRequest request(const RegionDemand& demand, bool pinned, const ElementPath& path) {
+  const double min_reach = std::max(kReachOfSize * demand.size, kReachOfGap * demand.gap);
+  return {.reach = min_reach + kReachOfMotion * path.longest,
+          .way = path.to,
           .gap = demand.gap,
           .clearance = demand.clearance,
-          .exact = demand.gap + demand.margin + (demand.ahead && pinned ? way.longest : 0.0),
+          .exact = demand.gap + demand.margin + (demand.ahead && pinned ? path.longest : 0.0),
           .at_end = demand.at_end};
 }
 
@@ -67,46 +62,45 @@ PatchSafeRegions::PatchSafeRegions(Index obstacle, const PatchTopology& topology
     : obstacle_(obstacle),
       regions_(at(topology.element_count())),
       made_around_(regions_.size()),
-      sights_(regions_.size()),
+      closest_points_(regions_.size()),
       slots_(at(topology.slot_count())),
       memories_(slots_.size()),
-      calm_(slots_.size()),
-      quiet_(slots_.size()),
+      inner_spheres_(slots_.size()),
+      empty_spheres_(slots_.size()),
       marked_(regions_.size(), 0),
       changed_(slots_.size(), 0) {}
 
-bool PatchSafeRegions::find_restless(const ObstacleShape& shape, const SphereVertices& to) {
+bool PatchSafeRegions::find_leaving(const ObstacleShape& shape, const SphereVertices& to) {
   if (shape.deforms()) {
-    restless_.resize(slots_.size());
-    std::iota(restless_.begin(), restless_.end(), Index{0});
+    leaving_.resize(slots_.size());
+    std::iota(leaving_.begin(), leaving_.end(), Index{0});
   } else {
-    calm_.find_outside(to, 0.0, restless_);
+    inner_spheres_.find_outside(to, 0.0, leaving_);
   }
-  return !restless_.empty();
+  return !leaving_.empty();
 }
 
-void PatchSafeRegions::follow(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
+void PatchSafeRegions::update(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
                               const RegionDemand& demand) {
-  if (shape.deforms()) take_along(shape, topology, demand);
-  mark(topology, paths);
+  if (shape.deforms()) move_with_surface(shape, topology, demand);
+  mark_leaving(topology, paths);
   make_marked(shape, topology, paths, demand);
-  find_restless(shape, paths.to());
+  find_leaving(shape, paths.to());
 }
 
-// Zones that lost much on the way may stand in the way of their elements, or not be the nearest points' any more.
-void PatchSafeRegions::take_along(const ObstacleShape& shape, const PatchTopology& topology, const RegionDemand& demand) {
-  bool along = false;
+void PatchSafeRegions::move_with_surface(const ObstacleShape& shape, const PatchTopology& topology, const RegionDemand& demand) {
+  bool any_moved = false;
   for (Index e = 0; e < topology.element_count(); ++e) {
     SafeRegion& region = regions_[at(e)];
     const double time = region.time;
-    if (!shape.take_along(region) || (region.triangle != kNone && region.loss > kMostLoss * demand.gap)) marked_[at(e)] = 1;
+    if (!shape.take_along(region) || (region.triangle != kNone && region.loss > kMaxLoss * demand.gap)) marked_[at(e)] = 1;
     if (region.time == time || std::isnan(region.time)) continue;
-    along = true;
+    any_moved = true;
     for (Vector3& corner : made_around_[at(e)]) corner += region.drift;
-    for (Vector3& corner : sights_[at(e)].from) corner += region.drift;
+    closest_points_.shift(e, region.drift);
   }
-  if (!along) return;
-  for (Index i = 0; i < topology.slot_count(); ++i) gather(topology, demand, i);
+  if (!any_moved) return;
+  for (Index i = 0; i < topology.slot_count(); ++i) gather_slot(topology, demand, i);
   find_near_elements(topology, demand);
 }
 
@@ -118,15 +112,15 @@ void PatchSafeRegions::renew(const ObstacleShape& shape, const PatchTopology& to
   make_marked(shape, topology, paths, demand);
 }
 
-// A region that was never made has an empty box, which all its corners are about to leave.
-void PatchSafeRegions::mark(const PatchTopology& topology, const PatchPaths& paths) {
-  for (const Index i : restless_) {
+// An element without a region has an empty box, so that all its corners leave it.
+void PatchSafeRegions::mark_leaving(const PatchTopology& topology, const PatchPaths& paths) {
+  for (const Index i : leaving_) {
     const Slot& slot = slots_[at(i)];
     const Vector3 to = paths.to(i);
-    calm_down(i, to);
+    set_inner_sphere(i, to);
     if (slot.box.contains(to) && !slot.broken) continue;
     for (const Index e : topology.elements_of(i)) {
-      if (regions_[at(e)].broken || !boxes(topology, e, i, to)) marked_[at(e)] = 1;
+      if (regions_[at(e)].broken || !corner_box_contains(topology, e, i, to)) marked_[at(e)] = 1;
     }
   }
 }
@@ -138,61 +132,56 @@ void PatchSafeRegions::make_marked(const ObstacleShape& shape, const PatchTopolo
     if (marked_[at(e)] == 0) continue;
     marked_[at(e)] = 0;
     const PatchTopology::Corners& corners = topology.corners(e);
-    const ElementWay way(paths, corners);
+    const ElementPath path(paths, corners);
     SafeRegion& region = regions_[at(e)];
-    if (std::isfinite(way.longest)) {
-      shape.find_region(way.from, request(demand, corners.pinned, way), region);
+    if (std::isfinite(path.longest)) {
+      shape.find_region(path.from, request(demand, corners.pinned, path), region);
     } else {
       region = SafeRegion{.broken = true};
     }
-    made_around_[at(e)] = way.from.x;
+    made_around_[at(e)] = path.from.x;
     for (Vector3& corner : made_around_[at(e)]) corner += region.drift;
-    sights_[at(e)] = {made_around_[at(e)]};
+    closest_points_.reset(e, made_around_[at(e)]);
     for (std::size_t k = 0; k < at(corners.count); ++k) changed_[at(corners.slots[k])] = 1;
   }
   for (Index i = 0; i < topology.slot_count(); ++i) {
     if (changed_[at(i)] == 0) continue;
     changed_[at(i)] = 0;
-    gather(topology, demand, i);
+    gather_slot(topology, demand, i);
     const Vector3 to = paths.to(i);
-    calm_down(i, slots_[at(i)].box.contains(to) ? to : paths.from(i));
+    set_inner_sphere(i, slots_[at(i)].box.contains(to) ? to : paths.from(i));
   }
   find_near_elements(topology, demand);
 }
 
-const SafeRegion& PatchSafeRegions::look_again(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
-                                               const RegionDemand& demand, Index e) {
+const SafeRegion& PatchSafeRegions::renew_closest_points(const ObstacleShape& shape, const PatchTopology& topology,
+                                                         const PatchPaths& paths, const RegionDemand& demand, Index e) {
   SafeRegion& region = regions_[at(e)];
-  Sight& sight = sights_[at(e)];
   const PatchTopology::Corners& corners = topology.corners(e);
-  double moved = 0.0;
-  for (std::size_t k = 0; k < at(corners.count); ++k) {
-    moved = std::max(moved, (paths.from(corners.slots[k]) + region.drift - sight.from[k]).squaredNorm());
-  }
-  moved = std::sqrt(moved);
-  if (!(moved > kSeenPart * demand.gap)) return region;
-  const ElementWay way(paths, corners);
-  SafeRegionRequest asked = request(demand, corners.pinned, way);
+  ElementCorners from{.count = corners.count};
+  for (std::size_t k = 0; k < at(corners.count); ++k) from.x[k] = paths.from(corners.slots[k]);
+  const auto search = closest_points_.next_search(e, from, region.drift, demand.gap);
+  if (search == ClosestPointTracker::Search::none) return region;
+  SafeRegionRequest asked = request(demand, corners.pinned, ElementPath(paths, corners));
   asked.reach = std::max(asked.reach, asked.exact);
-  const bool fresh = sight.way + moved <= kFreshPart * demand.gap;
-  shape.look_again(way.from, asked, fresh, region);
-  sight = {way.from.x, fresh ? sight.way + moved : 0.0};
-  for (Vector3& corner : sight.from) corner += region.drift;
+  shape.look_again(from, asked, search == ClosestPointTracker::Search::same_triangle, region);
+  for (Vector3& corner : from.x) corner += region.drift;
+  closest_points_.set_corners(e, from.x);
   return region;
 }
 
 void PatchSafeRegions::find_near_elements(const PatchTopology& topology, const RegionDemand& demand) {
   near_elements_.clear();
-  crosses_ = false;
+  any_crossed_ = false;
   for (Index e = 0; e < topology.element_count(); ++e) {
     const SafeRegion& region = regions_[at(e)];
-    crosses_ = crosses_ || region.broken;
+    any_crossed_ = any_crossed_ || region.broken;
     const bool comes_near = demand.ahead && topology.corners(e).pinned && std::isfinite(region.distance);
     if (region.distance < demand.gap + demand.margin || comes_near) near_elements_.push_back(e);
   }
 }
 
-void PatchSafeRegions::gather(const PatchTopology& topology, const RegionDemand& demand, Index i) {
+void PatchSafeRegions::gather_slot(const PatchTopology& topology, const RegionDemand& demand, Index i) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Slot& slot = slots_[at(i)];
   slot.box = Box3(Vector3::Constant(-kInfinity), Vector3::Constant(kInfinity));
@@ -211,10 +200,10 @@ void PatchSafeRegions::gather(const PatchTopology& topology, const RegionDemand&
     clear = region.clear;
     clear_around = made_around_[at(e)][topology.corner(e, i)];
   }
-  quiet_.set(i, clear_around, clear);
+  empty_spheres_.set(i, clear_around, clear);
 }
 
-// The radius is that of a ball: the cube within it.
+// The region's radius is that of a ball around the corner. The box is the cube inside the ball.
 Box3 PatchSafeRegions::corner_box(const PatchTopology& topology, Index e, Index slot) const {
   const SafeRegion& region = regions_[at(e)];
   if (!std::isfinite(region.free_radius)) return region.box;
@@ -223,17 +212,17 @@ Box3 PatchSafeRegions::corner_box(const PatchTopology& topology, Index e, Index 
   return region.box.intersection(Box3(made_at - radius, made_at + radius));
 }
 
-bool PatchSafeRegions::boxes(const PatchTopology& topology, Index e, Index slot, const Vector3& p) const {
+bool PatchSafeRegions::corner_box_contains(const PatchTopology& topology, Index e, Index slot, const Vector3& p) const {
   const SafeRegion& region = regions_[at(e)];
   if (!region.box.contains(p)) return false;
   return !std::isfinite(region.free_radius) || corner_box(topology, e, slot).contains(p);
 }
 
-void PatchSafeRegions::calm_down(Index i, const Vector3& p) {
+void PatchSafeRegions::set_inner_sphere(Index i, const Vector3& center) {
   const Slot& slot = slots_[at(i)];
-  double radius = slot.broken ? 0.0 : std::min((p - slot.box.min()).minCoeff(), (slot.box.max() - p).minCoeff());
-  for (const HalfSpace& plane : slot.planes) radius = std::min(radius, plane.normal.dot(p) - plane.offset);
-  calm_.set(i, p, kCalmPart * radius);
+  double radius = slot.broken ? 0.0 : std::min((center - slot.box.min()).minCoeff(), (slot.box.max() - center).minCoeff());
+  for (const HalfSpace& plane : slot.planes) radius = std::min(radius, plane.normal.dot(center) - plane.offset);
+  inner_spheres_.set(i, center, kInnerSphereScale * radius);
 }
 
 bool PatchSafeRegions::allow(Index i, const Vector3& p) const { return slots_[at(i)].box.contains(p) && planes_allow(i, p); }
@@ -242,8 +231,8 @@ bool PatchSafeRegions::planes_allow(Index i, const Vector3& p) const { return is
 
 void PatchSafeRegions::append_half_spaces(Index i, const RigidTransform& pose, std::vector<HalfSpace>& half_spaces) const {
   const auto append = [&](const Vector3& normal, double offset) {
-    const Vector3 turned = pose.linear() * normal;
-    half_spaces.push_back({turned, offset + turned.dot(pose.translation())});
+    const Vector3 rotated = pose.linear() * normal;
+    half_spaces.push_back({rotated, offset + rotated.dot(pose.translation())});
   };
   const Box3& box = slots_[at(i)].box;
   for (int axis = 0; axis < 3; ++axis) {

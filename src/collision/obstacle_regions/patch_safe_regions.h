@@ -1,136 +1,113 @@
-// The free space of one patch's elements before one obstacle, in the obstacle's frame, kept from step to step.
+// The safe regions of one patch's elements before one obstacle, in the obstacle's frame, cached from step to step.
 #pragma once
 
 #include "collision/core/sphere_set.h"
+#include "collision/obstacle_regions/closest_point_tracker.h"
 #include "collision/obstacle_regions/patch_topology.h"
+#include "collision/obstacle_regions/step_paths.h"
 #include "collision/shapes/obstacle_shape.h"
 
 #include <vector>
 
 namespace sprung {
 
-/// Where the patch's particles are and where they are about to be, in the obstacle's frame, by slot. Refers to what it is made of.
-class PatchPaths {
- public:
-  /// Columns of positions [m], 3 x n, and the ways into the frame.
-  PatchPaths(const SphereVertices& from, const SphereVertices& to) : from_(from), to_(to) {}
-
-  [[nodiscard]] Vector3 from(Index slot) const { return position(from_, slot); }
-  [[nodiscard]] Vector3 to(Index slot) const { return position(to_, slot); }
-  [[nodiscard]] const SphereVertices& to() const { return to_; }
-
- private:
-  [[nodiscard]] static Vector3 position(const SphereVertices& at, Index slot) {
-    return at.into * at.positions.col(at.particles[static_cast<std::size_t>(slot)]);
-  }
-
-  SphereVertices from_;
-  SphereVertices to_;
-};
-
-/// What a patch's regions are made for. All lengths [m].
+/// What a patch's regions have to provide. All lengths [m].
 struct RegionDemand {
   double size = 0.0;       ///< of the elements
   double gap = 0.0;        ///< that contact keeps, at least the clearance
   double margin = 0.0;     ///< contacts are found this much beyond the gap
   double clearance = 0.0;  ///< see SafeRegionRequest
-  bool at_end = false;
-  bool ahead = false;  ///< elements at pins are near whatever comes near them on their way
+  bool at_end = false;     ///< see SafeRegionRequest
+  bool ahead = false;      ///< elements at pins count as near if anything comes near their path
 };
 
 class PatchSafeRegions {
  public:
+  /// Has no regions yet: update() makes them.
   PatchSafeRegions(Index obstacle, const PatchTopology& topology);
 
   [[nodiscard]] Index obstacle() const { return obstacle_; }
   [[nodiscard]] const SafeRegion& region(Index element) const { return regions_[static_cast<std::size_t>(element)]; }
 
-  /// Finds the slots that follow() has to look at when these particles, by slot, go to these places: most stay where nothing
-  /// changes for their regions. Returns whether there are any.
-  bool find_restless(const ObstacleShape& shape, const SphereVertices& to);
-  /// As they were found last, ascending.
-  [[nodiscard]] const std::vector<Index>& restless() const { return restless_; }
+  /// Finds the slots whose particle may leave a region on its path to `to`. Most particles do not: each has a sphere around it
+  /// inside of its regions. Returns whether there are any.
+  bool find_leaving(const ObstacleShape& shape, const SphereVertices& to);
 
-  /// Makes the regions again, around `from`, of elements that have none, or that a restless corner is about to leave. A surface
-  /// that deforms takes the regions along. Finds the restless slots again: what the regions hold is not among them any more, what
-  /// new regions do not hold is.
-  void follow(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const RegionDemand& demand);
+  /// The slots that find_leaving() found last, ascending.
+  [[nodiscard]] const std::vector<Index>& leaving() const { return leaving_; }
 
-  /// Makes the regions of all elements at these slots again, around `from`.
+  /// Makes new regions around `from` for elements that have none and for elements with a corner that leaves its region. First moves
+  /// the regions with a deforming surface. Then calls find_leaving(): new regions may not contain other corners' targets.
+  void update(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const RegionDemand& demand);
+
+  /// Makes new regions around `from` for all elements at these slots.
   void renew(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const RegionDemand& demand,
              std::span<const Index> slots);
 
-  /// Whether the regions of all elements at the slot hold p.
+  /// Whether the regions of all elements at the slot contain p.
   [[nodiscard]] bool allow(Index slot, const Vector3& p) const;
-  /// The same of their planes alone.
+  /// Whether the regions' planes do, whatever the boxes are.
   [[nodiscard]] bool planes_allow(Index slot, const Vector3& p) const;
 
-  /// Replaces `slots` by those, ascending, within `reach` [m] of whose particle there may be something of the surface: most are
-  /// where nothing is.
+  /// Replaces `slots` by those, ascending, whose particle may be within `reach` [m] of the surface.
   void find_close(const SphereVertices& particles, double reach, std::vector<Index>& slots) const {
-    quiet_.find_outside(particles, reach, slots);
+    empty_spheres_.find_outside(particles, reach, slots);
   }
 
-  /// Whether an element at the slot may touch.
-  [[nodiscard]] bool may_lean(Index slot) const { return slots_[static_cast<std::size_t>(slot)].near; }
+  /// Whether an element at the slot may touch the obstacle.
+  [[nodiscard]] bool may_touch(Index slot) const { return slots_[static_cast<std::size_t>(slot)].near; }
 
   /// Whether the obstacle crosses an element at the slot, which then has no region.
   [[nodiscard]] bool is_crossed(Index slot) const { return slots_[static_cast<std::size_t>(slot)].broken; }
 
-  /// Whether it crosses any element.
-  [[nodiscard]] bool crosses() const { return crosses_; }
+  /// Whether the obstacle crosses any element.
+  [[nodiscard]] bool any_crossed() const { return any_crossed_; }
 
-  /// Appends all that bounds the slot, placed in the world by `pose`.
+  /// Appends the half-spaces that the particle at the slot has to stay in, transformed to world coordinates by `pose`.
   void append_half_spaces(Index slot, const RigidTransform& pose, std::vector<HalfSpace>& half_spaces) const;
 
-  /// Elements that may touch, ascending.
+  /// Elements that may touch the obstacle, ascending.
   [[nodiscard]] const std::vector<Index>& near_elements() const { return near_elements_; }
 
-  /// The element's region, with the nearest points that it has where the way begins (see ObstacleShape::look_again). Requires
-  /// follow() for the same way.
-  const SafeRegion& look_again(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
-                               const RegionDemand& demand, Index element);
+  /// Searches the element's closest points again if it moved (see ClosestPointTracker), at the start of the paths. Returns its
+  /// region. Requires update() for the same paths.
+  const SafeRegion& renew_closest_points(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
+                                         const RegionDemand& demand, Index element);
 
-  /// What the last search for the surface near a particle found.
+  /// What the last search for the surface point closest to the particle found.
   [[nodiscard]] SurfaceMemory& memory(Index slot) { return memories_[static_cast<std::size_t>(slot)]; }
 
  private:
   struct Slot {
-    Box3 box;                         ///< of all regions at it
-    std::vector<HalfSpace> planes{};  ///< of all regions at it
-    bool near = false;                ///< an element at it may touch
-    bool broken = false;
+    Box3 box;                         ///< intersection of its elements' boxes
+    std::vector<HalfSpace> planes{};  ///< of all its elements' regions
+    bool near = false;                ///< whether one of its elements may touch
+    bool broken = false;              ///< whether one of its elements is crossed
   };
 
-  struct Sight {
-    std::array<Vector3, 3> from;  ///< the element's corners when its nearest points were found last
-    double way = 0.0;             ///< that they went since the whole surface was looked at [m]
-  };
-
-  void take_along(const ObstacleShape& shape, const PatchTopology& topology, const RegionDemand& demand);
-  void mark(const PatchTopology& topology, const PatchPaths& paths);
+  void move_with_surface(const ObstacleShape& shape, const PatchTopology& topology, const RegionDemand& demand);
+  void mark_leaving(const PatchTopology& topology, const PatchPaths& paths);
   void make_marked(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths, const RegionDemand& demand);
-  void gather(const PatchTopology& topology, const RegionDemand& demand, Index slot);
-  /// Where the region's box and radius let a corner of the element be that is at the slot.
+  void gather_slot(const PatchTopology& topology, const RegionDemand& demand, Index slot);
+  /// The box in which the element's corner at this slot may be, by the region's box and radius.
   [[nodiscard]] Box3 corner_box(const PatchTopology& topology, Index element, Index slot) const;
-  /// Whether that holds p.
-  [[nodiscard]] bool boxes(const PatchTopology& topology, Index element, Index slot, const Vector3& p) const;
-  void calm_down(Index slot, const Vector3& p);
+  [[nodiscard]] bool corner_box_contains(const PatchTopology& topology, Index element, Index slot, const Vector3& p) const;
+  void set_inner_sphere(Index slot, const Vector3& center);
   void find_near_elements(const PatchTopology& topology, const RegionDemand& demand);
 
   Index obstacle_;
   std::vector<SafeRegion> regions_;                  ///< by element
-  std::vector<std::array<Vector3, 3>> made_around_;  ///< the corners when the region was made
-  std::vector<Sight> sights_;                        ///< by element
+  std::vector<std::array<Vector3, 3>> made_around_;  ///< by element: its corners when the region was made
+  ClosestPointTracker closest_points_;
   std::vector<Slot> slots_;
   std::vector<SurfaceMemory> memories_;  ///< by slot
-  SphereSet calm_;                       ///< by slot: a particle in it leaves no region and needs no new ones
-  SphereSet quiet_;                      ///< by slot: holds nothing of the surface
-  std::vector<Index> restless_;          ///< slots
+  SphereSet inner_spheres_;              ///< by slot: a particle inside leaves no region
+  SphereSet empty_spheres_;              ///< by slot: contain nothing of the surface
+  std::vector<Index> leaving_;           ///< slots
   std::vector<Index> near_elements_;
-  bool crosses_ = false;
-  std::vector<char> marked_;   ///< by element; 0 between calls
-  std::vector<char> changed_;  ///< by slot: whether a region at it was made again; 0 between calls
+  bool any_crossed_ = false;
+  std::vector<char> marked_;   ///< by element: 1 where a new region is due; 0 between calls
+  std::vector<char> changed_;  ///< by slot: 1 where an element's region is new; 0 between calls
 };
 
 }  // namespace sprung

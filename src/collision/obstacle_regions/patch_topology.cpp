@@ -9,8 +9,8 @@ PatchTopology::PatchTopology(const CollisionSurface& surface, const ElementPatch
     const Element& element = surface.elements[static_cast<std::size_t>(e)];
     Corners corners{.count = element.corners};
     for (std::size_t k = 0; k < static_cast<std::size_t>(element.corners); ++k) {
-      const auto place = std::lower_bound(patch.particles.begin(), patch.particles.end(), element.particles[k]);
-      corners.slots[k] = static_cast<Index>(place - patch.particles.begin());
+      const auto position = std::lower_bound(patch.particles.begin(), patch.particles.end(), element.particles[k]);
+      corners.slots[k] = static_cast<Index>(position - patch.particles.begin());
       corners.pinned = corners.pinned || surface.pinned[static_cast<std::size_t>(element.particles[k])] != 0;
       ++first_[static_cast<std::size_t>(corners.slots[k]) + 1];
     }

@@ -1,4 +1,4 @@
-// A patch's elements by the places that their corners have among the patch's particles.
+// The elements of a patch, their corners given by slots: positions in the patch's list of particles.
 #pragma once
 
 #include "collision/surface/collision_surface.h"
@@ -12,10 +12,11 @@ namespace sprung {
 
 class PatchTopology {
  public:
+  /// The corners of one element.
   struct Corners {
     std::array<Index, 3> slots{};
     int count = 0;
-    bool pinned = false;  ///< one of them is
+    bool pinned = false;  ///< whether any corner is a pinned particle
   };
 
   PatchTopology(const CollisionSurface& surface, const ElementPatch& patch);
@@ -23,12 +24,12 @@ class PatchTopology {
   [[nodiscard]] Index element_count() const { return static_cast<Index>(corners_.size()); }
   [[nodiscard]] Index slot_count() const { return static_cast<Index>(first_.size()) - 1; }
   [[nodiscard]] const Corners& corners(Index element) const { return corners_[static_cast<std::size_t>(element)]; }
-  /// Which of the element's corners is at this slot, one of them.
+  /// The number of the element's corner that is at this slot. Requires that there is one.
   [[nodiscard]] std::size_t corner(Index element, Index slot) const {
     const auto& slots = corners(element).slots;
     return static_cast<std::size_t>(std::find(slots.begin(), slots.end(), slot) - slots.begin());
   }
-  /// The elements that have this slot as a corner, by their places in the patch.
+  /// The elements with a corner at this slot, by their numbers in the patch.
   [[nodiscard]] std::span<const Index> elements_of(Index slot) const {
     const auto begin = static_cast<std::size_t>(first_[static_cast<std::size_t>(slot)]);
     const auto end = static_cast<std::size_t>(first_[static_cast<std::size_t>(slot) + 1]);
@@ -36,9 +37,9 @@ class PatchTopology {
   }
 
  private:
-  std::vector<Corners> corners_;
-  std::vector<Index> first_;  ///< by slot, into elements_
-  std::vector<Index> elements_;
+  std::vector<Corners> corners_;  ///< by element
+  std::vector<Index> first_;      ///< by slot: index of its first entry in elements_
+  std::vector<Index> elements_;   ///< grouped by slot
 };
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// What obstacles let through, because something drags it through them.
+// Crossings of obstacles that are permitted until the element is free again.
 #pragma once
 
 #include "base/types.h"
@@ -7,7 +7,7 @@
 
 namespace sprung {
 
-/// A corner of an element that an obstacle crosses.
+/// A particle that may be behind an obstacle: a corner of an element that a pin has pulled through it.
 struct PermittedCrossing {
   Index obstacle = kNone;
   Index particle = kNone;

@@ -4,8 +4,8 @@ namespace sprung {
 
 namespace {
 
-// Elements that are crossed then are taken along as wholes, and what they meet there; if that does not free them, somewhat higher
-// each time.
+// Crossed elements move with the obstacle as wholes, then the elements that they cross there. Elements that are still crossed move
+// higher above the obstacle each time.
 constexpr double kLifts[] = {0.0, 0.0, 1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};
 
 }  // namespace
@@ -13,32 +13,33 @@ constexpr double kLifts[] = {0.0, 0.0, 1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};
 void move_infeasible(ObstacleSafeRegions& regions, const std::vector<Index>& particles, const Points& before, Points& after,
                      Outcomes& outcomes) {
   if (count(outcomes, Outcome::infeasible) == 0) return;
+  const ObstacleMotion motion(regions);
   std::vector<std::size_t> number(static_cast<std::size_t>(after.cols()), particles.size());
   std::vector<char> crossed_before(particles.size(), 0);
-  std::vector<Index> carried;
+  std::vector<Index> moved;
   for (std::size_t n = 0; n < particles.size(); ++n) {
     const Index i = particles[n];
     number[static_cast<std::size_t>(i)] = n;
     crossed_before[n] = regions.is_crossed(i) ? 1 : 0;
     if (outcomes[n] != Outcome::infeasible) continue;
-    const auto place = regions.carried(i, before.col(i));
-    if (!place) continue;
-    after.col(i) = *place;
+    const auto position = motion.moved(i, before.col(i));
+    if (!position) continue;
+    after.col(i) = *position;
     outcomes[n] = Outcome::stopped;
-    carried.push_back(i);
+    moved.push_back(i);
   }
-  regions.renew_around(carried, {after, after, true});
+  regions.renew_around(moved, {after, after, true});
   for (const double lift : kLifts) {
-    if (carried.empty()) break;
-    carried.clear();
-    for (const auto& [i, distance, place] : regions.carried_with_elements(before, lift)) {
+    if (moved.empty()) break;
+    moved.clear();
+    for (const auto& [i, distance, position] : motion.moved_with_elements(before, lift)) {
       const std::size_t n = number[static_cast<std::size_t>(i)];
       if (n == particles.size() || crossed_before[n] != 0) continue;
-      after.col(i) = place;
+      after.col(i) = position;
       outcomes[n] = Outcome::stopped;
-      carried.push_back(i);
+      moved.push_back(i);
     }
-    regions.renew_around(carried, {after, after, true});
+    regions.renew_around(moved, {after, after, true});
   }
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (crossed_before[n] == 0 && regions.is_crossed(particles[n])) outcomes[n] = Outcome::infeasible;

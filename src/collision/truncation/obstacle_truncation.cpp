@@ -11,21 +11,22 @@ namespace sprung {
 
 namespace {
 
-// Zones are made again where they stopped a particle short, so that it can go on, at most so often.
+// A region stops a particle at a tangent plane of the obstacle. Renewed regions let it continue around the obstacle, so many times.
 constexpr int kRounds = 8;
 
-// It goes on if the last round took it this part of its way or more, and no more than that part is left where a plane is in its
-// way: what was stopped for good would be led a long way round the obstacle. Where a box alone ends, nothing is known to be in its
-// way.
-constexpr double kWorthwhile = 0x1p-10;
-constexpr double kMostLeft = 0.5;
+// A particle continues if the last round moved it by at least kMinProgress of its path, and if at most kMaxRemaining of the path is
+// left: one that is blocked for good would be moved far around the obstacle. A particle that only the box of a region stops
+// continues whatever is left, since no obstacle is known to block it.
+constexpr double kMinProgress = 0x1p-10;
+constexpr double kMaxRemaining = 0.5;
 
-// What an obstacle leads round a pin goes so many times as far as the obstacle, the nearer to the pin the more.
+// An obstacle that approaches a pin swings the element's other corners around the pin. A corner may have to move this many times as
+// far as the obstacle: the closer the obstacle is to the pin, the farther.
 constexpr double kLevers[] = {1.0, 4.0, 16.0};
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Adds those of `all`, which hold the particles, that are not among them: they arrived. All ascending.
+/// Replaces `particles` by `all`, which contains them; the added ones are free. All ascending.
 void add_free(std::vector<Index> all, std::vector<Index>& particles, Outcomes& outcomes) {
   Outcomes of_all(all.size(), Outcome::free);
   std::size_t n = 0;
@@ -39,104 +40,108 @@ void add_free(std::vector<Index> all, std::vector<Index>& particles, Outcomes& o
 }  // namespace
 
 ObstacleTruncation::ObstacleTruncation(Environment& environment, const CollisionSurface& surface, ObstacleSafeRegions& regions)
-    : environment_(environment), set_(environment.set()), surface_(surface), regions_(regions) {
+    : environment_(environment), set_(environment.set()), surface_(surface), regions_(regions), truncation_(regions) {
   for (std::size_t i = 0; i < surface.pinned.size(); ++i) {
     if (surface.pinned[i] != 0) pinned_.push_back(static_cast<Index>(i));
   }
 }
 
-TruncationResult ObstacleTruncation::place_all(const Way& way, Points& after) {
-  regions_.follow(way);
-  note_crossed();
-  regions_.renew_around(leaving_pins(way.to), way);
-  std::vector<Index> particles = movable(regions_.restless(), way);
-  Outcomes outcomes = clip_with_fresh_regions(particles, way, after);
-  bool in_parts = false;
-  const bool sure = look_at_pins(particles, after, outcomes);
-  if (!way.obstacles_rest && (!sure || (closes_in(way) && count(outcomes, Outcome::infeasible) > 0))) {
-    add_free(all_movable(way), particles, outcomes);
-    if (sure) move_infeasible(regions_, particles, way.from, after, outcomes);
-    in_parts = !sure || count(outcomes, Outcome::infeasible) > 0;
-    if (in_parts) {
-      outcomes =
-          place_in_parts(environment_, way, after, [&](const Way& part, Points& x) { return place_part(particles, part, x); });
+TruncationResult ObstacleTruncation::clip_all(const StepPaths& paths, Points& after) {
+  regions_.update(paths);
+  record_crossed();
+  regions_.renew_around(leaving_pins(paths.to), paths);
+  std::vector<Index> particles = movable(regions_.leaving(), paths);
+  Outcomes outcomes = clip_with_fresh_regions(particles, paths, after);
+  bool subdivided = false;
+  const bool path_checked = check_pins(particles, after, outcomes);
+  if (!paths.obstacles_rest && (!path_checked || (is_kinematic(paths) && count(outcomes, Outcome::infeasible) > 0))) {
+    add_free(all_movable(paths), particles, outcomes);
+    if (path_checked) move_infeasible(regions_, particles, paths.from, after, outcomes);
+    subdivided = !path_checked || count(outcomes, Outcome::infeasible) > 0;
+    if (subdivided) {
+      outcomes = clip_in_substeps(environment_, paths, after,
+                                  [&](const StepPaths& substep, Points& x) { return clip_substep(particles, substep, x); });
     }
   }
-  TruncationResult truncation = lead_on(particles, outcomes, way, after);
-  truncation.subdivided = in_parts;
+  TruncationResult truncation = continue_stopped(particles, outcomes, paths, after);
+  truncation.subdivided = subdivided;
   return truncation;
 }
 
-// Zones that were made some steps ago may stop a particle, or leave it no place at all, where new ones would not. Those are their
-// neighbours' too.
-Outcomes ObstacleTruncation::clip_with_fresh_regions(std::vector<Index>& particles, const Way& way, Points& after) {
-  Outcomes outcomes = place(regions_, particles, way, after);
+// Regions from earlier steps may stop a particle, or leave it no admissible position, where new ones would not. New regions bound
+// the particle's neighbours too, which are clipped again.
+Outcomes ObstacleTruncation::clip_with_fresh_regions(std::vector<Index>& particles, const StepPaths& paths, Points& after) {
+  Outcomes outcomes = truncation_.clip(particles, paths, after);
   std::vector<Index> stopped;
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] != Outcome::free) stopped.push_back(particles[n]);
   }
   if (stopped.empty()) return outcomes;
-  regions_.renew_around(stopped, way);
-  const std::vector<Index> restless = movable(regions_.restless(), way);
+  regions_.renew_around(stopped, paths);
+  const std::vector<Index> leaving = movable(regions_.leaving(), paths);
   std::vector<Index> all;
-  std::set_union(particles.begin(), particles.end(), restless.begin(), restless.end(), std::back_inserter(all));
+  std::set_union(particles.begin(), particles.end(), leaving.begin(), leaving.end(), std::back_inserter(all));
   particles = std::move(all);
-  return place(regions_, particles, way, after);
+  return truncation_.clip(particles, paths, after);
 }
 
-// What an obstacle leads round a pin is to be out of its way before it comes, and farther than the obstacle goes: the pin stays.
-ClippedSubstep ObstacleTruncation::place_part(std::vector<Index>& particles, const Way& part, Points& after) {
-  ClippedSubstep placed = place_anew(particles, part, after);
-  if (pinned_.empty() || count(placed.outcomes, Outcome::infeasible) == 0) return placed;
-  regions_.renew_around(pinned_, part);
-  const std::vector<Push> pushes = regions_.pushes_at_pins(part);
-  if (pushes.empty()) return place_anew(particles, part, after);
+// An obstacle that approaches a pin does not move it. So the element's other corners have to be out of the obstacle's path before
+// it arrives, farther along than the obstacle moves.
+ClippedSubstep ObstacleTruncation::clip_substep(std::vector<Index>& particles, const StepPaths& paths, Points& after) {
+  ClippedSubstep clipped = clip_anew(particles, paths, after);
+  if (pinned_.empty() || count(clipped.outcomes, Outcome::infeasible) == 0) return clipped;
+  regions_.renew_around(pinned_, paths);
+  const std::vector<Push> pushes = ObstacleMotion(regions_).pushes_at_pins(paths);
+  if (pushes.empty()) return clip_anew(particles, paths, after);
   for (const double lever : kLevers) {
-    Points goals = part.to;
-    for (const Push& push : pushes) goals.col(push.particle) += std::min(lever, push.most / push.by.norm()) * push.by;
-    placed = place_ahead(particles, part, goals, after);
-    if (count(placed.outcomes, Outcome::infeasible) > 0) continue;
-    for (std::size_t n = 0; n < particles.size(); ++n) {
-      if (after.col(particles[n]) != part.to.col(particles[n])) placed.outcomes[n] = Outcome::stopped;
+    Points goals = paths.to;
+    for (const Push& push : pushes) {
+      goals.col(push.particle) += std::min(lever, push.max_distance / push.displacement.norm()) * push.displacement;
     }
-    return placed;
+    clipped = clip_ahead(particles, paths, goals, after);
+    if (count(clipped.outcomes, Outcome::infeasible) > 0) continue;
+    for (std::size_t n = 0; n < particles.size(); ++n) {
+      if (after.col(particles[n]) != paths.to.col(particles[n])) clipped.outcomes[n] = Outcome::stopped;
+    }
+    return clipped;
   }
-  return place_anew(particles, part, after);
+  return clip_anew(particles, paths, after);
 }
 
-ClippedSubstep ObstacleTruncation::place_anew(std::vector<Index>& particles, const Way& way, Points& after) {
-  after = way.to;
-  regions_.follow(way);
-  regions_.renew_around(pinned_, way);
-  regions_.renew_around(particles, way);
-  ClippedSubstep placed{clip_with_fresh_regions(particles, way, after)};
-  move_infeasible(regions_, particles, way.from, after, placed.outcomes);
-  placed.sure = look_at_pins(particles, after, placed.outcomes);
-  return placed;
+ClippedSubstep ObstacleTruncation::clip_anew(std::vector<Index>& particles, const StepPaths& paths, Points& after) {
+  after = paths.to;
+  regions_.update(paths);
+  regions_.renew_around(pinned_, paths);
+  regions_.renew_around(particles, paths);
+  ClippedSubstep clipped{clip_with_fresh_regions(particles, paths, after)};
+  move_infeasible(regions_, particles, paths.from, after, clipped.outcomes);
+  clipped.path_checked = check_pins(particles, after, clipped.outcomes);
+  return clipped;
 }
 
-/// First particles go while obstacles and pins are where they were, then these.
-ClippedSubstep ObstacleTruncation::place_ahead(std::vector<Index>& particles, const Way& part, const Points& goals, Points& after) {
+// First the particles move while obstacles and pins rest at the begin of the interval, then all move.
+ClippedSubstep ObstacleTruncation::clip_ahead(std::vector<Index>& particles, const StepPaths& paths, const Points& goals,
+                                              Points& after) {
   const auto [begin, end] = environment_.interval();
   Points first_goals = goals;
-  for (const Index i : pinned_) first_goals.col(i) = part.from.col(i);
+  for (const Index i : pinned_) first_goals.col(i) = paths.from.col(i);
   Points ahead = first_goals;
-  const Way first{part.from, first_goals, true};
+  const StepPaths first{paths.from, first_goals, true};
   environment_.set_interval(begin, begin);
-  regions_.follow(first);
+  regions_.update(first);
   regions_.renew_around(particles, first);
-  place(regions_, particles, first, ahead);
+  truncation_.clip(particles, first, ahead);
   environment_.set_interval(begin, end);
-  return place_anew(particles, {ahead, goals}, after);
+  return clip_anew(particles, {ahead, goals}, after);
 }
 
-bool ObstacleTruncation::closes_in(const Way& way) const {
-  return set_.moves() || std::any_of(pinned_.begin(), pinned_.end(), [&](Index i) { return way.from.col(i) != way.to.col(i); });
+bool ObstacleTruncation::is_kinematic(const StepPaths& paths) const {
+  return set_.moves() || std::any_of(pinned_.begin(), pinned_.end(), [&](Index i) { return paths.from.col(i) != paths.to.col(i); });
 }
 
-void ObstacleTruncation::note_crossed() {
+void ObstacleTruncation::record_crossed() {
   crossed_before_.clear();
-  if (!regions_.crosses()) return;
+  if (!regions_.any_crossed()) return;
   for (std::size_t i = 0; i < surface_.pinned.size(); ++i) {
     crossed_before_.push_back(regions_.is_crossed(static_cast<Index>(i)) ? 1 : 0);
   }
@@ -150,11 +155,11 @@ std::vector<Index> ObstacleTruncation::leaving_pins(const Points& positions) con
   return leaving;
 }
 
-// Pins ask nobody. Where regions do not hold them, whether an obstacle crosses an element is known for where they are alone.
-bool ObstacleTruncation::look_at_pins(const std::vector<Index>& particles, const Points& after, Outcomes& outcomes) {
+// Pins are not clipped. Where one is outside of its regions, only its end position is known not to be crossed.
+bool ObstacleTruncation::check_pins(const std::vector<Index>& particles, const Points& after, Outcomes& outcomes) {
   const std::vector<Index> leaving = leaving_pins(after);
   if (!leaving.empty()) regions_.renew_around(leaving, {after, after, true});
-  if (!regions_.crosses()) return leaving.empty();
+  if (!regions_.any_crossed()) return leaving.empty();
   for (std::size_t n = 0; n < particles.size(); ++n) {
     const Index i = particles[n];
     if (regions_.is_crossed(i) && (crossed_before_.empty() || crossed_before_[at(i)] == 0)) outcomes[n] = Outcome::infeasible;
@@ -162,50 +167,49 @@ bool ObstacleTruncation::look_at_pins(const std::vector<Index>& particles, const
   return leaving.empty();
 }
 
-TruncationResult ObstacleTruncation::lead_on(const std::vector<Index>& particles, const Outcomes& outcomes, const Way& way,
-                                             Points& after) {
+TruncationResult ObstacleTruncation::continue_stopped(const std::vector<Index>& particles, const Outcomes& outcomes,
+                                                      const StepPaths& paths, Points& after) {
   std::vector<Index> stopped;
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] == Outcome::stopped) stopped.push_back(particles[n]);
   }
-  held_back_ = stopped;
+  stopped_ = stopped;
   TruncationResult truncation;
   truncation.truncated = count(outcomes, Outcome::infeasible) + static_cast<Index>(stopped.size());
   list_infeasible(particles, outcomes);
   truncation.infeasible = static_cast<Index>(infeasible_.size());
-  std::erase_if(stopped, [&](Index i) { return !can_go_on(i, way, after); });
-  for (int round = 1; round < kRounds && !stopped.empty(); ++round) truncation.truncated -= go_on(stopped, way.to, after);
+  std::erase_if(stopped, [&](Index i) { return !can_continue(i, paths, after); });
+  for (int round = 1; round < kRounds && !stopped.empty(); ++round) truncation.truncated -= continue_once(stopped, paths.to, after);
   return truncation;
 }
 
-// A region ends where it meets the obstacle's tangent; from there a new one leads round the obstacle.
-Index ObstacleTruncation::go_on(std::vector<Index>& stopped, const Points& target, Points& after) {
+Index ObstacleTruncation::continue_once(std::vector<Index>& stopped, const Points& target, Points& after) {
   const Points from = after;
-  const Way way{from, target, true};
-  regions_.renew_around(stopped, way);
-  const Outcomes outcomes = place(regions_, stopped, way, after);
+  const StepPaths paths{from, target, true};
+  regions_.renew_around(stopped, paths);
+  const Outcomes outcomes = truncation_.clip(stopped, paths, after);
   std::vector<Index> still;
   for (std::size_t n = 0; n < stopped.size(); ++n) {
-    if (outcomes[n] != Outcome::free && can_go_on(stopped[n], way, after)) still.push_back(stopped[n]);
+    if (outcomes[n] != Outcome::free && can_continue(stopped[n], paths, after)) still.push_back(stopped[n]);
   }
   stopped = std::move(still);
   return count(outcomes, Outcome::free);
 }
 
-bool ObstacleTruncation::can_go_on(Index i, const Way& way, const Points& now) const {
-  const double length = (way.to.col(i) - way.from.col(i)).norm();
-  const double gone = (now.col(i) - way.from.col(i)).norm();
-  const double left = (way.to.col(i) - now.col(i)).norm();
-  return gone > kWorthwhile * length && (left <= kMostLeft * length || regions_.planes_allow(i, way.to.col(i)));
+bool ObstacleTruncation::can_continue(Index i, const StepPaths& paths, const Points& now) const {
+  const double length = (paths.to.col(i) - paths.from.col(i)).norm();
+  const double moved = (now.col(i) - paths.from.col(i)).norm();
+  const double left = (paths.to.col(i) - now.col(i)).norm();
+  return moved > kMinProgress * length && (left <= kMaxRemaining * length || regions_.planes_allow(i, paths.to.col(i)));
 }
 
-/// Pinned ones too.
+// Corners of crossed elements are listed even if they are pinned or were not clipped.
 void ObstacleTruncation::list_infeasible(const std::vector<Index>& particles, const Outcomes& outcomes) {
   infeasible_.clear();
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] == Outcome::infeasible) infeasible_.push_back(particles[n]);
   }
-  if (!regions_.crosses()) return;
+  if (!regions_.any_crossed()) return;
   for (Index i = 0; i < static_cast<Index>(surface_.pinned.size()); ++i) {
     if (regions_.is_crossed(i)) infeasible_.push_back(i);
   }
@@ -213,16 +217,17 @@ void ObstacleTruncation::list_infeasible(const std::vector<Index>& particles, co
   infeasible_.erase(std::unique(infeasible_.begin(), infeasible_.end()), infeasible_.end());
 }
 
-std::vector<Index> ObstacleTruncation::movable(std::vector<Index> particles, const Way& way) const {
-  std::erase_if(particles,
-                [&](Index i) { return surface_.pinned[at(i)] != 0 || !way.from.col(i).allFinite() || !way.to.col(i).allFinite(); });
+std::vector<Index> ObstacleTruncation::movable(std::vector<Index> particles, const StepPaths& paths) const {
+  std::erase_if(particles, [&](Index i) {
+    return surface_.pinned[at(i)] != 0 || !paths.from.col(i).allFinite() || !paths.to.col(i).allFinite();
+  });
   return particles;
 }
 
-std::vector<Index> ObstacleTruncation::all_movable(const Way& way) const {
-  std::vector<Index> particles(at(static_cast<Index>(way.to.cols())));
+std::vector<Index> ObstacleTruncation::all_movable(const StepPaths& paths) const {
+  std::vector<Index> particles(at(static_cast<Index>(paths.to.cols())));
   std::iota(particles.begin(), particles.end(), 0);
-  return movable(std::move(particles), way);
+  return movable(std::move(particles), paths);
 }
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// Where particles end that are in each other's way.
+// Clips particles before other elements of the network, and again before obstacles.
 #pragma once
 
 #include "collision/impact_zones/pair_separation.h"
@@ -8,42 +8,42 @@
 
 namespace sprung {
 
-/// Keeps the sides of pairs apart that would pass each other on their way.
+/// Separates the sides of pairs that would cross on their paths. Lives for one step or substep.
 class PairTruncation {
  public:
   /// Keeps references to all. `movable`, ascending, are the particles that the step may move.
   PairTruncation(ObstacleSafeRegions& regions, PairSeparation& pairs, const std::vector<Index>& movable);
 
-  /// Changes `after` [m], 3 x n, which obstacles allow, to places that those allow and the sides of all pairs. Where there are none
-  /// in the regions at hand, regions are made again where the step began and groups of particles go along with the obstacle that is
-  /// in their way, as if they were a part of it: more and more particles, until all that are next to a group have a place. Before
-  /// one obstacle that is rigid, or such that rest, they all have one, but for pins, and mostly before one that deforms; before
-  /// others, if groups are small: in small parts of the interval. What finds none stays with its group: an obstacle can be left
-  /// again, a knot in a cloth stays. Returns what became of the movable particles. Requires PairSeparation::begin_step() or
-  /// begin_part() with the same `before`.
-  Outcomes place(const Points& before, Points& after);
+  /// Clips `after` [m], 3 x n, which is admissible before obstacles, to positions that are admissible before obstacles and for all
+  /// pairs. Returns the outcomes of the movable particles. Requires PairSeparation::begin_step() or begin_part() with the same
+  /// `before`.
+  ///
+  /// Where the two exclude each other, regions are renewed at `before`, and the infeasible particles become anchors: their motion
+  /// groups move with the obstacle that blocks them. This repeats until no anchor is new. It finds an admissible position for every
+  /// particle that no pin drives if the obstacles rest, or a single rigid one moves; mostly if a single one deforms; with several
+  /// moving obstacles if groups are small, that is in small substeps. A particle without one stays with its group, since a particle
+  /// can leave an obstacle again, but a knot in a cloth stays.
+  Outcomes clip(const Points& before, Points& after);
 
  private:
-  Outcomes place_held(const Points& before, Points& after);
-  [[nodiscard]] Outcome place_held(Index particle, const Vector3& before, const Vector3& target, Points& after) const;
-  [[nodiscard]] Outcomes of_movable(const Outcomes& of_held) const;
-  [[nodiscard]] static std::vector<Index> infeasible(const std::vector<Index>& particles, const Outcomes& outcomes);
-  /// Held particles that obstacles leave none; not those that pins drag.
-  [[nodiscard]] std::vector<Index> without_place(const Outcomes& outcomes) const;
-  void place_among_obstacles(const Way& way, Points& after);
-  /// Whether any held particle is an anchor now that was none, or begins to move.
+  Outcomes clip_constrained(const Points& before, Points& after);
+  void clip_before_obstacles(const StepPaths& paths, Points& after);
+  /// Makes infeasible particles anchors. Returns whether there are new anchors or resting ones that move now.
   bool anchor_infeasible(const Outcomes& outcomes, const Points& before, const Points& after);
+  void accept_anchored(const Points& after, Outcomes& outcomes);
+  void check_unplaced(const Points& after, Outcomes& outcomes);
 
-  void accept_carried(const Points& after, Outcomes& outcomes);
-  void look_at_misplaced(const Points& after, Outcomes& outcomes);
+  [[nodiscard]] Outcomes of_movable(const Outcomes& of_constrained) const;
+  /// Constrained particles that obstacles block; without those that pins pull through other elements.
+  [[nodiscard]] std::vector<Index> blocked_by_obstacles(const Outcomes& outcomes) const;
   /// The particle's anchor, or the first of one that comes after it.
   [[nodiscard]] std::vector<KinematicAnchor>::iterator find_anchor(Index particle);
 
   ObstacleSafeRegions& regions_;
   PairSeparation& pairs_;
   const std::vector<Index>& movable_;
-  std::vector<Index> held_;
-  std::vector<Index> misplaced_;  ///< by place_among_obstacles(), ascending
+  std::vector<Index> constrained_;  ///< particles of pairs that would cross, ascending
+  std::vector<Index> unplaced_;     ///< infeasible before obstacles alone, ascending
   ParticleDisplacements carriers_;
 };
 

@@ -11,11 +11,11 @@ namespace sprung {
 
 namespace {
 
-bool bodies_meet(const CollisionSurface& surface) { return std::count(surface.others.begin(), surface.others.end(), 1) > 1; }
+bool bodies_collide(const CollisionSurface& surface) { return std::count(surface.others.begin(), surface.others.end(), 1) > 1; }
 
-/// Whether elements of one body or of two may meet.
-bool meets_itself(const CollisionSurface& surface) {
-  return std::count(surface.self.begin(), surface.self.end(), 1) > 0 || bodies_meet(surface);
+/// Whether elements of one body or of two bodies may touch.
+bool network_collides(const CollisionSurface& surface) {
+  return std::count(surface.self.begin(), surface.self.end(), 1) > 0 || bodies_collide(surface);
 }
 
 }  // namespace
@@ -26,24 +26,24 @@ struct StepTruncation::Implementation {
         set(world.set()),
         surface(std::move(elements)),
         regions(set, surface, rest, margin),
-        placement(environment, surface, regions) {
-    if (meets_itself(surface)) pairs.emplace(surface, rest, margin);
+        obstacle_truncation(environment, surface, regions) {
+    if (network_collides(surface)) pairs.emplace(surface, rest, margin);
   }
 
   void begin_pairs(const Points& before, const Points& after);
   TruncationResult truncate(const Points& before, Points& after, const Relax& relax);
-  void keep_apart(const Points& before, Points& after, TruncationResult& truncation);
+  void separate_pairs(const Points& before, Points& after, TruncationResult& truncation);
 
   Environment& environment;
   const ObstacleSet& set;
   CollisionSurface surface;
   ObstacleSafeRegions regions;
-  ObstacleTruncation placement;
+  ObstacleTruncation obstacle_truncation;
   bool ahead = false;                   ///< see look_ahead
-  std::optional<PairSeparation> pairs;  ///< where elements of the network may meet
+  std::optional<PairSeparation> pairs;  ///< if elements of the network may touch
   std::vector<Contact> contacts{};
-  std::vector<Contact> pair_contacts{};  ///< of the step that follow() began
-  bool pairs_began = false;
+  std::vector<Contact> pair_contacts{};  ///< of the step that begin_step() began
+  bool pairs_begun = false;
 };
 
 StepTruncation::StepTruncation(Environment& environment, CollisionSurface surface, const Points& rest, double margin)
@@ -54,12 +54,12 @@ StepTruncation& StepTruncation::operator=(StepTruncation&&) noexcept = default;
 
 bool StepTruncation::can_collide() const { return implementation_->pairs.has_value() || !implementation_->set.obstacles().empty(); }
 
-bool StepTruncation::bodies_can_collide() const { return bodies_meet(implementation_->surface); }
+bool StepTruncation::bodies_can_collide() const { return bodies_collide(implementation_->surface); }
 
-void StepTruncation::follow(const Points& before, const Points& after) {
-  implementation_->regions.follow({before, after});
+void StepTruncation::begin_step(const Points& before, const Points& after) {
+  implementation_->regions.update({before, after});
   implementation_->regions.permit_crossings(before);
-  if (implementation_->ahead) implementation_->regions.renew_around(implementation_->placement.pinned(), {before, after});
+  if (implementation_->ahead) implementation_->regions.renew_around(implementation_->obstacle_truncation.pinned(), {before, after});
   if (implementation_->pairs) implementation_->begin_pairs(before, after);
 }
 
@@ -78,70 +78,70 @@ void StepTruncation::look_ahead(bool ahead) {
 const std::vector<Contact>& StepTruncation::contacts(const Points& before, const Points& after) {
   implementation_->contacts.clear();
   implementation_->regions.find_contacts({before, after}, implementation_->contacts);
-  const std::vector<Contact>& of_pairs = implementation_->pair_contacts;
-  implementation_->contacts.insert(implementation_->contacts.end(), of_pairs.begin(), of_pairs.end());
+  const std::vector<Contact>& between_elements = implementation_->pair_contacts;
+  implementation_->contacts.insert(implementation_->contacts.end(), between_elements.begin(), between_elements.end());
   return implementation_->contacts;
 }
 
 FreshContacts StepTruncation::renewed_contacts(const Points& before, const Points& after) {
-  return implementation_->regions.find_contacts_around(implementation_->placement.held_back(), {before, after});
+  return implementation_->regions.find_contacts_around(implementation_->obstacle_truncation.stopped(), {before, after});
 }
 
 TruncationResult StepTruncation::truncate(const Points& before, Points& after, const Relax& relax) {
   TruncationResult truncation;
   if (!implementation_->set.obstacles().empty()) truncation = implementation_->truncate(before, after, relax);
-  if (implementation_->pairs_began) implementation_->keep_apart(before, after, truncation);
+  if (implementation_->pairs_begun) implementation_->separate_pairs(before, after, truncation);
   return truncation;
 }
 
-// What found no free place is not safe to go on from.
+// A state with infeasible particles is not safe to continue from. Otherwise the loop ends when `relax` returns false.
 TruncationResult StepTruncation::Implementation::truncate(const Points& before, Points& after, const Relax& relax) {
   Points target = after;
-  TruncationResult truncation = placement.place_all({before, target}, after);
+  TruncationResult truncation = obstacle_truncation.clip_all({before, target}, after);
   if (truncation.truncated == 0 || !relax) return truncation;
   for (Points safe = after; truncation.infeasible == 0 && relax(after); safe = after) {
     target = after;
-    truncation = placement.place_all({safe, target, true}, after);
+    truncation = obstacle_truncation.clip_all({safe, target, true}, after);
   }
   return truncation;
 }
 
 void StepTruncation::Implementation::begin_pairs(const Points& before, const Points& after) {
   pair_contacts.clear();
-  pairs_began = before.allFinite() && after.allFinite();
-  if (pairs_began) pairs->begin_step(before, after, pair_contacts);
+  pairs_begun = before.allFinite() && after.allFinite();
+  if (pairs_begun) pairs->begin_step(before, after, pair_contacts);
 }
 
-void StepTruncation::Implementation::keep_apart(const Points& before, Points& after, TruncationResult& truncation) {
+void StepTruncation::Implementation::separate_pairs(const Points& before, Points& after, TruncationResult& truncation) {
   if (!after.allFinite()) return;
-  std::vector<Index> particles = placement.all_movable({before, after});
+  std::vector<Index> particles = obstacle_truncation.all_movable({before, after});
   const Points allowed = after;
-  const auto note_taken_along = [&] {
-    const std::vector<Index>& taken = pairs->taken_along();
-    truncation.moved_with_obstacles.insert(truncation.moved_with_obstacles.end(), taken.begin(), taken.end());
+  const auto record_moved = [&] {
+    const std::vector<Index>& moved = pairs->taken_along();
+    truncation.moved_with_obstacles.insert(truncation.moved_with_obstacles.end(), moved.begin(), moved.end());
   };
-  Outcomes outcomes = PairTruncation(regions, *pairs, particles).place(before, after);
-  note_taken_along();
+  Outcomes outcomes = PairTruncation(regions, *pairs, particles).clip(before, after);
+  record_moved();
   std::vector<Index> infeasible = pairs->passing_pins();
-  const bool sure = placement.look_at_pins(particles, after, outcomes);
-  if (!sure || (placement.closes_in({before, allowed}) && count(outcomes, Outcome::infeasible) > 0)) {
+  const bool path_checked = obstacle_truncation.check_pins(particles, after, outcomes);
+  if (!path_checked || (obstacle_truncation.is_kinematic({before, allowed}) && count(outcomes, Outcome::infeasible) > 0)) {
     infeasible.clear();
     truncation.subdivided = true;
     truncation.moved_with_obstacles.clear();
-    outcomes = place_in_parts(environment, {before, allowed}, after, [&](const Way& part, Points& x) {
-      const ClippedSubstep among_obstacles = placement.place_part(particles, part, x);
-      pairs->begin_part(part.from, x);
-      ClippedSubstep placed{PairTruncation(regions, *pairs, particles).place(part.from, x), among_obstacles.sure};
-      note_taken_along();
+    outcomes = clip_in_substeps(environment, {before, allowed}, after, [&](const StepPaths& paths, Points& x) {
+      const ClippedSubstep before_obstacles = obstacle_truncation.clip_substep(particles, paths, x);
+      pairs->begin_part(paths.from, x);
+      ClippedSubstep clipped{PairTruncation(regions, *pairs, particles).clip(paths.from, x), before_obstacles.path_checked};
+      record_moved();
       const std::vector<Index> pins = pairs->passing_pins();
       infeasible.insert(infeasible.end(), pins.begin(), pins.end());
-      placed.sure = placement.look_at_pins(particles, x, placed.outcomes) && placed.sure;
-      keep_infeasible(among_obstacles.outcomes, placed.outcomes);
-      return placed;
+      clipped.path_checked = obstacle_truncation.check_pins(particles, x, clipped.outcomes) && clipped.path_checked;
+      keep_infeasible(before_obstacles.outcomes, clipped.outcomes);
+      return clipped;
     });
   }
   truncation.truncated += static_cast<Index>(outcomes.size()) - count(outcomes, Outcome::free);
-  infeasible.insert(infeasible.end(), placement.infeasible().begin(), placement.infeasible().end());
+  infeasible.insert(infeasible.end(), obstacle_truncation.infeasible().begin(), obstacle_truncation.infeasible().end());
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] == Outcome::infeasible) infeasible.push_back(particles[n]);
   }

@@ -1,8 +1,8 @@
-// What keeps the network's elements from crossing obstacles: convex free space around each of them, kept from step to step.
+// The step filter: clips positions so that no element of the network crosses an obstacle or another element.
 //
-// An element that stays within what its region's box and half-spaces have in common cannot cross the obstacle, because that is
-// convex and holds nothing of it. So each particle is kept, on its own, within the regions of all elements that have it as a
-// corner.
+// An element whose corners stay inside its safe region, which is convex and contains nothing of the obstacle, does not cross the
+// obstacle. So each particle is clipped on its own, to the regions of all elements that it is a corner of ("divide and truncate";
+// compare the CCD filter of IPC, Li 2020). Between elements, division planes take the place of the regions.
 #pragma once
 
 #include "collision/core/contact.h"
@@ -19,51 +19,51 @@ namespace sprung {
 
 class StepTruncation {
  public:
-  /// Finds contacts up to `margin` [m] beyond their gap. What is near in one body at `rest` [m], 3 x n, may stay as near. Keeps a
-  /// reference to the environment.
+  /// Finds contacts up to `margin` [m] beyond their gap. Elements of one body that are near at `rest` [m], 3 x n, may stay as near.
+  /// Keeps a reference to the environment.
   StepTruncation(Environment& environment, CollisionSurface surface, const Points& rest, double margin);
   ~StepTruncation();
   StepTruncation(StepTruncation&&) noexcept;
   StepTruncation& operator=(StepTruncation&&) noexcept;
 
-  /// Whether there is anything that the network may meet: obstacles, other bodies, itself.
+  /// Whether there is anything that the network may touch: obstacles, other bodies, itself.
   [[nodiscard]] bool can_collide() const;
 
-  /// Whether elements of two bodies may meet.
+  /// Whether elements of two bodies may touch.
   [[nodiscard]] bool bodies_can_collide() const;
 
-  /// Makes the regions hold the elements on their way from `before`, where nothing crosses, to where they are about to be at the
-  /// end of the environment's interval [m].
-  void follow(const Points& before, const Points& after);
+  /// Begins a step from `before`, where nothing crosses, to `after`, the target at the end of the environment's interval [m], 3 x
+  /// n: updates safe regions, permitted crossings and the contacts between elements.
+  void begin_step(const Points& before, const Points& after);
 
-  /// What obstacles let through, because pins drag it through them.
+  /// Crossings that are permitted because a pin pulls an element through an obstacle.
   [[nodiscard]] const PermittedCrossings& permitted_crossings() const;
-  /// The next step does not begin where the last one ended, but where this was let through.
+  /// Discards cached regions and restores the permitted crossings. Call it after the state was rolled back.
   void roll_back(const PermittedCrossings& permitted);
 
-  /// Whether contacts of elements at pins are found on their whole way, wherever it begins. Truncation cannot help them, as a pin
-  /// goes where it goes; but the farther off a contact is found, the more often nothing would have touched.
+  /// Whether contacts of elements at pins are found along their whole path, at any distance. Truncation cannot stop a pin, so a
+  /// step that failed is tried again like this; it is not the default, because many of these contacts would never touch.
   void look_ahead(bool ahead);
 
-  /// Contacts of particles (see Environment::contacts), and of obstacles with the inside of edges and faces: an edge over a spike,
-  /// a face over a corner; then those of the network's elements with each other. Same order for any number of threads. Requires
-  /// follow() with the same positions.
-  /// Valid until it is asked again.
+  /// The contacts of the step: of particles with obstacles (see Environment::contacts), of obstacles with the inside of edges and
+  /// faces, and of the network's elements with each other. The same order for any number of threads. Requires begin_step() with the
+  /// same positions. Valid until the next call.
   [[nodiscard]] const std::vector<Contact>& contacts(const Points& before, const Points& after);
 
-  /// Contacts with obstacles around what truncate() has stopped, found anew while it relaxes.
+  /// Finds the contacts with obstacles again around the particles that the last truncate() stopped. For use inside `relax`.
   [[nodiscard]] FreshContacts renewed_contacts(const Points& before, const Points& after);
 
-  /// Moves particles once more after some were stopped [m]; returns false when it has nothing to move.
+  /// Moves particles after some were stopped [m]. Returns false when it has nothing left to move, which ends truncate().
   using Relax = std::function<bool(Points& positions)>;
 
-  /// The last word on positions: moves each particle that would take an element out of its regions to a place near `after` where it
-  /// does not, taking obstacles that close in on it, or on what is in its way, along in smaller parts of the interval. A particle
-  /// that found none stays with an obstacle that carries it. Particles that follow their pins, and positions that
-  /// are not finite, are left alone.
+  /// Clips `after` so that no element crosses an obstacle or another element. A particle that would leave a safe region moves to a
+  /// nearby admissible position. If surfaces close in on a particle, the interval is subdivided. A particle without an admissible
+  /// position moves with the obstacle and is counted as infeasible. Pinned particles and positions that are not finite do not
+  /// change.
   ///
-  /// What obstacles stop, `relax` may lead elsewhere, and its neighbours after it, again and again: all go on from where they are
-  /// safe. The result tells of the last time. It may be asked again in a step, of other positions, but not after it went in parts.
+  /// While obstacles stop particles, `relax` may move all particles again; they are then clipped from where they are safe. The
+  /// result describes the last round. May be called again in a step with other positions, but not after the step was subdivided.
+  /// Requires begin_step() if elements of the network may touch.
   TruncationResult truncate(const Points& before, Points& after, const Relax& relax = {});
 
  private:

@@ -6,29 +6,30 @@ namespace sprung {
 
 namespace {
 
-constexpr double kSmallestPart = 1.0 / 64.0;
+constexpr double kMinFraction = 1.0 / 64.0;
 
 }  // namespace
 
-Outcomes place_in_parts(Environment& environment, const Way& way, Points& after, const ClipSubstep& place) {
+// The loop ends: each round either halves the substep, at most six times, or finishes at least 1/64 of the interval.
+Outcomes clip_in_substeps(Environment& environment, const StepPaths& paths, Points& after, const ClipSubstep& clip) {
   const auto [begin, end] = environment.interval();
-  const auto time = [begin = begin, end = end](double part) { return part < 1.0 ? begin + part * (end - begin) : end; };
+  const auto time = [begin = begin, end = end](double fraction) { return fraction < 1.0 ? begin + fraction * (end - begin) : end; };
   Outcomes outcomes;
-  Points from = way.from;
+  Points from = paths.from;
   double done = 0.0;
-  double part = 0.5;
+  double fraction = 0.5;
   while (done < 1.0) {
-    const double next = std::min(1.0, done + part);
+    const double next = std::min(1.0, done + fraction);
     environment.set_interval(time(done), time(next));
-    const Points to = next < 1.0 ? Points(from + (next - done) / (1.0 - done) * (way.to - from)) : way.to;
+    const Points to = next < 1.0 ? Points(from + (next - done) / (1.0 - done) * (paths.to - from)) : paths.to;
     after = to;
-    auto [of_part, sure] = place({from, to}, after);
-    if (part > kSmallestPart && (!sure || count(of_part, Outcome::infeasible) > 0)) {
-      part *= 0.5;
+    auto [of_substep, path_checked] = clip({from, to}, after);
+    if (fraction > kMinFraction && (!path_checked || count(of_substep, Outcome::infeasible) > 0)) {
+      fraction *= 0.5;
       continue;
     }
-    keep_infeasible(outcomes, of_part);
-    outcomes = std::move(of_part);
+    keep_infeasible(outcomes, of_substep);
+    outcomes = std::move(of_substep);
     from = after;
     done = next;
   }

@@ -1,4 +1,4 @@
-// Particles that go their way in parts of the obstacles' interval.
+// Halves the obstacles' interval where it is too long for trapped particles.
 #pragma once
 
 #include "collision/obstacles/environment.h"
@@ -8,19 +8,20 @@
 
 namespace sprung {
 
-/// What became of particles on a part of their way.
+/// The result of clipping all particles in a substep.
 struct ClippedSubstep {
   Outcomes outcomes;
-  bool sure = true;  ///< nothing has passed through anything on the way; else it is known for the part's end alone
+  bool path_checked = true;  ///< nothing crosses on the path; else that is known for its end alone, since a pin left its regions
 };
 
-/// Moves particles a part of their way, to places in `after` [m], 3 x n, while the environment's interval is that part; tells what
-/// became of them, of the same ones each time.
-using ClipSubstep = std::function<ClippedSubstep(const Way& part, Points& after)>;
+/// Clips particles to positions in `after` [m], 3 x n, in a substep that the environment's interval is set to. Returns the outcomes
+/// of the same particles each time.
+using ClipSubstep = std::function<ClippedSubstep(const StepPaths& paths, Points& after)>;
 
-/// Obstacles and elements that close in on each other may be led where there is no place, though there is one beside: in smaller
-/// parts, planes are made again before they meet. Parts are halved while `place` finds no place for all in one, or is not sure of
-/// it, down to a 64th. Returns the outcomes of the last part, but infeasible for what was so in any.
-Outcomes place_in_parts(Environment& environment, const Way& way, Points& after, const ClipSubstep& place);
+/// Clips particles in substeps of the environment's interval. Surfaces that close in on each other may leave no admissible position
+/// along a straight path although there is one beside it; shorter substeps find it, since planes are renewed before the surfaces
+/// meet. Substeps are halved, down to 1/64 of the interval, while `clip` reports infeasible particles or an unchecked path. Returns
+/// the outcomes of the last substep, but infeasible for particles that were infeasible in any.
+Outcomes clip_in_substeps(Environment& environment, const StepPaths& paths, Points& after, const ClipSubstep& clip);
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// What the last word on positions did.
+// What truncation reports of a step.
 #pragma once
 
 #include "collision/core/contact.h"
@@ -8,12 +8,12 @@
 namespace sprung {
 
 struct TruncationResult {
-  Index truncated = 0;   ///< particles stopped on their way
-  Index infeasible = 0;  ///< particles that found no free place, that pins drag through the network, or whose elements are
-                         ///< crossed, and pins of their elements that go through each other
-  std::vector<Contact> body_contacts{};  ///< of bodies that stopped each other, where the step begins; none of what went in parts
-  std::vector<Index> moved_with_obstacles{};  ///< held particles that went along with an obstacle; some more than once
-  bool subdivided = false;                    ///< whether obstacles were taken along in parts of the step
+  Index truncated = 0;   ///< particles that did not reach their target
+  Index infeasible = 0;  ///< particles without an admissible position, corners of crossed elements, and particles, pinned ones too,
+                         ///< that pins pull through other elements
+  std::vector<Contact> body_contacts{};  ///< between bodies that stopped each other, at the begin of the step; none if subdivided
+  std::vector<Index> moved_with_obstacles{};  ///< particles between elements that moved with an obstacle; may repeat
+  bool subdivided = false;                    ///< whether the step was subdivided
 };
 
 }  // namespace sprung

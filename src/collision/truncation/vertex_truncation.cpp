@@ -9,12 +9,19 @@ namespace sprung {
 
 namespace {
 
-// A place this near to where the particle was, as a part of its coordinates, is the same but for rounding.
+// A displacement smaller than this fraction of the coordinates is rounding.
 constexpr double kRounding = 0x1p-46;
 
 constexpr Index kParticleChunk = 256;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+// A particle that an obstacle stops where it is keeps its position to the last bit. Otherwise the rounding of the projections would
+// wear its height away, step by step.
+Vector3 without_rounding(const std::vector<HalfSpace>& bounds, const Vector3& from, const Vector3& position) {
+  const bool stays = (position - from).cwiseAbs().maxCoeff() <= kRounding * from.cwiseAbs().maxCoeff() && is_feasible(bounds, from);
+  return stays ? from : position;
+}
 
 }  // namespace
 
@@ -28,35 +35,68 @@ void keep_infeasible(const Outcomes& before, Outcomes& outcomes) {
   }
 }
 
-Outcome place(const ObstacleSafeRegions& regions, Index particle, const Way& way, Points& positions) {
-  const Vector3 target = way.to.col(particle);
-  if (regions.allow(particle, target)) {
-    positions.col(particle) = target;
+VertexTruncation::VertexTruncation(const ObstacleSafeRegions& regions, const PairSeparation* pairs)
+    : regions_(regions), pairs_(pairs) {}
+
+Outcomes VertexTruncation::clip(const std::vector<Index>& particles, const StepPaths& paths, Points& positions) const {
+  Outcomes outcomes(particles.size());
+  parallel_chunks(static_cast<Index>(particles.size()), kParticleChunk, [&](Index begin, Index end) {
+    for (Index n = begin; n < end; ++n) outcomes[at(n)] = clip(particles[at(n)], paths, positions);
+  });
+  return outcomes;
+}
+
+Outcome VertexTruncation::clip(Index particle, const StepPaths& paths, Points& positions) const {
+  const Vector3 target = paths.to.col(particle);
+  auto&& position = positions.col(particle);
+  if (pairs_ != nullptr && pairs_->passes(particle)) {
+    position = pairs_->safe_place(particle);
+    return Outcome::infeasible;
+  }
+  if (allows(particle, target)) {
+    position = target;
     return Outcome::free;
   }
   std::vector<HalfSpace> bounds;
-  regions.append_half_spaces(particle, bounds);
-  const Vector3 from = way.from.col(particle);
-  std::vector<Vector3> safe;
-  if (!way.obstacles_rest) regions.append_carried(particle, from, safe);
-  safe.push_back(from);
-  const auto found = feasible_point(bounds, target, safe);
-  if (!found) {
-    positions.col(particle) = safe.front();
-    return Outcome::infeasible;
+  regions_.append_half_spaces(particle, bounds);
+  const std::size_t region_bounds = bounds.size();
+  if (pairs_ != nullptr) pairs_->append_half_spaces(particle, bounds);
+  const std::vector<Vector3> safe = safe_positions(particle, paths);
+  if (const auto found = feasible_point(bounds, target, safe)) {
+    if (pairs_ == nullptr) {
+      position = without_rounding(bounds, paths.from.col(particle), *found);
+      return Outcome::stopped;
+    }
+    // The ball is not among the bounds: what it shortens may be outside of them.
+    const Vector3 shortened = within_ball(particle, *found);
+    if (allows(particle, shortened)) {
+      position = shortened;
+      return Outcome::stopped;
+    }
   }
-  // A particle that cannot move stays to the last bit: what projections round would wear its height away, step by step.
-  const bool stays = (*found - from).cwiseAbs().maxCoeff() <= kRounding * from.cwiseAbs().maxCoeff() && is_feasible(bounds, from);
-  positions.col(particle) = stays ? from : *found;
-  return Outcome::stopped;
+  position = safe.front();
+  return is_feasible({bounds.data(), region_bounds}, safe.front()) ? Outcome::stopped : Outcome::infeasible;
 }
 
-Outcomes place(const ObstacleSafeRegions& regions, const std::vector<Index>& particles, const Way& way, Points& positions) {
-  Outcomes outcomes(particles.size());
-  parallel_chunks(static_cast<Index>(particles.size()), kParticleChunk, [&](Index begin, Index end) {
-    for (Index n = begin; n < end; ++n) outcomes[at(n)] = place(regions, particles[at(n)], way, positions);
-  });
-  return outcomes;
+bool VertexTruncation::allows(Index particle, const Vector3& position) const {
+  return (pairs_ == nullptr || pairs_->allows(particle, position)) && regions_.allow(particle, position);
+}
+
+std::vector<Vector3> VertexTruncation::safe_positions(Index particle, const StepPaths& paths) const {
+  std::vector<Vector3> safe;
+  if (pairs_ != nullptr) {
+    safe.push_back(pairs_->safe_place(particle));
+  } else if (!paths.obstacles_rest) {
+    ObstacleMotion(regions_).append_moved(particle, paths.from.col(particle), safe);
+  }
+  safe.emplace_back(paths.from.col(particle));
+  return safe;
+}
+
+Vector3 VertexTruncation::within_ball(Index particle, const Vector3& position) const {
+  const auto [center, radius] = pairs_->ball(particle);
+  const double distance = (position - center).norm();
+  return distance > radius ? Vector3(center + radius / distance * (position - center)) : position;
 }
 
 }  // namespace sprung

@@ -1,30 +1,47 @@
-// Where particles end that obstacles do not let go where they want.
+// Clips the displacement of single particles to the half-spaces around them.
 #pragma once
 
-#include "collision/obstacle_regions/obstacle_safe_regions.h"
+#include "collision/impact_zones/pair_separation.h"
+#include "collision/obstacle_regions/obstacle_motion.h"
 
 #include <vector>
 
 namespace sprung {
 
-/// What became of a particle on its way.
+/// The result of clipping one particle.
 enum class Outcome : char {
-  free,       ///< it arrived
-  stopped,    ///< it ended elsewhere, where it may be
-  infeasible  ///< no such place was found
+  free,       ///< it reached its target
+  stopped,    ///< it is at another admissible position
+  infeasible  ///< no admissible position was found
 };
 using Outcomes = std::vector<Outcome>;
 
 [[nodiscard]] Index count(const Outcomes& outcomes, Outcome wanted);
 
-/// Leaves infeasible what was so before.
+/// Sets those of `outcomes` to infeasible that are infeasible in `before`.
 void keep_infeasible(const Outcomes& before, Outcomes& outcomes);
 
-/// Moves a particle to where its way leads, or to a place near there within the regions of its elements. One that finds none stays
-/// with an obstacle that carries it.
-Outcome place(const ObstacleSafeRegions& regions, Index particle, const Way& way, Points& positions);
+/// The only place where positions are clipped to half-spaces: to the safe regions before obstacles, and to the division planes
+/// between elements.
+class VertexTruncation {
+ public:
+  /// Clips to the safe regions alone, or to `pairs` too: then to particles that PairSeparation::hold() returned. Keeps references.
+  explicit VertexTruncation(const ObstacleSafeRegions& regions, const PairSeparation* pairs = nullptr);
 
-/// The same for many, each on its own.
-Outcomes place(const ObstacleSafeRegions& regions, const std::vector<Index>& particles, const Way& way, Points& positions);
+  /// Moves each of these particles, independent of the others, to its target or to a nearby admissible position: sets its column of
+  /// `positions` [m], 3 x n. A particle without an admissible position moves with an obstacle near it, if one moves, or to its safe
+  /// position among the pairs.
+  Outcomes clip(const std::vector<Index>& particles, const StepPaths& paths, Points& positions) const;
+
+ private:
+  [[nodiscard]] Outcome clip(Index particle, const StepPaths& paths, Points& positions) const;
+  [[nodiscard]] bool allows(Index particle, const Vector3& position) const;
+  /// Positions that are admissible unless surfaces close in on the particle. The first is the one to fall back to.
+  [[nodiscard]] std::vector<Vector3> safe_positions(Index particle, const StepPaths& paths) const;
+  [[nodiscard]] Vector3 within_ball(Index particle, const Vector3& position) const;
+
+  const ObstacleSafeRegions& regions_;
+  const PairSeparation* pairs_;
+};
 
 }  // namespace sprung

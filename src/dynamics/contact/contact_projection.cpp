@@ -34,7 +34,7 @@ ContactProjection::ContactProjection(const SpringNetwork& network, Environment& 
       free_space_(environment, contact_surface(network), network.positions, margin_of(network, environment.obstacles())) {}
 
 void ContactProjection::find(const StepMotion& motion) {
-  free_space_.follow(motion.before, motion.advanced);
+  free_space_.begin_step(motion.before, motion.advanced);
   response_.start(free_space_.contacts(motion.before, motion.advanced), motion);
 }
 

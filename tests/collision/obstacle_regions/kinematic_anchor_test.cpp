@@ -1,4 +1,4 @@
-// The motion that anchors share.
+// The common motion of anchors.
 #include "collision/obstacle_regions/kinematic_anchor.h"
 #include "collision/sample_meshes.h"
 
@@ -23,20 +23,20 @@ MovedTriangle moved_triangle(const AffineTransform& map, Random& random) {
   return triangle;
 }
 
-TEST(CommonMotion, OfAnObstacleThatIsRigidIsItsOwn) {
+TEST(CommonMotion, OfAnchorsOnARigidObstacleIsTheObstaclesMotion) {
   const std::vector<KinematicAnchor> anchors{
       {.particle = 0}, {.particle = 1, .obstacle = 0, .motion = kPose}, {.particle = 2, .obstacle = 1}};
   EXPECT_EQ(common_motion(anchors).matrix(), kPose.matrix());
 }
 
-TEST(CommonMotion, OfObstaclesThatRestIsNone) {
+TEST(CommonMotion, OfRestingAnchorsIsTheIdentity) {
   const std::vector<KinematicAnchor> anchors{{.particle = 0}, {.particle = 1}};
   EXPECT_EQ(common_motion(anchors).matrix(), AffineTransform::Identity().matrix());
 }
 
-/// Two triangles that are not in one plane tell all of an affine map; what is left is the rounding of squares, 1e-16, times how
-/// much wider they spread in one direction than in another, squared: 2^20 at most.
-TEST(CommonMotion, TakesASurfaceThatStretchesAndShearsAlong) {
+// Two triangles that are not in one plane determine an affine map. The error is rounding, 1e-16, times the squared ratio of the
+// corners' spreads in two directions: at most 2^20.
+TEST(CommonMotion, OfTwoTrianglesOnADeformingSurfaceIsTheirAffineMap) {
   Random random(3);
   for (int trial = 0; trial < 100; ++trial) {
     AffineTransform map(kPose);
@@ -49,8 +49,8 @@ TEST(CommonMotion, TakesASurfaceThatStretchesAndShearsAlong) {
   }
 }
 
-/// Across the only triangle it is as the rigid part is.
-TEST(CommonMotion, TakesASingleTriangleAlong) {
+// Across its plane a single triangle does not determine the map: there it equals the rigid motion.
+TEST(CommonMotion, OfASingleTriangleMapsTheTriangleExactly) {
   Random random(4);
   AffineTransform map(kPose);
   map.linear() *= 1.2;
@@ -62,8 +62,8 @@ TEST(CommonMotion, TakesASingleTriangleAlong) {
   EXPECT_LT((found.linear() * across - kPose.linear() * across).norm(), 1e-12);
 }
 
-/// A surface that is turned inside out takes nothing along but by its middle.
-TEST(CommonMotion, NeverTurnsInsideOut) {
+// For a surface that turns inside out the fit is rejected and only the translation of its centre is kept.
+TEST(CommonMotion, NeverTurnsItsGroupInsideOut) {
   Random random(5);
   AffineTransform mirror = AffineTransform::Identity();
   mirror.linear()(0, 0) = -1.0;

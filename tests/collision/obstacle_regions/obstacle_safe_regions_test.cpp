@@ -14,8 +14,8 @@
 namespace sprung {
 namespace {
 
-// Obstacles are looked for where elements are about to go. What is elsewhere has no regions, and nothing may be led there.
-TEST(ObstacleSafeRegions, AllowNoPlaceWhereNoObstacleWasLookedFor) {
+// The broad phase searches around the elements' paths. Obstacles elsewhere have no regions, so no particle may go there.
+TEST(ObstacleSafeRegions, AllowNoPositionOutsideOfTheSearchedBox) {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.5}};
   ball.placed.translation() = Vector3(10.0, 0.0, 0.0);
   Environment environment({ball});
@@ -23,7 +23,7 @@ TEST(ObstacleSafeRegions, AllowNoPlaceWhereNoObstacleWasLookedFor) {
   const CollisionSurface surface = test::particle_surface({0});
   const Points here = Points::Zero(3, 1);
   ObstacleSafeRegions regions(environment.set(), surface, here, 0.01);
-  regions.follow({here, here});
+  regions.update({here, here});
   std::vector<HalfSpace> half_spaces;
   regions.append_half_spaces(0, half_spaces);
   const auto is_within = [&](const Vector3& p) {
@@ -35,13 +35,12 @@ TEST(ObstacleSafeRegions, AllowNoPlaceWhereNoObstacleWasLookedFor) {
   EXPECT_FALSE(is_within(ball.placed.translation()));
 }
 
-// A region that is made again because one of its corners leaves has other planes, which may not hold another corner on its way
-// although its old region did: that one has to be looked at too. A cloth moves at random over rough ground; whoever is not restless
-// goes where it wants.
-TEST(ObstacleSafeRegions, WhomNewZonesDoNotHoldIsRestless) {
+// A region that is renewed because one corner leaves it has other planes. They may not contain the target of another corner, which
+// then has to be listed as leaving too. A cloth moves at random over rough ground; particles that are not listed move unclipped.
+TEST(ObstacleSafeRegions, ListEveryParticleWhoseTargetANewRegionExcludes) {
   constexpr Index kSide = 10;
   constexpr int kSteps = 1000;
-  constexpr double kFarthest = 0.1;
+  constexpr double kMaxStep = 0.1;
   test::Random random(1);
   const TriangleMesh ground = test::terrain(12, [&](Index, Index) { return random.between(0.0, 1.0); });
   const Obstacle obstacle{.name = "ground", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(ground), false}};
@@ -55,20 +54,20 @@ TEST(ObstacleSafeRegions, WhomNewZonesDoNotHoldIsRestless) {
   for (int step = 0; step < kSteps; ++step) {
     Points to = from;
     for (Index i = 0; i < cloth.count(); ++i) {
-      to.col(i) += random.between(0.0, kFarthest) * random.direction() - Vector3(0.0, 0.2 * kFarthest, 0.0);
+      to.col(i) += random.between(0.0, kMaxStep) * random.direction() - Vector3(0.0, 0.2 * kMaxStep, 0.0);
     }
-    regions.follow({from, to});
-    const std::vector<Index> restless = regions.restless();
+    regions.update({from, to});
+    const std::vector<Index> leaving = regions.leaving();
     for (Index i = 0; i < cloth.count(); ++i) {
-      if (std::ranges::binary_search(restless, i)) continue;
+      if (std::ranges::binary_search(leaving, i)) continue;
       ASSERT_TRUE(regions.allow(i, to.col(i))) << "particle " << i << " in step " << step;
       from.col(i) = to.col(i);
     }
   }
 }
 
-/// Where the contact's element is opposite to the obstacle.
-Vector3 opposite(const Contact& contact, const Points& positions) {
+/// The contact's point on the element.
+Vector3 element_point(const Contact& contact, const Points& positions) {
   Vector3 sum = Vector3::Zero();
   for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
     sum += contact.weights[k] * positions.col(contact.particles[k]);
@@ -83,7 +82,7 @@ struct Top {
 
 void PrintTo(const Top& top, std::ostream* stream) { *stream << top.name; }
 
-/// Open pyramids, 1 m high, with these tips.
+/// Open pyramids, 1 m high, with their tips here.
 TriangleMesh spikes(const std::vector<Vector3>& tips) {
   const auto count = static_cast<Index>(tips.size());
   TriangleMesh mesh{Points(3, 5 * count), Triangles(3, 4 * count)};
@@ -98,7 +97,7 @@ TriangleMesh spikes(const std::vector<Vector3>& tips) {
   return mesh;
 }
 
-/// A square with sides along x and z, from this corner, above an obstacle.
+/// A square above an obstacle, with one corner here and sides along x and z.
 struct SquareAbove {
   SquareAbove(const Obstacle& obstacle, const Vector3& corner) : environment({obstacle}) {
     square.add_cloth(1, corner, Vector3::UnitX(), Vector3::UnitZ());
@@ -107,7 +106,7 @@ struct SquareAbove {
   }
 
   std::vector<Contact> step(const Points& from, const Points& to) {
-    regions->follow({from, to});
+    regions->update({from, to});
     std::vector<Contact> contacts;
     regions->find_contacts({from, to}, contacts);
     return contacts;
@@ -126,10 +125,10 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Top{"ball", SphereGeometry{.radius = 0.5}},
                       Top{"spike", MeshGeometry{std::make_shared<const TriangleMesh>(spikes({Vector3::Zero()})), false}}));
 
-// However far a square slides over what is below its inside, that stays where it is, and another part of the square is opposite.
-TEST_P(ElementOverTop, MeetsItWhereItIsNow) {
+// The tip below the inside of a sliding square stays where it is. The contact's point on the square has to move.
+TEST_P(ElementOverTop, HasItsContactAtTheCurrentClosestPoint) {
   constexpr double kGap = SquareAbove::kGap;
-  constexpr double kOld = 0.02 * kGap;  // nearest points may be, of this way
+  constexpr double kOld = 0.02 * kGap;  // displacement after which closest points are searched again
   constexpr double kSlide = 0.75 * kOld;
   Obstacle obstacle{.name = "top", .geometry = GetParam().geometry};
   if (std::holds_alternative<SphereGeometry>(obstacle.geometry)) obstacle.placed.translation() = Vector3(0.0, -0.5, 0.0);
@@ -142,59 +141,60 @@ TEST_P(ElementOverTop, MeetsItWhereItIsNow) {
     const std::vector<Contact> contacts = above.step(from, to);
     ASSERT_FALSE(contacts.empty());
     for (const Contact& contact : contacts) {
-      EXPECT_NEAR((opposite(contact, from) - contact.point).cross(contact.normal).norm(), 0.0, kOld) << "step " << step;
+      EXPECT_NEAR((element_point(contact, from) - contact.point).cross(contact.normal).norm(), 0.0, kOld) << "step " << step;
     }
     from = to;
   }
 }
 
-// Both move within their own frames, the square half as fast again: what lies below is the tip where it ends up, and goes as fast.
-TEST(ElementOverTops, MeetsATipThatDeforms) {
+// The tip moves as its mesh deforms, the square moves half as fast again. The contact is at the tip's end position, and its drift
+// is the tip's displacement.
+TEST(ElementOverTops, HasAContactThatMovesWithADeformingTip) {
   constexpr double kGap = SquareAbove::kGap;
   constexpr double kStep = 0.01;
-  const Vector3 way(0.1 * kGap, 0.02 * kGap, 0.0);  // of the tip in a step
+  const Vector3 displacement(0.1 * kGap, 0.02 * kGap, 0.0);  // of the tip in a step
   const TriangleMesh first = spikes({Vector3::Zero()});
   MeshSequence sequence{.triangles = first.triangles, .frames = {}, .frame_rate = 1.0 / kStep};
-  for (int k = 0; k <= 30; ++k) sequence.frames.emplace_back(first.vertices.colwise() + k * way);
+  for (int k = 0; k <= 30; ++k) sequence.frames.emplace_back(first.vertices.colwise() + k * displacement);
   const Obstacle obstacle{.name = "tip",
                           .geometry = SequenceGeometry{std::make_shared<const MeshSequence>(std::move(sequence)), false}};
   SquareAbove above(obstacle, {-0.6, 0.9 * kGap, -0.4});
   Points from = above.square.positions;
   for (int step = 0; step < 30; ++step) {
     above.environment.set_interval(kStep * step, kStep * (step + 1));
-    const Points to = from.colwise() + Vector3(1.5 * way.x(), way.y(), 0.0);
+    const Points to = from.colwise() + Vector3(1.5 * displacement.x(), displacement.y(), 0.0);
     const std::vector<Contact> contacts = above.step(from, to);
-    const auto is_of_the_tip = [&](const Contact& contact) {
-      const Vector3 between = opposite(contact, from) - (contact.point - contact.drift);  // where the interval begins
-      return contact.point.isApprox((step + 1) * way, 1e-9) && contact.drift.isApprox(way, 1e-9) &&
+    const auto is_at_tip = [&](const Contact& contact) {
+      const Vector3 between = element_point(contact, from) - (contact.point - contact.drift);  // at the begin of the interval
+      return contact.point.isApprox((step + 1) * displacement, 1e-9) && contact.drift.isApprox(displacement, 1e-9) &&
              between.cross(contact.normal).norm() < 0.02 * kGap;
     };
-    EXPECT_TRUE(std::ranges::any_of(contacts, is_of_the_tip)) << "step " << step;
+    EXPECT_TRUE(std::ranges::any_of(contacts, is_at_tip)) << "step " << step;
     from = to;
   }
 }
 
-// The square slides off one tip, within the region that it has, and lies on another one then.
-TEST(ElementOverTops, MeetsTheNextOneOnceItLeftTheFirst) {
+// The square slides off one tip onto another one, without leaving its region.
+TEST(ElementOverTops, HasAContactWithTheNextTipAfterItLeftTheFirst) {
   constexpr double kGap = SquareAbove::kGap;
   const Vector3 next(0.3, -0.1 * kGap, 0.3);
   const Obstacle obstacle{.name = "tops",
                           .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(spikes({Vector3::Zero(), next})), false}};
   SquareAbove above(obstacle, {-0.02, 0.9 * kGap, -0.5});
   above.environment.set_interval(0.0, 0.01);
-  const auto meets = [&](const Points& from, const Points& to, const Vector3& tip) {
+  const auto touches = [&](const Points& from, const Points& to, const Vector3& tip) {
     const std::vector<Contact> contacts = above.step(from, to);
     return std::ranges::any_of(contacts, [&](const Contact& contact) { return contact.point.isApprox(tip, 1e-12); });
   };
   Points from = above.square.positions;
-  EXPECT_TRUE(meets(from, from, Vector3::Zero()));
+  EXPECT_TRUE(touches(from, from, Vector3::Zero()));
   for (int step = 0; step < 40; ++step) {
     Points to = from;
     to.row(0).array() += 0.08 * kGap;
-    meets(from, to, next);
+    touches(from, to, next);
     from = to;
   }
-  EXPECT_TRUE(meets(from, from, next));
+  EXPECT_TRUE(touches(from, from, next));
 }
 
 }  // namespace

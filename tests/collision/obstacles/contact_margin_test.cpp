@@ -24,7 +24,7 @@ std::size_t contacts(const std::vector<double>& heights, const std::vector<doubl
     after(1, static_cast<Index>(i)) = heights[i] * kGap;
     before(1, static_cast<Index>(i)) = (heights[i] + falls[i]) * kGap;
   }
-  space.follow(before, after);
+  space.begin_step(before, after);
   return space.contacts(before, after).size();
 }
 
@@ -66,7 +66,7 @@ TEST(ContactsAgain, AreFoundAnewAroundWhatWasStopped) {
   before.row(1).setConstant(kGap);
   Points after = before;
   after(1, 0) = -kGap;
-  space.follow(before, after);
+  space.begin_step(before, after);
   const std::vector<Contact>& found = space.contacts(before, after);
   EXPECT_EQ(found.size(), kParticles);
   EXPECT_EQ(std::ranges::count(found, 0, &Contact::patch), kParticles / 2);

@@ -1,4 +1,4 @@
-// Without any thickness a particle still keeps a clearance, slides along surfaces and over edges, and never wears it away.
+// A particle without thickness keeps a clearance, however long it slides along surfaces and over edges.
 #include "collision/sample_meshes.h"
 #include "collision/single_particles.h"
 
@@ -11,9 +11,9 @@ namespace {
 
 using test::Random;
 
-// What the environment promises of a clearance: far above rounding, far below anything seen. As parts of the coordinates.
-constexpr double kLeast = 1e-10;
-constexpr double kMost = 1e-8;
+// The promised range of the clearance, as fractions of the coordinates: far above rounding, far below what is visible.
+constexpr double kMin = 1e-10;
+constexpr double kMax = 1e-8;
 
 Obstacle obstacle(const ObstacleGeometry& geometry, const Vector3& position = Vector3::Zero(),
                   const Vector3& degrees = Vector3::Zero()) {
@@ -31,27 +31,28 @@ ObstacleGeometry mesh_of(const TriangleMesh& mesh, bool closed) {
 
 ObstacleGeometry mesh_of(const ObstacleGeometry& primitive) { return mesh_of(obstacle_mesh(primitive, 0.0), true); }
 
-/// One step without thickness: each particle is led in front of its contacts' planes, then cut. Returns the number of cuts.
-Index step_to(const Environment& environment, StepTruncation& space, Points& x, const Points& wanted) {
+/// One step without thickness: projects each particle onto its contacts' planes, then truncates. Returns the number of truncated
+/// particles.
+Index step_to(const Environment& environment, StepTruncation& truncation, Points& x, const Points& wanted) {
   Points after = wanted;
   for (const Contact& contact : environment.contacts({x, wanted, Scalars::Zero(x.cols()), 0.0})) {
     auto position = after.col(contact.particles[0]);
     const double depth = contact.clearance - contact.normal.dot(position - contact.point);
     if (depth > 0.0) position += depth * contact.normal;
   }
-  const TruncationResult truncation = space.truncate(x, after);
-  EXPECT_EQ(truncation.infeasible, 0);
+  const TruncationResult result = truncation.truncate(x, after);
+  EXPECT_EQ(result.infeasible, 0);
   x = after;
-  return truncation.truncated;
+  return result.truncated;
 }
 
 struct Slide {
   const char* name;
   ObstacleGeometry geometry;
-  double top;  ///< height of its upper surface, which is level [m]
+  double top;  ///< height of its flat upper surface [m]
 };
 
-std::vector<Slide> level_surfaces() {
+std::vector<Slide> flat_surfaces() {
   return {{"half-space", HalfSpaceGeometry{}, 0.0},
           {"raised half-space", HalfSpaceGeometry{Vector3::UnitY(), 0.3}, 0.3},
           {"box", BoxGeometry{Vector3(8.0, 1.0, 8.0)}, 0.5},
@@ -60,9 +61,9 @@ std::vector<Slide> level_surfaces() {
           {"open mesh", mesh_of(test::flat_sheet(8), false), 0.0}};
 }
 
-// Along a surface that rests on its origin as well as one that is moved and turned away from it.
-TEST(Clearance, PressedParticlesSlideAlongLevelSurfacesUncut) {
-  for (const Slide& slide : level_surfaces()) {
+// At the origin, and moved and rotated away from it.
+TEST(Clearance, PressedParticlesSlideAlongFlatSurfacesWithoutTruncation) {
+  for (const Slide& slide : flat_surfaces()) {
     for (const bool away : {false, true}) {
       SCOPED_TRACE(std::string(slide.name) + (away ? ", away" : ""));
       Environment environment(
@@ -70,22 +71,22 @@ TEST(Clearance, PressedParticlesSlideAlongLevelSurfacesUncut) {
       const RigidTransform& pose = environment.pose_after(0);
       const Vector3 motion = pose.linear() * Vector3(0.013, -0.02, 0.007);
       const Vector3 start(-1.5, slide.top + 0.01, -1.0);
-      StepTruncation space = test::single_particles(environment, 1);
+      StepTruncation truncation = test::single_particles(environment, 1);
       Points x = pose * start;
       for (int step = 1; step <= 200; ++step) {
-        ASSERT_EQ(step_to(environment, space, x, x + motion), 0U) << step;
+        ASSERT_EQ(step_to(environment, truncation, x, x + motion), 0U) << step;
         const Vector3 local = pose.inverse() * x.col(0);
         // 200 sums and projections, each right to a few roundings of coordinates of 10 m.
         ASSERT_NEAR(local.x(), start.x() + 0.013 * step, 1e-11);
         ASSERT_NEAR(local.z(), start.z() + 0.007 * step, 1e-11);
-        ASSERT_GT(local.y() - slide.top, kLeast * x.cwiseAbs().maxCoeff());
-        ASSERT_LT(local.y() - slide.top, kMost * 20.0);
+        ASSERT_GT(local.y() - slide.top, kMin * x.cwiseAbs().maxCoeff());
+        ASSERT_LT(local.y() - slide.top, kMax * 20.0);
       }
     }
   }
 }
 
-TEST(Clearance, PressedParticlesSlideRoundConvexBodiesUncut) {
+TEST(Clearance, PressedParticlesSlideAroundConvexBodiesWithoutTruncation) {
   const SphereGeometry ball{1.0};
   const ObstacleGeometry bodies[] = {ball,
                                      CapsuleGeometry{1.0, 0.5},
@@ -99,13 +100,13 @@ TEST(Clearance, PressedParticlesSlideRoundConvexBodiesUncut) {
     Environment environment({obstacle(bodies[k], Vector3(0.7, 0.2, -0.4), Vector3(10.0, 20.0, 30.0))});
     const Vector3 centre = environment.pose_after(0).translation();
     const Vector3 axis = Vector3(0.3, -0.2, 1.0).normalized();
-    StepTruncation space = test::single_particles(environment, 1);
+    StepTruncation truncation = test::single_particles(environment, 1);
     Points x = centre + 3.0 * Vector3::UnitY();
     double turned = 0.0;
     for (int step = 0; step < 2000; ++step) {
       const Vector3 from = x.col(0) - centre;
       const Vector3 along = axis.cross(from).normalized();
-      ASSERT_EQ(step_to(environment, space, x, x + 0.02 * along - 0.005 * from.normalized()), 0U) << step;
+      ASSERT_EQ(step_to(environment, truncation, x, x + 0.02 * along - 0.005 * from.normalized()), 0U) << step;
       const Vector3 to = x.col(0) - centre;
       turned += std::atan2(axis.dot(from.cross(to)), from.dot(to));
       ASSERT_TRUE(test::intersections(environment, x).empty());
@@ -114,67 +115,67 @@ TEST(Clearance, PressedParticlesSlideRoundConvexBodiesUncut) {
   }
 }
 
-// Cuts alone, as when projections do not converge: what they leave must not vanish, at the origin least of all.
-TEST(Clearance, CutsNeverWearTheHeightAway) {
-  for (const Slide& slide : level_surfaces()) {
+// Truncation alone, as if projections did not converge. At the origin, where coordinates are small, the height is most at risk.
+TEST(Clearance, RepeatedTruncationKeepsTheHeight) {
+  for (const Slide& slide : flat_surfaces()) {
     SCOPED_TRACE(slide.name);
     Environment environment({obstacle(slide.geometry)});
     Points x = Vector3(0.0, slide.top + 0.01, 0.0);
-    StepTruncation space = test::single_particles(environment, 1);
+    StepTruncation truncation = test::single_particles(environment, 1);
     double settled = 0.0;
     for (int step = 0; step < 5000; ++step) {
       Points after = x - 0.05 * Vector3::UnitY();
-      space.truncate(x, after);
+      truncation.truncate(x, after);
       x = after;
-      ASSERT_GT(x(1, 0) - slide.top, kLeast * 0.05) << step;
+      ASSERT_GT(x(1, 0) - slide.top, kMin * 0.05) << step;
       if (step == 100) settled = x(1, 0);
     }
     EXPECT_EQ(x(1, 0), settled);
   }
 }
 
-TEST(Clearance, BesideARestingObstacleAParticleStaysToTheLastBit) {
-  for (const Slide& slide : level_surfaces()) {
+TEST(Clearance, AParticlePressedOnARestingObstacleKeepsItsPositionToTheLastBit) {
+  for (const Slide& slide : flat_surfaces()) {
     SCOPED_TRACE(slide.name);
     Environment environment({obstacle(slide.geometry, Vector3(3.7, -8.1, 5.3), Vector3(20.0, 50.0, -35.0))});
     const RigidTransform& pose = environment.pose_after(0);
     const Vector3 down = pose.linear() * -Vector3::UnitY();
     Points x = pose * Vector3(0.2, slide.top + 0.01, 0.3);
-    StepTruncation space = test::single_particles(environment, 1);
+    StepTruncation truncation = test::single_particles(environment, 1);
     for (int step = 0; step < 100; ++step) {
       Points after = x + 0.05 * down;
-      space.truncate(x, after);
+      truncation.truncate(x, after);
       x = after;
     }
     Points after = x + 0.05 * down;
-    EXPECT_EQ(space.truncate(x, after).truncated, 1);
+    EXPECT_EQ(truncation.truncate(x, after).truncated, 1);
     EXPECT_EQ(after, x);
   }
 }
 
-TEST(Clearance, AMovingObstacleCarriesAParticleForEverAtItsClearance) {
-  for (const Slide& slide : level_surfaces()) {
+TEST(Clearance, AParticleOnAMovingObstacleKeepsItsClearance) {
+  for (const Slide& slide : flat_surfaces()) {
     SCOPED_TRACE(slide.name);
     Obstacle carousel = obstacle(slide.geometry, Vector3(0.7, -0.1, 0.3), Vector3(20.0, 50.0, -35.0));
     carousel.motion.spin = Vector3(300.0, 700.0, -500.0);
     Environment environment({carousel});
     Points x = environment.pose_after(0) * Vector3(0.2, slide.top + 0.01, 0.3);
-    StepTruncation space = test::single_particles(environment, 1);
+    StepTruncation truncation = test::single_particles(environment, 1);
     for (int step = 0; step < 20000; ++step) {
       environment.set_interval(0.001 * step, 0.001 * (step + 1));
-      const Vector3 carried = environment.pose_after(0) * (environment.pose_before(0).inverse() * x.col(0));
-      Points after = carried - 0.05 * (environment.pose_after(0).linear() * Vector3::UnitY());
-      ASSERT_EQ(space.truncate(x, after).infeasible, 0);
+      const Vector3 moved = environment.pose_after(0) * (environment.pose_before(0).inverse() * x.col(0));
+      Points after = moved - 0.05 * (environment.pose_after(0).linear() * Vector3::UnitY());
+      ASSERT_EQ(truncation.truncate(x, after).infeasible, 0);
       x = after;
       const Vector3 local = environment.pose_after(0).inverse() * x.col(0);
-      ASSERT_GT(local.y() - slide.top, kLeast * x.cwiseAbs().maxCoeff()) << step;
+      ASSERT_GT(local.y() - slide.top, kMin * x.cwiseAbs().maxCoeff()) << step;
     }
   }
 }
 
 Vector3 times(double scale, const Vector3& v) { return scale * v; }
 
-/// Particles thrown about for some steps among a box, a ball, a sheet, a floor and a turning mesh, all lengths times `scale`.
+/// Moves particles at random among a box, a ball, a sheet, a floor and a rotating mesh, all lengths times `scale`.
 Points scaled_run(double scale) {
   TriangleMesh torus = test::torus(1.0, 0.3, 20, 10);
   torus.vertices *= scale;
@@ -188,19 +189,19 @@ Points scaled_run(double scale) {
   obstacles.back().motion.spin = Vector3(0.0, 500.0, 100.0);
   Environment environment(obstacles);
   Random random(41);
-  StepTruncation space = test::single_particles(environment, 300);
+  StepTruncation truncation = test::single_particles(environment, 300);
   Points x(3, 300);
   for (Index i = 0; i < x.cols(); ++i) x.col(i) = scale * random.in_box({Vector3(-2.0, 2.5, -2.0), Vector3(2.0, 4.0, 2.0)});
   for (int step = 0; step < 60; ++step) {
     environment.set_interval(0.01 * step, 0.01 * (step + 1));
     Points wanted = x;
     for (Index i = 0; i < x.cols(); ++i) wanted.col(i) += scale * (0.1 * random.direction() - 0.08 * Vector3::UnitY());
-    step_to(environment, space, x, wanted);
+    step_to(environment, truncation, x, wanted);
   }
   return x;
 }
 
-TEST(Clearance, ScalesWithTheSceneBitForBit) {
+TEST(Clearance, ResultsScaleWithTheSceneBitForBit) {
   const Points x = scaled_run(1.0);
   EXPECT_EQ(scaled_run(128.0), 128.0 * x);
   EXPECT_EQ(scaled_run(1.0 / 128.0), x / 128.0);

@@ -1,4 +1,4 @@
-// What obstacles and other elements leave no place together goes along with the obstacle, judged by exact predicates.
+// Bodies between an obstacle and each other are never infeasible and never cross, checked by exact predicates.
 #include "collision/self_networks.h"
 #include "collision/truncation/step_truncation.h"
 
@@ -23,7 +23,7 @@ Obstacle torus(const Motion& motion) {
   return {.name = "torus", .geometry = MeshGeometry{mesh, true}, .motion = motion};
 }
 
-/// The torus, stretched, sheared and squashed by up to `strain` at ten frames a second.
+/// The torus under random affine maps with entries of up to `strain`, ten frames a second.
 Obstacle deforming_torus(double strain, const Motion& motion) {
   const TriangleMesh mesh = test::torus(0.02, 0.006, 12, 8);
   Random random(6);
@@ -38,7 +38,7 @@ Obstacle deforming_torus(double strain, const Motion& motion) {
           .motion = motion};
 }
 
-/// How many edges of the one meet triangles of the other, both ways.
+/// The number of edges that cross a triangle of the other, in both directions.
 int count_crossings(const std::vector<Element>& elements, const Points& x, const TriangleMesh& mesh) {
   int crossings = 0;
   for (const Element& element : elements) {
@@ -59,15 +59,15 @@ int count_crossings(const std::vector<Element>& elements, const Points& x, const
   return crossings;
 }
 
-/// A pile over a torus, drawn into its hole and thrown about by up to `kick` [m] a step.
-void expect_free(const Obstacle& obstacle, double kick, std::uint64_t seed) {
+/// A pile of two cloths and a rope that is pulled into the hole of a torus, with random displacements of up to `kick` [m] a step.
+void expect_feasible(const Obstacle& obstacle, double kick, std::uint64_t seed) {
   SelfNetwork network;
   network.add_cloth(5, {-0.025, 0.012, -0.025}, kEdge * kX, kEdge * kZ);
   network.add_cloth(5, {-0.024, 0.016, -0.026}, kEdge * kX, kEdge * kZ);
   network.add_rope(6, {-0.03, 0.02, 0.001}, kEdge * kX);
   Environment environment({obstacle});
   environment.set_interval(0.0, 0.0);
-  StepTruncation space(environment, network.surface(0.0), network.positions, kMargin);
+  StepTruncation truncation(environment, network.surface(0.0), network.positions, kMargin);
   Random random(seed);
   Points x = network.positions;
   for (int step = 0; step < 30; ++step) {
@@ -75,8 +75,8 @@ void expect_free(const Obstacle& obstacle, double kick, std::uint64_t seed) {
     const RigidTransform& pose = environment.pose_after(0);
     Points after = x;
     for (auto p : after.colwise()) p += random.between(0.0, kick) * random.direction() + 0.3 * (pose.translation() - p);
-    space.follow(x, after);
-    EXPECT_EQ(space.truncate(x, after).infeasible, 0) << "step " << step;
+    truncation.begin_step(x, after);
+    EXPECT_EQ(truncation.truncate(x, after).infeasible, 0) << "step " << step;
     ASSERT_EQ(test::count_crossings(network.elements, after), 0) << "step " << step;
     ASSERT_EQ(count_crossings(network.elements, pose.inverse() * after, obstacle_mesh(obstacle.geometry, 0.0, 0.01 * (step + 1))),
               0)
@@ -89,22 +89,22 @@ Motion motion_to(const Vector3& position, const Vector3& rotation) {
   return {.keyframes = {{.time = 0.0}, {.time = 1.0, .position = position, .rotation = rotation}}};
 }
 
-TEST(PairTruncation, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatRests) {
-  for (const double kick : {0.002, 0.02}) expect_free(torus({}), kick, 1);
+TEST(PairTruncation, FindsAdmissiblePositionsOnARestingObstacle) {
+  for (const double kick : {0.002, 0.02}) expect_feasible(torus({}), kick, 1);
 }
 
-/// 1 m/s is an edge's length a step.
-TEST(PairTruncation, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatMoves) {
-  for (const double speed : {0.3, 30.0}) expect_free(torus(motion_to({0.0, speed, 0.2 * speed}, Vector3::Zero())), 0.002, 2);
+// 1 m/s is the length of an edge in a step.
+TEST(PairTruncation, FindsAdmissiblePositionsOnAMovingObstacle) {
+  for (const double speed : {0.3, 30.0}) expect_feasible(torus(motion_to({0.0, speed, 0.2 * speed}, Vector3::Zero())), 0.002, 2);
 }
 
-TEST(PairTruncation, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatTurns) {
-  for (const double degrees : {100.0, 3000.0}) expect_free(torus(motion_to({0.0, 1.0, 0.0}, {degrees, 0.0, 0.0})), 0.002, 3);
+TEST(PairTruncation, FindsAdmissiblePositionsOnARotatingObstacle) {
+  for (const double degrees : {100.0, 3000.0}) expect_feasible(torus(motion_to({0.0, 1.0, 0.0}, {degrees, 0.0, 0.0})), 0.002, 3);
 }
 
-TEST(PairTruncation, FindsAPlaceForAllThatIsCaughtOnAnObstacleThatStretches) {
+TEST(PairTruncation, FindsAdmissiblePositionsOnADeformingObstacle) {
   for (const double strain : {0.05, 0.2})
-    expect_free(deforming_torus(strain, motion_to({0.0, 0.3, 0.0}, {100.0, 0.0, 0.0})), 0.002, 4);
+    expect_feasible(deforming_torus(strain, motion_to({0.0, 0.3, 0.0}, {100.0, 0.0, 0.0})), 0.002, 4);
 }
 
 }  // namespace

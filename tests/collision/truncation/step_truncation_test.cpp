@@ -1,4 +1,4 @@
-// No particle ends behind a surface in front of which it began, judged by exact predicates over all triangles.
+// No particle crosses a surface, checked by exact predicates over all triangles.
 #include "collision/sample_meshes.h"
 #include "collision/self_networks.h"
 #include "collision/single_particles.h"
@@ -14,9 +14,9 @@ namespace {
 
 using test::Random;
 
-/// How often a ray upward from p meets the mesh; it leans a little, since particles come to rest above edges.
+/// The number of triangles that a ray upward from p crosses. The ray is tilted a little, since particles come to rest above edges.
 int triangles_above(const TriangleMesh& mesh, const Vector3& p) {
-  int met = 0;
+  int crossed = 0;
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
     const Vector3 a = mesh.vertices.col(mesh.triangles(0, t));
     const Vector3 b = mesh.vertices.col(mesh.triangles(1, t));
@@ -24,9 +24,9 @@ int triangles_above(const TriangleMesh& mesh, const Vector3& p) {
     const Vector3 far = p + 100.0 * Vector3(0.00317, 1.0, 0.00129);
     if ((side_of_plane(a, b, c, p) > 0.0) == (side_of_plane(a, b, c, far) > 0.0)) continue;
     const bool first = side_of_plane(p, far, a, b) > 0.0;
-    if (first == (side_of_plane(p, far, b, c) > 0.0) && first == (side_of_plane(p, far, c, a) > 0.0)) ++met;
+    if (first == (side_of_plane(p, far, b, c) > 0.0) && first == (side_of_plane(p, far, c, a) > 0.0)) ++crossed;
   }
-  return met;
+  return crossed;
 }
 
 Obstacle mesh_obstacle(const TriangleMesh& mesh, bool closed) {
@@ -36,8 +36,8 @@ Obstacle mesh_obstacle(const TriangleMesh& mesh, bool closed) {
   return result;
 }
 
-/// Kicks particles around an obstacle for many steps, no farther to the side than `range` in its own frame: each stays on its side,
-/// below or above an open mesh and outside of a closed one.
+/// Moves particles at random around an obstacle, within `range` of its centre in its own frame. Each has to stay on its side: below
+/// or above an open mesh, outside of a closed one.
 void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double kick, double range) {
   Environment environment({obstacle});
   const TriangleMesh& mesh = *std::get<MeshGeometry>(obstacle.geometry).mesh;
@@ -53,22 +53,22 @@ void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double
     odd[static_cast<std::size_t>(i)] = triangles_above(mesh, p) % 2 == 1;
     x.col(i) = start * p;
   }
-  StepTruncation space = test::single_particles(environment, count);
+  StepTruncation truncation = test::single_particles(environment, count);
   Index stopped = 0;
   for (int step = 0; step < steps; ++step) {
     environment.set_interval(0.01 * step, 0.01 * (step + 1));
     const RigidTransform& pose = environment.pose_after(0);
     Points after = x;
     for (Index i = 0; i < count; ++i) {
-      // Most are thrown at the surface, straight at some vertex.
+      // Most move straight towards a vertex and beyond.
       const Vector3 target = pose * mesh.vertices.col(random.below(static_cast<Index>(mesh.vertices.cols())));
       const Vector3 at = target - x.col(i);
       after.col(i) += i % 3 == 0 ? Vector3(kick * random.direction()) : Vector3(random.between(0.0, 2.0) * at);
       after.col(i) = pose * within(pose.inverse() * after.col(i));
     }
-    const TruncationResult truncation = space.truncate(x, after);
-    stopped += truncation.truncated;
-    ASSERT_EQ(truncation.infeasible, 0);
+    const TruncationResult result = truncation.truncate(x, after);
+    stopped += result.truncated;
+    ASSERT_EQ(result.infeasible, 0);
     for (Index i = 0; i < count; ++i) {
       ASSERT_EQ(triangles_above(mesh, pose.inverse() * after.col(i)) % 2 == 1, odd[static_cast<std::size_t>(i)])
           << "particle " << i << " in step " << step;
@@ -78,26 +78,26 @@ void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double
   EXPECT_GT(stopped, count);
 }
 
-TEST(TruncationResult, NothingPassesAClosedMesh) {
+TEST(StepTruncation, NothingPassesAClosedMesh) {
   expect_no_crossing(mesh_obstacle(test::torus(1.0, 0.3, 20, 10), true), 200, 40, 1.0, 10.0);
 }
 
-TEST(TruncationResult, NothingPassesNeedles) { expect_no_crossing(mesh_obstacle(test::needles(12), true), 200, 40, 0.5, 10.0); }
+TEST(StepTruncation, NothingPassesNeedles) { expect_no_crossing(mesh_obstacle(test::needles(12), true), 200, 40, 0.5, 10.0); }
 
-TEST(TruncationResult, NothingPassesAnOpenMesh) {
+TEST(StepTruncation, NothingPassesAnOpenMesh) {
   expect_no_crossing(mesh_obstacle(test::terrain(24, [](Index i, Index j) { return 0.3 * ((i + 2 * j) % 3); }), false), 200, 40,
                      1.0, 2.9);
 }
 
-TEST(TruncationResult, NothingPassesATurningMesh) {
+TEST(StepTruncation, NothingPassesARotatingMesh) {
   Obstacle wheel = mesh_obstacle(test::torus(1.0, 0.3, 20, 10), true);
   wheel.motion.spin = Vector3(400.0, 900.0, -300.0);
   wheel.motion.keyframes = {{0.0}, {0.2, Vector3(4.0, 0.0, 0.0)}, {0.4}};
   expect_no_crossing(wheel, 200, 40, 0.5, 10.0);
 }
 
-/// Leads the particles of a cloth and of ropes on their own ways around a mesh for many steps, most of them hardly at all and some
-/// straight at it: no element ever crosses it.
+/// Moves each particle of a cloth and of ropes at random around a mesh, most of them little and some straight at it. No element may
+/// cross the mesh.
 void expect_no_element_crosses(const TriangleMesh& mesh, bool closed, int steps) {
   test::SelfNetwork network;
   network.add_cloth(8, Vector3(-1.2, 1.2, -1.2), Vector3(0.3, 0.0, 0.0), Vector3(0.0, 0.0, 0.3));
@@ -105,10 +105,10 @@ void expect_no_element_crosses(const TriangleMesh& mesh, bool closed, int steps)
   const Index count = network.count();
   const std::vector<char> alone(static_cast<std::size_t>(network.bodies), 0);
   Environment environment({mesh_obstacle(mesh, closed)});
-  StepTruncation space(environment,
-                       make_collision_surface(network.elements, network.positions, network.body_of, Scalars::Zero(count),
-                                              network.pinned, alone, alone),
-                       network.positions, 0.0);
+  StepTruncation truncation(environment,
+                            make_collision_surface(network.elements, network.positions, network.body_of, Scalars::Zero(count),
+                                                   network.pinned, alone, alone),
+                            network.positions, 0.0);
   auto crossings = [&, everything = Points(3, count + mesh.vertices.cols())](const Points& positions) mutable {
     everything << positions, mesh.vertices;
     int found = 0;
@@ -130,69 +130,69 @@ void expect_no_element_crosses(const TriangleMesh& mesh, bool closed, int steps)
       const bool far = random.below(8) == 0;
       after.col(i) += far ? Vector3(random.between(0.0, 1.5) * (at - x.col(i))) : Vector3(0.01 * random.direction());
     }
-    const TruncationResult truncation = space.truncate(x, after);
-    stopped += truncation.truncated;
-    ASSERT_EQ(truncation.infeasible, 0);
+    const TruncationResult result = truncation.truncate(x, after);
+    stopped += result.truncated;
+    ASSERT_EQ(result.infeasible, 0);
     ASSERT_EQ(crossings(after), 0) << "in step " << step;
     x = after;
   }
   EXPECT_GT(stopped, count);
 }
 
-TEST(TruncationResult, NoElementCrossesNeedles) { expect_no_element_crosses(test::needles(12), true, 300); }
+TEST(StepTruncation, NoElementCrossesNeedles) { expect_no_element_crosses(test::needles(12), true, 300); }
 
-TEST(TruncationResult, NoElementCrossesARing) { expect_no_element_crosses(test::torus(0.8, 0.1, 16, 6), true, 300); }
+TEST(StepTruncation, NoElementCrossesARing) { expect_no_element_crosses(test::torus(0.8, 0.1, 16, 6), true, 300); }
 
-TEST(TruncationResult, ThinSheetHoldsAt500MetresPerSecondFromEitherSide) {
+TEST(StepTruncation, AThinSheetStopsParticlesAt500MetresPerSecondFromEitherSide) {
   Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
   constexpr double kMove = 500.0 / 60.0;
   Points before(3, 4);
   before << 0.3, 0.3, 0.0, 0.5, 0.01, -0.01, 0.01, -0.01, 0.4, 0.4, 0.0, 0.5;  // the last two over a vertex and an edge
   Points after = before;
   after.row(1) -= Eigen::RowVector4d(kMove, -kMove, kMove, -kMove);
-  const TruncationResult truncation = test::single_particles(environment, 4).truncate(before, after);
-  EXPECT_EQ(truncation.truncated, 4);
-  EXPECT_EQ(truncation.infeasible, 0);
+  const TruncationResult result = test::single_particles(environment, 4).truncate(before, after);
+  EXPECT_EQ(result.truncated, 4);
+  EXPECT_EQ(result.infeasible, 0);
   for (Index i = 0; i < 4; ++i) EXPECT_GT(after(1, i) * before(1, i), 0.0) << i;
 }
 
-TEST(TruncationResult, PressedForEverAParticleStaysInFront) {
+TEST(StepTruncation, AParticlePressedForLongStaysInFront) {
   Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
-  StepTruncation space = test::single_particles(environment, 1);
+  StepTruncation truncation = test::single_particles(environment, 1);
   Points x = Vector3(0.3, 0.01, 0.4);
   for (int step = 0; step < 10000; ++step) {
     Points after = x;
     after(1, 0) -= 0.05;
     after(0, 0) += 0.01 * ((step / 50) % 2 == 0 ? 1 : -1);
-    ASSERT_EQ(space.truncate(x, after).infeasible, 0);
+    ASSERT_EQ(truncation.truncate(x, after).infeasible, 0);
     x = after;
     ASSERT_GT(x(1, 0), 0.0) << step;
   }
 }
 
-TEST(TruncationResult, WhatIsStoppedIsLedOnFromWhereItIsSafe) {
+TEST(StepTruncation, RelaxMovesStoppedParticlesFromTheirSafePositions) {
   Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
-  StepTruncation space = test::single_particles(environment, 2);
+  StepTruncation truncation = test::single_particles(environment, 2);
   Points before(3, 2);
   before << 0.3, -0.3, 0.01, 0.5, 0.4, 0.4;
   Points after = before;
   after(1, 0) = -1.0;
   int times = 0;
-  const auto lead_on = [&](Points& x) {
+  const auto relax = [&](Points& x) {
     EXPECT_GT(x(1, 0), 0.0);
     if (times++ < 3) x.col(0) += Vector3(0.0, -1.0, 0.0);
     if (times == 3) x.col(1) = Vector3(-0.3, -0.5, 0.4);
     if (times == 4) x.col(0) = Vector3(0.5, 0.5, 0.4);
     return times <= 4;
   };
-  const TruncationResult truncation = space.truncate(before, after, lead_on);
+  const TruncationResult result = truncation.truncate(before, after, relax);
   EXPECT_EQ(times, 5);
-  EXPECT_EQ(truncation.truncated, 0);
+  EXPECT_EQ(result.truncated, 0);
   EXPECT_EQ(after.col(0), Vector3(0.5, 0.5, 0.4));
-  EXPECT_GT(after(1, 1), 0.0) << "it was to pass the sheet when another had been stopped";
+  EXPECT_GT(after(1, 1), 0.0) << "the second particle crossed the sheet after the first was stopped";
 }
 
-TEST(TruncationResult, WhereNothingIsStoppedNothingIsLedOn) {
+TEST(StepTruncation, RelaxIsNotCalledIfNothingIsStopped) {
   Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
   Points after = Vector3(0.3, 0.02, 0.4);
   test::single_particles(environment, 1).truncate(Vector3(0.3, 0.01, 0.4), after, [](Points&) {
@@ -202,7 +202,7 @@ TEST(TruncationResult, WhereNothingIsStoppedNothingIsLedOn) {
   EXPECT_EQ(after, Vector3(0.3, 0.02, 0.4));
 }
 
-TEST(TruncationResult, AnObstacleThatComesCarriesARestingParticle) {
+TEST(StepTruncation, AnApproachingObstacleMovesARestingParticle) {
   Obstacle sheet = mesh_obstacle(test::flat_sheet(4), false);
   sheet.placed.translation() = Vector3(0.0, -1.0, 0.0);
   sheet.motion.keyframes = {{0.0}, {0.1, Vector3(0.0, 50.0, 0.0)}};
@@ -210,14 +210,14 @@ TEST(TruncationResult, AnObstacleThatComesCarriesARestingParticle) {
   environment.set_interval(0.0, 0.1);
   const Points rest = Vector3(0.1, 0.0, 0.2);
   Points after = rest;
-  const TruncationResult truncation = test::single_particles(environment, 1).truncate(rest, after);
-  EXPECT_EQ(truncation.truncated, 1);
-  EXPECT_EQ(truncation.infeasible, 0);
+  const TruncationResult result = test::single_particles(environment, 1).truncate(rest, after);
+  EXPECT_EQ(result.truncated, 1);
+  EXPECT_EQ(result.infeasible, 0);
   EXPECT_GT(after(1, 0), 49.0);
   EXPECT_LT(after(1, 0), 50.0);
 }
 
-TEST(TruncationResult, HeldParticlesAreLeftAloneAndFreePathsKeepEveryBit) {
+TEST(StepTruncation, PinnedAndFreeParticlesKeepEveryBit) {
   Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
   Points before(3, 2);
   before << 0.3, 0.3, 1.0, 1.0, 0.4, 0.4;
@@ -229,7 +229,7 @@ TEST(TruncationResult, HeldParticlesAreLeftAloneAndFreePathsKeepEveryBit) {
   EXPECT_EQ(after, wanted);
 }
 
-TEST(TruncationResult, ObstaclesThatCloseInAreReported) {
+TEST(StepTruncation, ReportsAParticleBetweenObstaclesThatPassEachOther) {
   Obstacle upper = mesh_obstacle(test::flat_sheet(4), false);
   Obstacle lower = upper;
   upper.placed.translation() = Vector3(0.0, 1.0, 0.0);
@@ -240,12 +240,12 @@ TEST(TruncationResult, ObstaclesThatCloseInAreReported) {
   environment.set_interval(0.0, 1.0);
   const Points rest = Vector3(0.1, 0.0, 0.2);
   Points after = rest;
-  const TruncationResult truncation = test::single_particles(environment, 1).truncate(rest, after);
-  EXPECT_EQ(truncation.truncated, 1);
-  EXPECT_EQ(truncation.infeasible, 1);
+  const TruncationResult result = test::single_particles(environment, 1).truncate(rest, after);
+  EXPECT_EQ(result.truncated, 1);
+  EXPECT_EQ(result.infeasible, 1);
 }
 
-/// A sheet that goes to `deform(position)` of it in one second.
+/// A sheet that deforms to `deform(position)` within one second.
 template <class Deform>
 Obstacle deforming_obstacle(const TriangleMesh& mesh, const Deform& deform) {
   MeshSequence sequence{.triangles = mesh.triangles, .frames = {mesh.vertices, mesh.vertices}, .frame_rate = 1.0};
@@ -253,8 +253,8 @@ Obstacle deforming_obstacle(const TriangleMesh& mesh, const Deform& deform) {
   return {.name = "mesh", .geometry = SequenceGeometry{std::make_shared<const MeshSequence>(std::move(sequence)), false}};
 }
 
-// In one step it turns by 45 degrees, so that no plane above it at the begin is above it at the end.
-TEST(TruncationResult, ParticlesGoWithASurfaceThatTurnsUnderThem) {
+// The surface rotates by 45 degrees in one step: no plane above it at the begin is above it at the end.
+TEST(StepTruncation, ParticlesMoveWithARotatingSurface) {
   Environment environment(
       {deforming_obstacle(test::flat_sheet(8), [](const Vector3& x) { return Vector3(x.x(), x.x() + 0.1 * x.z(), x.z()); })});
   environment.set_interval(0.0, 1.0);
@@ -270,8 +270,8 @@ TEST(TruncationResult, ParticlesGoWithASurfaceThatTurnsUnderThem) {
   for (const auto& p : after.colwise()) EXPECT_GT(p.y(), p.x() + 0.1 * p.z());
 }
 
-// In one step the upper sheet comes nearer to the lower one than the particle was.
-TEST(TruncationResult, ParticlesStayBetweenSheetsOfOneMesh) {
+// In one step the upper sheet moves below the particle's start position.
+TEST(StepTruncation, ParticlesStayBetweenSheetsOfOneMesh) {
   const TriangleMesh sheet = test::flat_sheet(4);
   const Eigen::Index vertices = sheet.vertices.cols();
   TriangleMesh sheets{Points(3, 2 * vertices), Triangles(3, 2 * sheet.triangles.cols())};
@@ -286,7 +286,7 @@ TEST(TruncationResult, ParticlesStayBetweenSheetsOfOneMesh) {
   EXPECT_LT(after(1, 0), 0.2);
 }
 
-TEST(TruncationResult, WhatPinsTakeThroughAnObstacleIsReportedInTheSameStep) {
+TEST(StepTruncation, ReportsAnElementThatAPinPullsThroughAnObstacleInTheSameStep) {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.2}};
   ball.placed.translation() = Vector3(-1.0, 0.0, 0.0);
   ball.motion.keyframes = {{0.0}, {1.0, Vector3(1.0, 0.0, 0.0)}, {2.0, Vector3(1.0, 1.0, 0.0)}};
@@ -294,33 +294,33 @@ TEST(TruncationResult, WhatPinsTakeThroughAnObstacleIsReportedInTheSameStep) {
   test::SelfNetwork segment;
   segment.add_rope(1, Vector3::Zero(), Vector3(0.6, 0.0, 0.0));
   segment.pinned[0] = 1;
-  StepTruncation space(
+  StepTruncation truncation(
       environment,
       make_collision_surface(segment.elements, segment.positions, segment.body_of, Scalars::Zero(2), segment.pinned, {0}, {0}),
       segment.positions, 0.0);
   const auto infeasible_until = [&](double time) {
     environment.set_interval(time - 1.0, time);
     Points after = segment.positions;
-    return space.truncate(segment.positions, after).infeasible;
+    return truncation.truncate(segment.positions, after).infeasible;
   };
-  EXPECT_EQ(infeasible_until(1.0), 2) << "both ends of what the ball crosses";
+  EXPECT_EQ(infeasible_until(1.0), 2) << "both ends of the segment that the ball crosses";
   infeasible_until(2.0);
-  EXPECT_EQ(infeasible_until(3.0), 0) << "the ball has left it";
+  EXPECT_EQ(infeasible_until(3.0), 0) << "the ball has left the segment";
 }
 
-TEST(TruncationResult, InAWedgeOfTwoObstaclesAParticleFindsAPlace) {
+TEST(StepTruncation, AParticleInAWedgeOfTwoObstaclesIsNeverInfeasible) {
   Obstacle left = mesh_obstacle(test::flat_sheet(8), false);
   Obstacle right = left;
   left.placed.linear() = rotation_from_degrees(Vector3(0.0, 0.0, -60.0));
   right.placed.linear() = rotation_from_degrees(Vector3(0.0, 0.0, 60.0));
   Environment environment({left, right});
   Random random(33);
-  StepTruncation space = test::single_particles(environment, 1);
+  StepTruncation truncation = test::single_particles(environment, 1);
   Points x = Vector3(0.0, 1.0, 0.1);
   for (int step = 0; step < 1000; ++step) {
     Points after = x + 0.5 * random.direction() - 0.3 * Vector3::UnitY();
     after(2, 0) = std::clamp(after(2, 0), -1.0, 1.0);
-    ASSERT_EQ(space.truncate(x, after).infeasible, 0);
+    ASSERT_EQ(truncation.truncate(x, after).infeasible, 0);
     for (Index k = 0; k < 2; ++k) {
       ASSERT_GT((environment.pose_after(k).inverse() * after.col(0)).y(), 0.0) << step;
     }

@@ -1,4 +1,5 @@
-// Paths through meshes on an integer grid, where paths meet edges and vertices exactly, judged by integers.
+// First crossings of straight paths with meshes on an integer grid, where paths hit edges and vertices exactly; checked in
+// integers.
 #include "collision/sample_meshes.h"
 #include "collision/shapes/obstacle_shape.h"
 
@@ -15,7 +16,7 @@ using Grid = Eigen::Matrix<std::int64_t, 3, 1>;
 
 Grid on_grid(const Vector3& p) { return p.array().round().matrix().cast<std::int64_t>(); }
 
-/// A fraction of a path as a quotient of integers, its divisor positive.
+/// A fraction of a path: a quotient of integers, under > 0.
 struct Quotient {
   std::int64_t over;
   std::int64_t under;
@@ -23,8 +24,8 @@ struct Quotient {
 };
 bool operator<(const Quotient& x, const Quotient& y) { return x.over * y.under < y.over * x.under; }
 
-/// Where the path meets the triangle: the point on its plane as a rational, then its side of each edge. With coordinates below 64
-/// all products stay below 2^62.
+/// The crossing of the path with the triangle, if any: the point on the triangle's plane as a rational, then its side of each edge.
+/// With coordinates below 64 all products stay below 2^62.
 std::optional<Quotient> grid_crossing(const TriangleMesh& mesh, Index t, const Grid& a, const Grid& b, bool closed) {
   Grid x[3];
   for (int k = 0; k < 3; ++k) x[k] = on_grid(mesh.vertices.col(mesh.triangles(k, t)));
@@ -36,15 +37,15 @@ std::optional<Quotient> grid_crossing(const TriangleMesh& mesh, Index t, const G
   if (!inward && !outward) return std::nullopt;
   const std::int64_t over = inward ? begin : -begin;
   const std::int64_t under = inward ? begin - end : end - begin;
-  const Grid meeting = a * under + (b - a) * over;  // times under
+  const Grid hit = a * under + (b - a) * over;  // times under
   for (int k = 0; k < 3; ++k) {
     const Grid across = normal.cross(x[(k + 1) % 3] - x[k]);
-    if (across.dot(meeting - x[k] * under) < 0) return std::nullopt;
+    if (across.dot(hit - x[k] * under) < 0) return std::nullopt;
   }
   return Quotient{over, under, t};
 }
 
-/// Of triangles met at the same fraction the first.
+/// The crossing with the smallest fraction; of several the one with the first triangle.
 std::optional<Quotient> first_grid_crossing(const TriangleMesh& mesh, const Grid& a, const Grid& b, bool closed) {
   std::optional<Quotient> first;
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -63,12 +64,12 @@ TriangleMesh on_grid(TriangleMesh mesh, double scale) {
   return mesh;
 }
 
-/// Paths between random grid points, and paths through grid points of the mesh: its vertices, and midpoints of its edges.
-void expect_no_path_is_missed(const TriangleMesh& mesh, bool closed, int paths) {
+/// Compares with brute force for paths between random grid points, and for paths through vertices and edge midpoints of the mesh.
+void expect_every_crossing_found(const TriangleMesh& mesh, bool closed, int paths) {
   const auto shape = shape_of(mesh, closed);
   const Box3 box = bounds(mesh.vertices);
   Random random(13);
-  int met = 0;
+  int crossed = 0;
   for (int i = 0; i < paths; ++i) {
     Grid a = on_grid(random.in_box({box.min() - Vector3::Ones() * 4, box.max() + Vector3::Ones() * 4}));
     Grid b = on_grid(random.in_box({box.min() - Vector3::Ones() * 4, box.max() + Vector3::Ones() * 4}));
@@ -84,26 +85,26 @@ void expect_no_path_is_missed(const TriangleMesh& mesh, bool closed, int paths) 
     const auto found = shape->first_crossing(a.cast<double>(), b.cast<double>());
     ASSERT_EQ(found.has_value(), expected.has_value()) << "from " << a.transpose() << " to " << b.transpose();
     if (!found) continue;
-    ++met;
+    ++crossed;
     ASSERT_NEAR(found->fraction, static_cast<double>(expected->over) / static_cast<double>(expected->under), 1e-15);
     const Vector3 face = area_normal(mesh, expected->triangle).normalized();
     const bool from_behind = face.dot((b - a).cast<double>()) > 0.0;
     ASSERT_EQ(found->normal, from_behind ? Vector3(-face) : face);
   }
-  EXPECT_GT(met, paths / 10);
+  EXPECT_GT(crossed, paths / 10);
 }
 
-TEST(Crossing, NoPathThroughAnOpenMeshIsMissed) {
-  expect_no_path_is_missed(test::flat_sheet(8), false, 20000);
-  expect_no_path_is_missed(test::terrain(12, [](Index i, Index j) { return (i * 7 + j * 3) % 5; }), false, 20000);
+TEST(FirstCrossing, IsFoundForEveryPathThroughAnOpenMesh) {
+  expect_every_crossing_found(test::flat_sheet(8), false, 20000);
+  expect_every_crossing_found(test::terrain(12, [](Index i, Index j) { return (i * 7 + j * 3) % 5; }), false, 20000);
 }
 
-TEST(Crossing, NoPathIntoAClosedMeshIsMissed) {
-  expect_no_path_is_missed(on_grid(test::torus(20.0, 8.0, 12, 8), 1.0), true, 20000);
-  expect_no_path_is_missed(on_grid(test::needles(12), 40.0), true, 20000);
+TEST(FirstCrossing, IsFoundForEveryPathIntoAClosedMesh) {
+  expect_every_crossing_found(on_grid(test::torus(20.0, 8.0, 12, 8), 1.0), true, 20000);
+  expect_every_crossing_found(on_grid(test::needles(12), 40.0), true, 20000);
 }
 
-TEST(Crossing, AClosedMeshCannotBeEnteredUnseen) {
+TEST(FirstCrossing, ComesBeforeAnyPointInsideAClosedMesh) {
   const TriangleMesh mesh = test::torus(1.0, 0.3, 60, 30);
   const auto shape = shape_of(mesh, true);
   Random random(17);
@@ -111,7 +112,7 @@ TEST(Crossing, AClosedMeshCannotBeEnteredUnseen) {
     const double angle = random.between(0.0, 7.0);
     const Vector3 inside(std::cos(angle), random.between(-0.1, 0.1), std::sin(angle));
     const Index vertex = random.below(static_cast<Index>(mesh.vertices.cols()));
-    // Straight in through a vertex or the middle of an edge, as near to it as doubles come.
+    // Through a vertex or the midpoint of an edge, as exactly as doubles allow.
     const Vector3 through =
         i % 2 == 0 ? Vector3(mesh.vertices.col(vertex))
                    : Vector3(0.5 * (mesh.vertices.col(mesh.triangles(0, vertex)) + mesh.vertices.col(mesh.triangles(1, vertex))));
@@ -122,17 +123,17 @@ TEST(Crossing, AClosedMeshCannotBeEnteredUnseen) {
   }
 }
 
-TEST(Crossing, WhatIsInsideMayLeave) {
+TEST(FirstCrossing, OfAClosedMeshIgnoresThePathOutOfIt) {
   const auto shape = shape_of(test::torus(1.0, 0.3, 60, 30), true);
   EXPECT_FALSE(shape->first_crossing(Vector3(1, 0, 0), Vector3(1, 5, 0)));
   EXPECT_TRUE(shape->first_crossing(Vector3(1, 5, 0), Vector3(1, 0, 0)));
-  // Out of one side of the ring and into the other.
+  // Out of the ring on one side and into it on the other.
   const auto crossing = shape->first_crossing(Vector3(1, 0, 0), Vector3(-1, 0, 0));
   ASSERT_TRUE(crossing);
   EXPECT_NEAR(crossing->fraction, 0.85, 0.01);
 }
 
-TEST(Crossing, OpenMeshIsHitFromBothSides) {
+TEST(FirstCrossing, OfAnOpenMeshIsFoundFromBothSides) {
   const auto shape = shape_of(test::flat_sheet(4), false);
   const Vector3 above(0.3, 1.0, 0.4);
   const Vector3 below(0.3, -3.0, 0.4);
@@ -145,7 +146,7 @@ TEST(Crossing, OpenMeshIsHitFromBothSides) {
   EXPECT_EQ(up->normal, -Vector3::UnitY());
 }
 
-TEST(Crossing, EndingOnTheSurfaceCountsAndBeginningOnAnOpenOneDoesNot) {
+TEST(FirstCrossing, CountsPathsThatEndOnTheSurfaceButNotPathsThatBeginOnAnOpenMesh) {
   const auto open = shape_of(test::flat_sheet(4), false);
   const auto closed = shape_of(test::flat_sheet(4), true);
   const Vector3 on(0.3, 0.0, 0.4);

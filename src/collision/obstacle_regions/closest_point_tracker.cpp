@@ -1,0 +1,37 @@
+#include "collision/obstacle_regions/closest_point_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+
+namespace {
+
+// An element that slides farther than this fraction of the gap may be closest to another triangle.
+constexpr double kWholeSurface = 1.0;
+
+// With a contact plane that is older than this fraction of the gap an element would slide straight on where the surface is curved:
+// it would press into the surface or leave it.
+constexpr double kSameTriangle = 0.02;
+
+}  // namespace
+
+ClosestPointTracker::Search ClosestPointTracker::next_search(Index element, const ElementCorners& corners, const Vector3& drift,
+                                                             double gap) {
+  Record& record = records_[static_cast<std::size_t>(element)];
+  double moved = 0.0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(corners.count); ++k) {
+    moved = std::max(moved, (corners.x[k] + drift - record.corners[k]).squaredNorm());
+  }
+  moved = std::sqrt(moved);
+  if (!(moved > kSameTriangle * gap)) return Search::none;
+  const bool same_triangle = record.travelled + moved <= kWholeSurface * gap;
+  record.travelled = same_triangle ? record.travelled + moved : 0.0;
+  return same_triangle ? Search::same_triangle : Search::whole_surface;
+}
+
+void ClosestPointTracker::shift(Index element, const Vector3& drift) {
+  for (Vector3& corner : records_[static_cast<std::size_t>(element)].corners) corner += drift;
+}
+
+}  // namespace sprung
