@@ -5,6 +5,7 @@
 #include "dynamics/forces/gravity_and_drag.h"
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/networks.h"
+#include "dynamics/stretch_limit/stretch_limit.h"
 #include "dynamics/stretch_newton/component_newton.h"
 #include "dynamics/stretch_newton/pcg_solver.h"
 #include "dynamics/stretch_newton/stretch_energy.h"
