@@ -1,6 +1,7 @@
 #include "dynamics/stretch_newton/component_newton.h"
 
 #include "dynamics/networks.h"
+#include "dynamics/stretch_limit/stretch_limit.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
