@@ -10,7 +10,7 @@ namespace {
 // In the first rounds regions are renewed around infeasible particles, which is cheap; then around all.
 constexpr int kLocalRounds = 4;
 
-// Rounds of renewed regions before obstacles. The set of infeasible particles stops changing after one or two; the bound is there
+// Rounds of renewed regions before obstacles. They end when the set of infeasible particles stops changing; the bound is there
 // because two sets could alternate.
 constexpr int kMaxRenewals = 32;
 
