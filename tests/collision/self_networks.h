@@ -1,4 +1,4 @@
-// Small networks that collide with themselves, what of them crosses by brute force, and the simplest truncation.
+// Small networks that collide with themselves, a brute-force count of their crossings, and a simple truncation.
 #pragma once
 
 #include "collision/impact_zones/pair_separation.h"
@@ -10,7 +10,7 @@
 
 namespace sprung::test {
 
-/// Bodies, one after the other.
+/// Bodies, one after another.
 struct SelfNetwork {
   Points positions;
   std::vector<Element> elements;
@@ -68,7 +68,7 @@ struct SelfNetwork {
   }
 };
 
-/// Whether the segment meets the closed triangle, by exact predicates; false when all five points are in one plane.
+/// Whether the segment intersects the closed triangle, by exact predicates; false if all five points are coplanar.
 inline bool segment_meets_triangle(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b, const Vector3& c) {
   const double begin = side_of_plane(a, b, c, p);
   const double end = side_of_plane(a, b, c, q);
@@ -79,7 +79,7 @@ inline bool segment_meets_triangle(const Vector3& p, const Vector3& q, const Vec
   return (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
 }
 
-/// How many edges of an element meet a face with which they share no particle.
+/// Number of edges of an element that intersect a face with which they share no particle.
 inline int count_crossings(const Element& element, const Element& face, const Points& x) {
   if (face.corners != 3) return 0;
   const auto& t = face.particles;
@@ -97,7 +97,7 @@ inline int count_crossings(const Element& element, const Element& face, const Po
   return crossings;
 }
 
-/// How many edges meet triangles with which they share no particle.
+/// Number of edges that intersect triangles with which they share no particle.
 inline int count_crossings(const std::vector<Element>& elements, const Points& x) {
   int crossings = 0;
   for (const Element& face : elements) {
@@ -106,16 +106,16 @@ inline int count_crossings(const std::vector<Element>& elements, const Points& x
   return crossings;
 }
 
-/// Brings held particles as near to their targets as projections onto what bounds them do; else to their safe place.
-inline Index truncate(PairSeparation& regions, const Points& before, Points& targets) {
-  const std::vector<Index> held = regions.hold(before, targets);
+/// Moves constrained particles near their targets by projections onto their half-spaces, or to their safe position.
+inline Index truncate(PairSeparation& separation, const Points& before, Points& targets) {
+  const std::vector<Index> constrained = separation.constrain(before, targets);
   std::vector<HalfSpace> half_spaces;
-  for (const Index i : held) {
+  for (const Index i : constrained) {
     Vector3 p = targets.col(i);
     half_spaces.clear();
-    regions.append_half_spaces(i, half_spaces);
-    const PairSeparation::Ball ball = regions.ball(i);
-    for (int sweep = 0; sweep < 8 && !regions.allows(i, p); ++sweep) {
+    separation.append_half_spaces(i, half_spaces);
+    const PairSeparation::Ball ball = separation.ball(i);
+    for (int sweep = 0; sweep < 8 && !separation.allows(i, p); ++sweep) {
       for (const HalfSpace& bound : half_spaces) {
         const double depth = bound.offset - bound.normal.dot(p);
         if (depth > 0.0) p += 1.001 * depth * bound.normal;
@@ -123,21 +123,21 @@ inline Index truncate(PairSeparation& regions, const Points& before, Points& tar
       const Vector3 out = p - ball.center;
       if (out.norm() > ball.radius) p = ball.center + 0.999 * ball.radius / out.norm() * out;
     }
-    targets.col(i) = regions.allows(i, p) ? p : regions.safe_place(i);
+    targets.col(i) = separation.allows(i, p) ? p : separation.safe_position(i);
   }
-  return static_cast<Index>(held.size());
+  return static_cast<Index>(constrained.size());
 }
 
-/// Steps whose targets are `move(step, before)`; returns the positions at the end.
-inline Points run(const SelfNetwork& network, PairSeparation& regions, int steps,
+/// Runs steps with the targets `move(step, before)` and returns the final positions. `look` sees those of each step.
+inline Points run(const SelfNetwork& network, PairSeparation& separation, int steps,
                   const std::function<Points(int, const Points&)>& move, const std::function<void(const Points&)>& look = {}) {
   Points x = network.positions;
   std::vector<Contact> contacts;
   for (int step = 0; step < steps; ++step) {
     Points targets = move(step, x);
     contacts.clear();
-    regions.begin_step(x, targets, contacts);
-    truncate(regions, x, targets);
+    separation.begin_step(x, targets, contacts);
+    truncate(separation, x, targets);
     x = targets;
     if (look) look(x);
   }

@@ -8,7 +8,7 @@ namespace {
 using IntLanes = ElementBvhLeaf::IntLanes;
 using Vector3Lanes = Float8[3];
 
-// Double4 come and go by reference: by value their way would depend on the instructions that are compiled for.
+// Lanes are passed by reference: by value, the calling convention would depend on the instruction set.
 
 inline void lower(Float8& a, const Float8& b) { a = a < b ? a : b; }
 inline void raise(Float8& a, const Float8& b) { a = a > b ? a : b; }
@@ -20,7 +20,7 @@ inline void clamp(Float8& x) {
   x = x < 1.0F ? x : Float8{} + 1.0F;
 }
 
-/// Double4 with more than `reach` between them and the edge along an axis.
+/// Lanes that are more than `reach` above or below the edge along an axis.
 inline void find_apart(const float (&a)[2][3], const Float8 (&b)[2][3], const Float8& reach, int axis, IntLanes& above,
                        IntLanes& below) {
   Float8 low = b[0][axis];
@@ -33,8 +33,8 @@ inline void find_apart(const float (&a)[2][3], const Float8 (&b)[2][3], const Fl
   below = low - own_high > reach;
 }
 
-/// What leads from the lanes' nearest points to the edge's, in units of 1 / scale. Where both are nearly parallel, points next to
-/// those.
+/// The vector from the lanes' closest points to the edge's, in units of 1 / scale. For nearly parallel edges the points are only
+/// close to the closest ones.
 inline void find_separation(const MovingEdge& edge, const EdgeLanes& lanes, float scale, Vector3Lanes& separation) {
   float along_a[3];
   Vector3Lanes along_b;
@@ -61,7 +61,7 @@ inline void find_separation(const MovingEdge& edge, const EdgeLanes& lanes, floa
   for (int axis = 0; axis < 3; ++axis) separation[axis] = between[axis] + s * along_a[axis] - t * along_b[axis];
 }
 
-/// What lies between the lanes and the edge along a direction.
+/// The gap between the edge and the lanes along a direction; negative where they overlap.
 inline void find_gap(const float (&a)[2][3], const Float8 (&b)[2][3], const Vector3Lanes& direction, float scale, Float8& gap) {
   Float8 height[4];
   for (int k = 0; k < 2; ++k) {
@@ -81,7 +81,7 @@ inline void find_gap(const float (&a)[2][3], const Float8 (&b)[2][3], const Vect
 
 }  // namespace
 
-MovingEdge edge_way(const EdgeLanes& lanes, int lane, float reach) {
+MovingEdge moving_edge(const EdgeLanes& lanes, int lane, float reach) {
   MovingEdge edge;
   for (int k = 0; k < 2; ++k) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -96,22 +96,22 @@ MovingEdge edge_way(const EdgeLanes& lanes, int lane, float reach) {
   return edge;
 }
 
-SPRUNG_KERNEL bool find_edges(const MovingEdge& edge, const EdgeLanes& lanes, LaneBytes& met) {
-  IntLanes meets = lanes.used;
-  if (!edge.marked) meets &= lanes.marked;
-  for (const auto& particle : lanes.particle) meets &= (particle != edge.particle[0]) & (particle != edge.particle[1]);
+SPRUNG_KERNEL bool find_edges(const MovingEdge& edge, const EdgeLanes& lanes, LaneBytes& hits) {
+  IntLanes may_touch = lanes.used;
+  if (!edge.marked) may_touch &= lanes.marked;
+  for (const auto& particle : lanes.particle) may_touch &= (particle != edge.particle[0]) & (particle != edge.particle[1]);
   const Float8 reach = edge.reach + edge.radius + lanes.radius;
   for (int axis = 0; axis < 3; ++axis) {
     IntLanes above[2];
     IntLanes below[2];
     find_apart(edge.now, lanes.now, reach, axis, above[0], below[0]);
     find_apart(edge.end, lanes.end, reach, axis, above[1], below[1]);
-    meets &= ~((above[0] & above[1]) | (below[0] & below[1]));
+    may_touch &= ~((above[0] & above[1]) | (below[0] & below[1]));
   }
-  store(meets, met);
-  if (!any(met)) return false;
+  store(may_touch, hits);
+  if (!any(hits)) return false;
 
-  // In units of about the reach, so that powers of lengths neither over- nor underflow.
+  // Lengths are scaled by about the reach, so that their powers neither overflow nor underflow.
   const float scale = 1.0F / (edge.reach + edge.radius);
   Vector3Lanes separation;
   find_separation(edge, lanes, scale, separation);
@@ -123,9 +123,9 @@ SPRUNG_KERNEL bool find_edges(const MovingEdge& edge, const EdgeLanes& lanes, La
   Float8 length2;
   dot(separation, separation, length2);
   const Float8 scaled = scale * reach;
-  meets &= ~((gap > 0.0F) & (gap * gap > scaled * scaled * length2));
-  store(meets, met);
-  return any(met);
+  may_touch &= ~((gap > 0.0F) & (gap * gap > scaled * scaled * length2));
+  store(may_touch, hits);
+  return any(hits);
 }
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// A tree over the network's elements as they move: which of them may come near each other.
+// BVH over the network's moving elements: which of them may come near each other.
 #pragma once
 
 #include "collision/element_bvh/element_bvh_leaf.h"
@@ -10,14 +10,14 @@ namespace sprung {
 
 class ElementBvh {
  public:
-  /// Elements of a body that are neighbours at `rest` [m], 3 x n, share a leaf. Keeps a reference to the surface.
+  /// Leaves group elements of one body that are neighbours at `rest` [m], 3 x n. Keeps a reference to the surface.
   ElementBvh(const CollisionSurface& surface, const Points& rest);
 
-  /// Marks these elements and no others.
+  /// Marks these elements and unmarks all others.
   void mark(const std::vector<Index>& elements);
 
-  /// Marks them, and bounds, from time 0 to the end, the balls of their corners. Elements that are not marked keep the bounds that
-  /// they have. `flat`, by particle: see fan_stays_flat().
+  /// Marks these elements, unmarks all others, and bounds the balls of the marked elements' particles from time 0 to the end.
+  /// Unmarked elements keep their bounds. `flat` has the results of fan_stays_flat() by particle.
   void bound(const VertexBounds& balls, const std::vector<char>& flat, const std::vector<Index>& elements, HorizonTimes times);
 
   [[nodiscard]] Index leaf_count() const { return static_cast<Index>(leaves_.size()); }
@@ -28,19 +28,19 @@ class ElementBvh {
     Index first = kNone;
     Index second = kNone;
   };
-  /// Leaves that may come within `margin` [m] of each other between now and the end and whose bodies may meet, one of them with an
-  /// element that is marked. The same for any number of threads.
+  /// Pairs of leaves that may come within `margin` [m] of each other between now and the end. Their bodies collide with each other,
+  /// and one of the two has a marked element. The order does not depend on the number of threads.
   [[nodiscard]] std::vector<LeafPair> find_pairs(HorizonTimes times, double margin) const;
 
  private:
   struct Node {
     KineticAabb bounds;
-    KineticAabb marked_bounds;  ///< of the elements below that are marked; meaningless if none is
+    KineticAabb marked_bounds;  ///< of the marked elements below; not set if none is marked
     Index left = kNone;         ///< kNone for a leaf
     Index right = kNone;
     Index leaf = kNone;
     Index leaves = 0;    ///< below it
-    Index body = kNone;  ///< kNone where there are several
+    Index body = kNone;  ///< kNone if there are several
     bool marked = false;
   };
 
@@ -54,7 +54,7 @@ class ElementBvh {
     Index b;
   };
 
-  /// What is asked for.
+  /// Interval and distance of a query.
   struct Search {
     float now;
     float end;
@@ -69,14 +69,14 @@ class ElementBvh {
   void bound_node(Node& node) const;
   [[nodiscard]] ElementBvhLeaf& own_leaf(Index number) { return leaves_[static_cast<std::size_t>(number)]; }
   [[nodiscard]] const Node& node(Index number) const { return nodes_[static_cast<std::size_t>(number)]; }
-  [[nodiscard]] bool bodies_may_meet(Index a, Index b) const;
-  [[nodiscard]] bool may_meet(NodePair pair, const Search& search) const;
+  [[nodiscard]] bool bodies_may_collide(Index a, Index b) const;
+  [[nodiscard]] bool may_touch(NodePair pair, const Search& search) const;
   [[nodiscard]] std::vector<NodePair> find_tasks(const Search& search) const;
   void open(NodePair pair, std::vector<NodePair>& pairs) const;
-  void walk(NodePair pair, const Search& search, std::vector<LeafPair>& found) const;
+  void traverse(NodePair pair, const Search& search, std::vector<LeafPair>& found) const;
 
   const CollisionSurface& surface_;
-  Vector3 origin_;  ///< of what leaves hold: single precision tells little apart far from it [m]
+  Vector3 origin_;  ///< of the leaves' coordinates: single precision is coarse far from it [m]
   std::vector<ElementBvhLeaf> leaves_;
   std::vector<Index> first_leaf_;  ///< by body, and the end
   std::vector<Node> nodes_;        ///< parents before their children

@@ -8,7 +8,7 @@
 namespace sprung {
 namespace {
 
-// Single precision and its sums of products lose less than this part of the largest coordinate.
+// Bound of the error of sums of products in single precision, relative to the largest coordinate.
 constexpr double kRounding = 0x1p-20;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -75,13 +75,13 @@ void ElementBvhLeaf::bound_marked() {
   }
 }
 
-SPRUNG_KERNEL void place_corners(const ElementBvhLeaf& leaf, HorizonTimes times, LeafBounds& places) {
+SPRUNG_KERNEL void find_corners(const ElementBvhLeaf& leaf, HorizonTimes times, LeafCorners& corners) {
   const auto now = static_cast<float>(times.now);
   const auto end = static_cast<float>(times.end);
   for (int k = 0; k < 3; ++k) {
     for (int axis = 0; axis < 3; ++axis) {
-      places.now[k][axis] = leaf.corner[k][axis] + now * leaf.motion[k][axis];
-      places.end[k][axis] = leaf.corner[k][axis] + end * leaf.motion[k][axis];
+      corners.now[k][axis] = leaf.corner[k][axis] + now * leaf.motion[k][axis];
+      corners.end[k][axis] = leaf.corner[k][axis] + end * leaf.motion[k][axis];
     }
   }
 }

@@ -1,4 +1,4 @@
-// Eight elements of the network side by side.
+// Leaf of the element BVH: eight elements in single precision.
 #pragma once
 
 #include "base/simd.h"
@@ -12,14 +12,14 @@
 
 namespace sprung {
 
-/// A stretch of time [steps]; balls are where they say they are at `now`.
+/// An interval of time [steps]. The balls' centers are given for `now`.
 struct HorizonTimes {
   double now = 0.0;
   double end = 0.0;
 };
 
-/// Up to eight elements of one body, a lane each, in single precision, from an origin near where all bodies began; unused lanes are
-/// empty. At time t their balls are between min + t slowest and max + t fastest.
+/// Up to eight elements of one body, a lane each; unused lanes have empty bounds. Coordinates are relative to an origin near the
+/// bodies' initial positions. At time t the balls of an element's particles lie between min + t slowest and max + t fastest.
 struct alignas(64) ElementBvhLeaf {
   using IntLanes = std::int32_t __attribute__((vector_size(kFloatSimdWidth * sizeof(std::int32_t))));
 
@@ -28,12 +28,12 @@ struct alignas(64) ElementBvhLeaf {
   Float8 slowest[3];
   Float8 fastest[3];
   KineticAabb bounds;         ///< of all lanes
-  KineticAabb marked_bounds;  ///< of those that are marked; meaningless if none is
-  Float8 corner[3][3];        ///< by corner and axis, at time 0; of smaller elements the first corner again
-  Float8 motion[3][3];
-  Float8 radius;         ///< of the largest ball, and what rounding may lose
-  IntLanes particle[3];  ///< by corner
-  IntLanes flat[3];      ///< by corner, of triangles: -1 where those around the particle do not cross each other; else 0
+  KineticAabb marked_bounds;  ///< of the marked lanes; not set if none is marked
+  Float8 corner[3][3];        ///< by corner and axis, at time 0; smaller elements repeat their first corner
+  Float8 motion[3][3];        ///< by corner and axis [m per step]
+  Float8 radius;              ///< of the largest ball, plus a bound of rounding
+  IntLanes particle[3];       ///< by corner
+  IntLanes flat[3];      ///< by corner: -1 for triangles whose fan around the particle stays flat, see fan_stays_flat(); else 0
   IntLanes marked;       ///< -1 or 0
   IntLanes is_triangle;  ///< -1 or 0
   std::array<Index, kFloatSimdWidth> element;
@@ -41,14 +41,14 @@ struct alignas(64) ElementBvhLeaf {
 
   ElementBvhLeaf();
 
-  /// Sets the lane to an element from time 0 to the end. The origin [m] is that of all leaves, at any time.
+  /// Sets the lane to an element and bounds it from time 0 to the end. Requires the same origin [m] for all leaves and times.
   void set(int lane, Index number, const Element& element, const VertexBounds& balls, const Vector3& origin,
            const std::vector<char>& is_flat, HorizonTimes times);
 
   /// Sets the bounds of all lanes.
   void bound();
 
-  /// Sets the bounds of those that are marked.
+  /// Sets the bounds of the marked lanes.
   void bound_marked();
 
   [[nodiscard]] KineticAabb lane_bounds(int lane) const {
@@ -60,13 +60,13 @@ struct alignas(64) ElementBvhLeaf {
   [[nodiscard]] bool any_marked() const;
 };
 
-/// Where the corners of a leaf's elements are, now and at the end.
-struct alignas(64) LeafBounds {
+/// Positions of the corners of a leaf's elements, now and at the end of the interval.
+struct alignas(64) LeafCorners {
   Float8 now[3][3];  ///< by corner and axis
   Float8 end[3][3];
 };
 
-void place_corners(const ElementBvhLeaf& leaf, HorizonTimes times, LeafBounds& places);
+void find_corners(const ElementBvhLeaf& leaf, HorizonTimes times, LeafCorners& corners);
 
 /// 255 or 0 by lane.
 using LaneBytes = std::array<std::uint8_t, kFloatSimdWidth>;
@@ -88,7 +88,7 @@ inline void store(const ElementBvhLeaf::IntLanes& lanes, LaneBytes& mask) {
   return result;
 }
 
-/// Finds the lanes that are not more than `margin` >= 0 [m] apart from the bounds.
+/// Sets `near` to the lanes that may come within `margin` >= 0 [m] of the bounds.
 void find_lanes_near(const ElementBvhLeaf& leaf, const KineticAabb& bounds, HorizonTimes times, float margin, LaneBytes& near);
 
 [[nodiscard]] inline bool any(const LaneBytes& mask) {

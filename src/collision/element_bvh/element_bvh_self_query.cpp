@@ -1,11 +1,11 @@
-// The walk of the tree against itself.
+// Self-overlap query: the tree is traversed against itself.
 #include "base/parallel.h"
 #include "collision/element_bvh/element_bvh.h"
 
 namespace sprung {
 namespace {
 
-// The walk is cut into about so many tasks.
+// Approximate number of tasks that the traversal is divided into.
 constexpr std::size_t kTasks = 128;
 
 }  // namespace
@@ -13,12 +13,12 @@ constexpr std::size_t kTasks = 128;
 std::vector<ElementBvh::LeafPair> ElementBvh::find_pairs(HorizonTimes times, double margin) const {
   const Search search{static_cast<float>(times.now), static_cast<float>(times.end), static_cast<float>(margin)};
   const std::vector<NodePair> tasks = find_tasks(search);
-  std::vector<std::vector<LeafPair>> parts(tasks.size());
+  std::vector<std::vector<LeafPair>> batches(tasks.size());
   parallel_chunks(static_cast<Index>(tasks.size()), 1, [&](Index begin, Index end) {
-    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) walk(tasks[k], search, parts[k]);
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) traverse(tasks[k], search, batches[k]);
   });
   std::vector<LeafPair> found;
-  for (const std::vector<LeafPair>& part : parts) found.insert(found.end(), part.begin(), part.end());
+  for (const std::vector<LeafPair>& batch : batches) found.insert(found.end(), batch.begin(), batch.end());
   return found;
 }
 
@@ -29,18 +29,18 @@ std::vector<ElementBvh::NodePair> ElementBvh::find_tasks(const Search& search) c
     last = tasks.size();
     std::vector<NodePair> opened;
     for (const NodePair& pair : tasks) {
-      if (may_meet(pair, search)) open(pair, opened);
+      if (may_touch(pair, search)) open(pair, opened);
     }
     tasks = std::move(opened);
   }
   return tasks;
 }
 
-bool ElementBvh::may_meet(NodePair pair, const Search& search) const {
+bool ElementBvh::may_touch(NodePair pair, const Search& search) const {
   const Node& a = node(pair.a);
   const Node& b = node(pair.b);
   if (!a.marked && !b.marked) return false;
-  if (!bodies_may_meet(a.body, b.body)) return false;
+  if (!bodies_may_collide(a.body, b.body)) return false;
   if (pair.a == pair.b) return true;
   const auto near = [&](const KineticAabb& own, const KineticAabb& other) {
     return !are_apart(own, other, search.now, search.end, search.margin);
@@ -48,13 +48,13 @@ bool ElementBvh::may_meet(NodePair pair, const Search& search) const {
   return (a.marked && near(a.marked_bounds, b.bounds)) || (b.marked && near(a.bounds, b.marked_bounds));
 }
 
-bool ElementBvh::bodies_may_meet(Index a, Index b) const {
+bool ElementBvh::bodies_may_collide(Index a, Index b) const {
   if (a == kNone || b == kNone) return true;
   if (a == b) return surface_.self[static_cast<std::size_t>(a)] != 0;
   return surface_.others[static_cast<std::size_t>(a)] != 0 && surface_.others[static_cast<std::size_t>(b)] != 0;
 }
 
-/// Pairs of leaves stay as they are.
+/// Appends the pairs of children. A pair of leaves is appended itself.
 void ElementBvh::open(NodePair pair, std::vector<NodePair>& pairs) const {
   const Node& a = node(pair.a);
   const Node& b = node(pair.b);
@@ -69,12 +69,12 @@ void ElementBvh::open(NodePair pair, std::vector<NodePair>& pairs) const {
   }
 }
 
-void ElementBvh::walk(NodePair pair, const Search& search, std::vector<LeafPair>& found) const {
+void ElementBvh::traverse(NodePair pair, const Search& search, std::vector<LeafPair>& found) const {
   std::vector<NodePair> stack{pair};
   while (!stack.empty()) {
     const NodePair top = stack.back();
     stack.pop_back();
-    if (!may_meet(top, search)) continue;
+    if (!may_touch(top, search)) continue;
     if (node(top.a).leaf != kNone && node(top.b).leaf != kNone) {
       found.push_back({node(top.a).leaf, node(top.b).leaf});
     } else {

@@ -11,17 +11,17 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 using IntLanes = ElementBvhLeaf::IntLanes;
 
-/// Where lanes go to a kernel by reference they are to be aligned for any instructions that it may use.
-struct alignas(kFloatSimdWidth * sizeof(std::int32_t)) AskedLanes {
+/// Lanes that a kernel takes by reference need the alignment of the widest instructions that it may use.
+struct alignas(kFloatSimdWidth * sizeof(std::int32_t)) RequestedLanes {
   IntLanes lanes;
 };
 
-// Double4 come and go by reference: by value their way would depend on the instructions that are compiled for.
+// Lanes are passed by reference: by value, the calling convention would depend on the instruction set.
 
 inline void lower(Float8& a, const Float8& b) { a = a < b ? a : b; }
 inline void raise(Float8& a, const Float8& b) { a = a > b ? a : b; }
 
-/// What lies between a lane's bounds and those of the other leaf changes linearly along an axis, so both ends of time are enough.
+/// The gap between two bounds along an axis is linear in time, so checking both ends of the interval is enough.
 inline void find_bounds_apart(const ElementBvhLeaf& a, int lane, const ElementBvhLeaf& b, float now, float end, IntLanes& apart) {
   for (int axis = 0; axis < 3; ++axis) {
     const Float8 above = a.min[axis][lane] - b.max[axis];
@@ -33,7 +33,7 @@ inline void find_bounds_apart(const ElementBvhLeaf& a, int lane, const ElementBv
   }
 }
 
-/// Double4 that share a particle with a lane of the other leaf; `flat` if one whose triangles are flat.
+/// Lanes of b that share a particle with the lane of a; `flat` if the fan around that particle stays flat.
 inline void find_sharing(const ElementBvhLeaf& a, int lane, const ElementBvhLeaf& b, IntLanes& shared, IntLanes& flat) {
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
@@ -44,9 +44,9 @@ inline void find_sharing(const ElementBvhLeaf& a, int lane, const ElementBvhLeaf
   }
 }
 
-/// Double4 between whose balls there is a gap along the direction, by lane, now and at the end, and so in between: with the lane of
-/// the other leaf above, or, where the direction says so, below.
-inline void find_planes_apart(const LeafBounds& a, int lane, const LeafBounds& b, const Float8 (&normal)[3], const Float8& radius,
+/// Lanes of b whose balls lie below those of the lane of a along the lane's direction, now and at the end, and so at all times in
+/// between.
+inline void find_planes_apart(const LeafCorners& a, int lane, const LeafCorners& b, const Float8 (&normal)[3], const Float8& radius,
                               IntLanes& apart) {
   Float8 low_now = Float8{} + kInfinity;
   Float8 low_end = low_now;
@@ -64,15 +64,15 @@ inline void find_planes_apart(const LeafBounds& a, int lane, const LeafBounds& b
   apart |= (gap > 0.0F) & (gap * gap > radius * radius * length2);
 }
 
-/// The line between the middles now.
-inline void find_direction(const LeafBounds& a, int lane, const LeafBounds& b, Float8 (&direction)[3]) {
+/// The line between the centroids of now, times 3.
+inline void find_direction(const LeafCorners& a, int lane, const LeafCorners& b, Float8 (&direction)[3]) {
   for (int axis = 0; axis < 3; ++axis) {
     const Float8 middle = b.now[0][axis] + b.now[1][axis] + b.now[2][axis];
     direction[axis] = a.now[0][axis][lane] + a.now[1][axis][lane] + a.now[2][axis][lane] - middle;
   }
 }
 
-/// Twice the areas of the triangles, turned to where the direction leads.
+/// Normals of the triangles, oriented along the direction; their length is twice the area.
 inline void find_normals(const Float8 (&x)[3][3], const Float8 (&direction)[3], Float8 (&normal)[3]) {
   Float8 along[2][3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -89,38 +89,38 @@ inline void find_normals(const Float8 (&x)[3][3], const Float8 (&direction)[3], 
   for (int axis = 0; axis < 3; ++axis) normal[axis] = side < 0.0F ? -normal[axis] : normal[axis];
 }
 
-/// Double4 of b, of those that are asked for, that a lane of a may touch. Returns whether there are any.
-SPRUNG_KERNEL bool find_meeting_lanes(const BoundedLeaf& a, int lane, const BoundedLeaf& b, const AskedLanes& asked, float now,
-                                      float end, LaneBytes& met) {
-  IntLanes apart = ~asked.lanes;
+/// Sets `hits` to the requested lanes of b that the lane of a may touch. Returns whether there are any.
+SPRUNG_KERNEL bool find_touching_lanes(const PositionedLeaf& a, int lane, const PositionedLeaf& b, const RequestedLanes& requested,
+                                       float now, float end, LaneBytes& hits) {
+  IntLanes apart = ~requested.lanes;
   IntLanes shared = {};
   find_bounds_apart(a.leaf, lane, b.leaf, now, end, apart);
   find_sharing(a.leaf, lane, b.leaf, shared, apart);
-  store(~apart, met);
-  if (!any(met)) return false;
+  store(~apart, hits);
+  if (!any(hits)) return false;
 
   const Float8 radius = b.leaf.radius + a.leaf.radius[lane];
   IntLanes kept_apart = {};
   Float8 direction[3];
-  find_direction(a.places, lane, b.places, direction);
-  find_planes_apart(a.places, lane, b.places, direction, radius, kept_apart);
-  store(~apart & (shared | ~kept_apart), met);
-  if (!any(met)) return false;
+  find_direction(a.corners, lane, b.corners, direction);
+  find_planes_apart(a.corners, lane, b.corners, direction, radius, kept_apart);
+  store(~apart & (shared | ~kept_apart), hits);
+  if (!any(hits)) return false;
 
   Float8 normal[3];
-  find_normals(b.places.now, direction, normal);
-  find_planes_apart(a.places, lane, b.places, normal, radius, kept_apart);
+  find_normals(b.corners.now, direction, normal);
+  find_planes_apart(a.corners, lane, b.corners, normal, radius, kept_apart);
   Float8 own[3][3];
   for (int k = 0; k < 3; ++k) {
-    for (int axis = 0; axis < 3; ++axis) own[k][axis] = Float8{} + a.places.now[k][axis][lane];
+    for (int axis = 0; axis < 3; ++axis) own[k][axis] = Float8{} + a.corners.now[k][axis][lane];
   }
   find_normals(own, direction, normal);
-  find_planes_apart(a.places, lane, b.places, normal, radius, kept_apart);
-  store(~apart & (shared | ~kept_apart), met);
-  return any(met);
+  find_planes_apart(a.corners, lane, b.corners, normal, radius, kept_apart);
+  store(~apart & (shared | ~kept_apart), hits);
+  return any(hits);
 }
 
-/// Marked lanes of a that are not apart from all of b.
+/// Marked lanes of a that may touch the bounds of b.
 LaneBytes marked_lanes_near(const ElementBvhLeaf& a, const ElementBvhLeaf& b, HorizonTimes times) {
   LaneBytes near{};
   if (!a.any_marked()) return near;
@@ -132,8 +132,8 @@ LaneBytes marked_lanes_near(const ElementBvhLeaf& a, const ElementBvhLeaf& b, Ho
 
 }  // namespace
 
-void append_meetings(const BoundedLeaf& first, const BoundedLeaf& second, HorizonTimes times,
-                     std::vector<ElementIndexPair>& meetings) {
+void append_pairs(const PositionedLeaf& first, const PositionedLeaf& second, HorizonTimes times,
+                  std::vector<ElementIndexPair>& pairs) {
   const ElementBvhLeaf& a = first.leaf;
   const ElementBvhLeaf& b = second.leaf;
   const bool same = &a == &b;
@@ -143,11 +143,11 @@ void append_meetings(const BoundedLeaf& first, const BoundedLeaf& second, Horizo
 
   const auto now = static_cast<float>(times.now);
   const auto end = static_cast<float>(times.end);
-  const auto append = [&](const BoundedLeaf& own, int lane, const BoundedLeaf& other, const AskedLanes& asked) {
-    LaneBytes met;
-    if (!find_meeting_lanes(own, lane, other, asked, now, end, met)) return;
+  const auto append = [&](const PositionedLeaf& own, int lane, const PositionedLeaf& other, const RequestedLanes& requested) {
+    LaneBytes hits;
+    if (!find_touching_lanes(own, lane, other, requested, now, end, hits)) return;
     for (std::size_t k = 0; k < kFloatSimdWidth; ++k) {
-      if (met[k] != 0) meetings.push_back({own.leaf.element[static_cast<std::size_t>(lane)], other.leaf.element[k]});
+      if (hits[k] != 0) pairs.push_back({own.leaf.element[static_cast<std::size_t>(lane)], other.leaf.element[k]});
     }
   };
   constexpr IntLanes kLane{0, 1, 2, 3, 4, 5, 6, 7};

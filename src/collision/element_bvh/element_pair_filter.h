@@ -1,4 +1,4 @@
-// Elements that may touch each other.
+// Element-element filter: pairs of elements that may touch.
 #pragma once
 
 #include "collision/element_bvh/element_bvh_leaf.h"
@@ -12,15 +12,15 @@ struct ElementIndexPair {
   Index second = kNone;
 };
 
-/// A leaf and where its corners are.
-struct BoundedLeaf {
+/// A leaf and the positions of its corners.
+struct PositionedLeaf {
   const ElementBvhLeaf& leaf;
-  const LeafBounds& places;
+  const LeafCorners& corners;
 };
 
-/// Appends the pairs of the leaves' elements, at least one of them marked, that may touch from now to the end: those that no plane
-/// across the line between their middles, or along one of them, keeps apart. Triangles that share a particle whose triangles are
-/// flat are left out.
-void append_meetings(const BoundedLeaf& a, const BoundedLeaf& b, HorizonTimes times, std::vector<ElementIndexPair>& meetings);
+/// Appends the pairs of the leaves' elements that may touch between now and the end and of which at least one is marked. A pair is
+/// left out if a plane separates it: across a coordinate axis, across the line between the centroids or parallel to one of its
+/// triangles. Triangles that share a particle whose fan stays flat are left out, too.
+void append_pairs(const PositionedLeaf& a, const PositionedLeaf& b, HorizonTimes times, std::vector<ElementIndexPair>& pairs);
 
 }  // namespace sprung

@@ -1,9 +1,9 @@
-// Axis-aligned bounds that move, in single precision.
+// Kinetic AABB: axis-aligned bounds that move linearly in time, in single precision.
 #pragma once
 
 namespace sprung {
 
-/// At time t they are min + t slowest and max + t fastest. x, y, z and a lane that is always 0.
+/// At time t the bounds are min + t slowest and max + t fastest. Lanes are x, y, z and one that is always 0.
 struct KineticAabb {
   using Axes = float __attribute__((vector_size(4 * sizeof(float))));
 
@@ -20,8 +20,8 @@ inline void extend(KineticAabb& bounds, const KineticAabb& other) {
   bounds.fastest = other.fastest > bounds.fastest ? other.fastest : bounds.fastest;
 }
 
-/// Whether along some axis there is more than `margin` >= 0 between them from one time to the other: what lies between them changes
-/// linearly, so these two are enough.
+/// Whether some axis keeps more than `margin` >= 0 between the bounds from `now` to `end`. The gap is linear in time, so checking
+/// both times is enough.
 [[nodiscard]] inline bool are_apart(const KineticAabb& a, const KineticAabb& b, float now, float end, float margin) {
   const KineticAabb::Axes above = a.min - b.max;
   const KineticAabb::Axes rising = a.slowest - b.fastest;

@@ -1,4 +1,4 @@
-// What a search for pairs that may touch goes by.
+// Input of a search for pairs that may touch.
 #pragma once
 
 #include "collision/element_bvh/vertex_bounds.h"
@@ -7,12 +7,12 @@
 
 namespace sprung {
 
-/// Particles at `positions` [m], in balls that bound them for `horizon` [steps] from now.
+/// Particles at `positions` [m], 3 x n, and the balls that bound them for `horizon` [steps] from now.
 struct NeighbourListState {
   const Points& positions;
   const VertexBounds& balls;
   double horizon = 0.0;
-  const std::vector<char>& marked;  ///< by particle, not 0: only pairs that have one of these are looked for
+  const std::vector<char>& marked;  ///< by particle: only pairs with a marked particle (not 0) are searched
 };
 
 }  // namespace sprung

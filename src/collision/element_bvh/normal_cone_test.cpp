@@ -6,20 +6,20 @@
 namespace sprung {
 namespace {
 
-// More spokes than this are rare; such a fan is never called flat.
+// Fans with more spokes are rare and never count as flat.
 constexpr std::size_t kMostSpokes = 16;
 
-/// The fan's spokes as vectors from its middle, now and when the horizon has passed.
+/// The fan's spokes as vectors from its center, now and at the horizon.
 struct Fan {
   std::array<Vector3, kMostSpokes + 1> begin;
   std::array<Vector3, kMostSpokes + 1> end;
-  std::array<double, kMostSpokes + 1> length;  ///< the longest of each spoke in between
+  std::array<double, kMostSpokes + 1> length;  ///< of each spoke, the largest in between
   std::size_t spokes = 0;
   std::size_t faces = 0;
   double radius = 0.0;  ///< of the largest ball
 };
 
-/// A closed fan's first spoke comes once more after the last.
+/// A closed fan repeats its first spoke after the last.
 Fan gather(const SurfaceTopology& features, Index particle, const VertexBounds& balls, double horizon) {
   Fan fan;
   const auto spokes = features.spokes(particle);
@@ -37,8 +37,8 @@ Fan gather(const SurfaceTopology& features, Index particle, const VertexBounds& 
   return fan;
 }
 
-/// Twice the area of each triangle seen along `eye` is a quadratic function of time, at least the least of its Bernstein
-/// coefficients. Moving each corner by the radius takes at most radius x perimeter + 3 radius^2 from it.
+/// Twice the area of each triangle, projected along `eye`, is a quadratic function of time, bounded below by its smallest Bernstein
+/// coefficient. Moving each corner by the radius reduces it by at most radius x perimeter + 3 radius^2.
 bool faces_stay_turned(const Fan& fan, const Vector3& eye) {
   for (std::size_t k = 0; k < fan.faces; ++k) {
     const Vector3& a0 = fan.begin[k];
@@ -55,7 +55,7 @@ bool faces_stay_turned(const Fan& fan, const Vector3& eye) {
   return true;
 }
 
-/// Each triangle is seen under less than half a turn, so the spokes pass from the lower side to the upper once a turn.
+/// Each triangle spans less than half a turn, so the spokes change from the lower to the upper side once per turn.
 bool turns_once(const Fan& fan, const Vector3& eye) {
   int axis = 0;
   eye.cwiseAbs().minCoeff(&axis);
@@ -65,9 +65,9 @@ bool turns_once(const Fan& fan, const Vector3& eye) {
   return turns == 1;
 }
 
-/// The first spoke keeps to one side of a line through the middle and the last to the other: they cannot meet behind it.
+/// The first and the last spoke stay on different sides of a line through the center, so that they cannot meet behind it.
 bool ends_stay_apart(const Fan& fan, const Vector3& eye) {
-  if (fan.faces <= 2) return true;  // each is seen under less than half a turn
+  if (fan.faces <= 2) return true;  // each spans less than half a turn
   const std::size_t last = fan.spokes - 1;
   Vector3 side = fan.begin[0].normalized() - fan.begin[last].normalized();
   side -= eye.dot(side) * eye;

@@ -1,4 +1,4 @@
-// Fans of triangles that cannot cross themselves, because they stay flat enough.
+// Normal-cone test: fans of triangles that are too flat to cross themselves.
 #pragma once
 
 #include "collision/element_bvh/vertex_bounds.h"
@@ -6,9 +6,9 @@
 
 namespace sprung {
 
-/// Whether the triangles around a particle cannot cross each other, or come to, from now until `horizon` [steps] have passed, as
-/// long as their corners stay within their balls: seen along one direction, all keep facing the eye, and go around it less than
-/// once or, in a closed fan, just once (Volino and Magnenat-Thalmann 1994). False where this is not sure.
+/// Whether the triangles around a particle cannot cross each other for `horizon` [steps] from now while their corners stay within
+/// their balls. That is so if all triangles keep facing one direction and surround the particle less than once or, in a closed fan,
+/// exactly once (Volino and Magnenat-Thalmann 1994). False where this is not certain.
 [[nodiscard]] bool fan_stays_flat(const SurfaceTopology& features, Index particle, const VertexBounds& balls, double horizon);
 
 }  // namespace sprung

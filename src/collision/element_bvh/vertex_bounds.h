@@ -1,7 +1,7 @@
-// A ball around each particle that moves on with it from step to step: where the particle is free to be.
+// Moving bounding balls of the particles: the skin of the neighbour list.
 //
-// What two elements' balls rule out for many steps need not be looked at in any of them. Balls move at constant speed until their
-// particle leaves them, so that what flies together keeps its balls, at any speed.
+// Elements whose balls stay apart for many steps need no check in any of them. A ball moves at constant velocity until its particle
+// leaves it, so that a body in free flight keeps its balls at any speed.
 #pragma once
 
 #include "base/types.h"
@@ -10,11 +10,11 @@
 
 namespace sprung {
 
-/// Times are in steps, from the begin of the step at hand. Positions within a ball at a step's begin and end stay in it in between,
-/// when they move straight.
+/// Times are in steps, from the begin of the current step. A particle that moves linearly and is in its ball at the step's begin
+/// and end is in it throughout the step.
 class VertexBounds {
  public:
-  /// Balls of these radii [m], none of which has a place yet.
+  /// Balls of these radii [m]. Call reset() for each before use.
   explicit VertexBounds(std::vector<double> radius)
       : radius_(std::move(radius)), center_(Points::Zero(3, count())), motion_(center_) {}
 
@@ -23,18 +23,18 @@ class VertexBounds {
   [[nodiscard]] auto motion(Index i) const { return motion_.col(i); }  ///< [m per step]
   [[nodiscard]] Vector3 center(Index i, double time = 0.0) const { return center_.col(i) + time * motion_.col(i); }  ///< [m]
 
-  /// Places a ball around where its particle is at the step's begin and about to be at its end [m].
-  void place(Index i, const Vector3& begin, const Vector3& end) {
+  /// Centers the ball at its particle's position at the step's begin; it moves to the expected position at the end [m].
+  void reset(Index i, const Vector3& begin, const Vector3& end) {
     center_.col(i) = begin;
     motion_.col(i) = end.allFinite() ? Vector3(end - begin) : Vector3::Zero();
   }
 
-  /// Whether the ball holds p at the step's begin (time 0) or end (time 1).
-  [[nodiscard]] bool holds(Index i, const Vector3& p, double time) const {
+  /// Whether the ball contains p [m] at this time.
+  [[nodiscard]] bool contains(Index i, const Vector3& p, double time) const {
     return (p - center(i, time)).squaredNorm() <= radius(i) * radius(i);
   }
 
-  /// The next step begins.
+  /// Moves all balls to the begin of the next step.
   void advance() { center_ += motion_; }
 
  private:

@@ -26,12 +26,12 @@ inline void subtract(const float (&a)[3], const Vector3Lanes& b, float scale, Ve
 
 }  // namespace
 
-SPRUNG_KERNEL bool find_faces(const MovingVertex& corner, const ElementBvhLeaf& leaf, const LeafBounds& places, LaneBytes& met) {
-  // In units of `aside`, so that powers of lengths neither over- nor underflow.
-  const float scale = 1.0F / corner.aside;
-  const float reach = scale * corner.reach;
+SPRUNG_KERNEL bool find_faces(const MovingVertex& vertex, const ElementBvhLeaf& leaf, const LeafCorners& corners, LaneBytes& hits) {
+  // Lengths are scaled by `aside`, so that their powers neither overflow nor underflow.
+  const float scale = 1.0F / vertex.aside;
+  const float reach = scale * vertex.reach;
   Vector3Lanes edge[3];
-  for (int k = 0; k < 3; ++k) subtract(places.now[(k + 1) % 3], places.now[k], scale, edge[k]);
+  for (int k = 0; k < 3; ++k) subtract(corners.now[(k + 1) % 3], corners.now[k], scale, edge[k]);
   Vector3Lanes normal;
   cross(edge[0], edge[1], normal);
   Float8 area2;
@@ -39,10 +39,10 @@ SPRUNG_KERNEL bool find_faces(const MovingVertex& corner, const ElementBvhLeaf& 
 
   Vector3Lanes begin;
   Vector3Lanes end;
-  Vector3Lanes way;
-  subtract(corner.now, places.now[0], scale, begin);
-  subtract(corner.end, places.end[0], scale, end);
-  subtract(end, begin, 1.0F, way);
+  Vector3Lanes displacement;
+  subtract(vertex.now, corners.now[0], scale, begin);
+  subtract(vertex.end, corners.end[0], scale, end);
+  subtract(end, begin, 1.0F, displacement);
   Float8 low;
   Float8 high;
   dot(begin, normal, low);
@@ -50,28 +50,28 @@ SPRUNG_KERNEL bool find_faces(const MovingVertex& corner, const ElementBvhLeaf& 
   const Float8 rise = high - low;
   const Float8 nearest2 = low * low < high * high ? low * low : high * high;
   const Float8 reach2 = reach * reach * area2;
-  IntLanes meets = leaf.is_triangle & ((nearest2 <= reach2) | (low * high <= 0.0F));
-  for (const auto& particle : leaf.particle) meets &= particle != corner.particle;
-  store(meets, met);
-  if (!any(met)) return false;
+  IntLanes may_touch = leaf.is_triangle & ((nearest2 <= reach2) | (low * high <= 0.0F));
+  for (const auto& particle : leaf.particle) may_touch &= particle != vertex.particle;
+  store(may_touch, hits);
+  if (!any(hits)) return false;
 
-  // (1 + way along)^2 <= 2 + 2 (way along)^2, times the area's square.
-  Float8 way2;
-  dot(way, way, way2);
-  const Float8 aside2 = 2.0F * (1.0F + way2) * area2 - 2.0F * rise * rise;
+  // The limit is (1 + d)^2 <= 2 + 2 d^2 with the displacement d along the triangle, times the squared area.
+  Float8 displacement2;
+  dot(displacement, displacement, displacement2);
+  const Float8 aside2 = 2.0F * (1.0F + displacement2) * area2 - 2.0F * rise * rise;
   for (int k = 0; k < 3; ++k) {
     Vector3Lanes from;
     Vector3Lanes turn;
     Float8 inward;
     Float8 length2;
-    subtract(corner.now, places.now[k], scale, from);
+    subtract(vertex.now, corners.now[k], scale, from);
     cross(edge[k], from, turn);
     dot(turn, normal, inward);
     dot(edge[k], edge[k], length2);
-    meets &= (inward >= 0.0F) | (inward * inward <= aside2 * length2);
+    may_touch &= (inward >= 0.0F) | (inward * inward <= aside2 * length2);
   }
-  store(meets, met);
-  return any(met);
+  store(may_touch, hits);
+  return any(hits);
 }
 
 }  // namespace sprung

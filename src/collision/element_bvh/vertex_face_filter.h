@@ -1,22 +1,22 @@
-// Corners that come before faces.
+// Vertex-face filter: vertices that may come near faces.
 #pragma once
 
 #include "collision/element_bvh/element_bvh_leaf.h"
 
 namespace sprung {
 
-/// A corner on its way from now to the end [m], and how near it is looked for.
+/// A vertex, its positions now and at the end of the interval [m], and its search distances.
 struct MovingVertex {
   float now[3]{};
   float end[3]{};
   Index particle = kNone;
-  float reach = 0.0F;  ///< from a face, along its normal
-  float aside = 0.0F;  ///< beside it, > 0
+  float reach = 0.0F;  ///< along a face's normal [m]
+  float aside = 0.0F;  ///< beyond a face's border, > 0 [m]
 };
 
-/// Finds the leaf's triangles that the corner, which is none of theirs, comes within reach of, and does not miss by more than
-/// `aside` and what the way leads along the triangle. In single precision, for a choice of what to look at. Returns whether there
-/// are any.
-bool find_faces(const MovingVertex& corner, const ElementBvhLeaf& leaf, const LeafBounds& places, LaneBytes& met);
+/// Sets `hits` to the leaf's triangles, without those of the vertex, that the vertex may come within reach of, and beyond whose
+/// border it is by at most `aside` plus its displacement along the triangle. A conservative filter in single precision. Returns
+/// whether there are any.
+bool find_faces(const MovingVertex& vertex, const ElementBvhLeaf& leaf, const LeafCorners& corners, LaneBytes& hits);
 
 }  // namespace sprung

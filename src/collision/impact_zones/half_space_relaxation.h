@@ -1,4 +1,4 @@
-// Where particles end that give way to each other and to pins, each on its own.
+// Relaxation of separating half-spaces: final positions of particles that pins with different motions push together.
 #pragma once
 
 #include "collision/impact_zones/rotating_plane.h"
@@ -9,22 +9,23 @@
 
 namespace sprung {
 
-/// What several pins draw together, each its own way, no single motion takes along. Planes that turn leave it its own: what they
-/// ask of the particles' ends are linear inequalities, which are met one after the other, again and again (Agmon 1954).
+/// A group that is drawn by pins with different motions has no common motion. Each particle then gets its own end. Rotating planes
+/// make their pairs' separation a system of linear inequalities in these ends, which is relaxed one inequality at a time (Agmon
+/// 1954).
 class HalfSpaceRelaxation {
  public:
-  /// The step begins at `before` [m], 3 x n; pinned particles (not 0) end where they do. Keeps references to all.
+  /// The step begins at `before` [m], 3 x n. Pinned particles (not 0) do not move. Keeps references to all arguments.
   HalfSpaceRelaxation(const Points& before, const std::vector<char>& pinned, const SeparationTolerance& rule);
 
-  /// A plane for the way to `ends` [m]: with the pair's normal if that does, else one that turns; none if the sides touch where the
-  /// step begins.
+  /// A plane for the motion to `ends` [m]: with the pair's constant normal if that separates the sides, else a rotating one. Empty
+  /// if the sides touch at the step's begin.
   [[nodiscard]] std::optional<RotatingPlane> plane(const ContactStencil& pair, const Points& ends) const;
 
-  /// Whether there is one, and it does not keep the sides apart.
+  /// Whether the sides have such a plane and it does not separate them.
   [[nodiscard]] bool passes(const ContactStencil& pair, const Points& ends) const;
 
-  /// Moves the ends of sides apart that would pass each other, and of those that are then in the way. Returns which were moved, in
-  /// any order; of some, sides may still pass.
+  /// Changes `ends` until no sides pass each other, for a limited number of sweeps: some may pass still. Returns the moved
+  /// particles in any order.
   [[nodiscard]] std::vector<Index> move_apart(const std::vector<ContactStencil>& pairs, Points& ends) const;
 
  private:

@@ -6,9 +6,9 @@ namespace sprung {
 
 namespace {
 
-// Of points next to a line, whose second singular value, as that of a spread squared, is less than this part of the first, rounding
-// would choose the turn about it.
-constexpr double kLeastSquare = 0x1p-40;
+// Points count as collinear if the second singular value, a squared extent, is below this fraction of the first. Rounding would
+// choose the rotation about their line otherwise.
+constexpr double kCollinear = 0x1p-40;
 
 }  // namespace
 
@@ -16,7 +16,7 @@ Matrix3 kabsch_rotation(const Matrix3& covariance) {
   const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vector3& squares = svd.singularValues();
   if (!(squares[0] > 0.0)) return Matrix3::Identity();
-  if (squares[1] <= kLeastSquare * squares[0]) {
+  if (squares[1] <= kCollinear * squares[0]) {
     return Eigen::Quaterniond::FromTwoVectors(svd.matrixV().col(0), svd.matrixU().col(0)).normalized().toRotationMatrix();
   }
   const double handedness = (svd.matrixU() * svd.matrixV().transpose()).determinant();

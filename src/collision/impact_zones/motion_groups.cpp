@@ -7,28 +7,28 @@
 namespace sprung {
 
 MotionGroups::MotionGroups(const Points& before, const Points& targets, const std::vector<char>& pinned,
-                           const ParticleDisplacements& carriers)
+                           const ParticleDisplacements& displacements)
     : before_(before),
       targets_(targets),
       pinned_(pinned),
-      carriers_(carriers),
+      displacements_(displacements),
       parent_(static_cast<std::size_t>(before.cols()), kNone),
-      stopped_(parent_.size(), 0),
+      locked_(parent_.size(), 0),
       number_(parent_.size(), kNone) {}
 
 bool MotionGroups::unite(std::span<const Index> particles) {
   Index first = kNone;
   bool changed = false;
-  bool stopped = false;
+  bool locked = false;
   for (const Index i : particles) {
     if (pinned_[static_cast<std::size_t>(i)] != 0) continue;
-    if (!holds(i)) {
+    if (!contains(i)) {
       parent_[static_cast<std::size_t>(i)] = i;
-      held_.push_back(i);
+      particles_.push_back(i);
       changed = true;
     }
     const Index other = root(i);
-    stopped = stopped || stopped_[static_cast<std::size_t>(other)] != 0;
+    locked = locked || locked_[static_cast<std::size_t>(other)] != 0;
     if (first == kNone) first = other;
     if (other == first) continue;
     changed = true;
@@ -37,41 +37,41 @@ bool MotionGroups::unite(std::span<const Index> particles) {
     first = low;
   }
   if (first == kNone) return false;
-  char& stop = stopped_[static_cast<std::size_t>(first)];
+  char& lock = locked_[static_cast<std::size_t>(first)];
   for (const Index i : particles) {
-    if (pinned_[static_cast<std::size_t>(i)] == 0 || is_led(first, i)) continue;
-    leads_.push_back({first, i});
+    if (pinned_[static_cast<std::size_t>(i)] == 0 || is_pinned_by(first, i)) continue;
+    pinned_by_.push_back({first, i});
     changed = true;
   }
-  if (!changed && stop == 0) {
-    stop = 1;
+  if (!changed && lock == 0) {
+    lock = 1;
     return true;
   }
-  stop = stopped ? 1 : 0;
+  lock = locked ? 1 : 0;
   return changed;
 }
 
-bool MotionGroups::is_led(Index root_particle, Index pin) const {
-  return std::any_of(leads_.begin(), leads_.end(),
-                     [&](const Lead& lead) { return lead.pin == pin && root(lead.follower) == root_particle; });
+bool MotionGroups::is_pinned_by(Index root_particle, Index pin) const {
+  return std::any_of(pinned_by_.begin(), pinned_by_.end(),
+                     [&](const PinnedBy& entry) { return entry.pin == pin && root(entry.particle) == root_particle; });
 }
 
 void MotionGroups::find_motions() {
   number_groups();
-  const std::vector<std::vector<Index>> pins = leading_pins();
+  const std::vector<std::vector<Index>> pins = pins_of_groups();
   find_means(pins);
-  anchor_groups(pins);
-  let_pins_turn(pins);
+  apply_anchors(pins);
+  apply_rigid_pins(pins);
 }
 
 void MotionGroups::number_groups() {
   groups_.clear();
-  for (const Index i : held_) {
+  for (const Index i : particles_) {
     if (parent_[static_cast<std::size_t>(i)] != i) continue;
     number_[static_cast<std::size_t>(i)] = static_cast<Index>(groups_.size());
-    groups_.push_back({.fraction = stopped_[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0});
+    groups_.push_back({.fraction = locked_[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0});
   }
-  for (const Index i : held_) number_[static_cast<std::size_t>(i)] = number_[static_cast<std::size_t>(root(i))];
+  for (const Index i : particles_) number_[static_cast<std::size_t>(i)] = number_[static_cast<std::size_t>(root(i))];
 }
 
 void MotionGroups::find_means(const std::vector<std::vector<Index>>& pins) {
@@ -79,10 +79,10 @@ void MotionGroups::find_means(const std::vector<std::vector<Index>>& pins) {
     Vector3 motion = Vector3::Zero();
     double squares = 0.0;
     double count = 0.0;
-    int rank = 0;  ///< of those that lead
+    int rank = 0;  ///< of the rule that the sum is for: a higher one wins
   };
   std::vector<Sum> sums(groups_.size());
-  const auto lead = [&](std::size_t number, const Vector3& motion, int rank) {
+  const auto add = [&](std::size_t number, const Vector3& motion, int rank) {
     Sum& sum = sums[number];
     if (rank > sum.rank) sum = {.rank = rank};
     if (rank < sum.rank) return;
@@ -91,17 +91,17 @@ void MotionGroups::find_means(const std::vector<std::vector<Index>>& pins) {
     sum.count += 1.0;
   };
   for (std::size_t k = 0; k < groups_.size(); ++k) {
-    for (const Index pin : pins[k]) lead(k, targets_.col(pin) - before_.col(pin), 3);
+    for (const Index pin : pins[k]) add(k, targets_.col(pin) - before_.col(pin), 3);
   }
-  const std::vector<ParticleDisplacement>& carried = carriers_.carried;
-  for (const Index i : held_) {
+  const std::vector<ParticleDisplacement>& moved = displacements_.moved;
+  for (const Index i : particles_) {
     const auto number = static_cast<std::size_t>(group(i));
     const auto found =
-        std::lower_bound(carried.begin(), carried.end(), i, [](const ParticleDisplacement& a, Index b) { return a.particle < b; });
-    if (found != carried.end() && found->particle == i) {
-      lead(number, found->motion, 2);
+        std::lower_bound(moved.begin(), moved.end(), i, [](const ParticleDisplacement& a, Index b) { return a.particle < b; });
+    if (found != moved.end() && found->particle == i) {
+      add(number, found->motion, 2);
     } else {
-      lead(number, targets_.col(i) - before_.col(i), 1);
+      add(number, targets_.col(i) - before_.col(i), 1);
     }
   }
   for (std::size_t k = 0; k < groups_.size(); ++k) {
@@ -114,9 +114,9 @@ void MotionGroups::find_means(const std::vector<std::vector<Index>>& pins) {
   }
 }
 
-std::vector<std::vector<Index>> MotionGroups::leading_pins() const {
+std::vector<std::vector<Index>> MotionGroups::pins_of_groups() const {
   std::vector<std::vector<Index>> pins(groups_.size());
-  for (const Lead& lead : leads_) pins[static_cast<std::size_t>(group(lead.follower))].push_back(lead.pin);
+  for (const PinnedBy& entry : pinned_by_) pins[static_cast<std::size_t>(group(entry.particle))].push_back(entry.pin);
   for (std::vector<Index>& of_group : pins) {
     std::sort(of_group.begin(), of_group.end());
     of_group.erase(std::unique(of_group.begin(), of_group.end()), of_group.end());
@@ -124,51 +124,51 @@ std::vector<std::vector<Index>> MotionGroups::leading_pins() const {
   return pins;
 }
 
-void MotionGroups::anchor_groups(const std::vector<std::vector<Index>>& pins) {
-  if (carriers_.anchors.empty()) return;
+void MotionGroups::apply_anchors(const std::vector<std::vector<Index>>& pins) {
+  if (displacements_.anchors.empty()) return;
   std::vector<std::vector<KinematicAnchor>> anchors(groups_.size());
-  for (const KinematicAnchor& anchor : carriers_.anchors) {
+  for (const KinematicAnchor& anchor : displacements_.anchors) {
     const Index k = group(anchor.particle);
     if (k != kNone && pins[static_cast<std::size_t>(k)].empty()) anchors[static_cast<std::size_t>(k)].push_back(anchor);
   }
   for (std::size_t k = 0; k < groups_.size(); ++k) {
     if (anchors[k].empty()) continue;
-    groups_[k] = {.motion = common_motion(anchors[k]), .fraction = 0.0, .turned = true, .anchored = true};
+    groups_[k] = {.motion = common_motion(anchors[k]), .fraction = 0.0, .rotates = true, .anchored = true};
   }
 }
 
-void MotionGroups::let_pins_turn(const std::vector<std::vector<Index>>& pins) {
+void MotionGroups::apply_rigid_pins(const std::vector<std::vector<Index>>& pins) {
   for (std::size_t k = 0; k < groups_.size(); ++k) {
     if (pins[k].empty() || groups_[k].fraction > 0.0) continue;
-    std::vector<PinDisplacement> ways;
-    for (const Index pin : pins[k]) ways.push_back({before_.col(pin), targets_.col(pin)});
-    const auto motion = common_turn(ways);
-    if (motion) groups_[k] = {.motion = AffineTransform(*motion), .fraction = 0.0, .turned = true};
+    std::vector<PinDisplacement> displacements;
+    for (const Index pin : pins[k]) displacements.push_back({before_.col(pin), targets_.col(pin)});
+    const auto motion = rigid_motion_of(displacements);
+    if (motion) groups_[k] = {.motion = AffineTransform(*motion), .fraction = 0.0, .rotates = true};
   }
 }
 
-MovedPlane MotionGroups::carried(Index group, const Vector3& normal) const {
-  if (group == kNone || !groups_[static_cast<std::size_t>(group)].turned) return {normal, normal, normal};
+MovedPlane MotionGroups::moved(Index group, const Vector3& normal) const {
+  if (group == kNone || !groups_[static_cast<std::size_t>(group)].rotates) return {normal, normal, normal};
   return moved_plane(normal, groups_[static_cast<std::size_t>(group)].motion.linear());
 }
 
 Vector3 MotionGroups::start(Index particle) const {
-  if (!holds(particle)) return targets_.col(particle);
+  if (!contains(particle)) return targets_.col(particle);
   return groups_[static_cast<std::size_t>(group(particle))].motion * before_.col(particle);
 }
 
-bool MotionGroups::turn() const {
-  return std::any_of(groups_.begin(), groups_.end(), [](const Group& group) { return group.turned; });
+bool MotionGroups::any_rotates() const {
+  return std::any_of(groups_.begin(), groups_.end(), [](const Group& group) { return group.rotates; });
 }
 
-bool MotionGroups::takes_along(Index group, Index pin, double miss) const {
+bool MotionGroups::moves_to_target(Index group, Index pin, double miss) const {
   if (group == kNone || fraction(group) > 0.0) return false;
   const Vector3 end = groups_[static_cast<std::size_t>(group)].motion * before_.col(pin);
   return (end - targets_.col(pin)).norm() <= miss;
 }
 
 Vector3 MotionGroups::end(Index particle) const {
-  if (!holds(particle)) return targets_.col(particle);
+  if (!contains(particle)) return targets_.col(particle);
   const Vector3 from = start(particle);
   return from + fraction(group(particle)) * (targets_.col(particle) - from);
 }

@@ -1,4 +1,5 @@
-// Particles that are in each other's way, in groups that move on together.
+// Motion groups: particles that obstruct each other, and the reference motion that each group shares (impact zones, Provot 1997,
+// Harmon et al. 2008).
 #pragma once
 
 #include "collision/impact_zones/moved_plane.h"
@@ -9,50 +10,54 @@
 
 namespace sprung {
 
-/// Particles that lean on obstacles, and those that obstacles hold fast; both ascending by particle.
+/// Displacements that obstacles impose, both lists ascending by particle.
 struct ParticleDisplacements {
-  std::vector<ParticleDisplacement> carried{};
-  std::vector<KinematicAnchor> anchors{};
+  std::vector<ParticleDisplacement> moved{};  ///< of particles in contact with an obstacle
+  std::vector<KinematicAnchor> anchors{};     ///< of particles that move as if they were part of an obstacle
 };
 
-/// Each group has a motion that all its particles share, after which they are to each other as they were before, and a fraction of
-/// the ways from there to their targets that they may go.
+/// Each group has a reference motion, which leaves its particles where they were relative to each other, and a fraction: how far
+/// its particles may move from there towards their targets. A locked group has the fraction 0.
 class MotionGroups {
  public:
-  /// No particle is held yet. Pinned ones (not 0) never are. Positions [m], 3 x n. Keeps references to all.
-  MotionGroups(const Points& before, const Points& targets, const std::vector<char>& pinned, const ParticleDisplacements& carriers);
+  /// Begins without groups. Pinned particles (not 0) never belong to one. Positions [m], 3 x n. Keeps references to all arguments.
+  MotionGroups(const Points& before, const Points& targets, const std::vector<char>& pinned,
+               const ParticleDisplacements& displacements);
 
-  /// Makes these particles, and the groups that they are in, one group; pinned ones among them lead it. A group that is one already
-  /// may not leave the motion that it shares any more. Returns whether anything has changed.
+  /// Merges these particles and their groups into one group, which follows the pinned particles among them. If they are one group
+  /// already, locks it. Returns whether anything has changed, which is so a finite number of times: groups only grow, gain pins and
+  /// become locked.
   bool unite(std::span<const Index> particles);
 
-  /// Finds the groups' motions: the mean of those of pinned particles that lead it or, if it may not leave that, their rigid
-  /// motion, if they have one; else the common motion of its anchors, which it may not leave; else the mean of its carried
-  /// particles; else what its particles' ways have in common: their mean, less the part that their spread is of it, so that a
-  /// falling cloth is not held back and a resting one not carried away by what hits it. Fractions are 1 again, except of groups
-  /// that may not leave it.
+  /// Computes one reference motion per group. The first rule that applies wins: (1) locked group with pins: rigid motion of the
+  /// pins, if they have one; (2) pins: mean of their displacements; (3) anchors: their common affine motion, which locks the group;
+  /// (4) particles moved by obstacles: mean of their displacements; (5) otherwise: mean displacement, reduced by the fraction that
+  /// its spread is of it, so that a falling cloth is not slowed and a resting one does not follow what hits it. Resets the
+  /// fractions to 1, and to 0 for locked groups.
   void find_motions();
 
-  /// A group's number from 0, or kNone for a particle that is not held, as find_motions() found it.
+  /// Number of the particle's group from 0, or kNone, as of the last find_motions().
   [[nodiscard]] Index group(Index particle) const { return number_[static_cast<std::size_t>(particle)]; }
-  [[nodiscard]] bool holds(Index particle) const { return parent_[static_cast<std::size_t>(particle)] != kNone; }
-  [[nodiscard]] const std::vector<Index>& particles() const { return held_; }  ///< in the order in which they were held
+  [[nodiscard]] bool contains(Index particle) const { return parent_[static_cast<std::size_t>(particle)] != kNone; }
+  [[nodiscard]] const std::vector<Index>& particles() const {
+    return particles_;
+  }  ///< of all groups, in the order of their addition
 
-  /// Where a particle goes with its group's motion alone; the target of one that is not held.
+  /// A particle's position after its group's motion alone [m]; its target if it has no group.
   [[nodiscard]] Vector3 start(Index particle) const;
-  /// Where a particle ends that has gone its group's fraction of the way to its target as well.
+  /// A particle's position after its group's motion and fraction [m]; its target if it has no group.
   [[nodiscard]] Vector3 end(Index particle) const;
 
-  /// Whether a group that may not leave its motion takes a pin to where that goes, but for a miss [m]: it moves as they all do.
-  [[nodiscard]] bool takes_along(Index group, Index pin, double miss) const;
+  /// Whether the motion of a locked group moves the pin to its target, up to `miss` [m].
+  [[nodiscard]] bool moves_to_target(Index group, Index pin, double miss) const;
 
   /// Whether any group's motion may be more than a translation.
-  [[nodiscard]] bool turn() const;
+  [[nodiscard]] bool any_rotates() const;
 
-  /// The plane that the group takes along; one that stays for none.
-  [[nodiscard]] MovedPlane carried(Index group, const Vector3& normal) const;
+  /// The plane as the group's motion moves it; constant for kNone and for translations.
+  [[nodiscard]] MovedPlane moved(Index group, const Vector3& normal) const;
 
-  /// Whether the group goes along with anchors.
+  /// Whether the group has the motion of anchors.
   [[nodiscard]] bool is_anchored(Index group) const { return groups_[static_cast<std::size_t>(group)].anchored; }
 
   [[nodiscard]] double fraction(Index group) const { return groups_[static_cast<std::size_t>(group)].fraction; }
@@ -62,33 +67,33 @@ class MotionGroups {
   struct Group {
     AffineTransform motion = AffineTransform::Identity();
     double fraction = 1.0;
-    bool turned = false;  ///< the motion may be more than a translation
+    bool rotates = false;  ///< the motion may be more than a translation
     bool anchored = false;
   };
-  struct Lead {
-    Index follower;
+  struct PinnedBy {
+    Index particle;  ///< of the group
     Index pin;
   };
 
   [[nodiscard]] Index root(Index particle) const;
-  [[nodiscard]] bool is_led(Index root_particle, Index pin) const;
+  [[nodiscard]] bool is_pinned_by(Index root_particle, Index pin) const;
   void number_groups();
   void find_means(const std::vector<std::vector<Index>>& pins);
-  /// By group, ascending.
-  [[nodiscard]] std::vector<std::vector<Index>> leading_pins() const;
-  void anchor_groups(const std::vector<std::vector<Index>>& pins);
-  /// Those of groups that may not leave the motion that they share.
-  void let_pins_turn(const std::vector<std::vector<Index>>& pins);
+  /// By group; ascending.
+  [[nodiscard]] std::vector<std::vector<Index>> pins_of_groups() const;
+  void apply_anchors(const std::vector<std::vector<Index>>& pins);
+  /// To locked groups.
+  void apply_rigid_pins(const std::vector<std::vector<Index>>& pins);
 
   const Points& before_;
   const Points& targets_;
   const std::vector<char>& pinned_;
-  const ParticleDisplacements& carriers_;
-  std::vector<Index> parent_;  ///< by particle: another of its group or itself; kNone when it is not held
-  std::vector<Index> held_;
-  std::vector<char> stopped_;  ///< by particle that is its own parent
-  std::vector<Lead> leads_;    ///< by pinned particles
-  std::vector<Index> number_;  ///< of the group, by particle; kNone when it is not held
+  const ParticleDisplacements& displacements_;
+  std::vector<Index> parent_;  ///< union-find, by particle: another of its group or itself; kNone without a group
+  std::vector<Index> particles_;
+  std::vector<char> locked_;  ///< by particle that is its own parent
+  std::vector<PinnedBy> pinned_by_;
+  std::vector<Index> number_;  ///< of the group, by particle; kNone without a group
   std::vector<Group> groups_;
 };
 

@@ -1,9 +1,10 @@
-// Planes that an affine motion takes along.
+// Planes under an affine motion.
 //
-// While the motion's linear part goes straight from I to F, A = (1 - t) I + t F, a plane that goes along keeps the normal cof(A) n,
-// a quadratic of time. Where x goes straight from x0 to x1, the height of x above it is a cubic with the Bernstein coefficients
-// n0 . x0, (2 n1 . x0 + n0 . x1) / 3, (n2 . x0 + 2 n1 . x1) / 3 and n2 . x1. Where each of the four keeps two sides apart, the
-// plane does so all the time. What goes along as well is kept apart by det(A) times the gap, whatever the angle below a right one.
+// The motion's linear part is interpolated linearly from I to F: A = (1 - t) I + t F. A plane under this motion has the normal
+// cof(A) n (Nanson's formula), a quadratic function of time. The height of a point that moves linearly from x0 to x1 above the
+// plane is a cubic function of time with the Bernstein coefficients n0 . x0, (2 n1 . x0 + n0 . x1) / 3, (n2 . x0 + 2 n1 . x1) / 3
+// and n2 . x1. If each of the four separates two sides, the plane separates them at all times. Sides that follow the motion keep
+// det(A) times their gap, for any rotation by less than a right angle.
 #pragma once
 
 #include "base/types.h"
@@ -16,10 +17,10 @@ struct MovedPlane {
   Vector3 middle;
   Vector3 end;
 
-  [[nodiscard]] bool stays() const { return end == begin; }
+  [[nodiscard]] bool is_constant() const { return end == begin; }
 };
 
-/// With `normal`, unit length, where the step begins; `linear` is F.
+/// `normal` has unit length and is that of the step's begin; `linear` is F.
 [[nodiscard]] MovedPlane moved_plane(const Vector3& normal, const Matrix3& linear);
 
 }  // namespace sprung

@@ -11,13 +11,13 @@ namespace sprung {
 
 namespace {
 
-// Sides that are held keep this part of the least thickness between them: the rest is left to their way.
-constexpr double kKeptPart = 0.125;
+// Constrained sides keep this fraction of the smallest thickness between them. The rest is room to move.
+constexpr double kKeptFraction = 0.125;
 
 }  // namespace
 
 struct PairSeparation::Implementation {
-  Implementation(const CollisionSurface& own, const Points& rest, double margin) : surface(own), watch(own, rest, margin) {}
+  Implementation(const CollisionSurface& own, const Points& rest, double margin) : surface(own), list(own, rest, margin) {}
 
   [[nodiscard]] std::span<const DivisionPlanes::Bound> bounds_of(Index particle) const {
     const auto range = std::equal_range(bounds.begin(), bounds.end(), DivisionPlanes::Bound{.particle = particle, .half_space = {}},
@@ -26,17 +26,17 @@ struct PairSeparation::Implementation {
   }
 
   [[nodiscard]] Index body_at(Index particle) {
-    return surface.elements[static_cast<std::size_t>(watch.features().elements_at(particle).front())].body;
+    return surface.elements[static_cast<std::size_t>(list.topology().elements_at(particle).front())].body;
   }
 
   const CollisionSurface& surface;
-  NeighbourList watch;
+  NeighbourList list;
   Points ends;
-  std::vector<Index> held;
-  std::vector<Index> passing;  ///< ascending
+  std::vector<Index> constrained;  ///< ascending
+  std::vector<Index> passing;      ///< ascending
   std::vector<DivisionPlanes::Bound> bounds;
-  std::vector<Index> taken_along;
-  bool turned = false;  ///< groups were, and the normals of their pairs not
+  std::vector<Index> anchored;
+  bool rotated = false;  ///< pairs may have rotated without their normals
 };
 
 PairSeparation::PairSeparation(const CollisionSurface& surface, const Points& rest, double margin)
@@ -47,44 +47,49 @@ PairSeparation& PairSeparation::operator=(PairSeparation&&) noexcept = default;
 
 void PairSeparation::begin_step(const Points& before, const Points& after, std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
-  self.watch.begin_step(before, after);
-  append_self_contacts(self.surface, self.watch.features(), self.watch.candidates(), before, after, contacts);
+  self.list.begin_step(before, after);
+  append_self_contacts(self.surface, self.list.topology(), self.list.candidates(), before, after, contacts);
 }
 
-void PairSeparation::forget() { implementation_->watch.forget(); }
+void PairSeparation::forget() { implementation_->list.forget(); }
 
-void PairSeparation::begin_part(const Points& before, const Points& after) { implementation_->watch.begin_part(before, after); }
+void PairSeparation::begin_substep(const Points& before, const Points& after) {
+  implementation_->list.begin_substep(before, after);
+}
 
-const std::vector<Index>& PairSeparation::hold(const Points& before, const Points& targets, const ParticleDisplacements& carriers) {
+const std::vector<Index>& PairSeparation::constrain(const Points& before, const Points& targets,
+                                                    const ParticleDisplacements& displacements) {
   Implementation& self = *implementation_;
-  DivisionPlanes planes(before, targets, self.surface.pinned, carriers, kKeptPart * self.surface.thickness.minCoeff());
-  self.watch.follow(before, targets);
-  if (self.turned) planes.renew_normals(self.watch.pairs());
-  while (planes.hold(self.watch.pairs())) self.watch.follow(before, planes.ends());
-  while (!planes.passing().empty() && planes.give_way(self.watch.pairs())) self.watch.follow(before, planes.ends());
-  self.turned = planes.turns();
+  DivisionPlanes planes(before, targets, self.surface.pinned, displacements, kKeptFraction * self.surface.thickness.minCoeff());
+  self.list.follow(before, targets);
+  if (self.rotated) planes.renew_normals(self.list.pairs());
+  // constrain() returns true a finite number of times, because groups only grow, gain pins and become locked; relax() at most six
+  // times.
+  while (planes.constrain(self.list.pairs())) self.list.follow(before, planes.ends());
+  while (!planes.passing().empty() && planes.relax(self.list.pairs())) self.list.follow(before, planes.ends());
+  self.rotated = planes.rotates();
   self.ends = planes.ends();
-  self.held = planes.held();
-  std::sort(self.held.begin(), self.held.end());
+  self.constrained = planes.constrained();
+  std::sort(self.constrained.begin(), self.constrained.end());
   self.passing = planes.passing();
   std::sort(self.passing.begin(), self.passing.end());
-  self.bounds = planes.bounds(self.watch.pairs());
-  self.taken_along = planes.taken_along();
-  return self.held;
+  self.bounds = planes.bounds(self.list.pairs());
+  self.anchored = planes.anchored();
+  return self.constrained;
 }
 
-Vector3 PairSeparation::safe_place(Index particle) const { return implementation_->ends.col(particle); }
+Vector3 PairSeparation::safe_position(Index particle) const { return implementation_->ends.col(particle); }
 
 void PairSeparation::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
   for (const DivisionPlanes::Bound& bound : implementation_->bounds_of(particle)) half_spaces.push_back(bound.half_space);
 }
 
 PairSeparation::Ball PairSeparation::ball(Index particle) const {
-  const VertexBounds& balls = implementation_->watch.balls();
+  const VertexBounds& balls = implementation_->list.balls();
   return {balls.center(particle, 1.0), balls.radius(particle)};
 }
 
-const std::vector<Index>& PairSeparation::taken_along() const { return implementation_->taken_along; }
+const std::vector<Index>& PairSeparation::anchored() const { return implementation_->anchored; }
 
 bool PairSeparation::passes(Index particle) const {
   return std::binary_search(implementation_->passing.begin(), implementation_->passing.end(), particle);
@@ -96,33 +101,31 @@ std::vector<Index> PairSeparation::passing_pins() const {
   std::vector<Index> pins;
   for (const Index i : implementation_->passing) {
     if (!is_pinned(i) || (!pins.empty() && pins.back() == i)) continue;
-    const auto elements = implementation_->watch.features().elements_at(i);
-    const bool draws = std::ranges::any_of(elements, [&](Index e) {
+    const auto elements = implementation_->list.topology().elements_at(i);
+    const bool has_free_particle = std::ranges::any_of(elements, [&](Index e) {
       return !std::ranges::all_of(corners_of(surface.elements[static_cast<std::size_t>(e)]), is_pinned);
     });
-    if (draws) pins.push_back(i);
+    if (has_free_particle) pins.push_back(i);
   }
   return pins;
 }
 
 bool PairSeparation::allows(Index particle, const Vector3& p) const {
-  if (!implementation_->watch.balls().holds(particle, p, 1.0)) return false;
+  if (!implementation_->list.balls().contains(particle, p, 1.0)) return false;
   const auto bounds = implementation_->bounds_of(particle);
   return std::all_of(bounds.begin(), bounds.end(),
                      [&](const DivisionPlanes::Bound& bound) { return bound.half_space.normal.dot(p) >= bound.half_space.offset; });
 }
 
-void PairSeparation::append_meetings(const Points& before, std::vector<Contact>& meetings) {
+void PairSeparation::append_closest_contacts(const Points& before, std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
-  const auto is_held = [&](Index i) { return std::binary_search(self.held.begin(), self.held.end(), i); };
-  for (const ContactStencil& pair : self.watch.pairs()) {
+  const auto is_constrained = [&](Index i) { return std::binary_search(self.constrained.begin(), self.constrained.end(), i); };
+  for (const ContactStencil& pair : self.list.pairs()) {
     const std::span particles(pair.particles.data(), static_cast<std::size_t>(pair.count()));
     const bool within_a_body = self.body_at(particles.front()) == self.body_at(particles.back());
-    if (within_a_body || std::ranges::none_of(particles, is_held)) continue;
-    if (const auto meeting = closest_contact(pair, before)) meetings.push_back(*meeting);
+    if (within_a_body || std::ranges::none_of(particles, is_constrained)) continue;
+    if (const auto contact = closest_contact(pair, before)) contacts.push_back(*contact);
   }
 }
-
-NeighbourListCounts PairSeparation::counts() const { return implementation_->watch.counts(); }
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// The motion with which pins take along what hangs on them.
+// Rigid fit to the displacements of pins: the motion of what hangs on them.
 #pragma once
 
 #include "base/types.h"
@@ -8,15 +8,15 @@
 
 namespace sprung {
 
-/// Where a pin is when a step begins, and when it ends [m].
+/// Positions of a pin at the begin and the end of a step [m].
 struct PinDisplacement {
   Vector3 from;
   Vector3 to;
 };
 
-/// The rigid motion that takes pins where they go, with the least squares of what it misses, turned by kabsch_rotation(). None
-/// where they go the same way or ways of their own: where it misses half of what their mean motion does or more, or turns by more
-/// than a right angle. Requires a pin.
-[[nodiscard]] std::optional<RigidTransform> common_turn(std::span<const PinDisplacement> pins);
+/// The rigid motion that fits the pins' displacements best (least squares, kabsch_rotation()). Empty if it leaves at least half of
+/// the error of their mean translation, because the pins move in parallel or independently, and if it rotates by more than a right
+/// angle. Requires at least one pin.
+[[nodiscard]] std::optional<RigidTransform> rigid_motion_of(std::span<const PinDisplacement> pins);
 
 }  // namespace sprung

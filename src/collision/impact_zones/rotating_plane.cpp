@@ -6,28 +6,29 @@ namespace sprung {
 
 namespace {
 
-// To another particle's 1.
+// Free particles have the weight 1.
 constexpr double kWeightOfPins = 1024.0;
 
 }  // namespace
 
-RotatingPlane turning_plane(const ContactStencil& pair, const Points& before, const Points& ends, const std::vector<char>& pinned) {
+RotatingPlane rotating_plane(const ContactStencil& pair, const Points& before, const Points& ends,
+                             const std::vector<char>& pinned) {
   const auto weight = [&](Index i) { return pinned[static_cast<std::size_t>(i)] != 0 ? kWeightOfPins : 1.0; };
-  Vector3 middle_before = Vector3::Zero();
-  Vector3 middle_after = Vector3::Zero();
+  Vector3 center_before = Vector3::Zero();
+  Vector3 center_after = Vector3::Zero();
   double sum = 0.0;
   for (int k = 0; k < pair.count(); ++k) {
     const Index i = pair.particles[static_cast<std::size_t>(k)];
-    middle_before += weight(i) * before.col(i);
-    middle_after += weight(i) * ends.col(i);
+    center_before += weight(i) * before.col(i);
+    center_after += weight(i) * ends.col(i);
     sum += weight(i);
   }
-  middle_before /= sum;
-  middle_after /= sum;
+  center_before /= sum;
+  center_after /= sum;
   Matrix3 covariance = Matrix3::Zero();
   for (int k = 0; k < pair.count(); ++k) {
     const Index i = pair.particles[static_cast<std::size_t>(k)];
-    covariance += weight(i) * (ends.col(i) - middle_after) * (before.col(i) - middle_before).transpose();
+    covariance += weight(i) * (ends.col(i) - center_after) * (before.col(i) - center_before).transpose();
   }
   return {pair.normal, kabsch_rotation(covariance) * pair.normal};
 }

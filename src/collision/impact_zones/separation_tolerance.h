@@ -1,4 +1,4 @@
-// How near to each other the sides of a pair may come in a step.
+// The gap that the sides of a pair keep in a step.
 #pragma once
 
 #include <algorithm>
@@ -6,16 +6,16 @@
 namespace sprung {
 
 struct SeparationTolerance {
-  double thickness_kept = 0.0;  ///< what sides that are held keep between them where they can [m]
-  double clearance = 0.0;       ///< below this, a gap is not told from rounding [m]
+  double thickness_kept = 0.0;  ///< gap that constrained sides keep if they can [m]
+  double clearance = 0.0;       ///< a smaller gap may come from rounding [m]
 
-  /// A gap that is larger may end as small as this, one that is smaller never smaller: else it would wear away, step by step [m].
+  /// Smallest gap at the end of a step [m]. A gap that is already smaller may not shrink, or it would vanish over many steps.
   [[nodiscard]] double least() const { return 0.5 * clearance; }
 
-  /// Sides with this gap [m] where the step begins may not end with a smaller one than so, but for the step's rounding.
+  /// Smallest gap at the end of a step that begins with the gap `begun`, less a bound of the step's rounding [m].
   [[nodiscard]] double needed(double begun) const { return std::min(begun, least()) - kRounding * clearance; }
 
-  /// What of it is kept where sides are held.
+  /// The gap that constrained sides keep if the step begins with the gap `begun` [m].
   [[nodiscard]] double kept(double begun) const { return std::min(begun, std::max(clearance, thickness_kept)); }
 
  private:

@@ -5,27 +5,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace sprung {
 namespace {
 
-// A ball's radius as a part of the shortest edge at its particle: larger ones last longer, but neighbours come too near each
-// other's.
+// Radius of a ball, as a fraction of the shortest edge at its particle. Larger balls last longer, but those of neighbours come too
+// close to each other.
 constexpr double kRadius = 0.1;
 
-// Where edges are of very different lengths, the shortest counts as at least this part of the mean.
+// If edge lengths differ very much, the shortest edge counts as at least this fraction of the mean.
 constexpr double kShortestEdge = 0.25;
 
-// The longer balls last, the more rarely all are made again, but the more comes near on their way. What both cost together is least
-// at about this many times the root of the number of steps in which particles, seen from the middle of their body, fly an edge's
-// length; at most at so many steps.
-constexpr double kLasting = 1.1;
-constexpr double kMostSteps = 64.0;
+// A longer horizon renews the list less often, but lists more pairs. The total cost is smallest at about this factor times the
+// square root of the number of steps in which particles move an edge's length relative to their body.
+constexpr double kHorizonFactor = 1.1;
+constexpr double kMaxHorizon = 64.0;
 
-// All are made anew when they are still to last so many times as long as new ones would: what falls as a whole, and then strikes
-// something, would be looked for along the way that it no longer goes. With 2 a drape takes a twentieth more; with 1 motion that
-// grows steadily could have all made in step after step.
+// The list is renewed early if its remaining steps exceed a new horizon by this factor. Otherwise a body that falls and then hits
+// something would be searched along its former path. A drape costs 5 % more with 2; with 1, steadily growing motion could renew the
+// list in every step.
 constexpr double kMuchLonger = 1.5;
 
 constexpr Index kParticlesPerTask = 1024;
@@ -56,13 +54,13 @@ std::vector<double> ball_radii(const CollisionSurface& surface, const Points& re
 NeighbourList::NeighbourList(const CollisionSurface& surface, const Points& rest, double margin)
     : surface_(surface),
       rest_(rest),
-      features_(surface.elements, static_cast<Index>(rest.cols())),
-      sharp_(surface, features_),
+      topology_(surface.elements, static_cast<Index>(rest.cols())),
+      feature_edges_(surface, topology_),
       tree_(surface, rest),
-      places_(static_cast<std::size_t>(tree_.leaf_count())),
+      corners_(static_cast<std::size_t>(tree_.leaf_count())),
       balls_(ball_radii(surface, rest)),
-      pair_search_(surface, features_),
-      contact_search_(surface, features_, sharp_, tree_, rest_, margin),
+      pair_builder_(surface, topology_),
+      proximity_search_(surface, topology_, feature_edges_, tree_, rest_, margin),
       flat_(static_cast<std::size_t>(rest.cols()), 0),
       marked_(static_cast<std::size_t>(rest.cols()), 0),
       is_marked_element_(surface.elements.size(), 0),
@@ -76,20 +74,19 @@ NeighbourList::NeighbourList(const CollisionSurface& surface, const Points& rest
   for (std::size_t i = 0; i < watched.size(); ++i) {
     if (watched[i] == 0) continue;
     watched_.push_back(static_cast<Index>(i));
-    const Index element = features_.elements_at(static_cast<Index>(i)).front();
+    const Index element = topology_.elements_at(static_cast<Index>(i)).front();
     watched_bodies_.push_back(surface.elements[static_cast<std::size_t>(element)].body);
   }
 }
 
 void NeighbourList::begin_step(const Points& before, const Points& after) {
-  renewed_ = 0;
   age_ += 1.0;
   balls_.advance();
-  const double lasting = lasting_steps(before, after);
-  if (age_ >= horizon_ || horizon_ - age_ > kMuchLonger * lasting) {
-    horizon_ = lasting;
+  const double best = best_horizon(before, after);
+  if (age_ >= horizon_ || horizon_ - age_ > kMuchLonger * best) {
+    horizon_ = best;
     age_ = 0.0;
-    sharp_.update(before);
+    feature_edges_.update(before);
     renew(watched_, before, after);
   } else {
     std::vector<Index> leaving = find_leaving(before, 0.0);
@@ -100,7 +97,7 @@ void NeighbourList::begin_step(const Points& before, const Points& after) {
   find_candidates();
 }
 
-void NeighbourList::begin_part(const Points& before, const Points& after) {
+void NeighbourList::begin_substep(const Points& before, const Points& after) {
   age_ = 0.0;
   horizon_ = 1.0;
   renew(watched_, before, after);
@@ -110,26 +107,20 @@ void NeighbourList::follow(const Points& before, const Points& ends) { renew(fin
 
 std::vector<Index> NeighbourList::find_leaving(const Points& ends, double time) const {
   const auto count = static_cast<Index>(watched_.size());
-  std::vector<std::vector<Index>> parts(static_cast<std::size_t>((count + kParticlesPerTask - 1) / kParticlesPerTask));
+  std::vector<std::vector<Index>> batches(static_cast<std::size_t>((count + kParticlesPerTask - 1) / kParticlesPerTask));
   parallel_chunks(count, kParticlesPerTask, [&](Index begin, Index end) {
-    std::vector<Index>& part = parts[static_cast<std::size_t>(begin / kParticlesPerTask)];
+    std::vector<Index>& batch = batches[static_cast<std::size_t>(begin / kParticlesPerTask)];
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      if (!balls_.holds(watched_[k], ends.col(watched_[k]), time)) part.push_back(watched_[k]);
+      if (!balls_.contains(watched_[k], ends.col(watched_[k]), time)) batch.push_back(watched_[k]);
     }
   });
   std::vector<Index> leaving;
-  for (const std::vector<Index>& part : parts) leaving.insert(leaving.end(), part.begin(), part.end());
+  for (const std::vector<Index>& batch : batches) leaving.insert(leaving.end(), batch.begin(), batch.end());
   return leaving;
 }
 
-NeighbourListCounts NeighbourList::counts() const {
-  const auto flat = std::count(flat_.begin(), flat_.end(), char{1});
-  return {static_cast<Index>(pairs_.size()), static_cast<Index>(candidates_.size()), renewed_,
-          balls_.count() - static_cast<Index>(flat)};
-}
-
-/// How many steps balls that are made now had best last.
-double NeighbourList::lasting_steps(const Points& before, const Points& after) const {
+/// The number of steps for which a list made now costs least.
+double NeighbourList::best_horizon(const Points& before, const Points& after) const {
   struct Flight {
     Vector3 sum = Vector3::Zero();
     double squares = 0.0;
@@ -144,38 +135,37 @@ double NeighbourList::lasting_steps(const Points& before, const Points& after) c
     flight.squares += motion.squaredNorm();
     flight.count += 1.0;
   }
-  double steps = kMostSteps;
+  double steps = kMaxHorizon;
   for (std::size_t body = 0; body < flights.size(); ++body) {
     const Flight& flight = flights[body];
     if (flight.count == 0.0 || surface_.element_size[body] == 0.0) continue;
     const double variance = flight.squares / flight.count - (flight.sum / flight.count).squaredNorm();
     const double speed = std::sqrt(std::max(variance, 0.0));
-    if (speed > 0.0) steps = std::min(steps, std::floor(kLasting * std::sqrt(surface_.element_size[body] / speed)));
+    if (speed > 0.0) steps = std::min(steps, std::floor(kHorizonFactor * std::sqrt(surface_.element_size[body] / speed)));
   }
   return std::max(steps, 1.0);
 }
 
 void NeighbourList::renew(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
   if (leaving.empty()) return;
-  place_balls(leaving, before, ends);
-  look_at_fans();
+  reset_balls(leaving, before, ends);
+  test_fans();
   mark_elements();
   tree_.bound(balls_, flat_, marked_elements_, {age_, horizon_});
   std::erase_if(pairs_, [&](const ContactStencil& pair) { return has_marked(pair); });
   find_pairs(before);
-  renewed_ += static_cast<Index>(marked_list_.size());
-  moved_on_.insert(moved_on_.end(), marked_list_.begin(), marked_list_.end());
+  renewed_.insert(renewed_.end(), marked_list_.begin(), marked_list_.end());
   clear_marks();
 }
 
 void NeighbourList::find_candidates() {
-  if (moved_on_.empty()) return;
-  for (const Index i : moved_on_) marked_[static_cast<std::size_t>(i)] = 1;
-  marked_list_.swap(moved_on_);
+  if (renewed_.empty()) return;
+  for (const Index i : renewed_) marked_[static_cast<std::size_t>(i)] = 1;
+  marked_list_.swap(renewed_);
   mark_elements();
   tree_.mark(marked_elements_);
   std::erase_if(candidates_, [&](const ContactCandidate& candidate) { return has_marked(candidate.stencil); });
-  const std::vector<ContactCandidate> found = contact_search_.find_candidates(balls_, marked_, {age_, horizon_});
+  const std::vector<ContactCandidate> found = proximity_search_.find_candidates(balls_, marked_, {age_, horizon_});
   candidates_.insert(candidates_.end(), found.begin(), found.end());
   clear_marks();
 }
@@ -184,23 +174,23 @@ void NeighbourList::find_pairs(const Points& before) {
   const HorizonTimes times{age_, horizon_};
   const NeighbourListState state{before, balls_, horizon_ - age_, marked_};
   const std::vector<ElementBvh::LeafPair> leaves = tree_.find_pairs(times, 0.0);
-  place_leaves(leaves, times);
-  const auto placed = [&](Index number) { return BoundedLeaf{tree_.leaf(number), places_[static_cast<std::size_t>(number)]}; };
+  find_corners_of(leaves, times);
+  const auto leaf = [&](Index number) { return PositionedLeaf{tree_.leaf(number), corners_[static_cast<std::size_t>(number)]}; };
   const auto count = static_cast<Index>(leaves.size());
-  std::vector<std::vector<ContactStencil>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
+  std::vector<std::vector<ContactStencil>> batches(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
   parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {
-    std::vector<ElementIndexPair> meetings;
+    std::vector<ElementIndexPair> elements;
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      append_meetings(placed(leaves[k].first), placed(leaves[k].second), times, meetings);
+      append_pairs(leaf(leaves[k].first), leaf(leaves[k].second), times, elements);
     }
-    std::vector<ContactStencil>& part = parts[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
-    for (const ElementIndexPair& meeting : meetings) pair_search_.append_pairs(meeting, state, part);
+    std::vector<ContactStencil>& batch = batches[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
+    for (const ElementIndexPair& pair : elements) pair_builder_.append_pairs(pair, state, batch);
   });
-  for (const std::vector<ContactStencil>& part : parts) pairs_.insert(pairs_.end(), part.begin(), part.end());
+  for (const std::vector<ContactStencil>& batch : batches) pairs_.insert(pairs_.end(), batch.begin(), batch.end());
 }
 
-void NeighbourList::place_leaves(const std::vector<ElementBvh::LeafPair>& pairs, HorizonTimes times) {
-  std::vector<char> needed(places_.size(), 0);
+void NeighbourList::find_corners_of(const std::vector<ElementBvh::LeafPair>& pairs, HorizonTimes times) {
+  std::vector<char> needed(corners_.size(), 0);
   for (const ElementBvh::LeafPair& pair : pairs) {
     needed[static_cast<std::size_t>(pair.first)] = 1;
     needed[static_cast<std::size_t>(pair.second)] = 1;
@@ -208,44 +198,43 @@ void NeighbourList::place_leaves(const std::vector<ElementBvh::LeafPair>& pairs,
   parallel_chunks(tree_.leaf_count(), kLeavesPerTask, [&](Index begin, Index end) {
     for (Index number = begin; number < end; ++number) {
       const auto k = static_cast<std::size_t>(number);
-      if (needed[k] != 0) place_corners(tree_.leaf(number), times, places_[k]);
+      if (needed[k] != 0) find_corners(tree_.leaf(number), times, corners_[k]);
     }
   });
 }
 
-bool NeighbourList::has_marked(const ContactStencil& pair) const {
-  return pair.any_of([&](Index i) { return is_marked(i); });
+bool NeighbourList::has_marked(const ContactStencil& stencil) const {
+  return stencil.any_of([&](Index i) { return is_marked(i); });
 }
 
-void NeighbourList::place_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
+void NeighbourList::reset_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
   for (const Index i : leaving) {
     if (is_marked(i)) continue;
     marked_[static_cast<std::size_t>(i)] = 1;
-    balls_.place(i, before.col(i), ends.col(i));
+    balls_.reset(i, before.col(i), ends.col(i));
     marked_list_.push_back(i);
   }
 }
 
-/// A fan that is flat no more has pairs that nobody has looked at. Those that have no marked particle cannot touch all the same:
-/// while their particles are in their balls, they are where they would be if all others were in theirs of before, and the fan was
-/// flat.
-void NeighbourList::look_at_fans() {
-  std::vector<Index> middles;
+/// A fan that is no longer flat has pairs that were never listed. Those without a marked particle still cannot touch: their
+/// particles are in their former balls, for which the fan was flat.
+void NeighbourList::test_fans() {
+  std::vector<Index> centers;
   const auto visit = [&](Index i) {
     if (visited_[static_cast<std::size_t>(i)] != 0) return;
     visited_[static_cast<std::size_t>(i)] = 1;
-    middles.push_back(i);
+    centers.push_back(i);
   };
   for (const Index i : marked_list_) {
     visit(i);
-    for (const Index spoke : features_.spokes(i)) visit(spoke);
+    for (const Index spoke : topology_.spokes(i)) visit(spoke);
   }
-  for (const Index i : middles) visited_[static_cast<std::size_t>(i)] = 0;
+  for (const Index i : centers) visited_[static_cast<std::size_t>(i)] = 0;
 
-  parallel_chunks(static_cast<Index>(middles.size()), kFansPerTask, [&](Index begin, Index end) {
+  parallel_chunks(static_cast<Index>(centers.size()), kFansPerTask, [&](Index begin, Index end) {
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      const bool stays = fan_stays_flat(features_, middles[k], balls_, horizon_ - age_);
-      flat_[static_cast<std::size_t>(middles[k])] = stays ? 1 : 0;
+      const bool stays = fan_stays_flat(topology_, centers[k], balls_, horizon_ - age_);
+      flat_[static_cast<std::size_t>(centers[k])] = stays ? 1 : 0;
     }
   });
 }
@@ -253,7 +242,7 @@ void NeighbourList::look_at_fans() {
 void NeighbourList::mark_elements() {
   marked_elements_.clear();
   for (const Index i : marked_list_) {
-    for (const Index e : features_.elements_at(i)) {
+    for (const Index e : topology_.elements_at(i)) {
       char& listed = is_marked_element_[static_cast<std::size_t>(e)];
       if (listed == 0) marked_elements_.push_back(e);
       listed = 1;

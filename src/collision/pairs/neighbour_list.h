@@ -1,8 +1,7 @@
-// The parts of the network that may touch each other, and those that contact keeps an eye on, kept from step to step.
+// Neighbour list: element pairs that may touch and contact candidates, kept from step to step (Verlet 1967).
 #pragma once
 
 #include "collision/element_bvh/element_bvh.h"
-#include "collision/pairs/neighbour_list_counts.h"
 #include "collision/pairs/pair_builder.h"
 #include "collision/pairs/proximity_search.h"
 #include "collision/surface/feature_edges.h"
@@ -11,74 +10,72 @@
 
 namespace sprung {
 
-/// Each particle has a ball that moves on with it. What is not listed cannot touch, or come within contact's reach, while particles
-/// are in their balls; for those that leave theirs, pairs and candidates are looked for again. All balls are made again after as
-/// many steps as they were to last, and when particles begin to move so that they had better last less.
+/// Each particle has a moving ball. Elements that are not listed cannot touch, or come within contact's reach, while all particles
+/// are in their balls. If particles leave their balls, the list is renewed around them. The whole list is renewed at its horizon,
+/// and earlier if the motion has changed so that a much shorter horizon pays.
 class NeighbourList {
  public:
-  /// See ProximitySearch. Keeps a reference to the surface.
+  /// See ProximitySearch for the arguments. Keeps a reference to the surface.
   NeighbourList(const CollisionSurface& surface, const Points& rest, double margin);
   NeighbourList(const NeighbourList&) = delete;
   NeighbourList& operator=(const NeighbourList&) = delete;
 
-  /// Lists what may touch in a step from `before` to about `after` [m], 3 x n.
+  /// Lists what may touch in a step from `before` [m], 3 x n, to expected positions `after`.
   void begin_step(const Points& before, const Points& after);
 
-  /// The next step does not begin where the last one ended: it lists all anew.
+  /// Discards the list. Call it if the next step does not begin where the last one ended.
   void forget() { horizon_ = 0.0; }
 
-  /// Lists what may touch in a part of the step, as one of its own, but no candidates: the next step lists all anew.
-  void begin_part(const Points& before, const Points& after);
+  /// Lists the pairs of a substep as if it were a step, but no candidates. Discards the list for the steps that follow.
+  void begin_substep(const Points& before, const Points& after);
 
-  /// Lists what may touch when particles end the step at `ends` [m] instead, where their balls do not hold them there. Requires
-  /// begin_step() with the same `before`.
+  /// Adds the pairs that may touch if the step ends at `ends` [m] instead: renews the list around particles that leave their balls.
+  /// Requires begin_step() or begin_substep() with the same `before`.
   void follow(const Points& before, const Points& ends);
 
-  /// The normals may be changed.
+  /// The caller may change their normals.
   [[nodiscard]] std::vector<ContactStencil>& pairs() { return pairs_; }
-  /// Contact notes in them what it found.
+  /// The caller may change their normals and rests.
   [[nodiscard]] std::vector<ContactCandidate>& candidates() { return candidates_; }
   [[nodiscard]] const VertexBounds& balls() const { return balls_; }
-  [[nodiscard]] const SurfaceTopology& features() const { return features_; }
-  [[nodiscard]] NeighbourListCounts counts() const;
+  [[nodiscard]] const SurfaceTopology& topology() const { return topology_; }
 
  private:
-  [[nodiscard]] double lasting_steps(const Points& before, const Points& after) const;
+  [[nodiscard]] double best_horizon(const Points& before, const Points& after) const;
   [[nodiscard]] std::vector<Index> find_leaving(const Points& ends, double time) const;
   void renew(const std::vector<Index>& leaving, const Points& before, const Points& ends);
-  void place_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends);
-  /// At those that have a marked particle.
-  void look_at_fans();
+  void reset_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends);
+  /// Updates `flat_` for all fans with a marked particle.
+  void test_fans();
   void mark_elements();
   void find_pairs(const Points& before);
-  void place_leaves(const std::vector<ElementBvh::LeafPair>& pairs, HorizonTimes times);
-  [[nodiscard]] bool has_marked(const ContactStencil& pair) const;
+  void find_corners_of(const std::vector<ElementBvh::LeafPair>& pairs, HorizonTimes times);
+  [[nodiscard]] bool has_marked(const ContactStencil& stencil) const;
   void find_candidates();
   void clear_marks();
   [[nodiscard]] bool is_marked(Index i) const { return marked_[static_cast<std::size_t>(i)] != 0; }
 
   const CollisionSurface& surface_;
   Points rest_;
-  SurfaceTopology features_;
-  FeatureEdges sharp_;
+  SurfaceTopology topology_;
+  FeatureEdges feature_edges_;
   ElementBvh tree_;
-  std::vector<LeafBounds> places_;  ///< by leaf, of those looked at last
+  std::vector<LeafCorners> corners_;  ///< by leaf; up to date for the leaves of the last search
   VertexBounds balls_;
-  PairBuilder pair_search_;
-  ProximitySearch contact_search_;
+  PairBuilder pair_builder_;
+  ProximitySearch proximity_search_;
   std::vector<ContactStencil> pairs_;
   std::vector<ContactCandidate> candidates_;
-  std::vector<Index> watched_;         ///< particles of bodies that may meet something
-  std::vector<Index> watched_bodies_;  ///< theirs
-  std::vector<char> flat_;             ///< by particle: see fan_stays_flat()
-  double age_ = 0.0;                   ///< of the first balls, in steps
-  double horizon_ = 0.0;               ///< age at which all are made again
-  Index renewed_ = 0;
-  std::vector<char> marked_;  ///< by particle; 0 between calls, as the marks of elements
+  std::vector<Index> watched_;         ///< particles of bodies that collide
+  std::vector<Index> watched_bodies_;  ///< their bodies
+  std::vector<char> flat_;             ///< by particle: results of fan_stays_flat()
+  double age_ = 0.0;                   ///< since the whole list was renewed [steps]
+  double horizon_ = 0.0;               ///< age at which the whole list is renewed [steps]
+  std::vector<char> marked_;           ///< by particle; 0 between calls
   std::vector<Index> marked_list_;
-  std::vector<Index> moved_on_;  ///< whose balls were made again since candidates were looked for
+  std::vector<Index> renewed_;  ///< particles whose balls were reset since the last search for candidates
   std::vector<Index> marked_elements_;
-  std::vector<char> is_marked_element_;  ///< 0 between calls
+  std::vector<char> is_marked_element_;  ///< by element; 0 between calls
   std::vector<char> visited_;            ///< by particle; 0 between calls
 };
 

@@ -1,4 +1,4 @@
-// From elements that may touch to the convex parts of them that planes are to keep apart.
+// From pairs of elements that may touch to the stencils that planes keep apart.
 #pragma once
 
 #include "collision/element_bvh/element_pair_filter.h"
@@ -10,22 +10,23 @@
 
 namespace sprung {
 
+/// Builds the stencils of a neighbour list.
 class PairBuilder {
  public:
-  /// Keeps references to both.
-  PairBuilder(const CollisionSurface& surface, const SurfaceTopology& features) : surface_(surface), features_(features) {}
+  /// Keeps references to both arguments.
+  PairBuilder(const CollisionSurface& surface, const SurfaceTopology& topology) : surface_(surface), topology_(topology) {}
 
-  /// Appends the pairs of a meeting's elements that may touch within the horizon: both as wholes or, where they share a particle,
-  /// each corner and face and each two edges that do not.
-  void append_pairs(const ElementIndexPair& meeting, const NeighbourListState& state, std::vector<ContactStencil>& pairs) const;
+  /// Appends the stencils of two elements that may touch within the horizon: the two as a whole or, if they share a particle, each
+  /// vertex-face and edge-edge pair of them that shares none.
+  void append_pairs(const ElementIndexPair& elements, const NeighbourListState& state, std::vector<ContactStencil>& pairs) const;
 
  private:
-  void append_corners(Index element, Index face, const NeighbourListState& state, std::vector<ContactStencil>& pairs) const;
+  void append_vertices(Index element, Index face, const NeighbourListState& state, std::vector<ContactStencil>& pairs) const;
   void append_edges(Index first, Index second, const NeighbourListState& state, std::vector<ContactStencil>& pairs) const;
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
 
   const CollisionSurface& surface_;
-  const SurfaceTopology& features_;
+  const SurfaceTopology& topology_;
 };
 
 }  // namespace sprung

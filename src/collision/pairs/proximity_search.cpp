@@ -8,8 +8,8 @@
 namespace sprung {
 namespace {
 
-// Parts of the distance at rest that contact within a body keeps at most, and looks beyond it: a flat sheet is far from contact,
-// one that folds keeps its thickness as far as its elements are large enough for it.
+// Limits of gap and margin within a body, as fractions of the distance at rest. A flat sheet is then far from contact, and a folded
+// one keeps its thickness if its elements are large enough.
 constexpr double kMaxGapOfRest = 0.4;
 constexpr double kMaxMarginOfRest = 0.1;
 
@@ -18,11 +18,11 @@ constexpr Index kLeavesPerTask = 64;
 
 }  // namespace
 
-ProximitySearch::ProximitySearch(const CollisionSurface& surface, const SurfaceTopology& features, const FeatureEdges& sharp,
-                                 const ElementBvh& tree, const Points& rest, double margin)
+ProximitySearch::ProximitySearch(const CollisionSurface& surface, const SurfaceTopology& topology,
+                                 const FeatureEdges& feature_edges, const ElementBvh& tree, const Points& rest, double margin)
     : surface_(surface),
-      features_(features),
-      sharp_(sharp),
+      topology_(topology),
+      feature_edges_(feature_edges),
       tree_(tree),
       rest_(rest),
       margin_(margin),
@@ -34,10 +34,10 @@ ProximitySearch::ProximitySearch(const CollisionSurface& surface, const SurfaceT
     for (int lane = 0; lane < side.leaf->count; ++lane) {
       const Index own = side.leaf->element[static_cast<std::size_t>(lane)];
       for (int k = 0; k < element(own).corners; ++k) {
-        if (features.owns_corner(own, k)) side.corners.push_back({lane, k});
+        if (topology.owns_corner(own, k)) side.vertices.push_back({lane, k});
       }
       for (int k = 0; k < edges_of(element(own)); ++k) {
-        if (features.owns_edge(own, k)) side.edges.push_back({lane, k});
+        if (topology.owns_edge(own, k)) side.edges.push_back({lane, k});
       }
     }
   }
@@ -49,20 +49,20 @@ std::vector<ContactCandidate> ProximitySearch::find_candidates(const VertexBound
   const std::vector<ElementBvh::LeafPair> pairs = tree_.find_pairs(times, largest_gap_ + margin_);
   prepare_sides(pairs, search);
   const auto count = static_cast<Index>(pairs.size());
-  std::vector<std::vector<ContactCandidate>> parts(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
+  std::vector<std::vector<ContactCandidate>> batches(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
   parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {
-    std::vector<ContactCandidate>& part = parts[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
+    std::vector<ContactCandidate>& batch = batches[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
       const Side& a = sides_[static_cast<std::size_t>(pairs[k].first)];
       const Side& b = sides_[static_cast<std::size_t>(pairs[k].second)];
       const LaneBytes near = lanes_near(a, b, search);
-      append_corners(a, b, near, search, part);
-      if (&a != &b) append_corners(b, a, lanes_near(b, a, search), search, part);
-      append_edges(a, b, near, search, part);
+      append_vertices(a, b, near, search, batch);
+      if (&a != &b) append_vertices(b, a, lanes_near(b, a, search), search, batch);
+      append_edges(a, b, near, search, batch);
     }
   });
   std::vector<ContactCandidate> candidates;
-  for (const std::vector<ContactCandidate>& part : parts) candidates.insert(candidates.end(), part.begin(), part.end());
+  for (const std::vector<ContactCandidate>& batch : batches) candidates.insert(candidates.end(), batch.begin(), batch.end());
   return candidates;
 }
 
@@ -80,14 +80,15 @@ void ProximitySearch::prepare_sides(const std::vector<ElementBvh::LeafPair>& pai
 }
 
 void ProximitySearch::prepare(Side& side, const Search& search) const {
-  place_corners(*side.leaf, search.times, side.places);
+  find_corners(*side.leaf, search.times, side.corners);
   side.largest_radius = 0.0F;
-  side.longest_way = 0.0F;
+  side.largest_displacement = 0.0F;
   for (int lane = 0; lane < side.leaf->count; ++lane) {
     side.largest_radius = std::max(side.largest_radius, float{side.leaf->radius[lane]});
     for (int k = 0; k < 3; ++k) {
       const Index i = side.leaf->particle[k][lane];
-      side.longest_way = std::max(side.longest_way, static_cast<float>(search.balls.motion(i).norm() + search.balls.radius(i)));
+      side.largest_displacement =
+          std::max(side.largest_displacement, static_cast<float>(search.balls.motion(i).norm() + search.balls.radius(i)));
     }
   }
   prepare_edges(side, search);
@@ -95,22 +96,23 @@ void ProximitySearch::prepare(Side& side, const Search& search) const {
 
 void ProximitySearch::prepare_edges(Side& side, const Search& search) const {
   const ElementBvhLeaf& leaf = *side.leaf;
-  side.sharp.clear();
+  side.feature_edges.clear();
   for (const auto& [lane, k] : side.edges) {
-    if (sharp_.is_sharp(features_.edge(leaf.element[static_cast<std::size_t>(lane)], k))) side.sharp.push_back({lane, k});
+    if (feature_edges_.is_sharp(topology_.edge(leaf.element[static_cast<std::size_t>(lane)], k)))
+      side.feature_edges.push_back({lane, k});
   }
-  side.sharp_lanes.assign((side.sharp.size() + kFloatSimdWidth - 1) / kFloatSimdWidth, EdgeLanes{});
-  for (std::size_t number = 0; number < side.sharp.size(); ++number) {
-    EdgeLanes& lanes = side.sharp_lanes[number / kFloatSimdWidth];
+  side.edge_lanes.assign((side.feature_edges.size() + kFloatSimdWidth - 1) / kFloatSimdWidth, EdgeLanes{});
+  for (std::size_t number = 0; number < side.feature_edges.size(); ++number) {
+    EdgeLanes& lanes = side.edge_lanes[number / kFloatSimdWidth];
     const auto at = number % kFloatSimdWidth;
-    const auto [lane, k] = side.sharp[number];
+    const auto [lane, k] = side.feature_edges[number];
     const int corners = element(leaf.element[static_cast<std::size_t>(lane)]).corners;
     bool marked = false;
     for (int end = 0; end < 2; ++end) {
       const int corner = (k + end) % corners;
       for (int axis = 0; axis < 3; ++axis) {
-        lanes.now[end][axis][at] = side.places.now[corner][axis][lane];
-        lanes.end[end][axis][at] = side.places.end[corner][axis][lane];
+        lanes.now[end][axis][at] = side.corners.now[corner][axis][lane];
+        lanes.end[end][axis][at] = side.corners.end[corner][axis][lane];
       }
       const Index particle = leaf.particle[corner][lane];
       lanes.particle[end][at] = particle;
@@ -134,36 +136,36 @@ LaneBytes ProximitySearch::lanes_near(const Side& a, const Side& b, const Search
   return either(near, both(near_all, marked));
 }
 
-void ProximitySearch::append_corners(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
-                                     std::vector<ContactCandidate>& candidates) const {
+void ProximitySearch::append_vertices(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
+                                      std::vector<ContactCandidate>& candidates) const {
   const auto now = static_cast<float>(search.times.now);
   const auto end = static_cast<float>(search.times.end);
   const bool any_marked = b.leaf->any_marked();
   const float reach = reach_between(a, b);
-  for (const auto& [lane, k] : a.corners) {
+  for (const auto& [lane, k] : a.vertices) {
     if (near[static_cast<std::size_t>(lane)] == 0) continue;
     const bool is_marked = search.marked[static_cast<std::size_t>(a.leaf->particle[k][lane])] != 0;
     if (!any_marked && !is_marked) continue;
     const auto axes = [lane = lane](const Float8(&x)[3]) { return KineticAabb::Axes{x[0][lane], x[1][lane], x[2][lane]}; };
     const KineticAabb::Axes start = axes(a.leaf->corner[k]);
     const KineticAabb::Axes motion = axes(a.leaf->motion[k]);
-    MovingVertex corner;
-    corner.aside = a.leaf->radius[lane] + b.largest_radius;
-    corner.reach = reach + corner.aside;
+    MovingVertex vertex;
+    vertex.aside = a.leaf->radius[lane] + b.largest_radius;
+    vertex.reach = reach + vertex.aside;
     const KineticAabb& faces = is_marked ? b.leaf->bounds : b.leaf->marked_bounds;
-    if (are_apart({start, start, motion, motion}, faces, now, end, corner.reach)) continue;
-    corner.particle = a.leaf->particle[k][lane];
+    if (are_apart({start, start, motion, motion}, faces, now, end, vertex.reach)) continue;
+    vertex.particle = a.leaf->particle[k][lane];
     for (int axis = 0; axis < 3; ++axis) {
-      corner.now[axis] = a.places.now[k][axis][lane];
-      corner.end[axis] = a.places.end[k][axis][lane];
+      vertex.now[axis] = a.corners.now[k][axis][lane];
+      vertex.end[axis] = a.corners.end[k][axis][lane];
     }
-    LaneBytes met;
-    if (!find_faces(corner, *b.leaf, b.places, met)) continue;
+    LaneBytes hits;
+    if (!find_faces(vertex, *b.leaf, b.corners, hits)) continue;
     for (std::size_t other = 0; other < kFloatSimdWidth; ++other) {
-      if (met[other] == 0) continue;
+      if (hits[other] == 0) continue;
       const Index face = b.leaf->element[other];
       const auto& x = element(face).particles;
-      append_if_near({.stencil = {.particles = {corner.particle, x[0], x[1], x[2]}, .first_count = 1, .second_count = 3},
+      append_if_near({.stencil = {.particles = {vertex.particle, x[0], x[1], x[2]}, .first_count = 1, .second_count = 3},
                       .elements = {a.leaf->element[static_cast<std::size_t>(lane)], face}},
                      search, candidates);
     }
@@ -172,29 +174,29 @@ void ProximitySearch::append_corners(const Side& a, const Side& b, const LaneByt
 
 void ProximitySearch::append_edges(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
                                    std::vector<ContactCandidate>& candidates) const {
-  for (std::size_t own = 0; own < a.sharp.size(); ++own) {
-    if (near[static_cast<std::size_t>(a.sharp[own][0])] == 0) continue;
+  for (std::size_t own = 0; own < a.feature_edges.size(); ++own) {
+    if (near[static_cast<std::size_t>(a.feature_edges[own][0])] == 0) continue;
     append_edges_near(a, own, b, &a == &b ? own + 1 : 0, search, candidates);
   }
 }
 
 void ProximitySearch::append_edges_near(const Side& a, std::size_t own, const Side& b, std::size_t from, const Search& search,
                                         std::vector<ContactCandidate>& candidates) const {
-  const auto [lane, i] = a.sharp[own];
+  const auto [lane, i] = a.feature_edges[own];
   const MovingEdge edge =
-      edge_way(a.sharp_lanes[own / kFloatSimdWidth], static_cast<int>(own % kFloatSimdWidth), reach_between(a, b));
+      moving_edge(a.edge_lanes[own / kFloatSimdWidth], static_cast<int>(own % kFloatSimdWidth), reach_between(a, b));
   if (!edge.marked && !b.leaf->any_marked()) return;
   const KineticAabb& others = edge.marked ? b.leaf->bounds : b.leaf->marked_bounds;
   if (are_apart(a.leaf->lane_bounds(lane), others, static_cast<float>(search.times.now), static_cast<float>(search.times.end),
                 edge.reach))
     return;
-  for (std::size_t block = from / kFloatSimdWidth; block < b.sharp_lanes.size(); ++block) {
-    LaneBytes met;
-    if (!find_edges(edge, b.sharp_lanes[block], met)) continue;
+  for (std::size_t block = from / kFloatSimdWidth; block < b.edge_lanes.size(); ++block) {
+    LaneBytes hits;
+    if (!find_edges(edge, b.edge_lanes[block], hits)) continue;
     for (std::size_t k = 0; k < kFloatSimdWidth; ++k) {
       const std::size_t other = kFloatSimdWidth * block + k;
-      if (met[k] == 0 || other < from) continue;
-      const auto [other_lane, other_edge] = b.sharp[other];
+      if (hits[k] == 0 || other < from) continue;
+      const auto [other_lane, other_edge] = b.feature_edges[other];
       const Index first = a.leaf->element[static_cast<std::size_t>(lane)];
       const Index second = b.leaf->element[static_cast<std::size_t>(other_lane)];
       const auto x = ends_of(element(first), i);
@@ -246,8 +248,9 @@ double ProximitySearch::largest_displacement(const ContactStencil& stencil, cons
 }
 
 float ProximitySearch::reach_between(const Side& a, const Side& b) const {
-  return static_cast<float>(largest_gap_ +
-                            std::min(margin_, margin_of_step(largest_gap_, double{std::max(a.longest_way, b.longest_way)})));
+  return static_cast<float>(
+      largest_gap_ +
+      std::min(margin_, margin_of_step(largest_gap_, double{std::max(a.largest_displacement, b.largest_displacement)})));
 }
 
 // Centers move linearly, so that the gap along a fixed direction is smallest at one end of the interval.

@@ -1,6 +1,6 @@
-// The corners before faces, and the sharp edges, that contact keeps an eye on.
+// Proximity search: vertex-face pairs and pairs of feature edges within contact's reach.
 //
-// Nothing passes whatever this finds: it is for response, which wants one contact where surfaces meet, not all that are near.
+// Its result serves contact response, which needs one contact where surfaces touch. Non-penetration does not depend on it.
 #pragma once
 
 #include "collision/element_bvh/edge_edge_filter.h"
@@ -14,27 +14,28 @@ namespace sprung {
 
 class ProximitySearch {
  public:
-  /// Contact looks `margin` [m] beyond its gap. Within a body, what is near each other at `rest` [m], 3 x n, keeps only a part of
-  /// that distance as gap and margin, so that neighbours do not push each other. Keeps references to all.
-  ProximitySearch(const CollisionSurface& surface, const SurfaceTopology& features, const FeatureEdges& sharp,
+  /// Contacts are found up to `margin` [m] beyond their gap. Within a body, gap and margin are limited to a fraction of the
+  /// distance at `rest` [m], 3 x n, so that neighbours do not push each other. Keeps references to all arguments.
+  ProximitySearch(const CollisionSurface& surface, const SurfaceTopology& topology, const FeatureEdges& feature_edges,
                   const ElementBvh& tree, const Points& rest, double margin);
 
-  /// All with a particle that is marked that may come within contact's reach from now to the end while particles are in their
-  /// balls, those that the tree bounds: corners above faces, and pairs of sharp edges. The same for any number of threads.
+  /// Candidates with a marked particle that may come within their reach between now and the end while particles are in their balls:
+  /// vertices above faces, and pairs of feature edges. Requires that the tree bounds these balls. The order does not depend on the
+  /// number of threads.
   [[nodiscard]] std::vector<ContactCandidate> find_candidates(const VertexBounds& balls, const std::vector<char>& marked,
                                                               HorizonTimes times);
 
  private:
-  /// A leaf of the tree, with what of it contact looks at.
+  /// A leaf of the tree and its features.
   struct Side {
     const ElementBvhLeaf* leaf = nullptr;
-    std::vector<std::array<int, 2>> corners;  ///< lane and corner of those that the leaf's elements own
-    LeafBounds places{};
-    std::vector<std::array<int, 2>> edges;  ///< lane and edge of those
-    std::vector<std::array<int, 2>> sharp;  ///< those of them that are
-    std::vector<EdgeLanes> sharp_lanes{};   ///< the same, eight by eight
-    float largest_radius = 0.0F;            ///< of its balls [m]
-    float longest_way = 0.0F;               ///< of its particles in a step, about [m]
+    std::vector<std::array<int, 2>> vertices;  ///< lane and corner of each vertex that the leaf's elements own
+    LeafCorners corners{};
+    std::vector<std::array<int, 2>> edges;          ///< lane and number of each edge that they own
+    std::vector<std::array<int, 2>> feature_edges;  ///< the feature edges among them
+    std::vector<EdgeLanes> edge_lanes{};            ///< the same edges, eight at a time
+    float largest_radius = 0.0F;                    ///< of the leaf's balls [m]
+    float largest_displacement = 0.0F;              ///< of its particles in a step, estimated [m]
   };
   struct Search {
     const VertexBounds& balls;
@@ -45,13 +46,13 @@ class ProximitySearch {
   void prepare_sides(const std::vector<ElementBvh::LeafPair>& pairs, const Search& search);
   void prepare(Side& side, const Search& search) const;
   void prepare_edges(Side& side, const Search& search) const;
-  /// Double4 of side `a` that may have something near side `b`, with one of both marked.
+  /// Lanes of `a` that may be near a lane of `b` such that one of the two is marked.
   [[nodiscard]] LaneBytes lanes_near(const Side& a, const Side& b, const Search& search) const;
-  void append_corners(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
-                      std::vector<ContactCandidate>& candidates) const;
+  void append_vertices(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
+                       std::vector<ContactCandidate>& candidates) const;
   void append_edges(const Side& a, const Side& b, const LaneBytes& near, const Search& search,
                     std::vector<ContactCandidate>& candidates) const;
-  /// Those that come near the edge of side `a` with this number, from a number of side `b` on.
+  /// Candidates of one feature edge of `a` with those of `b` from number `from` on.
   void append_edges_near(const Side& a, std::size_t own, const Side& b, std::size_t from, const Search& search,
                          std::vector<ContactCandidate>& candidates) const;
   void append_if_near(ContactCandidate candidate, const Search& search, std::vector<ContactCandidate>& candidates) const;
@@ -67,8 +68,8 @@ class ProximitySearch {
   [[nodiscard]] double thickness(Index number) const { return surface_.thickness[element(number).particles[0]]; }
 
   const CollisionSurface& surface_;
-  const SurfaceTopology& features_;
-  const FeatureEdges& sharp_;
+  const SurfaceTopology& topology_;
+  const FeatureEdges& feature_edges_;
   const ElementBvh& tree_;
   const Points& rest_;
   double margin_;

@@ -48,8 +48,8 @@ Outcomes PairTruncation::clip(const Points& before, Points& after) {
 
 Outcomes PairTruncation::clip_constrained(const Points& before, Points& after) {
   const Points targets = after;
-  carriers_.carried = ObstacleMotion(regions_).displacements(before);
-  constrained_ = pairs_.hold(before, targets, carriers_);
+  displacements_.moved = ObstacleMotion(regions_).displacements(before);
+  constrained_ = pairs_.constrain(before, targets, displacements_);
   return VertexTruncation(regions_, &pairs_).clip(constrained_, {before, targets}, after);
 }
 
@@ -70,8 +70,8 @@ bool PairTruncation::anchor_infeasible(const Outcomes& outcomes, const Points& b
   for (const Index i : blocked_by_obstacles(outcomes)) {
     const KinematicAnchor anchor = ObstacleMotion(regions_).anchor(i, before.col(i), after.col(i));
     const auto found = find_anchor(i);
-    if (found == carriers_.anchors.end() || found->particle != i) {
-      carriers_.anchors.insert(found, anchor);
+    if (found == displacements_.anchors.end() || found->particle != i) {
+      displacements_.anchors.insert(found, anchor);
     } else if (anchor.moves() && !found->moves()) {
       *found = anchor;
     } else {
@@ -88,7 +88,7 @@ void PairTruncation::accept_anchored(const Points& after, Outcomes& outcomes) {
   std::vector<Index> anchored;
   for (const Index i : blocked_by_obstacles(outcomes)) {
     const auto anchor = find_anchor(i);
-    if (anchor != carriers_.anchors.end() && anchor->particle == i && anchor->surface) anchored.push_back(i);
+    if (anchor != displacements_.anchors.end() && anchor->particle == i && anchor->surface) anchored.push_back(i);
   }
   if (anchored.empty()) return;
   regions_.renew_around(anchored, {after, after, true});
@@ -125,7 +125,7 @@ std::vector<Index> PairTruncation::blocked_by_obstacles(const Outcomes& outcomes
 }
 
 std::vector<KinematicAnchor>::iterator PairTruncation::find_anchor(Index particle) {
-  std::vector<KinematicAnchor>& anchors = carriers_.anchors;
+  std::vector<KinematicAnchor>& anchors = displacements_.anchors;
   return std::lower_bound(anchors.begin(), anchors.end(), particle,
                           [](const KinematicAnchor& a, Index b) { return a.particle < b; });
 }

@@ -15,7 +15,7 @@ class PairTruncation {
   PairTruncation(ObstacleSafeRegions& regions, PairSeparation& pairs, const std::vector<Index>& movable);
 
   /// Clips `after` [m], 3 x n, which is admissible before obstacles, to positions that are admissible before obstacles and for all
-  /// pairs. Returns the outcomes of the movable particles. Requires PairSeparation::begin_step() or begin_part() with the same
+  /// pairs. Returns the outcomes of the movable particles. Requires PairSeparation::begin_step() or begin_substep() with the same
   /// `before`.
   ///
   /// Where the two exclude each other, regions are renewed at `before`, and the infeasible particles become anchors: their motion
@@ -44,7 +44,7 @@ class PairTruncation {
   const std::vector<Index>& movable_;
   std::vector<Index> constrained_;  ///< particles of pairs that would cross, ascending
   std::vector<Index> unplaced_;     ///< infeasible before obstacles alone, ascending
-  ParticleDisplacements carriers_;
+  ParticleDisplacements displacements_;
 };
 
 }  // namespace sprung

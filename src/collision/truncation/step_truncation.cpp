@@ -117,7 +117,7 @@ void StepTruncation::Implementation::separate_pairs(const Points& before, Points
   std::vector<Index> particles = obstacle_truncation.all_movable({before, after});
   const Points allowed = after;
   const auto record_moved = [&] {
-    const std::vector<Index>& moved = pairs->taken_along();
+    const std::vector<Index>& moved = pairs->anchored();
     truncation.moved_with_obstacles.insert(truncation.moved_with_obstacles.end(), moved.begin(), moved.end());
   };
   Outcomes outcomes = PairTruncation(regions, *pairs, particles).clip(before, after);
@@ -130,7 +130,7 @@ void StepTruncation::Implementation::separate_pairs(const Points& before, Points
     truncation.moved_with_obstacles.clear();
     outcomes = clip_in_substeps(environment, {before, allowed}, after, [&](const StepPaths& paths, Points& x) {
       const ClippedSubstep before_obstacles = obstacle_truncation.clip_substep(particles, paths, x);
-      pairs->begin_part(paths.from, x);
+      pairs->begin_substep(paths.from, x);
       ClippedSubstep clipped{PairTruncation(regions, *pairs, particles).clip(paths.from, x), before_obstacles.path_checked};
       record_moved();
       const std::vector<Index> pins = pairs->passing_pins();
@@ -146,7 +146,7 @@ void StepTruncation::Implementation::separate_pairs(const Points& before, Points
     if (outcomes[n] == Outcome::infeasible) infeasible.push_back(particles[n]);
   }
   const bool stops = count(outcomes, Outcome::free) < static_cast<Index>(outcomes.size());
-  if (stops && !truncation.subdivided) pairs->append_meetings(before, truncation.body_contacts);
+  if (stops && !truncation.subdivided) pairs->append_closest_contacts(before, truncation.body_contacts);
   std::sort(infeasible.begin(), infeasible.end());
   truncation.infeasible = static_cast<Index>(std::unique(infeasible.begin(), infeasible.end()) - infeasible.begin());
 }

@@ -50,7 +50,7 @@ Outcome VertexTruncation::clip(Index particle, const StepPaths& paths, Points& p
   const Vector3 target = paths.to.col(particle);
   auto&& position = positions.col(particle);
   if (pairs_ != nullptr && pairs_->passes(particle)) {
-    position = pairs_->safe_place(particle);
+    position = pairs_->safe_position(particle);
     return Outcome::infeasible;
   }
   if (allows(particle, target)) {
@@ -85,7 +85,7 @@ bool VertexTruncation::allows(Index particle, const Vector3& position) const {
 std::vector<Vector3> VertexTruncation::safe_positions(Index particle, const StepPaths& paths) const {
   std::vector<Vector3> safe;
   if (pairs_ != nullptr) {
-    safe.push_back(pairs_->safe_place(particle));
+    safe.push_back(pairs_->safe_position(particle));
   } else if (!paths.obstacles_rest) {
     ObstacleMotion(regions_).append_moved(particle, paths.from.col(particle), safe);
   }

@@ -1,6 +1,6 @@
-// What turning planes are said to keep apart does not cross on its way, and what gives way is kept apart.
+// Sides that rotating planes separate do not cross, and relaxation separates sides.
 #include "collision/impact_zones/half_space_relaxation.h"
-#include "collision/meetings.h"
+#include "collision/nearby_sides.h"
 
 #include <gtest/gtest.h>
 
@@ -11,25 +11,25 @@
 namespace sprung {
 namespace {
 
-using test::cross_on_the_way;
-using test::Meeting;
+using test::cross_in_between;
+using test::NearbySides;
 using test::Random;
 using test::random_ends;
-using test::random_meeting;
+using test::random_nearby_sides;
 
-constexpr SeparationTolerance kRule{.thickness_kept = 1e-3, .clearance = 1e-9};
+constexpr SeparationTolerance kTolerance{.thickness_kept = 1e-3, .clearance = 1e-9};
 
-TEST(HalfSpaceRelaxation, WhatItsPlanesKeepApartDoesNotCrossOnTheWay) {
+TEST(HalfSpaceRelaxation, SidesThatAPlaneSeparatesDoNotCross) {
   Random random(1);
   int kept = 0;
   int crossed = 0;
   const std::vector<char> pinned(6, 0);
   for (int n = 0; n < 20000; ++n) {
-    const Meeting meeting = random_meeting(3, random);
-    const Points ends = random_ends(meeting.before, random.between(0.0, 0.5), std::pow(10.0, random.between(-5.0, 0.3)), random);
-    const bool crosses = cross_on_the_way(meeting.before, ends);
+    const NearbySides sides = random_nearby_sides(3, random);
+    const Points ends = random_ends(sides.before, random.between(0.0, 0.5), std::pow(10.0, random.between(-5.0, 0.3)), random);
+    const bool crosses = cross_in_between(sides.before, ends);
     crossed += crosses ? 1 : 0;
-    if (HalfSpaceRelaxation(meeting.before, pinned, kRule).passes(meeting.pair, ends)) continue;
+    if (HalfSpaceRelaxation(sides.before, pinned, kTolerance).passes(sides.pair, ends)) continue;
     ++kept;
     ASSERT_FALSE(crosses) << n;
   }
@@ -37,23 +37,24 @@ TEST(HalfSpaceRelaxation, WhatItsPlanesKeepApartDoesNotCrossOnTheWay) {
   EXPECT_GT(crossed, 1000);
 }
 
-// With the angle t, axis u, normal n and a way d from side to side the gap midway is cos(t) n.d + (1 - cos(t)) (n.u) (u.d), of
-// which the last is at most t^2 |d| / 4, with |d| < 3. A plane of which the normal stays would need a gap of t |d|.
-TEST(HalfSpaceRelaxation, WhatTurnsTogetherDoesNotPass) {
+// For the angle t, axis u, normal n and a vector d from side to side, the middle coefficient of the gap is
+// cos(t) n.d + (1 - cos(t)) (n.u) (u.d). Its last term is at most t^2 |d| / 4, with |d| < 3. A plane with a constant normal would
+// need a gap of t |d|.
+TEST(HalfSpaceRelaxation, SidesThatRotateTogetherDoNotPass) {
   Random random(2);
   for (const int side : {2, 3}) {
     const std::vector<char> pinned(static_cast<std::size_t>(2 * side), 0);
     for (int n = 0; n < 1000; ++n) {
-      const Meeting meeting = random_meeting(side, random);
-      const double gap = heights_at(meeting.pair, meeting.before).gap();
-      const Points ends = random_ends(meeting.before, std::min(0.5, std::sqrt(gap)), 0.0, random);
-      EXPECT_FALSE(HalfSpaceRelaxation(meeting.before, pinned, kRule).passes(meeting.pair, ends)) << side << ", " << n;
+      const NearbySides sides = random_nearby_sides(side, random);
+      const double gap = heights_at(sides.pair, sides.before).gap();
+      const Points ends = random_ends(sides.before, std::min(0.5, std::sqrt(gap)), 0.0, random);
+      EXPECT_FALSE(HalfSpaceRelaxation(sides.before, pinned, kTolerance).passes(sides.pair, ends)) << side << ", " << n;
     }
   }
 }
 
-// A particle between the pins of two sheets that close in on it from both sides, but leave it room.
-TEST(HalfSpaceRelaxation, AParticleBetweenPinsGoesWhereTheyLeaveRoom) {
+// The pins of two sheets approach a particle from both sides, but leave it room.
+TEST(HalfSpaceRelaxation, AParticleBetweenPinsMovesToWhereTheyLeaveRoom) {
   Points before(3, 7);
   before << 0.0, -1.0, 1.0, 0.0, -1.0, 1.0, 0.0,  //
       0.5, 0.5, 0.5, -0.5, -0.5, -0.5, 0.45,      //
@@ -64,10 +65,10 @@ TEST(HalfSpaceRelaxation, AParticleBetweenPinsGoesWhereTheyLeaveRoom) {
   std::vector<ContactStencil> pairs(2);
   pairs[0] = {.particles = {6, 0, 1, 2}, .first_count = 1, .second_count = 3, .normal = -Vector3::UnitY()};
   pairs[1] = {.particles = {6, 3, 4, 5}, .first_count = 1, .second_count = 3, .normal = Vector3::UnitY()};
-  const HalfSpaceRelaxation way(before, pinned, kRule);
-  ASSERT_TRUE(way.passes(pairs[0], ends));
-  EXPECT_EQ(way.move_apart(pairs, ends), std::vector<Index>{6});
-  for (const ContactStencil& pair : pairs) EXPECT_FALSE(way.passes(pair, ends));
+  const HalfSpaceRelaxation relaxation(before, pinned, kTolerance);
+  ASSERT_TRUE(relaxation.passes(pairs[0], ends));
+  EXPECT_EQ(relaxation.move_apart(pairs, ends), std::vector<Index>{6});
+  for (const ContactStencil& pair : pairs) EXPECT_FALSE(relaxation.passes(pair, ends));
   EXPECT_LT(ends(1, 6), -0.3);
   EXPECT_GT(ends(1, 6), -0.5);
 }
@@ -80,12 +81,13 @@ TEST(HalfSpaceRelaxation, PinsAreNotMoved) {
   Points ends = before;
   ends(1, 0) = -0.1;
   const std::vector<char> pinned(4, 1);
-  const std::vector<ContactStencil> pairs{{.particles = {0, 1, 2, 3}, .first_count = 1, .second_count = 3, .normal = Vector3::UnitY()}};
-  const HalfSpaceRelaxation way(before, pinned, kRule);
-  const Points asked = ends;
-  EXPECT_TRUE(way.move_apart(pairs, ends).empty());
-  EXPECT_EQ(ends, asked);
-  EXPECT_TRUE(way.passes(pairs[0], ends));
+  const std::vector<ContactStencil> pairs{
+      {.particles = {0, 1, 2, 3}, .first_count = 1, .second_count = 3, .normal = Vector3::UnitY()}};
+  const HalfSpaceRelaxation relaxation(before, pinned, kTolerance);
+  const Points requested = ends;
+  EXPECT_TRUE(relaxation.move_apart(pairs, ends).empty());
+  EXPECT_EQ(ends, requested);
+  EXPECT_TRUE(relaxation.passes(pairs[0], ends));
 }
 
 }  // namespace

@@ -6,28 +6,28 @@
 namespace sprung {
 namespace {
 
-// Each term is of the size 1, and there are less than 64.
+// Fewer than 64 terms of size 1.
 constexpr double kRounding = 64 * 0x1p-52;
 
-TEST(MovedPlane, WhatGoesAlongIsApartByTheVolumeTimesTheGap) {
+TEST(MovedPlane, PointsThatFollowTheMotionKeepTheirHeightTimesTheVolume) {
   test::Random random(1);
   for (int n = 0; n < 1000; ++n) {
     Matrix3 F = Eigen::AngleAxisd(random.between(0.0, 1.5), random.direction()).toRotationMatrix();
     for (int axis = 0; axis < 3; ++axis) F.col(axis) += random.between(0.0, 0.3) * random.direction();
     const Vector3 normal = random.direction();
-    const Vector3 way = random.direction();
+    const Vector3 offset = random.direction();
     const MovedPlane plane = moved_plane(normal, F);
     for (const double t : {0.0, 0.1, 0.5, 0.8, 1.0}) {
       const Matrix3 A = (1.0 - t) * Matrix3::Identity() + t * F;
       const Vector3 at_time = (1.0 - t) * (1.0 - t) * plane.begin + 2.0 * t * (1.0 - t) * plane.middle + t * t * plane.end;
-      EXPECT_NEAR(at_time.dot(A * way), A.determinant() * normal.dot(way), kRounding);
+      EXPECT_NEAR(at_time.dot(A * offset), A.determinant() * normal.dot(offset), kRounding);
     }
   }
 }
 
-TEST(MovedPlane, ATranslationLeavesIt) {
+TEST(MovedPlane, IsConstantUnderATranslation) {
   const MovedPlane plane = moved_plane(Vector3::UnitY(), Matrix3::Identity());
-  EXPECT_TRUE(plane.stays());
+  EXPECT_TRUE(plane.is_constant());
   EXPECT_EQ(plane.middle, plane.begin);
 }
 

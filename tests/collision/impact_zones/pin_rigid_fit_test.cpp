@@ -1,4 +1,4 @@
-// The motion with which pins take along what hangs on them.
+// Rigid fit to the displacements of pins.
 #include "collision/impact_zones/pin_rigid_fit.h"
 #include "collision/sample_meshes.h"
 
@@ -13,15 +13,15 @@ namespace {
 
 using test::Random;
 
-std::vector<PinDisplacement> ways(const RigidTransform& motion, const std::vector<Vector3>& pins) {
-  std::vector<PinDisplacement> ways;
-  for (const Vector3& pin : pins) ways.push_back({pin, motion * pin});
-  return ways;
+std::vector<PinDisplacement> displacements_of(const RigidTransform& motion, const std::vector<Vector3>& pins) {
+  std::vector<PinDisplacement> displacements;
+  for (const Vector3& pin : pins) displacements.push_back({pin, motion * pin});
+  return displacements;
 }
 
-RigidTransform random_motion(Random& random, double most_angle) {
+RigidTransform random_motion(Random& random, double max_angle) {
   RigidTransform motion = RigidTransform::Identity();
-  motion.linear() = Eigen::AngleAxisd(random.between(0.0, most_angle), random.direction()).toRotationMatrix();
+  motion.linear() = Eigen::AngleAxisd(random.between(0.0, max_angle), random.direction()).toRotationMatrix();
   motion.translation() = random.direction();
   return motion;
 }
@@ -29,7 +29,7 @@ RigidTransform random_motion(Random& random, double most_angle) {
 // Coordinates up to 2 and some twenty roundings of 2^-53 each.
 constexpr double kRounding = 0x1p-47;
 
-TEST(PinMotion, TakesPinsThatMoveRigidlyWhereTheyGo) {
+TEST(PinRigidFit, MovesRigidPinsToTheirTargets) {
   Random random(1);
   const std::vector<std::vector<Vector3>> sets = {{{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}},
                                                   {{0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}, {1.0, 0.0, 0.0}},
@@ -37,17 +37,17 @@ TEST(PinMotion, TakesPinsThatMoveRigidlyWhereTheyGo) {
                                                   {{0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}, {1.0, 0.2, 0.0}, {0.3, 0.8, 0.5}}};
   for (const std::vector<Vector3>& pins : sets) {
     for (int k = 0; k < 100; ++k) {
-      const std::vector<PinDisplacement> pin_ways = ways(random_motion(random, 1.5), pins);
-      const auto motion = common_turn(pin_ways);
+      const std::vector<PinDisplacement> moved_pins = displacements_of(random_motion(random, 1.5), pins);
+      const auto motion = rigid_motion_of(moved_pins);
       ASSERT_TRUE(motion) << pins.size();
-      for (const PinDisplacement& pin : pin_ways) EXPECT_LT((*motion * pin.from - pin.to).norm(), kRounding) << pins.size();
+      for (const PinDisplacement& pin : moved_pins) EXPECT_LT((*motion * pin.from - pin.to).norm(), kRounding) << pins.size();
       EXPECT_NEAR(motion->linear().determinant(), 1.0, kRounding);
     }
   }
 }
 
-// Rounding of 2^-53 chooses the turn about the strip's line: by so much more as the strip is narrower than long.
-TEST(PinMotion, TakesPinsOfNarrowStripsAlongToRounding) {
+// The error of the rotation about the strip's long axis grows with the strip's length over its width.
+TEST(PinRigidFit, MovesNarrowStripsToTheirTargetsUpToRounding) {
   Random random(3);
   for (const double width : {1e-1, 1e-2, 1e-3, 1e-4, 1e-6}) {
     std::vector<Vector3> pins;
@@ -55,40 +55,42 @@ TEST(PinMotion, TakesPinsOfNarrowStripsAlongToRounding) {
       for (const double side : {-0.5, 0.5}) pins.emplace_back(k / 23.0, side * width, 0.0);
     }
     for (int k = 0; k < 50; ++k) {
-      const std::vector<PinDisplacement> pin_ways = ways(random_motion(random, 0.3), pins);
-      const auto motion = common_turn(pin_ways);
+      const std::vector<PinDisplacement> moved_pins = displacements_of(random_motion(random, 0.3), pins);
+      const auto motion = rigid_motion_of(moved_pins);
       ASSERT_TRUE(motion) << width;
-      for (const PinDisplacement& pin : pin_ways) {
+      for (const PinDisplacement& pin : moved_pins) {
         EXPECT_LT((*motion * pin.from - pin.to).norm(), std::min(kRounding / width, width)) << width;
       }
     }
   }
 }
 
-TEST(PinMotion, TurnsNoMoreThanPinsAskFor) {
+TEST(PinRigidFit, RotatesByTheSmallestAngleThatFits) {
   Random random(2);
   const std::vector<Vector3> pins = {{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}};
   const Vector3 along = (pins[1] - pins[0]).normalized();
   for (int k = 0; k < 100; ++k) {
-    const RigidTransform turned = random_motion(random, 1.5);
-    const auto motion = common_turn(ways(turned, pins));
+    const RigidTransform rotation = random_motion(random, 1.5);
+    const auto motion = rigid_motion_of(displacements_of(rotation, pins));
     ASSERT_TRUE(motion);
-    const double least = std::acos(std::min(1.0, along.dot(turned.linear() * along)));
+    const double least = std::acos(std::min(1.0, along.dot(rotation.linear() * along)));
     EXPECT_NEAR(Eigen::AngleAxisd(motion->linear()).angle(), least, 1e-7) << "the arc cosine loses half of the digits";
   }
 }
 
-TEST(PinMotion, OfPinsThatRestOrGoTheSameWayIsNone) {
-  EXPECT_FALSE(common_turn(ways(RigidTransform::Identity(), {{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}})));
+TEST(PinRigidFit, IsEmptyForPinsAtRestOrInTranslation) {
+  EXPECT_FALSE(rigid_motion_of(displacements_of(RigidTransform::Identity(), {{1.0, 0.5, -0.3}, {-0.2, 0.4, 0.6}})));
   RigidTransform shift = RigidTransform::Identity();
   shift.translation() = Vector3(0.25, 0.5, -0.125);
-  EXPECT_FALSE(common_turn(ways(shift, {{1.0, 0.5, -0.25}, {-0.25, 0.5, 0.75}})));
+  EXPECT_FALSE(rigid_motion_of(displacements_of(shift, {{1.0, 0.5, -0.25}, {-0.25, 0.5, 0.75}})));
 }
 
-TEST(PinMotion, OfPinsThatGoWaysOfTheirOwnIsNone) {
-  // They pass each other, and one goes on alone.
-  EXPECT_FALSE(common_turn(std::vector<PinDisplacement>{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {-0.5, 0.0, 0.0}}}));
-  EXPECT_FALSE(common_turn(std::vector<PinDisplacement>{{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {1.5, 0.0, 0.0}}}));
+TEST(PinRigidFit, IsEmptyForPinsThatMoveIndependently) {
+  // Two pins pass each other; one of two pins moves.
+  EXPECT_FALSE(
+      rigid_motion_of(std::vector<PinDisplacement>{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {-0.5, 0.0, 0.0}}}));
+  EXPECT_FALSE(
+      rigid_motion_of(std::vector<PinDisplacement>{{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}, {1.5, 0.0, 0.0}}}));
 }
 
 }  // namespace

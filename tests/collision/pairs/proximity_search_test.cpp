@@ -49,8 +49,8 @@ class Crumpled {
     tree_ = std::make_unique<ElementBvh>(*surface_, network_.positions);
     balls_ = std::make_unique<VertexBounds>(std::vector<double>(static_cast<std::size_t>(network_.count()), kRadius));
     for (Index i = 0; i < network_.count(); ++i) {
-      const Vector3 place = network_.positions.col(i) + random_.between(0.0, 2.0 * kEdge) * random_.direction();
-      balls_->place(i, place, place + random_.between(0.0, 0.03 * kEdge) * random_.direction());
+      const Vector3 position = network_.positions.col(i) + random_.between(0.0, 2.0 * kEdge) * random_.direction();
+      balls_->reset(i, position, position + random_.between(0.0, 0.03 * kEdge) * random_.direction());
     }
     mark_elements(all());
     tree_->bound(*balls_, all_of(0), marked_elements_, kTimes);

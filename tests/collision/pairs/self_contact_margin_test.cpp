@@ -28,11 +28,11 @@ SelfNetwork sheet_and_particle(double height) {
 std::size_t contacts(double height, double fall) {
   const SelfNetwork network = sheet_and_particle((height + fall) * kGap);
   const CollisionSurface surface = network.surface(kGap);
-  PairSeparation regions(surface, network.positions, 0.5 * kGap);
+  PairSeparation separation(surface, network.positions, 0.5 * kGap);
   Points after = network.positions;
   after(1, network.count() - 1) = height * kGap;
   std::vector<Contact> found;
-  regions.begin_step(network.positions, after, found);
+  separation.begin_step(network.positions, after, found);
   return found.size();
 }
 
@@ -60,16 +60,16 @@ TEST(SelfContactMargin, GrowsWithTheMotionUpToWhatIsAsked) {
 template <class Go, class Distance>
 void expect_contact_in_time(const SelfNetwork& network, const Go& go, const Distance& distance) {
   const CollisionSurface surface = network.surface(kGap);
-  PairSeparation regions(surface, network.positions, 0.5 * kGap);
+  PairSeparation separation(surface, network.positions, 0.5 * kGap);
   Points x = network.positions;
   for (int step = 0; distance(x) > kGap; ++step) {
     Points targets = go(step, x);
     std::vector<Contact> found;
-    regions.begin_step(x, targets, found);
+    separation.begin_step(x, targets, found);
     if (distance(targets) < kGap) {
       EXPECT_EQ(found.size(), 1U) << "in step " << step << ", from " << distance(x);
     }
-    regions.hold(x, targets);
+    separation.constrain(x, targets);
     x = targets;
   }
 }
@@ -236,15 +236,15 @@ TEST(SelfContactMargin, WhatPassesLedThereIsToldOf) {
   const Points above = network.positions;
   network.positions(1, led) = 4.0 * kGap;
   const CollisionSurface surface = network.surface(kGap);
-  PairSeparation regions(surface, network.positions, 0.5 * kGap);
+  PairSeparation separation(surface, network.positions, 0.5 * kGap);
   std::vector<Contact> found;
-  regions.begin_step(network.positions, network.positions, found);
-  regions.hold(network.positions, above);
+  separation.begin_step(network.positions, network.positions, found);
+  separation.constrain(network.positions, above);
   ASSERT_TRUE(found.empty());
   Points targets = above;
   targets(1, led) = 0.9 * kGap;
   targets(0, led + 1) += 1.0;
-  regions.begin_step(above, targets, found);
+  separation.begin_step(above, targets, found);
   EXPECT_EQ(found.size(), 1U);
 }
 
@@ -253,14 +253,14 @@ TEST(SelfContactMargin, WhatStayedIsToldOfOnce) {
   SelfNetwork network = sheet_and_particle(100.0 * kGap);
   network.add_rope(1, {0.0123, 0.9 * kGap, 0.0171}, {0.011, 0.0, 0.004});
   const CollisionSurface surface = network.surface(kGap);
-  PairSeparation regions(surface, network.positions, 0.5 * kGap);
+  PairSeparation separation(surface, network.positions, 0.5 * kGap);
   std::vector<Contact> found;
-  regions.begin_step(network.positions, network.positions, found);
+  separation.begin_step(network.positions, network.positions, found);
   EXPECT_EQ(found.size(), 2U);
   Points targets = network.positions;
   targets(0, network.count() - 1) += 0.5 * kGap;
   found.clear();
-  regions.begin_step(network.positions, targets, found);
+  separation.begin_step(network.positions, targets, found);
   EXPECT_EQ(found.size(), 2U);
 }
 

@@ -1,4 +1,4 @@
-// Two triangles, or two segments, near each other, where they go in a step, and whether they cross on the way by brute force.
+// Two triangles or two segments near each other, their ends in a step, and a brute-force check whether they cross in between.
 #pragma once
 
 #include "collision/pairs/contact_stencil.h"
@@ -9,29 +9,29 @@
 
 namespace sprung::test {
 
-/// Two triangles, or two segments, a gap of up to a hundredth of their size apart.
-struct Meeting {
+/// Two triangles or two segments with a gap of up to a hundredth of their size.
+struct NearbySides {
   ContactStencil pair;
   Points before;
 };
 
-inline Meeting random_meeting(int side, Random& random) {
+inline NearbySides random_nearby_sides(int side, Random& random) {
   const Vector3 normal = random.direction();
   const Vector3 u = normal.unitOrthogonal();
   const Vector3 v = normal.cross(u);
   const double gap = std::pow(10.0, random.between(-7.0, -2.0));
-  Meeting meeting{.pair = {.first_count = side, .second_count = side}, .before = Points(3, 2 * side)};
+  NearbySides sides{.pair = {.first_count = side, .second_count = side}, .before = Points(3, 2 * side)};
   for (int k = 0; k < 2 * side; ++k) {
     const double away = k == 0 || k == side ? 0.0 : random.between(0.0, 0.2);
     const double height = k < side ? 0.5 * gap + away : -0.5 * gap - away;
-    meeting.before.col(k) = height * normal + random.between(-1.0, 1.0) * u + random.between(-1.0, 1.0) * v;
-    meeting.pair.particles[static_cast<std::size_t>(k)] = k;
+    sides.before.col(k) = height * normal + random.between(-1.0, 1.0) * u + random.between(-1.0, 1.0) * v;
+    sides.pair.particles[static_cast<std::size_t>(k)] = k;
   }
-  meeting.pair.normal = separating_direction(meeting.pair, meeting.before);
-  return meeting;
+  sides.pair.normal = separating_direction(sides.pair, sides.before);
+  return sides;
 }
 
-/// They turn by `angle` about any axis, and each goes up to `stray` [m] elsewhere.
+/// `before`, rotated by `angle` about a random axis, with a random displacement of up to `stray` [m] for each particle.
 inline Points random_ends(const Points& before, double angle, double stray, Random& random) {
   const Matrix3 turn = Eigen::AngleAxisd(angle, random.direction()).toRotationMatrix();
   Points ends = turn * before;
@@ -39,8 +39,8 @@ inline Points random_ends(const Points& before, double angle, double stray, Rand
   return ends;
 }
 
-/// Whether an edge of one meets the other triangle at one of many times on the way.
-inline bool cross_on_the_way(const Points& before, const Points& ends) {
+/// Whether an edge of one triangle intersects the other at one of many times of the step.
+inline bool cross_in_between(const Points& before, const Points& ends) {
   constexpr int times = 64;
   for (int k = 0; k <= times; ++k) {
     const double time = static_cast<double>(k) / times;
