@@ -73,7 +73,6 @@ const std::vector<Library> kLibraries = {
     {"fcl/", {"collision"}},
     {"ccd/", {"collision"}},
     {"nlohmann/", {"geometry", "scene", "output"}},
-    {"valijson/", {"scene"}},
     {"CLI/", {"app"}},
     {"fmt/", {"app"}},
     {"sanitizer/", {"base"}},

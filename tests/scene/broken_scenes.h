@@ -33,6 +33,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"SelfContactIsANumber", {"bodies.banner.self_contact=1"}, "bodies.banner.self_contact", "must be true or false"},
       {"BodyContactIsText", {"bodies.banner.body_contact=\"off\""}, "bodies.banner.body_contact", "must be true or false"},
       {"SelfContactByPenalty", {"bodies.banner.self_contact=true", "contact={\"response\":\"penalty\",\"stiffness\":1,\"damping\":1}"}, "bodies.banner.self_contact", "needs contact.response \"projection\"", false},
+      {"EmptySchema", {"$schema=\"\""}, "$schema", "must not be empty"},
       {"MissingDuration", {"duration=null"}, "duration", "is missing; it is required"},
       {"MissingBodies", {"bodies=null"}, "bodies", "is missing"},
       {"NoBodies", {"bodies={}"}, "bodies", "must hold at least one entry"},

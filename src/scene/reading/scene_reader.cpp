@@ -2,7 +2,6 @@
 
 #include "scene/json/overrides.h"
 #include "scene/reading/scene_rules.h"
-#include "scene/reading/scene_schema.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -28,20 +27,6 @@ std::string read_file(const std::filesystem::path& file) {
 
 void throw_if_any(std::vector<Problem> problems) {
   if (!problems.empty()) throw InputError(std::move(problems));
-}
-
-bool touches(const std::string& path, const std::string& other) { return path.starts_with(other) || other.starts_with(path); }
-
-/// The rules report first, and better. What they let pass is reported all the same.
-void add_schema_violations(const std::vector<SchemaViolation>& violations, const std::string& file,
-                           std::vector<Problem>& problems) {
-  const std::vector<Problem> reported = problems;
-  for (const SchemaViolation& violation : violations) {
-    const bool known =
-        std::any_of(reported.begin(), reported.end(), [&](const Problem& problem) { return touches(problem.key, violation.path); });
-    if (known) continue;
-    problems.push_back({file, violation.path, "", "does not match the schema: " + violation.rule, "see scene.schema.json"});
-  }
 }
 
 /// Whether the key is at or below the path.
@@ -75,10 +60,8 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   std::vector<Problem> found;
   for (const std::string& text : overrides) apply_override(text, json.document, found);
 
-  const std::vector<SchemaViolation> violations = schema_violations(json.document);
   std::size_t unknown = 0;
   auto scene = scene_rule()(json.document, {file.string(), "", &found, &unknown});
-  add_schema_violations(violations, file.string(), found);
   tell_overridden(overrides, found);
   if (!scene) throw InputError(std::move(found));
   problems.only_unknown_keys = found.size() == unknown;

@@ -1,4 +1,4 @@
-// Scene files: JSON, checked against the published schema and our own rules.
+// Scene files: JSON, checked by the rules. The published schema, scene.schema.json, accepts the same scenes.
 #pragma once
 
 #include "base/error.h"

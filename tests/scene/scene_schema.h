@@ -1,0 +1,18 @@
+// The published JSON Schema, scene.schema.json, for tests: the library itself checks scenes by its rules.
+#pragma once
+
+#include "scene/json/json_text.h"
+
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// The schema of this source tree. Throws when the file cannot be read.
+[[nodiscard]] const Json& scene_schema();
+
+/// What the schema refuses in the document, as `path: rule`; empty when the document is valid. A failed oneOf also lists what each
+/// of its branches refuses.
+[[nodiscard]] std::vector<std::string> schema_violations(const Json& document);
+
+}  // namespace sprung
