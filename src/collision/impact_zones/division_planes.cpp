@@ -1,6 +1,7 @@
 #include "collision/impact_zones/division_planes.h"
 
 #include "base/parallel.h"
+#include "collision/core/contact_constants.h"
 #include "collision/impact_zones/pin_rigid_fit.h"
 
 #include <algorithm>
@@ -8,9 +9,6 @@
 
 namespace sprung {
 namespace {
-
-// Relative to the largest coordinate: larger than the rounding error of a height along a normal.
-constexpr double kClearance = 0x1p-30;
 
 // How far a pin may end from where its group's motion puts it, as a fraction of its pair's gap. Along linear trajectories a
 // rotation by less than a right angle keeps 0.7 of a gap, and the strain of an anchored group half of it, so that a quarter is left

@@ -1,6 +1,7 @@
 #include "base/kernel.h"
 #include "base/parallel.h"
 #include "base/simd.h"
+#include "collision/core/contact_constants.h"
 #include "collision/obstacle_regions/obstacle_safe_regions.h"
 #include "collision/obstacles/vertex_contact.h"
 
@@ -16,11 +17,6 @@ constexpr Index kPatchChunk = 4;
 
 // A closest point with this weight of a corner is the contact of that particle itself.
 constexpr double kAtCorner = 1.0 - 1.0e-6;
-
-// Constraint passes move a particle less far than the forces have moved its neighbours in this step. A surface farther away than
-// the gap, this fraction of the gap and that fraction of the motion will not be touched.
-constexpr double kMarginOfGap = 0.1;
-constexpr double kMarginOfMotion = 0.5;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -63,7 +59,7 @@ void ObstacleSafeRegions::find_contacts_of(const std::vector<Index>& patches, co
       const double motion = by_obstacles + largest_motion(paths, particles_of(p));
       for (PatchSafeRegions& regions : patch.regions) {
         const RegionDemand demanded = demand(patch, regions.obstacle(), paths);
-        const double margin = std::min(margin_, kMarginOfGap * demanded.gap + kMarginOfMotion * motion);
+        const double margin = std::min(margin_, margin_of_step(demanded.gap, motion));
         const double spread = set_.shape(regions.obstacle()).largest_displacement();
         append_particle_contacts(p, regions, paths, margin, std::max(motion, demanded.gap + margin + spread));
         append_element_contacts(p, regions, paths, demanded, margin);

@@ -25,8 +25,6 @@ const std::vector<Obstacle>& Environment::obstacles() const { return implementat
 
 const ObstacleSet& Environment::set() const { return implementation_->set; }
 
-bool Environment::moves() const { return implementation_->set.moves(); }
-
 void Environment::set_interval(double t, double t_end) {
   implementation_->interval = {t, t_end};
   implementation_->set.set_interval(t, t_end);

@@ -33,9 +33,6 @@ class Environment {
   [[nodiscard]] const std::vector<Obstacle>& obstacles() const;
   [[nodiscard]] const ObstacleSet& set() const;
 
-  /// Whether any obstacle is ever moved or deforms.
-  [[nodiscard]] bool moves() const;
-
   /// The next queries are for a step from time t to t + dt [s]. Not thread-safe; the queries below are.
   void set_interval(double t, double t_end);
   struct Interval {

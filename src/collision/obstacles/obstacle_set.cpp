@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/problem_list.h"
 #include "collision/core/block_bounds.h"
+#include "collision/core/contact_constants.h"
 #include "geometry/motion/motion_check.h"
 
 #include <algorithm>
@@ -10,8 +11,6 @@
 namespace sprung {
 
 namespace {
-
-constexpr double kClearance = 0x1p-30;
 
 double largest(const Vector3& p) { return p.cwiseAbs().maxCoeff(); }
 

@@ -17,12 +17,4 @@ struct ContactCandidate {
   int rest = 0;                     ///< steps that may skip the candidate, because its sides are far apart
 };
 
-/// How far beyond its gap [m] contact looks in a step whose forces displace the particles by up to `displacement` [m]. Solver
-/// passes move them less than that, so contacts farther away would stay inactive.
-[[nodiscard]] inline double margin_of_step(double gap, double displacement) {
-  constexpr double kMarginOfGap = 0.1;
-  constexpr double kMarginOfMotion = 0.5;
-  return kMarginOfGap * gap + kMarginOfMotion * displacement;
-}
-
 }  // namespace sprung

@@ -1,6 +1,7 @@
 #include "collision/pairs/element_contacts.h"
 
 #include "base/parallel.h"
+#include "collision/core/contact_constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +11,6 @@ namespace sprung {
 namespace {
 
 constexpr Index kCandidatesPerTask = 1024;
-
-// Relative to the largest coordinate: see DivisionPlanes.
-constexpr double kClearance = 0x1p-30;
 
 // A direction that leans over a face by up to this sine still counts as pointing away from it: flat neighbours lean by rounding.
 constexpr double kLean = 0x1p-10;

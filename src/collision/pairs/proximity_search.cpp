@@ -1,6 +1,7 @@
 #include "collision/pairs/proximity_search.h"
 
 #include "base/parallel.h"
+#include "collision/core/contact_constants.h"
 #include "collision/element_bvh/vertex_face_filter.h"
 
 #include <algorithm>

@@ -25,8 +25,6 @@ class DeformingMesh {
   /// Not thread-safe.
   void set_interval(double t, double t_end);
 
-  [[nodiscard]] const MeshSequence& sequence() const { return *sequence_; }
-
   /// The mesh at the interval's begin and end.
   [[nodiscard]] const TriangleMesh& before() const { return before_; }
   [[nodiscard]] const TriangleMesh& after() const { return after_; }

@@ -177,7 +177,6 @@ TEST(Environment, InsideAndDistanceAreThoseOfTheEndPose) {
   Obstacle ball = obstacle("ball", SphereGeometry{0.5});
   ball.motion.keyframes = {{0.0}, {1.0, Vector3(0, 3, 0)}};
   Environment environment({ball, obstacle("ring", mesh_geometry(test::torus(1.0, 0.3, 30, 15), true), Vector3(5, 0, 0))});
-  EXPECT_TRUE(environment.moves());
   environment.set_interval(0.9, 1.0);
   Points points(3, 4);
   points.col(0) = Vector3::Zero();
@@ -208,7 +207,6 @@ TEST(Environment, WithoutObstaclesThereIsNothingToMeet) {
   EXPECT_EQ(test::single_particles(environment, 100).truncate(particles.before, after).truncated, 0);
   EXPECT_TRUE(test::intersections(environment, after).empty());
   EXPECT_FALSE(environment.min_distance(after, 1.0));
-  EXPECT_FALSE(environment.moves());
 }
 
 TEST(Environment, PositionsThatAreNotFiniteAreLeftAlone) {
