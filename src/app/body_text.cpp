@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kDigits = 6;
 
-/// The smallest and the largest of some values.
+/// Smallest and largest of a set of values.
 struct Extremes {
   double smallest = std::numeric_limits<double>::infinity();
   double largest = -std::numeric_limits<double>::infinity();
@@ -32,17 +32,17 @@ struct Extremes {
   }
 };
 
-struct KindOfSprings {
+struct SpringRanges {
   Index count = 0;
   Extremes stiffness;
   Extremes damping;
   Extremes rest_length;
 };
 
-std::array<KindOfSprings, 3> kinds_of(const Springs& springs, const Body& body) {
-  std::array<KindOfSprings, 3> kinds;
+std::array<SpringRanges, 3> kinds_of(const Springs& springs, const Body& body) {
+  std::array<SpringRanges, 3> kinds;
   for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
-    KindOfSprings& kind = kinds[static_cast<std::size_t>(springs.kind[s])];
+    SpringRanges& kind = kinds[static_cast<std::size_t>(springs.kind[s])];
     ++kind.count;
     kind.stiffness.add(springs.stiffness[s]);
     kind.damping.add(springs.damping[s]);
@@ -51,15 +51,15 @@ std::array<KindOfSprings, 3> kinds_of(const Springs& springs, const Body& body) 
   return kinds;
 }
 
-/// What angle bends of a body have.
-struct AnglesOfBody {
+/// Range of the parameters of a body's angle bends.
+struct AngleRanges {
   Extremes stiffness;
   Extremes damping;
   Extremes bond;
 };
 
 std::string angle_row(const AngleBends& bends, const Body& body) {
-  AnglesOfBody angles;
+  AngleRanges angles;
   for (Index a = body.first_angle_bend; a < body.first_angle_bend + body.angle_bend_count; ++a) {
     angles.stiffness.add(bends.stiffness[a]);
     angles.damping.add(bends.damping[a]);
@@ -70,7 +70,7 @@ std::string angle_row(const AngleBends& bends, const Body& body) {
                                       angles.stiffness.text("N m"), angles.damping.text("N m s"), angles.bond.text("m")));
 }
 
-std::string head_row(const SpringNetwork& network, const Body& body, const std::array<KindOfSprings, 3>& kinds) {
+std::string head_row(const SpringNetwork& network, const Body& body, const std::array<SpringRanges, 3>& kinds) {
   Index pinned = 0;
   for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) pinned += network.is_pinned(i) ? 1 : 0;
   const Box3 box = bounds(network.positions.middleCols(body.first_particle, body.particle_count));
@@ -89,10 +89,10 @@ std::string mass_row(const SpringNetwork& network, const Body& body) {
   }
   Extremes extremes;
   for (const double mass : masses) extremes.add(mass);
-  return text_row("mass", text + ", a particle " + extremes.text("kg"));
+  return text_row("mass", text + ", " + extremes.text("kg") + " per particle");
 }
 
-std::string spring_row(const char* name, const KindOfSprings& kind) {
+std::string spring_row(const char* name, const SpringRanges& kind) {
   return text_row(name, fmt::format("k_s {}, k_d {}, rest length {}", kind.stiffness.text("N/m"), kind.damping.text("N s/m"),
                                     kind.rest_length.text("m")));
 }
@@ -100,7 +100,7 @@ std::string spring_row(const char* name, const KindOfSprings& kind) {
 }  // namespace
 
 std::string body_rows(const SpringNetwork& network, const Body& body) {
-  const std::array<KindOfSprings, 3> kinds = kinds_of(network.springs, body);
+  const std::array<SpringRanges, 3> kinds = kinds_of(network.springs, body);
   std::string text = head_row(network, body, kinds) + mass_row(network, body);
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     if (kinds[kind].count > 0) text += spring_row(kSpringKindNames[kind], kinds[kind]);

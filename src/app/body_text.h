@@ -1,4 +1,4 @@
-// A simulated body in words.
+// Text that describes a simulated body.
 #pragma once
 
 #include "network/spring_network.h"
@@ -7,8 +7,8 @@
 
 namespace sprung {
 
-/// Rows of `validate`: what the body holds, its masses, and of each kind of springs the smallest and largest stiffness k_s, damping
-/// k_d and rest length, as they are simulated.
+/// Rows of `validate`: particles and springs of the body, its masses, and for each kind of springs the smallest and largest
+/// stiffness k_s [N/m], damping k_d [N s/m] and rest length [m] that the simulation uses.
 [[nodiscard]] std::string body_rows(const SpringNetwork& network, const Body& body);
 
 }  // namespace sprung

@@ -10,7 +10,7 @@
 namespace sprung {
 namespace {
 
-constexpr int kMostThreads = 1'024;
+constexpr int kMaxThreads = 1'024;
 
 constexpr const char* kExamples = R"(Examples:
   sprung run examples/rope_over_torus.json --out frames
@@ -18,7 +18,7 @@ constexpr const char* kExamples = R"(Examples:
   sprung validate scene.json --mesh-path ~/meshes
   sprung info bunny.obj
 
-Meshes are looked for beside the scene file, in each --mesh-path, then in the folders of SPRUNG_MESH_PATH.
+Meshes are searched beside the scene file, in each --mesh-path, then in the folders of SPRUNG_MESH_PATH.
 
 Exit codes: 0 done, 2 wrong usage, 3 invalid scene or mesh, 4 the simulation diverged, 5 the scene file cannot be
 read or the output cannot be written, 130 interrupted, 1 anything else.)";
@@ -54,35 +54,35 @@ class Parser {
   void add_run() {
     CLI::App* run = app_.add_subcommand("run", "Simulates a scene and writes it as OBJ sequences");
     add_scene(run, run_.scene);
-    run->add_option("--out", run_.out, "Folder for the frames; must be empty or not there")->required()->type_name("DIR");
+    run->add_option("--out", run_.out, "Folder for the frames; must be empty or not exist")->required()->type_name("DIR");
     run->add_option("--frames", run_.frames, "Number of frames, instead of the scene's duration")
         ->check(CLI::Range(1, kMostFrames))
         ->type_name("N");
-    run->add_option("--threads", run_.threads, "Most threads to use; results do not depend on it")
-        ->check(CLI::Range(1, kMostThreads))
+    run->add_option("--threads", run_.threads, "Maximum number of threads; results do not depend on it")
+        ->check(CLI::Range(1, kMaxThreads))
         ->type_name("N");
     run->add_flag("--quiet", run_.quiet, "Print errors only");
-    run->add_flag("--overwrite", run_.overwrite, "Remove what an earlier run wrote into the folder, and nothing else");
+    run->add_flag("--overwrite", run_.overwrite, "Remove the files of an earlier run from the folder, and nothing else");
   }
 
   void add_validate() {
-    CLI::App* validate = app_.add_subcommand("validate", "Checks a scene: every problem in one go, or what follows from it");
+    CLI::App* validate = app_.add_subcommand("validate", "Checks a scene: prints every problem, or a summary of the scene");
     add_scene(validate, validate_.scene);
   }
 
   void add_info() {
-    CLI::App* info = app_.add_subcommand("info", "Describes a mesh: size, closed or open, what an import would repair");
-    info->add_option("MESH", info_.meshes, "Mesh file; of several, whether they are the frames of a sequence")
+    CLI::App* info = app_.add_subcommand("info", "Describes a mesh: size, closed or open, repairs by the import");
+    info->add_option("MESH", info_.meshes, "Mesh file; several files are checked as the frames of a sequence")
         ->required()
         ->type_name("");
   }
 
   static void add_scene(CLI::App* command, SceneOptions& scene) {
     command->add_option("SCENE", scene.file, "Scene file")->required()->type_name("");
-    command->add_option("--set", scene.overrides, "Replaces a value of the scene; may be given again")
+    command->add_option("--set", scene.overrides, "Replaces a value of the scene; may be repeated")
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
-    command->add_option("--mesh-path", scene.mesh_paths, "Folder to look for meshes in; may be given again")
+    command->add_option("--mesh-path", scene.mesh_paths, "Folder to search for meshes; may be repeated")
         ->allow_extra_args(false)
         ->type_name("DIR");
   }

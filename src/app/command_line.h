@@ -1,4 +1,4 @@
-// What the user asked for.
+// Parses the command line.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace sprung {
 
-/// A scene file, and what is said about it on the command line.
+/// A scene file and its options.
 struct SceneOptions {
   std::string file;
   std::vector<std::string> overrides;   ///< `key.path=json`
@@ -33,14 +33,14 @@ struct InfoOptions {
   std::vector<std::string> meshes;  ///< one, or the frames of a sequence
 };
 
-/// Help or version: to be printed, and that is all.
+/// The text of --help or --version, to print.
 struct PrintOptions {
   std::string text;
 };
 
 using Command = std::variant<RunOptions, ValidateOptions, InfoOptions, PrintOptions>;
 
-/// A command line that makes no sense; one problem a line.
+/// An invalid command line; one problem per line.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

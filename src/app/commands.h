@@ -1,4 +1,4 @@
-// The verbs of the command line.
+// The commands of the program.
 #pragma once
 
 #include "app/command_line.h"
@@ -6,13 +6,13 @@
 
 namespace sprung {
 
-/// Simulates a scene and writes it. Throws InputError, StepError, FileError.
+/// Simulates a scene and writes its frames. Throws InputError, StepError, FileError.
 ExitCode run(const RunOptions& options);
 
-/// Prints what follows from a scene. Throws InputError with every problem, FileError.
+/// Prints a summary of a scene. Throws InputError with every problem, and FileError.
 ExitCode validate(const ValidateOptions& options);
 
-/// Prints what a mesh is. Throws InputError.
+/// Prints a description of a mesh. Throws InputError.
 ExitCode info(const InfoOptions& options);
 
 }  // namespace sprung

@@ -48,9 +48,9 @@ ExitCode report_failure() noexcept try { throw; } catch (const UsageError& error
   std::fputs("sprung: error: not enough memory; lower the resolution of the bodies or use a smaller mesh\n", stderr);
   return ExitCode::unexpected;
 } catch (const std::exception& error) {
-  return report(ExitCode::unexpected, std::string("unexpected: ") + error.what());
+  return report(ExitCode::unexpected, std::string("unexpected error: ") + error.what());
 } catch (...) {
-  std::fputs("sprung: error: unexpected\n", stderr);
+  std::fputs("sprung: error: unexpected error\n", stderr);
   return ExitCode::unexpected;
 }
 

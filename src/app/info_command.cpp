@@ -34,7 +34,7 @@ std::string surface_text(const Points& vertices, const Triangles& triangles, con
   text += text_row("components", std::to_string(report.components));
   const std::vector<std::string> done = repairs(report);
   for (const std::string& repair : done) text += text_row("repair", repair);
-  if (done.empty()) text += text_row("repair", "nothing");
+  if (done.empty()) text += text_row("repair", "none");
   for (const std::string& note : report.notes) text += text_row("note", note);
   if (const auto note = unit_note(report.bounds)) text += text_row("note", *note);
   return text;
@@ -85,7 +85,7 @@ std::string body_text(const PolygonMesh& mesh) {
   return text;
 }
 
-// An OBJ of lines is no obstacle, but it can be a body.
+// An OBJ file of lines cannot be an obstacle, but it can be a body.
 std::optional<std::string> body_text_of(const std::string& file) {
   if (lower_case_extension(file) != ".obj") return std::nullopt;
   try {

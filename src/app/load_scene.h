@@ -1,4 +1,4 @@
-// From a scene file to a simulator, for all commands that need one.
+// Loads a scene file and builds its simulator.
 #pragma once
 
 #include "app/command_line.h"
@@ -15,12 +15,12 @@ struct LoadedScene {
   Simulator simulator;
   int frames = 1;
   int steps_per_frame = 1;
-  double largest_stable_step = 0.0;  ///< [s]; infinity when there is none
+  double largest_stable_step = 0.0;  ///< [s]; infinity without a bound
   std::vector<NamedReport> meshes;
-  std::vector<std::string> warnings;  ///< each once
+  std::vector<std::string> warnings;  ///< without duplicates
 };
 
-/// Throws FileError when the scene cannot be read, and InputError with every problem, each naming its file.
+/// Throws FileError if the scene cannot be read, and InputError with every problem, each with its file.
 [[nodiscard]] LoadedScene load_scene(const SceneOptions& options);
 
 /// `8 steps of 0.00416667 s (automatic)`

@@ -12,7 +12,7 @@ constexpr int kDigits = 4;
 }  // namespace
 
 std::string describe_size(const Box3& box) {
-  if (box.isEmpty()) return "nothing";
+  if (box.isEmpty()) return "empty";
   const Vector3 size = box.sizes();
   return fmt::format("{} x {} x {} m", format_number(size.x(), kDigits), format_number(size.y(), kDigits),
                      format_number(size.z(), kDigits));
@@ -29,10 +29,10 @@ std::vector<std::string> repairs(const MeshReport& report) {
   const auto add = [&](Index count, const char* what) {
     if (count > 0) done.push_back(fmt::format("{} {}", count, what));
   };
-  add(report.unused_vertices, "vertices dropped that no face uses");
-  add(report.degenerate_faces, "faces dropped that have no area");
-  add(report.duplicate_faces, "faces dropped that were there twice");
-  add(report.flipped_faces, "faces turned around");
+  add(report.unused_vertices, "unused vertices removed");
+  add(report.degenerate_faces, "faces without area removed");
+  add(report.duplicate_faces, "duplicate faces removed");
+  add(report.flipped_faces, "faces flipped");
   return done;
 }
 

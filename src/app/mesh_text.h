@@ -1,4 +1,4 @@
-// What a person wants to know of a mesh, as text.
+// Text that describes a mesh.
 #pragma once
 
 #include "geometry/import/mesh_import.h"
@@ -14,8 +14,8 @@ namespace sprung {
 /// `closed`, or `open: 12 border edges, 0 edges with more than two faces`
 [[nodiscard]] std::string describe_closedness(const MeshReport& report);
 
-/// What cleaning had to mend, as `3 faces turned around`; empty when there was nothing. Welding is no repair: most formats, or
-/// their readers, give every face corners of its own.
+/// The repairs by the import, for example `3 faces flipped`; empty if there were none. Welding is not a repair: most formats, or
+/// their readers, give every face its own corners.
 [[nodiscard]] std::vector<std::string> repairs(const MeshReport& report);
 
 /// `label      text`, in columns.

@@ -23,7 +23,7 @@ std::string bar(int frame, int frames) {
   return fmt::format("[{:.<{}}] ", std::string(static_cast<std::size_t>(filled), '#'), kBarWidth);
 }
 
-int part_of(int frame, int frames) { return static_cast<int>(static_cast<double>(kLines) * frame / frames); }
+int tenth_of(int frame, int frames) { return static_cast<int>(static_cast<double>(kLines) * frame / frames); }
 
 }  // namespace
 
@@ -49,13 +49,13 @@ void Progress::frame_done(int frame) {
 bool Progress::is_due(int frame, Clock::time_point now) const {
   if (frame == frames_) return true;
   if (terminal_) return shown_frame_ == 0 || now - shown_ >= kBarPause;
-  const bool next_part = part_of(frame, frames_) > part_of(shown_frame_, frames_);
-  return now - shown_ >= (next_part ? kLeastLinePause : kLinePause);
+  const bool next_tenth = tenth_of(frame, frames_) > tenth_of(shown_frame_, frames_);
+  return now - shown_ >= (next_tenth ? kLeastLinePause : kLinePause);
 }
 
 std::string Progress::line(int frame, double seconds) const {
   const double per_frame = seconds / frame;
-  std::string text = fmt::format("frame {}/{}, {:.3g} ms a frame", frame, frames_, 1e3 * per_frame);
+  std::string text = fmt::format("frame {}/{}, {:.3g} ms per frame", frame, frames_, 1e3 * per_frame);
   if (frame < frames_) text += ", " + describe_duration(per_frame * (frames_ - frame)) + " left";
   return text;
 }

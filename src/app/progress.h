@@ -1,4 +1,4 @@
-// How far a run has come: a bar on a terminal, a line now and then elsewhere.
+// Shows the progress of a run: a bar on a terminal, a line at intervals elsewhere.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@ namespace sprung {
 class Progress {
  public:
   Progress(int frames, bool quiet);
-  /// Ends the bar's line.
+  /// Ends the line of the bar.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -43,8 +43,8 @@ void announce(const LoadedScene& loaded) {
   for (const std::string& warning : loaded.warnings) print_warning(warning);
 }
 
-// The error that ends the run matters more than one in telling of it.
-void finish_quietly(RunOutput& output, const std::string& outcome) {
+// The error that ended the run matters more than a failure to record it.
+void finish_without_error(RunOutput& output, const std::string& outcome) {
   try {
     output.finish(outcome);
   } catch (const FileError&) {
@@ -52,7 +52,7 @@ void finish_quietly(RunOutput& output, const std::string& outcome) {
   }
 }
 
-/// None when the user interrupts.
+/// Nothing if the user interrupts.
 std::optional<FrameDiagnostics> next_frame(FrameRunner& runner) {
   try {
     return runner.next_frame();
@@ -61,7 +61,7 @@ std::optional<FrameDiagnostics> next_frame(FrameRunner& runner) {
   }
 }
 
-/// Writes frames until all are done or the user interrupts; `written` counts them.
+/// Writes frames until all are written or the user interrupts. `written` counts them, also if an exception ends the run.
 void write_frames(LoadedScene& loaded, RunOutput& output, bool quiet, int& written) {
   FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
   Progress progress(loaded.frames, quiet);
@@ -72,16 +72,16 @@ void write_frames(LoadedScene& loaded, RunOutput& output, bool quiet, int& writt
     if (!diagnostics) break;
     output.write_frame(loaded.simulator, *diagnostics);
     written = frame;
-    watch.see(*diagnostics);
+    watch.note_frame(*diagnostics);
     progress.frame_done(frame);
   }
-  watch.tell();
+  watch.finish();
 }
 
-/// A simulation cannot diverge before its first frame, which is the state at time 0.
-void tell_last_frame(const LoadedScene& loaded, int frames, const std::string& folder) {
-  print_message(fmt::format("the last frame is {}, at {} s; it and those before are kept in {}", frames,
-                            format_number((frames - 1) / loaded.scene.frame_rate, 6), folder));
+/// Frame 1 is the state at time 0, so it exists when a simulation diverges.
+void print_last_frame(const LoadedScene& loaded, int frames, const std::string& folder) {
+  print_message(fmt::format("the last frame is {} at {} s; frames 1 to {} are in {}", frames,
+                            format_number((frames - 1) / loaded.scene.frame_rate, 6), frames, folder));
 }
 
 int write_run(LoadedScene& loaded, RunOutput& output, const RunOptions& options) {
@@ -90,11 +90,11 @@ int write_run(LoadedScene& loaded, RunOutput& output, const RunOptions& options)
     write_frames(loaded, output, options.quiet, frames);
     output.finish(frames == loaded.frames ? "done" : "interrupted");
   } catch (const StepError& error) {
-    finish_quietly(output, std::string("diverged: ") + error.what());
-    tell_last_frame(loaded, frames, options.out);
+    finish_without_error(output, std::string("diverged: ") + error.what());
+    print_last_frame(loaded, frames, options.out);
     throw;
   } catch (const std::exception& error) {
-    finish_quietly(output, std::string("failed: ") + error.what());
+    finish_without_error(output, std::string("failed: ") + error.what());
     throw;
   }
   return frames;

@@ -14,15 +14,15 @@ namespace sprung {
 
 namespace {
 
-// Many particles: this part of all. Many frames: this part of them.
+// Many particles and many frames: these fractions of all.
 constexpr double kManyParticles = 0.05;
 constexpr double kManyFrames = 0.1;
 
-// What rests falls by g dt^2 in a step before contact lifts it again. Layers with a gap of less than so many times that use it up
-// in a few steps, and are stopped at their surfaces from then on.
+// A resting particle falls by g dt^2 in a step before contact lifts it. Layers whose gap is less than so many times that use it up
+// in a few steps; from then on truncation stops them at their surfaces.
 constexpr double kFallsWithinGap = 16.0;
 
-/// The smallest gap that bodies keep to obstacles, to each other or to themselves [m]; infinite where none meet.
+/// The smallest gap [m] between any body and obstacle, two bodies, or two sheets of a body; infinite if nothing can collide.
 double thinnest_gap(const std::vector<Body>& bodies, const std::vector<Obstacle>& obstacles) {
   double gap = std::numeric_limits<double>::infinity();
   for (const Obstacle& obstacle : obstacles) {
@@ -39,33 +39,32 @@ double thinnest_gap(const std::vector<Body>& bodies, const std::vector<Obstacle>
 }
 
 std::string_view remedy_for_stretch(const StretchLimitSettings& limit) {
-  const bool could_be_solved = limit.solver == StretchLimitSettings::Solver::gauss_seidel && limit.max_compression == 1.0;
-  return could_be_solved ? "more iterations, smaller steps, or, of ropes and cloths, \"solver\": \"auto\" hold it better"
-                         : "more iterations or smaller steps hold it better";
+  const bool can_be_solved = limit.solver == StretchLimitSettings::Solver::gauss_seidel && limit.max_compression == 1.0;
+  return can_be_solved ? "Use more iterations, a smaller step or, for ropes and cloths, \"solver\": \"auto\"."
+                       : "Use more iterations or a smaller step.";
 }
 
 }  // namespace
 
 RunWatch::RunWatch(const Simulator& simulator, RunOutput& output, bool quiet)
-    : simulator_(simulator), output_(output), quiet_(quiet), gain_(simulator) {}
+    : simulator_(simulator),
+      output_(output),
+      quiet_(quiet),
+      energy_(simulator.network(), simulator.settings(), simulator.environment().obstacles()) {}
 
-void RunWatch::see(const FrameDiagnostics& frame) {
-  see_infeasible(frame);
-  see_stretch(frame);
-  see_handovers();
-  see_held_back(frame);
-  gain_.see(frame);
+void RunWatch::note_frame(const FrameDiagnostics& frame) {
+  note_infeasible(frame);
+  note_stretch(frame);
+  note_handovers();
+  note_truncated(frame);
+  energy_.note_frame(frame.frame,
+                     {.kinetic = frame.kinetic_energy, .elastic = frame.elastic_energy, .gravity = frame.gravity_energy});
 }
 
-void RunWatch::tell() {
-  tell_of_thin_bodies();
-  if (const auto gained = gain_.warning()) warn(*gained);
-  if (missed_.frames == 0) return;
-  warn(fmt::format(
-      "the stretch limit was missed by more than {} % of a rest length in {}, by at most {} % in frame {}; "
-      "the column stretch_excess of diagnostics.csv tells by how much in each; {}",
-      format_number(100.0 * wanted_excess(*simulator_.settings().stretch_limit), 2), counted(missed_.frames, "frame"),
-      format_number(100.0 * missed_.most, 2), missed_.worst_frame, remedy_for_stretch(*simulator_.settings().stretch_limit)));
+void RunWatch::finish() {
+  warn_of_thin_bodies();
+  if (const auto gain = energy_.gain(simulator_.positions())) warn(*gain);
+  warn_of_missed_limit();
 }
 
 void RunWatch::warn(const std::string& warning) {
@@ -73,53 +72,65 @@ void RunWatch::warn(const std::string& warning) {
   print_warning(warning);
 }
 
-void RunWatch::see_infeasible(const FrameDiagnostics& frame) {
+void RunWatch::note_infeasible(const FrameDiagnostics& frame) {
   if (infeasible_ || frame.infeasible == 0) return;
   infeasible_ = true;
-  warn(fmt::format(
-      "frame {}: particles found no free place between obstacles, pins and each other {} times and may cross them; the column "
-      "infeasible of diagnostics.csv counts them; leave them more room, or let what closes in on them stop before or go slower",
-      frame.frame, frame.infeasible));
+  warn(
+      fmt::format("frame {}: {} had no admissible position and may intersect (column infeasible in diagnostics.csv). Increase the "
+                  "clearance, or "
+                  "slow the obstacles and pins that close on them.",
+                  frame.frame, frame.infeasible == 1 ? "1 vertex" : fmt::format("{} vertices", frame.infeasible)));
 }
 
-void RunWatch::see_stretch(const FrameDiagnostics& frame) {
+void RunWatch::note_stretch(const FrameDiagnostics& frame) {
   const auto& limit = simulator_.settings().stretch_limit;
   if (!limit || frame.stretch_excess <= wanted_excess(*limit)) return;
   ++missed_.frames;
-  if (frame.stretch_excess <= missed_.most) return;
-  missed_.most = frame.stretch_excess;
+  if (frame.stretch_excess <= missed_.largest) return;
+  missed_.largest = frame.stretch_excess;
   missed_.worst_frame = frame.frame;
 }
 
-void RunWatch::see_handovers() {
-  const std::vector<StretchHandover>& holds = simulator_.state().stretch_holds;
-  handed_over_.resize(holds.size(), false);
-  for (std::size_t b = 0; b < holds.size(); ++b) {
-    if (quiet_ || handed_over_[b] || !holds[b].solved_since) continue;
+void RunWatch::note_handovers() {
+  const std::vector<StretchHandover>& handovers = simulator_.state().stretch_holds;
+  handed_over_.resize(handovers.size(), false);
+  for (std::size_t b = 0; b < handovers.size(); ++b) {
+    if (quiet_ || handed_over_[b] || !handovers[b].solved_since) continue;
     handed_over_[b] = true;
-    print_message(fmt::format("passes kept missing the stretch limit of \"{}\"; newton holds it after step {}",
-                              simulator_.network().bodies[b].name, *holds[b].solved_since));
+    print_message(fmt::format("gauss_seidel kept missing the stretch limit of \"{}\"; newton solves it after step {}",
+                              simulator_.network().bodies[b].name, *handovers[b].solved_since));
   }
 }
 
-void RunWatch::see_held_back(const FrameDiagnostics& frame) {
+void RunWatch::note_truncated(const FrameDiagnostics& frame) {
   ++frames_;
   const double particles = static_cast<double>(frame.substeps) * static_cast<double>(simulator_.network().particle_count());
-  // What closes in on bodies holds them back too, whatever their thickness.
-  if (frame.infeasible == 0 && static_cast<double>(frame.truncated) > kManyParticles * particles) ++held_back_;
+  // Obstacles that close on a body stop many particles at any thickness; such frames have infeasible vertices.
+  if (frame.infeasible == 0 && static_cast<double>(frame.truncated) > kManyParticles * particles) ++truncated_frames_;
 }
 
-void RunWatch::tell_of_thin_bodies() {
-  if (held_back_ < kManyFrames * frames_) return;
+void RunWatch::warn_of_missed_limit() {
+  if (missed_.frames == 0) return;
+  const StretchLimitSettings& limit = *simulator_.settings().stretch_limit;
+  warn(
+      fmt::format("the stretch limit was missed by more than {} % of a rest length in {}, at most by {} % in frame {} (column "
+                  "stretch_excess in "
+                  "diagnostics.csv). {}",
+                  format_number(100.0 * wanted_excess(limit), 2), counted(missed_.frames, "frame"),
+                  format_number(100.0 * missed_.largest, 2), missed_.worst_frame, remedy_for_stretch(limit)));
+}
+
+void RunWatch::warn_of_thin_bodies() {
+  if (truncated_frames_ < kManyFrames * frames_) return;
   const SimulatorSettings& settings = simulator_.settings();
   const double least = kFallsWithinGap * settings.gravity.norm() * settings.step * settings.step;
   const double gap = thinnest_gap(simulator_.network().bodies, simulator_.environment().obstacles());
   if (gap >= least) return;
   warn(fmt::format(
-      "some bodies keep a gap of {} m to what they meet, which they use up as they fall in a step: contact held back more than "
-      "{} % of the particles in each step of {} frames, which takes long and lets them stretch; a thickness of at least {} m, or "
-      "smaller steps, would help",
-      format_number(gap, 3), format_number(100.0 * kManyParticles), held_back_, format_number(least, 2)));
+      "thickness {} m is too small for the step: resting bodies fall through it in a few steps. Contact stopped more than {} % of "
+      "the "
+      "particles in {}, which is slow and overstretches them. Use a thickness of at least {} m, or a smaller step.",
+      format_number(gap, 3), format_number(100.0 * kManyParticles), counted(truncated_frames_, "frame"), format_number(least, 2)));
 }
 
 }  // namespace sprung

@@ -1,39 +1,40 @@
-// What the user should be told of a run, as it happens or at its end.
+// Warnings about a run, while it proceeds and at its end.
 #pragma once
 
-#include "app/energy_gain.h"
 #include "output/run_output.h"
 #include "simulation/diagnostics.h"
+#include "simulation/monitoring/energy_watch.h"
 
 #include <vector>
 
 namespace sprung {
 
-/// Prints warnings, and puts them into run.json too.
+/// Prints warnings and adds them to run.json.
 class RunWatch {
  public:
-  /// Of a quiet run there are warnings alone. Keeps references to both.
+  /// A quiet run prints warnings, but no messages. Keeps references to the simulator and the output.
   RunWatch(const Simulator& simulator, RunOutput& output, bool quiet);
 
-  /// After each frame: tells once that particles had to yield, and of each body that was handed over to another solver of the
-  /// stretch limit. Throws FileError.
-  void see(const FrameDiagnostics& frame);
+  /// Call it after each frame. Reports the first infeasible vertices, and each body whose stretch limit is handed over to another
+  /// solver. Throws FileError.
+  void note_frame(const FrameDiagnostics& frame);
 
-  /// After the last frame: tells by how much the stretch limit was missed, of bodies too thin to lie on each other, and of energy
-  /// from nowhere. Throws FileError.
-  void tell();
+  /// Call it after the last frame. Warns if the stretch limit was missed, if a thickness is too small for the step, and if the
+  /// energy of an undriven scene rose. Throws FileError.
+  void finish();
 
  private:
   void warn(const std::string& warning);
-  void see_infeasible(const FrameDiagnostics& frame);
-  void see_stretch(const FrameDiagnostics& frame);
-  void see_handovers();
-  void see_held_back(const FrameDiagnostics& frame);
-  void tell_of_thin_bodies();
+  void note_infeasible(const FrameDiagnostics& frame);
+  void note_stretch(const FrameDiagnostics& frame);
+  void note_handovers();
+  void note_truncated(const FrameDiagnostics& frame);
+  void warn_of_missed_limit();
+  void warn_of_thin_bodies();
 
   struct Missed {
     int frames = 0;
-    double most = 0.0;  ///< as a part of a rest length
+    double largest = 0.0;  ///< fraction of a rest length
     int worst_frame = 0;
   };
 
@@ -42,9 +43,9 @@ class RunWatch {
   bool quiet_;
   bool infeasible_ = false;
   Missed missed_;
-  EnergyGain gain_;
+  EnergyWatch energy_;
   int frames_ = 0;
-  int held_back_ = 0;              ///< frames in which many particles were
+  int truncated_frames_ = 0;       ///< frames in which truncation stopped many particles
   std::vector<bool> handed_over_;  ///< by body
 };
 

@@ -20,7 +20,7 @@ std::string time_text(const LoadedScene& loaded) {
   const std::string stable = std::isfinite(loaded.largest_stable_step)
                                  ? "the largest stable step is " + format_upper_bound(loaded.largest_stable_step) + " s"
                                  : "every step is stable";
-  return text_row("frames", fmt::format("{} at {} a second", loaded.frames, format_number(loaded.scene.frame_rate, kDigits))) +
+  return text_row("frames", fmt::format("{} at {} per second", loaded.frames, format_number(loaded.scene.frame_rate, kDigits))) +
          text_row("each", describe_steps(loaded) + "; " + stable);
 }
 
@@ -34,14 +34,14 @@ std::string shape_text(const ObstacleGeometry& geometry) {
   const auto* mesh = std::get_if<SequenceGeometry>(&geometry);
   if (mesh == nullptr) return shape_name(geometry);
   const MeshSequence& sequence = *mesh->sequence;
-  return fmt::format("sequence of {} frames, {} a second from {} s on{}", sequence.frames.size(),
+  return fmt::format("sequence of {} frames, {} per second from {} s{}", sequence.frames.size(),
                      format_number(sequence.frame_rate, kDigits), format_number(sequence.start, kDigits),
-                     sequence.loop ? ", in a loop" : "");
+                     sequence.loop ? ", looped" : "");
 }
 
 const char* change_text(const Obstacle& obstacle) {
   if (obstacle.deforms()) return obstacle.motion.moves() ? "moving and deforming" : "deforming";
-  return obstacle.motion.moves() ? "moving" : "standing still";
+  return obstacle.motion.moves() ? "moving" : "static";
 }
 
 std::string mesh_row(const NamedReport& mesh) {
@@ -66,12 +66,12 @@ ExitCode validate(const ValidateOptions& options) {
   const SpringNetwork& network = loaded.simulator.network();
   std::string text = text_row("scene", loaded.scene.file.string()) + time_text(loaded);
   if (const std::string solver = loaded.simulator.stretch_solver(); !solver.empty())
-    text += text_row("stretch", "held by " + solver);
+    text += text_row("stretch", "solved by " + solver);
   for (const Body& body : network.bodies) text += body_rows(network, body);
   for (const Obstacle& obstacle : loaded.simulator.environment().obstacles()) text += obstacle_row(obstacle);
   for (const NamedReport& mesh : loaded.meshes) text += mesh_row(mesh);
   for (const std::string& warning : loaded.warnings) text += text_row("warning", warning);
-  print_result(text + text_row("valid", "nothing is wrong with this scene"));
+  print_result(text + text_row("valid", "the scene has no errors"));
   return ExitCode::done;
 }
 

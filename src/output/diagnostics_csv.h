@@ -1,4 +1,4 @@
-// diagnostics.csv: a row a frame.
+// diagnostics.csv: one row per frame.
 #pragma once
 
 #include "simulation/diagnostics.h"
@@ -7,10 +7,10 @@
 
 namespace sprung {
 
-/// The names of the columns, as a line.
+/// The line of column names.
 [[nodiscard]] std::string csv_head();
 
-/// A frame's row, as a line; fields of what is not known are empty.
+/// The line of a frame. Fields without a value are empty.
 [[nodiscard]] std::string csv_row(const FrameDiagnostics& frame);
 
 }  // namespace sprung

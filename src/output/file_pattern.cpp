@@ -7,7 +7,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFewestDigits = 4;
+constexpr int kMinDigits = 4;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -19,7 +19,7 @@ bool matches(const std::string& pattern, const std::string& name) {
 }  // namespace
 
 std::string sequence_pattern(const std::string& name, int frames) {
-  const int digits = std::max(kFewestDigits, static_cast<int>(std::to_string(frames).size()));
+  const int digits = std::max(kMinDigits, static_cast<int>(std::to_string(frames).size()));
   return name + "." + std::string(static_cast<std::size_t>(digits), '#') + ".obj";
 }
 
@@ -38,14 +38,14 @@ bool stays_inside(const std::string& pattern) {
 }
 
 std::vector<fs::path> matching_files(const fs::path& folder, const std::string& pattern) {
-  fs::path place = folder;
+  fs::path directory = folder;
   for (const fs::path& part : fs::path(pattern).parent_path()) {
-    place /= part;
-    if (!fs::is_directory(fs::symlink_status(place))) return {};
+    directory /= part;
+    if (!fs::is_directory(fs::symlink_status(directory))) return {};
   }
   const std::string name = fs::path(pattern).filename().string();
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(place)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
     if (!entry.is_directory() && matches(name, entry.path().filename().string())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());

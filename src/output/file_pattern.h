@@ -1,4 +1,4 @@
-// Names of the files of a sequence: `banner/banner.####.obj` stands for banner.0001.obj, banner.0002.obj and so on.
+// Names of the files of a sequence: `banner/banner.####.obj` means banner.0001.obj, banner.0002.obj, ...
 #pragma once
 
 #include <filesystem>
@@ -7,18 +7,17 @@
 
 namespace sprung {
 
-/// `name.####.obj`, with as many `#` as the last frame's number has digits, and at least 4, so that names sort by
-/// number.
+/// `name.####.obj`, with as many `#` as the number of frames has digits, at least 4. File names then sort by frame number.
 [[nodiscard]] std::string sequence_pattern(const std::string& name, int frames);
 
-/// The file of a frame. Requires a number >= 0 that has no more digits than the pattern has `#`.
+/// The file name of a frame. Requires frame >= 0 with at most as many digits as the pattern has `#`.
 [[nodiscard]] std::string fill_pattern(const std::string& pattern, int frame);
 
-/// Whether the pattern names files below the folder it is relative to, by plain names.
+/// Whether the pattern is a relative path without `.` and `..`, so that its files lie below the folder.
 [[nodiscard]] bool stays_inside(const std::string& pattern);
 
-/// Files in `folder` that the pattern stands for (a pattern without `#` stands for one file), sorted. A folder that is a symbolic
-/// link is not entered. Throws std::filesystem::filesystem_error when a folder cannot be read.
+/// Existing files in `folder` that match the pattern, sorted. A pattern without `#` matches one file. Symbolic links to folders are
+/// not followed. Throws std::filesystem::filesystem_error when a folder cannot be read.
 [[nodiscard]] std::vector<std::filesystem::path> matching_files(const std::filesystem::path& folder, const std::string& pattern);
 
 }  // namespace sprung

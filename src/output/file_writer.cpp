@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
   throw FileError(action, file.string(), std::generic_category().message(error));
 }
 
-/// An open file; closed at the latest when it goes out of scope. Errors name `shown`, the file that the user knows.
+/// An open file, closed by the destructor. Errors name `shown`, the final name of the file.
 class OpenFile {
  public:
   OpenFile(const fs::path& file, int flags, const fs::path& shown)
@@ -40,7 +40,7 @@ class OpenFile {
     }
   }
 
-  // A file system may report a full disk only now.
+  // Some file systems report a full disk only on close.
   void close() {
     const int result = ::close(descriptor_);
     descriptor_ = -1;
@@ -107,7 +107,7 @@ void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (!error && !fs::is_directory(folder, error) && !error) error = std::make_error_code(std::errc::not_a_directory);
-  if (error) throw FileError("make the folder", folder.string(), error.message());
+  if (error) throw FileError("create the folder", folder.string(), error.message());
 }
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// Writes files so that a full disk or a missing permission leaves no partial file behind.
+// Writes files such that an error, as a full disk or a missing permission, leaves no partial file.
 #pragma once
 
 #include <filesystem>
@@ -7,17 +7,17 @@
 
 namespace sprung {
 
-/// The hidden name beside `file` that it is written under first.
+/// The hidden temporary name, in the same folder, under which `file` is written first.
 [[nodiscard]] std::filesystem::path temporary_path(const std::filesystem::path& file);
 
-/// Writes a whole file under its temporary name and renames it, replacing what was there; makes missing folders. Throws FileError;
-/// then the file is as it was before, and neither the temporary file nor an empty new folder remains.
+/// Writes a file under its temporary name and renames it, replacing an existing file. Creates missing folders. Throws FileError;
+/// the existing file is then unchanged, and no temporary file and no empty new folder remains.
 void write_file(const std::filesystem::path& file, std::string_view text);
 
-/// Appends to a file, which is made when missing. Throws FileError; then the file is as it was before.
+/// Appends to a file and creates it if missing. Throws FileError; the file is then unchanged.
 void append_to_file(const std::filesystem::path& file, std::string_view text);
 
-/// Makes a folder and those above it. Throws FileError.
+/// Creates a folder and its parents. Throws FileError.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace sprung

@@ -43,9 +43,10 @@ void check_names(const char* key, const std::vector<std::string>& names, std::ve
   std::set<std::string> seen;
   for (const std::string& name : names) {
     if (!is_folder_name(name)) {
-      problems.push_back({"", key, '"' + name + '"', "must be letters, digits, _ and -, as it names a folder", "rename it"});
+      problems.push_back(
+          {"", key, '"' + name + '"', "must consist of letters, digits, _ and -, because it names a folder", "rename it"});
     } else if (!seen.insert(name).second) {
-      problems.push_back({"", key, '"' + name + '"', "must not be used twice, as it names a folder", "rename one of them"});
+      problems.push_back({"", key, '"' + name + '"', "must be unique, because it names a folder", "rename one of them"});
     }
   }
 }
@@ -59,7 +60,7 @@ void check_names(const Simulator& simulator) {
   check_names("body", bodies, problems);
   check_names("obstacle", obstacles, problems);
   if (std::find(bodies.begin(), bodies.end(), kObstacleFolder) != bodies.end()) {
-    problems.push_back({"", "body", '"' + kObstacleFolder + '"', "is the folder of the obstacles", "rename it"});
+    problems.push_back({"", "body", '"' + kObstacleFolder + '"', "is reserved for the folder of the obstacles", "rename it"});
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A run that was killed while it wrote its first file leaves no more than this, which is ours by its name.
+// The only file of a run that was killed during its first write. Its name identifies it.
 void remove_unfinished_record(const fs::path& folder) { fs::remove(temporary_path(folder / kRunRecordFile)); }
 
 void remove_files_of_run(const fs::path& folder, const std::vector<std::string>& patterns) {
@@ -35,7 +35,7 @@ void remove_earlier_run(const fs::path& folder) {
   std::optional<std::vector<std::string>> patterns = files_of_run(folder / kRunRecordFile);
   if (!patterns) {
     throw FileError("overwrite the folder", folder.string(),
-                    "it holds files but no run of sprung's; choose another folder, or empty this one yourself");
+                    "it has files but no run of sprung; choose another folder, or empty this one yourself");
   }
   std::erase(*patterns, kRunRecordFile);
   remove_files_of_run(folder, *patterns);
@@ -48,7 +48,7 @@ void prepare(const fs::path& folder, bool overwrite) {
   if (fs::is_empty(folder)) return;
   if (!overwrite) {
     throw FileError("write into the folder", folder.string(),
-                    "it is not empty; choose another folder, or replace the run in it with --overwrite");
+                    "it is not empty; choose another folder, or replace its run with --overwrite");
   }
   remove_earlier_run(folder);
 }
@@ -66,8 +66,7 @@ OutputFolder::OutputFolder(fs::path folder, bool overwrite) : folder_(std::move(
 void OutputFolder::expect_free(const std::vector<std::string>& patterns) const {
   for (const std::string& pattern : patterns) {
     const std::vector<fs::path> files = matching_files(folder_, pattern);
-    if (!files.empty())
-      throw FileError("write", files.front().string(), "it is there already and not of an earlier run; move it away");
+    if (!files.empty()) throw FileError("write", files.front().string(), "it exists and is not from an earlier run; move it away");
   }
 }
 

@@ -1,4 +1,4 @@
-// The folder of a run: refused when it holds something, written file by file, each under a temporary name first.
+// The output folder of a run. Files of an earlier run are removed only on request, and no other files ever.
 #pragma once
 
 #include <filesystem>
@@ -7,26 +7,26 @@
 
 namespace sprung {
 
-/// What a run may remove is told by the run.json of the run before: it lists the patterns of all files that the run was going to
-/// write, and is the first file written and the last removed. So a run that was killed can be overwritten too, and a file that
-/// no pattern names is never touched.
+/// A run removes only files that match the patterns in the run.json of the earlier run. run.json lists the patterns of all files
+/// that the run will write; it is the first file written and the last removed. So a killed run can be overwritten, and a file that
+/// matches no pattern is never removed.
 class OutputFolder {
  public:
-  /// Makes the folder. Throws FileError when it cannot be made or read, or when it is not empty; with `overwrite` what an earlier
-  /// run wrote there is removed, and nothing else, and a folder that holds no run is refused all the same.
+  /// Creates the folder. Throws FileError if it cannot be created or read, or if it is not empty. With `overwrite`, removes the
+  /// files of the earlier run instead; throws FileError if the folder has files but no run.
   OutputFolder(std::filesystem::path folder, bool overwrite);
 
-  /// Throws FileError when a file that one of the patterns stands for is there already; see `file_pattern.h`.
+  /// Throws FileError if a file exists that matches one of the patterns (see `file_pattern.h`).
   void expect_free(const std::vector<std::string>& patterns) const;
 
-  /// Writes a whole file, given relative to the folder, under a temporary name and renames it. Throws FileError; then nothing of
-  /// the file remains.
+  /// Writes a file (path relative to the folder) under a temporary name and renames it. Throws FileError; no part of the file then
+  /// remains.
   void write(const std::filesystem::path& file, const std::string& text) const;
 
-  /// Appends to a file, given relative to the folder. Throws FileError; then the file is as before.
+  /// Appends to a file (path relative to the folder). Throws FileError; the file is then unchanged.
   void append(const std::filesystem::path& file, const std::string& text) const;
 
-  /// Removes a file, given relative to the folder, if it is there.
+  /// Removes a file (path relative to the folder) if it exists.
   void remove(const std::filesystem::path& file) const noexcept;
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }

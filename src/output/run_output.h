@@ -1,4 +1,4 @@
-// What a run leaves behind: OBJ sequences of bodies, obstacles as placed, diagnostics.csv, run.json.
+// The output of a run: OBJ sequences of bodies and obstacles, diagnostics.csv, run.json.
 #pragma once
 
 #include "output/obj_sequence.h"
@@ -13,22 +13,22 @@
 
 namespace sprung {
 
-/// Writes frames as they come. Each frame is there as a whole (OBJ files of all bodies, row of diagnostics.csv) or not at all, and
-/// run.json is up to date after each.
+/// Writes one frame after the other. A frame is complete (OBJ files of all bodies, row of diagnostics.csv) or absent. run.json is
+/// updated with each frame.
 class RunOutput {
  public:
-  /// Writes run.json and the head of diagnostics.csv. Throws FileError, and InputError for names that cannot be folders.
+  /// Writes run.json and the head of diagnostics.csv. Throws FileError, and InputError for names that are not valid folder names.
   RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator);
 
-  /// Writes the OBJ files of all bodies (and of moving obstacles) for the simulator's present state, and the frame's row. The first
-  /// call also writes the obstacles that stand still. Requires the simulator of the constructor. Throws FileError; then nothing of
-  /// the frame remains.
+  /// Writes the OBJ files of all bodies and moving obstacles at the simulator's present time, and the row of the frame. The first
+  /// call also writes the static obstacles. Requires the simulator of the constructor. Throws FileError; no part of the frame then
+  /// remains.
   void write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics);
 
-  /// Adds a warning that the run gave rise to; the next frame, or `finish`, writes it into run.json.
+  /// Adds a warning; the next frame, or `finish`, writes it to run.json.
   void add_warning(const std::string& warning) { record_.add_warning(warning); }
 
-  /// Writes how the run ended into run.json: `done`, `interrupted`, `diverged: ...`. Throws FileError.
+  /// Writes the outcome of the run to run.json: `done`, `interrupted`, `diverged: ...`. Throws FileError.
   void finish(const std::string& outcome);
 
  private:

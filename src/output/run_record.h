@@ -1,4 +1,4 @@
-// run.json: what was run, with what, and how it ended.
+// run.json: scene, settings, progress and outcome of a run.
 #pragma once
 
 #include <cstdint>
@@ -12,34 +12,34 @@ namespace sprung {
 
 inline constexpr const char* kRunRecordFile = "run.json";
 
-/// What is known of a run before it starts.
+/// Facts that are known before the run starts.
 struct RunFacts {
-  std::string scene{};       ///< as resolved, JSON text; may be empty
+  std::string scene{};       ///< resolved scene as JSON text, or empty
   double frame_rate = 30.0;  ///< [1/s]
-  int frames = 1;            ///< that the run is to write
+  int frames = 1;            ///< to write
   int steps_per_frame = 1;
   int threads = 1;
-  std::string stretch_solver{};  ///< what holds the stretch limit; empty without one
-  std::uint64_t seed = 0;        ///< of what is random; nothing is yet
+  std::string stretch_solver{};  ///< of the stretch limit; empty without one
+  std::uint64_t seed = 0;        ///< of random numbers, which no part uses yet
   std::vector<std::string> warnings{};
 };
 
-/// A body whose stretch limit a global solve took over from passes.
+/// A body whose stretch limit was handed over from Gauss-Seidel passes to Newton.
 struct NewtonFrom {
   std::string body;
-  std::int64_t step = 0;  ///< after which it did
+  std::int64_t step = 0;  ///< after which it was handed over
 };
 
-/// How far a run has come.
+/// Progress of a run.
 struct RunProgress {
   std::string outcome = "running";  ///< `running`, `done`, `interrupted`, `diverged: ...`
   int frames_written = 0;
   std::int64_t steps = 0;
-  std::int64_t substeps = 0;      ///< in which the steps were made
-  double smallest_step = 0.0;     ///< length of the smallest of them [s]; 0 when no step was made
-  std::int64_t limit_solves = 0;  ///< linear systems of the stretch limit
+  std::int64_t substeps = 0;      ///< summed over the steps
+  double smallest_step = 0.0;     ///< length of the shortest substep [s]; 0 without steps
+  std::int64_t limit_solves = 0;  ///< linear systems solved for the stretch limit
   std::vector<NewtonFrom> newton_from{};
-  double wall_seconds = 0.0;  ///< since the output was opened, writing included
+  double wall_seconds = 0.0;  ///< since the output was opened [s], including writing
 };
 
 /// The text of run.json.
@@ -49,7 +49,7 @@ class RunRecord {
   RunRecord(const RunFacts& facts, double step, const std::vector<std::string>& files);
   ~RunRecord();
 
-  /// Adds to the warnings that the facts brought.
+  /// Adds to the warnings of the facts.
   void add_warning(const std::string& warning);
 
   [[nodiscard]] std::string text(const RunProgress& progress) const;
@@ -59,7 +59,7 @@ class RunRecord {
   std::unique_ptr<Document> document_;
 };
 
-/// The patterns of a run's files as its run.json lists them; nothing when the file cannot be read or is not a run.json of ours.
+/// The patterns of a run's files from its run.json; nothing if the file cannot be read or is not a run.json of Sprung.
 [[nodiscard]] std::optional<std::vector<std::string>> files_of_run(const std::filesystem::path& run_record);
 
 }  // namespace sprung

@@ -22,7 +22,7 @@ double max_stretch(const Simulator& simulator) {
   return most;
 }
 
-// The farthest that a distance from the environment is worth its search: what the network measures and has moved, and some gaps.
+// Search range of the distance from the environment [m]: the extent of the network and of its motion, plus some gaps.
 double distance_range(const Simulator& simulator) {
   double thickest = 0.0;
   for (const Body& body : simulator.network().bodies) thickest = std::max(thickest, body.material.thickness);

@@ -1,4 +1,4 @@
-// What a frame is measured by.
+// Diagnostics of a frame, and the loop that computes frames.
 #pragma once
 
 #include "simulation/simulator.h"
@@ -7,6 +7,7 @@
 
 namespace sprung {
 
+/// Sums are over the steps of the frame.
 struct FrameDiagnostics {
   int frame = 1;                       ///< frame 1 is the state at time 0
   double time = 0.0;                   ///< [s]
@@ -14,15 +15,15 @@ struct FrameDiagnostics {
   double elastic_energy = 0.0;         ///< [J]
   double gravity_energy = 0.0;         ///< [J]
   double max_stretch = 0.0;            ///< largest (|s| - d) / d of structural springs
-  double stretch_excess = 0.0;         ///< largest in the frame's steps beyond the stretch limit
-  Index contacts = 0;                  ///< particles that obstacles push at the end
-  std::optional<double> min_distance;  ///< smallest distance of a particle from an obstacle [m]; none without obstacles, or when
-                                       ///< all are farther than the network is large
-  Index truncated = 0;                 ///< in all of the frame's steps
-  Index infeasible = 0;                ///< in all of the frame's steps
-  std::int64_t substeps = 0;           ///< in which the frame's steps were made
-  double smallest_step = 0.0;          ///< length of the smallest [s]; 0 when no step was made
-  std::int64_t limit_solves = 0;       ///< linear systems of the stretch limit, in all of the frame's steps
+  double stretch_excess = 0.0;         ///< largest excess over the stretch limit [fraction of the rest length]
+  Index contacts = 0;                  ///< particles that contact pushed in the last step
+  std::optional<double> min_distance;  ///< smallest distance of a particle from an obstacle [m]; none without obstacles, or if all
+                                       ///< are farther than the size of the network
+  Index truncated = 0;                 ///< particles that truncation stopped, summed
+  Index infeasible = 0;                ///< particles without an admissible position, summed
+  std::int64_t substeps = 0;           ///< number of substeps
+  double smallest_step = 0.0;          ///< length of the shortest substep [s]; 0 without steps
+  std::int64_t limit_solves = 0;       ///< linear systems solved for the stretch limit, summed
   double frame_ms = 0.0;               ///< wall time of computing the frame
 };
 

@@ -16,14 +16,14 @@
 namespace sprung {
 namespace {
 
-// Springs are looked at for one that gave way each step, large networks less often: about so many springs a step.
+// Springs are checked for overstretching at about this rate: each step in small networks, less often in large ones.
 constexpr Index kSpringsCheckedPerStep = 8192;
 
-// Energies, which cost more and take many steps to explode, less often still.
+// Energies cost more and take many steps to explode, so they are checked less often.
 constexpr Index kStepsPerEnergy = 64;
 
-// By which an obstacle or a pin turns in a part of a step [degrees].
-constexpr double kMostTurn = 45.0;
+// Largest rotation of an obstacle or a pin in a substep [degrees].
+constexpr double kMaxTurn = 45.0;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       divergence(network),
       energy_watch(network, settings, environment.obstacles()),
       state(initial_state(network)),
-      begun{state, energy_watch, {}} {
+      begin{state, energy_watch, {}} {
   const StretchLimit* limit = constraints.limit();
   if (limit != nullptr && settings.max_substeps > 1) {
     refinement.emplace(limit->settings(), settings.max_substeps);
@@ -56,55 +56,55 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   move_pins(0.0);
   Start start = find_start(network, environment, settings.contact, state.x);
   state.x = std::move(start.positions);
-  for (const auto& more : {start.warnings, idle_settings(settings, network), weak_bonds(settings, network)}) {
+  for (const auto& more : {start.warnings, unused_settings(settings, network), weak_springs(settings, network)}) {
     warnings.insert(warnings.end(), more.begin(), more.end());
   }
   integrator->start(state, forces, dt());
   energy_watch.note(0, energies());
 }
 
-/// Whether something does at the start: by how much it will turn is not known yet.
+/// Whether anything moves at the start, when the rotation in a step is not known yet.
 bool Simulator::Implementation::anything_moves() const {
   return !network.velocities.isZero(0.0) || std::ranges::any_of(network.pins, [](const Pin& pin) { return pin.motion.moves(); });
 }
 
 StepReport Simulator::Implementation::step() {
   if (constraints.contacts().can_collide()) {
-    begun = {state, energy_watch, constraints.permitted_crossings()};
+    begin = {state, energy_watch, constraints.permitted_crossings()};
   }
   kept_contacts.reset();
-  const int more = substeps_by_turn();
-  StepReport report = make_step(more, std::numeric_limits<Index>::max());
-  if (may_retry(report.max_infeasible, begun.state)) report = make_again(report, more);
+  const int factor = factor_for_rotation();
+  StepReport report = make_step(factor, std::numeric_limits<Index>::max());
+  if (may_retry(report.max_infeasible, begin.state)) report = repeat_step(report, factor);
   note_step(report.infeasible, state);
   if (refinement) choose_substeps(report);
   if (const StretchLimit* limit = constraints.limit()) hand_over_missed(network, *limit, report.stretch_excess, state);
   return report;
 }
 
-/// Seen from what turns, particles go straight from where a part begins to where it ends: by half a turn, through its middle.
-int Simulator::Implementation::substeps_by_turn() const {
-  const double begin = time();
+/// In the frame of a rotating obstacle, particles are assumed to move straight in a substep: after half a turn, through its center.
+int Simulator::Implementation::factor_for_rotation() const {
+  const double start = time();
   double turn = 0.0;
   for (const Obstacle& obstacle : environment.obstacles())
-    turn = std::max(turn, obstacle.motion.turn(begin, begin + settings.step));
-  for (const Pin& pin : network.pins) turn = std::max(turn, pin.motion.turn(begin, begin + settings.step));
-  const double needed = std::ceil(turn / (kMostTurn * state.substeps));
+    turn = std::max(turn, obstacle.motion.turn(start, start + settings.step));
+  for (const Pin& pin : network.pins) turn = std::max(turn, pin.motion.turn(start, start + settings.step));
+  const double needed = std::ceil(turn / (kMaxTurn * state.substeps));
   return static_cast<int>(
       std::clamp(needed, 1.0, static_cast<double>(std::min(kRetryFactors.back(), kMaxSubsteps / state.substeps))));
 }
 
-/// In so many times as many parts. A part that squeezes too many particles is the last.
-StepReport Simulator::Implementation::make_step(int more, Index too_many) {
+/// Makes the step with `factor` times the substeps. Ends early after a substep with at least `max_infeasible` infeasible particles.
+StepReport Simulator::Implementation::make_step(int factor, Index max_infeasible) {
   const int substeps = state.substeps;
-  integrator->set_fraction(1.0 / more);
-  set_substeps(more * substeps);
+  integrator->set_fraction(1.0 / factor);
+  set_substeps(factor * substeps);
   StepReport report;
-  for (const std::int64_t step = state.step; state.step == step && report.max_infeasible < too_many;) {
+  for (const std::int64_t step = state.step; state.step == step && report.max_infeasible < max_infeasible;) {
     if (stops && stops()) throw StoppedError();
     report += make_substep();
   }
-  if (const StretchLimit* limit = constraints.limit()) report.turn = more * limit->turn();
+  if (const StretchLimit* limit = constraints.limit()) report.turn = factor * limit->turn();
   integrator->set_fraction(1.0);
   set_substeps(substeps);
   return report;
@@ -120,7 +120,7 @@ StepReport Simulator::Implementation::make_substep() {
   energy_watch.note_obstacle(environment.set().carries_at_most(state.x) / dt());
 
   StepReport report{.substeps = 1};
-  constraints.hold(state, forces, dt(), report);
+  constraints.apply(state, forces, dt(), report);
   if (++state.substep == state.substeps) {
     ++state.step;
     state.substep = 0;
@@ -138,16 +138,16 @@ void Simulator::Implementation::choose_substeps(const StepReport& report) {
   } else if (!waits_for_turn) {
     refinement->choose(report.stretch_excess, state);
   }
-  length_changed(dt_before);
+  substep_changed(dt_before);
 }
 
 void Simulator::Implementation::set_substeps(int substeps) {
   const double dt_before = dt();
   state.substeps = substeps;
-  length_changed(dt_before);
+  substep_changed(dt_before);
 }
 
-void Simulator::Implementation::length_changed(double dt_before) {
+void Simulator::Implementation::substep_changed(double dt_before) {
   if (dt() == dt_before) return;
   if (penalty != nullptr) penalty->set_step(dt());
   move_pins(time());
@@ -158,7 +158,7 @@ void Simulator::Implementation::length_changed(double dt_before) {
   }
 }
 
-// A pin's velocity is that of the step to come: what its neighbours' dampers see.
+// A pin has the velocity of the next substep, which the dampers of its neighbours use.
 void Simulator::Implementation::move_pins(double time) {
   for (const Pin& pin : network.pins) {
     if (!pin.motion.moves()) continue;
@@ -180,7 +180,7 @@ Index Simulator::Implementation::contacts() const {
 }
 
 void Simulator::Implementation::check_state() {
-  if (const auto failure = divergence.not_finite(state, constraints.step_began(state))) fail(*failure);
+  if (const auto failure = divergence.not_finite(state, constraints.positions_before(state))) fail(*failure);
   const Index check_interval = 1 + network.springs.count() / kSpringsCheckedPerStep;
   if (state.step % check_interval == 0) {
     if (const auto failure = divergence.overstretched(state.x)) fail(*failure);

@@ -18,23 +18,22 @@ namespace sprung {
 
 class Simulator {
  public:
-  /// Throws InputError when settings are out of their bounds, the step is not positive or beyond the largest stable one (unless
-  /// `stability` is warn: then `warnings` says so), or when anything intersects at the start that is not pushed
-  /// out. Then `warnings` says what was.
+  /// Throws InputError if a setting is out of its bounds, if the step is not positive or beyond the largest stable one (with
+  /// `stability` warn, `warnings` reports the latter), or if intersections remain at the start. `warnings` reports bodies that
+  /// were moved out of intersections.
   explicit Simulator(SpringNetwork network, SimulatorSettings settings = {}, std::vector<Obstacle> obstacles = {});
   ~Simulator();
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
-  /// Advances by one step, in as many parts as the step before asks for (see StepRefinement), or as it takes for no obstacle or pin
-  /// to turn by more than 45 degrees in one, 64 times as many at most. One that squeezes particles is made again in 4, 16 and 64
-  /// times as many, until none is: obstacles that come fast, or near pins, leave a place that a long step passes by. While that
-  /// does not help those that squeeze no more are tried ever more rarely. Throws StepError when the network diverged; its state is
-  /// of no use then.
+  /// Advances by one step. StepRefinement chooses the number of substeps; it is multiplied by up to 64 so that no obstacle or pin
+  /// rotates by more than 45 degrees in a substep. A step with infeasible particles is repeated with 4, 16 and 64 times the
+  /// substeps until there are none: a long step can miss an admissible position near a pin or before a fast obstacle. Repetitions
+  /// without effect become rarer (see step_retry.h). Throws StepError if the network diverged; the state is then not usable.
   StepReport step();
 
-  /// From now on step() asks this between its parts, and throws StoppedError where it is true; its state is of no use then. A step
-  /// of something that is knotted may take long.
+  /// Lets step() call `stops` before each substep and throw StoppedError if it returns true; the state is then not usable. A step
+  /// with many infeasible particles can take minutes.
   void stop_when(std::function<bool()> stops);
 
   [[nodiscard]] const SpringNetwork& network() const;
@@ -49,17 +48,17 @@ class Simulator {
   /// Positions [m], 3 x n.
   [[nodiscard]] const Points& positions() const { return state().x; }
 
-  /// What solves the stretch limit of this network, as StretchLimit::chosen_solver; empty without a limit.
+  /// Name of the solver of the stretch limit (see StretchLimit::chosen_solver); empty without a limit.
   [[nodiscard]] std::string stretch_solver() const;
 
-  /// Particles that obstacles push at present.
+  /// Number of particles that contact pushed in the last step.
   [[nodiscard]] Index contact_count() const;
 
-  /// Throws StepError when a spring gave way, or the energy exploded, that the check of the steps, which looks at large networks
-  /// only now and then, has not seen yet.
+  /// Throws StepError if a spring is overstretched or the energy exploded. step() checks large networks only every few steps.
   void check() const;
 
-  /// Elastic energy [J], sum 1/2 k_s (|s| - d)^2 and that of angle bends, and -m g . x.
+  /// Elastic energy [J]: sum of 1/2 k_s (|s| - d)^2 and the energy of angle bends. Potential energy of gravity [J]: sum of -m g .
+  /// x.
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] double gravity_energy() const;
 

@@ -1,4 +1,4 @@
-// What the simulator is made of. Internal to simulation/.
+// The members of the simulator. Internal to simulation/.
 #pragma once
 
 #include "dynamics/contact/penalty_contact.h"
@@ -19,18 +19,18 @@
 
 namespace sprung {
 
-/// Where a step that may be made again began.
-struct Begun {
+/// The beginning of a step, for its repetition.
+struct StepBegin {
   SimulationState state;
   EnergyWatch watch;
-  PermittedCrossings through;
+  PermittedCrossings crossings;
 };
 
-/// What a step, made in some number of parts, came to.
-struct Made {
+/// The end of a step after one attempt.
+struct Attempt {
   SimulationState state;
   EnergyWatch watch;
-  PermittedCrossings through;
+  PermittedCrossings crossings;
   StepReport report;
   Index contacts = 0;
 };
@@ -48,15 +48,15 @@ struct Simulator::Implementation {
 
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
-  [[nodiscard]] int substeps_by_turn() const;
-  StepReport make_step(int more, Index too_many);
-  [[nodiscard]] Made made(const StepReport& report) const;
-  StepReport make_again(const StepReport& first, int more_at_first);
-  std::optional<StepReport> attempt(int more, Index too_many);
+  [[nodiscard]] int factor_for_rotation() const;
+  StepReport make_step(int factor, Index max_infeasible);
+  [[nodiscard]] Attempt attempt_of(const StepReport& report) const;
+  StepReport repeat_step(const StepReport& first, int factor_at_first);
+  std::optional<StepReport> attempt(int factor, Index max_infeasible);
   StepReport make_substep();
   void choose_substeps(const StepReport& report);
   void set_substeps(int substeps);
-  void length_changed(double dt_before);
+  void substep_changed(double dt_before);
   void move_pins(double time);
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] Energies energies() const;
@@ -75,18 +75,18 @@ struct Simulator::Implementation {
   Forces forces;
   const Gravity* gravity = nullptr;
   const SpringForce* springs = nullptr;
-  const BendingAngleForce* angles = nullptr;  ///< when the network has angle bends
-  PenaltyContact* penalty = nullptr;          ///< when contact answers by forces
+  const BendingAngleForce* angles = nullptr;  ///< null without angle bends
+  PenaltyContact* penalty = nullptr;          ///< null unless contact is by penalty
   std::unique_ptr<Integrator> integrator;
   StepConstraints constraints;
   std::function<bool()> stops;               ///< see Simulator::stop_when
-  std::optional<StepRefinement> refinement;  ///< when steps may be made in parts
+  std::optional<StepRefinement> refinement;  ///< none if a step has one substep
   bool waits_for_turn;                       ///< see StretchLimit::may_follow_turn
   DivergenceCheck divergence;
   EnergyWatch energy_watch;
   SimulationState state;
-  Begun begun;
-  std::optional<Index> kept_contacts;  ///< of the last step, if constraints have seen another since
+  StepBegin begin;
+  std::optional<Index> kept_contacts;  ///< of the last step, if a later attempt changed the constraints
 };
 
 }  // namespace sprung

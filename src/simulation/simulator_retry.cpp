@@ -6,20 +6,21 @@
 
 namespace sprung {
 
-// What a step leads far, by a lever or between obstacles that close, may find no place though there is one: in smaller steps
-// contact answers before they meet. Of all attempts that of the fewest infeasible counts. What is wrung past its room finds none in
-// any number of parts: an attempt that will not halve what is infeasible is left off, as it may take hundreds of times as long.
-StepReport Simulator::Implementation::make_again(const StepReport& first, int more_at_first) {
-  Made best = made(first);
+// A particle that moves far in a step, on a lever or between closing obstacles, may miss an admissible position that exists. With
+// smaller substeps, contact acts before the surfaces touch. The attempt with the fewest infeasible particles wins. If there is no
+// admissible position, no number of substeps helps: an attempt that does not halve the infeasible particles is abandoned, as it
+// could take hundreds of times longer.
+StepReport Simulator::Implementation::repeat_step(const StepReport& first, int factor_at_first) {
+  Attempt best = attempt_of(first);
   constraints.look_ahead(true);
-  for (const int more : kRetryFactors) {
-    if (best.report.max_infeasible == 0 || begun.state.substeps > kMaxSubsteps / more) break;
-    if (more <= more_at_first) continue;
-    const auto report = attempt(more, (best.report.max_infeasible + 1) / 2);
-    if (report) best = made(*report);
+  for (const int factor : kRetryFactors) {
+    if (best.report.max_infeasible == 0 || begin.state.substeps > kMaxSubsteps / factor) break;
+    if (factor <= factor_at_first) continue;
+    const auto report = attempt(factor, (best.report.max_infeasible + 1) / 2);
+    if (report) best = attempt_of(*report);
   }
   constraints.look_ahead(false);
-  constraints.roll_back(best.through);
+  constraints.roll_back(best.crossings);
   state = std::move(best.state);
   environment.set_interval(time(), time());
   energy_watch = best.watch;
@@ -28,22 +29,22 @@ StepReport Simulator::Implementation::make_again(const StepReport& first, int mo
   return best.report;
 }
 
-Made Simulator::Implementation::made(const StepReport& report) const {
+Attempt Simulator::Implementation::attempt_of(const StepReport& report) const {
   return {state, energy_watch, constraints.permitted_crossings(), report, contacts()};
 }
 
-/// None when it diverges, or squeezes too many particles.
-std::optional<StepReport> Simulator::Implementation::attempt(int more, Index too_many) {
-  state = begun.state;
-  energy_watch = begun.watch;
-  constraints.roll_back(begun.through);
+/// Nothing if the step diverges, or has at least `max_infeasible` infeasible particles.
+std::optional<StepReport> Simulator::Implementation::attempt(int factor, Index max_infeasible) {
+  state = begin.state;
+  energy_watch = begin.watch;
+  constraints.roll_back(begin.crossings);
   environment.set_interval(time(), time());
   try {
-    const StepReport report = make_step(more, too_many);
-    return report.max_infeasible < too_many ? std::optional(report) : std::nullopt;
+    const StepReport report = make_step(factor, max_infeasible);
+    return report.max_infeasible < max_infeasible ? std::optional(report) : std::nullopt;
   } catch (const StepError&) {
     integrator->set_fraction(1.0);
-    set_substeps(begun.state.substeps);
+    set_substeps(begin.state.substeps);
     return std::nullopt;
   }
 }

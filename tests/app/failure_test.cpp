@@ -98,10 +98,9 @@ TEST_F(CommandLine, StepThatIsTooLargeIsRefusedBeforeAnythingIsWritten) {
 TEST_F(CommandLine, DivergenceEndsWithFourAndKeepsTheGoodFrames) {
   const Ending ending = run({"run", save(diverging_scene()), "--out", out(), "--set", "stability=\"warn\""});
   EXPECT_EQ(ending.code, 4) << ending.err;
-  EXPECT_THAT(ending.err,
-              AllOf(HasSubstr("warning"), HasSubstr("diverged at step"), HasSubstr("time"), HasSubstr("body \"rope\""),
-                    HasSubstr("particle"), HasSubstr("spring"), HasSubstr(" %, pulling with "), HasSubstr("use a step of"),
-                    HasSubstr("the last frame is "), HasSubstr("those before are kept in " + out())));
+  EXPECT_THAT(ending.err, AllOf(HasSubstr("warning"), HasSubstr("diverged at step"), HasSubstr("time"), HasSubstr("body \"rope\""),
+                                HasSubstr("particle"), HasSubstr("spring"), HasSubstr(" %, pulling with "),
+                                HasSubstr("use a step of"), HasSubstr("the last frame is "), HasSubstr(" are in " + out())));
   EXPECT_THAT(record()["outcome"].get<std::string>(), StartsWith("diverged: "));
   const int frames = record()["frames_written"];
   EXPECT_GE(frames, 1);

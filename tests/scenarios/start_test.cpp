@@ -147,7 +147,8 @@ TEST_P(EveryStart, IsRefusedOrLedOutAndGoesOnFromThere) {
   expect_free(simulator);
   EXPECT_EQ(simulator.state().v, network.velocities);
   ASSERT_EQ(simulator.warnings().size(), 1U);
-  EXPECT_THAT(simulator.warnings()[0], HasSubstr("body \"body\" was pushed out of what it intersected at the start: "));
+  EXPECT_THAT(simulator.warnings()[0],
+              HasSubstr("body \"body\" intersected an obstacle or a body at the start and was moved out: "));
   // The gap is body's and obstacle's thickness; passes end within a thousandth of it.
   EXPECT_GE(least_distance(simulator, in), 0.998 * (kThickness + in.material.thickness));
 
@@ -278,7 +279,7 @@ TEST(StartScenario, WhatPinsHoldAcrossAWallIsRefused) {
     const Simulator simulator(network, pushing_out(), {obstacle(BoxGeometry{Vector3(0.1, 1e6, 1e6)})});
     FAIL() << "was accepted";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("could not be pushed out"), HasSubstr("intersects obstacle \"obstacle\"")));
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("found no free position"), HasSubstr("intersects obstacle \"obstacle\"")));
   }
 }
 

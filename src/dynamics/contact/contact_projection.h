@@ -1,4 +1,4 @@
-// Contact by projection: finds the contacts of a step, answers them on positions and velocities, and has the last word.
+// Contact by projection: detects the contacts of a step, solves them for positions and velocities, and truncates the step.
 #pragma once
 
 #include "collision/obstacles/environment.h"
@@ -12,55 +12,82 @@
 
 namespace sprung {
 
+/// Contact passes that a step makes if no stretch limit asks for more: a particle in a corner between obstacles settles in them.
+inline constexpr int kContactPasses = 8;
+
+/// Contact is settled when a pass changes no push by more than this fraction of the gap.
+inline constexpr double kContactTolerance = 1.0e-3;
+
+/// Calls `pass(k)` for k = 0, 1, ... until it returns true (settled), at most `max_passes` times. Returns the number of calls.
+template <class Pass>
+int repeat_until_settled(int max_passes, const Pass& pass) {
+  int passes = 0;
+  bool settled = false;
+  while (passes < max_passes && !settled) settled = pass(passes++);
+  return passes;
+}
+
 class ContactProjection {
  public:
+  /// What push_out() did.
+  struct PushOut {
+    int passes = 0;
+    bool moved = false;  ///< whether any particle moved
+  };
+
   /// Keeps references to the network and the environment.
   ContactProjection(const SpringNetwork& network, Environment& environment);
 
-  /// Whether there is anything that the network may meet: obstacles, other bodies, itself.
-  [[nodiscard]] bool can_collide() const { return free_space_.can_collide(); }
+  /// Whether the network can collide with anything: an obstacle, another body, or itself.
+  [[nodiscard]] bool can_collide() const { return truncation_.can_collide(); }
 
-  /// Finds the contacts of a step. Requires that the environment's interval is the step's.
+  /// Detects the contacts of a step. Requires that the environment's interval is the step's.
   void find(const StepMotion& motion);
 
-  /// Finds those around what truncation has stopped anew where the particles are now [m], which the regions must hold: while it
-  /// relaxes. Pushes so far count on.
+  /// Detects the contacts near truncated particles again, at the present positions [m]. Call it during the relaxation of
+  /// truncate(); requires that the positions lie in their safe regions. Accumulated pushes are kept.
   void find_again(const StepMotion& motion, const Points& positions);
 
   /// See StepTruncation.
-  [[nodiscard]] const PermittedCrossings& permitted_crossings() const { return free_space_.permitted_crossings(); }
-  void roll_back(const PermittedCrossings& permitted) { free_space_.roll_back(permitted); }
-  void look_ahead(bool ahead) { free_space_.look_ahead(ahead); }
+  [[nodiscard]] const PermittedCrossings& permitted_crossings() const { return truncation_.permitted_crossings(); }
+  void roll_back(const PermittedCrossings& permitted) { truncation_.roll_back(permitted); }
+  void look_ahead(bool ahead) { truncation_.look_ahead(ahead); }
+
+  /// One pass; see ContactSolver.
+  double project(Points& positions) { return solver_.project(positions); }
+
+  /// Makes passes over the contacts until they are settled, at most `max_passes`.
+  PushOut push_out(Points& positions, int max_passes = kContactPasses);
 
   /// See ContactSolver.
-  double project(Points& positions) { return response_.project(positions); }
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {
-    response_.settle_velocities(motion, state, integrator);
+    solver_.settle_velocities(motion, state, integrator);
   }
-  void hold_pushed(ConstrainedDirections& held) const { response_.hold_pushed(held); }
-  [[nodiscard]] Index contact_count() const { return response_.pushed_count(); }
+  void hold_pushed(ConstrainedDirections& constrained) const { solver_.hold_pushed(constrained); }
+  [[nodiscard]] Index contact_count() const { return solver_.pushed_count(); }
 
-  /// Stops particles before an element of the network crosses a surface, where none did at the begin of the step: the last word on
-  /// positions [m]. What is stopped `relax` may lead on (see StepTruncation::truncate); what two bodies stop of each other is
-  /// answered as contact first, which keeps their momentum.
+  /// Clips positions [m] so that no element crosses a surface that it did not cross at the beginning of the step. If two bodies
+  /// block each other, the contacts between them are solved first, which conserves momentum. `relax` may then move truncated
+  /// particles and their neighbours (see StepTruncation::truncate).
   void truncate(const StepMotion& motion, Points& positions, const StepTruncation::Relax& relax = {});
 
-  /// Slows what truncation took along with obstacles down to the speed that forces gave it: what is far from one that spins was
-  /// swung about it. What leans on it contact speeds up. Requires velocities that are recovered from positions.
-  void slow_down_taken_along(const StepMotion& motion, SimulationState& state, const Integrator& integrator) const;
+  /// Limits the speed of particles that truncation moved with obstacles to the speed that forces gave them: a lever would
+  /// otherwise throw a particle far from the axis of a rotating obstacle. Contact accelerates what touches the obstacle. Requires
+  /// velocities recovered from positions.
+  void limit_speed_of_moved(const StepMotion& motion, SimulationState& state, const Integrator& integrator) const;
 
+  /// Particles that the last truncate() stopped, and those for which it found no admissible position.
   [[nodiscard]] Index truncated_count() const { return truncated_; }
   [[nodiscard]] Index infeasible_count() const { return infeasible_; }
 
  private:
   [[nodiscard]] TruncationResult truncate_bodies(const StepMotion& motion, Points& positions, const StepTruncation::Relax& relax);
-  [[nodiscard]] bool note_meetings(const std::vector<Contact>& meetings, const StepMotion& motion);
-  [[nodiscard]] bool answer_meetings(Points& positions);
+  [[nodiscard]] bool add_body_contacts(const std::vector<Contact>& contacts, const StepMotion& motion);
 
-  ContactSolver response_;
-  StepTruncation free_space_;
-  std::set<decltype(Contact::particles)> noted_;  ///< those of meetings in the step, that contact did not tell of
-  std::vector<Index> taken_along_;
+  ContactSolver solver_;
+  StepTruncation truncation_;
+  std::set<decltype(Contact::particles)> added_;  ///< stencils of the body contacts that truncation found in this step
+  std::vector<Index> moved_with_obstacles_;
   Index truncated_ = 0;
   Index infeasible_ = 0;
 };

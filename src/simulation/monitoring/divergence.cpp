@@ -30,9 +30,9 @@ double length(const Points& positions, Index a, Index b) { return (positions.col
 std::string state_of_spring(const Springs& springs, std::size_t spring, double length) {
   const double rest = springs.rest_length[spring];
   const double stretch = length - rest;
-  const std::string part = rest > 0.0 ? " by " + format_number(100.0 * std::abs(stretch) / rest, 3) + " %" : "";
+  const std::string percent = rest > 0.0 ? " by " + format_number(100.0 * std::abs(stretch) / rest, 3) + " %" : "";
   return format_number(length, 3) + " m long, " + format_number(rest, 3) +
-         " m at rest: " + (stretch < 0.0 ? "compressed" : "stretched") + part +
+         " m at rest: " + (stretch < 0.0 ? "compressed" : "stretched") + percent +
          (stretch < 0.0 ? ", pushing with " : ", pulling with ") + format_number(springs.stiffness[spring] * std::abs(stretch), 3) +
          " N";
 }
@@ -41,13 +41,13 @@ std::string state_of_spring(const Springs& springs, std::size_t spring, double l
 
 DivergenceCheck::DivergenceCheck(const SpringNetwork& network) : network_(network) {
   const Springs& springs = network.springs;
-  double longest_rest = 0.0;  // stands in for springs of no length at all
+  double longest_rest = 0.0;  // reference length for springs of length 0
   for (const double rest : springs.rest_length) longest_rest = std::max(longest_rest, rest);
   longest_squared_.reserve(static_cast<std::size_t>(springs.count()));
   for (std::size_t s = 0; s < springs.first.size(); ++s) {
     const double start = std::max(springs.rest_length[s], length(network.positions, springs.first[s], springs.second[s]));
     const double longest = kOverstretched * (start > 0.0 ? start : longest_rest);
-    const bool pulls = springs.stiffness[s] > 0.0;  // one without stiffness may be as long as it likes
+    const bool pulls = springs.stiffness[s] > 0.0;  // a spring without stiffness has no bound
     longest_squared_.push_back(pulls && longest > 0.0 ? longest * longest : HUGE_VAL);
     if (longest_squared_.back() < HUGE_VAL) bounded_.push_back(static_cast<Index>(s));
   }
@@ -58,8 +58,7 @@ std::optional<StepFailure> DivergenceCheck::not_finite(const SimulationState& st
   Index particle = 0;
   while (state.x.col(particle).allFinite() && state.v.col(particle).allFinite()) ++particle;
   StepFailure failure = blame(particle, worst_spring_at(particle, before), before);
-  failure.cause =
-      "a position or velocity is no longer a finite number" + (failure.cause.empty() ? "" : "; before, " + failure.cause);
+  failure.cause = "a position or velocity is not finite" + (failure.cause.empty() ? "" : "; one step before, " + failure.cause);
   return failure;
 }
 

@@ -1,4 +1,4 @@
-// Tells a simulation that blew up from one that moves fast.
+// Detects that a simulation diverged.
 #pragma once
 
 #include "base/error.h"
@@ -15,15 +15,15 @@ class DivergenceCheck {
   /// Keeps a reference to the network.
   explicit DivergenceCheck(const SpringNetwork& network);
 
-  /// What diverged, if anything: a position or velocity that is not finite. `before` [m] are the positions of the step before, by
-  /// which the spring to blame is found. Step, time and remedy are left to the caller.
+  /// The first particle whose position or velocity is not finite, and its most stretched spring at the positions `before` [m] of
+  /// the previous step. The caller sets step, time and remedy of the failure.
   [[nodiscard]] std::optional<StepFailure> not_finite(const SimulationState& state, const Points& before) const;
 
-  /// A spring with stiffness that is more than 1,000 times as long as at rest and as at time 0: no material holds that, a step that
-  /// is too large makes it.
+  /// The most stretched spring, if it has stiffness and is over 1,000 times longer than its rest length and its length at time 0.
+  /// No material stretches so far; a step that is too large causes it.
   [[nodiscard]] std::optional<StepFailure> overstretched(const Points& positions) const;
 
-  /// The fastest particle and the spring at it that is stretched most.
+  /// The fastest particle and its most stretched spring.
   [[nodiscard]] StepFailure fastest(const SimulationState& state) const;
 
  private:
@@ -31,8 +31,8 @@ class DivergenceCheck {
   [[nodiscard]] Index worst_spring_at(Index particle, const Points& positions) const;
 
   const SpringNetwork& network_;
-  std::vector<double> longest_squared_;  ///< of each spring [m^2]
-  std::vector<Index> bounded_;           ///< springs for which that is finite
+  std::vector<double> longest_squared_;  ///< per spring [m^2]
+  std::vector<Index> bounded_;           ///< springs with a finite bound
 };
 
 }  // namespace sprung

@@ -3,6 +3,7 @@
 #include "base/format.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace sprung {
@@ -13,10 +14,13 @@ constexpr double kExploded = 1000.0;
 // See note_obstacle().
 constexpr double kWedge = 32.0;
 
-// Of what springs hold, motion is at most this part where they are stretched slowly.
+// While springs are stretched slowly, the kinetic energy is below this fraction of the elastic energy.
 constexpr double kSlow = 0.01;
 
-// Of the coordinates, a step: what moves less moves by rounding.
+// Symplectic schemes let the energy of undamped springs oscillate by a third at their largest stable step, and keep its mean.
+constexpr double kMaxGain = 0.5;
+
+// Displacement in a step, as a fraction of the coordinates, that rounding may cause.
 constexpr double kRounding = 0x1p-26;
 
 double capacity_of(const SpringNetwork& network) {
@@ -28,12 +32,11 @@ double capacity_of(const SpringNetwork& network) {
   return energy;
 }
 
-/// A limit holds energy as stiff springs do: what hangs by it a little too long bounces. That is less than the weight of all times
-/// the length of a spring.
-double capacity_of_limit(const SpringNetwork& network, const SimulatorSettings& settings) {
+/// A limit stores energy as stiff springs do: a body that hangs by a slightly overstretched limit bounces by less than the length
+/// of a spring [m].
+double bounce_height_of(const SpringNetwork& network, const SimulatorSettings& settings) {
   const std::vector<double>& lengths = network.springs.rest_length;
-  if (!settings.stretch_limit || lengths.empty()) return 0.0;
-  return network.masses.sum() * settings.gravity.norm() * *std::ranges::max_element(lengths);
+  return settings.stretch_limit && !lengths.empty() ? *std::ranges::max_element(lengths) : 0.0;
 }
 
 double bounce_gain(const SpringNetwork& network, const std::vector<Obstacle>& obstacles) {
@@ -43,38 +46,80 @@ double bounce_gain(const SpringNetwork& network, const std::vector<Obstacle>& ob
   return kWedge * (1.0 + restitution) / (1.0 - restitution);
 }
 
-double energy_of_rounding(const SpringNetwork& network, double step) {
-  if (network.particle_count() == 0) return 0.0;
-  const double speed = kRounding * network.positions.cwiseAbs().maxCoeff() / step;
-  return 0.5 * network.masses.sum() * speed * speed;
+double rounding_speed(const Points& positions, double step) {
+  return positions.cols() == 0 ? 0.0 : kRounding * positions.cwiseAbs().maxCoeff() / step;
+}
+
+bool uses_penalty(const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
+  return settings.contact.response == ContactSettings::Response::penalty && !obstacles.empty();
+}
+
+bool is_undriven(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
+  const bool wind = settings.air_drag > 0.0 && !settings.wind.isZero(0.0);
+  return !uses_penalty(settings, obstacles) && !wind && !std::holds_alternative<ExplicitEulerSettings>(settings.integrator) &&
+         std::ranges::none_of(network.pins, [](const Pin& pin) { return pin.motion.moves(); }) &&
+         std::ranges::none_of(obstacles, [](const Obstacle& obstacle) { return obstacle.changes(); });
 }
 
 }  // namespace
 
 EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles)
     : mass_(network.masses.sum()),
-      watches_(obstacles.empty() || settings.contact.response == ContactSettings::Response::projection),
+      step_(settings.step),
+      gravity_(settings.gravity.norm()),
+      bounce_height_(bounce_height_of(network, settings)),
+      watches_(!uses_penalty(settings, obstacles)),
+      undriven_(is_undriven(network, settings, obstacles)),
       bounce_gain_(bounce_gain(network, obstacles)),
-      fastest_drive_(settings.air_drag > 0.0 ? settings.wind.norm() : 0.0),
-      capacity_(capacity_of(network) + capacity_of_limit(network, settings) + energy_of_rounding(network, settings.step)) {}
+      fastest_drive_(settings.air_drag > 0.0 ? settings.wind.norm() : 0.0) {
+  const double rounding = rounding_speed(network.positions, step_);
+  capacity_ = capacity_of(network) + mass_ * gravity_ * bounce_height_ + 0.5 * mass_ * rounding * rounding;
+}
 
 void EnergyWatch::note(std::int64_t step, const Energies& energies) {
   if (step <= 1) start_ = std::max(start_, energies.kinetic + energies.elastic);
   highest_ = step == 0 ? energies.gravity : std::max(highest_, energies.gravity);
-  most_kinetic_ = std::max(most_kinetic_, energies.kinetic);
-  if (most_kinetic_ < kSlow * energies.elastic) stored_ = std::max(stored_, energies.elastic);
+  max_kinetic_ = std::max(max_kinetic_, energies.kinetic);
+  if (max_kinetic_ < kSlow * energies.elastic) stored_ = std::max(stored_, energies.elastic);
 }
 
 std::optional<std::string> EnergyWatch::explosion(const Energies& energies) const {
-  const double held = energies.kinetic + energies.elastic;
-  if (!watches_ || held <= kExploded * put_in(energies)) return std::nullopt;
-  return "its energy exploded: motion and springs hold " + format_number(held, 3) + " J, of which no more than " +
-         format_number(put_in(energies), 3) + " J can have been put in";
+  const double present = energies.kinetic + energies.elastic;
+  if (!watches_ || present <= kExploded * supplied(energies)) return std::nullopt;
+  return "the energy exploded: kinetic and elastic energy are " + format_number(present, 3) + " J, but at most " +
+         format_number(supplied(energies), 3) + " J can have been supplied";
 }
 
-double EnergyWatch::put_in(const Energies& energies) const {
+double EnergyWatch::supplied(const Energies& energies) const {
   const double driven = 0.5 * mass_ * fastest_drive_ * fastest_drive_;
   return start_ + std::max(0.0, highest_ - energies.gravity) + driven + stored_ + capacity_;
+}
+
+void EnergyWatch::note_frame(int frame, const Energies& energies) {
+  if (!undriven_ || frame == 1) return;
+  const FrameEnergy now{frame, energies.kinetic + energies.elastic + energies.gravity};
+  max_frame_kinetic_ = std::max(max_frame_kinetic_, energies.kinetic);
+  if (!lowest_ || now.energy < lowest_->energy) lowest_ = now;
+  if (now.energy - lowest_->energy <= rise_end_.energy - rise_begin_.energy) return;
+  rise_begin_ = *lowest_;
+  rise_end_ = now;
+}
+
+/// A falling particle is up to half a step's displacement, g t dt / 2, from where its speed implies; a body on a stretch limit
+/// bounces by less than the length of a spring; a resting particle moves by rounding.
+double EnergyWatch::apparent_gain(const Points& positions) const {
+  const double speed = std::sqrt(2.0 * max_frame_kinetic_ / mass_);
+  const double height = speed * step_ + bounce_height_;
+  const double rounding = rounding_speed(positions, step_);
+  return mass_ * (gravity_ * height + 0.5 * rounding * rounding);
+}
+
+std::optional<std::string> EnergyWatch::gain(const Points& positions) const {
+  const double gained = rise_end_.energy - rise_begin_.energy;
+  if (!(gained > kMaxGain * max_frame_kinetic_) || gained <= apparent_gain(positions)) return std::nullopt;
+  return "the total energy rose from " + format_number(rise_begin_.energy, 3) + " J in frame " + std::to_string(rise_begin_.frame) +
+         " to " + format_number(rise_end_.energy, 3) + " J in frame " + std::to_string(rise_end_.frame) +
+         ", although nothing drives the scene. Use a smaller step or more damping.";
 }
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// Tells a simulation whose energy explodes: none of what drives it could have put so much in.
+// Watches the energy of a simulation: detects an explosion, and a gain that nothing drives.
 #pragma once
 
 #include "collision/shapes/obstacle.h"
@@ -11,53 +11,76 @@
 
 namespace sprung {
 
-/// What a state holds [J].
+/// Energies of a state [J].
 struct Energies {
   double kinetic = 0.0;
   double elastic = 0.0;
   double gravity = 0.0;
 };
 
+/// Answers two questions. explosion(): does the state have more energy than anything can have supplied? It looks at steps and ends
+/// the run. gain(): did the energy of an undriven scene rise between two frames? It looks at frames and gives a warning.
 class EnergyWatch {
  public:
-  /// Does not watch scenes with obstacles that push by forces, which it does not know.
   EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles);
 
+  /// Whether explosion() can find anything. It cannot with penalty contact, whose energy is unknown.
   [[nodiscard]] bool watches() const { return watches_; }
 
-  /// Takes in the energies after a step; of the first two, 0 and 1, both count as what the scene begins with: limits and contact
-  /// may give a start of their own. What springs hold while next to nothing has moved so far was put in slowly, by pins or
-  /// obstacles: nothing that blows up is still.
+  /// Records the energies after a step. Steps 0 and 1 both count as the start, as limits and contact may add energy in the first.
+  /// Elastic energy counts as supplied by pins or obstacles while the kinetic energy so far is below 1 % of it: an explosion moves.
   void note(std::int64_t step, const Energies& energies);
 
-  /// Takes in the speed [m/s] of a pin.
+  /// Records the speed [m/s] of a pin.
   void note_pin(double speed) { fastest_drive_ = std::max(fastest_drive_, speed); }
 
-  /// Takes in the speed [m/s] with which an obstacle may hit. What bounces to and fro between two that close in at that speed v is
-  /// sped up to v (1 + e) / (1 - e), with restitution e: each bounce makes e (u + v) + v of its speed u. A wedge that closes drives
-  /// out what is in it faster too, by 1 / tan of its angle: up to 32 times, at 2 degrees.
+  /// Records the speed [m/s] at which an obstacle may hit a body. A body that bounces with restitution e between two obstacles that
+  /// approach at speed v reaches v (1 + e) / (1 - e), as each bounce turns its speed u into e (u + v) + v. A closing wedge
+  /// accelerates its content by 1 / tan(angle), taken as at most 32 (2 degrees).
   void note_obstacle(double speed) {
     if (speed > 0.0) fastest_drive_ = std::max(fastest_drive_, bounce_gain_ * speed);
   }
 
-  /// What is wrong with the energies, when motion and springs hold more than 1,000 times the sum of what they began with, what
-  /// gravity has set free since, what was put in slowly, the motion of all particles as fast as the fastest pin, the wind or what
-  /// obstacles hit, what it takes to stretch every spring to twice its length and fold every angle, and, where a limit holds
-  /// lengths, to lift all by the length of a spring; and what rounding may move.
+  /// Describes the explosion if kinetic and elastic energy exceed 1,000 times the energy that can have been supplied. That is the
+  /// sum of: the energy at the start; the potential energy released since; the energy supplied slowly (see note()); the kinetic
+  /// energy of all particles at the speed of the fastest pin, wind or obstacle; the energy to stretch every spring to twice its
+  /// length and fold every angle; with a stretch limit, the energy to lift all particles by one spring length; and rounding.
   [[nodiscard]] std::optional<std::string> explosion(const Energies& energies) const;
 
- private:
-  [[nodiscard]] double put_in(const Energies& energies) const;
+  /// Records the energies of a frame. Frame 1 is ignored, as limits and contact may add energy in the first steps.
+  void note_frame(int frame, const Energies& energies);
 
-  double mass_;  ///< [kg]
-  bool watches_;
-  double bounce_gain_;    ///< of speed, by obstacles that move
-  double fastest_drive_;  ///< [m/s]
-  double capacity_;       ///< what springs, angles and limits hold [J]
-  double start_ = 0.0;    ///< [J]
-  double highest_ = 0.0;  ///< of the energies of gravity [J]
-  double stored_ = 0.0;   ///< by springs, slowly [J]
-  double most_kinetic_ = 0.0;
+  /// Describes the largest rise of the total energy between two frames, if it exceeds half of the largest kinetic energy and what
+  /// step size, stretch limit and rounding explain. `positions` [m] give the size of rounding. Empty if the scene is driven:
+  /// moving pins or obstacles, wind, penalty contact, or explicit Euler, which gains energy by itself.
+  [[nodiscard]] std::optional<std::string> gain(const Points& positions) const;
+
+ private:
+  struct FrameEnergy {
+    int frame = 0;
+    double energy = 0.0;  ///< [J]
+  };
+
+  [[nodiscard]] double supplied(const Energies& energies) const;
+  [[nodiscard]] double apparent_gain(const Points& positions) const;
+
+  double mass_;                        ///< [kg]
+  double step_;                        ///< [s]
+  double gravity_;                     ///< [m/s^2]
+  double bounce_height_;               ///< length of the longest spring, with a stretch limit [m]
+  bool watches_;                       ///< for explosions
+  bool undriven_;                      ///< see gain()
+  double bounce_gain_;                 ///< factor on the speed of obstacles
+  double fastest_drive_;               ///< [m/s]
+  double capacity_;                    ///< of springs, angles and limits [J]
+  double start_ = 0.0;                 ///< [J]
+  double highest_ = 0.0;               ///< largest potential energy of gravity [J]
+  double stored_ = 0.0;                ///< elastic energy supplied slowly [J]
+  double max_kinetic_ = 0.0;           ///< of steps [J]
+  double max_frame_kinetic_ = 0.0;     ///< of frames [J]
+  std::optional<FrameEnergy> lowest_;  ///< frame of the smallest total energy
+  FrameEnergy rise_begin_;             ///< of the largest rise
+  FrameEnergy rise_end_;
 };
 
 }  // namespace sprung

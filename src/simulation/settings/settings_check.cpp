@@ -45,7 +45,7 @@ std::string names_of(const std::vector<SpringKind>& kinds) {
   return "[" + names + "]";
 }
 
-std::vector<std::string> idle_kinds(const SimulatorSettings& settings, const SpringNetwork& network) {
+std::vector<std::string> unused_kinds(const SimulatorSettings& settings, const SpringNetwork& network) {
   if (!settings.stretch_limit) return {};
   std::vector<SpringKind> present;
   for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bend}) {
@@ -53,7 +53,7 @@ std::vector<std::string> idle_kinds(const SimulatorSettings& settings, const Spr
   }
   const std::vector<SpringKind>& kinds = settings.stretch_limit->kinds;
   if (present.empty() || std::ranges::find_first_of(kinds, present) != kinds.end()) return {};
-  return {"stretch_limit.kinds = " + names_of(kinds) + " holds nothing: the springs of this network are of the kinds " +
+  return {"stretch_limit.kinds = " + names_of(kinds) + " limits no spring: the network has only springs of the kinds " +
           names_of(present)};
 }
 
@@ -81,13 +81,14 @@ SimulatorSettings checked_settings(SimulatorSettings settings) {
   return settings;
 }
 
-std::vector<std::string> idle_settings(const SimulatorSettings& settings, const SpringNetwork& network) {
-  std::vector<std::string> idle = idle_kinds(settings, network);
-  if (settings.air_drag == 0.0 && !settings.wind.isZero(0.0)) idle.emplace_back("air.wind moves nothing without air.drag: add it");
-  return idle;
+std::vector<std::string> unused_settings(const SimulatorSettings& settings, const SpringNetwork& network) {
+  std::vector<std::string> unused = unused_kinds(settings, network);
+  if (settings.air_drag == 0.0 && !settings.wind.isZero(0.0))
+    unused.emplace_back("air.wind has no effect without air.drag. Add air.drag.");
+  return unused;
 }
 
-std::vector<std::string> weak_bonds(const SimulatorSettings& settings, const SpringNetwork& network) {
+std::vector<std::string> weak_springs(const SimulatorSettings& settings, const SpringNetwork& network) {
   const AngleBends& bends = network.angle_bends;
   if (bends.count() == 0 || (settings.stretch_limit && settings.stretch_limit->max_compression <= 0.5)) return {};
   const auto bond = [](Index a, Index b) { return std::minmax({a, b}); };
@@ -108,10 +109,11 @@ std::vector<std::string> weak_bonds(const SimulatorSettings& settings, const Spr
   }
   std::vector<std::string> warnings;
   for (const auto& [body, least] : needed) {
-    warnings.push_back("bodies." + body +
-                       ": its angle bends shorten springs that give way before they do, and pull the harder the" +
-                       " shorter these are: expect it to gain energy; use a structural stiffness of at least " +
-                       format_number(least, 3) + " N/m, less bend stiffness, or \"stretch_limit\": {\"max_compression\": 0}");
+    warnings.push_back(
+        "bodies." + body +
+        ": the springs are too weak for the angle bends. A bend shortens them, and its force grows as they shorten, so the body "
+        "is likely to gain energy. Use a structural stiffness of at least " +
+        format_number(least, 3) + " N/m, less bend stiffness, or \"stretch_limit\": {\"max_compression\": 0}.");
   }
   return warnings;
 }

@@ -1,5 +1,4 @@
-// Rules for the settings of a simulation that is made in code; scene files have theirs in the scene reader, with the places of
-// keys.
+// Rules for simulation settings made in code. The scene reader has its own rules, which name the keys of the file.
 #pragma once
 
 #include "simulation/settings/simulator_settings.h"
@@ -9,17 +8,16 @@
 
 namespace sprung {
 
-/// Returns the settings. Throws InputError naming every one that is not finite, or out of the bounds that its declaration gives.
-/// The step is left to `check_step`.
+/// Returns the settings. Throws InputError that names every setting that is not finite or is out of its bounds. `check_step` checks
+/// the step.
 [[nodiscard]] SimulatorSettings checked_settings(SimulatorSettings settings);
 
-/// What the user should be told of settings that do nothing for this network: a stretch limit of kinds that no spring has, wind
-/// without drag.
-[[nodiscard]] std::vector<std::string> idle_settings(const SimulatorSettings& settings, const SpringNetwork& network);
+/// Warnings about settings without effect on this network: a stretch limit of kinds that no spring has, wind without drag.
+[[nodiscard]] std::vector<std::string> unused_settings(const SimulatorSettings& settings, const SpringNetwork& network);
 
-/// What the user should be told of angle bends whose bonds give way before them: the pull of a bend goes with 1 / length, beyond
-/// all that a step can be chosen for. A bend by a right angle, which pushes with k pi / 2 over the bond's length d, is to shorten
-/// it by half at most, if nothing else holds it: k_s d^2 >= pi k.
-[[nodiscard]] std::vector<std::string> weak_bonds(const SimulatorSettings& settings, const SpringNetwork& network);
+/// Warnings about springs that are too weak for the angle bends beside them. The force of a bend grows as 1 / length, so no step is
+/// small enough for a spring that shortens without bound. A bend by a right angle acts with the force k pi / (2 d) on a spring of
+/// length d [m]; it may shorten the spring by half at most: k_s d^2 >= pi k.
+[[nodiscard]] std::vector<std::string> weak_springs(const SimulatorSettings& settings, const SpringNetwork& network);
 
 }  // namespace sprung

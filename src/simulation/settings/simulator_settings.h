@@ -1,4 +1,4 @@
-// The settings of a simulation that is made in code.
+// Settings of a simulation.
 #pragma once
 
 #include "dynamics/integrators/integrator.h"
@@ -8,14 +8,15 @@
 
 namespace sprung {
 
+/// How contact responds, and what happens to intersections at the start.
 struct ContactSettings {
   enum class Response : std::uint8_t {
-    projection,  ///< particles are moved out of obstacles
-    penalty      ///< f_coll: a spring and damper push them out
+    projection,  ///< constraints on positions and velocities
+    penalty      ///< f_coll: a spring and damper push particles out of obstacles
   };
   enum class Start : std::uint8_t {
-    refuse,   ///< what intersects at the start is refused
-    push_out  ///< what is in obstacles is led out of them before time 0
+    refuse,   ///< throw InputError
+    push_out  ///< move bodies out of obstacles, and of each other, before time 0
   };
   Response response = Response::projection;
   Start start = Start::refuse;
@@ -25,7 +26,7 @@ struct ContactSettings {
 
 enum class StabilityCheck : std::uint8_t { refuse, warn };
 
-/// A step is not made in more parts.
+/// Upper bound of the number of substeps in a step.
 inline constexpr int kMaxSubsteps = 1 << 16;
 
 struct SimulatorSettings {
@@ -37,8 +38,8 @@ struct SimulatorSettings {
   std::optional<StretchLimitSettings> stretch_limit{};
   ContactSettings contact{};
   StabilityCheck stability = StabilityCheck::refuse;
-  /// In [1, kMaxSubsteps]: steps are made in up to so many parts, see StepRefinement; in all of them while passes hold a limit that
-  /// may be handed over to a global solve, which then needs fewer.
+  /// Maximum number of substeps in a step, in [1, kMaxSubsteps]; see StepRefinement. All of them are made while Gauss-Seidel passes
+  /// solve a limit that may be handed over to a global solve.
   int max_substeps = 1;
 };
 

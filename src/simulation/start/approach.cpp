@@ -9,25 +9,21 @@ namespace sprung {
 
 namespace {
 
-// Particles on their own have no size: they come back in so many strides.
+// A body without segments and faces has no element size: it moves in so many strides.
 constexpr int kStridesOfParticles = 8;
 
-// What slides along an obstacle has as many strides as the whole way back took, and so many more.
+// Further strides, for particles that slide along an obstacle and so take a longer path.
 constexpr int kMoreStrides = 32;
 
-// Strides of what was stopped are this part of the others at least.
+// Lower bound of a stopped particle's stride, as a fraction of a full stride.
 constexpr double kShortest = 1.0 / 64.0;
 
-// A stride that takes no particle this part of it farther was the last.
+// The approach ends when no particle moves by this fraction of a stride.
 constexpr double kArrived = 1.0e-3;
 
-// In the end what is in contact finds its gap, until nothing moves by this part of a stride, or so often.
+// Afterwards, contact is solved until no particle moves by this fraction of a stride, at most so many times.
 constexpr double kSettled = 1.0e-6;
-constexpr int kMostSettling = 16;
-
-// As in a step of a simulation.
-constexpr int kContactPasses = 8;
-constexpr double kContactTolerance = 1.0e-3;
+constexpr int kMaxSettling = 16;
 
 SpringNetwork only_moving(SpringNetwork network, Index body) {
   const Body& own = network.bodies[static_cast<std::size_t>(body)];
@@ -40,28 +36,26 @@ SpringNetwork only_moving(SpringNetwork network, Index body) {
 
 }  // namespace
 
-WayBack::WayBack(const SpringNetwork& network, Environment& environment, Index body)
+Approach::Approach(const SpringNetwork& network, Environment& environment, Index body)
     : network_(only_moving(network, body)),
       length_(contact_surface(network_).element_size[static_cast<std::size_t>(body)]),
       contacts_(network_, environment) {}
 
-double WayBack::stride(Points& x, const Points& advanced) {
+double Approach::stride(Points& x, const Points& advanced) {
   const Points before = x;
   x = advanced;
   const Points v = Points::Zero(3, x.cols());
   const StepMotion motion{before, v, advanced, 1.0};
   contacts_.find(motion);
-  for (int pass = 0; pass < kContactPasses; ++pass) {
-    if (contacts_.project(x) <= kContactTolerance) break;
-  }
+  contacts_.push_out(x);
   contacts_.truncate(motion, x);
   return (x - before).colwise().norm().maxCoeff();
 }
 
-Points WayBack::walk(const Points& free, const Points& wanted) {
-  const double way = (wanted - free).colwise().norm().maxCoeff();
-  const double longest = length_ > 0.0 ? length_ : way / kStridesOfParticles;
-  const int strides = static_cast<int>(std::ceil(way / longest)) + kMoreStrides;
+Points Approach::run(const Points& free, const Points& wanted) {
+  const double path = (wanted - free).colwise().norm().maxCoeff();
+  const double longest = length_ > 0.0 ? length_ : path / kStridesOfParticles;
+  const int strides = static_cast<int>(std::ceil(path / longest)) + kMoreStrides;
   Scalars lengths = Scalars::Constant(free.cols(), longest);
   Points x = free;
   for (int k = 0; k < strides; ++k) {
@@ -73,10 +67,10 @@ Points WayBack::walk(const Points& free, const Points& wanted) {
       advanced.col(i) = distance <= lengths[i] ? Vector3(wanted.col(i)) : Vector3(x.col(i) + lengths[i] / distance * left);
     }
     if (stride(x, advanced) <= kArrived * longest) break;
-    // What is stopped is not pulled at in vain: regions for long ways hold much of an obstacle.
+    // A stopped particle gets a short stride: the safe region of a long displacement spans much of an obstacle, at high cost.
     lengths = (2.0 * (x - before).colwise().norm().transpose()).cwiseMax(kShortest * longest).cwiseMin(longest);
   }
-  for (int k = 0; k < kMostSettling; ++k) {
+  for (int k = 0; k < kMaxSettling; ++k) {
     if (stride(x, Points(x)) <= kSettled * longest) break;
   }
   return x;

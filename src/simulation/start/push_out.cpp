@@ -14,25 +14,25 @@ namespace sprung {
 
 namespace {
 
-// How far off the surfaces a body is free, in sizes of its elements, whose edges cut corners that their ends do not.
-constexpr std::array kDistancesOff{0.25, 0.5, 1.0};
+// Trial distances from surfaces, in element sizes: the edges of an element can cross a corner that its vertices do not.
+constexpr std::array kTrialDistances{0.25, 0.5, 1.0};
 
-// A body as a whole is tried this part of its elements' size away, then twice as far, and so on.
-constexpr double kFirstWay = 0.25;
-constexpr int kMostDoublings = 14;
+// First trial displacement of a whole body, in element sizes; it is doubled up to kMaxDoublings times.
+constexpr double kFirstDistance = 0.25;
+constexpr int kMaxDoublings = 14;
 
-/// Up first; where ways are as long, the first is taken.
-std::vector<Vector3> ways_out() {
-  std::vector<Vector3> ways;
+/// Trial directions, up first. Of equally long free displacements the first is used.
+std::vector<Vector3> escape_directions() {
+  std::vector<Vector3> directions;
   for (const int axis : {1, 0, 2}) {
-    for (const double sign : {1.0, -1.0}) ways.emplace_back(sign * Vector3::Unit(axis));
+    for (const double sign : {1.0, -1.0}) directions.emplace_back(sign * Vector3::Unit(axis));
   }
   for (const double y : {1.0, -1.0}) {
     for (const double x : {1.0, -1.0}) {
-      for (const double z : {1.0, -1.0}) ways.emplace_back(Vector3(x, y, z).normalized());
+      for (const double z : {1.0, -1.0}) directions.emplace_back(Vector3(x, y, z).normalized());
     }
   }
-  return ways;
+  return directions;
 }
 
 bool crosses_another(const CollisionSurface& surface, Index body, const Points& positions) {
@@ -45,9 +45,9 @@ bool crosses_another(const CollisionSurface& surface, Index body, const Points& 
   });
 }
 
-class FreePlace {
+class FreePosition {
  public:
-  FreePlace(const Environment& environment, const CollisionSurface& surface, Index body, const Points& wanted)
+  FreePosition(const Environment& environment, const CollisionSurface& surface, Index body, const Points& wanted)
       : environment_(environment),
         surface_(surface),
         body_(body),
@@ -62,23 +62,23 @@ class FreePlace {
     }
   }
 
-  [[nodiscard]] std::optional<Points> off_obstacles() const {
+  [[nodiscard]] std::optional<Points> outside_obstacles() const {
     double depth = 0.0;
     for (const auto& inside : intersections(wanted_).inside) depth = std::max(depth, inside.depth);
     const double size = surface_.element_size[static_cast<std::size_t>(body_)];
     const bool shallow = depth <= size || size == 0.0;
     if (shallow) {
-      if (auto place = off_surfaces(size, depth)) return place;
+      if (auto moved = away_from_surfaces(size, depth)) return moved;
     }
-    const auto is_off = [&](const Points& x) { return is_off_obstacles(x); };
-    if (auto place = as_a_whole(kFirstWay * (size > 0.0 ? size : depth), is_off)) return place;
-    return shallow ? std::nullopt : off_surfaces(size, depth);
+    const auto is_outside = [&](const Points& x) { return is_outside_obstacles(x); };
+    if (auto moved = translated(kFirstDistance * (size > 0.0 ? size : depth), is_outside)) return moved;
+    return shallow ? std::nullopt : away_from_surfaces(size, depth);
   }
 
-  /// Off other bodies too.
-  [[nodiscard]] std::optional<Points> off_all() const {
-    return as_a_whole(kFirstWay * surface_.element_size[static_cast<std::size_t>(body_)],
-                      [&](const Points& x) { return !crosses_another(surface_, body_, x) && is_off_obstacles(x); });
+  /// A position of the whole body outside obstacles and other bodies.
+  [[nodiscard]] std::optional<Points> outside_all() const {
+    return translated(kFirstDistance * surface_.element_size[static_cast<std::size_t>(body_)],
+                      [&](const Points& x) { return !crosses_another(surface_, body_, x) && is_outside_obstacles(x); });
   }
 
  private:
@@ -86,40 +86,40 @@ class FreePlace {
     return find_intersections(environment_.set(), surface_, x, body_);
   }
 
-  [[nodiscard]] bool is_off_obstacles(const Points& x) const { return intersections(x).empty(); }
+  [[nodiscard]] bool is_outside_obstacles(const Points& x) const { return intersections(x).empty(); }
 
-  [[nodiscard]] std::optional<Points> off_surfaces(double size, double depth) const {
-    for (const double part : kDistancesOff) {
-      Points place = led_off(part * size, depth);
-      if (is_off_obstacles(place)) return place;
+  [[nodiscard]] std::optional<Points> away_from_surfaces(double size, double depth) const {
+    for (const double fraction : kTrialDistances) {
+      Points moved = moved_off(fraction * size, depth);
+      if (is_outside_obstacles(moved)) return moved;
     }
     return std::nullopt;
   }
 
-  /// Particles that are nearer to a surface than their gap and `beyond` [m], or in it, at that distance.
-  [[nodiscard]] Points led_off(double beyond, double depth) const {
-    Points place = wanted_;
+  /// The wanted positions, with particles closer to a surface than gap + `beyond` [m], or inside it, moved to that distance.
+  [[nodiscard]] Points moved_off(double beyond, double depth) const {
+    Points moved = wanted_;
     for (const Contact& contact : environment_.contacts({wanted_, wanted_, surface_.thickness, beyond + depth})) {
       const Index i = contact.particles[0];
       if (movable_[static_cast<std::size_t>(i)] == 0) continue;
       const ContactMaterial& material = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)].material;
       const double gap = std::max(surface_.thickness[i] + material.thickness, 2.0 * contact.clearance);
-      const double height = contact.normal.dot(place.col(i) - contact.point);
-      if (height < gap + beyond) place.col(i) += (gap + beyond - height) * contact.normal;
+      const double height = contact.normal.dot(moved.col(i) - contact.point);
+      if (height < gap + beyond) moved.col(i) += (gap + beyond - height) * contact.normal;
     }
-    return place;
+    return moved;
   }
 
   template <class IsFree>
-  [[nodiscard]] std::optional<Points> as_a_whole(double first_way, const IsFree& is_free) const {
-    double way = first_way;
-    for (int doubling = 0; doubling < kMostDoublings; ++doubling, way *= 2.0) {
-      for (const Vector3& direction : ways_out()) {
-        Points place = wanted_;
-        for (Index i = 0; i < static_cast<Index>(place.cols()); ++i) {
-          if (movable_[static_cast<std::size_t>(i)] != 0) place.col(i) += way * direction;
+  [[nodiscard]] std::optional<Points> translated(double first_distance, const IsFree& is_free) const {
+    double distance = first_distance;
+    for (int doubling = 0; doubling < kMaxDoublings; ++doubling, distance *= 2.0) {
+      for (const Vector3& direction : escape_directions()) {
+        Points moved = wanted_;
+        for (Index i = 0; i < static_cast<Index>(moved.cols()); ++i) {
+          if (movable_[static_cast<std::size_t>(i)] != 0) moved.col(i) += distance * direction;
         }
-        if (is_free(place)) return place;
+        if (is_free(moved)) return moved;
       }
     }
     return std::nullopt;
@@ -129,11 +129,11 @@ class FreePlace {
   const CollisionSurface& surface_;
   Index body_;
   const Points& wanted_;
-  std::vector<char> movable_;  ///< by particle: 1 for those of the body that no pin holds
+  std::vector<char> movable_;  ///< per particle: 1 for unpinned particles of the body
 };
 
-/// Those that are to stay come last: bodies that pins hold, and of others the first.
-std::vector<Index> in_order_of_leaving(const SpringNetwork& network) {
+/// Bodies that should stay come last: pinned bodies, and of the others the first.
+std::vector<Index> in_order_of_moving(const SpringNetwork& network) {
   std::vector<Index> order(network.bodies.size());
   std::iota(order.rbegin(), order.rend(), 0);
   std::stable_partition(order.begin(), order.end(), [&](Index number) {
@@ -148,16 +148,17 @@ std::vector<Index> in_order_of_leaving(const SpringNetwork& network) {
 Points push_out(const SpringNetwork& network, Environment& environment, const CollisionSurface& surface, const Points& wanted,
                 bool apart) {
   Points positions = wanted;
-  const auto come_back = [&](Index body, const std::optional<Points>& place) {
-    if (place) positions = WayBack(network, environment, body).walk(*place, positions);
+  const auto approach_from = [&](Index body, const std::optional<Points>& free) {
+    if (free) positions = Approach(network, environment, body).run(*free, positions);
   };
   for (Index body = 0; body < static_cast<Index>(network.bodies.size()); ++body) {
     if (find_intersections(environment.set(), surface, positions, body).empty()) continue;
-    come_back(body, FreePlace(environment, surface, body, positions).off_obstacles());
+    approach_from(body, FreePosition(environment, surface, body, positions).outside_obstacles());
   }
   if (!apart) return positions;
-  for (const Index body : in_order_of_leaving(network)) {
-    if (crosses_another(surface, body, positions)) come_back(body, FreePlace(environment, surface, body, positions).off_all());
+  for (const Index body : in_order_of_moving(network)) {
+    if (crosses_another(surface, body, positions))
+      approach_from(body, FreePosition(environment, surface, body, positions).outside_all());
   }
   return positions;
 }

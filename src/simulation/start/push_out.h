@@ -1,4 +1,4 @@
-// Leads bodies that start in obstacles, or across each other, out of them.
+// Moves bodies that start in obstacles, or across each other, to intersection-free positions.
 #pragma once
 
 #include "collision/obstacles/environment.h"
@@ -7,12 +7,12 @@
 
 namespace sprung {
 
-/// Positions [m] near the `wanted` ones at which no body intersects an obstacle, as they are at the end of the environment's
-/// interval, or, if they are to be `apart`, another body. Each body that does is first taken to where it is free: off the surfaces
-/// nearby, if it is in obstacles by no more than the size of its elements, else as a whole, to the side where the way out is
-/// shortest. Of bodies across each other those leave that no pins hold, and of these the later ones. From there it comes back under
-/// the contact of a simulation without forces and friction, through which nothing passes: what is not in the way ends where it is
-/// wanted, to the last bit, and the rest at its gap. Pinned particles stay. A body that is nowhere free comes back as it was.
+/// Positions [m] near `wanted` at which no body intersects an obstacle at the end of the environment's interval or, if `apart`,
+/// another body. (1) Each intersecting body moves to a free position: off the nearby surfaces if its depth is at most its element
+/// size, otherwise as a whole along the direction of the shortest free displacement. Of two bodies that cross, an unpinned one
+/// moves, the later of two. (2) From there it approaches `wanted` under contact without forces and friction (see Approach), so
+/// particles without obstacles in their path end exactly at `wanted` and the others at their gap. Pinned particles do not move. A
+/// body without a free position is returned unchanged.
 [[nodiscard]] Points push_out(const SpringNetwork& network, Environment& environment, const CollisionSurface& surface,
                               const Points& wanted, bool apart);
 

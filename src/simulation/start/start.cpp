@@ -16,12 +16,12 @@ namespace {
 StartIntersections find_all(const Environment& environment, const CollisionSurface& surface, const ContactSettings& contact,
                             const Points& positions) {
   StartIntersections found = find_start_intersections(environment, surface, positions);
-  // Bodies meet each other by projection alone.
+  // Penalty contact does not act between bodies.
   if (contact.response == ContactSettings::Response::penalty) found.with_each_other.clear();
   return found;
 }
 
-std::vector<std::string> say_what_moved(const SpringNetwork& network, const Points& from, const Points& to) {
+std::vector<std::string> describe_moved(const SpringNetwork& network, const Points& from, const Points& to) {
   std::vector<std::string> lines;
   for (const Body& body : network.bodies) {
     Index count = 0;
@@ -32,15 +32,15 @@ std::vector<std::string> say_what_moved(const SpringNetwork& network, const Poin
       farthest = std::max(farthest, (to.col(i) - from.col(i)).norm());
     }
     if (count == 0) continue;
-    lines.push_back("body \"" + body.name + "\" was pushed out of what it intersected at the start: " + std::to_string(count) +
+    lines.push_back("body \"" + body.name +
+                    "\" intersected an obstacle or a body at the start and was moved out: " + std::to_string(count) +
                     (count == 1 ? " particle by " : " particles by up to ") + format_number(farthest, 3) + " m");
   }
   return lines;
 }
 
-/// Bodies whose gap obstacles are deep in: contact will throw them out of it.
-std::vector<std::string> say_what_is_too_near(const SpringNetwork& network, const Environment& environment,
-                                              const Points& positions) {
+/// Bodies with an obstacle deep in their gap: contact will accelerate them out of it.
+std::vector<std::string> describe_too_near(const SpringNetwork& network, const Environment& environment, const Points& positions) {
   constexpr double kDeep = 0.5;  // of the gap
   double obstacle_thickness = std::numeric_limits<double>::infinity();
   for (const Obstacle& obstacle : environment.obstacles()) {
@@ -56,9 +56,9 @@ std::vector<std::string> say_what_is_too_near(const SpringNetwork& network, cons
     }
     const auto nearest = environment.min_distance(positions(Eigen::all, free), gap);
     if (!nearest || *nearest >= kDeep * gap) continue;
-    lines.push_back("body \"" + body.name + "\" begins " + format_number(*nearest, 3) +
-                    " m from an obstacle, deep in its thickness of " + format_number(gap, 3) +
-                    " m, out of which contact will throw it; begin farther off, or with a smaller thickness");
+    lines.push_back("body \"" + body.name + "\" starts " + format_number(*nearest, 3) +
+                    " m from an obstacle, deep within the thickness of " + format_number(gap, 3) +
+                    " m. Contact will accelerate it away. Start farther away, or use a smaller thickness.");
   }
   return lines;
 }
@@ -68,16 +68,16 @@ std::vector<std::string> say_what_is_too_near(const SpringNetwork& network, cons
 Start find_start(const SpringNetwork& network, Environment& environment, const ContactSettings& contact, const Points& positions) {
   const CollisionSurface surface = contact_surface(network);
   StartIntersections found = find_all(environment, surface, contact, positions);
-  if (found.empty()) return {positions, say_what_is_too_near(network, environment, positions)};
-  Points place = positions;
-  std::string remedy = "move one of them by \"place\", or let contact.start be \"push_out\"";
+  if (found.empty()) return {positions, describe_too_near(network, environment, positions)};
+  Points start = positions;
+  std::string remedy = "move one of them by \"place\", or set contact.start to \"push_out\"";
   if (contact.start == ContactSettings::Start::push_out) {
-    place = push_out(network, environment, surface, positions, contact.response == ContactSettings::Response::projection);
-    found = find_all(environment, surface, contact, place);
-    if (found.empty()) return {place, say_what_moved(network, positions, place)};
-    remedy = "it could not be pushed out: move one of them by \"place\"";
+    start = push_out(network, environment, surface, positions, contact.response == ContactSettings::Response::projection);
+    found = find_all(environment, surface, contact, start);
+    if (found.empty()) return {start, describe_moved(network, positions, start)};
+    remedy = "\"push_out\" found no free position: move one of them by \"place\"";
   }
-  throw InputError(start_problems(found, network, environment, surface, place, remedy));
+  throw InputError(start_problems(found, network, environment, surface, start, remedy));
 }
 
 }  // namespace sprung

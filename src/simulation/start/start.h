@@ -1,4 +1,4 @@
-// Where the network begins.
+// The positions at time 0.
 #pragma once
 
 #include "collision/obstacles/environment.h"
@@ -10,16 +10,15 @@
 
 namespace sprung {
 
-/// Positions at time 0 [m], and what the user should be told of them.
+/// Positions at time 0 [m], and warnings about them.
 struct Start {
   Points positions;
   std::vector<std::string> warnings{};
 };
 
-/// `positions` [m], where nothing intersects at the end of the environment's interval; with `contact.start` push_out those that
-/// `push_out` leads to where nothing does. Bodies that begin deep within their gap before an obstacle are warned of. Throws
-/// InputError when anything intersects all the same: a line for each body and obstacle, and for each pair of bodies, with what
-/// intersects where.
+/// Returns `positions` [m] if nothing intersects at the end of the environment's interval. With `contact.start` push_out, bodies
+/// that intersect are moved by push_out(). Warns about bodies that start deep within their gap to an obstacle. Throws InputError
+/// if intersections remain: one problem for each body and obstacle and each pair of bodies, with elements and positions.
 [[nodiscard]] Start find_start(const SpringNetwork& network, Environment& environment, const ContactSettings& contact,
                                const Points& positions);
 

@@ -11,9 +11,9 @@ namespace sprung {
 
 namespace {
 
-constexpr std::size_t kPlacesNamed = 3;
+constexpr std::size_t kMaxNamed = 3;
 
-std::string place_text(const Vector3& p) {
+std::string point_text(const Vector3& p) {
   std::string text;
   for (const double coordinate : p) {
     text += text.empty() ? "[" : ", ";
@@ -22,10 +22,10 @@ std::string place_text(const Vector3& p) {
   return text + "]";
 }
 
-std::string first_of(const std::vector<std::string>& places) {
+std::string first_of(const std::vector<std::string>& texts) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(places.size(), kPlacesNamed); ++i) text += (i == 0 ? "" : ", ") + places[i];
-  if (places.size() > kPlacesNamed) text += " and " + std::to_string(places.size() - kPlacesNamed) + " more";
+  for (std::size_t i = 0; i < std::min(texts.size(), kMaxNamed); ++i) text += (i == 0 ? "" : ", ") + texts[i];
+  if (texts.size() > kMaxNamed) text += " and " + std::to_string(texts.size() - kMaxNamed) + " more";
   return text;
 }
 
@@ -33,13 +33,13 @@ std::string kind_of(const Element& element) {
   return element.corners == 3 ? "triangle" : element.corners == 2 ? "segment" : "particle";
 }
 
-/// Places as users know them: particles by their number within the body.
-class PlaceText {
+/// Describes elements for users, who number particles within their body.
+class ElementText {
  public:
-  PlaceText(const SpringNetwork& network, const Points& positions) : network_(network), positions_(positions) {}
+  ElementText(const SpringNetwork& network, const Points& positions) : network_(network), positions_(positions) {}
 
   [[nodiscard]] std::string of(Index particle) const {
-    return "particle " + number_of(particle) + " at " + place_text(positions_.col(particle));
+    return "particle " + number_of(particle) + " at " + point_text(positions_.col(particle));
   }
 
   [[nodiscard]] std::string of(const Element& element) const {
@@ -50,7 +50,7 @@ class PlaceText {
       text += (i == element.particles[0] ? "" : ", ") + number_of(i);
       middle += positions_.col(i) / element.corners;
     }
-    return text + " at " + place_text(middle);
+    return text + " at " + point_text(middle);
   }
 
  private:
@@ -62,7 +62,7 @@ class PlaceText {
   const Points& positions_;
 };
 
-/// What of one body is in one obstacle.
+/// Intersections of one body with one obstacle.
 struct InObstacle {
   std::vector<std::string> particles{};
   std::vector<std::string> elements{};
@@ -73,18 +73,18 @@ struct InObstacle {
 using NumberPair = std::pair<Index, Index>;
 
 std::map<NumberPair, InObstacle> by_body_and_obstacle(const Intersections& found, const SpringNetwork& network,
-                                                      const CollisionSurface& surface, const PlaceText& place) {
+                                                      const CollisionSurface& surface, const ElementText& text) {
   std::map<NumberPair, InObstacle> result;
   for (const auto& [particle, obstacle, depth] : found.inside) {
     const auto body = static_cast<Index>(&network.body_of(particle) - network.bodies.data());
     InObstacle& entry = result[{body, obstacle}];
-    entry.particles.push_back(place.of(particle));
+    entry.particles.push_back(text.of(particle));
     entry.deepest = std::max(entry.deepest, depth);
   }
   for (const auto& [number, obstacle] : found.crossings) {
     const Element& element = surface.elements[static_cast<std::size_t>(number)];
     InObstacle& entry = result[{element.body, obstacle}];
-    entry.elements.push_back(place.of(element));
+    entry.elements.push_back(text.of(element));
     entry.kind = entry.elements.size() == 1 || entry.kind == kind_of(element) ? kind_of(element) : "element";
   }
   return result;
@@ -119,10 +119,10 @@ StartIntersections find_start_intersections(const Environment& environment, cons
 
 std::vector<Problem> start_problems(const StartIntersections& found, const SpringNetwork& network, const Environment& environment,
                                     const CollisionSurface& surface, const Points& positions, const std::string& remedy) {
-  const PlaceText place(network, positions);
+  const ElementText text(network, positions);
   const auto body_name = [&](Index number) { return network.bodies[static_cast<std::size_t>(number)].name; };
   std::vector<Problem> problems;
-  for (const auto& [numbers, entry] : by_body_and_obstacle(found.with_obstacles, network, surface, place)) {
+  for (const auto& [numbers, entry] : by_body_and_obstacle(found.with_obstacles, network, surface, text)) {
     const std::string& obstacle = environment.obstacles()[static_cast<std::size_t>(numbers.second)].name;
     problems.push_back(problem_of(entry, body_name(numbers.first), obstacle, remedy));
   }
@@ -131,7 +131,7 @@ std::vector<Problem> start_problems(const StartIntersections& found, const Sprin
   for (const auto& [first, second] : found.with_each_other) {
     const Element& a = surface.elements[static_cast<std::size_t>(first)];
     const Element& b = surface.elements[static_cast<std::size_t>(second)];
-    crossing_bodies[{a.body, b.body}].push_back(place.of(a) + " and " + place.of(b));
+    crossing_bodies[{a.body, b.body}].push_back(text.of(a) + " and " + text.of(b));
   }
   for (const auto& [numbers, pairs] : crossing_bodies) {
     problems.push_back(problem_of(pairs, body_name(numbers.first), body_name(numbers.second), remedy));

@@ -1,4 +1,4 @@
-// What intersects where the network begins.
+// Finds and describes intersections at the start.
 #pragma once
 
 #include "base/error.h"
@@ -20,13 +20,13 @@ struct StartIntersections {
   [[nodiscard]] bool empty() const { return with_obstacles.empty() && with_each_other.empty(); }
 };
 
-/// All that intersects at the end of the environment's interval, with the particles at `positions` [m]: elements and particles with
-/// obstacles, but for what pins hold there, and elements of bodies that collide with themselves or each other.
+/// All intersections at `positions` [m] and the end of the environment's interval: of elements and particles with obstacles, except
+/// pinned ones, and between elements of bodies that collide with themselves or each other.
 [[nodiscard]] StartIntersections find_start_intersections(const Environment& environment, const CollisionSurface& surface,
                                                           const Points& positions);
 
-/// A line for each body and obstacle, and for each pair of bodies: how much intersects, how deep, where, and the remedy: for what
-/// intersects anything but itself, `remedy`.
+/// One problem for each body and obstacle and each pair of bodies: number of intersections, depth [m], positions and remedy.
+/// `remedy` applies to all except self-intersections, which have their own.
 [[nodiscard]] std::vector<Problem> start_problems(const StartIntersections& found, const SpringNetwork& network,
                                                   const Environment& environment, const CollisionSurface& surface,
                                                   const Points& positions, const std::string& remedy);

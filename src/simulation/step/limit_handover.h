@@ -1,4 +1,4 @@
-// Which bodies' stretch limit a global solve takes over from passes, by what those leave of it.
+// Hands bodies whose stretch limit the Gauss-Seidel passes keep missing over to a global solve.
 #pragma once
 
 #include "dynamics/stretch_limit/stretch_limit.h"
@@ -6,11 +6,11 @@
 
 namespace sprung {
 
-/// What an impact leaves too long passes take back within fewer steps, and by then steps are made in their smallest parts.
-inline constexpr int kMostMissedSteps = 16;
+/// Passes remove the excess of an impact in fewer steps than this, and substeps have reached their smallest length by then.
+inline constexpr int kMaxMissedSteps = 16;
 
-/// Hands each body over, for good, that may be and whose springs passes have left longer than wanted (see wanted_excess) after
-/// kMostMissedSteps steps in a row. `excess` is the largest in the step that is done.
+/// Hands over, permanently, each eligible body whose excess was larger than wanted_excess() after kMaxMissedSteps steps in a row.
+/// `excess` is the largest excess of all bodies after the present step [fraction of the rest length].
 void hand_over_missed(const SpringNetwork& network, const StretchLimit& limit, double excess, SimulationState& state);
 
 }  // namespace sprung

@@ -9,8 +9,8 @@
 namespace sprung {
 namespace {
 
-// A bounce is half a turn of the penalty's spring. In three steps or more it gives back what it took but for a tenth; in one or two
-// it is found at one depth and left at another, and a cloth of 0.9 J had 12 J after two, damped or not.
+// A bounce is half a period of the penalty spring. In three steps or more its energy error is below a tenth. In one or two steps
+// the depth differs between entry and exit, and energy rises: a cloth of 0.9 J reached 12 J after two bounces, damped or not.
 double step_for_penalty(const IntegratorSettings& settings, const SpectralBounds& bounds) {
   if (bounds.penalty == 0.0 || std::holds_alternative<ImplicitEulerSettings>(settings)) {
     return std::numeric_limits<double>::infinity();
@@ -18,7 +18,7 @@ double step_for_penalty(const IntegratorSettings& settings, const SpectralBounds
   return 1.0 / std::sqrt(bounds.penalty);
 }
 
-bool gains_sideways(const IntegratorSettings& integrator, const SpectralBounds& bounds) {
+bool grows_transversally(const IntegratorSettings& integrator, const SpectralBounds& bounds) {
   return std::holds_alternative<ExplicitEulerSettings>(integrator) && bounds.elastic > 0.0 && bounds.least_drag == 0.0;
 }
 
@@ -27,7 +27,8 @@ bool gains_sideways(const IntegratorSettings& integrator, const SpectralBounds& 
 SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {
   SpectralBounds bounds = spectral_bounds(network, settings.air_drag);
   if (has_obstacles && settings.contact.response == ContactSettings::Response::penalty) {
-    // A penalty ties a particle to the ground: it adds to the Laplacian's diagonal, and so at most this much to its eigenvalues.
+    // A penalty connects a particle to the fixed obstacle: it adds to the Laplacian's diagonal, and at most this to its
+    // eigenvalues.
     const double largest_inverse_mass = network.inverse_masses.maxCoeff();
     bounds.penalty = settings.contact.stiffness * largest_inverse_mass;
     bounds.elastic += bounds.penalty;
@@ -42,13 +43,13 @@ LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settin
 }
 
 double advised_step(const IntegratorSettings& settings, const SpectralBounds& bounds) {
-  constexpr double kStablePart = 0.9;
-  return std::min(
-      {kStablePart * largest_stable_step(settings, bounds), resonant_step(settings, bounds), step_for_penalty(settings, bounds)});
+  constexpr double kStableFraction = 0.9;
+  return std::min({kStableFraction * largest_stable_step(settings, bounds), resonant_step(settings, bounds),
+                   step_for_penalty(settings, bounds)});
 }
 
 bool is_unstable(double step, double largest_stable) {
-  constexpr double kRounding = 1.0 + 1.0e-9;  // the bound itself keeps a larger margin
+  constexpr double kRounding = 1.0 + 1.0e-9;  // the bound has a larger margin
   return step > kRounding * largest_stable;
 }
 
@@ -56,7 +57,7 @@ Problem unstable_step(double step, double largest_stable, const std::string& adv
   return {.key = "step",
           .value = format_number(step),
           .rule = "is beyond the largest stable step, " + format_upper_bound(largest_stable) + " s",
-          .remedy = advice + "; \"stability\": \"warn\" lets it run all the same"};
+          .remedy = advice + "; \"stability\": \"warn\" runs it nevertheless"};
 }
 
 std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds) {
@@ -68,17 +69,17 @@ std::vector<std::string> check_step(const SimulatorSettings& settings, const Spe
   if (is_unstable(step, largest)) {
     const Problem problem = unstable_step(step, largest, "use at most that, or \"auto\"");
     if (settings.stability == StabilityCheck::refuse) throw InputError(problem);
-    return {"step = " + problem.value + " " + problem.rule + ": expect the simulation to diverge"};
+    return {"step = " + problem.value + " " + problem.rule + ": the simulation is likely to diverge. Use a smaller step."};
   }
   const double growth = growth_time(settings.integrator, bounds, step);
   if (std::isfinite(growth)) {
-    return {"explicit Euler gains energy at any step: the fastest motion of these springs grows by a factor of e every " +
-            format_number(growth, 2) + " s; \"symplectic_euler\" does not"};
+    return {"explicit Euler gains energy at any step: the fastest mode of the springs grows by a factor of e every " +
+            format_number(growth, 2) + " s. Use \"symplectic_euler\"."};
   }
-  if (!gains_sideways(settings.integrator, bounds)) return {};
+  if (!grows_transversally(settings.integrator, bounds)) return {};
   return {
-      "explicit Euler gains energy at any step: dampers outweigh that along springs, but not sideways of taut ones; "
-      "\"symplectic_euler\" does not"};
+      "explicit Euler gains energy at any step: dampers compensate it along the springs, but not perpendicular to taut springs. "
+      "Use \"symplectic_euler\"."};
 }
 
 std::string divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds) {

@@ -1,4 +1,4 @@
-// What a simulation is checked for before it begins, and what is advised when it diverged all the same.
+// Checks of the step before a simulation starts, and the remedy if it diverges nevertheless.
 #pragma once
 
 #include "base/error.h"
@@ -11,27 +11,27 @@
 
 namespace sprung {
 
-/// `spectral_bounds` of the network with its air drag and, when there are obstacles, its penalty contact.
+/// `spectral_bounds` of the network with air drag and, if there are obstacles, penalty contact.
 [[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
 
-/// How the simulation uses its stretch limit.
+/// Properties of the simulation that the stretch limit depends on.
 [[nodiscard]] LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
 
-/// The largest step that is advised, and that "auto" uses [s]: 0.9 of the largest stable one, no larger than the resonant one, and
-/// such that a bounce by penalty contact takes three.
+/// The largest recommended step [s], which "auto" uses: at most 0.9 of the largest stable step, at most the resonant step, and
+/// small enough that a bounce by penalty contact takes three steps.
 [[nodiscard]] double advised_step(const IntegratorSettings& settings, const SpectralBounds& bounds);
 
-/// Whether a step is beyond the largest stable one by more than rounding.
+/// Whether a step exceeds the largest stable one by more than rounding [s].
 [[nodiscard]] bool is_unstable(double step, double largest_stable);
 
-/// The problem of a step that is beyond the largest stable one; `advice` is what to use instead.
+/// The problem of a step beyond the largest stable one. `advice` names what to use instead.
 [[nodiscard]] Problem unstable_step(double step, double largest_stable, const std::string& advice);
 
-/// Throws InputError for a step that is not positive, or beyond the largest stable one unless `settings.stability` is warn. Returns
-/// what the user should be warned of.
+/// Returns warnings about the step. Throws InputError if the step is not positive, or if it is beyond the largest stable one and
+/// `settings.stability` is not warn.
 std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds);
 
-/// What to change when a simulation with these settings diverged.
+/// Describes what to change after a simulation with these settings diverged.
 [[nodiscard]] std::string divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds);
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// What holds a step once forces have led it on: contact and the stretch limit, and contact's last word.
+// The constraints of a step after forces have advanced the state: contact, the stretch limit, and truncation.
 #pragma once
 
 #include "dynamics/contact/contact_projection.h"
@@ -14,11 +14,11 @@ namespace sprung {
 class StepConstraints {
  public:
   /// Keeps references to the network, the settings, the environment and the integrator. `steady_acceleration` [m/s^2] is the
-  /// largest that gravity and wind give.
+  /// largest acceleration by gravity and wind.
   StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, double steady_acceleration,
                   Environment& environment, Integrator& integrator);
 
-  /// Takes down where a step begins. It is for what comes before hold(): forces, and pins that move.
+  /// Stores positions and velocities at the beginning of a step. Call it before forces and pins move the state.
   void begin(const SimulationState& state);
 
   /// See StepTruncation.
@@ -26,29 +26,22 @@ class StepConstraints {
   void roll_back(const PermittedCrossings& permitted) { contacts_.roll_back(permitted); }
   void look_ahead(bool ahead) { contacts_.look_ahead(ahead); }
 
-  /// Leads the state on from where forces and pins have led it in `dt` [s]: by contact, the stretch limit and truncation, to the
-  /// positions and velocities of the step's end. Adds to the report what that took and left. Requires that the environment's
-  /// interval is the step's.
-  void hold(SimulationState& state, const Forces& forces, double dt, StepReport& report);
+  /// Projects the advanced state onto contact and the stretch limit, truncates it, and recovers the velocities at the end of the
+  /// step of `dt` [s]. Adds counts and the remaining stretch to the report. Requires begin(), and that the environment's interval
+  /// is the step's.
+  void apply(SimulationState& state, const Forces& forces, double dt, StepReport& report);
 
-  /// Positions at the step's begin [m], 3 x n. Valid after hold().
-  [[nodiscard]] const Points& step_began(const SimulationState& state) const {
+  /// Positions at the beginning of the step [m], 3 x n. Valid after apply().
+  [[nodiscard]] const Points& positions_before(const SimulationState& state) const {
     return copies_positions() ? before_ : state.x_previous;
   }
 
-  [[nodiscard]] const StretchLimit* limit() const { return limit_ ? &*limit_ : nullptr; }  ///< none without settings for it
+  [[nodiscard]] const StretchLimit* limit() const { return limit_ ? &*limit_ : nullptr; }  ///< null without settings for it
   [[nodiscard]] const ContactProjection& contacts() const { return contacts_; }
 
  private:
-  /// What contact alone did.
-  struct PushOut {
-    int passes = 0;
-    bool any = false;  ///< whether anything was moved
-  };
-
-  void constrain(SimulationState& state, const Forces& forces, StepReport& report);
+  void project(SimulationState& state, const Forces& forces, StepReport& report);
   void answer_contact(SimulationState& state, const Forces& forces);
-  [[nodiscard]] PushOut push_out(Points& positions, int most_passes);
   void truncate(SimulationState& state, const Forces& forces, StepReport& report);
   [[nodiscard]] bool relax(Points& positions, double excess_before);
   [[nodiscard]] bool answer_truncation(SimulationState& state, const Forces& forces);
@@ -62,12 +55,12 @@ class StepConstraints {
   std::optional<StretchLimit> limit_;
   ContactProjection contacts_;
 
-  // Of the step at hand: where it began, and where forces and pins alone would have ended it.
-  Points before_;               ///< for contact, and where the integrator does not keep them
-  Points v_before_;             ///< for contact alone
-  Points advanced_;             ///< for contact, and for integrators that need it
-  ConstrainedDirections held_;  ///< those of the last answer to contact
-  Points answered_;             ///< where the last answer to contact led, for integrators that give one
+  // State of the present step.
+  Points before_;                      ///< positions at the beginning; for contact, or if the integrator does not keep them
+  Points v_before_;                    ///< velocities at the beginning; for contact
+  Points advanced_;                    ///< positions after forces and pins; for contact, or if the integrator needs them
+  ConstrainedDirections constrained_;  ///< of the last call of Integrator::answer_contact
+  Points answered_;                    ///< positions after that call
   double dt_ = 0.0;
 };
 

@@ -6,17 +6,17 @@
 namespace sprung {
 namespace {
 
-// Steps are chosen to come near the wanted excess of what hangs, which bounces to half as much again at first. A smaller step takes
-// back what is too long faster, and so would make that bounce the higher: only what moves misses by more.
+// A hanging body bounces at first, to 1.5 times the wanted excess. A smaller step would remove the excess faster and increase the
+// bounce, so only a larger excess, which needs motion, halves the step.
 constexpr double kMargin = 3.0;
 
-// Doubled, a step leaves two to four times as much: less than this part of the bound must be left for that.
+// Twice the step gives two to four times the excess: the step is doubled below this fraction of the bound.
 constexpr double kRoom = 0.25;
 
 constexpr int kCalmSteps = 8;
 
-// A limit that is held at the end of a step takes of the motion in proportion to the step.
-constexpr double kMostTurn = 1.0 / 70.0;
+// The projection at the end of a step damps motion in proportion to the step.
+constexpr double kMaxTurn = 1.0 / 70.0;
 
 }  // namespace
 
@@ -37,9 +37,9 @@ void StepRefinement::choose(double excess, SimulationState& state) const {
 }
 
 void StepRefinement::choose_by_turn(double turn, SimulationState& state) const {
-  const double needed = std::ceil(turn * state.substeps / kMostTurn);
+  const double needed = std::ceil(turn * state.substeps / kMaxTurn);
   state.substeps =
-      needed > 1.0 ? static_cast<int>(std::min(needed, static_cast<double>(max_substeps_))) : 1;  // 1 for what is no number
+      needed > 1.0 ? static_cast<int>(std::min(needed, static_cast<double>(max_substeps_))) : 1;  // also if `turn` is not a number
 }
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// In how many parts a step is made, by the stretch that the one before left, or by how far things turned in it.
+// Chooses the number of substeps from the stretch excess, or from the rotation, of the last step.
 #pragma once
 
 #include "dynamics/stretch_limit/stretch_limit.h"
@@ -6,24 +6,23 @@
 
 namespace sprung {
 
-/// Parts are halved as soon as a step leaves springs longer than the limit lets them be, and doubled again once several in a row
-/// left far less. The excess of what swings falls with the step, that of what hangs with its square: a doubled part is safe where a
-/// quarter of the bound is not reached.
+/// Halves the substeps as soon as a step ends with more excess than the bound, and doubles them after several steps in a row with
+/// far less. The excess of a swinging body is proportional to the substep, that of a hanging body to its square, so twice the
+/// substep is safe below a quarter of the bound.
 class StepRefinement {
  public:
-  /// A step is made in `max_substeps` at most, >= 1.
+  /// Requires max_substeps >= 1.
   StepRefinement(const StretchLimitSettings& limit, int max_substeps);
 
-  /// Chooses the parts of the step to come when one has left `excess` over the limit, as a part of the rest length.
+  /// Chooses the substeps of the next step from the excess over the limit after the last one [fraction of the rest length].
   void choose(double excess, SimulationState& state) const;
 
-  /// Chooses them when a part of the step has turned something by `turn`, as StretchLimit::turn says: so many that a part turns it
-  /// by no more than a seventieth, where `max_substeps` lets it. Of a motion that changes little from step to step none is made too
-  /// large.
+  /// Chooses the substeps of the next step from the rotation in a substep of the last one (see StretchLimit::turn), such that a
+  /// substep of the same motion rotates by at most 1/70, if `max_substeps` permits.
   void choose_by_turn(double turn, SimulationState& state) const;
 
  private:
-  double bound_;  ///< of the excess
+  double bound_;  ///< on the excess
   int max_substeps_;
 };
 

@@ -5,10 +5,10 @@
 namespace sprung {
 namespace {
 
-constexpr int kMostWait = 1024;  // steps
+constexpr int kMaxWait = 1024;  // steps
 
-// What infeasible is over after so many steps that infeasible nothing, and such a part of the wait more: what squeezes every few
-// steps is tried as rarely as what always does.
+// The wait ends after kLeastFree steps without infeasible particles plus 1 / kForgetting of the wait: a cause that returns every
+// few steps is treated as one that persists.
 constexpr int kLeastFree = 4;
 constexpr int kForgetting = 16;
 
@@ -22,14 +22,14 @@ void note_retry(Index infeasible_at_first, Index infeasible, SimulationState& st
   if (infeasible == 0) {
     state.retry_wait = 0;
   } else if (infeasible == infeasible_at_first) {
-    state.retry_wait = std::clamp(2 * state.retry_wait, 1, kMostWait);
+    state.retry_wait = std::clamp(2 * state.retry_wait, 1, kMaxWait);
   }
   state.retry_from = state.step + state.retry_wait;
   state.retry_infeasible = infeasible > 0 ? std::max(state.retry_infeasible, infeasible) : 0;
 }
 
 void note_step(Index infeasible, SimulationState& state) {
-  state.free_steps = infeasible > 0 ? 0 : std::min(state.free_steps + 1, kMostWait);
+  state.free_steps = infeasible > 0 ? 0 : std::min(state.free_steps + 1, kMaxWait);
   if (state.free_steps <= kLeastFree + state.retry_wait / kForgetting) return;
   state.retry_wait = 0;
   state.retry_from = state.step;

@@ -1,4 +1,4 @@
-// When a step that infeasible particles is made again, in smaller ones.
+// Decides when a step with infeasible particles is repeated with more substeps.
 #pragma once
 
 #include "network/simulation_state.h"
@@ -7,17 +7,18 @@
 
 namespace sprung {
 
-/// It is made again in so many times as many parts, until it squeezes nothing.
+/// A step is repeated with so many times its substeps, in this order, until no particle is infeasible.
 inline constexpr std::array<int, 3> kRetryFactors{4, 16, 64};
 
-/// Whether a step that began at the state and infeasible so many particles is. Where that did not help at all it is not tried for
-/// some steps, each time for twice as many, unless more are infeasible than were left since it did: it may be something else.
+/// Whether to repeat a step that began at the state `begun` and has this number of infeasible particles. After a repetition without
+/// effect, no step is repeated for a waiting time, which doubles each time. A step with more infeasible particles than any during
+/// the wait is repeated nevertheless, as its cause may be another.
 [[nodiscard]] bool may_retry(Index infeasible, const SimulationState& begun);
 
-/// Takes down in the state after each step how many particles it infeasible: what did may be over.
+/// Records the infeasible particles after each step. The wait ends after enough steps without any.
 void note_step(Index infeasible, SimulationState& state);
 
-/// Takes down in the state after a step that was made again how many particles it infeasible at first, and how many in the end.
+/// Records the infeasible particles of a repeated step, at first and in the best repetition, and sets the wait.
 void note_retry(Index infeasible_at_first, Index infeasible, SimulationState& state);
 
 }  // namespace sprung

@@ -118,7 +118,8 @@ TEST(Start, AParticleIsPushedToItsGapBeforeTheNearestSurface) {
   // Passes leave a thousandth of the gap.
   EXPECT_LT((simulator.positions().col(0) - Vector3(0.31, 0.0, 0.0)).norm(), 1e-5);
   ASSERT_EQ(simulator.warnings().size(), 1U);
-  EXPECT_EQ(simulator.warnings()[0], "body \"ball\" was pushed out of what it intersected at the start: 1 particle by 0.21 m");
+  EXPECT_EQ(simulator.warnings()[0],
+            "body \"ball\" intersected an obstacle or a body at the start and was moved out: 1 particle by 0.21 m");
 }
 
 TEST(Start, VelocitiesStayAsGivenWhereParticlesArePushedOut) {
@@ -147,7 +148,7 @@ TEST(Start, WhatIsDeepInItsGapIsWarnedOf) {
   const auto warnings = [](double height) {
     return Simulator(one_particle({0.0, height, 0.0}, {.thickness = 0.5}), {.step = 1e-3}, {ground({.thickness = 0.1})}).warnings();
   };
-  EXPECT_THAT(warnings(0.29), ElementsAre(HasSubstr("begins 0.29 m from an obstacle, deep in its thickness of 0.6 m")));
+  EXPECT_THAT(warnings(0.29), ElementsAre(HasSubstr("starts 0.29 m from an obstacle, deep within the thickness of 0.6 m")));
   EXPECT_THAT(warnings(0.31), IsEmpty());
 }
 
@@ -181,7 +182,7 @@ TEST(Start, WhatPinsHoldAcrossEachOtherIsRefused) {
   const auto lines = refusal(needle_and_patch({}, {0, 1, 2, 3, 4, 5}), pushing_out(), {});
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_THAT(lines[0],
-              AllOf(HasSubstr("intersects body \"needle\""), HasSubstr("could not be pushed out"), HasSubstr("body_contact")));
+              AllOf(HasSubstr("intersects body \"needle\""), HasSubstr("found no free position"), HasSubstr("body_contact")));
 }
 
 TEST(Start, BodiesThatDoNotMeetAreNotPushedOutOfEachOther) { EXPECT_THAT(moved(needle_and_patch({.others = false})), IsEmpty()); }

@@ -68,11 +68,11 @@ TEST(LimitHandover, IsForWhatPassesMissedSoManyTimesInARow) {
     for (int k = 0; k < times; ++k, ++state.step) hand_over_missed(network, limit, limit.excess(state.x), state);
     return state.stretch_holds.front().solved_since;
   };
-  EXPECT_FALSE(see(1.01 * most, kMostMissedSteps - 1));
+  EXPECT_FALSE(see(1.01 * most, kMaxMissedSteps - 1));
   EXPECT_FALSE(see(0.99 * most, 1));
-  EXPECT_FALSE(see(1.01 * most, kMostMissedSteps - 1));
-  EXPECT_EQ(see(1.01 * most, 1), 2 * kMostMissedSteps - 1);
-  EXPECT_EQ(see(0.0, 100), 2 * kMostMissedSteps - 1) << "for good";
+  EXPECT_FALSE(see(1.01 * most, kMaxMissedSteps - 1));
+  EXPECT_EQ(see(1.01 * most, 1), 2 * kMaxMissedSteps - 1);
+  EXPECT_EQ(see(0.0, 100), 2 * kMaxMissedSteps - 1) << "for good";
 }
 
 TEST(LimitHandover, IsBodyByBody) {

@@ -1,4 +1,4 @@
-// Steps in parts: when, how long, and that time and motion do not notice.
+// Substeps of a step: their number, their length, and that time and motion do not depend on them.
 #include "simulation/step/step_refinement.h"
 
 #include "base/error.h"
@@ -29,7 +29,7 @@ StretchLimitSettings both_ways() {
 }
 
 /// Parts of the step after steps that left these excesses.
-int parts_after(const std::vector<double>& excesses, int most = 8) {
+int substeps_after(const std::vector<double>& excesses, int most = 8) {
   const StepRefinement refinement(both_ways(), most);
   SimulationState state;
   for (const double excess : excesses) refinement.choose(excess, state);
@@ -37,12 +37,12 @@ int parts_after(const std::vector<double>& excesses, int most = 8) {
 }
 
 TEST(StepRefinement, HalvesAsOftenAsTheExcessIsTooLarge) {
-  EXPECT_EQ(parts_after({0.029}), 1);
-  EXPECT_EQ(parts_after({0.031}), 2);
-  EXPECT_EQ(parts_after({0.061}), 4);
-  EXPECT_EQ(parts_after({0.031, 0.031}), 4);
-  EXPECT_EQ(parts_after({1.0}), 8);
-  EXPECT_EQ(parts_after({1.0}, 4), 4);
+  EXPECT_EQ(substeps_after({0.029}), 1);
+  EXPECT_EQ(substeps_after({0.031}), 2);
+  EXPECT_EQ(substeps_after({0.061}), 4);
+  EXPECT_EQ(substeps_after({0.031, 0.031}), 4);
+  EXPECT_EQ(substeps_after({1.0}), 8);
+  EXPECT_EQ(substeps_after({1.0}, 4), 4);
 }
 
 TEST(StepRefinement, DoublesAgainAfterSeveralCalmStepsInARow) {
@@ -51,27 +51,27 @@ TEST(StepRefinement, DoublesAgainAfterSeveralCalmStepsInARow) {
     std::vector<double> excesses{0.061};
     excesses.insert(excesses.end(), calm.begin(), calm.end());
     excesses.insert(excesses.end(), between.begin(), between.end());
-    return parts_after(excesses);
+    return substeps_after(excesses);
   };
   EXPECT_EQ(after({}), 4);
   EXPECT_EQ(after({0.007}), 2);
   EXPECT_EQ(after({0.008, 0.007}), 4) << "there was not room enough in between";
-  EXPECT_EQ(parts_after(std::vector<double>(30, 0.0)), 1);
+  EXPECT_EQ(substeps_after(std::vector<double>(30, 0.0)), 1);
 }
 
 TEST(StepRefinement, MakesAsManyPartsAsTurnLittleEnough) {
   const StepRefinement refinement(both_ways(), 8);
   SimulationState state;
-  const auto parts_after_turn = [&](double turn) {
+  const auto substeps_after_turn = [&](double turn) {
     refinement.choose_by_turn(turn, state);
     return state.substeps;
   };
-  EXPECT_EQ(parts_after_turn(1.0 / 71.0), 1);
-  EXPECT_EQ(parts_after_turn(1.0 / 69.0), 2);
-  EXPECT_EQ(parts_after_turn(1.0 / 69.0), 3) << "of one of two parts";
-  EXPECT_EQ(parts_after_turn(1.0 / 106.0), 2) << "of one of three parts";
-  EXPECT_EQ(parts_after_turn(0.0), 1);
-  EXPECT_EQ(parts_after_turn(10.0), 8);
+  EXPECT_EQ(substeps_after_turn(1.0 / 71.0), 1);
+  EXPECT_EQ(substeps_after_turn(1.0 / 69.0), 2);
+  EXPECT_EQ(substeps_after_turn(1.0 / 69.0), 3) << "of one of two substeps";
+  EXPECT_EQ(substeps_after_turn(1.0 / 106.0), 2) << "of one of three substeps";
+  EXPECT_EQ(substeps_after_turn(0.0), 1);
+  EXPECT_EQ(substeps_after_turn(10.0), 8);
 }
 
 // Verlet's positions lie on the parabola of what is thrown, whatever the step.
@@ -216,12 +216,12 @@ TEST(StepRefinement, PinsHaveTheVelocityOfTheStepToCome) {
   };
   Simulator simulator(cloth, {.step = 1.0 / (8 * kRate), .stretch_limit = both_ways(), .max_substeps = 8});
   int changes = 0;
-  for (int step = 0, parts = 1; step < 500; ++step) {
+  for (int step = 0, substeps = 1; step < 500; ++step) {
     simulator.step();
     const SimulationState& state = simulator.state();
-    changes += state.substeps != parts ? 1 : 0;
-    parts = state.substeps;
-    const double dt = simulator.settings().step / parts;
+    changes += state.substeps != substeps ? 1 : 0;
+    substeps = state.substeps;
+    const double dt = simulator.settings().step / substeps;
     const Vector3 expected = (held_at(simulator.time() + dt) - held_at(simulator.time())) / dt;
     // Positions of less than 2 m are rounded before their difference is divided by the step.
     ASSERT_LT((state.v.col(held) - expected).norm(), 16 * kEpsilon / dt) << "step " << step;
@@ -239,10 +239,10 @@ TEST(StepRefinement, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(StepRefinement, PartsOutOfTheirBoundsAreRefused) {
-  for (const int parts : {0, kMaxSubsteps + 1}) {
+  for (const int substeps : {0, kMaxSubsteps + 1}) {
     try {
-      const Simulator simulator(testing::one_particle(Vector3::Zero()), {.max_substeps = parts});
-      FAIL() << parts;
+      const Simulator simulator(testing::one_particle(Vector3::Zero()), {.max_substeps = substeps});
+      FAIL() << substeps;
     } catch (const InputError& error) {
       EXPECT_EQ(error.problems().front().key, "max_substeps");
     }
