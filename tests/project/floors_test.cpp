@@ -35,7 +35,7 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"collision/shapes", {"safe_regions", "mesh_bvh"}},
     {"collision/primitives", {"shapes", "safe_regions"}},
     {"collision/obstacles", {"core", "surface", "shapes", "primitives"}},
-    {"collision/obstacle_regions", {"core", "surface", "shapes", "obstacles"}},
+    {"collision/obstacle_regions", {"core", "surface", "safe_regions", "shapes", "obstacles"}},
     {"collision/element_bvh", {"core", "surface"}},
     {"collision/pairs", {"core", "surface", "safe_regions", "element_bvh"}},
     {"collision/impact_zones", {"core", "surface", "safe_regions", "pairs", "obstacle_regions"}},

@@ -1,5 +1,5 @@
-#include "collision/shapes/mesh_shape.h"
 #include "collision/sample_meshes.h"
+#include "collision/shapes/mesh_shape.h"
 #include "collision/zone_trials.h"
 
 #include <gtest/gtest.h>
