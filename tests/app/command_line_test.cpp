@@ -114,7 +114,7 @@ TEST_F(CommandLine, RunWarnsOnceOfWhatIsSqueezedBetweenObstacles) {
   EXPECT_THAT(record()["warnings"][0].get<std::string>(), StartsWith("frame "));
 }
 
-TEST_F(CommandLine, RunTellsOfAMissedStretchLimitAndWhatHoldsItBetter) {
+TEST_F(CommandLine, RunReportsAMissedStretchLimitAndTheRemedy) {
   json scene = rope_scene();
   scene["bodies"]["rope"]["shape"]["particles"] = 50;
   scene["step"] = 1.0 / 60.0;
@@ -137,7 +137,7 @@ TEST_F(CommandLine, RunTellsOfAMissedStretchLimitAndWhatHoldsItBetter) {
 }
 
 // Undamped, and passing through itself, a soft rope gains from each spring that comes to no length.
-TEST_F(CommandLine, RunTellsOfEnergyFromNowhere) {
+TEST_F(CommandLine, RunReportsUnexplainedEnergy) {
   json scene = {{"version", 1}, {"duration", 40}, {"frame_rate", 10}, {"integrator", {{"type", "symplectic_euler"}}}};
   scene["bodies"]["rope"] = {{"shape", {{"type", "rope"}, {"from", {0, 0, 0}}, {"to", {1, 0, 0}}, {"particles", 40}}},
                              {"mass", 0.1},
@@ -156,7 +156,7 @@ TEST_F(CommandLine, RunTellsOfEnergyFromNowhere) {
   EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("nothing drives")));
 }
 
-TEST_F(CommandLine, RunTellsOfABodyTooThinToLieOnAnObstacle) {
+TEST_F(CommandLine, RunReportsABodyTooThinToRestOnAnObstacle) {
   json scene = {{"version", 1}, {"duration", 1}, {"frame_rate", 30}};
   scene["obstacles"]["hills"]["shape"] = {{"type", "mesh"}, {"file", SPRUNG_SOURCE_DIR "/meshes/terrain.gltf"}};
   scene["bodies"]["cloth"] = {{"shape", {{"type", "cloth"}, {"size", {1, 1}}, {"resolution", {12, 12}}}},
@@ -173,7 +173,7 @@ TEST_F(CommandLine, RunTellsOfABodyTooThinToLieOnAnObstacle) {
   EXPECT_THAT(ending.err, Not(HasSubstr("is too small for the step")));
 }
 
-TEST_F(CommandLine, RunTellsOfBodiesTooThinToLieOnEachOther) {
+TEST_F(CommandLine, RunReportsBodiesTooThinToRestOnEachOther) {
   json scene = {{"version", 1}, {"duration", 0.5}, {"frame_rate", 30}, {"stretch_limit", {{"max_stretch", 0.02}}}};
   scene["obstacles"]["floor"]["shape"] = {{"type", "half_space"}};
   for (const int layer : {1, 2, 3, 4}) {
@@ -186,7 +186,7 @@ TEST_F(CommandLine, RunTellsOfBodiesTooThinToLieOnEachOther) {
   Ending ending = run({"run", save(scene), "--out", out()});
   EXPECT_EQ(ending.code, 0) << ending.err;
   EXPECT_THAT(ending.err, HasSubstr("thickness 0 m is too small for the step"));
-  EXPECT_THAT(record()["warnings"], Contains(StartsWith("some bodies keep")));
+  EXPECT_THAT(record()["warnings"], Contains(StartsWith("thickness 0 m is too small")));
 
   for (json& body : scene["bodies"]) body["thickness"] = 0.005;
   ending = run({"run", save(scene), "--out", out(), "--overwrite"});
