@@ -68,17 +68,12 @@ BlockCholesky<Number>::BlockCholesky(const BlockMatrix& pattern, const std::vect
   below_.resize(static_cast<std::size_t>(height));
   row_.resize(static_cast<std::size_t>(kRowRoom) * static_cast<std::size_t>(width));
 }
-template <class Number>
-bool BlockCholesky<Number>::factor(const BlockMatrix& matrix, double raise) {
-  const TinyNumbersAreZero quick;
-  return eliminate(matrix, raise, [](const Front&) {});
-}
 
 template <class Number>
 bool BlockCholesky<Number>::factor_and_solve(const BlockMatrix& matrix, double raise, const Points& right, Points& solution) {
   const TinyNumbersAreZero quick;
   const double scale = take(right);
-  if (!eliminate(matrix, raise, [&](const Front& front) { substitute(front); })) return false;
+  if (!eliminate(matrix, raise)) return false;
   substitute_back();
   give(scale, solution);
   return true;
@@ -93,10 +88,9 @@ void BlockCholesky<Number>::solve(const Points& right, Points& solution) {
   give(scale, solution);
 }
 
-/// Calls `and_then` with each front while its panel is in the cache.
+/// Substitutes with each front while its panel is in the cache.
 template <class Number>
-template <class AndThen>
-bool BlockCholesky<Number>::eliminate(const BlockMatrix& matrix, double raise, const AndThen& and_then) {
+bool BlockCholesky<Number>::eliminate(const BlockMatrix& matrix, double raise) {
   double largest = 0.0;
   for (Index i = 0; i < matrix.size(); ++i) largest = std::max(largest, matrix.diagonal(i).diagonal().maxCoeff());
   scale_ = scale_to_one(largest);
@@ -106,7 +100,7 @@ bool BlockCholesky<Number>::eliminate(const BlockMatrix& matrix, double raise, c
     assemble(f, matrix, raise);
     Number* const update = updates_.data() + front.update;
     if (!eliminate_front(front.shape, &panels_[front.panel], &inverse_[front.first_slot], update, row_.data())) return false;
-    and_then(front);
+    substitute(front);
     for (const Child& child : layout_.children_of(front)) {
       add_to_update(layout_.runs_of(child), updates_.data() + child.update, child.height, front.shape.lower_height(), update);
     }

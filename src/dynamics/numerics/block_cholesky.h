@@ -19,16 +19,13 @@ class BlockCholesky {
   /// excludes none.
   explicit BlockCholesky(const BlockMatrix& pattern, const std::vector<bool>& left_out = {});
 
-  /// Factors the matrix with its diagonal multiplied by 1 + `raise`. Returns false where rounding no longer shows that the result
-  /// is positive definite; do not call `solve` then.
-  [[nodiscard]] bool factor(const BlockMatrix& matrix, double raise = 0.0);
-
-  /// Solves A x = `right`, both 3 x particles. `solution` may be `right` itself. Excluded particles get zero.
-  void solve(const Points& right, Points& solution);
-
-  /// Does `factor` and `solve` with the same bits and reads less memory: it makes half of the solve while it factors. Writes no
-  /// solution where it returns false.
+  /// Factors A, the matrix with its diagonal multiplied by 1 + `raise`, and solves A x = `right`; both are 3 x particles.
+  /// `solution` may be `right` itself. Excluded particles get zero. Returns false where rounding no longer shows that the factored
+  /// matrix is positive definite; `solution` is unchanged then.
   [[nodiscard]] bool factor_and_solve(const BlockMatrix& matrix, double raise, const Points& right, Points& solution);
+
+  /// Solves A x = `right` again with the last factor: factor_and_solve() must have returned true.
+  void solve(const Points& right, Points& solution);
 
  private:
   using Part = Eigen::Matrix<Number, 3, 1>;
@@ -36,8 +33,7 @@ class BlockCholesky {
 
   // Loosely coupled particles pass on smaller and smaller numbers, down to denormal ones, which are slow. Callers keep a
   // TinyNumbersAreZero alive.
-  template <class AndThen>
-  [[nodiscard]] bool eliminate(const BlockMatrix& matrix, double raise, const AndThen& and_then);
+  [[nodiscard]] bool eliminate(const BlockMatrix& matrix, double raise);
   void assemble(std::size_t front, const BlockMatrix& matrix, double raise);
   [[nodiscard]] double take(const Points& right);
   void substitute(const Front& front);

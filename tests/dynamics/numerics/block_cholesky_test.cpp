@@ -73,10 +73,9 @@ void expect_raised(std::mt19937& random) {
   constexpr double kRaise = 0.5;
   const BlockMatrix matrix = random_matrix(40, random_pairs(40, 150, random), random);
   BlockCholesky<Number> factor(matrix);
-  ASSERT_TRUE(factor.factor(matrix, kRaise));
   const Points right = Points::Random(3, 40);
   Points solution;
-  factor.solve(right, solution);
+  ASSERT_TRUE(factor.factor_and_solve(matrix, kRaise, right, solution));
   Eigen::MatrixXd full = dense(matrix);
   full.diagonal() *= 1.0 + kRaise;
   expect_solution<Number>(full, right.reshaped(), solution.reshaped());
@@ -86,10 +85,9 @@ template <class Number>
 void expect_solves(Index particles, const Pairs& pairs, std::mt19937& random) {
   const BlockMatrix matrix = random_matrix(particles, pairs, random);
   BlockCholesky<Number> factor(matrix);
-  ASSERT_TRUE(factor.factor(matrix));
   const Points right = Points::Random(3, particles);
   Points solution;
-  factor.solve(right, solution);
+  ASSERT_TRUE(factor.factor_and_solve(matrix, 0.0, right, solution));
   const Eigen::MatrixXd full = dense(matrix);
   expect_solution<Number>(full, right.reshaped(), solution.reshaped());
   const Scalars expected = full.ldlt().solve(Scalars(right.reshaped()));
@@ -133,10 +131,9 @@ TYPED_TEST(BlockCholeskyOf, LeavesOutRowsAndColumns) {
   std::vector<bool> left_out(side * side);
   for (Index i = 0; i < side * side; ++i) left_out[i] = i % 4 == 1;
   BlockCholesky<Number> factor(matrix, left_out);
-  ASSERT_TRUE(factor.factor(matrix));
   const Points right = Points::Random(3, side * side);
   Points solution = right;
-  factor.solve(solution, solution);
+  ASSERT_TRUE(factor.factor_and_solve(matrix, 0.0, solution, solution));
   Eigen::MatrixXd full = dense(matrix);
   Scalars known = right.reshaped();
   for (Index i = 0; i < side * side; ++i) {
@@ -150,21 +147,20 @@ TYPED_TEST(BlockCholeskyOf, LeavesOutRowsAndColumns) {
   expect_solution<Number>(full, known, solution.reshaped());
 }
 
-TYPED_TEST(BlockCholeskyOf, TakesMatricesWithoutRows) {
+TYPED_TEST(BlockCholeskyOf, AcceptsMatricesWithoutRows) {
   using Number = TypeParam;
   const BlockMatrix matrix(2, {});
   BlockCholesky<Number> factor(matrix, {true, true});
-  ASSERT_TRUE(factor.factor(matrix));
   Points vectors = Points::Ones(3, 2);
-  factor.solve(vectors, vectors);
+  ASSERT_TRUE(factor.factor_and_solve(matrix, 0.0, vectors, vectors));
   EXPECT_EQ(vectors, Points::Zero(3, 2));
   vectors = Points::Random(3, 2);
-  ASSERT_TRUE(factor.factor_and_solve(matrix, 0.0, vectors, vectors));
+  factor.solve(vectors, vectors);
   EXPECT_EQ(vectors, Points::Zero(3, 2));
 }
 
-// The same object takes one matrix after the other: what one leaves does not change the next one's bits.
-TYPED_TEST(BlockCholeskyOf, FactorsDoNotDependOnThoseBefore) {
+// An earlier matrix of the same object changes no bit of the next factor.
+TYPED_TEST(BlockCholeskyOf, FactorsDoNotDependOnEarlierOnes) {
   using Number = TypeParam;
   std::mt19937 random(4);
   const Pairs pairs = cloth_pairs(10);
@@ -172,43 +168,45 @@ TYPED_TEST(BlockCholeskyOf, FactorsDoNotDependOnThoseBefore) {
   const BlockMatrix second = random_matrix(100, pairs, random);
   const Points right = Points::Random(3, 100);
   BlockCholesky<Number> used(first);
-  ASSERT_TRUE(used.factor(first));
-  ASSERT_TRUE(used.factor(second));
-  BlockCholesky<Number> fresh(first);
-  ASSERT_TRUE(fresh.factor(second));
   Points after_used;
+  ASSERT_TRUE(used.factor_and_solve(first, 0.0, right, after_used));
+  ASSERT_TRUE(used.factor_and_solve(second, 0.0, right, after_used));
+  BlockCholesky<Number> fresh(first);
   Points after_fresh;
-  used.solve(right, after_used);
-  used.solve(right, after_used);
-  fresh.solve(right, after_fresh);
+  ASSERT_TRUE(fresh.factor_and_solve(second, 0.0, right, after_fresh));
   EXPECT_EQ(after_used, after_fresh);
 }
 
-TYPED_TEST(BlockCholeskyOf, SolvesOnTheWayWithTheSameBits) {
+TYPED_TEST(BlockCholeskyOf, SolvesAgainWithTheSameBits) {
   using Number = TypeParam;
   std::mt19937 random(13);
-  const Pairs pairs = cloth_pairs(10);
-  const BlockMatrix matrix = random_matrix(100, pairs, random);
+  const BlockMatrix matrix = random_matrix(100, cloth_pairs(10), random);
   const Points right = Points::Random(3, 100);
   std::vector<bool> left_out(100, false);
   left_out[0] = left_out[57] = true;
-  BlockCholesky<Number> apart(matrix, left_out);
-  ASSERT_TRUE(apart.factor(matrix, 0.01));
-  Points expected;
-  apart.solve(right, expected);
   BlockCholesky<Number> factor(matrix, left_out);
-  ASSERT_TRUE(factor.factor(random_matrix(100, pairs, random)));
-  Points solution = right;
-  ASSERT_TRUE(factor.factor_and_solve(matrix, 0.01, solution, solution));
-  EXPECT_EQ(solution, expected);
-
-  BlockMatrix broken = matrix;
-  broken.add(27, 27, Matrix3::Constant(std::numeric_limits<double>::quiet_NaN()));
-  EXPECT_FALSE(factor.factor_and_solve(broken, 0.01, right, solution));
+  Points expected;
+  ASSERT_TRUE(factor.factor_and_solve(matrix, 0.01, right, expected));
+  Points solution;
+  factor.solve(Points::Random(3, 100), solution);
+  EXPECT_NE(solution, expected);
+  factor.solve(right, solution);
   EXPECT_EQ(solution, expected);
 }
 
-TYPED_TEST(BlockCholeskyOf, TellsWhatIsNotPositiveDefinite) {
+TYPED_TEST(BlockCholeskyOf, KeepsTheSolutionOfAMatrixThatItRefuses) {
+  using Number = TypeParam;
+  std::mt19937 random(13);
+  BlockMatrix matrix = random_matrix(100, cloth_pairs(10), random);
+  BlockCholesky<Number> factor(matrix);
+  matrix.add(27, 27, Matrix3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  const Points right = Points::Random(3, 100);
+  Points solution = right;
+  EXPECT_FALSE(factor.factor_and_solve(matrix, 0.01, solution, solution));
+  EXPECT_EQ(solution, right);
+}
+
+TYPED_TEST(BlockCholeskyOf, RefusesMatricesThatAreNotPositiveDefinite) {
   using Number = TypeParam;
   std::mt19937 random(5);
   const Pairs pairs = cloth_pairs(8);
@@ -217,15 +215,18 @@ TYPED_TEST(BlockCholeskyOf, TellsWhatIsNotPositiveDefinite) {
     const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(sound), Eigen::EigenvaluesOnly).eigenvalues()[0];
     BlockMatrix shifted = sound;
     BlockCholesky<Number> factor(sound);
+    const Points right = Points::Random(3, 64);
+    Points solution;
+    const auto accepts = [&](const BlockMatrix& matrix) { return factor.factor_and_solve(matrix, 0.0, right, solution); };
     // All eigenvalues go down alike.
     for (Index i = 0; i < 64; ++i) shifted.add(i, i, -0.99 * least * Matrix3::Identity());
-    EXPECT_TRUE(factor.factor(shifted));
+    EXPECT_TRUE(accepts(shifted));
     for (Index i = 0; i < 64; ++i) shifted.add(i, i, -0.02 * least * Matrix3::Identity());
-    EXPECT_FALSE(factor.factor(shifted));
+    EXPECT_FALSE(accepts(shifted));
     BlockMatrix broken = sound;
     broken.add(particle, particle, Matrix3::Constant(std::numeric_limits<double>::quiet_NaN()));
-    EXPECT_FALSE(factor.factor(broken));
-    EXPECT_TRUE(factor.factor(sound));
+    EXPECT_FALSE(accepts(broken));
+    EXPECT_TRUE(accepts(sound));
   }
 }
 
@@ -237,16 +238,14 @@ TYPED_TEST(BlockCholeskyOf, PowersOfTwoScaleItExactly) {
   const Points right = Points::Random(3, 81);
   BlockCholesky<Number> factor(matrix);
   Points expected;
-  ASSERT_TRUE(factor.factor(matrix));
-  factor.solve(right, expected);
+  ASSERT_TRUE(factor.factor_and_solve(matrix, 0.0, right, expected));
   // Also far beyond what a float holds.
   for (const int of_matrix : {-31, 0, -180, 180}) {
     for (const int of_right : {0, -180, 180}) {
       BlockMatrix scaled(81, pairs);
       scaled.add_scaled(matrix, std::ldexp(1.0, of_matrix));
-      ASSERT_TRUE(factor.factor(scaled)) << of_matrix;
       Points solution;
-      factor.solve(std::ldexp(1.0, of_right) * right, solution);
+      ASSERT_TRUE(factor.factor_and_solve(scaled, 0.0, std::ldexp(1.0, of_right) * right, solution)) << of_matrix;
       EXPECT_EQ(solution, std::ldexp(1.0, of_right - of_matrix) * expected) << of_matrix << ", " << of_right;
     }
   }
