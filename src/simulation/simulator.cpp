@@ -117,7 +117,7 @@ StepReport Simulator::Implementation::make_substep() {
   integrator->advance(state, forces, dt());
   environment.set_interval(t, t_end);
   move_pins(t_end);
-  energy_watch.note_obstacle(environment.set().carries_at_most(state.x) / dt());
+  energy_watch.note_obstacle(environment.set().max_displacement(state.x) / dt());
 
   StepReport report{.substeps = 1};
   constraints.apply(state, forces, dt(), report);

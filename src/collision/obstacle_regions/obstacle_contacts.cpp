@@ -49,7 +49,7 @@ FreshContacts ObstacleSafeRegions::find_contacts_around(const std::vector<Index>
 
 void ObstacleSafeRegions::find_contacts_of(const std::vector<Index>& patches, const StepPaths& paths,
                                            std::vector<Contact>& contacts) {
-  const double by_obstacles = paths.obstacles_rest ? 0.0 : set_.carries_at_most(paths.from);
+  const double by_obstacles = paths.obstacles_rest ? 0.0 : set_.max_displacement(paths.from);
   parallel_chunks(static_cast<Index>(patches.size()), kPatchChunk, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       const Index p = patches[at(k)];

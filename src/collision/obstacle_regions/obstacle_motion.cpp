@@ -29,7 +29,7 @@ std::vector<ParticleDisplacement> ObstacleMotion::displacements(const Points& fr
   if (!set_.moves()) return particles;
   for (Index i = 0; i < static_cast<Index>(from.cols()); ++i) {
     const Index k = touched_obstacle(i);
-    if (k != kNone) particles.push_back({i, set_.carried(k, from.col(i)) - from.col(i)});
+    if (k != kNone) particles.push_back({i, set_.moved_position(k, from.col(i)) - from.col(i)});
   }
   return particles;
 }
@@ -73,14 +73,14 @@ std::vector<Index> ObstacleMotion::near_obstacles(Index particle) const {
 
 void ObstacleMotion::append_moved(Index particle, const Vector3& from, std::vector<Vector3>& positions) const {
   for (const Index k : near_obstacles(particle)) {
-    if (!set_.rests(k)) positions.push_back(set_.carried(k, from));
+    if (!set_.rests(k)) positions.push_back(set_.moved_position(k, from));
   }
 }
 
 std::optional<Vector3> ObstacleMotion::moved(Index particle, const Vector3& from) const {
   for (const Index k : near_obstacles(particle)) {
     if (set_.rests(k)) continue;
-    const auto moved = set_.shape(k).carried({.x = {set_.local_before(k, from)}, .count = 1}, 0.0);
+    const auto moved = set_.shape(k).moved_element({.x = {set_.local_before(k, from)}, .count = 1}, 0.0);
     if (!moved) return std::nullopt;
     const Vector3 position = set_.after(k) * moved->corners.x[0];
     if (!crosses_another(k, particle, from, position)) return position;
@@ -93,7 +93,7 @@ bool ObstacleMotion::crosses_another(Index k, Index particle, const Vector3& fro
   const std::vector<Index> near = near_obstacles(particle);
   return std::any_of(near.begin(), near.end(), [&](Index other) {
     if (other == k) return false;
-    const auto moved = set_.shape(other).carried({.x = {set_.local_before(other, from)}, .count = 1}, 0.0);
+    const auto moved = set_.shape(other).moved_element({.x = {set_.local_before(other, from)}, .count = 1}, 0.0);
     return !moved || set_.shape(other).first_crossing(moved->corners.x[0], set_.local(other, position));
   });
 }
@@ -107,7 +107,7 @@ void ObstacleMotion::append_moved_elements(Index p, const Points& from, double l
       const Element& element = surface_.elements[at(patch.first_element + e)];
       ElementCorners local{.count = element.corners};
       for (std::size_t c = 0; c < at(element.corners); ++c) local.x[c] = set_.local_before(k, from.col(element.particles[c]));
-      const auto moved = set_.shape(k).carried(local, lift);
+      const auto moved = set_.shape(k).moved_element(local, lift);
       for (std::size_t c = 0; c < at(element.corners) && moved; ++c) {
         const Index i = element.particles[c];
         const Vector3 position = set_.after(k) * moved->corners.x[c];
@@ -136,7 +136,7 @@ void ObstacleMotion::append_pushes(Index p, const PatchSafeRegions& regions, con
     double approach = 0.0;
     for (const Index i : corners) {
       if (surface_.pinned[at(i)] == 0) continue;
-      approach = std::max(approach, normal.dot(set_.carried(k, paths.from.col(i)) - paths.to.col(i)));
+      approach = std::max(approach, normal.dot(set_.moved_position(k, paths.from.col(i)) - paths.to.col(i)));
     }
     for (const Index i : corners) {
       if (surface_.pinned[at(i)] == 0 && approach > 0.0)

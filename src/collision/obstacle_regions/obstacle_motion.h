@@ -44,7 +44,7 @@ class ObstacleMotion {
   [[nodiscard]] KinematicAnchor anchor(Index particle, const Vector3& from, const Vector3& position) const;
 
   /// The corners of elements that moving obstacles cross, moved as whole elements, and higher by `lift` (see
-  /// ObstacleShape::carried). Ascending by particle; a corner of several elements moves with the one nearest to its obstacle.
+  /// ObstacleShape::moved_element). Ascending by particle; a corner of several elements moves with the one nearest to its obstacle.
   [[nodiscard]] std::vector<MovedVertex> moved_with_elements(const Points& from, double lift) const;
 
   /// The pushes that obstacles exert on the other corners of elements at pins, relative to the pins, in this interval. Ascending by

@@ -44,7 +44,7 @@ ObstacleSafeRegions::ObstacleSafeRegions(const ObstacleSet& set, const Collision
 
 void ObstacleSafeRegions::update(const StepPaths& paths) {
   if (set_.obstacles().empty()) return;
-  const double max_displacement = paths.obstacles_rest ? 0.0 : set_.carries_at_most(paths.from);
+  const double max_displacement = paths.obstacles_rest ? 0.0 : set_.max_displacement(paths.from);
   parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
     for (Index p = begin; p < end; ++p) {
       find_near(p, paths, max_displacement);

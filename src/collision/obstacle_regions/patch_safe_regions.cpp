@@ -49,7 +49,7 @@ struct ElementPath {
 SafeRegionRequest request(const RegionDemand& demand, bool pinned, const ElementPath& path) {
   const double min_reach = std::max(kReachOfSize * demand.size, kReachOfGap * demand.gap);
   return {.reach = min_reach + kReachOfMotion * path.longest,
-          .way = path.to,
+          .path = path.to,
           .gap = demand.gap,
           .clearance = demand.clearance,
           .exact = demand.gap + demand.margin + (demand.ahead && pinned ? path.longest : 0.0),
@@ -93,7 +93,7 @@ void PatchSafeRegions::move_with_surface(const ObstacleShape& shape, const Patch
   for (Index e = 0; e < topology.element_count(); ++e) {
     SafeRegion& region = regions_[at(e)];
     const double time = region.time;
-    if (!shape.take_along(region) || (region.triangle != kNone && region.loss > kMaxLoss * demand.gap)) marked_[at(e)] = 1;
+    if (!shape.advance_region(region) || (region.triangle != kNone && region.loss > kMaxLoss * demand.gap)) marked_[at(e)] = 1;
     if (region.time == time || std::isnan(region.time)) continue;
     any_moved = true;
     for (Vector3& corner : made_around_[at(e)]) corner += region.drift;
@@ -164,7 +164,7 @@ const SafeRegion& PatchSafeRegions::renew_closest_points(const ObstacleShape& sh
   if (search == ClosestPointTracker::Search::none) return region;
   SafeRegionRequest asked = request(demand, corners.pinned, ElementPath(paths, corners));
   asked.reach = std::max(asked.reach, asked.exact);
-  shape.look_again(from, asked, search == ClosestPointTracker::Search::same_triangle, region);
+  shape.update_closest_points(from, asked, search == ClosestPointTracker::Search::same_triangle, region);
   for (Vector3& corner : from.x) corner += region.drift;
   closest_points_.set_corners(e, from.x);
   return region;

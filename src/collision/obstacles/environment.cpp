@@ -39,15 +39,15 @@ Vector3 Environment::surface_velocity(Index obstacle, const Vector3& position, d
   const ObstacleSet& set = implementation_->set;
   const auto& [name, geometry, placed, motion, material] = set.obstacle(obstacle);
   if (!motion.moves() && !set.shape(obstacle).deforms()) return Vector3::Zero();
-  const Vector3 carried = motion.pose(placed, time + dt) * (motion.pose(placed, time).inverse() * position);
-  return (carried - position + set.drift(obstacle, position, time, time + dt)) / dt;
+  const Vector3 moved = motion.pose(placed, time + dt) * (motion.pose(placed, time).inverse() * position);
+  return (moved - position + set.drift(obstacle, position, time, time + dt)) / dt;
 }
 
 std::vector<Contact> Environment::contacts(const VertexPaths& paths) const {
   const ObstacleSet& set = implementation_->set;
   const auto count = static_cast<Index>(paths.after.cols());
   if (set.obstacles().empty()) return {};
-  const double carried = set.carries_at_most(paths.before);
+  const double displacement = set.max_displacement(paths.before);
 
   return collect_from_blocks<Contact>(count, [&](Index begin, Index end, std::vector<Contact>& contacts) {
     const Box3 box = finite_bounds(paths.before, begin, end).merged(finite_bounds(paths.after, begin, end));
@@ -55,7 +55,7 @@ std::vector<Contact> Environment::contacts(const VertexPaths& paths) const {
     const double gap = paths.thickness.segment(begin, end - begin).maxCoeff() + set.max_thickness();
     const double reach = std::max(gap, set.max_clearance(box)) + paths.margin;
     std::vector<Index> near;
-    set.find_near(grown(box, reach + carried), near);
+    set.find_near(grown(box, reach + displacement), near);
     if (near.empty()) return;
     for (Index i = begin; i < end; ++i) {
       const Vector3 before = paths.before.col(i);

@@ -87,11 +87,11 @@ double ObstacleSet::max_clearance(const Box3& box) const {
   return kClearance * std::max({of_obstacles, largest(box.min()), largest(box.max())});
 }
 
-Vector3 ObstacleSet::carried(Index k, const Vector3& from) const {
+Vector3 ObstacleSet::moved_position(Index k, const Vector3& from) const {
   if (rests(k)) return from;
   const Vector3 before = local_before(k, from);
-  const auto carried = shape(k).carried({.x = {before}, .count = 1}, 0.0);
-  return after(k) * (carried ? carried->corners.x[0] : Vector3(before + shape(k).displacement(before)));
+  const auto moved = shape(k).moved_element({.x = {before}, .count = 1}, 0.0);
+  return after(k) * (moved ? moved->corners.x[0] : Vector3(before + shape(k).displacement(before)));
 }
 
 Vector3 ObstacleSet::drift(Index k, const Vector3& position, double t, double t_end) const {
@@ -99,7 +99,7 @@ Vector3 ObstacleSet::drift(Index k, const Vector3& position, double t, double t_
   return after(k).linear() * shape(k).displacement(local(k, position), t, t_end);
 }
 
-double ObstacleSet::carries_at_most(const Points& positions) const {
+double ObstacleSet::max_displacement(const Points& positions) const {
   if (!moves_) return 0.0;
   const Box3 box = finite_bounds(positions, 0, static_cast<Index>(positions.cols()));
   if (box.isEmpty()) return 0.0;

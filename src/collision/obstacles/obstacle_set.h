@@ -59,7 +59,7 @@ class ObstacleSet {
   [[nodiscard]] double max_clearance(const Box3& box) const;
 
   /// Where obstacle k carries a position in this interval: to the last bit where it was, if the obstacle rests.
-  [[nodiscard]] Vector3 carried(Index k, const Vector3& from) const;
+  [[nodiscard]] Vector3 moved_position(Index k, const Vector3& from) const;
   [[nodiscard]] bool rests(Index k) const {
     return before(k).matrix() == after(k).matrix() && shape(k).largest_displacement() == 0.0;
   }
@@ -69,7 +69,7 @@ class ObstacleSet {
   [[nodiscard]] Vector3 drift(Index k, const Vector3& position, double t, double t_end) const;
 
   /// The farthest [m] that any obstacle carries one of the positions in this interval.
-  [[nodiscard]] double carries_at_most(const Points& positions) const;
+  [[nodiscard]] double max_displacement(const Points& positions) const;
 
   [[nodiscard]] bool moves() const { return moves_; }
 

@@ -11,7 +11,7 @@ namespace {
 
 template <class Shape>
 SafeRegion region_against(const Shape& shape, const ElementCorners& element, const SafeRegionRequest& request) {
-  SafeRegion region{.box = asked_box(element, request), .clear = request.reach};
+  SafeRegion region{.box = requested_box(element, request), .clear = request.reach};
   if (!region.box.intersects(bounds(shape))) return region;
   const SeparatingPlane best = separation(shape, element, region.box);
   if (!is_touching(lowest(region.box, best.normal) - best.height, request)) return region;

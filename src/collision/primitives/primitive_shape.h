@@ -37,8 +37,8 @@ class PrimitiveShape final : public ObstacleShape {
     region = sprung::find_region(geometry_, element, request);
   }
 
-  void look_again(const ElementCorners& element, const SafeRegionRequest& request, bool /*fresh*/,
-                  SafeRegion& region) const override {
+  void update_closest_points(const ElementCorners& element, const SafeRegionRequest& request, bool /*fresh*/,
+                             SafeRegion& region) const override {
     const SafeRegion again = sprung::find_region(geometry_, element, request);
     if (again.broken || !std::isfinite(again.distance)) return;
     region.point = again.point;

@@ -21,8 +21,8 @@ Box3 box_around(const ElementCorners& element, double reach) {
   return {box.min() - Vector3::Constant(reach), box.max() + Vector3::Constant(reach)};
 }
 
-Box3 asked_box(const ElementCorners& element, const SafeRegionRequest& request) {
-  const Box3 box = box_around(element, 0.0).merged(request.way);
+Box3 requested_box(const ElementCorners& element, const SafeRegionRequest& request) {
+  const Box3 box = box_around(element, 0.0).merged(request.path);
   return {box.min() - Vector3::Constant(request.reach), box.max() + Vector3::Constant(request.reach)};
 }
 

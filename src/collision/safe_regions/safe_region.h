@@ -15,8 +15,8 @@ using ElementCorners = Simplex;
 
 /// What a region is asked to be. All lengths [m], > 0.
 struct SafeRegionRequest {
-  double reach = 0.0;      ///< the box is that of element and way, this much larger on each side, where the obstacle lets it
-  Box3 way{};              ///< where the corners are about to go; empty if nobody knows
+  double reach = 0.0;      ///< the box is that of element and path, this much larger on each side, where the obstacle lets it
+  Box3 path{};             ///< where the corners are about to go; empty if nobody knows
   double gap = 0.0;        ///< what contact keeps between element and obstacle: planes stand off by at most half of it
   double clearance = 0.0;  ///< planes stand off at least half of this, above rounding, where the element does by all of it
   double exact = 0.0;      ///< nearest points are to be the true ones where they are nearer than this; may be 0
@@ -59,7 +59,7 @@ struct SafeRegion {
 [[nodiscard]] Box3 box_around(const ElementCorners& element, double reach);
 
 /// The largest box that a region may have.
-[[nodiscard]] Box3 asked_box(const ElementCorners& element, const SafeRegionRequest& request);
+[[nodiscard]] Box3 requested_box(const ElementCorners& element, const SafeRegionRequest& request);
 
 /// How far a plane stands off an obstacle that is `gap` [m] away: the rest is free for the element. Half of the gap that contact
 /// keeps is left to contact, and no element is asked to come nearer than it is.

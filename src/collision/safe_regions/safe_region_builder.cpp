@@ -37,7 +37,7 @@ SafeRegionBuilder::SafeRegionBuilder(const ElementCorners& element, const SafeRe
     : element_(element), request_(request), region_(region), element_box_(box_around(element, 0.0)) {
   if (element.count == 3) element_face_ = (element.x[1] - element.x[0]).cross(element.x[2] - element.x[0]);
   region_ = SafeRegion{};
-  region_.box = asked_box(element, request);
+  region_.box = requested_box(element, request);
 }
 
 void SafeRegionBuilder::look_at(Index triangle, const TriangleCorners& corners, const PairPlace& last) {

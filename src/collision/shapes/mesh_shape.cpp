@@ -80,7 +80,7 @@ Vector3 MeshShape::displacement(const Vector3& p, double t, double t_end) const 
   return triangle == kNone ? Vector3(Vector3::Zero()) : deforming_->displacement(triangle, weights, t, t_end);
 }
 
-std::optional<MovedElement> MeshShape::carried(const ElementCorners& element, double lift) const {
+std::optional<MovedElement> MeshShape::moved_element(const ElementCorners& element, double lift) const {
   if (!deforms_ || deforming_->largest_displacement() == 0.0) return {{element}};
   const SafeRegion region = nearest_before(element);
   if (region.broken || region.triangle == kNone) return std::nullopt;
@@ -201,7 +201,8 @@ void MeshShape::weigh_point(const MeshBvh& tree, SafeRegion& region) {
   region.triangle_weights = barycentric(closest_point_on_triangle(region.point, a, b, c), a, b, c);
 }
 
-void MeshShape::look_again(const ElementCorners& element, const SafeRegionRequest& request, bool fresh, SafeRegion& region) const {
+void MeshShape::update_closest_points(const ElementCorners& element, const SafeRegionRequest& request, bool fresh,
+                                      SafeRegion& region) const {
   const MeshBvh& tree = deforms_ ? *tree_before_ : *tree_;
   NearestSpot spot{region.triangle, region.place};
   if (!fresh) spot = sprung::nearest_spot(tree, element, request, spot);
@@ -220,7 +221,7 @@ void MeshShape::look_again(const ElementCorners& element, const SafeRegionReques
   region.point += region.drift;
 }
 
-bool MeshShape::take_along(SafeRegion& region) const {
+bool MeshShape::advance_region(SafeRegion& region) const {
   if (!deforms_ || region.time == deforming_->end()) return true;
   if (region.time != deforming_->begin()) return false;
   region.time = deforming_->end();

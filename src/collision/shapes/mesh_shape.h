@@ -21,7 +21,7 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] double largest_displacement() const override { return deforms_ ? deforming_->largest_displacement() : 0.0; }
   [[nodiscard]] Vector3 displacement(const Vector3& p) const override;
   [[nodiscard]] Vector3 displacement(const Vector3& p, double t, double t_end) const override;
-  [[nodiscard]] std::optional<MovedElement> carried(const ElementCorners& element, double lift) const override;
+  [[nodiscard]] std::optional<MovedElement> moved_element(const ElementCorners& element, double lift) const override;
   [[nodiscard]] std::optional<MovedTriangle> moved_triangle(const Vector3& p) const override;
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;
@@ -29,8 +29,9 @@ class MeshShape final : public ObstacleShape {
                                                           SurfaceMemory& memory) const override;
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override;
   void find_region(const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region) const override;
-  void look_again(const ElementCorners& element, const SafeRegionRequest& request, bool fresh, SafeRegion& region) const override;
-  bool take_along(SafeRegion& region) const override;
+  void update_closest_points(const ElementCorners& element, const SafeRegionRequest& request, bool fresh,
+                             SafeRegion& region) const override;
+  bool advance_region(SafeRegion& region) const override;
   [[nodiscard]] bool touches(const ElementCorners& element, double tolerance) const override;
   [[nodiscard]] bool contains(const Vector3& p) const override;
   [[nodiscard]] Box3 bounds() const override { return bounds_; }

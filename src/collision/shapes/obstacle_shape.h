@@ -57,7 +57,7 @@ class ObstacleShape {
   /// Where a surface that deforms takes an element along from the interval's begin: as high above the triangle that is nearest to
   /// it, in the triangle's own axes, and higher by `lift`, a part of how far the surface goes at most. Nothing where another part
   /// of the surface comes between, or where none is near.
-  [[nodiscard]] virtual std::optional<MovedElement> carried(const ElementCorners& element, double /*lift*/) const {
+  [[nodiscard]] virtual std::optional<MovedElement> moved_element(const ElementCorners& element, double /*lift*/) const {
     return {{element}};
   }
 
@@ -90,12 +90,12 @@ class ObstacleShape {
   /// Finds the nearest points of the region's element again, where it is when the interval begins: of a mesh, while it is `fresh`,
   /// those on the same triangle. The rest of the region stays, as do the nearest points where element and shape touch or a
   /// primitive is not within `reach`.
-  virtual void look_again(const ElementCorners& element, const SafeRegionRequest& request, bool fresh,
-                          SafeRegion& region) const = 0;
+  virtual void update_closest_points(const ElementCorners& element, const SafeRegionRequest& request, bool fresh,
+                                     SafeRegion& region) const = 0;
 
   /// Makes a region that was for the end of the interval before one for the end of this: where the surface deforms, it takes the
   /// region along. False for a region of another time, which cannot be taken along.
-  virtual bool take_along(SafeRegion& /*region*/) const { return true; }
+  virtual bool advance_region(SafeRegion& /*region*/) const { return true; }
 
   /// Whether the element comes within `tolerance` [m] of the surface; an element that is wholly inside need not tell. Crossings of
   /// meshes are judged exactly.

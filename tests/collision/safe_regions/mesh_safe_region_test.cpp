@@ -1,8 +1,8 @@
 #include "collision/safe_regions/mesh_safe_region.h"
 
+#include "collision/safe_region_trials.h"
 #include "collision/safe_regions/safe_region_builder.h"
 #include "collision/sample_meshes.h"
-#include "collision/zone_trials.h"
 
 #include <gtest/gtest.h>
 

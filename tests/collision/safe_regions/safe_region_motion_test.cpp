@@ -1,6 +1,6 @@
+#include "collision/safe_region_trials.h"
 #include "collision/sample_meshes.h"
 #include "collision/shapes/mesh_shape.h"
-#include "collision/zone_trials.h"
 
 #include <gtest/gtest.h>
 
@@ -172,12 +172,12 @@ TEST(ZoneDrift, NearestPointsGoWithTheSurface) {
   shape.find_region(element, {.reach = 0.5, .gap = 0.1, .clearance = 1e-9, .exact = 0.3}, region);
   EXPECT_LT((region.point - Vector3(1.5, 0.0, 0.3)).norm(), 1e-15);
   shape.set_interval(0.25, 0.5);
-  ASSERT_TRUE(shape.take_along(region));
+  ASSERT_TRUE(shape.advance_region(region));
   EXPECT_LT((region.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15);
-  ASSERT_TRUE(shape.take_along(region));
+  ASSERT_TRUE(shape.advance_region(region));
   EXPECT_LT((region.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15) << "once an interval";
   shape.set_interval(0.75, 1.0);
-  EXPECT_FALSE(shape.take_along(region)) << "it was never told where the surface went between";
+  EXPECT_FALSE(shape.advance_region(region)) << "it was never told where the surface went between";
 }
 
 }  // namespace

@@ -167,7 +167,8 @@ TEST(MeshShape, WhatTouchesWhereItLooksAgainStaysWithWhatItHad) {
   shape->find_region({.x = {Vector3(0.2, 0.5, 0.3)}, .count = 1}, {.reach = 1.0, .gap = 0.1, .exact = 1.0}, region);
   const Vector3 point = region.point;
   ASSERT_EQ(region.triangle, 0);
-  shape->look_again({.x = {Vector3(2.2, 0.0, 0.3)}, .count = 1}, {.reach = 1.0, .gap = 0.1, .exact = 1.0}, false, region);
+  shape->update_closest_points({.x = {Vector3(2.2, 0.0, 0.3)}, .count = 1}, {.reach = 1.0, .gap = 0.1, .exact = 1.0}, false,
+                               region);
   EXPECT_EQ(region.triangle, 0);
   EXPECT_EQ(region.point, point);
 }

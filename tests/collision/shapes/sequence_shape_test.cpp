@@ -291,16 +291,16 @@ TEST(SequenceShape, CarriesElementsAtTheirHeightAndAsMuchHigherAsAsked) {
     ElementCorners element{.count = 1 + trial % 3};
     for (Vector3& corner : element.x) corner = random.in_box({Vector3(-1.0, 0.001, -1.0), Vector3(1.0, 0.5, 1.0)});
     for (const double lift : {0.0, 0.125}) {
-      const auto carried = shape.carried(element, lift);
-      ASSERT_TRUE(carried);
+      const auto moved = shape.moved_element(element, lift);
+      ASSERT_TRUE(moved);
       double lowest = 1.0;
       for (std::size_t i = 0; i < static_cast<std::size_t>(element.count); ++i) {
         const double raised = lift * shape.largest_displacement();
         // Coordinates up to 10 m carry roundings of 2e-15 m, the triangle's axes some more.
-        EXPECT_NEAR(normal.dot(carried->corners.x[i] - Vector3(0.0, 2.0, 0.0)), element.x[i].y() + raised, 1e-13);
+        EXPECT_NEAR(normal.dot(moved->corners.x[i] - Vector3(0.0, 2.0, 0.0)), element.x[i].y() + raised, 1e-13);
         lowest = std::min(lowest, element.x[i].y());
       }
-      EXPECT_NEAR(carried->distance, lowest, 1e-15);
+      EXPECT_NEAR(moved->distance, lowest, 1e-15);
     }
   }
 }
