@@ -1,4 +1,4 @@
-// Elements near meshes, moved about within their regions, and whether they cross: judged by exact signs over all triangles.
+// Random elements near meshes, random displacements within their safe regions, and exact crossing tests over all triangles.
 #pragma once
 
 #include "collision/mesh_bvh/segment_triangle_crossing.h"
@@ -14,11 +14,11 @@ inline Box3 box_of(const ElementCorners& element) {
   return box;
 }
 
-inline bool meets(const Vector3& a, const Vector3& b, const TriangleCorners& t) {
+inline bool edge_crosses(const Vector3& a, const Vector3& b, const TriangleCorners& t) {
   return crossing_fraction(a, b, t[0], t[1], t[2], CrossingSides::both).has_value();
 }
 
-/// Whether an edge of the one crosses the other, by exact signs, over all triangles.
+/// Whether an edge of element or mesh crosses the other. Tests all triangles with exact predicates.
 inline bool crosses(const ElementCorners& element, const TriangleMesh& mesh) {
   const Box3 box = box_of(element);
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -30,19 +30,20 @@ inline bool crosses(const ElementCorners& element, const TriangleMesh& mesh) {
     }
     if (!around.intersects(box)) continue;
     for (int i = 0; i + 1 < element.count || (element.count == 3 && i < 3); ++i) {
-      if (meets(element.x[static_cast<std::size_t>(i)], element.x[static_cast<std::size_t>((i + 1) % element.count)], corners)) {
+      if (edge_crosses(element.x[static_cast<std::size_t>(i)], element.x[static_cast<std::size_t>((i + 1) % element.count)],
+                       corners)) {
         return true;
       }
     }
     for (std::size_t i = 0; element.count == 3 && i < 3; ++i) {
-      if (meets(corners[i], corners[(i + 1) % 3], element.x)) return true;
+      if (edge_crosses(corners[i], corners[(i + 1) % 3], element.x)) return true;
     }
   }
   return false;
 }
 
-inline bool holds(const SafeRegion& region, const Vector3& corner, const Vector3& p) {
-  // Rounding of coordinates up to 2: what the region's clearance is far above.
+inline bool contains(const SafeRegion& region, const Vector3& corner, const Vector3& p) {
+  // Rounding of coordinates up to 2 m, far below the clearance of the region.
   constexpr double kRounding = 1e-15;
   if ((p - corner).norm() > region.free_radius) return false;
   if (!Box3(region.box.min().array() - kRounding, region.box.max().array() + kRounding).contains(p)) return false;
@@ -62,11 +63,11 @@ inline ElementCorners random_element(const TriangleMesh& mesh, Random& random, i
   return element;
 }
 
-/// An extreme place for a corner that the region was made around: far out, then brought back to where the region ends.
+/// A displaced corner close to the border of its region: a random displacement, shortened until it ends inside.
 inline Vector3 moved_within(const SafeRegion& region, const Vector3& corner, double reach, Random& random) {
   Vector3 step = random.between(0.5, 3.0) * reach * random.direction();
   for (int halving = 0; halving < 60; ++halving, step *= 0.8) {
-    if (holds(region, corner, corner + step)) return corner + step;
+    if (contains(region, corner, corner + step)) return corner + step;
   }
   return corner;
 }

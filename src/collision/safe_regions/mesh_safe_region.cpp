@@ -14,14 +14,15 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Sums of three products of single precision are right to this part of the largest coordinate.
+// Rounding error of a sum of three products in single precision, as a fraction of the largest coordinate.
 constexpr float kPlaneRounding = 0x1p-20F;
 
-// Triangles are looked for this many times the reach away: an element that has none so near keeps its region for longer.
-constexpr double kSearch = 16.0;
+// The search for triangles extends to this multiple of the reach. A region without a triangle that near stays valid for longer.
+constexpr double kSearchFactor = 16.0;
 
-// What is farther than this part of the squared distance that is clear is not gone into to know how far.
-constexpr float kClearEnough = 0.5F;
+// The nearest-triangle search does not visit a node beyond this fraction of the squared clear distance. Its bound lowers the clear
+// distance instead, which costs less than the exact distance.
+constexpr float kPruneFraction = 0.5F;
 
 Box3 grown(const Box3& box, double reach) { return {box.min().array() - reach, box.max().array() + reach}; }
 
@@ -31,14 +32,14 @@ double box_distance(const TriangleCorners& corners, const Box3& box) {
   return of_triangle.exteriorDistance(box);
 }
 
-/// What is not to be visited any more, in single precision.
+/// Bounds beyond which a traversal skips nodes, in single precision.
 struct Search {
   FloatBox element{};
   FloatBox box{};
   float normal[SafeRegion::kMostPlanes][3]{};
   float limit[SafeRegion::kMostPlanes]{};
   int planes = 0;
-  float rounding = 0.0F;  ///< of heights above planes
+  float rounding = 0.0F;  ///< of heights above planes [m]
 };
 
 Search search_around(const MeshBvh& tree, const Box3& element, const Box3& box) {
@@ -58,7 +59,7 @@ void update(const SafeRegionBuilder& region, Search& search) {
   }
 }
 
-/// Squared distances of a node's children from the element; infinite for those outside the box or behind a plane.
+/// Squared distances [m^2] of a node's children from the element. Infinite for a child outside the box or behind a plane.
 [[gnu::always_inline]] inline void bound_children(const MeshBvh::Node& node, const Search& search, Float8& bounds) {
   Float8 sum = {};
   for (int axis = 0; axis < 3; ++axis) {
@@ -81,11 +82,11 @@ void update(const SafeRegionBuilder& region, Search& search) {
   bounds = sum;
 }
 
-/// Visits the triangles that may be nearer than the nearest so far, and than what is clear.
-SPRUNG_KERNEL void walk_to_nearest(const MeshBvh& tree, double near, const SafeRegion& region, SafeRegionBuilder& builder) {
-  Search search = search_around(tree, builder.element_box(), grown(builder.element_box(), builder.clear()));
+/// Visits the triangles that may be nearer than both the nearest one so far and the clear distance.
+SPRUNG_KERNEL void visit_nearest(const MeshBvh& tree, double near, const SafeRegion& region, SafeRegionBuilder& builder) {
+  Search search = search_around(tree, builder.element_box(), grown(builder.element_box(), builder.clear_distance()));
   const auto limit = [&] {
-    const double nearest = std::min(region.distance, builder.clear());
+    const double nearest = std::min(region.distance, builder.clear_distance());
     return static_cast<float>(std::min(nearest * nearest, 1e38)) * (1.0F + 0x1p-20F);
   };
   const auto squared_near = static_cast<float>(near * near) * (1.0F + 0x1p-20F);
@@ -94,8 +95,8 @@ SPRUNG_KERNEL void walk_to_nearest(const MeshBvh& tree, double near, const SafeR
   while (!stack.empty()) {
     const TraversalEntry entry = stack.pop();
     if (entry.bound > limit()) continue;
-    if (entry.bound > squared_near && entry.bound > kClearEnough * limit()) {
-      builder.keep_clear((1.0 - 0x1p-20) * std::sqrt(static_cast<double>(entry.bound)));
+    if (entry.bound > squared_near && entry.bound > kPruneFraction * limit()) {
+      builder.limit_clear_distance((1.0 - 0x1p-20) * std::sqrt(static_cast<double>(entry.bound)));
       continue;
     }
     if (region.triangle != kNone) {
@@ -103,19 +104,19 @@ SPRUNG_KERNEL void walk_to_nearest(const MeshBvh& tree, double near, const SafeR
       search.planes = 1;
     }
     if (entry.child < 0) {
-      const TrianglePacket& block = tree.block(~entry.child);
+      const TrianglePacket& packet = tree.block(~entry.child);
       Double4 distances;
-      squared_box_distances(block, builder.element_box(), distances);
-      unsigned lanes = block.lanes();
-      if (region.triangle != kNone) lanes &= triangles_above(block, region.normal, builder.nearest_limit());
+      squared_box_distances(packet, builder.element_box(), distances);
+      unsigned lanes = packet.lanes();
+      if (region.triangle != kNone) lanes &= triangles_above(packet, region.normal, builder.nearest_limit());
       while (lanes != 0) {
         const int lane = pop_smallest_lane(distances, lanes);
         if (distances[lane] > limit()) break;
         if (distances[lane] >= near * near) {
-          builder.keep_clear(std::sqrt(distances[lane]));
+          builder.limit_clear_distance(std::sqrt(distances[lane]));
           break;
         }
-        builder.look_at(block.triangle[lane], block.corners(lane));
+        builder.consider(packet.triangle[lane], packet.corners(lane));
       }
       continue;
     }
@@ -125,8 +126,8 @@ SPRUNG_KERNEL void walk_to_nearest(const MeshBvh& tree, double near, const SafeR
   }
 }
 
-/// Visits the triangles that may come within the region.
-SPRUNG_KERNEL void carve(const MeshBvh& tree, Index nearest, SafeRegionBuilder& region) {
+/// Excludes all triangles that intersect the region, except `nearest`, which is excluded already.
+SPRUNG_KERNEL void exclude_triangles(const MeshBvh& tree, Index nearest, SafeRegionBuilder& region) {
   Search search = search_around(tree, region.element_box(), region.box());
   update(region, search);
   TraversalStack stack(tree.stack_size());
@@ -134,15 +135,15 @@ SPRUNG_KERNEL void carve(const MeshBvh& tree, Index nearest, SafeRegionBuilder& 
   while (!stack.empty()) {
     const TraversalEntry entry = stack.pop();
     if (entry.child < 0) {
-      const TrianglePacket& block = tree.block(~entry.child);
-      unsigned lanes = triangles_in_box(block, region.box());
-      for (int k = 0; k < region.plane_count(); ++k) lanes &= triangles_above(block, region.normal(k), region.limit(k));
+      const TrianglePacket& packet = tree.block(~entry.child);
+      unsigned lanes = triangles_in_box(packet, region.box());
+      for (int k = 0; k < region.plane_count(); ++k) lanes &= triangles_above(packet, region.normal(k), region.limit(k));
       if (lanes == 0) continue;
       Double4 distances;
-      squared_box_distances(block, region.element_box(), distances);
+      squared_box_distances(packet, region.element_box(), distances);
       while (lanes != 0) {
         const int lane = pop_smallest_lane(distances, lanes);
-        if (block.triangle[lane] != nearest) region.meet(block.corners(lane));
+        if (packet.triangle[lane] != nearest) region.exclude(packet.corners(lane));
       }
       update(region, search);
       continue;
@@ -153,38 +154,39 @@ SPRUNG_KERNEL void carve(const MeshBvh& tree, Index nearest, SafeRegionBuilder& 
   }
 }
 
-/// Finds the nearest triangle that is nearer than `near`, begun with the last.
-void find_nearest(const MeshBvh& tree, const NearestSpot& last, double near, const SafeRegion& region, SafeRegionBuilder& builder) {
+/// Finds the nearest triangle within `near` [m]. The search starts with the triangle of the previous search.
+void find_nearest(const MeshBvh& tree, const ClosestFeatures& last, double near, const SafeRegion& region,
+                  SafeRegionBuilder& builder) {
   if (last.triangle != kNone && box_distance(tree.corners(last.triangle), builder.element_box()) < near) {
-    builder.look_at(last.triangle, tree.corners(last.triangle), last.place);
+    builder.consider(last.triangle, tree.corners(last.triangle), last.features);
   }
-  walk_to_nearest(tree, near, region, builder);
+  visit_nearest(tree, near, region, builder);
 }
 
 }  // namespace
 
-// The nearest triangle's plane comes first: it rules out most of the others, and lies as the surface does.
+// The plane of the nearest triangle comes first. It is nearly parallel to the surface, so it excludes most other triangles too.
 void find_region(const MeshBvh& tree, const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region) {
-  const NearestSpot last{region.triangle, region.place};
+  const ClosestFeatures last{region.triangle, region.features};
   SafeRegionBuilder builder(element, request, region);
   const double near = std::max(request.exact, std::sqrt(3.0) * request.reach);
-  builder.keep_clear(std::max(near, kSearch * request.reach));
+  builder.limit_clear_distance(std::max(near, kSearchFactor * request.reach));
   find_nearest(tree, last, near, region, builder);
-  if (!builder.grow_clear()) {
+  if (!builder.grow_to_clear_distance()) {
     const Index nearest = region.triangle;
-    if (nearest != kNone) builder.meet(tree.corners(nearest));
-    carve(tree, nearest, builder);
+    if (nearest != kNone) builder.exclude(tree.corners(nearest));
+    exclude_triangles(tree, nearest, builder);
   }
   builder.finish();
 }
 
-NearestSpot nearest_spot(const MeshBvh& tree, const ElementCorners& element, const SafeRegionRequest& request,
-                         const NearestSpot& last) {
+ClosestFeatures closest_features(const MeshBvh& tree, const ElementCorners& element, const SafeRegionRequest& request,
+                                 const ClosestFeatures& last) {
   SafeRegion found;
   SafeRegionBuilder builder(element, request, found);
-  builder.keep_clear(request.exact);
+  builder.limit_clear_distance(request.exact);
   find_nearest(tree, last, request.exact, found, builder);
-  return found.triangle == kNone ? last : NearestSpot{found.triangle, found.place};
+  return found.triangle == kNone ? last : ClosestFeatures{found.triangle, found.features};
 }
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// Free space around an element of the network between a mesh's triangles.
+// Safe region of an element before a triangle mesh.
 #pragma once
 
 #include "collision/mesh_bvh/mesh_bvh.h"
@@ -6,19 +6,20 @@
 
 namespace sprung {
 
-/// Makes the region of an element in the mesh's frame: the nearest triangle, and each one that comes within the box and is not
-/// behind a plane already, gives a plane between, a smaller box, or, where there are many, a radius. The search for the nearest
-/// begins with the region's triangle, left from the element's last region.
+/// Builds the safe region of an element, in the frame of the mesh. Each triangle that intersects the box and is in front of all
+/// planes is excluded by a further plane, by a smaller box, or, once no plane is left, by a smaller radius. The nearest triangle
+/// comes first. The search starts with `region.triangle`, the result of the element's previous search.
 void find_region(const MeshBvh& tree, const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region);
 
-/// Where the nearest points of an element and a mesh lie.
-struct NearestSpot {
+/// The triangle nearest to an element, and the features that contain the closest points.
+struct ClosestFeatures {
   Index triangle = kNone;
-  PairPlace place{};  ///< on element and triangle
+  PairPlace features{};  ///< of element and triangle
 };
 
-/// That of an element which is nearer than `exact`, else the last, with which the search begins.
-[[nodiscard]] NearestSpot nearest_spot(const MeshBvh& tree, const ElementCorners& element, const SafeRegionRequest& request,
-                                       const NearestSpot& last);
+/// Finds the closest triangle within `request.exact` [m]. The search starts with `last`; returns `last` if no triangle is that
+/// near.
+[[nodiscard]] ClosestFeatures closest_features(const MeshBvh& tree, const ElementCorners& element, const SafeRegionRequest& request,
+                                               const ClosestFeatures& last);
 
 }  // namespace sprung

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kStandOff = 0.3;
 
-// This part of the clearance is 2^-42 of the coordinates.
+// Fraction of the clearance. The clearance is 2^-30 of the coordinates, so this is 2^-42 of them.
 constexpr double kTouching = 0x1p-12;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Convex free space around an element of the network, in an obstacle's own frame: while each corner of the element stays inside,
-// nothing of the element crosses the obstacle, whatever the corners do, because what is convex holds their hull.
+// Safe region: a convex set around an element that excludes an obstacle, in the obstacle's own frame. While all corners of the
+// element stay inside, so does their convex hull, and the element cannot cross the obstacle.
 #pragma once
 
 #include "collision/core/half_space.h"
@@ -13,46 +13,46 @@ namespace sprung {
 /// The corners of an element in the obstacle's frame.
 using ElementCorners = Simplex;
 
-/// What a region is asked to be. All lengths [m], > 0.
+/// Parameters of a safe region. All lengths [m], > 0.
 struct SafeRegionRequest {
-  double reach = 0.0;      ///< the box is that of element and path, this much larger on each side, where the obstacle lets it
-  Box3 path{};             ///< where the corners are about to go; empty if nobody knows
-  double gap = 0.0;        ///< what contact keeps between element and obstacle: planes stand off by at most half of it
-  double clearance = 0.0;  ///< planes stand off at least half of this, above rounding, where the element does by all of it
-  double exact = 0.0;      ///< nearest points are to be the true ones where they are nearer than this; may be 0
-  bool at_end = false;     ///< the element is where it is at the end of the obstacle's interval; else at its begin
+  double reach = 0.0;      ///< the box exceeds element and path by this on each side, unless the obstacle is nearer
+  Box3 path{};             ///< bounds the targets of the corners; empty if unknown
+  double gap = 0.0;        ///< contact gap of element and obstacle; a plane keeps at most half of it
+  double clearance = 0.0;  ///< minimum distance of a plane from the obstacle, if the element is that far
+  double exact = 0.0;      ///< below this distance the closest points are exact; may be 0
+  bool at_end = false;     ///< the corners are those at the end of the obstacle's interval; else at its begin
 };
 
-/// What the box and the half-spaces have in common holds the element and, at the end of the interval, nothing of the obstacle. A
-/// surface that deforms from the interval's begin, where the element is, to its end takes the region along.
+/// The intersection of the box and the half-spaces. It contains the element and excludes the obstacle at the end of the interval.
+/// If the corners are those at the begin of the interval and the surface deforms, the region is moved with the surface.
 struct SafeRegion {
   static constexpr int kMostPlanes = 4;
 
   Box3 box{};
   std::array<HalfSpace, kMostPlanes> planes{};
   int plane_count = 0;
-  double free_radius = std::numeric_limits<double>::infinity();  ///< besides, no corner may move farther than this [m]
-  bool broken = false;  ///< element and obstacle touch or cross: there is no such region, nothing is promised
+  double free_radius = std::numeric_limits<double>::infinity();  ///< no corner may move farther than this [m]
+  bool broken = false;  ///< element and obstacle touch or cross, so the region excludes nothing
 
-  double clear = 0.0;  ///< nothing of the obstacle was nearer to the element than this [m]
+  double clear = 0.0;  ///< lower bound of the distance between obstacle and element [m]
 
-  /// The nearest points of element and obstacle (near enough to them, where farther apart than `exact`), if the obstacle comes that
-  /// near or may come within `reach` of an element that stays; else distance is infinite.
+  /// The closest points of element and obstacle; approximate if they are farther apart than `exact`. The distance is infinite if
+  /// the obstacle is neither within `exact` of the element nor able to come within `reach` of it.
   double distance = std::numeric_limits<double>::infinity();  ///< [m]
   Vector3 point = Vector3::Zero();                            ///< on the obstacle
-  Vector3 normal = Vector3::Zero();                           ///< from it to the element, unit length
+  Vector3 normal = Vector3::Zero();                           ///< from the obstacle to the element, unit length
   Vector3 weights = Vector3::Zero();                          ///< of the element's corners; their sum is 1
-  Index triangle = kNone;                                     ///< of the obstacle; where the next search may begin
-  PairPlace place{};                                          ///< of the points, on element and triangle; for that search too
+  Index triangle = kNone;                                     ///< of the obstacle; the next search starts here
+  PairPlace features{};                                       ///< that contain the closest points; the next search starts here
 
-  // Before a surface that deforms:
-  double time = std::numeric_limits<double>::quiet_NaN();  ///< end of the interval that the region is for [s]
-  Vector3 drift = Vector3::Zero();                         ///< how far the surface at `point` goes in that interval [m]
-  double loss = 0.0;                                       ///< what the region lost on each side since it was made [m]
+  // Only for a surface that deforms:
+  double time = std::numeric_limits<double>::quiet_NaN();  ///< end of the interval that the region is valid for [s]
+  Vector3 drift = Vector3::Zero();                         ///< displacement of the surface at `point` in that interval [m]
+  double loss = 0.0;                                       ///< by how much each side has shrunk since the region was built [m]
   Vector3 triangle_weights = Vector3::Zero();              ///< of the triangle's corners at `point`; their sum is 1
 };
 
-/// The box, smaller by `margin` [m] >= 0 on each side; nothing is in it when the sides pass each other.
+/// The box, smaller by `margin` [m] >= 0 on each side; empty if opposite sides pass each other.
 [[nodiscard]] Box3 shrunk(const Box3& box, double margin);
 
 /// The box around the element, `reach` [m] larger on each side.
@@ -61,11 +61,11 @@ struct SafeRegion {
 /// The largest box that a region may have.
 [[nodiscard]] Box3 requested_box(const ElementCorners& element, const SafeRegionRequest& request);
 
-/// How far a plane stands off an obstacle that is `gap` [m] away: the rest is free for the element. Half of the gap that contact
-/// keeps is left to contact, and no element is asked to come nearer than it is.
+/// Distance [m] that a plane keeps from an obstacle at distance `gap` [m]. The element may use the rest of the gap. The result is
+/// at most half of the contact gap, apart from the clearance, and never more than `gap`.
 [[nodiscard]] double stand_off(double gap, const SafeRegionRequest& request);
 
-/// Whether the gap [m] is not told from touching, by rounding.
+/// Whether the gap [m] is within rounding of 0.
 [[nodiscard]] bool is_touching(double gap, const SafeRegionRequest& request);
 
 }  // namespace sprung

@@ -9,27 +9,27 @@ namespace sprung {
 
 namespace {
 
-// Edges are not looked at when corners and faces give a plane that separates by all but this part of the distance.
+// Edge pairs are skipped if a corner-face pair yields a plane that separates by all of the distance except this fraction.
 constexpr double kPairSlack = 0.005;
 
-// A plane that separates by this part of the nearest triangle's distance is not improved.
-constexpr double kGoodPart = 0.9;
+// A plane that separates by this fraction of the nearest triangle's distance is good enough.
+constexpr double kGoodFraction = 0.9;
 
-// A triangle that rises no higher than this part of the way from another one to its plane needs none of its own: in a valley of
-// small triangles there would be no end of them.
+// A triangle needs no plane of its own if it rises at most this fraction of the distance between another triangle and its plane.
+// Without this rule a valley of small triangles would need any number of planes.
 constexpr double kBelowPlane = 0.5;
 
-// The box ends this far before a triangle, as a part of what lies between, so that rounding does not bring them together.
+// The box ends before a triangle by this fraction of the distance, which exceeds rounding.
 constexpr double kBoxMargin = 0.02;
 
-// Boxes are cut down to this part of the reach; what is nearer than that needs a plane.
+// The box is cut down to this fraction of the reach at most. Nearer triangles need a plane.
 constexpr double kSmallestReach = 0.25;
 
-// Corners that move less than this part of the distance cannot bring the element to the triangle.
-constexpr double kFreePart = 0.9;
+// A triangle without a plane limits the displacement of the corners to this fraction of its distance.
+constexpr double kFreeFraction = 0.9;
 
-// And less than this part where the distance itself is hardly more than rounding.
-constexpr double kStillPart = 0.5;
+// The same fraction where the distance is within rounding of 0.
+constexpr double kTouchingFreeFraction = 0.5;
 
 }  // namespace
 
@@ -40,7 +40,7 @@ SafeRegionBuilder::SafeRegionBuilder(const ElementCorners& element, const SafeRe
   region_.box = requested_box(element, request);
 }
 
-void SafeRegionBuilder::look_at(Index triangle, const TriangleCorners& corners, const PairPlace& last) {
+void SafeRegionBuilder::consider(Index triangle, const TriangleCorners& corners, const PairPlace& last) {
   if (region_.triangle != kNone && !may_be_nearer(corners)) return;
   const ClosestPair pair = closest_pair(element_, corners, kPairSlack, request_.exact, last);
   const double distance = std::sqrt(pair.squared_distance);
@@ -50,11 +50,11 @@ void SafeRegionBuilder::look_at(Index triangle, const TriangleCorners& corners, 
   region_.normal = distance > 0.0 ? Vector3((pair.on_simplex - pair.on_triangle) / distance) : Vector3::Zero();
   region_.weights = pair.weights;
   region_.triangle = triangle;
-  region_.place = pair.place;
+  region_.features = pair.place;
   nearest_lowest_ = lowest(region_.normal);
 }
 
-// The planes of the two faces tell many apart that the pair so far does not.
+// The planes of the two faces reject many triangles that the plane of the closest points does not.
 bool SafeRegionBuilder::may_be_nearer(const TriangleCorners& corners) const {
   if (highest_along(region_.normal, corners) <= nearest_limit()) return false;
   const Vector3 face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
@@ -62,7 +62,7 @@ bool SafeRegionBuilder::may_be_nearer(const TriangleCorners& corners) const {
   return element_.count < 3 || !is_beyond(element_face_, element_.x[0], corners);
 }
 
-/// Whether all points are on one side of a plane, at the nearest distance or farther.
+/// Whether all points are on one side of a plane, at least at the nearest distance.
 bool SafeRegionBuilder::is_beyond(const Vector3& normal, const Vector3& origin, const std::array<Vector3, 3>& points) const {
   const double first = normal.dot(points[0] - origin);
   const double second = normal.dot(points[1] - origin);
@@ -71,13 +71,13 @@ bool SafeRegionBuilder::is_beyond(const Vector3& normal, const Vector3& origin, 
   return height > 0.0 && height * height >= region_.distance * region_.distance * normal.squaredNorm();
 }
 
-void SafeRegionBuilder::meet(const TriangleCorners& corners) {
-  if (ruled_out(corners)) return;
+void SafeRegionBuilder::exclude(const TriangleCorners& corners) {
+  if (is_excluded(corners)) return;
   if (region_.plane_count == SafeRegion::kMostPlanes && shrink_past(corners)) return;
   separate(corners);
 }
 
-bool SafeRegionBuilder::ruled_out(const TriangleCorners& corners) const {
+bool SafeRegionBuilder::is_excluded(const TriangleCorners& corners) const {
   const Vector3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
   const Vector3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
   if ((low.array() > region_.box.max().array()).any() || (high.array() < region_.box.min().array()).any()) return true;
@@ -108,13 +108,13 @@ void SafeRegionBuilder::separate(const TriangleCorners& corners) {
   const ClosestPair pair = closest_pair(element_, corners, kPairSlack);
   const TriangleSeparatingPlane found = separation(element_, corners, pair, kPairSlack);
   if (is_touching(found.gap, request_)) {
-    keep_still(corners, std::sqrt(pair.squared_distance));
+    limit_motion(corners, std::sqrt(pair.squared_distance));
   } else {
-    keep_above(corners, found);
+    add_plane(corners, found);
   }
 }
 
-// The triangle's own plane is as good as any where it tells them apart by hardly less than the nearest triangle is away.
+// The plane of the triangle itself is good enough if it separates by nearly the distance of the nearest triangle.
 bool SafeRegionBuilder::separate_by_face(const TriangleCorners& corners) {
   const Vector3 face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double length = face.norm();
@@ -122,18 +122,18 @@ bool SafeRegionBuilder::separate_by_face(const TriangleCorners& corners) {
   for (const double side : {1.0 / length, -1.0 / length}) {
     const Vector3 normal = side * face;
     const double gap = lowest(normal) - highest_along(normal, corners);
-    if (!(gap >= kGoodPart * region_.distance) || is_touching(gap, request_)) continue;
-    keep_above(corners, {normal, gap});
+    if (!(gap >= kGoodFraction * region_.distance) || is_touching(gap, request_)) continue;
+    add_plane(corners, {normal, gap});
     return true;
   }
   return false;
 }
 
-void SafeRegionBuilder::keep_above(const TriangleCorners& corners, const TriangleSeparatingPlane& found) {
+void SafeRegionBuilder::add_plane(const TriangleCorners& corners, const TriangleSeparatingPlane& found) {
   const auto& [normal, gap] = found;
   const double highest = highest_along(normal, corners);
   if (region_.plane_count == SafeRegion::kMostPlanes) {
-    region_.free_radius = std::min(region_.free_radius, kFreePart * gap);
+    region_.free_radius = std::min(region_.free_radius, kFreeFraction * gap);
     return;
   }
   const double height = stand_off(gap, request_);
@@ -142,18 +142,18 @@ void SafeRegionBuilder::keep_above(const TriangleCorners& corners, const Triangl
   limits_[plane] = highest + kBelowPlane * height;
 }
 
-// Rounding may leave no plane between what still does not cross: corners that move less than the distance cannot change that.
-void SafeRegionBuilder::keep_still(const TriangleCorners& corners, double distance) {
+// Because of rounding, no plane may separate two simplices that nearly touch. A small enough displacement still keeps them apart.
+void SafeRegionBuilder::limit_motion(const TriangleCorners& corners, double distance) {
   if (sprung::meets(element_, corners)) {
     region_.broken = true;
   } else {
-    region_.free_radius = std::min(region_.free_radius, kStillPart * distance);
+    region_.free_radius = std::min(region_.free_radius, kTouchingFreeFraction * distance);
   }
 }
 
-bool SafeRegionBuilder::grow_clear() {
+bool SafeRegionBuilder::grow_to_clear_distance() {
   if (region_.triangle != kNone) return false;
-  const Vector3 side = Vector3::Constant((1.0 - kBoxMargin) / std::sqrt(3.0) * clear_);
+  const Vector3 side = Vector3::Constant((1.0 - kBoxMargin) / std::sqrt(3.0) * clear_distance_);
   const Box3 box(element_box_.min() - side, element_box_.max() + side);
   if (!box.contains(region_.box)) return false;
   region_.box = box;
@@ -166,7 +166,7 @@ void SafeRegionBuilder::finish() {
     region_.clear = 0.0;
     return;
   }
-  region_.clear = std::min((1.0 - kPairSlack) * region_.distance, clear_);
+  region_.clear = std::min((1.0 - kPairSlack) * region_.distance, clear_distance_);
 }
 
 double SafeRegionBuilder::lowest(const Vector3& normal) const { return lowest_along(normal, element_); }

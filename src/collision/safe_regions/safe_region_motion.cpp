@@ -14,21 +14,21 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-SPRUNG_KERNEL void mark_children(const MeshBvh::Node& node, const FloatBox& box, Float8& bounds) {
+SPRUNG_KERNEL void bound_children(const MeshBvh::Node& node, const FloatBox& box, Float8& bounds) {
   bounds = Float8{};
   for (int axis = 0; axis < 3; ++axis) {
     bounds = ((node.min[axis] > box.max[axis]) | (node.max[axis] < box.min[axis])) ? Float8{} + kInfinity : bounds;
   }
 }
 
-/// The square of the farthest that a corner of the block's triangles goes otherwise than by `drift`.
-SPRUNG_KERNEL double farthest_otherwise(const TrianglePacket& before, const TrianglePacket& after, const Vector3& drift) {
+/// The largest squared difference [m^2] between `drift` and the displacement of a corner in the packet.
+SPRUNG_KERNEL double max_deviation(const TrianglePacket& before, const TrianglePacket& after, const Vector3& drift) {
   Double4 farthest{};
   for (int k = 0; k < 3; ++k) {
     Double4 squared{};
     for (int axis = 0; axis < 3; ++axis) {
-      const Double4 otherwise = after.corner[k][axis] - before.corner[k][axis] - drift[axis];
-      squared += otherwise * otherwise;
+      const Double4 deviation = after.corner[k][axis] - before.corner[k][axis] - drift[axis];
+      squared += deviation * deviation;
     }
     farthest = squared > farthest ? squared : farthest;
   }
@@ -37,8 +37,8 @@ SPRUNG_KERNEL double farthest_otherwise(const TrianglePacket& before, const Tria
   return result;
 }
 
-/// The farthest that a corner of any triangle near the box goes otherwise than by `drift` [m].
-double farthest_otherwise(const MeshBvh& before, const MeshBvh& after, const Box3& box, const Vector3& drift) {
+/// The largest difference [m] between `drift` and the displacement of a corner of a triangle near the box.
+double max_deviation(const MeshBvh& before, const MeshBvh& after, const Box3& box, const Vector3& drift) {
   const FloatBox near = float_box(box);
   double farthest2 = 0.0;
   TraversalStack stack(after.stack_size());
@@ -46,11 +46,11 @@ double farthest_otherwise(const MeshBvh& before, const MeshBvh& after, const Box
   while (!stack.empty()) {
     const std::int32_t child = stack.pop().child;
     if (child < 0) {
-      farthest2 = std::max(farthest2, farthest_otherwise(before.block(~child), after.block(~child), drift));
+      farthest2 = std::max(farthest2, max_deviation(before.block(~child), after.block(~child), drift));
       continue;
     }
     Float8 bounds;
-    mark_children(after.node(child), near, bounds);
+    bound_children(after.node(child), near, bounds);
     stack.push_within(bounds, after.node(child).child, 0.0F);
   }
   return std::sqrt(farthest2);
@@ -60,17 +60,17 @@ double farthest_otherwise(const MeshBvh& before, const MeshBvh& after, const Box
 
 void shift(SafeRegion& region, const MeshBvh& before, const MeshBvh& after) {
   const Vector3& drift = region.drift;
-  const Box3 way = region.box.merged(region.box.translated(drift));
-  const double otherwise = farthest_otherwise(before, after, way, drift);
-  region.box = shrunk(region.box.translated(drift), otherwise);
+  const Box3 swept = region.box.merged(region.box.translated(drift));
+  const double deviation = max_deviation(before, after, swept, drift);
+  region.box = shrunk(region.box.translated(drift), deviation);
   for (int k = 0; k < region.plane_count; ++k) {
     HalfSpace& plane = region.planes[static_cast<std::size_t>(k)];
-    plane.offset += plane.normal.dot(drift) + otherwise;
+    plane.offset += plane.normal.dot(drift) + deviation;
   }
-  region.free_radius -= otherwise;
-  region.clear = std::max(0.0, region.clear - otherwise);
-  region.loss += otherwise;
-  region.distance = std::max(0.0, region.distance - otherwise);
+  region.free_radius -= deviation;
+  region.clear = std::max(0.0, region.clear - deviation);
+  region.loss += deviation;
+  region.distance = std::max(0.0, region.distance - deviation);
   region.point += drift;
 }
 

@@ -1,4 +1,4 @@
-// Zones before a mesh that deforms.
+// Moves safe regions with a mesh that deforms.
 #pragma once
 
 #include "collision/mesh_bvh/mesh_bvh.h"
@@ -6,10 +6,11 @@
 
 namespace sprung {
 
-/// Shifts a region between the triangles of `before` to where they are in `after`: by `region.drift`, which is how far the surface
-/// went where it was nearest, and smaller by how much otherwise any triangle went that comes near the region on the way. While both
-/// go on straight, all corners that begin in the one region and end in the other stay clear of all triangles. Requires trees of the
-/// same triangles, whose boxes hold both positions.
+/// Moves a region, built for the triangles of `before`, with the surface to `after`. The region is translated by `region.drift`,
+/// the displacement of the surface at the closest point. It then shrinks by the largest difference between `drift` and the
+/// displacement of a triangle near its path. While triangles and corners move along straight lines, no triangle touches an element
+/// whose corners start in the old region and end in the new one. Requires two trees of the same triangles with boxes that contain
+/// both positions.
 void shift(SafeRegion& region, const MeshBvh& before, const MeshBvh& after);
 
 }  // namespace sprung

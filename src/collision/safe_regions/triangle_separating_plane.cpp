@@ -18,7 +18,7 @@ void try_axis(const Vector3& axis, const ElementCorners& element, const Triangle
   }
 }
 
-/// The nearest points may be on two faces, or on two edges that cross, or on edges next to each other in one plane.
+/// The closest points may be on two faces, on two edges that are not parallel, or on two edges in one plane.
 void try_features(const ElementCorners& element, const TriangleCorners& triangle, const Vector3& line,
                   TriangleSeparatingPlane& best) {
   const auto edges_of = [](const std::array<Vector3, 3>& x) {

@@ -1,4 +1,4 @@
-// The plane between an element and a triangle.
+// Separating plane of an element and a triangle.
 #pragma once
 
 #include "collision/safe_regions/safe_region.h"
@@ -10,20 +10,18 @@ namespace sprung {
 
 using TriangleCorners = std::array<Vector3, 3>;
 
-/// The direction, from the triangle to the element, in which they are farthest apart.
+/// The direction from the triangle to the element with the largest separation.
 struct TriangleSeparatingPlane {
-  Vector3 normal = Vector3::Zero();  ///< unit length
-  double gap =
-      -std::numeric_limits<double>::infinity();  ///< between what lies lowest of the element and highest of the triangle [m]
+  Vector3 normal = Vector3::Zero();                       ///< unit length
+  double gap = -std::numeric_limits<double>::infinity();  ///< lowest height of the element minus the triangle's highest [m]
 };
 
 [[nodiscard]] double lowest_along(const Vector3& normal, const ElementCorners& element);
 [[nodiscard]] double highest_along(const Vector3& normal, const TriangleCorners& triangle);
 
-/// The line between the nearest points separates by all of their distance. But where that is next to nothing beside the corners'
-/// coordinates, rounding turns the line, and it is the faces' normals and the products of edges that still tell the sides apart:
-/// those are tried too where `pair` with its `slack` (see closest_pair) does not keep what it promises. A gap that is not positive
-/// says that they cross or touch.
+/// Finds a separating plane. The direction between the closest points separates by their whole distance. If that distance is
+/// within rounding of the coordinates, this direction is inaccurate. Then the face normals and the cross products of edges are
+/// tried too. `pair` and `slack` come from closest_pair. If the gap is not positive, element and triangle cross or touch.
 [[nodiscard]] TriangleSeparatingPlane separation(const ElementCorners& element, const TriangleCorners& triangle,
                                                  const ClosestPair& pair, double slack);
 

@@ -204,17 +204,17 @@ void MeshShape::weigh_point(const MeshBvh& tree, SafeRegion& region) {
 void MeshShape::update_closest_points(const ElementCorners& element, const SafeRegionRequest& request, bool fresh,
                                       SafeRegion& region) const {
   const MeshBvh& tree = deforms_ ? *tree_before_ : *tree_;
-  NearestSpot spot{region.triangle, region.place};
-  if (!fresh) spot = sprung::nearest_spot(tree, element, request, spot);
-  if (spot.triangle == kNone) return;
-  const ClosestPair pair = closest_pair(element, tree.corners(spot.triangle), 0.0, 0.0, spot.place);
+  ClosestFeatures last{region.triangle, region.features};
+  if (!fresh) last = sprung::closest_features(tree, element, request, last);
+  if (last.triangle == kNone) return;
+  const ClosestPair pair = closest_pair(element, tree.corners(last.triangle), 0.0, 0.0, last.features);
   const Vector3 between = pair.on_simplex - pair.on_triangle;
   if (!(between.squaredNorm() > 0.0)) return;
   region.point = pair.on_triangle;
   region.normal = between.normalized();
   region.weights = pair.weights;
-  region.triangle = spot.triangle;
-  region.place = pair.place;
+  region.triangle = last.triangle;
+  region.features = pair.place;
   if (!deforms_) return;
   weigh_point(tree, region);
   region.drift = deforming_->displacement(region.triangle, region.triangle_weights);

@@ -12,13 +12,14 @@
 namespace sprung {
 namespace {
 
+using test::contains;
 using test::crosses;
-using test::holds;
 using test::moved_within;
 using test::Random;
 using test::random_element;
 
-/// The law of regions, for elements of `size` at up to `height` from the mesh.
+/// Checks that no element crosses the mesh while its corners stay in its safe region. Elements of `size` [m], up to `height` [m]
+/// from the mesh.
 void expect_no_crossing(const TriangleMesh& mesh, double size, double height, int trials) {
   const MeshBvh tree(mesh);
   const auto triangles = static_cast<Index>(mesh.triangles.cols());
@@ -36,7 +37,7 @@ void expect_no_crossing(const TriangleMesh& mesh, double size, double height, in
     ++regions;
     for (int i = 0; i < element.count; ++i) {
       const Vector3& corner = element.x[static_cast<std::size_t>(i)];
-      ASSERT_TRUE(holds(region, corner, corner)) << "trial " << trial;
+      ASSERT_TRUE(contains(region, corner, corner)) << "trial " << trial;
     }
     for (int move = 0; move < 8; ++move) {
       ElementCorners moved = element;
@@ -50,21 +51,21 @@ void expect_no_crossing(const TriangleMesh& mesh, double size, double height, in
   EXPECT_GT(regions, trials / 5);
 }
 
-TEST(MeshZone, NothingCrossesWhileCornersStayInside) {
+TEST(MeshSafeRegion, NoElementCrossesWhileItsCornersStayInside) {
   expect_no_crossing(test::torus(1.0, 0.4, 24, 12), 0.3, 0.3, 600);
   expect_no_crossing(test::needles(12), 0.3, 0.5, 600);
   expect_no_crossing(test::terrain(8, [](Index i, Index j) { return 0.7 * ((i * 7 + j * 3) % 4); }), 0.6, 1.0, 600);
 }
 
-TEST(MeshZone, NothingCrossesOnTheBunny) { expect_no_crossing(test::bunny(), 0.02, 0.02, 150); }
+TEST(MeshSafeRegion, NoElementCrossesTheBunny) { expect_no_crossing(test::bunny(), 0.02, 0.02, 150); }
 
-// In a valley of facets that turn by a hundredth most triangles have no plane of their own.
-TEST(MeshZone, EachTriangleInTheBoxIsBehindAPlane) {
-  constexpr double kTurn = 0.01;
+// In a valley with 0.01 rad between neighbouring facets, most triangles have no plane of their own.
+TEST(MeshSafeRegion, EachTriangleInTheBoxIsBehindAPlane) {
+  constexpr double kAngle = 0.01;
   TriangleMesh valley = test::flat_sheet(60);
   for (Index i = 0; i < valley.vertices.cols(); ++i) {
     const Vector3 p = valley.vertices.col(i);
-    valley.vertices.col(i) = Vector3(std::sin(kTurn * p.x()), -std::cos(kTurn * p.x()), kTurn * p.z());
+    valley.vertices.col(i) = Vector3(std::sin(kAngle * p.x()), -std::cos(kAngle * p.x()), kAngle * p.z());
   }
   const MeshBvh tree(valley);
   Random random(7);
@@ -90,7 +91,7 @@ TEST(MeshZone, EachTriangleInTheBoxIsBehindAPlane) {
   EXPECT_GT(behind, 20 * planes);
 }
 
-TEST(MeshZone, NearestPairIsTheNearestOfAll) {
+TEST(MeshSafeRegion, ClosestPointsAreTheClosestOfAllTriangles) {
   const TriangleMesh mesh = test::needles(12);
   const MeshBvh tree(mesh);
   Random random(5);
@@ -107,7 +108,7 @@ TEST(MeshZone, NearestPairIsTheNearestOfAll) {
     EXPECT_LE(region.clear, nearest);
     if (region.distance >= 0.2) continue;
     ++compared;
-    // A neighbour that shares the nearest point is not looked at to find it nearer by rounding: 2^-30 of the distance.
+    // A triangle that shares the closest point is skipped unless it is nearer by 2^-30 of the distance.
     EXPECT_NEAR(region.distance, nearest, 0x1p-30 * nearest);
     const Vector3 on_element =
         region.weights[0] * element.x[0] + region.weights[1] * element.x[1] + region.weights[2] * element.x[2];
@@ -116,7 +117,7 @@ TEST(MeshZone, NearestPairIsTheNearestOfAll) {
   EXPECT_GT(compared, 100);
 }
 
-TEST(MeshZone, WhatIsClearIsNoMoreThanTheDistance) {
+TEST(MeshSafeRegion, ClearDistanceIsAtMostTheDistance) {
   const TriangleMesh mesh = test::needles(12);
   const MeshBvh tree(mesh);
   Random random(6);
@@ -137,7 +138,7 @@ TEST(MeshZone, WhatIsClearIsNoMoreThanTheDistance) {
   EXPECT_GT(far, 100);
 }
 
-TEST(MeshZone, FarElementIsFreeInAllOfItsBoxAndMoreWhereTheMeshIsFarther) {
+TEST(MeshSafeRegion, AFarElementHasMoreThanTheRequestedBox) {
   const MeshBvh tree(test::torus(1.0, 0.4, 24, 12));
   const ElementCorners element{.x = {Vector3(5, 0, 0), Vector3(5, 1, 0), Vector3(5, 0, 1)}, .count = 3};
   SafeRegion region;
@@ -145,7 +146,7 @@ TEST(MeshZone, FarElementIsFreeInAllOfItsBoxAndMoreWhereTheMeshIsFarther) {
   EXPECT_EQ(region.plane_count, 0);
   EXPECT_EQ(region.distance, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(region.box.contains(Box3(Vector3(4.5, -0.5, -0.5), Vector3(5.5, 1.5, 1.5))));
-  // The torus begins 3.6 from the element.
+  // The torus is 3.6 m away from the element.
   EXPECT_GT(region.clear, 0.5 * std::sqrt(3.0));
   EXPECT_LT(region.clear, 3.6);
   EXPECT_LE((region.box.max() - Vector3(5, 1, 1)).norm(), region.clear);

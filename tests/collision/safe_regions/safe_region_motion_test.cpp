@@ -12,7 +12,7 @@ namespace {
 using test::crosses;
 using test::Random;
 
-/// Goes from one mesh to another in a second.
+/// A deformation of one mesh into another within 1 s.
 struct Transition {
   TriangleMesh from;
   TriangleMesh to;
@@ -25,7 +25,7 @@ struct Transition {
   [[nodiscard]] TriangleMesh at(double time) const { return {(1.0 - time) * from.vertices + time * to.vertices, from.triangles}; }
 };
 
-/// The torus goes by `drift` and each vertex besides up to `wobble` in a direction of its own.
+/// A torus that moves by `drift`, plus up to `wobble` [m] per vertex in a random direction.
 Transition wobbling_torus(const Vector3& drift, double wobble) {
   Transition transition{test::torus(1.0, 0.4, 24, 12), test::torus(1.0, 0.4, 24, 12)};
   Random random(17);
@@ -35,11 +35,11 @@ Transition wobbling_torus(const Vector3& drift, double wobble) {
   return transition;
 }
 
-ElementCorners between(const ElementCorners& a, const ElementCorners& b, double part) {
+ElementCorners between(const ElementCorners& a, const ElementCorners& b, double fraction) {
   ElementCorners middle = a;
   for (int i = 0; i < a.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    middle.x[k] = (1.0 - part) * a.x[k] + part * b.x[k];
+    middle.x[k] = (1.0 - fraction) * a.x[k] + fraction * b.x[k];
   }
   return middle;
 }
@@ -49,8 +49,8 @@ struct Tally {
   int moves = 0;
 };
 
-/// The law of regions before a surface that deforms: whatever begins in the region's element and ends in the region, with the
-/// surface going straight meanwhile, crosses it at no time.
+/// Checks that an element never crosses a deforming surface if its corners end in its safe region. Surface and corners move along
+/// straight lines.
 Tally expect_no_crossing(const Transition& transition, double begin, double end, int trials) {
   MeshShape shape = transition.shape();
   shape.set_interval(begin, end);
@@ -72,30 +72,30 @@ Tally expect_no_crossing(const Transition& transition, double begin, double end,
       for (int i = 0; i < element.count; ++i) {
         Vector3& corner = moved.x[static_cast<std::size_t>(i)];
         corner = test::moved_within(region, corner + region.drift, request.reach, random);
-        inside = inside && test::holds(region, element.x[static_cast<std::size_t>(i)] + region.drift, corner);
+        inside = inside && test::contains(region, element.x[static_cast<std::size_t>(i)] + region.drift, corner);
       }
       if (!inside) continue;  // the surface came too near to leave room
       ++tally.moves;
-      for (const double part : {0.2, 0.5, 0.8, 1.0}) {
-        EXPECT_FALSE(crosses(between(element, moved, part), transition.at(begin + part * (end - begin))))
-            << "trial " << trial << " after " << part;
+      for (const double fraction : {0.2, 0.5, 0.8, 1.0}) {
+        EXPECT_FALSE(crosses(between(element, moved, fraction), transition.at(begin + fraction * (end - begin))))
+            << "trial " << trial << " at fraction " << fraction;
       }
     }
   }
   return tally;
 }
 
-TEST(ZoneDrift, NothingCrossesASurfaceThatWobbles) {
+TEST(SafeRegionMotion, NoElementCrossesASurfaceThatWobbles) {
   const Tally tally = expect_no_crossing(wobbling_torus(Vector3::Zero(), 0.05), 0.25, 0.75, 400);
   EXPECT_GT(tally.moves, 2 * tally.regions) << "most elements have room to move";
 }
 
-TEST(ZoneDrift, NothingCrossesASurfaceThatGoesFartherThanItsTrianglesAreLarge) {
+TEST(SafeRegionMotion, NoElementCrossesASurfaceThatMovesFartherThanItsTriangleSize) {
   const Tally tally = expect_no_crossing(wobbling_torus({0.7, -0.5, 0.3}, 0.02), 0.0, 1.0, 400);
-  EXPECT_GT(tally.moves, 2 * tally.regions) << "most elements go along with it";
+  EXPECT_GT(tally.moves, 2 * tally.regions) << "most elements can move with the surface";
 }
 
-TEST(ZoneDrift, NothingCrossesASurfaceThatGrowsAndTurns) {
+TEST(SafeRegionMotion, NoElementCrossesASurfaceThatGrowsAndTurns) {
   Transition transition{test::torus(1.0, 0.4, 24, 12), test::torus(1.0, 0.4, 24, 12)};
   const Matrix3 turn = Eigen::AngleAxisd(0.2, Vector3(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
   transition.to.vertices = 1.1 * turn * transition.to.vertices;
@@ -104,8 +104,8 @@ TEST(ZoneDrift, NothingCrossesASurfaceThatGrowsAndTurns) {
   EXPECT_GT(slow.moves, 3 * slow.regions);
 }
 
-TEST(ZoneDrift, NothingCrossesWhatASurfaceGoesTo) {
-  // One torus slides under another, which stays, closely enough to catch the elements that it takes along.
+TEST(SafeRegionMotion, NoElementCrossesASurfaceThatItsOwnSurfaceApproaches) {
+  // One torus slides under another one at rest. The gap is small enough to catch elements that move with the first one.
   const TriangleMesh torus = test::torus(1.0, 0.4, 24, 12);
   const Eigen::Index vertices = torus.vertices.cols();
   TriangleMesh both{Points(3, 2 * vertices), Triangles(3, 2 * torus.triangles.cols())};
@@ -116,7 +116,7 @@ TEST(ZoneDrift, NothingCrossesWhatASurfaceGoesTo) {
   EXPECT_GT(expect_no_crossing(transition, 0.0, 1.0, 800).moves, 800);
 }
 
-TEST(ZoneDrift, ASurfaceThatOnlyGoesAlongLeavesElementsTheirPlace) {
+TEST(SafeRegionMotion, ATranslatedSurfaceTranslatesTheRegion) {
   const Vector3 drift(0.25, -0.5, 0.125);
   const Transition still{test::torus(1.0, 0.4, 24, 12), test::torus(1.0, 0.4, 24, 12)};
   Transition moving = still;
@@ -134,18 +134,18 @@ TEST(ZoneDrift, ASurfaceThatOnlyGoesAlongLeavesElementsTheirPlace) {
     shape.find_region(element, request, region);
     ASSERT_EQ(region.broken, expected.broken);
     if (region.broken || region.triangle == kNone) continue;
-    // Coordinates up to 2 m carry roundings of 4e-16 m, sums of them a few.
+    // Coordinates up to 2 m have rounding errors of 4e-16 m; sums have a few of them.
     ASSERT_LT((region.drift - drift).norm(), 1e-15);
     ASSERT_LT((region.point - expected.point - drift).norm(), 1e-14);
     ASSERT_NEAR(region.distance, expected.distance, 1e-14);
     for (int i = 0; i < element.count; ++i) {
       const Vector3 along = element.x[static_cast<std::size_t>(i)] + drift;
-      ASSERT_TRUE(test::holds(region, along, along + 2e-15 * region.normal)) << "trial " << trial;
+      ASSERT_TRUE(test::contains(region, along, along + 2e-15 * region.normal)) << "trial " << trial;
     }
   }
 }
 
-TEST(ZoneDrift, AnElementThatIsAtTheEndAlreadyIsNotTakenAlong) {
+TEST(SafeRegionMotion, ARegionBuiltForTheEndDoesNotMove) {
   const Transition transition = wobbling_torus({0.7, -0.5, 0.3}, 0.05);
   MeshShape shape = transition.shape();
   shape.set_interval(0.0, 1.0);
@@ -156,12 +156,12 @@ TEST(ZoneDrift, AnElementThatIsAtTheEndAlreadyIsNotTakenAlong) {
     shape.find_region(element, {.reach = 0.3, .gap = 0.02, .clearance = 1e-9, .exact = 0.1, .at_end = true}, region);
     ASSERT_EQ(region.broken, crosses(element, transition.to));
     EXPECT_EQ(region.drift, Vector3::Zero());
-    for (std::size_t i = 0; !region.broken && i < 3; ++i) ASSERT_TRUE(test::holds(region, element.x[i], element.x[i]));
+    for (std::size_t i = 0; !region.broken && i < 3; ++i) ASSERT_TRUE(test::contains(region, element.x[i], element.x[i]));
   }
 }
 
-TEST(ZoneDrift, NearestPointsGoWithTheSurface) {
-  // x is stretched to twice its length: a point of the sheet goes as far as it is from the middle.
+TEST(SafeRegionMotion, ClosestPointsMoveWithTheSurface) {
+  // The sheet is stretched to twice its size along x. A point moves by its distance from the middle.
   Transition stretching{test::flat_sheet(4), test::flat_sheet(4)};
   stretching.to.vertices.row(0) *= 2.0;
   MeshShape shape = stretching.shape();
@@ -175,9 +175,9 @@ TEST(ZoneDrift, NearestPointsGoWithTheSurface) {
   ASSERT_TRUE(shape.advance_region(region));
   EXPECT_LT((region.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15);
   ASSERT_TRUE(shape.advance_region(region));
-  EXPECT_LT((region.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15) << "once an interval";
+  EXPECT_LT((region.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15) << "a region advances once per interval";
   shape.set_interval(0.75, 1.0);
-  EXPECT_FALSE(shape.advance_region(region)) << "it was never told where the surface went between";
+  EXPECT_FALSE(shape.advance_region(region)) << "the region skipped an interval";
 }
 
 }  // namespace
