@@ -62,7 +62,7 @@ std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const Verte
 
 std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const VertexPath& path, SurfaceMemory& memory) {
   return find_with(set, k, path, [&](const Vector3& p, double reach, double gap) {
-    return set.shape(k).nearest_again(p, reach, kSame * gap, memory);
+    return set.shape(k).nearest_cached(p, reach, kSame * gap, memory);
   });
 }
 

@@ -10,7 +10,7 @@ namespace sprung {
 
 namespace {
 
-constexpr double kMaxSubsteps = 1024.0;
+constexpr double kMaxSegments = 1024.0;
 
 double mean_edge_length(const Points& vertices, const Triangles& triangles) {
   double sum = 0.0;
@@ -50,30 +50,31 @@ void DeformingMesh::fit_span(const MeshSequence::Moment& begin, const MeshSequen
   }
   const bool same_frames = span_.frame == begin.frame && span_.next == begin.next;
   Span span{.frame = begin.frame, .next = begin.next};
-  span.parts = same_frames ? span_.parts : parts_between(span.frame, span.next);
+  span.segments = same_frames ? span_.segments : segment_count(span.frame, span.next);
   const double low = std::min(begin.part, at_next ? 1.0 : end.part);
   const double high = std::max(begin.part, at_next ? 1.0 : end.part);
-  span.first = std::min(static_cast<int>(low * span.parts), span.parts - 1);
-  span.last = std::max(static_cast<int>(std::ceil(high * span.parts)), span.first + 1);
+  span.first = std::min(static_cast<int>(low * span.segments), span.segments - 1);
+  span.last = std::max(static_cast<int>(std::ceil(high * span.segments)), span.first + 1);
   sweep_is_new_ = span != span_;
   if (!sweep_is_new_) return;
   span_ = span;
-  const auto place = [&](int part, Points& positions) {
-    if (part < span.parts) sequence_->positions({span.frame, span.next, static_cast<double>(part) / span.parts}, positions);
-    if (part == span.parts) positions = sequence_->frames[span.next];
+  const auto set_positions = [&](int segment, Points& positions) {
+    const double fraction = static_cast<double>(segment) / span.segments;
+    if (segment < span.segments) sequence_->positions({span.frame, span.next, fraction}, positions);
+    if (segment == span.segments) positions = sequence_->frames[span.next];
   };
-  place(span.first, sweep_from_);
-  place(span.last, sweep_to_);
+  set_positions(span.first, sweep_from_);
+  set_positions(span.last, sweep_to_);
 }
 
-int DeformingMesh::parts_between(Index frame, Index next) const {
+int DeformingMesh::segment_count(Index frame, Index next) const {
   const double farthest2 = (sequence_->frames[next] - sequence_->frames[frame]).colwise().squaredNorm().maxCoeff();
-  const double parts = std::ceil(std::sqrt(farthest2) / edge_length_);
-  return std::isfinite(parts) ? static_cast<int>(std::clamp(parts, 1.0, kMaxSubsteps)) : 1;
+  const double segments = std::ceil(std::sqrt(farthest2) / edge_length_);
+  return std::isfinite(segments) ? static_cast<int>(std::clamp(segments, 1.0, kMaxSegments)) : 1;
 }
 
 DeformingMesh::Sweep DeformingMesh::sweep() const {
-  if (span_.parts == 0) return {before_.vertices, after_.vertices};
+  if (span_.segments == 0) return {before_.vertices, after_.vertices};
   return {sweep_from_, sweep_to_};
 }
 
@@ -97,7 +98,7 @@ Vector3 DeformingMesh::displacement(Index triangle, const Vector3& weights, doub
   return sum;
 }
 
-SpotMotion DeformingMesh::motion(Index triangle, const Vector3& point) const {
+SurfaceMotion DeformingMesh::motion(Index triangle, const Vector3& point) const {
   const auto corner = after_.triangles.col(triangle);
   const Vector3 a = before_.vertices.col(corner[0]);
   const Vector3 b = before_.vertices.col(corner[1]);
@@ -110,8 +111,8 @@ SpotMotion DeformingMesh::motion(Index triangle, const Vector3& point) const {
         area_normal(mesh, triangle).normalized();
     return columns;
   };
-  SpotMotion motion{.after = point + displacement(triangle, weights), .turn = axes(after_) * axes(before_).inverse()};
-  if (!motion.turn.allFinite()) motion.turn.setIdentity();  // the triangle has no area
+  SurfaceMotion motion{.after = point + displacement(triangle, weights), .linear = axes(after_) * axes(before_).inverse()};
+  if (!motion.linear.allFinite()) motion.linear.setIdentity();  // the triangle has no area
   return motion;
 }
 

@@ -1,4 +1,4 @@
-// A mesh sequence during one interval.
+// A mesh sequence within one interval.
 #pragma once
 
 #include "geometry/mesh/mesh_sequence.h"
@@ -9,17 +9,18 @@
 
 namespace sprung {
 
-/// Where a point of a surface goes, and what becomes of what lies around it: what is beside it is stretched and turned as the
-/// surface is, what is above it stays as high.
-struct SpotMotion {
-  Vector3 after = Vector3::Zero();
-  Matrix3 turn = Matrix3::Identity();
+/// The affine motion of a surface near one of its points. In the plane of the triangle, points are stretched and rotated with the
+/// surface; their height above it does not change.
+struct SurfaceMotion {
+  Vector3 after = Vector3::Zero();       ///< of the point, at the end of the interval [m]
+  Matrix3 linear = Matrix3::Identity();  ///< maps directions at its begin to those at its end
 };
 
-/// Within an interval each vertex moves straight from where the sequence has it at the begin to where it has it at the end.
+/// A mesh whose vertices move along straight lines within an interval, between their positions in the sequence at its begin and
+/// end.
 class DeformingMesh {
  public:
-  /// Requires a sequence with frames and triangles. It is nowhere before the first interval is set.
+  /// Requires a sequence with frames and triangles. Call set_interval() before any query.
   explicit DeformingMesh(std::shared_ptr<const MeshSequence> sequence);
 
   /// Not thread-safe.
@@ -29,36 +30,35 @@ class DeformingMesh {
   [[nodiscard]] const TriangleMesh& before() const { return before_; }
   [[nodiscard]] const TriangleMesh& after() const { return after_; }
 
-  /// Positions between which every vertex stays throughout the interval. Those around all of a part of the way from one frame to
-  /// the next, where the interval is within it, so that they seldom change; parts are as long as it takes to go as far as edges are
-  /// long.
+  /// Positions that bound the path of each vertex in the interval. The path between two frames is divided into segments, about as
+  /// long as an edge. An interval between two frames has the sweep of the segments that contain it, so the sweep rarely changes.
   struct Sweep {
     const Points& from;
     const Points& to;
   };
   [[nodiscard]] Sweep sweep() const;
-  /// Whether the sweep is another than that of the interval before.
+  /// Whether the sweep differs from the sweep of the previous interval.
   [[nodiscard]] bool sweep_is_new() const { return sweep_is_new_; }
 
-  /// The farthest that a vertex moves in the interval [m].
+  /// The largest displacement of a vertex in the interval [m].
   [[nodiscard]] double largest_displacement() const { return largest_displacement_; }
 
   /// The interval's begin and end [s].
   [[nodiscard]] double begin() const { return begin_; }
   [[nodiscard]] double end() const { return end_; }
 
-  /// How far a point of a triangle, given by the weights of its corners, moves in the interval, or from time t to t_end [m].
+  /// Displacement [m] of a point of a triangle, given by the weights of its corners: in the interval, or from time t to t_end [s].
   [[nodiscard]] Vector3 displacement(Index triangle, const Vector3& weights) const;
   [[nodiscard]] Vector3 displacement(Index triangle, const Vector3& weights, double t, double t_end) const;
 
-  /// How a triangle takes along what is at and around a point of its own in the interval.
-  [[nodiscard]] SpotMotion motion(Index triangle, const Vector3& point) const;
+  /// The motion in the interval of the surface near the point of the triangle that is closest to `point`.
+  [[nodiscard]] SurfaceMotion motion(Index triangle, const Vector3& point) const;
 
   // Normals at the interval's end.
   [[nodiscard]] Vector3 normal_at(Index triangle, TriangleFeature feature) const {
     return pseudonormal(after_, around_, triangle, feature);
   }
-  /// Unit length; a triangle without area has the one of its surroundings.
+  /// Unit length. A triangle without area has the mean normal of its neighbours.
   [[nodiscard]] Vector3 face_normal(Index triangle) const;
 
  private:
@@ -68,19 +68,19 @@ class DeformingMesh {
   TriangleMesh before_;
   TriangleMesh after_;
 
-  /// From the part that begins at `first` to the one that ends at `last`, of so many from `frame` on to `next`; where there are no
-  /// parts, the sweep is from before_ to after_.
+  /// Segments `first` up to and without `last` of the `segments` between `frame` and `next`. Without segments the sweep is from
+  /// before_ to after_.
   struct Span {
     Index frame = kNone;
     Index next = kNone;
-    int parts = 0;
+    int segments = 0;
     int first = 0;
     int last = 0;
 
     bool operator==(const Span&) const = default;
   };
   void fit_span(const MeshSequence::Moment& begin, const MeshSequence::Moment& end);
-  [[nodiscard]] int parts_between(Index frame, Index next) const;
+  [[nodiscard]] int segment_count(Index frame, Index next) const;
 
   Span span_;
   Points sweep_from_;

@@ -17,17 +17,17 @@ namespace sprung {
 
 namespace {
 
-// Closest points are off by some tens of roundings of the largest coordinate that they are computed from.
+// A closest point has an error of a few tens of roundings of the largest coordinate.
 constexpr double kRounding = 1e-14;
 
-// What is met beyond this part of the way to a spot of the surface is what it shares with its neighbours.
-constexpr double kAtSpot = 1.0 - 1e-3;
+// A hit beyond this fraction of the segment to a surface point is on a triangle that shares the point.
+constexpr double kBeforePoint = 1.0 - 1e-3;
 
-// The surface is looked for this many times farther off than asked for, since who finds nothing need not look again soon.
-constexpr double kFarther = 2.0;
+// The search radius as a multiple of the requested radius. A search without a result then stays valid for longer motions.
+constexpr double kSearchFactor = 2.0;
 
-// Sums of distances are right to far more than this.
-constexpr double kClearPart = 1.0 - 0x1p-20;
+// Far above the relative rounding error of a sum of distances.
+constexpr double kClearFraction = 1.0 - 0x1p-20;
 
 double largest_coordinate(const Points& vertices) { return vertices.cwiseAbs().maxCoeff(); }
 
@@ -42,7 +42,7 @@ MeshShape::MeshShape(const MeshGeometry& geometry) : rigid_(geometry.mesh), clos
   pseudonormals_ = pseudonormals(*rigid_);
 }
 
-// The tree is that of the first frame whatever the time, so that a simulation that begins later meets the same tree.
+// The tree is always built from the first frame, so a simulation that starts later uses the same tree.
 MeshShape::MeshShape(const SequenceGeometry& geometry) : closed_(geometry.closed) {
   if (!geometry.sequence) throw InputError(Problem{.key = "sequence", .rule = "must be given"});
   const MeshSequence& sequence = *geometry.sequence;
@@ -70,13 +70,13 @@ void MeshShape::set_interval(double t, double t_end) {
 
 Vector3 MeshShape::displacement(const Vector3& p) const {
   if (!deforms_ || deforming_->largest_displacement() == 0.0) return Vector3::Zero();
-  const auto [triangle, weights] = nearest_spot(*tree_before_, p);
+  const auto [triangle, weights] = nearest_triangle_point(*tree_before_, p);
   return triangle == kNone ? Vector3(Vector3::Zero()) : deforming_->displacement(triangle, weights);
 }
 
 Vector3 MeshShape::displacement(const Vector3& p, double t, double t_end) const {
   if (!deforms_) return Vector3::Zero();
-  const auto [triangle, weights] = nearest_spot(*tree_, p);
+  const auto [triangle, weights] = nearest_triangle_point(*tree_, p);
   return triangle == kNone ? Vector3(Vector3::Zero()) : deforming_->displacement(triangle, weights, t, t_end);
 }
 
@@ -85,20 +85,20 @@ std::optional<MovedElement> MeshShape::moved_element(const ElementCorners& eleme
   const SafeRegion region = nearest_before(element);
   if (region.broken || region.triangle == kNone) return std::nullopt;
   MovedElement result{element, region.distance};
-  const SpotMotion motion = deforming_->motion(region.triangle, region.point);
-  const Vector3 raised = lift * deforming_->largest_displacement() * (motion.turn * region.normal).normalized();
+  const SurfaceMotion motion = deforming_->motion(region.triangle, region.point);
+  const Vector3 raised = lift * deforming_->largest_displacement() * (motion.linear * region.normal).normalized();
   Vector3 nearest = Vector3::Zero();
   for (int i = 0; i < element.count; ++i) {
     Vector3& corner = result.corners.x[static_cast<std::size_t>(i)];
-    corner = motion.after + motion.turn * (corner - region.point) + raised;
+    corner = motion.after + motion.linear * (corner - region.point) + raised;
     nearest += region.weights[i] * corner;
   }
   const auto hit = tree_->first_hit(nearest, motion.after, CrossingSides::both);
-  if (hit && hit->triangle != region.triangle && hit->fraction < kAtSpot) return std::nullopt;
+  if (hit && hit->triangle != region.triangle && hit->fraction < kBeforePoint) return std::nullopt;
   return result;
 }
 
-// What an obstacle comes to cross in the interval is no farther from it than both go.
+// An element that the surface crosses in the interval is within twice the largest displacement of the surface.
 SafeRegion MeshShape::nearest_before(const ElementCorners& element) const {
   SafeRegion region;
   if (element.count > 1) {
@@ -118,12 +118,12 @@ SafeRegion MeshShape::nearest_before(const ElementCorners& element) const {
 
 std::optional<MovedTriangle> MeshShape::moved_triangle(const Vector3& p) const {
   if (!deforms_) return std::nullopt;
-  const Index triangle = nearest_spot(*tree_before_, p).triangle;
+  const Index triangle = nearest_triangle_point(*tree_before_, p).triangle;
   if (triangle == kNone) return std::nullopt;
   return MovedTriangle{tree_before_->corners(triangle), tree_->corners(triangle)};
 }
 
-MeshShape::Spot MeshShape::nearest_spot(const MeshBvh& tree, const Vector3& p) {
+MeshShape::TrianglePoint MeshShape::nearest_triangle_point(const MeshBvh& tree, const Vector3& p) {
   const auto found = tree.nearest(p, std::numeric_limits<double>::infinity());
   if (!found) return {};  // p is not finite
   const auto [a, b, c] = tree.corners(found->triangle);
@@ -136,19 +136,20 @@ std::optional<SurfacePoint> MeshShape::nearest(const Vector3& p, double radius) 
   return surface_point(p, *found);
 }
 
-std::optional<SurfacePoint> MeshShape::nearest_again(const Vector3& p, double radius, double same, SurfaceMemory& memory) const {
+std::optional<SurfacePoint> MeshShape::nearest_cached(const Vector3& p, double radius, double tolerance,
+                                                      SurfaceMemory& memory) const {
   if (deforms_) return nearest(p, radius);
-  const double moved = (p - memory.asked_at).norm();
-  if (moved + radius < kClearPart * memory.clear) return std::nullopt;
+  const double moved = (p - memory.query_point).norm();
+  if (moved + radius < kClearFraction * memory.clear) return std::nullopt;
   const auto if_within = [&](const MeshBvh::Nearest& found) {
     return found.closest.squared_distance < radius * radius ? std::optional(surface_point(p, found)) : std::nullopt;
   };
-  const double farther = kFarther * radius;
+  const double farther = kSearchFactor * radius;
   std::optional<MeshBvh::Nearest> found;
   if (memory.triangle != kNone) {
     const auto corners = tree_->corners(memory.triangle);
     found = {memory.triangle, closest_point_on_triangle(p, corners[0], corners[1], corners[2]), corners};
-    if (moved < same) return if_within(*found);
+    if (moved < tolerance) return if_within(*found);
     if (!(found->closest.squared_distance < farther * farther)) found.reset();
   }
   const auto nearer = tree_->nearest(p, found ? std::sqrt(found->closest.squared_distance) : farther);
@@ -168,8 +169,8 @@ SurfacePoint MeshShape::surface_point(const Vector3& p, const MeshBvh::Nearest& 
     return length <= kRounding * a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(c.cwiseAbs()).cwiseMax(p.cwiseAbs()).maxCoeff();
   };
 
-  // Above a face, and everywhere within rounding of the surface, the face's normal is better than the direction to the particle,
-  // and the exact side better than that direction's.
+  // Above a face and within rounding of the surface, the face normal is more accurate than the direction to the particle, and the
+  // side is decided exactly.
   if (closest.feature == TriangleFeature::face || is_rounding()) {
     const Vector3 face = face_normal(triangle);
     const bool back = side_of_plane(a, b, c, p) < 0.0;
@@ -192,11 +193,11 @@ void MeshShape::find_region(const ElementCorners& element, const SafeRegionReque
   sprung::find_region(tree, element, request, region);
   if (!deforms_) return;
   region.time = deforming_->end();
-  if (region.triangle != kNone) weigh_point(tree, region);
-  if (!request.at_end) follow_surface(region);
+  if (region.triangle != kNone) set_triangle_weights(tree, region);
+  if (!request.at_end) move_with_surface(region);
 }
 
-void MeshShape::weigh_point(const MeshBvh& tree, SafeRegion& region) {
+void MeshShape::set_triangle_weights(const MeshBvh& tree, SafeRegion& region) {
   const auto [a, b, c] = tree.corners(region.triangle);
   region.triangle_weights = barycentric(closest_point_on_triangle(region.point, a, b, c), a, b, c);
 }
@@ -216,7 +217,7 @@ void MeshShape::update_closest_points(const ElementCorners& element, const SafeR
   region.triangle = last.triangle;
   region.features = pair.place;
   if (!deforms_) return;
-  weigh_point(tree, region);
+  set_triangle_weights(tree, region);
   region.drift = deforming_->displacement(region.triangle, region.triangle_weights);
   region.point += region.drift;
 }
@@ -225,11 +226,11 @@ bool MeshShape::advance_region(SafeRegion& region) const {
   if (!deforms_ || region.time == deforming_->end()) return true;
   if (region.time != deforming_->begin()) return false;
   region.time = deforming_->end();
-  follow_surface(region);
+  move_with_surface(region);
   return true;
 }
 
-void MeshShape::follow_surface(SafeRegion& region) const {
+void MeshShape::move_with_surface(SafeRegion& region) const {
   region.drift.setZero();
   if (region.broken || deforming_->largest_displacement() == 0.0) return;
   if (region.triangle != kNone) region.drift = deforming_->displacement(region.triangle, region.triangle_weights);

@@ -1,4 +1,4 @@
-// A triangle mesh as an obstacle's shape: one that is rigid, or one that deforms.
+// A rigid or deforming triangle mesh as the shape of an obstacle.
 #pragma once
 
 #include "collision/mesh_bvh/mesh_bvh.h"
@@ -10,10 +10,11 @@ namespace sprung {
 
 class MeshShape final : public ObstacleShape {
  public:
-  /// Throws InputError, naming every problem, for a mesh that FCL must not see: none, without triangles, with a position that is
-  /// not finite or with an index out of range.
+  /// Throws InputError, which names every problem, if the mesh is missing, has no triangles, has a position that is not finite or
+  /// has an index out of range.
   explicit MeshShape(const MeshGeometry& geometry);
-  /// The same for a sequence: none, without frames, or with a frame that is such a mesh or has not as many vertices as the first.
+  /// Throws InputError, which names every problem, if the sequence is missing or has no frames, or if a frame is invalid as above
+  /// or differs from the first in its number of vertices.
   explicit MeshShape(const SequenceGeometry& geometry);
 
   [[nodiscard]] bool deforms() const override { return deforms_; }
@@ -25,8 +26,8 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] std::optional<MovedTriangle> moved_triangle(const Vector3& p) const override;
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;
-  [[nodiscard]] std::optional<SurfacePoint> nearest_again(const Vector3& p, double radius, double same,
-                                                          SurfaceMemory& memory) const override;
+  [[nodiscard]] std::optional<SurfacePoint> nearest_cached(const Vector3& p, double radius, double tolerance,
+                                                           SurfaceMemory& memory) const override;
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const override;
   void find_region(const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region) const override;
   void update_closest_points(const ElementCorners& element, const SafeRegionRequest& request, bool fresh,
@@ -41,20 +42,20 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] const MeshBvh& tree() const { return *tree_; }
 
  private:
-  void follow_surface(SafeRegion& region) const;
-  static void weigh_point(const MeshBvh& tree, SafeRegion& region);
+  void move_with_surface(SafeRegion& region) const;
+  static void set_triangle_weights(const MeshBvh& tree, SafeRegion& region);
   /// A point of the surface: a triangle and the weights of its corners.
-  struct Spot {
+  struct TrianglePoint {
     Index triangle = kNone;
     Vector3 weights = Vector3::Zero();
   };
-  [[nodiscard]] static Spot nearest_spot(const MeshBvh& tree, const Vector3& p);
+  [[nodiscard]] static TrianglePoint nearest_triangle_point(const MeshBvh& tree, const Vector3& p);
   [[nodiscard]] SafeRegion nearest_before(const ElementCorners& element) const;
   [[nodiscard]] Vector3 face_normal(Index triangle) const;
   [[nodiscard]] Vector3 pseudonormal(Index triangle, TriangleFeature feature) const;
   [[nodiscard]] SurfacePoint surface_point(const Vector3& p, const MeshBvh::Nearest& found) const;
 
-  std::shared_ptr<const TriangleMesh> rigid_;  ///< none where it is a sequence
+  std::shared_ptr<const TriangleMesh> rigid_;  ///< null for a sequence
   std::optional<DeformingMesh> deforming_;
   bool deforms_ = false;
   bool closed_;

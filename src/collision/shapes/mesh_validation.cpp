@@ -12,10 +12,10 @@ namespace sprung {
 
 namespace {
 
-// Distances are first bounded in single precision, in which the square of a larger coordinate would not be finite.
+// The search computes squared distances in single precision first. The square of a larger coordinate would not be finite.
 constexpr double kLargestCoordinate = 1e15;
 
-/// Adds the first vertex that FCL must not see, which stands for all.
+/// Adds a problem for the first invalid vertex only.
 void check_vertices(const std::string& key, const Points& vertices, std::vector<Problem>& problems) {
   for (Index i = 0; i < vertices.cols(); ++i) {
     if ((vertices.col(i).array().abs() <= kLargestCoordinate).all()) continue;

@@ -1,4 +1,4 @@
-// What FCL must not see: it would crash, or lose contacts without a word.
+// Checks meshes before FCL gets them. With an invalid mesh FCL would crash or lose contacts silently.
 #pragma once
 
 #include "geometry/mesh/mesh_sequence.h"
@@ -6,12 +6,12 @@
 
 namespace sprung {
 
-/// Throws InputError, naming every problem, for a mesh without triangles, with a position that is not finite or beyond 1e15 m, or
-/// with an index out of range.
+/// Throws InputError, which names every problem, if the mesh has no triangles, a position that is not finite or beyond 1e15 m, or
+/// an index out of range.
 void require_usable(const TriangleMesh& mesh);
 
-/// The same for the frames of a sequence, and for one without frames, with frames of different numbers of vertices, or with a
-/// frame rate or start that is none.
+/// Throws InputError, which names every problem, if a frame is invalid as above, the sequence has no frames or frames with
+/// different numbers of vertices, or its frame rate or start is invalid.
 void require_usable(const MeshSequence& sequence);
 
 }  // namespace sprung

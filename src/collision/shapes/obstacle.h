@@ -1,4 +1,4 @@
-// What the environment consists of: a shape, its motion, its surface. Plain data; `environment.h` makes FCL geometries of it.
+// Plain data of an obstacle: shape, motion, material.
 #pragma once
 
 #include "base/contact_material.h"
@@ -12,13 +12,14 @@
 
 namespace sprung {
 
-/// A triangle mesh as `import_mesh` leaves it. Closed meshes have an inside; open ones keep each particle on its side.
+/// A triangle mesh from `import_mesh`. A closed mesh has an inside. An open mesh has two sides, and each particle stays on its
+/// own.
 struct MeshGeometry {
   std::shared_ptr<const TriangleMesh> mesh{};
   bool closed = false;
 };
 
-/// A mesh that deforms, as `import_sequence` leaves it. What closed means is judged once, for all frames.
+/// A deforming mesh from `import_sequence`. `closed` is the same for all frames.
 struct SequenceGeometry {
   std::shared_ptr<const MeshSequence> sequence{};
   bool closed = false;
@@ -34,7 +35,7 @@ struct BoxGeometry {
 struct CapsuleGeometry {
   double radius = 0.0;
   double length = 0.0;
-};  ///< length between the centres of its caps
+};  ///< length between the centres of the caps
 struct CylinderGeometry {
   double radius = 0.0;
   double height = 0.0;
@@ -42,7 +43,7 @@ struct CylinderGeometry {
 struct ConeGeometry {
   double radius = 0.0;
   double height = 0.0;
-};  ///< its tip at +height / 2
+};  ///< the tip is at +height / 2
 struct EllipsoidGeometry {
   Vector3 radii = Vector3::Zero();
 };
@@ -56,19 +57,19 @@ using ObstacleGeometry = std::variant<MeshGeometry, SequenceGeometry, SphereGeom
 
 struct Obstacle {
   std::string name{};
-  ObstacleGeometry geometry{};  ///< scaled already
+  ObstacleGeometry geometry{};  ///< scale applied
   RigidTransform placed = RigidTransform::Identity();
   Motion motion{};
   ContactMaterial material{};
 
-  /// Whether its shape is not the same at all times.
+  /// Whether the shape changes with time.
   [[nodiscard]] bool deforms() const;
-  /// Whether its surface is not the same at all times: it moves or deforms.
+  /// Whether the surface changes with time: the obstacle moves or deforms.
   [[nodiscard]] bool changes() const { return motion.moves() || deforms(); }
 };
 
-/// The obstacle's surface at a time [s] as triangles in its own frame, for export: a mesh as it is, a primitive tessellated, a
-/// half-space, and it alone, as a square of side 2 * `extent` [m]. Vertices keep their numbers at all times.
+/// Triangles of the surface at a time [s] in the obstacle's own frame, for export. Primitives are tessellated; a half-space is a
+/// square of side 2 * `extent` [m]. The vertex indices are the same at all times.
 [[nodiscard]] TriangleMesh obstacle_mesh(const ObstacleGeometry& geometry, double extent, double time = 0.0);
 
 }  // namespace sprung

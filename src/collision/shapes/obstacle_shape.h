@@ -1,5 +1,5 @@
-// What contact asks of a shape, in the shape's own frame. One implementation for meshes (FCL's tree, our leaves), one for
-// primitives (exact signed distances).
+// Interface of an obstacle's shape for contact, in the shape's own frame. Implementations: triangle meshes (FCL's tree with own
+// leaves) and primitives (exact signed distances).
 #pragma once
 
 #include "collision/safe_regions/safe_region.h"
@@ -11,31 +11,31 @@
 
 namespace sprung {
 
-/// The surface near a particle.
+/// The point of the surface nearest to a particle.
 struct SurfacePoint {
   Vector3 point;          ///< nearest point of the surface [m]
-  Vector3 normal;         ///< unit length, towards the free side: outward, or for an open mesh towards the particle
+  Vector3 normal;         ///< unit length: outward, or for an open mesh towards the particle
   double distance = 0.0;  ///< [m] along the normal; negative inside a closed shape
 };
 
-/// What the search for the surface near a particle found last, where the next one may begin.
+/// Result of the last search for the surface near a particle; the next search starts here.
 struct SurfaceMemory {
   Index triangle = kNone;
-  Vector3 asked_at = Vector3::Zero();  ///< [m]
-  double clear = 0.0;                  ///< nothing of the surface is nearer to `asked_at` than this [m]
+  Vector3 query_point = Vector3::Zero();  ///< [m]
+  double clear = 0.0;                     ///< lower bound of the distance between surface and `query_point` [m]
 };
 
-/// An element that an obstacle carries.
+/// An element that moved with an obstacle.
 struct MovedElement {
   ElementCorners corners;
-  double distance = 0.0;  ///< from what carries it [m]; 0 for a shape that carries all alike
+  double distance = 0.0;  ///< from the surface that moved it [m]; 0 for a rigid shape
 };
 
-/// Where a straight path meets the surface for the first time.
+/// The first intersection of a straight path with the surface.
 struct Crossing {
   double fraction = 0.0;  ///< of the path, in [0, 1]
   Vector3 point;
-  Vector3 normal;  ///< unit length, against the path
+  Vector3 normal;  ///< unit length, on the side where the path comes from
 };
 
 class ObstacleShape {
@@ -45,77 +45,78 @@ class ObstacleShape {
   /// Whether the surface ever moves within its own frame.
   [[nodiscard]] virtual bool deforms() const { return false; }
 
-  /// The step from time t to t_end [s]: what is asked below is answered for its end. Not thread-safe.
+  /// Sets the interval from t to t_end [s]. Queries refer to its end unless stated otherwise. Not thread-safe.
   virtual void set_interval(double /*t*/, double /*t_end*/) {}
 
-  /// The farthest that a point of the surface moves in the interval, in the shape's frame [m].
+  /// Largest displacement [m] of a surface point in the interval, in the shape's frame.
   [[nodiscard]] virtual double largest_displacement() const { return 0.0; }
 
-  /// How far the point of the surface that is nearest to p at the interval's begin moves in it, in the shape's frame [m].
+  /// Displacement [m] in the interval of the surface point that is nearest to p at the begin of the interval, in the shape's
+  /// frame.
   [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/) const { return Vector3::Zero(); }
 
-  /// Where a surface that deforms takes an element along from the interval's begin: as high above the triangle that is nearest to
-  /// it, in the triangle's own axes, and higher by `lift`, a part of how far the surface goes at most. Nothing where another part
-  /// of the surface comes between, or where none is near.
+  /// Moves an element from the begin of the interval to its end together with the nearest triangle. It keeps its height above the
+  /// triangle, plus `lift` times the largest displacement of the surface. Returns nothing if the element touches the surface, if
+  /// no surface is near, or if another triangle comes between.
   [[nodiscard]] virtual std::optional<MovedElement> moved_element(const ElementCorners& element, double /*lift*/) const {
     return {{element}};
   }
 
-  /// The triangle that is nearest to p at the interval's begin, in the shape's frame; nothing where the surface does not deform.
+  /// The triangle nearest to p at the begin of the interval, in the shape's frame. Returns nothing if the shape does not deform.
   [[nodiscard]] virtual std::optional<MovedTriangle> moved_triangle(const Vector3& /*p*/) const { return std::nullopt; }
 
-  /// How far the point of the surface that is nearest to p at the interval's end moves from time t to t_end, likewise.
+  /// Displacement [m] from t to t_end of the surface point that is nearest to p at the end of the interval, in the shape's frame.
   [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/, double /*t*/, double /*t_end*/) const { return Vector3::Zero(); }
 
-  /// The surface nearest to p, if nearer than `radius` [m] or, for primitives, if p is inside. Deep inside a closed mesh (farther
-  /// than radius) nothing is found: use `contains`. Where p is on the surface the normal is that of the face found there.
+  /// The surface point nearest to p, if nearer than `radius` [m] or if p is inside a primitive. Returns nothing if p is inside a
+  /// closed mesh and farther than `radius` from its surface: use contains(). If p is on the surface, the normal is that of a face
+  /// at p.
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const = 0;
 
-  /// The same, begun with what was found last: after a motion of less than `same` [m] the surface found may be that of the same
-  /// triangle.
-  [[nodiscard]] virtual std::optional<SurfacePoint> nearest_again(const Vector3& p, double radius, double /*same*/,
-                                                                  SurfaceMemory& /*memory*/) const {
+  /// Like nearest(), but reuses the result of the last search. If p moved by less than `tolerance` [m], the result may be on the
+  /// same triangle although another one is nearer.
+  [[nodiscard]] virtual std::optional<SurfacePoint> nearest_cached(const Vector3& p, double radius, double /*tolerance*/,
+                                                                   SurfaceMemory& /*memory*/) const {
     return nearest(p, radius);
   }
 
-  /// The first crossing of the path from a to b. A path that starts outside and meets the surface is never missed, edges and
-  /// vertices between triangles included. Of closed shapes only the way in counts, so that what was caught inside can leave; a path
-  /// that begins on the surface crosses it when it goes in. A path that begins on an open mesh has no side and does not cross it
-  /// there. No path, no crossing: a == b.
+  /// The first crossing of the path from a to b. A path that starts outside and crosses the surface is never missed, not even at
+  /// edges and vertices. On closed shapes only entering counts, so that a particle inside can leave; a path that starts on the
+  /// surface and enters is a crossing. A path that starts on an open mesh does not cross it there. If a == b there is no crossing.
   [[nodiscard]] virtual std::optional<Crossing> first_crossing(const Vector3& a, const Vector3& b) const = 0;
 
-  /// Makes the region of an element that the shape does not cross; `region` comes as it was left by the element's last search.
+  /// Builds the safe region of an element. On entry `region` is the result of the element's previous search.
   virtual void find_region(const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region) const = 0;
 
-  /// Finds the nearest points of the region's element again, where it is when the interval begins: of a mesh, while it is `fresh`,
-  /// those on the same triangle. The rest of the region stays, as do the nearest points where element and shape touch or a
-  /// primitive is not within `reach`.
+  /// Updates the closest points of the region for the element at the begin of the interval. On a mesh, if `fresh`, the closest
+  /// triangle stays the same. The rest of the region does not change. The closest points do not change either if element and shape
+  /// touch, or if a primitive is not within `reach`.
   virtual void update_closest_points(const ElementCorners& element, const SafeRegionRequest& request, bool fresh,
                                      SafeRegion& region) const = 0;
 
-  /// Makes a region that was for the end of the interval before one for the end of this: where the surface deforms, it takes the
-  /// region along. False for a region of another time, which cannot be taken along.
+  /// Advances a region from the end of the previous interval to the end of this one: it moves with a surface that deforms. Returns
+  /// false if the region belongs to another time and cannot be advanced.
   virtual bool advance_region(SafeRegion& /*region*/) const { return true; }
 
-  /// Whether the element comes within `tolerance` [m] of the surface; an element that is wholly inside need not tell. Crossings of
-  /// meshes are judged exactly.
+  /// Whether the element is within `tolerance` [m] of the surface. The result is unspecified for an element wholly inside.
+  /// Crossings of meshes are decided exactly.
   [[nodiscard]] virtual bool touches(const ElementCorners& element, double tolerance) const = 0;
 
   /// Whether p is inside; always false for open meshes.
   [[nodiscard]] virtual bool contains(const Vector3& p) const = 0;
 
-  /// A box around the shape throughout the interval [m]; infinite for a half-space.
+  /// A box that contains the shape throughout the interval [m]; infinite for a half-space.
   [[nodiscard]] virtual Box3 bounds() const = 0;
 
-  /// The largest coordinate on the shape at any time [m]; of a half-space, whose coordinates have no end, its offset.
+  /// The largest coordinate of the shape at any time [m]; for a half-space its offset.
   [[nodiscard]] virtual double magnitude() const = 0;
 
-  /// What rounding may do to distances measured from p [m].
+  /// Upper bound [m] of the rounding error of distances measured from p.
   [[nodiscard]] virtual double rounding(const Vector3& p) const = 0;
 };
 
-/// Throws InputError, naming every problem, for a mesh without triangles, with positions that are not finite or indices out of
-/// range, for frames that do not fit their triangles or each other, and for sizes that are not positive.
+/// Throws InputError, which names every problem: a mesh without triangles, positions that are not finite, indices out of range,
+/// frames that do not match, sizes that are not positive.
 [[nodiscard]] std::unique_ptr<ObstacleShape> make_shape(const ObstacleGeometry& geometry);
 
 }  // namespace sprung

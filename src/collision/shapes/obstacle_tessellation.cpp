@@ -14,7 +14,8 @@ using Vector2 = Eigen::Vector2d;
 constexpr Index kAround = 48;   // sides of a solid of revolution
 constexpr Index kQuarter = 12;  // steps of a quarter circle from pole to equator
 
-/// Turns a profile (distance from the axis, height), given from its lowest point on the axis up to its highest, about the y axis.
+/// Rotates a profile about the y axis. The profile consists of points (distance from the axis, height), from the lowest point on
+/// the axis to the highest.
 TriangleMesh revolve(const std::vector<Vector2>& profile) {
   const auto rings = static_cast<Index>(profile.size()) - 2;
   const Index bottom = rings * kAround;
@@ -43,7 +44,7 @@ TriangleMesh revolve(const std::vector<Vector2>& profile) {
   return mesh;
 }
 
-/// A half circle of radius 1 from pole to pole, its halves moved apart by `length`.
+/// A half circle from pole to pole. Its halves are `length` [m] apart.
 std::vector<Vector2> half_circle(double radius, double length) {
   std::vector<Vector2> profile;
   for (Index i = -kQuarter; i <= kQuarter; ++i) {

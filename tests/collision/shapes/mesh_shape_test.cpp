@@ -13,7 +13,7 @@ std::unique_ptr<ObstacleShape> shape_of(const TriangleMesh& mesh, bool closed) {
   return make_shape(MeshGeometry{std::make_shared<const TriangleMesh>(mesh), closed});
 }
 
-/// The nearest surface by the shape against brute force over all triangles.
+/// Compares the nearest surface point with a search over all triangles.
 void expect_nearest_is_nearest(const TriangleMesh& mesh, bool closed, int points, double reach) {
   const auto shape = shape_of(mesh, closed);
   const Box3 box = bounds(mesh.vertices);
@@ -25,7 +25,7 @@ void expect_nearest_is_nearest(const TriangleMesh& mesh, bool closed, int points
     const double expected = test::brute_distance(mesh, p);
     const auto found = shape->nearest(p, 10.0 * size);
     ASSERT_TRUE(found);
-    // Coordinates of size s carry differences of s eps, and a needle's foot a few of them more.
+    // Rounding is a few eps times the size of the coordinates, and more for needles.
     ASSERT_NEAR(std::abs(found->distance), expected, 1e-13 * size) << "point " << i;
     ASSERT_NEAR((p - found->point).norm(), expected, 1e-13 * size);
     ASSERT_NEAR(found->normal.norm(), 1.0, 1e-12);
@@ -37,21 +37,21 @@ void expect_nearest_is_nearest(const TriangleMesh& mesh, bool closed, int points
   }
 }
 
-TEST(MeshShape, NearestIsTheNearestOfAllTriangles) {
+TEST(MeshShape, NearestPointIsTheNearestOfAllTriangles) {
   expect_nearest_is_nearest(test::torus(1.0, 0.3, 40, 20), true, 400, 0.01);
   expect_nearest_is_nearest(test::needles(24), true, 400, 0.05);
   expect_nearest_is_nearest(test::terrain(16, [](Index i, Index j) { return 0.3 * std::sin(i) * std::cos(2 * j); }), false, 400,
                             0.1);
 }
 
-TEST(MeshShape, OneTriangleIsAMesh) {
+TEST(MeshShape, ASingleTriangleIsAMesh) {
   TriangleMesh mesh{Points(3, 3), Triangles(3, 1)};
   mesh.vertices << 0, 1, 0, 0, 0, 0, 0, 0, 1;
   mesh.triangles << 0, 1, 2;
   expect_nearest_is_nearest(mesh, false, 100, 0.5);
 }
 
-TEST(MeshShape, BunnyNearestIsTheNearestOfAllTriangles) { expect_nearest_is_nearest(test::bunny(), true, 40, 0.01); }
+TEST(MeshShape, NearestPointOnTheBunnyIsTheNearestOfAllTriangles) { expect_nearest_is_nearest(test::bunny(), true, 40, 0.01); }
 
 void expect_signs_by_winding_number(const TriangleMesh& mesh, int points, double reach) {
   const auto shape = shape_of(mesh, true);
@@ -65,12 +65,12 @@ void expect_signs_by_winding_number(const TriangleMesh& mesh, int points, double
   }
 }
 
-TEST(MeshShape, InsideIsWhereTheMeshWindsAroundAPoint) {
+TEST(MeshShape, SignFollowsTheWindingNumber) {
   expect_signs_by_winding_number(test::torus(1.0, 0.3, 40, 20), 2000, 0.05);
   expect_signs_by_winding_number(test::needles(24), 4000, 0.05);
 }
 
-TEST(MeshShape, BunnyInsideIsWhereTheMeshWindsAroundAPoint) { expect_signs_by_winding_number(test::bunny(), 200, 0.01); }
+TEST(MeshShape, SignOnTheBunnyFollowsTheWindingNumber) { expect_signs_by_winding_number(test::bunny(), 200, 0.01); }
 
 TEST(MeshShape, OpenMeshHasNoInsideAndFacesTheParticle) {
   const auto shape = shape_of(test::flat_sheet(4), false);
@@ -115,8 +115,8 @@ TEST(MeshShape, ScalingByAPowerOfTwoScalesEveryBit) {
   }
 }
 
-TEST(MeshShape, HostileTreesAreWalkedToTheirEnd) {
-  // Triangles whose sizes and places double make FCL's tree as deep as there are triangles.
+TEST(MeshShape, DeepTreesAreSearchedCompletely) {
+  // Each triangle doubles size and position, so FCL's tree is as deep as the number of triangles.
   constexpr Index kCount = 400;
   TriangleMesh mesh{Points(3, 3 * kCount), Triangles(3, kCount)};
   for (Index t = 0; t < kCount; ++t) {
@@ -145,7 +145,7 @@ std::vector<std::string> rules_broken_by(const MeshGeometry& geometry) {
   return keys;
 }
 
-TEST(MeshShape, RefusesWhatFclMustNotSee) {
+TEST(MeshShape, InvalidMeshesAreRefused) {
   TriangleMesh mesh = test::flat_sheet(1);
   mesh.vertices(1, 2) = std::numeric_limits<double>::quiet_NaN();
   mesh.triangles(0, 0) = 4;
@@ -157,8 +157,8 @@ TEST(MeshShape, RefusesWhatFclMustNotSee) {
   EXPECT_THAT(rules_broken_by({}), testing::ElementsAre("mesh: must be given"));
 }
 
-// Where points touch there is no direction between them: the region keeps those that it has, and the triangle that they are on.
-TEST(MeshShape, WhatTouchesWhereItLooksAgainStaysWithWhatItHad) {
+// Touching points have no direction between them. The region keeps its closest points and their triangle.
+TEST(MeshShape, ATouchingElementKeepsItsClosestPoints) {
   TriangleMesh mesh{Points(3, 6), Triangles(3, 2)};
   mesh.vertices << 0, 1, 0, 2, 3, 2, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1;
   mesh.triangles << 0, 3, 1, 4, 2, 5;

@@ -14,7 +14,7 @@ namespace {
 
 using test::Random;
 
-/// Ten frames a second of a mesh whose vertices are `deform(position, frame)`.
+/// A sequence with 10 frames per second. Its vertices are `deform(position, frame)`.
 template <class Deform>
 std::shared_ptr<const MeshSequence> sequence_of(const TriangleMesh& mesh, int frames, const Deform& deform) {
   MeshSequence sequence{.triangles = mesh.triangles, .frames = {}, .frame_rate = 10.0};
@@ -25,20 +25,20 @@ std::shared_ptr<const MeshSequence> sequence_of(const TriangleMesh& mesh, int fr
   return std::make_shared<const MeshSequence>(sequence);
 }
 
-/// A torus that breathes, bends and wanders.
-std::shared_ptr<const MeshSequence> living_torus() {
+/// A torus that scales, bends and translates.
+std::shared_ptr<const MeshSequence> deforming_torus() {
   return sequence_of(test::torus(1.0, 0.3, 40, 20), 6, [](const Vector3& x, int k) {
     return Vector3((1.0 + 0.2 * std::sin(k)) * x + Vector3(0.3 * k, 0.4 * std::sin(2.0 * k) * x.x() * x.x(), 0.1 * x.y()));
   });
 }
 
-/// What the sequence is at a time, by frames a and a + 1 of ten a second.
+/// The mesh at a time [s], interpolated between two frames of a sequence with 10 frames per second.
 TriangleMesh mesh_at(const MeshSequence& sequence, double time) {
-  const double place = std::clamp(10.0 * time, 0.0, static_cast<double>(sequence.frames.size() - 1));
-  const auto a = static_cast<std::size_t>(place);
+  const double frame = std::clamp(10.0 * time, 0.0, static_cast<double>(sequence.frames.size() - 1));
+  const auto a = static_cast<std::size_t>(frame);
   const std::size_t b = std::min(a + 1, sequence.frames.size() - 1);
-  const double part = place - static_cast<double>(a);
-  return {(1.0 - part) * sequence.frames[a] + part * sequence.frames[b], sequence.triangles};
+  const double fraction = frame - static_cast<double>(a);
+  return {(1.0 - fraction) * sequence.frames[a] + fraction * sequence.frames[b], sequence.triangles};
 }
 
 struct Interval {
@@ -46,12 +46,12 @@ struct Interval {
   double end;
 };
 
-/// Within two frames, at frames, across one, across many, held before and after, back in time.
+/// Between two frames, at frames, across one and several frames, before the first and after the last, and back in time.
 constexpr Interval kIntervals[] = {{0.0, 0.0},   {0.0, 0.03}, {0.03, 0.06}, {0.06, 0.1}, {0.1, 0.13},  {0.17, 0.24},
                                    {0.05, 0.45}, {0.48, 0.6}, {0.6, 0.7},   {-1.0, 0.0}, {-1.0, 0.02}, {0.22, 0.28}};
 
-TEST(SequenceShape, NearestIsTheNearestOfTheMeshAtTheIntervalsEnd) {
-  const auto sequence = living_torus();
+TEST(SequenceShape, NearestPointIsThatOfTheMeshAtTheEndOfTheInterval) {
+  const auto sequence = deforming_torus();
   MeshShape shape(SequenceGeometry{sequence, true});
   Random random(31);
   for (const auto& [begin, end] : kIntervals) {
@@ -63,7 +63,7 @@ TEST(SequenceShape, NearestIsTheNearestOfTheMeshAtTheIntervalsEnd) {
       const double expected = test::brute_distance(mesh, p);
       const auto found = shape.nearest(p, 10.0);
       ASSERT_TRUE(found);
-      // Coordinates of a few metres carry differences of some 1e-15 m.
+      // Coordinates of a few metres have rounding errors of 1e-15 m.
       ASSERT_NEAR(std::abs(found->distance), expected, 1e-13) << end;
       ASSERT_NEAR((p - found->point).norm(), expected, 1e-13);
       ASSERT_EQ(found->distance<0.0, test::winding_number(mesh, p)> 0.5) << end << ' ' << p.transpose();
@@ -72,8 +72,8 @@ TEST(SequenceShape, NearestIsTheNearestOfTheMeshAtTheIntervalsEnd) {
   }
 }
 
-TEST(SequenceShape, AnswersAsTheRigidMeshOfThatMoment) {
-  const auto sequence = living_torus();
+TEST(SequenceShape, ADeformingMeshEqualsTheRigidMeshAtTheSameTime) {
+  const auto sequence = deforming_torus();
   MeshShape shape(SequenceGeometry{sequence, true});
   shape.set_interval(0.11, 0.3);
   const MeshShape rigid(
@@ -84,7 +84,7 @@ TEST(SequenceShape, AnswersAsTheRigidMeshOfThatMoment) {
     const Vector3 q = test::near_surface({sequence->frames[3], sequence->triangles}, random, 0.05);
     const auto found = shape.nearest(p, 1.0);
     const auto expected = rigid.nearest(p, 1.0);
-    // The trees differ, and so may the triangle that is found of two that share the nearest point.
+    // The trees differ. Where two triangles share the closest point, either may be found.
     ASSERT_LT((found->point - expected->point).norm(), 1e-14);
     ASSERT_NEAR(found->distance, expected->distance, 1e-14);
     ASSERT_LT((found->normal - expected->normal).norm(), 1e-14 / std::abs(found->distance));
@@ -97,31 +97,31 @@ TEST(SequenceShape, AnswersAsTheRigidMeshOfThatMoment) {
   }
 }
 
-TEST(SequenceShape, DoesNotRememberEarlierIntervals) {
-  const auto sequence = living_torus();
-  MeshShape straight(SequenceGeometry{sequence, true});
-  MeshShape wandering(SequenceGeometry{sequence, true});
+TEST(SequenceShape, QueriesDoNotDependOnEarlierIntervals) {
+  const auto sequence = deforming_torus();
+  MeshShape direct(SequenceGeometry{sequence, true});
+  MeshShape diverted(SequenceGeometry{sequence, true});
   Random random(33);
   for (const auto& [begin, end] : kIntervals) {
-    wandering.set_interval(random.between(-0.1, 0.6), random.between(-0.1, 0.6));
-    wandering.set_interval(begin, end);
-    straight.set_interval(begin, end);
-    EXPECT_EQ(wandering.bounds().min(), straight.bounds().min());
+    diverted.set_interval(random.between(-0.1, 0.6), random.between(-0.1, 0.6));
+    diverted.set_interval(begin, end);
+    direct.set_interval(begin, end);
+    EXPECT_EQ(diverted.bounds().min(), direct.bounds().min());
     for (int i = 0; i < 50; ++i) {
-      const Vector3 p = random.in_box(straight.bounds());
-      EXPECT_EQ(wandering.nearest(p, 10.0)->point, straight.nearest(p, 10.0)->point);
+      const Vector3 p = random.in_box(direct.bounds());
+      EXPECT_EQ(diverted.nearest(p, 10.0)->point, direct.nearest(p, 10.0)->point);
     }
   }
 }
 
-TEST(SequenceShape, BoxesHoldTheTrianglesThroughoutTheInterval) {
-  const auto sequence = living_torus();
+TEST(SequenceShape, BoundsContainTheTrianglesThroughoutTheInterval) {
+  const auto sequence = deforming_torus();
   MeshShape shape(SequenceGeometry{sequence, true});
   for (const auto& [begin, end] : kIntervals) {
     shape.set_interval(begin, end);
     const TriangleMesh before = mesh_at(*sequence, begin);
     const TriangleMesh after = mesh_at(*sequence, end);
-    // (1 - s) a + s b, as this test interpolates, has roundings of its own.
+    // The interpolation in this test, (1 - s) a + s b, has other rounding errors.
     const Box3 box(shape.bounds().min().array() - 1e-14, shape.bounds().max().array() + 1e-14);
     EXPECT_TRUE(box.contains(bounds(before.vertices)) && box.contains(bounds(after.vertices))) << begin << ' ' << end;
     for (Index t = 0; t < after.triangles.cols(); ++t) {
@@ -132,23 +132,24 @@ TEST(SequenceShape, BoxesHoldTheTrianglesThroughoutTheInterval) {
   }
 }
 
-TEST(SequenceShape, DisplacementIsThatOfTheSurfacesPoint) {
-  // Each point of the sheet rises by 0.1 m a frame and x m is stretched to x (1 + 0.5 k): affine, so exact between vertices too.
+TEST(SequenceShape, DisplacementIsThatOfTheNearestSurfacePoint) {
+  // The sheet rises by 0.1 m per frame, and x [m] becomes x (1 + 0.5 k) in frame k. The map is affine, so it is exact between
+  // vertices.
   const auto sequence =
       sequence_of(test::flat_sheet(4), 3, [](const Vector3& x, int k) { return Vector3((1.0 + 0.5 * k) * x.x(), 0.1 * k, x.z()); });
   MeshShape shape(SequenceGeometry{sequence, false});
   shape.set_interval(0.05, 0.1);
   EXPECT_DOUBLE_EQ(shape.largest_displacement(), std::hypot(0.25 * 2.0, 0.05));
-  // At the end x is 1.5 times what it was drawn as; from 0.05 to 0.1 s it grew by 0.25 of that.
+  // At the end x is 1.5 times its initial value. From 0.05 to 0.1 s it grew by 0.25 of that value.
   EXPECT_LT((shape.displacement({1.8, 0.4, 0.3}, 0.05, 0.1) - Vector3(1.8 / 1.5 * 0.25, 0.05, 0.0)).norm(), 1e-15);
   EXPECT_LT((shape.displacement({1.8, -0.4, 0.3}, 0.1, 0.12) - Vector3(1.8 / 1.5 * 0.1, 0.02, 0.0)).norm(), 1e-15);
-  // At the begin x was 1.25 times what it was drawn as.
+  // At the begin x was 1.25 times its initial value.
   EXPECT_LT((shape.displacement({1.8, 0.4, 0.3}) - Vector3(1.8 / 1.25 * 0.25, 0.05, 0.0)).norm(), 1e-15);
   shape.set_interval(0.3, 0.4);
-  EXPECT_EQ(shape.largest_displacement(), 0.0) << "held after the last frame";
+  EXPECT_EQ(shape.largest_displacement(), 0.0) << "the sequence rests after its last frame";
 }
 
-TEST(SequenceShape, OneThatNeverChangesIsRigid) {
+TEST(SequenceShape, ASequenceOfEqualFramesIsRigid) {
   MeshShape shape(SequenceGeometry{sequence_of(test::flat_sheet(2), 3, [](const Vector3& x, int) { return x; }), false});
   EXPECT_FALSE(shape.deforms());
   shape.set_interval(0.1, 0.2);
@@ -156,8 +157,8 @@ TEST(SequenceShape, OneThatNeverChangesIsRigid) {
   EXPECT_EQ(shape.displacement({0.2, 0.3, 0.4}, 0.0, 0.2), Vector3::Zero());
 }
 
-TEST(SequenceShape, FacesWithoutAreaForAMomentHaveNormalsOfUnitLength) {
-  // The middle row of a sheet's squares closes and opens again; at frame 2 the whole sheet is a point.
+TEST(SequenceShape, TemporarilyDegenerateFacesHaveUnitNormals) {
+  // The squares in the middle row of the sheet collapse and open again. In frame 2 the whole sheet is a point.
   const auto sequence = sequence_of(test::flat_sheet(3), 3, [](const Vector3& x, int k) {
     return Vector3(k == 1 && x.x() > -0.5 && x.x() < 0.5 ? Vector3(0.0, 0.0, x.z()) : k == 2 ? Vector3(0.0, 0.0, 0.0) : x);
   });
@@ -178,7 +179,7 @@ TEST(SequenceShape, FacesWithoutAreaForAMomentHaveNormalsOfUnitLength) {
 }
 
 TEST(SequenceShape, ScalingByAPowerOfTwoScalesEveryBit) {
-  const auto sequence = living_torus();
+  const auto sequence = deforming_torus();
   MeshSequence larger = *sequence;
   for (Points& frame : larger.frames) frame *= 128.0;
   MeshShape shape(SequenceGeometry{sequence, true});
@@ -206,7 +207,7 @@ std::vector<std::string> rules_broken_by(const SequenceGeometry& geometry) {
   return rules;
 }
 
-TEST(SequenceShape, RefusesWhatFclMustNotSee) {
+TEST(SequenceShape, InvalidSequencesAreRefused) {
   const TriangleMesh sheet = test::flat_sheet(1);
   MeshSequence broken{.triangles = sheet.triangles, .frames = {sheet.vertices, sheet.vertices, sheet.vertices}};
   broken.triangles(0, 0) = 4;
@@ -230,7 +231,7 @@ Obstacle deforming(std::shared_ptr<const MeshSequence> sequence, bool closed) {
   return obstacle;
 }
 
-TEST(DeformingObstacle, ASheetThatRisesThroughAParticleMeetsItFromBelow) {
+TEST(DeformingObstacle, ASheetThatRisesThroughAParticleContactsItFromBelow) {
   Environment environment({deforming(
       sequence_of(test::flat_sheet(4), 2, [](const Vector3& x, int k) { return Vector3(x + Vector3(0.0, 0.2 * k, 0.0)); }),
       false)});
@@ -238,12 +239,12 @@ TEST(DeformingObstacle, ASheetThatRisesThroughAParticleMeetsItFromBelow) {
   const Points rests = Vector3(0.3, 0.15, 0.4);
   const auto contacts = environment.contacts({rests, rests, Scalars::Zero(1), 0.0});
   ASSERT_EQ(contacts.size(), 1U);
-  EXPECT_EQ(contacts[0].normal, Vector3::UnitY()) << "it was above the sheet";
+  EXPECT_EQ(contacts[0].normal, Vector3::UnitY()) << "the particle was above the sheet";
   EXPECT_DOUBLE_EQ(contacts[0].distance, -0.05);
   EXPECT_LT((contacts[0].drift - Vector3(0.0, 0.2, 0.0)).norm(), 1e-15);
 }
 
-TEST(DeformingObstacle, IsFoundWhereItHasGrownTo) {
+TEST(DeformingObstacle, AGrownObstacleIsFoundAtItsNewSize) {
   Environment environment({deforming(
       sequence_of(test::torus(0.1, 0.03, 20, 10), 2, [](const Vector3& x, int k) { return Vector3((1.0 + 99.0 * k) * x); }),
       true)});
@@ -256,7 +257,7 @@ TEST(DeformingObstacle, IsFoundWhereItHasGrownTo) {
   EXPECT_EQ(test::intersections(environment, inside).inside.size(), 1U);
 }
 
-TEST(DeformingObstacle, IsFoundWhereItIsNoneOfItsFrames) {
+TEST(DeformingObstacle, AnObstacleBetweenTwoFramesIsFound) {
   Environment environment({deforming(
       sequence_of(test::flat_sheet(4), 2, [](const Vector3& x, int k) { return Vector3(x + Vector3(0.0, 3.0 * k, 0.0)); }),
       false)});
@@ -266,20 +267,20 @@ TEST(DeformingObstacle, IsFoundWhereItIsNoneOfItsFrames) {
   EXPECT_NEAR(*environment.min_distance(above, 0.2), 0.1, 1e-15);
 }
 
-TEST(DeformingObstacle, SurfaceVelocityAddsDeformingToMotion) {
-  // Stretches to twice its length along x in 0.1 s, and is driven along z at 3 m/s.
+TEST(DeformingObstacle, SurfaceVelocityAddsDeformationToMotion) {
+  // The sheet is stretched to twice its length along x within 0.1 s and moves along z at 3 m/s.
   Obstacle sheet = deforming(
       sequence_of(test::flat_sheet(4), 2, [](const Vector3& x, int k) { return Vector3((1.0 + k) * x.x(), x.y(), x.z()); }), false);
   sheet.motion.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {0.0, 0.0, 3.0}}};
   Environment environment({sheet});
   environment.set_interval(0.05, 0.05);
-  // A point now at 1.5 m was drawn at 1 m: it goes at 10 m/s.
+  // A point at 1.5 m started at 1 m and moves at 10 m/s.
   const Vector3 velocity = environment.surface_velocity(0, {1.5, 0.1, 0.3}, 0.05, 0.01);
   EXPECT_LT((velocity - Vector3(10.0, 0.0, 3.0)).norm(), 1e-12);
 }
 
-/// A sheet that is stretched, sheared and turned in a tenth of a second, and stays flat.
-TEST(SequenceShape, CarriesElementsAtTheirHeightAndAsMuchHigherAsAsked) {
+/// A sheet that is stretched, sheared and rotated within 0.1 s, and stays flat.
+TEST(SequenceShape, ElementsMoveWithTheSurfaceAndRiseByTheLift) {
   const auto sequence = sequence_of(test::flat_sheet(8), 2, [](const Vector3& x, int k) {
     return Vector3((1.0 + 0.5 * k) * x.x(), k * (x.x() - 0.3 * x.z() + 2.0), x.z() + 0.4 * k * x.x());
   });
@@ -296,7 +297,7 @@ TEST(SequenceShape, CarriesElementsAtTheirHeightAndAsMuchHigherAsAsked) {
       double lowest = 1.0;
       for (std::size_t i = 0; i < static_cast<std::size_t>(element.count); ++i) {
         const double raised = lift * shape.largest_displacement();
-        // Coordinates up to 10 m carry roundings of 2e-15 m, the triangle's axes some more.
+        // Coordinates up to 10 m have rounding errors of 2e-15 m, and the axes of a triangle have more.
         EXPECT_NEAR(normal.dot(moved->corners.x[i] - Vector3(0.0, 2.0, 0.0)), element.x[i].y() + raised, 1e-13);
         lowest = std::min(lowest, element.x[i].y());
       }
