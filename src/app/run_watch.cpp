@@ -92,7 +92,7 @@ void RunWatch::note_stretch(const FrameDiagnostics& frame) {
 }
 
 void RunWatch::note_handovers() {
-  const std::vector<StretchHandover>& handovers = simulator_.state().stretch_holds;
+  const std::vector<StretchHandover>& handovers = simulator_.state().stretch_handovers;
   handed_over_.resize(handovers.size(), false);
   for (std::size_t b = 0; b < handovers.size(); ++b) {
     if (quiet_ || handed_over_[b] || !handovers[b].solved_since) continue;

@@ -6,7 +6,7 @@ SimulationState initial_state(const SpringNetwork& network) {
   return {.x = network.positions,
           .v = network.velocities,
           .x_previous = network.positions,
-          .stretch_holds = std::vector<StretchHandover>(network.bodies.size())};
+          .stretch_handovers = std::vector<StretchHandover>(network.bodies.size())};
 }
 
 }  // namespace sprung

@@ -26,7 +26,7 @@ struct SimulationState {
   Points x;                     ///< positions [m], 3 x n
   Points v;                     ///< velocities [m/s], 3 x n
   Points x_previous;            ///< Verlet's positions one step ago [m], 3 x n
-  std::vector<StretchHandover> stretch_holds;  ///< of bodies
+  std::vector<StretchHandover> stretch_handovers;  ///< of bodies
 };
 
 /// How many steps the state has behind it, with the parts of the one at hand: time is this times their length, to the last bit what

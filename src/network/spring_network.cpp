@@ -29,10 +29,11 @@ const Body& SpringNetwork::body_of(Index particle) const {
   return *std::prev(after);
 }
 
-bool bodies_may_meet(const SpringNetwork& network) {
-  const auto meets_itself = [](const Body& body) { return body.contact.self; };
-  const auto meets_others = [](const Body& body) { return body.contact.others; };
-  return std::ranges::any_of(network.bodies, meets_itself) || std::ranges::count_if(network.bodies, meets_others) > 1;
+bool bodies_may_collide(const SpringNetwork& network) {
+  const auto collides_with_itself = [](const Body& body) { return body.contact.self; };
+  const auto collides_with_others = [](const Body& body) { return body.contact.others; };
+  return std::ranges::any_of(network.bodies, collides_with_itself) ||
+         std::ranges::count_if(network.bodies, collides_with_others) > 1;
 }
 
 }  // namespace sprung

@@ -103,6 +103,6 @@ struct SpringNetwork {
 };
 
 /// Whether contact is asked for within a body, or between two.
-[[nodiscard]] bool bodies_may_meet(const SpringNetwork& network);
+[[nodiscard]] bool bodies_may_collide(const SpringNetwork& network);
 
 }  // namespace sprung

@@ -34,13 +34,13 @@ std::string fill_pattern(const std::string& pattern, int frame) {
 bool stays_inside(const std::string& pattern) {
   const fs::path path(pattern);
   return !path.empty() && path.is_relative() && path.has_filename() &&
-         std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".." || part == "."; });
+         std::none_of(path.begin(), path.end(), [](const fs::path& component) { return component == ".." || component == "."; });
 }
 
 std::vector<fs::path> matching_files(const fs::path& folder, const std::string& pattern) {
   fs::path directory = folder;
-  for (const fs::path& part : fs::path(pattern).parent_path()) {
-    directory /= part;
+  for (const fs::path& component : fs::path(pattern).parent_path()) {
+    directory /= component;
     if (!fs::is_directory(fs::symlink_status(directory))) return {};
   }
   const std::string name = fs::path(pattern).filename().string();

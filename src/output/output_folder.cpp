@@ -25,8 +25,8 @@ void remove_files_of_run(const fs::path& folder, const std::vector<std::string>&
       for (const fs::path& file : matching_files(folder, name)) fs::remove(file);
     }
     std::error_code not_empty;
-    for (fs::path part = fs::path(pattern).parent_path(); !part.empty(); part = part.parent_path()) {
-      fs::remove(folder / part, not_empty);
+    for (fs::path directory = fs::path(pattern).parent_path(); !directory.empty(); directory = directory.parent_path()) {
+      fs::remove(folder / directory, not_empty);
     }
   }
 }

@@ -20,7 +20,7 @@ std::vector<std::string> patterns_of(const std::vector<ObjSequence>& sequences) 
 std::vector<NewtonFrom> handed_over(const Simulator& simulator) {
   std::vector<NewtonFrom> bodies;
   for (std::size_t b = 0; b < simulator.network().bodies.size(); ++b) {
-    const StretchHandover& handover = simulator.state().stretch_holds[b];
+    const StretchHandover& handover = simulator.state().stretch_handovers[b];
     if (handover.solved_since) bodies.push_back({.body = simulator.network().bodies[b].name, .step = *handover.solved_since});
   }
   return bodies;

@@ -133,7 +133,7 @@ StepReport Simulator::Implementation::make_substep() {
 void Simulator::Implementation::choose_substeps(const StepReport& report) {
   const double dt_before = dt();
   const StretchLimit& limit = *constraints.limit();
-  if (limit.follows_turn(state.stretch_holds)) {
+  if (limit.follows_turn(state.stretch_handovers)) {
     refinement->choose_by_turn(report.turn, state);
   } else if (!waits_for_turn) {
     refinement->choose(report.stretch_excess, state);

@@ -261,9 +261,10 @@ TEST_F(RunOutputFiles, RecordTellsFromWhenOnNewtonHoldsABody) {
     const FrameDiagnostics next = runner.next_frame();
     output.write_frame(simulator_, next);
     if (solves == 0 && next.limit_solves > 0) {
-      EXPECT_EQ(record()["newton_from"], nlohmann::json::parse(R"([{"body": "cloth", "step": )" +
-                                                               std::to_string(*simulator_.state().stretch_holds[0].solved_since) +
-                                                               R"(, "frame": )" + std::to_string(frame) + "}]"));
+      EXPECT_EQ(record()["newton_from"],
+                nlohmann::json::parse(R"([{"body": "cloth", "step": )" +
+                                      std::to_string(*simulator_.state().stretch_handovers[0].solved_since) + R"(, "frame": )" +
+                                      std::to_string(frame) + "}]"));
     }
     solves += next.limit_solves;
   }

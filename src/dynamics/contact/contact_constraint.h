@@ -41,10 +41,10 @@ struct ContactConstraint {
 struct ContactGoal {
   Vector3 origin = Vector3::Zero();
   double least = 0.0;
-  double touch = 0.0;              ///< the constraint touches if it is within this distance of `least`, even without a push
-  double push = 0.0;               ///< accumulated change along the normal, >= 0
-  Vector3 held = Vector3::Zero();  ///< accumulated change by friction across the normal
-  bool touches = false;            ///< result of the last projection
+  double touch = 0.0;  ///< the constraint touches if it is within this distance of `least`, even without a push
+  double push = 0.0;   ///< accumulated change along the normal, >= 0
+  Vector3 friction_change = Vector3::Zero();  ///< accumulated change by friction across the normal
+  bool touches = false;                       ///< result of the last projection
 };
 
 /// The total change that friction makes across the normal, where `needed` would leave no slip: `needed` itself while static
@@ -73,9 +73,9 @@ double answer(const ContactConstraint<n>& row, ContactGoal& goal, Points& q) {
   Vector3 answered = change * row.normal;
   if (row.static_friction > 0.0) {
     const Vector3 across = moved - along * row.normal;
-    const Vector3 held = friction_of(row, goal, goal.held - across);
-    answered += held - goal.held;
-    goal.held = held;
+    const Vector3 friction = friction_of(row, goal, goal.friction_change - across);
+    answered += friction - goal.friction_change;
+    goal.friction_change = friction;
   }
   row.change_sum(answered, q);
   return change;

@@ -43,21 +43,21 @@ class ContactConstraintSet {
 
   /// Contacts from `begin` on take over the accumulated push and friction of contacts in `former` with the same particles and
   /// obstacle, in their order. `first_row` holds kNone for each particle, before and after the call.
-  void count_on(const ContactConstraintSet& former, std::size_t begin, std::vector<Index>& first_row) {
+  void warm_start(const ContactConstraintSet& former, std::size_t begin, std::vector<Index>& first_row) {
     std::vector<Index> next_row(former.rows_.size());
     for (std::size_t f = former.rows_.size(); f-- > 0;) {
       next_row[f] = std::exchange(first_of(former.rows_[f], first_row), static_cast<Index>(f));
     }
     for (std::size_t c = begin; c < rows_.size(); ++c) {
       Index* link = &first_of(rows_[c], first_row);
-      while (*link != kNone && !meet_the_same(former.rows_[static_cast<std::size_t>(*link)], rows_[c])) {
+      while (*link != kNone && !is_same_contact(former.rows_[static_cast<std::size_t>(*link)], rows_[c])) {
         link = &next_row[static_cast<std::size_t>(*link)];
       }
       if (*link == kNone) continue;
       const auto f = static_cast<std::size_t>(*link);
       goals_[c].push = former.goals_[f].push;
-      const Vector3& held = former.goals_[f].held;
-      goals_[c].held = held - rows_[c].normal.dot(held) * rows_[c].normal;  // the normal may differ
+      const Vector3& friction = former.goals_[f].friction_change;
+      goals_[c].friction_change = friction - rows_[c].normal.dot(friction) * rows_[c].normal;  // the normal may differ
       *link = next_row[f];
     }
     for (const ContactConstraint<n>& row : former.rows_) first_of(row, first_row) = kNone;
@@ -80,15 +80,15 @@ class ContactConstraintSet {
     for (std::size_t c = 0; c < rows_.size(); ++c) {
       if (!goals_[c].touches) continue;
       const ContactConstraint<n>& row = rows_[c];
-      const Vector3 carrier = (goals_[c].origin - row.sum(motion.before)) / motion.dt;
-      const double speed = row.normal.dot(row.sum(velocities) - carrier);
+      const Vector3 surface_velocity = (goals_[c].origin - row.sum(motion.before)) / motion.dt;
+      const double speed = row.normal.dot(row.sum(velocities) - surface_velocity);
       const double pushed = row.normal.dot(row.sum(positions) - row.sum(motion.advanced)) / motion.dt;
-      const SpeedRange range = settled_speeds(row, goals_[c], motion, carrier, speed - pushed);
+      const SpeedRange range = settled_speeds(row, goals_[c], motion, surface_velocity, speed - pushed);
       // At most its own push: other contacts remove theirs.
       const double taken = std::min(speed - range.most, goals_[c].push / motion.dt);
       if (taken > 0.0) row.change_sum(-taken * row.normal + friction_lost(row, goals_[c], taken, motion.dt), velocities);
       touching_.push_back(c);
-      velocity_goals_.push_back({.origin = carrier, .least = range.least});
+      velocity_goals_.push_back({.origin = surface_velocity, .least = range.least});
     }
   }
 
@@ -120,16 +120,16 @@ class ContactConstraintSet {
   /// the displacement out of the gap.
   static Vector3 friction_lost(const ContactConstraint<n>& row, ContactGoal goal, double taken, double dt) {
     goal.push = std::max(0.0, goal.push - taken * dt);
-    return (friction_of(row, goal, goal.held) - goal.held) / dt;
+    return (friction_of(row, goal, goal.friction_change) - goal.friction_change) / dt;
   }
 
   /// `v_after` is the speed along the normal that forces alone would give.
   static SpeedRange settled_speeds(const ContactConstraint<n>& row, const ContactGoal& goal, const StepMotion& motion,
-                                   const Vector3& carrier, double v_after) {
+                                   const Vector3& surface_velocity, double v_after) {
     if (row.restitution == 0.0) return {.least = 0.0, .most = std::max(0.0, v_after)};
     return sprung::settled_speeds({.height = -goal.least,
                                    .moved = row.normal.dot(row.sum(motion.advanced) - goal.origin),
-                                   .v_before = row.normal.dot(row.sum(motion.v_before) - carrier),
+                                   .v_before = row.normal.dot(row.sum(motion.v_before) - surface_velocity),
                                    .v_after = v_after,
                                    .dt = motion.dt},
                                   row.restitution);
@@ -149,7 +149,7 @@ class ContactConstraintSet {
     return first_row[static_cast<std::size_t>(row.particles[0])];
   }
 
-  static bool meet_the_same(const ContactConstraint<n>& a, const ContactConstraint<n>& b) {
+  static bool is_same_contact(const ContactConstraint<n>& a, const ContactConstraint<n>& b) {
     return a.particles == b.particles && a.obstacle == b.obstacle;
   }
 

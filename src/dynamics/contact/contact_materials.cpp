@@ -6,7 +6,7 @@
 namespace sprung {
 namespace {
 
-ContactMaterial meet(const ContactMaterial& first, const ContactMaterial& second, double thickness) {
+ContactMaterial combine_sides(const ContactMaterial& first, const ContactMaterial& second, double thickness) {
   return {.thickness = thickness,
           .friction = std::sqrt(first.friction * second.friction),
           .static_friction = std::sqrt(first.static_friction * second.static_friction),
@@ -16,11 +16,11 @@ ContactMaterial meet(const ContactMaterial& first, const ContactMaterial& second
 }  // namespace
 
 ContactMaterial combine(const ContactMaterial& body, const ContactMaterial& obstacle) {
-  return meet(body, obstacle, body.thickness + obstacle.thickness);
+  return combine_sides(body, obstacle, body.thickness + obstacle.thickness);
 }
 
 ContactMaterial combine_bodies(const ContactMaterial& first, const ContactMaterial& second) {
-  return meet(first, second, 0.5 * (first.thickness + second.thickness));
+  return combine_sides(first, second, 0.5 * (first.thickness + second.thickness));
 }
 
 Scalars particle_thickness(const SpringNetwork& network) {
@@ -49,7 +49,7 @@ const ContactMaterial& ContactMaterials::of(const Contact& contact, Last& last) 
   return last.material;
 }
 
-// A corner of weight 0 does not tell the body of its side.
+// A corner of weight 0 does not determine the body of its side.
 ContactMaterials::Pair ContactMaterials::pair_of(const Contact& contact) const {
   Pair pair{.obstacle = contact.obstacle};
   for (int k = 0; k < contact.count; ++k) {

@@ -63,7 +63,7 @@ class ContactProjection {
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {
     solver_.settle_velocities(motion, state, integrator);
   }
-  void hold_pushed(ConstrainedDirections& constrained) const { solver_.hold_pushed(constrained); }
+  void constrain_pushed(ConstrainedDirections& constrained) const { solver_.constrain_pushed(constrained); }
   [[nodiscard]] Index contact_count() const { return solver_.pushed_count(); }
 
   /// Clips positions [m] so that no element crosses a surface that it did not cross at the beginning of the step. If two bodies

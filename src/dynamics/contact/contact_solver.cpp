@@ -106,12 +106,12 @@ void ContactSolver::renew(const FreshContacts& fresh, const StepMotion& motion) 
     set.take_out(fresh.patches, former);
     const std::size_t kept = set.count();
     fill(set, kept, fresh.contacts, motion);
-    set.count_on(former, kept, first_row_);
+    set.warm_start(former, kept, first_row_);
   });
 }
 
-void ContactSolver::add(const std::vector<Contact>& meetings, const StepMotion& motion) {
-  for_each_set(sets_, [&](auto& set) { fill(set, set.count(), meetings, motion); });
+void ContactSolver::add(const std::vector<Contact>& contacts, const StepMotion& motion) {
+  for_each_set(sets_, [&](auto& set) { fill(set, set.count(), contacts, motion); });
 }
 
 template <std::size_t n>
@@ -185,9 +185,10 @@ void ContactSolver::settle_velocities(const StepMotion& motion, SimulationState&
   });
 }
 
-void ContactSolver::hold_pushed(ConstrainedDirections& held) const {
-  for_each_set(
-      sets_, [&](const auto& set) { set.for_pushed([&](Index particle, const Vector3& normal) { held.add(particle, normal); }); });
+void ContactSolver::constrain_pushed(ConstrainedDirections& constrained) const {
+  for_each_set(sets_, [&](const auto& set) {
+    set.for_pushed([&](Index particle, const Vector3& normal) { constrained.add(particle, normal); });
+  });
 }
 
 Index ContactSolver::pushed_count() const {

@@ -35,7 +35,7 @@ class ContactSolver {
   void renew(const FreshContacts& fresh, const StepMotion& motion);
 
   /// Adds contacts between elements to those of the step.
-  void add(const std::vector<Contact>& meetings, const StepMotion& motion);
+  void add(const std::vector<Contact>& contacts, const StepMotion& motion);
 
   /// One Gauss-Seidel pass. Each contact moves its particles, weighted by inverse mass, out to its gap. Friction acts on the
   /// motion along the surface relative to the touched point: it stops that motion while static friction times the push suffices,
@@ -49,7 +49,7 @@ class ContactSolver {
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator);
 
   /// Adds the normals along which particles were pushed in this step.
-  void hold_pushed(ConstrainedDirections& held) const;
+  void constrain_pushed(ConstrainedDirections& constrained) const;
 
   /// Number of particles pushed in this step.
   [[nodiscard]] Index pushed_count() const;
@@ -71,7 +71,7 @@ class ContactSolver {
   Sets sets_;
   Sets former_sets_;              ///< what renew() takes out
   std::vector<Index> order_;      ///< contacts with as many particles as the set that is being filled
-  std::vector<Index> first_row_;  ///< see ContactConstraintSet::count_on
+  std::vector<Index> first_row_;  ///< see ContactConstraintSet::warm_start
 };
 
 }  // namespace sprung

@@ -59,9 +59,9 @@ void PenaltyContact::add_derivatives(const Kinematics& at, ForceDerivatives& der
     const Index i = contact.particles[0];
     const Matrix3 out = contact.normal * contact.normal.transpose();
     derivatives.by_position.add(i, i, -stiffness_ * out);
-    Matrix3 held = Matrix3::Identity() - out;
-    if (touched.slides) held -= touched.along * touched.along.transpose() / touched.along.squaredNorm();
-    derivatives.by_velocity.add(i, i, -damping_ * out - touched.rub * held);
+    Matrix3 tangential = Matrix3::Identity() - out;
+    if (touched.slides) tangential -= touched.along * touched.along.transpose() / touched.along.squaredNorm();
+    derivatives.by_velocity.add(i, i, -damping_ * out - touched.rub * tangential);
   }
 }
 

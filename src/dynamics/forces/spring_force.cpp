@@ -78,7 +78,7 @@ void add_singles(const SpringPlan::Block& block, const Springs& springs, const K
 
 /// A spring's sideways stiffness relative to its stiffness. A spring of zero length has no direction: if its rest length is zero
 /// it restores equally in all directions, otherwise not at all.
-double sideways_part(double length, double rest_length) {
+double transverse_ratio(double length, double rest_length) {
   if (length == 0.0) return rest_length == 0.0 ? 1.0 : 0.0;
   return std::max(0.0, 1.0 - rest_length / length);
 }
@@ -114,7 +114,7 @@ void SpringForce::add_derivatives(const Kinematics& at, ForceDerivatives& deriva
     const double length = difference.norm();
     const Vector3 e = length > 0.0 ? Vector3(difference / length) : Vector3(Vector3::Zero());
     const Matrix3 along = e * e.transpose();
-    const Matrix3 across = sideways_part(length, springs.rest_length[s]) * (Matrix3::Identity() - along);
+    const Matrix3 across = transverse_ratio(length, springs.rest_length[s]) * (Matrix3::Identity() - along);
     derivatives.by_position.add_difference(a, b, -springs.stiffness[s] * (along + across));
     if (springs.damping[s] > 0.0) derivatives.by_velocity.add_difference(a, b, -springs.damping[s] * along);
   }

@@ -56,25 +56,25 @@ class Planner {
       const Index first_block = (line.first + i) / size_;
       const Index second_block = (line.second + i) / size_;
       const Index end = std::min({line.end, (first_block + 1) * size_ - line.first, (second_block + 1) * size_ - line.second});
-      const Line part{line.first, line.second, line.spring, i, end};
-      add_part(blocks_[first_block], part, true, first_block == second_block);
-      if (first_block != second_block) add_part(blocks_[second_block], part, false, true);
+      const Line section{line.first, line.second, line.spring, i, end};
+      add_section(blocks_[first_block], section, true, first_block == second_block);
+      if (first_block != second_block) add_section(blocks_[second_block], section, false, true);
       i = end;
     }
   }
 
  private:
-  void add_part(SpringPlan::Block& block, const Line& part, bool writes_first, bool writes_second) const {
-    if (part.end - part.begin < kShortestRun) {
-      for (Index i = part.begin; i < part.end; ++i) {
-        block.singles.push_back({part.first + i, part.second + i, part.spring + i, writes_first, writes_second});
+  void add_section(SpringPlan::Block& block, const Line& section, bool writes_first, bool writes_second) const {
+    if (section.end - section.begin < kShortestRun) {
+      for (Index i = section.begin; i < section.end; ++i) {
+        block.singles.push_back({section.first + i, section.second + i, section.spring + i, writes_first, writes_second});
       }
       return;
     }
-    for (Index i = part.begin; i < part.end;) {
-      const Index count = batch_size(part.end - i);
-      const Index spring = part.spring + i;
-      block.runs.push_back({part.first + i, part.second + i, spring, count, writes_first, writes_second,
+    for (Index i = section.begin; i < section.end;) {
+      const Index count = batch_size(section.end - i);
+      const Index spring = section.spring + i;
+      block.runs.push_back({section.first + i, section.second + i, spring, count, writes_first, writes_second,
                             all_same(springs_.rest_length, spring, count), all_same(springs_.stiffness, spring, count),
                             all_same(springs_.damping, spring, count)});
       i += count;

@@ -16,9 +16,9 @@ class ConstrainedDirections {
   /// ignored: several contacts with a round surface would otherwise fix the particle.
   void add(Index particle, const Vector3& direction) {
     constexpr double kAnother = 0.5;  // sine of 30 degrees
-    Matrix3& held = projections_[static_cast<std::size_t>(particle)];
-    const Vector3 another = direction - held * direction;
-    if (another.norm() > kAnother * direction.norm()) held += another.normalized() * another.normalized().transpose();
+    Matrix3& constrained = projections_[static_cast<std::size_t>(particle)];
+    const Vector3 another = direction - constrained * direction;
+    if (another.norm() > kAnother * direction.norm()) constrained += another.normalized() * another.normalized().transpose();
   }
 
   /// The projection onto the constrained directions of a particle.

@@ -36,7 +36,7 @@ class ImplicitEuler final : public Integrator {
 
   // One more Newton step on the scheme's own equations, M (v - v(t)) = dt F(x, v), from the positions that contact gave. A
   // response to first order alone would let contact stretch the springs far too much.
-  void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, const ConstrainedDirections& held,
+  void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, const ConstrainedDirections& constrained,
                       SimulationState& state) override {
     v_ = motion.v_before;
     for_free_particles(network(), [&](Index i) {
@@ -50,7 +50,7 @@ class ImplicitEuler final : public Integrator {
     system_->assemble(derivatives_, motion.dt);
     for_free_particles(network(), [&](Index i) {
       gained_.col(i) = motion.dt * gained_.col(i) + pushed_.col(i) - network().masses[i] * (v_.col(i) - motion.v_before.col(i));
-      system_->hold(i, held.projection(i));
+      system_->constrain(i, constrained.projection(i));
     });
     system_->solve(gained_);
     for_free_particles(network(), [&](Index i) { state.x.col(i) += motion.dt * gained_.col(i); });

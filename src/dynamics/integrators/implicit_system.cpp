@@ -7,7 +7,7 @@ namespace sprung {
 namespace {
 
 // The weight of a constraint relative to its particle's equations. They then violate it by a millionth, and 10 digits remain.
-constexpr double kHoldWeight = 1 << 20;
+constexpr double kConstraintWeight = 1 << 20;
 
 std::vector<bool> pins_of(const SpringNetwork& network) {
   std::vector<bool> pinned;
@@ -27,8 +27,8 @@ void ImplicitSystem::assemble(const ForceDerivatives& derivatives, double dt) {
   matrix_.add_scaled(derivatives.by_position, -dt * dt);
 }
 
-void ImplicitSystem::hold(Index particle, const Matrix3& projection) {
-  matrix_.add(particle, particle, kHoldWeight * matrix_.diagonal(particle).trace() * projection);
+void ImplicitSystem::constrain(Index particle, const Matrix3& projection) {
+  matrix_.add(particle, particle, kConstraintWeight * matrix_.diagonal(particle).trace() * projection);
 }
 
 void ImplicitSystem::solve(Points& vectors) {

@@ -21,7 +21,7 @@ class ImplicitSystem {
   /// Constrains the solution of a free particle to have no component in the range of `projection`, by a large weight (the
   /// constraints of Baraff and Witkin 1998). A zero projection constrains nothing. Call after `assemble`, at most once per
   /// particle. Thread-safe for different particles.
-  void hold(Index particle, const Matrix3& projection);
+  void constrain(Index particle, const Matrix3& projection);
 
   /// Replaces the right-hand sides b of free particles by the solution y, and those of pinned particles by zero; 3 x n. The result
   /// is not finite if the matrix is not.

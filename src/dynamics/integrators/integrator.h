@@ -64,8 +64,8 @@ class Integrator {
   /// Responds to contact, which moved some particles from `from` (the result of `advance` or of the last response) to state.x [m].
   /// A scheme that solves for the forces at the end of the step moves all particles to the new solution, except along their
   /// constrained directions, where contact balances any force. Default: does nothing.
-  virtual void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, const ConstrainedDirections& held,
-                              SimulationState& state);
+  virtual void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from,
+                              const ConstrainedDirections& constrained, SimulationState& state);
 
   /// Computes the velocities after constraints moved the particles from `advanced` (the result of `advance`) to state.x; `before`
   /// are the positions at t. Default: v += (x - advanced) / dt. A scheme whose velocities depend on the forces at the end of the

@@ -131,7 +131,7 @@ double BlockCholesky<Number>::take(const Points& right) {
   const double scale = scale_to_one(right.size() > 0 ? right.cwiseAbs().maxCoeff() : 0.0);
   std::ranges::fill(vector_, Number{});
   for (Index i = 0; i < right.cols(); ++i) {
-    if (layout_.slot[i] != kNone) Part::Map(&vector_[layout_.slot[i]]) = (scale * right.col(i)).template cast<Number>();
+    if (layout_.slot[i] != kNone) Vector::Map(&vector_[layout_.slot[i]]) = (scale * right.col(i)).template cast<Number>();
   }
   return scale;
 }
@@ -140,7 +140,7 @@ template <class Number>
 void BlockCholesky<Number>::substitute(const Front& front) {
   solve_front(front.shape, &panels_[front.panel], &vector_[front.first_slot], below_.data());
   const std::span<const Index> lower = layout_.lower_of(front);
-  for (std::size_t k = 0; k < lower.size(); ++k) Part::Map(&vector_[lower[k]]) -= Part::Map(&below_[3 * k]);
+  for (std::size_t k = 0; k < lower.size(); ++k) Vector::Map(&vector_[lower[k]]) -= Vector::Map(&below_[3 * k]);
 }
 
 template <class Number>
@@ -151,7 +151,7 @@ void BlockCholesky<Number>::substitute_back() {
     // Padding rows are zero in L, but zero times a non-finite number is not zero.
     std::fill_n(below_.begin(), front.shape.lower_height(), Number{});
     const std::span<const Index> lower = layout_.lower_of(front);
-    for (std::size_t k = 0; k < lower.size(); ++k) Part::Map(&below_[3 * k]) = Part::Map(&vector_[lower[k]]);
+    for (std::size_t k = 0; k < lower.size(); ++k) Vector::Map(&below_[3 * k]) = Vector::Map(&vector_[lower[k]]);
     solve_front_transposed(front.shape, &panels_[front.panel], &inverse_[front.first_slot], &vector_[front.first_slot],
                            below_.data(), row_.data());
   }
@@ -166,7 +166,7 @@ void BlockCholesky<Number>::give(double scale, Points& solution) const {
     if (layout_.slot[i] == kNone) {
       solution.col(i).setZero();
     } else {
-      solution.col(i) = back * Part::Map(&vector_[layout_.slot[i]]).template cast<double>();
+      solution.col(i) = back * Vector::Map(&vector_[layout_.slot[i]]).template cast<double>();
     }
   }
 }

@@ -28,7 +28,7 @@ class BlockCholesky {
   void solve(const Points& right, Points& solution);
 
  private:
-  using Part = Eigen::Matrix<Number, 3, 1>;
+  using Vector = Eigen::Matrix<Number, 3, 1>;
   using Front = FrontLayout::Front;
 
   // Loosely coupled particles pass on smaller and smaller numbers, down to denormal ones, which are slow. Callers keep a

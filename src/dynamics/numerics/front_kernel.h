@@ -57,12 +57,12 @@ struct RowRun {
 
 /// Where the rows of a front's update begin in its parent's panel, ascending.
 struct PanelRows {
-  struct Place {
+  struct Row {
     Index from;
     Index to;
   };
-  std::span<const Place> whole;   ///< the first of four neighbouring rows that fill a row of tiles
-  std::span<const Place> single;  ///< all other rows
+  std::span<const Row> whole;   ///< the first of four neighbouring rows that fill a row of tiles
+  std::span<const Row> single;  ///< all other rows
 };
 
 /// Adds a child's update to its parent's own columns, before the parent is eliminated. `columns` are the first rows below of the

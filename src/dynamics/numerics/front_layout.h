@@ -53,18 +53,18 @@ struct FrontLayout {
   /// Rows and columns flagged in `left_out` are excluded; an empty vector excludes none.
   FrontLayout(const BlockMatrix& pattern, const std::vector<bool>& left_out);
 
-  [[nodiscard]] std::span<const Index> lower_of(const Front& front) const { return part(lower, front.lower); }
-  [[nodiscard]] std::span<const Child> children_of(const Front& front) const { return part(children, front.children); }
-  [[nodiscard]] std::span<const Index> columns_of(const Child& child) const { return part(columns, child.columns); }
-  [[nodiscard]] PanelRows rows_of(const Child& child) const { return {part(whole, child.whole), part(single, child.single)}; }
-  [[nodiscard]] std::span<const RowRun> runs_of(const Child& child) const { return part(runs, child.runs); }
+  [[nodiscard]] std::span<const Index> lower_of(const Front& front) const { return slice(lower, front.lower); }
+  [[nodiscard]] std::span<const Child> children_of(const Front& front) const { return slice(children, front.children); }
+  [[nodiscard]] std::span<const Index> columns_of(const Child& child) const { return slice(columns, child.columns); }
+  [[nodiscard]] PanelRows rows_of(const Child& child) const { return {slice(whole, child.whole), slice(single, child.single)}; }
+  [[nodiscard]] std::span<const RowRun> runs_of(const Child& child) const { return slice(runs, child.runs); }
 
   std::vector<Front> fronts;  ///< children before their parents
   std::vector<Index> lower;   ///< one front after the other, as all arrays up to `entries`
   std::vector<Child> children;
   std::vector<Index> columns;
-  std::vector<PanelRows::Place> whole;
-  std::vector<PanelRows::Place> single;
+  std::vector<PanelRows::Row> whole;
+  std::vector<PanelRows::Row> single;
   std::vector<RowRun> runs;
   std::vector<Entry> entries;
   std::vector<Index> slot;  ///< slot of each particle, or kNone
@@ -74,7 +74,7 @@ struct FrontLayout {
 
  private:
   template <class T>
-  [[nodiscard]] static std::span<const T> part(const std::vector<T>& of, Range range) {
+  [[nodiscard]] static std::span<const T> slice(const std::vector<T>& of, Range range) {
     return std::span(of).subspan(range.begin, range.end - range.begin);
   }
   /// Row of a slot in a front: one of its own rows or of the rows below.

@@ -37,7 +37,7 @@ class Order {
     for (std::size_t colour = 0; colour + 1 < colour_begin.size(); ++colour) {
       for (Index p = colour_begin[colour]; p < colour_begin[colour + 1]; ++p) {
         waiting_.push_back(p);
-        places_.push_back(lowest_particle(p) + static_cast<Index>(colour) * kBandsBetweenColours * band);
+        ranks_.push_back(lowest_particle(p) + static_cast<Index>(colour) * kBandsBetweenColours * band);
       }
     }
   }
@@ -102,7 +102,7 @@ class Order {
     }
     using Entry = std::pair<Index, std::size_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> ready;
-    const auto make_ready = [&](std::size_t k) { ready.emplace(places_[members[k]], k); };
+    const auto make_ready = [&](std::size_t k) { ready.emplace(ranks_[members[k]], k); };
     for (std::size_t k = 0; k < members.size(); ++k) {
       if (missing[k] == 0) make_ready(k);
     }
@@ -125,7 +125,7 @@ class Order {
   const SpringBatches& batches_;
   Index particles_;
   std::vector<Index> waiting_;  ///< in the order of their colours
-  std::vector<Index> places_;
+  std::vector<Index> ranks_;
   std::vector<Index> order_;
   std::vector<Index> task_begin_{0};
   std::vector<Index> stage_begin_{0};
@@ -142,7 +142,7 @@ void order_by_colour(const std::vector<Index>& colour_begin, SpringBatches& batc
   }
 }
 
-void order_by_place(const std::vector<Index>& colour_begin, Index band, Index particles, SpringBatches& batches) {
+void order_by_locality(const std::vector<Index>& colour_begin, Index band, Index particles, SpringBatches& batches) {
   const auto colours = static_cast<Index>(colour_begin.size()) - 1;
   const Index least = static_cast<Index>(batches.batch.size()) >= kBatchesForTwo ? 2 : 1;
   const Index chunks = std::max(least, particles / std::max(1, kBandsPerColour * colours * band));

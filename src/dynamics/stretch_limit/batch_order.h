@@ -12,6 +12,6 @@ void order_by_colour(const std::vector<Index>& colour_begin, SpringBatches& batc
 /// For narrow networks, whose springs join particles at most `band` apart: all colours of some particles before those of the next,
 /// while the particles are in the cache. Particles are cut into chunks. Batches of one chunk alone run in parallel with those of
 /// other chunks; the batches between chunks follow.
-void order_by_place(const std::vector<Index>& colour_begin, Index band, Index particles, SpringBatches& batches);
+void order_by_locality(const std::vector<Index>& colour_begin, Index band, Index particles, SpringBatches& batches);
 
 }  // namespace sprung

@@ -33,8 +33,8 @@ struct GatheredGroup {
     Lanes first[kSimdWidth];
     Lanes second[kSimdWidth];
     for (Index k = 0; k < kSimdWidth; ++k) {
-      load_one(positions + place_of(batches.first[s + k]), first[k]);
-      load_one(positions + place_of(batches.second[s + k]), second[k]);
+      load_one(positions + offset_of(batches.first[s + k]), first[k]);
+      load_one(positions + offset_of(batches.second[s + k]), second[k]);
     }
     for (Index k = 0; k < kSimdWidth; ++k) {
       const Lanes between = second[k] - first[k];
@@ -46,16 +46,16 @@ struct GatheredGroup {
         first[k] += pushes.first[k] * between_before;
         second[k] -= pushes.second[k] * between_before;
       }
-      store_one(first[k], positions + place_of(batches.first[s + k]));
-      store_one(second[k], positions + place_of(batches.second[s + k]));
+      store_one(first[k], positions + offset_of(batches.first[s + k]));
+      store_one(second[k], positions + offset_of(batches.second[s + k]));
     }
   }
 
  private:
   [[gnu::always_inline]] static void find_between(const SpringBatches& batches, Index s, const double* positions, Lanes& between) {
     Lanes first;
-    load_one(positions + place_of(batches.first[s]), first);
-    load_one(positions + place_of(batches.second[s]), between);
+    load_one(positions + offset_of(batches.first[s]), first);
+    load_one(positions + offset_of(batches.second[s]), between);
     between -= first;
   }
 

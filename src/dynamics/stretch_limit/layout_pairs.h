@@ -17,16 +17,16 @@ struct PairGroup {
 
   [[gnu::always_inline]] static void find_squared(const SpringBatches& batches, Index s, const double* positions, Lanes& squared) {
     Lanes of_others;
-    find_squared_of_half(positions + place_of(batches.first[s]), squared);
-    find_squared_of_half(positions + place_of(start_of_others(batches, s)), of_others);
+    find_squared_of_half(positions + offset_of(batches.first[s]), squared);
+    find_squared_of_half(positions + offset_of(start_of_others(batches, s)), of_others);
     merge(of_others, squared);
   }
 
   template <class Pushes>
   [[gnu::always_inline]] static void move(const SpringBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
                                           const double* before, double* positions) {
-    const std::ptrdiff_t some_at = place_of(batches.first[s]);
-    const std::ptrdiff_t others_at = place_of(start_of_others(batches, s));
+    const std::ptrdiff_t some_at = offset_of(batches.first[s]);
+    const std::ptrdiff_t others_at = offset_of(start_of_others(batches, s));
     PackedVectors4 fractions;
     PackedVectors4 of_others;
     PackedVectors4 some;

@@ -26,8 +26,8 @@ struct RunGroup {
   template <class Pushes>
   [[gnu::always_inline]] static void move(const SpringBatches& batches, Index s, const Moves<Lanes>& pulls, const Pushes& pushes,
                                           const double* before, double* positions) {
-    double* const first_at = positions + place_of(batches.first[s]);
-    double* const second_at = positions + place_of(batches.second[s]);
+    double* const first_at = positions + offset_of(batches.first[s]);
+    double* const second_at = positions + offset_of(batches.second[s]);
     PackedVectors4 first;
     PackedVectors4 second;
     load(first_at, first);
@@ -47,8 +47,8 @@ struct RunGroup {
   [[gnu::always_inline]] static void find_between(const SpringBatches& batches, Index s, const double* positions,
                                                   PackedVectors4& between) {
     PackedVectors4 first;
-    load(positions + place_of(batches.first[s]), first);
-    load(positions + place_of(batches.second[s]), between);
+    load(positions + offset_of(batches.first[s]), first);
+    load(positions + offset_of(batches.second[s]), between);
     subtract(between, first, between);
   }
 

@@ -19,6 +19,6 @@ struct Moves {
 /// No displacements along the earlier direction.
 struct NoPushes {};
 
-[[gnu::always_inline]] inline std::ptrdiff_t place_of(Index particle) { return std::ptrdiff_t{3} * particle; }
+[[gnu::always_inline]] inline std::ptrdiff_t offset_of(Index particle) { return std::ptrdiff_t{3} * particle; }
 
 }  // namespace sprung

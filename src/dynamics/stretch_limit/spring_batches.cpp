@@ -115,7 +115,7 @@ class Filler {
     for (const Piece& run : runs) {
       const Index from = batches_.count();
       for (Index s = run.begin; s < run.begin + run.count; ++s) append(s);
-      add_part(from, SpringBatches::Layout::run);
+      end_batch(from, SpringBatches::Layout::run);
     }
   }
 
@@ -140,7 +140,7 @@ class Filler {
       const std::size_t end = batch_end(springs, begin);
       for (std::size_t i = begin; i < end; ++i) append(springs[i]);
       while (batches_.count() % kSimdWidth != 0) append(springs[end - 1]);
-      add_part(from, layout);
+      end_batch(from, layout);
       begin = end;
     }
   }
@@ -164,7 +164,7 @@ class Filler {
     batches_.first_share.push_back(network_.inverse_masses[a] / (network_.inverse_masses[a] + network_.inverse_masses[b]));
   }
 
-  void add_part(Index from, SpringBatches::Layout layout) {
+  void end_batch(Index from, SpringBatches::Layout layout) {
     const auto same = [&](const std::vector<double>& values) {
       return std::all_of(values.begin() + from, values.end(), [&](double value) { return value == values[from]; });
     };
@@ -194,7 +194,7 @@ SpringBatches::SpringBatches(const SpringNetwork& network, const std::vector<Spr
     }
   }
   if (is_narrow) {
-    order_by_place(colour_begin, band, network.particle_count(), *this);
+    order_by_locality(colour_begin, band, network.particle_count(), *this);
   } else {
     order_by_colour(colour_begin, *this);
   }

@@ -36,7 +36,7 @@ Farthest farthest_from(const Body& body, const SpringGraph& graph, const std::ve
 }
 
 /// Half the springs on the path between two distant ends of the body.
-double half_way(const Body& body, const SpringGraph& graph, Index start) {
+double half_path(const Body& body, const SpringGraph& graph, Index start) {
   const Index end = farthest_from(body, graph, {start}).particle;
   return 0.5 * farthest_from(body, graph, {end}).springs;
 }
@@ -50,13 +50,13 @@ Index count_ends(const Body& body, const SpringGraph& graph) {
 
 }  // namespace
 
-bool holds_shape(const Body& body, const SpringGraph& graph) {
+bool is_rigid(const Body& body, const SpringGraph& graph) {
   return body.dimension == 2 && count_ends(body, graph) / 2 >= 2 * body.particle_count - 3;
 }
 
 // Passes spread excess like diffusion: a displacement u of n particles leaves on average n u / d at the pin. A spring has no
-// excess right after its own projection, but its neighbours add some again: the last of the springs that meet at a particle holds
-// what all of them hold on average. Measured: 1.8 to 1.9 times the average for hanging ropes (2 springs a particle), 4.0 for
+// excess right after its own projection, but its neighbours add some again: the last spring of a particle keeps the average
+// excess of all its springs. Measured: 1.8 to 1.9 times the average for hanging ropes (2 springs a particle), 4.0 for
 // cloths (4 springs).
 //
 // Tethers pass on the load that hangs straight below a pin; a strand still carries what hangs sideways. Measured with one pass a
@@ -82,12 +82,12 @@ double largest_load(const SpringNetwork& network, const Body& body, const Spring
     }
   }
   if (joined == kNone) return 0.0;
-  const double meeting = static_cast<double>(count_ends(body, graph)) / body.particle_count;
-  if (pins.empty()) return half_way(body, graph, joined) * meeting / shortest;
+  const double ends_per_particle = static_cast<double>(count_ends(body, graph)) / body.particle_count;
+  if (pins.empty()) return half_path(body, graph, joined) * ends_per_particle / shortest;
   const auto free = network.inverse_masses.segment(body.first_particle, body.particle_count).array() > 0.0;
   const double shared = static_cast<double>(free.count()) / static_cast<double>(pins.size());
   const double carried = load_case.tethers ? farthest_from(body, graph, pins).springs : shared;
-  const double spread = load_case.shared ? (load_case.tethers ? kTetheredShare : kShare) / meeting : meeting;
+  const double spread = load_case.shared ? (load_case.tethers ? kTetheredShare : kShare) / ends_per_particle : ends_per_particle;
   return carried * spread / shortest_at_pin;
 }
 

@@ -12,7 +12,7 @@ struct LoadCase {
 };
 
 /// Whether the limited springs of a surface make it rigid within itself: 2 n - 3 springs for n particles (Maxwell 1864).
-[[nodiscard]] bool holds_shape(const Body& body, const SpringGraph& graph);
+[[nodiscard]] bool is_rigid(const Body& body, const SpringGraph& graph);
 
 /// The relative excess of a body's most loaded limited spring after a Gauss-Seidel pass, per metre that each particle moved down
 /// before it [1/m]; 0 without limited springs. It is the number of carried particles, times the springs that meet at a particle,

@@ -15,7 +15,7 @@
 namespace sprung {
 namespace {
 
-// Without any tolerance a limit is never met exactly: steps are chosen for this excess then.
+// Without any tolerance a limit is never reached exactly: steps are chosen for this excess then.
 constexpr double kLeastExcess = 1.0e-3;
 
 // Springs that may shrink by no more than this fraction of the excess hardly let a surface neck.
@@ -40,7 +40,7 @@ LengthRange length_range(const StretchLimitSettings& settings) {
 }
 
 /// Whether springs may shrink by no more than a fraction of the wanted excess.
-bool holds_both_ways(const StretchLimitSettings& settings) {
+bool prevents_shrinking(const StretchLimitSettings& settings) {
   return settings.max_compression <= kLeastPlay * wanted_excess(settings);
 }
 
@@ -61,19 +61,19 @@ StretchLimit::~StretchLimit() = default;
 double StretchLimit::project(const Points& before, Points& positions, double relaxation) const {
   if (tethers_) tethers_->project(positions);
   const LengthRange range = length_range(settings_);
-  SquaredLengths met;
+  SquaredLengths measured;
   for (std::size_t stage = 0; stage + 1 < batches_->stage_begin.size(); ++stage) {
-    met.include(
+    measured.include(
         extremes(*batches_, batches_->stage_begin[stage], batches_->stage_begin[stage + 1], [&](const BatchRange& batch_range) {
           return project_springs(*batches_, batch_range, range, relaxation, before.data(), positions.data());
         }));
   }
-  return met.excess(range);
+  return measured.excess(range);
 }
 
 std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double fall,
-                                       const std::vector<StretchHandover>& holds) const {
-  return newton_ ? newton_->solve(before, positions, fall, holds) : std::nullopt;
+                                       const std::vector<StretchHandover>& handovers) const {
+  return newton_ ? newton_->solve(before, positions, fall, handovers) : std::nullopt;
 }
 
 double StretchLimit::excess(const Points& positions) const {
@@ -83,27 +83,28 @@ double StretchLimit::excess(const Points& positions) const {
 
 double StretchLimit::excess(const Points& positions, const Body& body) const {
   const Springs& springs = network_.springs;
-  SquaredLengths met;
+  SquaredLengths measured;
   for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
     if (!is_limited(network_, settings_.kinds, s)) continue;
     const double squared = (positions.col(springs.second[s]) - positions.col(springs.first[s])).squaredNorm();
     const double relative = squared / (springs.rest_length[s] * springs.rest_length[s]);
-    met.include({.longest = relative, .shortest = relative});
+    measured.include({.longest = relative, .shortest = relative});
   }
-  return met.excess(length_range(settings_));
+  return measured.excess(length_range(settings_));
 }
 
 const StretchLimitSettings& StretchLimit::settings() const { return settings_; }
 
 std::string StretchLimit::chosen_solver() const {
-  std::string held;
+  std::string solved;
   for (std::size_t b = 0; newton_ && b < network_.bodies.size(); ++b) {
-    if (!newton_->takes_any_of(b)) continue;
+    if (!newton_->solves_any_of(b)) continue;
     const Body& body = network_.bodies[b];
-    held += std::string(held.empty() ? "" : ", ") + (newton_->holds(body) ? "\"" : "chains and trees of \"") + body.name + "\"";
+    solved +=
+        std::string(solved.empty() ? "" : ", ") + (newton_->solves(body) ? "\"" : "chains and trees of \"") + body.name + "\"";
   }
-  if (newton_ && newton_->takes_any() && newton_->holds_all()) return "newton";
-  const std::string passes = held.empty() ? "gauss_seidel" : "newton for " + held + ", gauss_seidel for the rest";
+  if (newton_ && newton_->solves_any() && newton_->solves_all()) return "newton";
+  const std::string passes = solved.empty() ? "gauss_seidel" : "newton for " + solved + ", gauss_seidel for the rest";
   const bool may_change = newton_ && newton_->may_take_over_any();
   return passes + (may_change ? ", then newton for what keeps missing the limit" : "");
 }
@@ -119,7 +120,7 @@ double StretchLimit::suggested_step(double acceleration) const {
   const double excess = wanted_excess(settings_);
   const double passes = settings_.iterations;
   const auto gained_by = [&](const Body& body) {
-    const bool shared = holds_both_ways(settings_) && holds_shape(body, graph);
+    const bool shared = prevents_shrinking(settings_) && is_rigid(body, graph);
     const double alone = largest_load(network_, body, graph, {.tethers = false, .shared = shared}) / passes;
     if (!are_pins_taut(network_, body, tethers, settings_.max_stretch)) return alone;
     const double worth = shared ? 1.0 + std::pow(passes - 1.0, 1.5) : std::cbrt(passes * passes);
@@ -127,20 +128,20 @@ double StretchLimit::suggested_step(double acceleration) const {
   };
   double smallest = std::numeric_limits<double>::infinity();
   for (const Body& body : network_.bodies) {
-    if (newton_ && newton_->holds(body) && settings_.max_compression == 1.0) continue;
+    if (newton_ && newton_->solves(body) && settings_.max_compression == 1.0) continue;
     const double gained = acceleration * gained_by(body);
     if (gained > 0.0) smallest = std::min(smallest, std::sqrt(excess / gained));
   }
   return smallest;
 }
 
-bool StretchLimit::follows_turn(const std::vector<StretchHandover>& holds) const {
+bool StretchLimit::follows_turn(const std::vector<StretchHandover>& handovers) const {
   if (!newton_ || settings_.max_compression < 1.0) return false;
   for (std::size_t b = 0; b < network_.bodies.size(); ++b) {
-    const bool handed_over = !holds.empty() && holds[b].solved_since && newton_->may_take_over(b);
-    if (!handed_over && !newton_->holds(network_.bodies[b])) return false;
+    const bool handed_over = !handovers.empty() && handovers[b].solved_since && newton_->may_take_over(b);
+    if (!handed_over && !newton_->solves(network_.bodies[b])) return false;
   }
-  return newton_->takes_any();
+  return newton_->solves_any();
 }
 
 bool StretchLimit::may_follow_turn() const {
@@ -153,9 +154,9 @@ double StretchLimit::turn() const { return newton_ ? newton_->turn() : 0.0; }
 // tenth of the step within 10 %, and so with steps halved up to three times. With structural springs alone refinement doubled its
 // energy; without tethers it added 15 % for a while.
 bool StretchLimit::bears_smaller_steps() const {
-  if (!tethers_ || !holds_both_ways(settings_)) return false;
+  if (!tethers_ || !prevents_shrinking(settings_)) return false;
   const SpringGraph graph(network_, limited_springs(network_, settings_.kinds));
-  return std::ranges::all_of(network_.bodies, [&](const Body& body) { return holds_shape(body, graph); });
+  return std::ranges::all_of(network_.bodies, [&](const Body& body) { return is_rigid(body, graph); });
 }
 
 }  // namespace sprung

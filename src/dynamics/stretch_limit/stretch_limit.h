@@ -42,10 +42,10 @@ class StretchLimit {
   /// Newton's method on all springs that are too long, for the components that `solver` chooses: moves free particles to where
   /// springs are within max_stretch, with the least weighted displacement. Compression and contact are left to the passes.
   /// `before` are the positions at the beginning of the step. `fall` [m] is a dt^2 with the largest steady acceleration a of
-  /// gravity and wind. `holds` says for each body whether it was handed over; it may be empty. Returns the largest number of
+  /// gravity and wind. `handovers` says for each body whether it was handed over; it may be empty. Returns the largest number of
   /// linear systems of a component; none if nothing was too long.
   std::optional<int> solve(const Points& before, Points& positions, double fall,
-                           const std::vector<StretchHandover>& holds = {}) const;
+                           const std::vector<StretchHandover>& handovers = {}) const;
 
   /// The largest relative excess over the limits.
   [[nodiscard]] double excess(const Points& positions) const;
@@ -73,11 +73,12 @@ class StretchLimit {
   /// others become slack and are thrown.
   [[nodiscard]] bool bears_smaller_steps() const;
 
-  /// Whether Newton's method solves for all springs, counting the bodies that were handed over. It holds the limit at any step,
+  /// Whether Newton's method solves for all springs, counting the bodies that were handed over. It keeps the limit at any step,
   /// but removes more motion the larger the relative deformation in a step, so that steps are chosen by `turn`.
-  [[nodiscard]] bool follows_turn(const std::vector<StretchHandover>& holds = {}) const;
+  [[nodiscard]] bool follows_turn(const std::vector<StretchHandover>& handovers = {}) const;
 
-  /// Whether that holds once all bodies that may be handed over are; the small steps of passes are then no longer needed.
+  /// Whether follows_turn() will be true once all bodies that may be handed over are; the small steps of passes are then no longer
+  /// needed.
   [[nodiscard]] bool may_follow_turn() const;
 
   /// Largest relative deformation in the last solve() [1]: per component, the largest displacement minus the common displacement,

@@ -124,14 +124,14 @@ class Coarsener {
   }
 
   [[nodiscard]] bool lies_between_pins(Index x, Index y) const {
-    const CoarseCloth::Place place = place_of(x, y);
+    const CoarseCloth::Interpolation place = interpolation_at(x, y);
     for (std::size_t k = 0; k < place.points.size(); ++k) {
       if (place.weights[k] > 0.0 && !network_.is_pinned(coarse_particle(place.points[k]))) return false;
     }
     return true;
   }
 
-  [[nodiscard]] CoarseCloth::Place place_of(Index x, Index y) const {
+  [[nodiscard]] CoarseCloth::Interpolation interpolation_at(Index x, Index y) const {
     const Along right = locate(x, xs_);
     const Along up = locate(y, ys_);
     const Index corner = up.before * width() + right.before;
@@ -144,7 +144,7 @@ class Coarsener {
     const auto count = static_cast<Index>(xs_.size() * ys_.size());
     std::vector<double> masses(static_cast<std::size_t>(count), 0.0);
     for (Index i = 0; i < component.free_count; ++i) {
-      const CoarseCloth::Place& place = cloth_.places.emplace_back(place_of_particle(component.points[i]));
+      const CoarseCloth::Interpolation& place = cloth_.interpolations.emplace_back(interpolation_of(component.points[i]));
       for (std::size_t k = 0; k < place.points.size(); ++k) masses[place.points[k]] += place.weights[k] * component.masses[i];
     }
     StretchComponent& coarse = cloth_.component;
@@ -166,9 +166,9 @@ class Coarsener {
     cloth_.component.points.push_back(q);
   }
 
-  [[nodiscard]] CoarseCloth::Place place_of_particle(Index particle) const {
+  [[nodiscard]] CoarseCloth::Interpolation interpolation_of(Index particle) const {
     const Index i = particle - body_.first_particle;
-    return place_of(i % columns_, i / columns_);
+    return interpolation_at(i % columns_, i / columns_);
   }
 
   void add_links() {

@@ -12,7 +12,7 @@ namespace sprung {
 /// A cloth with fewer particles, and the interpolation from its points to the particles of the fine cloth.
 struct CoarseCloth {
   /// The interpolation of a free fine particle from coarse points.
-  struct Place {
+  struct Interpolation {
     std::array<Index, 4> points;    ///< corners of the coarse cell that contains it
     std::array<double, 4> weights;  ///< of the points [1]; their sum is 1
   };
@@ -20,7 +20,7 @@ struct CoarseCloth {
   StretchComponent component;    ///< its points are coarse points, numbered row by row; masses are distributed by weights
   std::vector<Index> particles;  ///< of the network, by coarse point
   std::vector<Index> pins;       ///< coarse points that are pinned; the component contains those linked to free ones
-  std::vector<Place> places;     ///< of the free points of the fine cloth
+  std::vector<Interpolation> interpolations;  ///< of the free points of the fine cloth
 };
 
 /// Makes the coarse copy of a component of the network that springs of `kinds` join. Coarse rows and columns are about two apart,

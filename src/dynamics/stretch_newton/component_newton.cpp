@@ -32,8 +32,8 @@ constexpr double kForecastOfChains = 1.0e-4;
 constexpr double kForecastOfCloths = 0.1;
 constexpr double kForecastOfElasticCloths = 1.0e-3;
 
-// A corrected step sometimes meets its forecast by chance.
-constexpr double kCorrectedPart = 0.3;
+// A corrected step sometimes matches its forecast by chance.
+constexpr double kCorrectedFraction = 0.3;
 
 // A component with less relative deformation than this that took one iteration in the previous step hardly changes. For a moving
 // one, an old factor, made with other slack links, would remove too much of the motion.
@@ -41,11 +41,11 @@ constexpr double kCalmTurn = 1.0 / 240.0;
 
 // Clipped links keep this fraction of the tolerance, so that rounding does not put them beyond the limit; without a tolerance the
 // second constant applies.
-constexpr double kClipPart = 0.99;
+constexpr double kClipFraction = 0.99;
 constexpr double kClipRounding = 1.0 - 0x1p-40;
 
 // Positions are equal if they differ by rounding alone; this fraction of the extent bounds it far from the origin too.
-constexpr double kSamePlace = 0x1p-40;
+constexpr double kSamePosition = 0x1p-40;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
@@ -71,21 +71,21 @@ ComponentNewton::~ComponentNewton() = default;
 
 std::optional<int> ComponentNewton::solve(const Points& before, Points& positions, double fall) {
   gather(before, positions);
-  begin_beside_led();
-  if (rests_in_place()) {
+  set_initial_iterate();
+  if (is_at_rest()) {
     last_iterations_ = 0;
     write_to(positions);
     return 0;
   }
   energy_.set_weight(1.0);
-  const double beyond = energy_.value(led_, led_);
+  const double beyond = energy_.value(target_, target_);
   if (beyond == 0.0) {
     balanced_energy_ = kUnknown;
     return std::nullopt;
   }
   const double weight = carried_weight(fall);
   energy_.set_weight(weight);
-  energy_.find_near(led_);
+  energy_.find_near(target_);
   // Ordering takes time, and a component that is never solved needs none.
   if (!solver_) solver_ = make_system_solver(component_);
   // At the target of the forces the inertia term is zero: all energy is in links and proportional to the load.
@@ -103,21 +103,21 @@ void ComponentNewton::write_to(Points& positions) const {
 void ComponentNewton::gather(const Points& before, const Points& positions) {
   const auto count = static_cast<Index>(component_.points.size());
   before_.resize(Eigen::NoChange, count);
-  led_.resize(Eigen::NoChange, count);
+  target_.resize(Eigen::NoChange, count);
   for (Index i = 0; i < count; ++i) {
     before_.col(i) = before.col(component_.points[i]);
-    led_.col(i) = positions.col(component_.points[i]);
+    target_.col(i) = positions.col(component_.points[i]);
   }
   common_move_ = common_move();
-  farthest_squared_ = ((led_ - before_).colwise() - common_move_).colwise().squaredNorm().maxCoeff();
+  farthest_squared_ = ((target_ - before_).colwise() - common_move_).colwise().squaredNorm().maxCoeff();
   extent_ = bounds(before_).diagonal().norm();
 }
 
 /// The displacement of the pins, or of a free body, whose momentum is then right from the start.
 Vector3 ComponentNewton::common_move() const {
-  if (const Index pins = component_.pin_count(); pins > 0) return (led_ - before_).rightCols(pins).rowwise().mean();
+  if (const Index pins = component_.pin_count(); pins > 0) return (target_ - before_).rightCols(pins).rowwise().mean();
   Vector3 moved = Vector3::Zero();
-  for (Index i = 0; i < component_.free_count; ++i) moved += component_.masses[i] * (led_.col(i) - before_.col(i));
+  for (Index i = 0; i < component_.free_count; ++i) moved += component_.masses[i] * (target_.col(i) - before_.col(i));
   return moved / mass_;
 }
 
@@ -135,14 +135,14 @@ double ComponentNewton::turn() const { return extent_ > 0.0 ? std::sqrt(farthest
 double ComponentNewton::most_beyond() const {
   double most = 0.0;
   for (const StretchComponent::Link& link : component_.links) {
-    const double length = (led_.col(link.first) - led_.col(link.second)).norm();
+    const double length = (target_.col(link.first) - target_.col(link.second)).norm();
     most = std::max(most, length - (1.0 + settings_.max_stretch) * link.rest_length);
   }
   return most;
 }
 
-int ComponentNewton::minimise(double energy_where_led) {
-  double energy = start(energy_where_led);
+int ComponentNewton::minimise(double energy_at_target) {
+  double energy = start(energy_at_target);
   const double at_first = inertia();
   const double negligible = kBalanced * at_first;
   // Masses alone overestimate the imbalance along links; an iteration may show that it is smaller.
@@ -151,11 +151,11 @@ int ComponentNewton::minimise(double energy_where_led) {
     return 0;
   }
   // If contact moved a particle since, links store a different energy.
-  if (led_apart() <= negligible && std::abs(energy - balanced_energy_) <= negligible) return 0;
+  if (target_shift() <= negligible && std::abs(energy - balanced_energy_) <= negligible) return 0;
   const bool is_calm = last_iterations_ <= 1 && turn() <= kCalmTurn;
   const double close = close_enough(component_);
   // Links near their limit will mostly reach it. If they were slack at first, each iteration would add only a few of them.
-  double modelled = energy_.linearise(x_, led_, NearLimit::pushing, system_);
+  double modelled = energy_.linearise(x_, target_, NearLimit::pushing, system_);
   bool is_too_stiff = false;
   energy_.forget_overshot();
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
@@ -163,21 +163,21 @@ int ComponentNewton::minimise(double energy_where_led) {
     system_.may_be_left = 0.5 * negligible;
     const double left = solver_->solve(system_, step_);
     const double forecast = modelled - 0.5 * system_.residual.cwiseProduct(step_).sum();
-    const auto [part, corrected] = descend(energy, forecast);
+    const auto [fraction, corrected] = descend(energy, forecast);
     const bool is_balanced = iteration == 1 && 2.0 * std::max(modelled - forecast, left) <= negligible;
     balanced_energy_ = kUnknown;
     if (is_balanced) note_balance(energy);
-    const double enough = (corrected ? kCorrectedPart : 1.0) * close * (at_first + energy);
-    if (part > 0.0 && !is_too_stiff && std::abs(energy - forecast) + left <= enough) return iteration;
-    if (part == 0.0 && iteration > 1) return iteration;
+    const double enough = (corrected ? kCorrectedFraction : 1.0) * close * (at_first + energy);
+    if (fraction > 0.0 && !is_too_stiff && std::abs(energy - forecast) + left <= enough) return iteration;
+    if (fraction == 0.0 && iteration > 1) return iteration;
     // The step was shortened by slack links, or pushing links made it worthless. A forecast with stiff links that do not pull
     // underestimates the gain.
     const bool restrains = iteration >= kFreeIterations && energy_.knows_overshot();
-    is_too_stiff = part < 1.0 && !restrains;
+    is_too_stiff = fraction < 1.0 && !restrains;
     if (restrains) {
-      energy_.linearise(x_, led_, NearLimit::overshot, system_);
+      energy_.linearise(x_, target_, NearLimit::overshot, system_);
     } else if (is_too_stiff) {
-      energy_.linearise(x_, led_, NearLimit::stiff, system_);
+      energy_.linearise(x_, target_, NearLimit::stiff, system_);
     }
     modelled = energy;
   }
@@ -186,47 +186,47 @@ int ComponentNewton::minimise(double energy_where_led) {
 
 /// In motion, the beginning of the step is mostly nearer to the minimum than the target of the forces: there no spring is too
 /// long.
-void ComponentNewton::begin_beside_led() {
+void ComponentNewton::set_initial_iterate() {
   x_ = before_.colwise() + common_move_;
-  x_.rightCols(component_.pin_count()) = led_.rightCols(component_.pin_count());
+  x_.rightCols(component_.pin_count()) = target_.rightCols(component_.pin_count());
 }
 
 /// Linearises at the initial iterate if it is not the target; returns the energy there.
-double ComponentNewton::start(double energy_where_led) {
-  const double energy = energy_.linearise(x_, led_, NearLimit::slack, system_);
-  if (energy <= energy_where_led) return energy;
-  x_ = led_;
-  return energy_.linearise(x_, led_, NearLimit::slack, system_);
+double ComponentNewton::start(double energy_at_target) {
+  const double energy = energy_.linearise(x_, target_, NearLimit::slack, system_);
+  if (energy <= energy_at_target) return energy;
+  x_ = target_;
+  return energy_.linearise(x_, target_, NearLimit::slack, system_);
 }
 
 void ComponentNewton::note_balance(double energy) {
   balanced_energy_ = energy;
   balanced_ = x_;
-  balanced_led_ = led_;
+  balanced_target_ = target_;
 }
 
 /// Whether nothing has moved since except in common, and the forces' target is nearly the same.
-bool ComponentNewton::rests_in_place() const {
+bool ComponentNewton::is_at_rest() const {
   if (balanced_energy_ == kUnknown) return false;
-  const Vector3 carried = x_.col(0) - balanced_.col(0);
-  const double moved = ((x_ - balanced_).colwise() - carried).cwiseAbs().maxCoeff();
-  return moved <= kSamePlace * extent_ && led_apart() <= kBalanced * inertia();
+  const Vector3 common = x_.col(0) - balanced_.col(0);
+  const double moved = ((x_ - balanced_).colwise() - common).cwiseAbs().maxCoeff();
+  return moved <= kSamePosition * extent_ && target_shift() <= kBalanced * inertia();
 }
 
 /// Distance of the target from the one at rest, relative to the particles and weighted by mass. E is convex, so its minimum moves
 /// no farther than that (Moreau 1965).
-double ComponentNewton::led_apart() const {
+double ComponentNewton::target_shift() const {
   if (balanced_energy_ == kUnknown) return kUnknown;
   double sum = 0.0;
   for (Index i = 0; i < component_.free_count; ++i) {
-    sum += component_.masses[i] * ((led_.col(i) - x_.col(i)) - (balanced_led_.col(i) - balanced_.col(i))).squaredNorm();
+    sum += component_.masses[i] * ((target_.col(i) - x_.col(i)) - (balanced_target_.col(i) - balanced_.col(i))).squaredNorm();
   }
   return sum;
 }
 
 double ComponentNewton::inertia() const {
   double sum = 0.0;
-  for (Index i = 0; i < component_.free_count; ++i) sum += component_.masses[i] * (x_.col(i) - led_.col(i)).squaredNorm();
+  for (Index i = 0; i < component_.free_count; ++i) sum += component_.masses[i] * (x_.col(i) - target_.col(i)).squaredNorm();
   return 0.5 * sum;
 }
 
@@ -244,28 +244,28 @@ ComponentNewton::Descent ComponentNewton::descend(double& energy, double forecas
   };
   tried_ = x_;
   tried_.leftCols(component_.free_count) += step_;
-  const double whole = energy_.linearise(tried_, led_, NearLimit::slack, tried_system_);
+  const double whole = energy_.linearise(tried_, target_, NearLimit::slack, tried_system_);
   if (whole < energy) {
     std::swap(system_, tried_system_);
     go(whole);
-    return {.part = 1.0, .corrected = false};
+    return {.fraction = 1.0, .corrected = false};
   }
   if (correct(whole) < energy - kWorthwhile * (energy - forecast)) {
-    go(energy_.linearise(tried_, led_, NearLimit::slack, system_));
-    return {.part = 1.0, .corrected = true};
+    go(energy_.linearise(tried_, target_, NearLimit::slack, system_));
+    return {.fraction = 1.0, .corrected = true};
   }
   tried_.leftCols(component_.free_count) = x_.leftCols(component_.free_count) + step_;
   energy_.note_overshot(tried_);
-  double part = 0.5;
-  for (int halving = 1; halving <= kMostHalvings; ++halving, part *= 0.5) {
+  double fraction = 0.5;
+  for (int halving = 1; halving <= kMostHalvings; ++halving, fraction *= 0.5) {
     tried_ = x_;
-    tried_.leftCols(component_.free_count) += part * step_;
-    if (const double reached = energy_.value(tried_, led_); reached < energy) {
+    tried_.leftCols(component_.free_count) += fraction * step_;
+    if (const double reached = energy_.value(tried_, target_); reached < energy) {
       go(reached);
-      return {.part = part, .corrected = false};
+      return {.fraction = fraction, .corrected = false};
     }
   }
-  return {.part = 0.0, .corrected = false};
+  return {.fraction = 0.0, .corrected = false};
 }
 
 /// Corrects the trial step for the links that it rotated; returns the energy there.
@@ -275,7 +275,7 @@ double ComponentNewton::correct(double reached) {
     solver_->solve_again(system_, turn_);
     turned_ = tried_;
     turned_.leftCols(component_.free_count) += turn_;
-    const double next = energy_.value(turned_, led_);
+    const double next = energy_.value(turned_, target_);
     const bool goes_on = next < kWorthwhile * reached;
     if (next < reached) {
       reached = next;
@@ -287,7 +287,7 @@ double ComponentNewton::correct(double reached) {
 }
 
 void ComponentNewton::clip() {
-  const double most = (1.0 + settings_.max_stretch + kClipPart * settings_.tolerance) * kClipRounding;
+  const double most = (1.0 + settings_.max_stretch + kClipFraction * settings_.tolerance) * kClipRounding;
   for (Index i = component_.free_count - 1; i >= 0; --i) {
     for (Index k = component_.begin[i]; k < component_.begin[i + 1]; ++k) {
       const StretchComponent::Link& link = component_.links[k];

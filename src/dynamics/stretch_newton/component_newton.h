@@ -31,7 +31,7 @@ class ComponentNewton final : public ComponentSolver {
  private:
   /// The fraction of a step that was taken, and whether it was corrected for links that it rotated.
   struct Descent {
-    double part;
+    double fraction;
     bool corrected;
   };
 
@@ -39,13 +39,13 @@ class ComponentNewton final : public ComponentSolver {
   [[nodiscard]] Vector3 common_move() const;
   [[nodiscard]] double carried_weight(double fall) const;
   [[nodiscard]] double most_beyond() const;
-  void begin_beside_led();
+  void set_initial_iterate();
   void write_to(Points& positions) const;
-  int minimise(double energy_where_led);
-  [[nodiscard]] double start(double energy_where_led);
+  int minimise(double energy_at_target);
+  [[nodiscard]] double start(double energy_at_target);
   void note_balance(double energy);
-  [[nodiscard]] bool rests_in_place() const;
-  [[nodiscard]] double led_apart() const;
+  [[nodiscard]] bool is_at_rest() const;
+  [[nodiscard]] double target_shift() const;
   [[nodiscard]] double inertia() const;
   [[nodiscard]] double imbalance() const;
   [[nodiscard]] Descent descend(double& energy, double forecast);
@@ -61,7 +61,7 @@ class ComponentNewton final : public ComponentSolver {
   double mass_ = 0.0;                                                 ///< of all free points [kg]
   double balanced_energy_ = std::numeric_limits<double>::infinity();  ///< where the component came to rest, while it rests [kg m^2]
   Points balanced_;                                                   ///< positions at rest, 3 x points
-  Points balanced_led_;                                               ///< the target of the forces when it came to rest
+  Points balanced_target_;                                            ///< the target of the forces when it came to rest
 
   Vector3 common_move_ = Vector3::Zero();  ///< of the last solve [m]
   double farthest_squared_ = 0.0;          ///< largest displacement of a point by forces, minus the common displacement [m^2]
@@ -69,7 +69,7 @@ class ComponentNewton final : public ComponentSolver {
 
   // Of a solve, 3 x points: the beginning of the step, the target of the forces, and the current iterate.
   Points before_;
-  Points led_;
+  Points target_;
   Points x_;
   Points tried_;
   Points step_;

@@ -25,7 +25,7 @@ constexpr double kNearEnough = 0.01;
 constexpr double kSurelyNear = 1.0e-4;
 
 // Single precision is not tried again above this fraction of the stiffness at which it failed, relative to the masses.
-constexpr double kBearablePart = 0.5;
+constexpr double kBearableFraction = 0.5;
 
 BlockMatrix pattern_of(const StretchComponent& component) {
   std::vector<ParticlePair> pairs;
@@ -41,8 +41,8 @@ PcgSolver::PcgSolver(const StretchComponent& component)
     : component_(component),
       matrix_(pattern_of(component)),
       rough_(matrix_),
-      ways_{Roughly{.raise = 0.0, .patience = {.most_iterations = kMostIterations, .slowest = kSlowest}},
-            Roughly{.raise = kRaise, .patience = {.most_iterations = kMostIterationsRaised, .slowest = kSlowestRaised}}} {}
+      attempts_{Attempt{.raise = 0.0, .patience = {.most_iterations = kMostIterations, .slowest = kSlowest}},
+                Attempt{.raise = kRaise, .patience = {.most_iterations = kMostIterationsRaised, .slowest = kSlowestRaised}}} {}
 
 double PcgSolver::solve(const StretchSystem& system, Points& step) {
   assemble(system);
@@ -50,11 +50,11 @@ double PcgSolver::solve(const StretchSystem& system, Points& step) {
     if (const auto left = solve_as_last(system, step)) return *left;
   }
   const double stiffness = stiffest();
-  for (Roughly& way : ways_) {
-    if (!(stiffness < way.bearable)) continue;
-    kept_ = rough_.factor_and_solve(matrix_, way.raise, system.residual, towards_) ? Kept::rough : Kept::nothing;
-    if (const auto left = approach_with_kept(way.patience, system.residual, step)) return *left;
-    way.bearable = kBearablePart * stiffness;
+  for (Attempt& attempt : attempts_) {
+    if (!(stiffness < attempt.bearable)) continue;
+    kept_ = rough_.factor_and_solve(matrix_, attempt.raise, system.residual, towards_) ? Kept::rough : Kept::nothing;
+    if (const auto left = approach_with_kept(attempt.patience, system.residual, step)) return *left;
+    attempt.bearable = kBearableFraction * stiffness;
   }
   solve_exactly(system.residual, step);
   return 0.0;
@@ -71,11 +71,11 @@ void PcgSolver::solve_again(const StretchSystem& system, Points& step) {
 
 std::optional<double> PcgSolver::solve_as_last(const StretchSystem& system, Points& step) {
   // A system that changes this fast mostly does so the next time too.
-  if (std::exchange(led_nowhere_, false)) return std::nullopt;
+  if (std::exchange(last_factor_failed_, false)) return std::nullopt;
   const Patience patience{.most_iterations = kMostIterations, .slowest = kSlowest, .may_be_left = system.may_be_left};
   solve_with_kept(system.residual, towards_);
   const auto left = approach_with_kept(patience, system.residual, step);
-  led_nowhere_ = !left;
+  last_factor_failed_ = !left;
   return left;
 }
 

@@ -34,7 +34,7 @@ class PcgSolver final : public StretchSystemSolver {
   };
 
   /// A factor in single precision.
-  struct Roughly {
+  struct Attempt {
     double raise;  ///< of the diagonal, as in BlockCholesky
     Patience patience;
     double bearable = std::numeric_limits<double>::infinity();  ///< systems stiffer than this skip the attempt
@@ -55,8 +55,8 @@ class PcgSolver final : public StretchSystemSolver {
   BlockCholesky<float> rough_;
   std::unique_ptr<BlockCholesky<double>> exact_;  ///< made when it was needed
   Kept kept_ = Kept::nothing;                     ///< the factor of this system or of the previous one
-  std::array<Roughly, 2> ways_;
-  bool led_nowhere_ = false;  ///< the kept factor failed on a system like this one
+  std::array<Attempt, 2> attempts_;
+  bool last_factor_failed_ = false;  ///< the kept factor failed on a system like this one
 
   // Scratch of conjugate gradients, 3 x free.
   Points left_;

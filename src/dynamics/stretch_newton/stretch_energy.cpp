@@ -8,8 +8,8 @@ namespace {
 
 // A link that carries its component's load exceeds its limit by this fraction of the tolerance; in motion the load is a few times
 // larger. Chains and trees that hang on one link are clipped as well; in cloths the load concentrates at the pins.
-constexpr double kPartForChains = 0.25;
-constexpr double kPartForCloths = 0.1;
+constexpr double kFractionForChains = 0.25;
+constexpr double kFractionForCloths = 0.1;
 
 // Links are near their limit from this fraction of it.
 constexpr double kNear = 0.9;
@@ -26,8 +26,8 @@ constexpr double kLeastTolerance = 4.0e-4;
 
 StretchEnergy::StretchEnergy(const StretchComponent& component, const StretchLimitSettings& settings)
     : component_(component), near_(kNear) {
-  const double part = component.is_tree ? kPartForChains : kPartForCloths;
-  const double give = part * std::max(settings.tolerance, kLeastTolerance);
+  const double fraction = component.is_tree ? kFractionForChains : kFractionForCloths;
+  const double give = fraction * std::max(settings.tolerance, kLeastTolerance);
   for (const StretchComponent::Link& link : component.links) {
     limits_.push_back({link.rest_length * (1.0 + settings.max_stretch), 1.0 / (give * link.rest_length)});
     give_ = std::max(give_, give * link.rest_length);
@@ -78,7 +78,7 @@ double StretchEnergy::linearise(const Points& x, const Points& y, NearLimit near
     system.residual.col(i) = component_.masses[i] * away;
   }
   double elastic = 0.0;
-  const double squared_part = near == NearLimit::stiff || near == NearLimit::pushing ? near_ * near_ : 1.0;
+  const double squared_fraction = near == NearLimit::stiff || near == NearLimit::pushing ? near_ * near_ : 1.0;
   const bool looks_at_overshot = near == NearLimit::overshot && knows_overshot();
   for (std::size_t s = 0; s < limits_.size(); ++s) {
     const StretchComponent::Link& link = component_.links[s];
@@ -86,7 +86,7 @@ double StretchEnergy::linearise(const Points& x, const Points& y, NearLimit near
     const Vector3 between = x.col(link.second) - x.col(link.first);
     const double squared = between.squaredNorm();
     const bool is_stiff = looks_at_overshot && overshot_[s] != 0;
-    if (!is_stiff && squared <= squared_part * limit.length * limit.length) {
+    if (!is_stiff && squared <= squared_fraction * limit.length * limit.length) {
       system.blocks[s] = {};
       continue;
     }

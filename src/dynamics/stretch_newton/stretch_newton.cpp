@@ -19,7 +19,7 @@ Taken taken_by_itself(const StretchComponent& component, const Body& body, const
   if (component.is_tree) return Taken::from_start;
   const bool fills = body.dimension != 1 && body.dimension != 2;
   if (fills || settings.max_compression < 1.0) return Taken::never;
-  const bool begins_with_passes = use.may_meet_anything || (use.takes_small_steps && component.is_elastic);
+  const bool begins_with_passes = use.may_collide || (use.takes_small_steps && component.is_elastic);
   return begins_with_passes ? Taken::when_handed_over : Taken::from_start;
 }
 
@@ -34,22 +34,22 @@ StretchNewton::StretchNewton(const SpringNetwork& network, const StretchLimitSet
       left_.insert(left_.end(), component.points.begin(), component.points.begin() + component.free_count);
     }
     if (taken == Taken::never) continue;
-    parts_.push_back({.solver = make_component_solver(network, std::move(component), settings, use),
-                      .body = static_cast<std::size_t>(&body - network.bodies.data()),
-                      .from_start = taken == Taken::from_start});
+    components_.push_back({.solver = make_component_solver(network, std::move(component), settings, use),
+                           .body = static_cast<std::size_t>(&body - network.bodies.data()),
+                           .from_start = taken == Taken::from_start});
   }
   std::ranges::sort(left_);
 }
 StretchNewton::~StretchNewton() = default;
 
 std::optional<int> StretchNewton::solve(const Points& before, Points& positions, double fall,
-                                        const std::vector<StretchHandover>& holds) {
-  std::vector<std::optional<int>> iterations(parts_.size());
-  parallel_chunks(static_cast<Index>(parts_.size()), 1, [&](Index begin, Index end) {
+                                        const std::vector<StretchHandover>& handovers) {
+  std::vector<std::optional<int>> iterations(components_.size());
+  parallel_chunks(static_cast<Index>(components_.size()), 1, [&](Index begin, Index end) {
     for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p) {
-      const Part& part = parts_[p];
-      const bool handed_over = !holds.empty() && holds[part.body].solved_since;
-      if (part.from_start || handed_over) iterations[p] = part.solver->solve(before, positions, fall);
+      const SolvedComponent& component = components_[p];
+      const bool handed_over = !handovers.empty() && handovers[component.body].solved_since;
+      if (component.from_start || handed_over) iterations[p] = component.solver->solve(before, positions, fall);
     }
   });
   return iterations.empty() ? std::nullopt : *std::ranges::max_element(iterations);
@@ -57,23 +57,25 @@ std::optional<int> StretchNewton::solve(const Points& before, Points& positions,
 
 double StretchNewton::turn() const {
   double largest = 0.0;
-  for (const Part& part : parts_) largest = std::max(largest, part.solver->turn());
+  for (const SolvedComponent& component : components_) largest = std::max(largest, component.solver->turn());
   return largest;
 }
 
-bool StretchNewton::holds(const Body& body) const {
+bool StretchNewton::solves(const Body& body) const {
   const auto first = std::ranges::lower_bound(left_, body.first_particle);
   return first == left_.end() || *first >= body.first_particle + body.particle_count;
 }
 
-bool StretchNewton::takes_any_of(std::size_t body) const {
-  return std::ranges::any_of(parts_, [&](const Part& part) { return part.body == body && part.from_start; });
+bool StretchNewton::solves_any_of(std::size_t body) const {
+  return std::ranges::any_of(components_,
+                             [&](const SolvedComponent& component) { return component.body == body && component.from_start; });
 }
 
 bool StretchNewton::may_take_over(std::size_t body) const {
-  return std::ranges::any_of(parts_, [&](const Part& part) { return part.body == body && !part.from_start; });
+  return std::ranges::any_of(components_,
+                             [&](const SolvedComponent& component) { return component.body == body && !component.from_start; });
 }
 
-bool StretchNewton::may_take_over_any() const { return !std::ranges::all_of(parts_, &Part::from_start); }
+bool StretchNewton::may_take_over_any() const { return !std::ranges::all_of(components_, &SolvedComponent::from_start); }
 
 }  // namespace sprung

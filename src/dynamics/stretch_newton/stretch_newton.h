@@ -27,18 +27,19 @@ class StretchNewton {
 
   /// Moves free particles from the target of the forces, `positions`, to where no limited spring is much too long, with the least
   /// weighted displacement. `before` are the positions at the beginning of the step; `positions` holds the final positions of
-  /// pins. `fall` is that of ComponentSolver. `holds` has an entry per body or is empty. Returns the largest number of linear
+  /// pins. `fall` is that of ComponentSolver. `handovers` has an entry per body or is empty. Returns the largest number of linear
   /// systems of a component; none if nothing was too long.
-  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& holds = {});
+  std::optional<int> solve(const Points& before, Points& positions, double fall,
+                           const std::vector<StretchHandover>& handovers = {});
 
   /// Whether all limited springs of a body are solved for from the start.
-  [[nodiscard]] bool holds(const Body& body) const;
+  [[nodiscard]] bool solves(const Body& body) const;
   /// Whether any component is or may be solved for.
-  [[nodiscard]] bool takes_any() const { return !parts_.empty(); }
-  [[nodiscard]] bool holds_all() const { return left_.empty(); }
+  [[nodiscard]] bool solves_any() const { return !components_.empty(); }
+  [[nodiscard]] bool solves_all() const { return left_.empty(); }
 
   /// Whether any component of a body, by its number, is solved for from the start, and whether more can be after a handover.
-  [[nodiscard]] bool takes_any_of(std::size_t body) const;
+  [[nodiscard]] bool solves_any_of(std::size_t body) const;
   [[nodiscard]] bool may_take_over(std::size_t body) const;
   [[nodiscard]] bool may_take_over_any() const;
 
@@ -47,13 +48,13 @@ class StretchNewton {
 
  private:
   /// A component that is or may be solved for.
-  struct Part {
+  struct SolvedComponent {
     std::unique_ptr<ComponentSolver> solver;
     std::size_t body;
     bool from_start;
   };
 
-  std::vector<Part> parts_;
+  std::vector<SolvedComponent> components_;
   std::vector<Index> left_;  ///< particles that are not solved for from the start, ascending
 };
 

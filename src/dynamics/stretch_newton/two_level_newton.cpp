@@ -13,7 +13,7 @@ constexpr Index kLeastParticles = 8192;
 // Between coarse points a rotating cloth is longer than they show, by some tenths of a per cent. Passes correct that, but they
 // come to rest only where coarse links stay well within the tolerance.
 constexpr double kLeastTolerance = 0.005;
-constexpr double kPartOfTolerance = 0.25;
+constexpr double kFractionOfTolerance = 0.25;
 
 // Taut parts are straightened by at most this fraction of the fall per step, as by the same fraction of gravity. With the whole
 // fall a swinging cloth of 128 x 128 gained 0.4 % of its released energy in steps of 1/960 s; with this fraction a thousandth of a
@@ -21,13 +21,13 @@ constexpr double kPartOfTolerance = 0.25;
 constexpr double kStraightenedOfFall = 1.0 / 16.0;
 
 StretchLimitSettings coarse_settings(StretchLimitSettings settings) {
-  settings.tolerance *= kPartOfTolerance;
+  settings.tolerance *= kFractionOfTolerance;
   return settings;
 }
 
-Vector3 shortened(const Vector3& way, double most) {
-  const double length = way.norm();
-  return length > most ? Vector3(most / length * way) : way;
+Vector3 shortened(const Vector3& displacement, double most) {
+  const double length = displacement.norm();
+  return length > most ? Vector3(most / length * displacement) : displacement;
 }
 
 }  // namespace
@@ -46,11 +46,11 @@ TwoLevelNewton::TwoLevelNewton(const StretchComponent& component, CoarseCloth co
 
 std::optional<int> TwoLevelNewton::solve(const Points& before, Points& positions, double fall) {
   gather(before, positions);
-  coarse_x_ = coarse_led_;
+  coarse_x_ = coarse_target_;
   const auto iterations = newton_.solve(coarse_before_, coarse_x_, fall);
   if (!iterations) return iterations;
   note_tautness();
-  lead_along(fall);
+  interpolate_correction(fall);
   if (*iterations == 0 && rests()) {
     stay_still();
   } else if (flies_) {
@@ -68,17 +68,17 @@ void TwoLevelNewton::gather(const Points& before, const Points& positions) {
   coarse_before_.resize(Eigen::NoChange, coarse_count);
   for (Index q = 0; q < coarse_count; ++q) coarse_before_.col(q) = before.col(coarse_.particles[q]);
   before_.resize(Eigen::NoChange, count);
-  led_.resize(Eigen::NoChange, count);
-  coarse_led_ = coarse_before_;
+  target_.resize(Eigen::NoChange, count);
+  coarse_target_ = coarse_before_;
   for (Index n = 0; n < count; ++n) {
     before_.col(n) = before.col(particles_[n]);
-    led_.col(n) = positions.col(particles_[n]);
-    const auto& [points, weights] = coarse_.places[n];
+    target_.col(n) = positions.col(particles_[n]);
+    const auto& [points, weights] = coarse_.interpolations[n];
     for (std::size_t k = 0; k < points.size(); ++k) {
-      coarse_led_.col(points[k]) += weights[k] * masses_[n] / coarse_masses_[points[k]] * (led_.col(n) - before_.col(n));
+      coarse_target_.col(points[k]) += weights[k] * masses_[n] / coarse_masses_[points[k]] * (target_.col(n) - before_.col(n));
     }
   }
-  for (const Index q : coarse_.pins) coarse_led_.col(q) = positions.col(coarse_.particles[q]);
+  for (const Index q : coarse_.pins) coarse_target_.col(q) = positions.col(coarse_.particles[q]);
 }
 
 void TwoLevelNewton::note_tautness() {
@@ -91,25 +91,25 @@ void TwoLevelNewton::note_tautness() {
 }
 
 // Most fine links are half as long as coarse ones and carry half as much: their stiffness across is equal.
-void TwoLevelNewton::lead_along(double fall) {
-  x_.resizeLike(led_);
+void TwoLevelNewton::interpolate_correction(double fall) {
+  x_.resizeLike(target_);
   for (Index n = 0; n < static_cast<Index>(x_.cols()); ++n) {
-    const auto& [points, weights] = coarse_.places[n];
+    const auto& [points, weights] = coarse_.interpolations[n];
     Vector3 among = Vector3::Zero();
-    Vector3 led_by_forces = Vector3::Zero();
-    Vector3 led = Vector3::Zero();
+    Vector3 target_move = Vector3::Zero();
+    Vector3 solved_move = Vector3::Zero();
     double taut = 0.0;
     for (std::size_t k = 0; k < points.size(); ++k) {
       const auto was = coarse_before_.col(points[k]);
       among += weights[k] * was;
-      led_by_forces += weights[k] * (coarse_led_.col(points[k]) - was);
-      led += weights[k] * (coarse_x_.col(points[k]) - was);
+      target_move += weights[k] * (coarse_target_.col(points[k]) - was);
+      solved_move += weights[k] * (coarse_x_.col(points[k]) - was);
       taut += weights[k] * tautness_[points[k]];
     }
     const double slack = masses_[n] / (masses_[n] + taut);
-    const Vector3 beside = led_.col(n) - before_.col(n) - led_by_forces;
+    const Vector3 beside = target_.col(n) - before_.col(n) - target_move;
     const Vector3 straightening = (1.0 - slack) * (among - before_.col(n));
-    x_.col(n) = before_.col(n) + led + slack * beside + shortened(straightening, kStraightenedOfFall * fall);
+    x_.col(n) = before_.col(n) + solved_move + slack * beside + shortened(straightening, kStraightenedOfFall * fall);
   }
 }
 
@@ -125,7 +125,7 @@ bool TwoLevelNewton::rests() const {
   for (Index n = 0; n < static_cast<Index>(x_.cols()); ++n) {
     const Vector3 still = before_.col(n) + common_move();
     moved += masses_[n] * (x_.col(n) - still).squaredNorm();
-    inertia += 0.5 * masses_[n] * (led_.col(n) - still).squaredNorm();
+    inertia += 0.5 * masses_[n] * (target_.col(n) - still).squaredNorm();
   }
   return moved <= kBalanced * inertia;
 }
@@ -137,7 +137,7 @@ void TwoLevelNewton::keep_momentum() {
   Vector3 missing = Vector3::Zero();
   double mass = 0.0;
   for (Index n = 0; n < static_cast<Index>(x_.cols()); ++n) {
-    missing += masses_[n] * (led_.col(n) - x_.col(n));
+    missing += masses_[n] * (target_.col(n) - x_.col(n));
     mass += masses_[n];
   }
   x_.colwise() += missing / mass;
@@ -146,7 +146,7 @@ void TwoLevelNewton::keep_momentum() {
 std::unique_ptr<ComponentSolver> make_component_solver(const SpringNetwork& network, StretchComponent component,
                                                        const StretchLimitSettings& settings, const LimitUse& use) {
   // Bodies that may collide are excluded: contact below the coarse level's resolution threw them up.
-  const bool is_limp = !component.is_tree && !component.is_elastic && !use.may_meet_anything;
+  const bool is_limp = !component.is_tree && !component.is_elastic && !use.may_collide;
   if (is_limp && component.free_count >= kLeastParticles && settings.tolerance >= kLeastTolerance) {
     if (auto coarse = coarsen(network, component, settings.kinds)) {
       return std::make_unique<TwoLevelNewton>(component, std::move(*coarse), settings);

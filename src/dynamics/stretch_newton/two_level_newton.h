@@ -25,7 +25,7 @@ class TwoLevelNewton final : public ComponentSolver {
  private:
   void gather(const Points& before, const Points& positions);
   void note_tautness();
-  void lead_along(double fall);
+  void interpolate_correction(double fall);
   void stay_still();
   void keep_momentum();
   [[nodiscard]] bool rests() const;
@@ -40,11 +40,11 @@ class TwoLevelNewton final : public ComponentSolver {
 
   // Of a solve, 3 x free particles: the beginning of the step, the target of the forces, and the result.
   Points before_;
-  Points led_;
+  Points target_;
   Points x_;
   // The same for coarse points.
   Points coarse_before_;
-  Points coarse_led_;
+  Points coarse_target_;
   Points coarse_x_;
   std::vector<double> tautness_;  ///< by coarse point: stiffness of its pulling links across their directions [kg]
 };

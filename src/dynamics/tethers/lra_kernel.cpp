@@ -46,10 +46,10 @@ template <class PackedVectors4>
   const double squared = x * x + y * y + z * z;
   if (squared <= most * most) return;
   const double length = std::sqrt(squared);
-  const double part = (length - most) / length;
-  position[0] -= part * x;
-  position[1] -= part * y;
-  position[2] -= part * z;
+  const double fraction = (length - most) / length;
+  position[0] -= fraction * x;
+  position[1] -= fraction * y;
+  position[2] -= fraction * z;
 }
 
 /// Projects the tethers of a run from `begin` on while they fill a register. Returns the first that does not.

@@ -45,7 +45,7 @@ class Search {
       : network_(network), graph_(graph), found_(network.particle_count()) {
     const std::vector<Index> groups = pin_groups(network, graph);
     for (Index i = 0; i < network.particle_count(); ++i) {
-      if (network.is_pinned(i)) go_on_from({i, i, groups[i], 0.0});
+      if (network.is_pinned(i)) extend({i, i, groups[i], 0.0});
     }
   }
 
@@ -55,7 +55,7 @@ class Search {
       ahead_.pop();
       if (!is_wanted(nearest)) continue;
       found_[nearest.particle].push_back(nearest);
-      go_on_from(nearest);
+      extend(nearest);
     }
     std::vector<Tether> tethers;
     for (const auto& of_particle : found_) tethers.insert(tethers.end(), of_particle.begin(), of_particle.end());
@@ -63,7 +63,7 @@ class Search {
   }
 
  private:
-  void go_on_from(const Tether& tether) {
+  void extend(const Tether& tether) {
     for (const SpringGraph::Edge& edge : graph_.at(tether.particle)) {
       const Tether next{edge.to, tether.pin, tether.group, tether.length + network_.springs.rest_length[edge.spring]};
       if (!network_.is_pinned(edge.to) && is_wanted(next)) ahead_.push(next);
@@ -97,7 +97,7 @@ bool are_pins_taut(const SpringNetwork& network, const Body& body, const std::ve
   const auto moves = [&](const Pin& pin) { return pin.motion.moves() && std::ranges::any_of(pin.particles, is_of_body); };
   if (std::ranges::any_of(network.pins, moves)) return false;
 
-  const auto way_between = [](const Tether& a, const Tether& b) { return a.length + b.length; };
+  const auto path_length = [](const Tether& a, const Tether& b) { return a.length + b.length; };
   std::map<std::pair<Index, Index>, std::pair<Tether, Tether>> shortest;
   for (std::size_t a = 0; a < tethers.size(); ++a) {
     if (!is_of_body(tethers[a].particle)) continue;
@@ -105,13 +105,13 @@ bool are_pins_taut(const SpringNetwork& network, const Body& body, const std::ve
       const std::pair between(tethers[a], tethers[b]);
       const auto [kept, added] = shortest.try_emplace({tethers[a].group, tethers[b].group}, between);
       auto& nearest = kept->second;
-      if (way_between(tethers[a], tethers[b]) < way_between(nearest.first, nearest.second)) nearest = between;
+      if (path_length(tethers[a], tethers[b]) < path_length(nearest.first, nearest.second)) nearest = between;
     }
   }
   const auto is_taut = [&](const auto& edge) {
     const auto& [a, b] = edge.second;
     const double straight = (network.positions.col(a.pin) - network.positions.col(b.pin)).norm();
-    return (1.0 + max_stretch) * way_between(a, b) <= kRounding * straight;
+    return (1.0 + max_stretch) * path_length(a, b) <= kRounding * straight;
   };
   return !shortest.empty() && std::ranges::all_of(shortest, is_taut);
 }

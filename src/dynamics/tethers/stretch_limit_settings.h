@@ -25,7 +25,7 @@ struct StretchLimitSettings {
 
 /// What the automatic solver needs to know to choose between passes and Newton's method.
 struct LimitUse {
-  bool may_meet_anything = true;  ///< contact may oppose the solution
+  bool may_collide = true;        ///< contact may oppose the solution
   bool takes_small_steps = true;  ///< springs or angle bends with stiffness need small steps, in which passes suffice
 };
 

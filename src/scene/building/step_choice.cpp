@@ -25,7 +25,7 @@ bool may_be_in_parts(const Scene& scene, const std::optional<StretchLimit>& limi
 
 /// Of what a step may be as large as a frame for: its parts are chosen as it moves, and nothing is in its way.
 bool is_bound_by_turn(const Scene& scene, const LimitUse& use, const std::optional<StretchLimit>& limit) {
-  return may_be_in_parts(scene, limit) && limit->follows_turn() && !use.may_meet_anything;
+  return may_be_in_parts(scene, limit) && limit->follows_turn() && !use.may_collide;
 }
 
 /// Whatever passes of the stretch limit need.
@@ -36,7 +36,7 @@ double largest_auto_step(const Scene& scene, const LimitUse& use, const std::opt
   const bool implicit = std::holds_alternative<ImplicitEulerSettings>(scene.settings.integrator);
   // What springs lead too far, the limit takes back: where both end is off by as much.
   const bool is_split = implicit && limit && bounds.elastic > 0.0;
-  const bool free = (implicit && !use.may_meet_anything) || is_bound_by_turn(scene, use, limit);
+  const bool free = (implicit && !use.may_collide) || is_bound_by_turn(scene, use, limit);
   if (!std::isfinite(largest) && (is_split || !free)) largest = kLargestAutoStep;
   return largest;
 }

@@ -38,7 +38,7 @@ SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSe
 }
 
 LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {
-  return {.may_meet_anything = has_obstacles || bodies_may_meet(network),
+  return {.may_collide = has_obstacles || bodies_may_collide(network),
           .takes_small_steps = !std::holds_alternative<ImplicitEulerSettings>(settings.integrator)};
 }
 

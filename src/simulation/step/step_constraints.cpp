@@ -43,7 +43,7 @@ void StepConstraints::apply(SimulationState& state, const Forces& forces, double
   truncate(state, forces, report);
 }
 
-// Contact comes before the limit in each pass. Where they disagree, the one that comes last holds and the other is violated by the
+// Contact comes before the limit in each pass. Where they disagree, the last one is satisfied and the other is violated by the
 // motion of one pass. The limit's motion is within the gap, of which truncation leaves half. In the reverse order, a cloth that
 // hangs over a tip would stretch by the same amount, which in few passes is a fifth of its length and more.
 void StepConstraints::project(SimulationState& state, const Forces& forces, StepReport& report) {
@@ -52,7 +52,7 @@ void StepConstraints::project(SimulationState& state, const Forces& forces, Step
   if (projects && integrator_.answers_contact()) answer_contact(state, forces);
   const double fall = steady_acceleration_ * dt_ * dt_;
   const std::optional<int> solves =
-      limit_ ? limit_->solve(positions_before(state), state.x, fall, state.stretch_holds) : std::nullopt;
+      limit_ ? limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers) : std::nullopt;
   report.limit_solves = solves.value_or(0);
   const int limit_passes = limit_ ? limit_->settings().iterations + (solves ? 1 : 0) : 0;  // the first after a solve only measures
   if (projects) report.iterations = contacts_.push_out(state.x, kContactPasses - limit_passes).passes;
@@ -71,7 +71,7 @@ void StepConstraints::answer_contact(SimulationState& state, const Forces& force
   constrained_.clear(static_cast<Index>(state.x.cols()));
   for (int round = 0; round < kAnswers && contacts_.push_out(state.x).moved; ++round) {
     constrained_.clear(static_cast<Index>(state.x.cols()));
-    contacts_.hold_pushed(constrained_);
+    contacts_.constrain_pushed(constrained_);
     integrator_.answer_contact(motion(), forces, answered_, constrained_, state);
     answered_ = state.x;
   }

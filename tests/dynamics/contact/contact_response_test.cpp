@@ -228,7 +228,7 @@ TEST(ContactSolver, WhatGoesStraightOutOfTheGapStaysFinite) {
   }
 }
 
-// What held along one surface does not push along another one's normal.
+// Friction accumulated along one surface has no component along another normal.
 TEST(ContactSolver, FoundAgainWithAnotherNormalAContactHoldsNothingAlongIt) {
   ContactConstraintSet<1> former;
   ContactConstraintSet<1> again;
@@ -237,12 +237,12 @@ TEST(ContactSolver, FoundAgainWithAnotherNormalAContactHoldsNothingAlongIt) {
     set->row(0).particles = {0};
     set->row(0).obstacle = 0;
   }
-  former.goal(0) = {.push = 0.3, .held = {0.1, 0.0, 0.2}};
+  former.goal(0) = {.push = 0.3, .friction_change = {0.1, 0.0, 0.2}};
   again.row(0).normal = Vector3::UnitX();
   std::vector<Index> first_row{kNone};
-  again.count_on(former, 0, first_row);
+  again.warm_start(former, 0, first_row);
   EXPECT_EQ(again.goal(0).push, 0.3);
-  EXPECT_EQ(again.goal(0).held, Vector3(0.0, 0.0, 0.2));
+  EXPECT_EQ(again.goal(0).friction_change, Vector3(0.0, 0.0, 0.2));
 }
 
 TEST(ContactSolver, FoundAgainAContactCountsOnWhatItPushedAndHeld) {

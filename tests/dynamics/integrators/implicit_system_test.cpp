@@ -52,8 +52,8 @@ TEST(ImplicitSystem, HoldsAParticleAlongADirectionAndTheOthersFollow) {
   Points y = Points::Zero(3, 2);
   y.col(0) = Vector3(5.0, 3.0, 0.0);
   y.col(1) = Vector3(7.0, 0.0, 0.0);
-  system.hold(0, Vector3::UnitX() * Vector3::UnitX().transpose());
-  system.hold(1, Matrix3::Zero());
+  system.constrain(0, Vector3::UnitX() * Vector3::UnitX().transpose());
+  system.constrain(1, Matrix3::Zero());
   system.solve(y);
   // A hold weighs a million times as much as what it holds.
   EXPECT_LT((y.col(0) - Vector3(0.0, 3.0, 0.0)).norm(), 1.0e-5);

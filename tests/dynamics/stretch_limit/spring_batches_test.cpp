@@ -103,7 +103,7 @@ TEST(SpringBatches, OrderByPlaceKeepsTheOrderOfColoursAtEachParticle) {
   std::vector<Index> colour_begin;
   for (Index part = 0; part <= static_cast<Index>(batches.batch.size()); ++part) colour_begin.push_back(part);
   const auto expected = springs_in_order(batches, network.particle_count());
-  order_by_place(colour_begin, 1, network.particle_count(), batches);
+  order_by_locality(colour_begin, 1, network.particle_count(), batches);
   EXPECT_EQ(springs_in_order(batches, network.particle_count()), expected);
 }
 

@@ -304,10 +304,10 @@ TEST(StretchLimit, AutomaticSolvesForChainsAndLeavesClothsToPassesAtFirst) {
   const SpringNetwork cloth = make_test_cloth(5, 0.0, 0.0);
   EXPECT_EQ(chosen(rope, Solver::automatic), "newton");
   EXPECT_EQ(chosen(cloth, Solver::automatic), "gauss_seidel, then newton for what keeps missing the limit");
-  EXPECT_EQ(chosen(cloth, Solver::automatic, {.may_meet_anything = false}), "newton");
+  EXPECT_EQ(chosen(cloth, Solver::automatic, {.may_collide = false}), "newton");
   const SpringNetwork springy = make_test_cloth(5, 100.0, 0.0);
-  EXPECT_EQ(chosen(springy, Solver::automatic, {.may_meet_anything = false}), chosen(cloth, Solver::automatic));
-  EXPECT_EQ(chosen(springy, Solver::automatic, {.may_meet_anything = false, .takes_small_steps = false}), "newton");
+  EXPECT_EQ(chosen(springy, Solver::automatic, {.may_collide = false}), chosen(cloth, Solver::automatic));
+  EXPECT_EQ(chosen(springy, Solver::automatic, {.may_collide = false, .takes_small_steps = false}), "newton");
   EXPECT_EQ(chosen(cloth, Solver::newton), "newton");
   EXPECT_EQ(chosen(rope, Solver::gauss_seidel), "gauss_seidel");
   const StretchLimitSettings settings{.solver = Solver::automatic};

@@ -229,8 +229,8 @@ void move_beside(const CoarseCloth& cloth, const SpringNetwork& network, Points&
     if (std::ranges::find(cloth.particles, i) != cloth.particles.end()) continue;
     v(2, i) = kGravity * kStep;
     for (std::size_t k = 0; k < 4; ++k) {
-      const Index q = cloth.particles[cloth.places[n].points[k]];
-      if (!network.is_pinned(q)) v(2, q) -= cloth.places[n].weights[k] * network.masses[i] / network.masses[q] * v(2, i);
+      const Index q = cloth.particles[cloth.interpolations[n].points[k]];
+      if (!network.is_pinned(q)) v(2, q) -= cloth.interpolations[n].weights[k] * network.masses[i] / network.masses[q] * v(2, i);
     }
   }
 }
@@ -263,7 +263,7 @@ TEST(TwoLevelNewton, KeepsTheMomentumOfWhatFlies) {
 TEST(TwoLevelNewton, IsForLargeClothsThatMeetNothing) {
   const SpringNetwork large = make_test_cloth(96, 0.0, 0.0);
   const auto is_two = [&](const SpringNetwork& network, const StretchLimitSettings& settings, bool meets) {
-    const auto solver = make_component_solver(network, component_of(network), settings, {.may_meet_anything = meets});
+    const auto solver = make_component_solver(network, component_of(network), settings, {.may_collide = meets});
     return dynamic_cast<const TwoLevelNewton*>(solver.get()) != nullptr;
   };
   EXPECT_TRUE(is_two(large, kLimit, false));

@@ -54,7 +54,7 @@ Outcome run(const SpringNetwork& network, Solver solver, int steps, const std::v
     outcome.nearest = std::min(outcome.nearest, simulator.environment().min_distance(simulator.positions(), 1.0).value_or(1.0));
   }
   outcome.x = simulator.positions();
-  outcome.solved_since = simulator.state().stretch_holds.front().solved_since;
+  outcome.solved_since = simulator.state().stretch_handovers.front().solved_since;
   return outcome;
 }
 
@@ -66,7 +66,7 @@ TEST(LimitHandover, IsForWhatPassesMissedSoManyTimesInARow) {
   const auto see = [&](double stretch, int times) {
     state.x = (1.0 + limit.settings().max_stretch + stretch) * network.positions;
     for (int k = 0; k < times; ++k, ++state.step) hand_over_missed(network, limit, limit.excess(state.x), state);
-    return state.stretch_holds.front().solved_since;
+    return state.stretch_handovers.front().solved_since;
   };
   EXPECT_FALSE(see(1.01 * most, kMaxMissedSteps - 1));
   EXPECT_FALSE(see(0.99 * most, 1));
@@ -90,8 +90,8 @@ TEST(LimitHandover, IsBodyByBody) {
   EXPECT_EQ(limit.excess(state.x, network.bodies[0]), 0.0);
   EXPECT_EQ(limit.excess(state.x, network.bodies[1]), limit.excess(state.x));
   for (int step = 0; step < 100; ++step) hand_over_missed(network, limit, limit.excess(state.x), state);
-  EXPECT_FALSE(state.stretch_holds[0].solved_since);
-  EXPECT_TRUE(state.stretch_holds[1].solved_since);
+  EXPECT_FALSE(state.stretch_handovers[0].solved_since);
+  EXPECT_TRUE(state.stretch_handovers[1].solved_since);
 }
 
 TEST(LimitHandover, IsNotForSolidsNorForWhatMayNotShrinkNorForPassesByName) {
@@ -107,7 +107,7 @@ TEST(LimitHandover, IsNotForSolidsNorForWhatMayNotShrinkNorForPassesByName) {
   EXPECT_FALSE(StretchLimit(builder.build(), limit_of(Solver::automatic)).may_be_handed_over(0));
   EXPECT_FALSE(StretchLimit(cloth, both_ways).may_be_handed_over(0));
   EXPECT_FALSE(StretchLimit(cloth, limit_of(Solver::gauss_seidel)).may_be_handed_over(0));
-  EXPECT_FALSE(StretchLimit(cloth, limit_of(Solver::automatic), {.may_meet_anything = false}).may_be_handed_over(0))
+  EXPECT_FALSE(StretchLimit(cloth, limit_of(Solver::automatic), {.may_collide = false}).may_be_handed_over(0))
       << "it is from the start";
 }
 
@@ -164,7 +164,7 @@ TEST_F(OverABall, NeedsTheSmallStepsOfPassesNoMore) {
   Simulator simulator(cloth_, {.step = 1.0 / kRate, .stretch_limit = limit, .max_substeps = 4}, ball_);
   std::vector<int> substeps;
   for (int step = 0; step < 60; ++step) substeps.push_back(simulator.step().substeps);
-  const auto since = simulator.state().stretch_holds.front().solved_since;
+  const auto since = simulator.state().stretch_handovers.front().solved_since;
   ASSERT_TRUE(since);
   for (int step = 0; step <= *since; ++step) EXPECT_EQ(substeps[static_cast<std::size_t>(step)], 4) << step;
   EXPECT_EQ(substeps.back(), 1);
