@@ -105,7 +105,7 @@ TEST(CoarseCloth, LiesWhereTheClothDoes) {
   for (Index n = 0; n < fine.free_count; ++n) {
     Vector3 mean = Vector3::Zero();
     for (std::size_t k = 0; k < 4; ++k) {
-      mean += cloth->places[n].weights[k] * network.positions.col(cloth->particles[cloth->places[n].points[k]]);
+      mean += cloth->interpolations[n].weights[k] * network.positions.col(cloth->particles[cloth->interpolations[n].points[k]]);
     }
     EXPECT_NEAR((mean - network.positions.col(fine.points[n])).norm(), 0.0, 1e-14);
   }
