@@ -7,7 +7,7 @@ namespace sprung {
 
 namespace {
 
-/// Where the shape's nearest point stays the same, the distance is a hyperbola, and this is linear along the edge.
+/// If the closest point of the shape is the same along the edge, the distance is a hyperbola and this function is linear.
 double steepness(double slope) { return slope / std::sqrt(std::max((1.0 - slope) * (1.0 + slope), 1e-30)); }
 
 double zero_of_steepness(const EdgeSample& low, const EdgeSample& high) {
@@ -24,12 +24,12 @@ EdgeSample crossing_of_tangents(const EdgeSample& low, const EdgeSample& high) {
 }
 
 double ConvexLineSearch::next() {
-  const int turn = steps_++ % 3;
+  const int rule = steps_++ % 3;
   const double width = high_.along - low_.along;
-  const double at = turn == 1 ? crossing_of_tangents(low_, high_).along : zero_of_steepness(low_, high_);
-  const bool slow = turn == 2 && width > 0.5 * width_;
-  if (turn == 2) width_ = width;
-  return slow || !holds(at) ? low_.along + 0.5 * width : at;
+  const double at = rule == 1 ? crossing_of_tangents(low_, high_).along : zero_of_steepness(low_, high_);
+  const bool slow = rule == 2 && width > 0.5 * width_;
+  if (rule == 2) width_ = width;
+  return slow || !contains(at) ? low_.along + 0.5 * width : at;
 }
 
 }  // namespace sprung

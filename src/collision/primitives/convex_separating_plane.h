@@ -1,4 +1,4 @@
-// The plane that separates an element of the network from a convex primitive best.
+// The best separating plane of an element and a convex primitive.
 #pragma once
 
 #include "collision/safe_regions/safe_region.h"
@@ -8,29 +8,29 @@
 
 namespace sprung {
 
-/// A direction, how far it separates, and the pair of points that gave it.
+/// A separating direction, its gap, and the closest points.
 struct SeparatingPlane {
   Vector3 normal = Vector3::Zero();   ///< unit length, from the shape to the element
   Vector3 point = Vector3::Zero();    ///< on the shape
   Vector3 weights = Vector3::Zero();  ///< of the element's corners, not negative; their sum is 1
-  double height = 0.0;                ///< the farthest that the shape reaches along the normal [m]
-  double lowest = 0.0;                ///< of the corners along the normal [m]
+  double height = 0.0;                ///< largest height of the shape along the normal [m]
+  double lowest = 0.0;                ///< smallest height of the corners along the normal [m]
   int lowest_corner = 0;
-  double gap = -std::numeric_limits<double>::infinity();      ///< lowest - height [m], negative when shape and element overlap
-  double distance = std::numeric_limits<double>::infinity();  ///< of the pair's points [m], at least the gap
+  double gap = -std::numeric_limits<double>::infinity();      ///< lowest - height [m]; negative if shape and element overlap
+  double distance = std::numeric_limits<double>::infinity();  ///< of the closest points [m]; at least the gap
 };
 
-/// The least height of a box along `normal` [m].
+/// The smallest height of a box along `normal` [m].
 [[nodiscard]] double lowest(const Box3& box, const Vector3& normal);
 
-/// The best separation of shape and element: nothing of the two is nearer than its gap, which is within 0.2 % of the distance
-/// unless they are within rounding of touching, or overlap. Any separation will do once it keeps the shape out of `box`, which
-/// holds the element.
+/// Finds the best separating plane of shape and element. The gap is a lower bound of their distance, within 0.2 % of it, unless
+/// they overlap or the distance is within rounding of 0. The search stops early once a plane separates the shape from `box`, which
+/// contains the element.
 ///
-/// The signed distance of a convex shape is convex, so over an element it is smallest at a corner, within an edge where its slope
-/// vanishes, or within the face, where its gradient is the face's normal. Each gives a direction, and the shape's support in that
-/// direction proves the gap whatever rounding did to the search. GJK (Gilbert, Johnson and Keerthi 1988) takes its directions from
-/// differences of nearly equal points instead, which close to touching are mostly rounding.
+/// The signed distance of a convex shape is convex. Its minimum over an element is at a corner, within an edge where its slope
+/// vanishes, or within the face where its gradient is the normal of the face. Each candidate gives a direction, and the support
+/// point of the shape in this direction proves the gap independently of rounding in the search. GJK (Gilbert, Johnson and Keerthi
+/// 1988) takes directions from differences of nearly equal points, which are inaccurate close to contact.
 [[nodiscard]] SeparatingPlane separation(const SphereGeometry& sphere, const ElementCorners& element, const Box3& box);
 [[nodiscard]] SeparatingPlane separation(const BoxGeometry& solid, const ElementCorners& element, const Box3& box);
 [[nodiscard]] SeparatingPlane separation(const CapsuleGeometry& capsule, const ElementCorners& element, const Box3& box);

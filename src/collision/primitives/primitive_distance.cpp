@@ -10,7 +10,7 @@ namespace {
 
 using Vector2 = Eigen::Vector2d;
 
-/// The surface of a ball around `centre`, whose own nearest point is in the direction `from_centre`.
+/// The point of a sphere nearest to p. If p is the centre, the point is in the direction `from_centre`.
 SurfacePoint ball_surface(const Vector3& centre, double radius, const Vector3& p, const Vector3& from_centre) {
   const Vector3 away = p - centre;
   const double length = away.norm();
@@ -18,15 +18,15 @@ SurfacePoint ball_surface(const Vector3& centre, double radius, const Vector3& p
   return {centre + radius * normal, normal, length - radius};
 }
 
-/// A point and a normal in the half-plane of a solid of revolution: distance from the axis, height.
+/// A point of a solid of revolution in its half-plane (distance from the axis, height).
 struct ProfilePoint {
   Vector2 point = Vector2::Zero();
   Vector2 normal = Vector2::Zero();
   double distance = 0.0;
 };
 
-/// A corner of the profile seen from outside. Directions of lengths below `rounding` may leave the range between the corner's
-/// sides; then `side` is the normal.
+/// The distance from a corner of the profile, for a point outside. Below the length `rounding` the direction is inaccurate, and
+/// the normal is `side`.
 ProfilePoint at_corner(const Vector2& corner, const Vector2& p, const Vector2& side, double rounding) {
   const double distance = (p - corner).norm();
   return {corner, distance > rounding ? Vector2((p - corner) / distance) : side, distance};
@@ -53,15 +53,15 @@ ProfilePoint profile_surface(const ConeGeometry& cone, const Vector2& p, double 
   const Vector2 down(0.0, -1.0);
   const double above_side = outward.dot(p - rim);
   const double below_base = rim.y() - p.y();
-  const double way = along.dot(p - rim);
+  const double foot = along.dot(p - rim);
   const bool outside = above_side > 0.0 || below_base > 0.0;
-  if (outside && way <= 0.0 && p.x() >= rim.x()) return at_corner(rim, p, above_side > below_base ? outward : down, rounding);
-  if (outside && way >= slant) return at_corner(tip, p, outward, rounding);
+  if (outside && foot <= 0.0 && p.x() >= rim.x()) return at_corner(rim, p, above_side > below_base ? outward : down, rounding);
+  if (outside && foot >= slant) return at_corner(tip, p, outward, rounding);
   if (outside ? below_base > 0.0 && p.x() < rim.x() : below_base >= above_side) return {Vector2(p.x(), rim.y()), down, below_base};
   return {p - above_side * outward, outward, above_side};
 }
 
-/// The profile's answer for a point in space, turned about the y axis.
+/// Rotates the result for the profile about the y axis.
 template <class Solid>
 SurfacePoint revolved_surface(const Solid& solid, const Vector3& p) {
   const double radius = std::sqrt(p.x() * p.x() + p.z() * p.z());

@@ -1,4 +1,4 @@
-// Zones of elements against primitives: all are convex, so one plane separates.
+// Safe region of an element before a primitive. Primitives are convex, so one plane suffices.
 #pragma once
 
 #include "collision/safe_regions/safe_region.h"
@@ -6,9 +6,9 @@
 
 namespace sprung {
 
-/// The region of an element against a primitive: its box, and the plane of the best separation where the primitive comes within the
-/// box. Elements within rounding of the primitive are broken; then distance, point and normal are those of the direction in which
-/// the element has the least to go to be free of it.
+/// Builds the safe region: the requested box and, if the primitive intersects it, the best separating plane. The region is broken
+/// if the element is within rounding of the primitive. Then `distance`, `point` and `normal` describe the shortest displacement
+/// that separates the element from the primitive.
 [[nodiscard]] SafeRegion find_region(const SphereGeometry& sphere, const ElementCorners& element, const SafeRegionRequest& request);
 [[nodiscard]] SafeRegion find_region(const BoxGeometry& box, const ElementCorners& element, const SafeRegionRequest& request);
 [[nodiscard]] SafeRegion find_region(const CapsuleGeometry& capsule, const ElementCorners& element,

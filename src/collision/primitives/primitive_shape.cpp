@@ -9,8 +9,8 @@ std::optional<Crossing> first_crossing_of_convex(const std::function<SurfacePoin
   double fraction = 0.0;
   SurfacePoint surface = distance(a);
   if (surface.distance < -rounding) return std::nullopt;
-  // Newton converges quadratically unless the path grazes the surface; then it halves the rest each time, and 64 halvings are
-  // nothing.
+  // Newton's method converges quadratically, except on a path that grazes the surface. There each step halves the rest, and 64
+  // halvings are enough.
   for (int step = 0; step < 64 && surface.distance > rounding; ++step) {
     const double slope = surface.normal.dot(path);
     const double height = surface.distance - 0.5 * rounding;

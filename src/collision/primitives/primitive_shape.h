@@ -1,4 +1,4 @@
-// A primitive as an obstacle's shape: everything follows from its signed distance.
+// A primitive as the shape of an obstacle, based on its signed distance.
 #pragma once
 
 #include "collision/primitives/convex_separating_plane.h"
@@ -12,8 +12,9 @@
 
 namespace sprung {
 
-/// Where a path first meets a convex solid with signed distance `distance`. Along a line the distance is convex, so its tangent
-/// lies below it: Newton's steps never pass the surface, and a tangent that stays positive proves the rest of the path free.
+/// The first intersection of a path with a convex solid of signed distance `distance`. The distance is convex along the path and
+/// above its tangents, so Newton steps never pass the surface. A tangent that stays positive proves that the rest of the path is
+/// free.
 [[nodiscard]] std::optional<Crossing> first_crossing_of_convex(const std::function<SurfacePoint(const Vector3&)>& distance,
                                                                double rounding, const Vector3& a, const Vector3& b);
 

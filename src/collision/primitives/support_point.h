@@ -1,12 +1,13 @@
-// Support points of convex primitives: how far a shape reaches in a direction.
+// Support points of convex primitives.
 #pragma once
 
 #include "collision/shapes/obstacle.h"
 
 namespace sprung {
 
-/// The point of the shape [m] that is farthest in `direction`, which need not have unit length but is not zero; where several are,
-/// always the same. direction . point is the largest over the shape to rounding (van den Bergen 2003, section 4.3.4).
+/// The point of the shape [m] that is farthest in `direction`, a vector of any length above 0. If several points are farthest, the
+/// choice is deterministic. `direction` . point is the maximum over the shape within rounding (van den Bergen 2003, section
+/// 4.3.4).
 [[nodiscard]] Vector3 support_point(const SphereGeometry& sphere, const Vector3& direction);
 [[nodiscard]] Vector3 support_point(const BoxGeometry& box, const Vector3& direction);
 [[nodiscard]] Vector3 support_point(const CapsuleGeometry& capsule, const Vector3& direction);

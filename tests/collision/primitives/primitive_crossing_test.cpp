@@ -23,36 +23,36 @@ std::vector<ObstacleGeometry> solids() {
 
 const Box3 kAround(Vector3::Constant(-1.6), Vector3::Constant(1.6));
 
-TEST(PrimitiveCrossing, PathThatEndsInsideIsNeverMissedAndNeverPasses) {
+TEST(PrimitiveCrossing, APathThatEndsInsideCrossesTheSurface) {
   for (const ObstacleGeometry& geometry : solids()) {
     const auto shape = make_shape(geometry);
     Random random(5);
-    int met = 0;
+    int entering = 0;
     for (int i = 0; i < 20000; ++i) {
       const Vector3 a = random.in_box(kAround);
       const Vector3 b = random.in_box(kAround);
       if (shape->contains(a)) continue;
       const auto crossing = shape->first_crossing(a, b);
       if (shape->contains(b)) {
-        ++met;
+        ++entering;
         ASSERT_TRUE(crossing) << geometry.index();
       }
       if (!crossing) continue;
       ASSERT_LT(crossing->normal.dot(b - a), 1e-12);
-      // Free before the crossing, and on the surface at it, within rounding of coordinates below 2.
-      for (const double part : {0.0, 0.5, 0.9, 0.999, 1.0}) {
-        const double distance = shape->nearest(a + part * crossing->fraction * (b - a), 10.0)->distance;
+      // The path is outside before the crossing and on the surface at it, within rounding of coordinates below 2 m.
+      for (const double fraction : {0.0, 0.5, 0.9, 0.999, 1.0}) {
+        const double distance = shape->nearest(a + fraction * crossing->fraction * (b - a), 10.0)->distance;
         ASSERT_GE(distance, -1e-14) << geometry.index();
-        if (part == 1.0) {
+        if (fraction == 1.0) {
           ASSERT_LE(distance, 1e-13) << geometry.index();
         }
       }
     }
-    EXPECT_GT(met, 20) << geometry.index();
+    EXPECT_GT(entering, 20) << geometry.index();
   }
 }
 
-TEST(PrimitiveCrossing, PathThatMissesIsFree) {
+TEST(PrimitiveCrossing, APathWithoutACrossingStaysOutside) {
   for (const ObstacleGeometry& geometry : solids()) {
     const auto shape = make_shape(geometry);
     Random random(6);
@@ -65,17 +65,17 @@ TEST(PrimitiveCrossing, PathThatMissesIsFree) {
   }
 }
 
-TEST(PrimitiveCrossing, SkimmingAFaceIsFreeAtAnySpeed) {
+TEST(PrimitiveCrossing, APathAlongAFaceDoesNotCrossAtAnySpeed) {
   const auto shape = make_shape(BoxGeometry{Vector3(1000.0, 1.0, 1000.0)});
   EXPECT_FALSE(shape->first_crossing(Vector3(-400, 0.500001, 0), Vector3(400, 0.500001, 0)));
   const auto crossing = shape->first_crossing(Vector3(-400, 0.500001, 0), Vector3(400, 0.499999, 0));
   ASSERT_TRUE(crossing);
-  // The surface is met half its rounding early, 0.5e-14 of coordinates of 900, on a path that falls by 2e-6.
+  // The crossing is early by half the rounding tolerance, 0.5e-14 of coordinates of 900 m, on a path that descends by 2e-6 m.
   EXPECT_NEAR(crossing->fraction, 0.5, 4.5e-12 / 2e-6);
   EXPECT_EQ(crossing->normal, Vector3::UnitY());
 }
 
-TEST(PrimitiveCrossing, WhatIsInsideMayLeaveAndWhatIsOnTheSurfaceMayNotEnter) {
+TEST(PrimitiveCrossing, AParticleInsideMayLeaveAndOneOnTheSurfaceMayNotEnter) {
   const auto shape = make_shape(SphereGeometry{1.0});
   EXPECT_FALSE(shape->first_crossing(Vector3(0.2, 0, 0), Vector3(3, 0, 0)));
   EXPECT_FALSE(shape->first_crossing(Vector3(1, 0, 0), Vector3(3, 0, 0)));

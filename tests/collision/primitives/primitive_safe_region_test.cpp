@@ -16,7 +16,7 @@ using testing::AnyOf;
 using testing::Ge;
 using testing::Le;
 
-constexpr double kEverything = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kScales[] = {1e-3, 1.0, 1e3};
 
 struct Sample {
@@ -48,7 +48,7 @@ SafeRegion region_against(const ObstacleGeometry& geometry, const ElementCorners
         if constexpr (requires { find_region(shape, element, request); }) {
           return find_region(shape, element, request);
         } else {
-          return SafeRegion{};  // meshes are no primitives
+          return SafeRegion{};  // for meshes
         }
       },
       geometry);
@@ -76,7 +76,7 @@ ElementCorners random_element(Random& random, int count, double scale) {
   return element;
 }
 
-/// The smallest signed distance of a function that is convex over [0, 1], by golden section.
+/// The minimum of a convex function over [0, 1], by golden section search.
 template <class Function>
 double least(const Function& f) {
   constexpr double kGolden = 0.6180339887498949;
@@ -104,9 +104,10 @@ double least(const Function& f) {
   return std::min({fa, fb, f(0.0), f(1.0)});
 }
 
-/// The smallest signed distance over an element by nested golden sections: too high by at most 0.618^40 = 4e-9 of its size.
+/// The smallest signed distance over an element, by nested golden section searches. The error is at most 0.618^40 = 4e-9 of its
+/// size.
 double least_distance(const ObstacleShape& shape, const ElementCorners& element) {
-  const auto distance = [&](const Vector3& p) { return shape.nearest(p, kEverything)->distance; };
+  const auto distance = [&](const Vector3& p) { return shape.nearest(p, kInfinity)->distance; };
   const auto& x = element.x;
   if (element.count == 1) return distance(x[0]);
   if (element.count == 2) return least([&](double t) { return distance(x[0] + t * (x[1] - x[0])); });
@@ -134,7 +135,7 @@ std::vector<Vector3> surface_samples(const ObstacleShape& shape, double scale, i
   return surface;
 }
 
-TEST(ConvexZone, DistanceIsTheSmallestOverTheElement) {
+TEST(PrimitiveSafeRegion, DistanceIsTheSmallestOverTheElement) {
   for (const double scale : kScales) {
     for (const auto& [name, geometry] : primitives(scale)) {
       const auto shape = make_shape(geometry);
@@ -149,20 +150,20 @@ TEST(ConvexZone, DistanceIsTheSmallestOverTheElement) {
         ++apart;
         ASSERT_LE(region.clear, exact + 1e-15 * scale) << name;
         ASSERT_GE(region.clear, (1.0 - 5e-3) * exact) << name;
-        // The search may stop 0.2 % too high; the oracle's own error is 4e-9 of sizes up to 4.
+        // The distance may be too large by 0.2 %. The reference has an error of 4e-9 of sizes up to 4.
         ASSERT_NEAR(region.distance, exact, 2.1e-3 * exact + 2e-8 * scale) << name << " element " << i;
         ASSERT_NEAR((weighted(element, region.weights) - region.point).norm(), region.distance, 1e-14 * scale)
             << name << " element " << i;
         ASSERT_NEAR(region.weights.sum(), 1.0, 1e-14) << name;
         ASSERT_GE(region.weights.minCoeff(), 0.0) << name;
-        ASSERT_NEAR(shape->nearest(region.point, kEverything)->distance, 0.0, 1e-13 * scale) << name;
+        ASSERT_NEAR(shape->nearest(region.point, kInfinity)->distance, 0.0, 1e-13 * scale) << name;
       }
       ASSERT_GT(apart, 30) << name;
     }
   }
 }
 
-TEST(ConvexZone, PlaneSeparatesByTheDistance) {
+TEST(PrimitiveSafeRegion, PlaneSeparatesByTheDistance) {
   for (const double scale : kScales) {
     for (const auto& [name, geometry] : solids(scale)) {
       const auto shape = make_shape(geometry);
@@ -178,7 +179,7 @@ TEST(ConvexZone, PlaneSeparatesByTheDistance) {
         ASSERT_NEAR(plane.normal.norm(), 1.0, 1e-15) << name;
         ASSERT_EQ(plane.normal, region.normal) << name;
         ASSERT_GE(lowest_corner(element, plane.normal), plane.offset) << name;
-        // Half of the gap that contact keeps, or 0.3 of what there is.
+        // Half of the contact gap, or 0.3 of the distance.
         const double stand_off = std::min(0.5 * request.gap, 0.3 * region.distance);
         const double highest = plane.offset - stand_off;
         for (const Vector3& point : surface) ASSERT_LE(plane.normal.dot(point), highest + 1e-3 * region.distance) << name;
@@ -188,7 +189,7 @@ TEST(ConvexZone, PlaneSeparatesByTheDistance) {
   }
 }
 
-TEST(ConvexZone, BoxIsFreeWithoutPlanes) {
+TEST(PrimitiveSafeRegion, ABoxWithoutPlanesExcludesTheObstacle) {
   for (const double scale : kScales) {
     for (const auto& [name, geometry] : solids(scale)) {
       const auto shape = make_shape(geometry);
@@ -208,7 +209,7 @@ TEST(ConvexZone, BoxIsFreeWithoutPlanes) {
           continue;
         }
         ++free;
-        ASSERT_EQ(region.distance, kEverything) << name;
+        ASSERT_EQ(region.distance, kInfinity) << name;
         ASSERT_LE(region.clear, least_distance(*shape, element)) << name;
         for (const Vector3& point : surface) ASSERT_FALSE(region.box.contains(point)) << name << " element " << i;
       }
@@ -217,24 +218,24 @@ TEST(ConvexZone, BoxIsFreeWithoutPlanes) {
   }
 }
 
-/// Elements that come within `distance` of the surface at one corner, within an edge or within the face, and of which the whole
-/// lies beyond the tangent plane there.
+/// Elements at `distance` [m] from the surface at one corner, within an edge or within the face. The whole element is beyond the
+/// tangent plane there.
 ElementCorners tangent_element(Random& random, const ObstacleShape& shape, int corners_down, double distance, double scale) {
-  const SurfacePoint at = *shape.nearest(2.0 * scale * random.direction(), kEverything);
-  // Behind a sharp rim only the way towards the centre is sure to lead inside.
+  const SurfacePoint at = *shape.nearest(2.0 * scale * random.direction(), kInfinity);
+  // Behind a sharp rim, only the direction towards the centre leads inside for certain.
   const Vector3 touching = distance < 0.0 ? Vector3((1.0 + distance / scale) * at.point) : Vector3(at.point + distance * at.normal);
   const Vector3 along = scale * random.between(0.01, 1.0) * at.normal.unitOrthogonal();
   const Vector3 across = at.normal.cross(along);
   const Vector3 above = scale * random.between(0.1, 1.0) * at.normal;
-  const double turn = random.between(0.0, 6.28);
-  const Vector3 u = std::cos(turn) * along + std::sin(turn) * across;
-  const Vector3 v = std::cos(turn) * across - std::sin(turn) * along;
+  const double angle = random.between(0.0, 6.28);
+  const Vector3 u = std::cos(angle) * along + std::sin(angle) * across;
+  const Vector3 v = std::cos(angle) * across - std::sin(angle) * along;
   if (corners_down == 1) return {{touching, touching + above + u, touching + above + v}, 3};
   if (corners_down == 2) return {{touching + 0.7 * u, touching - u, touching + above + v}, 3};
   return {{touching + u - v, touching + u + v, touching - 2.0 * u}, 3};
 }
 
-TEST(ConvexZone, IsFoundDownToTheClearance) {
+TEST(PrimitiveSafeRegion, ARegionIsFoundDownToTheClearance) {
   for (const double scale : kScales) {
     for (const auto& [name, geometry] : primitives(scale)) {
       const auto shape = make_shape(geometry);
@@ -245,7 +246,8 @@ TEST(ConvexZone, IsFoundDownToTheClearance) {
         const ElementCorners element = tangent_element(random, *shape, 1 + i % 3, distance, scale);
         const SafeRegion region = region_against(geometry, element, request);
         ASSERT_FALSE(region.broken) << name << " element " << i;
-        // Coordinates up to 3 are rounded to 4e-16, the tangent plane's directions to as much: 2e-15 of 9e-10 in all.
+        // Coordinates up to 3 m have rounding errors of 4e-16 m, and so do the directions of the tangent plane: 2e-15 of 9e-10 in
+        // all.
         ASSERT_NEAR(region.distance, distance, 3e-3 * distance + 4e-15 * scale) << name << " element " << i;
         const double gap = lowest_corner(element, region.normal) - region.normal.dot(region.point);
         ASSERT_GE(gap, (1.0 - 5e-3) * distance - 4e-15 * scale) << name << " element " << i;
@@ -256,7 +258,7 @@ TEST(ConvexZone, IsFoundDownToTheClearance) {
   }
 }
 
-TEST(ConvexZone, ElementsThatTouchAreBroken) {
+TEST(PrimitiveSafeRegion, ATouchingElementHasABrokenRegion) {
   for (const double scale : kScales) {
     for (const auto& [name, geometry] : primitives(scale)) {
       const auto shape = make_shape(geometry);
@@ -273,7 +275,7 @@ TEST(ConvexZone, ElementsThatTouchAreBroken) {
   }
 }
 
-TEST(ConvexZone, FaceThatAShapePiercesBetweenItsEdgesIsBroken) {
+TEST(PrimitiveSafeRegion, APiercedFaceHasABrokenRegion) {
   const SafeRegionRequest request{.reach = 0.1, .gap = 0.01, .clearance = 0x1p-30};
   const ElementCorners face{{Vector3(-2, 0, -2), Vector3(3, 0, -2), Vector3(0, 0, 3)}, 3};
   for (const auto& [name, geometry] : solids(1.0)) EXPECT_TRUE(region_against(geometry, face, request).broken) << name;
@@ -281,7 +283,7 @@ TEST(ConvexZone, FaceThatAShapePiercesBetweenItsEdgesIsBroken) {
   for (const auto& [name, geometry] : solids(1.0)) EXPECT_TRUE(region_against(geometry, inside, request).broken) << name;
 }
 
-TEST(ConvexZone, BrokenElementIsFreeOnceItWentItsDistanceAlongTheNormal) {
+TEST(PrimitiveSafeRegion, AnElementMovedOutByItsDepthIsFree) {
   for (const auto& [name, geometry] : primitives(1.0)) {
     Random random(6);
     int broken = 0;
@@ -299,7 +301,7 @@ TEST(ConvexZone, BrokenElementIsFreeOnceItWentItsDistanceAlongTheNormal) {
   }
 }
 
-TEST(ConvexZone, TrianglesWithoutAreaAreTheirSegments) {
+TEST(PrimitiveSafeRegion, ATriangleWithoutAreaEqualsItsSegment) {
   for (const auto& [name, geometry] : primitives(1.0)) {
     Random random(7);
     for (int i = 0; i < 300; ++i) {
@@ -311,7 +313,7 @@ TEST(ConvexZone, TrianglesWithoutAreaAreTheirSegments) {
         const SafeRegion region = region_against(geometry, {{a, b, third}, 3}, wide(1.0));
         ASSERT_EQ(region.broken, expected.broken) << name;
         if (region.broken) continue;
-        // Both are within 0.2 % of the distance.
+        // Each of the two is within 0.2 % of the exact distance.
         ASSERT_NEAR(region.distance, expected.distance, 4e-3 * std::abs(expected.distance) + 2e-12) << name << " element " << i;
       }
     }
@@ -322,7 +324,7 @@ TEST(ConvexZone, TrianglesWithoutAreaAreTheirSegments) {
   }
 }
 
-TEST(ConvexZone, PlaneNeverAsksTheElementToComeNearer) {
+TEST(PrimitiveSafeRegion, ThePlaneNeverCutsTheElement) {
   const SphereGeometry sphere{1.0};
   for (const double distance : {1e-12, 1e-10, 1e-9, 1e-3, 0.5}) {
     const ElementCorners point{{Vector3(0.0, 1.0 + distance, 0.0)}, 1};
@@ -336,7 +338,7 @@ TEST(ConvexZone, PlaneNeverAsksTheElementToComeNearer) {
   }
 }
 
-TEST(ConvexZone, ScalingByAPowerOfTwoScalesEveryBit) {
+TEST(PrimitiveSafeRegion, ScalingByAPowerOfTwoScalesEveryBit) {
   const std::vector<Sample> small = primitives(1.0);
   const std::vector<Sample> large = primitives(128.0);
   for (std::size_t k = 0; k < small.size(); ++k) {

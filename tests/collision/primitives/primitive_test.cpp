@@ -44,9 +44,9 @@ std::vector<Sample> primitives() {
 }
 
 const Box3 kAround(Vector3::Constant(-1.6), Vector3::Constant(1.6));
-constexpr double kEverything = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-SurfacePoint nearest(const ObstacleShape& shape, const Vector3& p) { return shape.nearest(p, kEverything).value(); }
+SurfacePoint nearest(const ObstacleShape& shape, const Vector3& p) { return shape.nearest(p, kInfinity).value(); }
 
 TEST(Primitive, NormalIsTheGradientOfTheDistance) {
   for (const auto& [name, geometry] : primitives()) {
@@ -58,7 +58,7 @@ TEST(Primitive, NormalIsTheGradientOfTheDistance) {
       ASSERT_NEAR(found.normal.norm(), 1.0, 1e-14) << name;
       ASSERT_NEAR((p - found.point - found.distance * found.normal).norm(), 0.0, 1e-13) << name;
       ASSERT_NEAR(nearest(*shape, found.point).distance, 0.0, 1e-13) << name;
-      // A distance changes by what one moves along the gradient, and by the square of the move over the distance across it.
+      // Along the gradient the distance changes by the displacement, up to its square divided by the radius of curvature.
       if (std::abs(found.distance) < 1e-3) continue;
       const double step = 1e-6;
       const double slope = (nearest(*shape, p + step * found.normal).distance - found.distance) / step;
@@ -71,11 +71,11 @@ TEST(Primitive, NormalIsTheGradientOfTheDistance) {
   }
 }
 
-TEST(Primitive, DistanceIsThatOfTheNearestOfManySurfacePoints) {
+TEST(Primitive, DistanceIsThatOfTheNearestSurfaceSample) {
   for (const auto& [name, geometry] : solids()) {
     const auto shape = make_shape(geometry);
     Random random(2);
-    // Directions from the centre meet these star-shaped solids once: bisect for where.
+    // A ray from the centre crosses the surface of these star-shaped solids once. Bisection finds the crossing.
     std::vector<Vector3> surface;
     for (int i = 0; i < 20000; ++i) {
       const Vector3 direction = random.direction();
@@ -89,19 +89,19 @@ TEST(Primitive, DistanceIsThatOfTheNearestOfManySurfacePoints) {
     }
     for (int i = 0; i < 200; ++i) {
       const Vector3 p = random.in_box(kAround);
-      double sampled = kEverything;
+      double sampled = kInfinity;
       for (const Vector3& q : surface) sampled = std::min(sampled, (p - q).norm());
       const double distance = std::abs(nearest(*shape, p).distance);
-      // No sample is nearer than the nearest, and with 20000 samples on some 6 m^2 one is within 6 cm of it.
+      // No sample is nearer than the nearest point. With 20000 samples on 6 m^2, one is within 6 cm of it.
       ASSERT_LE(distance, sampled + 1e-12) << name;
       ASSERT_GE(distance, sampled - 0.06) << name;
     }
   }
 }
 
-/// FCL with libccd is exact for these: whether a small sphere touches tells whether its centre is within its radius.
-void expect_touching_as_fcl(const ObstacleGeometry& geometry, const fcl::CollisionGeometry<double>& fcl_shape,
-                            const RigidTransform& turn) {
+/// FCL with libccd is exact for these shapes: a small sphere touches if the distance of its centre is below its radius.
+void expect_agreement_with_fcl(const ObstacleGeometry& geometry, const fcl::CollisionGeometry<double>& fcl_shape,
+                               const RigidTransform& rotation) {
   const auto shape = make_shape(geometry);
   Random random(3);
   fcl::CollisionRequest<double> request;
@@ -109,25 +109,25 @@ void expect_touching_as_fcl(const ObstacleGeometry& geometry, const fcl::Collisi
   for (int i = 0; i < 3000; ++i) {
     const Vector3 p = random.in_box(kAround);
     const fcl::Sphere<double> sphere(random.between(0.01, 0.5));
-    RigidTransform place = RigidTransform::Identity();
-    place.translation() = p;
+    RigidTransform pose = RigidTransform::Identity();
+    pose.translation() = p;
     fcl::CollisionResult<double> result;
-    fcl::collide(&fcl_shape, turn, &sphere, place, request, result);
+    fcl::collide(&fcl_shape, rotation, &sphere, pose, request, result);
     const double distance = nearest(*shape, p).distance;
     if (std::abs(distance - sphere.radius) < 1e-4) continue;  // libccd's own tolerance
     ASSERT_EQ(result.isCollision(), distance < sphere.radius) << p.transpose() << " radius " << sphere.radius;
   }
 }
 
-TEST(Primitive, TouchesWhatFclFindsTouching) {
-  const RigidTransform as_is = RigidTransform::Identity();
+TEST(Primitive, DistancesAgreeWithFcl) {
+  const RigidTransform unrotated = RigidTransform::Identity();
   RigidTransform standing = RigidTransform::Identity();
   standing.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-  expect_touching_as_fcl(SphereGeometry{0.7}, fcl::Sphere<double>(0.7), as_is);
-  expect_touching_as_fcl(BoxGeometry{Vector3(0.6, 1.4, 1.0)}, fcl::Box<double>(0.6, 1.4, 1.0), as_is);
-  expect_touching_as_fcl(CapsuleGeometry{0.4, 0.9}, fcl::Capsule<double>(0.4, 0.9), standing);
-  expect_touching_as_fcl(CylinderGeometry{0.5, 1.2}, fcl::Cylinder<double>(0.5, 1.2), standing);
-  expect_touching_as_fcl(HalfSpaceGeometry{kTilted, 0.2}, fcl::Halfspace<double>(kTilted, 0.2), as_is);
+  expect_agreement_with_fcl(SphereGeometry{0.7}, fcl::Sphere<double>(0.7), unrotated);
+  expect_agreement_with_fcl(BoxGeometry{Vector3(0.6, 1.4, 1.0)}, fcl::Box<double>(0.6, 1.4, 1.0), unrotated);
+  expect_agreement_with_fcl(CapsuleGeometry{0.4, 0.9}, fcl::Capsule<double>(0.4, 0.9), standing);
+  expect_agreement_with_fcl(CylinderGeometry{0.5, 1.2}, fcl::Cylinder<double>(0.5, 1.2), standing);
+  expect_agreement_with_fcl(HalfSpaceGeometry{kTilted, 0.2}, fcl::Halfspace<double>(kTilted, 0.2), unrotated);
 }
 
 TEST(Primitive, CentresAxesAndEdgesHaveNormals) {
@@ -150,7 +150,7 @@ TEST(Primitive, EllipsoidDistanceOnItsAxesIsKnown) {
   EXPECT_NEAR(nearest(*shape, Vector3(2, 0, 0)).distance, 1.1, 1e-15);
   EXPECT_NEAR(nearest(*shape, Vector3(0, -2, 0)).distance, 1.7, 1e-15);
   EXPECT_NEAR(nearest(*shape, Vector3::Zero()).distance, -0.3, 1e-15);
-  // Inside, the end of the long axis is nearest only beyond its centre of curvature, (a^2 - b^2) / a = 0.8.
+  // Inside, the end of the long axis is the nearest point only beyond its centre of curvature, (a^2 - b^2) / a = 0.8.
   EXPECT_NEAR(nearest(*shape, Vector3(0.85, 0, 0)).distance, -0.05, 1e-15);
   const SurfacePoint aside = nearest(*shape, Vector3(0.4, 0, 0));
   EXPECT_NEAR(aside.point.x(), 0.4 * 0.81 / (0.81 - 0.09), 1e-15);
