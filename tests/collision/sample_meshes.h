@@ -1,4 +1,4 @@
-// Meshes that tests are made of, points around them, and answers by brute force over all triangles.
+// Test meshes, points near them, and reference answers by brute force over all triangles.
 #pragma once
 
 #include "geometry/mesh/polygon_mesh.h"
@@ -14,7 +14,7 @@
 
 namespace sprung::test {
 
-/// The same numbers on every machine: std's distributions are not.
+/// Random numbers that are the same on every machine, unlike those of std's distributions.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -36,7 +36,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// A closed torus about y, outward oriented.
+/// A closed torus about the y axis, with outward normals.
 inline TriangleMesh torus(double radius, double tube, Index around, Index across) {
   TriangleMesh mesh{Points(3, around * across), Triangles(3, 2 * around * across)};
   for (Index i = 0; i < around; ++i) {
@@ -78,7 +78,7 @@ inline TriangleMesh flat_sheet(Index side) {
   return terrain(side, [](Index, Index) { return 0.0; });
 }
 
-/// A closed ball of needles: every third vertex of a sphere is pulled out, the others stay in. Outward oriented.
+/// A closed ball of needles: every third vertex of a sphere is pulled outward. Outward normals.
 inline TriangleMesh needles(Index around) {
   const Index rings = around / 2 - 1;
   TriangleMesh star{Points(3, rings * around + 2), Triangles(3, 2 * rings * around)};
@@ -108,7 +108,7 @@ inline TriangleMesh needles(Index around) {
   return star;
 }
 
-/// The bunny, about 1.5 m high and closed; throws InputError when it is not installed.
+/// The Stanford bunny, closed and about 1.5 m high. Throws InputError if it is not installed.
 inline TriangleMesh bunny() {
   const PolygonMesh mesh = read_obj(std::filesystem::path(SPRUNG_TEST_MESHES) / "bunny.obj");
   return {mesh.vertices, triangulate(mesh.faces)};
@@ -124,8 +124,8 @@ inline Vector3 near_surface(const TriangleMesh& mesh, Random& random, double dis
   return point + distance * random.direction();
 }
 
-/// Distance [m] of p from a triangle by ternary search along its three edges and over its plane, in extended precision: the foot on
-/// the plane when it is inside, else the nearest edge. Shares no formula with the code under test.
+/// Distance [m] between a point and a triangle in extended precision: the height above the plane if the foot is inside, else the
+/// distance from the nearest edge. Shares no formula with the code under test.
 inline double brute_distance(const TriangleMesh& mesh, Index triangle, const Vector3& point) {
   using Long3 = Eigen::Matrix<long double, 3, 1>;
   const Long3 p = point.cast<long double>();
@@ -152,7 +152,7 @@ inline double brute_distance(const TriangleMesh& mesh, const Vector3& p) {
   return best;
 }
 
-/// How often the mesh winds around p (van Oosterom and Strackee 1983): 1 inside, 0 outside of a closed one.
+/// Winding number of the mesh around p (van Oosterom and Strackee 1983): 1 inside a closed mesh, 0 outside.
 inline double winding_number(const TriangleMesh& mesh, const Vector3& p) {
   double angle = 0.0;
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {

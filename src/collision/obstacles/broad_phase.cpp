@@ -43,15 +43,15 @@ FclGeometry fcl_geometry(const EllipsoidGeometry& ellipsoid, const ObstacleShape
 }
 FclGeometry fcl_geometry(const HalfSpaceGeometry& /*half_space*/, const ObstacleShape& /*shape*/) { return nullptr; }
 
-RigidTransform turn_of(const ObstacleGeometry& geometry) {
-  RigidTransform turn = RigidTransform::Identity();
+RigidTransform rotation_of(const ObstacleGeometry& geometry) {
+  RigidTransform rotation = RigidTransform::Identity();
   const bool stands = std::holds_alternative<CapsuleGeometry>(geometry) || std::holds_alternative<CylinderGeometry>(geometry) ||
                       std::holds_alternative<ConeGeometry>(geometry);
-  if (stands) turn.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-  return turn;
+  if (stands) rotation.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  return rotation;
 }
 
-/// FCL would fit the box of a mesh to where its vertices are at the interval's end.
+/// FCL would compute the box of a mesh from its vertices at the end of the interval only.
 void fit_box(const Box3& box, fcl::CollisionGeometry<double>& geometry) {
   geometry.aabb_local = fcl::AABB<double>(box.min(), box.max());
   geometry.aabb_center = box.center();
@@ -76,8 +76,8 @@ BroadPhase::BroadPhase(const std::vector<Obstacle>& obstacles, const std::vector
       continue;
     }
     const auto fcl_shape = std::visit([&](const auto& of_kind) { return fcl_geometry(of_kind, *shapes[k]); }, geometry);
-    Object& added = objects_.emplace_back(
-        Object{std::make_unique<fcl::CollisionObject<double>>(fcl_shape), fcl_shape, shapes[k].get(), turn_of(geometry), number});
+    Object& added = objects_.emplace_back(Object{std::make_unique<fcl::CollisionObject<double>>(fcl_shape), fcl_shape,
+                                                 shapes[k].get(), rotation_of(geometry), number});
     added.object->setUserData(&added.obstacle);
     manager_.registerObject(added.object.get());
   }
@@ -88,7 +88,7 @@ BroadPhase::BroadPhase(const std::vector<Obstacle>& obstacles, const std::vector
 void BroadPhase::move(const std::vector<RigidTransform>& poses) {
   for (Object& object : objects_) {
     if (object.shape->deforms()) fit_box(object.shape->bounds(), *object.geometry);
-    object.object->setTransform(poses[object.obstacle] * object.turn);
+    object.object->setTransform(poses[object.obstacle] * object.rotation);
     object.object->computeAABB();
   }
   for (Plane& plane : planes_) {

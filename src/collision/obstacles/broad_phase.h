@@ -1,4 +1,4 @@
-// FCL's broad phase: which obstacles come near a box.
+// Broad phase (FCL): finds the obstacles near a box.
 #pragma once
 
 #include "collision/shapes/obstacle.h"
@@ -11,18 +11,19 @@
 
 namespace sprung {
 
-/// Obstacles as FCL collision objects in a dynamic AABB tree. Half-spaces stay out of it, since no box bounds them (FCL's, of the
-/// largest double, overflow in its tree's sums), and are compared with the box themselves.
+/// A dynamic AABB tree (FCL) over the obstacles. Half-spaces are not in the tree, because their boxes are infinite (FCL's largest
+/// double overflows in the sums of the tree). They are tested one by one.
 class BroadPhase {
  public:
-  /// Requires one shape per obstacle, made of its geometry, and keeps references to them. Obstacles are placed at `poses`.
+  /// Requires one shape per obstacle, built from its geometry. Keeps references to both. `poses` are the initial poses.
   BroadPhase(const std::vector<Obstacle>& obstacles, const std::vector<std::unique_ptr<ObstacleShape>>& shapes,
              const std::vector<RigidTransform>& poses);
 
-  /// Where the obstacles are from now on, as large as their shapes are now. Not thread-safe.
+  /// Updates the poses of the obstacles and the boxes of deforming shapes. Not thread-safe.
   void move(const std::vector<RigidTransform>& poses);
 
-  /// Replaces `found` by the obstacles whose box meets `box`, ascending. May name more, never fewer. Thread-safe.
+  /// Replaces `found` by the obstacles whose box intersects `box`, in ascending order. The result may contain more, never fewer.
+  /// Thread-safe.
   void find_near(const Box3& box, std::vector<Index>& found) const;
 
  private:
@@ -30,7 +31,7 @@ class BroadPhase {
     std::unique_ptr<fcl::CollisionObject<double>> object;
     std::shared_ptr<fcl::CollisionGeometry<double>> geometry;
     const ObstacleShape* shape;
-    RigidTransform turn;  ///< from FCL's frame of the shape, whose axis is z, to ours
+    RigidTransform rotation;  ///< from FCL's frame of the shape, with axis z, to the obstacle's
     Index obstacle;
   };
   struct Plane {

@@ -1,4 +1,4 @@
-// Obstacles in an FCL broad phase, and the contacts of particles with them.
+// The obstacles of a scene and their contacts with particles.
 #pragma once
 
 #include "collision/core/contact.h"
@@ -13,18 +13,18 @@ namespace sprung {
 
 class ObstacleSet;
 
-/// Particles on their way through one step.
+/// Paths of particles in one step.
 struct VertexPaths {
-  const Points& before;      ///< where they were at t [m]; outside all obstacles
-  const Points& after;       ///< where they are about to be at t + dt [m]
-  const Scalars& thickness;  ///< of each particle [m]; the obstacle's own is added
-  double margin = 0.0;       ///< contacts are found this much [m] beyond max(gap, clearance)
+  const Points& before;      ///< positions at t [m]; outside all obstacles
+  const Points& after;       ///< positions at t + dt [m]
+  const Scalars& thickness;  ///< of each particle [m]; the obstacle's thickness is added
+  double margin = 0.0;       ///< contacts are detected up to max(gap, clearance) + margin [m]
 };
 
 class Environment {
  public:
-  /// Throws InputError, naming all problems of all obstacles: shapes that cannot be used, places that are not finite, motions whose
-  /// keyframes are not sorted or not finite, materials that break the rules of ContactMaterial.
+  /// Throws InputError, which names every problem of every obstacle: invalid shapes, poses that are not finite, keyframes that are
+  /// not sorted or not finite, materials that violate ContactMaterial.
   explicit Environment(std::vector<Obstacle> obstacles = {});
   ~Environment();
   Environment(Environment&&) noexcept;
@@ -33,7 +33,7 @@ class Environment {
   [[nodiscard]] const std::vector<Obstacle>& obstacles() const;
   [[nodiscard]] const ObstacleSet& set() const;
 
-  /// The next queries are for a step from time t to t + dt [s]. Not thread-safe; the queries below are.
+  /// Sets the interval from t to t_end [s] for all following queries. Not thread-safe; the queries are.
   void set_interval(double t, double t_end);
   struct Interval {
     double begin = 0.0;
@@ -45,18 +45,19 @@ class Environment {
   [[nodiscard]] const RigidTransform& pose_before(Index obstacle) const;
   [[nodiscard]] const RigidTransform& pose_after(Index obstacle) const;
 
-  /// The velocity [m/s] with which the obstacle carries a position that is near its surface at the interval's end, over the `dt`
-  /// [s] that follow `time`: by its motion, and by its deforming where the surface is nearest.
+  /// Mean velocity [m/s] with which the obstacle moves a position near its surface from `time` to `time + dt` [s]. It includes the
+  /// deformation of the surface point nearest to `position` at the end of the interval.
   [[nodiscard]] Vector3 surface_velocity(Index obstacle, const Vector3& position, double time, double dt) const;
 
-  /// Contacts of particles whose path crosses an obstacle's surface or ends within max(gap, clearance) + margin of it, sorted by
-  /// particle, then obstacle; at most one a pair. Where a path crosses the surface (exactly judged, in the obstacle's own frame)
-  /// the contact is at the crossing, facing where the particle came from; else it is at the surface nearest to `after`, facing
-  /// outward, so that a particle that began inside a closed obstacle and ends within reach of its surface (anywhere in a primitive)
-  /// is led out. Positions that are not finite have no contacts. Same result for any number of threads.
+  /// Detects contacts of particles whose path crosses an obstacle or ends within max(gap, clearance) + margin of it. At most one
+  /// contact per particle and obstacle, sorted by particle, then obstacle. If the path crosses the surface (decided exactly, in
+  /// the obstacle's frame), the contact is at the crossing and its normal is on the side where the path begins. Otherwise the
+  /// contact is at the surface point nearest to `after` and its normal points outward. A particle that starts inside a closed mesh
+  /// and ends near its surface, or ends anywhere inside a primitive, is therefore moved out. Positions that are not finite have no
+  /// contacts. The result does not depend on the number of threads.
   [[nodiscard]] std::vector<Contact> contacts(const VertexPaths& paths) const;
 
-  /// Smallest distance [m] of any particle from any obstacle at pose_after, if within `radius`; negative inside.
+  /// The smallest distance [m] of a particle from an obstacle at pose_after, if it is below `radius` [m]; negative inside.
   [[nodiscard]] std::optional<double> min_distance(const Points& positions, double radius) const;
 
  private:

@@ -10,7 +10,8 @@ namespace sprung {
 
 namespace {
 
-// Of the clearance, which is 2^-30 of the coordinates: twice as much as what regions take for touching, so that they agree.
+// Fraction of the clearance. The clearance is 2^-30 of the coordinates, so this is 2^-40 of them, above the tolerance of safe
+// regions.
 constexpr double kTouching = 0x1p-10;
 
 class PatchSearch {
@@ -18,7 +19,7 @@ class PatchSearch {
   PatchSearch(const ObstacleSet& obstacles, const CollisionSurface& surface, const Points& positions)
       : obstacles_(obstacles), surface_(surface), positions_(positions) {}
 
-  /// Particles are looked at in the first patch that has them.
+  /// A particle is tested only in the first patch that contains it.
   void search(Index patch_number, Intersections& found) const {
     const ElementPatch& patch = surface_.patches[static_cast<std::size_t>(patch_number)];
     Box3 box;
@@ -29,9 +30,9 @@ class PatchSearch {
     for (const Index k : near) {
       for (const Index i : patch.particles) {
         const Index first_slot = surface_.first_slot[static_cast<std::size_t>(i)];
-        if (surface_.slots[static_cast<std::size_t>(first_slot)].patch == patch_number) look_inside(i, k, found);
+        if (surface_.slots[static_cast<std::size_t>(first_slot)].patch == patch_number) find_inside(i, k, found);
       }
-      for (Index e = patch.first_element; e < patch.first_element + patch.element_count; ++e) look_across(e, k, found);
+      for (Index e = patch.first_element; e < patch.first_element + patch.element_count; ++e) find_crossing(e, k, found);
     }
   }
 
@@ -42,7 +43,7 @@ class PatchSearch {
     return kTouching * obstacles_.clearance(k, position, position);
   }
 
-  void look_inside(Index particle, Index k, Intersections& found) const {
+  void find_inside(Index particle, Index k, Intersections& found) const {
     if (is_pinned(particle)) return;
     const Vector3 p = obstacles_.local(k, positions_.col(particle));
     if (!obstacles_.shape(k).contains(p)) return;
@@ -50,7 +51,7 @@ class PatchSearch {
     found.inside.push_back({particle, k, std::abs(surface->distance)});
   }
 
-  void look_across(Index e, Index k, Intersections& found) const {
+  void find_crossing(Index e, Index k, Intersections& found) const {
     const Element& element = surface_.elements[static_cast<std::size_t>(e)];
     ElementCorners corners{.x = {}, .count = element.corners};
     double within = 0.0;
@@ -62,10 +63,10 @@ class PatchSearch {
       pinned += is_pinned(element.particles[i]) ? 1 : 0;
     }
     if (pinned == element.corners || !obstacles_.shape(k).touches(corners, within)) return;
-    if (pinned == 0 || !hangs_in(element, k)) found.crossings.push_back({e, k});
+    if (pinned == 0 || !hangs_from_pin_in(element, k)) found.crossings.push_back({e, k});
   }
 
-  [[nodiscard]] bool hangs_in(const Element& element, Index k) const {
+  [[nodiscard]] bool hangs_from_pin_in(const Element& element, Index k) const {
     return std::any_of(element.particles.begin(), element.particles.begin() + element.corners, [&](Index i) {
       if (!is_pinned(i)) return false;
       const Vector3 p = obstacles_.local(k, positions_.col(i));
@@ -85,19 +86,19 @@ Intersections find_intersections(const ObstacleSet& obstacles, const CollisionSu
                                  Index body) {
   if (obstacles.obstacles().empty()) return {};
   const PatchSearch search(obstacles, surface, positions);
-  std::vector<Intersections> parts(surface.patches.size());
-  parallel_chunks(static_cast<Index>(parts.size()), 1, [&](Index begin, Index end) {
+  std::vector<Intersections> of_patches(surface.patches.size());
+  parallel_chunks(static_cast<Index>(of_patches.size()), 1, [&](Index begin, Index end) {
     for (Index p = begin; p < end; ++p) {
       const ElementPatch& patch = surface.patches[static_cast<std::size_t>(p)];
       const Index own = surface.elements[static_cast<std::size_t>(patch.first_element)].body;
-      if (body == kNone || body == own) search.search(p, parts[static_cast<std::size_t>(p)]);
+      if (body == kNone || body == own) search.search(p, of_patches[static_cast<std::size_t>(p)]);
     }
   });
 
   Intersections all;
-  for (const Intersections& part : parts) {
-    all.inside.insert(all.inside.end(), part.inside.begin(), part.inside.end());
-    all.crossings.insert(all.crossings.end(), part.crossings.begin(), part.crossings.end());
+  for (const Intersections& patch : of_patches) {
+    all.inside.insert(all.inside.end(), patch.inside.begin(), patch.inside.end());
+    all.crossings.insert(all.crossings.end(), patch.crossings.begin(), patch.crossings.end());
   }
   std::sort(all.inside.begin(), all.inside.end(),
             [](const auto& a, const auto& b) { return std::pair(a.particle, a.obstacle) < std::pair(b.particle, b.obstacle); });

@@ -1,4 +1,4 @@
-// What of the network is where it cannot be: in obstacles or across their surfaces.
+// Finds intersections of bodies with obstacles.
 #pragma once
 
 #include "collision/surface/collision_surface.h"
@@ -14,24 +14,24 @@ struct Intersections {
   struct Inside {
     Index particle = kNone;
     Index obstacle = kNone;
-    double depth = 0.0;  ///< from the nearest surface [m]
+    double depth = 0.0;  ///< distance from the nearest surface point [m]
   };
-  /// An element that crosses the surface of an obstacle or touches it to rounding.
+  /// An element that crosses or touches the surface of an obstacle.
   struct Crossing {
     Index element = kNone;
     Index obstacle = kNone;
   };
 
-  std::vector<Inside> inside;       ///< ascending
-  std::vector<Crossing> crossings;  ///< ascending
+  std::vector<Inside> inside;       ///< in ascending order
+  std::vector<Crossing> crossings;  ///< in ascending order
 
   [[nodiscard]] bool empty() const { return inside.empty() && crossings.empty(); }
 };
 
-/// What is in the obstacles at the end of their interval, with the particles at `positions` [m], which are finite. Crossings of
-/// meshes and insides are judged exactly, touching by 2^-40 of the coordinates: where nothing is found, all elements have a region.
-/// Left out is what pins hold in place: pinned particles, elements of pinned particles alone, and elements that hang from a pin
-/// which is in or on the obstacle itself. With `body` only that one is looked at. Same result for any number of threads.
+/// Finds all intersections at the end of the obstacles' interval. `positions` [m] must be finite. Crossings of meshes and
+/// particles inside are decided exactly, touching with a tolerance of 2^-40 of the coordinates. If the result is empty, every
+/// element has a safe region. Not reported are pinned particles, elements with only pinned particles, and elements with a pin in
+/// or on the same obstacle. `body` limits the search to one body. The result does not depend on the number of threads.
 [[nodiscard]] Intersections find_intersections(const ObstacleSet& obstacles, const CollisionSurface& surface,
                                                const Points& positions, Index body = kNone);
 

@@ -14,7 +14,7 @@ namespace {
 
 double largest(const Vector3& p) { return p.cwiseAbs().maxCoeff(); }
 
-/// The obstacle's shape; where there is none its problems are added.
+/// Builds the shape of the obstacle. Returns null and adds the problems if it is invalid.
 std::unique_ptr<ObstacleShape> checked_shape(const std::string& key, const ObstacleGeometry& geometry, ProblemList& problems) {
   try {
     return make_shape(geometry);
@@ -55,7 +55,7 @@ ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move
   magnitude_.resize(obstacles_.size());
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     moves_ = moves_ || changes(k);
-    measure(k);
+    update_magnitude(k);
   }
   broad_phase_ = std::make_unique<BroadPhase>(obstacles_, shapes_, after_);
 }
@@ -69,12 +69,12 @@ void ObstacleSet::set_interval(double t, double t_end) {
     after_[k] = obstacles_[k].motion.pose(obstacles_[k].placed, t_end);
     into_before_[k] = before_[k].inverse();
     into_after_[k] = after_[k].inverse();
-    measure(k);
+    update_magnitude(k);
   }
   broad_phase_->move(after_);
 }
 
-void ObstacleSet::measure(std::size_t k) {
+void ObstacleSet::update_magnitude(std::size_t k) {
   magnitude_[k] = shapes_[k]->magnitude() + std::max(largest(before_[k].translation()), largest(after_[k].translation()));
 }
 
@@ -106,9 +106,9 @@ double ObstacleSet::max_displacement(const Points& positions) const {
   double farthest = 0.0;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     if (!changes(k)) continue;
-    const RigidTransform carry = after_[k] * into_before_[k];
-    const double at_centre = (carry * box.center() - box.center()).norm();
-    const double around = (carry.linear() - Matrix3::Identity()).norm() * 0.5 * box.diagonal().norm();
+    const RigidTransform motion = after_[k] * into_before_[k];
+    const double at_centre = (motion * box.center() - box.center()).norm();
+    const double around = (motion.linear() - Matrix3::Identity()).norm() * 0.5 * box.diagonal().norm();
     farthest = std::max(farthest, at_centre + around + shapes_[k]->largest_displacement());
   }
   return farthest;

@@ -1,4 +1,4 @@
-// The obstacles of one interval: their shapes, where they are at its begin and end, and which are near a box.
+// The obstacles in one interval: shapes, poses at its begin and end, broad phase.
 #pragma once
 
 #include "collision/obstacles/broad_phase.h"
@@ -8,20 +8,19 @@
 
 namespace sprung {
 
-/// A particle's path in an obstacle's own frame, straight from where it was to where it is about to be. A moving obstacle is met in
-/// its own frame, where it rests: at the interval's ends this path is exact, so the side on which a particle ends one step is the
-/// side on which it begins the next, whatever way the obstacle took between. Rounding is no gap either: the next step computes the
-/// same begin from the same position and pose. What deforms in its own frame takes the begin with it, as far as it takes the
-/// surface nearest to it.
+/// The straight path of a particle in the frame of an obstacle, in which a rigid obstacle is at rest. Both ends are exact,
+/// whatever the motion of the obstacle between them: the next step computes its begin from the same position and pose, so a
+/// particle starts a step on the side on which it ended the previous one. If the obstacle deforms, the begin moves with the
+/// nearest surface point.
 struct LocalPath {
   Vector3 begin;
   Vector3 end;
-  Vector3 shift = Vector3::Zero();  ///< how far deforming took the begin [m]
+  Vector3 shift = Vector3::Zero();  ///< displacement of the begin by deformation [m]
 };
 
 class ObstacleSet {
  public:
-  /// Throws InputError, naming every obstacle's shape, place, motion and material that cannot be used.
+  /// Throws InputError, which names every problem of every obstacle: shape, pose, motion, material.
   explicit ObstacleSet(std::vector<Obstacle> obstacles);
 
   void set_interval(double t, double t_end);
@@ -37,11 +36,11 @@ class ObstacleSet {
     const Vector3 shift = shape(k).displacement(before);
     return {before + shift, local(k, to), shift};
   }
-  /// A position at the interval's begin in the frame of obstacle k.
+  /// Transforms a position at the begin of the interval into the frame of obstacle k.
   [[nodiscard]] Vector3 local_before(Index k, const Vector3& position) const {
     return into_before_[static_cast<std::size_t>(k)] * position;
   }
-  /// A position at the interval's end in the frame of obstacle k.
+  /// Transforms a position at the end of the interval into the frame of obstacle k.
   [[nodiscard]] Vector3 local(Index k, const Vector3& position) const {
     return into_after_[static_cast<std::size_t>(k)] * position;
   }
@@ -49,26 +48,27 @@ class ObstacleSet {
   [[nodiscard]] const RigidTransform& into_before(Index k) const { return into_before_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] const RigidTransform& into_after(Index k) const { return into_after_[static_cast<std::size_t>(k)]; }
 
-  /// Replaces `found` by the obstacles that may be within the box at the interval's end, ascending.
+  /// Replaces `found` by the obstacles that may intersect the box at the end of the interval, in ascending order.
   void find_near(const Box3& box, std::vector<Index>& found) const { broad_phase_->find_near(box, found); }
 
-  /// The least height [m] above obstacle k that a path is to end with: far above what rounding does to the path's coordinates and
-  /// the obstacle's (1e-16 of the largest), far below anything seen.
+  /// The height [m] above obstacle k that the end of a path keeps at least. It is far above the rounding errors of the coordinates
+  /// (1e-16 of the largest) and far below any visible distance.
   [[nodiscard]] double clearance(Index k, const Vector3& from, const Vector3& to) const;
-  /// No path within the box has a larger clearance from any obstacle.
+  /// An upper bound of the clearance [m] of all paths within the box.
   [[nodiscard]] double max_clearance(const Box3& box) const;
 
-  /// Where obstacle k carries a position in this interval: to the last bit where it was, if the obstacle rests.
+  /// The position at the end of the interval of a point that moves with obstacle k. If the obstacle is at rest, the result equals
+  /// `from` exactly.
   [[nodiscard]] Vector3 moved_position(Index k, const Vector3& from) const;
   [[nodiscard]] bool rests(Index k) const {
     return before(k).matrix() == after(k).matrix() && shape(k).largest_displacement() == 0.0;
   }
 
-  /// How far deforming takes the surface of obstacle k that is nearest to a position at the interval's end, beside the pose, from
-  /// time t to t_end [m].
+  /// Displacement [m] by deformation, without the pose, from t to t_end [s]: of the surface point of obstacle k that is nearest to
+  /// a position at the end of the interval.
   [[nodiscard]] Vector3 drift(Index k, const Vector3& position, double t, double t_end) const;
 
-  /// The farthest [m] that any obstacle carries one of the positions in this interval.
+  /// An upper bound of the displacement [m] in the interval of any of the positions if it moved with any obstacle.
   [[nodiscard]] double max_displacement(const Points& positions) const;
 
   [[nodiscard]] bool moves() const { return moves_; }
@@ -76,7 +76,7 @@ class ObstacleSet {
   [[nodiscard]] double max_thickness() const { return max_thickness_; }
 
  private:
-  void measure(std::size_t k);
+  void update_magnitude(std::size_t k);
   [[nodiscard]] bool changes(std::size_t k) const { return obstacles_[k].motion.moves() || shapes_[k]->deforms(); }
 
   std::vector<Obstacle> obstacles_;
@@ -86,7 +86,7 @@ class ObstacleSet {
   std::vector<RigidTransform> into_before_;
   std::vector<RigidTransform> into_after_;
   std::unique_ptr<BroadPhase> broad_phase_;
-  std::vector<double> magnitude_;  ///< of an obstacle's coordinates in this interval [m]
+  std::vector<double> magnitude_;  ///< largest coordinate of each obstacle in the interval [m]
   double max_thickness_ = 0.0;
   bool moves_ = false;
 };

@@ -11,7 +11,7 @@ namespace sprung {
 
 namespace {
 
-/// Collects what is wrong with a primitive's sizes.
+/// Collects the problems of a primitive's sizes.
 class SizeCheck {
  public:
   void require_positive(const char* key, double value) {

@@ -7,12 +7,11 @@ namespace sprung {
 
 namespace {
 
-// A surface point is looked for again after a motion of this part of the gap: with older ones friction is no longer the law's, and
-// in a crease, where it moves away from the triangle that was nearest and towards another, a particle sinks into the gap by twice
-// as much.
-constexpr double kSame = 0.02;
+// A surface point is reused until the particle has moved by this fraction of the gap. Older points make friction inaccurate. In a
+// crease a particle moves away from the nearest triangle towards another one, and would then sink twice as deep into the gap.
+constexpr double kReuseFraction = 0.02;
 
-/// Where a path meets a shape, in the shape's frame.
+/// A contact in the frame of the shape.
 struct LocalContact {
   Vector3 point;
   Vector3 normal;
@@ -21,8 +20,8 @@ struct LocalContact {
 LocalContact at(const Crossing& crossing) { return {crossing.point, crossing.normal}; }
 LocalContact at(const SurfacePoint& surface) { return {surface.point, surface.normal}; }
 
-/// A path shorter than the distance of its end from the surface cannot have crossed it, so that a particle at rest costs one walk
-/// through the tree.
+/// A path shorter than the distance between its end and the surface cannot cross the surface. A particle at rest therefore needs
+/// only one search in the tree.
 template <class Nearest>
 std::optional<LocalContact> find_local(const ObstacleShape& shape, const LocalPath& path, double reach, const Nearest& nearest) {
   const double length = (path.end - path.begin).norm();
@@ -62,7 +61,7 @@ std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const Verte
 
 std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const VertexPath& path, SurfaceMemory& memory) {
   return find_with(set, k, path, [&](const Vector3& p, double reach, double gap) {
-    return set.shape(k).nearest_cached(p, reach, kSame * gap, memory);
+    return set.shape(k).nearest_cached(p, reach, kReuseFraction * gap, memory);
   });
 }
 

@@ -1,4 +1,4 @@
-// The contact of one particle with one obstacle.
+// Contact of one particle with one obstacle.
 #pragma once
 
 #include "collision/core/contact.h"
@@ -8,19 +8,19 @@
 
 namespace sprung {
 
-/// A particle on its way through one step.
+/// Path of a particle in one step.
 struct VertexPath {
   Index particle = kNone;
-  Vector3 before;          ///< where it was at t [m]
-  Vector3 after;           ///< where it is about to be at t + dt [m]
-  double thickness = 0.0;  ///< its own [m]; the obstacle's is added
-  double margin = 0.0;     ///< a contact is found this much [m] beyond max(gap, clearance)
+  Vector3 before;          ///< position at t [m]
+  Vector3 after;           ///< position at t + dt [m]
+  double thickness = 0.0;  ///< of the particle [m]; the obstacle's thickness is added
+  double margin = 0.0;     ///< contacts are detected up to max(gap, clearance) + margin [m]
 };
 
 /// See Environment::contacts.
 [[nodiscard]] std::optional<Contact> find_contact(const ObstacleSet& set, Index obstacle, const VertexPath& path);
 
-/// The same, begun with what was found for the particle last, in the obstacle's frame.
+/// As above. Reuses `memory`, the result of the particle's last search, in the obstacle's frame.
 [[nodiscard]] std::optional<Contact> find_contact(const ObstacleSet& set, Index obstacle, const VertexPath& path,
                                                   SurfaceMemory& memory);
 

@@ -26,7 +26,7 @@ Obstacle obstacle(const std::string& name, const ObstacleGeometry& geometry, con
 
 MeshGeometry mesh_geometry(const TriangleMesh& mesh, bool closed) { return {std::make_shared<const TriangleMesh>(mesh), closed}; }
 
-/// Every kind of obstacle, spread over some 10 m, most of them turned, half of them moving.
+/// Two obstacles of each kind, within 10 m. Most are rotated and half of them move.
 std::vector<Obstacle> zoo() {
   const std::vector<ObstacleGeometry> kinds{mesh_geometry(test::torus(1.0, 0.3, 30, 15), true),
                                             mesh_geometry(test::flat_sheet(4), false),
@@ -61,7 +61,7 @@ struct Cloud {
   Scalars thickness;
 };
 
-/// Strings of neighbouring particles, as in ropes and rows of cloth, each moving up to `reach` [m].
+/// Strings of neighbouring particles, like ropes and rows of cloth. Each particle moves by up to `reach` [m].
 Cloud cloud(Index count, double reach) {
   Random random(22);
   Cloud result{Points(3, count), Points(3, count), Scalars(count)};
@@ -99,7 +99,7 @@ TEST(Environment, BroadPhaseLosesNoContact) {
   EXPECT_EQ(found, expected);
 }
 
-TEST(Environment, ContactsAreOnTheSurfaceAndFaceTheBeginning) {
+TEST(Environment, ContactsAreOnTheSurfaceAndFaceTheBeginOfThePath) {
   int crossed = 0;
   Environment environment(zoo());
   environment.set_interval(0.3, 0.31);
@@ -111,7 +111,7 @@ TEST(Environment, ContactsAreOnTheSurfaceAndFaceTheBeginning) {
     ASSERT_TRUE(surface);
     ASSERT_NEAR(contact.normal.norm(), 1.0, 1e-12);
     ASSERT_NEAR(contact.distance, contact.normal.dot(particles.after.col(contact.particles[0]) - contact.point), 1e-12);
-    // Where the path crosses, the contact's plane has its begin in front and its end behind.
+    // If the path crosses the surface, its begin is in front of the contact plane and its end behind it.
     const Vector3 from = environment.pose_before(contact.obstacle).inverse() * particles.before.col(contact.particles[0]);
     const Vector3 to = environment.pose_after(contact.obstacle).inverse() * particles.after.col(contact.particles[0]);
     if (!shape->first_crossing(from, to)) continue;
@@ -160,7 +160,7 @@ TEST(Environment, SameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.distance, two.distance);
 }
 
-TEST(Environment, ContactOfAnObstacleThatComesIsCarriedByIt) {
+TEST(Environment, AnApproachingObstacleMovesItsContact) {
   Obstacle ball = obstacle("ball", SphereGeometry{0.1}, Vector3(-1, 0, 0));
   ball.motion.keyframes = {{0.0}, {0.1, Vector3(2, 0, 0)}};  // 20 m/s
   Environment environment({ball});
@@ -173,7 +173,7 @@ TEST(Environment, ContactOfAnObstacleThatComesIsCarriedByIt) {
   EXPECT_NEAR(contacts[0].distance, -1.1, 1e-12);
 }
 
-TEST(Environment, InsideAndDistanceAreThoseOfTheEndPose) {
+TEST(Environment, IntersectionsAndDistancesUseTheEndPose) {
   Obstacle ball = obstacle("ball", SphereGeometry{0.5});
   ball.motion.keyframes = {{0.0}, {1.0, Vector3(0, 3, 0)}};
   Environment environment({ball, obstacle("ring", mesh_geometry(test::torus(1.0, 0.3, 30, 15), true), Vector3(5, 0, 0))});
@@ -199,7 +199,7 @@ TEST(Environment, InsideAndDistanceAreThoseOfTheEndPose) {
   EXPECT_NEAR(*environment.min_distance(points, 0.5), -0.4, 1e-15);
 }
 
-TEST(Environment, WithoutObstaclesThereIsNothingToMeet) {
+TEST(Environment, AnEmptyEnvironmentHasNoContacts) {
   Environment environment;
   const Cloud particles = cloud(100, 0.1);
   Points after = particles.after;
@@ -209,7 +209,7 @@ TEST(Environment, WithoutObstaclesThereIsNothingToMeet) {
   EXPECT_FALSE(environment.min_distance(after, 1.0));
 }
 
-TEST(Environment, PositionsThatAreNotFiniteAreLeftAlone) {
+TEST(Environment, PositionsThatAreNotFiniteHaveNoContacts) {
   Environment environment({obstacle("floor", HalfSpaceGeometry{}), obstacle("sheet", mesh_geometry(test::flat_sheet(4), false))});
   Points before = Points::Constant(3, 3, 0.001);
   Points after = before;
@@ -221,7 +221,7 @@ TEST(Environment, PositionsThatAreNotFiniteAreLeftAlone) {
   EXPECT_EQ(test::single_particles(environment, 3).truncate(before, after).truncated, 0);
 }
 
-TEST(Environment, NamesEveryObstacleThatCannotBe) {
+TEST(Environment, EveryInvalidShapeIsReported) {
   try {
     Environment environment(
         {obstacle("ball", SphereGeometry{-1.0}), obstacle("floor", HalfSpaceGeometry{}), obstacle("bunny", MeshGeometry{})});
@@ -233,7 +233,7 @@ TEST(Environment, NamesEveryObstacleThatCannotBe) {
   }
 }
 
-TEST(Environment, NamesEveryMaterialMotionAndPlaceThatCannotBe) {
+TEST(Environment, EveryInvalidMaterialMotionAndPoseIsReported) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Obstacle rough = obstacle("rough", SphereGeometry{1.0});
   rough.material = {.thickness = -0.1, .friction = -0.2, .static_friction = 0.1, .restitution = 1.5};

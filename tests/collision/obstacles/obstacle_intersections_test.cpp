@@ -70,7 +70,7 @@ Network confetti(const TriangleMesh& mesh, int count, double size, Random& rando
   return network;
 }
 
-/// What elements are called by: their first particle.
+/// The crossing elements, each named by its first particle.
 std::set<Index> crossing(const Intersections& found, const CollisionSurface& surface) {
   std::set<Index> first_particles;
   for (const auto& [element, k] : found.crossings) {
@@ -79,16 +79,16 @@ std::set<Index> crossing(const Intersections& found, const CollisionSurface& sur
   return first_particles;
 }
 
-TEST(Intersections, ElementsThatCrossAMeshMeetOneOfItsTriangles) {
+TEST(Intersections, ElementsThatCrossAMeshIntersectOneOfItsTriangles) {
   const TriangleMesh mesh = test::torus(1.0, 0.3, 40, 20);
   Random random(1);
   const Network network = confetti(mesh, 900, 0.05, random);
-  Obstacle placed = obstacle(mesh_geometry(mesh, true), Vector3(5.0, -2.0, 1.0));
-  placed.placed.linear() = Eigen::AngleAxisd(0.7, Vector3(1, 2, 2) / 3.0).toRotationMatrix();
-  const ObstacleSet set({placed});
+  Obstacle torus = obstacle(mesh_geometry(mesh, true), Vector3(5.0, -2.0, 1.0));
+  torus.placed.linear() = Eigen::AngleAxisd(0.7, Vector3(1, 2, 2) / 3.0).toRotationMatrix();
+  const ObstacleSet set({torus});
 
   Points positions = network.positions();
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) positions.col(i) = placed.placed * positions.col(i);
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) positions.col(i) = torus.placed * positions.col(i);
   std::set<Index> expected;
   for (const Element& element : network.elements) {
     Simplex simplex{.count = element.corners};
@@ -125,7 +125,7 @@ TEST(Intersections, ParticlesInsideAreFoundOnceWithTheirDepth) {
   std::vector<std::pair<Index, Index>> inside;
   for (const auto& [particle, k, depth] : found.inside) {
     inside.emplace_back(particle, k);
-    // Closest points are right to some roundings of coordinates near 1.
+    // Closest points have errors of a few roundings of coordinates near 1 m.
     const double exact = k == 1 ? 0.9 - positions.col(particle).norm() : test::brute_distance(mesh, positions.col(particle));
     EXPECT_NEAR(depth, exact, 1e-14);
   }
@@ -133,7 +133,7 @@ TEST(Intersections, ParticlesInsideAreFoundOnceWithTheirDepth) {
   EXPECT_GT(inside.size(), 100U);
 }
 
-TEST(Intersections, WhatTouchesCounts) {
+TEST(Intersections, TouchingElementsAreReported) {
   const std::vector<ObstacleGeometry> floors{HalfSpaceGeometry{Vector3::UnitY(), 0.0}, BoxGeometry{Vector3(8, 2, 8)},
                                              mesh_geometry(obstacle_mesh(BoxGeometry{Vector3(8, 2, 8)}, 0.0), true),
                                              mesh_geometry(test::flat_sheet(8), false)};
@@ -154,7 +154,7 @@ TEST(Intersections, WhatTouchesCounts) {
   }
 }
 
-TEST(Intersections, SpikeThroughAFaceCrossesItWithNoParticleInside) {
+TEST(Intersections, ASpikeThroughAFaceIsReportedWithoutAParticleInside) {
   const ConeGeometry spike{0.01, 2.0};
   for (const ObstacleGeometry& geometry :
        {ObstacleGeometry(spike), ObstacleGeometry(mesh_geometry(obstacle_mesh(spike, 0.0), true))}) {
@@ -168,12 +168,12 @@ TEST(Intersections, SpikeThroughAFaceCrossesItWithNoParticleInside) {
   }
 }
 
-TEST(Intersections, WhatPinsHoldInAnObstacleIsLeftOut) {
+TEST(Intersections, ElementsPinnedInAnObstacleAreNotReported) {
   const ObstacleSet set({obstacle(BoxGeometry{Vector3(2, 2, 2)})});
   Network network;
   network.add(0, {Vector3(0, 0.5, 0), Vector3(0, 2, 0)});      // hangs from a pin inside
   network.add(0, {Vector3(0.5, 1.0, 0), Vector3(0.5, 2, 0)});  // hangs from a pin on the surface
-  network.add(0, {Vector3(-2, 0, 0), Vector3(2, 0, 0)});       // across, its pin outside
+  network.add(0, {Vector3(-2, 0, 0), Vector3(2, 0, 0)});       // crosses the box, its pin is outside
   network.add(0, {Vector3(-2, 0, 0), Vector3(2, 0, 0)});       // wholly pinned
   network.add(0, {Vector3(0, 0, 0.3)});
   CollisionSurface surface = network.surface();
@@ -197,7 +197,7 @@ Pairs self_crossing(const Network& network, char self = 1, char others = 1) {
   return pairs;
 }
 
-TEST(SelfIntersections, AreAllPairsThatMeet) {
+TEST(SelfIntersections, AllIntersectingPairsAreReported) {
   Random random(3);
   const Network network = confetti(test::torus(1.0, 0.3, 40, 20), 1500, 0.15, random);
   Pairs expected;
@@ -210,7 +210,7 @@ TEST(SelfIntersections, AreAllPairsThatMeet) {
   };
   for (const Element& a : network.elements) {
     for (const Element& b : network.elements) {
-      // Particles on faces are no crossing: nothing of them is on the other side.
+      // A particle on a face does not cross it, because nothing of it is on the other side.
       if (a.corners < 2 || b.corners != 3 || a.particles[0] == b.particles[0] || !meets(simplex(a), simplex(b).x)) continue;
       expected.emplace(std::minmax(a.particles[0], b.particles[0]));
     }
@@ -231,7 +231,7 @@ TEST(SelfIntersections, NeighboursInASheetDoNotCross) {
   }
   EXPECT_THAT(self_crossing(network), IsEmpty());
 
-  // A corner bent through the sheet: its triangle has one corner in common with none that it crosses.
+  // A corner is bent through the sheet. Its triangle shares no corner with the triangles that it crosses.
   network.particles[0] = Vector3(-8.5, -1.0, -8.5);
   network.particles[1] = Vector3(-8.2, 2.0, -8.2);
   EXPECT_FALSE(self_crossing(network).empty());
@@ -242,11 +242,11 @@ TEST(SelfIntersections, TrianglesWithACornerInCommonMayCross) {
   network.particles = {Vector3(0, 0, 0), Vector3(1, 0, 1), Vector3(1, 0, -1), Vector3(1, 1, 0), Vector3(1, -1, 0)};
   network.body_of.assign(5, 0);
   network.elements = {{{0, 1, 2}, 3, 0}, {{0, 3, 4}, 3, 0}};
-  // The edge 3-4 meets the edge 1-2.
+  // The edge 3-4 intersects the edge 1-2.
   EXPECT_THAT(self_crossing(network), ElementsAre(Pair(0, 0)));
 }
 
-TEST(SelfIntersections, OnlyBodiesThatCollideAreLookedAt) {
+TEST(SelfIntersections, OnlyBodiesThatCollideAreTested) {
   Network network;
   const std::vector<Vector3> floor{Vector3(-1, 0, -1), Vector3(2, 0, -1), Vector3(-1, 0, 2)};
   network.add(0, floor);
