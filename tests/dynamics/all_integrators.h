@@ -1,4 +1,4 @@
-// What the laws that hold for any scheme are tested with.
+// The schemes for tests of laws that hold for any scheme.
 #pragma once
 
 #include "dynamics/integrators/integrator.h"

@@ -1,4 +1,4 @@
-// Matrices of 3 x 3 blocks in full, for solvers and formulas that know nothing of blocks.
+// Dense copies of matrices of 3 x 3 blocks, for reference solvers and formulas.
 #pragma once
 
 #include "dynamics/numerics/block_matrix.h"

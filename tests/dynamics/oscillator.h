@@ -1,4 +1,4 @@
-// The mass on a spring that has a closed form, for tests of the schemes.
+// A mass on a spring, whose motion has a closed form, for tests of the schemes.
 #pragma once
 
 #include "dynamics/forces/gravity_and_drag.h"
@@ -11,7 +11,7 @@
 
 namespace sprung {
 
-/// A mass on a spring along x, the other end pinned at 0, in a gravity along x: x'' = -k/m (x - d) - c/m x' + g.
+/// A mass on a spring along x, whose other end is pinned at 0, under gravity along x: x'' = -k/m (x - d) - c/m x' + g.
 struct Oscillator {
   double mass = 0.5;
   double stiffness = 8.0;
@@ -40,7 +40,7 @@ struct Oscillator {
   }
 };
 
-/// The oscillator, run by an integrator of ours.
+/// The oscillator, moved by an integrator of ours.
 class OscillatorRun {
  public:
   OscillatorRun(const Oscillator& of, const IntegratorSettings& settings, double dt)

@@ -10,7 +10,7 @@ namespace {
 const ContactMaterial kFirst{.thickness = 0.02, .friction = 0.2, .static_friction = 0.4, .restitution = 0.1};
 const ContactMaterial kSecond{.thickness = 0.04, .friction = 0.8, .static_friction = 0.9, .restitution = 0.7};
 
-TEST(ContactPair, GapIsTheSumWithAnObstacleAndTheMeanBetweenBodies) {
+TEST(ContactMaterials, GapIsTheSumWithAnObstacleAndTheMeanBetweenBodies) {
   EXPECT_DOUBLE_EQ(combine(kFirst, kSecond).thickness, 0.06);
   EXPECT_DOUBLE_EQ(combine_bodies(kFirst, kSecond).thickness, 0.03);
   for (const ContactMaterial& pair : {combine(kFirst, kSecond), combine_bodies(kSecond, kFirst)}) {
@@ -20,7 +20,7 @@ TEST(ContactPair, GapIsTheSumWithAnObstacleAndTheMeanBetweenBodies) {
   }
 }
 
-TEST(ContactPair, MaterialsOfContactsAreThoseOfTheirSides) {
+TEST(ContactMaterials, ContactsCombineTheMaterialsOfTheirSides) {
   NetworkBuilder builder;
   builder.begin_body("first", kFirst);
   builder.add_particle(Vector3::Zero(), 1.0);

@@ -50,7 +50,7 @@ TEST(BendingAngleForce, RightAngleTurnsBondsByItsMoment) {
 TEST(BendingAngleForce, IsTheNegativeGradientOfItsEnergy) {
   const SpringNetwork network = hinge();
   const BendingAngleForce force(network);
-  // In a box of 3 m bonds are of any length; in one of 0.3 m they are shorter than half of that at rest.
+  // In a box of 3 m bonds have any length; in a box of 0.3 m they are shorter than half of their rest length.
   for (unsigned trial = 0; trial < 60; ++trial) {
     const double size = trial % 2 == 0 ? 3.0 : 0.3;
     const Points x = random_points(3, trial, size);
@@ -80,7 +80,7 @@ TEST(BendingAngleForce, HasNoNetForceAndNoNetTorque) {
   }
 }
 
-TEST(BendingAngleForce, StraightIsAtRestHoweverLong) {
+TEST(BendingAngleForce, AStraightBendIsAtRestAtAnyLength) {
   const SpringNetwork network = hinge();
   for (const double stretch : {0.1, 1.0, 7.0}) {
     const Points x = stretch * network.positions;
@@ -96,7 +96,7 @@ TEST(BendingAngleForce, RigidMotionsCostNothing) {
   const Points turned = (turn * x).colwise() + Vector3(3, -2, 1);
   EXPECT_NEAR(BendingAngleForce(network).energy(turned), BendingAngleForce(network).energy(x), 1e-13);
   EXPECT_LT((forces_of(network, turned) - turn * forces_of(network, x)).norm(), 1e-13);
-  // Nor does damping see them: v = omega x r + a drift.
+  // Damping does not act on a rigid motion either: v = omega x r + a drift.
   const Vector3 omega(0.3, -1.0, 2.0);
   Points v(3, 3);
   for (Index i = 0; i < 3; ++i) v.col(i) = omega.cross(Vector3(x.col(i))) + Vector3(1, 1, 4);
@@ -119,14 +119,15 @@ TEST(BendingAngleForce, DampingTakesTheSquareOfTheAnglesRate) {
 
 TEST(BendingAngleForce, FoldedAndCollapsedBondsHaveFiniteForces) {
   const double tiny = 1e-200;
-  const std::vector<Points> states{(Points(3, 3) << 0, 1, 0, 0, 0, 0, 0, 0, 0).finished(),     // folded back onto itself
-                                   (Points(3, 3) << 0, 1, 0, 0, 0, 1e-9, 0, 0, 0).finished(),  // almost
-                                   (Points(3, 3) << 0, 1, 0, 0, 0, tiny, 0, 0, 0).finished(),  // closer than its square tells
-                                   (Points(3, 3) << 1, 1, 2, 0, 0, 1, 0, 0, 0).finished(),     // a bond without length
-                                   (Points(3, 3) << 1, 1, 2, 0, tiny, 1, 0, 0, 0).finished(),  // almost
-                                   (Points(3, 3) << 1, 1 + 1e-12, 2, 0, 1e-12, -1, 0, 0, 0).finished(),
-                                   Points::Zero(3, 3)};
-  // Of a bond of its length at rest k pi; below half of it no more than 4 k pi / rest length, and as much again from f.
+  const std::vector<Points> states{
+      (Points(3, 3) << 0, 1, 0, 0, 0, 0, 0, 0, 0).finished(),     // folded back onto itself
+      (Points(3, 3) << 0, 1, 0, 0, 0, 1e-9, 0, 0, 0).finished(),  // almost
+      (Points(3, 3) << 0, 1, 0, 0, 0, tiny, 0, 0, 0).finished(),  // the square of the distance underflows
+      (Points(3, 3) << 1, 1, 2, 0, 0, 1, 0, 0, 0).finished(),     // a bond without length
+      (Points(3, 3) << 1, 1, 2, 0, tiny, 1, 0, 0, 0).finished(),  // almost
+      (Points(3, 3) << 1, 1 + 1e-12, 2, 0, 1e-12, -1, 0, 0, 0).finished(),
+      Points::Zero(3, 3)};
+  // A bond of its rest length feels k pi; below half of it no more than 4 k pi / rest length, and as much again from f.
   const double largest = 30.0 * kStiffness * std::numbers::pi;
   for (const Points& x : states) {
     const Points forces = forces_of(hinge(kDamping), x);
@@ -136,7 +137,7 @@ TEST(BendingAngleForce, FoldedAndCollapsedBondsHaveFiniteForces) {
   }
 }
 
-/// More particles than one thread takes at a time: rows and columns of elements go on from each to the next.
+/// More particles than one thread takes at a time: rows and columns of elements continue from one thread's particles to the next.
 SpringNetwork large_cloth() {
   BodyShape shape = make_cloth({.resolution = {90, 80}}, {.bend = SpringMaterial{.value = 0.1, .damping = 0.01},
                                                           .bend_model = SpringMaterials::BendModel::angle});
@@ -156,7 +157,7 @@ TEST(BendingAngleForce, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_GT(forces.norm(), 0.0);
 }
 
-// Rounding of as many sums as there are particles, of forces as large as the largest.
+// The tolerance is the rounding of as many sums as there are particles, of forces as large as the largest.
 TEST(BendingAngleForce, OfALargeClothHasNoNetForce) {
   const SpringNetwork cloth = large_cloth();
   const Index count = cloth.particle_count();

@@ -1,4 +1,4 @@
-// Derivatives of forces against differences of the forces themselves.
+// Derivatives of forces compared with differences of the forces.
 #include "dynamics/contact/penalty_contact.h"
 #include "dynamics/dense_matrix.h"
 #include "dynamics/forces/bending_angle_force.h"
@@ -19,7 +19,7 @@
 namespace sprung {
 namespace {
 
-/// A force, and where it is looked at. The network must outlive it.
+/// A force, and the state at which it is evaluated. The network must outlive it.
 struct Case {
   Forces forces;
   Points x;
@@ -74,12 +74,12 @@ void expect_near(const BlockMatrix& matrix, const Eigen::MatrixXd& differences) 
 }
 
 /// Springs between random particles, all of them stretched, or all compressed.
-SpringNetwork random_springs(double rest_part, double damping_factor) {
+SpringNetwork random_springs(double rest_fraction, double damping_factor) {
   SpringNetwork network = make_random_network(12, 30, true);
   Springs& springs = network.springs;
   for (std::size_t s = 0; s < springs.first.size(); ++s) {
     springs.rest_length[s] =
-        rest_part * (network.positions.col(springs.first[s]) - network.positions.col(springs.second[s])).norm();
+        rest_fraction * (network.positions.col(springs.first[s]) - network.positions.col(springs.second[s])).norm();
     springs.damping[s] *= damping_factor;
   }
   return network;
@@ -97,7 +97,7 @@ TEST(ForceDerivatives, OfDampersAreTheDifferencesOfTheirForces) {
   expect_near(springs.derivatives().by_velocity, springs.differences_by_velocity());
 }
 
-// A compressed spring of 1.4 times its length pushes sideways with 0.4 of its stiffness: that part is left out.
+// A spring compressed to 1 / 1.4 of its rest length pushes sideways with 0.4 of its stiffness; the derivatives leave that out.
 TEST(ForceDerivatives, OfCompressedSpringsAreThoseAlongThem) {
   const SpringNetwork network = make_pair(1.0, 50.0, 1.4);
   const Case spring(network, std::in_place_type<SpringForce>);
@@ -107,19 +107,19 @@ TEST(ForceDerivatives, OfCompressedSpringsAreThoseAlongThem) {
   expect_near(spring.derivatives().by_position, differences);
 }
 
-TEST(ForceDerivatives, OfSpringsNeverPushOn) {
-  for (const double rest_part : {0.0, 0.7, 1.0, 1.4}) {
-    const SpringNetwork network = random_springs(rest_part, 1.0);
+TEST(ForceDerivatives, OfSpringsAreNeverDestabilising) {
+  for (const double rest_fraction : {0.0, 0.7, 1.0, 1.4}) {
+    const SpringNetwork network = random_springs(rest_fraction, 1.0);
     const ForceDerivatives derivatives = Case(network, std::in_place_type<SpringForce>).derivatives();
     for (const BlockMatrix* matrix : {&derivatives.by_position, &derivatives.by_velocity}) {
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(*matrix), Eigen::EigenvaluesOnly);
-      // Roundings of entries of up to 1e3.
+      // The tolerance is a few roundings of entries of up to 1e3.
       EXPECT_LE(solver.eigenvalues().maxCoeff(), 1.0e-12);
     }
   }
 }
 
-// What has no length points nowhere. With no rest length it pulls back alike whichever way it is moved, with one it does not pull
+// A spring of zero length has no direction. With rest length 0 it pulls back equally in all directions; otherwise it does not pull
 // yet.
 TEST(ForceDerivatives, OfASpringOfNoLengthAreFinite) {
   const SpringNetwork loose = make_pair(0.0, 50.0, 0.0);
@@ -138,7 +138,7 @@ TEST(ForceDerivatives, OfAirAndGravityAreTheDifferencesOfTheirForces) {
   expect_near(gravity.derivatives().by_position, gravity.differences_by_position());
 }
 
-/// A particle a tenth of its gap deep in a floor that is tilted.
+/// A particle a tenth of its gap deep in a tilted floor.
 struct OnTheFloor {
   explicit OnTheFloor(const Vector3& velocity, double friction)
       : environment({{.name = "floor",
@@ -169,7 +169,7 @@ TEST(ForceDerivatives, OfFrictionThatStopsAParticleAreTheDifferencesOfIt) {
   expect_near(contact.derivatives().by_velocity, contact.differences_by_velocity());
 }
 
-// How friction that slides grows with the push is left out, being not symmetric: along the floor all is there.
+// The growth of sliding friction with the push is left out, as it is not symmetric. The derivatives along the floor are complete.
 TEST(ForceDerivatives, OfSlidingFrictionAreTheDifferencesAlongTheFloor) {
   OnTheFloor floor(Vector3(2.0, -1.5, 1.0), 0.5);
   const Case contact = floor.contact();
@@ -177,17 +177,18 @@ TEST(ForceDerivatives, OfSlidingFrictionAreTheDifferencesAlongTheFloor) {
   const Matrix3 along = Matrix3::Identity() - normal * normal.transpose();
   const Matrix3 differences = contact.differences_by_velocity();
   EXPECT_LT((contact.derivatives().by_velocity.diagonal(0) * along - differences * along).cwiseAbs().maxCoeff(), Case::kTolerance);
-  EXPECT_GT((differences * normal - normal * normal.dot(differences * normal)).norm(), 0.1) << "the control: it does grow";
+  EXPECT_GT((differences * normal - normal * normal.dot(differences * normal)).norm(), 0.1)
+      << "control: friction grows with the push";
 }
 
-TEST(ForceDerivatives, AreNothingWhereNothingIsTouched) {
+TEST(ForceDerivatives, AreZeroWithoutContact) {
   OnTheFloor floor(Vector3(0.0, 1000.0, 0.0), 0.5);  // its damper would pull
   const ForceDerivatives derivatives = floor.contact().derivatives();
   EXPECT_EQ(derivatives.by_position.diagonal(0), Matrix3::Zero());
   EXPECT_EQ(derivatives.by_velocity.diagonal(0), Matrix3::Zero());
 }
 
-TEST(PenaltyContact, PushesFromWhereObstaclesAreAtTheTimeOfEvaluation) {
+TEST(PenaltyContact, UsesObstaclePosesAtTheTimeOfEvaluation) {
   Obstacle floor{.name = "floor", .geometry = HalfSpaceGeometry{}};
   floor.motion.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {0.0, 1.0, 0.0}}};
   Environment environment({floor});
@@ -200,7 +201,7 @@ TEST(PenaltyContact, PushesFromWhereObstaclesAreAtTheTimeOfEvaluation) {
   Points total;
   for (const double time : {0.5, 0.25, 0.4375}) {
     sum_forces(forces, {.x = network.positions, .v = network.velocities, .time = time}, total);
-    // Powers of two all but the thickness, which the distance is taken from: 1e-16 times 200.
+    // All numbers are powers of two except the thickness, from which the distance is subtracted: 1e-16 times 200.
     EXPECT_NEAR(total(1, 0), 200.0 * std::max(0.0, 0.1 - (0.5 - time)), 1.0e-13) << time;
   }
 }
@@ -216,8 +217,8 @@ TEST(BlockMatrix, MultipliesAsItsDenseSelf) {
   EXPECT_LT((Eigen::VectorXd(product.reshaped()) - expected).cwiseAbs().maxCoeff(), 1.0e-11);
 }
 
-// Elements of three particles, such as an angle's, have blocks between any two of them, in whatever order.
-TEST(BlockMatrix, TakesBlocksOfAnyTwoParticles) {
+// Elements of three particles, such as an angle bend, have blocks between any two of them, in any order.
+TEST(BlockMatrix, AcceptsBlocksOfAnyTwoParticles) {
   BlockMatrix matrix(4, {{3, 1}, {1, 3}, {0, 3}, {1, 0}});
   const Matrix3 block = (Matrix3() << 1, 2, 3, 4, 5, 6, 7, 8, 9).finished();
   matrix.add(1, 3, block);
@@ -250,7 +251,7 @@ TEST(ForceDerivatives, OfAngleBendsInLineAreTheDifferencesOfTheirForces) {
   expect_near(bend.derivatives().by_position, bend.differences_by_position());
 }
 
-// What is left out, forces turning with their bonds, grows with the angle: some k theta / length^2.
+// The derivatives leave out that forces rotate with their bonds. This grows with the angle: some k theta / length^2.
 TEST(ForceDerivatives, OfAngleBendsNearlyInLineAreNearlyTheDifferences) {
   const SpringNetwork network = make_hinge(0.01);
   const Case bend(network, std::in_place_type<BendingAngleForce>);
@@ -258,7 +259,7 @@ TEST(ForceDerivatives, OfAngleBendsNearlyInLineAreNearlyTheDifferences) {
   EXPECT_LT((dense(bend.derivatives().by_position) - differences).norm(), 0.03 * differences.norm());
 }
 
-TEST(ForceDerivatives, OfAngleBendsNeverPushOn) {
+TEST(ForceDerivatives, OfAngleBendsAreNeverDestabilising) {
   for (const double angle : {0.0, 0.3, 1.5, 3.0, std::numbers::pi}) {
     const SpringNetwork network = make_hinge(angle, 0.5);
     const ForceDerivatives derivatives = Case(network, std::in_place_type<BendingAngleForce>).derivatives();
@@ -275,9 +276,9 @@ TEST(ForceDerivatives, OfDampedAngleBendsAreTheDifferencesOfTheirForces) {
   expect_near(bend.derivatives().by_velocity, bend.differences_by_velocity());
 }
 
-// A rod held by two particles that springs back from a bend of a quarter of a circle, by steps of a hundred times what explicit
-// schemes bear: it comes to rest in line.
-TEST(ForceDerivatives, OfAngleBendsLetImplicitStepsBeLarge) {
+// A rod fixed at two particles springs back from a bend of a quarter of a circle, in steps a hundred times as long as explicit
+// schemes allow. It comes to rest straight.
+TEST(ForceDerivatives, OfAngleBendsAllowLargeImplicitSteps) {
   BodyShape shape = make_rope({.points = {Vector3::Zero(), Vector3::UnitX()}, .particles = 20, .length = {}},
                               {.structural = SpringMaterial{.value = 1e4},
                                .bend = SpringMaterial{.value = 10.0},

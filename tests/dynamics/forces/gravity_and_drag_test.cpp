@@ -42,8 +42,8 @@ TEST(AirDrag, OpposesTheMotionRelativeToTheWind) {
   EXPECT_EQ(forces.col(1), Vector3(0.5, 0.0, 0.0));
 }
 
-// An integrator evaluates them once.
-TEST(Forces, AreConstantWhereNothingPullsButGravity) {
+// An integrator evaluates constant forces once.
+TEST(Forces, AreConstantUnderGravityAlone) {
   for (const double stiffness : {0.0, 2.0}) {
     for (const double damping : {0.0, 1.0}) {
       const SpringNetwork network = make_pair(1.0, stiffness, 1.0, damping);
@@ -57,8 +57,8 @@ TEST(Forces, AreConstantWhereNothingPullsButGravity) {
   }
 }
 
-// m v' = m g - c v from rest: v = (m g / c) (1 - exp(-c t / m)). Symplectic Euler's v' is explicit Euler's: an error of at most
-// (c / m) dt / 2 of the terminal velocity.
+// m v' = m g - c v from rest: v = (m g / c) (1 - exp(-c t / m)). For v, symplectic Euler is explicit Euler, with an error of at
+// most (c / m) dt / 2 of the terminal velocity.
 TEST(AirDrag, FallingBodiesApproachTheirTerminalVelocity) {
   const SpringNetwork network = make_pair(1.0, 0.0, 1.0, 0.0, false, 0.25);
   Forces forces;

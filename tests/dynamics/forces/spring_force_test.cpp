@@ -38,7 +38,7 @@ Points forces_by_the_book(const SpringNetwork& network, const Points& x, const P
   return forces;
 }
 
-/// Sum over springs of the size of what is added up, for tolerances.
+/// The sum of the magnitudes of all terms over springs, for tolerances.
 double force_scale(const SpringNetwork& network, const Points& x, const Points& v) {
   const Springs& springs = network.springs;
   double scale = 0.0;
@@ -51,7 +51,7 @@ double force_scale(const SpringNetwork& network, const Points& x, const Points& 
   return scale;
 }
 
-/// Bends and waves a network that lies flat.
+/// Bends and waves a flat network.
 void disturb(SpringNetwork& network) {
   for (Index i = 0; i < network.particle_count(); ++i) {
     network.positions.col(i) += 0.01 * Vector3(std::sin(1.0 * i), std::cos(2.0 * i), std::sin(3.0 * i));
@@ -83,7 +83,7 @@ TEST(SpringForce, IsTheOneDimensionalLawOnALine) {
   }
 }
 
-// The manual prints the elastic part as -k_s (d - |s|) along e, which would do the opposite.
+// The printed elastic term, -k_s (d - |s|) along e, would push these ends apart.
 TEST(SpringForce, StretchedSpringContracts) {
   const SpringNetwork network = make_pair(2.0, 1.0, 1.0);
   const Points forces = forces_at(network, network.positions, network.velocities);
@@ -116,7 +116,7 @@ TEST(SpringForce, ASpringWithoutLengthGivesNoForce) {
   network.positions.col(1) = network.positions.col(0);
   network.velocities.col(1) = Vector3(1.0, 2.0, 3.0);
   EXPECT_EQ(forces_at(network, network.positions, network.velocities), Points::Zero(3, 2));
-  // In runs as well: a cloth whose particles all lie in one point.
+  // Runs too: all particles of a cloth lie in one point.
   SpringNetwork cloth = make_test_cloth(12, 100.0, 1.0);
   cloth.positions.setConstant(0.25);
   EXPECT_EQ(forces_at(cloth, cloth.positions, cloth.velocities), Points::Zero(3, 144));
@@ -153,29 +153,29 @@ TEST(SpringForce, HasNoNetForceAndNoNetTorque) {
       force += forces.col(i);
       torque += network.positions.col(i).cross(forces.col(i));
     }
-    // Each force is rounded a few times, relative to what is subtracted in it; arms are at most 2 m.
+    // Each force is rounded a few times, relative to its terms; lever arms are at most 2 m.
     const double tolerance = 8 * kEpsilon * force_scale(network, network.positions, network.velocities);
     EXPECT_LT(force.norm(), tolerance);
     EXPECT_LT(torque.norm(), 2.0 * tolerance);
   }
 }
 
-TEST(SpringForce, RunsAndSingleSpringsAgreeWithTheBook) {
+TEST(SpringForce, RunsAndSingleSpringsFollowTheManual) {
   std::vector<SpringNetwork> networks;
-  // Widths around the kernel's lanes and batches, and networks of several blocks.
+  // Widths near the kernel's lanes and batches, and networks of several blocks.
   for (const Index side : {2, 3, 9, 65, 66, 69, 130}) networks.push_back(make_test_cloth(side, 400.0, 0.1));
   for (SpringNetwork& network : networks) disturb(network);
   networks.push_back(make_random_network(3000, 20000));
   for (const SpringNetwork& network : networks) {
     const Points forces = forces_at(network, network.positions, network.velocities);
     const Points expected = forces_by_the_book(network, network.positions, network.velocities);
-    // Per particle some 12 (cloth) to 30 springs, each rounded a few times relative to k d.
+    // A particle has some 12 (cloth) to 30 springs, each rounded a few times relative to k d.
     const double per_spring = force_scale(network, network.positions, network.velocities) / network.springs.count();
     EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(), 200 * kEpsilon * per_spring) << network.particle_count();
   }
 }
 
-TEST(SpringForce, SpringsWithoutStiffnessAndDampingPullAtNothing) {
+TEST(SpringForce, SpringsWithoutStiffnessAndDampingGiveNoForce) {
   SpringNetwork network = make_test_cloth(40, 400.0, 0.1);
   disturb(network);
   for (Index k = 0; k < network.springs.count(); ++k) {
@@ -188,7 +188,7 @@ TEST(SpringForce, SpringsWithoutStiffnessAndDampingPullAtNothing) {
   EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(), 200 * kEpsilon * per_spring);
 }
 
-TEST(SpringForce, ConstantsThatDifferWithinARunAreEachSprings) {
+TEST(SpringForce, EachSpringOfARunUsesItsOwnConstants) {
   SpringNetwork network = make_test_cloth(40, 400.0, 0.1);
   disturb(network);
   for (Index k = 0; k < network.springs.count(); ++k) {
@@ -218,7 +218,7 @@ TEST(SpringForce, HasTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(SpringForce, TakesNetworksWithoutSprings) {
+TEST(SpringForce, AcceptsNetworksWithoutSprings) {
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 1.0);
   const SpringNetwork network = builder.build();

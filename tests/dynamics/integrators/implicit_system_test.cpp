@@ -12,7 +12,7 @@
 namespace sprung {
 namespace {
 
-// What is solved for is put back into the equations, block by block; pins are no part of them.
+// Substitutes the solution into the equations, block by block, without the pins.
 TEST(ImplicitSystem, SolutionFulfilsTheEquationsOfFreeParticles) {
   SpringNetwork network = make_test_cloth(7, 300.0, 0.5);
   network.positions.row(2) = 0.1 * network.positions.row(0).array().sin();
@@ -40,8 +40,9 @@ TEST(ImplicitSystem, SolutionFulfilsTheEquationsOfFreeParticles) {
   }
 }
 
-// Two masses on a spring: one is held along x, so the other is pulled back by h^2 k of its way, and across both are free.
-TEST(ImplicitSystem, HoldsAParticleAlongADirectionAndTheOthersFollow) {
+// Two masses on a spring. The first is constrained along x, so the other is pulled back by h^2 k of its displacement. Both are
+// free across.
+TEST(ImplicitSystem, ConstrainsAParticleAlongADirection) {
   const SpringNetwork network = make_pair(1.0, 10.0, 1.0);
   Forces forces;
   forces.push_back(std::make_unique<SpringForce>(network));
@@ -55,12 +56,12 @@ TEST(ImplicitSystem, HoldsAParticleAlongADirectionAndTheOthersFollow) {
   system.constrain(0, Vector3::UnitX() * Vector3::UnitX().transpose());
   system.constrain(1, Matrix3::Zero());
   system.solve(y);
-  // A hold weighs a million times as much as what it holds.
+  // A constraint weighs a million times as much as the particle's equations.
   EXPECT_LT((y.col(0) - Vector3(0.0, 3.0, 0.0)).norm(), 1.0e-5);
   EXPECT_LT((y.col(1) - Vector3(7.0 / (1.0 + 2.5), 0.0, 0.0)).norm(), 1.0e-5);
 }
 
-TEST(ImplicitSystem, TakesNetworksThatArePinnedAltogether) {
+TEST(ImplicitSystem, AcceptsFullyPinnedNetworks) {
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 1.0);
   builder.pin(0);
@@ -73,7 +74,7 @@ TEST(ImplicitSystem, TakesNetworksThatArePinnedAltogether) {
   EXPECT_TRUE(vectors.isZero(0.0));
 }
 
-TEST(ImplicitSystem, TellsByNaNWhatHasNoSolution) {
+TEST(ImplicitSystem, ReturnsNaNWithoutASolution) {
   const SpringNetwork network = make_pair(1.0, 10.0, 1.0);
   Forces forces;
   forces.push_back(std::make_unique<SpringForce>(network));

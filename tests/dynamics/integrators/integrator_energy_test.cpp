@@ -1,4 +1,4 @@
-// What each scheme does to the energy of an oscillator without damping: gains, keeps it bounded, or loses.
+// The effect of each scheme on the energy of an undamped oscillator: the energy grows, stays bounded, or decays.
 #include "dynamics/oscillator.h"
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr Oscillator kFree{};
 
-/// The energy as a part of the initial one after each of `steps` steps.
+/// The energy after each of `steps` steps as a fraction of the initial energy.
 std::vector<double> energy_ratios(const IntegratorSettings& settings, double dt, int steps) {
   OscillatorRun run(kFree, settings, dt);
   const double start = kFree.energy(run.x(), run.v());
@@ -22,8 +22,7 @@ std::vector<double> energy_ratios(const IntegratorSettings& settings, double dt,
   return ratios;
 }
 
-/// Each step multiplies the energy by `factor`. Positions near 1 are rounded by 1e-16 of it, 1e-15 of the amplitude, a few times a
-/// step.
+/// Each step multiplies the energy by `factor`. Positions near 1 are rounded by 1e-16, 1e-15 of the amplitude, a few times a step.
 void expect_geometric(const std::vector<double>& ratios, double factor) {
   for (std::size_t step = 0; step < ratios.size(); ++step) {
     const double exponent = static_cast<double>(step + 1);
@@ -43,8 +42,8 @@ TEST(ImplicitEuler, LosesEnergyAtItsAnalyticRate) {
   expect_geometric(energy_ratios(ImplicitEulerSettings{}, dt, 500), 1.0 / (1.0 + std::pow(kFree.omega() * dt, 2)));
 }
 
-// |1 + i y - y^2 / 2 - i y^3 / 6 + y^4 / 24|^2 = 1 - y^6 / 72 + y^8 / 576: the loss in a given time falls with the fifth power of
-// the step.
+// |1 + i y - y^2 / 2 - i y^3 / 6 + y^4 / 24|^2 = 1 - y^6 / 72 + y^8 / 576: the loss in a given time decreases with the fifth power
+// of the step.
 TEST(RungeKutta4, LosesEnergyAtItsAnalyticRate) {
   for (const double dt : {0.05, 0.1, 0.2}) {
     const double y = kFree.omega() * dt;
@@ -52,9 +51,8 @@ TEST(RungeKutta4, LosesEnergyAtItsAnalyticRate) {
   }
 }
 
-// With q = omega dt / 2 symplectic Euler and Verlet, whose velocities are half a step off the positions, keep an energy that
-// differs from E by at most q E; velocity Verlet keeps m v^2 / 2 + (1 - q^2) k (x - d)^2 / 2. Explicit Euler is the negative
-// control.
+// Symplectic Euler and Verlet have velocities half a step off the positions; with q = omega dt / 2 their energy differs from E by
+// at most q E. Velocity Verlet conserves m v^2 / 2 + (1 - q^2) k (x - d)^2 / 2. Explicit Euler is the negative control.
 TEST(Integrators, OfSymplecticKindKeepEnergyBoundedOverAThousandPeriods) {
   const double dt = 1.0e-2;
   const double q = 0.5 * kFree.omega() * dt;

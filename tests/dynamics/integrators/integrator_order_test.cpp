@@ -1,5 +1,4 @@
-// How fast the error of each scheme falls with its step: on an oscillator with a closed form, and on springs that turn, stretch and
-// are damped.
+// The order of each scheme: on an oscillator with a closed form, and on damped springs that rotate and stretch.
 #include "dynamics/oscillator.h"
 
 #include <gmock/gmock.h>
@@ -11,7 +10,7 @@
 namespace sprung {
 namespace {
 
-/// A pin that moves and three masses that whirl around it on damped springs, in a wind.
+/// A moving pin and three masses that whirl around it on damped springs, in wind.
 class Whirl {
  public:
   explicit Whirl(double damping) {
@@ -50,8 +49,8 @@ class Whirl {
   Forces forces_;
 };
 
-// The error is C h^p (1 + a h + ...), so the slope from h to h / 2 is p + a' h + ..., and twice the slope of the next halving minus
-// that one is p + O(h^2): a' h, which is less than 0.1 here, is gone, and a tenth of its square is left.
+// The error is C h^p (1 + a h + ...), so the slope from h to h / 2 is p + a' h + .... Twice the slope of the next halving minus
+// this slope is p + O(h^2). It is without a' h, which is less than 0.1 here; a tenth of the square of that remains.
 void expect_order(double order, const std::function<double(int)>& error, int steps) {
   const double first = std::log2(error(steps) / error(2 * steps));
   const double second = std::log2(error(2 * steps) / error(4 * steps));
@@ -61,7 +60,7 @@ void expect_order(double order, const std::function<double(int)>& error, int ste
 
 void expect_whirl_order(double order, const IntegratorSettings& settings, double damping, int steps) {
   const Whirl whirl(damping);
-  // RK4's own error at this step is below 1e-12, a hundredth of the least that is measured.
+  // RK4's own error at this step is below 1e-12, a hundredth of the smallest measured error.
   const Points reference = whirl.after_a_second(RungeKutta4Settings{}, 8192);
   expect_order(
       order, [&](int n) { return (whirl.after_a_second(settings, n) - reference).norm(); }, steps);
@@ -85,7 +84,7 @@ TEST(ImplicitEuler, IsOfFirstOrder) {
   expect_whirl_order(1.0, ImplicitEulerSettings{}, 1.0, 2048);
 }
 
-// The reference above is a scheme of ours; an oscillator has a closed form.
+// The reference above is one of our schemes; an oscillator has a closed form.
 TEST(Integrators, ConvergeToTheClosedFormOfAnOscillator) {
   const Oscillator damped{.damping = 0.4, .gravity = 1.5};
   const auto expect_oscillator_order = [&](double order, const IntegratorSettings& settings, int steps) {

@@ -16,7 +16,7 @@ namespace sprung {
 namespace {
 
 constexpr Oscillator kDamped{.damping = 0.4, .gravity = 1.5};
-constexpr double kRecurrence = 1.0e-12;  // 1,000 steps of a few roundings each, neither growing nor shrinking by much
+constexpr double kRecurrence = 1.0e-12;  // rounding of 1,000 steps, which neither grow nor shrink by much
 
 TEST(ExplicitEuler, FollowsEquationOne) {
   const double dt = 1.0e-3;
@@ -120,11 +120,11 @@ TEST(Integrators, DampedSpringsDecayInTheirEnvelope) {
       ASSERT_LE(std::abs(run.x() - damped.rest_length), envelope * (1.0 + 2.0 * damped.omega() * dt));
       if (step > 70000) largest_late = std::max(largest_late, std::abs(run.x() - damped.rest_length) / envelope);
     }
-    EXPECT_GT(largest_late, 0.99) << "the envelope is touched";
+    EXPECT_GT(largest_late, 0.99) << "the oscillation reaches its envelope";
   }
 }
 
-TEST(Integrators, LeavePinnedParticlesAlone) {
+TEST(Integrators, LeavePinnedParticlesUnchanged) {
   const SpringNetwork network = make_test_cloth(6, 100.0, 0.1);
   Forces forces;
   forces.push_back(std::make_unique<Gravity>(network, Vector3(0.0, -9.81, 0.0)));
@@ -144,8 +144,8 @@ TEST(Integrators, LeavePinnedParticlesAlone) {
   }
 }
 
-// What the simulator need not copy.
-TEST(Integrators, KeepThePositionsAtTheBeginOfTheStepWhereTheySaySo) {
+// The simulator does not copy these positions.
+TEST(Integrators, KeepThePreviousPositionsIfTheyReportIt) {
   const SpringNetwork network = make_test_cloth(6, 0.0, 0.0);
   Forces forces;
   forces.push_back(std::make_unique<Gravity>(network, Vector3(0.0, -9.81, 0.0)));
@@ -165,7 +165,7 @@ TEST(Integrators, KeepThePositionsAtTheBeginOfTheStepWhereTheySaySo) {
   }
 }
 
-TEST(Integrators, RecoverVelocitiesFromWhatConstraintsMoved) {
+TEST(Integrators, RecoverVelocitiesFromConstrainedPositions) {
   const SpringNetwork network = make_pair(1.0, 0.0, 1.0);
   const double dt = 0.5;
   for (const IntegratorSettings& settings : all_integrators()) {
@@ -184,7 +184,7 @@ TEST(Integrators, RecoverVelocitiesFromWhatConstraintsMoved) {
   }
 }
 
-TEST(Verlet, GoesOnWithAVelocityThatContactChanged) {
+TEST(Verlet, ContinuesWithAVelocityThatContactChanged) {
   const SpringNetwork network = make_pair(1.0, 0.0, 1.0);
   SimulationState state = initial_state(network);
   const auto integrator = make_integrator(VerletSettings{}, network);

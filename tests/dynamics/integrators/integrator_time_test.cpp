@@ -1,4 +1,4 @@
-// When schemes ask forces that change with time: a push of m t^p alone makes v a rule of quadrature.
+// The times at which schemes evaluate forces: under a force m t^p alone, v is a quadrature rule.
 #include "dynamics/integrators/integrator.h"
 #include "network/network_builder.h"
 #include "network/simulation_state.h"
@@ -24,7 +24,7 @@ class PowerOfTime final : public Force {
 constexpr int kSteps = 8;
 constexpr double kStep = 0.125;
 
-/// Of 1 kg that was at rest, after a second under t^p N.
+/// Velocity of a mass of 1 kg after a second under t^p N, from rest.
 double velocity_after_a_second(const IntegratorSettings& settings, double power) {
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 1.0);
@@ -38,28 +38,28 @@ double velocity_after_a_second(const IntegratorSettings& settings, double power)
   return state.v(0, 0);
 }
 
-// Sums of at most 32 terms below 1.
+// The tolerance is for sums of at most 32 terms below 1.
 constexpr double kRounding = 32 * std::numeric_limits<double>::epsilon();
 
 // sum dt (k dt) = (1 - dt) / 2 over steps k from 0.
-TEST(IntegratorsInTime, EulersAndVerletTakeTheForceWhereTheStepBegins) {
+TEST(IntegratorsInTime, EulersAndVerletUseTheForceAtTheBeginOfTheStep) {
   for (const IntegratorSettings& settings :
        {IntegratorSettings{ExplicitEulerSettings{}}, {SymplecticEulerSettings{}}, {VerletSettings{}}}) {
     EXPECT_NEAR(velocity_after_a_second(settings, 1.0), 0.5 * (1.0 - kStep), kRounding);
   }
 }
 
-TEST(IntegratorsInTime, ImplicitEulerTakesTheForceWhereTheStepEnds) {
+TEST(IntegratorsInTime, ImplicitEulerUsesTheForceAtTheEndOfTheStep) {
   EXPECT_NEAR(velocity_after_a_second(ImplicitEulerSettings{}, 1.0), 0.5 * (1.0 + kStep), kRounding);
 }
 
-// Exact for t, and (1 / 12) dt^2 f'(1) too much for t^2.
+// Exact for t; (1 / 12) dt^2 f'(1) too large for t^2.
 TEST(IntegratorsInTime, VelocityVerletIsTheTrapezoidalRule) {
   EXPECT_NEAR(velocity_after_a_second(VelocityVerletSettings{}, 1.0), 1.0 / 2.0, kRounding);
   EXPECT_NEAR(velocity_after_a_second(VelocityVerletSettings{}, 2.0), 1.0 / 3.0 + kStep * kStep / 6.0, kRounding);
 }
 
-// Exact to t^3, and dt^4 / 120 too much for t^4.
+// Exact up to t^3; dt^4 / 120 too large for t^4.
 TEST(IntegratorsInTime, RungeKutta4IsSimpsonsRule) {
   for (const double power : {1.0, 2.0, 3.0}) {
     EXPECT_NEAR(velocity_after_a_second(RungeKutta4Settings{}, power), 1.0 / (power + 1.0), kRounding);

@@ -37,7 +37,7 @@ double dense_eigenvalue(const SpringNetwork& network, const std::vector<double>&
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(laplacian, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
-// The bound may be at most 1.5 % above, what its comment promises: a residual of 1 % and half a per cent.
+// The bound may be at most 1.5 % too large: a residual of 1 % and half a per cent, as its comment promises.
 void expect_just_above(double bound, double eigenvalue) {
   EXPECT_GE(bound, eigenvalue);
   EXPECT_LE(bound, 1.016 * eigenvalue);
@@ -61,7 +61,7 @@ TEST(SpectralBounds, AreTheClosedFormOfOneSpring) {
 }
 
 TEST(SpectralBounds, AreTheLimitOfALongRope) {
-  // 4 k / m, reached by the zigzag of neighbours.
+  // 4 k / m, which the zigzag of neighbours reaches.
   const SpringNetwork rope = make_test_rope(20000, 50.0);
   expect_just_above(spectral_bounds(rope).elastic, 4.0 * 50.0 / rope.masses[0]);
 }
@@ -102,8 +102,8 @@ TEST(StableStep, SolvesItsInequality) {
   EXPECT_NEAR(left(with_rate), 4.0 - 2.0 * (1.0 - std::exp(-5.0 * with_rate)), 1e-12);
 }
 
-/// The largest factor by which a step of velocity Verlet multiplies a combination of modes, whatever their shapes are to each
-/// other: `stiffness` and `damping` are M^-1 K dt^2 and M^-1 C dt. Straight from a1 = -K x1 - C (v0 + a0), and so on.
+/// The largest factor by which a step of velocity Verlet multiplies a combination of modes, whatever their shapes: `stiffness` and
+/// `damping` are M^-1 K dt^2 and M^-1 C dt. Computed directly from a1 = -K x1 - C (v0 + a0).
 double velocity_verlet_radius(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& damping) {
   const Eigen::Index n = stiffness.rows();
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
@@ -130,7 +130,7 @@ double runge_kutta_radius(double stiffness, double damping) {
   return std::max(size(root - 0.5 * damping), size(-root - 0.5 * damping));
 }
 
-/// The largest radius among modes with some part of the bounds' stiffness and of their damping.
+/// The largest radius over modes with any fraction of the bounds' stiffness and damping.
 template <class Radius>
 double largest_radius(const SpectralBounds& bounds, double dt, const Radius& radius) {
   constexpr int kParts = 40;
@@ -143,7 +143,7 @@ double largest_radius(const SpectralBounds& bounds, double dt, const Radius& rad
   return largest;
 }
 
-/// From undamped to damped a hundred times as much as it oscillates.
+/// From no damping to a hundred times the oscillation.
 std::vector<SpectralBounds> bounds_of_all_dampings() {
   std::vector<SpectralBounds> all{{.elastic = 900.0}, {.damping = 30.0}};
   for (double damping = 0.3; damping < 3000.0; damping *= 1.1) all.push_back({.elastic = 900.0, .damping = damping});
@@ -154,7 +154,7 @@ std::vector<SpectralBounds> bounds_of_all_dampings() {
 constexpr double kNoGrowth = 1.0 + 1.0e-7;
 
 // One mass on a spring of omega = 10 1/s.
-TEST(ResonantStep, IsThatOfSixStepsATurnOfWhatIsHardlyDamped) {
+TEST(ResonantStep, GivesSixStepsAPeriodToHardlyDampedModes) {
   const double slack = 1.0 / std::sqrt(1.016);
   const auto step = [](const SpringNetwork& network, const IntegratorSettings& settings, double drag = 0.0) {
     return resonant_step(settings, spectral_bounds(network, drag));
@@ -191,7 +191,7 @@ TEST(StableStep, OfImplicitEulerIsAny) {
   }
 }
 
-// Modes of half of the stiffness and more may be damped by dt c = 1 exactly, which the grid misses by a part of 80.
+// Modes of half the stiffness and more may be damped by dt c = 1 exactly, which the grid misses by 1 / 80.
 TEST(StableStep, OfVelocityVerletHoldsForAllDampedModesAndIsNoSmallerThanNeeded) {
   for (const SpectralBounds& bounds : bounds_of_all_dampings()) {
     const double dt = largest_stable_step(VelocityVerletSettings{}, bounds);
@@ -201,7 +201,7 @@ TEST(StableStep, OfVelocityVerletHoldsForAllDampedModesAndIsNoSmallerThanNeeded)
   }
 }
 
-// Between light and heavy damping the bound has steps: it may be 2.828 / 2.615 = 1.09 times too small.
+// Between light and heavy damping the bound is discontinuous: it may be too small by 2.828 / 2.615 = 1.09.
 TEST(StableStep, OfRungeKuttaHoldsForAllDampedModesAndIsNotMuchSmallerThanNeeded) {
   for (const SpectralBounds& bounds : bounds_of_all_dampings()) {
     const double dt = largest_stable_step(RungeKutta4Settings{}, bounds);
@@ -210,7 +210,7 @@ TEST(StableStep, OfRungeKuttaHoldsForAllDampedModesAndIsNotMuchSmallerThanNeeded
   }
 }
 
-// Stiff springs and strong dampers are not the same ones here, so that no shape is a mode of both.
+// Different springs are stiff and strongly damped, so that no shape is a mode of both.
 TEST(StableStep, OfVelocityVerletHoldsWhereDampersAndSpringsPullDifferently) {
   std::mt19937 random(5);
   const auto random_matrix = [&](double largest, double sparsity) {
@@ -231,7 +231,7 @@ TEST(StableStep, OfVelocityVerletHoldsWhereDampersAndSpringsPullDifferently) {
   }
 }
 
-/// Largest coordinate after so many steps from the disturbed initial state.
+/// The largest coordinate after this number of steps from the disturbed initial state.
 double size_after(const SpringNetwork& network, const IntegratorSettings& settings, double drag, double dt, int steps) {
   Forces forces;
   forces.push_back(std::make_unique<SpringForce>(network));
@@ -246,8 +246,8 @@ double size_after(const SpringNetwork& network, const IntegratorSettings& settin
   return state.x.cwiseAbs().maxCoeff();
 }
 
-/// A cloth whose springs have no rest length is linear: its modes are the Laplacian's, in each direction, and damped along x when
-/// it is stretched along x. It starts with a little of every mode.
+/// A cloth whose springs have rest length 0 is linear: its modes are the Laplacian's, in each direction. If it is stretched along
+/// x it is damped along x. It starts with a small amount of every mode.
 SpringNetwork linear_cloth(double damping) {
   SpringNetwork network = make_test_cloth(12, 400.0, damping);
   for (double& rest_length : network.springs.rest_length) rest_length = 0.0;
@@ -259,9 +259,9 @@ SpringNetwork linear_cloth(double damping) {
   return network;
 }
 
-// The bound is at most 1.6 % too small in its eigenvalue, so 1.2 times the step is beyond the true one: the fastest mode then grows
-// by more than 1.2 a step, and 1e-3 m passes 1e6 m in some 100 steps. The dampings make it undamped, a little and far overdamped.
-TEST(StableStep, DividesRunsThatStayFromRunsThatBlowUp) {
+// The bound is at most 1.6 % too small in its eigenvalue, so 1.2 times the step exceeds the true one. The fastest mode then grows
+// by more than 1.2 a step, and 1e-3 m exceeds 1e6 m after some 100 steps. The dampings are none, light and far beyond critical.
+TEST(StableStep, SeparatesStableFromDivergingRuns) {
   for (const double damping : {0.0, 0.05, 5.0}) {
     for (const double drag : {0.0, 1.0}) {
       for (const IntegratorSettings& settings :
@@ -304,7 +304,7 @@ TEST(GrowthTime, IsExplicitEulersOnly) {
   EXPECT_DOUBLE_EQ(growth_time(ExplicitEulerSettings{}, bounds, 0.01), 2.0);
 }
 
-TEST(GrowthTime, IsWhatAnUndampedSpringShows) {
+TEST(GrowthTime, IsTheMeasuredGrowthOfAnUndampedSpring) {
   // The amplitude grows by sqrt(1 + (omega dt)^2) a step, e in 2 / (omega^2 dt) to first order in (omega dt)^2 = 0.0016.
   const SpringNetwork network = make_pair(1.0, 16.0, 0.0, 0.0, true);
   const double dt = 0.01;
@@ -321,7 +321,7 @@ TEST(GrowthTime, IsWhatAnUndampedSpringShows) {
   EXPECT_NEAR(std::log(energy / start), 2.0, 0.05);  // the bound's margin of 1.5 %, and first order
 }
 
-// All of a network's modes along its springs are stable below k_d / k_s: |1 + s dt|^2 = 1 - c dt + omega^2 dt^2 < 1.
+// All modes along the springs are stable below k_d / k_s: |1 + s dt|^2 = 1 - c dt + omega^2 dt^2 < 1.
 TEST(GrowthTime, EndsWhereDampingOutweighsTheGain) {
   const SpringNetwork network = linear_cloth(1.0);
   const SpectralBounds bounds = spectral_bounds(network);
@@ -342,8 +342,9 @@ SpringNetwork make_test_rod(Index particles, double damping = 0.0) {
   return builder.build();
 }
 
-TEST(SpectralBounds, OfALongRodAreTheZigzags) {
-  // Each element turns by (1 + 2 + 1) / l, and each particle is in one in these shares: 16 k / (l^2 m). Springs add 4 k_s / m.
+TEST(SpectralBounds, OfALongRodAreThoseOfTheZigzag) {
+  // Each element rotates by (1 + 2 + 1) / l, and each particle is in one with these weights: 16 k / (l^2 m). Springs add 4 k_s /
+  // m.
   const SpringNetwork rod = make_test_rod(2000, 0.5);
   const double length = 1.0 / 1999.0;
   const SpectralBounds bounds = spectral_bounds(rod);
@@ -374,7 +375,7 @@ double bent_eigenvalue(const SpringNetwork& network, const Points& x) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
-// An arc, a zigzag and a helix. Measured: from 0.99 of the bound in line down to 0.4.
+// An arc, a zigzag and a helix. Measured: from 0.99 of the straight rod's bound down to 0.4.
 TEST(SpectralBounds, CoverBentShapes) {
   const SpringNetwork rod = make_test_rod(12);
   const double length = 1.0 / 11.0;
@@ -393,8 +394,8 @@ TEST(SpectralBounds, CoverBentShapes) {
   }
 }
 
-// Just below it an amplitude keeps its size, just above it grows by some (1 + sqrt(8 * 0.02))^steps.
-TEST(LargestStableStep, IsWhereARodWithAngleBendsBlowsUp) {
+// Just below the bound an amplitude keeps its size; just above it grows by some (1 + sqrt(8 * 0.02))^steps.
+TEST(LargestStableStep, IsWhereARodWithAngleBendsDiverges) {
   const SpringNetwork rod = make_test_rod(60);
   const double largest = largest_stable_step(SymplecticEulerSettings{}, spectral_bounds(rod));
   const auto amplitude = [&](double step) {

@@ -24,7 +24,7 @@ Pairs random_pairs(Index particles, Index count, std::mt19937& random) {
   return pairs;
 }
 
-/// Each particle with those that are up to two steps away along a side, or one across.
+/// Pairs of each particle with those up to two away along a row or column, or one along a diagonal.
 Pairs cloth_pairs(Index side) {
   Pairs pairs;
   const auto add = [&](Index row, Index column, Index rows, Index columns) {
@@ -40,8 +40,8 @@ Pairs cloth_pairs(Index side) {
   return pairs;
 }
 
-/// Masses between 1e-3 and 1, joined by springs of random directions and stiffness up to 1, with blocks between two particles that
-/// are not symmetric, as those of bends are not.
+/// Masses between 1e-3 and 1 joined by springs of random directions and stiffness up to 1. Blocks between two particles are not
+/// symmetric, like those of angle bends.
 BlockMatrix random_matrix(Index particles, const Pairs& pairs, std::mt19937& random) {
   std::uniform_real_distribution<double> between(-1.0, 1.0);
   const auto vector = [&] { return Vector3(between(random), between(random), between(random)); };
@@ -60,8 +60,8 @@ BlockMatrix random_matrix(Index particles, const Pairs& pairs, std::mt19937& ran
 template <class Number>
 constexpr double kEpsilon = std::numeric_limits<Number>::epsilon();
 
-/// Of a factor of n columns the residual is below (3 n + 1) eps | |L| |D| |L^T| | |x|, of which the second norm is at most n |A|
-/// (Higham 2002, theorems 10.4 and 10.5).
+/// The residual of a factor of n columns is below (3 n + 1) eps | |L| |D| |L^T| | |x|, whose second norm is at most n |A| (Higham
+/// 2002, theorems 10.4 and 10.5).
 template <class Number>
 void expect_solution(const Eigen::MatrixXd& matrix, const Scalars& right, const Scalars& solution) {
   const double n = static_cast<double>(matrix.rows());
@@ -91,7 +91,7 @@ void expect_solves(Index particles, const Pairs& pairs, std::mt19937& random) {
   const Eigen::MatrixXd full = dense(matrix);
   expect_solution<Number>(full, right.reshaped(), solution.reshaped());
   const Scalars expected = full.ldlt().solve(Scalars(right.reshaped()));
-  // Both are that far off, times what the inverse makes of it; masses bound it.
+  // Both solutions have that residual, multiplied by the inverse, which the masses bound.
   const double n = 3.0 * particles;
   EXPECT_LE((solution.reshaped() - expected).norm(),
             2.0 * (3.0 * n + 1.0) * n * kEpsilon<Number> * full.norm() * expected.norm() / 1.0e-3);
@@ -159,7 +159,7 @@ TYPED_TEST(BlockCholeskyOf, AcceptsMatricesWithoutRows) {
   EXPECT_EQ(vectors, Points::Zero(3, 2));
 }
 
-// An earlier matrix of the same object changes no bit of the next factor.
+// An earlier matrix of the same object changes no bit of a later factor.
 TYPED_TEST(BlockCholeskyOf, FactorsDoNotDependOnEarlierOnes) {
   using Number = TypeParam;
   std::mt19937 random(4);
@@ -218,7 +218,7 @@ TYPED_TEST(BlockCholeskyOf, RefusesMatricesThatAreNotPositiveDefinite) {
     const Points right = Points::Random(3, 64);
     Points solution;
     const auto accepts = [&](const BlockMatrix& matrix) { return factor.factor_and_solve(matrix, 0.0, right, solution); };
-    // All eigenvalues go down alike.
+    // All eigenvalues decrease by the same amount.
     for (Index i = 0; i < 64; ++i) shifted.add(i, i, -0.99 * least * Matrix3::Identity());
     EXPECT_TRUE(accepts(shifted));
     for (Index i = 0; i < 64; ++i) shifted.add(i, i, -0.02 * least * Matrix3::Identity());
@@ -239,7 +239,7 @@ TYPED_TEST(BlockCholeskyOf, PowersOfTwoScaleItExactly) {
   BlockCholesky<Number> factor(matrix);
   Points expected;
   ASSERT_TRUE(factor.factor_and_solve(matrix, 0.0, right, expected));
-  // Also far beyond what a float holds.
+  // Scales far beyond the range of a float too.
   for (const int of_matrix : {-31, 0, -180, 180}) {
     for (const int of_right : {0, -180, 180}) {
       BlockMatrix scaled(81, pairs);

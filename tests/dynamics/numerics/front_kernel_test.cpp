@@ -10,7 +10,7 @@
 namespace sprung {
 namespace {
 
-/// What elimination made of a panel, but for what is not meant: columns of L, 1 / D, and the lower triangle of what is handed on.
+/// The defined entries of an eliminated panel: columns of L, 1 / D, and the lower triangle of the update.
 template <class Number>
 struct Eliminated {
   std::vector<Number> numbers;
@@ -38,7 +38,7 @@ Eliminated<Number> eliminated(const FrontShape& shape, std::vector<Number> panel
   return result;
 }
 
-// What the machine takes has twice as many lanes where it has AVX-512. A diagonal larger than its row makes the matrix positive
+// On a machine with AVX-512 the chosen kernel has twice as many lanes. A diagonal larger than its row makes the matrix positive
 // definite.
 template <class Number>
 void expect_the_same_bits() {
@@ -58,7 +58,7 @@ void expect_the_same_bits() {
   }
 }
 
-TEST(FrontKernel, HasTheSameBitsWhateverTheMachineTakes) {
+TEST(FrontKernel, GivesTheSameBitsWithAnyLaneCount) {
   if (!has_wide_lanes()) GTEST_SKIP() << "this machine has no AVX-512, so both are the same code";
   expect_the_same_bits<double>();
   expect_the_same_bits<float>();

@@ -15,15 +15,15 @@ namespace {
 
 const std::vector<SpringKind> kStructural{SpringKind::structural};
 
-/// A network of springs between random particles that the batches lay out in all ways: between two rows, between neighbours, and
-/// between any. Some ends are pinned, some springs have no length, and a part of them constants of their own.
+/// A network of springs between random particles that the batches store in all layouts: between two rows, between neighbours, and
+/// between arbitrary particles. Some ends are pinned, some springs have no length, and unless `same` each has its own constants.
 SpringNetwork springs_of_all_layouts(Index row, bool same, std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0.1, 1.0);
   NetworkBuilder builder;
   const Index count = 4 * row;
   Vector3 position = Vector3::Zero();
   for (Index i = 0; i < count; ++i) {
-    const bool stays = random() % 16 == 0;  // where the one before is
+    const bool stays = random() % 16 == 0;  // at the position of the previous one
     if (!stays) position = Vector3(unit(random), unit(random), unit(random));
     builder.add_particle(position, same ? 1.0 : unit(random));
     if (random() % 16 == 0) builder.pin(i);
@@ -39,7 +39,7 @@ SpringNetwork springs_of_all_layouts(Index row, bool same, std::mt19937& random)
   return builder.build();
 }
 
-/// A pass spring by spring, with the machine's own square root. Returns the largest excess it met.
+/// One pass, spring by spring, with the machine's own square root. Returns the largest excess before the projection.
 double project_by_hand(const SpringNetwork& network, const SpringBatches& batches, const LengthRange& range, double relaxation,
                        const Points& before, Points& x) {
   double excess = 0.0;
@@ -61,21 +61,21 @@ double project_by_hand(const SpringNetwork& network, const SpringBatches& batche
   return excess;
 }
 
-/// Where springs came from that have turned and stretched since.
+/// Earlier positions, from which springs have rotated and stretched since.
 Points somewhat_before(const Points& x, std::mt19937& random) {
-  std::uniform_real_distribution<double> way(-0.1, 0.1);
-  return x.unaryExpr([&](double coordinate) { return coordinate + way(random); });
+  std::uniform_real_distribution<double> displacement(-0.1, 0.1);
+  return x.unaryExpr([&](double coordinate) { return coordinate + displacement(random); });
 }
 
 constexpr std::array<LengthRange, 4> kRanges{{{0.0, 1.02}, {1.0, 1.0}, {0.8, 1.1}, {0.0, 4.0}}};
 
-TEST(StretchKernel, ProjectsAsPlainCodeDoes) {
+TEST(StretchKernel, AgreesWithPlainCode) {
   std::mt19937 random(11);
   std::array<Index, 3> layouts{};
   for (Index row = 2; row < 80; ++row) {
     const SpringNetwork network = springs_of_all_layouts(row, row % 2 == 0, random);
     const SpringBatches batches(network, kStructural);
-    for (const SpringBatches::Batch& part : batches.batch) ++layouts[static_cast<std::size_t>(part.layout)];
+    for (const SpringBatches::Batch& batch : batches.batch) ++layouts[static_cast<std::size_t>(batch.layout)];
     const BatchRange all{0, static_cast<Index>(batches.batch.size())};
     for (const LengthRange& range : kRanges) {
       for (const double relaxation : {1.0, 1.8}) {
@@ -83,18 +83,19 @@ TEST(StretchKernel, ProjectsAsPlainCodeDoes) {
         Points expected = x;
         const Points before = somewhat_before(x, random);
         const double excess = project_by_hand(network, batches, range, relaxation, before, expected);
-        const SquaredLengths met = project_springs_narrow(batches, all, range, relaxation, before.data(), x.data());
-        // Springs of at most 10 times their length, each rounded a few times, on particles of a dozen of them that hand it on.
-        EXPECT_NEAR(met.excess(range), excess, 1.0e-13) << row;
+        const SquaredLengths measured = project_springs_narrow(batches, all, range, relaxation, before.data(), x.data());
+        // Springs are at most 10 times their rest length and rounded a few times each; a particle has a dozen of them, which pass
+        // the error on.
+        EXPECT_NEAR(measured.excess(range), excess, 1.0e-13) << row;
         EXPECT_LT((x - expected).cwiseAbs().maxCoeff(), 1.0e-13) << row;
       }
     }
   }
-  for (const Index parts : layouts) EXPECT_GT(parts, 0);
+  for (const Index count : layouts) EXPECT_GT(count, 0);
 }
 
-// What the machine takes has twice as many lanes where it has AVX-512.
-TEST(StretchKernel, HasTheSameBitsWhateverTheMachineTakes) {
+// On a machine with AVX-512 the chosen kernel has twice as many lanes.
+TEST(StretchKernel, GivesTheSameBitsWithAnyLaneCount) {
   if (!has_wide_lanes()) GTEST_SKIP() << "this machine has no AVX-512, so both are the same code";
   std::mt19937 random(12);
   for (Index row = 2; row < 80; ++row) {
@@ -105,10 +106,10 @@ TEST(StretchKernel, HasTheSameBitsWhateverTheMachineTakes) {
       Points narrow = network.positions;
       Points taken = network.positions;
       const Points before = somewhat_before(narrow, random);
-      const SquaredLengths met_narrow = project_springs_narrow(batches, all, range, 1.0, before.data(), narrow.data());
-      const SquaredLengths met_taken = project_springs(batches, all, range, 1.0, before.data(), taken.data());
+      const SquaredLengths measured_narrow = project_springs_narrow(batches, all, range, 1.0, before.data(), narrow.data());
+      const SquaredLengths measured_taken = project_springs(batches, all, range, 1.0, before.data(), taken.data());
       EXPECT_EQ(narrow, taken) << row;
-      EXPECT_EQ(met_narrow.excess(range), met_taken.excess(range)) << row;
+      EXPECT_EQ(measured_narrow.excess(range), measured_taken.excess(range)) << row;
       EXPECT_EQ(measure_springs_narrow(batches, all, narrow.data()).excess(range),
                 measure_springs(batches, all, taken.data()).excess(range));
     }
@@ -123,18 +124,18 @@ TEST(StretchKernel, MeasuresTheLongestAndTheShortest) {
     SquaredLengths expected;
     for (Index s = 0; s < batches.count(); ++s) {
       const double length = (network.positions.col(batches.first[s]) - network.positions.col(batches.second[s])).norm();
-      const double part = length / batches.rest_length[s];
-      expected.include({part * part, part * part});
+      const double relative = length / batches.rest_length[s];
+      expected.include({relative * relative, relative * relative});
     }
     const BatchRange all{0, static_cast<Index>(batches.batch.size())};
     const SquaredLengths measured = measure_springs(batches, all, network.positions.data());
-    // A few roundings of each.
+    // The tolerance is a few roundings of each.
     EXPECT_NEAR(measured.longest, expected.longest, 1.0e-14 * expected.longest);
     EXPECT_NEAR(measured.shortest, expected.shortest, 1.0e-14 * expected.shortest);
   }
 }
 
-TEST(StretchKernel, LeavesSpringsWithinTheirLimitsBitForBit) {
+TEST(StretchKernel, LeavesSpringsWithinTheirLimitsUnchangedBitForBit) {
   std::mt19937 random(14);
   const SpringNetwork network = springs_of_all_layouts(70, false, random);
   const SpringBatches batches(network, kStructural);

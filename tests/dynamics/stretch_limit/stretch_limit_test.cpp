@@ -27,8 +27,8 @@ double excess_by_hand(const SpringNetwork& network, const StretchLimitSettings& 
   for (Index k = 0; k < springs.count(); ++k) {
     if (std::ranges::find(settings.kinds, springs.kind[k]) == settings.kinds.end()) continue;
     if (network.is_pinned(springs.first[k]) && network.is_pinned(springs.second[k])) continue;
-    const double part = length_of(x, springs.first[k], springs.second[k]) / springs.rest_length[k];
-    excess = std::max({excess, part - 1.0 - settings.max_stretch, 1.0 - settings.max_compression - part});
+    const double relative = length_of(x, springs.first[k], springs.second[k]) / springs.rest_length[k];
+    excess = std::max({excess, relative - 1.0 - settings.max_stretch, 1.0 - settings.max_compression - relative});
   }
   return excess;
 }
@@ -50,8 +50,8 @@ TEST(StretchLimit, ProjectsACompressedSpringOntoItsLimit) {
   EXPECT_NEAR(length_of(x, 0, 1), 1.5, 8 * kEpsilon);
 }
 
-// Otherwise a push would turn what turns faster still.
-TEST(StretchLimit, PushesAlongWhereASpringWasWhenTheStepBegan) {
+// A push along the present direction would speed up a rotating spring.
+TEST(StretchLimit, PushesAlongTheDirectionAtTheBeginOfTheStep) {
   const SpringNetwork network = make_pair(2.0, 0.0, 2.0);
   const StretchLimit limit(network, {.max_compression = 0.0});
   const double angle = 0.25;
@@ -61,7 +61,7 @@ TEST(StretchLimit, PushesAlongWhereASpringWasWhenTheStepBegan) {
   limit.project(network.positions, x);
   EXPECT_GT(x(0, 1), turned.x());
   EXPECT_EQ(x(1, 1), turned.y());
-  // The twentieth that is missing, as a part of what it was, which is longer by a twentieth.
+  // The missing twentieth, as a fraction of the former length, which was longer by a twentieth.
   EXPECT_NEAR(length_of(x, 0, 1), 2.0, 2.0 * 0.05 * 0.05);
 }
 
@@ -92,7 +92,7 @@ TEST(StretchLimit, RelaxationOfLessThanTwoConverges) {
   EXPECT_LT(passes_to_reach(1.9), unrelaxed);
 }
 
-TEST(StretchLimit, LeavesSpringsWithinTheirLimitsAlone) {
+TEST(StretchLimit, LeavesSpringsWithinTheirLimitsUnchanged) {
   const SpringNetwork network = make_pair(2.1, 0.0, 2.0);
   const StretchLimit limit(network, {.max_stretch = 0.1});
   Points x = network.positions;
@@ -112,8 +112,7 @@ TEST(StretchLimit, WeighsEndsByInverseMass) {
   EXPECT_NEAR(x(0, 1), 1.25, 4 * kEpsilon);
 }
 
-// Springs between two rows of particles share none: each is projected as if it were alone, whether the kernels take it in a run or
-// by itself.
+// Springs between two rows share no particle. Each is projected as if it were alone, whether it is in a run or not.
 TEST(StretchLimit, ProjectsEachOfManySpringsByItsOwnConstants) {
   constexpr Index kRow = 203;
   std::mt19937 random(3);
@@ -136,7 +135,7 @@ TEST(StretchLimit, ProjectsEachOfManySpringsByItsOwnConstants) {
       const double rest_length = network.springs.rest_length[i];
       const double wanted = std::clamp(between.norm(), 0.8 * rest_length, 1.1 * rest_length);
       const double of_first = network.masses[kRow + i] / (network.masses[i] + network.masses[kRow + i]);
-      const Vector3 correction = std::max(1.0 - wanted / between.norm(), -1.0) * between;  // by its own length at most
+      const Vector3 correction = std::max(1.0 - wanted / between.norm(), -1.0) * between;  // by at most its own length
       // Coordinates below 1 are rounded a few times.
       EXPECT_LT((x.col(i) - network.positions.col(i) - of_first * correction).norm(), 16 * kEpsilon) << i;
       EXPECT_LT((x.col(kRow + i) - network.positions.col(kRow + i) + (1.0 - of_first) * correction).norm(), 16 * kEpsilon) << i;
@@ -144,7 +143,7 @@ TEST(StretchLimit, ProjectsEachOfManySpringsByItsOwnConstants) {
   }
 }
 
-// sum of m dx = 0: also shows that no batch moves a particle twice, which would lose one of the two moves.
+// sum of m dx = 0. This also shows that no batch moves a particle twice, which would lose one of the two moves.
 TEST(StretchLimit, KeepsTheCentreOfMass) {
   SpringNetwork cloth = make_test_cloth(33, 0.0, 0.0, false);
   cloth.positions *= 1.3;
@@ -182,7 +181,7 @@ TEST(StretchLimit, LeavesSpringsBetweenPinsOut) {
   EXPECT_EQ(x, network.positions);
 }
 
-TEST(StretchLimit, HoldsOnlyTheKindsItIsGiven) {
+TEST(StretchLimit, LimitsOnlyTheGivenKinds) {
   SpringNetwork network = make_test_cloth(5, 0.0, 0.0);
   // Sheared by 45 degrees at constant side lengths: only the diagonals change.
   for (Index i = 0; i < network.particle_count(); ++i) {
@@ -201,12 +200,12 @@ TEST(StretchLimit, MeasuresTheExcessOfABodyByItsKinds) {
     return StretchLimit(network, {.max_stretch = 0.0, .kinds = std::move(kinds)}).excess(network.positions, network.bodies[0]);
   };
   EXPECT_NEAR(excess_of_body({SpringKind::structural}), 0.5, 4 * kEpsilon);
-  // A diagonal whose one leg is longer by a half.
+  // A diagonal of a cell with one side longer by a half.
   EXPECT_NEAR(excess_of_body({SpringKind::shear}), std::sqrt(0.5 * (1.0 + 1.5 * 1.5)) - 1.0, 8 * kEpsilon);
 }
 
 TEST(StretchLimit, ReachesItsLimit) {
-  // A free cloth stretched by a half in one direction: passes converge, and then nothing is left beyond the tolerance.
+  // A free cloth stretched by a half in one direction: passes converge until no excess is beyond the tolerance.
   SpringNetwork network = make_test_cloth(12, 0.0, 0.0, false);
   network.positions.row(0) *= 1.5;
   const StretchLimit limit(network, {.max_stretch = 0.02});
@@ -226,7 +225,7 @@ TEST(StretchLimit, MeasuresTheLargestExcess) {
   }
 }
 
-TEST(StretchLimit, TakesParticlesWithManySprings) {
+TEST(StretchLimit, AcceptsParticlesWithManySprings) {
   // A hub with 300 spokes: more than one round of colours.
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 1.0);
@@ -242,7 +241,7 @@ TEST(StretchLimit, TakesParticlesWithManySprings) {
   EXPECT_LT(excess_by_hand(network, limit.settings(), x), 4 * kEpsilon) << "one pass suffices: the spokes share only the pin";
 }
 
-TEST(StretchLimit, LeavesASpringWithoutLengthWhereItIs) {
+TEST(StretchLimit, DoesNotMoveASpringWithoutLength) {
   SpringNetwork network = make_pair(1.0, 0.0, 1.0);
   network.positions.col(1) = network.positions.col(0);
   const StretchLimit limit(network, {.max_compression = 0.5});
@@ -266,7 +265,7 @@ TEST(StretchLimit, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(passes(3), alone);
 }
 
-TEST(StretchLimit, TakesNetworksWithoutSprings) {
+TEST(StretchLimit, AcceptsNetworksWithoutSprings) {
   const SpringNetwork network = make_random_network(3, 0);
   const StretchLimit limit(network, {});
   Points x = network.positions;
@@ -274,7 +273,7 @@ TEST(StretchLimit, TakesNetworksWithoutSprings) {
   EXPECT_EQ(limit.suggested_step(9.81), std::numeric_limits<double>::infinity());
 }
 
-/// Excess of a network that hangs by its pins, carried by the limit alone, after it has come to rest.
+/// Excess of a network that hangs from its pins by the limit alone, after it has come to rest.
 double excess_hanging(const SpringNetwork& network, const StretchLimitSettings& settings, double dt, double seconds) {
   const StretchLimit limit(network, settings);
   Forces forces;
@@ -302,16 +301,16 @@ SpringNetwork hanging_rope(Index particles) {
   return network;
 }
 
-/// A cloth that hangs straight down from the whole of its upper side.
+/// A cloth that hangs straight down from its whole upper side.
 SpringNetwork curtain(Index side) {
   SpringNetwork network = make_test_cloth(side, 0.0, 0.0);
   for (Index i = side * (side - 1); i < side * side; ++i) network.inverse_masses[i] = 0.0;
   return network;
 }
 
-// The promise, with a tenth for what has not come to rest; and with twice the step the limit is lost, so the step is not idly
+// The promised bound, with a tenth for residual motion. With twice the step the limit is lost, so the step is not needlessly
 // small.
-TEST(SuggestedStep, HoldsTheLimitOfWhatHangs) {
+TEST(SuggestedStep, KeepsAHangingBodyWithinTheLimit) {
   const StretchLimitSettings settings;
   for (const SpringNetwork& network : {hanging_rope(50), hanging_rope(200), curtain(24), make_test_cloth(24, 0.0, 0.0)}) {
     const double dt = StretchLimit(network, settings).suggested_step(9.81);
@@ -321,9 +320,9 @@ TEST(SuggestedStep, HoldsTheLimitOfWhatHangs) {
   }
 }
 
-// Without tethers each of the two corners carries half the cloth; with them what a strand of 34 springs does, 23 down and 11
+// Without tethers each of the two corners carries half the cloth. With them it carries a strand of 34 springs, 23 down and 11
 // across.
-TEST(SuggestedStep, IsLargerWithTethersToTautPinsAndHoldsTheLimit) {
+TEST(SuggestedStep, IsLargerWithTethersToTautPinsAndKeepsTheLimit) {
   const SpringNetwork cloth = make_test_cloth(24, 0.0, 0.0);
   for (const int passes : {1, 4, 32}) {
     const StretchLimitSettings tethered{.max_stretch = 0.0, .iterations = passes, .tolerance = 0.01, .tethers = true};
@@ -336,8 +335,9 @@ TEST(SuggestedStep, IsLargerWithTethersToTautPinsAndHoldsTheLimit) {
   }
 }
 
-// Between the bounds measured for 16 to 128 particles a side: with twice the step the limit is lost, so the step is not idly small.
-TEST(SuggestedStep, IsLargerWhereSpringsMayNotShrinkAndHoldTheShape) {
+// Between the bounds measured for 16 to 128 particles a side. With twice the step the limit is lost, so the step is not needlessly
+// small.
+TEST(SuggestedStep, IsLargerForRigidSurfacesThatMayNotShrink) {
   const SpringNetwork cloth = make_test_cloth(24, 0.0, 0.0);
   StretchLimitSettings both{.max_stretch = 0.0, .max_compression = 0.0, .iterations = 1, .tolerance = 0.01, .tethers = true};
   both.kinds = {SpringKind::structural, SpringKind::shear};
@@ -352,8 +352,8 @@ TEST(SuggestedStep, IsLargerWhereSpringsMayNotShrinkAndHoldTheShape) {
   }
 }
 
-// Structural springs alone let a cloth fold within itself, however stiff they are.
-TEST(SuggestedStep, IsNoLargerWhereSpringsLetTheShapeGo) {
+// Structural springs alone let a cloth shear, however stiff they are.
+TEST(SuggestedStep, IsNoLargerForSurfacesThatMayShear) {
   const SpringNetwork cloth = make_test_cloth(24, 0.0, 0.0);
   const auto step = [&](double max_compression) {
     return StretchLimit(cloth, {.max_stretch = 0.0, .max_compression = max_compression, .tolerance = 0.01}).suggested_step(9.81);
@@ -384,7 +384,7 @@ TEST(SuggestedStep, IsThatOfTheBodyThatNeedsTheSmallest) {
   EXPECT_EQ(StretchLimit(both.build(), {}).suggested_step(9.81), StretchLimit(alone.build(), {}).suggested_step(9.81));
 }
 
-/// A cloth by one corner, and beside it a rope whose ends are both pinned as far from each other as it is long.
+/// A cloth that hangs from one corner, and beside it a rope whose pinned ends are as far apart as the rope is long.
 SpringNetwork cloth_beside_taut_rope(bool with_rope) {
   const SpringMaterials structural{.structural = SpringMaterial{}, .shear = {}, .bend = {}};
   BodyShape cloth = make_cloth({.size = {1.0, 1.0}, .resolution = {16, 16}}, structural);
@@ -420,7 +420,8 @@ TEST(SuggestedStep, PinsThatMoveAreNotTaut) {
 }
 
 TEST(SuggestedStep, OfAnUnpinnedRopeIsThatOfItsHalf) {
-  // n springs over an obstacle by the middle: n / 2 particles hang from it. Here as many as a rope of half the length, pinned.
+  // n springs that hang over an obstacle by the middle: n / 2 particles hang from it. A pinned rope of half the length has as
+  // many.
   NetworkBuilder builder;
   for (Index i = 0; i < 101; ++i) builder.add_particle(Vector3(0.01 * i, 0.0, 0.0), 1.0);
   for (Index i = 0; i < 100; ++i) builder.add_spring(i, i + 1, 0.0, 0.01);

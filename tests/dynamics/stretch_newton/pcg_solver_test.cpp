@@ -13,10 +13,10 @@
 namespace sprung {
 namespace {
 
-/// Of a cloth, for links of random directions.
-class SparseSolverOfACloth : public ::testing::Test {
+/// The solver for a cloth whose links have random directions.
+class PcgSolverOfACloth : public ::testing::Test {
  protected:
-  /// Links are at most `stiffness` times as stiff as the largest mass is heavy; a part of them is slack.
+  /// Links are at most `stiffness` times as stiff as the largest mass; a fifth of them is slack.
   [[nodiscard]] StretchSystem system(double stiffness) {
     std::normal_distribution<double> normal;
     StretchSystem system;
@@ -29,8 +29,8 @@ class SparseSolverOfACloth : public ::testing::Test {
     return system;
   }
 
-  /// What another step than `step` would gain, as a part of all that is to be gained.
-  [[nodiscard]] double part_left(const StretchSystem& system, const Points& step) const {
+  /// The gain that another step than `step` could still make, as a fraction of the whole gain.
+  [[nodiscard]] double fraction_left(const StretchSystem& system, const Points& step) const {
     const Eigen::MatrixXd full = dense(component_, system);
     const Eigen::LDLT<Eigen::MatrixXd> exact(full);
     const Scalars right = system.residual.reshaped();
@@ -44,19 +44,19 @@ class SparseSolverOfACloth : public ::testing::Test {
   std::mt19937 random_{3};
 };
 
-// A hundredth of the energy may be left, as the factor measures it. Single precision bears stiffness up to about 1e7 times the
-// masses; beyond that double precision must take over, and still be there for what is less stiff.
-TEST_F(SparseSolverOfACloth, SolvesHoweverStiffLinksAre) {
+// A hundredth of the energy, measured by the factor, may remain. Single precision works up to a stiffness of about 1e7 times the
+// masses. Beyond that double precision must take over, and must not prevent later solves of softer systems.
+TEST_F(PcgSolverOfACloth, SolvesAtAnyStiffness) {
   for (const double stiffness : {1.0, 1.0e3, 1.0e5, 1.0e7, 1.0e8, 1.0e9, 1.0e11, 1.0e8, 1.0e2}) {
     const StretchSystem equations = system(stiffness);
     Points step;
     solver_.solve(equations, step);
-    EXPECT_LT(part_left(equations, step), 0.01) << stiffness;
+    EXPECT_LT(fraction_left(equations, step), 0.01) << stiffness;
   }
 }
 
-// The factor at hand, in either precision, is that of the system before: from it conjugate gradients come near.
-TEST_F(SparseSolverOfACloth, TakesTheLastFactorForWhatIsAlike) {
+// The kept factor, in either precision, is that of the previous system; conjugate gradients converge from it.
+TEST_F(PcgSolverOfACloth, ReusesTheLastFactorForASimilarSystem) {
   for (const double stiffness : {1.0e3, 1.0e11}) {
     StretchSystem equations = system(stiffness);
     Points step;
@@ -64,24 +64,24 @@ TEST_F(SparseSolverOfACloth, TakesTheLastFactorForWhatIsAlike) {
     for (SymmetricMatrix3& block : equations.blocks) block += SymmetricMatrix3::along(0.05 * block.xx, 0.0, Vector3::UnitX());
     equations.is_like_last = true;
     solver_.solve(equations, step);
-    EXPECT_LT(part_left(equations, step), 0.02) << stiffness;
+    EXPECT_LT(fraction_left(equations, step), 0.02) << stiffness;
   }
 }
 
-// A factor comes near enough at once, in either precision: what rounding leaves of 1e3 times the mass is next to nothing in both.
-TEST_F(SparseSolverOfACloth, SolvesAgainForAnotherResidual) {
+// One application of a factor is accurate enough in either precision: the rounding for 1e3 times the mass is negligible in both.
+TEST_F(PcgSolverOfACloth, SolvesAgainForAnotherResidual) {
   for (const double stiffness : {1.0e3, 1.0e11}) {
     StretchSystem equations = system(stiffness);
     Points step;
     solver_.solve(equations, step);
     equations.residual = Points::Random(3, component_.free_count);
     solver_.solve_again(equations, step);
-    EXPECT_LT(part_left(equations, step), 0.01) << stiffness;
+    EXPECT_LT(fraction_left(equations, step), 0.01) << stiffness;
   }
 }
 
-// After one that has no factor there is nothing to solve with.
-TEST_F(SparseSolverOfACloth, DoesNotMoveAgainWithoutAFactor) {
+// After a system without a factor nothing can be solved with.
+TEST_F(PcgSolverOfACloth, ReturnsZeroWithoutAFactor) {
   StretchSystem equations = system(1.0e3);
   equations.blocks.front().xx = std::numeric_limits<double>::quiet_NaN();
   Points step;
@@ -90,7 +90,7 @@ TEST_F(SparseSolverOfACloth, DoesNotMoveAgainWithoutAFactor) {
   EXPECT_EQ(step, Points::Zero(3, component_.free_count));
 }
 
-// What nothing holds takes up all of its momentum, whatever else is left: to the rounding of double precision.
+// A free component receives all of its momentum, whatever the remaining error: to the rounding of double precision.
 TEST(PcgSolver, KeepsMomentum) {
   const SpringNetwork network = make_test_cloth(6, 0.0, 0.0, false);
   const StretchComponent component = stretch_components(network, {SpringKind::structural}).front();
@@ -111,7 +111,7 @@ TEST(PcgSolver, KeepsMomentum) {
   expect_momentum();
 }
 
-TEST_F(SparseSolverOfACloth, IsNotFiniteWhereTheSystemIsNot) {
+TEST_F(PcgSolverOfACloth, IsNotFiniteWhereTheSystemIsNot) {
   StretchSystem equations = system(1.0e3);
   equations.blocks.front().xx = std::numeric_limits<double>::quiet_NaN();
   Points step;
@@ -119,7 +119,7 @@ TEST_F(SparseSolverOfACloth, IsNotFiniteWhereTheSystemIsNot) {
   EXPECT_FALSE(step.allFinite());
   const StretchSystem sound = system(1.0e3);
   solver_.solve(sound, step);
-  EXPECT_LT(part_left(sound, step), 0.01);
+  EXPECT_LT(fraction_left(sound, step), 0.01);
 }
 
 }  // namespace

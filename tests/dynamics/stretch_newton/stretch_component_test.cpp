@@ -22,7 +22,7 @@ TEST(StretchComponents, ARopeIsATreeFromItsTipToItsPin) {
   EXPECT_THAT(found[0].begin, ElementsAre(0, 1, 2, 3));
 }
 
-TEST(StretchComponents, PinsPartThem) {
+TEST(StretchComponents, PinsSeparateThem) {
   SpringNetwork network = make_test_rope(7, 0.0);
   network.inverse_masses[3] = 0.0;
   const auto found = structural(network);
@@ -69,7 +69,7 @@ TEST(StretchComponents, TwoSpringsBetweenTheSameParticlesMakeNoLoop) {
   EXPECT_EQ(found[0].links.size(), 3u);
 }
 
-TEST(StretchComponents, EachLinkIsOfItsFirstPoint) {
+TEST(StretchComponents, LinksAreSortedByTheirFirstPoint) {
   for (const StretchComponent& component : structural(make_random_network(100, 140, true))) {
     for (Index i = 0; i < component.free_count; ++i) {
       for (Index k = component.begin[i]; k < component.begin[i + 1]; ++k) {

@@ -49,9 +49,9 @@ class Solvers : public ::testing::TestWithParam<SpringNetwork> {};
 INSTANTIATE_TEST_SUITE_P(Networks, Solvers,
                          ::testing::Values(make_test_rope(30, 0.0), tree_with_two_pins(), make_test_cloth(6, 0.0, 0.0)));
 
-// Elimination is backward stable: the error is a few roundings times the condition, which M + K bounds by 1 + |K| / least mass. Of
-// others a tenth of what the first step is worth may be left, as M + K measures it.
-TEST_P(Solvers, SolveWhatADenseSolverSolves) {
+// Elimination is backward stable: the error is a few roundings times the condition number, which M + K bounds by 1 + |K| / least
+// mass. Other solvers may leave a tenth of the first step, measured by M + K.
+TEST_P(Solvers, AgreeWithADenseSolver) {
   const SpringNetwork& network = GetParam();
   std::mt19937 random(3);
   for (StretchComponent& component : stretch_components(network, {SpringKind::structural})) {
@@ -60,10 +60,10 @@ TEST_P(Solvers, SolveWhatADenseSolverSolves) {
     Points x(3, component.points.size());
     for (Index i = 0; i < x.cols(); ++i) x.col(i) = network.positions.col(component.points[i]);
     x.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
-    Points led = x;
-    led.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
+    Points target = x;
+    target.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
     StretchSystem system;
-    energy.linearise(x, led, NearLimit::slack, system);
+    energy.linearise(x, target, NearLimit::slack, system);
     const Eigen::MatrixXd matrix = dense(component, system);
     const Scalars expected = matrix.ldlt().solve(Scalars(system.residual.reshaped()));
     Points step;
@@ -88,38 +88,38 @@ TEST_P(Solvers, ResidualIsTheNegativeGradient) {
   energy.set_weight(1.0e-3);
   Points x(3, component.points.size());
   for (Index i = 0; i < x.cols(); ++i) x.col(i) = 1.05 * network.positions.col(component.points[i]);
-  Points led = x;
-  led.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
+  Points target = x;
+  target.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
   StretchSystem system;
-  const double value = energy.linearise(x, led, NearLimit::slack, system);
-  EXPECT_NEAR(value, energy.value(x, led), 100 * kEpsilon * value);
+  const double value = energy.linearise(x, target, NearLimit::slack, system);
+  EXPECT_NEAR(value, energy.value(x, target), 100 * kEpsilon * value);
   const double h = 1.0e-6;
   for (Index c = 0; c < 3 * component.free_count; ++c) {
     Points ahead = x;
     Points behind = x;
     ahead.reshaped()[c] += h;
     behind.reshaped()[c] -= h;
-    const double slope = (energy.value(ahead, led) - energy.value(behind, led)) / (2.0 * h);
+    const double slope = (energy.value(ahead, target) - energy.value(behind, target)) / (2.0 * h);
     EXPECT_NEAR(system.residual.reshaped()[c], -slope, 1.0e-6 * system.residual.norm()) << c;
   }
 }
 
-/// One step of a network from rest, or from `velocities`: where forces led it.
-Points led_by_gravity(const SpringNetwork& network, const Points& before, const Points& velocities, double dt) {
-  Points led = before;
+/// The target of one step of a network from rest, or from `velocities`.
+Points target_of_gravity(const SpringNetwork& network, const Points& before, const Points& velocities, double dt) {
+  Points target = before;
   for (Index i = 0; i < network.particle_count(); ++i) {
-    if (!network.is_pinned(i)) led.col(i) += dt * velocities.col(i) - kGravity * dt * dt * Vector3::UnitY();
+    if (!network.is_pinned(i)) target.col(i) += dt * velocities.col(i) - kGravity * dt * dt * Vector3::UnitY();
   }
-  return led;
+  return target;
 }
 
-/// A cloth that is too long everywhere, a little differently each time.
+/// A cloth whose links are all too long, slightly differently each time.
 class StretchedCloth {
  public:
   Points next() {
-    Points led = 1.3 * network.positions;
-    led.reshaped() += random_displacement(random_, static_cast<Index>(led.size()), 1.0e-3);
-    return led;
+    Points target = 1.3 * network.positions;
+    target.reshaped() += random_displacement(random_, static_cast<Index>(target.size()), 1.0e-3);
+    return target;
   }
   const SpringNetwork network = make_test_cloth(8, 0.0, 0.0, false);
 
@@ -127,7 +127,7 @@ class StretchedCloth {
   std::mt19937 random_{11};
 };
 
-// One step's factor does for the next, whose bits depend on it: but those of the same steps are the same.
+// A factor serves the next step too, whose bits then depend on it. The same steps give the same bits.
 TEST(StretchNewton, TheSameStepsHaveTheSameBits) {
   const auto after_steps = [] {
     StretchedCloth cloth;
@@ -142,9 +142,9 @@ TEST(StretchNewton, TheSameStepsHaveTheSameBits) {
   EXPECT_EQ(after_steps(), after_steps());
 }
 
-// Each solve leaves a tenth of the residual, as M + K measures it, or less: so near is the displacement to that of a new factor.
-// The second and third systems are near the first; the fourth, of another weight by a thousand, is not.
-TEST(PcgSolver, OldFactorsLeadNearEnough) {
+// Each solve leaves at most a tenth of the residual, measured by M + K, so its result is as near to that of a new factor. The
+// second and third systems are similar to the first; the fourth has a thousand times the weight and is not.
+TEST(PcgSolver, OldFactorsAreAccurateEnough) {
   StretchedCloth cloth;
   const StretchComponent component = stretch_components(cloth.network, {SpringKind::structural}).front();
   StretchEnergy energy(component, {.max_stretch = 0.0});
@@ -166,11 +166,11 @@ TEST(PcgSolver, OldFactorsLeadNearEnough) {
   }
 }
 
-// Of M + 16 K a factor of M + K takes all eigenvalues to between 1 and 16. Conjugate gradients leave three fifths of their residual
-// in each iteration then, a tenth after six; steepest descent leaves fifteen seventeenths. What they say is left to gain is half of
-// the residual's square as the old factor measures it before the last iteration, up to sixteen times as much as there is and never
-// less. A new factor leaves less than a ten-thousandth.
-TEST(PcgSolver, OldFactorsLeadThereByConjugateGradients) {
+// Preconditioned by a factor of M + K, the eigenvalues of M + 16 K lie between 1 and 16. Conjugate gradients then leave three
+// fifths of the residual in each iteration, and a tenth after six; steepest descent leaves fifteen seventeenths. The returned
+// remaining gain is half of the squared residual before the last iteration, in the old factor's norm: at least the true gain and
+// at most sixteen times it. A new factor leaves less than a ten-thousandth.
+TEST(PcgSolver, OldFactorsPreconditionConjugateGradients) {
   StretchedCloth cloth;
   const StretchComponent component = stretch_components(cloth.network, {SpringKind::structural}).front();
   Points points(3, component.points.size());
@@ -195,20 +195,20 @@ TEST(PcgSolver, OldFactorsLeadThereByConjugateGradients) {
   const Scalars missed = step.reshaped() - exact;
   Points by_new_factor;
   PcgSolver(component).solve(system, by_new_factor);
-  EXPECT_NE(step, by_new_factor) << "the old factor was given up";
+  EXPECT_NE(step, by_new_factor) << "the old factor was not used";
   EXPECT_LE(0.5 * missed.dot(matrix * missed), left);
   EXPECT_LE(left, 0.01 * 16.0 * 0.5 * now.dot(exact));
 }
 
-// A factor of M + K measures what M + 16 K leaves to gain as up to sixteen times as much: all of it may be left, so the first
-// iteration is the last. With nothing that may be left they go on to a hundredth.
-TEST(PcgSolver, OldFactorsLeaveWhatMayBeLeft) {
+// A factor of M + K overestimates the remaining gain of M + 16 K by up to sixteen times. If all of it may be left, the first
+// iteration is the last. If nothing may be left, iterations continue to a hundredth.
+TEST(PcgSolver, OldFactorsLeaveThePermittedError) {
   StretchedCloth cloth;
   const StretchComponent component = stretch_components(cloth.network, {SpringKind::structural}).front();
   Points points(3, component.points.size());
   const Points x = cloth.next();
   for (Index i = 0; i < points.cols(); ++i) points.col(i) = x.col(component.points[i]);
-  const auto left_of = [&](double part_that_may_be_left) {
+  const auto left_of = [&](double fraction_that_may_be_left) {
     StretchEnergy energy(component, {.max_stretch = 0.0});
     StretchSystem system;
     PcgSolver used(component);
@@ -221,33 +221,33 @@ TEST(PcgSolver, OldFactorsLeaveWhatMayBeLeft) {
     const Scalars now = system.residual.reshaped();
     const double gain = 0.5 * now.dot(dense(component, system).ldlt().solve(now));
     system.is_like_last = true;
-    system.may_be_left = part_that_may_be_left * gain;
+    system.may_be_left = fraction_that_may_be_left * gain;
     return used.solve(system, step) / gain;
   };
   EXPECT_GE(left_of(16.0), 1.0);
   EXPECT_LE(left_of(0.0), 0.16);
 }
 
-// Two springs of 1 m, each held by one end.
-TEST(StretchNewton, TellsTheTurnOfWhatTurnsMost) {
+// Two springs of 1 m, each pinned at one end.
+TEST(StretchNewton, ReportsTheLargestDeformationOfAComponent) {
   NetworkBuilder builder;
   for (const double z : {0.0, 1.0}) {
-    const Index held = builder.add_particle({0.0, 0.0, z}, 1.0);
-    builder.add_spring(held, builder.add_particle({1.0, 0.0, z}, 1.0), 0.0, 1.0);
-    builder.pin(held);
+    const Index pinned = builder.add_particle({0.0, 0.0, z}, 1.0);
+    builder.add_spring(pinned, builder.add_particle({1.0, 0.0, z}, 1.0), 0.0, 1.0);
+    builder.pin(pinned);
   }
   const SpringNetwork springs = builder.build();
   for (const Index end : {1, 3}) {
     StretchNewton newton(springs, {});
-    Points led = springs.positions;
-    led(1, end) += 0.1;
-    newton.solve(springs.positions, led, 1.0e-3);
+    Points target = springs.positions;
+    target(1, end) += 0.1;
+    newton.solve(springs.positions, target, 1.0e-3);
     EXPECT_EQ(newton.turn(), 0.1) << end;
   }
 }
 
-// Where nothing pulls, not even gravity, what begins too long is brought to its limit all the same.
-TEST(StretchNewton, HoldsTheLimitWithoutGravity) {
+// Without any load, not even gravity, links that begin too long reach their limit nevertheless.
+TEST(StretchNewton, EnforcesTheLimitWithoutGravity) {
   const SpringNetwork network = make_test_cloth(8, 0.0, 0.0, false);
   const Points before = 1.2 * network.positions;
   Points x = before;
@@ -256,31 +256,31 @@ TEST(StretchNewton, HoldsTheLimitWithoutGravity) {
   EXPECT_LT(StretchLimit(network, settings).excess(x), 0.02);
 }
 
-TEST(StretchNewton, LeavesWhatIsNotTooLongWhereForcesLedIt) {
+TEST(StretchNewton, LeavesSlackSpringsAtTheTarget) {
   const SpringNetwork network = make_test_rope(20, 0.0);
   Points x = 0.5 * network.positions;
-  const Points led = x;
+  const Points target = x;
   EXPECT_FALSE(StretchNewton(network, {}).solve(network.positions, x, 1.0e-3));
-  EXPECT_EQ(x, led);
+  EXPECT_EQ(x, target);
 }
 
-// Internal forces cancel: sum m x is that of where forces led, whatever each iteration does, up to the rounding of each
-// particle's position in each of at most 20 iterations.
-TEST(StretchNewton, KeepsTheMomentumOfWhatFlies) {
+// Internal forces cancel, so sum m x stays that of the target in all iterations, up to the rounding of each particle's position in
+// each of at most 20 iterations.
+TEST(StretchNewton, ConservesTheMomentumOfAFreeNetwork) {
   for (const SpringNetwork& network :
        {make_test_cloth(8, 0.0, 0.0, false), make_random_network(60, 59), make_random_network(60, 200)}) {
     std::mt19937 random(8);
-    Points led = network.positions;
-    led.reshaped() += random_displacement(random, static_cast<Index>(led.size()), 0.2);
-    Points x = led;
+    Points target = network.positions;
+    target.reshaped() += random_displacement(random, static_cast<Index>(target.size()), 0.2);
+    Points x = target;
     StretchNewton(network, {.max_stretch = 0.0}).solve(network.positions, x, 1.0e-3);
-    EXPECT_GT((x - led).norm(), 1.0e-3);
+    EXPECT_GT((x - target).norm(), 1.0e-3);
     // The equations' rounding is that of their stiffest link, k / m = 1 / (give d) > 1e4 times coarser than the positions'.
-    EXPECT_LT(((x - led) * network.masses).norm(), 1.0e-9 * network.masses.sum());
+    EXPECT_LT(((x - target) * network.masses).norm(), 1.0e-9 * network.masses.sum());
   }
 }
 
-TEST(StretchNewton, HoldsTheLimitOfAHangingRope) {
+TEST(StretchNewton, EnforcesTheLimitOfAHangingRope) {
   for (const Index particles : {2, 10, 100, 1000}) {
     SpringNetwork network = make_test_rope(particles, 0.0);
     network.positions.row(1) = -network.positions.row(0);
@@ -288,7 +288,7 @@ TEST(StretchNewton, HoldsTheLimitOfAHangingRope) {
     const StretchLimitSettings settings{.max_stretch = 0.001, .solver = StretchLimitSettings::Solver::newton};
     const StretchLimit limit(network, settings);
     const double dt = 1.0 / 60.0;
-    Points x = led_by_gravity(network, network.positions, Points::Zero(3, particles), dt);
+    Points x = target_of_gravity(network, network.positions, Points::Zero(3, particles), dt);
     EXPECT_GT(limit.excess(x), 0.0);
     limit.solve(network.positions, x, kGravity * dt * dt);
     EXPECT_LE(limit.excess(x), settings.tolerance) << particles;
@@ -317,7 +317,7 @@ TEST(StretchLimit, AutomaticSolvesForChainsAndLeavesClothsToPassesAtFirst) {
   EXPECT_FALSE(StretchLimit(cloth, settings).solve(cloth.positions, x, 1.0e-3));
 }
 
-TEST(StretchLimit, FollowsTheTurnOfWhatAGlobalSolveHoldsAlone) {
+TEST(StretchLimit, FollowsTheTurnWhereGlobalSolvesEnforceAllSprings) {
   using Solver = StretchLimitSettings::Solver;
   const SpringNetwork cloth = make_test_cloth(4, 0.0, 0.0);
   const SpringNetwork rope = make_test_rope(4, 0.0);
@@ -327,13 +327,13 @@ TEST(StretchLimit, FollowsTheTurnOfWhatAGlobalSolveHoldsAlone) {
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_turn());
   EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_turn({{.solved_since = 0}})) << "handed over";
   EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).may_follow_turn());
-  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::newton}).may_follow_turn()) << "it does";
+  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::newton}).may_follow_turn()) << "it follows the turn already";
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).may_follow_turn());
   EXPECT_FALSE(StretchLimit(cloth, {.max_compression = 0.5, .solver = Solver::newton}).follows_turn()) << "left to passes";
-  EXPECT_FALSE(StretchLimit(rope, {.kinds = {SpringKind::shear}, .solver = Solver::newton}).follows_turn()) << "holds nothing";
+  EXPECT_FALSE(StretchLimit(rope, {.kinds = {SpringKind::shear}, .solver = Solver::newton}).follows_turn()) << "limits nothing";
 }
 
-// A rope of two pins farther apart than it is long: what cannot be is shared evenly, and told.
+// A rope between two pins farther apart than its length: the unavoidable excess is distributed evenly and reported.
 TEST(StretchNewton, StretchesAnOverconstrainedRopeEvenly) {
   SpringNetwork network = make_test_rope(101, 0.0);
   network.inverse_masses[100] = 0.0;
@@ -342,12 +342,12 @@ TEST(StretchNewton, StretchesAnOverconstrainedRopeEvenly) {
   Points x = network.positions;
   x(0, 100) = 1.5;
   limit.solve(network.positions, x, 1.0e-3);
-  // Particles resist being moved as if by gravity, of which links are to carry all by a quarter of the tolerance.
+  // Particles resist a displacement as if under gravity, all of which links carry within a quarter of the tolerance.
   EXPECT_NEAR(limit.excess(x), 0.5, 0.01);
   EXPECT_TRUE(x.allFinite());
 }
 
-TEST(StretchNewton, TakesSpringsWithoutLength) {
+TEST(StretchNewton, AcceptsSpringsWithoutLength) {
   SpringNetwork network = make_test_rope(3, 0.0);
   Points x = network.positions;
   x.col(2) = x.col(1);
@@ -368,7 +368,7 @@ TEST(StretchNewton, FollowsPinsThatMove) {
   EXPECT_LE(limit.excess(x), settings.tolerance);
 }
 
-/// Three networks side by side, which swing for some steps.
+/// Three networks side by side that swing for some steps.
 Points swing(double scale, int threads) {
   const ThreadLimit at_most(threads);
   SpringNetwork network = make_random_network(300, 450, true);
@@ -398,8 +398,8 @@ TEST(StretchNewton, HasTheSameBitsForAnyNumberOfThreadsAndAnyScale) {
   EXPECT_EQ(Points(swing(1.0 / 128.0, 1) * 128.0), expected);
 }
 
-// A cloth that falls from level about two of its corners: in each step its links are within the tolerance, for about one factor.
-TEST(StretchNewton, HoldsAClothThatSwings) {
+// A cloth that falls from level about two of its corners: in each step its links are within the tolerance, with about one factor.
+TEST(StretchNewton, EnforcesTheLimitOfASwingingCloth) {
   const SpringNetwork network = make_test_cloth(20, 0.0, 0.0);
   const StretchLimitSettings settings{.max_stretch = 0.0, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};
   const StretchLimit limit(network, settings);
@@ -413,7 +413,7 @@ TEST(StretchNewton, HoldsAClothThatSwings) {
   constexpr int kSteps = 180;
   for (int step = 0; step < kSteps; ++step) {
     const Points before = x;
-    x = led_by_gravity(network, before, velocities, dt);
+    x = target_of_gravity(network, before, velocities, dt);
     solves += limit.solve(before, x, kGravity * dt * dt).value_or(0);
     velocities = (x - before) / dt;
     ASSERT_LE(limit.excess(x), settings.tolerance) << step;
@@ -423,9 +423,9 @@ TEST(StretchNewton, HoldsAClothThatSwings) {
   EXPECT_LT(solves, 1.5 * kSteps);
 }
 
-// A stiff rod: period 2 pi sqrt(l / g) times 1 + a^2 / 16 for an amplitude a. The limit's pull is along the rod as it is at the end
-// of a step, by the angle w dt off its mean, so it takes the part 2 dt f / (m l) of the kinetic energy per second: w0^2 dt of the
-// energy, but for parts of the order of a^2.
+// A stiff rod: period 2 pi sqrt(l / g) times 1 + a^2 / 16 for an amplitude a. The limit pulls along the rod's direction at the end
+// of a step, which differs from its mean direction by the angle w dt. So it removes the fraction 2 dt f / (m l) of the kinetic
+// energy per second: w0^2 dt of the energy, up to terms of the order of a^2.
 TEST(StretchNewton, PendulumKeepsItsPeriodAndItsEnergy) {
   constexpr double kLength = 0.5;
   constexpr double kAmplitude = 0.3;
@@ -457,7 +457,7 @@ TEST(StretchNewton, PendulumKeepsItsPeriodAndItsEnergy) {
   ASSERT_EQ(crossings.size(), 9u);
   const double period = (crossings.back() - crossings.front()) / 4.0;
   const double expected = 2.0 * std::numbers::pi * std::sqrt(kLength / kGravity) * (1.0 + kAmplitude * kAmplitude / 16.0);
-  // The amplitude falls by 6 % while four periods are timed, and the part of the period that depends on it by twice that.
+  // The amplitude decreases by 6 % during the four measured periods, and the term of the period that depends on it by twice that.
   EXPECT_NEAR(period, expected, 0.2 * kAmplitude * kAmplitude / 16.0 * expected);
   const double energy = 0.5 * state.v.col(1).squaredNorm() + kGravity * (state.x(1, 1) + kLength);
   const double at_start = kGravity * kLength * (1.0 - std::cos(kAmplitude));

@@ -22,19 +22,19 @@ TwoLevelNewton two_levels(const SpringNetwork& network) {
   return {component, *coarsen(network, component, kLimit.kinds), kLimit};
 }
 
-/// Steps of a network that limits alone hold, from rest.
+/// Steps from rest of a network without stiffness.
 class Fall {
  public:
   Fall(const SpringNetwork& network, ComponentSolver& solver) : x(network.positions), network_(network), solver_(solver) {}
 
   std::optional<int> step() {
-    Points led = x;
+    Points target = x;
     for (Index i = 0; i < network_.particle_count(); ++i) {
-      if (!network_.is_pinned(i)) led.col(i) += kStep * v.col(i) - kFall * Vector3::UnitY();
+      if (!network_.is_pinned(i)) target.col(i) += kStep * v.col(i) - kFall * Vector3::UnitY();
     }
-    const auto solves = solver_.solve(x, led, kFall);
-    v = (led - x) / kStep;
-    x = led;
+    const auto solves = solver_.solve(x, target, kFall);
+    v = (target - x) / kStep;
+    x = target;
     return solves;
   }
 
@@ -52,7 +52,7 @@ struct Seam {
   SpringKind kind;
 };
 
-/// A cloth of structural springs without stiffness, and of shear springs if asked for, with others sewn on.
+/// A cloth of structural springs without stiffness, optionally with shear springs, and with further springs sewn on.
 SpringNetwork limp_cloth(const std::vector<Index>& pins, const std::vector<Seam>& seams = {}, bool has_shear = false) {
   SpringMaterials limp;
   limp.structural = SpringMaterial{};
@@ -68,9 +68,9 @@ SpringNetwork limp_cloth(const std::vector<Index>& pins, const std::vector<Seam>
 
 double mean_height(const Points& x) { return x.row(1).mean(); }
 
-/// The same on two levels and solved for as a whole.
-struct BothWays {
-  explicit BothWays(const SpringNetwork& network)
+/// The same cloth on two levels and on one.
+struct BothSolvers {
+  explicit BothSolvers(const SpringNetwork& network)
       : two(two_levels(network)), one(component_of(network), kLimit), fall(network, two), expected(network, one) {}
 
   void step() {
@@ -92,12 +92,12 @@ TEST(CoarseCloth, HasAQuarterOfTheParticlesAndAllOfTheMass) {
   EXPECT_EQ(cloth->particles.size(), fine.points.size() / 4);
   const std::vector<double>& masses = cloth->component.masses;
   EXPECT_NEAR(std::accumulate(masses.begin(), masses.end(), 0.0), network.masses.sum(), 1e-14 * network.masses.sum());
-  // Along rows and columns: what limits no shear gets no links across cells.
+  // Along rows and columns only: without limited shear springs no links cross cells.
   EXPECT_EQ(cloth->component.links.size(), 2 * (kSide / 2) * (kSide / 2 - 1));
 }
 
-// What lies between corners of a flat cloth is their mean by its weights, and a link is as long as the springs along it.
-TEST(CoarseCloth, LiesWhereTheClothDoes) {
+// A particle between corners of a flat cloth is their weighted mean, and a link is as long as the springs along it.
+TEST(CoarseCloth, CoincidesWithTheFineCloth) {
   const SpringNetwork network = make_test_cloth(kSide, 0.0, 0.0);
   const StretchComponent fine = component_of(network);
   const auto cloth = coarsen(network, fine, {SpringKind::structural, SpringKind::shear});
@@ -124,15 +124,16 @@ TEST(CoarseCloth, KeepsPinsThatLieAmongFreeParticles) {
   EXPECT_EQ(cloth->component.pin_count(), 1);
 }
 
-TEST(CoarseCloth, IsNotMadeWherePinsWouldKeepAll) {
+TEST(CoarseCloth, IsNotMadeWherePinsWouldKeepMostParticles) {
   std::vector<Index> pins;
   for (Index i = 1; i < kSide; i += 2) pins.push_back(i * kSide + i);
   const SpringNetwork network = limp_cloth(pins);
   EXPECT_FALSE(coarsen(network, component_of(network), kLimit.kinds));
 }
 
-// Pins share the load by which the energy weighs links: a cloth of which half is pinned was stretched by three times its tolerance.
-TEST(CoarseCloth, HangsOnThePinsThatHoldItAlone) {
+// Pins share the load that weighs links in the energy: with uninvolved pins, a half-pinned cloth was stretched by three times its
+// tolerance.
+TEST(CoarseCloth, LinksOnlyPinsWithFreeNeighbours) {
   SpringNetwork network = make_test_cloth(kSide, 0.0, 0.0);
   network.inverse_masses.tail(kSide / 2 * kSide).setZero();
   const StretchComponent fine = component_of(network);
@@ -143,22 +144,22 @@ TEST(CoarseCloth, HangsOnThePinsThatHoldItAlone) {
   EXPECT_GT(cloth->pins.size(), kSide / 2);
 }
 
-TEST(CoarseCloth, IsMadeOfWholeClothsAlone) {
+TEST(CoarseCloth, IsMadeOfWholeClothsOnly) {
   EXPECT_FALSE(coarsen(make_test_rope(40, 0.0), component_of(make_test_rope(40, 0.0)), kLimit.kinds));
   const SpringNetwork network = make_test_cloth(kSide, 0.0, 0.0);
   EXPECT_TRUE(coarsen(network, component_of(network), {SpringKind::structural, SpringKind::shear, SpringKind::bend}));
   EXPECT_FALSE(coarsen(network, component_of(network), {SpringKind::shear}));
-  SpringNetwork parted = network;
-  parted.bodies.front().resolution = {};
-  EXPECT_FALSE(coarsen(parted, component_of(parted), kLimit.kinds));
-  SpringNetwork halved = network;  // by a row of pins
+  SpringNetwork no_grid = network;
+  no_grid.bodies.front().resolution = {};
+  EXPECT_FALSE(coarsen(no_grid, component_of(no_grid), kLimit.kinds));
+  SpringNetwork halved = network;  // divided by a row of pins
   halved.inverse_masses.segment(kSide / 2 * kSide, kSide).setZero();
   EXPECT_FALSE(coarsen(halved, component_of(halved), kLimit.kinds));
 }
 
-// What is sewn on holds too: a strap, a second spring between neighbours, and one from the end of a row to the next row's begin,
-// one across a single cell, and a bend spring across many.
-TEST(CoarseCloth, IsMadeOfClothsWithTheirOwnSpringsAlone) {
+// Further springs are limited too: a strap, a second spring between neighbours, a spring from the end of a row to the beginning of
+// the next, one across a single cell, and a bend spring across many.
+TEST(CoarseCloth, IsMadeOfClothsWithTheirOwnSpringsOnly) {
   const std::vector<SpringKind> kinds{SpringKind::structural, SpringKind::shear, SpringKind::bend};
   const SpringNetwork plain = limp_cloth({});
   ASSERT_TRUE(coarsen(plain, component_of(plain), kinds));
@@ -176,8 +177,8 @@ TEST(CoarseCloth, IsMadeOfClothsWithTheirOwnSpringsAlone) {
   EXPECT_FALSE(coarsen(slit, component_of(slit), kLimit.kinds));
 }
 
-// A limit of shear springs that there are none of lets a cloth shear.
-TEST(CoarseCloth, IsJoinedAcrossCellsOnlyAsTheClothIs) {
+// If shear springs are limited but the cloth has none, it may shear.
+TEST(CoarseCloth, HasDiagonalLinksOnlyWhereTheClothHas) {
   const std::vector<SpringKind> kinds{SpringKind::structural, SpringKind::shear};
   const auto links = [&](const SpringNetwork& network) {
     return coarsen(network, component_of(network), kinds).value().component.links.size();
@@ -187,12 +188,12 @@ TEST(CoarseCloth, IsJoinedAcrossCellsOnlyAsTheClothIs) {
   EXPECT_EQ(links(limp_cloth({}, {}, true)), straight + 2 * (kSide / 2 - 1) * (kSide / 2 - 1));
 }
 
-// It hangs within half of its tolerance, so that passes have nothing to do, at rest to the last bit, and as low as a cloth that is
-// solved for as a whole: that gives by up to its tolerance, four times as much as coarse links do, and sags between its pins by at
-// most the root of 3/8 of that, 6 %.
+// The cloth hangs within half of its tolerance, so that passes have nothing to do, and rests to the last bit. It hangs as low as a
+// cloth solved on one level: that one stretches by up to its tolerance, four times as much as coarse links, and sags between its
+// pins by at most the root of 3/8 of that, 6 %.
 TEST(TwoLevelNewton, AClothThatHangsComesToRestWithinTheLimit) {
   const SpringNetwork network = make_test_cloth(kSide, 0.0, 0.0);
-  BothWays both(network);
+  BothSolvers both(network);
   for (int step = 0; step < 300; ++step) both.step();
   const Points x = both.fall.x;
   EXPECT_EQ(both.fall.step(), 0);
@@ -205,13 +206,13 @@ TEST(TwoLevelNewton, AClothThatHangsComesToRestWithinTheLimit) {
   }
 }
 
-// As the whole does, but for a tenth of the metre that it falls by in the end.
+// It falls as on one level, up to a tenth of the metre of its whole fall.
 TEST(TwoLevelNewton, AClothThatSwingsDownFallsAsFast) {
   SpringNetwork network = make_test_cloth(kSide, 0.0, 0.0);
   for (Index i = 0; i < network.particle_count(); ++i) {
     network.positions.col(i) = Vector3(network.positions(0, i), 0.0, 0.5 - network.positions(1, i));
   }
-  BothWays both(network);
+  BothSolvers both(network);
   for (int step = 0; step < 30; ++step) {
     both.step();
     ASSERT_NEAR(mean_height(both.fall.x), mean_height(both.expected.x), 0.1) << step;
@@ -219,8 +220,8 @@ TEST(TwoLevelNewton, AClothThatSwingsDownFallsAsFast) {
   EXPECT_LT(mean_height(both.expected.x), -0.4);
 }
 
-/// Speeds across the cloth of what is no coarse point, as large as a step of gravity gives, and of coarse points those of which all
-/// means are 0.
+/// Sets velocities across the cloth: of particles that are no coarse points as large as gravity gives in a step, of coarse points
+/// such that all means are 0.
 void move_beside(const CoarseCloth& cloth, const SpringNetwork& network, Points& v) {
   const StretchComponent fine = component_of(network);
   v.row(2).setZero();
@@ -235,8 +236,8 @@ void move_beside(const CoarseCloth& cloth, const SpringNetwork& network, Points&
   }
 }
 
-// The coarse cloth does not know of it.
-TEST(TwoLevelNewton, WhatMovesBesideACoarseClothAtRestGoesOn) {
+// The coarse cloth does not contain this motion.
+TEST(TwoLevelNewton, FineMotionContinuesWhileTheCoarseClothRests) {
   const SpringNetwork network = make_test_cloth(kSide, 0.0, 0.0);
   TwoLevelNewton both = two_levels(network);
   Fall fall(network, both);
@@ -248,22 +249,22 @@ TEST(TwoLevelNewton, WhatMovesBesideACoarseClothAtRestGoesOn) {
   EXPECT_GT((fall.x - x).colwise().norm().maxCoeff(), 0.1 * kFall);
 }
 
-TEST(TwoLevelNewton, KeepsTheMomentumOfWhatFlies) {
+TEST(TwoLevelNewton, ConservesTheMomentumOfAFreeNetwork) {
   const SpringNetwork network = make_test_cloth(kSide, 0.0, 0.0, false);
   TwoLevelNewton both = two_levels(network);
-  Points led = network.positions;
-  for (Index i = 0; i < network.particle_count(); ++i) led.col(i) *= 1.0 + 0.1 * network.positions(0, i);
-  Points x = led;
+  Points target = network.positions;
+  for (Index i = 0; i < network.particle_count(); ++i) target.col(i) *= 1.0 + 0.1 * network.positions(0, i);
+  Points x = target;
   ASSERT_TRUE(both.solve(network.positions, x, kFall));
-  const Vector3 moved = (x - led) * network.masses;
+  const Vector3 moved = (x - target) * network.masses;
   EXPECT_LT(moved.norm(), 1e-12 * network.masses.sum());
-  EXPECT_GT((x - led).norm(), 1e-3);
+  EXPECT_GT((x - target).norm(), 1e-3);
 }
 
-TEST(TwoLevelNewton, IsForLargeClothsThatMeetNothing) {
+TEST(TwoLevelNewton, IsChosenForLargeClothsWithoutCollisions) {
   const SpringNetwork large = make_test_cloth(96, 0.0, 0.0);
-  const auto is_two = [&](const SpringNetwork& network, const StretchLimitSettings& settings, bool meets) {
-    const auto solver = make_component_solver(network, component_of(network), settings, {.may_collide = meets});
+  const auto is_two = [&](const SpringNetwork& network, const StretchLimitSettings& settings, bool may_collide) {
+    const auto solver = make_component_solver(network, component_of(network), settings, {.may_collide = may_collide});
     return dynamic_cast<const TwoLevelNewton*>(solver.get()) != nullptr;
   };
   EXPECT_TRUE(is_two(large, kLimit, false));

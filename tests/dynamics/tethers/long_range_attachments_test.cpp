@@ -21,8 +21,8 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kFar = std::numeric_limits<double>::infinity();
 const std::vector<SpringKind> kStructural{SpringKind::structural};
 
-/// Shortest ways along structural springs from a pin that meet no other pin, by relaxing all springs until nothing changes (Bellman
-/// 1958; Ford 1956).
+/// Lengths of the shortest paths along structural springs from a pin that pass no other pin, by relaxing all springs until nothing
+/// changes (Bellman 1958; Ford 1956).
 std::vector<double> lengths_from(const SpringNetwork& network, Index pin) {
   const Springs& springs = network.springs;
   std::vector<double> length(network.particle_count(), kFar);
@@ -43,7 +43,7 @@ std::vector<double> lengths_from(const SpringNetwork& network, Index pin) {
   return length;
 }
 
-/// Three pins, apart from each other, in a tangle.
+/// A tangle with three pins, apart from each other.
 SpringNetwork pinned_tangle() {
   SpringNetwork network = make_random_network(300, 900);
   for (const Index pin : {0, 100, 200}) network.inverse_masses[pin] = 0.0;
@@ -61,14 +61,14 @@ TEST(TetherPaths, AreTheShortestToEachPin) {
       if (network.is_pinned(i) || expected[i] == kFar) {
         EXPECT_EQ(found[pin / 100][i], kFar) << i;
       } else {
-        // Sums of at most some hundred lengths below 1, in another order.
+        // The tolerance is for sums of at most some hundred lengths below 1, in another order.
         EXPECT_NEAR(found[pin / 100][i], expected[i], 300 * kEpsilon) << i;
       }
     }
   }
 }
 
-TEST(TetherPaths, OfASideThatIsPinnedLeadToTheNearestPin) {
+TEST(TetherPaths, OfAPinnedSideEndAtTheNearestPin) {
   constexpr Index kSide = 12;
   SpringNetwork network = make_test_cloth(kSide, 0.0, 0.0);
   for (Index i = kSide * (kSide - 1); i < kSide * kSide; ++i) network.inverse_masses[i] = 0.0;
@@ -81,7 +81,7 @@ TEST(TetherPaths, OfASideThatIsPinnedLeadToTheNearestPin) {
   }
 }
 
-TEST(TetherPaths, FollowOnlySpringsThatTheLimitHolds) {
+TEST(TetherPaths, FollowOnlyLimitedSprings) {
   const SpringNetwork network = make_test_cloth(5, 0.0, 0.0);
   const auto to_the_middle = [&](const std::vector<SpringKind>& kinds) {
     const std::vector<Tether> tethers = find_tethers(network, kinds);
@@ -92,7 +92,7 @@ TEST(TetherPaths, FollowOnlySpringsThatTheLimitHolds) {
 }
 
 TEST(TetherPaths, AreFewWherePinsAreMany) {
-  // Spokes from one particle to many pins, the last the nearest.
+  // Spokes from one particle to many pins; the last pin is the nearest.
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 1.0);
   for (Index i = 1; i <= 9; ++i) {
@@ -105,7 +105,7 @@ TEST(TetherPaths, AreFewWherePinsAreMany) {
   EXPECT_THAT(pins, testing::ElementsAre(6, 7, 8, 9)) << "kMostTethers of them, the nearest";
 }
 
-/// Positions far outside: everything is blown up about the origin.
+/// Positions scaled up about the origin, far out of reach.
 Points blown_up(const SpringNetwork& network) {
   Points x = 3.0 * network.positions;
   for (Index i = 0; i < network.particle_count(); ++i) {
@@ -114,7 +114,7 @@ Points blown_up(const SpringNetwork& network) {
   return x;
 }
 
-TEST(LongRangeAttachments, LeadBackToWithinReachOfAPin) {
+TEST(LongRangeAttachments, PullParticlesBackWithinReachOfAPin) {
   for (const Index side : {2, 3, 9, 70}) {
     SpringNetwork network = make_test_cloth(side, 0.0, 0.0);
     network.inverse_masses[side * (side - 1)] = 1.0;  // one pin is left
@@ -144,14 +144,14 @@ TEST(LongRangeAttachments, PullStraightTowardsThePin) {
   }
 }
 
-TEST(LongRangeAttachments, LeaveWhatIsWithinReachAlone) {
+TEST(LongRangeAttachments, LeaveParticlesWithinReachUnchanged) {
   const SpringNetwork network = make_test_cloth(30, 0.0, 0.0);
   Points x = network.positions;
   for (Index i = 0; i < network.particle_count(); ++i) {
     if (!network.is_pinned(i)) x(2, i) = 0.005 * std::sin(i);
   }
   const Points before = x;
-  // The springs of 1/29 m are 4.2 % longer when their ends differ by 0.01 m across.
+  // The springs of 1/29 m become 4.2 % longer when their ends differ by 0.01 m across.
   LongRangeAttachments(network, kStructural, 0.05).project(x);
   EXPECT_TRUE(x == before);
 }
@@ -186,7 +186,7 @@ TEST(LongRangeAttachments, HaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE(project(3) == alone);
 }
 
-/// Tethers of random lengths between random positions, in each number that a kernel divides in another manner.
+/// Tethers of random lengths between random positions, in every number that kernels divide differently.
 struct RandomRun {
   LraRun run;
   std::vector<double> lengths;
@@ -224,8 +224,8 @@ TEST(LongRangeAttachments, EndAtTheirLengthAndMoveNothingElse) {
   }
 }
 
-// What the machine takes has twice as many lanes where it has AVX-512.
-TEST(LongRangeAttachments, HaveTheSameBitsWhateverTheMachineTakes) {
+// On a machine with AVX-512 the chosen kernel has twice as many lanes.
+TEST(LongRangeAttachments, GiveTheSameBitsWithAnyLaneCount) {
   if (!has_wide_lanes()) GTEST_SKIP() << "this machine has no AVX-512, so both are the same code";
   for (const auto& [run, lengths, before] : random_runs()) {
     Points narrow = before;
@@ -236,8 +236,8 @@ TEST(LongRangeAttachments, HaveTheSameBitsWhateverTheMachineTakes) {
   }
 }
 
-// A particle that hangs n springs below its pin is back after one pass, not after n^2.
-TEST(StretchLimit, WithTethersHoldsALongRopeInOnePass) {
+// A particle that hangs n springs below its pin returns in one pass, not after n^2.
+TEST(StretchLimit, WithTethersEnforcesALongRopeInOnePass) {
   SpringNetwork network = make_test_rope(500, 0.0);
   network.positions.row(0) *= 1.5;
   const auto length_after = [&](bool tethers) {

@@ -1,4 +1,4 @@
-// Laws of the response to contacts that are made by hand: of particles, of points of triangles, of pairs of elements.
+// Laws of the solver for contacts made by hand: of particles, of points of triangles, of pairs of elements.
 #include "dynamics/contact/contact_solver.h"
 
 #include "dynamics/all_integrators.h"
@@ -19,7 +19,7 @@ constexpr double kGap = 0.01;          // [m]
 constexpr double kGravity = 9.81;      // [m/s^2]
 constexpr double kStep = 1.0 / 256.0;  // [s]
 
-/// A network over the floor y <= 0, stepped with contacts as they are given.
+/// A network over the floor y <= 0 that steps with the given contacts.
 class World {
  public:
   World(SpringNetwork model, double gravity, const ContactMaterial& floor = {}, const IntegratorSettings& scheme = VerletSettings{},
@@ -27,7 +27,7 @@ class World {
       : dt(step_length),
         network(std::move(model)),
         environment({{.name = "floor", .geometry = HalfSpaceGeometry{}, .material = floor}}),
-        response(network, environment),
+        solver(network, environment),
         integrator(make_integrator(scheme, network)),
         state(initial_state(network)) {
     forces.push_back(std::make_unique<Gravity>(network, Vector3(0.0, -gravity, 0.0)));
@@ -42,20 +42,20 @@ class World {
     integrator->advance(state, forces, dt);
     const Points advanced = state.x;
     const StepMotion motion{before, v_before, advanced, dt};
-    response.start(contacts, motion);
+    solver.start(contacts, motion);
     for (int pass = 0; pass < passes; ++pass) {
-      if (2 * pass == passes && !again.empty()) response.renew({{0}, again}, motion);
-      response.project(state.x);
+      if (2 * pass == passes && !again.empty()) solver.renew({{0}, again}, motion);
+      solver.project(state.x);
     }
     integrator->recover_velocities(state, forces, before, advanced, dt);
-    response.settle_velocities(motion, state, *integrator);
+    solver.settle_velocities(motion, state, *integrator);
     ++state.step;
   }
 
   double dt;  ///< [s]
   SpringNetwork network;
   Environment environment;
-  ContactSolver response;
+  ContactSolver solver;
   std::unique_ptr<Integrator> integrator;
   Forces forces;
   SimulationState state;
@@ -92,14 +92,14 @@ Contact over_triangle(const std::array<double, 3>& weights, const Vector3& norma
   return contact;
 }
 
-class ContactResponseLaws : public ::testing::TestWithParam<std::size_t> {
+class ContactSolverLaws : public ::testing::TestWithParam<std::size_t> {
  protected:
   static IntegratorSettings scheme() { return all_integrators()[GetParam()]; }
 };
 
-INSTANTIATE_TEST_SUITE_P(Integrators, ContactResponseLaws, ::testing::Range(std::size_t{0}, all_integrators().size()));
+INSTANTIATE_TEST_SUITE_P(Integrators, ContactSolverLaws, ::testing::Range(std::size_t{0}, all_integrators().size()));
 
-TEST_P(ContactResponseLaws, FlatTriangleBouncesOnceHoweverManyContactsItHas) {
+TEST_P(ContactSolverLaws, FlatTriangleBouncesOnceHoweverManyContactsItHas) {
   const double e = 0.7;
   const double height = 0.5;
   NetworkBuilder builder;
@@ -114,13 +114,13 @@ TEST_P(ContactResponseLaws, FlatTriangleBouncesOnceHoweverManyContactsItHas) {
     world.step(contacts);
     if (static_cast<double>(world.state.step) * kStep > 1.1 * fall) highest = highest.cwiseMax(world.state.x.row(1).transpose());
   }
-  // Steps visit points of the parabola: one within half a step of the top, and Euler starts half a step beside it. The impulses end
-  // within 1e-3 of the impact.
+  // Steps visit points of the parabola. One of them is within half a step of the top, and Euler starts half a step beside it. The
+  // impulses end within 1e-3 of the impact.
   const double tolerance = 2.0 * kGravity * kStep * kStep / 8.0 + 2e-3 * e * e * height;
   for (const double top : highest) EXPECT_NEAR(top, kGap + e * e * height, tolerance);
 }
 
-TEST_P(ContactResponseLaws, TriangleRestsOnAnyPointsAndDoesNotJitter) {
+TEST_P(ContactSolverLaws, TriangleRestsOnAnyPointsAndDoesNotJitter) {
   NetworkBuilder builder;
   add_body(builder, "triangle", triangle_at(kGap), {0.1, 0.2, 0.7}, Vector3::Zero(), {.thickness = kGap, .restitution = 1.0});
   World world(builder.build(), kGravity, {}, scheme());
@@ -130,7 +130,7 @@ TEST_P(ContactResponseLaws, TriangleRestsOnAnyPointsAndDoesNotJitter) {
   }
 }
 
-TEST_P(ContactResponseLaws, PushOutOfTheGapSpeedsNothingUp) {
+TEST_P(ContactSolverLaws, APushOutOfTheGapAddsNoSpeed) {
   for (const std::vector<double>& weights : {std::vector<double>{1.0}, {0.4, 0.6}, {0.2, 0.3, 0.5}}) {
     NetworkBuilder builder;
     add_body(builder, "triangle", triangle_at(0.1 * kGap), {0.1, 0.2, 0.7}, Vector3::Zero(),
@@ -148,14 +148,14 @@ TEST_P(ContactResponseLaws, PushOutOfTheGapSpeedsNothingUp) {
   }
 }
 
-TEST_P(ContactResponseLaws, PointOfATriangleStopsAfterItsStoppingDistance) {
+TEST_P(ContactSolverLaws, PointOfATriangleStopsAfterItsStoppingDistance) {
   const double mu = 0.4;
   const double speed = 2.0;
   const ContactMaterial rough{.thickness = kGap, .friction = mu, .static_friction = mu};
   NetworkBuilder builder;
   add_body(builder, "triangle", triangle_at(kGap), {0.2, 0.2, 0.2}, {speed, 0.0, 0.0}, rough);
   World world(builder.build(), kGravity, {.friction = mu, .static_friction = mu}, scheme());
-  // At its centre of mass it neither tilts nor turns.
+  // A contact at the centre of mass neither tilts nor rotates the triangle.
   const Contact middle = on_floor({1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0});
   while (static_cast<double>(world.state.step) * kStep < 1.0) world.step({middle});
   const double distance = speed * speed / (2.0 * mu * kGravity);
@@ -174,19 +174,19 @@ TEST(ContactSolver, PushIsSharedByWeightAndInverseMass) {
   for (Index i = 0; i < 3; ++i) EXPECT_NEAR(world.state.x(1, i), expected[i], 1e-15);
 }
 
-TEST(ContactSolver, PushThatAnotherMakesNeedlessIsTakenBack) {
+TEST(ContactSolver, APushThatAnotherMakesNeedlessIsRemoved) {
   NetworkBuilder builder;
   add_body(builder, "triangle", triangle_at(0.0), {0.1, 0.1, 0.1}, Vector3::Zero(), {.thickness = kGap});
   World world(builder.build(), 0.0);
   Contact mirrored = on_floor({0.9, 0.1});
   std::swap(mirrored.particles[0], mirrored.particles[1]);
   world.step({on_floor({0.9, 0.1}), mirrored}, 16);
-  // The least pushes that keep both gaps lift both ends alike; each pass takes at least half of the error, 1 / 20 in truth.
+  // The smallest pushes that keep both gaps lift both ends equally. Each pass removes at least half of the error.
   for (Index i = 0; i < 2; ++i) EXPECT_NEAR(world.state.x(1, i), kGap, std::ldexp(kGap, -16));
 }
 
-// In the first pass the corner's own contact carries it, in the last the edge's does.
-TEST_P(ContactResponseLaws, FrictionIsThatOfThePushThatIsLeft) {
+// In the first pass the corner's own contact supports the corner, in the last pass the edge's does.
+TEST_P(ContactSolverLaws, FrictionFollowsTheRemainingPush) {
   const double mu = 0.5;
   const auto speeds_on = [&](const std::vector<Contact>& contacts) {
     const ContactMaterial rough{.thickness = kGap, .friction = mu, .static_friction = mu};
@@ -196,13 +196,13 @@ TEST_P(ContactResponseLaws, FrictionIsThatOfThePushThatIsLeft) {
     world.step(contacts, 64);
     return Eigen::Vector2d(world.state.v(0, 0), world.state.v(0, 1));
   };
-  // The passes of the velocities halve what is left each time and end when one changes 1e-3 of the first or less, so that of two
-  // particles each of two answers is off by twice that at most.
+  // The passes over velocities halve the remaining error each time and end when one changes at most 1e-3 of the first. So each of
+  // two particles in each of two solutions is off by at most twice that.
   EXPECT_NEAR((speeds_on({on_floor({1.0}), on_floor({0.5, 0.5})}) - speeds_on({on_floor({1.0}, 0), on_floor({1.0}, 1)})).norm(),
               0.0, 8e-3 * mu * kGravity * kStep);
 }
 
-TEST_P(ContactResponseLaws, PushOutOfTheGapSlowsNothingDown) {
+TEST_P(ContactSolverLaws, APushOutOfTheGapRemovesNoSpeed) {
   for (const std::vector<double>& weights : {std::vector<double>{1.0}, {0.4, 0.6}, {0.2, 0.3, 0.5}}) {
     const ContactMaterial rough{.thickness = kGap, .friction = 0.5, .static_friction = 0.5};
     NetworkBuilder builder;
@@ -215,9 +215,9 @@ TEST_P(ContactResponseLaws, PushOutOfTheGapSlowsNothingDown) {
   }
 }
 
-// Speeds that are ways through a step's length give back other ways, by rounding: a push that is taken whole must not be less than
-// nothing. Steps are of many lengths.
-TEST(ContactSolver, WhatGoesStraightOutOfTheGapStaysFinite) {
+// A speed that is a displacement divided by the step gives back a slightly different displacement by rounding. The push that
+// remains after the whole push is removed must not become negative. The steps have many lengths.
+TEST(ContactSolver, AParticleThatLeavesTheGapStaysFinite) {
   const ContactMaterial rough{.thickness = kGap, .friction = 0.5, .static_friction = 0.5};
   for (int k = 1; k < 1000; ++k) {
     NetworkBuilder builder;
@@ -229,7 +229,7 @@ TEST(ContactSolver, WhatGoesStraightOutOfTheGapStaysFinite) {
 }
 
 // Friction accumulated along one surface has no component along another normal.
-TEST(ContactSolver, FoundAgainWithAnotherNormalAContactHoldsNothingAlongIt) {
+TEST(ContactSolver, ARenewedContactHasNoFrictionAlongItsNewNormal) {
   ContactConstraintSet<1> former;
   ContactConstraintSet<1> again;
   for (ContactConstraintSet<1>* set : {&former, &again}) {
@@ -245,16 +245,16 @@ TEST(ContactSolver, FoundAgainWithAnotherNormalAContactHoldsNothingAlongIt) {
   EXPECT_EQ(again.goal(0).friction_change, Vector3(0.0, 0.0, 0.2));
 }
 
-TEST(ContactSolver, FoundAgainAContactCountsOnWhatItPushedAndHeld) {
+TEST(ContactSolver, ARenewedContactKeepsItsPushAndFriction) {
   const auto slide = [](bool again) {
     NetworkBuilder builder;
     const ContactMaterial rough{.thickness = kGap, .friction = 0.5, .static_friction = 0.5};
     add_body(builder, "triangle", triangle_at(0.5 * kGap), {0.1, 0.2, 0.3}, {1.0, -1.0, 0.0}, rough);
     World world(builder.build(), kGravity, {.friction = 0.5, .static_friction = 0.5});
     std::vector<Contact> contacts = {on_floor({1.0}, 1), on_floor({0.9, 0.1}), on_floor({0.4, 0.6}), on_floor({0.4, 0.6}, 1),
-                                     on_floor({0.2, 0.8})};  // the last is between the same as the second
+                                     on_floor({0.2, 0.8})};  // the last has the particles of the second
     std::swap(contacts[2].particles[0], contacts[2].particles[1]);
-    std::vector<Contact> found = {on_floor({0.2, 0.3, 0.5})};  // by nobody before, and 1 m away
+    std::vector<Contact> found = {on_floor({0.2, 0.3, 0.5})};  // a new contact, 1 m away
     found.front().point.y() -= 1.0;
     found.insert(found.end(), contacts.begin(), contacts.end());
     world.step(contacts, 8, again ? found : std::vector<Contact>{});
@@ -263,9 +263,9 @@ TEST(ContactSolver, FoundAgainAContactCountsOnWhatItPushedAndHeld) {
   EXPECT_EQ(slide(true), slide(false));
 }
 
-// Contacts of another patch, and pairs, go on as if nobody had looked at the first one again: each has a height, a mass and a gap
-// of its own.
-TEST(ContactSolver, FoundAgainInOnePatchTheOthersGoOn) {
+// Contacts of another patch, and pairs, do not change when contacts of one patch are found again. Each contact has its own height,
+// mass and gap.
+TEST(ContactSolver, RenewingOnePatchLeavesTheOthersUnchanged) {
   const auto slide = [](bool again) {
     NetworkBuilder builder;
     const ContactMaterial rough{.thickness = kGap, .friction = 0.5, .static_friction = 0.5};
@@ -289,7 +289,7 @@ TEST(ContactSolver, FoundAgainInOnePatchTheOthersGoOn) {
   EXPECT_EQ(slide(true).v, slide(false).v);
 }
 
-TEST(ContactSolver, FoundNoMoreInAPatchNothingIsPushedThere) {
+TEST(ContactSolver, AContactThatIsNotFoundAgainIsRemoved) {
   NetworkBuilder builder;
   add_body(builder, "balls", {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {0.1, 0.1}, Vector3::Zero(), {.thickness = kGap});
   World world(builder.build(), 0.0);
@@ -297,9 +297,9 @@ TEST(ContactSolver, FoundNoMoreInAPatchNothingIsPushedThere) {
   in_other_patch.patch = 1;
   const Points before = world.state.x;
   const StepMotion motion{before, world.state.v, before, world.dt};
-  world.response.start({on_floor({1.0}), in_other_patch}, motion);
-  world.response.renew({.patches = {0}}, motion);
-  world.response.project(world.state.x);
+  world.solver.start({on_floor({1.0}), in_other_patch}, motion);
+  world.solver.renew({.patches = {0}}, motion);
+  world.solver.project(world.state.x);
   EXPECT_EQ(world.state.x(1, 0), 0.0);
   EXPECT_NEAR(world.state.x(1, 1), kGap, 1e-15);
 }
@@ -313,12 +313,12 @@ TEST(ContactSolver, PinnedCornersLeaveThePushToTheOthers) {
   EXPECT_EQ(world.state.x(1, 0), 0.0);
   EXPECT_EQ(world.state.x(1, 2), 0.0);
   EXPECT_NEAR(world.state.x(1, 1), kGap / 0.5, 1e-15);
-  EXPECT_EQ(world.response.pushed_count(), 1);
+  EXPECT_EQ(world.solver.pushed_count(), 1);
 }
 
-// The other end of a rod of 1 m that is lifted close to its pin goes as many times as far as it is longer than that lever; a pin
-// that is within the gap itself is left alone, and no contact turns the rod by more than a radian.
-TEST(ContactSolver, OnALeverBesideAPinTheOtherEndGoesFarther) {
+// A contact close to the pin of a rod of 1 m lifts the other end farther, by the ratio of the lengths. The contact does nothing
+// where the pin itself is within the gap, and no contact rotates the rod by more than a radian.
+TEST(ContactSolver, AContactBesideAPinMovesTheFreeEndFarther) {
   const auto lift = [](double lever, double depth) {
     NetworkBuilder builder;
     add_body(builder, "rod", {{0.0, kGap - depth, 0.0}, {1.0, kGap - depth, 0.0}}, {0.1, 0.1}, Vector3::Zero(),
@@ -334,7 +334,7 @@ TEST(ContactSolver, OnALeverBesideAPinTheOtherEndGoesFarther) {
   EXPECT_NEAR(lift(0.02, 0.1), 1.0, 1e-12);
 }
 
-TEST(ContactSolver, BetweenElementsMomentumIsKept) {
+TEST(ContactSolver, ContactBetweenElementsConservesMomentum) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(0.1, 1.0);
   for (int trial = 0; trial < 100; ++trial) {
@@ -348,13 +348,14 @@ TEST(ContactSolver, BetweenElementsMomentumIsKept) {
     const double first = 0.5 * unit(random);
     const Vector3 normal = Vector3(0.1 * unit(random), 1.0, -0.1 * unit(random)).normalized();
     world.step({over_triangle({first, 0.3, 0.7 - first}, normal), over_triangle({0.2, 0.5, 0.3})});
-    // Each of 16 visits rounds coordinates of up to 1 m, 1.1e-16 m, over which a velocity is 256 times that, of some 3 kg in all.
+    // Each of 16 visits rounds coordinates of up to 1 m by 1.1e-16 m. Velocities are rounded by 256 times that, for a mass of some
+    // 3 kg.
     EXPECT_LT((world.state.v * world.network.masses - momentum).norm(), 1e-12);
-    EXPECT_GT(world.response.pushed_count(), 0);
+    EXPECT_GT(world.solver.pushed_count(), 0);
   }
 }
 
-TEST_P(ContactResponseLaws, BallAndTriangleMeetAsTwoBallsDo) {
+TEST_P(ContactSolverLaws, ABallAndATriangleCollideLikeTwoBalls) {
   const double e = 0.5;
   NetworkBuilder builder;
   const ContactMaterial elastic{.thickness = kGap, .restitution = e};
@@ -368,7 +369,7 @@ TEST_P(ContactResponseLaws, BallAndTriangleMeetAsTwoBallsDo) {
   for (Index i = 0; i < 3; ++i) EXPECT_NEAR(world.state.v(1, i), -1.0 - relative * 0.6 / 0.9, 1e-12);
 }
 
-TEST(ContactSolver, ElementsRubOnEachOtherRelativeToEachOther) {
+TEST(ContactSolver, FrictionBetweenElementsActsOnTheirRelativeVelocity) {
   const double mu = 0.25;
   const ContactMaterial rough{.thickness = kGap, .friction = mu, .static_friction = mu};
   NetworkBuilder builder;
@@ -376,14 +377,14 @@ TEST(ContactSolver, ElementsRubOnEachOtherRelativeToEachOther) {
   add_body(builder, "ball", {{1.0 / 3.0, kGap + 1e-3, 1.0 / 3.0}}, {0.6}, {3.0, -2.0, 0.0}, rough);
   World world(builder.build(), 0.0);
   for (int i = 0; i < 3; ++i) world.step({over_triangle({1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0})});
-  // The impact changes the relative velocity of 2 m/s along the normal to 0, so friction changes that across it by mu * 2 m/s, in
-  // the ratio of inverse masses.
+  // The impact changes the relative velocity of 2 m/s along the normal to 0, so friction changes the tangential one by mu * 2 m/s,
+  // in the ratio of inverse masses.
   const double change = mu * 2.0;
   EXPECT_NEAR(world.state.v(0, 3), 3.0 - change * 0.3 / 0.9, 1e-12);
   for (Index i = 0; i < 3; ++i) EXPECT_NEAR(world.state.v(0, i), 1.0 + change * 0.6 / 0.9, 1e-12);
 }
 
-TEST(ContactSolver, WhatStandsOnTheFloorIsNotPushedIntoIt) {
+TEST(ContactSolver, ATriangleOnTheFloorIsNotPushedIntoIt) {
   const double e = 0.5;
   const ContactMaterial elastic{.thickness = kGap, .restitution = e};
   NetworkBuilder builder;
@@ -392,10 +393,10 @@ TEST(ContactSolver, WhatStandsOnTheFloorIsNotPushedIntoIt) {
   World world(builder.build(), 0.0);
   for (int i = 0; i < 2; ++i) {
     world.step({on_floor({1.0}, 0), on_floor({1.0}, 1), on_floor({1.0}, 2), over_triangle({1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0})}, 64);
-    // The passes of the velocities leave at most 1e-3 of the impact's 3 m/s.
+    // The passes over velocities leave at most 1e-3 of the impact's 3 m/s.
     for (Index p = 0; p < 3; ++p) ASSERT_GE(world.state.v(1, p), -3e-3);
   }
-  // The floor carries the triangle, so the ball bounces as from the floor itself.
+  // The floor supports the triangle, so the ball bounces as from the floor itself.
   EXPECT_NEAR(world.state.v(1, 3), e * 2.0, 1e-2);
 }
 
