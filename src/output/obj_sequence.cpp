@@ -81,7 +81,7 @@ ObjSequence obstacle_sequence(const Obstacle& obstacle, Index number, const Box3
   const TriangleMesh mesh = surface_mesh(obstacle, scene);
   const auto vertices = [number, local = mesh.vertices](const Simulator& simulator) -> Points {
     const Obstacle& present = simulator.environment().obstacles()[static_cast<std::size_t>(number)];
-    const RigidTransform pose = present.motion.pose(present.placed, simulator.time());
+    const RigidTransform pose = present.motion.pose(present.rest_pose, simulator.time());
     if (!std::holds_alternative<SequenceGeometry>(present.geometry)) return pose * local;
     return pose * obstacle_mesh(present.geometry, 0.0, simulator.time()).vertices;
   };

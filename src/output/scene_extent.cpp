@@ -14,7 +14,7 @@ Box3 scene_bounds(const Simulator& simulator) {
   Box3 box = bounds(simulator.positions());
   for (const Obstacle& obstacle : simulator.environment().obstacles()) {
     if (std::holds_alternative<HalfSpaceGeometry>(obstacle.geometry)) continue;
-    const RigidTransform pose = obstacle.motion.pose(obstacle.placed, simulator.time());
+    const RigidTransform pose = obstacle.motion.pose(obstacle.rest_pose, simulator.time());
     box.extend(bounds(pose * obstacle_mesh(obstacle.geometry, 0.0, simulator.time()).vertices));
   }
   return box;
@@ -23,7 +23,7 @@ Box3 scene_bounds(const Simulator& simulator) {
 double half_space_extent(const Box3& scene, const Obstacle& half_space) {
   if (scene.isEmpty()) return kExtentOfNothing;
   const auto& geometry = std::get<HalfSpaceGeometry>(half_space.geometry);
-  const Vector3 middle = half_space.placed * Vector3(geometry.offset * geometry.normal);
+  const Vector3 middle = half_space.rest_pose * Vector3(geometry.offset * geometry.normal);
   const double reach = (scene.center() - middle).norm() + 0.5 * scene.diagonal().norm();
   return reach > 0.0 ? kRoomToMove * reach : kExtentOfNothing;
 }

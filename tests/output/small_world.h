@@ -15,7 +15,7 @@ inline Obstacle still(const std::string& name, ObstacleGeometry geometry, const 
   Obstacle obstacle;
   obstacle.name = name;
   obstacle.geometry = std::move(geometry);
-  obstacle.placed.translation() = position;
+  obstacle.rest_pose.translation() = position;
   return obstacle;
 }
 

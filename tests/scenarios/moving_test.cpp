@@ -28,7 +28,7 @@ TEST_P(Moving, ARisingTurningPlateCarriesAClothWithoutSlip) {
   double slip = 0.0;
   const Watch watch = [&](const Simulator& simulator, const FrameDiagnostics& frame) {
     const Obstacle& plate = simulator.environment().obstacles().front();
-    const Points on_plate = plate.motion.pose(plate.placed, frame.time).inverse() * simulator.positions();
+    const Points on_plate = plate.motion.pose(plate.rest_pose, frame.time).inverse() * simulator.positions();
     if (frame.frame == 1) start = on_plate;
     slip = std::max(slip, (on_plate - start).colwise().norm().maxCoeff());
   };

@@ -129,7 +129,7 @@ ObstacleGeometry random_geometry(Random& random) {
 
 Obstacle random_obstacle(Random& random) {
   Obstacle obstacle{.name = "obstacle", .geometry = random_geometry(random)};
-  obstacle.placed.linear() = random_turn(random);
+  obstacle.rest_pose.linear() = random_turn(random);
   obstacle.material = {.thickness = one_of(random, {0.0, 0.002}), .friction = 0.5, .static_friction = 0.5};
   if (random.below(2) == 0) return obstacle;
   obstacle.motion.keyframes = {{.time = 0.0},
@@ -209,7 +209,7 @@ bool comes_near(const Pin& pin, const Vector3& pinned, const Obstacle& obstacle,
   for (int k = 0; k <= kTimes; ++k) {
     const double time = duration * k / kTimes;
     const Vector3 place = pin.motion.pose(origin, time) * origin.inverse() * pinned;
-    const Vector3 local = obstacle.motion.pose(obstacle.placed, time).inverse() * place;
+    const Vector3 local = obstacle.motion.pose(obstacle.rest_pose, time).inverse() * place;
     if (shape->nearest(local, distance) || shape->contains(local)) return true;
   }
   return false;

@@ -28,7 +28,7 @@ double seconds_since(Clock::time_point begin) { return std::chrono::duration<dou
 
 /// Positions in an obstacle's own frame.
 Points local_positions(const Obstacle& obstacle, const Simulator& simulator) {
-  return obstacle.motion.pose(obstacle.placed, simulator.time()).inverse() * simulator.positions();
+  return obstacle.motion.pose(obstacle.rest_pose, simulator.time()).inverse() * simulator.positions();
 }
 
 class FrameJudge {

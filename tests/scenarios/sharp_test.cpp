@@ -56,7 +56,7 @@ TEST_P(Sharp, ARopeHangsOverAKnife) {
 int passages_through_torus(const Simulator& simulator) {
   constexpr double kRing = 0.5;  // [m]
   const Obstacle& torus = simulator.environment().obstacles().front();
-  const Points x = torus.motion.pose(torus.placed, simulator.time()).inverse() * simulator.positions();
+  const Points x = torus.motion.pose(torus.rest_pose, simulator.time()).inverse() * simulator.positions();
   int passages = 0;
   for (Index i = 0; i + 1 < x.cols(); ++i) {
     const double below = x(1, i);

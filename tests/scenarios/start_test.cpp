@@ -65,8 +65,8 @@ BodyShape ring(double radius, double tube) {
   return make_mesh_body(mesh, kSprings);
 }
 
-Obstacle obstacle(const ObstacleGeometry& geometry, const RigidTransform& placed = RigidTransform::Identity()) {
-  return {.name = "obstacle", .geometry = geometry, .placed = placed, .material = {.thickness = 0.001}};
+Obstacle obstacle(const ObstacleGeometry& geometry, const RigidTransform& rest_pose = RigidTransform::Identity()) {
+  return {.name = "obstacle", .geometry = geometry, .rest_pose = rest_pose, .material = {.thickness = 0.001}};
 }
 
 MeshGeometry mesh_of(TriangleMesh mesh, bool closed) { return {std::make_shared<TriangleMesh>(std::move(mesh)), closed}; }
@@ -84,7 +84,7 @@ SimulatorSettings pushing_out() {
 void expect_free(const Simulator& simulator) {
   for (const Obstacle& in : simulator.environment().obstacles()) {
     const auto judge = judge_of(in.geometry);
-    const Points local = in.placed.inverse() * simulator.positions();
+    const Points local = in.rest_pose.inverse() * simulator.positions();
     EXPECT_EQ(judge->count_inside(local), 0);
     EXPECT_EQ(judge->count_crossings(judged_elements(simulator.network()), local), 0);
   }
@@ -93,7 +93,7 @@ void expect_free(const Simulator& simulator) {
 double least_distance(const Simulator& simulator, const Obstacle& from) {
   const auto judge = judge_of(from.geometry);
   double least = std::numeric_limits<double>::infinity();
-  for (const auto& x : simulator.positions().colwise()) least = std::min(least, judge->distance(from.placed.inverse() * x));
+  for (const auto& x : simulator.positions().colwise()) least = std::min(least, judge->distance(from.rest_pose.inverse() * x));
   return least;
 }
 

@@ -55,7 +55,7 @@ BuiltScene cloth_on_waves() {
   scene.network = builder.build();
   scene.obstacles = {
       {.name = "waves", .geometry = waves(), .material = {.thickness = 0.02, .friction = 1.0, .static_friction = 1.0}}};
-  scene.obstacles.front().placed.translation().y() = -0.1;
+  scene.obstacles.front().rest_pose.translation().y() = -0.1;
   scene.settings.step = 1.0 / 60.0;
   scene.settings.stretch_limit = StretchLimitSettings{.max_stretch = 0.02, .iterations = 20};
   scene.frames = 121;

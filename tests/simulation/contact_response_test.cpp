@@ -73,7 +73,7 @@ double height_of_bounce(Simulator& simulator) {
 /// A floor, a ball and a sheet whose highest points are at the origin.
 std::vector<Obstacle> landing_places() {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.5}};
-  ball.placed.translation() = Vector3(0.0, -0.5, 0.0);
+  ball.rest_pose.translation() = Vector3(0.0, -0.5, 0.0);
   return {ground(), ball, testing::sheet(3.0)};
 }
 
@@ -121,7 +121,7 @@ TEST_P(ContactSolver, MovingPlateCarriesAParticleByFriction) {
   const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
   Obstacle plate{
       .name = "plate", .geometry = BoxGeometry{.size = {4.0, 0.2, 4.0}}, .material = {.friction = mu, .static_friction = mu}};
-  plate.placed.translation() = Vector3(0.0, -0.1, 0.0);
+  plate.rest_pose.translation() = Vector3(0.0, -0.1, 0.0);
   plate.motion.keyframes = {{.time = 0.0}, {.time = 10.0, .position = {5.0, 5.0, 0.0}}};  // 0.5 m/s sideways and up
   Simulator simulator(one_particle({0.0, 0.011, 0.0}, rough), settings(1e-3), {plate});
   run(simulator, 1.0);
@@ -154,7 +154,7 @@ TEST_P(ContactSolver, ThicknessNothingIsAThicknessToo) {
   const double mu = 0.3;
   const ContactMaterial material{.friction = mu, .static_friction = mu};
   Obstacle box{.name = "box", .geometry = BoxGeometry{.size = {20.0, 1.0, 20.0}}, .material = material};
-  box.placed.translation() = Vector3(0.0, -0.5, 0.0);
+  box.rest_pose.translation() = Vector3(0.0, -0.5, 0.0);
   for (const Obstacle& obstacle : {ground(material), box, testing::sheet(9.0, material)}) {
     Simulator simulator(one_particle({0.0, 0.001, 0.0}, material, {2.0, 0.0, 0.0}), settings(1e-3), {obstacle});
     run(simulator, 1.5);

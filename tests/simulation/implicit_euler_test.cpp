@@ -46,12 +46,12 @@ double moving_energy(const Simulator& simulator) {
 /// Under the cloth's middle as it swings down.
 Obstacle ball_in_its_way() {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.25}, .material = {.friction = 0.3, .static_friction = 0.3}};
-  ball.placed.translation() = Vector3(0.0, -0.45, -0.1);
+  ball.rest_pose.translation() = Vector3(0.0, -0.45, -0.1);
   return ball;
 }
 
 double least_distance(const Simulator& simulator, const Obstacle& ball) {
-  return (simulator.positions().colwise() - ball.placed.translation()).colwise().norm().minCoeff() - 0.25;
+  return (simulator.positions().colwise() - ball.rest_pose.translation()).colwise().norm().minCoeff() - 0.25;
 }
 
 TEST(ImplicitEuler, SwingsAStiffClothByTwoCornersInStepsOfASixtiethOfASecond) {

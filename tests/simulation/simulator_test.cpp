@@ -354,7 +354,7 @@ NetworkBuilder rod() {
 /// A ball of 1 cm that rises 3 cm beside the rod's pin, from 5 cm below it to 5 cm above, in 0.1 s.
 Obstacle rising_ball() {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.01}};
-  ball.placed.translation() = Vector3(0.03, -0.05, 0.0);
+  ball.rest_pose.translation() = Vector3(0.03, -0.05, 0.0);
   ball.motion.keyframes = {{.time = 0.0}, {.time = 0.1, .position = {0.0, 0.1, 0.0}}};
   return ball;
 }

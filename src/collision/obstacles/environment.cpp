@@ -37,9 +37,9 @@ const RigidTransform& Environment::pose_after(Index obstacle) const { return imp
 
 Vector3 Environment::surface_velocity(Index obstacle, const Vector3& position, double time, double dt) const {
   const ObstacleSet& set = implementation_->set;
-  const auto& [name, geometry, placed, motion, material] = set.obstacle(obstacle);
+  const auto& [name, geometry, rest_pose, motion, material] = set.obstacle(obstacle);
   if (!motion.moves() && !set.shape(obstacle).deforms()) return Vector3::Zero();
-  const Vector3 moved = motion.pose(placed, time + dt) * (motion.pose(placed, time).inverse() * position);
+  const Vector3 moved = motion.pose(rest_pose, time + dt) * (motion.pose(rest_pose, time).inverse() * position);
   return (moved - position + set.drift(obstacle, position, time, time + dt)) / dt;
 }
 

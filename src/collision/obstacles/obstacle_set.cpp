@@ -32,7 +32,7 @@ std::vector<std::unique_ptr<ObstacleShape>> checked_shapes(const std::vector<Obs
   for (const Obstacle& obstacle : obstacles) {
     const std::string key = "obstacles." + obstacle.name;
     shapes.push_back(checked_shape(key + ".shape", obstacle.geometry, problems));
-    if (!obstacle.placed.matrix().allFinite()) {
+    if (!obstacle.rest_pose.matrix().allFinite()) {
       problems.add(key + ".place", "", "must be finite", "give a position in m and a rotation in degrees");
     }
     check_motion(key + ".motion", obstacle.motion, problems);
@@ -46,7 +46,7 @@ std::vector<std::unique_ptr<ObstacleShape>> checked_shapes(const std::vector<Obs
 
 ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move(obstacles)), shapes_(checked_shapes(obstacles_)) {
   for (const Obstacle& obstacle : obstacles_) {
-    before_.push_back(obstacle.motion.pose(obstacle.placed, 0.0));
+    before_.push_back(obstacle.motion.pose(obstacle.rest_pose, 0.0));
     into_before_.push_back(before_.back().inverse());
     max_thickness_ = std::max(max_thickness_, obstacle.material.thickness);
   }
@@ -65,8 +65,8 @@ void ObstacleSet::set_interval(double t, double t_end) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     if (shapes_[k]->deforms()) shapes_[k]->set_interval(t, t_end);
     if (!obstacles_[k].motion.moves()) continue;
-    before_[k] = obstacles_[k].motion.pose(obstacles_[k].placed, t);
-    after_[k] = obstacles_[k].motion.pose(obstacles_[k].placed, t_end);
+    before_[k] = obstacles_[k].motion.pose(obstacles_[k].rest_pose, t);
+    after_[k] = obstacles_[k].motion.pose(obstacles_[k].rest_pose, t_end);
     into_before_[k] = before_[k].inverse();
     into_after_[k] = after_[k].inverse();
     update_magnitude(k);

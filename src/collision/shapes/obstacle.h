@@ -57,8 +57,8 @@ using ObstacleGeometry = std::variant<MeshGeometry, SequenceGeometry, SphereGeom
 
 struct Obstacle {
   std::string name{};
-  ObstacleGeometry geometry{};  ///< scale applied
-  RigidTransform placed = RigidTransform::Identity();
+  ObstacleGeometry geometry{};                            ///< scale applied
+  RigidTransform rest_pose = RigidTransform::Identity();  ///< pose without motion
   Motion motion{};
   ContactMaterial material{};
 

@@ -17,7 +17,7 @@ namespace {
 // The broad phase searches around the elements' paths. Obstacles elsewhere have no regions, so no particle may go there.
 TEST(ObstacleSafeRegions, AllowNoPositionOutsideOfTheSearchedBox) {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.5}};
-  ball.placed.translation() = Vector3(10.0, 0.0, 0.0);
+  ball.rest_pose.translation() = Vector3(10.0, 0.0, 0.0);
   Environment environment({ball});
   environment.set_interval(0.0, 0.01);
   const CollisionSurface surface = test::particle_surface({0});
@@ -31,8 +31,8 @@ TEST(ObstacleSafeRegions, AllowNoPositionOutsideOfTheSearchedBox) {
   };
   EXPECT_TRUE(regions.allow(0, here.col(0)));
   EXPECT_TRUE(is_within(here.col(0)));
-  EXPECT_FALSE(regions.allow(0, ball.placed.translation()));
-  EXPECT_FALSE(is_within(ball.placed.translation()));
+  EXPECT_FALSE(regions.allow(0, ball.rest_pose.translation()));
+  EXPECT_FALSE(is_within(ball.rest_pose.translation()));
 }
 
 // A region that is renewed because one corner leaves it has other planes. They may not contain the target of another corner, which
@@ -131,7 +131,7 @@ TEST_P(ElementOverTop, HasItsContactAtTheCurrentClosestPoint) {
   constexpr double kOld = 0.02 * kGap;  // displacement after which closest points are searched again
   constexpr double kSlide = 0.75 * kOld;
   Obstacle obstacle{.name = "top", .geometry = GetParam().geometry};
-  if (std::holds_alternative<SphereGeometry>(obstacle.geometry)) obstacle.placed.translation() = Vector3(0.0, -0.5, 0.0);
+  if (std::holds_alternative<SphereGeometry>(obstacle.geometry)) obstacle.rest_pose.translation() = Vector3(0.0, -0.5, 0.0);
   SquareAbove above(obstacle, {-0.6, 0.9 * kGap, -0.4});
   above.environment.set_interval(0.0, 0.01);
   Points from = above.square.positions;

@@ -20,7 +20,7 @@ Obstacle obstacle(const std::string& name, const ObstacleGeometry& geometry, con
   Obstacle result;
   result.name = name;
   result.geometry = geometry;
-  result.placed.translation() = position;
+  result.rest_pose.translation() = position;
   return result;
 }
 
@@ -43,8 +43,8 @@ std::vector<Obstacle> zoo() {
     Obstacle& added =
         result.emplace_back(obstacle("obstacle_" + std::string(1, static_cast<char>('a' + k)), kinds[k % kinds.size()]));
     if (k % kinds.size() + 1 < kinds.size()) {
-      added.placed.translation() = random.in_box({Vector3::Constant(-4.0), Vector3::Constant(4.0)});
-      added.placed.linear() = rotation_from_degrees(random.in_box({Vector3::Zero(), Vector3::Constant(360.0)}));
+      added.rest_pose.translation() = random.in_box({Vector3::Constant(-4.0), Vector3::Constant(4.0)});
+      added.rest_pose.linear() = rotation_from_degrees(random.in_box({Vector3::Zero(), Vector3::Constant(360.0)}));
     }
     added.material.thickness = 0.01 * static_cast<double>(k % 3);
     if (k % 2 == 1) {

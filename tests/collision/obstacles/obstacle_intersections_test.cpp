@@ -22,7 +22,7 @@ using testing::Pair;
 
 Obstacle obstacle(const ObstacleGeometry& geometry, const Vector3& position = Vector3::Zero()) {
   Obstacle result{.name = "obstacle", .geometry = geometry};
-  result.placed.translation() = position;
+  result.rest_pose.translation() = position;
   return result;
 }
 
@@ -84,11 +84,11 @@ TEST(Intersections, ElementsThatCrossAMeshIntersectOneOfItsTriangles) {
   Random random(1);
   const Network network = confetti(mesh, 900, 0.05, random);
   Obstacle torus = obstacle(mesh_geometry(mesh, true), Vector3(5.0, -2.0, 1.0));
-  torus.placed.linear() = Eigen::AngleAxisd(0.7, Vector3(1, 2, 2) / 3.0).toRotationMatrix();
+  torus.rest_pose.linear() = Eigen::AngleAxisd(0.7, Vector3(1, 2, 2) / 3.0).toRotationMatrix();
   const ObstacleSet set({torus});
 
   Points positions = network.positions();
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) positions.col(i) = torus.placed * positions.col(i);
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) positions.col(i) = torus.rest_pose * positions.col(i);
   std::set<Index> expected;
   for (const Element& element : network.elements) {
     Simplex simplex{.count = element.corners};

@@ -20,8 +20,8 @@ Obstacle obstacle(const ObstacleGeometry& geometry, const Vector3& position = Ve
   Obstacle result;
   result.name = "obstacle";
   result.geometry = geometry;
-  result.placed.translation() = position;
-  result.placed.linear() = rotation_from_degrees(degrees);
+  result.rest_pose.translation() = position;
+  result.rest_pose.linear() = rotation_from_degrees(degrees);
   return result;
 }
 

@@ -46,7 +46,7 @@ void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double
   Random random(31);
   Points x(3, count);
   std::vector<bool> odd(static_cast<std::size_t>(count));
-  const RigidTransform start = obstacle.motion.pose(obstacle.placed, 0.0);
+  const RigidTransform start = obstacle.motion.pose(obstacle.rest_pose, 0.0);
   for (Index i = 0; i < count; ++i) {
     Vector3 p = within(test::near_surface(mesh, random, 0.2));
     while (closed && triangles_above(mesh, p) % 2 == 1) p = within(test::near_surface(mesh, random, 0.3));
@@ -204,7 +204,7 @@ TEST(StepTruncation, RelaxIsNotCalledIfNothingIsStopped) {
 
 TEST(StepTruncation, AnApproachingObstacleMovesARestingParticle) {
   Obstacle sheet = mesh_obstacle(test::flat_sheet(4), false);
-  sheet.placed.translation() = Vector3(0.0, -1.0, 0.0);
+  sheet.rest_pose.translation() = Vector3(0.0, -1.0, 0.0);
   sheet.motion.keyframes = {{0.0}, {0.1, Vector3(0.0, 50.0, 0.0)}};
   Environment environment({sheet});
   environment.set_interval(0.0, 0.1);
@@ -232,8 +232,8 @@ TEST(StepTruncation, PinnedAndFreeParticlesKeepEveryBit) {
 TEST(StepTruncation, ReportsAParticleBetweenObstaclesThatPassEachOther) {
   Obstacle upper = mesh_obstacle(test::flat_sheet(4), false);
   Obstacle lower = upper;
-  upper.placed.translation() = Vector3(0.0, 1.0, 0.0);
-  lower.placed.translation() = Vector3(0.0, -1.0, 0.0);
+  upper.rest_pose.translation() = Vector3(0.0, 1.0, 0.0);
+  lower.rest_pose.translation() = Vector3(0.0, -1.0, 0.0);
   upper.motion.keyframes = {{0.0}, {1.0, Vector3(0.0, -1.5, 0.0)}};
   lower.motion.keyframes = {{0.0}, {1.0, Vector3(0.0, 1.5, 0.0)}};
   Environment environment({upper, lower});
@@ -288,7 +288,7 @@ TEST(StepTruncation, ParticlesStayBetweenSheetsOfOneMesh) {
 
 TEST(StepTruncation, ReportsAnElementThatAPinPullsThroughAnObstacleInTheSameStep) {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.2}};
-  ball.placed.translation() = Vector3(-1.0, 0.0, 0.0);
+  ball.rest_pose.translation() = Vector3(-1.0, 0.0, 0.0);
   ball.motion.keyframes = {{0.0}, {1.0, Vector3(1.0, 0.0, 0.0)}, {2.0, Vector3(1.0, 1.0, 0.0)}};
   Environment environment({ball});
   test::SelfNetwork segment;
@@ -311,8 +311,8 @@ TEST(StepTruncation, ReportsAnElementThatAPinPullsThroughAnObstacleInTheSameStep
 TEST(StepTruncation, AParticleInAWedgeOfTwoObstaclesIsNeverInfeasible) {
   Obstacle left = mesh_obstacle(test::flat_sheet(8), false);
   Obstacle right = left;
-  left.placed.linear() = rotation_from_degrees(Vector3(0.0, 0.0, -60.0));
-  right.placed.linear() = rotation_from_degrees(Vector3(0.0, 0.0, 60.0));
+  left.rest_pose.linear() = rotation_from_degrees(Vector3(0.0, 0.0, -60.0));
+  right.rest_pose.linear() = rotation_from_degrees(Vector3(0.0, 0.0, 60.0));
   Environment environment({left, right});
   Random random(33);
   StepTruncation truncation = test::single_particles(environment, 1);

@@ -205,7 +205,7 @@ TEST(SceneBuilder, ObstacleMeshesAreScaledAndSharedOtherwise) {
   const auto& larger = std::get<MeshGeometry>(built.obstacles[1].geometry);
   EXPECT_EQ(larger.mesh->vertices.maxCoeff(), 3.0);
   EXPECT_TRUE(larger.closed);
-  EXPECT_EQ(built.obstacles[1].placed.translation(), Vector3(0, -3, 0));
+  EXPECT_EQ(built.obstacles[1].rest_pose.translation(), Vector3(0, -3, 0));
   EXPECT_EQ(std::get<MeshGeometry>(built.obstacles[2].geometry).mesh, std::get<MeshGeometry>(built.obstacles[3].geometry).mesh);
   EXPECT_EQ(built.meshes.size(), 3U);
 }

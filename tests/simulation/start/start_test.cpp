@@ -22,7 +22,7 @@ using ::testing::SizeIs;
 
 Obstacle ball(double radius, const Vector3& position) {
   Obstacle result{.name = "ball", .geometry = SphereGeometry{radius}};
-  result.placed.translation() = position;
+  result.rest_pose.translation() = position;
   return result;
 }
 

@@ -33,7 +33,7 @@ SpringNetwork limp_cloth(Index side, bool pinned, const ContactMaterial& materia
 
 Obstacle ball(double height, double radius) {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = radius}};
-  ball.placed.translation() = Vector3(0.0, height, 0.0);
+  ball.rest_pose.translation() = Vector3(0.0, height, 0.0);
   return ball;
 }
 
