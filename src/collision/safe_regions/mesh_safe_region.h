@@ -6,9 +6,9 @@
 
 namespace sprung {
 
-/// Builds the safe region of an element, in the frame of the mesh. Each triangle that intersects the box and is in front of all
-/// planes is excluded by a further plane, by a smaller box, or, once no plane is left, by a smaller radius. The nearest triangle
-/// comes first. The search starts with `region.triangle`, the result of the element's previous search.
+/// Builds the safe region of an element, in the frame of the mesh. Each triangle that intersects the box and is not behind a plane
+/// adds a plane; once all planes are used it shrinks the box or the radius instead. The nearest triangle comes first. The search
+/// starts with `region.triangle`, the result of the element's previous search.
 void find_region(const MeshBvh& tree, const ElementCorners& element, const SafeRegionRequest& request, SafeRegion& region);
 
 /// The triangle nearest to an element, and the features that contain the closest points.

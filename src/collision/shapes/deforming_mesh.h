@@ -58,7 +58,7 @@ class DeformingMesh {
   [[nodiscard]] Vector3 normal_at(Index triangle, TriangleFeature feature) const {
     return pseudonormal(after_, around_, triangle, feature);
   }
-  /// Unit length. A triangle without area has the mean normal of its neighbours.
+  /// Unit length. A triangle without area has the mean of the normals at its corners.
   [[nodiscard]] Vector3 face_normal(Index triangle) const;
 
  private:
