@@ -273,7 +273,7 @@ TEST_F(CommandLine, InfoOfSeveralMeshesTellsWhetherTheyAreFrames) {
               AllOf(HasSubstr("frames      2"), HasSubstr("moves 2 m"), HasSubstr("0.1667 to 0.5 m^3"), HasSubstr("closed")));
   const Ending other = run({"info", a, SPRUNG_SOURCE_DIR "/meshes/stairs.obj"});
   EXPECT_EQ(other.code, 3);
-  EXPECT_THAT(other.err, HasSubstr("must be as many as in a.obj"));
+  EXPECT_THAT(other.err, HasSubstr("must be equally many as in a.obj"));
 }
 
 TEST_F(CommandLine, InfoOfARopeTellsThatItIsNoObstacle) {

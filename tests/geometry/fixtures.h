@@ -1,4 +1,4 @@
-// Small meshes with known answers, and a folder that goes away.
+// Small meshes with known properties, and a temporary folder.
 #pragma once
 
 #include "geometry/mesh/triangle_mesh.h"
@@ -28,7 +28,7 @@ inline Triangles make_triangles(std::initializer_list<Eigen::Matrix<Index, 3, 1>
   return triangles;
 }
 
-/// The cube [0, size]^3 about `origin`, its 12 faces outward.
+/// The cube origin + [0, size]^3; its 12 faces point outward.
 inline TriangleMesh make_cube(double size = 1.0, const Vector3& origin = Vector3::Zero()) {
   TriangleMesh mesh;
   mesh.vertices.resize(3, 8);
@@ -62,7 +62,7 @@ inline TriangleMesh inside_out(TriangleMesh mesh) {
   return mesh;
 }
 
-/// A folder of one test's own, removed at the end.
+/// Gives each test its own folder, which is removed at the end.
 class FileTest : public testing::Test {
  protected:
   FileTest() : folder_(std::filesystem::temp_directory_path() / unique_name()) { std::filesystem::create_directories(folder_); }

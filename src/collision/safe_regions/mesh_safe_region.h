@@ -14,7 +14,7 @@ void find_region(const MeshBvh& tree, const ElementCorners& element, const SafeR
 /// The triangle nearest to an element, and the features that contain the closest points.
 struct ClosestFeatures {
   Index triangle = kNone;
-  PairPlace features{};  ///< of element and triangle
+  FeaturePair features{};  ///< of element and triangle
 };
 
 /// Finds the closest triangle within `request.exact` [m]. The search starts with `last`; returns `last` if no triangle is that

@@ -43,7 +43,7 @@ struct SafeRegion {
   Vector3 normal = Vector3::Zero();                           ///< from the obstacle to the element, unit length
   Vector3 weights = Vector3::Zero();                          ///< of the element's corners; their sum is 1
   Index triangle = kNone;                                     ///< of the obstacle; the next search starts here
-  PairPlace features{};                                       ///< that contain the closest points; the next search starts here
+  FeaturePair features{};                                     ///< that contain the closest points; the next search starts here
 
   // Only for a surface that deforms:
   double time = std::numeric_limits<double>::quiet_NaN();  ///< end of the interval that the region is valid for [s]

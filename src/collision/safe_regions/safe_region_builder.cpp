@@ -40,7 +40,7 @@ SafeRegionBuilder::SafeRegionBuilder(const ElementCorners& element, const SafeRe
   region_.box = requested_box(element, request);
 }
 
-void SafeRegionBuilder::consider(Index triangle, const TriangleCorners& corners, const PairPlace& last) {
+void SafeRegionBuilder::consider(Index triangle, const TriangleCorners& corners, const FeaturePair& last) {
   if (region_.triangle != kNone && !may_be_nearer(corners)) return;
   const ClosestPair pair = closest_pair(element_, corners, kPairSlack, request_.exact, last);
   const double distance = std::sqrt(pair.squared_distance);
@@ -50,7 +50,7 @@ void SafeRegionBuilder::consider(Index triangle, const TriangleCorners& corners,
   region_.normal = distance > 0.0 ? Vector3((pair.on_simplex - pair.on_triangle) / distance) : Vector3::Zero();
   region_.weights = pair.weights;
   region_.triangle = triangle;
-  region_.features = pair.place;
+  region_.features = pair.features;
   nearest_lowest_ = lowest(region_.normal);
 }
 
@@ -144,7 +144,7 @@ void SafeRegionBuilder::add_plane(const TriangleCorners& corners, const Triangle
 
 // Because of rounding, no plane may separate two simplices that nearly touch. A small enough displacement still keeps them apart.
 void SafeRegionBuilder::limit_motion(const TriangleCorners& corners, double distance) {
-  if (sprung::meets(element_, corners)) {
+  if (sprung::intersects(element_, corners)) {
     region_.broken = true;
   } else {
     region_.free_radius = std::min(region_.free_radius, kTouchingFreeFraction * distance);

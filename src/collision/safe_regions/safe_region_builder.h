@@ -18,7 +18,7 @@ class SafeRegionBuilder {
   void exclude(const TriangleCorners& corners);
 
   /// Makes the triangle the nearest one, if it is. The closest points are searched on the features `last` first.
-  void consider(Index triangle, const TriangleCorners& corners, const PairPlace& last = {});
+  void consider(Index triangle, const TriangleCorners& corners, const FeaturePair& last = {});
 
   /// Limits the clear distance to `distance` [m]. Each triangle whose box is nearer to the box of the element has to be considered.
   void limit_clear_distance(double distance) { clear_distance_ = std::min(clear_distance_, distance); }

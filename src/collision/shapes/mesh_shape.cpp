@@ -215,7 +215,7 @@ void MeshShape::update_closest_points(const ElementCorners& element, const SafeR
   region.normal = between.normalized();
   region.weights = pair.weights;
   region.triangle = last.triangle;
-  region.features = pair.place;
+  region.features = pair.features;
   if (!deforms_) return;
   set_triangle_weights(tree, region);
   region.drift = deforming_->displacement(region.triangle, region.triangle_weights);
@@ -242,7 +242,7 @@ bool MeshShape::touches(const ElementCorners& element, double tolerance) const {
   find_in_box(*tree_, box_around(element, tolerance), near);
   return std::any_of(near.begin(), near.end(), [&](Index t) {
     const auto triangle = tree_->corners(t);
-    return meets(element, triangle) || closest_pair(element, triangle).squared_distance <= tolerance * tolerance;
+    return intersects(element, triangle) || closest_pair(element, triangle).squared_distance <= tolerance * tolerance;
   });
 }
 

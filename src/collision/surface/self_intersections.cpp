@@ -20,7 +20,7 @@ bool has(const Element& element, Index particle) {
   return std::find(element.particles.begin(), element.particles.end(), particle) != element.particles.end();
 }
 
-bool edge_meets(const Element& from, const Element& triangle, const Points& positions) {
+bool edge_intersects(const Element& from, const Element& triangle, const Points& positions) {
   if (triangle.corners != 3) return false;
   const std::array<Vector3, 3> corners{positions.col(triangle.particles[0]), positions.col(triangle.particles[1]),
                                        positions.col(triangle.particles[2])};
@@ -34,7 +34,7 @@ bool edge_meets(const Element& from, const Element& triangle, const Points& posi
     const Vector3 begin = positions.col(a);
     const Vector3 end = positions.col(b);
     if ((begin.cwiseMin(end).array() > high.array()).any() || (begin.cwiseMax(end).array() < low.array()).any()) continue;
-    if (meets(begin, end, corners)) return true;
+    if (intersects(begin, end, corners)) return true;
   }
   return false;
 }
@@ -85,7 +85,7 @@ class SelfSearch {
       for (Index j = p == q ? i + 1 : 0; j < patch(q).element_count; ++j) {
         const Index b = patch(q).first_element + j;
         if (!element_box(a).intersects(element_box(b))) continue;
-        if (!edge_meets(element(a), element(b), positions_) && !edge_meets(element(b), element(a), positions_)) continue;
+        if (!edge_intersects(element(a), element(b), positions_) && !edge_intersects(element(b), element(a), positions_)) continue;
         found.push_back({std::min(a, b), std::max(a, b)});
       }
     }

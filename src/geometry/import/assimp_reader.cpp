@@ -19,8 +19,7 @@
 namespace sprung {
 namespace {
 
-// Geometry that assimp loses, tells its log, and reads on as if nothing had happened. Most of what it logs is harmless: materials
-// that are not there, hierarchies that are flat.
+// assimp only logs lost geometry and continues. Most of what it logs is harmless: missing materials, flat hierarchies.
 class LossCollector : public Assimp::LogStream {
  public:
   explicit LossCollector(std::vector<std::string>& losses) : losses_(losses) {}
@@ -74,7 +73,7 @@ void check_mesh(const aiMesh& mesh, FileProblems& problems) {
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     const aiVector3D& p = mesh.mVertices[i];
     if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
-    problems.add("vertex " + std::to_string(i + 1), "", "every coordinate must be finite, and less than 3.4e38");
+    problems.add("vertex " + std::to_string(i + 1), "", "each coordinate must be finite and less than 3.4e38");
   }
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
@@ -114,7 +113,7 @@ class Collector {
       const Vector3 placed = (transform * Eigen::Vector4d(p.x, p.y, p.z, 1.0)).head<3>();
       positions_.insert(positions_.end(), placed.begin(), placed.end());
     }
-    // A mirror turns the faces inside out.
+    // A mirroring transform turns the faces inside out.
     const bool mirrored = transform.topLeftCorner<3, 3>().determinant() < 0.0;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
@@ -133,8 +132,8 @@ class Collector {
 
 }  // namespace
 
-// No post-processing but triangulation: JoinIdenticalVertices and the like work with absolute tolerances, and PreTransformVertices
-// rounds to float. Indices are checked before it, as it follows them blindly.
+// Triangulation is the only post-processing: JoinIdenticalVertices and others use absolute tolerances, and PreTransformVertices
+// rounds to float. Indices are checked before it, because it does not check them.
 TriangleMesh read_with_assimp(const std::filesystem::path& file, const CheckedFile& checked) {
   Assimp::Importer importer;
   FileProblems problems(file);

@@ -1,4 +1,4 @@
-// Triangles from a file that was checked.
+// Triangles from a checked file.
 #pragma once
 
 #include "geometry/import/mesh_check.h"
@@ -8,8 +8,8 @@
 
 namespace sprung {
 
-/// Reads all meshes of a file, each as often as its nodes place it, with their transforms applied; points and lines are left out,
-/// nothing is welded. Throws InputError, naming `file`, when assimp cannot read what was checked, or a position is not finite.
+/// Reads all meshes of a file, one copy per node that refers to it, with the node's transform applied. Leaves out points and
+/// lines, and welds nothing. Throws InputError that names `file` if assimp cannot read it or a position is not finite.
 [[nodiscard]] TriangleMesh read_with_assimp(const std::filesystem::path& file, const CheckedFile& checked);
 
 }  // namespace sprung

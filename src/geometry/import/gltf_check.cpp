@@ -44,7 +44,7 @@ void append(std::string& bytes, Value value) {
   bytes.append(raw.data(), raw.size());
 }
 
-// The JSON text and the binary buffer, which a text file does not have.
+// The JSON text and the binary buffer. A text file has no buffer.
 struct Chunks {
   std::string_view json;
   std::optional<std::string_view> buffer;
@@ -88,7 +88,7 @@ std::string decoded_base64(std::string_view text) {
   int count = 0;
   for (const char digit : text) {
     const int value = kValues[static_cast<unsigned char>(digit)];
-    if (value < 0) throw InvalidGltf("has a buffer that is no base64 text");
+    if (value < 0) throw InvalidGltf("has a buffer that is not base64 text");
     bits = bits << 6 | static_cast<std::uint32_t>(value);
     count += 6;
     if (count < 8) continue;
@@ -109,7 +109,7 @@ const Json& member(const Json& object, const char* key) {
 const Json& entry(const Json& document, const char* list, std::uint64_t index) {
   const Json& all = member(document, list);
   if (!all.is_array() || index >= all.size()) {
-    throw InvalidGltf("refers to number " + std::to_string(index) + " of \"" + list + "\", which is not there");
+    throw InvalidGltf("refers to number " + std::to_string(index) + " of \"" + list + "\", which does not exist");
   }
   return all[index];
 }
@@ -124,7 +124,7 @@ std::uint64_t natural(const Json& object, const char* key, std::optional<std::ui
   return value.get<std::uint64_t>();
 }
 
-// Numbers of a node; null when it has none.
+// Numbers of a node; null if it has none.
 Json numbers(const Json& node, const char* key, std::size_t count) {
   const Json& list = member(node, key);
   if (list.is_null()) return list;
@@ -137,14 +137,14 @@ Json numbers(const Json& node, const char* key, std::size_t count) {
   return list;
 }
 
-// Writes the scene that is shown anew: its nodes, the triangles below them, and one buffer of floats and indices.
+// Writes the default scene anew: its nodes, their triangles, and one buffer of floats and indices.
 class GltfChecker {
  public:
   GltfChecker(const std::filesystem::path& file, const std::string& bytes) : folder_(file.parent_path()) {
     const Chunks chunks = chunks_of(bytes);
     binary_ = chunks.buffer;
     document_ = Json::parse(chunks.json, nullptr, false);
-    if (document_.is_discarded()) throw InvalidGltf("is truncated or damaged: it is no JSON");
+    if (document_.is_discarded()) throw InvalidGltf("is truncated or damaged: it is not valid JSON");
     const Json& version = member(member(document_, "asset"), "version");
     if (!version.is_string() || !version.get_ref<const std::string&>().starts_with("2.")) {
       throw InvalidGltf("must be glTF of version 2.0");
@@ -170,13 +170,13 @@ class GltfChecker {
   }
 
  private:
-  // Returns the number of the written node. Each node has one parent, so there is no circle.
+  // Returns the number of the written node. Each node has one parent, so there is no cycle.
   std::size_t node(const Json& index, int depth) {
     if (!index.is_number_unsigned()) throw InvalidGltf("must refer to its nodes by numbers");
     if (depth > kDeepestNode) throw InvalidGltf("has nodes more than " + std::to_string(kDeepestNode) + " levels deep");
     const auto number = index.get<std::uint64_t>();
     const Json& read = entry(document_, "nodes", number);
-    if (!seen_.insert(number).second) throw InvalidGltf("has node " + std::to_string(number) + " in two places");
+    if (!seen_.insert(number).second) throw InvalidGltf("refers to node " + std::to_string(number) + " twice");
 
     Json written = Json::object();
     for (const auto& [key, count] : {std::pair{"matrix", 16}, {"translation", 3}, {"rotation", 4}, {"scale", 3}}) {
@@ -219,7 +219,7 @@ class GltfChecker {
     return known->second.written;
   }
 
-  // The primitive as it is written; null for points, lines, and what has no positions.
+  // The primitive as written; null for points, lines, and primitives without positions.
   Json triangles_of(const Json& primitive, std::uint64_t& vertices) {
     if (member(member_or_empty(primitive, "extensions"), "KHR_draco_mesh_compression").is_object()) {
       throw InvalidGltf("is compressed by Draco, which is not read: export it without compression");
@@ -249,7 +249,7 @@ class GltfChecker {
     return value.is_null() ? kEmpty : value;
   }
 
-  // Number and count of the written accessor: three floats a position, or an index below `limit` each.
+  // Number and count of the written accessor: three floats per position, or one index below `limit`.
   std::pair<std::size_t, std::uint64_t> accessor(std::uint64_t index, bool positions, std::uint64_t limit) {
     const Json& read = entry(document_, "accessors", index);
     const std::uint64_t count = natural(read, "count");
@@ -301,7 +301,7 @@ class GltfChecker {
     return written;
   }
 
-  // The elements of an accessor, or of a part of a sparse one, without gaps.
+  // The elements of an accessor, or of one component of a sparse accessor, without gaps.
   std::string elements(const Json& read, std::uint64_t count, std::size_t size) {
     const Json& of_view = member(read, "bufferView");
     if (of_view.is_null())
@@ -322,18 +322,18 @@ class GltfChecker {
     return values;
   }
 
-  // Elements of a sparse accessor that replace those of the whole.
+  // Replaces elements by those of a sparse accessor.
   void replace_sparse(const Json& sparse, std::uint64_t count, bool positions, std::uint64_t component, std::string& values) {
     const std::uint64_t replaced = natural(sparse, "count");
-    const Json& read_places = member(sparse, "indices");
-    const std::size_t place_size = size_of_index(natural(read_places, "componentType"));
+    const Json& read_targets = member(sparse, "indices");
+    const std::size_t target_size = size_of_index(natural(read_targets, "componentType"));
     const std::size_t size = positions ? 3 * sizeof(float) : size_of_index(component);
-    const std::string places = elements(read_places, replaced, place_size);
+    const std::string targets = elements(read_targets, replaced, target_size);
     const std::string others = elements(member(sparse, "values"), replaced, size);
     for (std::uint64_t i = 0; i < replaced; ++i) {
-      const std::uint32_t place = index_at(places, place_size, i);
-      if (place >= count) throw InvalidGltf("has a sparse accessor that replaces what is not there");
-      values.replace(place * size, size, others, i * size, size);
+      const std::uint32_t target = index_at(targets, target_size, i);
+      if (target >= count) throw InvalidGltf("has a sparse accessor that replaces an element that does not exist");
+      values.replace(target * size, size, others, i * size, size);
     }
   }
 
@@ -347,7 +347,7 @@ class GltfChecker {
     std::string bytes;
     if (text.starts_with("data:")) {
       const std::size_t comma = text.find(";base64,");
-      if (comma == std::string::npos) throw InvalidGltf("has a buffer that is no base64 text");
+      if (comma == std::string::npos) throw InvalidGltf("has a buffer that is not base64 text");
       bytes = decoded_base64(std::string_view(text).substr(comma + std::string_view(";base64,").size()));
     } else {
       if (text.find('\0') != std::string::npos) throw InvalidGltf("has a buffer without content");

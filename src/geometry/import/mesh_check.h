@@ -1,6 +1,6 @@
-// Mesh files as assimp may see them. assimp trusts what a file says of itself: it reads past the end of truncated files, aborts at
-// faces without corners, follows indices out of range and nodes in circles. So a file is read here first, and written anew with
-// the surface alone: no material, no name, no animation, nothing that was not checked.
+// Checks mesh files before assimp reads them. assimp trusts the counts and indices of a file: it reads past the end of truncated
+// files, aborts at faces without corners, and follows indices out of range and cyclic nodes. So each file is read here first and
+// written anew with only its surface: no materials, names or animations.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,18 @@
 
 namespace sprung {
 
-/// The bytes of a mesh file that assimp reads whole.
+/// The bytes of a mesh file that assimp can read.
 struct CheckedFile {
-  std::string extension;  ///< of the format, without a dot
+  std::string extension;  ///< of the format, without its dot
   std::string bytes;
 };
 
-/// A face with more corners is damage: no exporter writes one, and assimp's triangulation takes the square of their number.
+/// Largest number of corners of a face. No exporter writes larger faces, and the run time of assimp's triangulation is quadratic
+/// in this number.
 inline constexpr std::int64_t kMostCorners = 10'000;
 inline constexpr const char* kMostCornersRule = "a face must have at most 10000 corners";
 
-/// The surface of a file as PLY. Coordinates are either all words, which assimp rounds as it does those of the format they are
-/// from, or all floats.
+/// Writes a surface as PLY. Coordinates are either text, which assimp rounds as in the original format, or floats.
 class PlyWriter {
  public:
   enum class Kind : std::uint8_t { ascii, binary };
@@ -50,22 +50,22 @@ class PlyWriter {
   std::size_t face_count_ = 0;
 };
 
-/// Whether the word spells a finite number.
+/// Whether the word is a finite number.
 [[nodiscard]] bool is_finite_number(std::string_view word);
 
-// Each throws InputError, naming the place, when the file does not hold all that it declares, or a number is malformed, a face has
-// no corners or an index is out of range.
+// Each function throws InputError that names the location if the file is shorter than it declares, a number is malformed, a face
+// has no corners or an index is out of range.
 
 [[nodiscard]] CheckedFile checked_obj(const std::filesystem::path& file, const std::string& bytes);
 
 [[nodiscard]] CheckedFile checked_ply(const std::filesystem::path& file, const std::string& bytes);
 
-/// Binary files, files with another dimension and files with homogeneous coordinates are refused.
+/// Refuses binary files, other dimensions and homogeneous coordinates.
 [[nodiscard]] CheckedFile checked_off(const std::filesystem::path& file, const std::string& text);
 
 [[nodiscard]] CheckedFile checked_stl(const std::filesystem::path& file, const std::string& bytes);
 
-/// glTF 2.0 as text or binary, with its buffers inside or beside it. Compressed meshes are refused.
+/// glTF 2.0 as text or binary, with embedded or separate buffers. Refuses compressed meshes.
 [[nodiscard]] CheckedFile checked_gltf(const std::filesystem::path& file, const std::string& bytes);
 
 [[nodiscard]] CheckedFile checked_3ds(const std::filesystem::path& file, const std::string& bytes);

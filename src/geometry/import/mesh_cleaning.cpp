@@ -12,12 +12,13 @@
 namespace sprung {
 namespace {
 
-// A triangle this flat, height over longest side, is a line: its normal would be rounding noise.
+// A triangle whose height over longest side is below this is a line: its normal would be rounding error.
 constexpr double kFlat = 1e-12;
 
 Index vertex_count(const MeshSequence& mesh) { return static_cast<Index>(mesh.frames.front().cols()); }
 
-// -1, 0 or 1 in the order of the coordinates in the first frame where two vertices are apart, compared as numbers: -0 equals 0.
+// -1, 0 or 1, in the order of the coordinates in the first frame that separates the two vertices. Compared as numbers: -0 equals
+// 0.
 int compare(const std::vector<Points>& frames, Index a, Index b) {
   for (const Points& frame : frames) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -27,13 +28,13 @@ int compare(const std::vector<Points>& frames, Index a, Index b) {
   return 0;
 }
 
-// For each vertex, the first one that is at its position in all frames.
+// For each vertex, the first vertex with its position in all frames.
 std::vector<Index> first_alike(const std::vector<Points>& frames) {
   std::vector<Index> order(frames.front().cols());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    const int way = compare(frames, a, b);
-    return way != 0 ? way < 0 : a < b;
+    const int sign = compare(frames, a, b);
+    return sign != 0 ? sign < 0 : a < b;
   });
   std::vector<Index> first(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
@@ -92,7 +93,7 @@ void drop_duplicate_faces(MeshSequence& mesh, MeshReport& report) {
   keep_faces(mesh, kept);
 }
 
-// A quad that is there twice, cut along one diagonal and along the other: no face is a duplicate, yet each side of the quad has a
+// A quad that exists twice, cut along one diagonal and along the other: no face is a duplicate, yet each side of the quad has a
 // third face. (A tetrahedron is two such quads as well, but its sides have two faces.)
 void drop_doubled_quads(MeshSequence& mesh, MeshReport& report) {
   const std::vector<MeshEdge> edges = mesh_edges(mesh.triangles);
@@ -141,19 +142,20 @@ void drop_unused_vertices(MeshSequence& mesh, MeshReport& report) {
   for (Points& frame : mesh.frames) frame = Points(frame(Eigen::all, used));
 }
 
-void note_parts(Index parts, const std::string& what, MeshReport& report) {
-  if (parts > 0) report.notes.push_back(std::to_string(parts) + " part(s) " + what);
+void note_components(Index components, const std::string& what, MeshReport& report) {
+  if (components > 0) report.notes.push_back(std::to_string(components) + " component(s) " + what);
 }
 
-// By the first frame: a deformation that tears nothing keeps what is closed closed, and what is outside outside.
+// The first frame decides: a deformation without tearing changes neither closedness nor orientation.
 void orient_and_describe(MeshSequence& mesh, MeshReport& report) {
   TriangleMesh first{std::move(mesh.frames.front()), std::move(mesh.triangles)};
   const OrientationReport orientation = orient_faces(first);
   report.flipped_faces = orientation.flipped_faces;
-  note_parts(orientation.one_sided_parts, "have one side only, like a Moebius strip, and could not be oriented", report);
-  note_parts(orientation.flat_parts, "are closed around no volume, like both sides of a sheet: the mesh is taken as open", report);
+  note_components(orientation.one_sided_components, "are one-sided, like a Moebius strip, and could not be oriented", report);
+  note_components(orientation.flat_components,
+                  "are closed but enclose no volume, like both sides of a sheet: the mesh is treated as open", report);
   describe_surface(first, report);
-  report.closed = report.closed && orientation.flat_parts == 0;
+  report.closed = report.closed && orientation.flat_components == 0;
   mesh.frames.front() = std::move(first.vertices);
   mesh.triangles = std::move(first.triangles);
   for (const Points& frame : mesh.frames) report.bounds.extend(bounds(frame));

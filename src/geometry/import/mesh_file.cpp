@@ -18,9 +18,9 @@ constexpr std::size_t kProblemsKept = 20;
 
 }  // namespace
 
-void FileProblems::add(std::string place, std::string value, std::string rule, std::string remedy) {
+void FileProblems::add(std::string location, std::string value, std::string rule, std::string remedy) {
   if (problems_.size() < kProblemsKept) {
-    problems_.push_back({file_, std::move(place), std::move(value), std::move(rule), std::move(remedy)});
+    problems_.push_back({file_, std::move(location), std::move(value), std::move(rule), std::move(remedy)});
   } else {
     ++left_out_;
   }

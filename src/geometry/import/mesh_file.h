@@ -1,4 +1,4 @@
-// What every mesh reader needs of a file: its format, its bytes, and a list of what is wrong with it.
+// Shared by all mesh readers: the format and bytes of a file, and a list of its problems.
 #pragma once
 
 #include "base/error.h"
@@ -9,14 +9,15 @@
 
 namespace sprung {
 
-/// The problems of one file. The first twenty are kept, the rest are only counted, so that a broken scan stays readable.
+/// The problems of one file. Keeps the first twenty and counts the rest, so that the report on a badly damaged file stays
+/// readable.
 class FileProblems {
  public:
   explicit FileProblems(const std::filesystem::path& file) : file_(file.string()) {}
 
-  void add(std::string place, std::string value, std::string rule, std::string remedy = "");
+  void add(std::string location, std::string value, std::string rule, std::string remedy = "");
 
-  /// Throws InputError with all of them.
+  /// Throws InputError with all problems, if there are any.
   void throw_if_any() const;
 
  private:
@@ -25,10 +26,10 @@ class FileProblems {
   std::size_t left_out_ = 0;
 };
 
-/// The file's extension with its dot, A to Z as a to z: `.obj` of `CUBE.OBJ`.
+/// The file's extension in lower case, with its dot: `.obj` for `CUBE.OBJ`.
 [[nodiscard]] std::string lower_case_extension(const std::filesystem::path& file);
 
-/// The whole file. Throws InputError when it is missing, is no regular file, cannot be opened, or is empty.
+/// The whole file. Throws InputError if it is missing, is not a regular file, cannot be opened or is empty.
 [[nodiscard]] std::string read_mesh_file(const std::filesystem::path& file);
 
 }  // namespace sprung

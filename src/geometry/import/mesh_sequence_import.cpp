@@ -12,17 +12,17 @@ namespace {
 
 using Files = std::vector<std::filesystem::path>;
 
-// Of the files that do not fit; the rest are only counted.
+// The problems after these are only counted.
 constexpr std::size_t kProblemsKept = 20;
 
 constexpr const char* kOneTopology = "export all frames of one mesh, by a deformation that keeps its faces";
 
-/// The frame, or none and what is wrong with its file.
+/// The frame; none if its file has problems, which are added.
 std::optional<PolygonMesh> read_frame(const std::filesystem::path& file, std::vector<Problem>& problems) {
   if (lower_case_extension(file) != ".obj") {
     problems.push_back({.file = file.string(),
                         .value = file.extension().string(),
-                        .rule = "must be an OBJ file: there vertices keep their order",
+                        .rule = "must be an OBJ file, which keeps the order of vertices",
                         .remedy = "export the sequence as OBJ"});
     return std::nullopt;
   }
@@ -34,7 +34,7 @@ std::optional<PolygonMesh> read_frame(const std::filesystem::path& file, std::ve
   }
 }
 
-/// The first face whose corners differ; kNone when there is none.
+/// The first face whose corners differ; kNone if there is none.
 Index first_other_face(const PolygonFaces& faces, const PolygonFaces& expected) {
   for (Index face = 0; face < expected.face_count(); ++face) {
     const auto corners = [face](const PolygonFaces& of) {
@@ -45,7 +45,7 @@ Index first_other_face(const PolygonFaces& faces, const PolygonFaces& expected) 
   return kNone;
 }
 
-/// Adds what tells the frame of a file from the first one.
+/// Adds the differences of a file's frame from the first frame.
 void compare(const PolygonMesh& frame, const PolygonMesh& first, const Files& files, std::size_t file,
              std::vector<Problem>& problems) {
   const std::string first_name = files.front().filename().string();
@@ -53,7 +53,7 @@ void compare(const PolygonMesh& frame, const PolygonMesh& first, const Files& fi
     if (count == expected) return true;
     problems.push_back({.file = files[file].string(),
                         .value = std::to_string(count) + " " + what,
-                        .rule = "must be as many as in " + first_name + ", which has " + std::to_string(expected),
+                        .rule = "must be equally many as in " + first_name + ", which has " + std::to_string(expected),
                         .remedy = kOneTopology});
     return false;
   };
@@ -63,7 +63,7 @@ void compare(const PolygonMesh& frame, const PolygonMesh& first, const Files& fi
   if (face == kNone) return;
   problems.push_back({.file = files[file].string(),
                       .key = "face " + std::to_string(face + 1),
-                      .rule = "must have the corners that it has in " + first_name,
+                      .rule = "must have the same corners as in " + first_name,
                       .remedy = kOneTopology});
 }
 

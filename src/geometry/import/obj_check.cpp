@@ -12,8 +12,8 @@
 namespace sprung {
 namespace {
 
-constexpr double kLeastWeight = 1e-30;     // that is not 0 as a float
-constexpr std::size_t kLongestName = 200;  // of a group, which assimp copies into buffers of fixed size
+constexpr double kLeastWeight = 1e-30;     // smaller weights are 0 as a float
+constexpr std::size_t kLongestName = 200;  // of a group; assimp copies the name into a buffer of fixed size
 
 // Writes vertices, faces without texture coordinates and normals, and the names by which assimp groups faces.
 class ObjWriter {
@@ -36,7 +36,7 @@ class ObjWriter {
   }
 
  private:
-  // Four numbers are homogeneous, more are a colour. assimp passes over vertices with coordinates like `.5`.
+  // Four numbers are homogeneous coordinates, more numbers are a colour. assimp skips vertices with coordinates like `.5`.
   void add_vertex() {
     ++vertices_so_far_;
     std::size_t numbers = 3;
@@ -53,7 +53,8 @@ class ObjWriter {
     text_ += '\n';
   }
 
-  // Requires corners that `read_obj_numbers` accepts. Positive numbers count from 1 in the whole file, negative ones back.
+  // Requires corners that `read_obj_numbers` accepts. Positive numbers count from 1 in the whole file, negative ones back from the
+  // last vertex before the face.
   void add_face() {
     if (std::ssize(words_) - 1 > kMostCorners) {
       return report("", kMostCornersRule);

@@ -73,9 +73,9 @@ class Scanner {
     std::string_view rest = corner;
     for (bool first = true;; first = false) {
       const std::size_t slash = rest.find('/');
-      const std::string_view part = rest.substr(0, slash);
-      const bool left_out = part.empty() && !first;
-      if (!left_out && parse_number<Index>(part).value_or(0) == 0) return report(corner, "must be vertex numbers counted from 1");
+      const std::string_view field = rest.substr(0, slash);
+      const bool left_out = field.empty() && !first;
+      if (!left_out && parse_number<Index>(field).value_or(0) == 0) return report(corner, "must be vertex numbers counted from 1");
       if (slash == std::string_view::npos) return;
       rest.remove_prefix(slash + 1);
     }

@@ -10,7 +10,7 @@
 namespace sprung {
 namespace {
 
-// Builds the faces from tinyobjloader's callbacks, which come in the order of the file.
+// Builds the faces from the callbacks of tinyobjloader, which arrive in the order of the file.
 class FaceBuilder {
  public:
   explicit FaceBuilder(const std::filesystem::path& file, const ObjNumbers& numbers)
@@ -41,7 +41,7 @@ class FaceBuilder {
     std::istringstream words(name);
     group_.clear();
     for (std::string word; words >> word;) group_ += (group_.empty() ? "" : " ") + word;
-    if (group_.empty()) group_ = "default";  // what the format calls faces that are in no group
+    if (group_.empty()) group_ = "default";  // the format's name for faces without a group
     group_begins_ = true;
   }
 
@@ -65,7 +65,7 @@ class FaceBuilder {
   Index resolve(int written, std::int64_t so_far, std::int64_t in_file, const std::string& kind) {
     const std::int64_t index = written > 0 ? written - std::int64_t{1} : so_far + written;
     if (index >= 0 && index < in_file) return static_cast<Index>(index);
-    problems_.add(place(), std::to_string(written), "must refer to one of the " + std::to_string(in_file) + " " + kind);
+    problems_.add(location(), std::to_string(written), "must refer to one of the " + std::to_string(in_file) + " " + kind);
     return kNone;
   }
 
@@ -74,11 +74,11 @@ class FaceBuilder {
     std::sort(sorted.begin(), sorted.end());
     const auto twice = std::adjacent_find(sorted.begin(), sorted.end(), [](Index a, Index b) { return a == b && a != kNone; });
     if (twice == sorted.end()) return;
-    problems_.add(place(), std::to_string(*twice + 1), "a face must not use a vertex twice",
+    problems_.add(location(), std::to_string(*twice + 1), "a face must not use a vertex twice",
                   "remove degenerate faces and export again");
   }
 
-  [[nodiscard]] std::string place() const { return "face " + std::to_string(faces_.face_count() + 1); }
+  [[nodiscard]] std::string location() const { return "face " + std::to_string(faces_.face_count() + 1); }
 
   FileProblems problems_;
   PolygonFaces faces_;

@@ -83,10 +83,10 @@ class OffChecker {
 
   void report(const std::string& rule) { problems_.add("line " + std::to_string(line_number_), "", rule); }
 
-  void truncated(const std::string& elements, std::int64_t declared, std::int64_t held) {
-    problems_.add("", "",
-                  "is truncated: it declares " + std::to_string(declared) + " " + elements + " and holds " + std::to_string(held),
-                  "export it again");
+  void truncated(const std::string& elements, std::int64_t declared, std::int64_t found) {
+    problems_.add(
+        "", "", "is truncated: it declares " + std::to_string(declared) + " " + elements + " but contains " + std::to_string(found),
+        "export it again");
   }
 
   FileProblems problems_;

@@ -73,7 +73,7 @@ Property property_of(const std::vector<std::string_view>& words) {
   if (words[1] != "list") return {std::string(words[2]), std::string(words[1]), type_of(words[1]), std::nullopt};
   if (words.size() < 5) throw InvalidPly("its header has a list property without types and name");
   const Type count = type_of(words[2]);
-  if (count.kind == Kind::real) throw InvalidPly("its header has a list property whose count is no integer");
+  if (count.kind == Kind::real) throw InvalidPly("its header has a list property whose count is not an integer");
   return {std::string(words[4]), std::string(words[3]), type_of(words[3]), count};
 }
 
@@ -82,7 +82,7 @@ void read_header_line(const std::vector<std::string_view>& words, Header& header
   if (words[0] == "element" && words.size() > 2) {
     const std::int64_t count = parse_number<std::int64_t>(words[2]).value_or(-1);
     if (count < 0) throw InvalidPly("its header must give the number of each element");
-    if (words[1] == "tristrips") throw InvalidPly("holds strips of triangles, which are not read");
+    if (words[1] == "tristrips") throw InvalidPly("contains triangle strips, which are not supported");
     if (find(header, words[1]) != nullptr) throw InvalidPly("its header has two elements \"" + std::string(words[1]) + "\"");
     header.elements.push_back({.name = std::string(words[1]), .count = count, .properties = {}});
   }
@@ -108,7 +108,7 @@ Header take_header(std::string_view& rest) {
   throw InvalidPly("is truncated: its header has no end");
 }
 
-// The values after the header, one after the other; none at the end of the file, or where a word is no number of the type.
+// Reads the values after the header one after the other. None at the end of the file, or if a word is not a number of the type.
 class Body {
  public:
   Body(Format format, std::string_view rest) : format_(format), rest_(rest) {}
@@ -141,7 +141,7 @@ class Body {
                                       : static_cast<float>(std::bit_cast<double>(*bits));
   }
 
-  /// The next word of an ASCII body as it is written; none unless it is a finite number of the type.
+  /// The next word of an ASCII body as written; none unless it is a finite number of the type.
   std::optional<std::string_view> word(const Type& type) {
     const std::string_view text = take_word();
     const bool fits = type.kind == Kind::real ? is_finite_number(text) : parse_number<std::int32_t>(text).has_value();
@@ -161,8 +161,8 @@ class Body {
     if (rest_.size() < size) return std::nullopt;
     std::uint64_t bits = 0;
     for (std::size_t byte = 0; byte < size; ++byte) {
-      const std::size_t place = format_ == Format::big_endian ? size - 1 - byte : byte;
-      bits |= static_cast<std::uint64_t>(static_cast<unsigned char>(rest_[byte])) << (8 * place);
+      const std::size_t position = format_ == Format::big_endian ? size - 1 - byte : byte;
+      bits |= static_cast<std::uint64_t>(static_cast<unsigned char>(rest_[byte])) << (8 * position);
     }
     rest_.remove_prefix(size);
     return bits;
@@ -193,7 +193,7 @@ class Elements {
   }
 
  private:
-  // The type of a coordinate; none is 0 where a file has none.
+  // A missing coordinate is an error: assimp would read it as 0.
   static PlyWriter writer_of(const Header& header) {
     const Element* vertex = find(header, "vertex");
     if (vertex == nullptr) throw InvalidPly("has no vertices");

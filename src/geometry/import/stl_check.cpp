@@ -27,8 +27,8 @@ std::size_t declared_faces(const std::string& bytes) {
   return count;
 }
 
-// ASCII: `facet normal x y z`, `outer loop`, three times `vertex x y z`, `endloop`, `endfacet`. Words that are none of these are
-// passed over, as are the names behind `solid` and `endsolid`.
+// ASCII: `facet normal x y z`, `outer loop`, three times `vertex x y z`, `endloop`, `endfacet`. Skips all other words, and the
+// names after `solid` and `endsolid`.
 class SolidText {
  public:
   SolidText(const std::filesystem::path& file, std::string_view text) : problems_(file), rest_(text) {}

@@ -11,11 +11,11 @@ namespace sprung {
 
 [[nodiscard]] inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-/// Cuts a line into the words between blanks. Writes to `words` to spare its memory.
+/// Splits a line at blanks. Reuses the memory of `words`.
 void split_words(std::string_view line, std::vector<std::string_view>& words);
 
-/// The number that the whole word spells, in C notation with an optional plus; none when it is no number or has no double or
-/// integer near it. `nan` and `inf` are numbers.
+/// The number that the whole word spells, in C notation with an optional plus. None if it is not a number or out of range of the
+/// type. `nan` and `inf` are numbers.
 template <class Number>
 [[nodiscard]] std::optional<Number> parse_number(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
@@ -25,7 +25,7 @@ template <class Number>
   return number;
 }
 
-/// Takes the next line off the front of `text`, without its end.
+/// Removes the first line from `text` and returns it without its end.
 [[nodiscard]] std::string_view take_line(std::string_view& text);
 
 }  // namespace sprung

@@ -10,7 +10,7 @@
 namespace sprung {
 namespace {
 
-// Chunks that place surfaces; all others are left out.
+// The chunks that define and transform surfaces; all others are left out.
 enum Id : std::uint16_t {
   kMain = 0x4d4d,
   kEditor = 0x3d3d,
@@ -59,7 +59,7 @@ std::string chunk(std::uint16_t id, const std::string& content) {
   return bytes + content;
 }
 
-// The bytes of one chunk that are still to be read.
+// The unread bytes of one chunk.
 class Reader {
  public:
   explicit Reader(std::string_view rest) : rest_(rest) {}
@@ -87,7 +87,7 @@ class Reader {
     return std::string(take(end + 1));
   }
 
-  /// Calls `each(id, content)` for the chunks that are left. Less than a header at the end is padding.
+  /// Calls `each(id, content)` for the remaining chunks. Fewer bytes than a header at the end are padding.
   template <class Each>
   void chunks(const Each& each) {
     while (rest_.size() >= kChunkHeader) {
@@ -113,7 +113,7 @@ class Checker {
       found = true;
       content += main(std::move(reader));
     });
-    if (!found) throw InvalidFile("does not begin as a 3DS file does");
+    if (!found) throw InvalidFile("does not begin like a 3DS file");
     if (faces_ == 0) throw InvalidFile("has no faces");
     return {"3ds", chunk(kMain, content)};
   }
@@ -203,7 +203,7 @@ class Checker {
     append(kept, count);
     for (std::size_t i = 0; i < count; ++i) {
       const auto face = reader.number<std::uint16_t>();
-      if (face >= faces) throw InvalidFile("has a material for a face that is not there");
+      if (face >= faces) throw InvalidFile("has a material for a face that does not exist");
       append(kept, face);
     }
     return kept;
@@ -217,7 +217,7 @@ class Checker {
     return kept;
   }
 
-  // Nodes of lights and cameras stay for the sake of the hierarchy.
+  // Nodes of lights and cameras stay, because the hierarchy refers to them.
   std::string node(std::uint16_t kind, Reader reader) {
     std::string kept;
     bool named = false;
@@ -225,7 +225,7 @@ class Checker {
       if (id == kNodeName) {
         if (named) throw InvalidFile("has a node with two names");
         named = true;
-        kept += chunk(id, place_in_hierarchy(std::move(content)));
+        kept += chunk(id, hierarchy_entry(std::move(content)));
       }
       if (!named || kind != kObjectNode) return;
       if (id == kDummyName) kept += chunk(id, content.name());
@@ -236,17 +236,17 @@ class Checker {
     return kept;
   }
 
-  std::string place_in_hierarchy(Reader reader) {
+  std::string hierarchy_entry(Reader reader) {
     if (++nodes_ > kMostNodes) throw InvalidFile("has more than " + std::to_string(kMostNodes) + " nodes");
     std::string kept = reader.name();
     kept += reader.take(sizeof(std::uint32_t));
     const auto parent = reader.number<std::int16_t>();
-    if (parent < -1 || parent >= kMostNodes) throw InvalidFile("has a node whose parent is not there");
+    if (parent < -1 || parent >= kMostNodes) throw InvalidFile("has a node whose parent does not exist");
     append(kept, parent);
     return kept;
   }
 
-  // The key of the earliest time, which places the node; without its spline.
+  // The key of the earliest time, without its spline: it gives the transform of the node.
   static std::string first_key(std::uint16_t id, Reader reader, std::size_t value_size) {
     constexpr std::size_t kTrackHeader = 10;
     constexpr int kSplineValues = 5;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kDigits = 6;
 
-// Beyond these a mesh in metres is improbable.
+// Extents [m] beyond which the unit of a mesh is probably not the metre.
 constexpr double kLargestUsual = 1000.0;
 constexpr double kSmallestUsual = 0.001;
 
@@ -24,7 +24,7 @@ void describe_surface(const TriangleMesh& mesh, MeshReport& report) {
   report.bounds = bounds(mesh.vertices);
   if (report.non_manifold_edges == 0) return;
   report.notes.push_back(std::to_string(report.non_manifold_edges) +
-                         " edge(s) have more than two faces: it has no inside, and is treated as a sheet");
+                         " edge(s) have more than two faces: the mesh has no inside and is treated as a sheet");
 }
 
 std::optional<std::string> unit_note(const Box3& bounds, double scale) {
@@ -32,7 +32,7 @@ std::optional<std::string> unit_note(const Box3& bounds, double scale) {
   const double extent = scale * bounds.sizes().maxCoeff();
   if (kSmallestUsual <= extent && extent <= kLargestUsual) return std::nullopt;
   const std::string size = "its largest extent is " + format_number(extent, kDigits) + " m";
-  if (scale != 1.0) return size + " with its \"scale\" of " + format_number(scale, kDigits) + ": is that meant?";
+  if (scale != 1.0) return size + " with \"scale\" " + format_number(scale, kDigits) + ": is that intended?";
   return size + ": if the file is not in metres, place it with a \"scale\"" +
          (extent > kLargestUsual ? ", 0.001 for millimetres" : "");
 }

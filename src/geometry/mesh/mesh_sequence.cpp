@@ -7,7 +7,7 @@ namespace sprung {
 
 namespace {
 
-// Times are multiples of a step, frames are at multiples of another: what rounding may leave between them, as a part of a frame.
+// Rounding may separate the time of a step from that of a frame: tolerance in frames.
 constexpr double kSameFrame = 1e-9;
 
 }  // namespace
@@ -19,32 +19,32 @@ bool MeshSequence::deforms() const {
 MeshSequence::Moment MeshSequence::at(double time) const {
   const auto count = static_cast<double>(frames.size());
   const double last = count - 1.0;
-  double place = (time - start) * frame_rate;
-  const double nearest = std::round(place);
-  if (std::abs(place - nearest) <= kSameFrame) place = nearest;
+  double time_in_frames = (time - start) * frame_rate;
+  const double nearest = std::round(time_in_frames);
+  if (std::abs(time_in_frames - nearest) <= kSameFrame) time_in_frames = nearest;
   if (loop) {
-    place -= count * std::floor(place / count);
-    if (place >= count) place = 0.0;  // a small negative one, rounded
+    time_in_frames -= count * std::floor(time_in_frames / count);
+    if (time_in_frames >= count) time_in_frames = 0.0;  // a small negative number, rounded
   } else {
-    place = std::clamp(place, 0.0, last);
+    time_in_frames = std::clamp(time_in_frames, 0.0, last);
   }
-  const double frame = std::floor(place);
+  const double frame = std::floor(time_in_frames);
   const double next = frame < last ? frame + 1.0 : loop ? 0.0 : last;
-  return {static_cast<Index>(frame), static_cast<Index>(next), place - frame};
+  return {static_cast<Index>(frame), static_cast<Index>(next), time_in_frames - frame};
 }
 
-// a + part (b - a) has a's bits where the frames agree, and never passes b: part < 1 takes at least as much off as rounding of
-// b - a may have added.
+// a + fraction (b - a) has the bits of a if the frames agree, and never passes b: fraction < 1 removes at least as much as
+// rounding of b - a may have added.
 Vector3 MeshSequence::position(Index vertex, const Moment& moment) const {
   const Vector3 a = frames[moment.frame].col(vertex);
   const Vector3 b = frames[moment.next].col(vertex);
-  return a + moment.part * (b - a);
+  return a + moment.fraction * (b - a);
 }
 
 void MeshSequence::positions(const Moment& moment, Points& positions) const {
   const Points& a = frames[moment.frame];
   const Points& b = frames[moment.next];
-  positions = a + moment.part * (b - a);
+  positions = a + moment.fraction * (b - a);
 }
 
 }  // namespace sprung

@@ -33,7 +33,7 @@ void append_faces(std::string& text, const PolygonFaces& faces) {
   }
 }
 
-// Edges that follow each other become one polyline, as a rope is drawn.
+// Edges that follow each other become one polyline.
 void append_lines(std::string& text, const Edges& lines) {
   for (Index e = 0; e < lines.cols(); ++e) {
     if (e == 0 || lines(0, e) != lines(1, e - 1)) {

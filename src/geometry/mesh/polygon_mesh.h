@@ -1,5 +1,5 @@
-// Meshes whose vertex order, polygons, UVs and groups must survive: what simulated bodies are read from and written to (OBJ).
-// Normals are left out: a body deforms.
+// Meshes that keep vertex order, polygons, UVs and groups: simulated bodies are read from and written to them (OBJ). Normals are
+// left out, because a body deforms.
 #pragma once
 
 #include "base/types.h"
@@ -11,7 +11,7 @@
 
 namespace sprung {
 
-/// Faces as given, with what an OBJ file says of their corners.
+/// Faces as given, with the attributes that an OBJ file gives their corners.
 struct PolygonFaces {
   std::vector<Index> corner_begin{0};  ///< face f has corners [corner_begin[f], corner_begin[f + 1])
   std::vector<Index> vertex;           ///< per corner
@@ -23,10 +23,10 @@ struct PolygonFaces {
   [[nodiscard]] Index face_count() const { return static_cast<Index>(corner_begin.size()) - 1; }
 };
 
-/// Fans each polygon from its first corner.
+/// Cuts each polygon into a fan of triangles around its first corner.
 [[nodiscard]] Triangles triangulate(const PolygonFaces& faces);
 
-/// One face a triangle, no attributes.
+/// One face per triangle, without attributes.
 [[nodiscard]] PolygonFaces to_polygons(const Triangles& triangles);
 
 struct PolygonMesh {
@@ -35,13 +35,13 @@ struct PolygonMesh {
   Edges lines;  ///< `l` elements, as edges
 };
 
-/// Reads an OBJ file, keeping the order of vertices and faces; numbers are the nearest doubles. Throws InputError naming the file
-/// when it is missing, cannot be read or has no vertices, and each line or face that holds a number that is not finite, an index
-/// out of range, fewer than three corners or a corner twice.
+/// Reads an OBJ file and keeps the order of vertices and faces. Numbers are rounded to the nearest double. Throws InputError that
+/// names the file if it is missing, cannot be read or has no vertices, and names each line or face with a number that is not
+/// finite, an index out of range, fewer than three corners or a repeated corner.
 [[nodiscard]] PolygonMesh read_obj(const std::filesystem::path& file);
 
-/// OBJ text: `v` lines in order, then `vt`, then `f` (with groups) and `l` lines. Numbers are the shortest that read back equal, so
-/// `read_obj` gives back the same mesh, bit for bit.
+/// OBJ text: `v` lines in order, then `vt`, then `f` (with groups) and `l` lines. Each number is the shortest text that reads back
+/// as the same double, so `read_obj` returns the same mesh, bit for bit.
 [[nodiscard]] std::string obj_text(const Points& vertices, const PolygonFaces& faces, const Edges& lines);
 
 }  // namespace sprung

@@ -17,7 +17,7 @@ double corner_angle(const TriangleMesh& mesh, Index triangle, int corner) {
   return std::atan2(u.cross(v).norm(), u.dot(v));
 }
 
-/// Sums the face normals beside each edge; sides of one edge are found by sorting.
+/// Sums the face normals at each edge. Sorting brings the sides of an edge together.
 void add_edge_normals(const Triangles& triangles, const Points& face, Points& edge) {
   struct Side {
     Index low;
@@ -46,7 +46,7 @@ void add_edge_normals(const Triangles& triangles, const Points& face, Points& ed
 
 Vector3 face_normal(const TriangleMesh& mesh, Index triangle) { return area_normal(mesh, triangle).normalized(); }
 
-/// The corner of the triangle that is the vertex; 3 when none is.
+/// The corner of the triangle at the vertex; 3 if it is not a corner.
 int corner_at(const TriangleMesh& mesh, Index triangle, Index vertex) {
   int corner = 0;
   while (corner < 3 && mesh.triangles(corner, triangle) != vertex) ++corner;

@@ -17,7 +17,7 @@ struct TriangleMesh {
 [[nodiscard]] Vector3 area_normal(const TriangleMesh& mesh, Index triangle);
 [[nodiscard]] Vector3 area_normal(const Vector3& a, const Vector3& b, const Vector3& c);
 
-/// Enclosed volume [m^3] by the divergence theorem; meaningful for closed meshes only, negative when turned inside out.
+/// Enclosed volume [m^3] by the divergence theorem. Requires a closed mesh; negative if its faces point inwards.
 [[nodiscard]] double signed_volume(const TriangleMesh& mesh);
 [[nodiscard]] double signed_volume(const Points& vertices, const Triangles& triangles);
 

@@ -12,7 +12,7 @@ struct SineCosine {
   double cosine;
 };
 
-// Reduced to a quadrant first, so that quarter turns are exact and whole turns bring back the same bits.
+// Reduces to a quadrant first, so that quarter turns are exact and whole turns return the same bits.
 SineCosine sine_cosine(double degrees) {
   const double turn = std::remainder(degrees, 360.0);
   const double quarters = std::nearbyint(turn / 90.0);

@@ -1,4 +1,4 @@
-// Prescribed rigid motion: of obstacles, and of pinned particles.
+// Prescribed rigid motion of obstacles and of pinned particles.
 #pragma once
 
 #include "base/types.h"
@@ -18,20 +18,20 @@ struct Keyframe {
 
 enum class Interpolation : std::uint8_t { linear, smooth };
 
-/// Keyframes, whose components interpolate linearly or smoothly and hold outside their range, and a spin that turns for ever
-/// after them. Default: no motion.
+/// Keyframes and a spin. The components of keyframes are interpolated linearly or smoothly, and constant outside their range. The
+/// spin turns without end and is applied after the keyframes. Default: no motion.
 struct Motion {
   std::vector<Keyframe> keyframes{};                    ///< times strictly increasing
   Interpolation interpolation = Interpolation::linear;  ///< smooth: 3 s^2 - 2 s^3 between two keyframes
-  Vector3 spin = Vector3::Zero();                       ///< angular velocity vector [degrees/s], through the placed origin
+  Vector3 spin = Vector3::Zero();                       ///< angular velocity vector [degrees/s] about the placed origin
 
-  /// False when the pose is the same at all times.
+  /// False if the pose is the same at all times.
   [[nodiscard]] bool moves() const;
 
-  /// The most by which it turns, there and back, between two times [degrees].
+  /// Upper bound of the angle turned between two times, forth and back added [degrees].
   [[nodiscard]] double turn(double begin, double end) const;
 
-  /// Where a thing placed at `placed` is at `time` [s].
+  /// The pose at `time` [s] of an object that is placed at `placed`.
   [[nodiscard]] RigidTransform pose(const RigidTransform& placed, double time) const;
 };
 

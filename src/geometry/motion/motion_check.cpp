@@ -14,7 +14,7 @@ void check_motion(const std::string& key, const Motion& motion, ProblemList& pro
         return std::isfinite(frame.time) && frame.position.allFinite() && frame.rotation.allFinite();
       },
       [&](std::size_t k) { return "time " + format_number(motion.keyframes[k].time); },
-      EntryRule{key + ".keyframes", "must hold finite numbers", "give times in s, positions in m and rotations in degrees"});
+      EntryRule{key + ".keyframes", "must be finite numbers", "give times in s, positions in m and rotations in degrees"});
   problems.require_each(
       motion.keyframes.size(), [&](std::size_t k) { return k == 0 || !(motion.keyframes[k].time <= motion.keyframes[k - 1].time); },
       [&](std::size_t k) { return "time " + format_number(motion.keyframes[k].time); },

@@ -1,4 +1,4 @@
-// The rules that a prescribed motion must keep.
+// The rules for a prescribed motion.
 #pragma once
 
 #include "base/problem_list.h"
@@ -8,8 +8,8 @@
 
 namespace sprung {
 
-/// Adds what is wrong with a motion: keyframes or a spin that are not finite, keyframes that are not later than the one before;
-/// `key` is the start of the keys, such as `pins[0].motion`.
+/// Adds the problems of a motion: keyframes or a spin that are not finite, and keyframes that are not later than the previous one.
+/// `key` is the prefix of the keys, such as `pins[0].motion`.
 void check_motion(const std::string& key, const Motion& motion, ProblemList& problems);
 
 }  // namespace sprung

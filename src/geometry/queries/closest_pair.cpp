@@ -11,22 +11,22 @@ namespace sprung {
 
 namespace {
 
-// A plane that separates by all but this part of a distance proves it to be the least.
+// A plane that separates by the distance, up to this fraction, proves that the distance is the least one.
 constexpr double kRounding = 1e-12;
 
 using Corners = std::array<Vector3, 3>;
 
-/// The corners of the simplex against the triangle, a lane a corner; then those of the triangle against the simplex.
+/// The corners of the simplex against the triangle, one lane per corner; then the corners of the triangle against the simplex.
 struct CornerPairs {
   std::array<ClosestPointLanes, 2> closest;
 };
 
-/// A lane an edge of the triangle, for each edge of the simplex.
+/// For each edge of the simplex, one lane per edge of the triangle.
 struct EdgePairs {
   std::array<SegmentPairLanes, 3> closest;
 };
 
-/// Double4 beyond `count` repeat the last point.
+/// Lanes beyond `count` repeat the last point.
 [[gnu::always_inline]] inline void measure(const Corners& points, int count, const Corners& triangle, ClosestPointLanes& closest) {
   Vector3x4 p;
   for (int lane = 0; lane < kSimdWidth; ++lane) set_lane(lane, points[static_cast<std::size_t>(std::min(lane, count - 1))], p);
@@ -53,7 +53,7 @@ SPRUNG_KERNEL void measure_corners(const Simplex& simplex, const Corners& triang
   if (simplex.count == 3) measure(triangle, 3, simplex.x, pairs.closest[1]);
 }
 
-/// Double4 beyond the third repeat the first edge of the triangle.
+/// The fourth lane repeats the first edge of the triangle.
 [[gnu::always_inline]] inline void measure(const Vector3& from, const Vector3& to, const Corners& triangle,
                                            SegmentPairLanes& closest) {
   SegmentLanes segment;
@@ -82,42 +82,42 @@ SPRUNG_KERNEL void measure_edges(const Simplex& simplex, const Corners& triangle
   measure(simplex.x[2], simplex.x[0], triangle, pairs.closest[2]);
 }
 
-struct Place {
+struct Slot {
   std::size_t group = 0;
   int lane = 0;
 };
 
-/// The least of three distances in each of so many groups.
+/// The slot of the least distance in the first three lanes of each group.
 template <class Groups>
-Place least(const Groups& groups, std::size_t count) {
-  Place best;
+Slot least(const Groups& groups, std::size_t count) {
+  Slot best;
   for (std::size_t group = 0; group < count; ++group) {
     for (int lane = 0; lane < 3; ++lane) {
       const bool less = groups[group].squared_distance[lane] < groups[best.group].squared_distance[best.lane];
-      best = less ? Place{group, lane} : best;
+      best = less ? Slot{group, lane} : best;
     }
   }
   return best;
 }
 
-/// Keeps the nearest pair that it is shown.
+/// Keeps the nearest of the pairs that it has computed.
 class NearestPair {
  public:
   NearestPair(const Simplex& simplex, const Corners& triangle) : simplex_(simplex), triangle_(triangle) {}
 
-  /// What lies at a place where a pair may lie.
-  void look_at(const PairPlace& place) {
-    const std::size_t i = place.of_simplex;
-    const std::size_t k = place.of_triangle;
-    if (place.features == PairFeatures::corner_face) {
-      keep_corner(place, closest_point_on_triangle(simplex_.x[i], triangle_[0], triangle_[1], triangle_[2]).point);
-    } else if (place.features == PairFeatures::face_corner) {
+  /// Takes the pair on these features as the nearest one.
+  void consider(const FeaturePair& features) {
+    const std::size_t i = features.of_simplex;
+    const std::size_t k = features.of_triangle;
+    if (features.kind == FeaturePairKind::corner_face) {
+      keep_corner(features, closest_point_on_triangle(simplex_.x[i], triangle_[0], triangle_[1], triangle_[2]).point);
+    } else if (features.kind == FeaturePairKind::face_corner) {
       const auto& [a, b, c] = simplex_.x;
       const ClosestPoint closest = closest_point_on_triangle(triangle_[k], a, b, c);
-      keep_face(place, closest.point, barycentric(closest, a, b, c));
+      keep_face(features, closest.point, barycentric(closest, a, b, c));
     } else {
       const SegmentPair pair = closest_points_of_segments(simplex_.x[i], simplex_.x[next(i)], triangle_[k], triangle_[(k + 1) % 3]);
-      keep_edges(place, pair.s, pair.t);
+      keep_edges(features, pair.s, pair.t);
     }
     best_.squared_distance = (best_.on_simplex - best_.on_triangle).squaredNorm();
   }
@@ -130,9 +130,10 @@ class NearestPair {
     const Vector3 point(closest.point.x[lane], closest.point.y[lane], closest.point.z[lane]);
     best_.squared_distance = closest.squared_distance[lane];
     if (group == 0) {
-      keep_corner({PairFeatures::corner_face, number(std::min(lane, simplex_.count - 1)), 0}, point);
+      keep_corner({FeaturePairKind::corner_face, number(std::min(lane, simplex_.count - 1)), 0}, point);
     } else {
-      keep_face({PairFeatures::face_corner, 0, number(lane)}, point, {closest.of_a[lane], closest.of_b[lane], closest.of_c[lane]});
+      keep_face({FeaturePairKind::face_corner, 0, number(lane)}, point,
+                {closest.of_a[lane], closest.of_b[lane], closest.of_c[lane]});
     }
   }
 
@@ -142,11 +143,11 @@ class NearestPair {
     const auto [i, lane] = least(pairs.closest, simplex_.count == 3 ? 3 : 1);
     const SegmentPairLanes& closest = pairs.closest[i];
     if (closest.squared_distance[lane] >= best_.squared_distance) return;
-    keep_edges({PairFeatures::edges, static_cast<std::uint8_t>(i), number(lane)}, closest.s[lane], closest.t[lane]);
+    keep_edges({FeaturePairKind::edges, static_cast<std::uint8_t>(i), number(lane)}, closest.s[lane], closest.t[lane]);
     best_.squared_distance = closest.squared_distance[lane];
   }
 
-  /// Whether the plane across the best pair separates by this part of its distance.
+  /// Whether the plane across the best pair separates by this fraction of its distance.
   [[nodiscard]] bool separates(double part) const {
     const Vector3 along = best_.on_simplex - best_.on_triangle;
     double lowest = along.dot(simplex_.x[0]);
@@ -161,24 +162,24 @@ class NearestPair {
   static std::uint8_t number(int lane) { return static_cast<std::uint8_t>(lane); }
   [[nodiscard]] std::size_t next(std::size_t corner) const { return (corner + 1) % static_cast<std::size_t>(simplex_.count); }
 
-  void keep_corner(const PairPlace& place, const Vector3& on_triangle) {
-    best_.place = place;
-    best_.on_simplex = simplex_.x[place.of_simplex];
+  void keep_corner(const FeaturePair& features, const Vector3& on_triangle) {
+    best_.features = features;
+    best_.on_simplex = simplex_.x[features.of_simplex];
     best_.on_triangle = on_triangle;
-    best_.weights = Vector3::Unit(place.of_simplex);
+    best_.weights = Vector3::Unit(features.of_simplex);
   }
 
-  void keep_face(const PairPlace& place, const Vector3& on_simplex, const Vector3& weights) {
-    best_.place = place;
+  void keep_face(const FeaturePair& features, const Vector3& on_simplex, const Vector3& weights) {
+    best_.features = features;
     best_.on_simplex = on_simplex;
-    best_.on_triangle = triangle_[place.of_triangle];
+    best_.on_triangle = triangle_[features.of_triangle];
     best_.weights = weights;
   }
 
-  void keep_edges(const PairPlace& place, double s, double t) {
-    const std::size_t i = place.of_simplex;
-    const std::size_t k = place.of_triangle;
-    best_.place = place;
+  void keep_edges(const FeaturePair& features, double s, double t) {
+    const std::size_t i = features.of_simplex;
+    const std::size_t k = features.of_triangle;
+    best_.features = features;
     best_.on_simplex = simplex_.x[i] + s * (simplex_.x[next(i)] - simplex_.x[i]);
     best_.on_triangle = triangle_[k] + t * (triangle_[(k + 1) % 3] - triangle_[k]);
     best_.weights.setZero();
@@ -208,7 +209,8 @@ SegmentPair closest_points_of_segments(const Vector3& a0, const Vector3& a1, con
   } else {
     const double ab = along_a.dot(along_b);
     const double sine2 = aa * bb - ab * ab;
-    // Nearly parallel segments have a pair at one of their ends; below this, rounding of sine2 could put it anywhere.
+    // Nearly parallel segments have a closest pair at one of their ends. Below this bound, rounding of sine2 could put the pair
+    // anywhere.
     if (sine2 > 1e-14 * aa * bb) pair.s = std::clamp((ab * from_b - from_a * bb) / sine2, 0.0, 1.0);
     pair.t = (ab * pair.s + from_b) / bb;
     if (pair.t < 0.0 || pair.t > 1.0) {
@@ -239,14 +241,14 @@ Vector3 barycentric(const ClosestPoint& closest, const Vector3& a, const Vector3
 }
 
 ClosestPair closest_pair(const Simplex& simplex, const std::array<Vector3, 3>& triangle, double slack, double exact,
-                         const PairPlace& last) {
+                         const FeaturePair& last) {
   NearestPair nearest(simplex, triangle);
   const auto is_proved = [&] {
     const double allowed = nearest.best().squared_distance < exact * exact ? kRounding : std::max(slack, kRounding);
     return nearest.separates(1.0 - allowed);
   };
-  if (last.features != PairFeatures::unknown) {
-    nearest.look_at(last);
+  if (last.kind != FeaturePairKind::unknown) {
+    nearest.consider(last);
     if (is_proved()) return nearest.best();
   }
   nearest.corners_against_faces();

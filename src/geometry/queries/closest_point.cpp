@@ -10,7 +10,7 @@ ClosestPoint at(const Vector3& p, const Vector3& point, TriangleFeature feature)
   return {point, (p - point).squaredNorm(), feature};
 }
 
-/// The nearest of the three edges: what is left of a triangle so thin that its inside has no numbers to be found with.
+/// The closest point on the three edges, for a triangle so thin that rounding prevents a closest point inside.
 ClosestPoint closest_on_edges(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3* corners[] = {&a, &b, &c};
   ClosestPoint best = at(p, a, TriangleFeature::vertex0);
@@ -42,7 +42,7 @@ ClosestPoint closest_point_on_triangle(const Vector3& p, const Vector3& a, const
   const double d4 = ac.dot(bp);
   if (d3 >= 0.0 && d4 <= d3) return at(p, b, TriangleFeature::vertex1);
 
-  // d1 > d3 and d2 > d6 keep edges without length out of the divisions.
+  // d1 > d3 and d2 > d6 avoid divisions by zero for edges without length.
   const double vc = d1 * d4 - d3 * d2;
   if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3) return at(p, a + d1 / (d1 - d3) * ab, TriangleFeature::edge01);
 
@@ -61,8 +61,8 @@ ClosestPoint closest_point_on_triangle(const Vector3& p, const Vector3& a, const
     return at(p, b + along_bc / (along_bc + along_cb) * (c - b), TriangleFeature::edge12);
   }
 
-  // va + vb + vc is the squared area of the parallelogram. When its sine at corner a is below 1e-5, rounding of the products above
-  // (1e-16 of |ab|^2 |ac|^2 and more) could shift the point along the needle by 1e-6 of its length and beyond.
+  // va + vb + vc is the squared area of the parallelogram. If its sine at corner a is below 1e-5, rounding of the products above
+  // (1e-16 of |ab|^2 |ac|^2 and more) could shift the point along the thin triangle by 1e-6 of its length and more.
   const double area2 = va + vb + vc;
   if (!(area2 > 1e-10 * ab.squaredNorm() * ac.squaredNorm())) return closest_on_edges(p, a, b, c);
   return at(p, a + vb / area2 * ab + vc / area2 * ac, TriangleFeature::face);

@@ -1,11 +1,11 @@
-// Closest points on a triangle, and the feature they lie on.
+// Closest points on a triangle, with the feature on which they lie.
 #pragma once
 
 #include "base/types.h"
 
 namespace sprung {
 
-/// Which part of a triangle a point lies on: a vertex (0, 1, 2), an edge (from corner 0, 1 or 2 to the next one), or the face.
+/// A feature of a triangle: a vertex (0, 1, 2), an edge (from corner 0, 1 or 2 to the next one), or the face.
 enum class TriangleFeature : std::uint8_t { vertex0, vertex1, vertex2, edge01, edge12, edge20, face };
 
 struct ClosestPoint {

@@ -1,4 +1,4 @@
-// Closest points of four triangles, each to its own point. For the .cpp files of kernels.
+// Closest points of four triangles, each to its own query point. For the .cpp files of kernels.
 #pragma once
 
 #include "base/simd.h"
@@ -12,7 +12,7 @@ struct TriangleLanes {
   Vector3x4 c;
 };
 
-/// The closest point is of_a a + of_b b + of_c c: exactly 0 for what it does not lie at.
+/// The closest point is of_a a + of_b b + of_c c. The weight of a corner that does not contribute is exactly 0.
 struct ClosestPointLanes {
   Vector3x4 point;
   Double4 of_a;
@@ -23,21 +23,21 @@ struct ClosestPointLanes {
 
 namespace detail {
 
-/// The closest point: base + (s along + t ac) / divisor.
+/// The closest point as base + (s along + t ac) / divisor.
 struct Foot {
   Vector3x4 base;
   Vector3x4 along;
   Double4 s;
   Double4 t;
   Double4 divisor;
-  Mask4 from_b;  ///< the base is b; else a, or
-  Mask4 from_c;  ///< c
+  Mask4 from_b;  ///< the base is b; if neither b nor c, it is a
+  Mask4 from_c;  ///< the base is c
   Mask4 on_face;
 };
 
 enum class Base : std::uint8_t { a, b, c };
 
-/// Puts the foot on an edge or a vertex in some lanes.
+/// Moves the foot to an edge or a vertex in the lanes of `where`.
 template <Base kBase>
 [[gnu::always_inline]] inline void put(const Mask4& where, const Vector3x4& base, const Vector3x4& along, const Double4& s,
                                        const Double4& t, const Double4& divisor, Foot& foot) {
@@ -57,8 +57,8 @@ template <Base kBase>
 
 }  // namespace detail
 
-/// Points and distances, to the last bit those of closest_point_on_triangle. The cases are the same, but what that function asks
-/// first is put last here, over all others. Returns the lanes whose triangles are so thin that they must be asked one by one.
+/// Points and distances, to the last bit those of closest_point_on_triangle. The cases are the same in reverse order: a later case
+/// overwrites an earlier one. Returns the lanes whose triangles are so thin that the caller must compute them one by one.
 [[nodiscard, gnu::always_inline]] inline unsigned closest_points(const Vector3x4& p, const TriangleLanes& triangles,
                                                                  ClosestPointLanes& closest) {
   using detail::Base;

@@ -10,10 +10,10 @@ struct SegmentLanes {
   Vector3x4 to;
 };
 
-/// The closest points are from + part (to - from).
+/// The closest points are from + s (to - from) and from + t (to - from).
 struct SegmentPairLanes {
-  Double4 s;                 ///< the part of the first
-  Double4 t;                 ///< the part of the second
+  Double4 s;                 ///< of the first segment
+  Double4 t;                 ///< of the second segment
   Double4 squared_distance;  ///< [m^2]
 };
 
@@ -28,8 +28,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// Parts and distances, to the last bit those of closest_points_of_segments. Returns the lanes with a segment without length, which
-/// must be asked one by one.
+/// Parameters and distances, to the last bit those of closest_points_of_segments. Returns the lanes with a segment of length 0,
+/// which the caller must compute one by one.
 [[nodiscard, gnu::always_inline]] inline unsigned closest_points(const SegmentLanes& a, const SegmentLanes& b,
                                                                  SegmentPairLanes& pairs) {
   const Double4 zero{};
@@ -61,7 +61,7 @@ namespace detail {
   apart.y = between.y + pairs.s * along_a.y - pairs.t * along_b.y;
   apart.z = between.z + pairs.s * along_a.z - pairs.t * along_b.z;
   dot(apart, apart, pairs.squared_distance);
-  const Mask4 is_point = (aa == zero) | (bb == zero);  // named, because to clang the comparison has a type of its own
+  const Mask4 is_point = (aa == zero) | (bb == zero);  // a named type, because clang gives the comparison another type
   return mask_bits(is_point);
 }
 

@@ -12,13 +12,13 @@ bool one_side(double s, double t, double r) { return (s >= 0.0 && t >= 0.0 && r 
 
 bool differ(double s, double t) { return (s >= 0.0 && t <= 0.0) || (s <= 0.0 && t >= 0.0); }
 
-/// Of a triangle with area, in the plane.
-bool holds(const std::array<Vector2, 3>& triangle, const Vector2& p) {
+/// Whether the triangle, which has an area, contains p; in the plane.
+bool contains(const std::array<Vector2, 3>& triangle, const Vector2& p) {
   return one_side(side_of_line(triangle[0], triangle[1], p), side_of_line(triangle[1], triangle[2], p),
                   side_of_line(triangle[2], triangle[0], p));
 }
 
-/// Right for segments on one line only where an end of one lies on the other, which `holds` has seen.
+/// False for collinear segments: if they overlap, `contains` or another edge of the triangle finds it.
 bool cross(const Vector2& a, const Vector2& b, const Vector2& c, const Vector2& d) {
   const double side_c = side_of_line(a, b, c);
   const double side_d = side_of_line(a, b, d);
@@ -26,13 +26,13 @@ bool cross(const Vector2& a, const Vector2& b, const Vector2& c, const Vector2& 
   return differ(side_c, side_d) && differ(side_of_line(c, d, a), side_of_line(c, d, b));
 }
 
-/// All points are in one plane: seen along an axis in which the triangle has area.
-bool meets_in_plane(const Vector3& a, const Vector3& b, const std::array<Vector3, 3>& triangle) {
+/// All points lie in one plane: projects along an axis in which the triangle has an area.
+bool intersects_in_plane(const Vector3& a, const Vector3& b, const std::array<Vector3, 3>& triangle) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto seen = [axis](const Vector3& p) { return Vector2(p[(axis + 1) % 3], p[(axis + 2) % 3]); };
     const std::array<Vector2, 3> corners{seen(triangle[0]), seen(triangle[1]), seen(triangle[2])};
     if (side_of_line(corners[0], corners[1], corners[2]) == 0.0) continue;
-    if (holds(corners, seen(a)) || holds(corners, seen(b))) return true;
+    if (contains(corners, seen(a)) || contains(corners, seen(b))) return true;
     for (std::size_t k = 0; k < 3; ++k) {
       if (cross(seen(a), seen(b), corners[k], corners[(k + 1) % 3])) return true;
     }
@@ -43,21 +43,21 @@ bool meets_in_plane(const Vector3& a, const Vector3& b, const std::array<Vector3
 
 }  // namespace
 
-bool meets(const Vector3& a, const Vector3& b, const std::array<Vector3, 3>& triangle) {
+bool intersects(const Vector3& a, const Vector3& b, const std::array<Vector3, 3>& triangle) {
   const auto& [u, v, w] = triangle;
   const double side_a = side_of_plane(u, v, w, a);
   const double side_b = side_of_plane(u, v, w, b);
   if (!differ(side_a, side_b)) return false;
-  if (side_a == 0.0 && side_b == 0.0) return meets_in_plane(a, b, triangle);
+  if (side_a == 0.0 && side_b == 0.0) return intersects_in_plane(a, b, triangle);
   return one_side(side_of_plane(a, b, u, v), side_of_plane(a, b, v, w), side_of_plane(a, b, w, u));
 }
 
-bool meets(const Simplex& simplex, const std::array<Vector3, 3>& triangle) {
+bool intersects(const Simplex& simplex, const std::array<Vector3, 3>& triangle) {
   const auto& x = simplex.x;
-  if (simplex.count == 1) return meets(x[0], x[0], triangle);
-  if (simplex.count == 2) return meets(x[0], x[1], triangle);
+  if (simplex.count == 1) return intersects(x[0], x[0], triangle);
+  if (simplex.count == 2) return intersects(x[0], x[1], triangle);
   for (std::size_t k = 0; k < 3; ++k) {
-    if (meets(x[k], x[(k + 1) % 3], triangle) || meets(triangle[k], triangle[(k + 1) % 3], x)) return true;
+    if (intersects(x[k], x[(k + 1) % 3], triangle) || intersects(triangle[k], triangle[(k + 1) % 3], x)) return true;
   }
   return false;
 }

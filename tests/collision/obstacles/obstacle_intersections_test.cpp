@@ -97,7 +97,8 @@ TEST(Intersections, ElementsThatCrossAMeshIntersectOneOfItsTriangles) {
     }
     for (Index t = 0; t < mesh.triangles.cols(); ++t) {
       const auto corner = mesh.triangles.col(t);
-      if (!meets(simplex, {mesh.vertices.col(corner[0]), mesh.vertices.col(corner[1]), mesh.vertices.col(corner[2])})) continue;
+      if (!intersects(simplex, {mesh.vertices.col(corner[0]), mesh.vertices.col(corner[1]), mesh.vertices.col(corner[2])}))
+        continue;
       expected.insert(element.particles[0]);
       break;
     }
@@ -211,7 +212,7 @@ TEST(SelfIntersections, AllIntersectingPairsAreReported) {
   for (const Element& a : network.elements) {
     for (const Element& b : network.elements) {
       // A particle on a face does not cross it, because nothing of it is on the other side.
-      if (a.corners < 2 || b.corners != 3 || a.particles[0] == b.particles[0] || !meets(simplex(a), simplex(b).x)) continue;
+      if (a.corners < 2 || b.corners != 3 || a.particles[0] == b.particles[0] || !intersects(simplex(a), simplex(b).x)) continue;
       expected.emplace(std::minmax(a.particles[0], b.particles[0]));
     }
   }

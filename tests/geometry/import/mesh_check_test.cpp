@@ -1,4 +1,4 @@
-// Files that made assimp abort, crash or lose faces, in the smallest form, each for all of its kind.
+// Minimal files that made assimp abort, crash or lose faces.
 #include "base/error.h"
 #include "geometry/fixtures.h"
 #include "geometry/import/mesh_import.h"
@@ -50,25 +50,25 @@ std::string ply(const std::string& face_type, const std::string& faces) {
 
 const std::string kList = "list uchar int vertex_indices";
 
-TEST_F(CheckedMesh, PlyFacesHaveCorners) {
+TEST_F(CheckedMesh, PlyFacesMustHaveCorners) {
   EXPECT_THAT(error_of("a.ply", ply(kList, "3 0 1 2\n0\n")), HasSubstr("face 2 must have one list of 1 to 10000 corners"));
   EXPECT_THAT(error_of("a.ply", ply(kList, "3 0 1 2\n-1\n")), HasSubstr("face 2 must have one list"));
   EXPECT_THAT(error_of("a.ply", ply(kList, "3 0 1 2\n20000 0\n")), HasSubstr("face 2 must have one list"));
   EXPECT_EQ(faces_of("a.ply", ply(kList, "3 0 1 2\n2 0 1\n")), 1);
 }
 
-TEST_F(CheckedMesh, PlyFacesMayStandOnSeveralLines) { EXPECT_EQ(faces_of("a.ply", ply(kList, "3 0\n1 2 3 0 1 3")), 2); }
+TEST_F(CheckedMesh, PlyFacesMaySpanSeveralLines) { EXPECT_EQ(faces_of("a.ply", ply(kList, "3 0\n1 2 3 0 1 3")), 2); }
 
-TEST_F(CheckedMesh, PlyCornersAreIntegersInRange) {
+TEST_F(CheckedMesh, PlyCornersMustBeIntegersInRange) {
   EXPECT_THAT(error_of("a.ply", ply(kList, "3 0 1 2\n3 0 1 -1\n")), HasSubstr("face 2 must refer to one of the 4 vertices"));
   EXPECT_THAT(error_of("a.ply", ply("list uchar float vertex_indices", "3 0 1 2\n3 0 1 3\n")), HasSubstr("cannot be read"));
-  EXPECT_THAT(error_of("a.ply", ply("list float int vertex_indices", "3 0 1 2\n3 0 1 3\n")), HasSubstr("no integer"));
+  EXPECT_THAT(error_of("a.ply", ply("list float int vertex_indices", "3 0 1 2\n3 0 1 3\n")), HasSubstr("not an integer"));
 }
 
-TEST_F(CheckedMesh, PlyHeadersMakeSense) {
+TEST_F(CheckedMesh, MalformedPlyHeadersAreRefused) {
   const std::string good = ply(kList, "3 0 1 2\n3 0 1 3\n");
   ASSERT_EQ(faces_of("a.ply", good), 2);
-  EXPECT_THAT(error_of("a.ply", replaced(good, "element face", "element tristrips")), HasSubstr("strips"));
+  EXPECT_THAT(error_of("a.ply", replaced(good, "element face", "element tristrips")), HasSubstr("triangle strips"));
   EXPECT_THAT(error_of("a.ply", replaced(good, "element face", "element vertex")), HasSubstr("two elements \"vertex\""));
   EXPECT_THAT(error_of("a.ply", replaced(good, "element vertex", "element point")), HasSubstr("has no vertices"));
   EXPECT_THAT(error_of("a.ply", replaced(good, "float y", "list uchar float y")), HasSubstr("must have x, y and z"));
@@ -108,7 +108,7 @@ TEST_F(CheckedMesh, StlTextIsReadInAnyCaseAndWithAnyName) {
   EXPECT_THAT(error_of("a.stl", "facets"), HasSubstr("must begin with"));
 }
 
-TEST_F(CheckedMesh, ObjWeightsAreNotZero) {
+TEST_F(CheckedMesh, ObjWeightsMustNotBeZero) {
   const std::string rest = "v 2 0 0 2\nv 0 1 0\nf 1 2 3\n";
   const TriangleMesh mesh = import_mesh(write("a.obj", "v 0 0 0 1 0 0\n" + rest)).mesh;
   EXPECT_EQ(mesh.vertices, test::make_points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
@@ -123,15 +123,14 @@ TEST_F(CheckedMesh, ObjFacesAndNamesMayBeLong) {
   EXPECT_THAT(error_of("a.obj", "v 0 0 0\n" + face + "\n"), HasSubstr("line 2: a face must have at most 10000 corners"));
 }
 
-TEST_F(CheckedMesh, GltfNodesAreTrees) {
-  EXPECT_THAT(error_of("a.gltf", replaced(cube_gltf(), "{ \"mesh\": 0,", "{ \"children\": [0],")),
-              HasSubstr("node 0 in two places"));
+TEST_F(CheckedMesh, GltfNodesMustFormTrees) {
+  EXPECT_THAT(error_of("a.gltf", replaced(cube_gltf(), "{ \"mesh\": 0,", "{ \"children\": [0],")), HasSubstr("node 0 twice"));
   EXPECT_THAT(error_of("a.gltf", replaced(cube_gltf(), "\"children\": [1]", "\"children\": [7]")),
               HasSubstr("number 7 of \"nodes\""));
   EXPECT_THAT(error_of("a.gltf", replaced(cube_gltf(), "[1, 1, 1]", "[1, 1]")), HasSubstr("3 finite numbers"));
 }
 
-TEST_F(CheckedMesh, GltfAccessorsStayInTheirBuffers) {
+TEST_F(CheckedMesh, GltfAccessorsMustStayWithinTheirBuffers) {
   for (const auto& [from, to] : {std::pair{"\"byteOffset\": 0", "\"byteOffset\": 100"},
                                  {"\"count\": 8", "\"count\": 2000000000"},
                                  {"\"byteOffset\": 0", "\"byteStride\": 300"},
@@ -158,7 +157,7 @@ TEST_F(CheckedMesh, GltfOfOtherVersionsAndCompressedGltfIsRefused) {
   EXPECT_THAT(error_of("a.gltf", replaced(cube_gltf(), "\"attributes\"", draco)), HasSubstr("Draco"));
 }
 
-TEST_F(CheckedMesh, GltfBuffersMayLieBesideTheFile) {
+TEST_F(CheckedMesh, GltfBuffersMayBeSeparateFiles) {
   // Little-endian floats of a triangle; the first index byte of each pair.
   std::string buffer(36, '\0');
   buffer.replace(12, 4, std::string("\0\0\x80\x3F", 4));
@@ -176,18 +175,18 @@ TEST_F(CheckedMesh, GltfBuffersMayLieBesideTheFile) {
 }
 
 // The parent is the last number of the file.
-TEST_F(CheckedMesh, ThreeDsNodesHaveAParentOrNone) {
+TEST_F(CheckedMesh, ThreeDsNodesMustHaveAnExistingParentOrNone) {
   std::string bytes = meshes::three_ds_bytes(test::make_cube());
   ASSERT_EQ(faces_of("a.3ds", bytes), 12);
   bytes[bytes.size() - 2] = '\xfe';
-  EXPECT_THAT(error_of("a.3ds", bytes), HasSubstr("a node whose parent is not there"));
+  EXPECT_THAT(error_of("a.3ds", bytes), HasSubstr("a node whose parent does not exist"));
 }
 
-TEST_F(CheckedMesh, ThreeDsChunksHoldTheirContent) {
+TEST_F(CheckedMesh, ThreeDsChunksMustBeComplete) {
   const std::string good = meshes::three_ds_bytes(test::make_cube());
   EXPECT_THAT(error_of("a.3ds", good.substr(0, good.size() - 1)), HasSubstr("is truncated"));
   EXPECT_THAT(error_of("a.3ds", replaced(good, std::string("shape\0", 6), "shapes")), HasSubstr("export it again"));
-  EXPECT_THAT(error_of("a.3ds", "MM"), HasSubstr("does not begin as a 3DS file does"));
+  EXPECT_THAT(error_of("a.3ds", "MM"), HasSubstr("does not begin like a 3DS file"));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ TriangleMesh flip(TriangleMesh mesh, std::initializer_list<Index> faces) {
   return mesh;
 }
 
-// Every face with corners of its own.
+// Each face has its own vertices.
 TriangleMesh unwelded(const TriangleMesh& mesh) {
   TriangleMesh soup{Points(3, mesh.triangles.size()), Triangles(3, mesh.triangles.cols())};
   for (Index i = 0; i < mesh.triangles.size(); ++i) {
@@ -54,13 +54,13 @@ TEST(CleanMesh, WeldsASoupIntoASurface) {
   EXPECT_DOUBLE_EQ(signed_volume(mesh), 1.0);
 }
 
-TEST(CleanMesh, TakesMinusZeroForZero) {
+TEST(CleanMesh, TreatsMinusZeroAsZero) {
   const TriangleMesh mesh{test::make_points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, 0, -0.0}, {1, -0.0, 0}, {0, -1, 0}}),
                           test::make_triangles({{0, 1, 2}, {4, 3, 5}})};
   EXPECT_EQ(clean_mesh(mesh).mesh.vertices.cols(), 4);
 }
 
-TEST(CleanMesh, KeepsNeighboursApart) {
+TEST(CleanMesh, KeepsVerticesOneRoundingApart) {
   const double next = std::nextafter(1.0, 2.0);
   const TriangleMesh mesh{test::make_points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {next, 0, 0}, {0, 0, 1}}),
                           test::make_triangles({{0, 1, 2}, {0, 3, 4}})};
@@ -73,12 +73,12 @@ TEST(CleanMesh, DropsFacesWithoutAreaAtAnyScale) {
                       test::make_triangles({{0, 1, 2}, {0, 1, 1}, {0, 3, 1}, {0, 4, 1}})};
     mesh.vertices *= scale;
     const MeshReport report = clean_mesh(mesh).report;
-    EXPECT_EQ(report.degenerate_faces, 2) << scale;  // the needle of height 1e-9 still has a normal
+    EXPECT_EQ(report.degenerate_faces, 2) << scale;  // the thin triangle of height 1e-9 still has a normal
     EXPECT_EQ(report.unused_vertices, 1) << scale;
   }
 }
 
-TEST(CleanMesh, DropsDuplicateFacesWhateverTheirWinding) {
+TEST(CleanMesh, DropsDuplicateFacesOfAnyWinding) {
   const TriangleMesh mesh{test::make_points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}),
                           test::make_triangles({{0, 1, 2}, {1, 2, 0}, {0, 2, 1}})};
   const auto [cleaned, report] = clean_mesh(mesh);
@@ -86,7 +86,7 @@ TEST(CleanMesh, DropsDuplicateFacesWhateverTheirWinding) {
   EXPECT_EQ(cleaned.triangles, test::make_triangles({{0, 1, 2}}));
 }
 
-TEST(CleanMesh, DropsAQuadThatIsThereWithBothDiagonals) {
+TEST(CleanMesh, DropsAQuadThatIsGivenWithBothDiagonals) {
   TriangleMesh mesh = test::make_cube();
   mesh.triangles.conservativeResize(3, 14);
   mesh.triangles.rightCols(2) = test::make_triangles({{0, 2, 3}, {0, 3, 1}});  // the cube has 0 2 1 and 1 2 3
@@ -103,7 +103,7 @@ TEST(CleanMesh, KeepsATetrahedron) {
 }
 
 TEST(CleanMesh, KeepsAWallBetweenTwoRooms) {
-  // Two cubes side by side with one wall between them: the wall's rim has three faces an edge, but the wall is there once.
+  // Two cubes with a common wall: the edges of the wall have three faces, but the wall exists once.
   TriangleMesh rooms = test::merge(test::make_cube(), test::make_cube(1.0, Vector3(1, 0, 0)));
   const auto [mesh, report] = clean_mesh(rooms);
   EXPECT_EQ(mesh.triangles.cols(), 22);
@@ -129,7 +129,7 @@ TEST(CleanMesh, TurnsFacesOutward) {
   EXPECT_EQ(clean_mesh(test::inside_out(test::make_cube())).report.flipped_faces, 12);
 }
 
-TEST(CleanMesh, TurnsAnySetOfFlippedFacesBack) {
+TEST(CleanMesh, RestoresAnySetOfFlippedFaces) {
   std::mt19937 random(7);
   for (int trial = 0; trial < 50; ++trial) {
     TriangleMesh mesh = test::make_cube();
@@ -140,7 +140,7 @@ TEST(CleanMesh, TurnsAnySetOfFlippedFacesBack) {
   }
 }
 
-TEST(CleanMesh, TurnsEachSeparatePartOutward) {
+TEST(CleanMesh, TurnsEachComponentOutward) {
   const TriangleMesh two = test::merge(test::inside_out(test::make_cube()), test::make_cube(1.0, Vector3(3, 0, 0)));
   const auto [mesh, report] = clean_mesh(two);
   EXPECT_EQ(report.components, 2);
@@ -162,7 +162,7 @@ TEST(CleanMesh, TurnsAnIslandInACavityOutward) {
   EXPECT_DOUBLE_EQ(signed_volume(clean_mesh(test::merge(island, hollow)).mesh), 125.0 - 27.0 + 1.0);
 }
 
-TEST(CleanMesh, TurnsAnOpenSheetAsMostOfItsFacesWere) {
+TEST(CleanMesh, OrientsAnOpenSheetLikeMostOfItsFaces) {
   const Triangles fan = test::make_triangles({{0, 1, 2}, {0, 2, 3}, {0, 4, 3}, {0, 4, 5}});
   const Points points = test::make_points({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 1, 0}, {-1, 0, 0}});
   const auto [mesh, report] = clean_mesh({points, fan});
@@ -172,18 +172,18 @@ TEST(CleanMesh, TurnsAnOpenSheetAsMostOfItsFacesWere) {
   EXPECT_FALSE(report.closed);
 }
 
-TEST(CleanMesh, TellsOfAMoebiusStrip) {
+TEST(CleanMesh, ReportsAMoebiusStrip) {
   // Five triangles in a band with a half turn.
   const TriangleMesh strip{test::make_points({{1, 0, 0}, {0.3, 0.9, 0.5}, {-0.8, 0.6, -0.4}, {-0.8, -0.6, 0.3}, {0.3, -0.9, -0.6}}),
                            test::make_triangles({{0, 1, 2}, {1, 2, 3}, {2, 3, 4}, {3, 4, 0}, {4, 0, 1}})};
   const MeshReport report = clean_mesh(strip).report;
-  EXPECT_THAT(report.notes, ElementsAre(HasSubstr("one side only")));
+  EXPECT_THAT(report.notes, ElementsAre(HasSubstr("one-sided")));
   EXPECT_FALSE(report.closed);
 }
 
-// Both sides of a square, cut along unlike diagonals: a tetrahedron without a height. As little of one as single precision leaves
-// makes no inside either; a hundred-thousandth of its size does.
-TEST(CleanMesh, TakesWhatIsClosedAroundNothingForASheet) {
+// Both sides of a square, cut along different diagonals: a tetrahedron without height. A height within single precision makes no
+// inside either; a height of 1e-5 of the size does.
+TEST(CleanMesh, TreatsAClosedSurfaceWithoutVolumeAsASheet) {
   for (const double height : {0.0, 1e-8, 1e-5}) {
     TriangleMesh mesh;
     mesh.vertices = (Points(3, 4) << -1, 1, 1, -1, height, 0, height, 0, -1, -1, 1, 1).finished();
@@ -192,13 +192,13 @@ TEST(CleanMesh, TakesWhatIsClosedAroundNothingForASheet) {
     EXPECT_EQ(report.border_edges, 0);
     EXPECT_EQ(report.closed, height == 1e-5) << height;
     if (!report.closed) {
-      EXPECT_THAT(report.notes, ElementsAre(HasSubstr("closed around no volume")));
+      EXPECT_THAT(report.notes, ElementsAre(HasSubstr("enclose no volume")));
     }
   }
 }
 
 TEST(CleanMesh, CountsNonManifoldEdges) {
-  // Two cubes that touch along an edge: four faces share it, yet both parts are known to be solid.
+  // Two cubes that touch along an edge: four faces share it, yet both cubes can be oriented outward.
   const auto [mesh, report] = clean_mesh(test::merge(test::inside_out(test::make_cube()), test::make_cube(1.0, Vector3(1, 1, 0))));
   EXPECT_EQ(report.non_manifold_edges, 1);
   EXPECT_EQ(report.components, 1);
@@ -210,7 +210,7 @@ std::string unit_note_of_cube(double side, double scale = 1.0) {
   return unit_note(bounds(test::make_cube(side).vertices), scale).value_or("");
 }
 
-TEST(UnitNote, AsksAboutWhatIsNotBetweenAMillimetreAndAKilometre) {
+TEST(UnitNote, AsksAboutSizesBelowAMillimetreOrAboveAKilometre) {
   EXPECT_THAT(unit_note_of_cube(2500.0), AllOf(HasSubstr("2500 m"), HasSubstr("\"scale\", 0.001 for millimetres")));
   EXPECT_THAT(unit_note_of_cube(0.0005), AllOf(HasSubstr("0.0005 m"), HasSubstr("\"scale\"")));
   EXPECT_EQ(unit_note_of_cube(1000.0), "");
@@ -218,12 +218,12 @@ TEST(UnitNote, AsksAboutWhatIsNotBetweenAMillimetreAndAKilometre) {
   EXPECT_EQ(unit_note(Box3()), std::nullopt);
 }
 
-TEST(UnitNote, JudgesTheSizeAsPlaced) {
+TEST(UnitNote, AppliesTheScaleOfThePlacement) {
   EXPECT_EQ(unit_note_of_cube(18000.0, 0.001), "");
-  EXPECT_THAT(unit_note_of_cube(18.0, 1000.0), AllOf(HasSubstr("18000 m"), HasSubstr("\"scale\" of 1000")));
+  EXPECT_THAT(unit_note_of_cube(18.0, 1000.0), AllOf(HasSubstr("18000 m"), HasSubstr("\"scale\" 1000")));
 }
 
-TEST(CleanMesh, OfNothingIsNothing) {
+TEST(CleanMesh, AnEmptyMeshStaysEmpty) {
   const auto [mesh, report] = clean_mesh({Points(3, 0), Triangles(3, 0)});
   EXPECT_EQ(mesh.triangles.cols(), 0);
   EXPECT_FALSE(report.closed);

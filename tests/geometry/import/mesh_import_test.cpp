@@ -20,7 +20,7 @@
 #include <set>
 
 #ifdef __SANITIZE_ADDRESS__
-// assimp leaks what it had read when it gives a damaged file up.
+// assimp leaks memory when it refuses a damaged file.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
 #endif
 
@@ -29,7 +29,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Closed, without any symmetry, and with coordinates that no float holds.
+// Closed, without any symmetry, and with coordinates that are not floats.
 TriangleMesh reference_shape() {
   TriangleMesh mesh = test::make_cube();
   std::mt19937 random(11);
@@ -37,7 +37,7 @@ TriangleMesh reference_shape() {
   return mesh;
 }
 
-// Text and binary are rounded to the nearest float, text perhaps to the one beside it.
+// Binary coordinates are rounded to the nearest float, text possibly to its neighbour.
 double float_tolerance(const TriangleMesh& mesh) {
   return 2.0 * std::numeric_limits<float>::epsilon() * mesh.vertices.cwiseAbs().maxCoeff();
 }
@@ -67,7 +67,7 @@ void expect_same_surface(const TriangleMesh& mesh, const TriangleMesh& expected)
   for (Index i = 0; i < mesh.vertices.cols(); ++i) {
     number.push_back(vertex_at(expected, mesh.vertices.col(i), float_tolerance(expected)));
     same.push_back(i);
-    ASSERT_NE(number.back(), kNone) << "vertex " << i << " is nowhere in the reference";
+    ASSERT_NE(number.back(), kNone) << "vertex " << i << " is missing in the reference";
   }
   EXPECT_EQ(face_set(mesh.triangles, number), face_set(expected.triangles, same));
 }
@@ -116,7 +116,7 @@ TEST_P(ImportFormat, RefusesAPositionThatIsNotFinite) {
   EXPECT_THROW((void)import_mesh(write(GetParam().name, GetParam().write(mesh))), InputError);
 }
 
-// Every prefix is refused with a reason; only a last digit or line end may be missing unnoticed.
+// Every prefix is refused with a reason. Only a missing last digit or line end may stay unnoticed.
 TEST_P(ImportFormat, RefusesEveryTruncation) {
   const std::string whole = GetParam().write(reference_shape());
   for (std::size_t length = 0; length + 3 < whole.size(); length += 1 + whole.size() / 97) {
@@ -131,7 +131,7 @@ TEST_P(ImportFormat, RefusesEveryTruncation) {
   }
 }
 
-// Neither a crash nor a hang nor an index that leads nowhere.
+// No crash, no endless loop and no index out of range.
 TEST_P(ImportFormat, SurvivesDamage) {
   const std::string whole = GetParam().write(reference_shape());
   std::mt19937 random(5);
@@ -200,14 +200,14 @@ TEST_F(ImportMesh, LeavesLinesOut) {
   EXPECT_TRUE(report.closed);
 }
 
-TEST_F(ImportMesh, TakesIndentedLinesAndCoordinatesWithoutADigitBeforeThePoint) {
+TEST_F(ImportMesh, AcceptsIndentedLinesAndCoordinatesWithoutADigitBeforeThePoint) {
   const auto file = write("points.obj", "v 0 0 0\nv .5 0 0\n\tv\t0 +.5 0\nv -.5 .25 .0\nf 1 2 3\n  f 1 3\t4\n");
   const TriangleMesh mesh = import_mesh(file).mesh;
   EXPECT_EQ(mesh.vertices, (Points(3, 4) << 0, 0.5, 0, -0.5, 0, 0, 0.5, 0.25, 0, 0, 0, 0).finished());
   EXPECT_EQ(mesh.triangles.cols(), 2);
 }
 
-TEST_F(ImportMesh, TakesAByteOrderMark) {
+TEST_F(ImportMesh, AcceptsAByteOrderMark) {
   const auto file = write("mark.obj", "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   EXPECT_EQ(import_mesh(file).mesh.vertices.cols(), 3);
   EXPECT_EQ(read_obj(file).vertices.cols(), 3);
@@ -225,39 +225,39 @@ TEST_F(ImportMesh, AppliesNodeTransforms) {
   const meshes::Place outer{"[1, 1, 1]", "[0, 0, 0, 1]", "[10, 0, 0]"};
   const meshes::Place inner{"[2, 3, 4]", "[0, 0.7071067811865476, 0, 0.7071067811865476]", "[0, 5, 0]"};
   const auto [mesh, report] = import_mesh(write("nodes.gltf", meshes::gltf_text(test::make_cube(), outer, inner)));
-  // A quarter turn about y takes x to -z and z to x. The quaternion is a float one: 1 unit of 2^-24 in each of three products.
+  // A quarter turn about y maps x to -z and z to x. The quaternion consists of floats: an error of 2^-24 in each of three products.
   const double tolerance = 4.0 * 3.0 * std::numeric_limits<float>::epsilon();
   EXPECT_LE((report.bounds.min() - Vector3(10, 5, -2)).cwiseAbs().maxCoeff(), tolerance);
   EXPECT_LE((report.bounds.max() - Vector3(14, 8, 0)).cwiseAbs().maxCoeff(), tolerance);
   EXPECT_NEAR(signed_volume(mesh), 24.0, 24.0 * tolerance);
 }
 
-TEST_F(ImportMesh, KeepsAnOpenSheetsSideInAMirror) {
+TEST_F(ImportMesh, KeepsTheFrontSideOfAMirroredSheet) {
   const TriangleMesh sheet{test::make_points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), test::make_triangles({{0, 1, 2}})};
   const meshes::Place mirror{"[-1, 1, 1]", "[0, 0, 0, 1]", "[0, 0, 0]"};
   const TriangleMesh mesh = import_mesh(write("mirror.gltf", meshes::gltf_text(sheet, kHere, mirror))).mesh;
   EXPECT_GT(area_normal(mesh, 0).z(), 0.0);
 }
 
-TEST_F(ImportMesh, TakesAnyCaseOfTheExtension) {
+TEST_F(ImportMesh, AcceptsAnyCaseOfTheExtension) {
   EXPECT_TRUE(import_mesh(write("CUBE.OBJ", obj(test::make_cube()))).report.closed);
 }
 
-TEST_F(ImportMesh, RefusesWhatIsNoFile) {
+TEST_F(ImportMesh, RefusesMissingAndEmptyFilesAndFolders) {
   EXPECT_THAT(error_of(folder() / "missing.obj"), HasSubstr("does not exist"));
   std::filesystem::create_directory(folder() / "folder.obj");
   EXPECT_THAT(error_of(folder() / "folder.obj"), HasSubstr("is a folder"));
   EXPECT_THAT(error_of("empty.stl", ""), HasSubstr("is empty"));
 }
 
-TEST_F(ImportMesh, RefusesWhatItMayNotRead) {
+TEST_F(ImportMesh, RefusesAFileWithoutReadPermission) {
   const std::filesystem::path file = write("secret.obj", obj(test::make_cube()));
   std::filesystem::permissions(file, std::filesystem::perms::none);
   const test::AsNobody nobody;
   EXPECT_THAT(error_of(file), HasSubstr("cannot be read: Permission denied"));
 }
 
-TEST_F(ImportMesh, RefusesOtherFormatsAndListsThoseItReads) {
+TEST_F(ImportMesh, RefusesOtherFormatsAndListsTheReadableOnes) {
   for (const std::string extension : {".raw", ".dae", ".fbx", ".blend", ".x", ".step9", ""}) {
     EXPECT_THAT(
         error_of("cube" + extension, "slab\n1 0 0 0 0 0\n"),
@@ -266,7 +266,7 @@ TEST_F(ImportMesh, RefusesOtherFormatsAndListsThoseItReads) {
   }
 }
 
-TEST_F(ImportMesh, RefusesWhatHasNoSurface) {
+TEST_F(ImportMesh, RefusesFilesWithoutASurface) {
   EXPECT_THAT(error_of("points.obj", "v 0 0 0\nv 1 0 0\n"), HasSubstr("has no faces"));
   EXPECT_THAT(error_of("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), HasSubstr("has no face with an area"));
 }
@@ -284,7 +284,7 @@ TEST_F(ImportMesh, RefusesIndicesOutOfRange) {
   EXPECT_THAT(error_of("a.3ds", meshes::three_ds_bytes(cube)), HasSubstr("face 6 must refer to one of the 8 vertices"));
 }
 
-TEST_F(ImportMesh, RefusesHeadersThatPromiseTooMuch) {
+TEST_F(ImportMesh, RefusesHeadersThatDeclareMoreThanTheFileContains) {
   EXPECT_THAT(error_of("a.off", "OFF\n4000000000 1 0\n0 0 0\n"), HasSubstr("is truncated"));
   std::string ply = meshes::ply_text(test::make_cube());
   EXPECT_THAT(error_of("a.ply", ply.replace(ply.find("vertex 8"), 8, "vertex 4000000000")), HasSubstr("4000000000"));

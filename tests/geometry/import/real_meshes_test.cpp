@@ -58,7 +58,7 @@ TEST(RealMesh, HorseIsReadFrom3ds) {
   const auto [mesh, report] = import_real("horse.3ds");
   EXPECT_EQ(mesh.vertices.cols(), 3582);
   EXPECT_EQ(report.components, 1);
-  EXPECT_EQ(report.duplicate_faces, 12);  // six quads are there with both diagonals
+  EXPECT_EQ(report.duplicate_faces, 12);  // six quads exist with both diagonals
   EXPECT_TRUE(report.closed);
   EXPECT_GT(signed_volume(mesh), 0.0);
 }

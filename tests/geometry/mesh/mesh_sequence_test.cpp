@@ -27,7 +27,7 @@ MeshSequence sliding(bool loop) {
   return sequence;
 }
 
-double place_at(const MeshSequence& sequence, double time) {
+double x_at(const MeshSequence& sequence, double time) {
   Points positions;
   sequence.positions(sequence.at(time), positions);
   EXPECT_EQ(positions.col(1), sequence.position(1, sequence.at(time)));
@@ -35,39 +35,39 @@ double place_at(const MeshSequence& sequence, double time) {
   return positions(0, 1);
 }
 
-TEST(MeshSequence, MovesInStraightLinesBetweenFramesAndHoldsOutside) {
+TEST(MeshSequence, VerticesMoveInStraightLinesBetweenFramesAndRestOutside) {
   const MeshSequence sequence = sliding(false);
-  EXPECT_EQ(place_at(sequence, -7.0), 0.0);
-  EXPECT_EQ(place_at(sequence, 1.0), 0.0);
-  EXPECT_EQ(place_at(sequence, 1.125), 0.25);
-  EXPECT_EQ(place_at(sequence, 1.5), 1.0);
-  EXPECT_EQ(place_at(sequence, 1.75), 2.5);
-  EXPECT_EQ(place_at(sequence, 2.0), 4.0);
-  EXPECT_EQ(place_at(sequence, 1e9), 4.0);
+  EXPECT_EQ(x_at(sequence, -7.0), 0.0);
+  EXPECT_EQ(x_at(sequence, 1.0), 0.0);
+  EXPECT_EQ(x_at(sequence, 1.125), 0.25);
+  EXPECT_EQ(x_at(sequence, 1.5), 1.0);
+  EXPECT_EQ(x_at(sequence, 1.75), 2.5);
+  EXPECT_EQ(x_at(sequence, 2.0), 4.0);
+  EXPECT_EQ(x_at(sequence, 1e9), 4.0);
 }
 
-TEST(MeshSequence, LoopLeadsFromTheLastFrameToTheFirstForEver) {
+TEST(MeshSequence, ALoopContinuesFromTheLastFrameToTheFirst) {
   const MeshSequence sequence = sliding(true);
-  EXPECT_EQ(place_at(sequence, 2.0), 4.0);
-  EXPECT_EQ(place_at(sequence, 2.25), 2.0);
-  EXPECT_EQ(place_at(sequence, 2.5), 0.0);
-  EXPECT_EQ(place_at(sequence, 2.625), 0.25);
-  EXPECT_EQ(place_at(sequence, 1.0 + 1.5 * 1000000 + 0.75), 2.5);
-  EXPECT_EQ(place_at(sequence, 0.75), 2.0) << "before the start too";
-  EXPECT_EQ(place_at(sequence, std::nextafter(1.0, 0.0)), 0.0);
+  EXPECT_EQ(x_at(sequence, 2.0), 4.0);
+  EXPECT_EQ(x_at(sequence, 2.25), 2.0);
+  EXPECT_EQ(x_at(sequence, 2.5), 0.0);
+  EXPECT_EQ(x_at(sequence, 2.625), 0.25);
+  EXPECT_EQ(x_at(sequence, 1.0 + 1.5 * 1000000 + 0.75), 2.5);
+  EXPECT_EQ(x_at(sequence, 0.75), 2.0) << "also before the start";
+  EXPECT_EQ(x_at(sequence, std::nextafter(1.0, 0.0)), 0.0);
 }
 
-TEST(MeshSequence, TimesOfStepsMeetTheFramesBitForBit) {
+TEST(MeshSequence, StepsAtFrameTimesGiveTheFramesBitForBit) {
   MeshSequence sequence{.triangles = test::make_triangles({{0, 1, 2}}), .frames = {}, .frame_rate = 24.0};
   for (int k = 0; k < 100; ++k) {
     const double x = std::sin(k);
     sequence.frames.push_back(test::make_points({{x, 0, 0}, {x, 1, 0}, {x, 0, 1}}));
   }
   const double step = 1.0 / (24.0 * 7.0);
-  for (int k = 0; k < 100; ++k) EXPECT_EQ(place_at(sequence, 7 * k * step), std::sin(k));
+  for (int k = 0; k < 100; ++k) EXPECT_EQ(x_at(sequence, 7 * k * step), std::sin(k));
 }
 
-TEST(MeshSequence, StaysBetweenItsFramesToTheLastBit) {
+TEST(MeshSequence, PositionsLieBetweenThoseOfTheFramesToTheLastBit) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> between(-1.0, 1.0);
   const double almost_one = std::nextafter(1.0, 0.0);
@@ -75,8 +75,8 @@ TEST(MeshSequence, StaysBetweenItsFramesToTheLastBit) {
     const Vector3 a(between(random), between(random) * 1e-17, 1.0);
     const Vector3 b(between(random), between(random), i % 3 == 0 ? std::nextafter(1.0, 2.0) : 1.0);
     const MeshSequence sequence{.triangles = {}, .frames = {a, b}, .frame_rate = 1.0};
-    for (const double part : {std::abs(between(random)), almost_one, std::nextafter(almost_one, 0.0)}) {
-      const Vector3 at = sequence.position(0, {0, 1, part});
+    for (const double fraction : {std::abs(between(random)), almost_one, std::nextafter(almost_one, 0.0)}) {
+      const Vector3 at = sequence.position(0, {0, 1, fraction});
       EXPECT_TRUE((at.array() >= a.cwiseMin(b).array()).all() && (at.array() <= a.cwiseMax(b).array()).all()) << i;
     }
   }
@@ -89,7 +89,7 @@ TEST(MeshSequence, DeformsWhenAFrameDiffers) {
   EXPECT_FALSE(sequence.deforms());
 }
 
-// The faces of a cube with corners of their own, twice as large in the second frame.
+// The faces of a cube, each with its own vertices; twice as large in the second frame.
 MeshSequence growing_soup() {
   const TriangleMesh cube = test::make_cube();
   MeshSequence soup{.triangles = Triangles(3, 12), .frames = {Points(3, 36)}};
@@ -101,7 +101,7 @@ MeshSequence growing_soup() {
   return soup;
 }
 
-TEST(CleanSequence, WeldsWhatCoincidesInEveryFrame) {
+TEST(CleanSequence, WeldsVerticesThatCoincideInEveryFrame) {
   const auto [sequence, report] = clean_sequence(growing_soup());
   EXPECT_EQ(sequence.frames[0].cols(), 8);
   EXPECT_EQ(sequence.frames[1], 2.0 * sequence.frames[0]);
@@ -111,12 +111,12 @@ TEST(CleanSequence, WeldsWhatCoincidesInEveryFrame) {
   EXPECT_EQ(report.bounds.max(), Vector3(2, 2, 2));
 }
 
-TEST(CleanSequence, KeepsApartWhatCoincidesInSomeFramesOnly) {
+TEST(CleanSequence, KeepsVerticesApartThatCoincideInSomeFramesOnly) {
   MeshSequence torn = growing_soup();
   torn.frames[1].col(0) += Vector3(-1, -1, -1);
   const auto [sequence, report] = clean_sequence(torn);
   EXPECT_EQ(sequence.frames[0].cols(), 9);
-  EXPECT_FALSE(report.closed) << "one corner of a face leaves the others";
+  EXPECT_FALSE(report.closed) << "one vertex leaves those at its position";
 }
 
 TEST(CleanSequence, DropsFacesWithoutAreaInAnyFrame) {
@@ -171,7 +171,7 @@ TEST_F(ImportSequence, KeepsNumbersVerticesAndTheOrderOfFiles) {
   EXPECT_TRUE(report.closed);
 }
 
-TEST_F(ImportSequence, PolygonsAreFannedAlikeInAllFrames) {
+TEST_F(ImportSequence, PolygonsAreTriangulatedAlikeInAllFrames) {
   const std::string quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
   const ImportedSequence imported = import_sequence({write("a.obj", quad), write("b.obj", "v 0 0 1\n" + quad.substr(8))});
   EXPECT_EQ(imported.sequence.triangles, test::make_triangles({{0, 1, 2}, {0, 2, 3}}));
@@ -187,10 +187,10 @@ TEST_F(ImportSequence, RefusesFramesOfAnotherTopologyAllAtOnce) {
   const auto quads = write("quads.obj", vertices + "f 1 3 2\nf 1 2 4 3\nf 1 4 3\nf 2 3 4\n");
   const auto broken = write("broken.obj", vertices + "v 1 nan 3\n");
   EXPECT_THAT(problems({good, more, fewer, good, other, quads, broken, folder() / "none.obj", write("mesh.ply", "ply")}),
-              ElementsAre(problem("more.obj", "", "must be as many as in good.obj, which has 4"),
-                          problem("fewer.obj", "", "must be as many as in good.obj, which has 4"),
-                          problem("other.obj", "face 3", "must have the corners that it has in good.obj"),
-                          problem("quads.obj", "face 2", "must have the corners that it has in good.obj"),
+              ElementsAre(problem("more.obj", "", "must be equally many as in good.obj, which has 4"),
+                          problem("fewer.obj", "", "must be equally many as in good.obj, which has 4"),
+                          problem("other.obj", "face 3", "must have the same corners as in good.obj"),
+                          problem("quads.obj", "face 2", "must have the same corners as in good.obj"),
                           AllOf(Field(&Problem::file, EndsWith("broken.obj")), Field(&Problem::key, "line 5")),
                           problem("none.obj", "", "does not exist"), problem("mesh.ply", "", "must be an OBJ file")));
 }

@@ -67,7 +67,7 @@ TEST_F(ReadObj, ReadsTheNearestDouble) {
   EXPECT_EQ(mesh.vertices.col(0), Vector3(0.1234567890123456789, 1e-320, 3.3333333333333333333e5));
 }
 
-TEST_F(ReadObj, TakesAnyLineEndCommentAndContinuation) {
+TEST_F(ReadObj, AcceptsAnyLineEndCommentAndContinuation) {
   const PolygonMesh mesh = read("v 0 0 0 # origin\r\nv 1 0 \\\r\n 0\r\nv 0 1 0\rf 1 2 \\\n 3\n");
   EXPECT_EQ(mesh.vertices, test::make_points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   EXPECT_THAT(mesh.faces.vertex, ElementsAre(0, 1, 2));
@@ -104,7 +104,7 @@ TEST_F(ReadObj, RefusesIndicesOutOfRangeNamingTheFace) {
   }
 }
 
-TEST_F(ReadObj, RefusesFacesThatAreNoPolygons) {
+TEST_F(ReadObj, RefusesFacesThatAreNotPolygons) {
   EXPECT_THAT(error_of(kSquare + "f 1 2\n"), HasSubstr("line 5: a face must have at least three corners"));
   EXPECT_THAT(error_of(kSquare + "f\n"), HasSubstr("line 5"));
   EXPECT_THAT(error_of(kSquare + "f 1 2 3\nf 1 2 3 2\n"), HasSubstr("face 2 = 2: a face must not use a vertex twice"));
@@ -120,7 +120,7 @@ TEST_F(ReadObj, ReportsEveryProblemAndCountsTheRest) {
   EXPECT_THAT(error_of(many), HasSubstr("80 more problems"));
 }
 
-TEST_F(ReadObj, RefusesWhatIsNoMesh) {
+TEST_F(ReadObj, RefusesFilesWithoutAMesh) {
   EXPECT_THAT(error_of(""), HasSubstr("is empty"));
   EXPECT_THAT(error_of("# nothing\n"), HasSubstr("has no vertices"));
   EXPECT_THAT(error_of(std::string("\0\1\2\377\r\n\\", 7)), HasSubstr("has no vertices"));
@@ -128,7 +128,7 @@ TEST_F(ReadObj, RefusesWhatIsNoMesh) {
   EXPECT_THROW((void)read_obj(folder()), InputError);
 }
 
-TEST_F(ReadObj, OfWhatWasWrittenIsTheSameBitForBit) {
+TEST_F(ReadObj, RestoresAWrittenMeshBitForBit) {
   std::mt19937_64 random(3);
   PolygonMesh mesh;
   mesh.vertices.resize(3, 200);
@@ -157,7 +157,7 @@ TEST_F(ReadObj, OfWhatWasWrittenIsTheSameBitForBit) {
   EXPECT_EQ(back.lines, mesh.lines);
 }
 
-TEST(ObjText, DrawsARopeAsOnePolyline) {
+TEST(ObjText, WritesARopeAsOnePolyline) {
   Edges lines(2, 3);
   lines << 0, 1, 5, 1, 2, 6;
   EXPECT_EQ(obj_text(test::make_points({{0, 0.5, -1}}), {}, lines), "v 0 0.5 -1\nl 1 2 3\nl 6 7\n");

@@ -12,7 +12,7 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(MeshEdges, OfTwoTrianglesShareTheDiagonal) {
+TEST(MeshEdges, TwoTrianglesShareTheirDiagonal) {
   const std::vector<MeshEdge> edges = mesh_edges(test::make_triangles({{0, 1, 2}, {2, 1, 3}}));
   ASSERT_EQ(edges.size(), 5U);
   const MeshEdge& diagonal = edges[2];
@@ -46,30 +46,30 @@ TEST(UniqueEdges, GiveTheLowerVertexFirst) {
   EXPECT_EQ(unique_edges(test::make_triangles({{7, 2, 5}})), expected);
 }
 
-TEST(IsClosed, HoldsForACube) { EXPECT_TRUE(is_closed(test::make_cube().triangles)); }
+TEST(IsClosed, IsTrueForACube) { EXPECT_TRUE(is_closed(test::make_cube().triangles)); }
 
-TEST(IsClosed, FailsWithAHole) { EXPECT_FALSE(is_closed(test::make_cube().triangles.leftCols(11))); }
+TEST(IsClosed, IsFalseForASurfaceWithAHole) { EXPECT_FALSE(is_closed(test::make_cube().triangles.leftCols(11))); }
 
-TEST(IsClosed, FailsWhenAFaceIsTurned) {
+TEST(IsClosed, IsFalseIfOneFaceIsReversed) {
   Triangles triangles = test::make_cube().triangles;
   std::swap(triangles(0, 4), triangles(1, 4));
   EXPECT_FALSE(is_closed(triangles));
 }
 
-TEST(IsClosed, FailsForNothing) { EXPECT_FALSE(is_closed(Triangles(3, 0))); }
+TEST(IsClosed, IsFalseWithoutTriangles) { EXPECT_FALSE(is_closed(Triangles(3, 0))); }
 
-TEST(TrianglesAroundVertices, AreThoseThatUseThem) {
+TEST(TrianglesAroundVertices, ListsTheTrianglesThatUseEachVertex) {
   const VertexTriangles around = triangles_around_vertices(test::make_triangles({{0, 1, 2}, {4, 2, 1}, {2, 0, 4}}), 6);
   EXPECT_THAT(around.first, ElementsAre(0, 2, 4, 7, 7, 9, 9));
   EXPECT_THAT(around.triangle, ElementsAre(0, 2, 0, 1, 0, 1, 2, 1, 2));
 }
 
-TEST(ConnectedComponents, CountSeparateParts) {
+TEST(ConnectedComponents, CountsSeparateSurfaces) {
   const TriangleMesh two = test::merge(test::make_cube(), test::make_cube(1.0, Vector3(3, 0, 0)));
   EXPECT_EQ(connected_components(two.triangles), 2);
 }
 
-TEST(ConnectedComponents, JoinAtASharedVertex) {
+TEST(ConnectedComponents, TrianglesWithACommonVertexAreConnected) {
   EXPECT_EQ(connected_components(test::make_triangles({{0, 1, 2}, {2, 3, 4}})), 1);
   EXPECT_EQ(connected_components(test::make_triangles({{0, 1, 2}, {5, 3, 4}})), 2);
   EXPECT_EQ(connected_components(Triangles(3, 0)), 0);

@@ -13,7 +13,7 @@ TEST(Bounds, ContainsExactlyThePoints) {
   EXPECT_EQ(box.max(), Vector3(3, 5, 7));
 }
 
-TEST(Bounds, OfNothingAreEmpty) { EXPECT_TRUE(bounds(Points(3, 0)).isEmpty()); }
+TEST(Bounds, AreEmptyWithoutPoints) { EXPECT_TRUE(bounds(Points(3, 0)).isEmpty()); }
 
 TEST(AreaNormal, IsTwiceTheAreaAlongTheNormal) {
   const TriangleMesh mesh{test::make_points({{0, 0, 0}, {3, 0, 0}, {0, 2, 0}}), test::make_triangles({{0, 1, 2}})};
@@ -32,7 +32,7 @@ TEST(SignedVolume, KeepsItsDigitsFarFromTheOrigin) {
   EXPECT_EQ(signed_volume(test::make_cube(1.0, Vector3(1e9, -1e9, 1e9))), 1.0);
 }
 
-TEST(SignedVolume, OfNothingIsZero) { EXPECT_EQ(signed_volume({Points(3, 0), Triangles(3, 0)}), 0.0); }
+TEST(SignedVolume, IsZeroWithoutTriangles) { EXPECT_EQ(signed_volume({Points(3, 0), Triangles(3, 0)}), 0.0); }
 
 }  // namespace
 }  // namespace sprung

@@ -8,7 +8,7 @@
 namespace sprung {
 namespace {
 
-// A handful of products and one sine of numbers near 1: a few units in the last place.
+// A few products and one sine of numbers near 1: a few units in the last place.
 constexpr double kRounding = 1e-15;
 
 RigidTransform placed_at(const Vector3& position, const Vector3& degrees = Vector3::Zero()) {
@@ -37,13 +37,13 @@ TEST(RotationFromDegrees, IsExactForQuarterTurns) {
   EXPECT_EQ(rotation_from_degrees({360, 720, -360}), Matrix3::Identity());
 }
 
-TEST(Motion, WithoutKeyframesAndSpinRestsAtThePlace) {
+TEST(Motion, WithoutKeyframesAndSpinKeepsThePlacedPose) {
   const RigidTransform placed = placed_at({1, 2, 3}, {10, 20, 30});
   EXPECT_FALSE(Motion{}.moves());
   EXPECT_TRUE(same(Motion{}.pose(placed, 7.5), placed));
 }
 
-TEST(Motion, HoldsOutsideItsKeyframes) {
+TEST(Motion, IsConstantOutsideItsKeyframes) {
   const Motion motion{.keyframes = {{1.0, {1, 0, 0}, {0, 0, 0}}, {2.0, {5, 0, 0}, {0, 90, 0}}}};
   const RigidTransform placed = placed_at({0, 1, 0});
   EXPECT_TRUE(same(motion.pose(placed, -3.0), placed_at({1, 1, 0})));
@@ -70,7 +70,7 @@ TEST(Motion, SmoothStartsAndEndsAtRest) {
   EXPECT_LT(1.0 - x(1.0 - 1e-3), 3e-6);
 }
 
-TEST(Motion, From0To360IsAFullTurn) {
+TEST(Motion, KeyframesFrom0To360MakeAFullTurn) {
   const Motion motion{.keyframes = {{0.0, {0, 0, 0}, {0, 0, 0}}, {4.0, {0, 0, 0}, {0, 360, 0}}}};
   EXPECT_TRUE(motion.moves());
   for (const double time : {1.0, 2.0, 3.0}) {
@@ -82,13 +82,13 @@ TEST(Motion, From0To360IsAFullTurn) {
 TEST(Motion, TurnsAboutThePlacedOriginAfterThePlacedRotation) {
   const Motion motion{.keyframes = {{0.0, {0, 0, 0}, {0, 0, 90}}}};
   const RigidTransform pose = motion.pose(placed_at({10, 0, 0}, {90, 0, 0}), 0.0);
-  // The placed rotation takes (0, 1, 0) to (0, 0, 1), which a turn about z leaves alone.
+  // The placed rotation maps (0, 1, 0) to (0, 0, 1), which a turn about z does not change.
   EXPECT_EQ(pose * Vector3(0, 1, 0), Vector3(10, 0, 1));
   EXPECT_EQ(pose * Vector3(1, 0, 0), Vector3(10, 1, 0));
   EXPECT_FALSE(motion.moves());
 }
 
-TEST(Motion, SpinTurnsForEverAtAConstantRate) {
+TEST(Motion, SpinTurnsAtAConstantRateWithoutEnd) {
   const Motion motion{.spin = {0, 90, 0}};
   EXPECT_TRUE(motion.moves());
   EXPECT_TRUE(same(motion.pose(placed_at({1, 0, 0}), 1.0), placed_at({1, 0, 0}, {0, 90, 0})));
@@ -101,7 +101,7 @@ TEST(Motion, SpinIsAnAngularVelocityVector) {
   EXPECT_LE((motion.pose(placed_at({0, 0, 0}), 0.7).linear() - expected.toRotationMatrix()).cwiseAbs().maxCoeff(), kRounding);
 }
 
-TEST(Motion, TurnsThereAndBackAreAddedUp) {
+TEST(Motion, TurnAddsUpForthAndBack) {
   const Motion motion{.keyframes = {{.time = 0.0}, {.time = 1.0, .rotation = {0.0, 80.0, 0.0}}, {.time = 2.0}},
                       .spin = {0.0, 30.0, 40.0}};
   EXPECT_EQ(motion.turn(0.5, 0.75), 0.25 * (80.0 + 50.0));

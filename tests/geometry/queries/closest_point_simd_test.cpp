@@ -21,7 +21,7 @@ class RandomPoints {
   std::uniform_real_distribution<double> number_{-1.0, 1.0};
 };
 
-TEST(Double4, ThoseThatHoldAreTakenFromTheLowest) {
+TEST(Double4, LanesOfAMaskArePoppedFromTheLowest) {
   const Double4 numbers{3.0, -1.0, 5.0, -2.0};
   unsigned lanes = mask_bits(numbers < 4.0);
   EXPECT_EQ(lanes, 0b1011U);
@@ -31,9 +31,9 @@ TEST(Double4, ThoseThatHoldAreTakenFromTheLowest) {
   EXPECT_EQ(lanes, 0U);
 }
 
-TEST(ClosestPointLanes, AreThoseOfEachTriangleToTheLastBit) {
+TEST(ClosestPointLanes, EqualThoseOfEachTriangleToTheLastBit) {
   RandomPoints random;
-  std::array<int, 7> met{};
+  std::array<int, 7> counts{};
   for (int i = 0; i < 10000; ++i) {
     std::array<std::array<Vector3, 4>, kSimdWidth> points;
     Vector3x4 p;
@@ -58,7 +58,7 @@ TEST(ClosestPointLanes, AreThoseOfEachTriangleToTheLastBit) {
       const Vector3 point(closest.point.x[lane], closest.point.y[lane], closest.point.z[lane]);
       ASSERT_EQ(point, alone.point);
       ASSERT_EQ(closest.squared_distance[lane], alone.squared_distance);
-      // Three corners of at most 2, times weights, rounded a few times each.
+      // Three coordinates of at most 2, times weights, each rounded a few times.
       const Vector3 sum = closest.of_a[lane] * a + closest.of_b[lane] * b + closest.of_c[lane] * c;
       ASSERT_LT((sum - point).norm(), 1e-14);
       const Vector3 weights(closest.of_a[lane], closest.of_b[lane], closest.of_c[lane]);
@@ -66,14 +66,14 @@ TEST(ClosestPointLanes, AreThoseOfEachTriangleToTheLastBit) {
       ASSERT_NEAR(weights.sum(), 1.0, 1e-15);
       const auto feature = static_cast<std::size_t>(alone.feature);
       const Index corners_off = feature < 3 ? 2 : feature < 6 ? 1 : 0;
-      ASSERT_GE((weights.array() == 0.0).count(), corners_off) << "a weight where it does not lie";
-      ++met[feature];
+      ASSERT_GE((weights.array() == 0.0).count(), corners_off) << "a corner that does not contribute has a weight";
+      ++counts[feature];
     }
   }
-  for (const int times : met) EXPECT_GT(times, 1000);
+  for (const int count : counts) EXPECT_GT(count, 1000);
 }
 
-TEST(SegmentPairLanes, AreThoseOfEachPairToTheLastBit) {
+TEST(SegmentPairLanes, EqualThoseOfEachPairToTheLastBit) {
   RandomPoints random;
   int without_length = 0;
   for (int i = 0; i < 10000; ++i) {

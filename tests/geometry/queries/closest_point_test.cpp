@@ -12,7 +12,7 @@ namespace {
 
 using Long3 = Eigen::Matrix<long double, 3, 1>;
 
-/// Distance from a triangle in extended precision: the foot on its plane where that is inside, else the nearest edge.
+/// Distance from a triangle in extended precision: to the foot on its plane if that lies inside, else to the nearest edge.
 double long_distance(const Vector3& point, const Vector3& a, const Vector3& b, const Vector3& c) {
   const Long3 p = point.cast<long double>();
   const Long3 x[] = {a.cast<long double>(), b.cast<long double>(), c.cast<long double>()};
@@ -56,7 +56,7 @@ TEST(ClosestPoint, EachFeatureIsFound) {
   EXPECT_EQ(feature(0.5, 0.5), TriangleFeature::face);
 }
 
-TEST(ClosestPoint, IsAsNearAsExtendedPrecisionFinds) {
+TEST(ClosestPoint, HasTheDistanceOfExtendedPrecision) {
   RandomPoints random;
   for (int i = 0; i < 20000; ++i) {
     const Vector3 a = random(1.0);
@@ -65,18 +65,18 @@ TEST(ClosestPoint, IsAsNearAsExtendedPrecisionFinds) {
     const Vector3 p = random(2.0);
     const ClosestPoint found = closest_point_on_triangle(p, a, b, c);
     ASSERT_EQ(found.squared_distance, (p - found.point).squaredNorm());
-    // The worst of these triangles has a sine of 1e-4, which costs four digits of the foot's place, but eight of them are squared
-    // away.
+    // The thinnest of these triangles has a sine of 1e-4, which costs four digits of the foot's position. The distance depends on
+    // the square of that error.
     ASSERT_NEAR(std::sqrt(found.squared_distance), long_distance(p, a, b, c), 1e-11);
   }
 }
 
-TEST(ClosestPoint, NeedlesAreAsNearAsExtendedPrecisionFinds) {
+TEST(ClosestPoint, HasTheDistanceOfExtendedPrecisionForThinTriangles) {
   RandomPoints random;
   for (int i = 0; i < 60000; ++i) {
     const Vector3 tip = random(1.0);
     const Vector3 end = random(1.0);
-    // From a sound triangle down to one thinner than rounding.
+    // From a well-shaped triangle down to one thinner than rounding.
     const Vector3 beside = tip + 0.6 * (end - tip) + random(std::pow(10.0, -1.0 - i % 18));
     const Vector3 p = i % 2 == 0 ? random(2.0) : Vector3(tip + 0.3 * (end - tip) + random(1e-3));
     const Vector3 corner[] = {tip, end, beside};
@@ -85,9 +85,9 @@ TEST(ClosestPoint, NeedlesAreAsNearAsExtendedPrecisionFinds) {
     const Vector3& b = corner[(k + 1) % 3];
     const Vector3& c = corner[(k + 2) % 3];
     const ClosestPoint found = closest_point_on_triangle(p, a, b, c);
-    // The foot on a needle of sine s moves along it by eps / s, at most 1e-11 before the edges take over; as it stays in the
-    // needle's plane the distance changes by the square of that over the distance, or by eps / s when it is 0.
-    ASSERT_NEAR(std::sqrt(found.squared_distance), long_distance(p, a, b, c), 1e-10) << "needle " << i;
+    // For a triangle of sine s, rounding moves the foot along it by eps / s, at most 1e-11 before the closest point on the edges is
+    // used. The foot stays in the plane, so the distance changes by the square of that over the distance, or by eps / s if it is 0.
+    ASSERT_NEAR(std::sqrt(found.squared_distance), long_distance(p, a, b, c), 1e-10) << "triangle " << i;
   }
 }
 

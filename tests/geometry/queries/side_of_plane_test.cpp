@@ -13,7 +13,8 @@ namespace {
 __extension__ using Wide = __int128;
 using Grid = Eigen::Matrix<std::int64_t, 3, 1>;
 
-/// The sign by integers: exact while coordinates stay below 2^40, since a determinant of their differences stays below 6 * 2^123.
+/// The sign in integer arithmetic: exact for coordinates below 2^40, because the determinant of their differences is below 6 *
+/// 2^123.
 int exact_sign(const Grid& a, const Grid& b, const Grid& c, const Grid& p) {
   const Grid u = b - a;
   const Grid v = c - a;
@@ -27,7 +28,7 @@ int sign(double value) { return value > 0.0 ? 1 : value < 0.0 ? -1 : 0; }
 
 Vector3 scaled(const Grid& p, int exponent) { return p.cast<double>() * std::ldexp(1.0, exponent); }
 
-TEST(SideOfPlane, PositiveWhereTheNormalPoints) {
+TEST(SideOfPlane, IsPositiveOnTheSideOfTheNormal) {
   const Vector3 a(0, 0, 0);
   const Vector3 b(1, 0, 0);
   const Vector3 c(0, 1, 0);
@@ -36,7 +37,7 @@ TEST(SideOfPlane, PositiveWhereTheNormalPoints) {
   EXPECT_EQ(side_of_plane(a, b, c, Vector3(5.0, -3.0, 0.0)), 0.0);
 }
 
-TEST(SideOfPlane, SignIsThatOfExactArithmeticNextToThePlane) {
+TEST(SideOfPlane, HasTheExactSignNextToThePlane) {
   std::mt19937_64 random(1);
   const auto coordinate = [&] { return static_cast<std::int64_t>(random() >> 28) - (std::int64_t{1} << 35); };
   const auto few = [&] { return static_cast<std::int64_t>(random() % 17) - 8; };
@@ -56,7 +57,7 @@ TEST(SideOfPlane, SignIsThatOfExactArithmeticNextToThePlane) {
   EXPECT_GT(zeros, 10000);
 }
 
-TEST(SideOfPlane, DifferencesThatRoundAreExactToo) {
+TEST(SideOfPlane, HasTheExactSignIfDifferencesRound) {
   // 2^60 + 1 and 2^60 - 1 are not doubles, so every difference of a huge and a small coordinate rounds.
   const double huge = 0x1p60;
   const Vector3 a(huge, 0, 0);
@@ -69,7 +70,7 @@ TEST(SideOfPlane, DifferencesThatRoundAreExactToo) {
   EXPECT_EQ(side_of_plane(a, Vector3(-huge, 0, 0), Vector3(0, 0, 1), Vector3(1, 0x1p-40, 0)), 0x1p21);
 }
 
-TEST(SideOfPlane, SwappingTwoCornersNegatesEveryBit) {
+TEST(SideOfPlane, ChangesSignWhenTwoCornersAreSwapped) {
   std::mt19937_64 random(2);
   const auto coordinate = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   for (int i = 0; i < 1000; ++i) {
@@ -83,15 +84,15 @@ TEST(SideOfPlane, SwappingTwoCornersNegatesEveryBit) {
   }
 }
 
-TEST(SideOfLine, SignIsThatOfExactArithmeticNextToTheLine) {
+TEST(SideOfLine, HasTheExactSignNextToTheLine) {
   std::mt19937_64 random(2);
   const auto coordinate = [&] { return static_cast<std::int64_t>(random() >> 28) - (std::int64_t{1} << 35); };
   int zeros = 0;
   for (int i = 0; i < 20000; ++i) {
     const std::int64_t a[2] = {coordinate(), coordinate()};
     const std::int64_t b[2] = {coordinate(), coordinate()};
-    const auto part = static_cast<std::int64_t>(random() % 17) - 8;
-    std::int64_t p[2] = {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])};
+    const auto factor = static_cast<std::int64_t>(random() % 17) - 8;
+    std::int64_t p[2] = {a[0] + factor * (b[0] - a[0]), a[1] + factor * (b[1] - a[1])};
     if (i % 2 == 0) p[i / 2 % 2] += static_cast<std::int64_t>(random() % 3) - 1;
     const Wide area = static_cast<Wide>(b[0] - a[0]) * (p[1] - a[1]) - static_cast<Wide>(b[1] - a[1]) * (p[0] - a[0]);
     const int expected = area > 0 ? 1 : area < 0 ? -1 : 0;

@@ -37,9 +37,9 @@ bool separates(const Grid& axis, const Corners& x, const Corners& y) {
   return range(x).second < range(y).first || range(y).second < range(x).first;
 }
 
-/// Convex hulls are disjoint when and only when one of these axes separates them, exactly in integers: the normals, products of
-/// edges, and, within a plane or on a line, edges turned in the plane and edges themselves.
-bool expected_to_meet(const Corners& x, const Corners& y) {
+/// Convex hulls are disjoint if and only if one of these axes separates them: normals, cross products of edges and, within a plane
+/// or on a line, edges rotated in the plane and edges themselves. Exact in integers.
+bool expected_to_intersect(const Corners& x, const Corners& y) {
   std::vector<Grid> axes;
   std::vector<Grid> edges = edges_of(x);
   const std::vector<Grid> others = edges_of(y);
@@ -56,12 +56,12 @@ bool expected_to_meet(const Corners& x, const Corners& y) {
   return std::none_of(axes.begin(), axes.end(), [&](const Grid& axis) { return separates(axis, x, y); });
 }
 
-Vector3 place(const Grid& p, double scale) { return scale * p.cast<double>(); }
+Vector3 scaled(const Grid& p, double scale) { return scale * p.cast<double>(); }
 
-bool found_to_meet(const Corners& x, const Corners& y, double scale) {
+bool found_to_intersect(const Corners& x, const Corners& y, double scale) {
   Simplex simplex{.count = static_cast<int>(x.size())};
-  for (std::size_t i = 0; i < x.size(); ++i) simplex.x[i] = place(x[i], scale);
-  return meets(simplex, {place(y[0], scale), place(y[1], scale), place(y[2], scale)});
+  for (std::size_t i = 0; i < x.size(); ++i) simplex.x[i] = scaled(x[i], scale);
+  return intersects(simplex, {scaled(y[0], scale), scaled(y[1], scale), scaled(y[2], scale)});
 }
 
 class SimplexCrossing : public testing::Test {
@@ -78,31 +78,31 @@ class SimplexCrossing : public testing::Test {
   }
 };
 
-TEST_F(SimplexCrossing, IsThatOfIntegersWhateverTouchesOrIsCoplanar) {
-  // Small grids hold all special cases: shared corners, edges in a plane, points on edges.
+TEST_F(SimplexCrossing, AgreesWithIntegerArithmeticForTouchingAndCoplanarSimplices) {
+  // Small grids contain all special cases: shared corners, edges in a plane, points on edges.
   for (const int range : {2, 3, 5, 100}) {
     for (int count = 1; count <= 3; ++count) {
-      int met = 0;
+      int intersecting = 0;
       for (int trial = 0; trial < 4000; ++trial) {
         const Corners x = corners(count, range);
         const Corners y = corners(3, range);
         if (!has_area(y) || (count == 3 && !has_area(x))) continue;
-        const bool expected = expected_to_meet(x, y);
-        met += expected ? 1 : 0;
-        ASSERT_EQ(found_to_meet(x, y, 1.0), expected) << "range " << range << " corners " << count << " trial " << trial;
-        ASSERT_EQ(found_to_meet(x, y, 0x1p-40), expected);
+        const bool expected = expected_to_intersect(x, y);
+        intersecting += expected ? 1 : 0;
+        ASSERT_EQ(found_to_intersect(x, y, 1.0), expected) << "range " << range << " corners " << count << " trial " << trial;
+        ASSERT_EQ(found_to_intersect(x, y, 0x1p-40), expected);
       }
       if (range <= 5) {
-        EXPECT_GT(met, 20) << "range " << range << " corners " << count;
+        EXPECT_GT(intersecting, 20) << "range " << range << " corners " << count;
       }
     }
   }
 }
 
-TEST_F(SimplexCrossing, WithinOnePlaneToo) {
+TEST_F(SimplexCrossing, AgreesWithIntegerArithmeticWithinOnePlane) {
   const Grid along(3, 1, 2);
   const Grid across(-1, 2, 1);
-  int met = 0;
+  int intersecting = 0;
   for (int count = 1; count <= 3; ++count) {
     for (int trial = 0; trial < 4000; ++trial) {
       const auto in_plane = [&](Corners corners) {
@@ -112,23 +112,23 @@ TEST_F(SimplexCrossing, WithinOnePlaneToo) {
       const Corners x = in_plane(corners(count, 5));
       const Corners y = in_plane(corners(3, 5));
       if (!has_area(y) || (count == 3 && !has_area(x))) continue;
-      const bool expected = expected_to_meet(x, y);
-      met += expected ? 1 : 0;
-      ASSERT_EQ(found_to_meet(x, y, 1.0), expected) << "corners " << count << " trial " << trial;
+      const bool expected = expected_to_intersect(x, y);
+      intersecting += expected ? 1 : 0;
+      ASSERT_EQ(found_to_intersect(x, y, 1.0), expected) << "corners " << count << " trial " << trial;
     }
   }
-  EXPECT_GT(met, 1000);
+  EXPECT_GT(intersecting, 1000);
 }
 
-TEST_F(SimplexCrossing, RoundingNeitherMakesNorHidesOne) {
-  // A needle's tip one rounding above, on and below a face far from the origin.
+TEST_F(SimplexCrossing, RoundingNeitherCreatesNorHidesACrossing) {
+  // The end of a segment one rounding above, on and below a face far from the origin.
   const std::array<Vector3, 3> face{Vector3(1000, 1000, 1000), Vector3(1001, 1000, 1000), Vector3(1000, 1000, 1001)};
   const double above = std::nextafter(1000.0, 2000.0);
   const double below = std::nextafter(1000.0, 0.0);
   const Vector3 far(1000.3, 1001.0, 1000.3);
-  EXPECT_FALSE(meets(far, Vector3(1000.25, above, 1000.25), face));
-  EXPECT_TRUE(meets(far, Vector3(1000.25, 1000.0, 1000.25), face));
-  EXPECT_TRUE(meets(far, Vector3(1000.25, below, 1000.25), face));
+  EXPECT_FALSE(intersects(far, Vector3(1000.25, above, 1000.25), face));
+  EXPECT_TRUE(intersects(far, Vector3(1000.25, 1000.0, 1000.25), face));
+  EXPECT_TRUE(intersects(far, Vector3(1000.25, below, 1000.25), face));
 }
 
 }  // namespace
