@@ -60,7 +60,7 @@ template <std::size_t n>
 /// contact made unnecessary is taken back, never more than was given, together with its friction. So contacts that share a load
 /// may push more at first than in the end. Returns the change of the push.
 template <std::size_t n>
-double answer(const ContactConstraint<n>& row, ContactGoal& goal, Points& q) {
+double project_constraint(const ContactConstraint<n>& row, ContactGoal& goal, Points& q) {
   const Vector3 moved = row.sum(q) - goal.origin;
   const double along = row.normal.dot(moved);
   const double change = std::max(goal.least - along, -goal.push);
@@ -70,14 +70,14 @@ double answer(const ContactConstraint<n>& row, ContactGoal& goal, Points& q) {
   if (change == 0.0 && goal.push == 0.0) return 0.0;
 
   goal.push += change;
-  Vector3 answered = change * row.normal;
+  Vector3 correction = change * row.normal;
   if (row.static_friction > 0.0) {
     const Vector3 across = moved - along * row.normal;
     const Vector3 friction = friction_of(row, goal, goal.friction_change - across);
-    answered += friction - goal.friction_change;
+    correction += friction - goal.friction_change;
     goal.friction_change = friction;
   }
-  row.change_sum(answered, q);
+  row.change_sum(correction, q);
   return change;
 }
 

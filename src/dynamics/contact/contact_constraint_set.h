@@ -67,7 +67,7 @@ class ContactConstraintSet {
   double project(Points& positions) {
     double largest = 0.0;
     for (std::size_t c = 0; c < rows_.size(); ++c) {
-      const double change = answer(rows_[c], goals_[c], positions);
+      const double change = project_constraint(rows_[c], goals_[c], positions);
       if (change != 0.0) largest = std::max(largest, std::abs(change) / gaps_[c]);
     }
     return largest;
@@ -96,7 +96,7 @@ class ContactConstraintSet {
   double settle(Points& velocities) {
     double largest = 0.0;
     for (std::size_t t = 0; t < touching_.size(); ++t) {
-      largest = std::max(largest, std::abs(answer(rows_[touching_[t]], velocity_goals_[t], velocities)));
+      largest = std::max(largest, std::abs(project_constraint(rows_[touching_[t]], velocity_goals_[t], velocities)));
     }
     return largest;
   }

@@ -32,12 +32,12 @@ class ImplicitEuler final : public Integrator {
     });
   }
 
-  [[nodiscard]] bool answers_contact() const override { return true; }
+  [[nodiscard]] bool responds_to_contact() const override { return true; }
 
   // One more Newton step on the scheme's own equations, M (v - v(t)) = dt F(x, v), from the positions that contact gave. A
   // response to first order alone would let contact stretch the springs far too much.
-  void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from, const ConstrainedDirections& constrained,
-                      SimulationState& state) override {
+  void respond_to_contact(const StepMotion& motion, const Forces& forces, const Points& from,
+                          const ConstrainedDirections& constrained, SimulationState& state) override {
     v_ = motion.v_before;
     for_free_particles(network(), [&](Index i) {
       const Vector3 push = state.x.col(i) - from.col(i);

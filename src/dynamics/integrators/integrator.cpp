@@ -22,7 +22,8 @@ void Integrator::start(SimulationState& state, const Forces&, double) { state.x_
 
 void Integrator::step_changed(SimulationState&, const Forces&, double, double) {}
 
-void Integrator::answer_contact(const StepMotion&, const Forces&, const Points&, const ConstrainedDirections&, SimulationState&) {}
+void Integrator::respond_to_contact(const StepMotion&, const Forces&, const Points&, const ConstrainedDirections&,
+                                    SimulationState&) {}
 
 void Integrator::recover_velocities(SimulationState& state, const Forces&, const Points&, const Points& advanced, double dt) {
   for_free_particles(network_, [&](Index i) { state.v.col(i) += (state.x.col(i) - advanced.col(i)) / dt; });

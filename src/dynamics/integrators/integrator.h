@@ -58,14 +58,14 @@ class Integrator {
   /// arguments alone.
   virtual void advance(SimulationState& state, const Forces& forces, double dt) = 0;
 
-  /// Whether `answer_contact` does anything.
-  [[nodiscard]] virtual bool answers_contact() const { return false; }
+  /// Whether `respond_to_contact` does anything.
+  [[nodiscard]] virtual bool responds_to_contact() const { return false; }
 
   /// Responds to contact, which moved some particles from `from` (the result of `advance` or of the last response) to state.x [m].
   /// A scheme that solves for the forces at the end of the step moves all particles to the new solution, except along their
   /// constrained directions, where contact balances any force. Default: does nothing.
-  virtual void answer_contact(const StepMotion& motion, const Forces& forces, const Points& from,
-                              const ConstrainedDirections& constrained, SimulationState& state);
+  virtual void respond_to_contact(const StepMotion& motion, const Forces& forces, const Points& from,
+                                  const ConstrainedDirections& constrained, SimulationState& state);
 
   /// Computes the velocities after constraints moved the particles from `advanced` (the result of `advance`) to state.x; `before`
   /// are the positions at t. Default: v += (x - advanced) / dt. A scheme whose velocities depend on the forces at the end of the

@@ -52,7 +52,7 @@ double PcgSolver::solve(const StretchSystem& system, Points& step) {
   const double stiffness = stiffest();
   for (Attempt& attempt : attempts_) {
     if (!(stiffness < attempt.bearable)) continue;
-    kept_ = rough_.factor_and_solve(matrix_, attempt.raise, system.residual, towards_) ? Kept::rough : Kept::nothing;
+    kept_ = rough_.factor_and_solve(matrix_, attempt.raise, system.residual, preconditioned_) ? Kept::rough : Kept::nothing;
     if (const auto left = approach_with_kept(attempt.patience, system.residual, step)) return *left;
     attempt.bearable = kBearableFraction * stiffness;
   }
@@ -73,7 +73,7 @@ std::optional<double> PcgSolver::solve_as_last(const StretchSystem& system, Poin
   // A system that changes this fast mostly does so the next time too.
   if (std::exchange(last_factor_failed_, false)) return std::nullopt;
   const Patience patience{.most_iterations = kMostIterations, .slowest = kSlowest, .may_be_left = system.may_be_left};
-  solve_with_kept(system.residual, towards_);
+  solve_with_kept(system.residual, preconditioned_);
   const auto left = approach_with_kept(patience, system.residual, step);
   last_factor_failed_ = !left;
   return left;
@@ -105,30 +105,30 @@ std::optional<double> PcgSolver::approach_with_kept(const Patience& patience, co
   return left;
 }
 
-/// Conjugate gradients preconditioned by the kept factor. `towards_` is its solution for `right`, the first direction. Returns the
-/// remaining gain if that is small enough.
+/// Conjugate gradients preconditioned by the kept factor. `preconditioned_` is its solution for `right`, the first direction.
+/// Returns the remaining gain if that is small enough.
 std::optional<double> PcgSolver::approach(const Patience& patience, const Points& right, Points& step) {
   step.setZero(3, component_.free_count);
-  left_ = right;
+  residual_ = right;
   double gained = 0.0;
   double before = 0.0;
   for (int iteration = 1; iteration <= patience.most_iterations; ++iteration) {
-    if (iteration > 1) solve_with_kept(left_, towards_);
-    const double size = left_.cwiseProduct(towards_).sum();
+    if (iteration > 1) solve_with_kept(residual_, preconditioned_);
+    const double size = residual_.cwiseProduct(preconditioned_).sum();
     if (size == 0.0) return 0.0;
     if (iteration == 1) {
-      direction_ = towards_;
+      direction_ = preconditioned_;
     } else {
       if (!(size <= patience.slowest * before)) return std::nullopt;
-      direction_ = towards_ + size / before * direction_;
+      direction_ = preconditioned_ + size / before * direction_;
     }
     before = size;
-    pushed_.setZero(3, component_.free_count);
-    matrix_.add_product(direction_, 1.0, pushed_);
-    const double length = size / direction_.cwiseProduct(pushed_).sum();
+    product_.setZero(3, component_.free_count);
+    matrix_.add_product(direction_, 1.0, product_);
+    const double length = size / direction_.cwiseProduct(product_).sum();
     gained += length * size;
     step += length * direction_;
-    left_ -= length * pushed_;
+    residual_ -= length * product_;
     // Takes the step before its end would be measured: it costs less than measuring, and the error only decreases.
     if (0.5 * size <= patience.may_be_left || (iteration > 1 && size <= kNearEnough * gained)) return 0.5 * size;
     if (const double most = largest_size(); most <= kSurelyNear * gained) return 0.5 * most;
@@ -146,7 +146,7 @@ double PcgSolver::stiffest() const {
 /// Upper bound on the size of the residual, by masses alone: stiffness only reduces it.
 double PcgSolver::largest_size() const {
   double size = 0.0;
-  for (Index i = 0; i < component_.free_count; ++i) size += left_.col(i).squaredNorm() / component_.masses[i];
+  for (Index i = 0; i < component_.free_count; ++i) size += residual_.col(i).squaredNorm() / component_.masses[i];
   return size;
 }
 

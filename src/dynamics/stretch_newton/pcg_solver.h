@@ -59,10 +59,10 @@ class PcgSolver final : public StretchSystemSolver {
   bool last_factor_failed_ = false;  ///< the kept factor failed on a system like this one
 
   // Scratch of conjugate gradients, 3 x free.
-  Points left_;
-  Points towards_;
+  Points residual_;
+  Points preconditioned_;
   Points direction_;
-  Points pushed_;
+  Points product_;
 };
 
 }  // namespace sprung

@@ -95,21 +95,21 @@ void TwoLevelNewton::interpolate_correction(double fall) {
   x_.resizeLike(target_);
   for (Index n = 0; n < static_cast<Index>(x_.cols()); ++n) {
     const auto& [points, weights] = coarse_.interpolations[n];
-    Vector3 among = Vector3::Zero();
+    Vector3 interpolated = Vector3::Zero();
     Vector3 target_move = Vector3::Zero();
     Vector3 solved_move = Vector3::Zero();
     double taut = 0.0;
     for (std::size_t k = 0; k < points.size(); ++k) {
-      const auto was = coarse_before_.col(points[k]);
-      among += weights[k] * was;
-      target_move += weights[k] * (coarse_target_.col(points[k]) - was);
-      solved_move += weights[k] * (coarse_x_.col(points[k]) - was);
+      const auto at_begin = coarse_before_.col(points[k]);
+      interpolated += weights[k] * at_begin;
+      target_move += weights[k] * (coarse_target_.col(points[k]) - at_begin);
+      solved_move += weights[k] * (coarse_x_.col(points[k]) - at_begin);
       taut += weights[k] * tautness_[points[k]];
     }
     const double slack = masses_[n] / (masses_[n] + taut);
-    const Vector3 beside = target_.col(n) - before_.col(n) - target_move;
-    const Vector3 straightening = (1.0 - slack) * (among - before_.col(n));
-    x_.col(n) = before_.col(n) + solved_move + slack * beside + shortened(straightening, kStraightenedOfFall * fall);
+    const Vector3 relative_move = target_.col(n) - before_.col(n) - target_move;
+    const Vector3 straightening = (1.0 - slack) * (interpolated - before_.col(n));
+    x_.col(n) = before_.col(n) + solved_move + slack * relative_move + shortened(straightening, kStraightenedOfFall * fall);
   }
 }
 

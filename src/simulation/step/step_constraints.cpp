@@ -11,8 +11,8 @@ namespace {
 // spring reaches its limit in the first pass and must not oscillate about it, so the first and last pass are not over-relaxed.
 constexpr double kRelaxation = 1.8;
 
-// Calls of Integrator::answer_contact a step after contact passes, and as many after truncation.
-constexpr int kAnswers = 6;
+// Calls of Integrator::respond_to_contact a step after contact passes, and as many after truncation.
+constexpr int kResponses = 6;
 
 // Where truncation stops particles short of their projected positions, the stretch limit moves them and their neighbours again: at
 // most so many rounds of so many passes, and in total no more passes than the limit's iterations. Few passes a round let the safe
@@ -49,7 +49,7 @@ void StepConstraints::apply(SimulationState& state, const Forces& forces, double
 void StepConstraints::project(SimulationState& state, const Forces& forces, StepReport& report) {
   const bool projects = projects_contacts();
   if (projects) contacts_.find(motion());
-  if (projects && integrator_.answers_contact()) answer_contact(state, forces);
+  if (projects && integrator_.responds_to_contact()) respond_to_contact(state, forces);
   const double fall = steady_acceleration_ * dt_ * dt_;
   const std::optional<int> solves =
       limit_ ? limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers) : std::nullopt;
@@ -65,29 +65,29 @@ void StepConstraints::project(SimulationState& state, const Forces& forces, Step
   });
 }
 
-// The answer of the integrator moves further particles, so contact pushes again.
-void StepConstraints::answer_contact(SimulationState& state, const Forces& forces) {
-  answered_ = advanced_;
+// The response of the integrator moves further particles, so contact pushes again.
+void StepConstraints::respond_to_contact(SimulationState& state, const Forces& forces) {
+  responded_ = advanced_;
   constrained_.clear(static_cast<Index>(state.x.cols()));
-  for (int round = 0; round < kAnswers && contacts_.push_out(state.x).moved; ++round) {
+  for (int round = 0; round < kResponses && contacts_.push_out(state.x).moved; ++round) {
     constrained_.clear(static_cast<Index>(state.x.cols()));
     contacts_.constrain_pushed(constrained_);
-    integrator_.answer_contact(motion(), forces, answered_, constrained_, state);
-    answered_ = state.x;
+    integrator_.respond_to_contact(motion(), forces, responded_, constrained_, state);
+    responded_ = state.x;
   }
 }
 
 void StepConstraints::truncate(SimulationState& state, const Forces& forces, StepReport& report) {
   const bool can_collide = contacts_.can_collide();
-  const bool answers = !limit_ && integrator_.answers_contact() && projects_contacts();
+  const bool responds = !limit_ && integrator_.responds_to_contact() && projects_contacts();
   const int relax_rounds = limit_ ? std::min(kRelaxRounds, limit_->settings().iterations / kRelaxPasses) : 0;
-  const int max_rounds = answers ? kAnswers : relax_rounds;
+  const int max_rounds = responds ? kResponses : relax_rounds;
   int rounds = 0;
   const StepTruncation::Relax relax_again = [&](Points& positions) {
     if (rounds++ >= max_rounds) return false;
-    return answers ? answer_truncation(state, forces) : relax(positions, report.stretch_excess);
+    return responds ? respond_to_truncation(state, forces) : relax(positions, report.stretch_excess);
   };
-  if (answers) answered_ = state.x;
+  if (responds) responded_ = state.x;
   if (can_collide) contacts_.truncate(motion(), state.x, relax_again);
   integrator_.recover_velocities(state, forces, positions_before(state), advanced_, dt_);
   if (can_collide) contacts_.limit_speed_of_moved(motion(), state, integrator_);
@@ -111,14 +111,14 @@ bool StepConstraints::relax(Points& positions, double excess_before) {
 }
 
 // The displacement by truncation constrains a particle as a push does. The integrator writes to the state, which truncation reads.
-bool StepConstraints::answer_truncation(SimulationState& state, const Forces& forces) {
-  if (state.x == answered_) return false;
+bool StepConstraints::respond_to_truncation(SimulationState& state, const Forces& forces) {
+  if (state.x == responded_) return false;
   for (Index i = 0; i < static_cast<Index>(state.x.cols()); ++i) {
-    const Vector3 stopped = state.x.col(i) - answered_.col(i);
+    const Vector3 stopped = state.x.col(i) - responded_.col(i);
     if (!stopped.isZero(0.0)) constrained_.add(i, stopped);
   }
-  integrator_.answer_contact(motion(), forces, answered_, constrained_, state);
-  answered_ = state.x;
+  integrator_.respond_to_contact(motion(), forces, responded_, constrained_, state);
+  responded_ = state.x;
   return true;
 }
 

@@ -41,10 +41,10 @@ class StepConstraints {
 
  private:
   void project(SimulationState& state, const Forces& forces, StepReport& report);
-  void answer_contact(SimulationState& state, const Forces& forces);
+  void respond_to_contact(SimulationState& state, const Forces& forces);
   void truncate(SimulationState& state, const Forces& forces, StepReport& report);
   [[nodiscard]] bool relax(Points& positions, double excess_before);
-  [[nodiscard]] bool answer_truncation(SimulationState& state, const Forces& forces);
+  [[nodiscard]] bool respond_to_truncation(SimulationState& state, const Forces& forces);
   [[nodiscard]] bool projects_contacts() const;
   [[nodiscard]] bool copies_positions() const { return contacts_.can_collide() || !integrator_.keeps_positions(); }
   [[nodiscard]] StepMotion motion() const { return {before_, v_before_, advanced_, dt_}; }
@@ -59,8 +59,8 @@ class StepConstraints {
   Points before_;                      ///< positions at the beginning; for contact, or if the integrator does not keep them
   Points v_before_;                    ///< velocities at the beginning; for contact
   Points advanced_;                    ///< positions after forces and pins; for contact, or if the integrator needs them
-  ConstrainedDirections constrained_;  ///< of the last call of Integrator::answer_contact
-  Points answered_;                    ///< positions after that call
+  ConstrainedDirections constrained_;  ///< of the last call of Integrator::respond_to_contact
+  Points responded_;                   ///< positions after that call
   double dt_ = 0.0;
 };
 
