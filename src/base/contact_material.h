@@ -1,4 +1,4 @@
-// What bodies and obstacles both carry into a contact.
+// Contact properties of bodies and obstacles.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@ namespace sprung {
 
 class ProblemList;
 
-/// How a body or an obstacle meets others. A pair keeps the gap `thickness + thickness`, rubs with the geometric means of the
-/// frictions and bounces with the larger restitution.
+/// The contact properties of a body or an obstacle. A contact has the gap `thickness + thickness`, the geometric means of the
+/// friction coefficients, and the larger restitution.
 struct ContactMaterial {
   double thickness = 0.0;        ///< [m], >= 0
   double friction = 0.0;         ///< kinetic coefficient, >= 0
@@ -16,7 +16,7 @@ struct ContactMaterial {
   double restitution = 0.0;      ///< in [0, 1]
 };
 
-/// Adds the rules above that the material breaks; `key` is the start of the keys, such as `bodies.rope`.
+/// Adds a problem for each of these rules that the material breaks. `key` is the prefix of the keys, such as `bodies.rope`.
 void check_material(const std::string& key, const ContactMaterial& material, ProblemList& problems);
 
 }  // namespace sprung

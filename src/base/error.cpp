@@ -7,10 +7,10 @@
 namespace sprung {
 namespace {
 
-// A time is a product of steps: its last digits are rounding.
+// A time is a product of steps: its last digits are rounding error.
 constexpr int kTimeDigits = 9;
 
-/// Text from files as a line that any terminal shows as it is: control characters as \xNN.
+/// Text from files as one line that every terminal shows: control characters become \xNN.
 std::string printable(const std::string& text) {
   constexpr const char* kDigits = "0123456789abcdef";
   std::string result;
@@ -37,11 +37,11 @@ std::string join_lines(const std::vector<Problem>& problems) {
 std::string describe(const StepFailure& failure) {
   std::string text = "the simulation diverged at step " + std::to_string(failure.step) + ", time " +
                      format_number(failure.time, kTimeDigits) + " s: " + failure.cause;
-  std::string place;
-  if (!failure.body.empty()) place += "body \"" + failure.body + "\"";
-  if (failure.particle != kNone) place += (place.empty() ? "" : ", ") + ("particle " + std::to_string(failure.particle));
-  if (failure.spring != kNone) place += (place.empty() ? "" : ", ") + ("spring " + std::to_string(failure.spring));
-  if (!place.empty()) text += " (" + place + ")";
+  std::string location;
+  if (!failure.body.empty()) location += "body \"" + failure.body + "\"";
+  if (failure.particle != kNone) location += (location.empty() ? "" : ", ") + ("particle " + std::to_string(failure.particle));
+  if (failure.spring != kNone) location += (location.empty() ? "" : ", ") + ("spring " + std::to_string(failure.spring));
+  if (!location.empty()) text += " (" + location + ")";
   if (!failure.remedy.empty()) text += "; " + failure.remedy;
   return text;
 }
@@ -49,13 +49,13 @@ std::string describe(const StepFailure& failure) {
 }  // namespace
 
 std::string to_string(const Problem& problem) {
-  std::string place = problem.key;
-  if (!problem.value.empty()) place += (place.empty() ? "" : " = ") + problem.value;
+  std::string location = problem.key;
+  if (!problem.value.empty()) location += (location.empty() ? "" : " = ") + problem.value;
   std::string text;
-  for (const std::string& part : {problem.file, place, problem.rule}) {
-    if (part.empty()) continue;
+  for (const std::string& field : {problem.file, location, problem.rule}) {
+    if (field.empty()) continue;
     if (!text.empty()) text += ": ";
-    text += part;
+    text += field;
   }
   if (!problem.remedy.empty()) text += "; " + problem.remedy;
   return printable(text);

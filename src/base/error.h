@@ -1,4 +1,4 @@
-// The errors that Sprung throws. Each says what is wrong, where, and what to do about it.
+// The errors that Sprung throws. Each states the problem, its location and a remedy.
 #pragma once
 
 #include "base/types.h"
@@ -9,12 +9,12 @@
 
 namespace sprung {
 
-/// One broken rule of an input: which file, which key, which value, which rule, which remedy. Empty fields are left out.
+/// One broken rule of an input. Empty members are left out of the text.
 struct Problem {
   std::string file{};
-  std::string key{};     ///< path of the key or place in the file: `bodies.banner.mass`, `line 12`
-  std::string value{};   ///< the offending value as the user wrote it
-  std::string rule{};    ///< what must hold: `must be greater than 0`
+  std::string key{};     ///< path of the key or location in the file: `bodies.banner.mass`, `line 12`
+  std::string value{};   ///< the invalid value as the user wrote it
+  std::string rule{};    ///< the rule: `must be greater than 0`
   std::string remedy{};  ///< what to change: `did you mean "stiffness"?`
 
   bool operator==(const Problem&) const = default;
@@ -23,7 +23,7 @@ struct Problem {
 /// One line: `file: key = value: rule; remedy`.
 [[nodiscard]] std::string to_string(const Problem& problem);
 
-/// Invalid scene, mesh or argument; holds every problem found. Requires at least one problem.
+/// Invalid scene, mesh or argument, with all problems found. Requires at least one problem.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(Problem problem);
@@ -42,18 +42,18 @@ class FileError : public std::runtime_error {
   FileError(const std::string& action, const std::string& path, const std::string& reason);
 };
 
-/// Where a simulation diverged. `spring` is counted within its body, as is `particle`; kNone when no spring is concerned.
+/// The location of a divergence. `particle` and `spring` are counted within the body; kNone if no spring is involved.
 struct StepFailure {
   std::int64_t step = 0;
   double time = 0.0;  ///< [s]
   std::string body;
   Index particle = kNone;
   Index spring = kNone;
-  std::string cause;   ///< what was seen: `a position is not finite`
+  std::string cause;   ///< the observation: `a position is not finite`
   std::string remedy;  ///< what to change
 };
 
-/// The simulation diverged; the state it left behind must not be used.
+/// The simulation diverged. Its state must not be used any more.
 class StepError : public std::runtime_error {
  public:
   explicit StepError(StepFailure failure);

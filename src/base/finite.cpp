@@ -4,7 +4,8 @@
 
 namespace sprung {
 
-// Zero times what is not finite is no number, and nor is a sum with it: far faster than asking each. One sum would wait for itself.
+// Zero times NaN or infinity is NaN, and so is any sum with it. This is much faster than testing each number. Several sums avoid a
+// chain of dependent additions.
 SPRUNG_KERNEL
 bool are_finite(const double* values, Index count) {
   constexpr Index kSums = 32;

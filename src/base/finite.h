@@ -1,4 +1,4 @@
-// Whether numbers are finite, of many at once.
+// Tests many numbers for NaN and infinity at once.
 #pragma once
 
 #include "base/types.h"

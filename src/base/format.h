@@ -1,4 +1,4 @@
-// Numbers as text: the shortest that reads back to the same double.
+// Numbers as text.
 #pragma once
 
 #include <cstddef>
@@ -6,16 +6,16 @@
 
 namespace sprung {
 
-/// Appends the shortest text that reads back to the same double; `nan`, `inf`, `-inf` for what is not finite.
+/// Appends the shortest text that reads back as the same double; `nan`, `inf` or `-inf` if the value is not finite.
 void append_number(std::string& text, double value);
 
 [[nodiscard]] std::string format_number(double value);
 
-/// Rounded to so many significant digits: for people. Requires 1 <= digits <= 17.
+/// Rounded to this number of significant digits, for display. Requires 1 <= digits <= 17.
 [[nodiscard]] std::string format_number(double value, int digits);
 
-/// A bound that people may type: rounded to six significant digits, but never above `bound` by more than rounding. Requires bound >
-/// 0.
+/// An upper bound for users to type: rounded down to six significant digits, so that it exceeds `bound` by rounding error at most.
+/// Requires bound > 0.
 [[nodiscard]] std::string format_upper_bound(double bound);
 
 /// "1 spring", "2 springs".

@@ -8,7 +8,7 @@ namespace sprung {
 
 void prefer_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
 #ifdef __linux__
-  madvise(begin, bytes, MADV_HUGEPAGE);  // a hint: what comes of it does not matter
+  madvise(begin, bytes, MADV_HUGEPAGE);  // only a hint: failure does not matter
 #endif
 }
 

@@ -1,4 +1,4 @@
-// Large arrays in large pages, where the system offers them: walks over many megabytes look up fewer addresses.
+// Large arrays in large pages, if the system offers them: fewer address translations for arrays of many megabytes.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,13 @@
 
 namespace sprung {
 
-/// Tells the system that `bytes` from `begin` on, both multiples of kHugePage, had better lie in huge pages.
+/// Advises the system to use huge pages for `bytes` from `begin` on. Both must be multiples of kHugePage.
 void prefer_huge_pages(void* begin, std::size_t bytes);
 
-/// An allocator that asks for huge pages for what is larger than one.
+/// An allocator that requests huge pages for arrays of at least one huge page.
 template <class T>
 struct HugePageAllocator {
-  using value_type = T;  // NOLINT(readability-identifier-naming): what an allocator must have
+  using value_type = T;  // NOLINT(readability-identifier-naming): the name that allocators must have
   static constexpr std::size_t kHugePage = std::size_t{1} << 21;  ///< [bytes]
 
   HugePageAllocator() = default;

@@ -1,4 +1,4 @@
-// Hot loops compiled once for the baseline machine and once for AVX2, chosen at run time; a few once more for the eight lanes of
+// Hot loops compiled twice, for the baseline machine and for AVX2, and chosen at run time; a few also for the eight lanes of
 // AVX-512. The whole program keeps the baseline ABI, which libfcl needs, and contraction is off, so all versions compute the same
 // bits.
 #pragma once
@@ -14,7 +14,7 @@
 
 namespace sprung {
 
-/// Whether this machine has what SPRUNG_WIDE_KERNEL is compiled for.
+/// Whether this machine supports the target of SPRUNG_WIDE_KERNEL.
 [[nodiscard]] inline bool has_wide_lanes() {
 #if defined(__GNUC__) && defined(__x86_64__)
   return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&

@@ -7,9 +7,9 @@
 namespace sprung {
 
 double machine_memory() {
-  struct sysinfo told {};
-  if (sysinfo(&told) != 0) return std::numeric_limits<double>::infinity();
-  return static_cast<double>(told.totalram) * static_cast<double>(told.mem_unit);
+  struct sysinfo info {};
+  if (sysinfo(&info) != 0) return std::numeric_limits<double>::infinity();
+  return static_cast<double>(info.totalram) * static_cast<double>(info.mem_unit);
 }
 
 }  // namespace sprung

@@ -1,9 +1,9 @@
-// How much memory there is.
+// Size of the main memory.
 #pragma once
 
 namespace sprung {
 
-/// What this machine has [bytes]; infinity where it does not say.
+/// The memory of this machine [bytes]; infinity if unknown.
 [[nodiscard]] double machine_memory();
 
 }  // namespace sprung

@@ -13,8 +13,8 @@ namespace sprung {
 
 namespace {
 
-/// Tells the thread sanitizer, which cannot see into oneTBB, that chunks come after what was before the loop, and before what comes
-/// after it; chunks come in no order.
+/// Tells the thread sanitizer, which does not know oneTBB, the order of a loop: chunks run after the code before the loop and
+/// before the code after it, but in no order among themselves.
 class LoopOrder {
  public:
 #ifdef __SANITIZE_THREAD__

@@ -1,4 +1,4 @@
-// Parallel loops whose results do not depend on the number of threads: the chunks are cut by size alone, never by thread.
+// Parallel loops whose results do not depend on the number of threads: the size alone determines the chunks.
 #pragma once
 
 #include "base/types.h"
@@ -12,8 +12,8 @@ namespace detail {
 void run_chunks(Index count, Index chunk, void (*call)(void* body, Index begin, Index end), void* body);
 }
 
-/// Calls `body(begin, end)` once for each chunk [0, chunk), [chunk, 2 chunk), ... of [0, count), possibly at the same time.
-/// Requires chunk > 0, and that no two chunks write to the same place. Exceptions of `body` reach the caller.
+/// Calls `body(begin, end)` once for each chunk [0, chunk), [chunk, 2 chunk), ... of [0, count), possibly concurrently. Requires
+/// chunk > 0, and that no two chunks write to the same memory. Rethrows exceptions of `body`.
 template <class Body>
 void parallel_chunks(Index count, Index chunk, Body&& body) {
   using Function = std::remove_reference_t<Body>;
@@ -22,7 +22,7 @@ void parallel_chunks(Index count, Index chunk, Body&& body) {
       const_cast<void*>(static_cast<const void*>(&body)));
 }
 
-/// While it lives, parallel loops use at most this many threads. Requires threads >= 1.
+/// Limits parallel loops to this number of threads during its lifetime. Requires threads >= 1.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);

@@ -1,4 +1,4 @@
-// Collects the broken rules of an input, so that all are reported in one go.
+// Collects the broken rules of an input, so that all are reported together.
 #pragma once
 
 #include "base/error.h"
@@ -11,7 +11,7 @@
 
 namespace sprung {
 
-/// A rule for each entry of an array, whose key is `key`.
+/// A rule for each entry of the array with the key `key`.
 struct EntryRule {
   std::string key;
   std::string text;
@@ -32,13 +32,13 @@ class ProblemList {
 
   void require_count(const std::string& key, std::int64_t value, std::int64_t least);
 
-  /// Names the first of `count` entries that is not `good(entry)`, by `text(entry)`, and counts the others.
+  /// Names the first of `count` entries for which `good(entry)` is false, by `text(entry)`, and counts the others.
   template <class Good, class Text>
   void require_each(std::size_t count, const Good& good, const Text& text, const EntryRule& rule);
 
   [[nodiscard]] bool empty() const { return problems_.empty(); }
 
-  /// Throws InputError when there are any.
+  /// Throws InputError with all problems, if there are any.
   void throw_if_any() const {
     if (!problems_.empty()) throw InputError(problems_);
   }

@@ -1,6 +1,6 @@
-// Vectors of numbers for hot loops: double x 4, double x 8 and float x 8. The compiler maps them to whatever registers the machine
-// has; the bits are the same on every machine. For the .cpp files of kernels alone: functions that pass these types by value would
-// have another ABI on each machine.
+// Vectors of numbers for hot loops: double x 4, double x 8 and float x 8. The compiler maps them to the registers of the machine;
+// the bits are the same on every machine. For the .cpp files of kernels alone: functions that pass these types by value would have
+// another ABI on each machine.
 #pragma once
 
 #include "base/types.h"
@@ -13,9 +13,9 @@
 
 namespace sprung {
 
-inline constexpr Index kSimdWidth = 4;       ///< doubles that most kernels compute at a time
-inline constexpr Index kWideSimdWidth = 8;   ///< doubles, where a kernel has a version for AVX-512
-inline constexpr Index kFloatSimdWidth = 8;  ///< floats: the children of a wide BVH node
+inline constexpr Index kSimdWidth = 4;       ///< number of doubles that most kernels compute at a time
+inline constexpr Index kWideSimdWidth = 8;   ///< number of doubles in kernels with a version for AVX-512
+inline constexpr Index kFloatSimdWidth = 8;  ///< number of floats: the children of a wide BVH node
 
 /// `kCount` numbers of one type: in registers (Type), and unaligned in memory (Stored).
 template <class Number, Index kCount>
@@ -31,7 +31,7 @@ using Float8 = SimdOf<float, kFloatSimdWidth>::Type;
 using Mask4 = std::int64_t __attribute__((vector_size(kSimdWidth * sizeof(std::int64_t))));
 using FloatMask8 = std::int32_t __attribute__((vector_size(kFloatSimdWidth * sizeof(std::int32_t))));
 
-/// The integer type with as many bits.
+/// The integer type with the same number of bits.
 template <class Lanes>
 struct BitsOf;
 template <>
@@ -77,9 +77,9 @@ template <class Lanes>
   return (some[0] | some[1] | some[2] | some[3]) != 0;
 }
 
-/// Approximates 1 / sqrt(of) up to its last bit; some large number where `of` is 0. The steps are a first guess from the bits
-/// (error 3.5 %), a cubic polynomial fitted to the rest (7.5e-7), and one Halley step. Square roots and divisions of the hardware
-/// take longer, and its own estimates differ between makers.
+/// Approximates 1 / sqrt(of) up to its last bit; a large finite number where `of` is 0. The steps are a first guess from the bits
+/// (error 3.5 %), a cubic polynomial fitted to the remaining factor (7.5e-7), and one Halley step. This is faster than the square
+/// root and division of the hardware, whose own estimates differ between makers.
 template <class Lanes>
 [[gnu::always_inline]] inline void inverse_root(const Lanes& of, Lanes& root) {
   using Bits = typename BitsOf<Lanes>::Type;
@@ -90,7 +90,7 @@ template <class Lanes>
   root += root * (left * (0.5 + 0.375 * left));
 }
 
-/// Bit i is set where lane i of a comparison holds.
+/// Bit i is set where lane i of a comparison is true.
 [[gnu::always_inline]] inline unsigned mask_bits(const Mask4& mask) {
   const Mask4 bits = mask & Mask4{1, 2, 4, 8};
   const auto two = __builtin_shufflevector(bits, bits, 0, 1) | __builtin_shufflevector(bits, bits, 2, 3);
@@ -147,7 +147,7 @@ struct Vector3x4 {
   to.z = a.z - b.z;
 }
 
-/// Adds in Eigen's order.
+/// Adds in the order in which Eigen does.
 [[gnu::always_inline]] inline void dot(const Vector3x4& a, const Vector3x4& b, Double4& to) {
   to = a.x * b.x + a.y * b.y + a.z * b.z;
 }

@@ -1,4 +1,4 @@
-// Numbers next to zero, which take machines a hundred times as long as others.
+// Denormal numbers, which are up to a hundred times slower than others on some machines.
 #pragma once
 
 #if defined(__SSE2__)
@@ -7,7 +7,7 @@
 
 namespace sprung {
 
-/// While it lives, this thread counts what is smaller than the least normal number (2^-1022) as zero, where the machine can.
+/// During its lifetime, this thread treats numbers below the least normal number (2^-1022) as zero, if the machine can.
 class TinyNumbersAreZero {
  public:
 #if defined(__SSE2__)

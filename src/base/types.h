@@ -1,4 +1,4 @@
-// Scalar, vector and array types that every floor shares. SI units throughout: m, kg, s, N.
+// Scalar, vector and array types of all folders. SI units throughout: m, kg, s, N.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,7 @@
 
 namespace sprung {
 
-/// Number of a particle, spring, triangle, body or obstacle, counted from 0; -1 stands for "none".
+/// Number of a particle, spring, triangle, body or obstacle, counted from 0; -1 means "none".
 using Index = std::int32_t;
 inline constexpr Index kNone = -1;
 
@@ -30,7 +30,7 @@ using Edges = Eigen::Matrix<Index, 2, Eigen::Dynamic>;
 /// Axis-aligned box; empty when default constructed.
 using Box3 = Eigen::AlignedBox3d;
 
-/// Rotation and translation, x -> R x + t. Scale is never part of it.
+/// Rotation and translation, x -> R x + t, without scale.
 using RigidTransform = Eigen::Isometry3d;
 
 }  // namespace sprung

@@ -9,16 +9,15 @@ namespace sprung {
 
 void require_affordable(const std::string& key, const std::string& value, double particles, ProblemList& problems) {
   if (particles <= static_cast<double>(kMaxBodyParticles)) return;
-  problems.add(
-      key, value,
-      "makes " + format_number(particles) + " particles, more than the " + std::to_string(kMaxBodyParticles) + " of a body",
-      "lower the resolution");
+  problems.add(key, value,
+               "makes " + format_number(particles) + " particles, but a body may have at most " + std::to_string(kMaxBodyParticles),
+               "lower the resolution");
 }
 
 void refuse_angle_bends(const SpringMaterials& materials, const std::string& body, ProblemList& problems) {
   if (!materials.bend || materials.bend_model != SpringMaterials::BendModel::angle) return;
-  problems.add("springs.bend.model", "\"angle\"", "is for ropes and cloths: " + body + " bends by springs",
-               "use \"spring\", or make a cloth of it");
+  problems.add("springs.bend.model", "\"angle\"", "is only for ropes and cloths: " + body + " resists bending by springs",
+               "use \"spring\", or use a cloth");
 }
 
 void require_materials(const SpringMaterials& materials, ProblemList& problems) {
@@ -29,16 +28,16 @@ void require_materials(const SpringMaterials& materials, ProblemList& problems) 
     const std::string key = std::string("springs.") + name;
     const bool modulus = material->measure == SpringMaterial::Measure::modulus;
     problems.require_not_negative(key + (modulus ? ".modulus" : ".stiffness"), material->value,
-                                  "use 0 for springs that a stretch limit alone shall hold");
+                                  "use 0 for springs that only a stretch limit constrains");
     problems.require_not_negative(key + ".damping", material->damping, "use 0 for springs without damping");
     if (!material->damping_ratio) continue;
     problems.require_not_negative(key + ".damping_ratio", *material->damping_ratio, "use 0 for springs without damping");
     if (material->damping != 0.0)
-      problems.add(key + ".damping_ratio", format_number(*material->damping_ratio), "must not be given beside damping",
+      problems.add(key + ".damping_ratio", format_number(*material->damping_ratio), "must not be given together with damping",
                    "remove one of them");
     if (material->value == 0.0)
       problems.add(key + ".damping_ratio", format_number(*material->damping_ratio),
-                   "needs springs with stiffness, as it is a part of what stops them swinging", "give damping instead");
+                   "needs springs with stiffness, because it is a fraction of their critical damping", "give damping instead");
   }
 }
 

@@ -62,7 +62,7 @@ void set_density(BodyShape& shape, double density) {
   if (bare != shape.measures.end()) {
     problems.add("density", format_number(density),
                  "gives no mass to particle " + std::to_string(bare - shape.measures.begin()) +
-                     ", in no face, or in no line of what has no faces",
+                     ", which is in no face (in a mesh without faces: in no line)",
                  "give mass or particle_mass, or remove such vertices from the mesh");
   }
   problems.throw_if_any();

@@ -9,8 +9,8 @@
 
 namespace sprung {
 
-/// Particles, springs and surface of one body; indices count from 0 within the body. What the make_ functions return has
-/// masses of 0: `set_total_mass` or `set_density` gives them.
+/// Particles, springs and surface of one body; indices count from 0 within the body. The make_ functions return masses of 0;
+/// `set_total_mass` or `set_density` sets them.
 struct BodyShape {
   std::vector<Vector3> positions;   ///< [m]
   std::vector<Vector3> velocities;  ///< [m/s]
@@ -19,41 +19,42 @@ struct BodyShape {
   Springs springs;                  ///< in any order
   AngleBends angle_bends;
   Surface surface;
-  int dimension = 0;     ///< of what `measure` measures: 1 length, 2 area, 3 volume; 0: nothing
+  int dimension = 0;     ///< of the measure: 1 length, 2 area, 3 volume; 0: none
   double measure = 0.0;  ///< length [m], area [m^2] or volume [m^3]
-  /// Of a cloth that make_cloth made: particles along x, which are numbered first, and along y; 0 of all else.
+  /// Number of particles along x, which are numbered first, and along y of a cloth made by make_cloth. 0 for all other shapes.
   std::array<Index, 2> resolution{};
-  std::vector<double> measures;  ///< each particle's part of it: what is nearest to it, on a border half of it or less
-  /// Of each kind of spring, in the order of SpringKind: the damping ratio that NetworkBuilder turns into k_d.
+  /// Share of each particle in the measure: the region nearest to it, half or less of it on a border.
+  std::vector<double> measures;
+  /// Per kind of spring, in the order of SpringKind: the damping ratio from which NetworkBuilder computes k_d.
   std::array<std::optional<double>, 3> damping_ratios{};
 };
 
-/// Spring constants of one kind of spring.
+/// Stiffness and damping of one kind of spring.
 struct SpringMaterial {
   enum class Measure : std::uint8_t {
     stiffness,  ///< k_s [N/m] of each spring
-    /// Rope EA [N], cloth and mesh [N/m], solid [Pa]: k_s = modulus * cross-section / rest length, where a spring's cross-section
-    /// is the distance (solid: distances) to its parallel neighbours, on a border half of it. Stretched by a strain along its
-    /// structural springs, a body pulls back with modulus * whole cross-section * strain at any resolution.
+    /// Rope EA [N], cloth and mesh [N/m], solid [Pa]: k_s = modulus * cross-section / rest length. The cross-section of a spring
+    /// is its distance (solid: distances) to the parallel neighbours, half of it on a border. At any resolution, a body under a
+    /// strain along its structural springs pulls with modulus * its whole cross-section * strain.
     modulus
   };
   double value = 0.0;  ///< >= 0
   Measure measure = Measure::stiffness;
   double damping = 0.0;  ///< k_d [N s/m], >= 0
-  /// Instead of `damping`, >= 0: k_d = 2 zeta k_s / omega, omega being the body's breathing about its pins: see
-  /// `breathing_frequency`. Breathing then dies out with this ratio (1: without swinging, when every kind has it), whatever the
-  /// resolution; a pair of particles has k_d = 2 zeta sqrt(k_s m) with its reduced mass m. Faster motion of frequency omega' is
-  /// damped by zeta omega' / omega. Of angle bends: the same with `bending_frequency`.
+  /// Alternative to `damping`, >= 0: k_d = 2 zeta k_s / omega, where omega is the frequency of the body's breathing motion about
+  /// its pins (`breathing_frequency`). Breathing then decays with this ratio at any resolution; with 1 for all kinds of springs it
+  /// is critically damped. A pair of particles of reduced mass m has k_d = 2 zeta sqrt(k_s m). Motion of a higher frequency omega'
+  /// has the ratio zeta omega' / omega. Angle bends use `bending_frequency` instead.
   std::optional<double> damping_ratio{};
 };
 
-/// Which springs to make: a kind without a material is left out.
+/// The springs of a body. A kind without a material has no springs.
 struct SpringMaterials {
-  /// How ropes and cloths resist bending: by springs that skip a particle, whose resistance to a slight bend is nothing (their
-  /// energy grows with the fourth power of the angle), or by angle bends, which converge to a beam's and a plate's linear
-  /// resistance. With angle bends `stiffness` is k [N m] of each, `damping` [N m s], and `modulus` EI [N m^2] of a rope, D [N m] of
-  /// a cloth: k = EI / l, D w / l with bonds of length l, w apart from their parallel neighbours (half of it on a border). A body
-  /// is clamped by pinning two particles in a row, half-way between them.
+  /// How ropes and cloths resist bending. `spring`: springs that skip a particle. Their energy is of fourth order in the angle, so
+  /// they do not resist a slight bend. `angle`: angle bends, which converge to the linear stiffness of beams and plates. For angle
+  /// bends, `stiffness` is k [N m] of each one, `damping` its damping [N m s], and `modulus` is EI [N m^2] of a rope or D [N m] of
+  /// a cloth: k = EI / l or k = D w / l, with bonds of length l at a distance w from their parallel neighbours (half of it on a
+  /// border). Two pinned particles in a row clamp a body midway between them.
   enum class BendModel : std::uint8_t { spring, angle };
 
   std::optional<SpringMaterial> structural{};
@@ -62,55 +63,55 @@ struct SpringMaterials {
   BendModel bend_model = BendModel::spring;
 };
 
-/// Most particles of a body: 2^27, so that the numbers of its springs (up to 16 a particle) fit an Index.
+/// Largest number of particles of a body: 2^27, so that the numbers of its springs (up to 16 per particle) fit an Index.
 inline constexpr Index kMaxBodyParticles = Index{1} << 27;
 
-/// A polyline of at least 2 points [m]: `particles` >= 2 at equal distances along it, or one at each point when not given.
-/// Structural springs join neighbours, bend springs skip one; rest lengths are measured along the polyline, so a rope laid around
-/// a corner wants to be straight. `length` [m] > 0 is the rest length of the whole when it is not the polyline's own.
+/// A polyline of at least 2 points [m]. It has `particles` >= 2 particles at equal distances, or one at each point by default.
+/// Structural springs join neighbours, bend springs skip one particle. Rest lengths are measured along the polyline, so the rest
+/// shape of a rope with corners is straight. `length` [m] > 0 is the rest length of the whole rope; by default, that of the
+/// polyline.
 struct RopeShape {
   std::vector<Vector3> points;
   std::optional<Index> particles;
   std::optional<double> length;
 };
 
-/// A rectangle in the x-y plane, centred; particles x fastest. Structural springs along the sides of the cells, shear along both
-/// diagonals, bend along the sides and skipping one particle (Provot 1995). Its triangles face +z, and the diagonals that cut the
-/// cells alternate like the squares of a chessboard.
+/// A rectangle in the x-y plane, centred; x runs fastest. Structural springs lie along the sides of the cells, shear springs along
+/// both diagonals, and bend springs along the sides, skipping one particle (Provot 1995). The triangles face +z. The diagonals
+/// that cut the cells alternate like the squares of a chessboard.
 struct ClothShape {
   std::array<double, 2> size{1.0, 1.0};   ///< [m], > 0
   std::array<Index, 2> resolution{2, 2};  ///< particles per side, >= 2
 };
 
-/// A box, centred; particles x fastest, then y, then z. Structural springs along the edges of the cells, shear along their face and
-/// space diagonals, bend along the edges and skipping one particle. Its surface is the boundary.
+/// A box, centred; x runs fastest, then y, then z. Structural springs lie along the edges of the cells, shear springs along their
+/// face and space diagonals, and bend springs along the edges, skipping one particle. The surface is the boundary.
 struct SolidShape {
   Vector3 size = Vector3::Ones();            ///< [m], > 0
   std::array<Index, 3> resolution{2, 2, 2};  ///< particles per side, >= 2
 };
 
-/// The make_ functions throw InputError with every broken rule of the shape (keys as in a scene: `size[0]`, `points[3]`) and of
-/// the materials (`springs.bend.damping`).
+/// The make_ functions throw InputError that names every broken rule of the shape (keys as in a scene: `size[0]`, `points[3]`) and
+/// of the materials (`springs.bend.damping`).
 [[nodiscard]] BodyShape make_rope(const RopeShape& rope, const SpringMaterials& materials);
 [[nodiscard]] BodyShape make_cloth(const ClothShape& cloth, const SpringMaterials& materials);
 [[nodiscard]] BodyShape make_solid(const SolidShape& solid, const SpringMaterials& materials);
 
-/// A particle per vertex, in its order; faces, groups and UVs as given. Structural springs along edges and lines, shear along the
-/// diagonals of polygons that skip one corner, bend across the edges that two faces share, joining what lies in line beyond them
-/// (of two triangles the opposite corners). No two particles are joined twice: structural comes before shear, shear before bend.
-/// Rest lengths are the distances in the mesh.
+/// One particle per vertex, in the same order; faces, groups and UVs as given. Structural springs lie along edges and lines, and
+/// shear springs along the diagonals of polygons that skip one corner. Bend springs cross the edges between two faces and join the
+/// corners beyond them (of two triangles, the opposite corners). No two particles are joined twice: structural precedes shear,
+/// shear precedes bend. Rest lengths are the distances in the mesh.
 [[nodiscard]] BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materials);
 
-/// Gives each particle the same share of `total` [kg]. Throws InputError unless it is positive and finite.
+/// Gives each particle the same share of `total` [kg]. Throws InputError unless `total` is positive and finite.
 void set_total_mass(BodyShape& shape, double total);
 
-/// Gives each particle the mass of what is nearest to it, `density` [kg/m], [kg/m^2] or [kg/m^3] times its entry of `measures`, so
-/// that motion does not depend on resolution: particles on a border are lighter. Throws InputError unless it is positive and
-/// finite, and when there are particles without a length, an area or a volume.
+/// Gives each particle the mass of the region nearest to it: `density` [kg/m], [kg/m^2] or [kg/m^3] times its entry of `measures`.
+/// Motion then does not depend on the resolution; particles on a border are lighter. Throws InputError unless `density` is
+/// positive and finite and all measures are positive.
 void set_density(BodyShape& shape, double density);
 
-/// Rotates, then moves a body, and adds a velocity [m/s]. There is no scale here: give the make_ functions sizes, points and
-/// vertices as large as the body shall be.
+/// Rotates and moves a body, and adds a velocity [m/s]. The transform has no scale: make the shape in its final size.
 void place(BodyShape& shape, const RigidTransform& pose, const Vector3& velocity = Vector3::Zero());
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// Names of the corners of ropes, cloths and solids, as pins use them.
+// Names of the corners of ropes, cloths and solids, for pins.
 #pragma once
 
 #include "network/body_shape.h"
@@ -15,7 +15,7 @@ namespace sprung {
 [[nodiscard]] std::vector<std::string> corner_names(const ClothShape& cloth);
 [[nodiscard]] std::vector<std::string> corner_names(const SolidShape& solid);
 
-/// The body's particle at a corner; none when the shape has no corner of that name.
+/// The body's particle at a corner; none if the shape has no corner of that name.
 [[nodiscard]] std::optional<Index> corner_particle(const RopeShape& rope, std::string_view name);
 [[nodiscard]] std::optional<Index> corner_particle(const ClothShape& cloth, std::string_view name);
 [[nodiscard]] std::optional<Index> corner_particle(const SolidShape& solid, std::string_view name);

@@ -6,7 +6,7 @@
 namespace sprung {
 namespace {
 
-/// The mean of the body's pinned particles, or its centre of mass.
+/// The mean of the body's pinned particles or, without pins, its centre of mass.
 Vector3 fixed_point(const SpringNetwork& network, const Body& body) {
   Vector3 pinned = Vector3::Zero();
   Vector3 weighted = Vector3::Zero();
@@ -36,7 +36,7 @@ double inertia(const SpringNetwork& network, const Body& body, const Weight& wei
 
 double frequency(double stiffness, double inertia) { return inertia > 0.0 ? std::sqrt(stiffness / inertia) : 0.0; }
 
-/// k_d / k [s] of a damping ratio; 0 where nothing swings.
+/// k_d / k [s] of a damping ratio; 0 for a body that does not oscillate.
 double damping_time(double ratio, double omega) { return omega > 0.0 ? 2.0 * ratio / omega : 0.0; }
 
 }  // namespace

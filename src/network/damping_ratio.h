@@ -1,4 +1,4 @@
-// Damping that is given as a part of what stops a body from swinging.
+// Damping as a fraction of critical damping.
 #pragma once
 
 #include "network/spring_network.h"
@@ -8,19 +8,19 @@
 
 namespace sprung {
 
-/// The frequency omega [rad/s] of a body's breathing: every spring is stretched by the same part of its length, and particles move
-/// straight away from the mean of the body's pinned particles or, without any, from its centre of mass. Rayleigh's quotient of that
-/// motion at time 0, omega^2 = sum k_s d^2 / sum m r^2 with rest lengths d and distances r, which does not depend on the resolution
-/// of a body made of `modulus` and `density`. A rope's is 10 % above its slowest motion along itself, free or pinned. 0 for a body
+/// The frequency omega [rad/s] of a body's breathing motion: all springs have the same strain, and particles move radially from
+/// the mean of the body's pinned particles or, without pins, from its centre of mass. It is the Rayleigh quotient at time 0,
+/// omega^2 = sum k_s d^2 / sum m r^2, with rest lengths d and distances r. It does not depend on the resolution of a body made
+/// with `modulus` and `density`. For a rope it is 10 % above the lowest longitudinal frequency, free or pinned. 0 for a body
 /// without stiffness or extent.
 [[nodiscard]] double breathing_frequency(const SpringNetwork& network, const Body& body);
 
-/// The frequency omega [rad/s] of bending to the same curvature all along, with particles moving across by half of it times r^2:
-/// omega^2 = sum k l^2 / sum m (r^2 / 2)^2 over the body's angle bends of mean bond length l. 0 for a body without them.
+/// The frequency omega [rad/s] of bending with uniform curvature c, where particles move transversally by c r^2 / 2: omega^2 = sum
+/// k l^2 / sum m (r^2 / 2)^2 over the body's angle bends with mean bond length l. 0 for a body without angle bends.
 [[nodiscard]] double bending_frequency(const SpringNetwork& network, const Body& body);
 
-/// Gives springs of the kinds that have a damping ratio zeta, in the order of SpringKind, their k_d = 2 zeta k_s / omega, and angle
-/// bends theirs by the ratio of `bend`.
+/// Sets k_d = 2 zeta k_s / omega for the kinds of springs with a damping ratio zeta, in the order of SpringKind. Angle bends use
+/// the ratio of `bend`.
 void damp_by_ratio(const std::array<std::optional<double>, 3>& ratios, const Body& body, SpringNetwork& network);
 
 }  // namespace sprung

@@ -11,11 +11,11 @@ constexpr Direction kAxes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 constexpr Direction kDiagonals[] = {{1, 1, 0},  {-1, 1, 0}, {1, 0, 1},  {-1, 0, 1}, {0, 1, 1},
                                     {0, -1, 1}, {1, 1, 1},  {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
 
-// Springs from every node to the one `stride` cells further along `direction`.
+// Springs from each node to the one `stride` cells further along `direction`.
 //
-// Parallel springs share the body among them: in a cell of volume V (cloth: area), springs along a step s lie V / |s| apart. On a
-// border across the step only half a cell is beside the spring. Cut across the x axis, for example, the structural springs' cross-
-// sections add up to the body's: sum of (h_y h_z, halved at borders) = size_y size_z.
+// Parallel springs share the body: in a cell of volume V (cloth: area), springs along a step s are V / |s| apart. On a border
+// parallel to the step, a spring represents only half a cell. For example, the cross-sections of the structural springs through a
+// cut across the x axis add up to that of the body: sum of (h_y h_z, halved at borders) = size_y size_z.
 void add_family(const Lattice& lattice, const Direction& direction, Index stride, const SpringMaterial& material, SpringKind kind,
                 Springs& springs) {
   const Vector3 spacing = lattice.spacing();
@@ -52,7 +52,7 @@ void add_family(const Lattice& lattice, const Direction& direction, Index stride
 }  // namespace
 
 std::vector<Vector3> Lattice::positions() const {
-  // The outermost particles lie exactly on the border, and opposite ones mirror each other exactly.
+  // The outermost particles lie exactly on the border, and opposite particles are exact mirror images.
   const auto coordinate = [&](int axis, Index i) {
     const Index cells = resolution[axis] - 1;
     return cells == 0 ? 0.0 : size[axis] / 2.0 * (static_cast<double>(2 * std::int64_t{i} - cells) / cells);
@@ -77,7 +77,7 @@ Vector3 Lattice::spacing() const {
 
 std::vector<double> Lattice::measures() const {
   const Vector3 cell = spacing();
-  const auto part = [&](int axis, Index i) {
+  const auto extent = [&](int axis, Index i) {
     const bool on_border = resolution[axis] > 1 && (i == 0 || i + 1 == resolution[axis]);
     return on_border ? cell[axis] / 2.0 : cell[axis];
   };
@@ -85,7 +85,7 @@ std::vector<double> Lattice::measures() const {
   measures.reserve(static_cast<std::size_t>(resolution[0]) * resolution[1] * resolution[2]);
   for (Index k = 0; k < resolution[2]; ++k) {
     for (Index j = 0; j < resolution[1]; ++j) {
-      for (Index i = 0; i < resolution[0]; ++i) measures.push_back(part(0, i) * part(1, j) * part(2, k));
+      for (Index i = 0; i < resolution[0]; ++i) measures.push_back(extent(0, i) * extent(1, j) * extent(2, k));
     }
   }
   return measures;

@@ -8,7 +8,7 @@
 
 namespace sprung {
 
-/// A centred grid, x fastest, then y, then z. A cloth is a grid of resolution 1 along z, with size 1 there.
+/// A centred grid; x runs fastest, then y, then z. A cloth is a grid of resolution 1 and size 1 along z.
 struct Lattice {
   Vector3 size = Vector3::Ones();  ///< [m]
   std::array<Index, 3> resolution{1, 1, 1};
@@ -17,21 +17,22 @@ struct Lattice {
   [[nodiscard]] Index number(const Node& node) const { return node[0] + resolution[0] * (node[1] + resolution[1] * node[2]); }
   [[nodiscard]] std::vector<Vector3> positions() const;
 
-  /// Distances of neighbours [m]; the size itself along an axis of resolution 1.
+  /// Distances of neighbours [m]; the size along an axis of resolution 1.
   [[nodiscard]] Vector3 spacing() const;
 
-  /// The volume [m^3] nearest to each node (cloth: area [m^2]): a cell's, on each border of the grid half of it.
+  /// The volume [m^3] (cloth: area [m^2]) nearest to each node: that of a cell, halved for each border that the node lies on.
   [[nodiscard]] std::vector<double> measures() const;
 };
 
-/// Structural springs along the axes, shear along face and space diagonals, bend along the axes and skipping one.
+/// Structural springs along the axes, shear springs along face and space diagonals, bend springs along the axes, skipping one
+/// node.
 void add_lattice_springs(const Lattice& lattice, const SpringMaterials& materials, Springs& springs);
 
-/// Angle bends along the x and the y axis of a cloth.
+/// Angle bends along the x axis and the y axis of a cloth.
 void add_lattice_angle_bends(const Lattice& lattice, const SpringMaterial& material, AngleBends& bends);
 
-/// Appends two triangles for each cell of the layer of nodes whose index along `axis` is `layer`; they face along the axis when
-/// `along` is true, else against it. The diagonals alternate from cell to cell.
+/// Appends two triangles for each cell in the layer of nodes with index `layer` along `axis`. They face along the axis if `along`
+/// is true, otherwise against it. The diagonals alternate from cell to cell.
 void add_layer_triangles(const Lattice& lattice, int axis, Index layer, bool along, std::vector<std::array<Index, 3>>& triangles);
 
 [[nodiscard]] Triangles to_triangles(const std::vector<std::array<Index, 3>>& triangles);

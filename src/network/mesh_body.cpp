@@ -42,7 +42,7 @@ void check_vertices(const PolygonMesh& mesh, ProblemList& problems) {
       EntryRule{"vertices", "must be finite", kExport});
 }
 
-// `corners_of(i)` are the vertices that entry i of `count` joins.
+// `corners_of(i)` are the vertices of entry i, for i < `count`.
 template <class CornersOf>
 void check_corners(const std::string& key, std::size_t count, const CornersOf& corners_of, std::size_t least, Index vertex_count,
                    ProblemList& problems) {
@@ -99,11 +99,11 @@ void add_springs(const std::vector<Joint>& joints, SpringKind kind, const Spring
   problems.add(key,
                std::to_string(unusable.size()) + " springs, the first from vertex " + std::to_string(unusable.front().first) +
                    " to " + std::to_string(unusable.front().second),
-               "must have a length and an area beside them, from which a modulus makes a stiffness",
+               "must have a length and an adjacent area, from which the stiffness follows with a modulus",
                "give `stiffness`, or remove such lines and faces from the mesh");
 }
 
-Edges lines_beside(const Edges& lines, const Triangles& triangles) {
+Edges lines_without_triangles(const Edges& lines, const Triangles& triangles) {
   std::set<std::array<Index, 2>> kept;
   for (const auto& line : lines.colwise()) kept.insert({std::min(line[0], line[1]), std::max(line[0], line[1])});
   const Edges edges = unique_edges(triangles);
@@ -137,7 +137,7 @@ void set_mesh_surface(BodyShape& shape, const PolygonMesh& mesh) {
   Surface& surface = shape.surface;
   surface.faces = mesh.faces;
   surface.triangles = triangulate(mesh.faces);
-  surface.segments = lines_beside(mesh.lines, surface.triangles);
+  surface.segments = lines_without_triangles(mesh.lines, surface.triangles);
 
   shape.drag_areas = vertex_areas(shape.positions, surface.triangles);
   std::vector<bool> has_surface(shape.positions.size(), false);

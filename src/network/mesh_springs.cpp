@@ -7,7 +7,7 @@
 namespace sprung {
 namespace {
 
-// A side of a face: its two ends, and the corners that come next along the face beyond them.
+// A side of a face: its two ends, and the corners of the face next to them.
 struct Side {
   Index first = 0;
   Index second = 0;
@@ -49,7 +49,7 @@ class JointCollector {
     }
   }
 
-  // One joint a pair: the first kind wins, and the areas of that kind add up.
+  // One joint per pair: the first kind wins, and the areas of that kind are added.
   std::vector<Joint> merged() {
     std::stable_sort(joints_.begin(), joints_.end(), [](const Joint& a, const Joint& b) {
       return std::tie(a.first, a.second, a.kind) < std::tie(b.first, b.second, b.kind);

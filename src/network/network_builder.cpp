@@ -16,7 +16,7 @@ void append_spring(Springs& springs, const Springs& from, std::size_t s, Index o
                  from.kind[s]);
 }
 
-// Appends a body's springs sorted by (second - first, first). Springs between the same two particles keep their order.
+// Appends the springs of a body, sorted by (second - first, first). Springs between the same two particles keep their order.
 void append_sorted(Springs& springs, const Springs& body, Index offset) {
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
   order.reserve(body.first.size());
@@ -59,7 +59,7 @@ void require_unique(const std::string& key, const std::string& name, std::map<st
   if (name.empty()) problems.add(key, "\"\"", "must have a name", "name the body");
   if (++seen[name] != 2) return;
   problems.add(key, "", "must be the only body of this name",
-               "give each body a name of its own; particles that follow a whole body begin a new one, which begin_body names");
+               "give each body its own name; particles added after a whole body begin a new body, which begin_body names");
 }
 
 }  // namespace
@@ -110,8 +110,8 @@ std::vector<NetworkBuilder::Draft> NetworkBuilder::complete_drafts(ProblemList& 
   for (std::size_t s = 0; s < springs_.first.size(); ++s) {
     const Index first = springs_.first[s];
     const Index second = springs_.second[s];
-    const auto owner =
-        std::find_if(drafts.begin(), drafts.end(), [&](const Draft& draft) { return holds(draft, first) && holds(draft, second); });
+    const auto owner = std::find_if(drafts.begin(), drafts.end(),
+                                    [&](const Draft& draft) { return contains(draft, first) && contains(draft, second); });
     if (owner != drafts.end()) {
       append_spring(owner->shape.springs, springs_, s, -owner->first_particle);
     } else {
@@ -127,7 +127,7 @@ void NetworkBuilder::complete_angle_bends(std::vector<Draft>& drafts, ProblemLis
   for (std::size_t a = 0; a < angle_bends_.middle.size(); ++a) {
     const std::array<Index, 3> ends{angle_bends_.before[a], angle_bends_.middle[a], angle_bends_.after[a]};
     const auto owner = std::find_if(drafts.begin(), drafts.end(), [&](const Draft& draft) {
-      return std::all_of(ends.begin(), ends.end(), [&](Index particle) { return holds(draft, particle); });
+      return std::all_of(ends.begin(), ends.end(), [&](Index particle) { return contains(draft, particle); });
     });
     if (owner == drafts.end()) {
       problems.add(entry_key("angle_bends", a), counts_text(ends), "must join three particles of one body",
@@ -142,7 +142,7 @@ void NetworkBuilder::complete_angle_bends(std::vector<Draft>& drafts, ProblemLis
   }
 }
 
-bool NetworkBuilder::holds(const Draft& draft, Index particle) {
+bool NetworkBuilder::contains(const Draft& draft, Index particle) {
   return particle >= draft.first_particle && particle - draft.first_particle < static_cast<Index>(draft.shape.positions.size());
 }
 

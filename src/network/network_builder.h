@@ -21,24 +21,24 @@ class NetworkBuilder {
   void add_spring(Index i, Index j, double stiffness, double rest_length, double damping = 0.0,
                   SpringKind kind = SpringKind::structural);
 
-  /// Keeps three particles of one body in line, whose distances now are those at rest, by k [N m] a radian and a damping of the
-  /// angle's rate [N m s], both >= 0.
+  /// Keeps three particles of one body in line, with k [N m/rad] and a damping of the angle's rate [N m s], both >= 0. The rest
+  /// lengths are the current distances.
   void add_angle_bend(Index before, Index middle, Index after, double stiffness, double damping = 0.0);
 
-  /// Particles and springs that follow belong to a new body of this name.
+  /// Begins a new body of this name. Particles and springs that are added later belong to it.
   void begin_body(const std::string& name, const ContactMaterial& material = {}, const BodyContact& contact = {});
 
-  /// Adds a whole body, placed already. Returns the number of its first particle.
+  /// Adds a whole body at its final pose. Returns the number of its first particle.
   Index add_body(const std::string& name, const BodyShape& shape, const ContactMaterial& material = {},
                  const BodyContact& contact = {});
 
-  /// Holds a particle where it is, or moves it along `motion`, which turns about `origin` [m].
+  /// Fixes a particle, or moves it along `motion`, which turns about `origin` [m]. By default it rests.
   void pin(Index particle, const Motion& motion = {}, const Vector3& origin = Vector3::Zero());
   void pin(std::vector<Index> particles, const Motion& motion = {}, const Vector3& origin = Vector3::Zero());
 
-  /// The network. Throws InputError, naming every problem, for a network or body without particles, bodies of one name, masses that
+  /// The network. Throws InputError that names every problem: a network or body without particles, bodies of one name, masses that
   /// are not positive, springs and angle bends that join a particle to itself, to another body or to none, negative or non-finite
-  /// quantities, contact materials out of range, pins of particles that are not there, and a particle pinned twice.
+  /// quantities, contact materials out of range, pins of particles that do not exist, and particles pinned twice.
   [[nodiscard]] SpringNetwork build() const;
 
  private:
@@ -48,17 +48,18 @@ class NetworkBuilder {
     ContactMaterial material;
     BodyContact contact;
     Index first_particle = 0;
-    bool whole = false;  ///< added as a whole body: takes no more particles
+    bool whole = false;  ///< added as a whole body: accepts no further particles
   };
   Draft& open_draft();
-  static bool holds(const Draft& draft, Index particle);
+  static bool contains(const Draft& draft, Index particle);
   void complete_angle_bends(std::vector<Draft>& drafts, ProblemList& problems) const;
-  /// The drafts with the springs and angle bends that were added one by one; those that no body can hold are problems.
+  /// The drafts with the springs and angle bends that were added one by one. Those that join no particles of one body are
+  /// problems.
   [[nodiscard]] std::vector<Draft> complete_drafts(ProblemList& problems) const;
 
   std::vector<Draft> drafts_;
   Springs springs_;         ///< those added one by one, in the network's numbering
-  AngleBends angle_bends_;  ///< the same, without lengths
+  AngleBends angle_bends_;  ///< likewise, without lengths
   std::vector<Pin> pins_;
   Index particle_count_ = 0;
 };

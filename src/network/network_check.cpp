@@ -29,7 +29,8 @@ void check_particles(const std::string& key, const BodyShape& shape, ProblemList
   problems.require_each(
       shape.masses.size(), [&](std::size_t i) { return shape.masses[i] > 0.0 && std::isfinite(shape.masses[i]); },
       [&](std::size_t i) { return format_number(shape.masses[i]); },
-      EntryRule{key + ".masses", "must be a finite number greater than 0", "give a mass in kg, and pin what shall not move"});
+      EntryRule{key + ".masses", "must be a finite number greater than 0",
+                "give a mass in kg, and pin particles that must not move"});
   require_quantities(shape.drag_areas, {key + ".drag_areas", "must be a finite number not less than 0", "use 0 for no air drag"},
                      problems);
 }
@@ -72,7 +73,7 @@ void check_angle_bends(const std::string& key, const BodyShape& shape, ProblemLi
   problems.require_each(
       bends.middle.size(), [&](std::size_t a) { return has_length(bends.length_before[a]) && has_length(bends.length_after[a]); },
       text,
-      EntryRule{key + ".angle_bends.length", "must be a finite number greater than 0, as an angle has none without",
+      EntryRule{key + ".angle_bends.length", "must be a finite number greater than 0, because an angle needs bonds with a length",
                 "move the particles apart"});
   const std::string rule = "must be a finite number not less than 0";
   require_quantities(bends.stiffness, {key + ".angle_bends.stiffness", rule, "give k in N m"}, problems);
@@ -129,7 +130,8 @@ void check_pins(const std::vector<Pin>& pins, Index particle_count, ProblemList&
   std::vector<bool> pinned(static_cast<std::size_t>(particle_count), false);
   for (std::size_t p = 0; p < pins.size(); ++p) {
     const std::string key = entry_key("pins", p);
-    if (pins[p].particles.empty()) problems.add(key, "", "must hold at least one particle", "name a particle or leave the pin out");
+    if (pins[p].particles.empty())
+      problems.add(key, "", "must contain at least one particle", "name a particle or leave the pin out");
     if (!pins[p].origin.allFinite())
       problems.add(key + ".origin", vector_text(pins[p].origin), "must be finite", "give a point in m");
     check_motion(key + ".motion", pins[p].motion, problems);

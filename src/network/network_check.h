@@ -1,4 +1,4 @@
-// The rules that bodies, springs and pins must keep before they become a network. Internal to network/.
+// The rules for bodies, springs and pins of a network. Internal to network/.
 #pragma once
 
 #include "base/problem_list.h"
@@ -10,11 +10,11 @@
 
 namespace sprung {
 
-/// Particles, springs and material of a body; `key` is the start of the keys, such as `bodies.rope`. Of many particles or springs
-/// that break the same rule the first is named and the others are counted.
+/// Adds the problems of particles, springs and material of a body. `key` is the prefix of the keys, such as `bodies.rope`. If many
+/// entries break the same rule, names the first one and counts the others.
 void check_body(const std::string& key, const BodyShape& shape, const ContactMaterial& material, ProblemList& problems);
 
-/// Pins of a network of so many particles.
+/// Adds the problems of the pins of a network with this number of particles.
 void check_pins(const std::vector<Pin>& pins, Index particle_count, ProblemList& problems);
 
 }  // namespace sprung

@@ -30,8 +30,7 @@ void check_points(const RopeShape& rope, ProblemList& problems) {
   if (rope.points.size() < 2) {
     problems.add("points", std::to_string(rope.points.size()) + " points", "must be at least 2", "give the two ends of the rope");
   } else if (finite) {
-    problems.require_positive("points (length of the polyline)", sum(segment_lengths(rope.points)),
-                              "give ends that are apart from each other");
+    problems.require_positive("points (length of the polyline)", sum(segment_lengths(rope.points)), "give two different ends");
   }
 }
 
@@ -39,14 +38,15 @@ bool bends_by_angle(const SpringMaterials& materials) {
   return materials.bend && materials.bend_model == SpringMaterials::BendModel::angle;
 }
 
-// Without `particles` each point is one, and two at the same place would need an infinite stiffness, or have no direction.
+// Without `particles` there is a particle at each point. Two at the same position would need an infinite stiffness, and a bond
+// without length has no direction.
 void check_lengths(const RopeShape& rope, const SpringMaterials& materials, ProblemList& problems) {
   if (rope.particles) return;
   if (!uses_modulus(materials.structural) && !uses_modulus(materials.bend) && !bends_by_angle(materials)) return;
   for (std::size_t k = 1; k < rope.points.size(); ++k) {
     if (rope.points[k] != rope.points[k - 1]) continue;
     problems.add(entry_key("points", k), vector_text(rope.points[k]),
-                 "must not equal the point before it, as without a length there is no stiffness for a modulus, and no angle",
+                 "must differ from the previous point, because a modulus or an angle needs a segment with a length",
                  "leave the point out, or give `stiffness` and the model \"spring\"");
   }
 }
@@ -73,8 +73,8 @@ std::vector<Vector3> resample(const std::vector<Vector3>& points, const std::vec
   for (Index i = 1; i + 1 < particles; ++i) {
     const double target = spacing * i;
     while (segment + 1 < lengths.size() && begin + lengths[segment] < target) begin += lengths[segment++];
-    const double part = std::min(1.0, (target - begin) / lengths[segment]);
-    positions.emplace_back(points[segment] + (points[segment + 1] - points[segment]) * part);
+    const double fraction = std::min(1.0, (target - begin) / lengths[segment]);
+    positions.emplace_back(points[segment] + (points[segment + 1] - points[segment]) * fraction);
   }
   positions.push_back(points.back());
   return positions;
@@ -104,14 +104,14 @@ void add_angle_bends(AngleBends& bends, const std::vector<double>& rest_lengths,
 BodyShape make_rope(const RopeShape& rope, const SpringMaterials& materials) {
   check(rope, materials);
   const std::vector<double> lengths = segment_lengths(rope.points);
-  const double laid_out = sum(lengths);
-  const double length = rope.length.value_or(laid_out);
+  const double polyline_length = sum(lengths);
+  const double length = rope.length.value_or(polyline_length);
 
   BodyShape shape = shape_of_particles(rope.particles ? resample(rope.points, lengths, *rope.particles) : rope.points, materials);
   const std::size_t segments = shape.positions.size() - 1;
   std::vector<double> rest_lengths(segments, length / static_cast<double>(segments));
   if (!rope.particles) {
-    for (std::size_t k = 0; k < segments; ++k) rest_lengths[k] = rope.length ? lengths[k] * (length / laid_out) : lengths[k];
+    for (std::size_t k = 0; k < segments; ++k) rest_lengths[k] = rope.length ? lengths[k] * (length / polyline_length) : lengths[k];
   }
   add_springs(shape.springs, rest_lengths, materials);
   add_angle_bends(shape.angle_bends, rest_lengths, materials);

@@ -1,4 +1,4 @@
-// All that a step changes. Time is counted in steps and their parts, never accumulated.
+// All that a step changes. Time is counted in steps and substeps, never accumulated.
 #pragma once
 
 #include "network/spring_network.h"
@@ -8,34 +8,34 @@
 
 namespace sprung {
 
-/// How passes fare with the stretch limit of a body, and whether it was handed over to a global solve.
+/// The stretch limit of one body: passes or a global solve enforce it.
 struct StretchHandover {
-  int missed_steps = 0;                      ///< in so many steps in a row, the last one included, they missed it
-  std::optional<std::int64_t> solved_since;  ///< the step after which a global solve took over
+  int missed_steps = 0;                      ///< consecutive steps, up to the last one, in which passes missed the limit
+  std::optional<std::int64_t> solved_since;  ///< the step after which the global solve took over; none: passes enforce the limit
 };
 
 struct SimulationState {
-  std::int64_t step = 0;        ///< steps that are done
-  int substeps = 1;             ///< the step at hand is made in so many equal parts
-  int substep = 0;              ///< of which so many are done
-  int calm_steps = 0;           ///< so many in a row did not need their parts
-  int free_steps = 0;           ///< so many in a row infeasible nothing
-  std::int64_t retry_from = 0;  ///< steps before this one are not made again where they squeeze anything
-  int retry_wait = 0;           ///< so many steps after the last one for which that did not help
-  Index retry_infeasible = 0;   ///< but for those that squeeze more than this, the most that was left since it helped
+  std::int64_t step = 0;        ///< number of completed steps
+  int substeps = 1;             ///< number of equal substeps of the current step
+  int substep = 0;              ///< number of completed substeps of the current step
+  int calm_steps = 0;           ///< consecutive steps that did not need their substeps
+  int feasible_steps = 0;       ///< consecutive steps without infeasible particles
+  std::int64_t retry_from = 0;  ///< steps before this one are not repeated because of infeasible particles
+  int retry_wait = 0;           ///< number of steps to wait after a repetition without effect
+  Index retry_infeasible = 0;   ///< exception: steps with more infeasible particles than this are repeated despite the wait
   Points x;                     ///< positions [m], 3 x n
   Points v;                     ///< velocities [m/s], 3 x n
   Points x_previous;            ///< Verlet's positions one step ago [m], 3 x n
-  std::vector<StretchHandover> stretch_handovers;  ///< of bodies
+  std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
 };
 
-/// How many steps the state has behind it, with the parts of the one at hand: time is this times their length, to the last bit what
-/// it is in whole steps.
+/// Number of completed steps, plus the completed fraction of the current step. The time is this number times the step length. After
+/// a whole step the number is exact.
 [[nodiscard]] inline double steps_done(const SimulationState& state) {
   return static_cast<double>(state.step) + static_cast<double>(state.substep) / state.substeps;
 }
 
-/// The state at time 0. Verlet's x_previous is set by the integrator, which knows the step.
+/// The state at time 0. The integrator, which knows the step, sets x_previous for Verlet.
 [[nodiscard]] SimulationState initial_state(const SpringNetwork& network);
 
 }  // namespace sprung

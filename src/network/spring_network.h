@@ -15,7 +15,7 @@ namespace sprung {
 enum class SpringKind : std::uint8_t { structural, shear, bend };
 inline constexpr std::array<const char*, 3> kSpringKindNames{"structural", "shear", "bend"};  ///< in the order of the kinds
 
-/// Springs as arrays; entry s of each belongs to spring s. Within a body they are sorted by (second - first, first), so that
+/// Springs as arrays; entry s of each array belongs to spring s. Within a body they are sorted by (second - first, first), so that
 /// neighbours in a lattice make contiguous runs.
 struct Springs {
   std::vector<Index> first;         ///< particle at one end, the lower index
@@ -26,37 +26,38 @@ struct Springs {
   std::vector<SpringKind> kind;
 
   [[nodiscard]] Index count() const { return static_cast<Index>(first.size()); }
-  /// Adds a spring, whichever end has the lower index.
+  /// Adds a spring; sorts its two ends.
   void append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind);
 };
 
-/// Elements that keep three particles in line, as arrays; entry a of each belongs to element a. The bonds before - middle and
-/// middle - after turn by theta at the middle, from 0 (in line) to pi (folded back), which costs 1/2 k theta^2 [J].
+/// Elements that keep three particles in line, as arrays; entry a of each array belongs to element a. The bond middle - after
+/// deviates from the direction of the bond before - middle by an angle theta, from 0 (in line) to pi (folded back). The energy is
+/// 1/2 k theta^2 [J].
 struct AngleBends {
   std::vector<Index> before;
   std::vector<Index> middle;
   std::vector<Index> after;
-  std::vector<double> length_before;  ///< of the bonds at rest [m], > 0
+  std::vector<double> length_before;  ///< rest lengths of the bonds [m], > 0
   std::vector<double> length_after;
-  std::vector<double> stiffness;  ///< k [N m], a radian, >= 0
-  std::vector<double> damping;    ///< [N m s], of the rate of theta, >= 0
+  std::vector<double> stiffness;  ///< k [N m/rad], >= 0
+  std::vector<double> damping;    ///< of the rate of theta [N m s], >= 0
 
   [[nodiscard]] Index count() const { return static_cast<Index>(middle.size()); }
-  /// Particles and bonds in the order before, middle, after.
+  /// Particles and bond lengths in the order before, middle, after.
   void append(const std::array<Index, 3>& particles, const std::array<double, 2>& lengths, double k, double k_d);
 };
 
-/// What of a body collides and is exported. Vertex i is the body's particle i.
+/// The surface of a body, for collision and export. Vertex i is particle i of the body.
 struct Surface {
   PolygonFaces faces;   ///< as exported
-  Triangles triangles;  ///< the faces, fanned
-  Edges segments;       ///< of ropes: the edges that no triangle has
+  Triangles triangles;  ///< of the triangulated faces
+  Edges segments;       ///< of ropes: the edges without a triangle
 };
 
-/// What of the network a body collides with.
+/// The bodies with which a body collides.
 struct BodyContact {
-  bool self = false;   ///< its own elements, as in a cloth that folds onto itself
-  bool others = true;  ///< other bodies that have this set too
+  bool self = false;   ///< with its own elements, as in a cloth that folds onto itself
+  bool others = true;  ///< with other bodies for which this is set too
 };
 
 /// A named range of particles, springs and angle bends.
@@ -76,21 +77,21 @@ struct Body {
   BodyContact contact;
 };
 
-/// Particles held where their motion takes them. With the default motion they stay where they began.
+/// Particles that follow a prescribed motion. With the default motion they rest.
 struct Pin {
   std::vector<Index> particles;      ///< of the network
-  Vector3 origin = Vector3::Zero();  ///< what the motion turns about [m]
+  Vector3 origin = Vector3::Zero();  ///< origin of the rotation [m]
   Motion motion;
 };
 
-/// The const model of a network. Made by NetworkBuilder.
+/// The model of a network, constant once built by NetworkBuilder.
 struct SpringNetwork {
   Points positions;        ///< at time 0 [m], 3 x n
   Points velocities;       ///< at time 0 [m/s], 3 x n; 0 of pinned particles
   Scalars masses;          ///< [kg], > 0
   Scalars inverse_masses;  ///< [1/kg]; 0 for pinned particles
-  Scalars drag_areas;      ///< what air drag multiplies: a third of the area [m^2] of the surface triangles around a
-                           ///< particle, 0 within a solid; 1 for particles of ropes and those without a surface
+  Scalars drag_areas;      ///< factor of the air drag: a third of the area [m^2] of the surface triangles of each
+                           ///< particle, 0 inside a solid; 1 for particles of ropes and without a surface
   Springs springs;
   AngleBends angle_bends;
   std::vector<Body> bodies;
@@ -98,11 +99,11 @@ struct SpringNetwork {
 
   [[nodiscard]] Index particle_count() const { return static_cast<Index>(masses.size()); }
   [[nodiscard]] bool is_pinned(Index particle) const { return inverse_masses[particle] == 0.0; }
-  /// The body that holds a particle. Requires a particle of the network.
+  /// The body of a particle. Requires a particle of the network.
   [[nodiscard]] const Body& body_of(Index particle) const;
 };
 
-/// Whether contact is asked for within a body, or between two.
+/// Whether a body may collide with itself or with another body.
 [[nodiscard]] bool bodies_may_collide(const SpringNetwork& network);
 
 }  // namespace sprung

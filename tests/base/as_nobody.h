@@ -1,4 +1,4 @@
-// Files that may not be read are a matter of who asks: root may read all.
+// Tests of file permissions give up root rights, because root may read all files.
 #pragma once
 
 #include <unistd.h>
@@ -8,7 +8,7 @@
 
 namespace sprung::test {
 
-/// Takes root's rights from the program while it lives; does nothing when it has none.
+/// Gives up the root rights of the program during its lifetime; does nothing for other users.
 class AsNobody {
  public:
   AsNobody() {

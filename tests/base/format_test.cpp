@@ -35,13 +35,13 @@ TEST(FormatNumber, IsTheShortestText) {
   EXPECT_EQ(format_number(1e300), "1e+300");
 }
 
-TEST(FormatNumber, NamesWhatIsNotFinite) {
+TEST(FormatNumber, WritesNanAndInfAsWords) {
   EXPECT_EQ(format_number(std::numeric_limits<double>::quiet_NaN()), "nan");
   EXPECT_EQ(format_number(std::numeric_limits<double>::infinity()), "inf");
   EXPECT_EQ(format_number(-std::numeric_limits<double>::infinity()), "-inf");
 }
 
-TEST(FormatNumber, RoundsForPeople) {
+TEST(FormatNumber, RoundsToTheGivenDigits) {
   EXPECT_EQ(format_number(0.123456, 3), "0.123");
   EXPECT_EQ(format_number(2.0 / 3.0, 2), "0.67");
 }
@@ -52,13 +52,13 @@ TEST(FormatUpperBound, IsNeverAboveTheBoundByMoreThanRounding) {
   EXPECT_EQ(format_upper_bound(1234567.9), "1.23456e+06");
 }
 
-TEST(AppendNumber, KeepsWhatWasThere) {
+TEST(AppendNumber, KeepsTheExistingText) {
   std::string text = "x = ";
   append_number(text, 1.5);
   EXPECT_EQ(text, "x = 1.5");
 }
 
-TEST(Counted, AgreesWithItsNumber) {
+TEST(Counted, UsesThePluralExceptForOne) {
   EXPECT_EQ(counted(0, "spring"), "0 springs");
   EXPECT_EQ(counted(1, "spring"), "1 spring");
   EXPECT_EQ(counted(2, "spring"), "2 springs");

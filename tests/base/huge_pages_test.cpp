@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kNumbersOfAPage = HugePageAllocator<float>::kHugePage / sizeof(float);
 
-// As it grows it moves from the ordinary allocator to huge pages, in steps that fill them or not.
+// A growing vector moves from the ordinary allocator to huge pages, which it does not always fill.
 TEST(HugePages, AGrowingVectorKeepsItsNumbers) {
   LargeVector<float> numbers;
   for (std::size_t k = 0; k < 3 * kNumbersOfAPage + 1; ++k) numbers.push_back(static_cast<float>(k % 1024));
@@ -17,7 +17,7 @@ TEST(HugePages, AGrowingVectorKeepsItsNumbers) {
   for (std::size_t k = 0; k < numbers.size(); ++k) ASSERT_EQ(numbers[k], static_cast<float>(k % 1024)) << k;
 }
 
-TEST(HugePages, WhatIsLargerThanOneBeginsWithOne) {
+TEST(HugePages, ArraysLargerThanAHugePageAreAlignedToOne) {
   const LargeVector<float> small(kNumbersOfAPage - 1);
   const LargeVector<float> large(kNumbersOfAPage + 1);
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(large.data()) % HugePageAllocator<float>::kHugePage, 0U);

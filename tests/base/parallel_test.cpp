@@ -26,7 +26,7 @@ TEST(ParallelChunks, CoverEverythingExactlyOnce) {
   }
 }
 
-TEST(ParallelChunks, AreCutBySizeAlone) {
+TEST(ParallelChunks, DependOnTheSizeAlone) {
   const auto chunks_with = [](int threads) {
     const ThreadLimit limit(threads);
     std::mutex mutex;
@@ -42,7 +42,7 @@ TEST(ParallelChunks, AreCutBySizeAlone) {
   EXPECT_EQ(chunks_with(2), expected);
 }
 
-TEST(ParallelChunks, DoNothingForNothing) {
+TEST(ParallelChunks, DoNothingForACountOfZero) {
   parallel_chunks(0, 10, [](Index, Index) { FAIL() << "called"; });
 }
 
@@ -54,7 +54,7 @@ TEST(ParallelChunks, ReachTheLargestIndex) {
   EXPECT_EQ(covered, count);
 }
 
-TEST(ParallelChunks, PassExceptionsOn) {
+TEST(ParallelChunks, RethrowExceptions) {
   for (const Index count : {5, 1000}) {
     const auto throwing = [](Index begin, Index end) {
       if (begin <= 3 && 3 < end) throw std::runtime_error("at 3");
@@ -63,7 +63,7 @@ TEST(ParallelChunks, PassExceptionsOn) {
   }
 }
 
-TEST(ThreadLimit, OfOneRunsOnTheCallersThread) {
+TEST(ThreadLimit, OfOneRunsLoopsOnTheCallersThread) {
   const ThreadLimit limit(1);
   std::set<std::thread::id> threads;
   parallel_chunks(1000, 1, [&](Index, Index) { threads.insert(std::this_thread::get_id()); });
@@ -71,7 +71,7 @@ TEST(ThreadLimit, OfOneRunsOnTheCallersThread) {
 }
 
 TEST(ThreadLimit, EndsWithItsScope) {
-  // The tightest of all living limits holds, so the inner one must not outlive its scope.
+  // The lowest of all existing limits applies, so the inner one must not outlive its scope.
   const ThreadLimit outer(2);
   { const ThreadLimit inner(1); }
   std::mutex mutex;

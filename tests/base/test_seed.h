@@ -1,4 +1,4 @@
-// New numbers for random tests, when asked: CI keeps to the same, a night's run does not.
+// Seeds of random tests: the same in every run of CI, new ones on request, as in nightly runs.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ inline std::uint64_t test_seed() {
   return text == nullptr ? 0 : std::strtoull(text, nullptr, 10);
 }
 
-/// `seed` itself when SPRUNG_TEST_SEED is 0; else both mixed (SplitMix64, Steele et al. 2014).
+/// `seed` itself if SPRUNG_TEST_SEED is 0; otherwise a mix of both (SplitMix64, Steele et al. 2014).
 inline std::uint64_t seeded(std::uint64_t seed) {
   if (test_seed() == 0) return seed;
   std::uint64_t mixed = seed + test_seed() * 0x9e3779b97f4a7c15U;
@@ -24,7 +24,7 @@ inline std::uint64_t seeded(std::uint64_t seed) {
   return mixed ^ (mixed >> 31);
 }
 
-/// A test whose random numbers depend on SPRUNG_TEST_SEED, and which says how to repeat it where it fails.
+/// A test whose random numbers depend on SPRUNG_TEST_SEED. After a failure it prints how to repeat the test.
 class SeededTest : public ::testing::Test {
  protected:
   void TearDown() override {

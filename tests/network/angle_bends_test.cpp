@@ -17,7 +17,7 @@ SpringMaterials angles(const SpringMaterial& material) {
   return {.bend = material, .bend_model = SpringMaterials::BendModel::angle};
 }
 
-TEST(AngleBends, OfARopeHaveTheStiffnessOfTheirLengths) {
+TEST(AngleBends, OfARopeHaveAStiffnessByTheirLengths) {
   const RopeShape bent{{Vector3(0, 0, 0), Vector3(2, 0, 0), Vector3(2, 1, 0), Vector3(2, 1, 3)}, std::nullopt, std::nullopt};
   const AngleBends bends = make_rope(bent, angles(modular(6.0))).angle_bends;
   EXPECT_THAT(bends.before, ElementsAre(0, 1));
@@ -45,9 +45,9 @@ TEST(AngleBends, OfAClothLieAlongItsRowsAndColumns) {
   }
 }
 
-TEST(AngleBends, DampingRatioIsThatOfOneCurvature) {
-  // EI L against the integral of density (s^2 / 2)^2: omega^2 = 20 EI / (density L^4) about an end. The sum over n cells is off by
-  // some 1 / n^2.
+TEST(AngleBends, DampingRatioRefersToBendingWithUniformCurvature) {
+  // EI L against the integral of density (s^2 / 2)^2: omega^2 = 20 EI / (density L^4) about an end. The error of the sum over n
+  // cells is some 1 / n^2.
   BodyShape shape = make_rope({{Vector3::Zero(), Vector3(2, 0, 0)}, 101, std::nullopt},
                               angles({3.0, SpringMaterial::Measure::modulus, 0.0, 0.2}));
   set_density(shape, 0.5);
@@ -57,13 +57,13 @@ TEST(AngleBends, DampingRatioIsThatOfOneCurvature) {
   const SpringNetwork network = builder.build();
   const double omega = bending_frequency(network, network.bodies[0]);
   const double expected = std::sqrt(20.0 * 3.0 / 0.5) / 4.0;
-  EXPECT_NEAR(omega, expected, 0.01 * expected);  // the ends have no element: a hundredth of EI L is missing
+  EXPECT_NEAR(omega, expected, 0.01 * expected);  // the ends have no element: 1 % of EI L is missing
   for (Index e = 0; e < network.angle_bends.count(); ++e) {
     EXPECT_DOUBLE_EQ(network.angle_bends.damping[e], 2.0 * 0.2 * network.angle_bends.stiffness[e] / omega);
   }
 }
 
-TEST(AngleBends, AreAddedOneByOneToTheirBody) {
+TEST(AngleBends, CanBeAddedOneByOneToABody) {
   NetworkBuilder builder;
   builder.begin_body("one");
   builder.add_particle(Vector3::Zero(), 1.0);
@@ -80,7 +80,7 @@ TEST(AngleBends, AreAddedOneByOneToTheirBody) {
   EXPECT_THAT(network.angle_bends.damping, ElementsAre(0.5));
 }
 
-TEST(AngleBends, ThatCannotBeAreRefused) {
+TEST(AngleBends, InvalidOnesAreRefused) {
   const auto refused = [](const std::array<Index, 3>& ends, double stiffness, double damping) {
     NetworkBuilder builder;
     for (const double x : {0.0, 1.0, 2.0, 2.0}) builder.add_particle(Vector3(x, 0, 0), 1.0);
@@ -98,7 +98,7 @@ TEST(AngleBends, ThatCannotBeAreRefused) {
   EXPECT_THAT(refused({0, 1, 2}, 1.0, -1.0), ElementsAre("bodies.network.angle_bends.damping[0]"));
 }
 
-TEST(AngleBends, AreNotForSolidsMeshesAndPointsInOnePlace) {
+TEST(AngleBends, AreRefusedForSolidsMeshesAndCoincidingPoints) {
   const SpringMaterials materials = angles(stiff(1.0));
   EXPECT_THAT(problem_keys([&] { return make_solid({}, materials); }), ElementsAre("springs.bend.model"));
   PolygonMesh triangle;

@@ -29,7 +29,7 @@ TEST(Cloth, SpringCountsFollowTheResolution) {
   }
 }
 
-TEST(Cloth, LiesCentredInItsPlaneWithXFastest) {
+TEST(Cloth, LiesCentredInItsPlaneAndNumbersParticlesAlongXFirst) {
   const BodyShape cloth = make_cloth({{2.0, 6.0}, {3, 4}}, {});
   EXPECT_EQ(cloth.positions[0], Vector3(-1, -3, 0));
   EXPECT_EQ(cloth.positions[1], Vector3(0, -3, 0));
@@ -47,7 +47,7 @@ TEST(Cloth, RestLengthsAreTheDistances) {
   }
 }
 
-TEST(Cloth, EachSpringJoinsAnotherPair) {
+TEST(Cloth, EachSpringJoinsADifferentPair) {
   const BodyShape cloth = make_cloth({{1.0, 1.0}, {5, 4}}, every_kind(stiff(1)));
   std::vector<Pair> all;
   for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bend}) {
@@ -60,14 +60,15 @@ TEST(Cloth, EachSpringJoinsAnotherPair) {
 TEST(Cloth, StructuralModulusPullsAlikeAtAnyResolution) {
   for (const auto& [x, y] : std::vector<std::array<Index, 2>>{{2, 2}, {2, 7}, {5, 3}, {40, 31}}) {
     const BodyShape cloth = make_cloth({{1.5, 0.7}, {x, y}}, {modular(250), std::nullopt, std::nullopt});
-    // modulus * width * strain; the strain, taken from lengths as short as 0.02, keeps some 1e-14 / 1e-3 of its digits.
+    // modulus * width * strain. The strain, computed from lengths down to 0.02, has a relative error of some 1e-14 / 1e-3.
     EXPECT_NEAR(stretching_force(cloth, 0, 0.01, 1e-3), 250 * 0.7 * 1e-3, 1e-10) << x << " x " << y;
     EXPECT_NEAR(stretching_force(cloth, 1, 0.01, 1e-3), 250 * 1.5 * 1e-3, 1e-10) << x << " x " << y;
   }
 }
 
 TEST(Cloth, ShearModulusPullsAlikeAtAnyResolution) {
-  // Cells keep their shape, so the diagonals their direction: the force across a cut does not depend on their number.
+  // Cells of any size have the same shape and diagonals of the same direction: the force across a cut does not depend on their
+  // number.
   const auto force = [](Index cells) {
     const BodyShape cloth = make_cloth({{1.0, 2.0}, {cells + 1, 2 * cells + 1}}, {std::nullopt, modular(250), std::nullopt});
     return stretching_force(cloth, 0, 0.01, 1e-3);
@@ -79,7 +80,7 @@ TEST(Cloth, ShearModulusPullsAlikeAtAnyResolution) {
   for (const Index cells : {1, 4, 16}) EXPECT_NEAR(force(cells), force(2), 1e-10) << cells << " cells";
 }
 
-TEST(Cloth, BendModulusFollowsTheWidthOfItsRow) {
+TEST(Cloth, BendStiffnessIsProportionalToTheWidthOfTheRow) {
   const BodyShape cloth = make_cloth({{2.0, 2.0}, {3, 3}}, {std::nullopt, std::nullopt, modular(100)});
   // Springs of length 2 skip a particle; rows are 1 apart, border rows half as wide.
   for (Index s = 0; s < cloth.springs.count(); ++s) {
@@ -124,8 +125,8 @@ TEST(Cloth, SpringsOfANetworkMakeContiguousRuns) {
     ASSERT_TRUE(apart > apart_before || (apart == apart_before && springs.first[s] > springs.first[s - 1])) << "spring " << s;
     if (apart != apart_before || springs.first[s] != springs.first[s - 1] + 1) ++runs;
   }
-  // One run a row for the families along x and the diagonals (5 + 4 + 4 + 5), one in all for those along y, whose rows follow
-  // each other.
+  // One run per row for the families along x and the diagonals (5 + 4 + 4 + 5), and one run in total for each family along y,
+  // because its rows are contiguous.
   EXPECT_EQ(runs, 5 + 4 + 4 + 5 + 1 + 1);
 }
 
@@ -140,7 +141,7 @@ TEST(Cloth, CornersAreNamedByXThenY) {
   EXPECT_EQ(corner_particle(cloth, "top_left"), std::nullopt);
 }
 
-TEST(Cloth, RejectsWhatCannotBeACloth) {
+TEST(Cloth, RejectsInvalidCloths) {
   const auto keys = [](const ClothShape& cloth) { return problem_keys([&] { return make_cloth(cloth, {}); }); };
   for (const double size : {0.0, -1.0, kNan, kInfinity}) {
     EXPECT_THAT(keys({{size, 1.0}, {2, 2}}), ElementsAre("size[0]"));

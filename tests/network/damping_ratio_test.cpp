@@ -20,7 +20,7 @@ SpringMaterial ratio(double stiffness, double damping_ratio) {
   return {stiffness, SpringMaterial::Measure::stiffness, 0.0, damping_ratio};
 }
 
-/// Two particles of so much mass [kg] each, 1 m apart, joined by k_s = 8 N/m with a damping ratio of 0.25.
+/// Two particles of `mass` [kg] each, 1 m apart, joined by k_s = 8 N/m with a damping ratio of 0.25.
 SpringNetwork damped_pair(double mass, bool pinned) {
   BodyShape shape = make_rope({{Vector3::Zero(), Vector3::UnitY()}, 2, std::nullopt}, {.structural = ratio(8.0, 0.25)});
   set_total_mass(shape, 2.0 * mass);
@@ -30,15 +30,15 @@ SpringNetwork damped_pair(double mass, bool pinned) {
   return builder.build();
 }
 
-TEST(DampingRatio, OfAPairIsThatOfItsReducedMass) {
-  // 2 zeta sqrt(k m): the reduced mass is m / 2 between free particles, m when the other is held.
+TEST(DampingRatio, OfAPairUsesTheReducedMass) {
+  // 2 zeta sqrt(k m): the reduced mass is m / 2 of two free particles, and m if one is pinned.
   EXPECT_DOUBLE_EQ(damped_pair(4.0, false).springs.damping[0], 2.0 * 0.25 * std::sqrt(8.0 * 2.0));
   EXPECT_DOUBLE_EQ(damped_pair(2.0, true).springs.damping[0], 2.0 * 0.25 * std::sqrt(8.0 * 2.0));
 }
 
-TEST(DampingRatio, BreathingOfARopeIsItsClosedForm) {
-  // EA L / integral of density s^2 ds: 12 c^2 / L^2 about the middle, 3 c^2 / L^2 about an end, c^2 = EA / density. The sum over n
-  // cells is off by no more than 1 / n^2.
+TEST(DampingRatio, BreathingFrequencyOfARopeHasItsClosedForm) {
+  // EA L / integral of density s^2 ds: 12 c^2 / L^2 about the middle, 3 c^2 / L^2 about an end, c^2 = EA / density. The error of
+  // the sum over n cells is at most 1 / n^2.
   for (const bool pinned : {false, true}) {
     BodyShape shape = make_rope({{Vector3::Zero(), Vector3(2, 0, 0)}, 101, std::nullopt}, {.structural = modular(50.0)});
     set_density(shape, 0.5);
@@ -51,7 +51,7 @@ TEST(DampingRatio, BreathingOfARopeIsItsClosedForm) {
   }
 }
 
-TEST(DampingRatio, HoldsForItsKindAloneAndForItsBodyAlone) {
+TEST(DampingRatio, AppliesOnlyToItsKindOfSpringAndItsBody) {
   const BodyShape plain = [] {
     BodyShape shape = make_cloth({}, {.structural = SpringMaterial{.value = 5.0, .damping = 0.3}, .shear = ratio(2.0, 0.1)});
     set_total_mass(shape, 1.0);
@@ -74,7 +74,7 @@ TEST(DampingRatio, HoldsForItsKindAloneAndForItsBodyAlone) {
   EXPECT_EQ(network.springs.damping.back(), 0.5);
 }
 
-TEST(DampingRatio, OfABodyWithoutExtentIsNothing) {
+TEST(DampingRatio, DampsNothingInABodyWithoutExtent) {
   BodyShape shape = make_rope({{Vector3::Zero(), Vector3(0, 0, 1e-3)}, 2, 1.0}, {.structural = ratio(8.0, 0.25)});
   shape.positions[1] = shape.positions[0];
   set_total_mass(shape, 1.0);
@@ -83,7 +83,7 @@ TEST(DampingRatio, OfABodyWithoutExtentIsNothing) {
   EXPECT_EQ(builder.build().springs.damping[0], 0.0);
 }
 
-TEST(DampingRatio, IsRefusedBesideDampingWithoutStiffnessAndBelowZero) {
+TEST(DampingRatio, IsRefusedTogetherWithDampingWithoutStiffnessAndBelowZero) {
   const auto refused = [](const SpringMaterial& material) {
     return problem_keys([&] { return make_cloth({}, {.bend = material}); });
   };
@@ -92,10 +92,10 @@ TEST(DampingRatio, IsRefusedBesideDampingWithoutStiffnessAndBelowZero) {
   EXPECT_THAT(refused(ratio(1.0, -0.1)), ElementsAre("springs.bend.damping_ratio"));
 }
 
-TEST(Density, GivesEachParticleWhatIsNearestToIt) {
+TEST(Density, GivesEachParticleTheMassOfTheRegionNearestToIt) {
   BodyShape cloth = make_cloth({.size = {2.0, 4.0}, .resolution = {3, 3}}, {});
   set_density(cloth, 3.0);
-  // Cells of 1 m x 2 m: inside 6 kg, half of it on an edge, a quarter in a corner.
+  // Cells of 1 m x 2 m: 6 kg inside, half of it on an edge, a quarter in a corner.
   EXPECT_THAT(cloth.masses, ElementsAre(1.5, 3.0, 1.5, 3.0, 6.0, 3.0, 1.5, 3.0, 1.5));
   BodyShape solid = make_solid({.size = Vector3(2, 2, 2), .resolution = {2, 2, 2}}, {});
   set_density(solid, 5.0);

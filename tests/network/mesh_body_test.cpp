@@ -23,7 +23,7 @@ PolygonMesh mesh_of(const std::vector<Vector3>& vertices, const std::vector<std:
   return mesh;
 }
 
-// The grid of a cloth as quads, every other one turned over: springs do not depend on how faces wind.
+// The grid of a cloth as quads, every other one reversed: springs do not depend on the winding of faces.
 PolygonMesh quad_grid(const ClothShape& cloth) {
   const auto& [nx, ny] = cloth.resolution;
   std::vector<std::vector<Index>> faces;
@@ -53,7 +53,7 @@ std::vector<Spring> sorted_springs(const BodyShape& shape) {
 
 constexpr SpringKind kKinds[] = {SpringKind::structural, SpringKind::shear, SpringKind::bend};
 
-TEST(MeshBody, AGridOfQuadsIsACloth) {
+TEST(MeshBody, AGridOfQuadsHasTheSpringsOfACloth) {
   const ClothShape shape{{1.0, 1.8}, {6, 5}};
   const BodyShape cloth = make_cloth(shape, every_kind(modular(70)));
   const BodyShape body = make_mesh_body(quad_grid(shape), every_kind(modular(70)));
@@ -79,15 +79,15 @@ TEST(MeshBody, TwoTrianglesBendAcrossTheirSharedEdge) {
   EXPECT_THAT(pairs(body, SpringKind::bend), ElementsAre(Pair{1, 3}));
 }
 
-TEST(MeshBody, APairIsJoinedOnceAndStructuralComesFirst) {
-  // A tetrahedron: the opposite corners of each two faces are joined by an edge already.
+TEST(MeshBody, APairIsJoinedOnceAndStructuralSpringsTakePrecedence) {
+  // A tetrahedron: an edge joins the opposite corners of any two faces already.
   const PolygonMesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
   const BodyShape body = make_mesh_body(mesh, every_kind(stiff(1)));
   EXPECT_EQ(count(body, SpringKind::structural), 6);
   EXPECT_EQ(body.springs.count(), 6);
 }
 
-TEST(MeshBody, APolygonIsHeldByDiagonalsThatSkipACorner) {
+TEST(MeshBody, ShearSpringsLieAlongTheDiagonalsThatSkipACorner) {
   std::vector<Vector3> corners;
   for (int i = 0; i < 6; ++i) corners.emplace_back(std::cos(i * M_PI / 3), std::sin(i * M_PI / 3), 0.0);
   const BodyShape body = make_mesh_body(mesh_of(corners, {{0, 1, 2, 3, 4, 5}}), every_kind(stiff(1)));
@@ -96,8 +96,8 @@ TEST(MeshBody, APolygonIsHeldByDiagonalsThatSkipACorner) {
 }
 
 TEST(MeshBody, AnEvenStretchStoresTheSameEnergyInAnyMesh) {
-  // Stretched by a strain in both directions, structural springs of a sheet hold modulus * strain^2 * area, whatever its faces:
-  // sum of 1/2 (modulus area_s / d^2) (strain d)^2, where the areas of the springs add up to twice the sheet's.
+  // Under a uniform strain in both directions, the structural springs of any sheet store the energy modulus * strain^2 * area: the
+  // sum of 1/2 (modulus area_s / d^2) (strain d)^2, where the areas of the springs add up to twice that of the sheet.
   const std::vector<Vector3> vertices{{0, 0, 0}, {2, 0, 0}, {2.5, 1, 0}, {2, 2.2, 0}, {0, 2, 0}, {0.9, 1.1, 0}};
   const PolygonMesh triangles = mesh_of(vertices, {{0, 1, 5}, {1, 2, 5}, {2, 3, 5}, {3, 4, 5}, {4, 0, 5}});
   const PolygonMesh mixed = mesh_of(vertices, {{0, 1, 5}, {1, 2, 3, 5}, {3, 4, 0, 5}});
@@ -128,16 +128,16 @@ TEST(MeshBody, KeepsFacesGroupsAndTextureCoordinates) {
   EXPECT_EQ(surface.triangles, triangulate(mesh.faces));
 }
 
-TEST(MeshBody, LinesAreSpringsAndSegments) {
+TEST(MeshBody, LinesBecomeSpringsAndSegments) {
   PolygonMesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 2}}, {{0, 1, 2}});
   mesh.lines.resize(2, 2);
   mesh.lines << 3, 0,  //
       0, 1;
   const BodyShape body = make_mesh_body(mesh, {stiff(5), std::nullopt, std::nullopt});
   EXPECT_THAT(pairs(body, SpringKind::structural), ElementsAre(Pair{0, 1}, Pair{0, 2}, Pair{0, 3}, Pair{1, 2}));
-  ASSERT_EQ(body.surface.segments.cols(), 1) << "the line along the triangle's edge is no segment of its own";
+  ASSERT_EQ(body.surface.segments.cols(), 1) << "a line along an edge of a triangle is not a segment";
   EXPECT_EQ(body.surface.segments.col(0), (Eigen::Matrix<Index, 2, 1>(0, 3)));
-  EXPECT_EQ(body.drag_areas[3], 1.0) << "a particle of a line drags as a rope's";
+  EXPECT_EQ(body.drag_areas[3], 1.0) << "a particle of a line has the drag area of a rope";
   EXPECT_NEAR(body.drag_areas[0], 0.5 / 3, 1e-16);
   EXPECT_NEAR(body.measure, 0.5, 1e-15) << "the area of the faces";
   EXPECT_THAT(problem_keys([&] {
@@ -146,10 +146,10 @@ TEST(MeshBody, LinesAreSpringsAndSegments) {
               ElementsAre("springs.structural.modulus"));
 
   mesh.faces = {};
-  EXPECT_EQ(make_mesh_body(mesh, {}).measure, 3.0) << "without faces the length of the lines";
+  EXPECT_EQ(make_mesh_body(mesh, {}).measure, 3.0) << "without faces it is the length of the lines";
 }
 
-TEST(MeshBody, RejectsMeshesThatCannotBeOne) {
+TEST(MeshBody, RejectsInvalidMeshes) {
   const auto keys = [](const PolygonMesh& mesh) { return problem_keys([&] { return make_mesh_body(mesh, {}); }); };
   const std::vector<Vector3> corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
   EXPECT_THAT(keys({}), ElementsAre("vertices"));

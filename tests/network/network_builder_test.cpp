@@ -27,7 +27,7 @@ BodyShape weighed(BodyShape shape) {
 
 BodyShape small_rope() { return weighed(make_rope({{Vector3(0, 0, 0), Vector3(2, 0, 0)}, 3, std::nullopt}, {stiff(7), {}, {}})); }
 
-TEST(NetworkBuilder, TwoParticlesAndASpring) {
+TEST(NetworkBuilder, TwoParticlesAndASpringMakeANetwork) {
   NetworkBuilder builder;
   const Index a = builder.add_particle(Vector3(0, 1, 0), 2.0);
   const Index b = builder.add_particle(Vector3(0, 0, 0), 4.0, Vector3(1, 0, 0));
@@ -42,7 +42,7 @@ TEST(NetworkBuilder, TwoParticlesAndASpring) {
   EXPECT_EQ(network.drag_areas, Eigen::Vector2d(1, 1));
   EXPECT_TRUE(network.is_pinned(a));
   EXPECT_FALSE(network.is_pinned(b));
-  EXPECT_EQ(network.springs.first[0], a) << "the lower end comes first";
+  EXPECT_EQ(network.springs.first[0], a) << "the lower index comes first";
   EXPECT_EQ(network.springs.second[0], b);
   EXPECT_EQ(network.springs.stiffness[0], 10.0);
   EXPECT_EQ(network.springs.rest_length[0], 0.5);
@@ -67,7 +67,7 @@ TEST(NetworkBuilder, SpringsWithoutLengthOrStiffnessAreValid) {
   EXPECT_EQ(builder.build().springs.count(), 1);
 }
 
-TEST(NetworkBuilder, SpringsAreSortedWithinABodyAndTwinsKeepTheirOrder) {
+TEST(NetworkBuilder, SpringsAreSortedWithinABodyAndEqualPairsKeepTheirOrder) {
   NetworkBuilder builder;
   for (int i = 0; i < 4; ++i) builder.add_particle(Vector3(i, 0, 0), 1.0);
   builder.add_spring(3, 1, 1.0, 1.0);
@@ -97,7 +97,7 @@ TEST(NetworkBuilder, BodiesAreRangesOfParticlesAndSprings) {
   EXPECT_EQ(right.first_spring, 2);
   EXPECT_EQ(right.spring_count, 2);
   EXPECT_EQ(right.material.restitution, 0.5);
-  EXPECT_EQ(right.surface.segments.maxCoeff(), 2) << "surfaces count within the body";
+  EXPECT_EQ(right.surface.segments.maxCoeff(), 2) << "surface indices count within the body";
   EXPECT_THAT(network.springs.first, ElementsAre(0, 1, 3, 4));
   EXPECT_EQ(network.body_of(0).name, "left");
   EXPECT_EQ(network.body_of(2).name, "left");
@@ -105,7 +105,7 @@ TEST(NetworkBuilder, BodiesAreRangesOfParticlesAndSprings) {
   EXPECT_EQ(network.body_of(6).name, "loose");
 }
 
-TEST(NetworkBuilder, AWholeBodyTakesMoreSprings) {
+TEST(NetworkBuilder, AWholeBodyAcceptsFurtherSprings) {
   NetworkBuilder builder;
   builder.add_body("first", small_rope());
   const Index first = builder.add_body("second", small_rope());
@@ -116,7 +116,7 @@ TEST(NetworkBuilder, AWholeBodyTakesMoreSprings) {
   EXPECT_EQ(network.springs.second[4], 5);
 }
 
-TEST(NetworkBuilder, StartsAtItsPositionsAndVelocities) {
+TEST(NetworkBuilder, TheInitialStateHasThePositionsAndVelocitiesOfTheNetwork) {
   NetworkBuilder builder;
   builder.add_particle(Vector3(1, 2, 3), 1.0, Vector3(4, 5, 6));
   const SpringNetwork network = builder.build();
@@ -127,8 +127,8 @@ TEST(NetworkBuilder, StartsAtItsPositionsAndVelocities) {
   EXPECT_EQ(state.x_previous, network.positions);
 }
 
-// What its body is thrown with is none of a pin's: dampers of its neighbours would drag them along.
-TEST(NetworkBuilder, APinnedParticleIsNotThrownWithItsBody) {
+// A pinned particle with a velocity would drag its neighbours along by their dampers.
+TEST(NetworkBuilder, APinnedParticleHasNoInitialVelocity) {
   NetworkBuilder builder;
   const Index pinned = builder.add_particle(Vector3::Zero(), 1.0, Vector3(4, 5, 6));
   const Index free = builder.add_particle(Vector3::UnitX(), 1.0, Vector3(4, 5, 6));
@@ -145,7 +145,7 @@ TEST(NetworkBuilder, RejectsANetworkWithoutParticles) {
   EXPECT_THAT(keys(builder), UnorderedElementsAre("particles", "bodies.empty"));
 }
 
-TEST(NetworkBuilder, RejectsParticlesThatCannotMove) {
+TEST(NetworkBuilder, RejectsInvalidMassesPositionsAndVelocities) {
   for (const double mass : {0.0, -1.0, kNan, std::numeric_limits<double>::infinity()}) {
     NetworkBuilder builder;
     builder.add_particle(Vector3::Zero(), mass);
@@ -156,7 +156,7 @@ TEST(NetworkBuilder, RejectsParticlesThatCannotMove) {
   EXPECT_THAT(keys(builder), UnorderedElementsAre("bodies.network.positions[0]", "bodies.network.velocities[0]"));
 }
 
-TEST(NetworkBuilder, NamesTheFirstOfManyAndCountsTheOthers) {
+TEST(NetworkBuilder, NamesTheFirstOfManyProblemsAndCountsTheOthers) {
   NetworkBuilder builder;
   builder.add_body("cloth", make_cloth({{1, 1}, {100, 100}}, {}));
   try {
@@ -169,7 +169,7 @@ TEST(NetworkBuilder, NamesTheFirstOfManyAndCountsTheOthers) {
   }
 }
 
-TEST(NetworkBuilder, RejectsSpringsThatJoinNothing) {
+TEST(NetworkBuilder, RejectsSpringsThatDoNotJoinTwoParticlesOfOneBody) {
   const auto with_spring = [](Index i, Index j) {
     NetworkBuilder builder;
     builder.add_particle(Vector3::Zero(), 1.0);
@@ -186,7 +186,7 @@ TEST(NetworkBuilder, RejectsSpringsThatJoinNothing) {
   EXPECT_THAT(with_spring(1, 1), ElementsAre("bodies.network.springs[0]")) << "itself";
 }
 
-TEST(NetworkBuilder, RejectsQuantitiesBelowZeroOrNotFinite) {
+TEST(NetworkBuilder, RejectsNegativeAndNonFiniteQuantities) {
   for (const double bad : {-1.0, kNan, std::numeric_limits<double>::infinity()}) {
     NetworkBuilder builder;
     builder.add_particle(Vector3::Zero(), 1.0);
@@ -198,7 +198,7 @@ TEST(NetworkBuilder, RejectsQuantitiesBelowZeroOrNotFinite) {
   }
 }
 
-TEST(NetworkBuilder, RejectsShapesWhoseArraysDisagree) {
+TEST(NetworkBuilder, RejectsShapesWithArraysOfDifferentLengths) {
   BodyShape short_of_mass = small_rope();
   short_of_mass.masses.pop_back();
   NetworkBuilder builder;
@@ -236,7 +236,7 @@ TEST(NetworkBuilder, RejectsContactMaterialsOutOfRange) {
                                                     "bodies.ball.restitution"));
 }
 
-TEST(NetworkBuilder, RejectsPinsThatHoldNothingOrTwice) {
+TEST(NetworkBuilder, RejectsEmptyPinsAndParticlesPinnedTwice) {
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 1.0);
   builder.pin(0);
@@ -246,7 +246,7 @@ TEST(NetworkBuilder, RejectsPinsThatHoldNothingOrTwice) {
   EXPECT_THAT(keys(builder), ElementsAre("pins[1]", "pins[2]", "pins[2]", "pins[3]"));
 }
 
-TEST(NetworkBuilder, RejectsMotionsThatAreNotOnes) {
+TEST(NetworkBuilder, RejectsInvalidMotions) {
   NetworkBuilder builder;
   for (int i = 0; i < 3; ++i) builder.add_particle(Vector3::Zero(), 1.0);
   Motion backwards;

@@ -1,4 +1,4 @@
-// What the tests of networks share.
+// Functions shared by the tests of networks.
 #pragma once
 
 #include "base/error.h"
@@ -11,7 +11,7 @@
 
 namespace sprung::testing {
 
-/// Keys of the problems that `make` throws; empty when it throws none.
+/// Keys of the problems that `make` throws; empty if it throws none.
 template <class Make>
 std::vector<std::string> problem_keys(const Make& make) {
   std::vector<std::string> keys;
@@ -45,9 +45,9 @@ inline std::vector<Pair> pairs(const BodyShape& shape, SpringKind kind) {
   return result;
 }
 
-/// Force [N] with which springs pull back across the plane `axis = place` when the body is stretched by `strain` along the axis:
-/// the sum over the springs that cross the plane of k_s (l - d) times their direction along the axis.
-inline double stretching_force(const BodyShape& shape, int axis, double place, double strain) {
+/// Force [N] of the springs across the plane at `position` [m] on the axis if the body is stretched by `strain` along the axis: the
+/// sum of k_s (l - d) times the direction cosine over the springs that cross the plane.
+inline double stretching_force(const BodyShape& shape, int axis, double position, double strain) {
   const auto stretched = [&](Index i) {
     Vector3 x = shape.positions[i];
     x[axis] *= 1.0 + strain;
@@ -57,7 +57,7 @@ inline double stretching_force(const BodyShape& shape, int axis, double place, d
   for (Index s = 0; s < shape.springs.count(); ++s) {
     const Index a = shape.springs.first[s];
     const Index b = shape.springs.second[s];
-    if ((shape.positions[a][axis] < place) == (shape.positions[b][axis] < place)) continue;
+    if ((shape.positions[a][axis] < position) == (shape.positions[b][axis] < position)) continue;
     const Vector3 span = stretched(b) - stretched(a);
     const double length = span.norm();
     force += shape.springs.stiffness[s] * (length - shape.springs.rest_length[s]) * std::abs(span[axis]) / length;

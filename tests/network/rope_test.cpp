@@ -16,7 +16,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 const RopeShape kStraight{{Vector3(1, 2, 3), Vector3(4, 2, 3)}, 7, std::nullopt};
 
-TEST(Rope, JoinsNeighboursAndSkipsOneForBending) {
+TEST(Rope, StructuralSpringsJoinNeighboursAndBendSpringsSkipOne) {
   const BodyShape rope = make_rope(kStraight, every_kind(stiff(10)));
   EXPECT_THAT(pairs(rope, SpringKind::structural),
               ElementsAre(Pair{0, 1}, Pair{1, 2}, Pair{2, 3}, Pair{3, 4}, Pair{4, 5}, Pair{5, 6}));
@@ -52,9 +52,9 @@ TEST(Rope, WithoutACountHasAParticleAtEachPoint) {
 }
 
 TEST(Rope, LengthSetsRestLengthsButNotPositions) {
-  // The web page's rope: rest length 2, laid out 3 apart.
-  const RopeShape laid_out{{Vector3(0, 0, 0), Vector3(12, 0, 0)}, 5, 8.0};
-  const BodyShape rope = make_rope(laid_out, {stiff(1), std::nullopt, std::nullopt});
+  // Springs of rest length 2 m between particles 3 m apart.
+  const RopeShape stretched{{Vector3(0, 0, 0), Vector3(12, 0, 0)}, 5, 8.0};
+  const BodyShape rope = make_rope(stretched, {stiff(1), std::nullopt, std::nullopt});
   EXPECT_THAT(rope.springs.rest_length, ElementsAre(2.0, 2.0, 2.0, 2.0));
   EXPECT_EQ(rope.positions[3], Vector3(9, 0, 0));
   EXPECT_EQ(rope.measure, 8.0);
@@ -72,7 +72,7 @@ TEST(Rope, ModulusPullsAlikeAtAnyResolution) {
   }
 }
 
-TEST(Rope, IsMadeOfSegmentsAndDragsPerParticle) {
+TEST(Rope, HasSegmentsAndADragAreaPerParticle) {
   const BodyShape rope = make_rope(kStraight, {});
   EXPECT_EQ(rope.surface.segments.cols(), 6);
   EXPECT_EQ(rope.surface.segments.col(5), (Eigen::Matrix<Index, 2, 1>(5, 6)));
@@ -80,13 +80,13 @@ TEST(Rope, IsMadeOfSegmentsAndDragsPerParticle) {
   EXPECT_EQ(rope.drag_areas, std::vector<double>(7, 1.0));
 }
 
-TEST(Rope, MayVisitAPlaceTwice) {
+TEST(Rope, MayPassThroughAPointTwice) {
   const RopeShape doubled{{Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(1, 0, 0), Vector3(2, 0, 0)}, std::nullopt, std::nullopt};
   EXPECT_THAT(make_rope(doubled, {stiff(1), std::nullopt, std::nullopt}).springs.rest_length, ElementsAre(1.0, 0.0, 1.0));
   EXPECT_THAT(problem_keys([&] { return make_rope(doubled, {modular(1), std::nullopt, std::nullopt}); }), ElementsAre("points[2]"));
 }
 
-TEST(Rope, RejectsWhatCannotBeARope) {
+TEST(Rope, RejectsInvalidRopes) {
   const auto keys = [](const RopeShape& rope) { return problem_keys([&] { return make_rope(rope, {}); }); };
   const Vector3 origin = Vector3::Zero();
   EXPECT_THAT(keys({}), ElementsAre("points"));
@@ -109,7 +109,7 @@ TEST(Rope, ReportsEveryProblemInOneGo) {
                                    "springs.structural.damping", "springs.bend.modulus"));
 }
 
-TEST(Rope, SharesItsMassEqually) {
+TEST(Rope, ParticlesHaveEqualMasses) {
   BodyShape rope = make_rope(kStraight, {});
   set_total_mass(rope, 3.5);
   EXPECT_EQ(rope.masses, std::vector<double>(7, 0.5));
@@ -122,7 +122,7 @@ TEST(Rope, SharesItsMassEqually) {
   }
 }
 
-TEST(Rope, PlacingTurnsThenMovesAndAddsAVelocity) {
+TEST(Rope, PlacingRotatesThenMovesAndAddsAVelocity) {
   BodyShape rope = make_rope(kStraight, {});
   rope.velocities[0] = Vector3(1, 0, 0);
   RigidTransform pose = RigidTransform::Identity();

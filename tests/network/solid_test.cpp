@@ -59,7 +59,7 @@ TEST(Solid, StructuralModulusPullsAlikeAtAnyResolution) {
     const BodyShape solid = make_solid({size, resolution}, {modular(1e4), std::nullopt, std::nullopt});
     for (int axis = 0; axis < 3; ++axis) {
       const double expected = 1e4 * size.prod() / size[axis] * 1e-3;
-      // The strain, taken from lengths near 0.1, keeps all but some 1e-15 / 1e-4 of its digits.
+      // The strain, computed from lengths near 0.1, has a relative error of some 1e-15 / 1e-4.
       EXPECT_NEAR(stretching_force(solid, axis, 0.01, 1e-3), expected, 1e-10 * expected) << "axis " << axis;
     }
   }
@@ -74,7 +74,7 @@ TEST(Solid, ShearModulusPullsAlikeAtAnyResolution) {
   for (const Index cells : {1, 2, 8}) EXPECT_NEAR(force(cells), force(4), 1e-10 * force(4)) << cells << " cells";
 }
 
-TEST(Solid, SurfaceIsClosedFacesOutwardAndHoldsTheVolume) {
+TEST(Solid, SurfaceIsClosedFacesOutwardAndEnclosesTheVolume) {
   const BodyShape solid = make_solid({Vector3(1, 2, 3), {3, 4, 2}}, {});
   TriangleMesh mesh;
   mesh.vertices.resize(3, static_cast<Eigen::Index>(solid.positions.size()));
@@ -84,7 +84,7 @@ TEST(Solid, SurfaceIsClosedFacesOutwardAndHoldsTheVolume) {
   EXPECT_NEAR(signed_volume(mesh), 6.0, 1e-14);
 }
 
-TEST(Solid, DragsOnItsSurfaceOnly) {
+TEST(Solid, OnlyParticlesOfTheSurfaceHaveADragArea) {
   const BodyShape solid = make_solid({Vector3(1, 2, 3), {3, 3, 3}}, {});
   EXPECT_EQ(solid.drag_areas[13], 0.0) << "the particle in the middle";
   EXPECT_EQ(std::count(solid.drag_areas.begin(), solid.drag_areas.end(), 0.0), 1);
@@ -104,7 +104,7 @@ TEST(Solid, CornersAreNamedByXThenYThenZ) {
   EXPECT_EQ(corner_particle(solid, "min_min"), std::nullopt);
 }
 
-TEST(Solid, RejectsWhatCannotBeASolid) {
+TEST(Solid, RejectsInvalidSolids) {
   const auto keys = [](const SolidShape& solid) { return problem_keys([&] { return make_solid(solid, {}); }); };
   EXPECT_THAT(keys({Vector3(0, -1, kNan), {1, 0, -3}}),
               UnorderedElementsAre("size[0]", "size[1]", "size[2]", "resolution[0]", "resolution[1]", "resolution[2]"));

@@ -148,12 +148,12 @@ class NearestPair {
   }
 
   /// Whether the plane across the best pair separates by this fraction of its distance.
-  [[nodiscard]] bool separates(double part) const {
+  [[nodiscard]] bool separates(double fraction) const {
     const Vector3 along = best_.on_simplex - best_.on_triangle;
     double lowest = along.dot(simplex_.x[0]);
     for (int i = 1; i < simplex_.count; ++i) lowest = std::min(lowest, along.dot(simplex_.x[i]));
     const double highest = std::max({along.dot(triangle_[0]), along.dot(triangle_[1]), along.dot(triangle_[2])});
-    return lowest - highest >= part * best_.squared_distance;
+    return lowest - highest >= fraction * best_.squared_distance;
   }
 
   [[nodiscard]] const ClosestPair& best() const { return best_; }

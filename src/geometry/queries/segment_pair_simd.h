@@ -19,11 +19,11 @@ struct SegmentPairLanes {
 
 namespace detail {
 
-[[gnu::always_inline]] inline void clamp_to_segment(Double4& part) {
+[[gnu::always_inline]] inline void clamp_to_segment(Double4& parameter) {
   const Double4 zero{};
   const Double4 one = zero + 1.0;
-  part = part < zero ? zero : part;
-  part = part > one ? one : part;
+  parameter = parameter < zero ? zero : parameter;
+  parameter = parameter > one ? one : parameter;
 }
 
 }  // namespace detail

@@ -98,7 +98,7 @@ double side_of_plane(const Vector3& a, const Vector3& b, const Vector3& c, const
   const double permanent = std::abs(u[0]) * (magnitude[1] * other[2] + magnitude[2] * other[1]) +
                            std::abs(u[1]) * (magnitude[2] * other[0] + magnitude[0] * other[2]) +
                            std::abs(u[2]) * (magnitude[0] * other[1] + magnitude[1] * other[0]);
-  // Each product takes part in at most 8 roundings: 8 eps, doubled for the rounding of the bound itself.
+  // Each product undergoes at most 8 roundings: 8 eps, doubled for the rounding of the bound itself.
   constexpr double kBound = 8.0 * std::numeric_limits<double>::epsilon();
   if (std::abs(determinant) > kBound * permanent) return determinant;
   return exact_side_of_plane(a, b, c, p);
@@ -109,7 +109,7 @@ double side_of_line(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Ei
   const Eigen::Vector2d v = b - p;
   const double left = u[0] * v[1];
   const double right = u[1] * v[0];
-  // Each product takes part in four roundings.
+  // Each product undergoes four roundings.
   constexpr double kBound = 4.0 * std::numeric_limits<double>::epsilon();
   if (std::abs(left - right) > kBound * (std::abs(left) + std::abs(right))) return left - right;
   Minor determinant;

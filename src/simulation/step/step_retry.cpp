@@ -29,8 +29,8 @@ void note_retry(Index infeasible_at_first, Index infeasible, SimulationState& st
 }
 
 void note_step(Index infeasible, SimulationState& state) {
-  state.free_steps = infeasible > 0 ? 0 : std::min(state.free_steps + 1, kMaxWait);
-  if (state.free_steps <= kLeastFree + state.retry_wait / kForgetting) return;
+  state.feasible_steps = infeasible > 0 ? 0 : std::min(state.feasible_steps + 1, kMaxWait);
+  if (state.feasible_steps <= kLeastFree + state.retry_wait / kForgetting) return;
   state.retry_wait = 0;
   state.retry_from = state.step;
   state.retry_infeasible = 0;
