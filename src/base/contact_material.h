@@ -7,8 +7,9 @@ namespace sprung {
 
 class ProblemList;
 
-/// The contact properties of a body or an obstacle. A contact has the gap `thickness + thickness`, the geometric means of the
-/// friction coefficients, and the larger restitution.
+/// The contact properties of a body or an obstacle. A contact with an obstacle has the sum of the
+/// thicknesses as its gap, a contact between bodies their mean. It has the geometric means of the friction coefficients and the
+/// larger restitution.
 struct ContactMaterial {
   double thickness = 0.0;        ///< [m], >= 0
   double friction = 0.0;         ///< kinetic coefficient, >= 0

@@ -1,4 +1,4 @@
-// Scenes that break one rule each: what is changed in kPlainScene, and what must be said about it.
+// Scenes that break one rule each: the changes of kPlainScene, and the expected problem.
 #pragma once
 
 #include <ostream>
@@ -9,10 +9,10 @@ namespace sprung {
 
 struct BrokenScene {
   std::string name;
-  std::vector<std::string> changes;  ///< as --set
-  std::string key;                   ///< of the problem
-  std::string message;               ///< a part of the problem's line
-  bool schema_can_tell = true;       ///< whether a JSON Schema can express the rule
+  std::vector<std::string> changes;   ///< as --set
+  std::string key;                    ///< of the problem
+  std::string message;                ///< contained in the line of the problem
+  bool schema_expresses_rule = true;  ///< whether a JSON Schema can express the rule
 };
 
 inline std::ostream& operator<<(std::ostream& stream, const BrokenScene& scene) { return stream << scene.name; }
@@ -36,7 +36,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"EmptySchema", {"$schema=\"\""}, "$schema", "must not be empty"},
       {"MissingDuration", {"duration=null"}, "duration", "is missing; it is required"},
       {"MissingBodies", {"bodies=null"}, "bodies", "is missing"},
-      {"NoBodies", {"bodies={}"}, "bodies", "must hold at least one entry"},
+      {"NoBodies", {"bodies={}"}, "bodies", "must have at least one entry"},
       {"MissingShape", {"bodies.banner.shape=null"}, "bodies.banner.shape", "is missing"},
       {"MissingShapeType", {"bodies.banner.shape.type=null"}, "bodies.banner.shape.type", "is missing"},
       {"WrongVersion", {"version=2"}, "version", "= 2: must be 1"},
@@ -44,7 +44,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"TooManyFrames", {"duration=1e20"}, "duration", "frames", false},
       {"DurationIsText", {"duration=\"long\""}, "duration", "duration = \"long\": must be a number"},
       {"FrameRateOfZero", {"frame_rate=0"}, "frame_rate", "must be greater than 0"},
-      {"FrameRateIsNoNumber", {"frame_rate=true"}, "frame_rate", "must be a number"},
+      {"FrameRateIsABoolean", {"frame_rate=true"}, "frame_rate", "must be a number"},
       {"NegativeStep", {"step=-0.001"}, "step", "must be greater than 0"},
       {"StepOfZero", {"step=0"}, "step", "must be greater than 0"},
       {"StepIsAWord", {"step=automatic"}, "step", "must be a number of seconds, or \"auto\""},
@@ -53,12 +53,12 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"StepTooShort", {"step=1e-29"}, "step", "use a larger step", false},
       {"GravityIsANumber", {"gravity=-9.81"}, "gravity", "must be a list of 3 entries, written in [ ]"},
       {"GravityOfTwoNumbers", {"gravity=[0,-9.81]"}, "gravity", "must have 3 entries; it has 2"},
-      {"GravityHoldsText", {"gravity=[0,\"down\",0]"}, "gravity[1]", "must be a number"},
-      {"HugeNumber", {"gravity=[0,-1e300,0]"}, "gravity[1]", "must be at most 1e+30 in size"},
+      {"GravityContainsText", {"gravity=[0,\"down\",0]"}, "gravity[1]", "must be a number"},
+      {"HugeNumber", {"gravity=[0,-1e300,0]"}, "gravity[1]", "must be at most 1e+30 in magnitude"},
       {"NegativeDrag", {"air.drag=-1"}, "air.drag", "must be at least 0"},
       {"AirIsANumber", {"air=1"}, "air", "must be an object"},
       {"UnknownIntegrator", {"integrator.type=verlett"}, "integrator.type", "did you mean \"verlet\"?"},
-      {"DampingOfEuler", {"integrator={\"type\":\"explicit_euler\",\"damping\":0.1}"}, "integrator.damping", "is not a known key; it is Verlet's: leave it out"},
+      {"DampingOfEuler", {"integrator={\"type\":\"explicit_euler\",\"damping\":0.1}"}, "integrator.damping", "is not a known key; only the integrator verlet has it: remove it"},
       {"DampingOfVelocityVerlet", {"integrator={\"type\":\"velocity_verlet\",\"damping_rate\":0.1}"}, "integrator.damping_rate", "is not a known key"},
       {"StartAtRestOfRungeKutta", {"integrator={\"type\":\"rk4\",\"start_at_rest\":true}"}, "integrator.start_at_rest", "is not a known key"},
       {"DampingOfImplicitEuler", {"integrator={\"type\":\"implicit_euler\",\"damping\":0.1}"}, "integrator.damping", "is not a known key"},
@@ -77,7 +77,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"StartIsTrue", {"contact.start=true"}, "contact.start", "must be one of refuse, push_out"},
       {"UnknownResponse", {"contact.response=projected"}, "contact.response", "did you mean \"projection\"?"},
       {"PenaltyWithoutStiffness", {"contact={\"response\":\"penalty\",\"damping\":1}"}, "contact.stiffness", "is missing"},
-      {"StiffnessOfProjection", {"contact={\"response\":\"projection\",\"stiffness\":10}"}, "contact.stiffness", "is not a known key; it is of \"response\": \"penalty\""},
+      {"StiffnessOfProjection", {"contact={\"response\":\"projection\",\"stiffness\":10}"}, "contact.stiffness", "is not a known key; only \"response\": \"penalty\" has it"},
       {"UnknownStability", {"stability=ignore"}, "stability", "must be one of refuse, warn"},
       {"NegativeMass", {"bodies.banner.mass=-0.2"}, "bodies.banner.mass", "must be greater than 0"},
       {"NoMass", {"bodies.banner.mass=null"}, "bodies.banner", "must have one of mass, particle_mass, density"},
@@ -103,13 +103,13 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"ScaleOfZero", {"bodies.banner.place.scale=0"}, "bodies.banner.place.scale", "must be greater than 0"},
       {"CornerOfAnotherShape", {"bodies.banner.pins[0].which=[\"from\"]"}, "bodies.banner.pins[0].which[0]", "must be one of min_min, max_min, min_max, max_max", false},
       {"CornerMisspelt", {"bodies.banner.pins[0].which=[\"min_mn\"]"}, "bodies.banner.pins[0].which[0]", "did you mean \"min_min\"?"},
-      {"CornerOfAMesh", {"bodies.banner.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}"}, "bodies.banner.pins[0].at", "nothing else has named corners", false},
+      {"CornerOfAMesh", {"bodies.banner.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}"}, "bodies.banner.pins[0].at", "other shapes have no named corners", false},
       {"PinOfNothing", {"bodies.banner.pins=[{}]"}, "bodies.banner.pins[0]", "must have one of at, indices, nearest, box"},
       {"PinOfTwoKinds", {"bodies.banner.pins[0].nearest=[0,0,0]"}, "bodies.banner.pins[0]", "may have only one of"},
-      {"PinOfWhatIsNoCorner", {"bodies.banner.pins=[{\"at\":\"edge\",\"which\":[\"min_y\"]}]"}, "bodies.banner.pins[0].at", "must be \"corner\"; pin what is no corner by indices, nearest or box"},
+      {"PinAtAnEdge", {"bodies.banner.pins=[{\"at\":\"edge\",\"which\":[\"min_y\"]}]"}, "bodies.banner.pins[0].at", "must be \"corner\"; pin other particles by indices, nearest or box"},
       {"PinOfNegativeIndex", {"bodies.banner.pins=[{\"indices\":[-1]}]"}, "bodies.banner.pins[0].indices[0]", "must be at least 0"},
       {"PinOfNoIndex", {"bodies.banner.pins=[{\"indices\":[]}]"}, "bodies.banner.pins[0].indices", "must have at least 1 entry"},
-      {"BoxUpsideDown", {"bodies.banner.pins=[{\"box\":[[0,1,0],[1,0,1]]}]"}, "bodies.banner.pins[0].box", "must hold the smaller coordinates first", false},
+      {"BoxUpsideDown", {"bodies.banner.pins=[{\"box\":[[0,1,0],[1,0,1]]}]"}, "bodies.banner.pins[0].box", "must begin with the smaller coordinates", false},
       {"KeyframesOutOfOrder", {"obstacles.floor.motion.keyframes=[{\"time\":1},{\"time\":1}]"}, "obstacles.floor.motion.keyframes[1].time", "must be later", false},
       {"KeyframeWithoutTime", {"obstacles.floor.motion.keyframes=[{}]"}, "obstacles.floor.motion.keyframes[0].time", "is missing"},
       {"NoKeyframes", {"obstacles.floor.motion.keyframes=[]"}, "obstacles.floor.motion.keyframes", "must have at least 1 entry"},
@@ -134,7 +134,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"NameEndsInADigit", {"obstacles.floor2.shape={\"type\":\"sphere\",\"radius\":1}"}, "obstacles.floor2", "must not end in a digit"},
       {"NameWithASlash", {"bodies.a/b.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}", "bodies.a/b.mass=1"}, "bodies.a/b", "letters, digits, _ and -"},
       {"NameIsTooLong", {"obstacles." + std::string(201, 'x') + ".shape={\"type\":\"sphere\",\"radius\":1}"}, "obstacles." + std::string(201, 'x'), "at most 200 letters"},
-      {"NameIsTaken", {"bodies.obstacles.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}", "bodies.obstacles.mass=1"}, "bodies.obstacles", "the name is taken"},
+      {"NameIsReserved", {"bodies.obstacles.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}", "bodies.obstacles.mass=1"}, "bodies.obstacles", "the name is taken"},
   };
   return kScenes;
 }

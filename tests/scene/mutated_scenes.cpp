@@ -22,7 +22,7 @@ void list_values(const Json& json, const Pointer& at, std::vector<Pointer>& poin
   }
 }
 
-/// Changes the value at `at`; false where the mutation does not apply.
+/// Changes the value at `at`; false if the mutation does not apply.
 using Mutation = std::function<bool(Json& document, const Pointer& at, const Pick& pick)>;
 
 bool remove(Json& document, const Pointer& at, const Pick& /*pick*/) {
@@ -62,7 +62,7 @@ bool enlarge(Json& document, const Pointer& at, const Pick& pick) {
   return change_number(document, at, {1e30, 1.1e30, -1.1e30, 1e300, 4294967298, 2147483648, 1e18}, pick);
 }
 
-/// Values on both sides of the bounds that scenes have.
+/// Values on both sides of the bounds of scenes.
 bool set_to_bound(Json& document, const Pointer& at, const Pick& pick) {
   const std::vector<Json> values{0,      0.0,    -0.0,      1,         1.0,       1.0000001, 2,      2.5,
                                  -1e-30, 1e-300, 134217727, 134217728, 134217729, 1000000,   1000001};
@@ -121,7 +121,7 @@ bool rename(Json& document, const Pointer& at, const Pick& pick) {
   return true;
 }
 
-/// Adds a key that excludes one that is there.
+/// Adds a key that excludes an existing one.
 bool add_excluded_key(Json& document, const Pointer& at, const Pick& pick) {
   static const std::vector<std::vector<Json>> kGroups{
       {{{"mass", 1}}, {{"particle_mass", 1}}, {{"density", 1}}},
@@ -133,8 +133,8 @@ bool add_excluded_key(Json& document, const Pointer& at, const Pick& pick) {
   Json& object = document[at];
   if (!object.is_object()) return false;
   for (const auto& group : kGroups) {
-    const auto is_there = [&](const Json& key) { return object.contains(key.items().begin().key()); };
-    if (std::none_of(group.begin(), group.end(), is_there)) continue;
+    const auto exists = [&](const Json& key) { return object.contains(key.items().begin().key()); };
+    if (std::none_of(group.begin(), group.end(), exists)) continue;
     object.update(group[pick(group.size())]);
     return true;
   }
@@ -182,7 +182,7 @@ void SceneMutator::collect(const Json& json) {
 }
 
 MutatedScene SceneMutator::next() {
-  constexpr int kPositionsToTry = 50;  // few values are arrays, or strings
+  constexpr int kPositionsToTry = 50;  // few values are arrays or strings
   MutatedScene scene{valid_[pick(valid_.size())], {}};
   const std::size_t number = pick(5) > 0 ? 1 : 2 + pick(2);
   while (scene.changes.size() < number) {

@@ -13,16 +13,16 @@ namespace sprung {
 
 struct MutatedScene {
   Json document;
-  std::vector<std::string> changes;  ///< `mutation at pointer`, for the message of a failing test
+  std::vector<std::string> changes;  ///< `mutation at pointer`, printed by failing tests
 };
 
 /// Generates mutated copies of valid documents. The same seed gives the same scenes on every machine.
 class SceneMutator {
  public:
-  /// `valid` must not be empty; words, values and keys of mutations are taken from all of its documents.
+  /// `valid` must not be empty. Mutations use the words, values and keys of all its documents.
   SceneMutator(std::vector<Json> valid, std::uint32_t seed);
 
-  /// The next scene: mostly one mutation, so that no mistake hides another; sometimes two or three.
+  /// The next scene. Most have one mutation, so that no mistake hides another; some have two or three.
   [[nodiscard]] MutatedScene next();
 
   /// Names of all mutations.
@@ -35,7 +35,7 @@ class SceneMutator {
   };
 
   void collect(const Json& json);
-  /// Applies mutation number `kind` at a random position. Returns what changed, or nothing where the mutation does not apply.
+  /// Applies mutation number `kind` at a random position. Returns a description, or an empty one if the mutation does not apply.
   std::string mutate(Json& document, std::size_t kind);
   std::size_t pick(std::size_t count) { return random_() % count; }
 

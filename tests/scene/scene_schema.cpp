@@ -1,4 +1,4 @@
-// GCC 12 sees overlapping copies in the "[" + name + "]" of valijson's templates (its bug 105651).
+// GCC 12 falsely reports overlapping copies in the "[" + name + "]" of valijson's templates (its bug 105651).
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wrestrict"
 #endif
@@ -30,7 +30,7 @@ const valijson::Schema& parsed_schema() {
   return *kSchema;
 }
 
-/// JSON has one type of number, where 64.0 is an integer; valijson decides by the notation.
+/// Converts 64.0 to 64: JSON has one type of number, but valijson distinguishes by the notation.
 void make_whole_numbers_integers(PlainJson& json) {
   constexpr double kLargestExact = 9007199254740992.0;  // 2^53
   if (json.is_structured()) {

@@ -8,11 +8,11 @@
 
 namespace sprung {
 
-/// The schema of this source tree. Throws when the file cannot be read.
+/// The schema of this source tree. Throws if the file cannot be read.
 [[nodiscard]] const Json& scene_schema();
 
-/// What the schema refuses in the document, as `path: rule`; empty when the document is valid. A failed oneOf also lists what each
-/// of its branches refuses.
+/// Violations of the schema in the document, as `path: rule`; empty if the document is valid. A failed oneOf also lists the
+/// violations of each branch.
 [[nodiscard]] std::vector<std::string> schema_violations(const Json& document);
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// Scenes for tests: written to a folder of their own, read with overrides.
+// Scenes for tests, written to a temporary folder and read with overrides.
 #pragma once
 
 #include "base/error.h"
@@ -14,10 +14,10 @@
 
 namespace sprung {
 
-/// So that a failing test shows the problem's line.
+/// Makes failing tests print the line of the problem.
 inline void PrintTo(const Problem& problem, std::ostream* stream) { *stream << to_string(problem); }
 
-/// A folder that lives as long as the test.
+/// A folder for one test.
 class SceneFolder {
  public:
   SceneFolder() {
@@ -54,7 +54,7 @@ class SceneFolder {
   std::filesystem::path folder_;
 };
 
-/// The problems that `call` throws; none when it throws nothing.
+/// The problems that `call` throws; empty if it throws none.
 template <class Call>
 [[nodiscard]] std::vector<Problem> problems_of(Call&& call) {
   try {
@@ -82,7 +82,7 @@ inline constexpr const char* kPlainScene = R"({
   "obstacles": { "floor": { "shape": { "type": "half_space", "normal": [0, 1, 0], "offset": -5 } } }
 })";
 
-/// The example of the format's description, and the keys it leaves out.
+/// A scene with every key of the format.
 inline constexpr const char* kFullScene = R"({
   "version": 1,
   "duration": 4.0,

@@ -29,8 +29,8 @@ class LossCollector : public Assimp::LogStream {
         "out-of-range",  "dropped",         "nexpected EOF",        "nexpected end of file",
         "invalid index", "nvalid vertex i", "nvalid vertex refere", "to triangulate polygon"};
     const std::string_view text = message;
-    const auto tells = [&](std::string_view sign) { return text.find(sign) != std::string_view::npos; };
-    if (std::any_of(kSignsOfLoss.begin(), kSignsOfLoss.end(), tells)) losses_.push_back(without_prefix(text));
+    const auto reports_loss = [&](std::string_view sign) { return text.find(sign) != std::string_view::npos; };
+    if (std::any_of(kSignsOfLoss.begin(), kSignsOfLoss.end(), reports_loss)) losses_.push_back(without_prefix(text));
   }
 
  private:

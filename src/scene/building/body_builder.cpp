@@ -23,7 +23,7 @@ class ShapeMaker {
   }
 
  private:
-  // Springs are made of the scaled sizes, because what a modulus makes of them depends on lengths.
+  // Springs are built from the scaled sizes, because the stiffness that follows from a modulus depends on lengths.
   std::optional<BodyShape> from(RopeShape rope) const {
     for (Vector3& point : rope.points) point *= body_.place.scale;
     if (rope.length) *rope.length *= body_.place.scale;
@@ -54,7 +54,7 @@ class ShapeMaker {
     return make_mesh_body(polygons, body_.springs);
   }
 
-  /// Problems of a mesh file name it already; those of a shape are given their place in the scene.
+  /// Problems of a mesh file name it already; those of a shape get its key in the scene.
   void report(Problem problem) {
     if (problem.file.empty()) {
       problem.file = scene_.file.string();
@@ -101,10 +101,10 @@ std::optional<BodyShape> build_body(const Scene& scene, const BodyScene& body, c
   return shape;
 }
 
-RigidTransform pose_of(const Placement& place) {
+RigidTransform pose_of(const Placement& placement) {
   RigidTransform pose = RigidTransform::Identity();
-  pose.linear() = rotation_from_degrees(place.rotation);
-  pose.translation() = place.position;
+  pose.linear() = rotation_from_degrees(placement.rotation);
+  pose.translation() = placement.position;
   return pose;
 }
 

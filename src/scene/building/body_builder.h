@@ -1,4 +1,4 @@
-// From a body of a scene to particles, springs and pins.
+// Builds particles, springs and pins from a body of a scene.
 #pragma once
 
 #include "network/network_builder.h"
@@ -11,22 +11,22 @@
 
 namespace sprung {
 
-/// The body's particles and springs where they are at time 0, with their masses. Adds every problem; none when there are any.
+/// The particles and springs of the body at time 0, with their masses. Adds all problems; none if there are any.
 [[nodiscard]] std::optional<BodyShape> build_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder,
                                                   std::vector<Problem>& problems);
 
-/// Particles that move, or stay, together; counted from 0 within the body.
+/// Particles that rest or move together; counted from 0 within the body.
 struct ResolvedPin {
   std::vector<Index> particles;  ///< ascending, each once
   Motion motion;
 };
 
-/// The particles that the body's pins hold. Pins that stay where they are become one. Adds a problem for each that holds none,
-/// names a particle that is not there, or holds a particle that another moves.
+/// The particles of the body's pins. Pins that rest are merged into one. Adds a problem for each pin that contains no particle,
+/// names a particle that does not exist, or contains a particle that another pin moves.
 [[nodiscard]] std::vector<ResolvedPin> resolve_pins(const Scene& scene, const BodyScene& body, const BodyShape& placed,
                                                     std::vector<Problem>& problems);
 
-/// The placed pose without its scale.
-[[nodiscard]] RigidTransform pose_of(const Placement& place);
+/// The pose of a placement, without its scale.
+[[nodiscard]] RigidTransform pose_of(const Placement& placement);
 
 }  // namespace sprung

@@ -13,28 +13,28 @@ namespace {
 
 constexpr int kManySteps = 1000;
 
-// Springs and bends ask for steps of about the time in which their particles answer; what answers in less than this part of it is
-// not theirs.
-constexpr double kLeastPart = 0.05;
+// If a spring or angle bend bounds the step, its response rate times the step is about 1. Below this value, something else bounds
+// the step.
+constexpr double kLeastResponse = 0.05;
 
 constexpr int kDigits = 3;
 
-/// What asks for small steps: how fast particles answer to it [1/s], as they do to springs in the root of their stiffness.
+/// A cause of small steps. The response rate of particles is [1/s]: the square root of stiffness over mass, or damping over mass.
 struct Demand {
   double rate = 0.0;
-  Index particle = 0;  ///< one of those that answer
+  Index particle = 0;  ///< the lightest of the particles
   double constant = 0.0;
-  std::string of{};
+  std::string source{};
   const char* unit = "";
   const char* remedy = "";
 };
 
-/// The one that is free and weighs least.
+/// The lightest particle that is not pinned.
 Index lightest(const SpringNetwork& network, std::initializer_list<Index> particles) {
   return std::max(particles, [&](Index a, Index b) { return network.inverse_masses[a] < network.inverse_masses[b]; });
 }
 
-Demand of_springs(const SpringNetwork& network, const std::vector<double>& constants, bool damp) {
+Demand demand_of_springs(const SpringNetwork& network, const std::vector<double>& constants, bool damp) {
   const Springs& springs = network.springs;
   Demand found{.unit = damp ? " N s/m damping" : " N/m", .remedy = damp ? "damping" : "stiffness"};
   for (Index s = 0; s < springs.count(); ++s) {
@@ -44,15 +44,16 @@ Demand of_springs(const SpringNetwork& network, const std::vector<double>& const
     found.rate = rate;
     found.particle = lightest(network, {springs.first[s], springs.second[s]});
     found.constant = constants[s];
-    found.of = std::string(kSpringKindNames[static_cast<std::size_t>(springs.kind[s])]) + " springs";
+    found.source = std::string(kSpringKindNames[static_cast<std::size_t>(springs.kind[s])]) + " springs";
   }
   return found;
 }
 
-// In line: the middle goes by as much as bends turn by about both bonds.
-Demand of_bends(const SpringNetwork& network, const std::vector<double>& constants, bool damp) {
+// For bends in line: the angle changes by 1 / length times the displacement of an end, and by the sum of both times that of the
+// middle.
+Demand demand_of_bends(const SpringNetwork& network, const std::vector<double>& constants, bool damp) {
   const AngleBends& bends = network.angle_bends;
-  Demand found{.of = "angle bends", .unit = damp ? " N m s damping" : " N m", .remedy = damp ? "damping" : "stiffness"};
+  Demand found{.source = "angle bends", .unit = damp ? " N m s damping" : " N m", .remedy = damp ? "damping" : "stiffness"};
   for (Index e = 0; e < bends.count(); ++e) {
     const double before = 1.0 / bends.length_before[e];
     const double after = 1.0 / bends.length_after[e];
@@ -69,14 +70,14 @@ Demand of_bends(const SpringNetwork& network, const std::vector<double>& constan
 }
 
 std::string reason(const SpringNetwork& network, double step) {
-  const Demand most =
-      std::max({of_springs(network, network.springs.stiffness, false), of_springs(network, network.springs.damping, true),
-                of_bends(network, network.angle_bends.stiffness, false), of_bends(network, network.angle_bends.damping, true)},
-               [](const Demand& a, const Demand& b) { return a.rate < b.rate; });
-  if (most.rate * step < kLeastPart) return "penalty contact or air drag ask for that; less of them needs";
-  return "body \"" + network.body_of(most.particle).name + "\" has " + most.of + " of " + format_number(most.constant, kDigits) +
-         most.unit + " at particles of " + format_number(network.masses[most.particle], kDigits) + " kg; less " + most.remedy +
-         " or more mass needs";
+  const Demand largest = std::max(
+      {demand_of_springs(network, network.springs.stiffness, false), demand_of_springs(network, network.springs.damping, true),
+       demand_of_bends(network, network.angle_bends.stiffness, false), demand_of_bends(network, network.angle_bends.damping, true)},
+      [](const Demand& a, const Demand& b) { return a.rate < b.rate; });
+  if (largest.rate * step < kLeastResponse) return "penalty contact or air drag requires that; less of it";
+  return "body \"" + network.body_of(largest.particle).name + "\" has " + largest.source + " of " +
+         format_number(largest.constant, kDigits) + largest.unit + " at particles of " +
+         format_number(network.masses[largest.particle], kDigits) + " kg; less " + largest.remedy + ", more mass";
 }
 
 }  // namespace
@@ -88,12 +89,13 @@ std::optional<std::string> many_steps_warning(const Scene& scene, const SpringNe
                             format_number(choice.step, kDigits) + " s a frame: ";
   if (by_passes) {
     return steps +
-           "passes of the stretch limit ask for that; more \"iterations\", \"tethers\": true or \"solver\": \"newton\" need fewer";
+           "passes of the stretch limit require that; more \"iterations\", \"tethers\": true or \"solver\": \"newton\" needs fewer "
+           "steps";
   }
   if (std::holds_alternative<ExplicitEulerSettings>(scene.settings.integrator)) {
-    return steps + "explicit Euler gains energy in larger ones; \"symplectic_euler\" does not";
+    return steps + "explicit Euler gains energy in larger steps; \"symplectic_euler\" does not";
   }
-  return steps + reason(network, choice.step) + " fewer, and so does \"implicit_euler\"";
+  return steps + reason(network, choice.step) + " or \"implicit_euler\" needs fewer steps";
 }
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-// What is said of automatic steps so small that a frame takes very many.
+// Warns of automatic steps that are very small.
 #pragma once
 
 #include "network/spring_network.h"
@@ -10,8 +10,8 @@
 
 namespace sprung {
 
-/// What asks for the steps, and what to change; none while a frame takes no more than a thousand. `by_passes` tells whether passes
-/// of the stretch limit ask for them.
+/// States the cause of the small step and a remedy; none for up to a thousand steps per frame. `by_passes`: passes of the stretch
+/// limit need the small step.
 [[nodiscard]] std::optional<std::string> many_steps_warning(const Scene& scene, const SpringNetwork& network,
                                                             const StepChoice& choice, bool by_passes);
 

@@ -11,7 +11,7 @@
 namespace sprung {
 namespace {
 
-// What a particle takes with structural springs alone, measured with a million of them [bytes].
+// Memory per particle with structural springs only, measured with a million particles [bytes].
 constexpr double kBytesOfRope = 560.0;
 constexpr double kBytesOfCloth = 800.0;
 constexpr double kBytesOfSolid = 680.0;

@@ -1,5 +1,4 @@
-// Scenes that no memory holds are refused before they take all of it: systems hand out more than there is, and then end what uses
-// it.
+// Refuses scenes that exceed the main memory before they are built: systems allocate more than there is and then kill the program.
 #pragma once
 
 #include "base/error.h"
@@ -9,7 +8,7 @@
 
 namespace sprung {
 
-/// Adds a problem, without a file, for the largest body when ropes, cloths and solids together take more than `memory` [bytes].
+/// Adds a problem, without a file, for the largest body if ropes, cloths and solids together need more than `memory` [bytes].
 void check_memory(const std::vector<BodyScene>& bodies, double memory, std::vector<Problem>& problems);
 
 }  // namespace sprung

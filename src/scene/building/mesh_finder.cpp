@@ -24,7 +24,7 @@ MeshFinder::MeshFinder(std::filesystem::path scene_file, const std::vector<std::
 std::optional<std::filesystem::path> MeshFinder::find(const std::string& file, const std::string& key,
                                                       std::vector<Problem>& problems) const {
   for (const std::filesystem::path& folder : folders_) {
-    const std::filesystem::path candidate = folder / file;  // the file alone when it is an absolute path
+    const std::filesystem::path candidate = folder / file;  // an absolute path replaces the folder
     if (is_file(candidate)) return candidate;
   }
   report_missing(file, key, "no such file", problems);

@@ -1,4 +1,4 @@
-// Where the meshes of a scene are.
+// Finds the mesh files of a scene.
 #pragma once
 
 #include "base/error.h"
@@ -12,15 +12,15 @@ namespace sprung {
 
 class MeshFinder {
  public:
-  /// Looks beside the scene file, then in `mesh_paths`, in their order.
+  /// Looks beside the scene file, then in `mesh_paths`, in this order.
   MeshFinder(std::filesystem::path scene_file, const std::vector<std::filesystem::path>& mesh_paths);
 
-  /// The file that the scene names under `key`; when there is none, adds a problem that says where it was looked for.
+  /// The file that the scene names under `key`. If it does not exist, adds a problem with the paths that were tried.
   [[nodiscard]] std::optional<std::filesystem::path> find(const std::string& file, const std::string& key,
                                                           std::vector<Problem>& problems) const;
 
-  /// The files of the first folder that has any that match the pattern, sorted naturally; when none has two or more, adds a problem
-  /// and returns none. Requires `is_wildcard(pattern)`.
+  /// The files that match the pattern in the first folder with any match, in natural order. If there are fewer than two, adds a
+  /// problem and returns none. Requires `is_wildcard(pattern)`.
   [[nodiscard]] std::vector<std::filesystem::path> find_all(const std::string& pattern, const std::string& key,
                                                             std::vector<Problem>& problems) const;
 

@@ -52,15 +52,15 @@ std::optional<ObstacleGeometry> ObstacleBuilder::geometry_of(const ObstacleScene
 }
 
 const std::optional<ObstacleBuilder::Import>& ObstacleBuilder::import(const std::filesystem::path& file) {
-  const auto [place, is_new] = imports_.try_emplace(file);
-  if (!is_new) return place->second;
+  const auto [entry, is_new] = imports_.try_emplace(file);
+  if (!is_new) return entry->second;
   try {
     ImportedMesh imported = import_mesh(file);
-    place->second = Import{std::make_shared<const TriangleMesh>(std::move(imported.mesh)), std::move(imported.report)};
+    entry->second = Import{std::make_shared<const TriangleMesh>(std::move(imported.mesh)), std::move(imported.report)};
   } catch (const InputError& error) {
     add_new_problems(error);
   }
-  return place->second;
+  return entry->second;
 }
 
 std::optional<ObstacleGeometry> ObstacleBuilder::geometry_of(const ObstacleScene& obstacle, const MeshFiles& mesh) {
@@ -71,10 +71,10 @@ std::optional<ObstacleGeometry> ObstacleBuilder::geometry_of(const ObstacleScene
     add_report(obstacle, files, report);
     const auto* pattern = std::get_if<std::string>(&mesh.files);
     if (const auto last = pattern != nullptr ? file_before_gap(files, *pattern) : std::nullopt) {
-      reports_.back().report.notes.push_back("numbers are left out after " + last->filename().string() +
-                                             ": its files play one after the other all the same");
+      reports_.back().report.notes.push_back("the file numbers have a gap after " + last->filename().string() +
+                                             ": the sequence plays without a pause");
     }
-    if (!sequence.deforms()) reports_.back().report.notes.emplace_back("its frames are all alike: it does not deform");
+    if (!sequence.deforms()) reports_.back().report.notes.emplace_back("all frames are equal: it does not deform");
     for (Points& frame : sequence.frames) frame *= obstacle.place.scale;
     sequence.frame_rate = mesh.frame_rate;
     sequence.start = mesh.start;
@@ -86,7 +86,7 @@ std::optional<ObstacleGeometry> ObstacleBuilder::geometry_of(const ObstacleScene
   }
 }
 
-/// The files in their order; none when one is missing.
+/// The files in their order; none if one is missing.
 std::vector<std::filesystem::path> ObstacleBuilder::find_files(const ObstacleScene& obstacle, const MeshFiles& mesh) const {
   const std::string key = join_path("obstacles", obstacle.name) + ".shape.files";
   if (const auto* pattern = std::get_if<std::string>(&mesh.files)) return finder_.find_all(*pattern, key, problems_);

@@ -1,4 +1,4 @@
-// From an obstacle of a scene to a shape in the world.
+// Builds the obstacles of a scene.
 #pragma once
 
 #include "collision/shapes/obstacle.h"
@@ -13,17 +13,17 @@
 
 namespace sprung {
 
-/// Makes obstacles; a mesh that several of them use is imported once.
+/// Builds obstacles; imports a mesh once if several obstacles use it.
 class ObstacleBuilder {
  public:
-  /// Keeps references to all three.
+  /// Keeps references to all arguments.
   ObstacleBuilder(const Scene& scene, const MeshFinder& finder, std::vector<Problem>& problems)
       : scene_(scene), finder_(finder), problems_(problems) {}
 
-  /// The obstacle with its scale applied; adds every problem, and returns none when there are any.
+  /// The obstacle with its scale applied. Adds all problems; none if there are any.
   [[nodiscard]] std::optional<Obstacle> build(const ObstacleScene& obstacle);
 
-  /// What importing the meshes of the obstacles found.
+  /// Reports on the imported meshes.
   [[nodiscard]] const std::vector<NamedReport>& reports() const { return reports_; }
 
  private:
@@ -43,7 +43,7 @@ class ObstacleBuilder {
   const Scene& scene_;
   const MeshFinder& finder_;
   std::vector<Problem>& problems_;
-  std::map<std::filesystem::path, std::optional<Import>> imports_;  ///< none: it cannot be imported, which was reported
+  std::map<std::filesystem::path, std::optional<Import>> imports_;  ///< none: the import failed and was reported
   std::vector<NamedReport> reports_;
 };
 

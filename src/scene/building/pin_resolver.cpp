@@ -9,7 +9,7 @@
 namespace sprung {
 namespace {
 
-/// The particles that one pin names.
+/// Finds the particles of one pin.
 class PinFinder {
  public:
   PinFinder(const Scene& scene, const BodyScene& body, const BodyShape& placed, std::string key, std::vector<Problem>& problems)
@@ -61,7 +61,7 @@ class PinFinder {
   }
 
   std::vector<Index> at(const PinBox& box) {
-    // Placing a particle leaves rounding of this size; a box that ends exactly at a row of particles holds it all the same.
+    // Rounding error of placed particles, so that a box that ends exactly at a row of particles contains it.
     constexpr double kRounding = 1e-12;
     double size = 0.0;
     for (const Vector3& position : positions_) size = std::max(size, position.cwiseAbs().maxCoeff());
@@ -71,15 +71,15 @@ class PinFinder {
     for (std::size_t i = 0; i < positions_.size(); ++i) {
       if (wide.contains(positions_[i])) particles.push_back(static_cast<Index>(i));
     }
-    if (particles.empty()) report(".box", "", "holds no particle of the body", where_it_is());
+    if (particles.empty()) report(".box", "", "contains no particle of the body", extent_text());
     return particles;
   }
 
-  std::string where_it_is() const {
+  std::string extent_text() const {
     Box3 bounds;
     for (const Vector3& position : positions_) bounds.extend(position);
     const auto list = [](const Vector3& point) { return Json{point.x(), point.y(), point.z()}; };
-    return "at time 0 it fills the box " + shortened(Json::array({list(bounds.min()), list(bounds.max())}));
+    return "at time 0 the body lies in the box " + shortened(Json::array({list(bounds.min()), list(bounds.max())}));
   }
 
   void report(const std::string& suffix, const std::string& value, const std::string& rule, const std::string& remedy) {
@@ -98,19 +98,19 @@ class PinFinder {
 std::vector<ResolvedPin> resolve_pins(const Scene& scene, const BodyScene& body, const BodyShape& placed,
                                       std::vector<Problem>& problems) {
   const std::string key = join_path("bodies", body.name) + ".pins";
-  std::map<Index, std::size_t> holder;  // which pin was the first to hold a particle
+  std::map<Index, std::size_t> first_pin;  // the first pin of a particle
   std::vector<Index> still;
   std::vector<ResolvedPin> resolved;
   for (std::size_t p = 0; p < body.pins.size(); ++p) {
     const PinScene& pin = body.pins[p];
     std::vector<Index> particles = PinFinder(scene, body, placed, join_path(key, p), problems).find(pin);
     for (const Index particle : particles) {
-      const auto [first, is_new] = holder.emplace(particle, p);
+      const auto [first, is_new] = first_pin.emplace(particle, p);
       if (is_new || (!pin.motion.moves() && !body.pins[first->second].motion.moves())) continue;
-      problems.push_back({scene.file.string(), join_path(key, p), "",
-                          "holds particle " + std::to_string(particle) + ", as does " + join_path("pins", first->second) +
-                              ", and they move it differently",
-                          "pin each particle once"});
+      problems.push_back(
+          {scene.file.string(), join_path(key, p), "",
+           "pins particle " + std::to_string(particle) + " like " + join_path("pins", first->second) + ", but with another motion",
+           "pin each particle once"});
       break;
     }
     if (pin.motion.moves()) {

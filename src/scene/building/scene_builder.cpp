@@ -16,16 +16,15 @@
 namespace sprung {
 namespace {
 
-/// The bodies of which the user has said what shape they are. What matters to neither shape nor pins is left out where the text has
-/// problems.
-std::vector<BodyScene> told_bodies(const Scene& scene, const TextProblems& known) {
+/// The bodies whose shape is valid in the text. Springs and pins that depend on invalid text are left out.
+std::vector<BodyScene> valid_bodies(const Scene& scene, const TextProblems& known) {
   std::vector<BodyScene> bodies;
   for (BodyScene body : scene.bodies) {
     const std::string key = join_path("bodies", body.name);
-    if (known.spoil(key + ".shape")) continue;
-    if (known.spoil(key + ".springs")) body.springs = {};
+    if (known.affect(key + ".shape")) continue;
+    if (known.affect(key + ".springs")) body.springs = {};
     if (body.mass.value == 0.0) body.mass = {.kind = MassScene::Kind::body, .value = 1.0};
-    if (known.spoil(key + ".place")) body.pins.clear();
+    if (known.affect(key + ".place")) body.pins.clear();
     bodies.push_back(std::move(body));
   }
   return bodies;
@@ -44,10 +43,10 @@ void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finde
   }
 }
 
-/// The network, or none when a body has problems, or the scene's text has.
+/// The network; none if a body or the scene's text has problems.
 std::optional<SpringNetwork> build_network(const Scene& scene, const MeshFinder& finder, const TextProblems& known,
                                            std::vector<Problem>& problems) {
-  const std::vector<BodyScene> bodies = told_bodies(scene, known);
+  const std::vector<BodyScene> bodies = valid_bodies(scene, known);
   check_memory(bodies, machine_memory(), problems);
   if (!problems.empty()) return std::nullopt;
   NetworkBuilder network;
@@ -61,7 +60,7 @@ std::optional<SpringNetwork> build_network(const Scene& scene, const MeshFinder&
   return std::nullopt;
 }
 
-/// Problems of the scene name no file yet.
+/// Sets the file of problems that have none: those of the scene.
 void name_file(const std::string& file, std::vector<Problem>& problems) {
   for (Problem& problem : problems) {
     if (problem.file.empty()) problem.file = file;
@@ -72,7 +71,7 @@ std::vector<std::string> warnings_of(const BuiltScene& built) {
   std::vector<std::string> warnings;
   for (const Body& body : built.network.bodies) {
     if (body.spring_count > 0 || body.angle_bend_count > 0 || body.particle_count < 2) continue;
-    warnings.push_back("body \"" + body.name + "\" has no springs: its particles move on their own");
+    warnings.push_back("body \"" + body.name + "\" has no springs: its particles move independently");
   }
   for (const NamedReport& mesh : built.meshes) {
     for (const std::string& note : mesh.report.notes) warnings.push_back("obstacle \"" + mesh.obstacle + "\": " + note);
@@ -91,7 +90,7 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
 
   ObstacleBuilder obstacles(scene, finder, problems);
   for (const ObstacleScene& obstacle : scene.obstacles) {
-    if (known.spoil(join_path("obstacles", obstacle.name) + ".shape")) continue;
+    if (known.affect(join_path("obstacles", obstacle.name) + ".shape")) continue;
     if (auto made = obstacles.build(obstacle)) built.obstacles.push_back(std::move(*made));
   }
   built.meshes = obstacles.reports();

@@ -1,4 +1,4 @@
-// From a scene to a simulation: meshes found and imported, bodies built, the step chosen.
+// Builds a simulation from a scene: finds and imports meshes, builds bodies and chooses the step.
 #pragma once
 
 #include "geometry/import/mesh_import.h"
@@ -13,7 +13,7 @@ namespace sprung {
 
 struct NamedReport {
   std::string obstacle;
-  std::filesystem::path file;  ///< of a sequence the first
+  std::filesystem::path file;  ///< of a sequence: the first file
   std::size_t files = 1;
   MeshReport report;
 };
@@ -21,20 +21,20 @@ struct NamedReport {
 struct BuiltScene {
   SpringNetwork network;
   std::vector<Obstacle> obstacles;
-  SimulatorSettings settings;  ///< with the step that was chosen
+  SimulatorSettings settings;  ///< with the chosen step
   int frames = 1;              ///< floor(duration * frame_rate + 1e-9) + 1
   int steps_per_frame = 1;
-  double largest_stable_step = 0.0;  ///< [s]; infinity when there is none
+  double largest_stable_step = 0.0;  ///< [s]; infinity if every step is stable
   std::vector<NamedReport> meshes;
   std::vector<std::string> warnings;
 };
 
-/// Looks for mesh files beside the scene file, then in `mesh_paths`. Throws InputError with every problem: those of the scene's
-/// text, `known`, first, then what does not follow from them.
+/// Looks for mesh files beside the scene file, then in `mesh_paths`. Throws InputError with every problem: first the problems
+/// `known` of the scene's text, then those that do not follow from them.
 [[nodiscard]] BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::path>& mesh_paths = {},
                                      const TextProblems& known = {});
 
-/// Folders of the environment's SPRUNG_MESH_PATH, separated by colons.
+/// Folders of the environment variable SPRUNG_MESH_PATH, separated by colons.
 [[nodiscard]] std::vector<std::filesystem::path> mesh_paths_from_environment();
 
 }  // namespace sprung

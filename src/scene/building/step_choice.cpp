@@ -19,33 +19,33 @@ bool damps_steps(const IntegratorSettings& integrator) {
   return verlet != nullptr && verlet->damping > 0.0;
 }
 
-bool may_be_in_parts(const Scene& scene, const std::optional<StretchLimit>& limit) {
+bool may_have_substeps(const Scene& scene, const std::optional<StretchLimit>& limit) {
   return limit && (limit->bears_smaller_steps() || limit->follows_turn()) && !damps_steps(scene.settings.integrator);
 }
 
-/// Of what a step may be as large as a frame for: its parts are chosen as it moves, and nothing is in its way.
+/// Whether a step may be as large as a frame: the turn of the last step determines its substeps, and no contact is possible.
 bool is_bound_by_turn(const Scene& scene, const LimitUse& use, const std::optional<StretchLimit>& limit) {
-  return may_be_in_parts(scene, limit) && limit->follows_turn() && !use.may_collide;
+  return may_have_substeps(scene, limit) && limit->follows_turn() && !use.may_collide;
 }
 
-/// Whatever passes of the stretch limit need.
+/// The largest step without regard to the passes of the stretch limit.
 double largest_auto_step(const Scene& scene, const LimitUse& use, const std::optional<StretchLimit>& limit,
                          const SpectralBounds& bounds) {
   double largest = std::min(advised_step(scene.settings.integrator, bounds),
                             step_for_growth_time(scene.settings.integrator, bounds, scene.duration));
   const bool implicit = std::holds_alternative<ImplicitEulerSettings>(scene.settings.integrator);
-  // What springs lead too far, the limit takes back: where both end is off by as much.
+  // The limit reverts displacements that springs make too large. Operator splitting then causes an error of that size.
   const bool is_split = implicit && limit && bounds.elastic > 0.0;
   const bool free = (implicit && !use.may_collide) || is_bound_by_turn(scene, use, limit);
   if (!std::isfinite(largest) && (is_split || !free)) largest = kLargestAutoStep;
   return largest;
 }
 
-/// In how many parts, a power of two, a step of which a frame has `most` is about as small as one of which it has `needed`, but no
-/// smaller; 1 where there must be none.
-int parts_for_passes(const Scene& scene, const std::optional<StretchLimit>& limit, int needed, int most) {
+/// The number of substeps (a power of two) with which `without_passes` steps per frame come near the `needed` steps per frame,
+/// without exceeding them; 1 if substeps are not allowed.
+int substeps_for_passes(const Scene& scene, const std::optional<StretchLimit>& limit, int needed, int without_passes) {
   if (!limit || !limit->may_follow_turn() || damps_steps(scene.settings.integrator)) return 1;
-  return std::min(1 << std::ilogb(static_cast<double>(needed) / most), kMaxSubsteps);
+  return std::min(1 << std::ilogb(static_cast<double>(needed) / without_passes), kMaxSubsteps);
 }
 
 std::string advice_for_unstable(const Scene& scene, double largest_stable) {
@@ -83,14 +83,14 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
   const double for_passes = limit ? limit->suggested_step(scene.settings.gravity.norm()) : std::numeric_limits<double>::infinity();
   const double largest = std::min(without_passes, for_passes);
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
-    const int parts = parts_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));
-    choice.steps_per_frame = 1 + (*steps - 1) / parts;
+    const int substeps = substeps_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));
+    choice.steps_per_frame = 1 + (*steps - 1) / substeps;
     choice.step = step_of(scene.frame_rate, choice.steps_per_frame);
-    choice.max_substeps = may_be_in_parts(scene, limit) ? kAutoParts : parts;
+    choice.max_substeps = may_have_substeps(scene, limit) ? kAutoSubsteps : substeps;
     choice.warning = many_steps_warning(scene, network, choice, for_passes < without_passes);
   } else {
     problems.push_back({scene.file.string(), "step", "\"auto\"",
-                        "must be at most " + format_upper_bound(largest) + " s, which is too many steps a frame",
+                        "must be at most " + format_upper_bound(largest) + " s, which takes too many steps per frame",
                         advice_for_too_many_steps(scene)});
   }
   return choice;

@@ -1,4 +1,4 @@
-// Which step a scene is simulated with.
+// Chooses the step of a scene.
 #pragma once
 
 #include "base/error.h"
@@ -10,29 +10,31 @@
 
 namespace sprung {
 
-/// When stability does not bound it, "auto" is at most this [s]: a fall of a second then moves a particle by 4 cm in a step. Where
-/// nothing may be in the way it is a frame with implicit Euler, which is chosen for its large steps, and with a global solve that
-/// keeps all that moves within its limit (see StretchLimit::follows_turn), but not with both where springs have stiffness.
+/// The largest automatic step [s] if stability does not bound it: after a fall of one second, a particle moves by 4 cm in such a
+/// step. If no contact is possible, a step may be as large as a frame with implicit Euler, which is made for large steps, and with
+/// a global solve of all limited springs (see StretchLimit::follows_turn); but not with implicit Euler and a stretch limit if
+/// springs have stiffness.
 inline constexpr double kLargestAutoStep = 1.0 / 240.0;
 
-/// Steps chosen by "auto" may be made in so many parts where they miss the stretch limit, or turn too much; in more where passes
-/// need that.
-inline constexpr int kAutoParts = 8;
+/// Largest number of substeps of an automatic step that misses the stretch limit or turns too much. It may be larger if passes
+/// need small steps.
+inline constexpr int kAutoSubsteps = 8;
 
 struct StepChoice {
   double step = 0.0;  ///< [s]
   int steps_per_frame = 1;
-  int max_substeps = 1;                  ///< of a step, where it misses the stretch limit or turns too much
-  double largest_stable = 0.0;           ///< [s]; infinity when any is stable
-  std::optional<std::string> warning{};  ///< of very many steps a frame
+  int max_substeps = 1;                  ///< of a step that misses the stretch limit or turns too much
+  double largest_stable = 0.0;           ///< [s]; infinity if every step is stable
+  std::optional<std::string> warning{};  ///< of very many steps per frame
 };
 
-/// The scene's step or, for "auto", 1 / (frame_rate * n) with the least n whose step is at most the advised one and at most what
-/// the stretch limit suggests; with explicit Euler, also one at which the fastest motion grows by no more than a factor of e in the
-/// whole scene. Steps of "auto" may be made in parts where a stretch limit that bears it is missed, or where what a global solve
-/// holds turns too much in one, unless Verlet's `damping` takes its part of each. Where passes may give way to a global solve,
-/// which holds all then, their steps are such parts of larger ones that this does with. Adds a problem when the scene's step is
-/// beyond the largest stable one and `stability` is refuse, or when a frame would take too many steps; warns of very many.
+/// Returns the step of the scene. An automatic step is 1 / (frame_rate * n) with the smallest n for which it is at most the
+/// advised step and the step that the stretch limit suggests. With explicit Euler, the fastest motion also grows by at most a
+/// factor of e in the whole scene. Automatic steps may be divided into substeps if a stretch limit that allows it is missed, or if
+/// a body under a global solve turns too much in one step; not with Verlet's `damping`, which acts on each step. If bodies may be
+/// handed over from passes to a global solve, the step is one that suffices for the global solve, and passes use substeps of it.
+/// Adds a problem if the scene's step exceeds the largest stable one and `stability` is refuse, or if a frame would take too many
+/// steps. Warns of very many steps.
 [[nodiscard]] StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems);
 
 }  // namespace sprung

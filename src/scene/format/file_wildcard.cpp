@@ -12,7 +12,7 @@ namespace {
 
 bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
 
-/// Cuts the number that `text` begins with off it, without its leading zeros.
+/// Removes the number at the beginning of `text` and returns it without leading zeros.
 std::string_view take_number(std::string_view& text) {
   const auto end = std::find_if_not(text.begin(), text.end(), is_digit);
   std::string_view digits = text.substr(0, static_cast<std::size_t>(end - text.begin()));
@@ -21,7 +21,7 @@ std::string_view take_number(std::string_view& text) {
   return digits;
 }
 
-/// The number that stands for the pattern's *.
+/// The number at the * of the pattern.
 std::optional<std::int64_t> number_of(std::string_view name, std::string_view pattern) {
   const std::size_t star = pattern.find('*');
   name.remove_prefix(star);
@@ -68,7 +68,7 @@ std::vector<std::filesystem::path> matching_files(const std::filesystem::path& p
   const std::string name = pattern.filename().string();
   const std::size_t star = name.find('*');
   std::vector<std::filesystem::path> files;
-  std::error_code error;  // a folder that is not there, or cannot be read, has no files
+  std::error_code error;  // a folder that does not exist or cannot be read has no files
   const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     if (!matches(entry->path().filename().string(), std::string_view(name).substr(0, star),

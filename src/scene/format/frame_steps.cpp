@@ -11,7 +11,7 @@ int frame_count(double duration, double frame_rate) { return static_cast<int>(st
 std::optional<int> steps_per_frame(double frame_rate, double step) {
   const double steps = 1.0 / (frame_rate * step);
   const double whole = std::round(steps);
-  // The division and the decimal notation of the step leave an error of some units in the last place.
+  // The division and the decimal notation of the step cause an error of some units in the last place.
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * steps;
   if (!(whole >= 1.0) || whole > kMostStepsPerFrame || std::abs(steps - whole) > std::max(1e-9, rounding)) return std::nullopt;
   return static_cast<int>(whole);

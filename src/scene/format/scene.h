@@ -1,4 +1,4 @@
-// A scene file as plain data: what the user wrote, with defaults filled in, nothing computed.
+// A scene file as plain data: the user's values, with defaults filled in.
 #pragma once
 
 #include "collision/shapes/obstacle.h"
@@ -21,12 +21,12 @@ struct Placement {
   double scale = 1.0;
 };
 
-/// A mesh by its file, as written in the scene.
+/// A mesh file, as named in the scene.
 struct MeshFile {
   std::string file;
 };
 
-/// The OBJ files of a mesh that deforms, a frame each.
+/// The OBJ files of a deforming mesh, one per frame.
 struct MeshFiles {
   std::variant<std::vector<std::string>, std::string> files;  ///< in order, or a pattern with one *
   double frame_rate = 30.0;                                   ///< [1/s]
@@ -43,7 +43,7 @@ struct PinCorners {
 };  ///< `min_min`, ... of a cloth, `min_min_min`, ... of a solid, `from`, `to` of a rope
 struct PinIndices {
   std::vector<Index> indices;
-};  ///< of the body
+};  ///< of particles of the body
 struct PinNearest {
   Vector3 point;
 };  ///< the particle nearest to a point in the world [m]
@@ -88,7 +88,7 @@ struct Scene {
   double duration = 0.0;                 ///< [s]
   double frame_rate = 30.0;              ///< [1/s]
   std::optional<double> step;            ///< [s]; none: "auto"
-  SimulatorSettings settings;            ///< its step is not used
+  SimulatorSettings settings;            ///< without the step
   std::vector<BodyScene> bodies;         ///< in the order of the file
   std::vector<ObstacleScene> obstacles;  ///< in the order of the file
   std::string resolved;                  ///< the whole scene as JSON text, overrides applied and defaults filled in

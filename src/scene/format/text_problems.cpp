@@ -12,7 +12,7 @@ bool is_within(const std::string& path, const std::string& key) {
 
 }  // namespace
 
-bool TextProblems::spoil(const std::string& key) const {
+bool TextProblems::affect(const std::string& key) const {
   if (only_unknown_keys) return false;
   return std::ranges::any_of(all, [&](const Problem& problem) { return is_within(problem.key, key); });
 }

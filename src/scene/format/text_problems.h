@@ -1,4 +1,4 @@
-// What is wrong with the text of a scene, so that what only its meshes, shapes and pins show can be told beside it.
+// Problems of the text of a scene, which are reported together with those of its meshes, shapes and pins.
 #pragma once
 
 #include "base/error.h"
@@ -10,10 +10,10 @@ namespace sprung {
 
 struct TextProblems {
   std::vector<Problem> all;
-  bool only_unknown_keys = true;  ///< everything else is as the user wants it
+  bool only_unknown_keys = true;  ///< whether the text is valid except for unknown keys
 
-  /// Whether the scene may hold defaults under this key instead of what the user wants.
-  [[nodiscard]] bool spoil(const std::string& key) const;
+  /// Whether the scene may contain defaults at this key, because its text is invalid there.
+  [[nodiscard]] bool affect(const std::string& key) const;
 };
 
 }  // namespace sprung

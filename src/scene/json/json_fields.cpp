@@ -6,9 +6,9 @@
 
 namespace sprung {
 
-bool check_object(const Json& json, const JsonPlace& place) {
+bool check_object(const Json& json, const JsonLocation& location) {
   if (json.is_object()) return true;
-  place.report(json, "must be an object, written in { }");
+  location.report(json, "must be an object, written in { }");
   return false;
 }
 
@@ -18,9 +18,9 @@ std::optional<std::string> Fields::one_of(const std::vector<std::string>& keys, 
     if (has(key)) written.push_back(key);
   }
   if (written.size() == 1) return written.front();
-  if (written.empty() && !or_nothing) place_.report_key("must have one of " + joined(keys), "add one of them");
+  if (written.empty() && !or_nothing) location_.report_key("must have one of " + joined(keys), "add one of them");
   if (written.size() > 1) {
-    place_.report_key("may have only one of " + joined(keys), "it has " + joined(written) + ": remove all but one");
+    location_.report_key("may have only one of " + joined(keys), "it has " + joined(written) + ": remove all but one");
   }
   return std::nullopt;
 }
@@ -37,7 +37,7 @@ std::optional<std::size_t> Fields::kind(const std::string& key, const std::vecto
   return kind(key, kinds);
 }
 
-void Fields::knows_no_others(const std::vector<std::string>& keys) {
+void Fields::accept_keys_of_all_kinds(const std::vector<std::string>& keys) {
   for (const std::string& key : keys) accept(key);
   kind_is_known_ = true;
 }
@@ -46,8 +46,8 @@ void Fields::accept(const std::string& key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
 }
 
-void Fields::belongs_elsewhere(const std::vector<std::string>& keys, const std::string& remedy) {
-  for (const std::string& key : keys) elsewhere_[key] = remedy;
+void Fields::set_remedy(const std::vector<std::string>& keys, const std::string& remedy) {
+  for (const std::string& key : keys) remedies_[key] = remedy;
 }
 
 bool Fields::has(const std::string& key) {
@@ -55,15 +55,16 @@ bool Fields::has(const std::string& key) {
   return json_.contains(key);
 }
 
-void Fields::report_missing(const std::string& key) const { place_.at(key).report_key("is missing", "it is required: add it"); }
+void Fields::report_missing(const std::string& key) const { location_.at(key).report_key("is missing", "it is required: add it"); }
 
 void Fields::reject_unknown_keys() const {
   if (!kind_is_known_) return;
   for (const auto& [key, value] : json_.items()) {
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-    const auto elsewhere = elsewhere_.find(key);
-    place_.at(key).report_key("is not a known key", elsewhere != elsewhere_.end() ? elsewhere->second : suggestion(key, known_));
-    if (place_.unknown_keys != nullptr) ++*place_.unknown_keys;
+    const auto remedy_of_key = remedies_.find(key);
+    location_.at(key).report_key("is not a known key",
+                                 remedy_of_key != remedies_.end() ? remedy_of_key->second : suggestion(key, known_));
+    if (location_.unknown_keys != nullptr) ++*location_.unknown_keys;
   }
 }
 

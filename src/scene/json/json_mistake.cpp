@@ -7,12 +7,12 @@
 namespace sprung {
 namespace {
 
-struct TextPlace {
+struct TextLocation {
   std::size_t line = 1;
   std::size_t column = 1;
 };
 
-TextPlace place_of(std::string_view text, std::size_t offset) {
+TextLocation location_of(std::string_view text, std::size_t offset) {
   const std::string_view head = text.substr(0, std::min(offset, text.size()));
   const std::size_t line_begin = head.rfind('\n') == std::string_view::npos ? 0 : head.rfind('\n') + 1;
   return {1 + static_cast<std::size_t>(std::count(head.begin(), head.end(), '\n')), 1 + head.size() - line_begin};
@@ -23,14 +23,14 @@ std::string_view trimmed_right(std::string_view text) {
   return last == std::string_view::npos ? std::string_view{} : text.substr(0, last + 1);
 }
 
-bool is_literal_of_no_number(std::string_view rest) {
+bool is_non_finite_literal(std::string_view rest) {
   for (const std::string_view word : {"NaN", "nan", "-NaN", "-nan", "Infinity", "-Infinity", "inf", "-inf"}) {
     if (rest.starts_with(word)) return true;
   }
   return false;
 }
 
-/// What most often is wrong at `offset`, the first character that does not fit, and what to do about it.
+/// The most likely mistake at `offset`, the first character that does not fit, and its remedy.
 std::pair<std::string, std::string> explain_syntax(std::string_view text, std::size_t offset) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return {"is UTF-16, not UTF-8", "save the file as UTF-8"};
   if (trimmed_right(text).empty()) return {"is empty", "write a scene, beginning with {"};
@@ -38,7 +38,7 @@ std::pair<std::string, std::string> explain_syntax(std::string_view text, std::s
   const std::string_view before = trimmed_right(text.substr(0, std::min(offset, text.size())));
   if (trimmed_right(rest).empty()) return {"ends too early: brackets or quotes are not closed", "is the file complete?"};
   if (rest.starts_with("//") || rest.starts_with("/*") || rest.starts_with("#")) return {"JSON has no comments", "remove it"};
-  if (is_literal_of_no_number(rest)) return {"is not a number that JSON knows", "write a finite number"};
+  if (is_non_finite_literal(rest)) return {"is not a JSON number", "write a finite number"};
   if (before.ends_with(',') && (rest.front() == '}' || rest.front() == ']')) {
     return {"nothing follows the comma", "remove the comma before it"};
   }
@@ -46,7 +46,7 @@ std::pair<std::string, std::string> explain_syntax(std::string_view text, std::s
   return {"is not JSON", "check for a missing comma, quote or bracket just before it"};
 }
 
-/// The parser's `token` reaches back to the last string or number, so it counts only when it is one of them as a whole.
+/// The parser's `token` begins at the last string or number, so it counts only if it is one of them as a whole.
 std::size_t start_of_mistake(std::string_view text, std::size_t position, const std::string& token) {
   if (position > text.size()) return text.size();
   const bool is_string = token.size() > 1 && token.front() == '"' && token.back() == '"';
@@ -66,8 +66,8 @@ std::string_view first_word(std::string_view text, std::size_t begin) {
 }
 
 Problem problem_at(std::string_view text, std::size_t offset, std::string value, std::string rule, std::string remedy) {
-  const TextPlace place = place_of(text, offset);
-  return {.key = "line " + std::to_string(place.line) + ", column " + std::to_string(place.column),
+  const TextLocation location = location_of(text, offset);
+  return {.key = "line " + std::to_string(location.line) + ", column " + std::to_string(location.column),
           .value = std::move(value),
           .rule = std::move(rule),
           .remedy = std::move(remedy)};

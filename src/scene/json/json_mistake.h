@@ -1,4 +1,4 @@
-// What is wrong where the JSON parser stopped.
+// Explains where and why the JSON parser stopped.
 #pragma once
 
 #include "base/error.h"
@@ -9,11 +9,11 @@
 
 namespace sprung {
 
-/// The most likely mistake, its line and column as `key`, without the file. `position` is how many characters the parser had read,
-/// the last of them the one that ended `token`, the last string or number and what followed it.
+/// The most likely mistake, with its line and column as `key` and without the file. `position` is the number of characters that
+/// the parser has read. The last of them ended `token`, the last string or number and what followed it.
 [[nodiscard]] Problem syntax_problem(std::string_view text, std::size_t position, const std::string& token);
 
-/// The same for `token`, a number too large for a double.
+/// Likewise for `token`, a number too large for a double.
 [[nodiscard]] Problem overflow_problem(std::string_view text, std::size_t position, const std::string& token);
 
 }  // namespace sprung

@@ -9,7 +9,7 @@
 namespace sprung {
 namespace {
 
-constexpr std::size_t kDeepest = 64;  // no scene is deeper, and recursive readers must not run out of stack
+constexpr std::size_t kDeepest = 64;  // no scene is deeper, and recursive readers must not exhaust the stack
 
 /// Builds the document from parser events, because the library's own builder silently keeps the last of duplicate keys.
 class DocumentBuilder final : public nlohmann::json_sax<Json> {
@@ -106,7 +106,7 @@ std::string shortened(const Json& value) {
   std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() <= kLongest) return text;
   std::size_t cut = kLongest - 3;
-  while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0U) == 0x80U) --cut;  // never within a UTF-8 character
+  while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0U) == 0x80U) --cut;  // not inside a UTF-8 character
   return text.substr(0, cut) + "...";
 }
 

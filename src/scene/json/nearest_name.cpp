@@ -43,8 +43,8 @@ std::size_t distance_of(const std::string& word, const std::string& name) {
 }  // namespace
 
 std::optional<std::string> nearest_name(std::string_view word, const std::vector<std::string>& names) {
-  constexpr std::size_t kShortWord = 4;     // with two other letters it is another word: no cube is a cone
-  constexpr std::size_t kLongestWord = 64;  // a longer one is no slip of a known name, and comparing it would take long
+  constexpr std::size_t kShortWord = 4;     // two different letters make another word: a cube is not a cone
+  constexpr std::size_t kLongestWord = 64;  // a longer word is not a misspelt name, and comparing it takes long
   if (word.size() > kLongestWord) return std::nullopt;
   const std::size_t most = word.size() <= kShortWord ? 1 : std::max<std::size_t>(2, word.size() / 3);
   std::optional<std::string> best;

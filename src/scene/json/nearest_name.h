@@ -8,12 +8,11 @@
 
 namespace sprung {
 
-/// The name that takes the fewest edits (insert, remove, replace, swap neighbours; Damerau 1964) to become `word`, if that is at
-/// most a third of its letters, or two; or one that begins as the word does or the other way round. Upper and lower case are the
-/// same.
+/// The name with the fewest edits from `word` (insert, remove, replace, swap neighbours; Damerau 1964), if these are at most a
+/// third of its letters, or two. Also a name that begins with `word`, or with which `word` begins. Ignores case.
 [[nodiscard]] std::optional<std::string> nearest_name(std::string_view word, const std::vector<std::string>& names);
 
-/// `did you mean "x"?` or, when nothing is near, `choose from a, b, c`.
+/// `did you mean "x"?` or, if no name is near, `choose from a, b, c`.
 [[nodiscard]] std::string suggestion(std::string_view word, const std::vector<std::string>& names);
 
 /// `a, b, c`

@@ -13,7 +13,7 @@
 namespace sprung {
 namespace {
 
-using PathPart = std::variant<std::string, std::size_t>;
+using PathElement = std::variant<std::string, std::size_t>;
 
 constexpr const char* kForm = "write key.path=value, for example bodies.rope.pins[0].nearest=[0,1,0]";
 
@@ -25,27 +25,27 @@ std::optional<std::size_t> index_in_brackets(std::string_view text) {
 }
 
 /// Splits `pins[0][1]` into `pins`, 0, 1.
-bool append_parts(std::string_view text, std::vector<PathPart>& parts) {
+bool append_elements(std::string_view text, std::vector<PathElement>& elements) {
   const std::size_t name_end = std::min(text.find('['), text.size());
   if (name_end == 0) return false;
-  parts.emplace_back(std::string(text.substr(0, name_end)));
+  elements.emplace_back(std::string(text.substr(0, name_end)));
   for (text.remove_prefix(name_end); !text.empty();) {
     const std::size_t close = text.find(']');
     if (text.front() != '[' || close == std::string_view::npos) return false;
     const auto index = index_in_brackets(text.substr(1, close - 1));
     if (!index) return false;
-    parts.emplace_back(*index);
+    elements.emplace_back(*index);
     text.remove_prefix(close + 1);
   }
   return true;
 }
 
-std::optional<std::vector<PathPart>> split_path(std::string_view path) {
-  std::vector<PathPart> parts;
+std::optional<std::vector<PathElement>> split_path(std::string_view path) {
+  std::vector<PathElement> elements;
   while (true) {
     const std::size_t dot = path.find('.');
-    if (!append_parts(path.substr(0, dot), parts)) return std::nullopt;
-    if (dot == std::string_view::npos) return parts;
+    if (!append_elements(path.substr(0, dot), elements)) return std::nullopt;
+    if (dot == std::string_view::npos) return elements;
     path.remove_prefix(dot + 1);
   }
 }
@@ -57,7 +57,7 @@ bool is_bare_word(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), allowed);
 }
 
-/// As people write it, where JSON does not: .5, 1., +2, 007.
+/// Accepts number formats that JSON does not: .5, 1., +2, 007.
 std::optional<double> read_number(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double number = 0.0;
@@ -74,17 +74,18 @@ std::optional<Json> read_value(const std::string& text) {
   return std::nullopt;
 }
 
-/// The value at `part` of `json`, which becomes a container when it is nothing yet; null when `json` has no such place.
-Json* descend(Json& json, const PathPart& part, std::string& problem) {
-  if (const auto* name = std::get_if<std::string>(&part)) {
+/// The value at `element` of `json`. A null `json` becomes an object or a list. Returns null and sets `problem` if `json` has no
+/// such element.
+Json* descend(Json& json, const PathElement& element, std::string& problem) {
+  if (const auto* name = std::get_if<std::string>(&element)) {
     if (json.is_null()) json = Json::object();
     if (json.is_object()) return &json[*name];
     problem = "has no keys: it is not an object";
     return nullptr;
   }
-  const std::size_t index = std::get<std::size_t>(part);
+  const std::size_t index = std::get<std::size_t>(element);
   if (json.is_null() && index > 0) {
-    problem = "is not written in the scene, so it has no entry " + std::to_string(index) + " to change: set all of it";
+    problem = "is not written in the scene, so it has no entry " + std::to_string(index) + ": set the whole list";
     return nullptr;
   }
   if (json.is_null()) json = Json::array();
@@ -101,24 +102,24 @@ Json* descend(Json& json, const PathPart& part, std::string& problem) {
   return &json[index];
 }
 
-std::string join_part(const std::string& path, const PathPart& part) {
-  return std::visit([&](const auto& value) { return join_path(path, value); }, part);
+std::string join_element(const std::string& path, const PathElement& element) {
+  return std::visit([&](const auto& value) { return join_path(path, value); }, element);
 }
 
-/// Sets the value, or says what is in the way, and leaves all as it is.
-std::string assign(Json& document, const std::vector<PathPart>& parts, Json value) {
+/// Sets the value, or returns the problem and leaves the document unchanged.
+std::string assign(Json& document, const std::vector<PathElement>& elements, Json value) {
   Json changed = document;
   Json* at = &changed;
   Json* parent = nullptr;
   std::string path;
-  for (const PathPart& part : parts) {
+  for (const PathElement& element : elements) {
     std::string problem;
     parent = at;
-    at = descend(*parent, part, problem);
+    at = descend(*parent, element, problem);
     if (at == nullptr) return (path.empty() ? "the scene" : path) + " " + problem;
-    path = join_part(path, part);
+    path = join_element(path, element);
   }
-  const auto* name = std::get_if<std::string>(&parts.back());
+  const auto* name = std::get_if<std::string>(&elements.back());
   if (value.is_null() && name != nullptr) {
     parent->erase(*name);
   } else {
@@ -128,11 +129,11 @@ std::string assign(Json& document, const std::vector<PathPart>& parts, Json valu
   return "";
 }
 
-/// How to name a body or an obstacle, if the path leads into one that does not exist: a slip, unless it begins one with its shape.
-std::optional<std::string> missing_entry(const Json& document, const std::vector<PathPart>& parts) {
-  if (parts.size() < 3 || parts[2] == PathPart("shape")) return std::nullopt;
-  const auto* group = std::get_if<std::string>(&parts[0]);
-  const auto* name = std::get_if<std::string>(&parts[1]);
+/// A remedy if the path leads into a body or an obstacle that does not exist, unless it sets the shape of a new one.
+std::optional<std::string> missing_entry(const Json& document, const std::vector<PathElement>& elements) {
+  if (elements.size() < 3 || elements[2] == PathElement("shape")) return std::nullopt;
+  const auto* group = std::get_if<std::string>(&elements[0]);
+  const auto* name = std::get_if<std::string>(&elements[1]);
   if (group == nullptr || name == nullptr || (*group != "bodies" && *group != "obstacles")) return std::nullopt;
   const auto entries = document.find(*group);
   if (entries == document.end() || !entries->is_object() || entries->contains(*name)) return std::nullopt;
@@ -149,12 +150,12 @@ void apply_override(const std::string& override_text, Json& document, std::vecto
     problems.push_back({"", "--set", override_text, rule, remedy});
   };
   const std::size_t equals = override_text.find('=');
-  const auto parts = equals == std::string::npos ? std::nullopt : split_path(std::string_view(override_text).substr(0, equals));
-  if (!parts) return report("is not of the form key.path=value", kForm);
+  const auto elements = equals == std::string::npos ? std::nullopt : split_path(std::string_view(override_text).substr(0, equals));
+  if (!elements) return report("is not of the form key.path=value", kForm);
   auto value = read_value(override_text.substr(equals + 1));
-  if (!value) return report("what follows the = is neither JSON nor a single word", kForm);
-  if (const auto remedy = missing_entry(document, *parts)) return report("there is nothing of that name in the scene", *remedy);
-  const std::string problem = assign(document, *parts, std::move(*value));
+  if (!value) return report("the value after = is neither JSON nor a single word", kForm);
+  if (const auto remedy = missing_entry(document, *elements)) return report("the scene has no entry of that name", *remedy);
+  const std::string problem = assign(document, *elements, std::move(*value));
   if (!problem.empty()) report(problem, "check the path");
 }
 

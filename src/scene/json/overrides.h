@@ -1,4 +1,4 @@
-// What --set changes of a scene before it is checked.
+// Changes of a scene by --set, before it is checked.
 #pragma once
 
 #include "scene/json/json_text.h"
@@ -8,9 +8,9 @@
 
 namespace sprung {
 
-/// Applies `key.path=json`, as in `bodies.rope.pins[0].nearest=[0,1,0]`. Keys that are missing are added, with the objects around
-/// them, but for bodies and obstacles, which begin with their shape; the entry after the last of a list is appended; `null` removes
-/// a key. A bare word is a string, unless it is a number. Reports what cannot be applied under the key `--set`.
+/// Applies `key.path=json`, as in `bodies.rope.pins[0].nearest=[0,1,0]`. Missing keys are added together with the objects around
+/// them, except bodies and obstacles: a new one must begin with its shape. The entry after the last one of a list is appended.
+/// `null` removes a key. A bare word is a string unless it is a number. Reports problems under the key `--set`.
 void apply_override(const std::string& override_text, Json& document, std::vector<Problem>& problems);
 
 }  // namespace sprung

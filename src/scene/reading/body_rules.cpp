@@ -31,7 +31,7 @@ std::array<Index, n> read_resolution(Fields& fields) {
   double particles = 1.0;
   for (const Index side : *resolution) particles *= side;
   if (particles > kMaxBodyParticles) {
-    fields.place()
+    fields.location()
         .at("resolution")
         .report(fields.json()["resolution"], "must make at most " + std::to_string(kMaxBodyParticles) + " particles in all");
   }
@@ -51,7 +51,7 @@ SolidShape read_solid(Fields& fields) {
 std::optional<BodyShapeScene> read_shape(Fields& fields) {
   const auto kind = fields.kind("type", {"rope", "cloth", "solid", "mesh"});
   if (!kind) {
-    fields.knows_no_others({"from", "to", "points", "particles", "length", "size", "resolution", "file"});
+    fields.accept_keys_of_all_kinds({"from", "to", "points", "particles", "length", "size", "resolution", "file"});
     return std::nullopt;
   }
   switch (*kind) {
@@ -66,7 +66,7 @@ std::optional<BodyShapeScene> read_shape(Fields& fields) {
   }
 }
 
-/// Those of any shape where it is broken.
+/// The names of the corners of the shape; those of all shapes if it is invalid.
 std::vector<std::string> corners_of(const std::optional<BodyShapeScene>& shape) {
   if (!shape) {
     std::vector<std::string> names;
@@ -110,7 +110,7 @@ SpringMaterial read_spring(Fields& fields) {
     fields.one_of({"damping", "damping_ratio"});
     material.damping_ratio = fields.optional("damping_ratio", number(kNotNegative));
     if (value == 0.0) {
-      fields.place()
+      fields.location()
           .at("damping_ratio")
           .report(fields.json()["damping_ratio"], "needs springs with stiffness", "give damping instead");
     }

@@ -9,9 +9,9 @@ double length(Fields& fields, const std::string& key) { return fields.required(k
 HalfSpaceGeometry read_half_space(Fields& fields) {
   HalfSpaceGeometry half_space;
   if (const auto normal = fields.value("normal", vector3(), {0, 1, 0})) {
-    // Any length will do, but the square of a very short one is 0.
+    // The normal may have any length, but the square of a very short one is 0.
     if (normal->isZero(0.0)) {
-      fields.place().at("normal").report(fields.json()["normal"], "must not be zero", "it points out of the solid side");
+      fields.location().at("normal").report(fields.json()["normal"], "must not be zero", "the normal points out of the solid side");
     } else {
       half_space.normal = normal->stableNormalized();
     }
@@ -20,14 +20,14 @@ HalfSpaceGeometry read_half_space(Fields& fields) {
   return half_space;
 }
 
-std::optional<std::variant<std::vector<std::string>, std::string>> read_files(Json& json, const JsonPlace& place) {
+std::optional<std::variant<std::vector<std::string>, std::string>> read_files(Json& json, const JsonLocation& location) {
   if (json.is_string()) {
     if (is_wildcard(json.get_ref<const std::string&>())) return json.get<std::string>();
-    place.report(json, "must have one * in the name of the file", "write a pattern like \"breath/*.obj\", or a list of files");
+    location.report(json, "must have one * in the name of the file", "write a pattern like \"breath/*.obj\", or a list of files");
     return std::nullopt;
   }
-  if (json.is_array()) return list_of(text(), 2)(json, place);
-  place.report(json, "must be a list of files, or a pattern with one *");
+  if (json.is_array()) return list_of(text(), 2)(json, location);
+  location.report(json, "must be a list of files, or a pattern with one *");
   return std::nullopt;
 }
 

@@ -6,13 +6,13 @@ namespace {
 void read_corners(Fields& fields, const std::vector<std::string>& corners, PinScene& pin) {
   if (corners.empty()) {
     fields.accept("which");
-    fields.place().at("at").report(fields.json()["at"], "needs a rope, a cloth or a solid: nothing else has named corners",
-                                   "pin by indices, nearest or box");
+    fields.location().at("at").report(fields.json()["at"], "needs a rope, a cloth or a solid: other shapes have no named corners",
+                                      "pin by indices, nearest or box");
     return;
   }
   if (fields.json()["at"] != "corner") {
     fields.accept("which");
-    fields.place().at("at").report(fields.json()["at"], "must be \"corner\"", "pin what is no corner by indices, nearest or box");
+    fields.location().at("at").report(fields.json()["at"], "must be \"corner\"", "pin other particles by indices, nearest or box");
     return;
   }
   const auto which = fields.required("which", list_of(word_of(corners), 1));
@@ -26,8 +26,8 @@ std::optional<PinBox> read_box(Fields& fields) {
   const auto box = fields.optional("box", array_of<2>(vector3()));
   if (!box) return std::nullopt;
   if (((*box)[0].array() > (*box)[1].array()).any()) {
-    fields.place().at("box").report(fields.json()["box"], "must hold the smaller coordinates first",
-                                    "write [[x_min, y_min, z_min], [x_max, y_max, z_max]]");
+    fields.location().at("box").report(fields.json()["box"], "must begin with the smaller coordinates",
+                                       "write [[x_min, y_min, z_min], [x_max, y_max, z_max]]");
     return std::nullopt;
   }
   return PinBox{(*box)[0], (*box)[1]};

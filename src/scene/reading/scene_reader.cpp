@@ -29,13 +29,13 @@ void throw_if_any(std::vector<Problem> problems) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-/// Whether the key is at or below the path.
+/// Whether the key is the path or below it.
 bool is_within(const std::string& key, const std::string& path) {
   return key.starts_with(path) && (key.size() == path.size() || key[path.size()] == '.' || key[path.size()] == '[');
 }
 
-/// Those at what was changed, below it, or at what it is part of.
-void tell_overridden(const std::vector<std::string>& overrides, std::vector<Problem>& problems) {
+/// Marks problems at an overridden key, below it, or at an object around it.
+void mark_overridden(const std::vector<std::string>& overrides, std::vector<Problem>& problems) {
   for (Problem& problem : problems) {
     const bool overridden = std::ranges::any_of(overrides, [&](const std::string& text) {
       const std::string path = text.substr(0, text.find('='));
@@ -62,7 +62,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
 
   std::size_t unknown = 0;
   auto scene = scene_rule()(json.document, {file.string(), "", &found, &unknown});
-  tell_overridden(overrides, found);
+  mark_overridden(overrides, found);
   if (!scene) throw InputError(std::move(found));
   problems.only_unknown_keys = found.size() == unknown;
   problems.all = std::move(found);

@@ -1,4 +1,4 @@
-// Scene files: JSON, checked by the rules. The published schema, scene.schema.json, accepts the same scenes.
+// Reads scene files: JSON that the rules check. The published schema, scene.schema.json, accepts the same scenes.
 #pragma once
 
 #include "base/error.h"
@@ -11,12 +11,12 @@
 
 namespace sprung {
 
-/// Reads a scene; `overrides` are `key.path=json` as given to --set. Throws FileError when the file cannot be read, and InputError
-/// with every problem (file, key, value, rule, remedy) when it is not valid.
+/// Reads a scene; `overrides` are `key.path=json` as given to --set. Throws FileError if the file cannot be read, and InputError
+/// with every problem (file, key, value, rule, remedy) if it is invalid.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// The same, but what is wrong goes into `problems`, and the scene, which holds defaults there, may be looked at further. Throws
-/// InputError when the file holds no JSON object.
+/// Likewise, but adds problems to `problems` and returns a scene with defaults in their location, for further checks. Throws
+/// InputError if the file contains no JSON object.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                TextProblems& problems);
 

@@ -10,7 +10,7 @@
 namespace sprung {
 namespace {
 
-// File systems take names of 255 bytes, with the number of a frame and the extension.
+// File systems limit names to 255 bytes, including the number of a frame and the extension.
 constexpr std::size_t kLongestName = 200;
 
 bool is_name(const std::string& name) {
@@ -21,22 +21,22 @@ bool is_name(const std::string& name) {
          !std::isdigit(static_cast<unsigned char>(name.back()));
 }
 
-void check_name(const std::string& name, const JsonPlace& place) {
-  if (name == "obstacles") place.report_key("the name is taken by the folder of the obstacles", "choose another name");
+void check_name(const std::string& name, const JsonLocation& location) {
+  if (name == "obstacles") location.report_key("the name is reserved for the folder of the obstacles", "choose another name");
   if (is_name(name)) return;
-  place.report_key("a name becomes a folder: it may hold at most 200 letters, digits, _ and -, and must not end in a digit",
-                   "choose another name");
+  location.report_key("a name becomes a folder: it may have at most 200 letters, digits, _ and -, and must not end in a digit",
+                      "choose another name");
 }
 
-/// An object keyed by name: each entry by `rule`, its name checked and filled in.
+/// An object keyed by name: reads each entry by `rule`, and checks and sets its name.
 template <class T>
 Rule<std::vector<T>> named(Rule<T> rule, bool may_be_empty) {
-  return [=](Json& json, const JsonPlace& place) -> std::optional<std::vector<T>> {
-    if (!check_object(json, place)) return std::nullopt;
-    if (json.empty() && !may_be_empty) place.report(json, "must hold at least one entry");
+  return [=](Json& json, const JsonLocation& location) -> std::optional<std::vector<T>> {
+    if (!check_object(json, location)) return std::nullopt;
+    if (json.empty() && !may_be_empty) location.report(json, "must have at least one entry");
     std::vector<T> entries;
     for (const auto& item : json.items()) {
-      const JsonPlace at = place.at(item.key());
+      const JsonLocation at = location.at(item.key());
       check_name(item.key(), at);
       if (auto entry = rule(item.value(), at)) {
         entry->name = item.key();
@@ -47,30 +47,30 @@ Rule<std::vector<T>> named(Rule<T> rule, bool may_be_empty) {
   };
 }
 
-/// Seconds, or none for "auto".
+/// A step [s]; none for "auto".
 struct StepScene {
   std::optional<double> step;
 };
 
-std::optional<StepScene> read_step(Json& json, const JsonPlace& place) {
+std::optional<StepScene> read_step(Json& json, const JsonLocation& location) {
   if (json == "auto") return StepScene{};
   if (!json.is_number()) {
-    place.report(json, "must be a number of seconds, or \"auto\"");
+    location.report(json, "must be a number of seconds, or \"auto\"");
     return std::nullopt;
   }
-  const auto step = number(kPositive)(json, place);
+  const auto step = number(kPositive)(json, location);
   if (!step) return std::nullopt;
   return StepScene{*step};
 }
 
-void check_step_divides_frame(double step, double frame_rate, const JsonPlace& place) {
+void check_step_divides_frame(double step, double frame_rate, const JsonLocation& location) {
   if (steps_per_frame(frame_rate, step)) return;
   const double steps = 1.0 / (frame_rate * step);
   std::string remedy = "use " + format_number(step_of(frame_rate, std::floor(std::max(steps, 1.0))));
   if (steps > 1.0) remedy += " or " + format_number(step_of(frame_rate, std::ceil(steps)));
   if (steps > kMostStepsPerFrame) remedy = "use a larger step";
-  place.report(Json(step), "must divide a frame: 1 / (frame_rate * step) is " + format_number(steps) + ", not a whole number",
-               remedy + ", or \"auto\"");
+  location.report(Json(step), "must divide a frame: 1 / (frame_rate * step) is " + format_number(steps) + ", not a whole number",
+                  remedy + ", or \"auto\"");
 }
 
 void read_time(Fields& fields, Scene& scene) {
@@ -81,20 +81,20 @@ void read_time(Fields& fields, Scene& scene) {
   scene.frame_rate = frame_rate.value_or(scene.frame_rate);
   if (step) scene.step = step->step;
   if (duration && frame_rate && *duration * *frame_rate > kMostFrames) {
-    fields.place()
+    fields.location()
         .at("duration")
         .report(Json(*duration), "makes more than " + format_number(kMostFrames) + " frames of 1 / frame_rate",
                 "lower one of them");
   }
-  if (frame_rate && scene.step) check_step_divides_frame(*scene.step, *frame_rate, fields.place().at("step"));
+  if (frame_rate && scene.step) check_step_divides_frame(*scene.step, *frame_rate, fields.location().at("step"));
 }
 
-// A penalty answers only to obstacles.
-void check_self_contact(const Scene& scene, const JsonPlace& place) {
+// Penalty contact acts only between bodies and obstacles.
+void check_self_contact(const Scene& scene, const JsonLocation& location) {
   if (scene.settings.contact.response != ContactSettings::Response::penalty) return;
   for (const BodyScene& body : scene.bodies) {
     if (!body.contact.self) continue;
-    place.at("bodies")
+    location.at("bodies")
         .at(body.name)
         .at("self_contact")
         .report(Json(true), "needs contact.response \"projection\"", "use that, or set it to false");
@@ -108,7 +108,7 @@ Scene read_scene_fields(Fields& fields) {
   read_time(fields, scene);
   scene.settings = read_settings(fields);
   scene.bodies = fields.required("bodies", named(body_rule(), false)).value_or(std::vector<BodyScene>{});
-  check_self_contact(scene, fields.place());
+  check_self_contact(scene, fields.location());
   const auto obstacles = fields.value("obstacles", named(obstacle_rule(scene.frame_rate), true), Json::object());
   scene.obstacles = obstacles.value_or(std::vector<ObstacleScene>{});
   return scene;

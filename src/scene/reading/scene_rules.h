@@ -1,4 +1,5 @@
-// The rules of a scene's objects, as a table each: key, type, bounds, default. What they mean stands in scene.schema.json.
+// The rules of the objects of a scene, one table per kind of object: key, type, bounds, default. scene.schema.json explains the
+// keys.
 #pragma once
 
 #include "scene/format/scene.h"
@@ -12,10 +13,10 @@ namespace sprung {
 /// thickness, friction, static_friction, restitution.
 [[nodiscard]] ContactMaterial read_material(Fields& fields);
 
-/// Pins of a body; `corners` are the names its shape has for corners.
+/// Pins of a body; `corners` are the names of the corners of its shape.
 [[nodiscard]] Rule<PinScene> pin_rule(const std::vector<std::string>& corners);
 
-/// A body or an obstacle, without its name. Sequences have the scene's frame rate where they name none.
+/// A body or an obstacle, without its name. `frame_rate` is the default of sequences.
 [[nodiscard]] Rule<BodyScene> body_rule();
 [[nodiscard]] Rule<ObstacleScene> obstacle_rule(double frame_rate);
 

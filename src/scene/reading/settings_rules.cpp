@@ -25,14 +25,14 @@ VerletSettings read_verlet(Fields& fields) {
 IntegratorSettings read_integrator(Fields& fields) {
   const auto kind =
       fields.kind("type", {"explicit_euler", "symplectic_euler", "verlet", "velocity_verlet", "rk4", "implicit_euler"});
-  fields.belongs_elsewhere({"step"}, "it stands beside the integrator, at the top of the scene: move it there");
+  fields.set_remedy({"step"}, "it belongs to the top level of the scene: move it there");
   if (!kind) {
-    fields.knows_no_others({"damping", "damping_rate", "start_at_rest"});
+    fields.accept_keys_of_all_kinds({"damping", "damping_rate", "start_at_rest"});
     return {};
   }
   if (kind != 2) {
-    fields.belongs_elsewhere({"damping", "damping_rate", "start_at_rest"},
-                             "it is Verlet's: leave it out; springs and air have a damping of their own");
+    fields.set_remedy({"damping", "damping_rate", "start_at_rest"},
+                      "only the integrator verlet has it: remove it, or use the damping of springs or the drag of air");
   }
   if (kind == 0) return ExplicitEulerSettings{};
   if (kind == 1) return SymplecticEulerSettings{};
@@ -67,7 +67,7 @@ ContactSettings read_contact(Fields& fields) {
   ContactSettings contact;
   const auto start = fields.value("start", word_of({"refuse", "push_out"}), "refuse");
   contact.start = start == 1 ? ContactSettings::Start::push_out : ContactSettings::Start::refuse;
-  fields.belongs_elsewhere({"stiffness", "damping"}, "it is of \"response\": \"penalty\"; leave it out");
+  fields.set_remedy({"stiffness", "damping"}, "only \"response\": \"penalty\" has it: remove it");
   if (fields.kind("response", {"projection", "penalty"}, "projection") != 1) return contact;
   contact.response = ContactSettings::Response::penalty;
   contact.stiffness = fields.required("stiffness", number(kPositive)).value_or(0.0);

@@ -11,10 +11,10 @@ Keyframe read_keyframe(Fields& fields) {
   return keyframe;
 }
 
-void require_increasing_times(const std::vector<Keyframe>& keyframes, const JsonPlace& place) {
+void require_increasing_times(const std::vector<Keyframe>& keyframes, const JsonLocation& location) {
   for (std::size_t k = 1; k < keyframes.size(); ++k) {
     if (keyframes[k].time > keyframes[k - 1].time) continue;
-    place.at("keyframes")
+    location.at("keyframes")
         .at(k)
         .at("time")
         .report(Json(keyframes[k].time), "must be later than the keyframe before it", "sort the keyframes by time");
@@ -25,7 +25,7 @@ Motion read_motion(Fields& fields) {
   Motion motion;
   if (const auto keyframes = fields.optional("keyframes", list_of(object_of<Keyframe>(read_keyframe), 1))) {
     motion.keyframes = *keyframes;
-    require_increasing_times(*keyframes, fields.place());
+    require_increasing_times(*keyframes, fields.location());
   }
   const auto interpolation = fields.value("interpolation", word_of({"linear", "smooth"}), "linear");
   motion.interpolation = interpolation == 1 ? Interpolation::smooth : Interpolation::linear;
@@ -34,11 +34,11 @@ Motion read_motion(Fields& fields) {
 }
 
 Placement read_placement(Fields& fields) {
-  Placement place;
-  place.position = fields.value("position", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
-  place.rotation = fields.value("rotation", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
-  place.scale = fields.value("scale", number(kPositive), 1.0).value_or(1.0);
-  return place;
+  Placement placement;
+  placement.position = fields.value("position", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
+  placement.rotation = fields.value("rotation", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
+  placement.scale = fields.value("scale", number(kPositive), 1.0).value_or(1.0);
+  return placement;
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ ContactMaterial read_material(Fields& fields) {
   const auto friction = fields.value("friction", number(kNotNegative), 0.0);
   const auto static_friction = fields.value("static_friction", number(kNotNegative), friction.value_or(0.0));
   if (friction && static_friction && *static_friction < *friction) {
-    fields.place().at("static_friction").report(Json(*static_friction), "must be at least friction, " + shortened(*friction));
+    fields.location().at("static_friction").report(Json(*static_friction), "must be at least friction, " + shortened(*friction));
   }
   material.friction = friction.value_or(0.0);
   material.static_friction = static_friction.value_or(0.0);

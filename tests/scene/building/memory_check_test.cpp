@@ -28,7 +28,7 @@ std::vector<BodyScene> cloth_and_rope(Index cloth_side, Index rope_particles) {
   return bodies;
 }
 
-TEST(MemoryCheck, NamesTheLargestBodyWhereAllTogetherAreTooLarge) {
+TEST(MemoryCheck, NamesTheLargestBodyIfAllBodiesTogetherAreTooLarge) {
   constexpr double kMemory = 1.0e9;
   EXPECT_THAT(problems(cloth_and_rope(1000, 2), kMemory), IsEmpty());
   EXPECT_THAT(problems(cloth_and_rope(1000, 1'000'000), kMemory),
@@ -37,7 +37,7 @@ TEST(MemoryCheck, NamesTheLargestBodyWhereAllTogetherAreTooLarge) {
   EXPECT_THAT(problems({}, kMemory), IsEmpty());
 }
 
-TEST(MemoryCheck, KnowsOfTheMachine) {
+TEST(MemoryCheck, ReadsTheMemoryOfTheMachine) {
   EXPECT_GT(machine_memory(), 1.0e8);
   EXPECT_THAT(problems(cloth_and_rope(10, 10), machine_memory()), IsEmpty());
 }

@@ -54,8 +54,8 @@ TEST(SceneBuilder, PlainSceneIsBuilt) {
   EXPECT_THAT(built.warnings, IsEmpty());
 }
 
-// All but the last pin, which may be what it is because of where the body was to be.
-TEST(SceneBuilder, WhatIsWrongBesideTheTextIsToldWithIt) {
+// Except for the last pin, because it depends on the invalid place of its body.
+TEST(SceneBuilder, ProblemsBeyondTheTextAreReportedWithThoseOfTheText) {
   const SceneFolder folder;
   folder.write("broken.obj", "v 0 0\n");
   const std::string text = R"({"duration": 1, "step": "atuo", "bodies": {
@@ -86,14 +86,14 @@ TEST(SceneBuilder, BuiltSceneRuns) {
   EXPECT_NEAR(simulator.time(), 1.0 / 30.0, 1e-15);
 }
 
-TEST(SceneBuilder, WhatABodyCollidesWithArrives) {
+TEST(SceneBuilder, ContactSettingsOfABodyArrive) {
   const SceneFolder folder;
   const BuiltScene built = build(folder, {"bodies.banner.self_contact=true", "bodies.banner.body_contact=false"});
   EXPECT_TRUE(built.network.bodies[0].contact.self);
   EXPECT_FALSE(built.network.bodies[0].contact.others);
 }
 
-TEST(SceneBuilder, MassIsOfTheBodyOfAParticleOrOfTheMeasure) {
+TEST(SceneBuilder, MassIsGivenPerBodyPerParticleOrByDensity) {
   const SceneFolder folder;
   const auto total = [&](const std::string& mass) {
     return build(folder, {"bodies.banner.mass=null", mass, "bodies.banner.shape.size=[2,3]"}).network.masses.sum();
@@ -128,15 +128,15 @@ TEST(SceneBuilder, PinsFindTheirParticles) {
   EXPECT_THAT(pins(R"([{"at": "corner", "which": ["max_max", "min_max"]}])"), ElementsAre(6, 8));
   EXPECT_THAT(pins(R"([{"indices": [4, 1]}])"), ElementsAre(1, 4));
   EXPECT_THAT(pins(R"([{"nearest": [10, 2.1, 0]}])"), ElementsAre(5));
-  EXPECT_THAT(pins(R"([{"nearest": [0.25, 2, 0]}])"), ElementsAre(4)) << "of two equally near the first";
+  EXPECT_THAT(pins(R"([{"nearest": [0.25, 2, 0]}])"), ElementsAre(4)) << "the first of two equally near particles";
   EXPECT_THAT(pins(R"([{"box": [[-1, 2.5, 0], [1, 2.5, 0]]}])"), ElementsAre(6, 7, 8)) << "a box may be flat";
   EXPECT_THAT(pins(R"([{"box": [[-1, 2, -1], [1, 3, 1]]}, {"indices": [3, 0]}])"), ElementsAre(0, 3, 4, 5, 6, 7, 8));
   EXPECT_THAT(pins("[]"), IsEmpty());
 }
 
-TEST(SceneBuilder, FlatBoxHoldsARowWhateverTheRoundingOfItsPlace) {
+TEST(SceneBuilder, AFlatBoxContainsARowDespiteRoundingOfItsPosition) {
   const SceneFolder folder;
-  // 0.35 above each height, in decimals: what placing the row leaves of it differs in the last bits.
+  // 0.35 above each height, in decimals: the height of the placed row differs from it in the last bits.
   for (const auto& [height, top] : {std::pair{"0.1", "0.45"}, {"17.3", "17.65"}, {"123.4", "123.75"}}) {
     const std::string y = std::string(",") + top + ",";
     const std::string box = "[[-9" + y + "-9],[9" + y + "9]]";
@@ -146,7 +146,7 @@ TEST(SceneBuilder, FlatBoxHoldsARowWhateverTheRoundingOfItsPlace) {
   }
 }
 
-TEST(SceneBuilder, StillPinsAreOneAndMovingOnesTurnAboutTheBodysPlace) {
+TEST(SceneBuilder, RestingPinsAreMergedAndMovingOnesTurnAboutThePositionOfTheBody) {
   const SceneFolder folder;
   const BuiltScene built = build(folder, {"bodies.banner.place.position=[0,2,0]",
                                           R"(bodies.banner.pins=[{"indices":[0,1]},{"indices":[8],"motion":{"spin":[0,90,0]}},
@@ -165,13 +165,13 @@ TEST(SceneBuilder, PinsOfLaterBodiesCountFromTheirOwnFirstParticle) {
   EXPECT_THAT(pinned(built.network), ElementsAre(0, 12));
 }
 
-TEST(SceneBuilder, PinsThatCannotBeAreProblems) {
+TEST(SceneBuilder, InvalidPinsAreProblems) {
   EXPECT_THAT(build_problems({"bodies.banner.pins=[{\"indices\":[0,9]}]"}),
               ElementsAre(problem("bodies.banner.pins[0].indices[1]", "the body has 9 particles")));
   EXPECT_THAT(build_problems({"bodies.banner.pins=[{\"box\":[[5,5,5],[6,6,6]]}]"}),
-              ElementsAre(problem("bodies.banner.pins[0].box", "holds no particle")));
+              ElementsAre(problem("bodies.banner.pins[0].box", "contains no particle")));
   EXPECT_THAT(build_problems({"bodies.banner.pins=[{\"indices\":[0]},{\"indices\":[0],\"motion\":{\"spin\":[0,1,0]}}]"}),
-              ElementsAre(problem("bodies.banner.pins[1]", "holds particle 0, as does pins[0]")));
+              ElementsAre(problem("bodies.banner.pins[1]", "pins particle 0 like pins[0]")));
 }
 
 TEST(SceneBuilder, MeshesAreFoundBesideTheSceneThenInTheMeshPathsInOrder) {
@@ -186,7 +186,7 @@ TEST(SceneBuilder, MeshesAreFoundBesideTheSceneThenInTheMeshPathsInOrder) {
   EXPECT_EQ(build(folder, change, paths).meshes[0].file, beside);
 }
 
-TEST(SceneBuilder, MeshThatIsNowhereSaysWhereItWasLookedFor) {
+TEST(SceneBuilder, AMissingMeshIsReportedWithTheTriedPaths) {
   const SceneFolder folder;
   const auto problems = problems_of(
       [&] { (void)build(folder, {"obstacles.floor.shape={\"type\":\"mesh\",\"file\":\"no.obj\"}"}, {"/nowhere/meshes"}); });
@@ -195,7 +195,7 @@ TEST(SceneBuilder, MeshThatIsNowhereSaysWhereItWasLookedFor) {
   EXPECT_THAT(problems[0].remedy, AllOf(HasSubstr("--mesh-path"), HasSubstr("SPRUNG_MESH_PATH")));
 }
 
-TEST(SceneBuilder, ObstacleMeshesAreScaledAndSharedOtherwise) {
+TEST(SceneBuilder, ObstacleMeshesAreSharedUnlessScaled) {
   const SceneFolder folder;
   folder.write("mesh.obj", kTetrahedron);
   const BuiltScene built =
@@ -232,7 +232,7 @@ TEST(SceneBuilder, SequencesAreScaledAndTimed) {
   ASSERT_EQ(built.meshes.size(), 1U);
   EXPECT_EQ(built.meshes[0].file, folder.path() / "b.obj");
   EXPECT_EQ(built.meshes[0].files, 3U);
-  EXPECT_EQ(built.meshes[0].report.bounds.max().z(), 2.0) << "of the files, as those of other meshes";
+  EXPECT_EQ(built.meshes[0].report.bounds.max().z(), 2.0) << "before scaling, like those of other meshes";
 }
 
 TEST(SceneBuilder, PatternsOfSequencesAreSortedByNumber) {
@@ -246,10 +246,10 @@ TEST(SceneBuilder, PatternsOfSequencesAreSortedByNumber) {
   std::vector<double> tips;
   for (const Points& frame : std::get<SequenceGeometry>(built.obstacles[1].geometry).sequence->frames) tips.push_back(frame(2, 3));
   EXPECT_THAT(tips, ElementsAre(1.0, 9.0, 10.0, 11.0, 100.0));
-  EXPECT_THAT(built.warnings, Contains(HasSubstr("\"lung\": numbers are left out after lung.1.obj")));
+  EXPECT_THAT(built.warnings, Contains(HasSubstr("\"lung\": the file numbers have a gap after lung.1.obj")));
 }
 
-TEST(SceneBuilder, PatternsLookInTheFirstFolderThatHasAny) {
+TEST(SceneBuilder, PatternsUseTheFirstFolderWithAnyMatch) {
   const SceneFolder folder;
   for (const char* name : {"paths/lung.1.obj", "paths/lung.2.obj", "paths/lung.3.obj"}) folder.write(name, tetrahedron("1"));
   const std::vector<std::string> change{R"(obstacles.lung.shape={"type":"sequence","files":"lung.*.obj"})"};
@@ -258,7 +258,7 @@ TEST(SceneBuilder, PatternsLookInTheFirstFolderThatHasAny) {
   EXPECT_EQ(build(folder, change, {folder.path() / "paths"}).meshes[0].files, 2U);
 }
 
-TEST(SceneBuilder, SequencesThatCannotBeAreProblems) {
+TEST(SceneBuilder, InvalidSequencesAreProblems) {
   const SceneFolder folder;
   folder.write("a.obj", tetrahedron("1"));
   folder.write("one.1.obj", tetrahedron("1"));
@@ -273,19 +273,20 @@ TEST(SceneBuilder, SequencesThatCannotBeAreProblems) {
   EXPECT_THAT(problems(R"("none.*.obj")"), both("files", "no file matches: looked for "));
   EXPECT_THAT(problems(R"("one.*.obj")"), both("files", "matches one file only"));
   EXPECT_THAT(problems(R"(["a.obj", "none.obj"])"), both("files[1]", "no such file: looked for "));
-  EXPECT_THAT(problems(R"(["a.obj", "other.obj"])"),
-              ElementsAre(AllOf(Field(&Problem::file, other.string()), Field(&Problem::rule, HasSubstr("as many as in a.obj")))))
-      << "once, though two obstacles use them";
+  EXPECT_THAT(
+      problems(R"(["a.obj", "other.obj"])"),
+      ElementsAre(AllOf(Field(&Problem::file, other.string()), Field(&Problem::rule, HasSubstr("equally many as in a.obj")))))
+      << "once, although two obstacles use them";
 }
 
-TEST(SceneBuilder, SequenceThatDoesNotDeformIsWarnedOf) {
+TEST(SceneBuilder, WarnsOfASequenceThatDoesNotDeform) {
   const SceneFolder folder;
   folder.write("a.obj", tetrahedron("1"));
   EXPECT_THAT(build(folder, {R"(obstacles.lung.shape={"type":"sequence","files":["a.obj","a.obj"]})"}).warnings,
-              ElementsAre(HasSubstr("obstacle \"lung\": its frames are all alike")));
+              ElementsAre(HasSubstr("obstacle \"lung\": all frames are equal")));
 }
 
-TEST(SceneBuilder, WarnsOfUnitsByTheSizeOfAMeshAsItIsPlaced) {
+TEST(SceneBuilder, WarnsOfUnitsByTheScaledSizeOfAMesh) {
   const SceneFolder folder;
   folder.write("mesh.obj", "v 0 0 0\nv 18000 0 0\nv 0 18000 0\nf 1 2 3\n");
   const std::string shape = R"(obstacles.a.shape={"type":"mesh","file":"mesh.obj"})";
@@ -316,7 +317,7 @@ TEST(SceneBuilder, BodyMeshesOfOtherFormatsAreRefused) {
               ElementsAre(problem("bodies.banner.shape.file", "read from an .obj file")));
 }
 
-TEST(SceneBuilder, ProblemsOfAllBodiesObstaclesAndTheStepComeInOneGo) {
+TEST(SceneBuilder, ProblemsOfAllBodiesObstaclesAndTheStepAreReportedTogether) {
   EXPECT_THAT(
       build_problems({"bodies.banner.pins[0]={\"indices\":[99]}",
                       R"(bodies.shirt={"shape":{"type":"mesh","file":"shirt.obj"},"mass":1})",
@@ -328,10 +329,10 @@ TEST(SceneBuilder, ProblemsOfAllBodiesObstaclesAndTheStepComeInOneGo) {
       ElementsAre(problem("obstacles.bunny.shape.file", "no such file"), problem("step", "is beyond the largest stable step")));
 }
 
-TEST(SceneBuilder, AnglesBendWhereTheSceneSaysSo) {
+TEST(SceneBuilder, AngleBendsAreMadeIfTheSceneSelectsThem) {
   const SceneFolder folder;
   const BuiltScene built = build(folder, {"bodies.banner.springs.bend={\"model\":\"angle\",\"stiffness\":0.5}"});
-  // 3 x 3 particles: a row or column each.
+  // 3 x 3 particles: one per row and column.
   EXPECT_THAT(built.network.angle_bends.stiffness, ::testing::ElementsAre(0.5, 0.5, 0.5, 0.5, 0.5, 0.5));
   const std::vector<Problem> problems = problems_of([&] {
     build(folder, {"bodies.banner.shape={\"type\":\"solid\",\"size\":[1,1,1],\"resolution\":[2,2,2]}", "bodies.banner.pins=[]",
@@ -341,7 +342,7 @@ TEST(SceneBuilder, AnglesBendWhereTheSceneSaysSo) {
   EXPECT_EQ(problems[0].key, "bodies.banner.springs.bend.model");
 }
 
-TEST(SceneBuilder, BodyWithoutSpringsIsWarnedOf) {
+TEST(SceneBuilder, WarnsOfABodyWithoutSprings) {
   const SceneFolder folder;
   EXPECT_THAT(build(folder, {"bodies.banner.springs={}"}).warnings, ElementsAre(HasSubstr("\"banner\" has no springs")));
 }
@@ -372,7 +373,7 @@ TEST_P(BrokenMeshTest, IsRefusedAsAnObstacleNamingTheFile) {
               Contains(AllOf(Field(&Problem::file, file.string()), Field(&Problem::rule, HasSubstr(GetParam().message)))));
 }
 
-TEST_P(BrokenMeshTest, IsReportedOnceWhenSeveralObstaclesUseIt) {
+TEST_P(BrokenMeshTest, IsReportedOnceIfSeveralObstaclesUseIt) {
   const SceneFolder folder;
   folder.write("broken.obj", GetParam().text);
   const std::string first = R"(obstacles.a={"shape":{"type":"mesh","file":"broken.obj"}})";

@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
 
-// Two particles of 1 kg, 1 m apart, one held: the free one swings with omega^2 = k / m, so symplectic Euler is stable up to
+// Two particles of 1 kg, 1 m apart, one pinned: the free one oscillates with omega^2 = k / m, so symplectic Euler is stable up to
 // 2 / sqrt(k).
 BuiltScene build(double stiffness, const std::vector<std::string>& changes = {}) {
   const SceneFolder folder;
@@ -26,21 +26,21 @@ BuiltScene build(double stiffness, const std::vector<std::string>& changes = {})
   return build_scene(folder.read(text, changes));
 }
 
-// The bounds come from an iteration that converges from below, and add at most 1.5 % to the eigenvalue: 0.75 % off the step.
+// The bounds come from an iteration that converges from below, and exceed the eigenvalue by at most 1.5 %: 0.75 % of the step.
 constexpr double kBoundSlack = 0.0075;
 
-TEST(StepChoice, LargestStableStepIsTheClosedForm) {
+TEST(StepChoice, LargestStableStepHasItsClosedForm) {
   const BuiltScene built = build(100.0);
   EXPECT_LE(built.largest_stable_step, 0.2);
   EXPECT_GE(built.largest_stable_step, 0.2 * (1.0 - kBoundSlack));
 }
 
-TEST(StepChoice, LargestStableStepIsThatOfTheScheme) {
+TEST(StepChoice, LargestStableStepDependsOnTheScheme) {
   EXPECT_NEAR(build(100.0, {R"(integrator={"type": "velocity_verlet"})"}).largest_stable_step, 0.2, kBoundSlack * 0.2);
   EXPECT_NEAR(build(100.0, {R"(integrator={"type": "rk4"})"}).largest_stable_step, 0.2828, kBoundSlack * 0.2828);
 }
 
-TEST(StepChoice, AutoIsTheFewestStepsWithinNineTenthsOfTheStableStep) {
+TEST(StepChoice, AutoUsesTheFewestStepsWithinNineTenthsOfTheStableStep) {
   for (const double stiffness : {100.0, 1000.0, 54321.0, 1e6}) {
     const double damping = 0.05 * std::sqrt(stiffness);
     const BuiltScene built = build(stiffness, {"bodies.pair.springs.structural.damping=" + std::to_string(damping)});
@@ -53,8 +53,8 @@ TEST(StepChoice, AutoIsTheFewestStepsWithinNineTenthsOfTheStableStep) {
   }
 }
 
-// A thousand are no more than it takes; what asks for more is told, and what to change.
-TEST(StepChoice, AutoTellsWhatAsksForVeryManySteps) {
+// Up to a thousand steps per frame cause no warning. The warning of more steps names the cause and a remedy.
+TEST(StepChoice, AutoWarnsOfTheCauseOfVeryManySteps) {
   EXPECT_THAT(build(1.0e8).warnings, testing::IsEmpty());
   EXPECT_THAT(build(1.0e10).warnings,
               ElementsAre(AllOf(HasSubstr("body \"pair\""), HasSubstr("structural"), HasSubstr("1e+10 N/m"), HasSubstr("1 kg"),
@@ -75,11 +75,11 @@ TEST(StepChoice, AutoTellsWhatAsksForVeryManySteps) {
                           "bodies.pair.shape.particles=1000"})
                   .warnings,
               ElementsAre(AllOf(HasSubstr("passes"), HasSubstr("newton"))));
-  EXPECT_THAT(build(1.0e10, {"step=1e-7"}).warnings, testing::IsEmpty()) << "they were asked for";
+  EXPECT_THAT(build(1.0e10, {"step=1e-7"}).warnings, testing::IsEmpty()) << "the scene sets the step";
 }
 
-// Six steps are a turn.
-TEST(StepChoice, AutoKeepsWhatIsNotDampedFromResonance) {
+// Six steps per oscillation.
+TEST(StepChoice, AutoKeepsUndampedSpringsFromResonance) {
   for (const double stiffness : {1000.0, 54321.0, 1e6}) {
     const double resonant = 1.0 / std::sqrt(stiffness);
     const BuiltScene built = build(stiffness);
@@ -88,16 +88,17 @@ TEST(StepChoice, AutoKeepsWhatIsNotDampedFromResonance) {
   }
 }
 
-TEST(StepChoice, AutoKeepsExplicitEulerFromGrowingMuchWithinTheScene) {
+TEST(StepChoice, AutoLimitsTheGrowthOfExplicitEulerWithinTheScene) {
   const std::string explicit_euler = R"(integrator={"type": "explicit_euler"})";
-  // |1 + i omega dt| is sqrt(1 + omega^2 dt^2), a factor of e after 2 / (omega^2 dt): the scene's second at dt = 2 / k.
+  // |1 + i omega dt| is sqrt(1 + omega^2 dt^2), so motion grows by a factor of e in the time 2 / (omega^2 dt). This is the scene's
+  // duration of 1 s for dt = 2 / k.
   const BuiltScene built = build(1000.0, {explicit_euler});
   EXPECT_LE(built.settings.step, 2.0 / 1000.0);
   EXPECT_GT(1.0 / (10.0 * (built.steps_per_frame - 1)), 2.0 / 1000.0 * (1.0 - 2.0 * kBoundSlack));
 }
 
-// A half turn of the penalty's spring, pi sqrt(m / k), with 1 kg, takes three steps: damped or not, by any explicit scheme.
-TEST(StepChoice, AutoMakesABounceByPenaltyTakeThreeSteps) {
+// Half a period of the penalty spring, pi sqrt(m / k), with 1 kg, takes three steps, damped or not, with any explicit scheme.
+TEST(StepChoice, APenaltyBounceTakesThreeAutoSteps) {
   const auto penalty = [](const std::string& scheme, const std::string& damping) {
     return build(0.0,
                  {R"(contact={"response": "penalty", "stiffness": 543210, "damping": )" + damping + "}",
@@ -113,7 +114,7 @@ TEST(StepChoice, AutoMakesABounceByPenaltyTakeThreeSteps) {
   EXPECT_GT(penalty("implicit_euler", "0").settings.step, third);
 }
 
-TEST(StepChoice, AutoHeedsTheStretchLimit) {
+TEST(StepChoice, AutoRespectsTheStretchLimit) {
   const BuiltScene free = build(0.0);
   const BuiltScene limited =
       build(0.0, {"bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1,\"tolerance\":1e-3,\"max_stretch\":0}"});
@@ -123,8 +124,8 @@ TEST(StepChoice, AutoHeedsTheStretchLimit) {
   EXPECT_GT(1.0 / (10.0 * (limited.steps_per_frame - 1)), limit.suggested_step(9.81));
 }
 
-TEST(StepChoice, AutoMayMakePartsOfStepsOfClothsThatBearIt) {
-  const auto parts = [](const std::vector<std::string>& changes) {
+TEST(StepChoice, AutoAllowsSubstepsForSuitableCloths) {
+  const auto substeps = [](const std::vector<std::string>& changes) {
     const SceneFolder folder;
     const std::string text = R"({"duration": 1, "stretch_limit": {"max_compression": 0, "kinds": ["structural", "shear"],
         "tethers": true}, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [8, 8]}, "mass": 1,
@@ -132,15 +133,15 @@ TEST(StepChoice, AutoMayMakePartsOfStepsOfClothsThatBearIt) {
         "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
     return build_scene(folder.read(text, changes)).settings.max_substeps;
   };
-  EXPECT_EQ(parts({}), kAutoParts);
-  EXPECT_EQ(parts({"frame_rate=10", "step=0.001"}), 1);
-  EXPECT_EQ(parts({"stretch_limit.max_compression=1"}), 1);
-  EXPECT_EQ(parts({"stretch_limit.kinds=[\"structural\"]"}), 1);
-  EXPECT_EQ(parts({"stretch_limit.tethers=false"}), 1);
-  EXPECT_EQ(parts({R"(integrator={"type": "verlet", "damping": 0.01})"}), 1);
+  EXPECT_EQ(substeps({}), kAutoSubsteps);
+  EXPECT_EQ(substeps({"frame_rate=10", "step=0.001"}), 1);
+  EXPECT_EQ(substeps({"stretch_limit.max_compression=1"}), 1);
+  EXPECT_EQ(substeps({"stretch_limit.kinds=[\"structural\"]"}), 1);
+  EXPECT_EQ(substeps({"stretch_limit.tethers=false"}), 1);
+  EXPECT_EQ(substeps({R"(integrator={"type": "verlet", "damping": 0.01})"}), 1);
 }
 
-TEST(StepChoice, AutoIsAFrameForWhatAGlobalSolveHoldsAndMeetsNothing) {
+TEST(StepChoice, AutoIsAFrameUnderAGlobalSolveWithoutContact) {
   const auto built = [](const std::vector<std::string>& changes) {
     const SceneFolder folder;
     const std::string text = R"({"duration": 1, "stretch_limit": {"solver": "newton"},
@@ -150,11 +151,11 @@ TEST(StepChoice, AutoIsAFrameForWhatAGlobalSolveHoldsAndMeetsNothing) {
   };
   for (const std::string solver : {"newton", "auto"}) {
     EXPECT_EQ(built({"stretch_limit.solver=" + solver}).steps_per_frame, 1);
-    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).settings.max_substeps, kAutoParts);
+    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).settings.max_substeps, kAutoSubsteps);
   }
   EXPECT_EQ(built({"obstacles.floor.shape={\"type\":\"half_space\",\"offset\":-5}"}).steps_per_frame, 8);
   EXPECT_EQ(built({"bodies.cloth.self_contact=true"}).steps_per_frame, 8);
-  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).steps_per_frame, 8) << "which takes its part of each step";
+  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).steps_per_frame, 8) << "damping acts on each step";
   EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).settings.max_substeps, 1);
   const std::string second = R"(bodies.other={"shape": {"type": "cloth", "size": [1, 1], "resolution": [2, 2]}, "mass": 1,
       "place": {"position": [0, 0, 1]}, "springs": {"structural": {"stiffness": 0}})";
@@ -162,8 +163,8 @@ TEST(StepChoice, AutoIsAFrameForWhatAGlobalSolveHoldsAndMeetsNothing) {
   EXPECT_EQ(built({second + R"(, "body_contact": false})"}).steps_per_frame, 1);
 }
 
-// The parts are what passes need; once a global solve has taken over it needs the whole step at most.
-TEST(StepChoice, AutoIsMadeInPartsForPassesThatMayBeGivenUp) {
+// Passes need the substeps. After a handover to the global solve, the whole step suffices.
+TEST(StepChoice, AutoUsesSubstepsForPassesThatMayBeReplaced) {
   const auto built = [](const std::vector<std::string>& changes) {
     const SceneFolder folder;
     const std::string text = R"({"duration": 1, "stretch_limit": {"solver": "auto", "iterations": 4},
@@ -174,16 +175,16 @@ TEST(StepChoice, AutoIsMadeInPartsForPassesThatMayBeGivenUp) {
   };
   const BuiltScene passes = built({"stretch_limit.solver=gauss_seidel"});
   const BuiltScene automatic = built({});
-  const int parts = automatic.settings.max_substeps;
+  const int substeps = automatic.settings.max_substeps;
   const int at_least = built({"stretch_limit.solver=newton"}).steps_per_frame;
   EXPECT_EQ(passes.settings.max_substeps, 1);
-  EXPECT_GT(parts, 1);
+  EXPECT_GT(substeps, 1);
   EXPECT_GE(automatic.steps_per_frame, at_least);
   EXPECT_LT(automatic.steps_per_frame, 2 * at_least);
-  EXPECT_GE(automatic.steps_per_frame * parts, passes.steps_per_frame);
-  EXPECT_LT((automatic.steps_per_frame - 1) * parts, passes.steps_per_frame);
+  EXPECT_GE(automatic.steps_per_frame * substeps, passes.steps_per_frame);
+  EXPECT_LT((automatic.steps_per_frame - 1) * substeps, passes.steps_per_frame);
   const std::string damping = R"(integrator={"type": "verlet", "damping": 0.01})";
-  EXPECT_EQ(built({damping}).settings.max_substeps, 1) << "which takes its part of each step";
+  EXPECT_EQ(built({damping}).settings.max_substeps, 1) << "damping acts on each step";
   EXPECT_EQ(built({damping}).steps_per_frame, passes.steps_per_frame);
 }
 
@@ -194,7 +195,7 @@ TEST(StepChoice, WithoutAnyBoundAutoIsAtMostTheDocumentedStep) {
 }
 
 // A frame is a tenth of a second.
-TEST(StepChoice, AutoOfImplicitEulerIsSmallerWhereThereIsAnythingToMeetOrALimitBesideSprings) {
+TEST(StepChoice, AutoOfImplicitEulerIsSmallerWithContactOrALimitBesideSprings) {
   const std::string implicit = R"(integrator={"type": "implicit_euler"})";
   EXPECT_EQ(build(1.0e6, {implicit, R"(obstacles.ball={"shape": {"type": "sphere", "radius": 0.1}})"}).steps_per_frame, 24);
   const std::string newton = R"(stretch_limit={"solver": "newton"})";
@@ -202,7 +203,7 @@ TEST(StepChoice, AutoOfImplicitEulerIsSmallerWhereThereIsAnythingToMeetOrALimitB
   EXPECT_EQ(build(1.0e6, {implicit, newton}).steps_per_frame, 24);
 }
 
-TEST(StepChoice, AutoOfImplicitEulerIsAFrameOrWhatTheStretchLimitAsksFor) {
+TEST(StepChoice, AutoOfImplicitEulerIsAFrameOrTheStepOfTheStretchLimit) {
   const std::string implicit = R"(integrator={"type": "implicit_euler"})";
   const BuiltScene free = build(1.0e6, {implicit});
   EXPECT_TRUE(std::isinf(free.largest_stable_step));
@@ -213,7 +214,7 @@ TEST(StepChoice, AutoOfImplicitEulerIsAFrameOrWhatTheStretchLimitAsksFor) {
   EXPECT_LE(limited.settings.step, StretchLimit(limited.network, *limited.settings.stretch_limit).suggested_step(9.81));
 }
 
-TEST(StepChoice, StepBeyondTheStableOneIsRefusedNamingTheLargestThatCanBe) {
+TEST(StepChoice, StepBeyondTheStableOneIsRefusedNamingTheLargestPossibleOne) {
   const auto problems = problems_of([] { (void)build(1000.0, {"step=0.1"}); });
   // 2 / sqrt(1000) = 0.0632: the largest that divides a frame of 0.1 s is 0.05.
   EXPECT_THAT(problems, ElementsAre(AllOf(Field(&Problem::key, "step"), Field(&Problem::value, "0.1"),
@@ -223,7 +224,7 @@ TEST(StepChoice, StepBeyondTheStableOneIsRefusedNamingTheLargestThatCanBe) {
   EXPECT_EQ(build(1000.0, {"step=0.05"}).steps_per_frame, 2);
 }
 
-TEST(StepChoice, StepBeyondTheStableOneRunsWhenOnlyWarnedOf) {
+TEST(StepChoice, StepBeyondTheStableOneRunsWithAWarning) {
   const BuiltScene built = build(1000.0, {"step=0.1", "stability=warn"});
   EXPECT_EQ(built.settings.step, 0.1);
   EXPECT_EQ(built.steps_per_frame, 1);
@@ -233,16 +234,16 @@ TEST(StepChoice, PenaltyContactCountsAsASpringToTheGround) {
   const std::vector<std::string> penalty{"contact={\"response\":\"penalty\",\"stiffness\":300,\"damping\":0}",
                                          "obstacles.floor.shape={\"type\":\"half_space\",\"offset\":-5}"};
   EXPECT_NEAR(build(100.0, penalty).largest_stable_step, 2.0 / std::sqrt(400.0), kBoundSlack * 0.1);
-  EXPECT_NEAR(build(100.0, {penalty[0]}).largest_stable_step, 0.2, kBoundSlack * 0.2) << "nothing to touch";
+  EXPECT_NEAR(build(100.0, {penalty[0]}).largest_stable_step, 0.2, kBoundSlack * 0.2) << "there is no obstacle";
 }
 
 TEST(StepChoice, TooManyStepsAFrameAreRefused) {
   EXPECT_THAT(problems_of([] { (void)build(1e20); }),
-              ElementsAre(AllOf(Field(&Problem::key, "step"), Field(&Problem::rule, HasSubstr("too many steps a frame")),
+              ElementsAre(AllOf(Field(&Problem::key, "step"), Field(&Problem::rule, HasSubstr("too many steps per frame")),
                                 Field(&Problem::remedy, HasSubstr("less stiffness")))));
 }
 
-TEST(StepChoice, WhereExplicitEulerWouldTakeTooManyStepsAnotherSchemeIsNamed) {
+TEST(StepChoice, ARefusedExplicitEulerSuggestsAnotherScheme) {
   EXPECT_THAT(problems_of([] { (void)build(1e12, {R"(integrator={"type": "explicit_euler"})"}); }),
               ElementsAre(Field(&Problem::remedy, HasSubstr("symplectic_euler"))));
 }

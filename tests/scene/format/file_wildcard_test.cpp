@@ -12,7 +12,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(NaturalOrder, CountsNumbersAsNumbers) {
+TEST(NaturalOrder, ComparesNumbersByValue) {
   std::vector<std::string> names{"b2", "b10", "b", "a12c1", "a12b9", "a9", "a", "b02", "b2.5", "9", "10", "b18446744073709551616"};
   std::sort(names.begin(), names.end(), natural_less);
   EXPECT_THAT(names, ElementsAre("9", "10", "a", "a9", "a12b9", "a12c1", "b", "b02", "b2", "b2.5", "b10", "b18446744073709551616"));
@@ -31,7 +31,7 @@ TEST(NaturalOrder, IsStrictAndTotal) {
   }
 }
 
-TEST(FileWildcard, HasOneStarInItsLastPart) {
+TEST(FileWildcard, HasOneStarInItsLastComponent) {
   for (const char* good : {"*", "*.obj", "a/b/c*", "a/b.*.obj"}) EXPECT_TRUE(is_wildcard(good)) << good;
   for (const char* bad : {"", "a.obj", "*/a.obj", "a*b*", "a/*/b"}) EXPECT_FALSE(is_wildcard(bad)) << bad;
 }
@@ -52,7 +52,7 @@ TEST(FileWildcard, MatchesFilesAroundTheStar) {
   EXPECT_THAT(names("none/*.obj"), IsEmpty());
 }
 
-TEST(FileWildcard, TellsWhereNumbersAreLeftOut) {
+TEST(FileWildcard, FindsAGapInTheNumbers) {
   const auto before_gap = [](const std::vector<std::filesystem::path>& files) {
     const auto file = file_before_gap(files, "sub/a.*.obj");
     return file ? file->string() : "";

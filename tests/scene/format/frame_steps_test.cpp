@@ -11,7 +11,7 @@ namespace {
 TEST(FrameSteps, FirstFrameIsTimeZero) {
   EXPECT_EQ(frame_count(0.0, 30.0), 1);
   EXPECT_EQ(frame_count(1.0, 30.0), 31);
-  EXPECT_EQ(frame_count(0.99, 30.0), 30);  // 29.7 frames: the last one that is reached is frame 30, at 29 / 30 s
+  EXPECT_EQ(frame_count(0.99, 30.0), 30);  // 29.7 frames: the last one reached is frame 30, at 29 / 30 s
   EXPECT_EQ(frame_count(600.0, 1.0), 601);
 }
 
@@ -31,9 +31,9 @@ TEST(FrameSteps, StepsThatDivideAFrameAreWhole) {
   }
 }
 
-TEST(FrameSteps, OthersAreNot) {
+TEST(FrameSteps, OtherStepsAreRefused) {
   EXPECT_EQ(steps_per_frame(25.0, 0.003), std::nullopt);
-  EXPECT_EQ(steps_per_frame(25.0, 0.08), std::nullopt);  // half a step a frame
+  EXPECT_EQ(steps_per_frame(25.0, 0.08), std::nullopt);  // half a step per frame
   EXPECT_EQ(steps_per_frame(25.0, 0.04 * (1.0 + 1e-8)), std::nullopt);
   EXPECT_EQ(steps_per_frame(25.0, 0.04 * (1.0 + 1e-10)), 1);
   EXPECT_EQ(steps_per_frame(25.0, 1e-30), std::nullopt);
@@ -56,7 +56,7 @@ TEST(FrameSteps, LargestStepThatDividesAFrameIsKept) {
   EXPECT_EQ(fewest_steps_per_frame(30.0, std::numeric_limits<double>::infinity()), 1);
 }
 
-TEST(FrameSteps, NoFrameTakesTooMany) { EXPECT_EQ(fewest_steps_per_frame(30.0, 1e-12), std::nullopt); }
+TEST(FrameSteps, RefusesTooManyStepsPerFrame) { EXPECT_EQ(fewest_steps_per_frame(30.0, 1e-12), std::nullopt); }
 
 }  // namespace
 }  // namespace sprung

@@ -59,7 +59,7 @@ TEST(SceneReader, TimeAndSettingsArrive) {
   EXPECT_EQ(scene.settings.stability, StabilityCheck::warn);
 }
 
-TEST(SceneReader, SchemaForEditorsIsNoUnknownKey) {
+TEST(SceneReader, SchemaForEditorsIsAKnownKey) {
   EXPECT_EQ(SceneFolder().read(kFullScene, {"$schema=scene.schema.json"}).bodies.size(), 5U);
 }
 
@@ -154,7 +154,7 @@ TEST(SceneReader, ObstaclesArrive) {
   EXPECT_EQ(std::get<EllipsoidGeometry>(scene.obstacles[7].shape).radii, Vector3(1, 2, 3));
 }
 
-TEST(SceneReader, SequencesArriveWithTheFrameRateOfTheSceneWhereTheyHaveNone) {
+TEST(SceneReader, SequencesDefaultToTheFrameRateOfTheScene) {
   const Scene scene = SceneFolder().read(kFullScene, {"frame_rate=50", "step=\"auto\""});
   const auto& heart = std::get<MeshFiles>(scene.obstacles[8].shape);
   EXPECT_THAT(std::get<std::vector<std::string>>(heart.files), ElementsAre("b.obj", "a.obj"));
@@ -187,7 +187,7 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_TRUE(scene.obstacles.empty());
 }
 
-TEST(SceneReader, ContactIsByProjectionUnlessItSaysOtherwise) {
+TEST(SceneReader, ContactResponseDefaultsToProjection) {
   const Scene scene = SceneFolder().read(kPlainScene, {"contact={\"start\":\"push_out\"}"});
   EXPECT_EQ(scene.settings.contact.response, ContactSettings::Response::projection);
   EXPECT_EQ(scene.settings.contact.start, ContactSettings::Start::push_out);
@@ -208,14 +208,14 @@ TEST(SceneReader, WholeNumbersMayBeWrittenWithAPoint) {
   EXPECT_THAT(std::get<ClothShape>(scene.bodies[0].shape).resolution, ElementsAre(64, 64));
 }
 
-TEST(SceneReader, FileThatCannotBeReadIsAFileError) {
+TEST(SceneReader, AMissingFileOrAFolderIsAFileError) {
   const SceneFolder folder;
   EXPECT_THAT([&] { (void)read_scene(folder.path() / "none.json"); },
               testing::ThrowsMessage<FileError>(testing::AllOf(HasSubstr("none.json"), HasSubstr("No such file"))));
   EXPECT_THAT([&] { (void)read_scene(folder.path()); }, testing::ThrowsMessage<FileError>(HasSubstr("Is a directory")));
 }
 
-TEST(SceneReader, FileThatMayNotBeReadIsAFileError) {
+TEST(SceneReader, AFileWithoutReadPermissionIsAFileError) {
   const SceneFolder folder;
   const std::filesystem::path file = folder.write("secret.json", kPlainScene);
   std::filesystem::permissions(file, std::filesystem::perms::none);
@@ -238,7 +238,7 @@ TEST(SceneReader, OverridesReplaceAddAppendAndRemove) {
   EXPECT_EQ(scene.bodies[0].place.position, Vector3(0, 1e-3, 0));
 }
 
-TEST(SceneReader, OverridesTakeNumbersAsPeopleWriteThem) {
+TEST(SceneReader, OverridesAcceptCommonNumberFormats) {
   for (const char* text : {".5", "+0.5", "0.5", "00.50", "5e-1", "+.5e0"}) {
     const Scene scene = SceneFolder().read(kPlainScene, {std::string("bodies.banner.mass=") + text});
     EXPECT_EQ(scene.bodies[0].mass.value, 0.5) << text;

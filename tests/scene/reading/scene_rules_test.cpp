@@ -1,4 +1,4 @@
-// Every rule of a scene has a scene that breaks it.
+// Each rule of a scene has a scene that breaks it.
 #include "scene/broken_scenes.h"
 #include "scene/json/nearest_name.h"
 #include "scene/json/overrides.h"
@@ -21,9 +21,9 @@ using testing::ResultOf;
 using testing::SizeIs;
 using testing::StartsWith;
 
-auto says(const std::string& part) {
+auto says(const std::string& text) {
   return ResultOf(
-      "line", [](const Problem& problem) { return to_string(problem); }, HasSubstr(part));
+      "line", [](const Problem& problem) { return to_string(problem); }, HasSubstr(text));
 }
 
 class BrokenSceneTest : public testing::TestWithParam<BrokenScene> {};
@@ -35,18 +35,18 @@ TEST_P(BrokenSceneTest, IsRefusedWithItsMessage) {
   EXPECT_THAT(problems, testing::Each(Field(&Problem::file, HasSubstr("scene.json"))));
 }
 
-TEST_P(BrokenSceneTest, IsRefusedByTheSchemaWhereASchemaCanTell) {
+TEST_P(BrokenSceneTest, IsRefusedByTheSchemaIfASchemaCanExpressTheRule) {
   Json document = parse_json(kPlainScene, "").document;
   std::vector<Problem> problems;
   for (const std::string& change : GetParam().changes) apply_override(change, document, problems);
   ASSERT_THAT(problems, IsEmpty());
-  EXPECT_EQ(!schema_violations(document).empty(), GetParam().schema_can_tell);
+  EXPECT_EQ(!schema_violations(document).empty(), GetParam().schema_expresses_rule);
 }
 
 INSTANTIATE_TEST_SUITE_P(SceneRules, BrokenSceneTest, testing::ValuesIn(broken_scenes()),
                          [](const auto& test) { return test.param.name; });
 
-TEST(SceneRules, AllProblemsAreReportedInOneGo) {
+TEST(SceneRules, AllProblemsAreReportedTogether) {
   const SceneFolder folder;
   const auto problems = problems_of([&] {
     (void)folder.read(kPlainScene, {"duration=-1", "gravty=[0,0,0]", "bodies.banner.mass=0",
@@ -57,7 +57,7 @@ TEST(SceneRules, AllProblemsAreReportedInOneGo) {
                                     Field(&Problem::key, "obstacles.floor.shape.normal"), Field(&Problem::key, "gravty")));
 }
 
-// What is right whatever the type was meant to be is not said to be wrong, and what no type has is.
+// If the type is invalid, the keys of all types are accepted, and other keys are reported.
 TEST(SceneRules, AMistypedTypeHidesNoKeysAndAddsNoProblems) {
   const SceneFolder folder;
   const auto problems = problems_of([&] {
@@ -67,7 +67,7 @@ TEST(SceneRules, AMistypedTypeHidesNoKeysAndAddsNoProblems) {
   EXPECT_THAT(problems,
               UnorderedElementsAre(AllOf(Field(&Problem::key, "integrator.type"), says("did you mean \"verlet\"?")),
                                    AllOf(Field(&Problem::key, "integrator.stp"), says("is not a known key")),
-                                   AllOf(Field(&Problem::key, "integrator.step"), says("it stands beside the integrator")),
+                                   AllOf(Field(&Problem::key, "integrator.step"), says("it belongs to the top level of the scene")),
                                    AllOf(Field(&Problem::key, "bodies.banner.shape.type"), says("did you mean \"cloth\"?")),
                                    AllOf(Field(&Problem::key, "bodies.banner.shape.sise"), says("did you mean \"size\"?"))));
 }
@@ -78,7 +78,7 @@ TEST(SceneRules, LongValuesAreShortened) {
   EXPECT_THAT(problems, ElementsAre(Field(&Problem::value, AllOf(SizeIs(40), StartsWith("\"xxx"), EndsWith("...")))));
 }
 
-TEST(SceneRules, SceneThatIsNoObjectIsRefused) {
+TEST(SceneRules, SceneThatIsNotAnObjectIsRefused) {
   const SceneFolder folder;
   for (const char* text : {"[1, 2]", "3", "\"scene\"", "null"}) {
     EXPECT_THAT(problems_of([&] { (void)folder.read(text); }), Contains(says("must be an object"))) << text;
@@ -96,7 +96,7 @@ std::ostream& operator<<(std::ostream& stream, const BrokenText& text) { return 
 
 class BrokenTextTest : public testing::TestWithParam<BrokenText> {};
 
-TEST_P(BrokenTextTest, IsRefusedWithItsPlace) {
+TEST_P(BrokenTextTest, IsRefusedWithItsLocation) {
   const SceneFolder folder;
   const auto problems = problems_of([&] { (void)folder.read(GetParam().text); });
   EXPECT_THAT(problems, ElementsAre(AllOf(Field(&Problem::key, GetParam().key), says(GetParam().message))));
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenText{"MissingComma", "{\"duration\": 1\n \"step\": 1}", "line 2, column 2", "check for a missing comma"},
         BrokenText{"MissingCommaBeforeAKey", "{\"a\": {}\n \"step\": 1}", "line 2, column 2", "= \"step\": is not JSON"},
         BrokenText{"SingleQuotes", "{'duration': 1}", "line 1, column 2", "double quotes"},
-        BrokenText{"NotANumber", "{\"duration\": NaN}", "line 1, column 14", "= NaN}: is not a number that JSON knows"},
+        BrokenText{"NotANumber", "{\"duration\": NaN}", "line 1, column 14", "= NaN}: is not a JSON number"},
         BrokenText{"Infinite", "{\"duration\": -Infinity}", "line 1, column 14", "write a finite number"},
         BrokenText{"TooLarge", "{\"duration\": 1e400}", "line 1, column 14", "1e400: is too large for a number"},
         BrokenText{"TwoValues", "{} {}", "line 1, column 4", "is not JSON"},
@@ -142,7 +142,7 @@ std::ostream& operator<<(std::ostream& stream, const BrokenOverride& text) { ret
 
 class BrokenOverrideTest : public testing::TestWithParam<BrokenOverride> {};
 
-TEST_P(BrokenOverrideTest, IsRefusedUnderItsName) {
+TEST_P(BrokenOverrideTest, IsReportedUnderTheKeySet) {
   const SceneFolder folder;
   const auto problems = problems_of([&] { (void)folder.read(kPlainScene, {GetParam().text}); });
   EXPECT_THAT(problems,
@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(SceneRules, BrokenOverrideTest,
                                                         "bodies.banner.pins has 1 entry, so there is no entry 2"}),
                          [](const auto& test) { return test.param.name; });
 
-TEST(SceneRules, WhatExcludesEachOtherIsToldOfWithWhatIsWrongWithEach) {
+TEST(SceneRules, ExclusiveKeysAreReportedTogetherWithTheirOwnProblems) {
   const SceneFolder folder;
   const std::string springs = "bodies.banner.springs.structural=";
   const auto problems = problems_of([&] {
@@ -188,7 +188,7 @@ TEST(SceneRules, WhatExcludesEachOtherIsToldOfWithWhatIsWrongWithEach) {
                                      Field(&Problem::key, std::string("bodies.rope.shape.from"))}));
 }
 
-TEST(Overrides, AreBlamedForWhatTheyBreak) {
+TEST(Overrides, AreNamedInTheProblemsThatTheyCause) {
   const SceneFolder folder;
   const std::string text = R"({"duration": 1, "frame_rate": "fast", "bodies": {}})";
   EXPECT_THAT(problems_of([&] { (void)folder.read(kPlainScene, {"bodies.banner.density=1"}); }),
@@ -199,12 +199,12 @@ TEST(Overrides, AreBlamedForWhatTheyBreak) {
                                      AllOf(Field(&Problem::key, "frame_rate"), Field(&Problem::file, EndsWith(".json")))}));
 }
 
-TEST(NearestName, IsNoOtherWord) {
+TEST(NearestName, DoesNotSuggestADifferentWord) {
   EXPECT_EQ(nearest_name("cube", {"cone", "box"}), std::nullopt);
   EXPECT_EQ(nearest_name("bix", {"cone", "box"}), "box");
 }
 
-TEST(NearestName, OfOneThatBeginsItAndOneWithASlipIsTheOneWithFewerLettersWrong) {
+TEST(NearestName, PrefersAMisspeltNameToItsBeginning) {
   EXPECT_EQ(nearest_name("damping_rte", {"damping", "damping_rate"}), "damping_rate");
   EXPECT_EQ(nearest_name("damp", {"drag", "damping", "damping_rate"}), "damping");
 }

@@ -1,4 +1,4 @@
-// The published schema and the rules know the same keys, and accept and refuse the same scenes.
+// The published schema and the rules have the same keys, and accept and refuse the same scenes.
 #include "base/test_seed.h"
 #include "scene/broken_scenes.h"
 #include "scene/json/overrides.h"
@@ -24,14 +24,14 @@ using testing::IsSubsetOf;
 
 using Keys = std::set<std::string>;
 
-/// The node that a reference stands for.
+/// The node to which a reference points.
 Json resolved(const Json& node) {
   if (!node.contains("$ref")) return node;
   const std::string name = node["$ref"].get<std::string>();
   return scene_schema()["definitions"][name.substr(name.rfind('/') + 1)];
 }
 
-bool is_meant(const Json& branch, const Json& instance) {
+bool matches_branch(const Json& branch, const Json& instance) {
   for (const auto& key : branch.value("required", Json::array())) {
     if (!instance.contains(key.get<std::string>())) return false;
   }
@@ -48,11 +48,11 @@ Keys keys_of(const Json& object) {
   return keys;
 }
 
-/// An object of a scene: where it is, the keys that the schema allows it, and those that it allows to any choice of its place.
+/// An object of a scene: its location, the keys that the schema allows in it, and those that it allows in any branch of its oneOf.
 struct ObjectKeys {
   std::string pointer;
   Keys allowed;
-  Keys allowed_to_any_choice;
+  Keys allowed_in_any_branch;
 };
 
 void collect(const Json& instance, const Json& unresolved, const std::string& pointer, std::vector<ObjectKeys>& objects) {
@@ -69,7 +69,7 @@ void collect(const Json& instance, const Json& unresolved, const std::string& po
   if (!node.contains("properties") && node.contains("oneOf")) {
     for (const Json& branch : node["oneOf"]) {
       any.merge(keys_of(branch));
-      if (is_meant(branch, instance)) object = branch;
+      if (matches_branch(branch, instance)) object = branch;
     }
   }
   if (object.contains("properties")) {
@@ -83,7 +83,7 @@ void collect(const Json& instance, const Json& unresolved, const std::string& po
   }
 }
 
-/// What the rules offer in place of a key like no other.
+/// The keys that the rules suggest for an unknown key.
 Keys keys_known_to_rules(const SceneFolder& folder, Json scene, const std::string& pointer) {
   scene[Json::json_pointer(pointer)]["qqqqqqqqqqqqqqqq"] = 1;
   const auto problems = problems_of([&] { (void)folder.read(json_text(scene)); });
@@ -96,7 +96,7 @@ Keys keys_known_to_rules(const SceneFolder& folder, Json scene, const std::strin
   return keys;
 }
 
-TEST(SchemaAgreement, AcceptsWhatTheRulesAccept) {
+TEST(SchemaAgreement, AcceptsTheScenesThatTheRulesAccept) {
   const SceneFolder folder;
   for (const char* text : {kPlainScene, kFullScene}) {
     EXPECT_THAT(schema_violations(parse_json(text, "").document), IsEmpty());
@@ -104,7 +104,7 @@ TEST(SchemaAgreement, AcceptsWhatTheRulesAccept) {
   }
 }
 
-TEST(SchemaAgreement, KnowsTheKeysOfTheRulesAndNoOthers) {
+TEST(SchemaAgreement, HasExactlyTheKeysOfTheRules) {
   const SceneFolder folder;
   const Json scene = parse_json(folder.read(kFullScene).resolved, "").document;
   std::vector<ObjectKeys> objects;
@@ -113,7 +113,7 @@ TEST(SchemaAgreement, KnowsTheKeysOfTheRulesAndNoOthers) {
   for (const ObjectKeys& object : objects) {
     const Keys known = keys_known_to_rules(folder, scene, object.pointer);
     EXPECT_THAT(object.allowed, IsSubsetOf(known)) << object.pointer;
-    EXPECT_THAT(known, IsSubsetOf(object.allowed_to_any_choice)) << object.pointer;
+    EXPECT_THAT(known, IsSubsetOf(object.allowed_in_any_branch)) << object.pointer;
   }
 }
 
@@ -131,12 +131,12 @@ TEST(SchemaAgreement, EveryDefinitionAndKeyIsDescribed) {
   }
 }
 
-/// What a schema cannot express: rules about several values at once. Each category lists how its rules begin.
+/// Rules that a schema cannot express, because they involve several values. Each category lists the beginnings of its rules.
 const std::map<std::string, std::vector<std::string>>& rules_beyond_the_schema() {
   static const std::map<std::string, std::vector<std::string>> kRules{
       {"times that must fit together", {"must divide a frame", "makes more than"}},
       {"the product of values", {"must make at most"}},
-      {"the order of values", {"must be later than the keyframe before it", "must hold the smaller coordinates first"}},
+      {"the order of values", {"must be later than the keyframe before it", "must begin with the smaller coordinates"}},
       {"a value that another one bounds", {"must be at least friction", "needs springs with stiffness"}},
       {"a value that another object forbids", {"needs contact.response", "needs a rope, a cloth or a solid"}},
       {"a vector without a direction", {"must not be zero"}},
@@ -144,7 +144,7 @@ const std::map<std::string, std::vector<std::string>>& rules_beyond_the_schema()
   return kRules;
 }
 
-/// A corner that another shape has: the schema does not compare a pin with its body.
+/// Whether the problem is a corner of another shape: the schema does not compare a pin with its body.
 bool is_corner_of_another_shape(const Problem& problem) {
   if (problem.key.find(".which[") == std::string::npos) return false;
   const Json corners = scene_schema()["definitions"]["pin"]["oneOf"][0]["properties"]["which"]["items"]["enum"];
@@ -163,7 +163,7 @@ bool is_beyond_the_schema(const Problem& problem) {
 
 struct Verdict {
   bool accepted_by_schema = false;
-  std::string disagreement;  ///< empty where the rules agree
+  std::string disagreement;  ///< empty if schema and rules agree
 };
 
 Verdict judge(const SceneFolder& folder, const Json& document) {
@@ -182,7 +182,7 @@ std::vector<Json> shipped_scenes() {
       if (entry.path().extension() == ".json") scenes.push_back(Json::parse(std::ifstream(entry.path())));
     }
   }
-  // Folders are listed in any order.
+  // The order of the entries of a folder is undefined.
   std::sort(scenes.begin(), scenes.end(), [](const Json& a, const Json& b) { return a.dump() < b.dump(); });
   return scenes;
 }
@@ -202,7 +202,7 @@ TEST(SchemaAgreement, BrokenScenesOfTheRulesAloneBreakRulesBeyondTheSchema) {
   for (const BrokenScene& scene : broken_scenes()) {
     const auto problems = problems_of([&] { (void)folder.read(kPlainScene, scene.changes); });
     const bool all_beyond = std::all_of(problems.begin(), problems.end(), is_beyond_the_schema);
-    EXPECT_EQ(all_beyond, !scene.schema_can_tell) << scene.name;
+    EXPECT_EQ(all_beyond, !scene.schema_expresses_rule) << scene.name;
   }
 }
 
@@ -226,7 +226,7 @@ TEST_F(MutatedScenes, AreJudgedAlikeBySchemaAndRules) {
   constexpr int kScenes = 500;
   const SceneFolder folder;
   std::vector<Json> valid = shipped_scenes();
-  // Two in five mutations change these, which hold every key.
+  // Two in five mutations change these scenes, which contain every key.
   const std::size_t copies = valid.size() / 3;
   valid.insert(valid.end(), copies, parse_json(kFullScene, "").document);
   valid.insert(valid.end(), copies, parse_json(folder.read(kFullScene).resolved, "").document);
@@ -242,7 +242,7 @@ TEST_F(MutatedScenes, AreJudgedAlikeBySchemaAndRules) {
       for (const std::string& change : scene.changes) used[name] += change.starts_with(name) ? 1 : 0;
     }
   }
-  EXPECT_GT(accepted, kScenes / 20) << "too few of them are valid to tell whether the rules are too strict";
+  EXPECT_GT(accepted, kScenes / 20) << "too few scenes are valid to show whether the rules are too strict";
   EXPECT_LT(accepted, kScenes / 2);
   for (const auto& [name, count] : used) EXPECT_GT(count, 5) << name;
 }
