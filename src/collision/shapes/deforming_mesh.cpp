@@ -42,7 +42,7 @@ void DeformingMesh::set_interval(double t, double t_end) {
 }
 
 void DeformingMesh::fit_span(const MeshSequence::Moment& begin, const MeshSequence::Moment& end) {
-  const bool at_next = end.frame == begin.next && end.part == 0.0 && begin.part > 0.0;
+  const bool at_next = end.frame == begin.next && end.fraction == 0.0 && begin.fraction > 0.0;
   if (end.frame != begin.frame && !at_next) {
     span_ = {};
     sweep_is_new_ = true;
@@ -51,8 +51,8 @@ void DeformingMesh::fit_span(const MeshSequence::Moment& begin, const MeshSequen
   const bool same_frames = span_.frame == begin.frame && span_.next == begin.next;
   Span span{.frame = begin.frame, .next = begin.next};
   span.segments = same_frames ? span_.segments : segment_count(span.frame, span.next);
-  const double low = std::min(begin.part, at_next ? 1.0 : end.part);
-  const double high = std::max(begin.part, at_next ? 1.0 : end.part);
+  const double low = std::min(begin.fraction, at_next ? 1.0 : end.fraction);
+  const double high = std::max(begin.fraction, at_next ? 1.0 : end.fraction);
   span.first = std::min(static_cast<int>(low * span.segments), span.segments - 1);
   span.last = std::max(static_cast<int>(std::ceil(high * span.segments)), span.first + 1);
   sweep_is_new_ = span != span_;
