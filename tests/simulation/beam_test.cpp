@@ -16,7 +16,7 @@ using testing::kGravity;
 
 SpringMaterial modulus(double value) { return {.value = value, .measure = SpringMaterial::Measure::modulus}; }
 
-/// A body clamped by pins at rest under gravity: how far [m] its lowest particle is below y = 0.
+/// The distance [m] of the lowest particle of a clamped body below y = 0, at rest under gravity.
 double deflection(const BodyShape& shape, const std::vector<Index>& pins, double damping_rate, double seconds) {
   NetworkBuilder builder;
   builder.add_body("beam", shape);
@@ -29,9 +29,9 @@ double deflection(const BodyShape& shape, const std::vector<Index>& pins, double
   return -simulator.positions().row(1).minCoeff();
 }
 
-// The beam is clamped half-way between the two pinned particles. Its slowest motion has omega = 3.52 sqrt(EI / density) / L^2 = 39
-// 1/s: after 0.5 s of critical damping e^-19 of the way is left. Bending by 1 % of its length changes lengths by 1e-4 of it.
-TEST(AngleBends, CantileveredRopeDeflectsAsABeam) {
+// The beam is clamped half-way between the two pinned particles. Its slowest mode has omega = 3.52 sqrt(EI / density) / L^2 = 39
+// 1/s: after 0.5 s of critical damping e^-19 of the amplitude remains. A deflection of 1 % of the length changes lengths by 1e-4.
+TEST(AngleBends, ACantileveredRopeDeflectsAsABeam) {
   const double density = 0.1;
   const double bending = density * kGravity / (8.0 * 0.01);  // EI [N m^2] for a deflection of 1 cm at 1 m
   for (const Index particles : {11, 21, 41}) {
@@ -45,8 +45,8 @@ TEST(AngleBends, CantileveredRopeDeflectsAsABeam) {
   }
 }
 
-// A strip of cloth bends like a beam of D times its width, as nothing couples its two directions.
-TEST(AngleBends, ClothStripDeflectsAsAPlate) {
+// A strip of cloth bends like a beam of D times its width, because its two directions are not coupled.
+TEST(AngleBends, AStripOfClothDeflectsAsAPlate) {
   const double density = 0.1;
   const double bending = density * kGravity / (8.0 * 0.01);  // D [N m]
   for (const Index across : {2, 5}) {
@@ -80,7 +80,7 @@ double laguerre(int n, double x) {
   return now;
 }
 
-/// The first zeros of L_n, by bisection between its changes of sign. Those of the first three are more than 0.3 / n apart.
+/// The first zeros of L_n, by bisection between its changes of sign. The first three zeros are more than 0.3 / n apart.
 std::vector<double> laguerre_zeros(int n, std::size_t count) {
   std::vector<double> zeros;
   const double stride = 0.1 / n;
@@ -97,8 +97,8 @@ std::vector<double> laguerre_zeros(int n, std::size_t count) {
   return zeros;
 }
 
-/// A chain of 1 m and `links` links that hangs from its last particle, all others of equal mass, stretched by its weight already:
-/// if it fell into it, its tension would swing between nothing and twice the weight, and shake the chain sideways.
+/// A chain of 1 m and `links` links that hangs from its last particle. All other particles have equal masses. The chain starts
+/// stretched by its weight: otherwise its tension would swing between zero and twice the weight and shake the chain sideways.
 SpringNetwork hanging_chain(Index links) {
   const double stiffness = 2000.0;  // EA [N]
   BodyShape rope = make_rope({.points = {-Vector3::UnitY(), Vector3::Zero()}, .particles = links + 1, .length = {}},
@@ -114,8 +114,8 @@ SpringNetwork hanging_chain(Index links) {
   return builder.build();
 }
 
-/// The frequency [rad/s] of the chain's swing in the shape in which particle i is L_i(lambda) aside, lambda = l omega^2 / g: from
-/// the first `periods` times that its lowest particle comes by on the way up.
+/// The frequency [rad/s] of the chain in the mode in which particle i has the amplitude L_i(lambda), lambda = l omega^2 / g. It is
+/// measured over `periods` upward zero crossings of the lowest particle.
 double swing_frequency(Index links, double lambda, int periods) {
   SpringNetwork chain = hanging_chain(links);
   for (Index i = 0; i < links; ++i) chain.velocities(0, i) = 1e-4 * laguerre(i, lambda);
@@ -136,8 +136,8 @@ double swing_frequency(Index links, double lambda, int periods) {
   return 2.0 * std::numbers::pi * periods / end;
 }
 
-// Swings are 1e-5 of the length. Springs of 2000 N are 0.03 % longer than at rest under half of the weight, and frequencies lower
-// by half of that; the step is 1e-3 of a period or less.
+// Amplitudes are 1e-5 of the length. Springs of 2000 N are 0.03 % longer than at rest under half of the weight, which lowers
+// frequencies by half of that. The step is at most 1e-3 of a period.
 TEST(HangingChain, SwingsAtTheZerosOfLaguerresPolynomial) {
   for (const Index links : {5, 20}) {
     for (const double lambda : laguerre_zeros(links, 3)) {
@@ -147,8 +147,8 @@ TEST(HangingChain, SwingsAtTheZerosOfLaguerresPolynomial) {
   }
 }
 
-// omega = j_0n / 2 sqrt(g / L) with the zeros of Bessel's J_0. Zeros of L_n are (j / 2)^2 / (n + 1/2) at first: 0.25 % lower
-// frequencies for a hundred links.
+// omega = j_0n / 2 sqrt(g / L) with the zeros of Bessel's J_0. The first zeros of L_n are (j / 2)^2 / (n + 1/2): the frequencies
+// of a hundred links are 0.25 % lower.
 TEST(HangingChain, SwingsAtBesselsZerosWhenItHasManyLinks) {
   const std::vector<double> shapes = laguerre_zeros(100, 3);
   const double zeros[] = {2.404825557695773, 5.520078110286311, 8.653727912911013};

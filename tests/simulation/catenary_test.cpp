@@ -11,7 +11,7 @@ namespace {
 constexpr double kSpan = 1.0;    // [m]
 constexpr double kLength = 1.5;  // [m]
 
-/// Sag of a rope that does not stretch (Bernoulli, Huygens and Leibniz 1691): a (cosh(w / 2a) - 1) with 2a sinh(w / 2a) its length.
+/// Sag of an inextensible rope (Bernoulli, Huygens and Leibniz 1691): a (cosh(w / 2a) - 1) with 2a sinh(w / 2a) its length.
 double sag_of_catenary() {
   double small = 0.01;
   double large = 100.0;
@@ -22,7 +22,7 @@ double sag_of_catenary() {
   return small * (std::cosh(0.5 * kSpan / small) - 1.0);
 }
 
-/// A rope that hangs in the shape of a V from both its ends.
+/// A rope in the shape of a V, pinned at both ends.
 SpringNetwork hanging_between_two_points() {
   const double depth = 0.5 * std::sqrt(kLength * kLength - kSpan * kSpan);
   BodyShape shape =
@@ -42,8 +42,9 @@ double simulated_sag(double step, const StretchLimitSettings& limit) {
   return -simulator.positions().row(1).minCoeff();
 }
 
-// The chain of 60 links sags by a part of about 1 / 60^2 less than a rope. Gravity adds g dt^2 a step to each of 30 particles, of
-// which 8 passes leave 2 * 30 / 8 of it on the topmost spring of 0.025 m: 0.02 %, less further down. A global solve leaves nothing.
+// A chain of 60 links sags by a fraction of about 1 / 60^2 less than a rope. Gravity adds g dt^2 per step to each of 30 particles.
+// 8 passes leave 2 * 30 / 8 of that on the topmost spring of 0.025 m: 0.02 %, and less further down. A global solve leaves
+// nothing.
 TEST(Catenary, IsTheShapeOfARopeThatDoesNotStretch) {
   const StretchLimitSettings passes{.max_stretch = 0.0, .iterations = 8, .tolerance = 0.0};
   StretchLimitSettings tethered = passes;

@@ -1,4 +1,4 @@
-// Sliding where both sides are of the network: their edges and faces pass each other, others in each step.
+// Sliding contact between two bodies of the network: different edges and faces pass each other in each step.
 #include "network/network_builder.h"
 #include "simulation/scenes.h"
 
@@ -43,7 +43,7 @@ BodyShape level_cloth(const std::array<double, 2>& size, const std::array<Index,
   return shape;
 }
 
-/// A cloth that lies on a longer one, all of which is pinned, before an end of it.
+/// A cloth that lies near one end of a longer cloth, which is pinned entirely.
 SpringNetwork cloth_on_cloth(const Slide& slide) {
   const ContactMaterial material{.thickness = kThickness, .friction = slide.friction, .static_friction = slide.friction};
   NetworkBuilder builder;
@@ -61,11 +61,11 @@ INSTANTIATE_TEST_SUITE_P(Slides, ClothOnCloth,
                                            Slide{35.0, 0.5, 240.0, 6}, Slide{35.0, 0.5, 240.0, 15}, Slide{35.0, 0.5, 960.0, 6},
                                            Slide{26.0, 0.5, 240.0, 6}));
 
-// Coulomb's law, with gravity that leans instead of the slope. The speed may be behind by what a step gives it, and what
-// friction holds may settle by a thousandth of the gap.
+// Coulomb's law with inclined gravity instead of an inclined slope. The speed may lag by the velocity of one step. A cloth at rest
+// may settle by a thousandth of the gap.
 //
-// Within a step weight g leads the cloth g dt^2 into the gap d: over that, particles meet its round border at the sine
-// s = sqrt(2 g dt^2 / d), which at a speed v throws the border up by (v s)^2 / 2 g = (v dt)^2 / d.
+// Within a step the weight moves the cloth by g dt^2 into the gap d. There its particles touch the round border at the sine s =
+// sqrt(2 g dt^2 / d). At a speed v the border lifts them by (v s)^2 / 2 g = (v dt)^2 / d.
 TEST_P(ClothOnCloth, SlidesAsFarAsAPointAndStaysDown) {
   const auto& [angle, friction, rate, resolution] = GetParam();
   const double slope = angle * std::numbers::pi / 180.0;
@@ -84,12 +84,12 @@ TEST_P(ClothOnCloth, SlidesAsFarAsAPointAndStaysDown) {
     highest = std::max(highest, above().row(1).maxCoeff());
   }
   EXPECT_NEAR(above().row(0).mean() - begin, 0.5 * pull * kDuration * kDuration, pull * kDuration / rate + 1e-3 * kThickness);
-  const double way = pull * kDuration / rate;
-  EXPECT_LT(highest, 1.1 * kThickness + way * way / kThickness);
+  const double displacement = pull * kDuration / rate;
+  EXPECT_LT(highest, 1.1 * kThickness + displacement * displacement / kThickness);
 }
 
-// Its rows fold alike, so that none gets in another one's way. With nearest points at the ends of steps, as between bodies, they
-// crumpled, and truncation stopped them hundreds of times a second.
+// All rows fold alike, so no row blocks another. With the nearest points at the ends of steps, as between bodies, the rows
+// crumpled and truncation stopped them hundreds of times a second.
 TEST(ClothOnItself, FoldsEvenlyWhenItFallsOnItsEdge) {
   const SpringMaterial without_force{};
   BodyShape shape = make_cloth({.size = {0.6, 0.6}, .resolution = {20, 20}}, {without_force, without_force, without_force});

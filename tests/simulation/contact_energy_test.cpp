@@ -1,4 +1,4 @@
-// Contact takes energy or leaves it, in steps of any size.
+// Contact adds no energy, at any step.
 #include "simulation/scenes.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ constexpr double kStiffness = 100.0;
 constexpr double kThickness = 0.01;
 constexpr double kHeight = 0.25;
 
-/// A cloth of 1 m and n x n particles, askew, a little above a ball, which an edge and a corner of it meet at once.
-SpringNetwork cloth_askew(Index n) {
+/// A tilted cloth of 1 m and n x n particles a little above a ball, which an edge and a corner touch at once.
+SpringNetwork tilted_cloth(Index n) {
   const SpringMaterial spring{.value = kStiffness};
   BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {n, n}}, {.structural = spring, .shear = spring, .bend = spring});
   set_total_mass(shape, kMass);
@@ -32,7 +32,7 @@ SpringNetwork cloth_askew(Index n) {
   return builder.build();
 }
 
-/// The most that motion, height and springs ever have beyond what they began with [J].
+/// The largest increase [J] of the kinetic, gravity and elastic energy over its initial value.
 double most_gained(const SpringNetwork& network, const SimulatorSettings& settings) {
   Simulator simulator(network, settings, {{.name = "ball", .geometry = SphereGeometry{.radius = 0.2}}});
   const auto energy = [&] {
@@ -48,37 +48,37 @@ double most_gained(const SpringNetwork& network, const SimulatorSettings& settin
   return most;
 }
 
-/// Speeds lag behind by half a step [J].
+/// The energy [J] by which speeds lag behind by half a step.
 double lag(double step) { return kMass * kGravity * std::sqrt(2.0 * kGravity * kHeight) * step / 2.0; }
 
-/// What contact pushes out of the gap is then higher, and springs are longer, by half of the gap at most, which is what truncation
-/// leaves of it: of a particle with eight springs [J].
-double pushed(double particles) {
+/// The energy [J] that contact adds when it pushes a particle with eight springs out of the gap. Truncation allows a depth of at
+/// most half of the gap.
+double push_energy(double particles) {
   const double deep = 0.5 * kThickness;
   return kMass / particles * kGravity * deep + 8.0 * 0.5 * kStiffness * deep * deep;
 }
 
-TEST(ContactEnergy, ContactMakesNoneInSmallSteps) {
-  const SpringNetwork network = cloth_askew(3);
-  for (const int parts : {5, 1000, 6000}) {
-    const double step = 1.0 / (60.0 * parts);
-    EXPECT_LT(most_gained(network, {.step = step, .integrator = VerletSettings{}}), pushed(9.0) + lag(step)) << parts;
+TEST(ContactEnergy, ContactGainsNoEnergyInSmallSteps) {
+  const SpringNetwork network = tilted_cloth(3);
+  for (const int steps_a_frame : {5, 1000, 6000}) {
+    const double step = 1.0 / (60.0 * steps_a_frame);
+    EXPECT_LT(most_gained(network, {.step = step, .integrator = VerletSettings{}}), push_energy(9.0) + lag(step)) << steps_a_frame;
   }
 }
 
-// What a push out of the gap draws after it by links at their limit keeps the push's speed: it must not be a gap in a step, however
-// short.
-TEST(ContactEnergy, ContactAndAStretchLimitMakeNoneInSmallSteps) {
-  const SpringNetwork network = cloth_askew(7);
-  for (const int parts : {10, 200, 1000}) {
-    const double step = 1.0 / (60.0 * parts);
+// A push out of the gap also moves neighbours whose springs are at their limit, and they keep that velocity. The velocity must not
+// be a gap per step, however short the step is.
+TEST(ContactEnergy, ContactAndAStretchLimitGainNoEnergyInSmallSteps) {
+  const SpringNetwork network = tilted_cloth(7);
+  for (const int steps_a_frame : {10, 200, 1000}) {
+    const double step = 1.0 / (60.0 * steps_a_frame);
     const SimulatorSettings settings{
         .step = step, .integrator = SymplecticEulerSettings{}, .stretch_limit = StretchLimitSettings{.max_stretch = 0.005}};
-    EXPECT_LT(most_gained(network, settings), pushed(49.0) + lag(step)) << parts;
+    EXPECT_LT(most_gained(network, settings), push_energy(49.0) + lag(step)) << steps_a_frame;
   }
 }
 
-/// A rope of 1 m and 31 particles, all but upright on the ground, that meets itself.
+/// A nearly upright rope of 1 m and 31 particles on the ground, with self-contact.
 SpringNetwork upright_rope() {
   RopeShape rope;
   rope.points = {Vector3(0.0, 0.1, 0.0), Vector3(0.03, 1.1, 0.0)};
@@ -90,7 +90,7 @@ SpringNetwork upright_rope() {
   return builder.build();
 }
 
-// It folds in its plane, segments back onto those before. After 2 s it lies, and no particle is lifted by a gap any more.
+// The rope folds in its plane, segment onto segment. After 2 s it lies on the ground, and no particle is lifted by a gap any more.
 TEST(ContactEnergy, ARopeThatFoldsInAPlaneComesToRest) {
   const SpringNetwork network = upright_rope();
   Simulator simulator(network, {.step = 1.0 / 480.0, .integrator = VerletSettings{.damping_rate = 0.5}},
@@ -107,7 +107,7 @@ TEST(ContactEnergy, ARopeThatFoldsInAPlaneComesToRest) {
   EXPECT_GT(simulator.contact_count(), 0);
 }
 
-/// A limp cloth of 1 m and 1 kg that flies down at `speed` [m/s], askew, and may not pass through itself.
+/// A limp cloth of 1 m and 1 kg with self-contact that flies down at `speed` [m/s], tilted.
 SpringNetwork flying_cloth(double speed) {
   BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {10, 10}}, {.structural = SpringMaterial{.value = 20.0}});
   set_total_mass(shape, 1.0);
@@ -120,9 +120,10 @@ SpringNetwork flying_cloth(double speed) {
   return builder.build();
 }
 
-// What a surface of speed u hits at v leaves it, without restitution, no faster than at v + u. What is in the way of itself goes
-// along with what pinches it, far ends too, which got the speed that what spins would have out there: 5,000 J of 50.
-TEST(ContactEnergy, WhatSpinsThrowsNothingFasterThanItsRim) {
+// A surface of speed u hits the cloth at speed v. Without restitution the cloth leaves it at v + u at most. Elements that
+// self-contact blocks move with the drum's surface. If distant ends received the velocity of a rigid rotation at their radius, the
+// energy would be 5,000 J instead of 50 J.
+TEST(ContactEnergy, ASpinningDrumThrowsNothingFasterThanItsRim) {
   constexpr double kFlight = 10.0;  // [m/s]
   constexpr double kSpin = 3000.0;  // [degrees/s]
   const double rim = std::hypot(0.2, 0.1) * kSpin * std::numbers::pi / 180.0;

@@ -1,4 +1,4 @@
-// Laws of contact that have closed forms, for each integrator: rest, sliding, bouncing, carrying.
+// Contact laws with closed forms, for each integrator: rest, sliding, bouncing, friction on moving obstacles.
 #include "simulation/diagnostics.h"
 #include "simulation/scenes.h"
 
@@ -21,15 +21,15 @@ class ContactSolver : public ::testing::TestWithParam<std::size_t> {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, ContactSolver, ::testing::Range(std::size_t{0}, all_integrators().size()));
 
-TEST_P(ContactSolver, ParticleComesToRestAtItsThickness) {
+TEST_P(ContactSolver, AParticleComesToRestAtItsThickness) {
   Simulator simulator(one_particle({0.0, 0.3, 0.0}, {.thickness = 0.01}), settings(1e-3), {ground({.thickness = 0.002})});
   run(simulator, 2.0);
-  // A step of free fall from rest is g dt^2 = 1e-5 m, and explicit Euler is one step behind.
+  // A step of free fall from rest is g dt^2 = 1e-5 m, and explicit Euler lags by one step.
   EXPECT_NEAR(simulator.positions()(1, 0), 0.012, 1.1e-5);
   EXPECT_LE(simulator.state().v.col(0).norm(), 1.01 * kGravity * 1e-3);
 }
 
-TEST_P(ContactSolver, FrictionHoldsBelowTheCriticalAngleAndLetsGoAboveIt) {
+TEST_P(ContactSolver, AParticleSticksBelowTheCriticalAngleAndSlidesAboveIt) {
   const double mu = 0.3;
   const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
   for (const double factor : {0.99, 1.01}) {
@@ -38,7 +38,8 @@ TEST_P(ContactSolver, FrictionHoldsBelowTheCriticalAngleAndLetsGoAboveIt) {
     Simulator simulator(one_particle(start, rough), settings(1e-3), {ground({.friction = mu, .static_friction = mu}, angle)});
     run(simulator, 1.0);
     const double slid = (simulator.positions().col(0) - start).norm();
-    // Beyond the critical angle: 1/2 g (sin - mu cos) t^2 = 0.5 * 9.81 * 0.00287 = 1.4 cm. Below it, nothing but the first step.
+    // Beyond the critical angle: 1/2 g (sin - mu cos) t^2 = 0.5 * 9.81 * 0.00287 = 1.4 cm. Below it, only the first step moves the
+    // particle.
     if (factor < 1.0) {
       EXPECT_LT(slid, 2e-5);
     } else {
@@ -47,7 +48,7 @@ TEST_P(ContactSolver, FrictionHoldsBelowTheCriticalAngleAndLetsGoAboveIt) {
   }
 }
 
-TEST_P(ContactSolver, SlidingParticleStopsAfterItsStoppingDistance) {
+TEST_P(ContactSolver, ASlidingParticleStopsAfterItsStoppingDistance) {
   const double mu = 0.4;
   const double speed = 2.0;
   const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
@@ -55,11 +56,11 @@ TEST_P(ContactSolver, SlidingParticleStopsAfterItsStoppingDistance) {
                       {ground({.friction = mu, .static_friction = mu})});
   run(simulator, 1.0);
   const double distance = speed * speed / (2.0 * mu * kGravity);
-  // Friction begins and ends within a step: v dt at most at each end.
+  // Friction begins and ends within a step: the error is at most v dt at each end.
   EXPECT_NEAR(simulator.positions()(0, 0), distance, 2.0 * speed * 1e-3);
 }
 
-/// The greatest height that particle 0 reaches after its first bounce.
+/// The greatest height [m] that particle 0 reaches after its first bounce.
 double height_of_bounce(Simulator& simulator) {
   while (simulator.state().v(1, 0) <= 0.0) simulator.step();
   double highest = 0.0;
@@ -71,21 +72,21 @@ double height_of_bounce(Simulator& simulator) {
 }
 
 /// A floor, a ball and a sheet whose highest points are at the origin.
-std::vector<Obstacle> landing_places() {
+std::vector<Obstacle> landing_surfaces() {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.5}};
   ball.rest_pose.translation() = Vector3(0.0, -0.5, 0.0);
   return {ground(), ball, testing::sheet(3.0)};
 }
 
-TEST_P(ContactSolver, BounceReachesTheSquareOfRestitutionTimesTheHeightAtAnyStep) {
+TEST_P(ContactSolver, ABounceReachesTheSquareOfRestitutionTimesTheHeightAtAnyStep) {
   const double e = 0.8;
-  for (const Obstacle& obstacle : landing_places()) {
+  for (const Obstacle& obstacle : landing_surfaces()) {
     for (const double step : {2.5e-4, 1e-3, 4e-3, 1.0 / 60.0}) {
       for (const double height : {1.0, 1.01, 1.02, 1.03, 1.04}) {
         Simulator simulator(one_particle({0.0, height + 0.01, 0.0}, {.thickness = 0.01, .restitution = e}), settings(step),
                             {obstacle});
-        // The schemes visit points of exact parabolas. One is within half a step of the top, so at most g (dt / 2)^2 / 2 below it;
-        // and the first parabola of the Euler schemes, whose speed is 0 half a step off the start, tops there by as much.
+        // The schemes sample exact parabolas. A sample is within half a step of the apex, so at most g (dt / 2)^2 / 2 below it.
+        // The Euler schemes' first parabola has speed 0 half a step from the start, so its apex is higher by the same amount.
         const double sampling = kGravity * step * step / 8.0;
         EXPECT_NEAR(height_of_bounce(simulator), 0.01 + e * e * height, sampling + 1e-12) << obstacle.name << ", step " << step;
       }
@@ -93,7 +94,7 @@ TEST_P(ContactSolver, BounceReachesTheSquareOfRestitutionTimesTheHeightAtAnyStep
   }
 }
 
-TEST_P(ContactSolver, ClothDroppedFlatBouncesAsAParticleDoes) {
+TEST_P(ContactSolver, AClothDroppedFlatBouncesAsAParticle) {
   const double e = 0.6;
   const double height = 0.4;
   for (const Obstacle& obstacle : {ground(), testing::sheet(3.0)}) {
@@ -101,14 +102,14 @@ TEST_P(ContactSolver, ClothDroppedFlatBouncesAsAParticleDoes) {
       Simulator simulator(testing::cloth(9, height + 0.01, {.thickness = 0.01, .restitution = e}), settings(step), {obstacle});
       const Points flat = simulator.positions();
       EXPECT_NEAR(height_of_bounce(simulator), 0.01 + e * e * height, kGravity * step * step / 8.0 + 1e-12);
-      // All of it falls and bounces at once: nothing is stretched.
+      // All particles fall and bounce at once: no spring is stretched.
       const Points moved = simulator.positions() - flat;
       EXPECT_LT((moved.colwise() - moved.col(0)).cwiseAbs().maxCoeff(), 1e-9) << obstacle.name << ", step " << step;
     }
   }
 }
 
-TEST_P(ContactSolver, RestingParticleDoesNotBounce) {
+TEST_P(ContactSolver, ARestingParticleDoesNotBounce) {
   Simulator simulator(one_particle({0.0, 0.01, 0.0}, {.thickness = 0.01, .restitution = 1.0}), settings(1e-3), {ground()});
   for (int i = 0; i < 500; ++i) {
     simulator.step();
@@ -116,7 +117,7 @@ TEST_P(ContactSolver, RestingParticleDoesNotBounce) {
   }
 }
 
-TEST_P(ContactSolver, MovingPlateCarriesAParticleByFriction) {
+TEST_P(ContactSolver, AMovingPlateMovesAParticleByFriction) {
   const double mu = 0.5;
   const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
   Obstacle plate{
@@ -125,20 +126,21 @@ TEST_P(ContactSolver, MovingPlateCarriesAParticleByFriction) {
   plate.motion.keyframes = {{.time = 0.0}, {.time = 10.0, .position = {5.0, 5.0, 0.0}}};  // 0.5 m/s sideways and up
   Simulator simulator(one_particle({0.0, 0.011, 0.0}, rough), settings(1e-3), {plate});
   run(simulator, 1.0);
-  // The rising plate hits it at 0.5 m/s, from which friction makes mu * 0.5 m/s at once; until it has the plate's speed too it lags
-  // by u^2 / (2 mu g), u being what is left. The impact falls within a step or two: 2 u dt, and the gap closes in 1 mm / 0.5 m/s.
+  // The rising plate hits the particle at 0.5 m/s. Friction gives it mu * 0.5 m/s at once. Until it has the plate's speed, it lags
+  // by u^2 / (2 mu g) with the remaining speed difference u. The impact time is uncertain by a step or two: 2 u dt. The gap closes
+  // in 1 mm / 0.5 m/s.
   const double left = 0.5 - mu * 0.5;
   EXPECT_NEAR(simulator.positions()(0, 0), 0.5 - left * left / (2.0 * mu * kGravity), 1.5e-3);
   EXPECT_NEAR(simulator.positions()(1, 0), 0.51, 1e-3);
 }
 
-TEST_P(ContactSolver, NothingPassesAThinSheetAtAnySpeed) {
+TEST_P(ContactSolver, NoParticleCrossesAThinSheetAtAnySpeed) {
   for (const double side : {1.0, -1.0}) {
     for (const double speed : {0.0, 5.0, 50.0, 500.0}) {
       const Obstacle obstacle = testing::sheet(1.0);
       SimulatorSettings chosen = settings(1e-3);
       chosen.gravity *= side;
-      // Straight at the diagonal that both triangles share.
+      // The particle flies towards the diagonal that both triangles share.
       Simulator simulator(one_particle({0.25, side * 0.1, 0.25}, {.thickness = 0.002}, {0.0, -side * speed, 0.0}), chosen,
                           {obstacle});
       for (int i = 0; i < 400; ++i) {
@@ -150,7 +152,7 @@ TEST_P(ContactSolver, NothingPassesAThinSheetAtAnySpeed) {
   }
 }
 
-TEST_P(ContactSolver, ThicknessNothingIsAThicknessToo) {
+TEST_P(ContactSolver, ContactWorksAtThicknessZero) {
   const double mu = 0.3;
   const ContactMaterial material{.friction = mu, .static_friction = mu};
   Obstacle box{.name = "box", .geometry = BoxGeometry{.size = {20.0, 1.0, 20.0}}, .material = material};
@@ -158,8 +160,8 @@ TEST_P(ContactSolver, ThicknessNothingIsAThicknessToo) {
   for (const Obstacle& obstacle : {ground(material), box, testing::sheet(9.0, material)}) {
     Simulator simulator(one_particle({0.0, 0.001, 0.0}, material, {2.0, 0.0, 0.0}), settings(1e-3), {obstacle});
     run(simulator, 1.5);
-    // It slides to a stop as with any thickness. The fall of 1 mm takes 14 ms, over which it is not slowed; its impact of 0.14 m/s
-    // takes mu times that at once.
+    // The particle slides to a stop as with any other thickness. The fall of 1 mm takes 14 ms without friction. The impact of 0.14
+    // m/s removes mu times that speed at once.
     const double fall = std::sqrt(2.0 * 0.001 / kGravity);
     const double speed = 2.0 - mu * kGravity * fall;
     EXPECT_NEAR(simulator.positions()(0, 0), 2.0 * fall + speed * speed / (2.0 * mu * kGravity), 2.0 * 2.0 * 1e-3) << obstacle.name;
@@ -168,17 +170,17 @@ TEST_P(ContactSolver, ThicknessNothingIsAThicknessToo) {
   }
 }
 
-TEST_P(ContactSolver, PenaltyHoldsTheWeightAtItsStaticDepth) {
+TEST_P(ContactSolver, APenaltySupportsTheWeightAtItsStaticDepth) {
   SimulatorSettings chosen = settings(1e-4);
   chosen.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1000.0, .damping = 5.0};
   Simulator simulator(one_particle({0.0, 0.02, 0.0}, {.thickness = 0.01}), chosen, {ground()});
   run(simulator, 1.0);
-  // k (h - y) = m g; c / m = 50 1/s has taken e^-25 of the motion.
+  // k (h - y) = m g. With c / m = 50 1/s, e^-25 of the motion remains.
   EXPECT_NEAR(simulator.positions()(1, 0), 0.01 - 0.1 * kGravity / 1000.0, 1e-9);
   EXPECT_EQ(simulator.contact_count(), 1);
 }
 
-TEST(ContactCount, CountsParticlesThatAreHeldUp) {
+TEST(ContactCount, CountsSupportedParticles) {
   Simulator simulator(testing::cloth(5, 0.005, {.thickness = 0.005}), {.step = 2.5e-4}, {ground()});
   FrameRunner frames(simulator, 100);
   EXPECT_EQ(frames.next_frame().contacts, 25);

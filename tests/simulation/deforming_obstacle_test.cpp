@@ -1,4 +1,4 @@
-// Obstacles that deform: what they carry, push and rub.
+// Contact, friction and penalty on obstacles that deform.
 #include "simulation/scenes.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ using testing::kGravity;
 using testing::one_particle;
 using testing::run;
 
-/// A level sheet of 8 x 8 m about the origin, two triangles a square metre.
+/// A level sheet of 8 x 8 m about the origin, two triangles per square metre.
 TriangleMesh sheet() {
   constexpr Index kSide = 8;
   TriangleMesh mesh{Points(3, (kSide + 1) * (kSide + 1)), Triangles(3, 2 * kSide * kSide)};
@@ -27,7 +27,7 @@ TriangleMesh sheet() {
   return mesh;
 }
 
-/// Goes from the mesh to `deform(position)` of it in one second.
+/// A sequence that moves each vertex of the mesh to `deform(position)` within one second.
 template <class Deform>
 Obstacle deforming(const TriangleMesh& mesh, const ContactMaterial& material, const Deform& deform) {
   MeshSequence sequence{.triangles = mesh.triangles, .frames = {mesh.vertices, mesh.vertices}, .frame_rate = 1.0};
@@ -43,17 +43,17 @@ class DeformingObstacle : public ::testing::TestWithParam<std::size_t> {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, DeformingObstacle, ::testing::Range(std::size_t{0}, all_integrators().size()));
 
-TEST_P(DeformingObstacle, RisingSheetCarriesAParticleAtItsThickness) {
+TEST_P(DeformingObstacle, ARisingSheetLiftsAParticleAtItsThickness) {
   const Obstacle rising =
       deforming(sheet(), {}, [](const Vector3& x) { return Vector3(x + Vector3(0.0, 0.5 + 0.1 * x.x(), 0.0)); });
   Simulator simulator(one_particle({0.3, 0.01, 0.2}, {.thickness = 0.01}), settings(), {rising});
   run(simulator, 0.5);
-  // The slope of 1 in 20 that it gets moves the foot of the gap by 1 % of 1/20, the height by the slope's cosine: 1e-5 m. Sliding
-  // down it, 1/2 g a t^2 with a up to 1/20 makes 1 cm, and 1 cm a twentieth of that in height.
+  // The final slope of 1 in 20 moves the foot of the gap by 1 % of 1/20, and the height by the slope's cosine: 1e-5 m. The
+  // particle slides down by 1/2 g a t^2 with a up to 1/20, 1 cm, which is a twentieth of 1 cm in height.
   EXPECT_NEAR(simulator.positions()(1, 0), 0.01 + 0.25 + 0.5 * 0.1 * simulator.positions()(0, 0), 3e-5);
 }
 
-TEST_P(DeformingObstacle, SheetThatGoesAlongRubsAsOneThatIsMoved) {
+TEST_P(DeformingObstacle, ASlidingSequenceHasTheFrictionOfAMovedMesh) {
   const double mu = 0.2;
   const ContactMaterial rough{.thickness = 0.01, .friction = mu, .static_friction = mu};
   const Obstacle sliding = deforming(sheet(), rough, [](const Vector3& x) { return Vector3(x + Vector3(1.0, 0.0, 0.0)); });
@@ -63,26 +63,26 @@ TEST_P(DeformingObstacle, SheetThatGoesAlongRubsAsOneThatIsMoved) {
   Simulator by_motion(one_particle({0.3, 0.02, 0.2}, rough), settings(), {moved});
   run(by_frames, 0.9);
   run(by_motion, 0.9);
-  // The two add up the same steps in different orders.
+  // The two runs add the same displacements in different orders.
   EXPECT_LT((by_frames.positions() - by_motion.positions()).norm(), 1e-9);
-  // Friction speeds the particle up to 1 m/s in 1 / (mu g) s, on half a metre less than the sheet goes.
+  // Friction accelerates the particle to 1 m/s in 1 / (mu g) s. In that time it lags behind by half of the sheet's displacement.
   const double behind = 0.5 / (mu * kGravity);
   EXPECT_NEAR(by_frames.positions()(0, 0), 0.3 + 0.9 - behind, 2e-3);
   EXPECT_NEAR(by_frames.state().v(0, 0), 1.0, 1e-9);
 }
 
-TEST_P(DeformingObstacle, StretchingSheetHoldsAParticleOnItsSpot) {
+TEST_P(DeformingObstacle, AParticleSticksToItsPointOfAStretchingSheet) {
   const ContactMaterial rough{.thickness = 0.01, .friction = 2.0, .static_friction = 2.0};
   const Obstacle stretching = deforming(sheet(), rough, [](const Vector3& x) { return Vector3(2.0 * x.x(), x.y(), x.z()); });
   Simulator simulator(one_particle({0.8, 0.02, 0.2}, rough), settings(), {stretching});
   run(simulator, 1.0);
-  // The spot under it goes from 0.8 m to 1.6 m at 0.8 m/s. Friction takes 0.8 / (mu g) s to speed it up, and its spot is 1.6 cm
-  // away by then; what it then rests on grows as the sheet does.
+  // The point below the particle moves from 0.8 m to 1.6 m at 0.8 m/s. Friction needs 0.8 / (mu g) s to accelerate the particle,
+  // and the point is 1.6 cm away by then. The distance to the new contact point grows as the sheet stretches.
   EXPECT_NEAR(simulator.positions()(0, 0), 1.6, 2.0 * 0.5 * 0.8 * 0.8 / (2.0 * kGravity));
   EXPECT_NEAR(simulator.state().v(0, 0), simulator.positions()(0, 0) / 2.0, 1e-3);
 }
 
-TEST_P(DeformingObstacle, PenaltyRubsAtTheSpeedOfTheSurface) {
+TEST_P(DeformingObstacle, PenaltyFrictionFollowsTheSpeedOfTheSurface) {
   const ContactMaterial rough{.thickness = 0.01, .friction = 0.5, .static_friction = 0.5};
   SimulatorSettings chosen = settings();
   chosen.contact = {.response = ContactSettings::Response::penalty, .stiffness = 500.0, .damping = 2.0};
@@ -92,8 +92,8 @@ TEST_P(DeformingObstacle, PenaltyRubsAtTheSpeedOfTheSurface) {
   EXPECT_NEAR(simulator.state().v(0, 0), 1.0, 1e-6);
 }
 
-TEST_P(DeformingObstacle, ThinSheetThatFlapsThroughAClothTakesItAlong) {
-  // It goes up 0.8 m in a sixteenth of a second: 13 m/s, 13 mm a step, each square at its own pace.
+TEST_P(DeformingObstacle, AFlappingThinSheetLiftsACloth) {
+  // The sheet rises by 0.8 m in a sixteenth of a second: 13 m/s, 13 mm per step, with a different speed at each square.
   const Obstacle flapping = [] {
     Obstacle obstacle = deforming(sheet(), {}, [](const Vector3& x) {
       return Vector3(x + Vector3(0.0, 0.8 + 0.2 * std::sin(3.0 * x.x()) * std::cos(2.0 * x.z()), 0.0));
@@ -133,7 +133,7 @@ TEST(DeformingObstacle, ScalingByAPowerOfTwoScalesEveryBit) {
   const Points positions = simulate(1.0);
   EXPECT_EQ(simulate(128.0), 128.0 * positions);
   EXPECT_EQ(simulate(1.0 / 128.0), positions / 128.0);
-  EXPECT_GT(positions.row(1).minCoeff(), 0.1) << "the sheet has it";
+  EXPECT_GT(positions.row(1).minCoeff(), 0.1) << "the sheet lifts the cloth";
 }
 
 }  // namespace

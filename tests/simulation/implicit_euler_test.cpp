@@ -1,4 +1,4 @@
-// Implicit Euler with steps that no explicit scheme survives.
+// Implicit Euler is stable at steps at which no explicit scheme is.
 #include "base/error.h"
 #include "base/parallel.h"
 #include "simulation/scenes.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStep = 1.0 / 60.0;  // [s]
 
-/// A level cloth of 1 m, 0.2 kg and n x n particles, of springs of 1e5 N/m, held by two corners.
+/// A level cloth of 1 m, 0.2 kg and n x n particles with springs of 1e5 N/m, pinned at two corners.
 SpringNetwork stiff_cloth(Index n) {
   constexpr double kStiffness = 1.0e5;
   BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {n, n}}, {.structural = SpringMaterial{.value = kStiffness},
@@ -43,8 +43,8 @@ double moving_energy(const Simulator& simulator) {
   return 0.5 * simulator.state().v.colwise().squaredNorm().dot(simulator.network().masses.transpose()) + simulator.elastic_energy();
 }
 
-/// Under the cloth's middle as it swings down.
-Obstacle ball_in_its_way() {
+/// A ball in the path of the swinging cloth's middle.
+Obstacle ball_below_cloth() {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.25}, .material = {.friction = 0.3, .static_friction = 0.3}};
   ball.rest_pose.translation() = Vector3(0.0, -0.45, -0.1);
   return ball;
@@ -55,25 +55,26 @@ double least_distance(const Simulator& simulator, const Obstacle& ball) {
 }
 
 TEST(ImplicitEuler, SwingsAStiffClothByTwoCornersInStepsOfASixtiethOfASecond) {
-  const Obstacle ball = ball_in_its_way();
+  const Obstacle ball = ball_below_cloth();
   Simulator simulator(stiff_cloth(64), {.step = kStep, .integrator = ImplicitEulerSettings{}}, {ball});
   for (int step = 0; step < 20; ++step) {
     simulator.step();
     ASSERT_GT(least_distance(simulator, ball), 0.0) << "step " << step;
-    // It strikes at 2 m/s: contact moves particles by two lengths of their springs in a step. With one answer to it 0.15.
+    // The cloth strikes at 2 m/s: contact moves particles by two spring lengths in a step. With a single response to contact the
+    // stretch is 0.15.
     ASSERT_LT(largest_stretch(simulator), simulator.contact_count() > 0 ? 0.12 : 0.1) << "step " << step;
     if (simulator.contact_count() > 0) continue;
-    // The weight of the cloth, falling by its size, has no more to give.
+    // The potential energy of the cloth's fall by its own size is the upper bound.
     ASSERT_LT(moving_energy(simulator), 0.2 * testing::kGravity * 1.0) << "step " << step;
   }
-  EXPECT_LT(simulator.positions().row(1).mean(), -0.15) << "it fell";
+  EXPECT_LT(simulator.positions().row(1).mean(), -0.15) << "the cloth fell";
   EXPECT_GT(simulator.contact_count(), 0);
 }
 
-// The control: without an answer to what contact pushes, its springs stay stretched by a third and hold a thousand joules, with one
-// by 9 % and 1.6 J.
+// Without a response to contact the springs stay stretched by a third and store a thousand joules; with a single one 9 % and 1.6
+// J.
 TEST(ImplicitEuler, LetsAStiffClothRestOnABall) {
-  const Obstacle ball = ball_in_its_way();
+  const Obstacle ball = ball_below_cloth();
   Simulator simulator(stiff_cloth(24), {.step = kStep, .integrator = ImplicitEulerSettings{}}, {ball});
   for (int step = 0; step < 120; ++step) {
     simulator.step();
@@ -81,12 +82,11 @@ TEST(ImplicitEuler, LetsAStiffClothRestOnABall) {
     ASSERT_GT(least_distance(simulator, ball), 0.0) << "step " << step;
   }
   EXPECT_GT(simulator.contact_count(), 0);
-  EXPECT_LT(moving_energy(simulator), 0.1 * 0.2 * testing::kGravity * 1.0)
-      << "a tenth of what its weight gives, falling by its size";
+  EXPECT_LT(moving_energy(simulator), 0.1 * 0.2 * testing::kGravity * 1.0) << "a tenth of the energy of a fall by its own size";
 }
 
-// It strikes at 1.3 m/s, 4 cm a step: contact moves particles by half a spring's length, which springs must follow in the same
-// step, and what truncation stops as well: without an answer to that springs are stretched by 0.35.
+// The cloth strikes at 1.3 m/s, 4 cm per step: contact moves particles by half a spring length. Springs must respond to contact
+// and to truncation within the same step. Without the response to truncation they stretch by 0.35.
 TEST(ImplicitEuler, GainsNoEnergyWhereItStrikesABox) {
   const ContactMaterial rough{.friction = 0.3, .static_friction = 0.3};
   const Obstacle box{.name = "box", .geometry = BoxGeometry{.size = {0.4, 0.4, 0.4}}, .material = rough};
@@ -101,8 +101,8 @@ TEST(ImplicitEuler, GainsNoEnergyWhereItStrikesABox) {
   EXPECT_GT(simulator.contact_count(), 0);
 }
 
-// A stiff block that is set down 2 mm above its gap, with friction under it and without: what pushes it up must not be forgotten
-// while friction holds it along the ground.
+// A stiff block starts 2 mm above its gap, with and without friction. The normal impulse must persist while static friction acts
+// along the ground.
 TEST(ImplicitEuler, RestsABlockOnTheGround) {
   for (const double friction : {0.0, 0.4}) {
     const ContactMaterial rough{.friction = friction, .static_friction = friction};
@@ -124,25 +124,24 @@ TEST(ImplicitEuler, RestsABlockOnTheGround) {
     const double begin = simulator.gravity_energy();
     for (int step = 0; step < 60; ++step) {
       simulator.step();
-      // Rounding, of the 8 J that it has where it stands.
+      // Rounding of the 8 J of gravity energy at rest.
       ASSERT_LT(moving_energy(simulator) + simulator.gravity_energy(), begin * (1.0 + 1.0e-12))
           << "friction " << friction << ", step " << step;
     }
-    // Its weight, which its springs carry, shortens it by m g L / (E A) / 2, a fifth of a per cent of 0.2 m at most.
+    // The weight shortens the block by m g L / (E A) / 2, at most a fifth of a per cent of 0.2 m.
     const double height = simulator.positions().row(1).maxCoeff() - simulator.positions().row(1).minCoeff();
     EXPECT_NEAR(height, 0.2, 0.002 * 0.2) << "friction " << friction;
     EXPECT_LT(simulator.state().v.colwise().norm().maxCoeff(), 1.0e-3);
   }
 }
 
-TEST(ImplicitEuler, IsNeededForSuchSteps) {
+TEST(ImplicitEuler, TakesStepsThatExplicitSchemesDoNotSurvive) {
   EXPECT_THROW(Simulator(stiff_cloth(16), {.step = kStep, .integrator = SymplecticEulerSettings{}}), InputError);
   Simulator unstable(stiff_cloth(16), {.step = kStep, .integrator = SymplecticEulerSettings{}, .stability = StabilityCheck::warn});
   EXPECT_THROW(testing::run(unstable, 1.0), StepError);
 }
 
-// The penalty is one of its forces: a ball of 0.1 kg comes to rest where the spring carries it, m g / k below its gap, at a step
-// that is 10 / omega.
+// The penalty is one of the implicit forces. A ball of 0.1 kg comes to rest m g / k below its gap, with a step of 10 / omega.
 TEST(ImplicitEuler, RestsOnAPenaltyAtAnyStep) {
   const double stiffness = 0.1 * std::pow(10.0 / kStep, 2);
   SimulatorSettings settings{.step = kStep, .integrator = ImplicitEulerSettings{}};
@@ -152,7 +151,7 @@ TEST(ImplicitEuler, RestsOnAPenaltyAtAnyStep) {
   EXPECT_NEAR(simulator.positions()(1, 0), 0.01 - 0.1 * testing::kGravity / stiffness, 1.0e-12);
 }
 
-// Bending of 1e3 N m on masses of a gram has modes of 10 to 1e7 1/s.
+// An angle stiffness of 1e3 N m on masses of 1 g has modes from 10 to 1e7 1/s.
 TEST(ImplicitEuler, SwingsARopeThatIsStiffAgainstBending) {
   NetworkBuilder builder;
   constexpr Index kParticles = 20;
@@ -163,14 +162,15 @@ TEST(ImplicitEuler, SwingsARopeThatIsStiffAgainstBending) {
   Simulator simulator(builder.build(), {.step = kStep, .integrator = ImplicitEulerSettings{}});
   for (int step = 0; step < 60; ++step) {
     simulator.step();
-    // All that its fall can give, a length up and down, and what its springs take in while a linear step turns them.
+    // The upper bound is the energy of a fall by twice the length, and the energy that the springs store while a linear step turns
+    // them.
     ASSERT_LT(moving_energy(simulator), 2.0 * 0.02 * testing::kGravity * 0.95) << "step " << step;
   }
   const Vector3 tip = simulator.positions().col(kParticles - 1);
   EXPECT_NEAR(tip.norm(), 0.95, 0.01) << "a rod";
 }
 
-TEST(ImplicitEuler, HasTheSameBitsForAnyNumberOfThreads) {
+TEST(ImplicitEuler, DoesNotDependOnTheNumberOfThreads) {
   const auto ten_steps = [](int threads) {
     const ThreadLimit limit(threads);
     Simulator simulator(stiff_cloth(16), {.step = kStep, .integrator = ImplicitEulerSettings{}});

@@ -1,4 +1,4 @@
-// A stretch limit takes energy or leaves it, in steps of any size, of any scheme.
+// A stretch limit adds no energy, at any step and with any scheme.
 #include "simulation/scenes.h"
 
 #include <gtest/gtest.h>
@@ -11,13 +11,13 @@ namespace {
 using testing::kGravity;
 
 constexpr double kMass = 0.2;
-constexpr double kSeconds = 0.8;  // down and most of the way up again
+constexpr double kSeconds = 0.8;  // down and most of the swing up again
 
 constexpr SpringMaterial kLimp{.value = 0.0};
 
-/// A cloth of 1 m and n x n particles, level or turned so far from upright [degrees], that two corners hold.
-SpringNetwork held_cloth(Index n, const SpringMaterial& structural = kLimp, const SpringMaterial& shear = kLimp,
-                         double turned = -90.0) {
+/// A cloth of 1 m and n x n particles, pinned at two corners, rotated by `turned` [degrees] about x (0: vertical).
+SpringNetwork pinned_cloth(Index n, const SpringMaterial& structural = kLimp, const SpringMaterial& shear = kLimp,
+                           double turned = -90.0) {
   BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {n, n}}, {.structural = structural, .shear = shear});
   set_total_mass(shape, kMass);
   RigidTransform pose = RigidTransform::Identity();
@@ -30,7 +30,7 @@ SpringNetwork held_cloth(Index n, const SpringMaterial& structural = kLimp, cons
   return builder.build();
 }
 
-/// How often the middle of a cloth that hangs by Newton's method passes under its pins.
+/// The number of times that the middle of a hanging cloth passes below its pins.
 int passes_under_pins(const SpringNetwork& network, const StretchLimitSettings& limit, int rate, double seconds) {
   const double pins_at = network.positions(2, network.pins.front().particles.front());
   Simulator simulator(network, {.step = 1.0 / rate, .integrator = VerletSettings{.damping_rate = 0.3}, .stretch_limit = limit});
@@ -45,28 +45,29 @@ int passes_under_pins(const SpringNetwork& network, const StretchLimitSettings& 
   return passes;
 }
 
-// Where it turns round there is little to be gained in a step, and yet it must not stop there: half a degree askew gravity pulls it
-// back with a hundredth of itself. A sheet of 1 m swings through in each pi sqrt(2 / (3 g)) = 0.82 s: 7 times in these.
-TEST(LimitMotion, WhatHangsHalfADegreeAskewSwingsBackUnderNewton) {
+// At a turning point a step gains little energy, but the cloth must not stop there. Half a degree from the vertical, gravity pulls
+// it back with a hundredth of its weight. A sheet of 1 m swings through in pi sqrt(2 / (3 g)) = 0.82 s: 7 times within the
+// duration.
+TEST(LimitMotion, AClothHalfADegreeFromVerticalSwingsUnderNewton) {
   for (const double max_stretch : {0.0, 0.02}) {
     const StretchLimitSettings limit{.max_stretch = max_stretch, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};
     for (const int rate : {30, 60, 120, 960}) {
-      EXPECT_GE(passes_under_pins(held_cloth(16, kLimp, kLimp, -0.5), limit, rate, 6.0), 5) << max_stretch << ", " << rate;
+      EXPECT_GE(passes_under_pins(pinned_cloth(16, kLimp, kLimp, -0.5), limit, rate, 6.0), 5) << max_stretch << ", " << rate;
     }
   }
 }
 
-// Links between pins that are drawn apart store far more than gravity moves in a small step, and keep it: that is no measure of
-// rest.
-TEST(LimitMotion, WhatIsDrawnTautSwingsUnderNewton) {
-  SpringNetwork network = held_cloth(16, kLimp, kLimp, -20.0);
+// Springs between pins that are pulled apart store far more energy than gravity changes in a small step, and keep it. Their energy
+// is no measure of rest.
+TEST(LimitMotion, ATautClothSwingsUnderNewton) {
+  SpringNetwork network = pinned_cloth(16, kLimp, kLimp, -20.0);
   network.positions(0, network.pins.front().particles.front()) -= 0.015;
   network.positions(0, network.pins.back().particles.back()) += 0.015;
   const StretchLimitSettings limit{.max_stretch = 0.0, .tolerance = 0.05, .solver = StretchLimitSettings::Solver::newton};
   EXPECT_GE(passes_under_pins(network, limit, 960, 6.0), 6);
 }
 
-/// The most that motion, height and springs ever have beyond what they began with [J].
+/// The largest increase [J] of the kinetic, gravity and elastic energy over its initial value.
 double most_gained(const SpringNetwork& network, double step, const StretchLimitSettings& limit,
                    const IntegratorSettings& integrator = SimulatorSettings{}.integrator, double seconds = kSeconds) {
   Simulator simulator(network, {.step = step, .integrator = integrator, .stretch_limit = limit});
@@ -83,17 +84,17 @@ double most_gained(const SpringNetwork& network, double step, const StretchLimit
   return most;
 }
 
-// What falls by a height h is at most half a step's way, g t dt / 2, apart from where its speed says it is: m g sqrt(2 g h) dt / 2,
-// 1.5 mJ in the largest step here. Links that carry it, give by a tenth of the tolerance.
-TEST(LimitEnergy, NewtonMakesNoneInSmallSteps) {
+// A body that falls by a height h lags behind its velocity by at most half a step's displacement, g t dt / 2. This is an energy of
+// m g sqrt(2 g h) dt / 2, 1.5 mJ at the largest step here. Springs that support it yield by a tenth of the tolerance.
+TEST(LimitEnergy, NewtonGainsNoEnergyInSmallSteps) {
   for (const double tolerance : {0.001, 0.005, 0.02}) {
     const StretchLimitSettings limit{.max_stretch = 0.01, .tolerance = tolerance, .solver = StretchLimitSettings::Solver::newton};
     for (const Index side : {2, 5}) {
-      for (const int parts : {50, 200, 1000}) {
-        const double step = 1.0 / (60.0 * parts);
-        const double lags = kMass * kGravity * std::sqrt(2.0 * kGravity) * step / 2.0;
-        const double gives = kMass * kGravity * 0.1 * tolerance;
-        EXPECT_LT(most_gained(held_cloth(side), step, limit), lags + gives) << tolerance << ", " << side << ", " << parts;
+      for (const int steps_a_frame : {50, 200, 1000}) {
+        const double step = 1.0 / (60.0 * steps_a_frame);
+        const double lag = kMass * kGravity * std::sqrt(2.0 * kGravity) * step / 2.0;
+        const double yields = kMass * kGravity * 0.1 * tolerance;
+        EXPECT_LT(most_gained(pinned_cloth(side), step, limit), lag + yields) << tolerance << ", " << side << ", " << steps_a_frame;
       }
     }
   }
@@ -111,36 +112,36 @@ SpringNetwork soft_hanging_cloth() {
   return builder.build();
 }
 
-// It sinks by the 2 % that its limit lets it, and swings out. What falls by a height h is at most half a step's way, g t dt / 2,
-// apart from where its speed says it is: that much its energy may seem to rise.
+// The cloth sinks by the 2 % of its limit and then swings until it rests. A body that falls by a height h lags behind its velocity
+// by at most half a step's displacement, g t dt / 2. By that much its energy may seem to rise.
 TEST(LimitEnergy, SoftSpringsUnderNewtonComeToRest) {
   const StretchLimitSettings limit{.max_stretch = 0.02, .solver = StretchLimitSettings::Solver::newton};
   const SpringNetwork network = soft_hanging_cloth();
   constexpr double kStep = 1.0 / 540.0;
   Simulator simulator(network, {.step = kStep, .integrator = VerletSettings{.damping_rate = 3.0}, .stretch_limit = limit});
-  const double lags = 0.3 * kGravity * std::sqrt(2.0 * kGravity * 0.02) * kStep / 2.0;
+  const double lag = 0.3 * kGravity * std::sqrt(2.0 * kGravity * 0.02) * kStep / 2.0;
   double least = 0.0;
   for (int step = 0; step < 6 * 540; ++step) {
     simulator.step();
     const double energy = 0.5 * network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose()) +
                           simulator.gravity_energy() + simulator.elastic_energy();
     least = std::min(least, energy);
-    ASSERT_LT(energy - least, lags) << "step " << step;
+    ASSERT_LT(energy - least, lag) << "step " << step;
   }
   EXPECT_LT(least, 0.0);
 }
 
-// All of its links are nearly as long as they may be, most of the time.
-TEST(LimitEnergy, StiffSpringsUnderNewtonMakeNoneAsTheySwing) {
+// Nearly all springs are at their limit most of the time.
+TEST(LimitEnergy, StiffSwingingSpringsGainNoEnergyUnderNewton) {
   const StretchLimitSettings limit{.max_stretch = 0.02, .solver = StretchLimitSettings::Solver::newton};
-  const SpringNetwork network = held_cloth(13, {.value = 500.0}, {.value = 20.0});
+  const SpringNetwork network = pinned_cloth(13, {.value = 500.0}, {.value = 20.0});
   constexpr double kStep = 1.0 / 1050.0;
-  const double lags = kMass * kGravity * std::sqrt(2.0 * kGravity) * kStep / 2.0;
-  EXPECT_LT(most_gained(network, kStep, limit), lags);
+  const double lag = kMass * kGravity * std::sqrt(2.0 * kGravity) * kStep / 2.0;
+  EXPECT_LT(most_gained(network, kStep, limit), lag);
 }
 
-/// A level rope of 1 m that one end holds, with springs that a stretch limit keeps from giving as they would.
-SpringNetwork held_rope(Index n, double stiffness) {
+/// A level rope of 1 m, pinned at one end. The stretch limit allows less stretch than its springs would.
+SpringNetwork pinned_rope(Index n, double stiffness) {
   RopeShape rope;
   rope.points = {Vector3::Zero(), Vector3::UnitX()};
   rope.particles = n;
@@ -153,22 +154,22 @@ SpringNetwork held_rope(Index n, double stiffness) {
 
 class SchemeUnderALimit : public ::testing::TestWithParam<IntegratorSettings> {};
 
-// What the limit takes of a spring's stretch is gone, with its energy: the spring must not pull with it as well.
+// The limit removes a spring's stretch and its energy. The spring must not pull as well.
 TEST_P(SchemeUnderALimit, GainsNoEnergy) {
   const StretchLimitSettings limit{.max_stretch = 0.01, .solver = StretchLimitSettings::Solver::newton};
   for (const Index particles : {6, 21}) {
     for (const double stiffness : {500.0, 5000.0}) {
       const double per_particle = kMass / static_cast<double>(particles);
-      const double step = 0.9 * std::sqrt(per_particle / stiffness);  // nearly the largest stable one
-      const double lags = kMass * kGravity * std::sqrt(2.0 * kGravity) * step / 2.0;
-      EXPECT_LT(most_gained(held_rope(particles, stiffness), step, limit, GetParam()), lags)
+      const double step = 0.9 * std::sqrt(per_particle / stiffness);  // nearly the largest stable step
+      const double lag = kMass * kGravity * std::sqrt(2.0 * kGravity) * step / 2.0;
+      EXPECT_LT(most_gained(pinned_rope(particles, stiffness), step, limit, GetParam()), lag)
           << particles << " particles, " << stiffness << " N/m";
     }
   }
 }
 
-/// A cube of 0.3 m that one of its upper edges holds.
-SpringNetwork held_cube() {
+/// A cube of 0.3 m, pinned along one of its upper edges.
+SpringNetwork pinned_cube() {
   BodyShape shape = make_solid({.size = Vector3::Constant(0.3), .resolution = {2, 2, 2}},
                                {.structural = SpringMaterial{.value = 500.0}, .shear = SpringMaterial{.value = 250.0}});
   set_total_mass(shape, kMass);
@@ -180,12 +181,12 @@ SpringNetwork held_cube() {
   return builder.build();
 }
 
-// Springs push what is above as it turns: along where it has turned to that would do work in every step.
-TEST_P(SchemeUnderALimit, GainsNoneOfWhatMayNotShrink) {
+// Springs push the cube while it turns. A push along the rotated direction would do work in every step.
+TEST_P(SchemeUnderALimit, GainsNoEnergyFromSpringsThatMayNotShrink) {
   const StretchLimitSettings limit{.max_compression = 0.0, .kinds = {SpringKind::structural, SpringKind::shear}};
   constexpr double kStep = 1.0 / 400.0;
-  const double lags = kMass * kGravity * std::sqrt(2.0 * kGravity * 0.3) * kStep / 2.0;
-  EXPECT_LT(most_gained(held_cube(), kStep, limit, GetParam(), 10.0), lags);
+  const double lag = kMass * kGravity * std::sqrt(2.0 * kGravity * 0.3) * kStep / 2.0;
+  EXPECT_LT(most_gained(pinned_cube(), kStep, limit, GetParam(), 10.0), lag);
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, SchemeUnderALimit,

@@ -1,4 +1,4 @@
-// Materials whose motion depends neither on how finely a body is divided, nor on the step.
+// Materials whose motion depends neither on a body's resolution nor on the step.
 #include "simulation/scenes.h"
 #include "simulation/simulator.h"
 #include "simulation/step/step_check.h"
@@ -21,7 +21,7 @@ SpringMaterial modulus(double value, std::optional<double> damping_ratio = {}) {
   return {.value = value, .measure = SpringMaterial::Measure::modulus, .damping_ratio = damping_ratio};
 }
 
-/// A cloth of 1 m and side x side particles in the plane y = 0, held by its corners or by the whole of two opposite edges.
+/// A cloth of 1 m and side x side particles in the plane y = 0, pinned at its corners or along two opposite edges.
 SpringNetwork level_cloth(Index side, bool by_corners, double structural) {
   BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {side, side}},
                                {.structural = modulus(structural), .shear = modulus(0.25 * structural)});
@@ -40,7 +40,7 @@ SpringNetwork level_cloth(Index side, bool by_corners, double structural) {
   return builder.build();
 }
 
-/// A rope of 1 m along x, pinned at its first particle and, when asked, at its last.
+/// A rope of 1 m along x, pinned at its first particle and, if `both_ends`, at its last.
 SpringNetwork level_rope(Index particles, const SpringMaterial& structural, bool both_ends) {
   BodyShape shape =
       make_rope({.points = {Vector3::Zero(), Vector3::UnitX()}, .particles = particles, .length = {}}, {.structural = structural});
@@ -52,11 +52,11 @@ SpringNetwork level_rope(Index particles, const SpringMaterial& structural, bool
   return builder.build();
 }
 
-/// How far [m] the lowest particle is below y = 0 after `seconds`, which is at rest when the damping is near critical. The step is
-/// `part` of the largest stable one.
-double sag(const SpringNetwork& network, double seconds, double damping_rate, double part = 0.9) {
+/// The distance [m] of the lowest particle below y = 0 after `seconds`. It is at rest then if the damping is near critical. The
+/// step is `fraction` of the largest stable one.
+double sag(const SpringNetwork& network, double seconds, double damping_rate, double fraction = 0.9) {
   SimulatorSettings settings{.integrator = VerletSettings{.damping_rate = damping_rate}};
-  settings.step = part * largest_stable_step(settings.integrator, simulation_bounds(network, settings, false));
+  settings.step = fraction * largest_stable_step(settings.integrator, simulation_bounds(network, settings, false));
   Simulator simulator(network, settings);
   run(simulator, seconds);
   return -simulator.positions().row(1).minCoeff();
@@ -67,26 +67,26 @@ double spread(const std::vector<double>& values) {
   return *most / *least - 1.0;
 }
 
-// Measured: 0.35 %. The slowest mode's rate is pi / L sqrt(T / density) = 8.6 1/s with T = weight L / (8 sag): after 1 s of
-// critical damping 0.2 % of the way is left, the same at each resolution.
-TEST(Materials, ClothHeldByTwoEdgesSagsAlikeAtAnyResolution) {
+// Measured: 0.35 %. The slowest mode's rate is pi / L sqrt(T / density) = 8.6 1/s with T = weight L / (8 sag). After 1 s of
+// critical damping 0.2 % of the amplitude remains at each resolution.
+TEST(Materials, AClothPinnedAtTwoEdgesSagsAlikeAtAnyResolution) {
   std::vector<double> sags;
   for (const Index side : {16, 32, 64, 128}) sags.push_back(sag(level_cloth(side, false, 20.0), 1.0, 17.0));
   EXPECT_LT(spread(sags), 0.03);
   EXPECT_GT(sags[0], 0.1);
 }
 
-// A corner that is one particle is a point load on a sheet, whose give grows with the logarithm of the resolution whatever the
-// discretisation: weight / 2 / (pi modulus) a factor of e, here 0.5 %. Measured: 2.4 % at rest.
-TEST(Materials, ClothHeldByTwoCornersSagsAlikeAtAnyResolution) {
+// A corner of one particle is a point load on a sheet. Its compliance grows with the logarithm of the resolution for any
+// discretisation: by weight / 2 / (pi modulus) per factor of e, here 0.5 %. Measured: 2.4 % at rest.
+TEST(Materials, AClothPinnedAtTwoCornersSagsAlikeAtAnyResolution) {
   std::vector<double> sags;
   for (const Index side : {16, 32, 64, 128}) sags.push_back(sag(level_cloth(side, true, 60.0), 2.0, 6.0));
   EXPECT_LT(spread(sags), 0.03);
   EXPECT_GT(sags[0], 1.0);
 }
 
-// The parabola w = (3 q L^4 / 64 EA)^(1/3) holds for shallow sags; that of a chord's discrete arc is lower by 1 / (n - 1)^2 of it.
-TEST(Materials, RopeSagsAlikeAtAnyResolution) {
+// The parabola w = (3 q L^4 / 64 EA)^(1/3) applies to shallow sags. The discrete arc sags by a fraction 1 / (n - 1)^2 less.
+TEST(Materials, ARopeSagsAlikeAtAnyResolution) {
   std::vector<double> sags;
   for (const Index particles : {9, 17, 65, 257}) sags.push_back(sag(level_rope(particles, modulus(200.0), true), 1.5, 20.0));
   EXPECT_LT(spread(sags), 0.03);
@@ -101,7 +101,7 @@ TEST(Materials, SagDoesNotDependOnTheStep) {
   EXPECT_LT(spread({sag(rope, 1.5, 20.0, 0.9), sag(rope, 1.5, 20.0, 0.225)}), 0.01);
 }
 
-/// Energy that is left of the slowest motion along a rope held at one end after `seconds`, as a part of what it began with.
+/// The energy of the slowest longitudinal mode of a rope with one fixed end after `seconds`, divided by its initial energy.
 double energy_left(Index particles, double damping_ratio, double seconds) {
   SpringNetwork rope = level_rope(particles, modulus(200.0, damping_ratio), false);
   for (Index i = 0; i < particles; ++i) {
@@ -118,9 +118,10 @@ double energy_left(Index particles, double damping_ratio, double seconds) {
   return energy() / start;
 }
 
-// Its frequency is pi / 2 c / L with c^2 = EA / density, the breathing's is sqrt(3) c / L; its own ratio is zeta times the first by
-// the second, and energy goes with exp(-2 zeta' omega' t) on the whole, within 2 zeta' around it.
-TEST(Materials, DampingRatioStopsARopeAlikeAtAnyResolution) {
+// Frequencies, with c^2 = EA / density: pi / 2 c / L for the mode, sqrt(3) c / L for the spring's own breathing mode. The mode's
+// damping ratio zeta' is zeta times their quotient. The energy decays as exp(-2 zeta' omega' t) on average and oscillates by 2
+// zeta' around it.
+TEST(Materials, ADampingRatioSlowsARopeAlikeAtAnyResolution) {
   const double ratio = 0.05;
   const double speed = std::sqrt(200.0 / kDensity);
   const double own_frequency = std::numbers::pi / 2.0 * speed;

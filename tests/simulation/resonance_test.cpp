@@ -1,4 +1,4 @@
-// Steps below the largest stable one at which things explode all the same, and the step that is advised instead.
+// A step below the largest stable one can explode by resonance. The advised step does not.
 #include "simulation/scenes.h"
 #include "simulation/step/step_check.h"
 
@@ -10,9 +10,9 @@
 namespace sprung {
 namespace {
 
-constexpr double kSpeed = 30.0;  // [m/s], that of the cloth's waves: it crumples
+constexpr double kSpeed = 30.0;  // [m/s] of the cloth's waves: the cloth crumples
 
-/// A cloth of 1 m and 0.2 kg, askew, that is thrown at the sheet.
+/// A tilted cloth of 1 m and 0.2 kg that flies towards the sheet.
 SpringNetwork thrown_cloth(double damping_time) {
   const auto spring = [&](double stiffness) { return SpringMaterial{.value = stiffness, .damping = damping_time * stiffness}; };
   BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {21, 21}},
@@ -27,14 +27,14 @@ SpringNetwork thrown_cloth(double damping_time) {
   return builder.build();
 }
 
-/// How much more motion and springs hold 1 s after the cloth struck than just after it did: 1 is as much.
+/// The sum of kinetic and elastic energy 1 s after the impact, divided by the sum just after it.
 double growth(const SpringNetwork& network, const IntegratorSettings& integrator, double step) {
   Simulator simulator(network, {.step = step, .gravity = Vector3::Zero(), .integrator = integrator}, {testing::sheet(1.0)});
   const auto energy = [&] {
     return 0.5 * network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose()) + simulator.elastic_energy();
   };
   testing::run(simulator, 0.02);
-  EXPECT_GT(simulator.contact_count(), 0) << "it strikes";
+  EXPECT_GT(simulator.contact_count(), 0) << "the cloth hits the sheet";
   testing::run(simulator, 0.18);
   const double begin = energy();
   testing::run(simulator, 1.0);
@@ -45,7 +45,8 @@ double advised(const SpringNetwork& network, const IntegratorSettings& integrato
   return advised_step(integrator, spectral_bounds(network));
 }
 
-// Leapfrog's own energy, which it keeps, is off the true one by (omega dt)^2 / 8 of what the fastest motion has at most.
+// Leapfrog conserves a modified energy. It differs from the true one by at most (omega dt)^2 / 8 of the energy of the fastest
+// mode.
 TEST(Resonance, DoesNotHeatACrumpledClothAtTheAdvisedStep) {
   const SpringNetwork network = thrown_cloth(0.0);
   for (const IntegratorSettings& integrator : {IntegratorSettings(SymplecticEulerSettings{}), IntegratorSettings(VerletSettings{}),
@@ -65,7 +66,7 @@ TEST(Resonance, IsOutweighedByDampingOfOnePerCent) {
   const double omega = std::sqrt(spectral_bounds(thrown_cloth(0.0)).elastic);
   const SpringNetwork network = thrown_cloth(2.0 * kHardlyDamped / omega);
   const double step = advised(network, SymplecticEulerSettings{});
-  EXPECT_GT(step * omega, std::numbers::sqrt3) << "it may be resonant";
+  EXPECT_GT(step * omega, std::numbers::sqrt3) << "the step can be resonant";
   EXPECT_LT(growth(network, SymplecticEulerSettings{}, step), 1.0);
 }
 

@@ -1,4 +1,4 @@
-// Sliding where a cloth meets many triangles at once, and others in each step: on hills and in valleys that are round.
+// A cloth slides over many triangles at once, and over others in each step: on round hills and in round valleys.
 #include "collision/sample_meshes.h"
 #include "network/network_builder.h"
 #include "simulation/simulator.h"
@@ -16,11 +16,11 @@ namespace {
 
 constexpr double kGravity = 9.81;     // [m/s^2]
 constexpr double kThickness = 0.005;  // [m] of the cloth
-constexpr double kBegin = 0.44;       // [rad] from the top, beyond what friction holds
+constexpr double kBegin = 0.44;       // [rad] from the top, beyond the friction angle
 constexpr double kSide = 0.1;         // [m] of the cloth
 
-/// A sheet about the z axis, a part of a cylinder: `reach` [m] to each side of `middle` [rad], which is from the top where the
-/// radius [m] is positive, else from the bottom.
+/// A section of a cylinder about the z axis that reaches `reach` [m] to each side of `middle` [rad]. The angle counts from the top
+/// if the radius [m] is positive, otherwise from the bottom.
 TriangleMesh round_slope(double radius, double middle, double reach, double facet) {
   TriangleMesh mesh = test::flat_sheet(2 * static_cast<Index>(reach / facet));
   for (Index i = 0; i < mesh.vertices.cols(); ++i) {
@@ -31,7 +31,8 @@ TriangleMesh round_slope(double radius, double middle, double reach, double face
   return mesh;
 }
 
-/// A square that lies `angle` [rad] from the top of a hill or from the bottom of a valley, carried by the stretch limit alone.
+/// A square that lies `angle` [rad] from the top of a hill or from the bottom of a valley. The stretch limit alone keeps its
+/// shape.
 SpringNetwork square(double side, double radius, double angle, Index resolution, double friction) {
   const SpringMaterial without_force{};
   BodyShape shape =
@@ -62,8 +63,8 @@ Simulator simulator_of(SpringNetwork network, TriangleMesh slope, double frictio
 
 Vector3 middle_of(const Simulator& simulator) { return simulator.positions().rowwise().mean(); }
 
-/// How far [m] a point that slides on the hill of this radius gets: Coulomb's law with the weight that its speed leaves it.
-double way_of_a_point(double radius, double friction, double duration) {
+/// The distance [m] that a point slides on a hill of this radius: Coulomb's law with the weight that remains at its speed.
+double distance_of_a_point(double radius, double friction, double duration) {
   constexpr double kFine = 1e-5;
   double angle = kBegin;
   double spin = 0.0;
@@ -77,7 +78,7 @@ double way_of_a_point(double radius, double friction, double duration) {
 
 struct Slide {
   double radius;     ///< of the hill [m]
-  Index resolution;  ///< particles along a side: of few the elements are what meets the hill
+  Index resolution;  ///< particles along a side; if they are few, elements touch the hill
   double friction;
   int steps_a_frame;
 };
@@ -92,8 +93,8 @@ INSTANTIATE_TEST_SUITE_P(Slides, RoundHill,
                          ::testing::Values(Slide{1.0, 2, 0.3, 5}, Slide{1.0, 2, 0.3, 20}, Slide{1.0, 8, 0.3, 5},
                                            Slide{1.0, 8, 0.3, 20}, Slide{1.0, 8, 0.1, 5}, Slide{3.0, 8, 0.3, 5}));
 
-// Friction is right within a hundredth, and the square is as good as a point: of its side, a tenth of the radius, the slope's sine
-// has a mean that is off by (0.1 / 2)^2 / 6.
+// Friction is correct to one per cent, and the square slides like a point: its side is a tenth of the radius, so the mean of the
+// slope's sine is off by (0.1 / 2)^2 / 6.
 TEST_P(RoundHill, ASquareSlidesAsFarAsAPoint) {
   const auto& [radius, resolution, friction, steps_a_frame] = GetParam();
   constexpr int kFrames = 24;
@@ -103,10 +104,10 @@ TEST_P(RoundHill, ASquareSlidesAsFarAsAPoint) {
   const double begin = angle();
   for (int step = 0; step < kFrames * steps_a_frame; ++step) simulator.step();
   const double radius_of_middle = radius + kThickness;
-  const auto way_with = [&](double mu) { return way_of_a_point(radius_of_middle, mu, kFrames / 60.0); };
-  const double way = radius_of_middle * (angle() - begin);
-  EXPECT_GT(way, 0.999 * way_with(1.01 * friction));
-  EXPECT_LT(way, 1.001 * way_with(0.99 * friction));
+  const auto distance_with = [&](double mu) { return distance_of_a_point(radius_of_middle, mu, kFrames / 60.0); };
+  const double distance = radius_of_middle * (angle() - begin);
+  EXPECT_GT(distance, 0.999 * distance_with(1.01 * friction));
+  EXPECT_LT(distance, 1.001 * distance_with(0.99 * friction));
 }
 
 struct Swing {
@@ -127,9 +128,9 @@ INSTANTIATE_TEST_SUITE_P(Swings, RoundValley,
                          ::testing::Values(Swing{0.01, kSide, 0.5, 2, 5}, Swing{0.003, kSide, 0.5, 8, 5},
                                            Swing{0.01, kSide, 0.5, 8, 20}, Swing{0.0125, 0.3, 0.7, 3, 4}));
 
-// Contact takes what speed a step straight on has into the valley: by steps of 1/300 s it rises by 2 % of the angle less, by steps
-// of a quarter by 0.8 %. Twice the larger is allowed.
-TEST_P(RoundValley, WithoutFrictionASquareRisesAsHighAsItBegan) {
+// A straight step enters the valley, and contact removes that component of the velocity. The square rises by 2 % of the angle less
+// with steps of 1/300 s, and by 0.8 % less with steps of a quarter of that. Twice the larger value is allowed.
+TEST_P(RoundValley, AFrictionlessSquareRisesToItsStartingHeight) {
   const auto& [facet, side, start, resolution, steps_a_frame] = GetParam();
   constexpr double kRadius = 1.0;
   Simulator simulator = simulator_of(square(side, -kRadius, -start, resolution, 0.0),

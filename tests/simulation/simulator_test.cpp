@@ -1,4 +1,4 @@
-// Laws of the step as a whole: pins, stability, divergence, determinism, stretch.
+// Laws of a whole step: pins, stability, divergence, determinism, stretch.
 #include "base/error.h"
 #include "base/parallel.h"
 #include "simulation/diagnostics.h"
@@ -28,7 +28,7 @@ SpringNetwork two_masses(double stiffness, double damping = 0.0) {
   return builder.build();
 }
 
-TEST(Simulator, FreeParticleFallsAsTheSchemesOwnSum) {
+TEST(Simulator, AFreeParticleFallsByTheSumOfItsScheme) {
   const double dt = 1e-2;
   const double n = 100.0;
   const std::vector<double> steps_of_gravity{n * (n - 1.0) / 2.0, n * (n + 1.0) / 2.0, n * n / 2.0,
@@ -40,8 +40,8 @@ TEST(Simulator, FreeParticleFallsAsTheSchemesOwnSum) {
   }
 }
 
-// A pin that turns by ten right angles a step makes it one of 20 parts.
-TEST(Simulator, StopsBetweenThePartsOfAStep) {
+// The pin turns by ten right angles in a step, so the step is divided into 20 substeps.
+TEST(Simulator, StopsBetweenTheSubstepsOfAStep) {
   NetworkBuilder builder;
   const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
   const Index bob = builder.add_particle({0.0, -1.0, 0.0}, 1.0);
@@ -64,18 +64,18 @@ TEST(Simulator, PinsFollowTheirKeyframesExactly) {
   for (const IntegratorSettings& integrator : all_integrators()) {
     Simulator simulator(builder.build(), {.step = 1e-3, .integrator = integrator});
     run(simulator, 0.5);
-    // Half of the turn about the origin: (1, 0) goes to (cos 45, sin 45); half of the way up.
+    // The pin has done half of its turn about the origin, from (1, 0) to (cos 45, sin 45), and half of its rise.
     const Vector3 expected(std::sqrt(0.5), std::sqrt(0.5) + 1.0, 0.0);
     EXPECT_LT((simulator.positions().col(hook) - expected).norm(), 1e-12);
-    // Its velocity is the one of the step to come, as its neighbours' dampers see it; d/dt of cos is off by dt/2 omega^2.
+    // The velocity is that of the next step, which the neighbours' dampers need. The difference quotient is off by dt/2 omega^2.
     const double omega = std::numbers::pi / 2.0;
     const Vector3 velocity = Vector3(-std::sqrt(0.5), std::sqrt(0.5), 0.0) * omega + Vector3(0.0, 2.0, 0.0);
     EXPECT_LT((simulator.state().v.col(hook) - velocity).norm(), 1e-3 * omega * omega);
   }
 }
 
-TEST(Simulator, StepBeyondTheStableOneIsRefusedAndTheLargestIsNamed) {
-  // omega = sqrt(k / m) = 100 1/s, largest step 2 / omega = 0.02 s, from which the estimate may differ by its margin.
+TEST(Simulator, AnUnstableStepIsRefusedAndTheLargestStableStepIsNamed) {
+  // omega = sqrt(k / m) = 100 1/s. The largest step is 2 / omega = 0.02 s, less the margin of the estimate.
   try {
     Simulator simulator(two_masses(1e4), {.step = 0.021});
     FAIL() << "was accepted";
@@ -88,8 +88,8 @@ TEST(Simulator, StepBeyondTheStableOneIsRefusedAndTheLargestIsNamed) {
   EXPECT_NO_THROW(Simulator(two_masses(1e4), {.step = 0.018}));
 }
 
-// Dampers stop what swings along springs, the air what swings across them too.
-TEST(Simulator, ExplicitEulerIsWarnedOfAsFarAsItGainsEnergy) {
+// Dampers stop motion along the springs. Air drag also stops motion across them.
+TEST(Simulator, ExplicitEulerCausesAWarningWhereItGainsEnergy) {
   const auto warnings = [](double stiffness, double damping) {
     return Simulator(two_masses(stiffness, damping), {.step = 1e-3, .integrator = ExplicitEulerSettings{}}).warnings();
   };
@@ -108,7 +108,7 @@ TEST(Simulator, ExplicitEulerIsWarnedOfAsFarAsItGainsEnergy) {
               IsEmpty());
 }
 
-TEST(Simulator, WarnedStepDivergesWithTheCulpritNamed) {
+TEST(Simulator, ADivergingStepNamesParticleAndSpring) {
   NetworkBuilder builder;
   const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
   const Index bob = builder.add_particle({0.0, -1.1, 0.0}, 1.0);
@@ -150,7 +150,7 @@ TEST(Simulator, WarnsOfWindWithoutDrag) {
   EXPECT_THAT(warnings(0.0, Vector3::Zero()), IsEmpty());
 }
 
-/// A rope of three particles, 0.1 m apart, with this stiffness and an angle bend of 1 N m.
+/// A rope of three particles, 0.1 m apart, with springs of `stiffness` [N/m] and an angle bend of 1 N m.
 SpringNetwork bent_rope(double stiffness) {
   NetworkBuilder builder;
   BodyShape shape = make_rope({.points = {{0.0, 0.0, 0.0}, {0.2, 0.0, 0.0}}, .particles = 3, .length = {}},
@@ -162,18 +162,18 @@ SpringNetwork bent_rope(double stiffness) {
 }
 
 // pi k / d^2 = 314 N/m.
-TEST(Simulator, TellsOfAngleBendsWhoseBondsGiveWay) {
+TEST(Simulator, WarnsOfAngleBendsOnWeakSprings) {
   const SimulatorSettings settings{.step = 1.0e-4};
   EXPECT_THAT(Simulator(bent_rope(320.0), settings).warnings(), IsEmpty());
   EXPECT_THAT(Simulator(bent_rope(310.0), settings).warnings(),
               ElementsAre(HasSubstr("a structural stiffness of at least 314 N/m")));
-  SimulatorSettings held = settings;
-  held.stretch_limit = StretchLimitSettings{.max_compression = 0.0};
-  EXPECT_THAT(Simulator(bent_rope(0.0), held).warnings(), IsEmpty());
+  SimulatorSettings limited = settings;
+  limited.stretch_limit = StretchLimitSettings{.max_compression = 0.0};
+  EXPECT_THAT(Simulator(bent_rope(0.0), limited).warnings(), IsEmpty());
 }
 
-TEST(Simulator, EnergyThatNothingPutInStopsIt) {
-  // The bob swings up and down by 5 cm, and grows without end; the spring never reaches 1,000 times its length.
+TEST(Simulator, UnexplainedEnergyStopsTheRun) {
+  // The bob swings by 5 cm and its amplitude grows without limit. The spring never reaches 1,000 times its length.
   SpringNetwork network = two_masses(100.0);
   network.positions(1, 1) = -1.05;
   SimulatorSettings settings{.step = 5e-3, .gravity = Vector3::Zero(), .integrator = ExplicitEulerSettings{}};
@@ -182,10 +182,11 @@ TEST(Simulator, EnergyThatNothingPutInStopsIt) {
     run(simulator, 1000.0);
     FAIL() << "did not explode";
   } catch (const StepError& error) {
-    // Explicit Euler grows by 1 + (omega dt)^2 a step: from 1/2 k 0.05^2 to 1,000 times that and the 1/2 k 1^2 of the spring.
+    // Explicit Euler multiplies the energy by 1 + (omega dt)^2 per step. It starts at 1/2 k 0.05^2. The limit is 1,000 times the
+    // sum of that and the spring's 1/2 k 1^2.
     const double growth = std::log1p(100.0 * 5e-3 * 5e-3);
     const double expected = std::log(1000.0 * (0.05 * 0.05 + 1.0) / (0.05 * 0.05)) / growth;
-    // A bob that passes the hook meets a spring that pushes from the other side, and grows a little slower.
+    // When the bob passes the hook, the spring pushes from the other side and the energy grows a little slower.
     EXPECT_NEAR(static_cast<double>(error.failure().step), expected, 0.1 * expected);
     EXPECT_THAT(error.what(), HasSubstr("the energy exploded"));
     EXPECT_EQ(error.failure().particle, 1);
@@ -193,21 +194,21 @@ TEST(Simulator, EnergyThatNothingPutInStopsIt) {
   }
 }
 
-TEST(Simulator, EnergyThatAPenaltyPutsInDoesNotStopIt) {
+TEST(Simulator, EnergyOfAPenaltyDoesNotStopTheRun) {
   SimulatorSettings settings{.step = 1.0 / 3000.0, .gravity = Vector3::Zero()};
   settings.contact = {.response = ContactSettings::Response::penalty, .stiffness = 10.0};
   Simulator simulator(one_particle({0.0, 0.005, 0.0}, {.thickness = 0.01}), settings, {ground()});
   EXPECT_NO_THROW(run(simulator, 0.5));
-  // 1/2 k p^2 has become motion.
+  // The penalty energy 1/2 k p^2 has become kinetic energy.
   EXPECT_NEAR(simulator.state().v(1, 0), std::sqrt(10.0 / simulator.network().masses[0]) * 0.005, 1.0e-3 * 0.05);
 }
 
-TEST(Simulator, EnergyThatGravityOrPinsPutInDoesNotStopIt) {
+TEST(Simulator, EnergyOfGravityAndPinsDoesNotStopTheRun) {
   NetworkBuilder builder;
   const Index hook = builder.add_particle(Vector3::Zero(), 1.0);
   const Index bob = builder.add_particle({0.0, -1.0, 0.0}, 1.0);
   builder.add_spring(hook, bob, 100.0, 1.0, 1.0);
-  // Twice the fall: from 0 to 1,000 m/s within 1 s.
+  // Smooth interpolation accelerates the pin from 0 to 1,000 m/s within 1 s.
   builder.pin(hook,
               {.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {500.0, 0.0, 0.0}}}, .interpolation = Interpolation::smooth});
   Simulator driven(builder.build(), {.step = 1e-3});
@@ -216,27 +217,27 @@ TEST(Simulator, EnergyThatGravityOrPinsPutInDoesNotStopIt) {
   EXPECT_NO_THROW(run(falling, 100.0));
 }
 
-TEST(Simulator, ExplicitEulerOnUndampedSpringsIsWarnedOf) {
+TEST(Simulator, ExplicitEulerOnUndampedSpringsCausesAWarning) {
   const Simulator simulator(two_masses(100.0), {.step = 1e-3, .integrator = ExplicitEulerSettings{}});
   ASSERT_EQ(simulator.warnings().size(), 1U);
   EXPECT_THAT(simulator.warnings()[0], HasSubstr("symplectic_euler"));
 }
 
-TEST(Simulator, PenaltyStiffnessCountsForTheStableStep) {
-  // k / m = 1e6 / 0.1: omega = 3162 1/s, largest step 0.63 ms.
+TEST(Simulator, PenaltyStiffnessReducesTheStableStep) {
+  // k / m = 1e6 / 0.1, omega = 3162 1/s. The largest step is 0.63 ms.
   SimulatorSettings settings{.step = 1e-3};
   settings.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1e6};
   EXPECT_THROW(Simulator(one_particle({0.0, 1.0, 0.0}), settings, {ground()}), InputError);
   EXPECT_NO_THROW(Simulator(one_particle({0.0, 1.0, 0.0}), settings));
 }
 
-TEST(Simulator, NonsenseStepIsRefused) {
+TEST(Simulator, AStepThatIsNotPositiveAndFiniteIsRefused) {
   for (const double step : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
     EXPECT_THROW(Simulator(one_particle({0.0, 0.0, 0.0}), {.step = step}), InputError) << step;
   }
 }
 
-TEST(Simulator, EverySettingOutOfItsBoundsIsNamed) {
+TEST(Simulator, EverySettingOutOfBoundsIsReported) {
   SimulatorSettings settings{.air_drag = -1.0, .integrator = VerletSettings{.damping = 2.0}};
   settings.gravity.y() = std::nan("");
   settings.stretch_limit = StretchLimitSettings{.max_stretch = -0.1, .max_compression = 2.0, .iterations = 0, .tolerance = -1.0};
@@ -249,7 +250,7 @@ TEST(Simulator, EverySettingOutOfItsBoundsIsNamed) {
   }
 }
 
-TEST(Simulator, AMeshTooLargeForItsTreeIsRefused) {
+TEST(Simulator, AMeshTooLargeForItsBvhIsRefused) {
   TriangleMesh sheet;
   sheet.vertices = 1e28 * (Points(3, 3) << 0, 1, 0, 0, 0, 0, 0, 0, 1).finished();
   sheet.triangles = (Triangles(3, 1) << 0, 2, 1).finished();
@@ -257,7 +258,7 @@ TEST(Simulator, AMeshTooLargeForItsTreeIsRefused) {
   EXPECT_THROW(Simulator(one_particle({0.25, 1.0, 0.25}), {}, {obstacle}), InputError);
 }
 
-TEST(Simulator, SameBitsForAnyNumberOfThreads) {
+TEST(Simulator, PositionsDoNotDependOnTheNumberOfThreads) {
   std::vector<Points> results;
   for (const int threads : {1, 2, 2}) {
     const ThreadLimit limit(threads);
@@ -272,7 +273,7 @@ TEST(Simulator, SameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE(results[1] == results[2]);
 }
 
-TEST(Simulator, StretchLimitHoldsAHangingChainOfSpringsWithoutStiffness) {
+TEST(Simulator, AStretchLimitAloneSupportsAHangingChain) {
   NetworkBuilder builder;
   for (int i = 0; i < 10; ++i) builder.add_particle({0.0, -0.1 * i, 0.0}, 0.01);
   for (int i = 0; i + 1 < 10; ++i) builder.add_spring(i, i + 1, 0.0, 0.1);
@@ -284,11 +285,11 @@ TEST(Simulator, StretchLimitHoldsAHangingChainOfSpringsWithoutStiffness) {
   const FrameDiagnostics frame = frames.next_frame();
   EXPECT_LE(frame.stretch_excess, 2e-3);
   EXPECT_LE(frame.max_stretch, 0.02 + 2e-3);
-  EXPECT_GE(frame.max_stretch, 0.019);  // gravity pulls it to the limit
+  EXPECT_GE(frame.max_stretch, 0.019);  // gravity stretches it to the limit
 }
 
-// From the horizontal, by its pin at one end: passes would let it become many times as long.
-TEST(Simulator, NewtonHoldsALongRopeThatSwings) {
+// The rope starts level and hangs by a pin at one end. With passes alone it would stretch to many times its length.
+TEST(Simulator, NewtonKeepsTheLimitOfALongSwingingRope) {
   NetworkBuilder builder;
   constexpr int kParticles = 400;
   for (int i = 0; i < kParticles; ++i) builder.add_particle({0.0025 * i, 0.0, 0.0}, 1.0e-4);
@@ -300,8 +301,8 @@ TEST(Simulator, NewtonHoldsALongRopeThatSwings) {
   for (int frame = 0; frame < 60; ++frame) ASSERT_LE(frames.next_frame().stretch_excess, limit.tolerance) << frame;
 }
 
-// A rope from a pin at the top of a ball over its side, and down: the way along it is longer than the straight one, so that tethers
-// leave it to contact until it hangs straight below.
+// A rope is pinned at the top of a ball, lies over its side and hangs down. Its path is longer than the straight line to the pin,
+// so tethers do not act before the rope hangs straight.
 TEST(Simulator, TethersDoNotPullThroughObstacles) {
   NetworkBuilder builder;
   constexpr int kParticles = 40;
@@ -319,12 +320,12 @@ TEST(Simulator, TethersDoNotPullThroughObstacles) {
     ASSERT_GE(*diagnostics.min_distance, 0.0) << frame;
     ASSERT_LE(diagnostics.max_stretch, 0.03) << frame;
   }
-  // A quarter of the ball takes 31 of the springs; the rest hangs beside it.
+  // A quarter of the ball's circumference takes 31 springs. The rest of the rope hangs beside it.
   EXPECT_NEAR(simulator.positions()(1, kParticles - 1), 0.5 * std::numbers::pi * 1.01 - 0.05 * (kParticles - 1), 0.1);
 }
 
-// A pin holds a particle nearer to the floor than the gap that contact wants. The gap yields to the limit, the floor to nothing.
-TEST(Simulator, TheStretchLimitHasTheLastWordWithinTheGap) {
+// The pin is nearer to the floor than the contact gap. The gap yields to the stretch limit, the floor does not.
+TEST(Simulator, TheStretchLimitOverridesTheContactGap) {
   constexpr double kGap = 0.02;
   constexpr double kLength = 0.005;
   NetworkBuilder builder;
@@ -335,13 +336,14 @@ TEST(Simulator, TheStretchLimitHasTheLastWordWithinTheGap) {
   for (const int passes : {1, 4, 32}) {
     Simulator simulator(builder.build(), {.step = 1e-2, .stretch_limit = StretchLimitSettings{.iterations = passes}}, {ground()});
     for (int step = 0; step < 20; ++step) {
-      EXPECT_LE(simulator.step().stretch_excess, 1e-12) << passes << " passes";  // one spring, projected last: rounding is left
+      EXPECT_LE(simulator.step().stretch_excess, 1e-12)
+          << passes << " passes";  // the only spring is projected last: only rounding remains
       ASSERT_GT(simulator.positions()(1, 1), 0.0) << passes << " passes";
     }
   }
 }
 
-/// A rod of 0.3 m.
+/// A rod of one spring of 0.3 m.
 NetworkBuilder rod() {
   NetworkBuilder builder;
   BodyShape shape = make_rope({.points = {{0.0, 0.0, 0.0}, {0.3, 0.0, 0.0}}, .particles = 2, .length = {}},
@@ -351,7 +353,7 @@ NetworkBuilder rod() {
   return builder;
 }
 
-/// A ball of 1 cm that rises 3 cm beside the rod's pin, from 5 cm below it to 5 cm above, in 0.1 s.
+/// A ball of radius 1 cm rises in 0.1 s at 3 cm from the rod's pin, from 5 cm below it to 5 cm above it.
 Obstacle rising_ball() {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.01}};
   ball.rest_pose.translation() = Vector3(0.03, -0.05, 0.0);
@@ -359,7 +361,7 @@ Obstacle rising_ball() {
   return ball;
 }
 
-TEST(Simulator, WhatRisesBesideAPinDoesNotPassTheRodThatHangsOnIt) {
+TEST(Simulator, ABallThatRisesBesideAPinDoesNotPassTheRodOnIt) {
   NetworkBuilder builder = rod();
   builder.pin(0);
   for (const IntegratorSettings& integrator : all_integrators()) {
@@ -374,15 +376,15 @@ TEST(Simulator, WhatRisesBesideAPinDoesNotPassTheRodThatHangsOnIt) {
         EXPECT_EQ(last.infeasible, 0) << steps;
       }
       const Vector3 end = simulator.positions().col(1);
-      EXPECT_GT(0.03 * end.y() - 0.05 * end.x(), 0.0) << steps << " steps: the ball is on the right of the rod";
+      EXPECT_GT(0.03 * end.y() - 0.05 * end.x(), 0.0) << steps << " steps: the rod stays on the left of the ball";
       EXPECT_NEAR(last.stretch_excess, std::max(end.norm() / 0.3 - 1.02, 0.0), 1e-12)
-          << steps << ": it is told how long the rod is";
+          << steps << ": the report includes the rod's final stretch";
       EXPECT_EQ(simulator.time(), 0.1) << steps;
     }
   }
 }
 
-/// The rod, pinned at its ends where they leave the ball no way past it, and 10 m away a particle that is thrown.
+/// The rod is pinned at both ends, so the ball cannot pass it. Another particle flies 10 m away.
 NetworkBuilder rod_and_thrown_particle() {
   NetworkBuilder builder = rod();
   builder.begin_body("thrown");
@@ -391,8 +393,8 @@ NetworkBuilder rod_and_thrown_particle() {
   return builder;
 }
 
-// What has no place in any parts is tried all the same: what is far off goes on as if nothing were in the way.
-TEST(Simulator, WhatSqueezesInAnyPartsLeavesNothingBehind) {
+// No number of substeps makes the step feasible. The distant particle moves as it does without the rod and the ball.
+TEST(Simulator, AnInfeasibleStepDoesNotAffectDistantParticles) {
   const NetworkBuilder builder = rod_and_thrown_particle();
   for (const IntegratorSettings& integrator : all_integrators()) {
     const SimulatorSettings settings{.step = 1e-2, .integrator = integrator};
@@ -410,27 +412,28 @@ TEST(Simulator, WhatSqueezesInAnyPartsLeavesNothingBehind) {
   }
 }
 
-// Where already the step before infeasible them, each attempt of 4, 16 and 64 parts is over with its first: 4 parts, not 85.
-TEST(Simulator, AttemptsEndWhereTheySqueezeNoLess) {
+// If the previous step was infeasible too, each attempt with 4, 16 and 64 substeps ends after its first substep: 4 substeps
+// instead of 85.
+TEST(Simulator, AttemptsThatDoNotImproveEndAtOnce) {
   Simulator simulator(rod_and_thrown_particle().build(), {.step = 1e-2}, {rising_ball()});
-  int made = 0;
-  simulator.stop_when([&] { return ++made < 0; });
+  int substeps_made = 0;
+  simulator.stop_when([&] { return ++substeps_made < 0; });
   bool infeasible_before = false;
-  int tried = 0;
+  int attempts = 0;
   for (int step = 0; step < 100; ++step) {
-    made = 0;
+    substeps_made = 0;
     const bool infeasible = simulator.step().infeasible > 0;
     if (infeasible_before && infeasible) {
-      EXPECT_LE(made, 4) << step;
-      tried += made > 1 ? 1 : 0;
+      EXPECT_LE(substeps_made, 4) << step;
+      attempts += substeps_made > 1 ? 1 : 0;
     }
     infeasible_before = infeasible;
   }
-  EXPECT_GT(tried, 0);
+  EXPECT_GT(attempts, 0);
 }
 
-// Seen from what turns by half a turn, all goes through its middle.
-TEST(Simulator, WhatSpinsFastMeetsOnlyWhatItReaches) {
+// In the frame of an obstacle that turns by half a turn, every particle passes through the centre.
+TEST(Simulator, AFastSpinningObstacleTouchesOnlyParticlesInItsReach) {
   NetworkBuilder builder;
   for (const double x : {10.0, -1.0, 0.3}) builder.add_particle({x, 0.0, 0.0}, 0.1);
   const SpringNetwork network = builder.build();
@@ -446,9 +449,9 @@ TEST(Simulator, WhatSpinsFastMeetsOnlyWhatItReaches) {
   }
 }
 
-// Two particles in a groove, whose slopes push each of them towards the other slope: a pass leaves a quarter of what is missing. Of
-// a step's fall, 4 mm, one would leave 2 % of the gap; passes end at a thousandth.
-TEST(Simulator, ContactSettlesBetweenSlopesWhateverThePassesOfTheLimit) {
+// Two particles lie in a groove. Each slope pushes them towards the other slope, so a pass leaves a quarter of the error. One pass
+// would leave 2 % of the gap after a step's fall of 4 mm. Passes end at a thousandth of the gap.
+TEST(Simulator, ContactConvergesInAGrooveWithASinglePassOfTheLimit) {
   constexpr double kGap = 0.02;
   constexpr double kSteep = std::numbers::pi / 3.0;
   NetworkBuilder builder;
@@ -477,12 +480,12 @@ TEST(Simulator, EnergyOfAnUndampedSpringStaysBounded) {
   };
   const double start = total(frames.first_frame());
   for (int i = 0; i < 200; ++i) {
-    // Its modified energy differs from the energy by dt / 2 |v . F| <= 5e-4 * 5 m/s * 30 N.
+    // The modified energy of the scheme differs from the energy by dt / 2 |v . F| <= 5e-4 * 5 m/s * 30 N.
     EXPECT_NEAR(total(frames.next_frame()), start, 0.1);
   }
 }
 
-TEST(Simulator, ASpringWithoutStiffnessMayBeAsLongAsItLikes) {
+TEST(Simulator, ASpringWithoutStiffnessMayHaveAnyLength) {
   NetworkBuilder builder;
   const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
   const Index bob = builder.add_particle({0.0, -1e-3, 0.0}, 1.0);
@@ -492,7 +495,7 @@ TEST(Simulator, ASpringWithoutStiffnessMayBeAsLongAsItLikes) {
   EXPECT_NO_THROW(run(simulator, 1.0));  // 4.9 m of free fall
 }
 
-TEST(Simulator, OneParticleAndAZeroLengthSpringWork) {
+TEST(Simulator, ASpringOfLengthZeroWorks) {
   NetworkBuilder builder;
   const Index a = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
   const Index b = builder.add_particle({0.0, 0.0, 0.0}, 1.0);

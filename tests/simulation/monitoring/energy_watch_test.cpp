@@ -7,14 +7,14 @@
 namespace sprung {
 namespace {
 
-/// 2 kg on their own: nothing that holds energy.
+/// One particle of 2 kg, without springs.
 SpringNetwork one_particle() {
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 2.0);
   return builder.build();
 }
 
-/// 1 kg each, 1 m apart, and a spring between them.
+/// Two particles of 1 kg, 1 m apart, with a spring between them.
 SpringNetwork two_masses(double stiffness, double rest_length) {
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 1.0);
@@ -25,19 +25,19 @@ SpringNetwork two_masses(double stiffness, double rest_length) {
 
 EnergyWatch watch(const SpringNetwork& network) { return {network, SimulatorSettings{.step = 0.01}, {}}; }
 
-TEST(EnergyWatch, AllowsAThousandTimesWhatMotionBeganWith) {
+TEST(EnergyWatch, AllowsAThousandTimesTheInitialKineticEnergy) {
   EnergyWatch energy = watch(one_particle());
   energy.note(0, {.kinetic = 1.0});
   EXPECT_FALSE(energy.explosion({.kinetic = 999.0}));
   EXPECT_TRUE(energy.explosion({.kinetic = 1001.0}));
-  // Limits and contact may give a start of their own; what comes later is none.
+  // Limits and contact may accelerate the network in its first steps. Later kinetic energy does not count as initial.
   energy.note(1, {.kinetic = 2.0});
   energy.note(64, {.kinetic = 1500.0});
   EXPECT_FALSE(energy.explosion({.kinetic = 1999.0}));
   EXPECT_TRUE(energy.explosion({.kinetic = 2001.0}));
 }
 
-TEST(EnergyWatch, WhatWasLiftedMayFall) {
+TEST(EnergyWatch, ALiftedBodyMayFall) {
   EnergyWatch energy = watch(one_particle());
   energy.note(0, {.gravity = -3.0});
   energy.note(64, {.gravity = 1.0});
@@ -47,7 +47,7 @@ TEST(EnergyWatch, WhatWasLiftedMayFall) {
 }
 
 // 1/2 m v^2 = 9 J.
-TEST(EnergyWatch, AllMayMoveAsFastAsPins) {
+TEST(EnergyWatch, EveryParticleMayMoveAsFastAsThePins) {
   EnergyWatch energy = watch(one_particle());
   energy.note(0, {});
   energy.note_pin(3.0);
@@ -56,17 +56,17 @@ TEST(EnergyWatch, AllMayMoveAsFastAsPins) {
   EXPECT_TRUE(energy.explosion({.kinetic = 9001.0}));
 }
 
-// 1/2 m v^2 = 9 J, 1,024 times as much at the 32 times that speed to which a wedge leads, and nine times that at the three times to
-// which a restitution of 1/2 leads.
-TEST(EnergyWatch, AllMayMoveAsFastAsObstaclesThatItBouncesBetweenDriveIt) {
+// 1/2 m v^2 = 9 J. A wedge drives a particle at up to 32 times that speed: 1,024 times the energy. A restitution of 1/2 allows
+// three times that speed: nine times the energy.
+TEST(EnergyWatch, EveryParticleMayMoveAsFastAsObstaclesDriveIt) {
   const SpringNetwork network = one_particle();
   Obstacle obstacle{.name = "wall", .geometry = HalfSpaceGeometry{}};
   EnergyWatch hard(network, {.step = 0.01}, {obstacle});
   obstacle.material.restitution = 0.5;
   EnergyWatch bouncing(network, {.step = 0.01}, {obstacle});
   obstacle.material.restitution = 1.0;
-  EnergyWatch without_loss(network, {.step = 0.01}, {obstacle});
-  for (EnergyWatch* energy : {&hard, &bouncing, &without_loss}) {
+  EnergyWatch lossless(network, {.step = 0.01}, {obstacle});
+  for (EnergyWatch* energy : {&hard, &bouncing, &lossless}) {
     energy->note(0, {.kinetic = 1.0e-6});
     energy->note_obstacle(0.0);
     EXPECT_TRUE(energy->explosion({.kinetic = 1.0}));
@@ -76,11 +76,11 @@ TEST(EnergyWatch, AllMayMoveAsFastAsObstaclesThatItBouncesBetweenDriveIt) {
   EXPECT_TRUE(hard.explosion({.kinetic = 1024.0 * 9001.0}));
   EXPECT_FALSE(bouncing.explosion({.kinetic = 1024.0 * 80999.0}));
   EXPECT_TRUE(bouncing.explosion({.kinetic = 1024.0 * 81001.0}));
-  EXPECT_FALSE(without_loss.explosion({.kinetic = 1.0e300}));
+  EXPECT_FALSE(lossless.explosion({.kinetic = 1.0e300}));
 }
 
 // 1/2 k d^2 = 4 J.
-TEST(EnergyWatch, SpringsMayBeStretchedToTwiceTheirLength) {
+TEST(EnergyWatch, EverySpringMayBeStretchedToTwiceItsLength) {
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 1.0);
   builder.add_particle(Vector3::UnitX(), 1.0);
@@ -91,8 +91,8 @@ TEST(EnergyWatch, SpringsMayBeStretchedToTwiceTheirLength) {
   EXPECT_TRUE(energy.explosion({.kinetic = 2000.0, .elastic = 2001.0}));
 }
 
-// Capacity 1/2 J and 100 J stored.
-TEST(EnergyWatch, WhatWasStretchedSlowlyMaySnap) {
+// The springs' capacity is 1/2 J, the stored energy 100 J.
+TEST(EnergyWatch, ASlowlyStretchedSpringMaySnap) {
   const SpringNetwork network = two_masses(1.0, 1.0);
   EnergyWatch slow = watch(network);
   EnergyWatch fast = watch(network);
@@ -105,7 +105,7 @@ TEST(EnergyWatch, WhatWasStretchedSlowlyMaySnap) {
   EXPECT_TRUE(fast.explosion({.kinetic = 501.0}));
 }
 
-// Of 2 kg at 1 m, a step of 0.01 s: (2^-26 / 0.01)^2 = 2.2e-12 J.
+// 2 kg at 1 m with a step of 0.01 s: (2^-26 / 0.01)^2 = 2.2e-12 J.
 TEST(EnergyWatch, RoundingIsNoExplosion) {
   NetworkBuilder builder;
   builder.add_particle(Vector3::UnitX(), 2.0);
@@ -116,7 +116,7 @@ TEST(EnergyWatch, RoundingIsNoExplosion) {
 }
 
 // m g d = 40 J.
-TEST(EnergyWatch, WhatALimitHoldsMayBounceByTheLengthOfASpring) {
+TEST(EnergyWatch, AParticleAtItsStretchLimitMayBounceByTheLengthOfASpring) {
   const SpringNetwork network = two_masses(0.0, 2.0);
   const SimulatorSettings settings{.step = 0.01, .gravity = {0.0, -10.0, 0.0}, .stretch_limit = StretchLimitSettings{}};
   EnergyWatch energy(network, settings, {});

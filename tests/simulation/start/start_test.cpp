@@ -26,7 +26,7 @@ Obstacle ball(double radius, const Vector3& position) {
   return result;
 }
 
-/// What is said when the simulation is refused; empty when it is not.
+/// The problems with which the simulation is refused; empty if it is accepted.
 std::vector<std::string> refusal(const SpringNetwork& network, const SimulatorSettings& settings,
                                  const std::vector<Obstacle>& obstacles) {
   try {
@@ -39,8 +39,8 @@ std::vector<std::string> refusal(const SpringNetwork& network, const SimulatorSe
   }
 }
 
-TEST(Start, WhatIsInAnObstacleIsCountedMeasuredAndPlaced) {
-  // A cloth of 5 x 5 at height 0, 0.25 m apart: one particle 0.3 m inside, the four beside it 0.3 - 0.25 m.
+TEST(Start, ABodyInAnObstacleIsReportedWithCountDepthAndPositions) {
+  // A cloth of 5 x 5 particles, 0.25 m apart, at height 0: one particle is 0.3 m inside, its four neighbours 0.3 - 0.25 m.
   const auto lines = refusal(cloth(5, 0.0), {}, {ball(0.3, Vector3::Zero())});
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_THAT(lines[0], HasSubstr("bodies.cloth = 5 particles inside, "));
@@ -55,7 +55,7 @@ TEST(Start, AnObstacleBetweenParticlesIsFound) {
   EXPECT_THAT(lines[0], AllOf(HasSubstr("triangle across"), HasSubstr("triangle of particles ")));
 }
 
-TEST(Start, EveryBodyAndObstacleHasALine) {
+TEST(Start, EveryPairOfBodyAndObstacleHasALine) {
   NetworkBuilder builder;
   for (const char* name : {"left", "right"}) {
     builder.begin_body(name);
@@ -68,14 +68,14 @@ TEST(Start, EveryBodyAndObstacleHasALine) {
   EXPECT_THAT(lines[3], AllOf(HasSubstr("bodies.right"), HasSubstr("\"ball\"")));
 }
 
-TEST(Start, OnAnOpenSurfaceIsAcrossIt) {
+TEST(Start, AParticleOnAnOpenSurfaceIntersectsIt) {
   const auto lines = refusal(one_particle({0.25, 0.0, 0.25}), {}, {sheet(1.0)});
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_THAT(lines[0], HasSubstr("1 particle across: intersects obstacle \"sheet\" at the start: particle 0 at [0.25, 0, 0.25]"));
   EXPECT_TRUE(refusal(one_particle({0.25, 1e-6, 0.25}), {}, {sheet(1.0)}).empty());
 }
 
-/// A rope of two particles through a triangle, as bodies of their own: particles 4 and 5, and 0 to 3.
+/// Two bodies: a rope of two particles (4 and 5) passes through a triangle of a patch (0 to 3).
 SpringNetwork needle_and_patch(const BodyContact& contact, const std::vector<Index>& pinned = {}) {
   NetworkBuilder builder;
   BodyShape patch = make_cloth({.size = {1.0, 1.0}, .resolution = {2, 2}}, {});
@@ -88,18 +88,18 @@ SpringNetwork needle_and_patch(const BodyContact& contact, const std::vector<Ind
   return builder.build();
 }
 
-TEST(Start, BodiesAcrossEachOtherAreRefusedWhereTheyCollide) {
+TEST(Start, IntersectingBodiesThatCollideAreRefused) {
   const auto lines = refusal(needle_and_patch({}), {}, {});
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_THAT(lines[0], AllOf(HasSubstr("bodies.patch = 1 pair of elements: intersects body \"needle\" at the start: triangle of "),
                               HasSubstr(" and segment of particles 0, 1 at [0.1, 0.2, 0]"), HasSubstr("body_contact")));
   EXPECT_TRUE(refusal(needle_and_patch({.others = false}), {}, {}).empty());
-  // Penalty contact knows of obstacles alone.
+  // Penalty contact acts on obstacles only.
   const ContactSettings penalty{.response = ContactSettings::Response::penalty, .stiffness = 1.0};
   EXPECT_TRUE(refusal(needle_and_patch({}), {.contact = penalty}, {}).empty());
 }
 
-TEST(Start, WhereAMotionBeginsCounts) {
+TEST(Start, AnObstacleCountsAtTheStartOfItsMotion) {
   Obstacle passing = ball(0.5, Vector3(5.0, 0.0, 0.0));
   passing.motion.keyframes = {{0.0, Vector3(-5.0, 0.0, 0.0)}, {1.0, Vector3::Zero()}};
   EXPECT_EQ(refusal(one_particle({0.0, 0.1, 0.0}), {}, {passing}).size(), 1U);
@@ -112,17 +112,17 @@ SimulatorSettings pushing_out(const IntegratorSettings& integrator = VerletSetti
   return settings;
 }
 
-TEST(Start, AParticleIsPushedToItsGapBeforeTheNearestSurface) {
+TEST(Start, APushedParticleEndsAtItsGapFromTheNearestSurface) {
   const ContactMaterial thick{.thickness = 0.01};
   const Simulator simulator(one_particle({0.1, 0.0, 0.0}, thick), pushing_out(), {ball(0.3, Vector3::Zero())});
-  // Passes leave a thousandth of the gap.
+  // Contact passes leave a thousandth of the gap.
   EXPECT_LT((simulator.positions().col(0) - Vector3(0.31, 0.0, 0.0)).norm(), 1e-5);
   ASSERT_EQ(simulator.warnings().size(), 1U);
   EXPECT_EQ(simulator.warnings()[0],
             "body \"ball\" intersected an obstacle or a body at the start and was moved out: 1 particle by 0.21 m");
 }
 
-TEST(Start, VelocitiesStayAsGivenWhereParticlesArePushedOut) {
+TEST(Start, PushingOutKeepsVelocities) {
   const Vector3 velocity(1.0, 2.0, -0.5);
   for (const IntegratorSettings& integrator : all_integrators()) {
     Simulator simulator(one_particle({0.1, 0.0, 0.0}, {}, velocity), pushing_out(integrator), {ball(0.3, Vector3::Zero())});
@@ -136,7 +136,7 @@ TEST(Start, VelocitiesStayAsGivenWhereParticlesArePushedOut) {
   }
 }
 
-TEST(Start, WhatIsFreeIsNotPushed) {
+TEST(Start, FreeParticlesAreNotPushed) {
   SimulatorSettings settings = pushing_out();
   settings.step = 1.0e-4;
   const SpringNetwork network = cloth(5, 0.01, {.thickness = 0.5});
@@ -144,7 +144,7 @@ TEST(Start, WhatIsFreeIsNotPushed) {
   EXPECT_EQ(simulator.positions(), network.positions);
 }
 
-TEST(Start, WhatIsDeepInItsGapIsWarnedOf) {
+TEST(Start, AParticleDeepInItsGapCausesAWarning) {
   const auto warnings = [](double height) {
     return Simulator(one_particle({0.0, height, 0.0}, {.thickness = 0.5}), {.step = 1e-3}, {ground({.thickness = 0.1})}).warnings();
   };
@@ -152,7 +152,7 @@ TEST(Start, WhatIsDeepInItsGapIsWarnedOf) {
   EXPECT_THAT(warnings(0.31), IsEmpty());
 }
 
-TEST(Start, PushesOutForPenaltyContactToo) {
+TEST(Start, PenaltyContactPushesOutToo) {
   SimulatorSettings settings = pushing_out();
   settings.contact.response = ContactSettings::Response::penalty;
   settings.contact.stiffness = 10.0;
@@ -161,7 +161,7 @@ TEST(Start, PushesOutForPenaltyContactToo) {
   EXPECT_LT(simulator.positions()(1, 0), 1e-8);
 }
 
-/// Which particles push_out moved.
+/// The particles that push_out moved.
 std::vector<Index> moved(const SpringNetwork& network) {
   const Simulator simulator(network, pushing_out(), {});
   std::vector<Index> particles;
@@ -171,21 +171,21 @@ std::vector<Index> moved(const SpringNetwork& network) {
   return particles;
 }
 
-// What a pin holds in part stays too: it would be stretched.
-TEST(Start, OfBodiesAcrossEachOtherTheLaterIsPushedOutUnlessPinsHoldIt) {
+// A partly pinned body stays in place too: moving it would stretch it.
+TEST(Start, TheLaterOfIntersectingBodiesIsPushedOutUnlessItIsPinned) {
   EXPECT_THAT(moved(needle_and_patch({})), AllOf(IsSubsetOf({4, 5}), SizeIs(Ge(1))));
   EXPECT_THAT(moved(needle_and_patch({}, {0, 1, 2, 3})), AllOf(IsSubsetOf({4, 5}), SizeIs(Ge(1))));
   EXPECT_THAT(moved(needle_and_patch({}, {5})), AllOf(IsSubsetOf({0, 1, 2, 3}), SizeIs(Ge(1))));
 }
 
-TEST(Start, WhatPinsHoldAcrossEachOtherIsRefused) {
+TEST(Start, PinnedBodiesThatIntersectAreRefused) {
   const auto lines = refusal(needle_and_patch({}, {0, 1, 2, 3, 4, 5}), pushing_out(), {});
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_THAT(lines[0],
               AllOf(HasSubstr("intersects body \"needle\""), HasSubstr("found no free position"), HasSubstr("body_contact")));
 }
 
-TEST(Start, BodiesThatDoNotMeetAreNotPushedOutOfEachOther) { EXPECT_THAT(moved(needle_and_patch({.others = false})), IsEmpty()); }
+TEST(Start, BodiesThatDoNotCollideAreNotPushedApart) { EXPECT_THAT(moved(needle_and_patch({.others = false})), IsEmpty()); }
 
 }  // namespace
 }  // namespace sprung

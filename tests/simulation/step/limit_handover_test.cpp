@@ -1,4 +1,4 @@
-// When a stretch limit goes over from passes to a global solve, and what that is worth.
+// The handover of a stretch limit from passes to a global solve, and its effect.
 #include "simulation/step/limit_handover.h"
 
 #include "base/parallel.h"
@@ -15,12 +15,12 @@ using Solver = StretchLimitSettings::Solver;
 
 constexpr double kRate = 240.0;
 
-/// Of passes that cannot hold a cloth of more than a few particles a side at this rate.
+/// At this rate these passes cannot keep the limit of a cloth with more than a few particles along a side.
 StretchLimitSettings limit_of(Solver solver) {
   return {.max_stretch = 0.01, .iterations = 8, .tolerance = 0.005, .solver = solver};
 }
 
-/// A cloth of 1 m that the limit alone carries, level, or held by two of its corners.
+/// A level cloth of 1 m without spring forces, pinned at two corners or free.
 SpringNetwork limp_cloth(Index side, bool pinned, const ContactMaterial& material = {}) {
   SpringNetwork network = testing::cloth(side, 0.0, material);
   network.springs.stiffness.assign(network.springs.stiffness.size(), 0.0);
@@ -41,7 +41,7 @@ struct Outcome {
   Points x;
   double worst_excess = 0.0;  ///< in the last quarter of the steps
   std::optional<std::int64_t> solved_since;
-  double nearest = 1.0;  ///< least distance from obstacles after any step [m]
+  double nearest = 1.0;  ///< smallest distance from obstacles after any step [m]
 };
 
 Outcome run(const SpringNetwork& network, Solver solver, int steps, const std::vector<Obstacle>& obstacles = {},
@@ -58,7 +58,7 @@ Outcome run(const SpringNetwork& network, Solver solver, int steps, const std::v
   return outcome;
 }
 
-TEST(LimitHandover, IsForWhatPassesMissedSoManyTimesInARow) {
+TEST(LimitHandover, HappensAfterEnoughMissedStepsInARow) {
   const SpringNetwork network = limp_cloth(4, true);
   const StretchLimit limit(network, limit_of(Solver::automatic));
   SimulationState state = initial_state(network);
@@ -72,10 +72,10 @@ TEST(LimitHandover, IsForWhatPassesMissedSoManyTimesInARow) {
   EXPECT_FALSE(see(0.99 * most, 1));
   EXPECT_FALSE(see(1.01 * most, kMaxMissedSteps - 1));
   EXPECT_EQ(see(1.01 * most, 1), 2 * kMaxMissedSteps - 1);
-  EXPECT_EQ(see(0.0, 100), 2 * kMaxMissedSteps - 1) << "for good";
+  EXPECT_EQ(see(0.0, 100), 2 * kMaxMissedSteps - 1) << "the handover is permanent";
 }
 
-TEST(LimitHandover, IsBodyByBody) {
+TEST(LimitHandover, HappensPerBody) {
   NetworkBuilder builder;
   const SpringMaterials materials{.structural = SpringMaterial{}, .shear = {}, .bend = {}};
   for (const char* name : {"first", "second"}) {
@@ -94,7 +94,7 @@ TEST(LimitHandover, IsBodyByBody) {
   EXPECT_TRUE(state.stretch_handovers[1].solved_since);
 }
 
-TEST(LimitHandover, IsNotForSolidsNorForWhatMayNotShrinkNorForPassesByName) {
+TEST(LimitHandover, ExcludesSolidsCompressionLimitsAndExplicitPasses) {
   BodyShape shape =
       make_solid({.size = {1.0, 1.0, 1.0}, .resolution = {3, 3, 3}}, {.structural = SpringMaterial{}, .shear = {}, .bend = {}});
   set_total_mass(shape, 1.0);
@@ -108,10 +108,10 @@ TEST(LimitHandover, IsNotForSolidsNorForWhatMayNotShrinkNorForPassesByName) {
   EXPECT_FALSE(StretchLimit(cloth, both_ways).may_be_handed_over(0));
   EXPECT_FALSE(StretchLimit(cloth, limit_of(Solver::gauss_seidel)).may_be_handed_over(0));
   EXPECT_FALSE(StretchLimit(cloth, limit_of(Solver::automatic), {.may_collide = false}).may_be_handed_over(0))
-      << "it is from the start";
+      << "Newton solves it from the start";
 }
 
-TEST(LimitHandover, AutomaticHasTheBitsOfNewtonWhereNothingIsInTheWay) {
+TEST(LimitHandover, AutomaticEqualsNewtonWithoutContact) {
   const SpringNetwork cloth = limp_cloth(16, true);
   for (const int substeps : {1, 8}) {
     const Outcome automatic = run(cloth, Solver::automatic, 60, {}, substeps);
@@ -120,7 +120,7 @@ TEST(LimitHandover, AutomaticHasTheBitsOfNewtonWhereNothingIsInTheWay) {
   }
 }
 
-TEST(LimitHandover, AutomaticHasTheBitsOfPassesWhereTheySuffice) {
+TEST(LimitHandover, AutomaticEqualsPassesWhereTheySuffice) {
   const SpringNetwork cloth = limp_cloth(8, false, {.thickness = 0.01, .friction = 0.3, .static_friction = 0.3});
   const std::vector<Obstacle> below{ball(-0.32, 0.3)};
   const Outcome automatic = run(cloth, Solver::automatic, 120, below);
@@ -129,16 +129,16 @@ TEST(LimitHandover, AutomaticHasTheBitsOfPassesWhereTheySuffice) {
   EXPECT_NE(automatic.x, run(cloth, Solver::newton, 120, below).x);
 }
 
-// A cloth that swings down over a ball and comes to hang across it by two corners: passes of this step would need many more of
-// them.
-class OverABall : public ::testing::Test {
+// A cloth that is pinned at two corners swings down over a ball and comes to hang across it. At this step size the passes would
+// need many more iterations.
+class ClothOverABall : public ::testing::Test {
  protected:
   static constexpr int kSteps = 300;
   const SpringNetwork cloth_ = limp_cloth(24, true, {.thickness = 0.01, .friction = 0.3, .static_friction = 0.3});
   const std::vector<Obstacle> ball_{ball(-0.45, 0.2)};
 };
 
-TEST_F(OverABall, WhatPassesCannotHoldEndsWithinTheLimitOutsideTheBall) {
+TEST_F(ClothOverABall, EndsWithinTheLimitThatPassesMissAndOutsideTheBall) {
   const Outcome passes = run(cloth_, Solver::gauss_seidel, kSteps, ball_);
   const Outcome automatic = run(cloth_, Solver::automatic, kSteps, ball_);
   EXPECT_FALSE(passes.solved_since);
@@ -149,7 +149,7 @@ TEST_F(OverABall, WhatPassesCannotHoldEndsWithinTheLimitOutsideTheBall) {
   EXPECT_GT(automatic.nearest, 0.0);
 }
 
-TEST_F(OverABall, HasTheSameBitsForAnyNumberOfThreads) {
+TEST_F(ClothOverABall, DoesNotDependOnTheNumberOfThreads) {
   const auto positions = [&](int threads) {
     const ThreadLimit at_most(threads);
     return run(cloth_, Solver::automatic, kSteps / 3, ball_).x;
@@ -157,8 +157,8 @@ TEST_F(OverABall, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(positions(1), positions(2));
 }
 
-// Passes have as many parts as may be; the solve needs none while the cloth turns slowly.
-TEST_F(OverABall, NeedsTheSmallStepsOfPassesNoMore) {
+// Passes use the largest number of substeps. The solve needs one while the cloth turns slowly.
+TEST_F(ClothOverABall, NeedsNoSubstepsAfterTheHandover) {
   StretchLimitSettings limit = limit_of(Solver::automatic);
   limit.iterations = 1;
   Simulator simulator(cloth_, {.step = 1.0 / kRate, .stretch_limit = limit, .max_substeps = 4}, ball_);

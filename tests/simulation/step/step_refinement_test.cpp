@@ -1,4 +1,4 @@
-// Substeps of a step: their number, their length, and that time and motion do not depend on them.
+// The number and length of substeps. Time and motion do not depend on them.
 #include "simulation/step/step_refinement.h"
 
 #include "base/error.h"
@@ -18,7 +18,7 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kRate = 60.0;
 
-/// Nothing may stretch or shrink by more than 1 %.
+/// No spring may stretch or shrink by more than 1 %.
 StretchLimitSettings both_ways() {
   return {.max_stretch = 0.0,
           .max_compression = 0.0,
@@ -28,7 +28,7 @@ StretchLimitSettings both_ways() {
           .tethers = true};
 }
 
-/// Parts of the step after steps that left these excesses.
+/// The number of substeps after steps that left these excesses.
 int substeps_after(const std::vector<double>& excesses, int most = 8) {
   const StepRefinement refinement(both_ways(), most);
   SimulationState state;
@@ -36,7 +36,7 @@ int substeps_after(const std::vector<double>& excesses, int most = 8) {
   return state.substeps;
 }
 
-TEST(StepRefinement, HalvesAsOftenAsTheExcessIsTooLarge) {
+TEST(StepRefinement, HalvesUntilTheExpectedExcessIsSmallEnough) {
   EXPECT_EQ(substeps_after({0.029}), 1);
   EXPECT_EQ(substeps_after({0.031}), 2);
   EXPECT_EQ(substeps_after({0.061}), 4);
@@ -55,11 +55,11 @@ TEST(StepRefinement, DoublesAgainAfterSeveralCalmStepsInARow) {
   };
   EXPECT_EQ(after({}), 4);
   EXPECT_EQ(after({0.007}), 2);
-  EXPECT_EQ(after({0.008, 0.007}), 4) << "there was not room enough in between";
+  EXPECT_EQ(after({0.008, 0.007}), 4) << "a step in between was not calm enough";
   EXPECT_EQ(substeps_after(std::vector<double>(30, 0.0)), 1);
 }
 
-TEST(StepRefinement, MakesAsManyPartsAsTurnLittleEnough) {
+TEST(StepRefinement, ChoosesSubstepsThatTurnLittleEnough) {
   const StepRefinement refinement(both_ways(), 8);
   SimulationState state;
   const auto substeps_after_turn = [&](double turn) {
@@ -68,14 +68,14 @@ TEST(StepRefinement, MakesAsManyPartsAsTurnLittleEnough) {
   };
   EXPECT_EQ(substeps_after_turn(1.0 / 71.0), 1);
   EXPECT_EQ(substeps_after_turn(1.0 / 69.0), 2);
-  EXPECT_EQ(substeps_after_turn(1.0 / 69.0), 3) << "of one of two substeps";
-  EXPECT_EQ(substeps_after_turn(1.0 / 106.0), 2) << "of one of three substeps";
+  EXPECT_EQ(substeps_after_turn(1.0 / 69.0), 3) << "the turn of one of two substeps";
+  EXPECT_EQ(substeps_after_turn(1.0 / 106.0), 2) << "the turn of one of three substeps";
   EXPECT_EQ(substeps_after_turn(0.0), 1);
   EXPECT_EQ(substeps_after_turn(10.0), 8);
 }
 
-// Verlet's positions lie on the parabola of what is thrown, whatever the step.
-TEST(StepRefinement, LeavesVerletOnTheParabola) {
+// Verlet's positions lie on the parabola of free flight at any step.
+TEST(StepRefinement, KeepsVerletOnTheParabola) {
   const SpringNetwork ball = testing::one_particle(Vector3::Zero(), {}, Vector3(1.0, 2.0, 0.0));
   const Vector3 g(0.0, -testing::kGravity, 0.0);
   Forces forces;
@@ -92,11 +92,11 @@ TEST(StepRefinement, LeavesVerletOnTheParabola) {
   integrator->step_changed(state, forces, 0.25 * kStep, kStep);
   for (int step = 0; step < 4; ++step) integrator->advance(state, forces, kStep);
   const double t = 12 * kStep;
-  // 21 steps, each rounded a few times, of differences that later ones add up: positions are below 1 m.
+  // 21 steps with a few roundings each of differences that later steps add up. Positions are below 1 m.
   EXPECT_LT((state.x.col(0) - (t * Vector3(1.0, 2.0, 0.0) + 0.5 * t * t * g)).norm(), 21 * 21 * kEpsilon);
 }
 
-/// A cloth of 1 m that swings from two of its corners, and begins level.
+/// A level cloth of 1 m that swings from two of its corners.
 SpringNetwork swinging_cloth(Index side) {
   SpringNetwork network = testing::cloth(side, 0.0);
   network.springs.stiffness.assign(network.springs.stiffness.size(), 0.0);
@@ -108,12 +108,12 @@ SpringNetwork swinging_cloth(Index side) {
 
 struct Swing {
   Points x;
-  double energy = 0.0;        ///< of motion and height [J]
+  double energy = 0.0;        ///< kinetic and gravity energy [J]
   double worst_excess = 0.0;  ///< after any step
   int max_substeps = 0;
 };
 
-/// For a second and a half, by steps of which a frame takes so many.
+/// Runs 1.5 s with `steps_a_frame` steps per frame.
 Swing swing(const SpringNetwork& network, int steps_a_frame, int max_substeps, const StretchLimitSettings& limit = both_ways()) {
   Simulator simulator(network, {.step = 1.0 / (kRate * steps_a_frame), .stretch_limit = limit, .max_substeps = max_substeps});
   Swing swing;
@@ -128,7 +128,7 @@ Swing swing(const SpringNetwork& network, int steps_a_frame, int max_substeps, c
   return swing;
 }
 
-TEST(StepRefinement, HoldsTheLimitOfWhatSwingsAndItsEnergy) {
+TEST(StepRefinement, KeepsTheLimitAndTheEnergyOfASwingingCloth) {
   const SpringNetwork cloth = swinging_cloth(16);
   const Swing coarse = swing(cloth, 8, 1);
   const Swing refined = swing(cloth, 8, 8);
@@ -137,35 +137,35 @@ TEST(StepRefinement, HoldsTheLimitOfWhatSwingsAndItsEnergy) {
   EXPECT_EQ(refined.max_substeps, 8);
   EXPECT_GT(coarse.worst_excess, 0.05);
   EXPECT_LT(refined.worst_excess, 0.04);
-  const double height = 0.2 * testing::kGravity * 1.0;  // what the cloth's lower edge may fall by
+  const double height = 0.2 * testing::kGravity * 1.0;  // the lower edge may fall by 1 m
   EXPECT_NEAR(refined.energy, fine.energy, 0.1 * height);
 }
 
-// What a global solve holds is within its limit at any step, but loses what it got as it fell.
-TEST(StepRefinement, KeepsTheEnergyOfWhatTurns) {
+// A global solve keeps the limit at any step, but loses kinetic energy of the fall.
+TEST(StepRefinement, KeepsTheEnergyOfATurningCloth) {
   const StretchLimitSettings limit{.max_stretch = 0.0, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};
   const SpringNetwork cloth = swinging_cloth(16);
   const Swing coarse = swing(cloth, 1, 1, limit);
   const Swing refined = swing(cloth, 1, 8, limit);
   const Swing fine = swing(cloth, 10, 1, limit);
   EXPECT_GT(refined.max_substeps, 2);
-  for (const Swing& held : {coarse, refined, fine}) EXPECT_LT(held.worst_excess, 0.02);
-  const double fall = 0.2 * testing::kGravity * 0.5;  // by half its length
+  for (const Swing& run : {coarse, refined, fine}) EXPECT_LT(run.worst_excess, 0.02);
+  const double fall = 0.2 * testing::kGravity * 0.5;  // a fall by half its length
   EXPECT_LT(coarse.energy, fine.energy - 0.2 * fall);
   EXPECT_NEAR(refined.energy, fine.energy, 0.1 * fall);
 }
 
-TEST(StepRefinement, BeginsWithTheSmallestPartsOfWhatMoves) {
+TEST(StepRefinement, BeginsWithTheSmallestSubstepsIfBodiesMove) {
   NetworkBuilder builder;
   const Vector3 velocity(0.0, 0.0, 10.0);
   const Index first = builder.add_particle({0.0, 0.0, 0.0}, 1.0, velocity);
   builder.add_spring(first, builder.add_particle({1.0, 0.0, 0.0}, 1.0, velocity), 0.0, 1.0, 0.0);
   SimulatorSettings settings{.step = 1.0 / kRate, .stretch_limit = StretchLimitSettings{}, .max_substeps = 8};
-  EXPECT_EQ(Simulator(builder.build(), settings).step().substeps, 1) << "passes follow what they miss";
+  EXPECT_EQ(Simulator(builder.build(), settings).step().substeps, 1) << "passes refine only after missed steps";
   settings.stretch_limit->solver = StretchLimitSettings::Solver::automatic;
   Simulator simulator(builder.build(), settings);
   EXPECT_EQ(simulator.step().substeps, 8);
-  EXPECT_EQ(simulator.step().substeps, 1) << "it flies, and does not turn";
+  EXPECT_EQ(simulator.step().substeps, 1) << "the springs fly without turning";
   SpringNetwork resting = builder.build();
   resting.velocities.setZero();
   EXPECT_EQ(Simulator(resting, settings).step().substeps, 1);
@@ -174,9 +174,9 @@ TEST(StepRefinement, BeginsWithTheSmallestPartsOfWhatMoves) {
   EXPECT_EQ(Simulator(resting, settings).step().substeps, 8);
 }
 
-// Eight parts are eight steps: for Verlet's first, and for the friction of a penalty, which stops what slides within a step if it
-// can.
-TEST(StepRefinement, APartAtTheStartIsAStepOfItsLength) {
+// Eight substeps equal eight steps. This includes Verlet's first step and penalty friction, which stops a sliding particle within
+// a step if it can.
+TEST(StepRefinement, TheFirstSubstepsAreStepsOfTheirLength) {
   const ContactMaterial rough{.thickness = 0.01, .friction = 100.0, .static_friction = 100.0};
   NetworkBuilder builder;
   builder.begin_body("stick", rough);
@@ -196,8 +196,8 @@ TEST(StepRefinement, APartAtTheStartIsAStepOfItsLength) {
   EXPECT_EQ(after_a_frame(8, 1), after_a_frame(1, 8));
 }
 
-// It begins unstretched, and so bounces at first; smaller steps would only make it bounce the higher.
-TEST(StepRefinement, LeavesWhatHangsAlone) {
+// The cloth starts unstretched, so it bounces at first. Smaller steps would only make it bounce higher.
+TEST(StepRefinement, DoesNotRefineAHangingCloth) {
   SpringNetwork cloth = swinging_cloth(64);
   cloth.positions.row(1) = -cloth.positions.row(2);
   cloth.positions.row(2).setZero();
@@ -205,14 +205,15 @@ TEST(StepRefinement, LeavesWhatHangsAlone) {
   EXPECT_EQ(swing(cloth, 27, 8).max_substeps, 1);
 }
 
-// Dampers see it; a chord of the wheel's arc is the longer, and points the more inwards, the longer the step.
-TEST(StepRefinement, PinsHaveTheVelocityOfTheStepToCome) {
+// Dampers depend on the pin's velocity. The longer the step, the longer the chord of the circular path, and the more inward it
+// points.
+TEST(StepRefinement, PinsHaveTheVelocityOfTheNextSubstep) {
   SpringNetwork cloth = swinging_cloth(16);
   Pin& pin = cloth.pins.front();
   pin.motion.spin = Vector3(0.0, 0.0, 90.0);
-  const Index held = pin.particles.back();
-  const auto held_at = [&](double time) -> Vector3 {
-    return pin.motion.pose(RigidTransform::Identity(), time) * cloth.positions.col(held);
+  const Index pinned = pin.particles.back();
+  const auto pinned_at = [&](double time) -> Vector3 {
+    return pin.motion.pose(RigidTransform::Identity(), time) * cloth.positions.col(pinned);
   };
   Simulator simulator(cloth, {.step = 1.0 / (8 * kRate), .stretch_limit = both_ways(), .max_substeps = 8});
   int changes = 0;
@@ -222,14 +223,14 @@ TEST(StepRefinement, PinsHaveTheVelocityOfTheStepToCome) {
     changes += state.substeps != substeps ? 1 : 0;
     substeps = state.substeps;
     const double dt = simulator.settings().step / substeps;
-    const Vector3 expected = (held_at(simulator.time() + dt) - held_at(simulator.time())) / dt;
-    // Positions of less than 2 m are rounded before their difference is divided by the step.
-    ASSERT_LT((state.v.col(held) - expected).norm(), 16 * kEpsilon / dt) << "step " << step;
+    const Vector3 expected = (pinned_at(simulator.time() + dt) - pinned_at(simulator.time())) / dt;
+    // Positions below 2 m are rounded before their difference is divided by the step.
+    ASSERT_LT((state.v.col(pinned) - expected).norm(), 16 * kEpsilon / dt) << "step " << step;
   }
   EXPECT_GT(changes, 1);
 }
 
-TEST(StepRefinement, IsTheSameForAnyNumberOfThreads) {
+TEST(StepRefinement, DoesNotDependOnTheNumberOfThreads) {
   const SpringNetwork cloth = swinging_cloth(40);
   const auto positions = [&](int threads) {
     const ThreadLimit limit(threads);
@@ -238,7 +239,7 @@ TEST(StepRefinement, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(positions(1), positions(2));
 }
 
-TEST(StepRefinement, PartsOutOfTheirBoundsAreRefused) {
+TEST(StepRefinement, AnInvalidNumberOfSubstepsIsRefused) {
   for (const int substeps : {0, kMaxSubsteps + 1}) {
     try {
       const Simulator simulator(testing::one_particle(Vector3::Zero()), {.max_substeps = substeps});

@@ -1,4 +1,4 @@
-// When steps that squeeze particles are made again.
+// When an infeasible step is repeated.
 #include "simulation/step/step_retry.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace sprung {
 namespace {
 
-/// Of so many steps that squeeze two particles, how many are made again; `helps`: then they squeeze one.
+/// The number of repeated steps out of `steps` steps that leave two particles infeasible. If `helps`, a repeated step leaves one.
 int tries(int steps, bool helps, SimulationState& state) {
   int tried = 0;
   for (int step = 0; step < steps; ++step) {
@@ -21,45 +21,45 @@ int tries(int steps, bool helps, SimulationState& state) {
   return tried;
 }
 
-TEST(StepRetry, IsNotForStepsThatSqueezeNothing) { EXPECT_FALSE(may_retry(0, {})); }
+TEST(StepRetry, FeasibleStepsAreNotRepeated) { EXPECT_FALSE(may_retry(0, {})); }
 
-TEST(StepRetry, IsEverRarerWhileItDoesNotHelp) {
+TEST(StepRetry, BecomesRarerWhileItDoesNotHelp) {
   const auto tries_in = [](int steps) {
     SimulationState state;
     return tries(steps, false, state);
   };
   for (int steps = 64; steps <= 1024; steps *= 2) {
-    EXPECT_EQ(tries_in(2 * steps), tries_in(steps) + 1) << "each pause is as long as all before, in " << steps << " steps";
+    EXPECT_EQ(tries_in(2 * steps), tries_in(steps) + 1) << "each pause is as long as all previous steps, " << steps;
   }
 }
 
-TEST(StepRetry, IsNotRarerWhileItHelps) {
+TEST(StepRetry, DoesNotBecomeRarerWhileItHelps) {
   SimulationState state;
   EXPECT_EQ(tries(100, true, state), 100);
 }
 
-TEST(StepRetry, IsForStepsThatSqueezeMoreThanWasLeft) {
+TEST(StepRetry, AllowsStepsWithMoreInfeasibleParticlesThanBefore) {
   SimulationState state;
   tries(100, false, state);
   EXPECT_FALSE(may_retry(2, state));
   EXPECT_TRUE(may_retry(3, state));
 }
 
-TEST(StepRetry, ForgetsWhatIsOver) {
+TEST(StepRetry, ForgetsFormerFailures) {
   SimulationState state;
   tries(5000, false, state);
   EXPECT_FALSE(may_retry(2, state));
-  int free = 0;
-  for (; !may_retry(2, state); ++free) {
+  int feasible = 0;
+  for (; !may_retry(2, state); ++feasible) {
     ++state.step;
     note_step(0, state);
   }
-  EXPECT_LT(free, 5000) << "it does not take as long as what is over did";
+  EXPECT_LT(feasible, 5000) << "fewer feasible steps than failures";
   SimulationState fresh;
-  EXPECT_EQ(tries(2048, false, state), tries(2048, false, fresh)) << "as from the start";
+  EXPECT_EQ(tries(2048, false, state), tries(2048, false, fresh)) << "as with a fresh state";
 }
 
-TEST(StepRetry, StaysRareWhereEveryOtherStepSqueezes) {
+TEST(StepRetry, StaysRareIfEveryOtherStepIsInfeasible) {
   SimulationState state;
   int tried = 0;
   for (int pair = 0; pair < 1000; ++pair) {

@@ -1,4 +1,4 @@
-// Bodies that meet exchange momentum and make no energy, also where contact did not tell of all that truncation stops.
+// Bodies that collide exchange momentum and gain no energy, also where truncation stops motion that contact did not detect.
 #include "simulation/scenes.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using testing::kGravity;
 
 constexpr ContactMaterial kThin{.thickness = 0.005};
 
-/// A level cloth with springs of 200 N/m, or so many times that.
+/// A level cloth with springs of `stiffer` times 200 N/m.
 BodyShape level_cloth(double size, Index n, double stiffer, double damping) {
   BodyShape shape = make_cloth({.size = {size, size}, .resolution = {n, n}},
                                {.structural = SpringMaterial{.value = 200.0 * stiffer, .damping = damping},
@@ -39,9 +39,9 @@ BodyShape cube(double size, double mass, double stiffness, double damping, const
   return shape;
 }
 
-// Truncation, which stops each for itself, has little left to do: a fifth of the momentum may go by it. A cube that stopped in
-// mid-air lost all.
-TEST(BodiesMeet, ACubeThatFliesIntoALightClothTakesItAlong) {
+// Truncation clips each body separately and does not conserve momentum. It may remove a fifth of the momentum here. A cube that
+// stopped in mid-air would lose all of it.
+TEST(CollidingBodies, ACubeThatHitsALightClothKeepsTheirMomentum) {
   NetworkBuilder builder;
   builder.add_body("cube", cube(0.3, 1.0, 800.0, 0.02, {10.0, 30.0, 20.0}, {0.1, 0.4, 0.05}, {0.0, -3.0, 0.0}), kThin);
   builder.add_body("cloth", level_cloth(0.6, 14, 1.0, 0.02), kThin);
@@ -63,7 +63,7 @@ SpringNetwork block_above_hammock() {
   return builder.build();
 }
 
-/// The most that motion, height and springs have more than at some time before, within a second [J].
+/// The largest rise [J] within a second of the kinetic, gravity and elastic energy over its smallest previous value.
 double largest_rise(const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
   Simulator simulator(block_above_hammock(), settings, obstacles);
   const SpringNetwork& network = simulator.network();
@@ -79,8 +79,8 @@ double largest_rise(const SimulatorSettings& settings, const std::vector<Obstacl
   return rise;
 }
 
-// What contacts meet of each other in a step, and so what little they give, is chance: the most of several steps. Of twelve steps
-// it was at most 0.7 J, and 4 J where each body stopped for itself.
+// The energy that contacts add depends on which elements touch in a step. So the largest value of several step sizes counts. Over
+// twelve step sizes it was at most 0.7 J, and 4 J where each body was stopped separately.
 double largest_rise_of_steps(const std::optional<StretchLimitSettings>& limit, const std::vector<Obstacle>& obstacles = {}) {
   double largest = 0.0;
   for (const double rate : {3000.0, 3500.0, 4000.0, 6000.0}) {
@@ -89,14 +89,14 @@ double largest_rise_of_steps(const std::optional<StretchLimitSettings>& limit, c
   return largest;
 }
 
-// A hundredth of what the fall from the hammock to the end of its links gives.
+// A hundredth of the energy of the fall from the hammock to the full length of its links.
 constexpr double kFall = 0.5;                                 // [m]
 constexpr double kLittle = 0.01 * kBlock * kGravity * kFall;  // [J]
 
-TEST(BodiesMeet, AHeavyBlockOnAClothIsNotThrownUp) { EXPECT_LT(largest_rise_of_steps(std::nullopt), kLittle); }
+TEST(CollidingBodies, AHeavyBlockOnAClothIsNotThrownUp) { EXPECT_LT(largest_rise_of_steps(std::nullopt), kLittle); }
 
-// What obstacles stop is led on by the limit's passes, from where the bodies were led out of each other.
-TEST(BodiesMeet, AHeavyBlockOnAClothAboveAFloorIsNotThrownUp) {
+// The passes of the limit start from the positions after the bodies were separated and obstacles were resolved.
+TEST(CollidingBodies, AHeavyBlockOnAClothAboveAFloorIsNotThrownUp) {
   Obstacle floor = testing::ground();
   floor.geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = -0.25};
   EXPECT_LT(largest_rise_of_steps(std::nullopt, {floor}), kLittle);
