@@ -50,7 +50,7 @@ TEST_P(LiftedBesideItsPins, TheClothTurnsAboutThem) {
   }
 }
 
-TEST(LiftedBesidePins, AStepThatWouldSqueezeIsMadeAgainInParts) {
+TEST(LiftedBesidePins, AnInfeasibleStepIsRepeatedInSubsteps) {
   const std::vector<std::string> overrides = {"bodies.cloth.shape.resolution=[8, 3]",
                                               "obstacles.bar.motion.keyframes[1].time=0.05"};
   BuiltScene scene = load_scenario("lifted_beside_pins", overrides);
@@ -65,7 +65,7 @@ TEST(LiftedBesidePins, AStepThatWouldSqueezeIsMadeAgainInParts) {
 
 // A rope that is pinned at both ends beside the cloth, at several heights, leaves the bar no way: it is infeasible for good, a step
 // before the cloth would be, in the same one or after it.
-TEST(LiftedBesidePins, WhatIsSqueezedForGoodDoesNotKeepOthersFromIt) {
+TEST(LiftedBesidePins, APermanentlyInfeasibleRopeDoesNotPreventOtherRepeats) {
   for (const double height : {-0.03, -0.02, -0.01, -0.004}) {
     const std::string z = std::to_string(height);
     const std::vector<std::string> overrides = {
@@ -106,7 +106,7 @@ std::pair<Vector3, std::int64_t> flight_far_off(const std::string& integrator, c
 }
 
 // Verlet's damping is one of each step, in whatever substeps it is made.
-TEST(LiftedBesidePins, AStepThatIsMadeAgainDampsWhatIsFarOffOnce) {
+TEST(LiftedBesidePins, ARepeatedStepDampsADistantClothOnce) {
   for (const char* integrator : {R"({"type": "verlet", "damping": 0.05})", R"({"type": "verlet", "damping_rate": 3})",
                                  R"({"type": "verlet"})", R"({"type": "symplectic_euler"})"}) {
     const auto [with_bar, substeps] = flight_far_off(integrator, "[-0.97, 0, -0.05]");

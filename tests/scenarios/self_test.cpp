@@ -52,7 +52,7 @@ std::string around_axis(const std::string& body, double distance) {
 }
 
 // Pins of both go the same way but for the chords: no pin drags anything through anything.
-TEST(SelfContactAtPins, TwoSheetsTurnedTogetherFindTheirPlace) {
+TEST(SelfContactAtPins, TwoSheetsTurnedTogetherStayFeasible) {
   BuiltScene scene = load_scenario("two_sheets_turned", {around_axis("front", 0.025), around_axis("back", -0.025)});
   const ScenarioReport report = run_scenario(std::move(scene), {}, Judge::obstacles_and_self);
   EXPECT_TRUE(report.is_free()) << report;
@@ -75,7 +75,7 @@ TEST(SelfContactAtPins, AThinClothTwistedAtBothEndsDoesNotPassItself) {
 }
 
 // An edge between two pins goes through a triangle of which only the edge between two others is pinned.
-TEST(SelfContactAtPins, PinsThatDrawTheirElementsThroughEachOtherAreTold) {
+TEST(SelfContactAtPins, PinsThatDriveElementsThroughEachOtherAreReported) {
   const ScenarioReport report = run_scenario(load_scenario("pins_through_each_other", {}), {}, Judge::obstacles_and_self);
   EXPECT_FALSE(report.is_free());
   EXPECT_GT(report.infeasible, 0);

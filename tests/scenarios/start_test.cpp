@@ -139,7 +139,7 @@ std::vector<StartCase> starts() {
 
 class EveryStart : public ::testing::TestWithParam<StartCase> {};
 
-TEST_P(EveryStart, IsRefusedOrLedOutAndGoesOnFromThere) {
+TEST_P(EveryStart, IsRefusedOrPushedOutAndContinues) {
   const auto& [name, network, in, most_moved] = GetParam();
   EXPECT_THROW(Simulator(network, {.step = 4.0e-4}, {in}), InputError);
 
@@ -163,7 +163,7 @@ TEST_P(EveryStart, IsRefusedOrLedOutAndGoesOnFromThere) {
 
 INSTANTIATE_TEST_SUITE_P(StartScenario, EveryStart, ::testing::ValuesIn(starts()), [](const auto& of) { return of.param.name; });
 
-TEST(StartScenario, WhatIsBelowTheFloorIsLiftedToItsGapAndNoFarther) {
+TEST(StartScenario, ParticlesBelowTheFloorAreLiftedToTheirGapAndNoFarther) {
   const SpringNetwork network = network_of(cloth(), pose_at({0, 0.03, 0}, {-87, 0, 0}));
   const Simulator simulator(network, pushing_out(), {obstacle(HalfSpaceGeometry{Vector3::UnitY(), 0.02})});
   for (Index i = 0; i < network.particle_count(); ++i) {
@@ -196,7 +196,7 @@ TEST(StartScenario, ARopeThatTouchesAHoleStaysInIt) {
   EXPECT_LT(std::hypot(middle.y() - 0.1, middle.z()), 0.18);
 }
 
-TEST(StartScenario, SeveralBodiesAreLedOutOfSeveralObstacles) {
+TEST(StartScenario, SeveralBodiesArePushedOutOfSeveralObstacles) {
   NetworkBuilder builder;
   for (const double x : {-0.9, 0.6}) {
     BodyShape shape = cube();
@@ -238,7 +238,7 @@ std::ostream& operator<<(std::ostream& stream, const AcrossCase& across) { retur
 
 class EveryStartAcross : public ::testing::TestWithParam<AcrossCase> {};
 
-TEST_P(EveryStartAcross, IsRefusedOrLedApartAndGoesOnFromThere) {
+TEST_P(EveryStartAcross, IsRefusedOrPushedApartAndContinues) {
   const SpringNetwork network = network_of_several(GetParam().bodies);
   const std::vector<Obstacle> floor = {obstacle(HalfSpaceGeometry{Vector3::UnitY(), 0.0})};
   const std::vector<JudgedElement> elements = judged_elements(network);
@@ -273,7 +273,7 @@ INSTANTIATE_TEST_SUITE_P(
                                   {rope({Vector3(-0.9, 0.55, 0.01), Vector3(0.9, 0.45, 0.02)}), pose_at({0, 0, 0})}}}),
     [](const auto& of) { return of.param.name; });
 
-TEST(StartScenario, WhatPinsHoldAcrossAWallIsRefused) {
+TEST(StartScenario, AClothPinnedAcrossAWallIsRefused) {
   const SpringNetwork network = network_of(cloth(), pose_at({0, 0, 0}, kLying), {0, 20, 420, 440});
   try {
     const Simulator simulator(network, pushing_out(), {obstacle(BoxGeometry{Vector3(0.1, 1e6, 1e6)})});
