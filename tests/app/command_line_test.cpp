@@ -98,7 +98,7 @@ TEST_F(CommandLine, SameBitsForAnyNumberOfThreadsAndEachRun) {
   EXPECT_THAT(listing(out("one")), Contains("cloth/cloth.0007.obj"));
 }
 
-TEST_F(CommandLine, RunWarnsOnceOfWhatIsSqueezedBetweenObstacles) {
+TEST_F(CommandLine, RunWarnsOnceOfInfeasibleVerticesBetweenObstacles) {
   json scene = rope_scene();
   scene["bodies"]["rope"].erase("pins");
   scene["bodies"]["rope"]["place"]["position"] = {0, -1.9, 0};  // 0.1 m above the anvil
@@ -194,7 +194,7 @@ TEST_F(CommandLine, RunReportsBodiesTooThinToRestOnEachOther) {
   EXPECT_THAT(ending.err, Not(HasSubstr("is too small for the step")));
 }
 
-TEST_F(CommandLine, ValidatePrintsWhatFollowsFromTheScene) {
+TEST_F(CommandLine, ValidatePrintsDerivedQuantities) {
   const Ending ending = run({"validate", save(cloth_scene())});
   EXPECT_EQ(ending.code, 0) << ending.err;
   EXPECT_EQ(ending.err, "");
@@ -204,7 +204,7 @@ TEST_F(CommandLine, ValidatePrintsWhatFollowsFromTheScene) {
 }
 
 // A step at which four passes cannot hold a cloth that hangs by two corners.
-TEST_F(CommandLine, TellsWhatHoldsTheStretchLimitAndWhenThatChanges) {
+TEST_F(CommandLine, ReportsTheSolverOfTheStretchLimitAndItsHandover) {
   json scene = cloth_scene();
   scene["step"] = 1.0 / 120.0;
   scene["stretch_limit"] = {{"solver", "auto"}, {"iterations", 4}};
@@ -222,7 +222,7 @@ TEST_F(CommandLine, TellsWhatHoldsTheStretchLimitAndWhenThatChanges) {
   EXPECT_GT(record()["limit_solves"], 0);
 }
 
-TEST_F(CommandLine, ValidateTellsWhatMaterialsComeTo) {
+TEST_F(CommandLine, ValidatePrintsDerivedMaterials) {
   json scene = cloth_scene();
   json& cloth = scene["bodies"]["cloth"];
   cloth["shape"] = {{"type", "cloth"}, {"size", {2, 1}}, {"resolution", {5, 3}}};
@@ -248,7 +248,7 @@ TEST_F(CommandLine, InfoDescribesAMeshAsObstacleAndAsBody) {
   EXPECT_THAT(ending.out, AllOf(HasSubstr("closed"), HasSubstr("components  1"), HasSubstr("as a body"), HasSubstr("size")));
 }
 
-TEST_F(CommandLine, ValidateDescribesWhatDeforms) {
+TEST_F(CommandLine, ValidateDescribesDeformingObstacles) {
   json scene = rope_scene();
   write_text(scratch_ / "lung.1.obj", "v 0 -50 0\nv 1 -50 0\nv 0 -50 1\nf 1 3 2\n");
   write_text(scratch_ / "lung.2.obj", "v 0 -50 0\nv 2 -50 0\nv 0 -50 1\nf 1 3 2\n");
@@ -262,7 +262,7 @@ TEST_F(CommandLine, ValidateDescribesWhatDeforms) {
   EXPECT_THAT(listing(out()), Contains("obstacles/lung/lung.0002.obj"));
 }
 
-TEST_F(CommandLine, InfoOfSeveralMeshesTellsWhetherTheyAreFrames) {
+TEST_F(CommandLine, InfoOfSeveralMeshesReportsWhetherTheyAreFrames) {
   const std::string a = (scratch_ / "a.obj").string();
   const std::string b = (scratch_ / "b.obj").string();
   write_text(a, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
@@ -276,7 +276,7 @@ TEST_F(CommandLine, InfoOfSeveralMeshesTellsWhetherTheyAreFrames) {
   EXPECT_THAT(other.err, HasSubstr("must be equally many as in a.obj"));
 }
 
-TEST_F(CommandLine, InfoOfARopeTellsThatItIsNoObstacle) {
+TEST_F(CommandLine, InfoOfARopeReportsThatItIsNoObstacle) {
   write_text(scratch_ / "rope.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nl 1 2 3\n");
   const Ending ending = run({"info", (scratch_ / "rope.obj").string()});
   EXPECT_EQ(ending.code, 0) << ending.err;

@@ -75,7 +75,7 @@ TEST(JellyOnStairs, TumblesDownAndStaysOutside) {
   EXPECT_GT((end.rowwise().maxCoeff() - end.rowwise().minCoeff()).prod(), 0.97 * 0.4 * 0.4 * 0.4) << "it is still a jelly";
 }
 
-TEST(ClothOnWaves, RidesThemAndIsLedNowhere) {
+TEST(ClothOnWaves, RisesWithTheWavesAndDoesNotDrift) {
   const ExampleRun run("cloth_on_waves");
   ASSERT_EQ(run.exit_code(), 0) << run.messages();
   ASSERT_EQ(run.frames(), 91);

@@ -214,7 +214,7 @@ TEST_F(RunOutputFiles, RecordHasASeed) {
   EXPECT_TRUE(record()["seed"].is_number_unsigned());
 }
 
-TEST_F(RunOutputFiles, RecordTellsHowFarTheRunCame) {
+TEST_F(RunOutputFiles, RecordReportsTheProgressOfTheRun) {
   RunOutput output = open(3, R"({"duration": 0.1, "bodies": {}})");
   EXPECT_EQ(record()["outcome"], "running");
   EXPECT_EQ(record()["frames_written"], 0);
@@ -248,7 +248,7 @@ Simulator hanging_cloth() {
                    {still("ball", SphereGeometry{.radius = 1.0}, {0.0, -9.0, 0.0})});
 }
 
-TEST_F(RunOutputFiles, RecordTellsFromWhenOnNewtonHoldsABody) {
+TEST_F(RunOutputFiles, RecordReportsTheHandoverToNewton) {
   simulator_ = hanging_cloth();
   RunOutput output(OutputFolder(scratch_ / "out", false),
                    {.frames = 9, .steps_per_frame = 4, .stretch_solver = simulator_.stretch_solver()}, simulator_);
