@@ -134,7 +134,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"NameEndsInADigit", {"obstacles.floor2.shape={\"type\":\"sphere\",\"radius\":1}"}, "obstacles.floor2", "must not end in a digit"},
       {"NameWithASlash", {"bodies.a/b.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}", "bodies.a/b.mass=1"}, "bodies.a/b", "letters, digits, _ and -"},
       {"NameIsTooLong", {"obstacles." + std::string(201, 'x') + ".shape={\"type\":\"sphere\",\"radius\":1}"}, "obstacles." + std::string(201, 'x'), "at most 200 letters"},
-      {"NameIsReserved", {"bodies.obstacles.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}", "bodies.obstacles.mass=1"}, "bodies.obstacles", "the name is taken"},
+      {"NameIsReserved", {"bodies.obstacles.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}", "bodies.obstacles.mass=1"}, "bodies.obstacles", "the name is reserved"},
   };
   return kScenes;
 }
