@@ -1,4 +1,4 @@
-// How the program ends when it cannot do what it was asked, and what it leaves behind.
+// How the program ends when it fails, and what it leaves behind.
 #include "app/command_line_fixture.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Runs the program as users do, and tells how it ended and what it said.
+// Runs the program as users do, and returns its exit code and its texts.
 #pragma once
 
 #include "output/scratch_folder.h"
@@ -18,7 +18,7 @@ namespace sprung::testing {
 
 struct Ending {
   int code = -1;    ///< exit code; -1 when a signal ended it
-  int signal = 0;   ///< that ended it
+  int signal = 0;   ///< that ended the program
   std::string out;  ///< standard output
   std::string err;  ///< standard error
 };

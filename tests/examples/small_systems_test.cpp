@@ -55,7 +55,7 @@ EnergyGain energy_gain(const std::string& scheme) {
 }
 
 // The table of energies in examples/README.md. The rope falls a metre: 5 J.
-TEST(SixSchemes, TreatEnergyAsTheReadmeTells) {
+TEST(SixSchemes, TreatEnergyAsTheReadmeStates) {
   EXPECT_EQ(ExampleRun("six_schemes", {"--set", "integrator.type=explicit_euler"}).exit_code(), 4);
   EXPECT_LT(energy_gain("symplectic_euler").most, 0.11);
   EXPECT_LT(energy_gain("verlet").most, 0.11);

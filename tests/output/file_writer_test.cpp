@@ -26,7 +26,7 @@ TEST(FileWriter, MakesFoldersAndLeavesNothingButTheFile) {
   EXPECT_THAT(listing(scratch.path()), ElementsAre("a/", "a/b/", "a/b/file.txt"));
 }
 
-TEST(FileWriter, ReplacesWhatWasThere) {
+TEST(FileWriter, ReplacesAnExistingFile) {
   const ScratchFolder scratch;
   write_file(scratch / "file.txt", "long text");
   write_file(scratch / "file.txt", "short");

@@ -73,7 +73,7 @@ TEST(OutputFolder, OverwritingRemovesAllOfARun) {
   EXPECT_THAT(listing(scratch.path()), IsEmpty());
 }
 
-TEST(OutputFolder, OverwritingKeepsWhatNoRunWrote) {
+TEST(OutputFolder, OverwritingKeepsFilesThatNoRunWrote) {
   const ScratchFolder scratch;
   leave_a_run(scratch.path());
   for (const char* own : {"notes.txt", "obstacles/mine.obj", "rope/rope.0001.blend", "rope/rope.1.obj"}) {

@@ -50,7 +50,7 @@ TEST_F(BallsOfFiveParticles, AMarginIsTakenFromTheRadius) {
   EXPECT_THAT(outside(1.0), ElementsAre(0, 1, 2, 3, 4));
 }
 
-TEST_F(BallsOfFiveParticles, WhatHasNoRadiusHoldsNothing) {
+TEST_F(BallsOfFiveParticles, ASphereWithoutARadiusContainsNothing) {
   balls_.set(3, into_ * Vector3(positions_.col(2)), 0.0);
   balls_.set(4, into_ * Vector3(positions_.col(3)), -1.0);
   EXPECT_THAT(outside(0.0), ElementsAre(3, 4));

@@ -174,7 +174,7 @@ TEST(ProximitySearch, LooksAtLittleElse) {
   EXPECT_LT(crumpled.find(crumpled.all()).size(), 2 * crumpled.nearer_than_the_gap().size());
 }
 
-TEST(ProximitySearch, AroundMarkedParticlesFindsWhatTheWholeSearchFindsThere) {
+TEST(ProximitySearch, ASearchAroundMarkedParticlesFindsTheSameAsAWholeSearch) {
   Crumpled crumpled(6);
   const std::vector<ContactCandidate> whole = crumpled.find(crumpled.all());
   for (const int parts : {2, 10, 100}) {

@@ -43,12 +43,12 @@ double reach(double fall) {
   return height;
 }
 
-TEST(SelfContactMargin, OfWhatRestsIsPositiveAndLessThanAsked) {
+TEST(SelfContactMargin, IsPositiveAndLessThanAskedAtRest) {
   EXPECT_GT(reach(0.0), 1.0);
   EXPECT_LT(reach(0.0), 1.45);
 }
 
-TEST(SelfContactMargin, GrowsWithTheMotionUpToWhatIsAsked) {
+TEST(SelfContactMargin, GrowsWithTheMotionUpToTheAskedMargin) {
   EXPECT_GT(reach(0.2), reach(0.0));
   EXPECT_GT(reach(0.4), reach(0.2));
   EXPECT_NEAR(reach(8.0), 1.5, 0.011);
@@ -90,11 +90,11 @@ void expect_contact_as_they_meet(int steps, double part_of_sheet) {
   expect_contact_in_time(sheet_and_particle(4.0 * kGap), go, height);
 }
 
-TEST(SelfContactMargin, WhatComesToASheetIsToldOfWhenItIsNearerThanItsGap) {
+TEST(SelfContactMargin, AParticleNearerToASheetThanItsGapIsReported) {
   for (int steps = 1; steps <= 70; ++steps) expect_contact_as_they_meet(steps, 0.0);
 }
 
-TEST(SelfContactMargin, WhatASheetComesToIsToldOfToo) {
+TEST(SelfContactMargin, AParticleThatASheetApproachesIsReported) {
   for (int steps = 1; steps <= 70; ++steps) {
     expect_contact_as_they_meet(steps, 0.5);
     expect_contact_as_they_meet(steps, 1.0);
@@ -115,7 +115,7 @@ void expect_contact_as_it_turns(const SelfNetwork& network, Index turning, int s
 }
 
 // Above a face whose corners are at different heights.
-TEST(SelfContactMargin, WhatASheetTurnsToIsToldOf) {
+TEST(SelfContactMargin, AParticleThatASheetRotatesTowardsIsReported) {
   const SelfNetwork network = sheet_and_particle(4.0 * kGap);
   const Index last = network.count() - 1;
   const auto above_the_slope = [&](const Points& x) {
@@ -126,7 +126,7 @@ TEST(SelfContactMargin, WhatASheetTurnsToIsToldOf) {
 }
 
 // Two segments that cross at right angles: the lower one comes up by an end, or the upper one down.
-TEST(SelfContactMargin, WhatARopeTurnsToIsToldOf) {
+TEST(SelfContactMargin, AParticleThatARopeRotatesTowardsIsReported) {
   const auto apart = [](const Points& x) {
     const double slope = (x(1, 1) - x(1, 0)) / (x(0, 1) - x(0, 0));
     return (x(1, 2) - x(1, 0) - slope * (x(0, 2) - x(0, 0))) / std::hypot(1.0, slope);
@@ -155,14 +155,14 @@ void expect_contact_on_its_way(double from, const Move& move) {
 }
 
 // What hangs above the sheet until it is let go comes faster in each step.
-TEST(SelfContactMargin, WhatFallsFromRestIsToldOf) {
+TEST(SelfContactMargin, AParticleThatFallsFromRestIsReported) {
   for (const double gained : {0.001, 0.01, 0.1}) {
     expect_contact_on_its_way(4.0, [&](int step) { return Vector3(0.0, -(step + 1) * gained, 0.0); });
   }
 }
 
 // What goes along the sheet may turn down to it in any step, as fast as it went.
-TEST(SelfContactMargin, WhatTurnsDownIsToldOf) {
+TEST(SelfContactMargin, AnElementThatRotatesDownIsReported) {
   for (double from = 1.02; from < 3.0; from += 0.06) {
     expect_contact_on_its_way(from, [](int step) -> Vector3 { return -0.2 * (step < 5 ? Vector3::UnitX() : Vector3::UnitY()); });
   }
@@ -176,7 +176,7 @@ Points creep(const Points& x, int step, const Scalars& rise) {
 }
 
 // What is not looked for again, since nothing leaves its ball, has been looked for as far as both balls let them come.
-TEST(SelfContactMargin, WhatCreepsTogetherIsToldOf) {
+TEST(SelfContactMargin, SurfacesThatCreepTogetherAreReported) {
   const SelfNetwork network = sheet_and_particle(1.55 * kGap);
   Scalars rise = Scalars::Ones(network.count());
   rise(network.count() - 1) = -1.0;
@@ -185,7 +185,7 @@ TEST(SelfContactMargin, WhatCreepsTogetherIsToldOf) {
 }
 
 // The end of a long segment has a larger ball than the end that it shares with a short one.
-TEST(SelfContactMargin, WhatCreepsTogetherAtAnEndIsToldOf) {
+TEST(SelfContactMargin, EndsThatCreepTogetherAreReported) {
   SelfNetwork network;
   network.add_rope(2, Vector3::Zero(), 0.04 * Vector3::UnitX());
   network.positions(0, 1) = 0.005;
@@ -198,7 +198,7 @@ TEST(SelfContactMargin, WhatCreepsTogetherAtAnEndIsToldOf) {
 }
 
 // What flies together may be stopped on one side in any step, while nothing leaves its ball.
-TEST(SelfContactMargin, WhatStopsIsToldOf) {
+TEST(SelfContactMargin, AnElementThatStopsIsReported) {
   for (int stop = 1; stop <= 8; ++stop) {
     SCOPED_TRACE("stops in step " + std::to_string(stop));
     const auto go = [&](int step, const Points& x) {
@@ -212,7 +212,7 @@ TEST(SelfContactMargin, WhatStopsIsToldOf) {
 }
 
 // Either of two segments that cross, the other at rest.
-TEST(SelfContactMargin, WhatFallsAcrossAnEdgeIsToldOf) {
+TEST(SelfContactMargin, AParticleThatFallsAcrossAnEdgeIsReported) {
   for (const Index falling : {0, 2}) {
     SelfNetwork network;
     network.add_rope(1, {-0.01, 0.0, 0.0}, 0.02 * Vector3::UnitX());
@@ -229,7 +229,7 @@ TEST(SelfContactMargin, WhatFallsAcrossAnEdgeIsToldOf) {
 
 // Passes and surfaces lead particles elsewhere than forces did: what that brings near is looked for in the next step, whatever else
 // leaves its ball then.
-TEST(SelfContactMargin, WhatPassesLedThereIsToldOf) {
+TEST(SelfContactMargin, AParticleMovedThereByPassesIsReported) {
   SelfNetwork network = sheet_and_particle(2.3 * kGap);
   network.add_single_particle({0.5, 0.5, 0.5});
   const Index led = network.count() - 2;
@@ -249,7 +249,7 @@ TEST(SelfContactMargin, WhatPassesLedThereIsToldOf) {
 }
 
 // One end of a segment above the sheet leaves its ball, the other does not.
-TEST(SelfContactMargin, WhatStayedIsToldOfOnce) {
+TEST(SelfContactMargin, AParticleThatStaysIsReportedOnce) {
   SelfNetwork network = sheet_and_particle(100.0 * kGap);
   network.add_rope(1, {0.0123, 0.9 * kGap, 0.0171}, {0.011, 0.0, 0.004});
   const CollisionSurface surface = network.surface(kGap);
@@ -265,7 +265,7 @@ TEST(SelfContactMargin, WhatStayedIsToldOfOnce) {
 }
 
 // What waits above the sheet, at rest as far as contact is concerned, is not forgotten.
-TEST(SelfContactMargin, WhatWaitedIsToldOf) {
+TEST(SelfContactMargin, AParticleThatWaitedIsReported) {
   expect_contact_on_its_way(1.5, [](int step) { return Vector3(0.0, step < 90 ? -1.0e-4 : -0.07, 0.0); });
 }
 
