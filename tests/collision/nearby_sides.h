@@ -41,9 +41,9 @@ inline Points random_ends(const Points& before, double angle, double stray, Rand
 
 /// Whether an edge of one triangle intersects the other at one of many times of the step.
 inline bool cross_in_between(const Points& before, const Points& ends) {
-  constexpr int times = 64;
-  for (int k = 0; k <= times; ++k) {
-    const double time = static_cast<double>(k) / times;
+  constexpr int kTimes = 64;
+  for (int k = 0; k <= kTimes; ++k) {
+    const double time = static_cast<double>(k) / kTimes;
     const Points x = (1.0 - time) * before + time * ends;
     for (const int first : {0, 3}) {
       const int second = 3 - first;

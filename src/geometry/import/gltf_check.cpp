@@ -24,12 +24,10 @@ constexpr std::uint64_t kMostPlacedVertices = 1'000'000'000;
 
 // The numbers that the glTF specification gives them.
 constexpr std::uint64_t kUnsignedByte = 5121;
-constexpr std::uint64_t kShort = 5122;
 constexpr std::uint64_t kUnsignedShort = 5123;
 constexpr std::uint64_t kUnsignedInt = 5125;
 constexpr std::uint64_t kFloat = 5126;
 constexpr std::uint64_t kTriangles = 4;
-constexpr std::uint64_t kTriangleStrip = 5;
 constexpr std::uint64_t kTriangleFan = 6;
 
 class InvalidGltf : public std::runtime_error {

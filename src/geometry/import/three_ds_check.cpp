@@ -4,36 +4,33 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace sprung {
 namespace {
 
 // The chunks that define and transform surfaces; all others are left out.
-enum Id : std::uint16_t {
-  kMain = 0x4d4d,
-  kEditor = 0x3d3d,
-  kMasterScale = 0x0100,
-  kMaterial = 0xafff,
-  kMaterialName = 0xa000,
-  kObject = 0x4000,
-  kMesh = 0x4100,
-  kVertices = 0x4110,
-  kFaces = 0x4120,
-  kFacesOfMaterial = 0x4130,
-  kMatrix = 0x4160,
-  kKeyframer = 0xb000,
-  kObjectNode = 0xb002,
-  kFirstNode = 0xb001,
-  kLastNode = 0xb007,
-  kNodeName = 0xb010,
-  kDummyName = 0xb011,
-  kPivot = 0xb013,
-  kPositionTrack = 0xb020,
-  kRotationTrack = 0xb021,
-  kScaleTrack = 0xb022,
-};
+constexpr std::uint16_t kMain = 0x4d4d;
+constexpr std::uint16_t kEditor = 0x3d3d;
+constexpr std::uint16_t kMasterScale = 0x0100;
+constexpr std::uint16_t kMaterial = 0xafff;
+constexpr std::uint16_t kMaterialName = 0xa000;
+constexpr std::uint16_t kObject = 0x4000;
+constexpr std::uint16_t kMesh = 0x4100;
+constexpr std::uint16_t kVertices = 0x4110;
+constexpr std::uint16_t kFaces = 0x4120;
+constexpr std::uint16_t kFacesOfMaterial = 0x4130;
+constexpr std::uint16_t kMatrix = 0x4160;
+constexpr std::uint16_t kKeyframer = 0xb000;
+constexpr std::uint16_t kObjectNode = 0xb002;
+constexpr std::uint16_t kFirstNode = 0xb001;
+constexpr std::uint16_t kLastNode = 0xb007;
+constexpr std::uint16_t kNodeName = 0xb010;
+constexpr std::uint16_t kDummyName = 0xb011;
+constexpr std::uint16_t kPivot = 0xb013;
+constexpr std::uint16_t kPositionTrack = 0xb020;
+constexpr std::uint16_t kRotationTrack = 0xb021;
+constexpr std::uint16_t kScaleTrack = 0xb022;
 
 constexpr std::size_t kChunkHeader = 6;
 constexpr std::size_t kVector = 12;
@@ -83,7 +80,7 @@ class Reader {
   /// A name with the 0 at its end.
   std::string name() {
     const std::size_t end = rest_.find('\0');
-    if (end == std::string_view::npos || end > kLongestName) throw InvalidFile("has a name without an end");
+    if (end > kLongestName) throw InvalidFile("has a name without an end");
     return std::string(take(end + 1));
   }
 
@@ -111,7 +108,7 @@ class Checker {
     file.chunks([&](std::uint16_t id, Reader reader) {
       if (id != kMain) return;
       found = true;
-      content += main(std::move(reader));
+      content += main(reader);
     });
     if (!found) throw InvalidFile("does not begin like a 3DS file");
     if (faces_ == 0) throw InvalidFile("has no faces");
@@ -122,8 +119,8 @@ class Checker {
   std::string main(Reader reader) {
     std::string kept;
     reader.chunks([&](std::uint16_t id, Reader content) {
-      if (id == kEditor) kept += chunk(id, editor(std::move(content)));
-      if (id == kKeyframer) kept += chunk(id, keyframer(std::move(content)));
+      if (id == kEditor) kept += chunk(id, editor(content));
+      if (id == kKeyframer) kept += chunk(id, keyframer(content));
     });
     return kept;
   }
@@ -132,8 +129,8 @@ class Checker {
     std::string kept;
     reader.chunks([&](std::uint16_t id, Reader content) {
       if (id == kMasterScale) kept += chunk(id, std::string(content.take(sizeof(float))));
-      if (id == kMaterial) kept += chunk(id, material(std::move(content)));
-      if (id == kObject) kept += object(std::move(content));
+      if (id == kMaterial) kept += chunk(id, material(content));
+      if (id == kObject) kept += object(content);
     });
     return kept;
   }
@@ -152,7 +149,7 @@ class Checker {
     const std::string name = reader.name();
     std::string meshes;
     reader.chunks([&](std::uint16_t id, Reader content) {
-      if (id == kMesh) meshes += chunk(id, mesh(std::move(content)));
+      if (id == kMesh) meshes += chunk(id, mesh(content));
     });
     return meshes.empty() ? "" : chunk(kObject, name + meshes);
   }
@@ -192,7 +189,7 @@ class Checker {
     }
     faces_ += count;
     reader.chunks([&](std::uint16_t id, Reader content) {
-      if (id == kFacesOfMaterial) kept += chunk(id, faces_of_material(std::move(content), count));
+      if (id == kFacesOfMaterial) kept += chunk(id, faces_of_material(content, count));
     });
     return kept;
   }
@@ -212,7 +209,7 @@ class Checker {
   std::string keyframer(Reader reader) {
     std::string kept;
     reader.chunks([&](std::uint16_t id, Reader content) {
-      if (id >= kFirstNode && id <= kLastNode) kept += chunk(id, node(id, std::move(content)));
+      if (id >= kFirstNode && id <= kLastNode) kept += chunk(id, node(id, content));
     });
     return kept;
   }
@@ -225,13 +222,13 @@ class Checker {
       if (id == kNodeName) {
         if (named) throw InvalidFile("has a node with two names");
         named = true;
-        kept += chunk(id, hierarchy_entry(std::move(content)));
+        kept += chunk(id, hierarchy_entry(content));
       }
       if (!named || kind != kObjectNode) return;
       if (id == kDummyName) kept += chunk(id, content.name());
       if (id == kPivot) kept += chunk(id, std::string(content.take(kVector)));
-      if (id == kPositionTrack || id == kScaleTrack) kept += first_key(id, std::move(content), kVector);
-      if (id == kRotationTrack) kept += first_key(id, std::move(content), sizeof(float) + kVector);
+      if (id == kPositionTrack || id == kScaleTrack) kept += first_key(id, content, kVector);
+      if (id == kRotationTrack) kept += first_key(id, content, sizeof(float) + kVector);
     });
     return kept;
   }

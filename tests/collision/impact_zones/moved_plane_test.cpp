@@ -12,15 +12,15 @@ constexpr double kRounding = 64 * 0x1p-52;
 TEST(MovedPlane, PointsThatFollowTheMotionKeepTheirHeightTimesTheVolume) {
   test::Random random(1);
   for (int n = 0; n < 1000; ++n) {
-    Matrix3 F = Eigen::AngleAxisd(random.between(0.0, 1.5), random.direction()).toRotationMatrix();
-    for (int axis = 0; axis < 3; ++axis) F.col(axis) += random.between(0.0, 0.3) * random.direction();
+    Matrix3 gradient = Eigen::AngleAxisd(random.between(0.0, 1.5), random.direction()).toRotationMatrix();
+    for (int axis = 0; axis < 3; ++axis) gradient.col(axis) += random.between(0.0, 0.3) * random.direction();
     const Vector3 normal = random.direction();
     const Vector3 offset = random.direction();
-    const MovedPlane plane = moved_plane(normal, F);
+    const MovedPlane plane = moved_plane(normal, gradient);
     for (const double t : {0.0, 0.1, 0.5, 0.8, 1.0}) {
-      const Matrix3 A = (1.0 - t) * Matrix3::Identity() + t * F;
+      const Matrix3 at_moment = (1.0 - t) * Matrix3::Identity() + t * gradient;
       const Vector3 at_time = (1.0 - t) * (1.0 - t) * plane.begin + 2.0 * t * (1.0 - t) * plane.middle + t * t * plane.end;
-      EXPECT_NEAR(at_time.dot(A * offset), A.determinant() * normal.dot(offset), kRounding);
+      EXPECT_NEAR(at_time.dot(at_moment * offset), at_moment.determinant() * normal.dot(offset), kRounding);
     }
   }
 }

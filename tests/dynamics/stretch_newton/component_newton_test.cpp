@@ -317,8 +317,8 @@ class FallingCloth : public ::testing::Test {
 
   static constexpr double kFrameFall = 9.81 / 3600.0;
   SpringNetwork network_ = make_test_cloth(48, 0.0, 0.0);
-  const StretchLimitSettings kLimit{.max_stretch = 0.0, .tolerance = 0.01};
-  ComponentNewton newton_{component_of(network_), kLimit};
+  const StretchLimitSettings settings_{.max_stretch = 0.0, .tolerance = 0.01};
+  ComponentNewton newton_{component_of(network_), settings_};
   Points before_ = network_.positions;
   Points x_ = network_.positions;
 };
@@ -379,7 +379,7 @@ TEST_F(FallingCloth, LeavesRestWhenForcesChange) {
 TEST_F(FallingCloth, LeavesRestWhenForcesRotate) {
   come_to_rest();
   const Points rest = x_;
-  ComponentNewton newton(component_of(network_), kLimit);
+  ComponentNewton newton(component_of(network_), settings_);
   const auto solves_from_rest = [&](const Vector3& load) {
     for (Index i = 0; i < x_.cols(); ++i) x_.col(i) = rest.col(i) + (network_.is_pinned(i) ? Vector3(Vector3::Zero()) : load);
     return newton.solve(rest, x_, kFrameFall).value_or(0);

@@ -23,7 +23,8 @@ class RandomPoints {
 
 TEST(Double4, LanesOfAMaskArePoppedFromTheLowest) {
   const Double4 numbers{3.0, -1.0, 5.0, -2.0};
-  unsigned lanes = mask_bits(numbers < 4.0);
+  const Mask4 below = numbers < 4.0;
+  unsigned lanes = mask_bits(below);
   EXPECT_EQ(lanes, 0b1011U);
   EXPECT_EQ(pop_lane(lanes), 0);
   EXPECT_EQ(pop_smallest_lane(numbers, lanes), 3);
