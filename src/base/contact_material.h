@@ -15,6 +15,8 @@ struct ContactMaterial {
   double friction = 0.0;         ///< kinetic coefficient, >= 0
   double static_friction = 0.0;  ///< >= friction
   double restitution = 0.0;      ///< in [0, 1]
+
+  bool operator==(const ContactMaterial&) const = default;
 };
 
 /// Adds a problem for each of these rules that the material breaks. `key` is the prefix of the keys, such as `bodies.rope`.

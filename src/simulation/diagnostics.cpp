@@ -6,22 +6,6 @@
 namespace sprung {
 namespace {
 
-double kinetic_energy(const Simulator& simulator) {
-  return 0.5 * simulator.network().masses.dot(simulator.state().v.colwise().squaredNorm().transpose());
-}
-
-double max_stretch(const Simulator& simulator) {
-  const Springs& springs = simulator.network().springs;
-  const Points& x = simulator.positions();
-  double most = 0.0;
-  for (std::size_t s = 0; s < springs.first.size(); ++s) {
-    if (springs.kind[s] != SpringKind::structural || springs.rest_length[s] == 0.0) continue;
-    const double length = (x.col(springs.first[s]) - x.col(springs.second[s])).norm();
-    most = std::max(most, length / springs.rest_length[s] - 1.0);
-  }
-  return most;
-}
-
 // Search range of the distance from the environment [m]: the extent of the network and of its motion, plus some gaps.
 double distance_range(const Simulator& simulator) {
   double thickest = 0.0;
@@ -45,6 +29,22 @@ FrameDiagnostics measure(const Simulator& simulator, int frame) {
 }
 
 }  // namespace
+
+double kinetic_energy(const Simulator& simulator) {
+  return 0.5 * simulator.network().masses.dot(simulator.state().v.colwise().squaredNorm().transpose());
+}
+
+double max_stretch(const Simulator& simulator) {
+  const Springs& springs = simulator.network().springs;
+  const Points& x = simulator.positions();
+  double most = 0.0;
+  for (std::size_t s = 0; s < springs.first.size(); ++s) {
+    if (springs.kind[s] != SpringKind::structural || springs.rest_length[s] == 0.0) continue;
+    const double length = (x.col(springs.first[s]) - x.col(springs.second[s])).norm();
+    most = std::max(most, length / springs.rest_length[s] - 1.0);
+  }
+  return most;
+}
 
 FrameRunner::FrameRunner(Simulator& simulator, int steps_per_frame) : simulator_(simulator), steps_per_frame_(steps_per_frame) {}
 

@@ -27,6 +27,12 @@ struct FrameDiagnostics {
   double frame_ms = 0.0;               ///< wall time of computing the frame
 };
 
+/// [J]
+[[nodiscard]] double kinetic_energy(const Simulator& simulator);
+
+/// Largest (|s| - d) / d of structural springs; 0 if none is longer than at rest.
+[[nodiscard]] double max_stretch(const Simulator& simulator);
+
 /// Runs a simulator frame by frame. Keeps a reference to it.
 class FrameRunner {
  public:

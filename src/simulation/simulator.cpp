@@ -1,6 +1,7 @@
 #include "simulation/simulator.h"
 
 #include "collision/obstacles/obstacle_set.h"
+#include "dynamics/forces/shared_force.h"
 #include "simulation/settings/settings_check.h"
 #include "simulation/simulator_implementation.h"
 #include "simulation/start/start.h"
@@ -27,10 +28,13 @@ constexpr double kMaxTurn = 45.0;
 
 }  // namespace
 
-Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles)
+Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared,
+                                          ExternalForces external)
     : network(std::move(model)),
       settings(checked_settings(std::move(chosen))),
-      environment(std::move(obstacles)),
+      shared_environment(std::move(shared)),
+      environment(*shared_environment),
+      external_forces(std::move(external)),
       bounds(simulation_bounds(network, settings, !environment.obstacles().empty())),
       warnings(check_step(settings, bounds)),
       integrator(make_integrator(settings.integrator, network)),
@@ -52,13 +56,19 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   if (settings.contact.response == ContactSettings::Response::penalty && !environment.obstacles().empty()) {
     penalty = add_force<PenaltyContact>(environment, settings.contact.stiffness, settings.contact.damping, dt());
   }
+  for (const std::shared_ptr<Force>& force : external_forces) forces.push_back(std::make_unique<SharedForce>(force));
+  for (const auto& more : {unused_settings(settings, network), weak_springs(settings, network)}) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  }
+}
+
+Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles)
+    : Implementation(std::move(model), std::move(chosen), std::make_shared<Environment>(std::move(obstacles)), {}) {
   environment.set_interval(0.0, 0.0);
   move_pins(0.0);
   Start start = find_start(network, environment, settings.contact, state.x);
   state.x = std::move(start.positions);
-  for (const auto& more : {start.warnings, unused_settings(settings, network), weak_springs(settings, network)}) {
-    warnings.insert(warnings.end(), more.begin(), more.end());
-  }
+  warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
   integrator->start(state, forces, dt());
   energy_watch.note(0, energies());
 }
@@ -174,9 +184,9 @@ void Simulator::Implementation::move_pins(double time) {
   }
 }
 
-Index Simulator::Implementation::contacts() const {
-  if (penalty != nullptr) return penalty->contact_count(state.x);
-  return kept_contacts ? *kept_contacts : constraints.contacts().contact_count();
+std::vector<Index> Simulator::Implementation::contacts() const {
+  if (penalty != nullptr) return penalty->touching(state.x);
+  return kept_contacts ? *kept_contacts : constraints.contacts().pushed();
 }
 
 void Simulator::Implementation::check_state() {
@@ -186,7 +196,7 @@ void Simulator::Implementation::check_state() {
     if (const auto failure = divergence.overstretched(state.x)) fail(*failure);
   }
   if (state.step > 1 && state.step % (kStepsPerEnergy * check_interval) != 0) return;
-  if (!energy_watch.watches()) return;
+  if (!energy_watch.watches() || !external_forces.empty()) return;
   const Energies now = energies();
   energy_watch.note(state.step, now);
   check_energy(now);
@@ -250,11 +260,12 @@ std::string Simulator::stretch_solver() const {
   return limit != nullptr ? limit->chosen_solver() : std::string();
 }
 
-Index Simulator::contact_count() const { return implementation_->contacts(); }
+std::vector<Index> Simulator::contact_particles() const { return implementation_->contacts(); }
+Index Simulator::contact_count() const { return static_cast<Index>(contact_particles().size()); }
 
 void Simulator::check() const {
   if (const auto failure = implementation_->divergence.overstretched(state().x)) implementation_->fail(*failure);
-  implementation_->check_energy(implementation_->energies());
+  if (implementation_->external_forces.empty()) implementation_->check_energy(implementation_->energies());
 }
 
 }  // namespace sprung

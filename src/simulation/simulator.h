@@ -36,6 +36,39 @@ class Simulator {
   /// with many infeasible particles can take minutes.
   void stop_when(std::function<bool()> stops);
 
+  // Changes between two steps. Each of them rebuilds what follows from network and settings (forces, batches, factors, cached safe
+  // regions), which takes about as long as the constructor without its obstacles. The state goes on: positions, velocities, time,
+  // and bodies that a global solve took over. Each throws InputError that names every problem, and then changes nothing.
+  // References to network() and settings() become invalid.
+
+  /// Continues with another network and other settings. Requires a network that NetworkBuilder made with the same bodies and the
+  /// same particles. The step and the start of contact cannot change, nor what collides (Body::contact) or how (response).
+  void continue_with(SpringNetwork network, SimulatorSettings settings);
+
+  void set_gravity(const Vector3& acceleration);   ///< [m/s^2]
+  void set_air(double drag, const Vector3& wind);  ///< see SimulatorSettings
+  void set_stretch_limit(const std::optional<StretchLimitSettings>& limit);
+
+  /// Gives all springs of a kind in a body this stiffness [N/m] and damping [N s/m].
+  void set_springs(std::size_t body, SpringKind kind, double stiffness, double damping);
+
+  void set_body_material(std::size_t body, const ContactMaterial& material);
+  void set_obstacle_material(std::size_t obstacle, const ContactMaterial& material);
+
+  /// Fixes a particle where it is. Does nothing if it is pinned already.
+  void pin(Index particle);
+
+  /// Frees a particle from its pin; it continues with the pin's velocity. Does nothing if it is not pinned.
+  void release(Index particle);
+
+  /// Adds an external force. The caller may change its parameters between steps. The force must not keep references to network().
+  /// The largest stable step does not account for it. The energy is not checked while there are external forces, as they may
+  /// supply any amount.
+  void add_force(std::shared_ptr<Force> force);
+
+  /// Removes an external force. Does nothing if it was not added.
+  void remove_force(const Force& force);
+
   [[nodiscard]] const SpringNetwork& network() const;
   [[nodiscard]] const SimulatorSettings& settings() const;
   [[nodiscard]] const SimulationState& state() const;
@@ -53,6 +86,9 @@ class Simulator {
 
   /// Number of particles that contact pushed in the last step.
   [[nodiscard]] Index contact_count() const;
+
+  /// These particles, ascending.
+  [[nodiscard]] std::vector<Index> contact_particles() const;
 
   /// Throws StepError if a spring is overstretched or the energy exploded. step() checks large networks only every few steps.
   void check() const;

@@ -32,11 +32,18 @@ struct Attempt {
   EnergyWatch watch;
   PermittedCrossings crossings;
   StepReport report;
-  Index contacts = 0;
+  std::vector<Index> contacts;
 };
 
 struct Simulator::Implementation {
+  using ExternalForces = std::vector<std::shared_ptr<Force>>;
+
+  /// At time 0.
   Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles);
+  /// In the state of another simulator of the same particles and obstacles.
+  Implementation(SpringNetwork model, SimulatorSettings chosen, ExternalForces external, const Implementation& before);
+  /// Without a state.
+  Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared, ExternalForces external);
 
   template <class F, class... Arguments>
   F* add_force(Arguments&&... arguments) {
@@ -46,6 +53,7 @@ struct Simulator::Implementation {
     return kept;
   }
 
+  void take_state(const Implementation& before);
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
   [[nodiscard]] int factor_for_rotation() const;
@@ -60,7 +68,7 @@ struct Simulator::Implementation {
   void move_pins(double time);
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] Energies energies() const;
-  [[nodiscard]] Index contacts() const;
+  [[nodiscard]] std::vector<Index> contacts() const;
   void check_state();
   void check_energy(const Energies& now) const;
   void fail(StepFailure failure) const;
@@ -69,7 +77,9 @@ struct Simulator::Implementation {
 
   SpringNetwork network;
   SimulatorSettings settings;
-  Environment environment;
+  std::shared_ptr<Environment> shared_environment;  ///< shared while a change is made
+  Environment& environment;
+  ExternalForces external_forces;
   SpectralBounds bounds;
   std::vector<std::string> warnings;
   Forces forces;
@@ -86,7 +96,7 @@ struct Simulator::Implementation {
   EnergyWatch energy_watch;
   SimulationState state;
   StepBegin begin;
-  std::optional<Index> kept_contacts;  ///< of the last step, if a later attempt changed the constraints
+  std::optional<std::vector<Index>> kept_contacts;  ///< of the last step, if a later attempt changed the constraints
 };
 
 }  // namespace sprung

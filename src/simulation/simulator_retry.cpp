@@ -24,7 +24,7 @@ StepReport Simulator::Implementation::repeat_step(const StepReport& first, int f
   state = std::move(best.state);
   environment.set_interval(time(), time());
   energy_watch = best.watch;
-  kept_contacts = best.contacts;
+  kept_contacts = std::move(best.contacts);
   note_retry(first.max_infeasible, best.report.max_infeasible, state);
   return best.report;
 }

@@ -30,6 +30,10 @@ void Environment::set_interval(double t, double t_end) {
   implementation_->set.set_interval(t, t_end);
 }
 
+void Environment::set_material(Index obstacle, const ContactMaterial& material) {
+  implementation_->set.set_material(obstacle, material);
+}
+
 Environment::Interval Environment::interval() const { return implementation_->interval; }
 
 const RigidTransform& Environment::pose_before(Index obstacle) const { return implementation_->set.before(obstacle); }

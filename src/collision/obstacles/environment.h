@@ -41,6 +41,9 @@ class Environment {
   };
   [[nodiscard]] Interval interval() const;
 
+  /// Replaces the contact material of an obstacle. Requires a material that keeps the rules of ContactMaterial. Not thread-safe.
+  void set_material(Index obstacle, const ContactMaterial& material);
+
   /// Poses at the interval's begin and end.
   [[nodiscard]] const RigidTransform& pose_before(Index obstacle) const;
   [[nodiscard]] const RigidTransform& pose_after(Index obstacle) const;

@@ -60,6 +60,12 @@ ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move
   broad_phase_ = std::make_unique<BroadPhase>(obstacles_, shapes_, after_);
 }
 
+void ObstacleSet::set_material(Index k, const ContactMaterial& material) {
+  obstacles_[static_cast<std::size_t>(k)].material = material;
+  max_thickness_ = 0.0;
+  for (const Obstacle& obstacle : obstacles_) max_thickness_ = std::max(max_thickness_, obstacle.material.thickness);
+}
+
 void ObstacleSet::set_interval(double t, double t_end) {
   if (!moves_) return;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {

@@ -25,6 +25,9 @@ class ObstacleSet {
 
   void set_interval(double t, double t_end);
 
+  /// Requires a material that keeps the rules of ContactMaterial.
+  void set_material(Index k, const ContactMaterial& material);
+
   [[nodiscard]] const std::vector<Obstacle>& obstacles() const { return obstacles_; }
   [[nodiscard]] const Obstacle& obstacle(Index k) const { return obstacles_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] const ObstacleShape& shape(Index k) const { return *shapes_[static_cast<std::size_t>(k)]; }

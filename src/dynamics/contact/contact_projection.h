@@ -64,7 +64,7 @@ class ContactProjection {
     solver_.settle_velocities(motion, state, integrator);
   }
   void constrain_pushed(ConstrainedDirections& constrained) const { solver_.constrain_pushed(constrained); }
-  [[nodiscard]] Index contact_count() const { return solver_.pushed_count(); }
+  [[nodiscard]] std::vector<Index> pushed() const { return solver_.pushed(); }
 
   /// Clips positions [m] so that no element crosses a surface that it did not cross at the beginning of the step. If two bodies
   /// block each other, the contacts between them are solved first, which conserves momentum. `relax` may then move truncated

@@ -191,12 +191,13 @@ void ContactSolver::constrain_pushed(ConstrainedDirections& constrained) const {
   });
 }
 
-Index ContactSolver::pushed_count() const {
+std::vector<Index> ContactSolver::pushed() const {
   std::vector<Index> pushed;
   for_each_set(sets_,
                [&](const auto& set) { set.for_pushed([&](Index particle, const Vector3&) { pushed.push_back(particle); }); });
   std::sort(pushed.begin(), pushed.end());
-  return static_cast<Index>(std::unique(pushed.begin(), pushed.end()) - pushed.begin());
+  pushed.erase(std::unique(pushed.begin(), pushed.end()), pushed.end());
+  return pushed;
 }
 
 }  // namespace sprung

@@ -51,8 +51,8 @@ class ContactSolver {
   /// Adds the normals along which particles were pushed in this step.
   void constrain_pushed(ConstrainedDirections& constrained) const;
 
-  /// Number of particles pushed in this step.
-  [[nodiscard]] Index pushed_count() const;
+  /// Particles pushed in this step, ascending.
+  [[nodiscard]] std::vector<Index> pushed() const;
 
  private:
   /// Adds contacts of n particles from index `begin` on; those before it stay.

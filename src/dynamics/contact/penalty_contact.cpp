@@ -65,14 +65,12 @@ void PenaltyContact::add_derivatives(const Kinematics& at, ForceDerivatives& der
   }
 }
 
-Index PenaltyContact::contact_count(const Points& positions) const {
-  Index count = 0;
-  Index last = kNone;  // contacts are sorted by particle
+std::vector<Index> PenaltyContact::touching(const Points& positions) const {
+  std::vector<Index> particles;  // contacts are sorted by particle
   for (const Contact& contact : environment_.contacts({positions, positions, thickness_})) {
-    if (contact.particles[0] != last) ++count;
-    last = contact.particles[0];
+    if (particles.empty() || contact.particles[0] != particles.back()) particles.push_back(contact.particles[0]);
   }
-  return count;
+  return particles;
 }
 
 }  // namespace sprung

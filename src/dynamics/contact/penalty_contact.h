@@ -25,8 +25,8 @@ class PenaltyContact final : public Force {
   /// symmetric.
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
-  /// Number of particles nearer to an obstacle than their gap.
-  [[nodiscard]] Index contact_count(const Points& positions) const;
+  /// Particles nearer to an obstacle than their gap, ascending.
+  [[nodiscard]] std::vector<Index> touching(const Points& positions) const;
 
  private:
   struct Touch;

@@ -10,8 +10,7 @@ class ImplicitEuler final : public Integrator {
  public:
   explicit ImplicitEuler(const SpringNetwork& network) : Integrator(network) {}
 
-  void start(SimulationState& state, const Forces& forces, double dt) override {
-    Integrator::start(state, forces, dt);
+  void resume(SimulationState&, const Forces& forces, double) override {
     derivatives_ = make_derivatives(forces, network().particle_count());
     system_.emplace(network(), derivatives_);
   }

@@ -18,7 +18,12 @@ struct MakeIntegrator {
 
 }  // namespace
 
-void Integrator::start(SimulationState& state, const Forces&, double) { state.x_previous = state.x; }
+void Integrator::resume(SimulationState&, const Forces&, double) {}
+
+void Integrator::start(SimulationState& state, const Forces& forces, double dt) {
+  state.x_previous = state.x;
+  resume(state, forces, dt);
+}
 
 void Integrator::step_changed(SimulationState&, const Forces&, double, double) {}
 

@@ -51,7 +51,11 @@ class Integrator {
   explicit Integrator(const SpringNetwork& network) : network_(network) {}
   virtual ~Integrator() = default;
 
-  /// Initialises what the scheme keeps between steps. Call once before the first step, with the forces of all steps.
+  /// Prepares the scheme for the forces of all steps to come. Leaves a state that an integrator of the same scheme advanced as it
+  /// is. Default: does nothing.
+  virtual void resume(SimulationState& state, const Forces& forces, double dt);
+
+  /// Sets what the scheme keeps in the state between steps, and calls resume(). Call it once, before the first step.
   virtual void start(SimulationState& state, const Forces& forces, double dt);
 
   /// Advances x and v of free particles from t to t + dt. Members of an integrator are scratch memory: the result depends on the

@@ -42,11 +42,14 @@ class Verlet final : public Integrator {
   Verlet(const VerletSettings& settings, const SpringNetwork& network)
       : Integrator(network), settings_(settings), free_runs_(free_runs(network)), pinned_(pinned_particles(network)) {}
 
-  void start(SimulationState& state, const Forces& forces, double dt) override {
-    Integrator::start(state, forces, dt);
+  void resume(SimulationState& state, const Forces& forces, double dt) override {
     forces_are_constant_ = are_constant(forces);
     dt_of_gains_ = 0.0;
     evaluate(state, forces, dt, total_);
+  }
+
+  void start(SimulationState& state, const Forces& forces, double dt) override {
+    Integrator::start(state, forces, dt);
     if (settings_.start_at_rest) return;
     for_free_particles(network(), [&](Index i) {
       state.x_previous.col(i) -= dt * state.v.col(i) - 0.5 * dt * dt * network().inverse_masses[i] * total_.col(i);

@@ -1,0 +1,41 @@
+// A hand that takes hold of a body and pulls it.
+#pragma once
+
+#include "dynamics/forces/force.h"
+#include "network/spring_network.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// Pulls a particle, and its neighbours in the body, towards a target by damped springs: the neighbours keep their offsets to it.
+///
+/// Each spring acts as if it was integrated implicitly for its particle alone, F = -(k u + c v) / (1 + c dt / m + k dt^2 / m) with
+/// the displacement u from the target and k = m' / s^2, c = 2 m' / s for the particle's share m' of the body's mass (critical
+/// damping, with a time of s = 0.1 s), and c >= 2 k dt, which explicit Euler needs. The displacement and velocity of a particle
+/// then change by less than themselves in a step, so no pull makes a step unstable.
+class PullForce final : public Force {
+ public:
+  /// Takes hold of particles of the body at `positions` [m] that are within a twentieth of the body's extent of `particle`. Pinned
+  /// particles are left out. `step` is the longest step [s] that follows. The target is where the particle is.
+  PullForce(const SpringNetwork& network, const Points& positions, Index particle, double step);
+
+  /// Where the particle shall go [m].
+  void set_target(const Vector3& target) { target_ = target; }
+  [[nodiscard]] const Vector3& target() const { return target_; }
+
+  void add(const Kinematics& at, Points& forces) const override;
+  void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
+
+ private:
+  struct Grip {
+    Index particle;
+    Vector3 offset;    ///< from the target [m]
+    double stiffness;  ///< [N/m], as above with its denominator
+    double damping;    ///< [N s/m]
+  };
+  std::vector<Grip> grips_;
+  Vector3 target_;
+};
+
+}  // namespace sprung

@@ -1,0 +1,30 @@
+// A force that its owner shares with a simulator.
+#pragma once
+
+#include "dynamics/forces/force.h"
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace sprung {
+
+/// Passes all calls on to a force that others may own and change too.
+class SharedForce final : public Force {
+ public:
+  explicit SharedForce(std::shared_ptr<Force> force) : force_(std::move(force)) {}
+
+  void prepare(double time) override { force_->prepare(time); }
+  [[nodiscard]] bool is_constant() const override { return force_->is_constant(); }
+  void add(const Kinematics& at, Points& forces) const override { force_->add(at, forces); }
+  void couple(std::vector<ParticlePair>& pairs) const override { force_->couple(pairs); }
+  void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override {
+    force_->add_derivatives(at, derivatives);
+  }
+  [[nodiscard]] double energy(const Points& positions) const override { return force_->energy(positions); }
+
+ private:
+  std::shared_ptr<Force> force_;
+};
+
+}  // namespace sprung

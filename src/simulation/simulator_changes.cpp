@@ -1,0 +1,178 @@
+#include "base/error.h"
+#include "base/format.h"
+#include "base/problem_list.h"
+#include "simulation/simulator_implementation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+bool have_same_bodies(const SpringNetwork& a, const SpringNetwork& b) {
+  return std::ranges::equal(a.bodies, b.bodies, [](const Body& first, const Body& second) {
+    return first.name == second.name && first.first_particle == second.first_particle &&
+           first.particle_count == second.particle_count;
+  });
+}
+
+bool collide_alike(const SpringNetwork& a, const SpringNetwork& b) {
+  return std::ranges::equal(a.bodies, b.bodies, [](const Body& first, const Body& second) {
+    return first.contact.self == second.contact.self && first.contact.others == second.contact.others;
+  });
+}
+
+// The cached contacts and permitted crossings of a run belong to its elements, and time is counted in steps.
+void check_change(const SpringNetwork& network, const SimulatorSettings& settings, const SpringNetwork& network_before,
+                  const SimulatorSettings& settings_before) {
+  const std::string restart = "begin a new run";
+  ProblemList problems;
+  if (!have_same_bodies(network, network_before)) {
+    problems.add("bodies", "", "must have the same names and particles as before, as the run goes on", restart);
+  } else if (!collide_alike(network, network_before)) {
+    problems.add("contact", "", "must be asked for between the same bodies as before, as the run goes on", restart);
+  }
+  if (settings.step != settings_before.step) {
+    problems.add("step", format_number(settings.step, 6),
+                 "must stay " + format_number(settings_before.step, 6) + " s, as the run goes on", restart);
+  }
+  if (settings.contact.response != settings_before.contact.response) {
+    problems.add("contact.response", "", "must stay as it is, as the run goes on", restart);
+  }
+  problems.throw_if_any();
+}
+
+void check_number(const std::string& key, double number, ProblemList& problems) {
+  if (std::isfinite(number) && number >= 0.0) return;
+  problems.add(key, format_number(number, 6), "must be finite and not negative", "");
+}
+
+}  // namespace
+
+Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, ExternalForces external,
+                                          const Implementation& before)
+    : Implementation(std::move(model), std::move(chosen), before.shared_environment, std::move(external)) {
+  take_state(before);
+}
+
+/// A body stays handed over to a global solve only if the limit may still hand it over.
+void Simulator::Implementation::take_state(const Implementation& before) {
+  const int max_substeps = refinement ? settings.max_substeps : 1;
+  stops = before.stops;
+  state = before.state;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (network.is_pinned(i)) {
+      if (!before.network.is_pinned(i)) state.v.col(i).setZero();
+    } else if (before.network.is_pinned(i)) {
+      integrator->velocity_changed(state, i, before.dt());
+    }
+  }
+  for (std::size_t b = 0; b < network.bodies.size(); ++b) {
+    if (constraints.limit() == nullptr || !constraints.limit()->may_be_handed_over(b)) state.stretch_handovers[b] = {};
+  }
+  constraints.roll_back(before.constraints.permitted_crossings());
+  environment.set_interval(time(), time());
+  if (before.settings.integrator.index() == settings.integrator.index()) {
+    integrator->resume(state, forces, before.dt());
+  } else {
+    integrator->start(state, forces, before.dt());
+  }
+  set_substeps(std::min(state.substeps, max_substeps));
+  if (penalty != nullptr) penalty->set_step(dt());
+  energy_watch.note(0, energies());
+  begin = {state, energy_watch, constraints.permitted_crossings()};
+}
+
+void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings) {
+  const Implementation& now = *implementation_;
+  check_change(network, settings, now.network, now.settings);
+  implementation_ = std::make_unique<Implementation>(std::move(network), std::move(settings), now.external_forces, now);
+}
+
+void Simulator::set_gravity(const Vector3& acceleration) {
+  SimulatorSettings settings = implementation_->settings;
+  settings.gravity = acceleration;
+  continue_with(implementation_->network, std::move(settings));
+}
+
+void Simulator::set_air(double drag, const Vector3& wind) {
+  SimulatorSettings settings = implementation_->settings;
+  settings.air_drag = drag;
+  settings.wind = wind;
+  continue_with(implementation_->network, std::move(settings));
+}
+
+void Simulator::set_stretch_limit(const std::optional<StretchLimitSettings>& limit) {
+  SimulatorSettings settings = implementation_->settings;
+  settings.stretch_limit = limit;
+  continue_with(implementation_->network, std::move(settings));
+}
+
+void Simulator::set_springs(std::size_t body, SpringKind kind, double stiffness, double damping) {
+  SpringNetwork network = implementation_->network;
+  const Body& changed = network.bodies.at(body);
+  const std::string key = "bodies." + changed.name + ".springs." + kSpringKindNames[static_cast<std::size_t>(kind)];
+  ProblemList problems;
+  check_number(key + ".stiffness", stiffness, problems);
+  check_number(key + ".damping", damping, problems);
+  problems.throw_if_any();
+  Springs& springs = network.springs;
+  for (Index s = changed.first_spring; s < changed.first_spring + changed.spring_count; ++s) {
+    if (springs.kind[s] != kind) continue;
+    springs.stiffness[s] = stiffness;
+    springs.damping[s] = damping;
+  }
+  continue_with(std::move(network), implementation_->settings);
+}
+
+void Simulator::set_body_material(std::size_t body, const ContactMaterial& material) {
+  SpringNetwork network = implementation_->network;
+  Body& changed = network.bodies.at(body);
+  ProblemList problems;
+  check_material("bodies." + changed.name, material, problems);
+  problems.throw_if_any();
+  changed.material = material;
+  continue_with(std::move(network), implementation_->settings);
+}
+
+void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMaterial& material) {
+  Environment& environment = implementation_->environment;
+  ProblemList problems;
+  check_material("obstacles." + environment.obstacles().at(obstacle).name, material, problems);
+  problems.throw_if_any();
+  environment.set_material(static_cast<Index>(obstacle), material);
+  continue_with(implementation_->network, implementation_->settings);
+}
+
+void Simulator::pin(Index particle) {
+  SpringNetwork network = implementation_->network;
+  if (network.is_pinned(particle)) return;
+  network.pins.push_back({{particle}, Vector3::Zero(), {}});
+  network.inverse_masses[particle] = 0.0;
+  continue_with(std::move(network), implementation_->settings);
+}
+
+void Simulator::release(Index particle) {
+  SpringNetwork network = implementation_->network;
+  if (!network.is_pinned(particle)) return;
+  for (Pin& pin : network.pins) std::erase(pin.particles, particle);
+  std::erase_if(network.pins, [](const Pin& pin) { return pin.particles.empty(); });
+  network.inverse_masses[particle] = 1.0 / network.masses[particle];
+  continue_with(std::move(network), implementation_->settings);
+}
+
+void Simulator::add_force(std::shared_ptr<Force> force) {
+  Implementation& now = *implementation_;
+  Implementation::ExternalForces forces = now.external_forces;
+  forces.push_back(std::move(force));
+  implementation_ = std::make_unique<Implementation>(now.network, now.settings, std::move(forces), now);
+}
+
+void Simulator::remove_force(const Force& force) {
+  Implementation& now = *implementation_;
+  Implementation::ExternalForces forces = now.external_forces;
+  if (std::erase_if(forces, [&](const std::shared_ptr<Force>& added) { return added.get() == &force; }) == 0) return;
+  implementation_ = std::make_unique<Implementation>(now.network, now.settings, std::move(forces), now);
+}
+
+}  // namespace sprung

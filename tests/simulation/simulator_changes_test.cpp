@@ -1,0 +1,239 @@
+// Laws of changes to a simulation under way.
+#include "base/error.h"
+#include "dynamics/forces/pull_force.h"
+#include "simulation/scenes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+namespace sprung {
+namespace {
+
+using testing::cloth;
+using testing::ground;
+using ::testing::HasSubstr;
+using testing::kGravity;
+using testing::one_particle;
+using testing::run;
+
+constexpr double kStep = 1.0e-3;  // [s]
+
+SpringNetwork hanging_mass(double stiffness, double damping) {
+  NetworkBuilder builder;
+  const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+  const Index bob = builder.add_particle({0.0, -1.0, 0.0}, 1.0);
+  builder.add_spring(hook, bob, stiffness, 1.0, damping);
+  builder.pin(hook);
+  return builder.build();
+}
+
+SpringNetwork moving_cloth() {
+  SpringNetwork network = cloth(8, 1.0);
+  network.velocities = 0.1 * Points::Random(3, network.particle_count());
+  return network;
+}
+
+TEST(SimulatorChanges, AChangeToTheSameModelChangesNoBit) {
+  std::vector<std::optional<StretchLimitSettings>> limits(2);
+  limits[1].emplace();
+  for (const IntegratorSettings& integrator : all_integrators()) {
+    for (const auto& limit : limits) {
+      // Small enough for explicit Euler, which gains energy at any step.
+      const SimulatorSettings settings{.step = 1.0e-5, .integrator = integrator, .stretch_limit = limit, .max_substeps = 4};
+      Simulator whole(moving_cloth(), settings);
+      Simulator changed(whole.network(), settings);
+      run(whole, 0.002);
+      run(changed, 0.001);
+      changed.continue_with(changed.network(), changed.settings());
+      run(changed, 0.001);
+      EXPECT_EQ(changed.positions(), whole.positions()) << integrator.index();
+      EXPECT_EQ(changed.state().v, whole.state().v) << integrator.index();
+      EXPECT_EQ(changed.time(), whole.time());
+    }
+  }
+}
+
+// Without forces Verlet moves a particle by the same displacement in each step, up to the rounding of n sums.
+TEST(SimulatorChanges, AParticleMovesUniformlyOnceGravityIsOff) {
+  Simulator simulator(one_particle({0.0, 0.0, 0.0}), {.step = kStep});
+  run(simulator, 0.5);
+  simulator.set_gravity(Vector3::Zero());
+  const Vector3 start = simulator.positions();
+  const Vector3 velocity = simulator.state().v;
+  EXPECT_LT(velocity.y(), -4.9);
+  run(simulator, 0.5);
+  const double rounding = 500.0 * 500.0 * std::numeric_limits<double>::epsilon() * start.norm();
+  EXPECT_LE((simulator.positions() - start - 0.5 * velocity).norm(), rounding);
+}
+
+// A damped bob comes to rest where the spring balances its weight: at m g / k.
+TEST(SimulatorChanges, ASpringBalancesTheWeightByItsNewStiffness) {
+  Simulator simulator(hanging_mass(100.0, 20.0), {.step = kStep});
+  run(simulator, 5.0);
+  EXPECT_NEAR(simulator.positions()(1, 1), -1.0 - kGravity / 100.0, 1e-9);
+  simulator.set_springs(0, SpringKind::structural, 400.0, 40.0);
+  run(simulator, 5.0);
+  EXPECT_NEAR(simulator.positions()(1, 1), -1.0 - kGravity / 400.0, 1e-9);
+}
+
+TEST(SimulatorChanges, WindMovesAParticleAtItsOwnSpeed) {
+  Simulator simulator(one_particle({0.0, 0.0, 0.0}), {.step = kStep, .gravity = Vector3::Zero()});
+  run(simulator, 0.1);
+  EXPECT_EQ(Vector3(simulator.positions()), Vector3::Zero());
+  simulator.set_air(10.0, {3.0, 0.0, 0.0});
+  run(simulator, 1.0);  // 100 times the time constant m / c
+  EXPECT_NEAR(simulator.state().v(0, 0), 3.0, 1e-9);
+}
+
+TEST(SimulatorChanges, AStretchLimitHoldsFromTheStepAfterItIsSet) {
+  Simulator simulator(hanging_mass(20.0, 5.0), {.step = kStep});
+  run(simulator, 0.1);  // it falls by less than g t^2 / 2 = 0.05 m
+  simulator.set_stretch_limit(StretchLimitSettings{.max_stretch = 0.1});
+  run(simulator, 1.0);
+  EXPECT_GT(simulator.positions()(1, 1), -1.1 * (1.0 + StretchLimitSettings{}.tolerance) - 1e-9);
+  simulator.set_stretch_limit(std::nullopt);
+  run(simulator, 6.0);  // the swing of 0.4 m fades by exp(-c t / 2 m) = exp(-15)
+  EXPECT_NEAR(simulator.positions()(1, 1), -1.0 - kGravity / 20.0, 1e-6);
+}
+
+TEST(SimulatorChanges, APinnedParticleStaysAndAReleasedOneFallsFromRest) {
+  for (const IntegratorSettings& integrator : all_integrators()) {
+    Simulator simulator(one_particle({0.0, 0.0, 0.0}), {.step = kStep, .integrator = integrator});
+    run(simulator, 0.2);
+    simulator.pin(0);
+    const Vector3 held = simulator.positions();
+    run(simulator, 0.2);
+    EXPECT_EQ(Vector3(simulator.positions()), held) << integrator.index();
+    EXPECT_EQ(Vector3(simulator.state().v), Vector3::Zero()) << integrator.index();
+    simulator.release(0);
+    run(simulator, 0.2);
+    // The schemes' sums differ from g t^2 / 2 by at most a step at the final speed.
+    EXPECT_NEAR(simulator.positions()(1, 0), held.y() - 0.5 * kGravity * 0.04, kGravity * 0.2 * kStep) << integrator.index();
+  }
+}
+
+// A block on a slope of 20 degrees stays if tan 20 = 0.36 is below its friction, and slides otherwise.
+TEST(SimulatorChanges, FrictionChangesUnderABody) {
+  const ContactMaterial rough{.thickness = 0.01, .friction = 0.6, .static_friction = 0.6};
+  const ContactMaterial smooth{.thickness = 0.01};
+  const double angle = 20.0 * std::numbers::pi / 180.0;
+  const Vector3 normal(-std::sin(angle), std::cos(angle), 0.0);
+  Simulator simulator(one_particle(0.02 * normal, rough), {.step = kStep}, {ground(rough, angle)});
+  run(simulator, 0.5);
+  EXPECT_LT((Vector3(simulator.positions()) - 0.02 * normal).norm(), 1e-3);
+  simulator.set_body_material(0, smooth);
+  run(simulator, 0.5);
+  EXPECT_LT(simulator.positions()(0, 0), -0.2);
+  simulator.set_body_material(0, rough);
+  simulator.set_obstacle_material(0, smooth);
+  const double before = simulator.positions()(0, 0);
+  run(simulator, 0.1);
+  EXPECT_LT(simulator.positions()(0, 0), before - 0.1);
+  simulator.set_obstacle_material(0, rough);
+  run(simulator, 2.0);
+  const Vector3 stopped = simulator.positions();
+  run(simulator, 0.1);
+  EXPECT_LT((Vector3(simulator.positions()) - stopped).norm(), 1e-6);
+}
+
+template <class Change>
+void expect_refused(const std::string& key, const Change& change) {
+  Simulator simulator(moving_cloth(), {.step = kStep}, {ground({.thickness = 0.01})});
+  Simulator untouched(simulator.network(), simulator.settings(), simulator.environment().obstacles());
+  run(simulator, 0.02);
+  run(untouched, 0.02);
+  try {
+    change(simulator);
+    FAIL() << key;
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(key));
+  }
+  run(simulator, 0.02);
+  run(untouched, 0.02);
+  EXPECT_EQ(simulator.positions(), untouched.positions()) << key;
+}
+
+TEST(SimulatorChanges, ARefusedChangeChangesNothing) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  expect_refused("step", [](Simulator& simulator) {
+    SimulatorSettings settings = simulator.settings();
+    settings.step *= 0.5;
+    simulator.continue_with(simulator.network(), settings);
+  });
+  expect_refused("bodies", [](Simulator& simulator) { simulator.continue_with(cloth(4, 1.0), simulator.settings()); });
+  expect_refused("contact", [](Simulator& simulator) {
+    SpringNetwork network = simulator.network();
+    network.bodies[0].contact.self = true;
+    simulator.continue_with(std::move(network), simulator.settings());
+  });
+  expect_refused("step", [](Simulator& simulator) { simulator.set_springs(0, SpringKind::structural, 1e9, 0.0); });
+  expect_refused("springs.shear.damping", [](Simulator& simulator) { simulator.set_springs(0, SpringKind::shear, 1.0, -1.0); });
+  expect_refused("gravity", [&](Simulator& simulator) { simulator.set_gravity({0.0, kNan, 0.0}); });
+  expect_refused("friction", [](Simulator& simulator) { simulator.set_body_material(0, {.friction = -1.0}); });
+  expect_refused("friction", [&](Simulator& simulator) { simulator.set_obstacle_material(0, {.friction = kNan}); });
+}
+
+/// The same force on every particle [N].
+class EvenForce final : public Force {
+ public:
+  explicit EvenForce(const Vector3& force) : force_(force) {}
+  void add(const Kinematics&, Points& forces) const override { forces.colwise() += force_; }
+
+ private:
+  Vector3 force_;
+};
+
+TEST(SimulatorChanges, AnExternalForceActsUntilItIsRemoved) {
+  Simulator simulator(one_particle({0.0, 0.0, 0.0}), {.step = kStep});
+  const auto lift = std::make_shared<EvenForce>(Vector3(0.0, 0.1 * kGravity, 0.0));
+  simulator.add_force(lift);
+  run(simulator, 0.5);
+  // The particle starts as Verlet's start has it, by g dt^2 / 2, before the force is there.
+  EXPECT_NEAR(simulator.positions()(1, 0), 0.0, kGravity * kStep * 0.5);
+  simulator.remove_force(*lift);
+  const double height = simulator.positions()(1, 0);
+  run(simulator, 0.5);
+  EXPECT_NEAR(simulator.positions()(1, 0), height - 0.5 * kGravity * 0.25, 3.0 * kGravity * kStep * 0.5);
+}
+
+// A free particle reaches the target and stays, at any step: it never moves past its target by more than it came.
+TEST(PullForce, AParticleReachesItsTargetAtAnyStep) {
+  for (const IntegratorSettings& integrator : all_integrators()) {
+    for (const double step : {1.0e-3, 0.02, 1.0}) {
+      Simulator simulator(one_particle({0.0, 0.0, 0.0}), {.step = step, .gravity = Vector3::Zero(), .integrator = integrator});
+      const auto pull = std::make_shared<PullForce>(simulator.network(), simulator.positions(), 0, step);
+      pull->set_target({1.0, 0.0, 0.0});
+      simulator.add_force(pull);
+      double farthest = 0.0;
+      const int steps = std::max(200, static_cast<int>(2.0 / step));
+      for (int k = 0; k < steps; ++k) {
+        simulator.step();
+        farthest = std::max(farthest, simulator.positions()(0, 0));
+      }
+      EXPECT_LE(farthest, 2.0) << integrator.index() << ", " << step;
+      EXPECT_NEAR(simulator.positions()(0, 0), 1.0, 1e-3) << integrator.index() << ", " << step;
+    }
+  }
+}
+
+// The pull on a particle of a cloth lifts the cloth from the ground.
+TEST(PullForce, ACornerLiftsItsCloth) {
+  Simulator simulator(cloth(32, 0.02, {.thickness = 0.01}),
+                      {.step = 4.0e-3, .stretch_limit = StretchLimitSettings{.max_stretch = 0.1}, .max_substeps = 8},
+                      {ground({.thickness = 0.005})});
+  const auto pull = std::make_shared<PullForce>(simulator.network(), simulator.positions(), 0, simulator.settings().step);
+  simulator.add_force(pull);
+  const Vector3 corner = simulator.positions().col(0);
+  for (int k = 0; k < 500; ++k) {
+    pull->set_target(corner + std::min(1.0, k / 250.0) * Vector3(0.0, 2.0, 0.0));
+    simulator.step();
+  }
+  EXPECT_GT(simulator.positions().row(1).minCoeff(), 0.1);
+}
+
+}  // namespace
+}  // namespace sprung
