@@ -7,6 +7,7 @@
 #include "output/scene_extent.h"
 
 #include <algorithm>
+#include <charconv>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -107,6 +108,28 @@ std::string vertex_lines(const Points& vertices) {
     chunks[static_cast<std::size_t>(begin / kVerticesPerChunk)] = chunk_lines(vertices, begin, end);
   });
   return std::accumulate(chunks.begin(), chunks.end(), std::string());
+}
+
+Points read_vertex_lines(const std::string& text) {
+  std::vector<double> numbers;
+  const char* const end = text.data() + text.size();
+  for (const char* line = text.data(); line != end;) {
+    const char* const line_end = std::find(line, end, '\n');
+    if (line_end - line > 2 && line[0] == 'v' && line[1] == ' ') {
+      const std::size_t before = numbers.size();
+      const char* at = line + 2;
+      double number = 0.0;
+      while (numbers.size() < before + 3) {
+        const auto read = std::from_chars(at, line_end, number);
+        if (read.ec != std::errc{}) break;
+        numbers.push_back(number);
+        at = std::find_if(read.ptr, line_end, [](char letter) { return letter != ' '; });
+      }
+      if (numbers.size() < before + 3) numbers.resize(before);
+    }
+    line = line_end == end ? end : line_end + 1;
+  }
+  return Points::Map(numbers.data(), 3, static_cast<Eigen::Index>(numbers.size() / 3));
 }
 
 std::vector<ObjSequence> obj_sequences(const Simulator& simulator, int frames) {

@@ -34,6 +34,10 @@ class ObjSequence {
 /// the number of threads.
 [[nodiscard]] std::string vertex_lines(const Points& vertices);
 
+/// The positions of the `v` lines of a text that vertex_lines() made, 3 x n. Lines that are no `v` lines, or hold no three numbers,
+/// are left out.
+[[nodiscard]] Points read_vertex_lines(const std::string& text);
+
 /// The sequences of all bodies, then of all obstacles. Throws InputError for names that are not valid folder names: a name with
 /// characters other than letters, digits, `_` and `-`, a name that is used twice, or a body with the name `obstacles`.
 [[nodiscard]] std::vector<ObjSequence> obj_sequences(const Simulator& simulator, int frames);
