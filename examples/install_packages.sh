@@ -8,8 +8,12 @@ packages_of() {
   awk -v wanted="[$1]" '/^\[/ { inside = $0 == wanted; next } inside && NF && !/^#/' "$list"
 }
 
+# Also the names that other packages stand in for: some Node.js packages bring npm.
+installed="$(dpkg-query --show --showformat '${db:Status-Status}, ${Package}, ${Provides}\n' | sed -n 's/^installed, //p' |
+  tr ',' '\n' | sed 's/^ *//; s/ .*//')"
+
 is_installed() {
-  [[ "$(dpkg-query --show --showformat '${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
+  grep --quiet --line-regexp --fixed-strings "$1" <<<"$installed"
 }
 
 missing=()

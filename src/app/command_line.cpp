@@ -7,6 +7,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cctype>
+
 namespace sprung {
 namespace {
 
@@ -17,6 +20,9 @@ constexpr const char* kExamples = R"(Examples:
   sprung run scene.json --out frames --overwrite --frames 30 --set 'bodies.banner.shape.resolution=[128,128]'
   sprung validate scene.json --mesh-path ~/meshes
   sprung info bunny.obj
+  sprung view examples/cloth_on_bunny.json
+  sprung view frames
+  sprung export frames --format html
 
 Meshes are searched beside the scene file, in each --mesh-path, then in the folders of SPRUNG_MESH_PATH.
 
@@ -33,6 +39,8 @@ class Parser {
     add_run();
     add_validate();
     add_info();
+    add_view();
+    add_export();
   }
 
   [[nodiscard]] Command parse(int argc, const char* const* argv) {
@@ -47,6 +55,8 @@ class Parser {
     }
     if (app_.got_subcommand("run")) return run_;
     if (app_.got_subcommand("validate")) return validate_;
+    if (app_.got_subcommand("view")) return view_;
+    if (app_.got_subcommand("export")) return export_;
     return info_;
   }
 
@@ -77,8 +87,48 @@ class Parser {
         ->type_name("");
   }
 
-  static void add_scene(CLI::App* command, SceneOptions& scene) {
+  void add_view() {
+    CLI::App* view = app_.add_subcommand("view", "Shows a scene live in the browser, or replays a run");
+    view->add_option("SCENE|DIR", view_.scene.file, "Scene file, or the folder of a run")->required()->type_name("");
+    add_scene_options(view, view_.scene);
+    view->add_option("--port", view_.port, "Port to listen on; a free one by default")->check(CLI::Range(1, 65535))->type_name("N");
+    view->add_option("--token", view_.token, "Secret in the address: letters, digits, - and _; random by default")
+        ->check(is_token)
+        ->type_name("T");
+    view->add_option("--threads", view_.threads, "Maximum number of threads; results do not depend on it")
+        ->check(CLI::Range(1, kMaxThreads))
+        ->type_name("N");
+    view->add_flag("!--no-open", view_.open, "Print the address, but open no browser");
+  }
+
+  void add_export() {
+    CLI::App* command = app_.add_subcommand("export", "Writes what a run wrote in another format");
+    command->add_option("DIR", export_.folder, "Folder of a run")->required()->type_name("");
+    command->add_option("--format", export_.formats, "html: one file that plays in a browser")
+        ->required()
+        ->delimiter(',')
+        ->check(CLI::IsMember({"html"}))
+        ->type_name("FORMAT");
+    command->add_option("--out", export_.out, "File to write; DIR/animation.html by default")->type_name("PATH");
+    command->add_option("--mesh-path", export_.mesh_paths, "Folder to search for meshes; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("DIR");
+    command->add_flag("--overwrite", export_.overwrite, "Replace the file if it exists");
+  }
+
+  static std::string is_token(const std::string& token) {
+    const bool good = !token.empty() && std::ranges::all_of(token, [](unsigned char letter) {
+      return std::isalnum(letter) != 0 || letter == '-' || letter == '_';
+    });
+    return good ? "" : "must be letters, digits, - and _";
+  }
+
+  static void add_scene(CLI::App* command, SceneSource& scene) {
     command->add_option("SCENE", scene.file, "Scene file")->required()->type_name("");
+    add_scene_options(command, scene);
+  }
+
+  static void add_scene_options(CLI::App* command, SceneSource& scene) {
     command->add_option("--set", scene.overrides, "Replaces a value of the scene; may be repeated")
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
@@ -116,6 +166,8 @@ class Parser {
   RunOptions run_;
   ValidateOptions validate_;
   InfoOptions info_;
+  ViewOptions view_;
+  ExportOptions export_;
 };
 
 }  // namespace

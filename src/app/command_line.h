@@ -1,6 +1,8 @@
 // Parses the command line.
 #pragma once
 
+#include "scene/load_scene.h"
+
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -9,15 +11,8 @@
 
 namespace sprung {
 
-/// A scene file and its options.
-struct SceneOptions {
-  std::string file;
-  std::vector<std::string> overrides;   ///< `key.path=json`
-  std::vector<std::string> mesh_paths;  ///< folders
-};
-
 struct RunOptions {
-  SceneOptions scene;
+  SceneSource scene;
   std::string out;
   std::optional<int> frames;
   std::optional<int> threads;
@@ -26,11 +21,27 @@ struct RunOptions {
 };
 
 struct ValidateOptions {
-  SceneOptions scene;
+  SceneSource scene;
 };
 
 struct InfoOptions {
   std::vector<std::string> meshes;  ///< one, or the frames of a sequence
+};
+
+struct ViewOptions {
+  SceneSource scene;  ///< its file may be the folder of a run
+  int port = 0;       ///< 0: any free one
+  std::string token;  ///< empty: a random one
+  std::optional<int> threads;
+  bool open = true;  ///< in the browser
+};
+
+struct ExportOptions {
+  std::string folder;  ///< of a run
+  std::vector<std::string> formats;
+  std::string out;                      ///< empty: animation.html in the folder
+  std::vector<std::string> mesh_paths;  ///< folders
+  bool overwrite = false;
 };
 
 /// The text of --help or --version, to print.
@@ -38,7 +49,7 @@ struct PrintOptions {
   std::string text;
 };
 
-using Command = std::variant<RunOptions, ValidateOptions, InfoOptions, PrintOptions>;
+using Command = std::variant<RunOptions, ValidateOptions, InfoOptions, ViewOptions, ExportOptions, PrintOptions>;
 
 /// An invalid command line; one problem per line.
 class UsageError : public std::runtime_error {

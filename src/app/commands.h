@@ -15,4 +15,12 @@ ExitCode validate(const ValidateOptions& options);
 /// Prints a description of a mesh. Throws InputError.
 ExitCode info(const InfoOptions& options);
 
+/// Shows a scene or a run in the browser until SIGINT or SIGTERM. Throws InputError if the port is not free or the folder is no
+/// run, and in a program that was built without the viewer; FileError if the scene cannot be read.
+ExitCode view(const ViewOptions& options);
+
+/// Writes what a run wrote in other formats. Throws InputError if the folder is no run, or as view(); FileError if a file cannot be
+/// written.
+ExitCode export_run(const ExportOptions& options);
+
 }  // namespace sprung

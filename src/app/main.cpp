@@ -16,6 +16,8 @@ struct Execute {
   ExitCode operator()(const RunOptions& options) const { return run(options); }
   ExitCode operator()(const ValidateOptions& options) const { return validate(options); }
   ExitCode operator()(const InfoOptions& options) const { return info(options); }
+  ExitCode operator()(const ViewOptions& options) const { return view(options); }
+  ExitCode operator()(const ExportOptions& options) const { return export_run(options); }
   ExitCode operator()(const PrintOptions& options) const { return print(options); }
 };
 

@@ -1,8 +1,8 @@
 #include "app/body_text.h"
 #include "app/commands.h"
 #include "app/console.h"
-#include "app/load_scene.h"
 #include "app/mesh_text.h"
+#include "app/step_text.h"
 #include "base/format.h"
 
 #include <fmt/format.h>

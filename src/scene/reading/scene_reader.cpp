@@ -13,18 +13,6 @@
 namespace sprung {
 namespace {
 
-std::string read_file(const std::filesystem::path& file) {
-  const auto fail = [&](int error) { throw FileError("read", file.string(), std::generic_category().message(error)); };
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) fail(EISDIR);
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(errno != 0 ? errno : EIO);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (stream.bad()) fail(EIO);
-  return text;
-}
-
 void throw_if_any(std::vector<Problem> problems) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
@@ -47,18 +35,31 @@ void mark_overridden(const std::vector<std::string>& overrides, std::vector<Prob
 
 }  // namespace
 
+std::string read_scene_file(const std::filesystem::path& file) {
+  const auto fail = [&](int error) { throw FileError("read", file.string(), std::generic_category().message(error)); };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) fail(EISDIR);
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail(errno != 0 ? errno : EIO);
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (stream.bad()) fail(EIO);
+  return text;
+}
+
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   TextProblems problems;
-  Scene scene = read_scene(file, overrides, problems);
+  Scene scene = read_scene_text(read_scene_file(file), file, overrides, problems);
   throw_if_any(std::move(problems.all));
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides, TextProblems& problems) {
-  JsonText json = parse_json(read_file(file), file.string());
+Scene read_scene_text(const std::string& text, const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                      TextProblems& problems) {
+  JsonText json = parse_json(text, file.string());
   throw_if_any(std::move(json.problems));
   std::vector<Problem> found;
-  for (const std::string& text : overrides) apply_override(text, json.document, found);
+  for (const std::string& change : overrides) apply_override(change, json.document, found);
 
   std::size_t unknown = 0;
   auto scene = scene_rule()(json.document, {file.string(), "", &found, &unknown});

@@ -67,7 +67,7 @@ TEST(SceneBuilder, ProblemsBeyondTheTextAreReportedWithThoseOfTheText) {
       "obstacles": {"floor": {"shape": {"type": "mesh", "file": "flor.obj"}, "friction": -1},
                     "ball": {"shape": {"type": "mesh", "fiel": "ball.obj"}}}})";
   TextProblems known;
-  const Scene scene = read_scene(folder.write("scene.json", text), {}, known);
+  const Scene scene = read_scene_text(text, folder.write("scene.json", text), {}, known);
   const std::size_t of_text = known.all.size();
   std::vector<Problem> all = problems_of([&] { (void)build_scene(scene, {}, known); });
   EXPECT_TRUE(std::equal(known.all.begin(), known.all.end(), all.begin()));

@@ -1,9 +1,7 @@
-#include "app/load_scene.h"
+#include "scene/load_scene.h"
 
 #include "base/error.h"
-#include "base/format.h"
-
-#include <fmt/format.h>
+#include "scene/reading/scene_reader.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -12,10 +10,8 @@
 namespace sprung {
 namespace {
 
-constexpr int kDigits = 6;
-
-std::vector<std::filesystem::path> mesh_paths(const SceneOptions& options) {
-  std::vector<std::filesystem::path> paths(options.mesh_paths.begin(), options.mesh_paths.end());
+std::vector<std::filesystem::path> mesh_paths(const SceneSource& source) {
+  std::vector<std::filesystem::path> paths(source.mesh_paths.begin(), source.mesh_paths.end());
   const std::vector<std::filesystem::path> more = mesh_paths_from_environment();
   paths.insert(paths.end(), more.begin(), more.end());
   return paths;
@@ -27,10 +23,10 @@ void add_new(std::vector<std::string>& all, const std::vector<std::string>& more
   }
 }
 
-LoadedScene load(const SceneOptions& options) {
+LoadedScene load(const SceneSource& source) {
   TextProblems problems;
-  Scene scene = read_scene(options.file, options.overrides, problems);
-  BuiltScene built = build_scene(scene, mesh_paths(options), problems);
+  Scene scene = read_scene_text(scene_text(source), source.file, source.overrides, problems);
+  BuiltScene built = build_scene(scene, mesh_paths(source), problems);
   LoadedScene loaded{.scene = std::move(scene),
                      .simulator = Simulator(std::move(built.network), built.settings, std::move(built.obstacles)),
                      .frames = built.frames,
@@ -45,17 +41,14 @@ LoadedScene load(const SceneOptions& options) {
 
 }  // namespace
 
-LoadedScene load_scene(const SceneOptions& options) try { return load(options); } catch (const InputError& error) {
+std::string scene_text(const SceneSource& source) { return source.text ? *source.text : read_scene_file(source.file); }
+
+LoadedScene load_scene(const SceneSource& source) try { return load(source); } catch (const InputError& error) {
   std::vector<Problem> problems = error.problems();
   for (Problem& problem : problems) {
-    if (problem.file.empty()) problem.file = options.file;
+    if (problem.file.empty()) problem.file = source.file;
   }
   throw InputError(std::move(problems));
-}
-
-std::string describe_steps(const LoadedScene& loaded) {
-  return fmt::format("{} of {} s ({})", counted(loaded.steps_per_frame, "step"),
-                     format_number(loaded.simulator.settings().step, kDigits), loaded.scene.step ? "as given" : "automatic");
 }
 
 }  // namespace sprung

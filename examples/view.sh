@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Installs missing packages, builds Sprung with its viewer and shows a scene live in the browser: view.sh [SCENE [OPTION...]]
+# SCENE is the name of an example, a scene file, or the folder of a run. Default: cloth_on_bunny. Options go to `sprung view`.
+set -euo pipefail
+
+scene="${1:-cloth_on_bunny}"
+shift $(($# > 0))
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+[[ -e "$scene" || ! -f "$here/$scene.json" ]] || scene="$here/$scene.json"
+if [[ ! -e "$scene" ]]; then
+  echo "There is no scene or run '$scene'. The examples are:" >&2
+  (cd "$here" && printf '  %s\n' *.json) >&2
+  exit 2
+fi
+
+"$here/install_packages.sh" run view
+cd "$here/.."
+new=()
+[[ -f build/release/build.ninja ]] || new=(-DBUILD_TESTING=OFF)
+cmake --preset release "${new[@]}"
+cmake --build --preset release --target sprung
+cd - >/dev/null
+exec "$here/../build/release/bin/sprung" view "$scene" --mesh-path /usr/share/glmark2/models "$@"

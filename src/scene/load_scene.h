@@ -1,0 +1,37 @@
+// Loads a scene file and builds its simulator.
+#pragma once
+
+#include "scene/building/scene_builder.h"
+#include "simulation/simulator.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// A scene file, with what the command line changes of it.
+struct SceneSource {
+  std::string file;
+  std::vector<std::string> overrides{};   ///< `key.path=json`
+  std::vector<std::string> mesh_paths{};  ///< folders
+  std::optional<std::string> text{};      ///< JSON text to read instead of the file
+};
+
+/// The JSON text of a source. Throws FileError if the file cannot be read.
+[[nodiscard]] std::string scene_text(const SceneSource& source);
+
+struct LoadedScene {
+  Scene scene;
+  Simulator simulator;
+  int frames = 1;
+  int steps_per_frame = 1;
+  double largest_stable_step = 0.0;  ///< [s]; infinity without a bound
+  std::vector<NamedReport> meshes;
+  std::vector<std::string> warnings;  ///< without duplicates
+};
+
+/// Throws FileError if the scene cannot be read, and InputError with every problem, each with its file.
+[[nodiscard]] LoadedScene load_scene(const SceneSource& source);
+
+}  // namespace sprung

@@ -1,0 +1,205 @@
+#include "viewer/live_run.h"
+
+#include "base/error.h"
+#include "output/scene_extent.h"
+#include "scene/json/overrides.h"
+#include "simulation/diagnostics.h"
+
+#include <algorithm>
+#include <array>
+#include <regex>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+bool is_live(const std::string& override_text) {
+  static const std::regex live(
+      R"((gravity|air|stretch_limit)(\..*)?|bodies\.[^.]+\.(springs(\..*)?|friction|static_friction|restitution|thickness))"
+      R"(|obstacles\.[^.]+\.(friction|static_friction|restitution|thickness))");
+  return std::regex_match(override_text.substr(0, override_text.find('=')), live);
+}
+
+void pin(Index particle, SpringNetwork& network) {
+  if (network.is_pinned(particle)) return;
+  network.pins.push_back({{particle}, Vector3::Zero(), {}});
+  network.inverse_masses[particle] = 0.0;
+}
+
+void free(Index particle, SpringNetwork& network) {
+  if (!network.is_pinned(particle)) return;
+  for (Pin& pinned : network.pins) std::erase(pinned.particles, particle);
+  network.inverse_masses[particle] = 1.0 / network.masses[particle];
+}
+
+}  // namespace
+
+LiveRun::LiveRun(SceneSource source) : source_(std::move(source)), loaded_(load_scene(source_)) {}
+
+std::string LiveRun::changed_scene() const {
+  JsonText json = parse_json(scene_text(source_), source_.file);
+  std::vector<Problem> problems;
+  for (const std::string& change : source_.overrides) apply_override(change, json.document, problems);
+  return json_text(json.document);
+}
+
+bool LiveRun::change(const std::vector<std::string>& overrides) {
+  SceneSource source = source_;
+  source.overrides.insert(source.overrides.end(), overrides.begin(), overrides.end());
+  LoadedScene changed = load_scene(source);
+  source_ = std::move(source);
+  if (!failure_ && std::ranges::all_of(overrides, is_live) && continue_with(changed)) return true;
+  loaded_ = std::move(changed);
+  reset_hands();
+  return false;
+}
+
+/// A simulator refuses what it cannot take over: then the changed scene begins anew.
+bool LiveRun::continue_with(LoadedScene& changed) try {
+  Simulator& simulator = loaded_.simulator;
+  const std::vector<Obstacle>& obstacles = changed.simulator.environment().obstacles();
+  SpringNetwork network = changed.simulator.network();
+  set_hands(network);
+  SimulatorSettings settings = changed.simulator.settings();
+  settings.step = simulator.settings().step;
+  simulator.continue_with(std::move(network), std::move(settings));
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    if (obstacles[k].material != simulator.environment().obstacles()[k].material) {
+      simulator.set_obstacle_material(k, obstacles[k].material);
+    }
+  }
+  loaded_.scene = std::move(changed.scene);
+  loaded_.largest_stable_step = changed.largest_stable_step;
+  loaded_.warnings = std::move(changed.warnings);
+  return true;
+} catch (const InputError&) {
+  return false;
+}
+
+void LiveRun::set_hands(SpringNetwork& network) const {
+  for (const Index particle : released_) free(particle, network);
+  for (const Index particle : pinned_) pin(particle, network);
+}
+
+void LiveRun::reset_hands() {
+  failure_.reset();
+  pull_.reset();
+  pulled_ = kNone;
+  pinned_.clear();
+  released_.clear();
+  infeasible_ = 0;
+  loaded_.simulator.stop_when(stops_);
+}
+
+void LiveRun::reset() {
+  loaded_ = load_scene(source_);
+  reset_hands();
+}
+
+void LiveRun::step() {
+  if (failure_) return;
+  try {
+    infeasible_ = loaded_.simulator.step().infeasible;
+  } catch (const StepError& error) {
+    failure_ = error.failure();
+  }
+}
+
+void LiveRun::stop_when(std::function<bool()> stops) {
+  stops_ = std::move(stops);
+  loaded_.simulator.stop_when(stops_);
+}
+
+void LiveRun::grab(Index particle) {
+  Simulator& simulator = loaded_.simulator;
+  if (particle < 0 || particle >= simulator.network().particle_count() || simulator.network().is_pinned(particle)) return;
+  drop(false);
+  pull_ = std::make_shared<PullForce>(simulator.network(), simulator.positions(), particle, simulator.settings().step);
+  pulled_ = particle;
+  simulator.add_force(pull_);
+}
+
+void LiveRun::drag(const Vector3& target) {
+  if (pull_ && target.allFinite()) pull_->set_target(target);
+}
+
+void LiveRun::drop(bool pin) {
+  if (!pull_) return;
+  loaded_.simulator.remove_force(*pull_);
+  pull_.reset();
+  if (!pin) return;
+  loaded_.simulator.pin(pulled_);
+  pinned_.insert(pulled_);
+  released_.erase(pulled_);
+}
+
+void LiveRun::release(Index particle) {
+  Simulator& simulator = loaded_.simulator;
+  if (particle < 0 || particle >= simulator.network().particle_count() || !simulator.network().is_pinned(particle)) return;
+  simulator.release(particle);
+  released_.insert(particle);
+  pinned_.erase(particle);
+}
+
+Topology LiveRun::topology() const {
+  const Simulator& simulator = loaded_.simulator;
+  const SpringNetwork& network = simulator.network();
+  Topology topology;
+  topology.particles = network.particle_count();
+  for (const Body& body : network.bodies) {
+    append_columns(body.surface.triangles, body.first_particle, topology.triangles);
+    append_columns(body.surface.segments, body.first_particle, topology.segments);
+  }
+  const Springs& springs = network.springs;
+  topology.springs.resize(2, springs.count());
+  for (Index s = 0; s < springs.count(); ++s) {
+    topology.springs.col(s) << springs.first[s], springs.second[s];
+    topology.rest_lengths.push_back(static_cast<float>(springs.rest_length[s]));
+    topology.kinds.push_back(static_cast<std::uint32_t>(springs.kind[s]));
+  }
+  const Box3 scene = scene_bounds(simulator);
+  for (const Obstacle& obstacle : simulator.environment().obstacles()) {
+    const bool endless = std::holds_alternative<HalfSpaceGeometry>(obstacle.geometry);
+    TriangleMesh mesh = obstacle_mesh(obstacle.geometry, endless ? half_space_extent(scene, obstacle) : 0.0);
+    if (!obstacle.changes()) mesh.vertices = obstacle.rest_pose * mesh.vertices;
+    topology.obstacles.push_back(std::move(mesh));
+  }
+  return topology;
+}
+
+FrameState LiveRun::state() const {
+  const Simulator& simulator = loaded_.simulator;
+  const SpringNetwork& network = simulator.network();
+  FrameState state;
+  state.positions = simulator.positions();
+  state.speeds = simulator.state().v.colwise().norm().transpose();
+  state.states.assign(static_cast<std::size_t>(network.particle_count()), 0);
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (network.is_pinned(i)) state.states[static_cast<std::size_t>(i)] |= kPinned;
+  }
+  for (const Index i : simulator.contact_particles()) state.states[static_cast<std::size_t>(i)] |= kInContact;
+  for (const Obstacle& obstacle : simulator.environment().obstacles()) {
+    if (!obstacle.changes()) continue;
+    const RigidTransform pose = obstacle.motion.pose(obstacle.rest_pose, simulator.time());
+    if (obstacle.deforms()) {
+      state.deformed.push_back(pose * obstacle_mesh(obstacle.geometry, 0.0, simulator.time()).vertices);
+    } else {
+      state.poses.push_back(pose);
+    }
+  }
+  return state;
+}
+
+FrameNumbers LiveRun::numbers() const {
+  const Simulator& simulator = loaded_.simulator;
+  return {.kinetic = kinetic_energy(simulator),
+          .elastic = simulator.elastic_energy(),
+          .gravity = simulator.gravity_energy(),
+          .max_stretch = max_stretch(simulator),
+          .contacts = simulator.contact_count(),
+          .infeasible = infeasible_};
+}
+
+std::uint32_t LiveRun::frame() const { return 1 + static_cast<std::uint32_t>(simulator().state().step / loaded_.steps_per_frame); }
+
+}  // namespace sprung

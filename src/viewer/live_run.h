@@ -1,0 +1,74 @@
+// A simulation that the viewer shows and changes.
+#pragma once
+
+#include "dynamics/forces/pull_force.h"
+#include "scene/load_scene.h"
+#include "viewer/message.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+class LiveRun {
+ public:
+  /// Throws as load_scene().
+  explicit LiveRun(SceneSource source);
+
+  [[nodiscard]] const SceneSource& source() const { return source_; }
+  [[nodiscard]] const LoadedScene& loaded() const { return loaded_; }
+  [[nodiscard]] const Simulator& simulator() const { return loaded_.simulator; }
+  [[nodiscard]] const std::optional<StepFailure>& failure() const { return failure_; }
+
+  /// The scene as its author wrote it, with the changes, as JSON text.
+  [[nodiscard]] std::string changed_scene() const;
+
+  /// Changes keys of the scene (`key.path=json`). Returns whether the run continues with them; else it begins anew. It continues if
+  /// only quantities change that a simulator can take over: gravity, air, springs, friction and the like, the stretch limit.
+  /// Throws as load_scene(), and is unchanged then.
+  bool change(const std::vector<std::string>& overrides);
+
+  /// Begins anew.
+  void reset();
+
+  /// One step. Does nothing after a divergence, which failure() then describes. Throws StoppedError if `stops` says so.
+  void step();
+  void stop_when(std::function<bool()> stops);
+
+  /// Takes hold of a particle, unless it is pinned.
+  void grab(Index particle);
+  void drag(const Vector3& target);
+  /// Lets go; with `pin` the particle is fixed where it is.
+  void drop(bool pin);
+  /// Frees a pinned particle.
+  void release(Index particle);
+
+  [[nodiscard]] Topology topology() const;
+  [[nodiscard]] FrameState state() const;
+  /// All but the times.
+  [[nodiscard]] FrameNumbers numbers() const;
+  /// Counted from 1.
+  [[nodiscard]] std::uint32_t frame() const;
+
+ private:
+  bool continue_with(LoadedScene& changed);
+  void set_hands(SpringNetwork& network) const;
+  void reset_hands();
+
+  SceneSource source_;
+  LoadedScene loaded_;
+  std::function<bool()> stops_;
+  std::optional<StepFailure> failure_;
+  std::shared_ptr<PullForce> pull_;
+  Index pulled_ = kNone;
+  // Pins that the pages set and freed.
+  std::set<Index> pinned_;
+  std::set<Index> released_;
+  Index infeasible_ = 0;  ///< in the last step
+};
+
+}  // namespace sprung

@@ -1,0 +1,153 @@
+import {
+  BufferAttribute,
+  BufferGeometry,
+  DoubleSide,
+  DynamicDrawUsage,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshLambertMaterial,
+} from 'three';
+import { ParticleColors } from './colors';
+import { Dots } from './dots';
+import { vertexNormals } from './normals';
+import { IN_CONTACT, PINNED } from './protocol';
+import { RopeView } from './rope_view';
+import type { RunModel } from './run_model';
+import type { Theme } from './theme';
+import type { ViewOptions } from './view_options';
+
+/** The bodies of a run: surfaces, ropes, springs, particles and marks. */
+export class BodyView {
+  readonly group = new Group();
+  readonly particleColors: ParticleColors;
+  private readonly positions: BufferAttribute;
+  private readonly normals: BufferAttribute;
+  private readonly colors: BufferAttribute;
+  private readonly surface: Mesh<BufferGeometry, MeshLambertMaterial>;
+  private readonly rope: RopeView | null;
+  private readonly springs: LineSegments<BufferGeometry, LineBasicMaterial>;
+  private markedSprings: RopeView | null = null;
+  private readonly tubeRadius: number;
+  private readonly particles: Dots;
+  private readonly pins: Dots;
+  private readonly contacts: Dots;
+  private readonly mark: Dots;
+
+  /** `size` is the extent of the bodies [m]. */
+  constructor(
+    private readonly model: RunModel,
+    size: number,
+  ) {
+    const { topology } = model;
+    this.positions = new BufferAttribute(model.positions, 3).setUsage(DynamicDrawUsage);
+    this.normals = new BufferAttribute(new Float32Array(model.positions.length), 3).setUsage(DynamicDrawUsage);
+    this.particleColors = new ParticleColors(model);
+    this.colors = new BufferAttribute(this.particleColors.colors, 3).setUsage(DynamicDrawUsage);
+    const surface = this.geometry(topology.triangles);
+    surface.setAttribute('normal', this.normals);
+    surface.setAttribute('color', this.colors);
+    this.surface = new Mesh(surface, new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }));
+    this.tubeRadius = ropeRadius(model, size);
+    this.rope = topology.segments.length > 0 ? new RopeView(topology.segments, this.tubeRadius) : null;
+    const springs = this.geometry(topology.springs);
+    springs.setAttribute('color', this.colors);
+    this.springs = new LineSegments(springs, new LineBasicMaterial());
+    this.particles = new Dots(this.positions, 4);
+    this.particles.chooseAll();
+    this.pins = new Dots(this.positions, 9);
+    this.contacts = new Dots(this.positions, 6);
+    this.mark = new Dots(this.positions, 15, 2);
+    const dots = [this.particles, this.pins, this.contacts, this.mark].map(({ points }) => points);
+    this.group.add(this.surface, this.springs, ...dots);
+    if (this.rope) this.group.add(this.rope.group);
+    this.surface.frustumCulled = this.springs.frustumCulled = false;
+  }
+
+  update(options: ViewOptions, theme: Theme): void {
+    const { model } = this;
+    this.surface.visible = options.surface && model.topology.triangles.length > 0;
+    this.springs.visible = options.springs && model.scene.complete;
+    this.particles.points.visible = options.particles;
+    this.pins.points.visible = options.pins;
+    this.contacts.points.visible = options.contacts;
+    this.positions.needsUpdate = true;
+    if (this.surface.visible) {
+      vertexNormals(model.positions, model.topology.triangles, this.normals.array as Float32Array);
+      this.normals.needsUpdate = true;
+    }
+    const repainted = this.particleColors.update(options.color, theme, scaleOf(model, options));
+    if (repainted) this.colors.needsUpdate = true;
+    if (this.rope) {
+      this.rope.group.visible = options.surface;
+      if (options.surface) this.rope.place(model.positions);
+      if (repainted) this.rope.paint(this.particleColors.colors);
+    }
+    if (options.pins) this.pins.chooseByState(model.states, PINNED);
+    if (options.contacts) this.contacts.chooseByState(model.states, IN_CONTACT);
+    this.paint(options, theme);
+    this.markDivergence(theme);
+  }
+
+  dispose(): void {
+    for (const part of [this.surface, this.springs]) {
+      part.geometry.dispose();
+      part.material.dispose();
+    }
+    this.rope?.dispose();
+    this.markedSprings?.dispose();
+    for (const dots of [this.particles, this.pins, this.contacts, this.mark]) dots.dispose();
+  }
+
+  private geometry(index: Uint32Array): BufferGeometry {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', this.positions);
+    geometry.setIndex(new BufferAttribute(index, 1));
+    return geometry;
+  }
+
+  /** Springs on a surface take a colour of their own, or they could not be seen on it. */
+  private paint(options: ViewOptions, theme: Theme): void {
+    const byParticle = options.color !== 'plain' && !options.surface;
+    const material = this.springs.material;
+    if (material.vertexColors !== byParticle) {
+      material.vertexColors = byParticle;
+      material.needsUpdate = true;
+    }
+    material.color.copy(theme.spring);
+    if (byParticle) material.color.set(1, 1, 1);
+    this.particles.setColor(theme.particle);
+    this.pins.setColor(theme.pin);
+    this.contacts.setColor(theme.contact);
+    this.mark.setColor(theme.mark);
+  }
+
+  private markDivergence(theme: Theme): void {
+    const { diverged, topology } = this.model;
+    this.mark.points.visible = diverged?.particle !== undefined;
+    if (!diverged) return;
+    this.mark.chooseOne(diverged.particle);
+    if (!this.markedSprings && diverged.springs.length > 0) {
+      const ends = diverged.springs.flatMap((s) => [topology.springs[2 * s], topology.springs[2 * s + 1]]);
+      this.markedSprings = new RopeView(new Uint32Array(ends), 0.7 * this.tubeRadius);
+      this.group.add(this.markedSprings.group);
+    }
+    this.markedSprings?.mark(theme.mark);
+    this.markedSprings?.place(this.model.positions);
+  }
+}
+
+/** A rope is drawn as thick as its contact gap, but thick enough to be seen. */
+function ropeRadius(model: RunModel, size: number): number {
+  const bodies = (model.scene.scene.bodies ?? {}) as Record<string, { thickness?: number }>;
+  const thickness = Math.max(0, ...Object.values(bodies).map((body) => body.thickness ?? 0));
+  return Math.min(Math.max(thickness, 0.006 * size), 0.02 * size);
+}
+
+/** What the scale of stretch has to contain: the limit of stretch. */
+function scaleOf(model: RunModel, options: ViewOptions): number {
+  if (options.color !== 'stretch') return 0;
+  const limit = model.scene.scene.stretch_limit as { max_stretch?: number } | null | undefined;
+  return limit?.max_stretch ?? 0;
+}

@@ -1,0 +1,128 @@
+import { Plane, Raycaster, Vector2, Vector3 } from 'three';
+import { pick, project } from './picking';
+import type { Pick } from './picking';
+import { PINNED } from './protocol';
+import type { Command } from './protocol';
+import type { SceneView } from './scene_view';
+
+const CLICK_PX = 4;
+
+interface Held extends Pick {
+  pointer: number;
+  /** From the particle to the pointer, when it was taken [pixels]. */
+  offset: Vector2;
+  plane: Plane;
+  target: Vector3;
+  moved: boolean;
+}
+
+interface Pressed extends Pick {
+  pointer: number;
+  x: number;
+  y: number;
+}
+
+/** Pulls particles with the pointer; a click on a pin frees it. */
+export class Drag {
+  enabled = false;
+  private held: Held | null = null;
+  private pressedPin: Pressed | null = null;
+  private hover: { x: number; y: number } | null = null;
+  private readonly raycaster = new Raycaster();
+
+  constructor(
+    private readonly view: SceneView,
+    private readonly send: (command: Command) => void,
+  ) {
+    const { canvas } = view;
+    // Before OrbitControls, which listens to the canvas itself.
+    const parent = canvas.parentElement ?? canvas;
+    parent.addEventListener('pointerdown', (event) => this.press(event), { capture: true });
+    canvas.addEventListener('pointermove', (event) => this.move(event));
+    canvas.addEventListener('pointerup', (event) => this.lift(event));
+    canvas.addEventListener('pointercancel', (event) => this.lift(event));
+    canvas.addEventListener('pointerleave', () => (this.hover = null));
+  }
+
+  /** To be called in each animation frame: sends the newest target. */
+  tick(): void {
+    if (this.held) {
+      this.view.runs[this.held.run]?.showPull(this.held.particle, this.held.target);
+      this.view.touch();
+      if (this.held.moved) this.send({ do: 'drag', target: this.held.target.toArray() });
+      this.held.moved = false;
+    } else if (this.hover) {
+      const found = this.enabled && pick(this.view, this.hover.x, this.hover.y, true);
+      this.view.canvas.style.cursor = found ? 'grab' : '';
+      this.hover = null;
+    }
+  }
+
+  /** The particles are no longer those that were there. */
+  cancel(): void {
+    this.pressedPin = null;
+    if (this.held) this.letGo(false);
+  }
+
+  private press(event: PointerEvent): void {
+    if (!this.enabled || event.button !== 0 || this.held) return;
+    const { x, y } = this.at(event);
+    const found = pick(this.view, x, y);
+    if (!found) return;
+    const run = this.view.runs[found.run];
+    if (run.model.states[found.particle] & PINNED) {
+      this.pressedPin = { ...found, pointer: event.pointerId, x, y };
+      return;
+    }
+    const place = project(this.view, found);
+    if (!place) return;
+    const target = new Vector3().fromArray(run.model.positions, 3 * found.particle);
+    const plane = new Plane().setFromNormalAndCoplanarPoint(this.view.camera.getWorldDirection(new Vector3()), target);
+    this.held = { ...found, pointer: event.pointerId, offset: new Vector2(x - place.x, y - place.y), plane, target, moved: false };
+    this.view.controls.enabled = false;
+    this.view.canvas.setPointerCapture(event.pointerId);
+    this.view.canvas.style.cursor = 'grabbing';
+    this.send({ do: 'grab', run: found.run, particle: found.particle });
+  }
+
+  private move(event: PointerEvent): void {
+    const { x, y } = this.at(event);
+    if (!this.held) {
+      if (event.buttons === 0) this.hover = { x, y };
+      return;
+    }
+    if (event.pointerId !== this.held.pointer) return;
+    const rect = this.view.aim(this.held.run);
+    const left = (x - this.held.offset.x - rect.x) / rect.width;
+    const top = (y - this.held.offset.y - rect.y) / rect.height;
+    this.raycaster.setFromCamera(new Vector2(2 * left - 1, 1 - 2 * top), this.view.camera);
+    if (this.raycaster.ray.intersectPlane(this.held.plane, this.held.target)) this.held.moved = true;
+  }
+
+  private lift(event: PointerEvent): void {
+    if (this.held?.pointer === event.pointerId) {
+      if (this.held.moved) this.tick();
+      this.letGo(event.type === 'pointerup' && event.shiftKey);
+    } else if (this.pressedPin?.pointer === event.pointerId) {
+      const { run, particle, x, y } = this.pressedPin;
+      const now = this.at(event);
+      if (event.type === 'pointerup' && Math.hypot(now.x - x, now.y - y) < CLICK_PX) this.send({ do: 'release', run, particle });
+      this.pressedPin = null;
+    }
+  }
+
+  private letGo(pin: boolean): void {
+    if (!this.held) return;
+    this.view.runs[this.held.run]?.showPull(this.held.particle, null);
+    this.view.touch();
+    this.held = null;
+    this.view.controls.enabled = true;
+    this.view.canvas.style.cursor = '';
+    this.send({ do: 'drop', pin });
+  }
+
+  private at(event: PointerEvent): { x: number; y: number } {
+    const box = this.view.canvas.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top };
+  }
+}

@@ -1,0 +1,167 @@
+import { element } from './dom';
+import type { Json } from './protocol';
+
+export type SceneJson = { [key: string]: Json };
+export type Change = (key: string, value: Json) => void;
+
+/** A setting of the scene. Shows the value that is in force, and problems of one that was refused. */
+export interface Field {
+  readonly node: HTMLElement;
+  /** Whether a refused key belongs to the field. */
+  owns(key: string): boolean;
+  show(scene: SceneJson, step: number): void;
+  tell(texts: string[]): void;
+}
+
+/** The value at a path of keys. */
+export function valueAt(scene: SceneJson, path: readonly string[]): Json | undefined {
+  let value: Json | undefined = scene;
+  for (const key of path) {
+    if (value === null || typeof value !== 'object' || Array.isArray(value)) return undefined;
+    value = value[key];
+  }
+  return value;
+}
+
+function numberText(value: Json | undefined): string {
+  return typeof value === 'number' ? String(Number(value.toPrecision(8))) : '';
+}
+
+/** Undefined for what is no number, null for an empty text. */
+function parsed(text: string): number | null | undefined {
+  if (text.trim() === '') return null;
+  const value = Number(text);
+  return Number.isFinite(value) ? value : undefined;
+}
+
+export function numberInput(label: string, testid: string): HTMLInputElement {
+  const input = element('input', { type: 'text', inputMode: 'decimal', spellcheck: false });
+  input.setAttribute('aria-label', label);
+  input.dataset.testid = testid;
+  return input;
+}
+
+/** What all fields have in common: their place for problems. */
+abstract class BaseField implements Field {
+  readonly node = element('div', { className: 'field' });
+  protected readonly problem = element('p', { className: 'problem', hidden: true });
+  private scene: SceneJson = {};
+  private step = 0;
+
+  constructor(protected readonly keys: readonly string[]) {
+    this.problem.setAttribute('role', 'alert');
+  }
+
+  owns(key: string): boolean {
+    return this.keys.includes(key);
+  }
+
+  show(scene: SceneJson, step: number): void {
+    this.scene = scene;
+    this.step = step;
+    this.tell([]);
+    this.refresh(scene, step);
+  }
+
+  tell(texts: string[]): void {
+    this.problem.hidden = texts.length === 0;
+    this.problem.textContent = texts.join('\n');
+    if (texts.length > 0) this.refresh(this.scene, this.step);
+  }
+
+  protected notANumber(text: string): void {
+    this.tell([`"${text}" is not a number`]);
+  }
+
+  protected abstract refresh(scene: SceneJson, step: number): void;
+}
+
+export interface NumberSpec {
+  label: string;
+  testid: string;
+  placeholder?: string;
+  /** The present value. */
+  read(scene: SceneJson, step: number): Json | undefined;
+  /** The key that a value sets, and what it becomes. */
+  write(value: number | null, scene: SceneJson): { key: string; value: Json };
+  keys: readonly string[];
+}
+
+export class NumberField extends BaseField {
+  private readonly input: HTMLInputElement;
+  private latest: SceneJson = {};
+
+  constructor(
+    private readonly spec: NumberSpec,
+    change: Change,
+  ) {
+    super(spec.keys);
+    this.input = numberInput(spec.label, spec.testid);
+    this.input.placeholder = spec.placeholder ?? '';
+    this.node.append(element('label', {}, element('span', { textContent: spec.label }), this.input), this.problem);
+    this.input.addEventListener('change', () => {
+      const value = parsed(this.input.value);
+      if (value === undefined) return this.notANumber(this.input.value);
+      const set = spec.write(value, this.latest);
+      change(set.key, set.value);
+    });
+  }
+
+  protected refresh(scene: SceneJson, step: number): void {
+    this.latest = scene;
+    this.input.value = numberText(this.spec.read(scene, step));
+  }
+}
+
+export class VectorField extends BaseField {
+  private readonly inputs: HTMLInputElement[];
+  private readonly path: string[];
+
+  constructor(label: string, testid: string, key: string, change: Change) {
+    super([key]);
+    this.path = key.split('.');
+    this.inputs = ['x', 'y', 'z'].map((axis) => numberInput(`${label} ${axis}`, `${testid}-${axis}`));
+    const group = element('span', { className: 'vector' }, ...this.inputs);
+    group.dataset.testid = testid;
+    group.setAttribute('role', 'group');
+    group.setAttribute('aria-label', label);
+    this.node.append(element('div', { className: 'labelled' }, element('span', { textContent: label }), group), this.problem);
+    for (const input of this.inputs) {
+      input.addEventListener('change', () => {
+        const value = this.inputs.map((each) => parsed(each.value) ?? NaN);
+        const wrong = value.findIndex(Number.isNaN);
+        if (wrong >= 0) return this.notANumber(this.inputs[wrong].value);
+        change(key, value);
+      });
+    }
+  }
+
+  protected refresh(scene: SceneJson): void {
+    const value = valueAt(scene, this.path);
+    this.inputs.forEach((input, d) => (input.value = Array.isArray(value) ? numberText(value[d]) : ''));
+  }
+}
+
+export class SelectField extends BaseField {
+  private readonly select = element('select');
+
+  constructor(
+    label: string,
+    testid: string,
+    key: string,
+    options: readonly { value: string; label: string }[],
+    private readonly read: (scene: SceneJson) => string,
+    change: (value: string) => void,
+  ) {
+    super([key]);
+    this.select.append(...options.map((option) => element('option', { value: option.value, textContent: option.label })));
+    this.select.dataset.testid = testid;
+    this.select.setAttribute('aria-label', label);
+    this.select.addEventListener('change', () => change(this.select.value));
+    this.node.append(element('label', {}, element('span', { textContent: label }), this.select), this.problem);
+  }
+
+  protected refresh(scene: SceneJson): void {
+    this.select.value = this.read(scene);
+  }
+}

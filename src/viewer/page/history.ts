@@ -1,0 +1,67 @@
+import type { Diagnostics, FrameNumbers } from './protocol';
+
+export type Quantity = 'kinetic' | 'elastic' | 'gravity' | 'total' | 'stretch' | 'contacts' | 'ms';
+export const QUANTITIES: readonly Quantity[] = ['kinetic', 'elastic', 'gravity', 'total', 'stretch', 'contacts', 'ms'];
+
+const CAPACITY = 1200;
+
+/** Numbers of a run over time. A long run is thinned out, so that it always fits as a whole. */
+export class History {
+  readonly times: number[] = [];
+  readonly values: Record<Quantity, number[]> = {
+    kinetic: [],
+    elastic: [],
+    gravity: [],
+    total: [],
+    stretch: [],
+    contacts: [],
+    ms: [],
+  };
+  private stride = 1;
+  private skipped = 0;
+
+  add(time: number, numbers: FrameNumbers): void {
+    if (this.times.length > 0 && time < this.times[this.times.length - 1]) this.clear();
+    if (this.times[this.times.length - 1] === time) return;
+    if (this.times.length > 0 && ++this.skipped < this.stride) return;
+    this.skipped = 0;
+    const { kinetic, elastic, gravity, maxStretch, contacts, frameMs } = numbers;
+    this.push(time, [kinetic, elastic, gravity, kinetic + elastic + gravity, maxStretch, contacts, frameMs]);
+    if (this.times.length >= CAPACITY) this.thin();
+  }
+
+  /** The columns of diagnostics.csv. */
+  load(diagnostics: Diagnostics, frameRate: number): void {
+    this.clear();
+    const column = (name: string) => diagnostics.columns.indexOf(name);
+    const columns = ['kinetic_energy', 'elastic_energy', 'gravity_energy', '', 'max_stretch', 'contacts', 'frame_ms'].map(column);
+    const time = column('time');
+    diagnostics.rows.forEach((row, k) => {
+      const numbers = columns.map((index) => row[index] ?? 0);
+      numbers[3] = numbers[0] + numbers[1] + numbers[2];
+      this.push(row[time] ?? k / frameRate, numbers);
+    });
+  }
+
+  clear(): void {
+    this.times.length = 0;
+    for (const name of QUANTITIES) this.values[name].length = 0;
+    this.stride = 1;
+    this.skipped = 0;
+  }
+
+  private push(time: number, numbers: number[]): void {
+    this.times.push(time);
+    QUANTITIES.forEach((name, k) => this.values[name].push(numbers[k]));
+  }
+
+  private thin(): void {
+    const halve = (values: number[]) => {
+      for (let k = 0; 2 * k < values.length; ++k) values[k] = values[2 * k];
+      values.length = Math.ceil(values.length / 2);
+    };
+    halve(this.times);
+    for (const name of QUANTITIES) halve(this.values[name]);
+    this.stride *= 2;
+  }
+}

@@ -1,0 +1,70 @@
+import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, MeshLambertMaterial } from 'three';
+import { creased, vertexNormals } from './normals';
+import type { Mesh as MeshData, Motion } from './protocol';
+import type { Theme } from './theme';
+
+/** An obstacle: fixed, moved as a rigid body, or deforming. */
+export class ObstacleView {
+  readonly mesh: Mesh<BufferGeometry, MeshLambertMaterial>;
+
+  constructor(
+    private readonly data: MeshData,
+    readonly motion: Motion,
+  ) {
+    const geometry = new BufferGeometry();
+    if (motion === 'deforming') {
+      const normals = new Float32Array(data.vertices.length);
+      geometry.setAttribute('position', new BufferAttribute(data.vertices.slice(), 3).setUsage(DynamicDrawUsage));
+      geometry.setAttribute('normal', new BufferAttribute(normals, 3).setUsage(DynamicDrawUsage));
+      geometry.setIndex(new BufferAttribute(data.triangles, 1));
+    } else {
+      const { positions, normals } = creased(data);
+      geometry.setAttribute('position', new BufferAttribute(positions, 3));
+      geometry.setAttribute('normal', new BufferAttribute(normals, 3));
+    }
+    // Bodies that lie on the obstacle are in front of it.
+    const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+    this.mesh = new Mesh(geometry, material);
+    this.mesh.matrixAutoUpdate = false;
+    this.mesh.frustumCulled = false;
+  }
+
+  /** Vertices that picking tests, in the obstacle's frame. */
+  get vertices(): Float32Array {
+    return this.motion === 'deforming' ? (this.mesh.geometry.getAttribute('position').array as Float32Array) : this.data.vertices;
+  }
+
+  get triangles(): Uint32Array {
+    return this.data.triangles;
+  }
+
+  setPose(pose: Float32Array): void {
+    const [a, b, c, d, e, f, g, h, i, x, y, z] = pose;
+    // prettier-ignore
+    this.mesh.matrix.set(
+      a, b, c, x,
+      d, e, f, y,
+      g, h, i, z,
+      0, 0, 0, 1);
+    this.mesh.matrixWorldNeedsUpdate = true;
+  }
+
+  setVertices(vertices: Float32Array): void {
+    const positions = this.mesh.geometry.getAttribute('position');
+    const normals = this.mesh.geometry.getAttribute('normal');
+    (positions.array as Float32Array).set(vertices);
+    vertexNormals(vertices, this.data.triangles, normals.array as Float32Array);
+    positions.needsUpdate = true;
+    normals.needsUpdate = true;
+  }
+
+  update(visible: boolean, theme: Theme): void {
+    this.mesh.visible = visible;
+    this.mesh.material.color.copy(theme.obstacle);
+  }
+
+  dispose(): void {
+    this.mesh.geometry.dispose();
+    this.mesh.material.dispose();
+  }
+}

@@ -1,0 +1,322 @@
+import { control, byId, element, short } from './dom';
+import { Drag } from './drag';
+import { EmbeddedRun } from './embedded_run';
+import { History } from './history';
+import { integratorLabel } from './integrators';
+import { Notices } from './notices';
+import { Plots } from './plots';
+import type { Command, DivergedMessage, Frame, Header, ProblemsMessage, SceneMessage, TextMessage, Topology } from './protocol';
+import { ReplayPlayer } from './replay_player';
+import { RunModel } from './run_model';
+import { copyScene, downloadText, objText, Recorder, savePicture } from './saving';
+import type { SceneView } from './scene_view';
+import { Settings } from './settings';
+import type { Source, SourceListener } from './source';
+import { publish } from './testing';
+import type { Shown } from './testing';
+import { LIGHT, ThemeChoice } from './theme';
+import { Toolbar } from './toolbar';
+import { ViewPanel } from './view_panel';
+
+const PLOT_MS = 100;
+const ERROR_MS = 8000;
+
+/** Brings what a source tells to the picture and the panels, and what the user does to the source. */
+export class Page implements SourceListener {
+  private readonly shown: Shown = { title: '', models: [], playing: false, fps: 0, connected: false, mode: null, problems: [] };
+  private readonly scenes = new Map<number, SceneMessage>();
+  /** Runs whose first frame has not come yet. */
+  private readonly coming = new Map<number, RunModel>();
+  private readonly send = (command: Command) => this.source.send(command);
+  private readonly toolbar: Toolbar;
+  private readonly settings: Settings;
+  private readonly notices = new Notices(this.send);
+  private readonly plots = new Plots(byId('plots'));
+  private readonly panel: ViewPanel;
+  private readonly drag: Drag;
+  private readonly player: ReplayPlayer;
+  private readonly recorder = new Recorder();
+  private readonly status = control('status');
+  private theme = LIGHT;
+  private fitted = '';
+  private plotted = { time: 0, stale: true };
+  private errorUntil = 0;
+  private frameCount = { since: 0, drawn: 0 };
+
+  constructor(
+    private readonly source: Source,
+    private readonly view: SceneView,
+  ) {
+    this.settings = new Settings(byId('settings'), (key, value) => {
+      const own = key === 'integrator' && this.shown.models.length > 1 ? { run: 0 } : {};
+      this.send({ do: 'set', ...own, key, value });
+    });
+    this.panel = new ViewPanel(view);
+    this.drag = new Drag(view, this.send);
+    this.player = new ReplayPlayer(this.send, (header, frame) => this.showFrame(header, frame));
+    this.toolbar = new Toolbar({
+      play: (playing) => this.play(playing),
+      step: () => this.send({ do: 'step' }),
+      frame: () => this.singleFrame(),
+      reset: () => (this.recorded ? this.player.seek(1) : this.send({ do: 'reset' })),
+      fit: () => view.fit(),
+      speed: (factor) => (this.recorded ? this.player.setSpeed(factor) : this.send({ do: 'speed', factor })),
+      every: (steps) => this.send({ do: 'every', steps }),
+      compare: (integrator) => this.send(integrator ? { do: 'compare', integrator } : { do: 'single' }),
+      open: (example) => {
+        this.fitted = '';
+        this.settings.forget();
+        this.send({ do: 'open', example });
+      },
+      seek: (frame) => {
+        this.play(false);
+        this.player.seek(frame);
+      },
+    });
+    const themes = new ThemeChoice((theme) => {
+      this.theme = theme;
+      view.setTheme(theme);
+      this.plotted.stale = true;
+    });
+    themes.apply();
+    control('theme').addEventListener('click', () => themes.toggle());
+    this.bindSaving();
+    publish(this.shown, view);
+  }
+
+  start(): void {
+    this.source.start(this);
+    const tick = (now: number) => {
+      this.tick(now);
+      requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  }
+
+  connected(connected: boolean): void {
+    this.shown.connected = connected;
+    if (!connected) this.drag.cancel();
+    this.showStatus();
+  }
+
+  text(message: TextMessage): void {
+    if (message.type === 'hello') {
+      this.greet(message.mode, message.title, message.examples);
+    } else if (message.type === 'scene') {
+      this.beginScene(message);
+    } else if (message.type === 'problems') {
+      this.showProblems(message);
+    } else if (message.type === 'state') {
+      this.shown.playing = message.playing;
+      this.toolbar.setState(message);
+    } else if (message.type === 'diverged') {
+      this.showDivergence(message);
+    } else if (message.type === 'obj') {
+      downloadText(message.name, message.text);
+    } else if (message.type === 'error') {
+      this.status.textContent = message.text;
+      this.errorUntil = performance.now() + ERROR_MS;
+    } else if (message.type === 'removed') {
+      this.remove(message.run);
+    }
+  }
+
+  topology(header: Header, topology: Topology): void {
+    const scene = this.scenes.get(header.run);
+    if (scene?.generation !== header.generation) return;
+    const last = this.shown.models[header.run];
+    const history = scene.live && last ? last.history : new History();
+    if (scene.diagnostics) history.load(scene.diagnostics, scene.frame_rate);
+    this.coming.set(header.run, new RunModel(scene, topology, history));
+    if (this.recorded) this.player.begin(scene);
+  }
+
+  frame(header: Header, frame: Frame): void {
+    if (this.recorded) this.player.receive(header, frame);
+    else this.showFrame(header, frame);
+  }
+
+  private get recorded(): boolean {
+    return this.shown.mode === 'replay';
+  }
+
+  private greet(mode: 'live' | 'replay', title: string, examples: string[]): void {
+    this.shown.mode = mode;
+    document.body.dataset.mode = mode;
+    this.setTitle(title);
+    this.toolbar.setExamples(examples);
+    this.scenes.clear();
+    this.coming.clear();
+    this.remove(1);
+    if (mode !== 'replay') return;
+    this.toolbar.setRecorded();
+    const still = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+    if (this.shown.models.length === 0 && !still) this.play(true);
+  }
+
+  private beginScene(message: SceneMessage): void {
+    this.scenes.set(message.run, message);
+    this.shown.problems = [];
+    this.notices.clearProblems();
+    this.notices.clearDivergence();
+    this.drag.cancel();
+    if (message.run === 0) {
+      this.setTitle(message.title);
+      this.settings.show(message);
+      this.notices.showWarnings(message.warnings);
+      this.toolbar.setFrames(message.frames);
+      this.offer(message);
+    } else {
+      this.toolbar.setCompared(message.integrator);
+    }
+  }
+
+  private setTitle(title: string): void {
+    this.shown.title = title;
+    byId('title').textContent = title;
+    document.title = title ? `${title} - Sprung` : 'Sprung';
+  }
+
+  private offer(message: SceneMessage): void {
+    const { complete } = message;
+    const stated = complete && !(this.source instanceof EmbeddedRun);
+    const live = !this.recorded;
+    this.panel.offer({ springs: complete, pins: stated, contacts: stated }, { stretch: complete, speed: live, contact: stated });
+    const save = (name: string) => () => {
+      if (live) this.send({ do: 'obj', run: 0, body: name });
+      else if (this.shown.models[0]) downloadText(`${name}.obj`, objText(this.shown.models[0], name));
+    };
+    const buttons = message.bodies.map(({ name }) => {
+      const button = element('button', { type: 'button', textContent: `${name}.obj`, onclick: save(name) });
+      button.dataset.testid = `save-${name}`;
+      return button;
+    });
+    byId('save-bodies').replaceChildren(...buttons);
+  }
+
+  private showFrame(header: Header, frame: Frame): void {
+    const coming = this.coming.get(header.run);
+    let model = this.shown.models[header.run];
+    if (coming?.scene.generation === header.generation) {
+      coming.apply(header, frame);
+      this.coming.delete(header.run);
+      model = this.shown.models[header.run] = coming;
+      this.view.setRun(header.run, model);
+      this.fitOnce(model);
+      this.labelRuns();
+    } else if (model?.scene.generation === header.generation) {
+      model.apply(header, frame);
+    } else {
+      return;
+    }
+    if (!this.recorded) model.history.add(header.time, frame.numbers);
+    else this.toolbar.setFrame(header.frame);
+    this.plotted.stale = true;
+    this.view.invalidate();
+  }
+
+  /** A scene that was changed keeps the view that the user has chosen. */
+  private fitOnce(model: RunModel): void {
+    const { bodies, obstacles, run } = model.scene;
+    const scene = JSON.stringify([bodies, obstacles]);
+    if (run !== 0 || scene === this.fitted) return;
+    this.fitted = scene;
+    this.panel.setDefaults(model.topology.particles, model.topology.triangles.length + model.topology.segments.length > 0);
+    this.view.draw();
+    this.view.fit();
+  }
+
+  private showDivergence(message: DivergedMessage): void {
+    const model = this.coming.get(message.run) ?? this.shown.models[message.run];
+    if (!model) return;
+    model.diverged = message;
+    const name = this.shown.models.length > 1 ? `${integratorLabel(model.scene.integrator)} diverged` : 'The run diverged';
+    this.notices.showDivergence(message, model.scene, name);
+    this.view.invalidate();
+  }
+
+  private showProblems(message: ProblemsMessage): void {
+    this.shown.problems = message.problems.map(({ text }) => text);
+    const fatal = message.run === null && this.shown.models.length === 0;
+    const second = this.shown.models[1]?.scene.integrator ?? null;
+    this.toolbar.setCompared(second);
+    if (fatal || !(message.run !== 1 || this.shown.models.length > 1) || !this.settings.tell(message)) {
+      this.notices.showProblems(message.problems, fatal);
+    }
+  }
+
+  private remove(run: number): void {
+    this.coming.delete(run);
+    this.scenes.delete(run);
+    if (this.shown.models.length > run) this.shown.models.length = run;
+    this.view.setRun(run, null);
+    this.toolbar.setCompared(null);
+    this.plotted.stale = true;
+    this.labelRuns();
+  }
+
+  private labelRuns(): void {
+    const { models } = this.shown;
+    const labels = models.length < 2 ? [] : models.map(({ scene }) => integratorLabel(scene.integrator));
+    byId('labels').replaceChildren(...labels.map((textContent) => element('span', { textContent })));
+  }
+
+  private play(playing: boolean): void {
+    if (!this.recorded) return this.send({ do: playing ? 'play' : 'pause' });
+    this.player.play(playing);
+    this.shown.playing = playing;
+    this.toolbar.setPlaying(playing);
+  }
+
+  private singleFrame(): void {
+    if (!this.recorded) return this.send({ do: 'frame' });
+    this.play(false);
+    this.player.seek(1 + (this.player.frame % this.player.frames));
+  }
+
+  private bindSaving(): void {
+    const record = control('record');
+    control('save-picture').addEventListener('click', () => savePicture(this.view, 'sprung'));
+    record.addEventListener('click', () => {
+      record.textContent = this.recorder.toggle(this.view.canvas, 'sprung') ? 'Stop recording' : 'Record';
+    });
+    control('copy-scene').addEventListener('click', () => void copyScene(this.scenes.get(0)?.changed ?? {}));
+  }
+
+  private tick(now: number): void {
+    if (this.recorded) this.player.tick(now);
+    this.drag.enabled = this.shown.mode === 'live' && this.shown.connected;
+    this.drag.tick();
+    this.view.controls.update();
+    if (this.view.draw()) {
+      ++this.frameCount.drawn;
+      this.panel.showLegend(this.theme);
+    }
+    if (now - this.frameCount.since > 1000) {
+      this.shown.fps = (1000 * this.frameCount.drawn) / (now - this.frameCount.since);
+      this.frameCount = { since: now, drawn: 0 };
+      this.showStatus();
+    }
+    if (!this.plotted.stale || now - this.plotted.time < PLOT_MS) return;
+    this.plotted = { time: now, stale: false };
+    this.plots.draw(this.shown.models, this.recorded);
+    this.showReadout();
+  }
+
+  private showReadout(): void {
+    const [model] = this.shown.models;
+    if (!model) return;
+    const { numbers } = model;
+    const rates = this.shown.models.map((each) => `${short(each.numbers?.realtime ?? 0, 2)}x`).join(' | ');
+    control('realtime').textContent = this.recorded || !this.shown.playing ? '' : rates;
+    const infeasible = numbers?.infeasible ? `, ${numbers.infeasible} infeasible` : '';
+    control('readout').textContent = `frame ${model.frame}, ${model.time.toFixed(3)} s${infeasible}`;
+  }
+
+  private showStatus(): void {
+    if (performance.now() < this.errorUntil) return;
+    const state = this.source instanceof EmbeddedRun ? this.source.note : this.shown.connected ? 'connected' : 'disconnected';
+    this.status.dataset.state = this.shown.connected ? 'connected' : 'disconnected';
+    this.status.textContent = this.shown.connected && this.shown.fps > 0 ? `${state}, ${Math.round(this.shown.fps)} frames/s` : state;
+  }
+}

@@ -1,0 +1,44 @@
+import { History } from './history';
+import type { DivergedMessage, Frame, FrameNumbers, Header, SceneMessage, Topology } from './protocol';
+
+export interface BodyState { positions: Float32Array }
+
+/** One run: its scene and its newest frame. The arrays stay the same ones from frame to frame. */
+export class RunModel {
+  readonly positions: Float32Array;
+  readonly speeds: Float32Array;
+  readonly states: Uint8Array;
+  /** By name: views of `positions`. */
+  readonly bodies: Record<string, BodyState> = {};
+  poses: Float32Array[] = [];
+  deformed: Float32Array[] = [];
+  numbers: FrameNumbers | null = null;
+  frame = 0;
+  time = 0;
+  diverged: DivergedMessage | null = null;
+
+  constructor(
+    readonly scene: SceneMessage,
+    readonly topology: Topology,
+    readonly history: History,
+  ) {
+    const count = topology.particles;
+    this.positions = new Float32Array(3 * count);
+    this.speeds = new Float32Array(count);
+    this.states = new Uint8Array(count);
+    for (const { name, first, count: size } of scene.bodies) {
+      this.bodies[name] = { positions: this.positions.subarray(3 * first, 3 * (first + size)) };
+    }
+  }
+
+  apply(header: Header, frame: Frame): void {
+    this.positions.set(frame.positions);
+    this.speeds.set(frame.speeds);
+    this.states.set(frame.states);
+    this.poses = frame.poses;
+    this.deformed = frame.deformed;
+    this.numbers = frame.numbers;
+    this.frame = header.frame;
+    this.time = header.time;
+  }
+}

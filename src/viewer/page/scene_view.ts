@@ -1,0 +1,146 @@
+import { PerspectiveCamera, Vector3, WebGLRenderer } from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import type { RunModel } from './run_model';
+import { RunView } from './run_view';
+import { LIGHT } from './theme';
+import type { Theme } from './theme';
+import { defaultOptions } from './view_options';
+import type { ViewOptions } from './view_options';
+
+export interface Rect { x: number; y: number; width: number; height: number }
+
+const MARGIN = 1.12;
+const VIEW_DIRECTION = new Vector3(0.55, 0.38, 1).normalize();
+
+/** The picture: up to two runs, side by side, through one camera. */
+export class SceneView {
+  readonly options: ViewOptions = defaultOptions();
+  readonly camera = new PerspectiveCamera(38, 1, 0.01, 100);
+  readonly canvas: HTMLCanvasElement;
+  readonly controls: OrbitControls;
+  readonly runs: RunView[] = [];
+  private readonly renderer: WebGLRenderer;
+  private theme: Theme = LIGHT;
+  private radius = 1;
+  private stale = true;
+  private moved = true;
+
+  /** Throws where there is no WebGL. */
+  constructor(private readonly parent: HTMLElement) {
+    this.renderer = new WebGLRenderer({ antialias: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setScissorTest(true);
+    this.canvas = this.renderer.domElement;
+    this.canvas.setAttribute('aria-label', 'Simulation');
+    parent.append(this.canvas);
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.addEventListener('change', () => this.touch());
+    new ResizeObserver(() => this.resize()).observe(parent);
+    this.resize();
+  }
+
+  setRun(number: number, model: RunModel | null): void {
+    this.runs[number]?.dispose();
+    if (model) this.runs[number] = new RunView(model);
+    else this.runs.length = Math.min(this.runs.length, number);
+    this.invalidate();
+  }
+
+  setTheme(theme: Theme): void {
+    this.theme = theme;
+    this.renderer.setClearColor(theme.background);
+    this.invalidate();
+  }
+
+  /** The runs or the options have changed. */
+  invalidate(): void {
+    this.stale = true;
+  }
+
+  /** Only the camera has changed. */
+  touch(): void {
+    this.moved = true;
+  }
+
+  /** The areas of the runs, in pixels of the picture. */
+  rects(): Rect[] {
+    const width = this.parent.clientWidth;
+    const height = this.parent.clientHeight;
+    if (this.runs.length < 2) return [{ x: 0, y: 0, width, height }];
+    const beside = width >= height;
+    const w = beside ? width / 2 : width;
+    const h = beside ? height : height / 2;
+    return [
+      { x: 0, y: 0, width: w, height: h },
+      { x: beside ? w : 0, y: beside ? 0 : h, width: w, height: h },
+    ];
+  }
+
+  /** The camera as run `number` is seen through it. */
+  aim(number: number): Rect {
+    const rect = this.rects()[number] ?? this.rects()[0];
+    this.camera.aspect = rect.width / Math.max(rect.height, 1);
+    this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
+    return rect;
+  }
+
+  fit(): void {
+    if (!this.runs[0]) return;
+    const box = this.runs[0].box();
+    const center = box.getCenter(new Vector3());
+    this.radius = Math.max(box.getSize(new Vector3()).length() / 2, 1e-6);
+    const { width, height } = this.rects()[0];
+    const vertical = Math.tan((this.camera.fov * Math.PI) / 360);
+    const horizontal = vertical * (width / Math.max(height, 1));
+    const right = new Vector3(0, 1, 0).cross(VIEW_DIRECTION).normalize();
+    const up = VIEW_DIRECTION.clone().cross(right);
+    // The nearest distance at which all corners of the box are in the picture.
+    let distance = this.radius;
+    for (let k = 0; k < 8; ++k) {
+      const corner = new Vector3(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z).sub(center);
+      const across = Math.max(Math.abs(corner.dot(right)) / horizontal, Math.abs(corner.dot(up)) / vertical);
+      distance = Math.max(distance, MARGIN * across + corner.dot(VIEW_DIRECTION));
+    }
+    this.controls.target.copy(center);
+    this.camera.position.copy(center).addScaledVector(VIEW_DIRECTION, distance);
+    this.controls.update();
+    this.touch();
+  }
+
+  /** Draws if something has changed. Returns whether it has. */
+  draw(): boolean {
+    if (!this.stale && !this.moved) return false;
+    if (this.stale) for (const run of this.runs) run.update(this.options, this.theme);
+    this.stale = this.moved = false;
+    this.setDepthRange();
+    const height = this.parent.clientHeight;
+    if (this.runs.length === 0) {
+      const [rect] = this.rects();
+      this.renderer.setScissor(0, 0, rect.width, rect.height);
+      this.renderer.clear();
+    }
+    this.runs.forEach((run, number) => {
+      const rect = this.aim(number);
+      run.setHaze(this.theme.background, this.radius, this.camera.position.distanceTo(this.controls.target));
+      const bottom = height - rect.y - rect.height;
+      this.renderer.setViewport(rect.x, bottom, rect.width, rect.height);
+      this.renderer.setScissor(rect.x, bottom, rect.width, rect.height);
+      this.renderer.render(run.scene, this.camera);
+    });
+    return true;
+  }
+
+  private setDepthRange(): void {
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    this.camera.near = Math.max(distance / 100, 1e-6);
+    this.camera.far = distance + 60 * this.radius;
+  }
+
+  private resize(): void {
+    this.renderer.setSize(this.parent.clientWidth, this.parent.clientHeight);
+    this.touch();
+    // Or the picture stays empty until the next animation frame.
+    this.draw();
+  }
+}

@@ -1,0 +1,94 @@
+import { control, setOptions } from './dom';
+import { INTEGRATORS } from './integrators';
+import type { StateMessage } from './protocol';
+
+/** What the toolbar asks for. */
+export interface ToolbarActions {
+  play(playing: boolean): void;
+  step(): void;
+  frame(): void;
+  reset(): void;
+  fit(): void;
+  speed(factor: number): void;
+  every(steps: number): void;
+  compare(integrator: string | null): void;
+  open(example: string): void;
+  /** A frame of the slider. */
+  seek(frame: number): void;
+}
+
+/** Playback, speed, examples and the second run, by buttons and by keys. */
+export class Toolbar {
+  private readonly playButton = control<HTMLButtonElement>('play');
+  private readonly speed = control<HTMLSelectElement>('speed');
+  private readonly every = control<HTMLInputElement>('every');
+  private readonly compare = control<HTMLSelectElement>('compare');
+  private readonly example = control<HTMLSelectElement>('example');
+  private readonly slider = control<HTMLInputElement>('frame');
+  private readonly sliderNumber = document.getElementById('frame-number');
+  private playing = false;
+
+  constructor(private readonly actions: ToolbarActions) {
+    this.playButton.addEventListener('click', () => actions.play(!this.playing));
+    const buttons = { step: actions.step, 'single-frame': actions.frame, reset: actions.reset, fit: actions.fit };
+    for (const [name, act] of Object.entries(buttons)) control(name).addEventListener('click', () => act());
+    this.speed.addEventListener('change', () => actions.speed(Number(this.speed.value)));
+    this.every.addEventListener('change', () => actions.every(Math.max(Math.round(Number(this.every.value)) || 0, 0)));
+    setOptions(this.compare, [{ value: '', label: 'nothing' }, ...INTEGRATORS]);
+    this.compare.addEventListener('change', () => actions.compare(this.compare.value || null));
+    this.example.addEventListener('change', () => {
+      if (this.example.value) actions.open(this.example.value);
+    });
+    this.slider.addEventListener('input', () => actions.seek(Number(this.slider.value)));
+    window.addEventListener('keydown', (event) => this.press(event));
+  }
+
+  setPlaying(playing: boolean): void {
+    this.playing = playing;
+    this.playButton.textContent = playing ? 'Pause' : 'Play';
+    this.playButton.setAttribute('aria-pressed', String(playing));
+  }
+
+  setState(state: StateMessage): void {
+    this.setPlaying(state.playing);
+    this.every.value = state.every > 0 ? String(state.every) : '';
+    const value = String(state.speed);
+    if (![...this.speed.options].some((option) => option.value === value)) this.speed.add(new Option(`${value}x`, value));
+    this.speed.value = value;
+  }
+
+  setExamples(names: string[]): void {
+    setOptions(this.example, [{ value: '', label: 'choose' }, ...names.map((name) => ({ value: name, label: name.replaceAll('_', ' ') }))]);
+    const group = document.getElementById('example-group');
+    if (group) group.hidden = names.length === 0;
+  }
+
+  setCompared(integrator: string | null): void {
+    this.compare.value = integrator ?? '';
+  }
+
+  /** A recorded run cannot be played as fast as possible. */
+  setRecorded(): void {
+    this.speed.querySelector('option[value="0"]')?.remove();
+  }
+
+  setFrames(frames: number): void {
+    this.slider.max = String(frames);
+  }
+
+  setFrame(frame: number): void {
+    this.slider.value = String(frame);
+    if (this.sliderNumber) this.sliderNumber.textContent = `${frame} / ${this.slider.max}`;
+  }
+
+  private press(event: KeyboardEvent): void {
+    const target = event.target as HTMLElement | null;
+    if (event.ctrlKey || event.metaKey || event.altKey || target?.matches('input, select, textarea, button, summary')) return;
+    if (event.key === ' ') this.actions.play(!this.playing);
+    else if (event.key === '.') this.actions.frame();
+    else if (event.key === 'r') this.actions.reset();
+    else if (event.key === 'f') this.actions.fit();
+    else return;
+    event.preventDefault();
+  }
+}

@@ -1,0 +1,11 @@
+export type ColorMode = 'plain' | 'stretch' | 'speed' | 'contact';
+export type Switch = 'surface' | 'springs' | 'particles' | 'obstacles' | 'pins' | 'contacts';
+
+/** What of a run is shown, and how. */
+export interface ViewOptions extends Record<Switch, boolean> {
+  color: ColorMode;
+}
+
+export function defaultOptions(): ViewOptions {
+  return { surface: true, springs: false, particles: false, obstacles: true, pins: true, contacts: false, color: 'plain' };
+}

@@ -1,0 +1,80 @@
+import { SCALE_CSS } from './colors';
+import { byId, control, element, short } from './dom';
+import type { Theme } from './theme';
+import type { SceneView } from './scene_view';
+import type { ColorMode, Switch } from './view_options';
+
+const FEW_PARTICLES = 300;
+
+/** The switches of what is shown, the choice of colours and their legend. */
+export class ViewPanel {
+  private readonly color = control<HTMLSelectElement>('color');
+  private readonly legend = byId('legend');
+  private readonly boxes: HTMLInputElement[];
+  private legendKey = '';
+
+  constructor(private readonly view: SceneView) {
+    this.boxes = [...control('view').querySelectorAll<HTMLInputElement>('input')];
+    for (const box of this.boxes) {
+      box.addEventListener('change', () => {
+        view.options[box.value as Switch] = box.checked;
+        view.invalidate();
+      });
+    }
+    this.color.addEventListener('change', () => {
+      view.options.color = this.color.value as ColorMode;
+      view.invalidate();
+    });
+  }
+
+  /** A few particles are worth to be seen each. */
+  setDefaults(particles: number, hasSurface: boolean): void {
+    this.set('particles', particles <= FEW_PARTICLES);
+    this.set('springs', !hasSurface);
+  }
+
+  /** A recorded run has no speeds; one whose scene is gone has no springs and pins either. */
+  offer(switches: Record<'springs' | 'pins' | 'contacts', boolean>, colors: Record<Exclude<ColorMode, 'plain'>, boolean>): void {
+    for (const box of this.boxes) {
+      const offered = switches[box.value as 'springs'] ?? true;
+      (box.parentElement as HTMLElement).hidden = !offered;
+    }
+    for (const option of this.color.options) {
+      const offered = colors[option.value as 'stretch'] ?? true;
+      option.hidden = option.disabled = !offered;
+      if (!offered && option.selected) {
+        this.color.value = 'plain';
+        this.view.options.color = 'plain';
+        this.view.invalidate();
+      }
+    }
+  }
+
+  showLegend(theme: Theme): void {
+    const { color } = this.view.options;
+    const scales = this.view.runs.map((run) => run.bodies.particleColors.scale);
+    const key = `${color} ${scales.join(' ')} ${theme.contact.getHexString()}`;
+    if (key === this.legendKey) return;
+    this.legendKey = key;
+    this.legend.hidden = color === 'plain' || scales.length === 0;
+    if (color === 'contact') {
+      const swatch = element('i');
+      swatch.style.background = `#${theme.contact.getHexString()}`;
+      this.legend.replaceChildren(swatch, 'in contact');
+    } else if (color !== 'plain') {
+      const bar = element('div', { className: 'scale' });
+      bar.style.background = SCALE_CSS;
+      const unit = color === 'speed' ? 'm/s' : '';
+      const ends = scales.map((scale) => `${short(scale)} ${unit}`.trim()).join(' | ');
+      const title = color === 'speed' ? 'speed' : 'stretch';
+      this.legend.replaceChildren(title, element('span', { textContent: '0' }), bar, element('span', { textContent: ends }));
+    }
+  }
+
+  private set(name: Switch, on: boolean): void {
+    const box = this.boxes.find(({ value }) => value === name);
+    if (box) box.checked = on;
+    this.view.options[name] = on;
+    this.view.invalidate();
+  }
+}

@@ -1,0 +1,207 @@
+#include "viewer/replay_session.h"
+
+#include "base/error.h"
+#include "output/run_record.h"
+#include "viewer/live_run.h"
+#include "viewer/text_messages.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint32_t kGeneration = 1;
+
+/// The simulator of the run's scene, if it has the run's particles.
+std::unique_ptr<const LiveRun> scene_of(const RecordedRun& run, const std::vector<std::string>& mesh_paths) try {
+  if (run.scene().empty()) return nullptr;
+  auto live = std::make_unique<const LiveRun>(SceneSource{
+      .file = (run.folder() / kRunRecordFile).string(), .overrides = {}, .mesh_paths = mesh_paths, .text = run.scene()});
+  const std::vector<Body>& bodies = live->simulator().network().bodies;
+  const bool same = std::ranges::equal(bodies, run.bodies(), [](const Body& body, const RecordedMesh& mesh) {
+    return body.name == mesh.name && body.particle_count == mesh.first.vertices.cols();
+  });
+  return same ? std::move(live) : nullptr;
+} catch (const std::runtime_error&) {
+  return nullptr;  // its meshes may be gone, or it is of an older version
+}
+
+double column(const RecordedDiagnostics& table, const std::string& name, std::size_t row) {
+  const auto found = std::ranges::find(table.columns, name);
+  if (found == table.columns.end() || row >= table.rows.size()) return 0.0;
+  const double value = table.rows[row][static_cast<std::size_t>(found - table.columns.begin())];
+  return std::isfinite(value) ? value : 0.0;
+}
+
+Json table_of(const RecordedDiagnostics& diagnostics) {
+  Json rows = Json::array();
+  for (const std::vector<double>& row : diagnostics.rows) {
+    Json numbers = Json::array();
+    for (const double value : row) numbers.push_back(std::isfinite(value) ? Json(value) : Json());
+    rows.push_back(numbers);
+  }
+  return {{"columns", diagnostics.columns}, {"rows", rows}};
+}
+
+}  // namespace
+
+Replay::Replay(const std::filesystem::path& folder, const std::vector<std::string>& mesh_paths)
+    : run_(folder), live_(scene_of(run_, mesh_paths)) {}
+Replay::~Replay() = default;
+
+std::string Replay::scene_text() const {
+  const Json scene = run_.scene().empty() ? Json::object() : Json::parse(run_.scene());
+  Json bodies = Json::array();
+  Eigen::Index first = 0;
+  for (const RecordedMesh& body : run_.bodies()) {
+    bodies.push_back({{"name", body.name}, {"first", first}, {"count", body.first.vertices.cols()}});
+    first += body.first.vertices.cols();
+  }
+  Json obstacles = Json::array();
+  for (const RecordedMesh& obstacle : run_.obstacles()) {
+    obstacles.push_back({{"name", obstacle.name}, {"motion", obstacle.changes() ? "deforming" : "fixed"}});
+  }
+  const Json integrator = scene.value("integrator", Json::object());
+  const Json message{{"type", "scene"},
+                     {"run", 0},
+                     {"generation", kGeneration},
+                     {"title", run_.folder().string()},
+                     {"integrator", integrator.value("type", "verlet")},
+                     {"step", run_.step()},
+                     {"steps_per_frame", run_.steps_per_frame()},
+                     {"frame_rate", run_.frame_rate()},
+                     {"frames", run_.frames()},
+                     {"stable_step", Json()},
+                     {"live", false},
+                     {"complete", live_ != nullptr},
+                     {"scene", scene},
+                     {"changed", scene},
+                     {"warnings", run_.warnings()},
+                     {"bodies", bodies},
+                     {"obstacles", obstacles},
+                     {"diagnostics", table_of(run_.diagnostics())}};
+  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Topology Replay::topology() const {
+  Topology topology;
+  if (live_) topology = live_->topology();
+  topology.triangles.resize(3, 0);
+  topology.segments.resize(2, 0);
+  topology.obstacles.clear();
+  Index first = 0;
+  for (const RecordedMesh& body : run_.bodies()) {
+    append_columns(triangulate(body.first.faces), first, topology.triangles);
+    append_columns(body.first.lines, first, topology.segments);
+    first += static_cast<Index>(body.first.vertices.cols());
+  }
+  topology.particles = first;
+  for (const RecordedMesh& obstacle : run_.obstacles()) {
+    TriangleMesh mesh;
+    mesh.vertices = obstacle.first.vertices;
+    mesh.triangles = triangulate(obstacle.first.faces);
+    topology.obstacles.push_back(std::move(mesh));
+  }
+  return topology;
+}
+
+FrameState Replay::state(int frame) const {
+  FrameState state;
+  for (const RecordedMesh& body : run_.bodies()) {
+    const Points positions = run_.positions(body, frame);
+    const Eigen::Index first = state.positions.cols();
+    state.positions.conservativeResize(3, first + positions.cols());
+    state.positions.rightCols(positions.cols()) = positions;
+  }
+  for (const RecordedMesh& obstacle : run_.obstacles()) {
+    if (obstacle.changes()) state.deformed.push_back(run_.positions(obstacle, frame));
+  }
+  state.states.assign(static_cast<std::size_t>(state.positions.cols()), 0);
+  for (std::size_t i = 0; live_ && i < state.states.size(); ++i) {
+    if (live_->simulator().network().is_pinned(static_cast<Index>(i))) state.states[i] = kPinned;
+  }
+  state.speeds = Scalars::Zero(state.positions.cols());
+  return state;
+}
+
+FrameNumbers Replay::numbers(int frame) const {
+  const auto value = [&](const char* name) { return column(run_.diagnostics(), name, static_cast<std::size_t>(frame - 1)); };
+  return {.kinetic = value("kinetic_energy"),
+          .elastic = value("elastic_energy"),
+          .gravity = value("gravity_energy"),
+          .max_stretch = value("max_stretch"),
+          .contacts = static_cast<Index>(value("contacts")),
+          .frame_ms = value("frame_ms"),
+          .infeasible = static_cast<Index>(value("infeasible"))};
+}
+
+ReplaySession::ReplaySession(const std::filesystem::path& folder, const std::vector<std::string>& mesh_paths)
+    : replay_(folder, mesh_paths) {}
+
+ReplaySession::~ReplaySession() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::string ReplaySession::hello() const { return hello_text("replay", replay_.run().folder().string(), {}); }
+
+void ReplaySession::start(Publisher& publisher) {
+  publisher_ = &publisher;
+  const MessageHeader header{.run = 0, .generation = kGeneration};
+  publisher.show_scene(0, replay_.scene_text(), std::make_shared<const Bytes>(topology_message(header, replay_.topology())));
+  publisher.show_frame(0, frame(1));
+  thread_ = std::thread([this] { answer_all(); });
+}
+
+void ReplaySession::handle(ClientId client, std::string text) {
+  {
+    const std::lock_guard lock(mutex_);
+    messages_.emplace_back(client, std::move(text));
+  }
+  changed_.notify_all();
+}
+
+void ReplaySession::answer_all() {
+  while (true) {
+    std::pair<ClientId, std::string> message;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return ending_ || !messages_.empty(); });
+      if (ending_) return;
+      message = std::move(messages_.front());
+      messages_.pop_front();
+    }
+    answer(message.first, message.second);
+  }
+}
+
+void ReplaySession::answer(ClientId client, const std::string& text) try {
+  const Json message = Json::parse(text);
+  const auto what = message.at("do").get<std::string>();
+  if (what == "seek") {
+    publisher_->send(client, frame(std::clamp(message.at("frame").get<int>(), 1, replay_.run().frames())));
+  } else {
+    publisher_->tell(client, error_text("a replay has no command " + what));
+  }
+} catch (const Json::exception& error) {
+  publisher_->tell(client, error_text(std::string("the message was not understood: ") + error.what()));
+} catch (const InputError& error) {
+  publisher_->tell(client, error_text(error.what()));
+}
+
+SharedBytes ReplaySession::frame(int number) const {
+  const MessageHeader header{
+      .run = 0, .generation = kGeneration, .frame = static_cast<std::uint32_t>(number), .time = replay_.time(number)};
+  return std::make_shared<const Bytes>(frame_message(header, replay_.numbers(number), replay_.state(number)));
+}
+
+}  // namespace sprung

@@ -1,0 +1,113 @@
+#include "viewer/text_messages.h"
+
+#include "base/error.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <filesystem>
+
+namespace sprung {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+const char* motion_of(const Obstacle& obstacle) {
+  if (obstacle.deforms()) return "deforming";
+  return obstacle.changes() ? "rigid" : "fixed";
+}
+
+Json bodies_of(const SpringNetwork& network) {
+  Json bodies = Json::array();
+  for (const Body& body : network.bodies) {
+    bodies.push_back({{"name", body.name}, {"first", body.first_particle}, {"count", body.particle_count}});
+  }
+  return bodies;
+}
+
+Json obstacles_of(const Simulator& simulator) {
+  Json obstacles = Json::array();
+  for (const Obstacle& obstacle : simulator.environment().obstacles()) {
+    obstacles.push_back({{"name", obstacle.name}, {"motion", motion_of(obstacle)}});
+  }
+  return obstacles;
+}
+
+/// The body of a failure and, of the network, its particle and spring.
+void add_place(const StepFailure& failure, const SpringNetwork& network, Json& message) {
+  message["springs"] = Json::array();
+  for (const Body& body : network.bodies) {
+    if (body.name != failure.body) continue;
+    message["body"] = body.name;
+    if (failure.particle != kNone) message["particle"] = body.first_particle + failure.particle;
+    if (failure.spring != kNone) message["springs"].push_back(body.first_spring + failure.spring);
+  }
+}
+
+}  // namespace
+
+std::string hello_text(const std::string& mode, const std::string& title, const std::vector<std::string>& examples) {
+  return text_of({{"type", "hello"}, {"version", SPRUNG_VERSION}, {"mode", mode}, {"title", title}, {"examples", examples}});
+}
+
+std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live, const LiveRun& run) {
+  const LoadedScene& loaded = run.loaded();
+  const Json scene = Json::parse(loaded.scene.resolved);
+  const Json integrator = scene.value("integrator", Json::object());
+  return text_of({{"type", "scene"},
+                  {"run", number},
+                  {"generation", generation},
+                  {"title", std::filesystem::path(run.source().file).filename().string()},
+                  {"integrator", integrator.value("type", "verlet")},
+                  {"step", loaded.simulator.settings().step},
+                  {"steps_per_frame", loaded.steps_per_frame},
+                  {"frame_rate", loaded.scene.frame_rate},
+                  {"frames", loaded.frames},
+                  {"stable_step", or_null(loaded.largest_stable_step)},
+                  {"live", live},
+                  {"complete", true},
+                  {"scene", scene},
+                  {"changed", Json::parse(run.changed_scene())},
+                  {"warnings", loaded.warnings},
+                  {"bodies", bodies_of(loaded.simulator.network())},
+                  {"obstacles", obstacles_of(loaded.simulator)}});
+}
+
+std::string state_text(const PlayState& state) {
+  return text_of({{"type", "state"}, {"playing", state.playing}, {"every", state.every}, {"speed", state.speed}});
+}
+
+std::string problems_text(std::optional<std::uint32_t> run, const std::string& key, const std::vector<Problem>& problems) {
+  Json list = Json::array();
+  for (const Problem& problem : problems) {
+    list.push_back({{"file", problem.file},
+                    {"key", problem.key},
+                    {"value", problem.value},
+                    {"rule", problem.rule},
+                    {"remedy", problem.remedy},
+                    {"text", to_string(problem)}});
+  }
+  return text_of({{"type", "problems"}, {"run", run ? Json(*run) : Json()}, {"key", key}, {"problems", list}});
+}
+
+std::string diverged_text(std::uint32_t run, const LiveRun& diverged) {
+  const StepFailure& failure = *diverged.failure();
+  Json message{{"type", "diverged"}, {"run", run}, {"text", StepError(failure).what()}};
+  add_place(failure, diverged.simulator().network(), message);
+  message["stable_step"] = or_null(diverged.loaded().largest_stable_step);
+  return text_of(message);
+}
+
+std::string obj_message(const std::string& name, const std::string& text) {
+  return text_of({{"type", "obj"}, {"name", name}, {"text", text}});
+}
+
+std::string error_text(const std::string& text) { return text_of({{"type", "error"}, {"text", text}}); }
+
+std::string removed_text(std::uint32_t run) { return text_of({{"type", "removed"}, {"run", run}}); }
+
+}  // namespace sprung

@@ -1,0 +1,30 @@
+// The JSON texts to the page; see PROTOCOL.md.
+#pragma once
+
+#include "base/error.h"
+#include "viewer/live_run.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+struct PlayState {
+  bool playing = true;
+  int every = 0;       ///< steps between shown frames; 0: those of the scene's frame rate
+  double speed = 1.0;  ///< at most this times real time; 0: no bound
+};
+
+[[nodiscard]] std::string hello_text(const std::string& mode, const std::string& title, const std::vector<std::string>& examples);
+[[nodiscard]] std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live, const LiveRun& run);
+[[nodiscard]] std::string state_text(const PlayState& state);
+/// Without a run there is none to show.
+[[nodiscard]] std::string problems_text(std::optional<std::uint32_t> run, const std::string& key,
+                                        const std::vector<Problem>& problems);
+[[nodiscard]] std::string diverged_text(std::uint32_t run, const LiveRun& diverged);
+[[nodiscard]] std::string obj_message(const std::string& name, const std::string& text);
+[[nodiscard]] std::string error_text(const std::string& text);
+[[nodiscard]] std::string removed_text(std::uint32_t run);
+
+}  // namespace sprung

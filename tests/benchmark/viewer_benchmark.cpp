@@ -1,0 +1,99 @@
+// What the viewer costs: cloth_on_bunny, live and as a replay, watched by one page that only receives.
+#include "base/parallel.h"
+#include "output/run_output.h"
+#include "simulation/diagnostics.h"
+#include "viewer/live_session.h"
+#include "viewer/replay_session.h"
+#include "viewer/test_client.h"
+
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+
+namespace sprung::benchmarks {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kFrames = 90;
+constexpr int kReplayFrames = 30;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+SceneSource bunny_scene(const std::vector<std::string>& overrides = {}) {
+  return {.file = SPRUNG_SOURCE_DIR "/examples/cloth_on_bunny.json", .overrides = overrides, .mesh_paths = {SPRUNG_TEST_MESHES}};
+}
+
+/// The time is that of a frame of the simulation alone, the first 90. `ms_watched` is that of a frame that a page receives,
+/// `ms_hand_over` what making and publishing a frame takes of the simulation's thread.
+void live_view(benchmark::State& state) {
+  for ([[maybe_unused]] auto _ : state) {
+    LiveRun run(bunny_scene());
+    const int steps = run.loaded().steps_per_frame;
+    double simulating = 0.0;
+    double handing_over = 0.0;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      const auto begin = Clock::now();
+      for (int k = 0; k < steps; ++k) run.step();
+      simulating += seconds_since(begin);
+      const auto computed = Clock::now();
+      benchmark::DoNotOptimize(std::make_shared<const Bytes>(frame_message({}, run.numbers(), run.state())));
+      handing_over += seconds_since(computed);
+    }
+    state.SetIterationTime(simulating / kFrames);
+
+    const auto begin = Clock::now();
+    LiveSession session(bunny_scene(), {});
+    const testing::ServingServer server(session);
+    testing::TestPage page(server.port());
+    page.frame();
+    state.counters["s_to_first_picture"] = seconds_since(begin);
+    page.send({{"do", "speed"}, {"factor", 0}});
+    page.send({{"do", "play"}});
+    const auto played = Clock::now();
+    int received = 0;
+    for (std::uint32_t number = 0; number < kFrames; ++received) number = page.frame().frame();
+    state.counters["ms_watched"] = 1e3 * seconds_since(played) / kFrames;
+    state.counters["frames_received"] = received;
+    state.counters["ms_hand_over"] = 1e3 * handing_over / kFrames;
+  }
+}
+BENCHMARK(live_view)->Name("live_cloth_on_bunny_64")->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+/// Records the start of cloth_on_bunny with 256 x 256 particles.
+void record(const std::filesystem::path& folder) {
+  LoadedScene loaded = load_scene(bunny_scene({"bodies.cloth.shape.resolution=[256,256]", "step=0.01"}));
+  RunOutput output(OutputFolder(folder.string(), true),
+                   {.scene = loaded.scene.resolved, .frame_rate = 100.0, .frames = kReplayFrames, .steps_per_frame = 1},
+                   loaded.simulator);
+  FrameRunner runner(loaded.simulator, 1);
+  for (int frame = 1; frame <= kReplayFrames; ++frame) {
+    output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
+  }
+  output.finish("done");
+}
+
+/// The time is that of a frame that a page asks for and receives.
+void replay_view(benchmark::State& state) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "sprung_viewer_benchmark";
+  record(folder);
+  for ([[maybe_unused]] auto _ : state) {
+    ReplaySession session(folder, {SPRUNG_TEST_MESHES});
+    const testing::ServingServer server(session);
+    testing::TestPage page(server.port());
+    page.frame();
+    const auto begin = Clock::now();
+    for (int frame = 1; frame <= kReplayFrames; ++frame) {
+      page.send({{"do", "seek"}, {"frame", frame}});
+      page.frame();
+    }
+    state.SetIterationTime(seconds_since(begin) / kReplayFrames);
+  }
+  std::filesystem::remove_all(folder);
+}
+BENCHMARK(replay_view)->Name("replay_cloth_256")->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace sprung::benchmarks

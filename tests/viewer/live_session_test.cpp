@@ -1,0 +1,281 @@
+// Laws of the live viewer, as a page sees them through the server.
+#include "viewer/live_session.h"
+#include "base/error.h"
+#include "scene/scene_text.h"
+#include "viewer/test_client.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace sprung {
+namespace {
+
+using testing::get;
+using ::testing::HasSubstr;
+using testing::Json;
+using testing::Received;
+using testing::ServingServer;
+using testing::TestPage;
+
+// A rope that hangs from its first particle, and an obstacle below.
+constexpr const char* kScene = R"({"version": 1, "duration": 1, "frame_rate": 50, "step": 0.002,
+  "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 11}, "mass": 0.1,
+                      "springs": {"structural": {"stiffness": 100, "damping": 0.1}}, "pins": [{"indices": [0]}]}},
+  "obstacles": {"ball": {"shape": {"type": "sphere", "radius": 0.2}, "place": {"position": [0.5, -2, 0]}}}})";
+
+class LiveViewer : public ::testing::Test {
+ protected:
+  void serve(const std::string& text = kScene) {
+    session_ = std::make_unique<LiveSession>(SceneSource{.file = folder_.write("scene.json", text).string()}, examples_);
+    server_ = std::make_unique<ServingServer>(*session_);
+  }
+  ~LiveViewer() override {
+    server_.reset();
+    session_.reset();
+  }
+
+  SceneFolder folder_;
+  std::vector<ExampleScene> examples_;
+  std::unique_ptr<LiveSession> session_;
+  std::unique_ptr<ServingServer> server_;
+};
+
+/// A page on a simulation that rests, at its first frame.
+class PausedPage : public TestPage {
+ public:
+  explicit PausedPage(const std::string& port) : TestPage(port) {
+    send({{"do", "pause"}});
+    send({{"do", "reset"}});
+    frame([](const Received& message) { return message.time() == 0.0; });
+  }
+};
+
+TEST_F(LiveViewer, ThePageComesWithTheTokenOnly) {
+  serve();
+  const std::string host = "127.0.0.1:" + server_->port();
+  EXPECT_EQ(get(server_->port(), "/?token=secret", host).body, testing::kPage);
+  for (const auto& answer : {get(server_->port(), "/", host), get(server_->port(), "/?token=secret", "evil.example"),
+                             get(server_->port(), "/?token=secret", host, "http://evil.example"),
+                             get(server_->port(), "/other?token=secret", host), get(server_->port(), "/live", host)}) {
+    EXPECT_EQ(answer.status, 403u);
+    EXPECT_THAT(answer.body, HasSubstr("token"));
+  }
+}
+
+TEST_F(LiveViewer, APageIsToldTheSceneThenItsTopologyThenFrames) {
+  serve();
+  TestPage page(server_->port());
+  EXPECT_EQ(page.receive().json()["type"], "hello");
+  const Json scene = page.text("scene");
+  EXPECT_EQ(scene["bodies"][0]["name"], "rope");
+  EXPECT_EQ(scene["bodies"][0]["count"], 11);
+  EXPECT_EQ(scene["obstacles"][0]["motion"], "fixed");
+  EXPECT_EQ(scene["steps_per_frame"], 10);
+  EXPECT_EQ(scene["integrator"], "verlet");
+  const Received topology = page.binary();
+  EXPECT_EQ(topology.kind(), 1u);
+  EXPECT_EQ(topology.at<std::uint32_t>(32), 0u) << "triangles";
+  EXPECT_EQ(topology.at<std::uint32_t>(36), 10u) << "segments";
+  EXPECT_EQ(topology.at<std::uint32_t>(40), 10u) << "springs";
+  EXPECT_EQ(topology.at<std::uint32_t>(44), 1u) << "obstacles";
+  const Received frame = page.frame();
+  EXPECT_EQ(frame.particles(), 11u);
+  EXPECT_EQ(frame.generation(), scene["generation"]);
+  EXPECT_EQ(frame.position(0), Vector3::Zero());
+  const Received later = page.frame([&](const Received& message) { return message.frame() >= frame.frame() + 3; });
+  EXPECT_LT(later.position(10).y(), frame.position(10).y());
+}
+
+// The same program without the viewer writes the same bits.
+TEST_F(LiveViewer, FramesHaveThePositionsOfTheSimulator) {
+  serve();
+  PausedPage page(server_->port());
+  LoadedScene loaded = load_scene({.file = (folder_.path() / "scene.json").string()});
+  for (int frame = 2; frame <= 4; ++frame) {
+    page.send({{"do", "frame"}});
+    for (int step = 0; step < loaded.steps_per_frame; ++step) loaded.simulator.step();
+    const Received shown =
+        page.frame([&](const Received& message) { return message.frame() == static_cast<std::uint32_t>(frame); });
+    EXPECT_EQ(shown.time(), loaded.simulator.time());
+    for (std::size_t i = 0; i < 11; ++i) {
+      EXPECT_EQ(shown.position(i), Vector3(loaded.simulator.positions().col(static_cast<Index>(i)).cast<float>().cast<double>()));
+    }
+  }
+}
+
+TEST_F(LiveViewer, ResetGivesTheBitsOfTheFirstFrame) {
+  serve();
+  PausedPage page(server_->port());
+  page.send({{"do", "step"}});
+  const Received first = page.frame([](const Received& message) { return message.time() > 0.0; });
+  page.send({{"do", "frame"}});
+  page.frame([](const Received& message) { return message.time() > 0.01; });
+  page.send({{"do", "reset"}});
+  const Received start = page.frame([](const Received& message) { return message.time() == 0.0; });
+  EXPECT_NE(start.generation(), first.generation());
+  page.send({{"do", "step"}});
+  const Received again = page.frame([](const Received& message) { return message.time() > 0.0; });
+  EXPECT_EQ(again.positions(), first.positions());
+}
+
+TEST_F(LiveViewer, GravityChangesWhileTheRunGoesOn) {
+  serve();
+  PausedPage page(server_->port());
+  page.send({{"do", "frame"}});
+  page.frame([](const Received& message) { return message.time() > 0.0; });
+  page.send({{"do", "set"}, {"run", 0}, {"key", "gravity"}, {"value", {0, 5, 0}}});
+  const Json scene = page.text("scene");
+  EXPECT_TRUE(scene["live"]);
+  EXPECT_EQ(scene["scene"]["gravity"], Json({0, 5, 0}));
+  EXPECT_EQ(scene["changed"]["gravity"], Json({0, 5, 0}));
+  EXPECT_FALSE(scene["changed"].contains("integrator")) << "what its author did not write";
+  EXPECT_EQ(page.frame().time(), 0.02);
+}
+
+TEST_F(LiveViewer, AnotherIntegratorBeginsTheRunAnew) {
+  serve();
+  PausedPage page(server_->port());
+  page.send({{"do", "frame"}});
+  page.frame([](const Received& message) { return message.time() > 0.0; });
+  page.send({{"do", "set"}, {"key", "integrator"}, {"value", {{"type", "rk4"}}}});
+  const Json scene = page.text("scene");
+  EXPECT_FALSE(scene["live"]);
+  EXPECT_EQ(scene["integrator"], "rk4");
+  EXPECT_EQ(page.frame().time(), 0.0);
+}
+
+TEST_F(LiveViewer, ARefusedValueNamesTheRuleAndLeavesTheRun) {
+  serve();
+  PausedPage page(server_->port());
+  for (const auto& [key, value] : std::vector<std::pair<std::string, Json>>{
+           {"gravity", "down"}, {"bodies.rope.mass", -1}, {"step", 10.0}, {"integrator", {{"type", "eulr"}}}, {"nonsense", 1}}) {
+    page.send({{"do", "set"}, {"run", 0}, {"key", key}, {"value", value}});
+    const Json answer = page.text("problems");
+    EXPECT_EQ(answer["key"], key);
+    ASSERT_FALSE(answer["problems"].empty()) << key;
+    EXPECT_FALSE(answer["problems"][0]["rule"].get<std::string>().empty()) << key;
+  }
+  page.send({{"do", "frame"}});
+  EXPECT_EQ(page.frame().frame(), 2u);
+}
+
+TEST_F(LiveViewer, ASceneWithMistakesShowsThem) {
+  serve(R"({"version": 1, "duration": -1, "bodies": {}})");
+  TestPage page(server_->port());
+  const Json answer = page.text("problems");
+  EXPECT_TRUE(answer["run"].is_null());
+  EXPECT_GE(answer["problems"].size(), 2u);
+}
+
+TEST_F(LiveViewer, APulledParticleMovesToTheTargetAndStaysWherePinned) {
+  serve();
+  PausedPage page(server_->port());
+  page.send({{"do", "grab"}, {"run", 0}, {"particle", 10}});
+  page.send({{"do", "drag"}, {"target", {0.0, 0.9, 0.0}}});
+  for (int k = 0; k < 100; ++k) page.send({{"do", "frame"}});
+  const Received pulled = page.frame([](const Received& message) { return message.frame() == 101; });
+  EXPECT_LT((pulled.position(10) - Vector3(0.0, 0.9, 0.0)).norm(), 0.2);
+  page.send({{"do", "drop"}, {"pin", true}});
+  const Received pinned = page.frame();
+  page.send({{"do", "frame"}});
+  const Received later = page.frame([](const Received& message) { return message.frame() == 102; });
+  EXPECT_EQ(later.position(10), pinned.position(10));
+  EXPECT_NE(later.position(9), pinned.position(9));
+  page.send({{"do", "release"}, {"run", 0}, {"particle", 10}});
+  page.send({{"do", "frame"}});
+  const Received freed = page.frame([](const Received& message) { return message.frame() == 103; });
+  EXPECT_LT(freed.position(10).y(), later.position(10).y());
+}
+
+TEST_F(LiveViewer, TwoIntegratorsRunSideBySide) {
+  serve();
+  PausedPage page(server_->port());
+  page.send({{"do", "compare"}, {"integrator", "implicit_euler"}});
+  Json second = page.text("scene");
+  while (second["run"] == 0) second = page.text("scene");
+  EXPECT_EQ(second["integrator"], "implicit_euler");
+  page.send({{"do", "frame"}});
+  const auto moved = [](const Received& message) { return message.time() > 0.0; };
+  const Received first = page.frame(moved);
+  const Received other = page.frame(moved);
+  EXPECT_NE(first.run(), other.run());
+  EXPECT_NE(first.positions(), other.positions());
+  page.send({{"do", "single"}});
+  EXPECT_EQ(page.text("removed")["run"], 1);
+}
+
+TEST_F(LiveViewer, ADivergedRunTellsWhereAndWhichStepIsStable) {
+  serve(
+      R"({"version": 1, "duration": 10, "frame_rate": 50, "step": 0.02, "stability": "warn", "integrator": {"type": "explicit_euler"},
+    "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 11}, "mass": 0.1,
+                        "springs": {"structural": {"stiffness": 10000}}, "pins": [{"indices": [0]}]}}})");
+  TestPage page(server_->port());
+  page.send({{"do", "speed"}, {"factor", 0}});
+  const Json post_mortem = page.text("diverged");
+  EXPECT_EQ(post_mortem["body"], "rope");
+  EXPECT_TRUE(post_mortem["springs"].size() == 1 || post_mortem.contains("particle"));
+  EXPECT_TRUE(post_mortem["stable_step"].is_number());
+  page.send({{"do", "pause"}});
+  page.send({{"do", "reset"}});
+  EXPECT_EQ(page.frame([](const Received& message) { return message.frame() == 1; }).time(), 0.0);
+}
+
+TEST_F(LiveViewer, UnknownMessagesGetAnAnswer) {
+  serve();
+  PausedPage page(server_->port());
+  for (const Json& message : std::vector<Json>{Json::array(),
+                                               {{"do", "dance"}},
+                                               {{"do", 3}},
+                                               {{"do", "set"}},
+                                               {{"do", "grab"}, {"run", 7}, {"particle", 0}},
+                                               {{"do", "drag"}, {"target", {1}}},
+                                               {{"do", "open"}, {"example", "none"}}}) {
+    page.send(message);
+    EXPECT_FALSE(page.text("error")["text"].get<std::string>().empty()) << message;
+  }
+  // These name a particle that is not there, and are ignored.
+  page.send({{"do", "grab"}, {"run", 0}, {"particle", 1000000}});
+  page.send({{"do", "release"}, {"run", 0}, {"particle", -5}});
+  page.send({{"do", "frame"}});
+  EXPECT_EQ(page.frame([](const Received& message) { return message.time() > 0.0; }).frame(), 2u);
+}
+
+TEST_F(LiveViewer, AnExampleOpens) {
+  examples_ = {{"other", folder_
+                             .write("other.json", R"({"version": 1, "duration": 1, "bodies": {"one": {"shape":
+    {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 3}, "mass": 1, "springs": {"structural": {"stiffness": 1}}}}})")
+                             .string()}};
+  serve();
+  TestPage page(server_->port());
+  EXPECT_EQ(page.text("hello")["examples"], Json({"other"}));
+  page.text("scene");
+  page.send({{"do", "open"}, {"example", "other"}});
+  EXPECT_EQ(page.text("scene")["bodies"][0]["name"], "one");
+}
+
+TEST_F(LiveViewer, TenPagesSeeTheSameRunAndItRestsWithoutThem) {
+  serve();
+  std::vector<std::unique_ptr<TestPage>> pages;
+  for (int k = 0; k < 10; ++k) pages.push_back(std::make_unique<TestPage>(server_->port()));
+  double latest = 0.0;
+  for (const auto& page : pages) latest = std::max(latest, page->frame([](const Received& m) { return m.time() > 0.0; }).time());
+  pages.clear();
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  TestPage page(server_->port());
+  EXPECT_LT(page.frame().time(), latest + 0.5);  // it plays at real time
+}
+
+TEST_F(LiveViewer, ABusyPortIsNamedWithTheRemedy) {
+  serve();
+  LiveSession other(SceneSource{.file = (folder_.path() / "scene.json").string()}, {});
+  try {
+    ViewServer second({.port = static_cast<std::uint16_t>(std::stoi(server_->port())), .token = "t", .page = ""}, other);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--port"));
+    EXPECT_THAT(error.what(), HasSubstr(server_->port()));
+  }
+}
+
+}  // namespace
+}  // namespace sprung

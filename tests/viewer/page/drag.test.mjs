@@ -1,0 +1,127 @@
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import * as harness from './harness.mjs';
+
+const judge = process.env.SPRUNG_JUDGE;
+const scene = harness.example('cloth_on_bunny');
+const corner = 0;
+
+async function openRestingCloth(options) {
+  const server = await harness.view(scene);
+  const page = await harness.openPage(server.address, options);
+  await harness.firstFrame(page);
+  await harness.control(page, 'speed').selectOption('0');
+  await harness.play(page);
+  await harness.until(page, () => window.sprung.frame >= 40);
+  return page;
+}
+
+/** Collects the positions of each frame that the page shows, until `recorded` takes them. */
+async function record(page) {
+  await page.evaluate(() => {
+    window.recorded = [];
+    let last = -1;
+    const look = () => {
+      const [body] = Object.values(window.sprung.bodies);
+      if (window.sprung.time !== last) window.recorded.push(Array.from(body.positions));
+      last = window.sprung.time;
+      requestAnimationFrame(look);
+    };
+    look();
+  });
+}
+
+async function recorded(page) {
+  return page.evaluate(() => window.recorded);
+}
+
+async function place(page, particle) {
+  return page.evaluate((particle) => window.sprung.project(Object.keys(window.sprung.bodies)[0], particle), particle);
+}
+
+async function positionOf(page, particle) {
+  return page.evaluate((particle) => {
+    const [body] = Object.values(window.sprung.bodies);
+    return Array.from(body.positions.slice(3 * particle, 3 * particle + 3));
+  }, particle);
+}
+
+function distance(a, b) {
+  return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+async function waitFrames(page, count) {
+  const frame = await page.evaluate(() => window.sprung.frame);
+  await harness.until(page, (last) => window.sprung.frame >= last, frame + count);
+}
+
+/** Fails if a frame has a particle in an obstacle or a triangle that meets one. */
+function checkFrames(frames) {
+  const file = join(harness.scratchFolder(), 'frames.f32');
+  writeFileSync(file, Buffer.from(new Float32Array(frames.flat()).buffer));
+  execFileSync(judge, [scene, file], { stdio: ['ignore', 'inherit', 'inherit'] });
+}
+
+test('a drag moves the cloth, and not through the bunny', async () => {
+  const page = await openRestingCloth();
+  const before = await positionOf(page, corner);
+  const from = await place(page, corner);
+  await record(page);
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  // Across the bunny, so that the cloth between is pulled through it unless contact prevents that.
+  await page.mouse.move(500, 320, { steps: 10 });
+  await waitFrames(page, 20);
+  await page.mouse.move(1000 - from.x, 600, { steps: 10 });
+  await waitFrames(page, 20);
+  const after = await positionOf(page, corner);
+  await page.mouse.up();
+  await waitFrames(page, 5);
+  const frames = await recorded(page);
+  assert.ok(distance(before, after) > 0.05, `the corner moved by ${distance(before, after)} m`);
+  assert.ok(frames.length > 20);
+  checkFrames(frames);
+  await harness.closePage(page);
+});
+
+test('Shift pins the particle where it is dropped, and a click releases it', async () => {
+  const page = await openRestingCloth();
+  const from = await place(page, corner);
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move(from.x, from.y - 120, { steps: 10 });
+  await waitFrames(page, 15);
+  await page.keyboard.down('Shift');
+  await page.mouse.up();
+  await page.keyboard.up('Shift');
+  await waitFrames(page, 3);
+  const pinned = await positionOf(page, corner);
+  await waitFrames(page, 15);
+  assert.deepEqual(await positionOf(page, corner), pinned);
+  const pin = await place(page, corner);
+  await page.mouse.click(pin.x, pin.y);
+  await waitFrames(page, 20);
+  assert.ok(distance(await positionOf(page, corner), pinned) > 0.01);
+  await harness.closePage(page);
+});
+
+test('a finger drags as the mouse does', async () => {
+  const page = await openRestingCloth({ hasTouch: true });
+  const before = await positionOf(page, corner);
+  const from = await place(page, corner);
+  const client = await page.context().newCDPSession(page);
+  const touch = (type, points) => client.send('Input.dispatchTouchEvent', { type, touchPoints: points });
+  await touch('touchStart', [from]);
+  for (let k = 1; k <= 10; ++k) {
+    await touch('touchMove', [{ x: from.x, y: from.y - 12 * k }]);
+    await page.waitForTimeout(20);
+  }
+  await waitFrames(page, 15);
+  const after = await positionOf(page, corner);
+  await touch('touchEnd', []);
+  assert.ok(after[1] > before[1] + 0.03, `the corner rose by ${after[1] - before[1]} m`);
+  await harness.closePage(page);
+});

@@ -1,0 +1,147 @@
+// Starts the program and a real browser for the tests of the page.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after } from 'node:test';
+
+export const program = process.env.SPRUNG_PROGRAM;
+export const sourceFolder = process.env.SPRUNG_SOURCE_DIR;
+const meshes = process.env.SPRUNG_TEST_MESHES;
+const { chromium } = createRequire(join(process.env.SPRUNG_PAGE_TEST_MODULES, 'any.js'))('playwright-core');
+
+/** Waiting for the page ends with an error after so many milliseconds: software rendering on a busy machine is slow. */
+export const patience = 60_000;
+
+let browser;
+const servers = new Set();
+const folders = [];
+
+after(async () => {
+  await browser?.close();
+  for (const server of servers) await server.stop();
+  for (const folder of folders) rmSync(folder, { recursive: true, force: true });
+});
+
+export function example(name) {
+  return join(sourceFolder, 'examples', `${name}.json`);
+}
+
+/** A new empty folder that is removed after the tests. */
+export function scratchFolder() {
+  const folder = mkdtempSync(join(tmpdir(), 'sprung-page-'));
+  folders.push(folder);
+  return folder;
+}
+
+/** Runs a command of the program and returns what it prints: results, then messages. Throws if the command fails. */
+export function sprung(...command) {
+  const run = spawnSync(program, [...command, '--mesh-path', meshes], { encoding: 'utf8' });
+  const text = run.stdout + run.stderr;
+  if (run.status !== 0) throw new Error(text);
+  return text;
+}
+
+/** Starts `sprung view`; the address is known when this returns. */
+export async function view(target, ...options) {
+  const child = spawn(program, ['view', target, '--no-open', '--mesh-path', meshes, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
+  let errors = '';
+  child.stderr.on('data', (text) => (errors += text));
+  const ended = new Promise((resolve) => child.on('exit', (code, signal) => resolve(code ?? signal)));
+  const address = await new Promise((resolve, reject) => {
+    let output = '';
+    child.stdout.on('data', (text) => {
+      output += text;
+      if (output.includes('\n')) resolve(output.trim());
+    });
+    ended.then((code) => reject(new Error(`sprung view ended with ${code}: ${errors}`)));
+  });
+  const server = {
+    address,
+    port: new URL(address).port,
+    /** Interrupts the program as Ctrl-C does, and returns its exit code. */
+    async stop() {
+      servers.delete(server);
+      child.kill('SIGINT');
+      return ended;
+    },
+  };
+  servers.add(server);
+  return server;
+}
+
+/** Opens an address in a tab of its own. `closePage` checks that the tab printed no error. */
+export async function openPage(address, { viewport = { width: 1000, height: 640 }, hasTouch = false } = {}) {
+  browser ??= await chromium.launch({
+    executablePath: process.env.SPRUNG_CHROMIUM,
+    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
+  });
+  const context = await browser.newContext({ viewport, hasTouch, permissions: ['clipboard-read', 'clipboard-write'] });
+  const page = await context.newPage();
+  page.setDefaultTimeout(patience);
+  page.complaints = [];
+  page.on('console', (message) => {
+    if (message.type() === 'error') page.complaints.push(message.text());
+  });
+  page.on('pageerror', (error) => page.complaints.push(String(error)));
+  await page.goto(address);
+  return page;
+}
+
+/** Closes a page and fails if it printed an error. */
+export async function closePage(page) {
+  const complaints = page.complaints;
+  await page.context().close();
+  assert.deepEqual(complaints, []);
+}
+
+export function control(page, id) {
+  return page.getByTestId(id);
+}
+
+/** Waits until `condition`, a function that runs in the page, is true. */
+export async function until(page, condition, argument) {
+  await page.waitForFunction(condition, argument, { timeout: patience, polling: 50 });
+}
+
+export async function firstFrame(page) {
+  await until(page, () => Object.keys(window.sprung?.bodies ?? {}).length > 0 && window.sprung.frame >= 1);
+}
+
+/** The positions of all bodies, flat, as numbers. */
+export async function positions(page) {
+  return page.evaluate(() => Object.values(window.sprung.bodies).flatMap((body) => Array.from(body.positions)));
+}
+
+export async function play(page) {
+  if (!(await page.evaluate(() => window.sprung.playing))) await control(page, 'play').click();
+  await until(page, () => window.sprung.playing);
+}
+
+export async function pause(page) {
+  if (await page.evaluate(() => window.sprung.playing)) await control(page, 'play').click();
+  await until(page, () => !window.sprung.playing);
+}
+
+export function largestDifference(a, b) {
+  assert.equal(a.length, b.length);
+  let largest = 0;
+  for (let k = 0; k < a.length; ++k) largest = Math.max(largest, Math.abs(a[k] - b[k]));
+  return largest;
+}
+
+/** The number of different colours in the picture of the page: an empty picture has few. */
+export async function colourCount(page) {
+  const picture = (await page.screenshot()).toString('base64');
+  return page.evaluate(async (base64) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext('2d');
+    context.drawImage(image, 0, 0);
+    return new Set(new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer)).size;
+  }, picture);
+}

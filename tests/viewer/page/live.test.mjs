@@ -1,0 +1,187 @@
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import * as harness from './harness.mjs';
+
+async function openExample(name) {
+  const server = await harness.view(harness.example(name));
+  const page = await harness.openPage(server.address);
+  await harness.firstFrame(page);
+  return { server, page };
+}
+
+async function enter(field, value) {
+  await field.fill(String(value));
+  await field.press('Enter');
+}
+
+test('reset gives back the bits of the first frame', async () => {
+  const { page } = await openExample('hanging_cloth');
+  await harness.pause(page);
+  await harness.control(page, 'reset').click();
+  await harness.until(page, () => window.sprung.frame === 1);
+  const first = await harness.positions(page);
+  await harness.play(page);
+  await harness.until(page, () => window.sprung.frame >= 5);
+  await harness.pause(page);
+  assert.notDeepEqual(await harness.positions(page), first);
+  await harness.control(page, 'reset').click();
+  await harness.until(page, () => window.sprung.frame === 1);
+  assert.deepEqual(await harness.positions(page), first);
+  await harness.closePage(page);
+});
+
+test('one step and one frame advance by their time and pause', async () => {
+  const { page } = await openExample('lab_rope');
+  await harness.play(page);
+  await harness.control(page, 'step').click();
+  await harness.until(page, () => !window.sprung.playing);
+  await harness.control(page, 'reset').click();
+  await harness.until(page, () => window.sprung.time === 0);
+  await harness.control(page, 'step').click();
+  await harness.until(page, () => window.sprung.time > 0);
+  const { time, step, stepsPerFrame } = await page.evaluate(() => ({
+    time: window.sprung.time,
+    step: window.sprung.runs[0].scene.step,
+    stepsPerFrame: window.sprung.runs[0].scene.steps_per_frame,
+  }));
+  assert.equal(time, step);
+  await harness.control(page, 'reset').click();
+  await harness.until(page, () => window.sprung.time === 0);
+  await harness.control(page, 'single-frame').click();
+  await harness.until(page, () => window.sprung.frame === 2);
+  const frameTime = await page.evaluate(() => window.sprung.time);
+  assert.ok(Math.abs(frameTime - step * stepsPerFrame) < 1e-12);
+  await harness.closePage(page);
+});
+
+test('a change of the integrator begins anew with it', async () => {
+  const { page } = await openExample('five_node_rope');
+  await harness.play(page);
+  await harness.until(page, () => window.sprung.frame >= 3);
+  await harness.control(page, 'integrator').selectOption('symplectic_euler');
+  await harness.until(page, () => window.sprung.runs[0].scene.integrator === 'symplectic_euler');
+  await harness.until(page, () => window.sprung.frame >= 3);
+  assert.equal(await harness.control(page, 'integrator').inputValue(), 'symplectic_euler');
+  await harness.closePage(page);
+});
+
+test('gravity changes while the run goes on', async () => {
+  const { page } = await openExample('lab_rope');
+  await harness.play(page);
+  await harness.until(page, () => window.sprung.frame >= 10);
+  await enter(harness.control(page, 'gravity').locator('input').nth(1), 4);
+  await harness.until(page, () => window.sprung.runs[0].scene.scene.gravity[1] === 4);
+  assert.ok((await page.evaluate(() => window.sprung.frame)) >= 10);
+  assert.equal(await page.evaluate(() => window.sprung.runs[0].scene.live), true);
+  await harness.closePage(page);
+});
+
+test('a value that is refused is explained as sprung validate explains it', async () => {
+  const { page } = await openExample('lab_rope');
+  let expected = '';
+  try {
+    harness.sprung('validate', harness.example('lab_rope'), '--set', 'step=-1');
+  } catch (error) {
+    expected = error.message;
+  }
+  const rule = /must be [^;\n]*/.exec(expected)?.[0];
+  assert.ok(rule, expected);
+  await enter(harness.control(page, 'step-size'), -1);
+  await page.getByText(rule).first().waitFor();
+  await harness.until(page, () => window.sprung.frame >= 1);
+  await harness.closePage(page);
+});
+
+test('a scene with a mistake shows it in place of the picture', async () => {
+  const scene = JSON.parse(readFileSync(harness.example('hanging_cloth'), 'utf8'));
+  scene.gravitee = [0, 1, 0];
+  const file = join(harness.scratchFolder(), 'mistake.json');
+  writeFileSync(file, JSON.stringify(scene));
+  const server = await harness.view(file);
+  const page = await harness.openPage(server.address);
+  await page.getByText('gravitee').first().waitFor();
+  await harness.closePage(page);
+});
+
+test('two integrators run side by side', async () => {
+  const { page } = await openExample('five_node_rope');
+  await harness.control(page, 'compare').selectOption('explicit_euler');
+  await harness.until(page, () => window.sprung.runs.length === 2);
+  await harness.play(page);
+  await harness.until(page, () => window.sprung.runs.every((run) => run.frame >= 4));
+  await harness.pause(page);
+  const [a, b] = await page.evaluate(() =>
+    window.sprung.runs.map((run) => ({
+      integrator: run.scene.integrator,
+      positions: Object.values(run.bodies).flatMap((body) => Array.from(body.positions)),
+    })),
+  );
+  assert.equal(a.integrator, 'verlet');
+  assert.equal(b.integrator, 'explicit_euler');
+  assert.ok(harness.largestDifference(a.positions, b.positions) > 1e-6);
+  await harness.closePage(page);
+});
+
+test('a run that diverges shows why and offers a stable step', async () => {
+  const { page } = await openExample('too_large_step_warned');
+  await harness.control(page, 'speed').selectOption('0');
+  await harness.play(page);
+  await harness.control(page, 'diverged').waitFor();
+  assert.match(await harness.control(page, 'diverged').innerText(), /diverge|finite|energy/i);
+  const before = await page.evaluate(() => window.sprung.runs[0].scene.step);
+  await harness.control(page, 'use-stable-step').click();
+  await harness.until(page, (before) => window.sprung.runs[0].scene.step < before, before);
+  await harness.control(page, 'diverged').waitFor({ state: 'hidden' });
+  await harness.closePage(page);
+});
+
+test('switches and plots are there, and the page draws what is switched', async () => {
+  const { page } = await openExample('cloth_on_bunny');
+  for (const id of ['view', 'energy', 'stretch']) await harness.control(page, id).waitFor();
+  const all = await harness.colourCount(page);
+  const boxes = harness.control(page, 'view').locator('input[type=checkbox]');
+  for (let k = 0; k < (await boxes.count()); ++k) await boxes.nth(k).uncheck();
+  await page.waitForTimeout(500);
+  assert.ok((await harness.colourCount(page)) < all / 2);
+  await harness.closePage(page);
+});
+
+test('ten tabs show the same run, and closing them all pauses it', async () => {
+  const server = await harness.view(harness.example('lab_rope'));
+  const pages = [];
+  for (let k = 0; k < 10; ++k) {
+    pages.push(await harness.openPage(server.address, { viewport: { width: 400, height: 300 } }));
+    await harness.firstFrame(pages[k]);
+  }
+  await harness.play(pages[0]);
+  for (const page of pages) await harness.until(page, () => window.sprung.playing && window.sprung.frame >= 5);
+  await harness.pause(pages[9]);
+  for (const page of pages) await harness.until(page, () => !window.sprung.playing);
+  const last = await harness.positions(pages[9]);
+  for (const page of pages) assert.deepEqual(await harness.positions(page), last);
+  await harness.play(pages[0]);
+  const time = await pages[0].evaluate(() => window.sprung.time);
+  for (const page of pages) await harness.closePage(page);
+  await new Promise((resolve) => setTimeout(resolve, 3000));
+  const page = await harness.openPage(server.address);
+  await harness.firstFrame(page);
+  assert.ok((await page.evaluate(() => window.sprung.time)) < time + 2.5);
+  await harness.closePage(page);
+});
+
+test('a lost connection is shown and comes back by itself, after a restart too', async () => {
+  const file = harness.example('lab_rope');
+  const server = await harness.view(file, '--token', 'token-of-the-test');
+  const page = await harness.openPage(server.address);
+  await harness.firstFrame(page);
+  assert.equal(await server.stop(), 0);
+  await page.getByText('disconnected').first().waitFor();
+  const again = await harness.view(file, '--token', 'token-of-the-test', '--port', server.port);
+  await page.getByText('disconnected').first().waitFor({ state: 'hidden' });
+  await harness.play(page);
+  await harness.until(page, () => window.sprung.connected && window.sprung.frame >= 3);
+  assert.equal(await again.stop(), 0);
+  await page.context().close(); // the browser itself prints that connections are refused
+});

@@ -1,0 +1,82 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { before, test } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import * as harness from './harness.mjs';
+
+const frames = 12;
+const run = join(harness.scratchFolder(), 'run');
+const exported = join(harness.scratchFolder(), 'animation.html');
+
+before(() => {
+  harness.sprung('run', harness.example('hanging_cloth'), '--out', run, '--frames', String(frames));
+});
+
+/** The numbers of the `v` lines of a frame. */
+function objPositions(frame) {
+  const [body] = Object.keys(JSON.parse(readFileSync(harness.example('hanging_cloth'), 'utf8')).bodies);
+  const file = join(run, body, `${body}.${String(frame).padStart(4, '0')}.obj`);
+  return readFileSync(file, 'utf8')
+    .split('\n')
+    .filter((line) => line.startsWith('v '))
+    .flatMap((line) => line.slice(2).trim().split(/\s+/).map(Number));
+}
+
+async function show(page, frame) {
+  await harness.control(page, 'frame').evaluate((slider, frame) => {
+    slider.value = String(frame);
+    slider.dispatchEvent(new Event('input', { bubbles: true }));
+  }, frame);
+  await harness.until(page, (frame) => window.sprung.frame === frame, frame);
+}
+
+test('a replay shows the positions of the OBJ files', async () => {
+  const server = await harness.view(run);
+  const page = await harness.openPage(server.address);
+  await harness.firstFrame(page);
+  await harness.pause(page);
+  for (const frame of [1, 6, frames]) {
+    await show(page, frame);
+    assert.deepEqual(await harness.positions(page), Array.from(new Float32Array(objPositions(frame))));
+  }
+  assert.ok((await harness.colourCount(page)) > 50);
+  await harness.closePage(page);
+});
+
+test('a replay plays and loops', async () => {
+  const server = await harness.view(run);
+  const page = await harness.openPage(server.address);
+  await harness.firstFrame(page);
+  await harness.play(page);
+  await page.evaluate(() => {
+    window.turns = 0;
+    let last = window.sprung.frame;
+    setInterval(() => {
+      if (window.sprung.frame < last) ++window.turns;
+      last = window.sprung.frame;
+    }, 5);
+  });
+  await harness.until(page, () => window.turns >= 2);
+  await harness.closePage(page);
+});
+
+test('an exported page shows the positions within its error, without a server', async () => {
+  const message = harness.sprung('export', run, '--format', 'html', '--out', exported);
+  const told = Number(/within ([0-9.e+-]+) m/.exec(message)?.[1]);
+  assert.ok(told > 0 && told < 1e-4, message);
+  const page = await harness.openPage(pathToFileURL(exported).href);
+  const requests = [];
+  page.on('request', (request) => requests.push(request.url()));
+  await harness.firstFrame(page);
+  await harness.pause(page);
+  for (const frame of [1, 6, frames]) {
+    await show(page, frame);
+    const difference = harness.largestDifference(await harness.positions(page), objPositions(frame));
+    // Shown in single precision, told with two digits.
+    assert.ok(difference <= 1.05 * told + 1e-6, `frame ${frame} differs by ${difference} m`);
+  }
+  assert.ok((await harness.colourCount(page)) > 50);
+  assert.deepEqual(requests.filter((url) => !url.startsWith('blob:') && !url.startsWith('data:')), []);
+  await harness.closePage(page);
+});

@@ -1,0 +1,145 @@
+// Replays and HTML files show what a run wrote.
+#include "base/error.h"
+#include "output/run_output.h"
+#include "scene/scene_text.h"
+#include "viewer/html_export.h"
+#include "viewer/test_client.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace sprung {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::Json;
+using testing::Received;
+using testing::ServingServer;
+using testing::TestPage;
+
+constexpr int kFrames = 5;
+
+/// A cloth that falls on a ball that moves, recorded.
+class RecordedCloth : public ::testing::Test {
+ protected:
+  RecordedCloth() {
+    const std::string scene = R"({"version": 1, "duration": 1, "frame_rate": 25,
+      "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [8, 8]}, "mass": 0.1, "thickness": 0.01,
+                           "springs": {"structural": {"stiffness": 100}}, "place": {"rotation": [-90, 0, 0]},
+                           "pins": [{"indices": [0]}]}},
+      "obstacles": {"ball": {"shape": {"type": "sphere", "radius": 0.2}, "place": {"position": [0, -0.5, 0]},
+                             "motion": {"keyframes": [{"time": 0}, {"time": 1, "position": [1, 0, 0]}]}},
+                    "floor": {"shape": {"type": "half_space"}, "place": {"position": [0, -1, 0]}}}})";
+    LoadedScene loaded = load_scene({.file = folder_.write("scene.json", scene).string()});
+    RunOutput output(
+        OutputFolder(run_folder().string(), false),
+        {.scene = loaded.scene.resolved, .frame_rate = 25.0, .frames = kFrames, .steps_per_frame = loaded.steps_per_frame},
+        loaded.simulator);
+    FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
+    for (int frame = 1; frame <= kFrames; ++frame) {
+      output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
+      positions_.push_back(loaded.simulator.positions());
+    }
+    output.finish("done");
+  }
+  [[nodiscard]] std::filesystem::path run_folder() const { return folder_.path() / "frames"; }
+
+  SceneFolder folder_;
+  std::vector<Points> positions_;
+};
+
+TEST_F(RecordedCloth, APageGetsThePositionsOfTheFiles) {
+  ReplaySession session(run_folder(), {});
+  const ServingServer server(session);
+  TestPage page(server.port());
+  EXPECT_EQ(page.text("hello")["mode"], "replay");
+  const Json scene = page.text("scene");
+  EXPECT_TRUE(scene["complete"]);
+  EXPECT_EQ(scene["frames"], kFrames);
+  EXPECT_EQ(scene["diagnostics"]["rows"].size(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(scene["obstacles"][0]["motion"], "deforming");
+  for (const int frame : {3, 1, kFrames}) {
+    page.send({{"do", "seek"}, {"frame", frame}});
+    const Received shown =
+        page.frame([&](const Received& message) { return message.frame() == static_cast<std::uint32_t>(frame); });
+    EXPECT_DOUBLE_EQ(shown.time(), (frame - 1) / 25.0);
+    for (Index i = 0; i < 64; ++i) {
+      EXPECT_EQ(shown.position(static_cast<std::size_t>(i)),
+                Vector3(positions_[static_cast<std::size_t>(frame - 1)].col(i).cast<float>().cast<double>()));
+    }
+  }
+  page.send({{"do", "play"}});
+  EXPECT_THAT(page.text("error")["text"].get<std::string>(), HasSubstr("play"));
+}
+
+TEST_F(RecordedCloth, ShowsSurfacesWithoutItsScene) {
+  const std::filesystem::path record = run_folder() / "run.json";
+  std::ifstream stream(record);
+  Json json = Json::parse(stream);
+  json["scene"]["bodies"]["cloth"]["shape"]["resolution"] = {9, 9};
+  std::ofstream(record) << json.dump();
+  const Replay replay(run_folder(), {});
+  EXPECT_FALSE(Json::parse(replay.scene_text())["complete"]);
+  EXPECT_EQ(replay.topology().springs.cols(), 0);
+  EXPECT_EQ(replay.topology().triangles.cols(), 2 * 7 * 7);
+  EXPECT_EQ(replay.state(2).positions, positions_[1]);
+}
+
+TEST_F(RecordedCloth, ABrokenFolderSaysWhatIsMissing) {
+  const auto refusal = [&](const std::filesystem::path& folder) -> std::string {
+    try {
+      const Replay replay(folder, {});
+      (void)replay.state(kFrames);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refusal(folder_.path()), HasSubstr("run.json"));
+  EXPECT_THAT(refusal(folder_.path() / "nowhere"), HasSubstr("nowhere"));
+  EXPECT_EQ(refusal(run_folder()), "");
+  std::filesystem::remove(run_folder() / "cloth" / "cloth.0005.obj");
+  EXPECT_THAT(refusal(run_folder()), HasSubstr("cloth.0005.obj"));
+  folder_.write("frames/cloth/cloth.0005.obj", "v 0 0 0\n");
+  EXPECT_THAT(refusal(run_folder()), HasSubstr("1 vertices"));
+  folder_.write("frames/run.json", "{}");
+  EXPECT_THAT(refusal(run_folder()), HasSubstr("run.json"));
+}
+
+std::vector<std::uint8_t> bytes_of_base64(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<std::uint8_t> bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char letter : text) {
+    if (letter == '=') break;
+    bits = (bits << 6U) | static_cast<std::uint32_t>(digits.find(letter));
+    count += 6;
+    if (count >= 8) bytes.push_back(static_cast<std::uint8_t>((bits >> static_cast<unsigned>(count -= 8)) & 255U));
+  }
+  return bytes;
+}
+
+TEST_F(RecordedCloth, AnHtmlFileHasThePositionsWithinTheErrorThatItTells) {
+  const HtmlAnimation animation = html_animation(Replay(run_folder(), {}), testing::kPage);
+  const std::string begin = "id=\"sprung-run\">";
+  const std::size_t from = animation.text.find(begin) + begin.size();
+  const Json data = Json::parse(animation.text.substr(from, animation.text.find("</script>", from) - from));
+  EXPECT_EQ(data["error"], animation.error);
+  // Half a level of the largest side, which the cloth, the floor and the ball keep below 10 m.
+  EXPECT_LE(animation.error, 0.5 * 10.0 / 65535.0 * (1.0 + 1e-9));
+  ASSERT_EQ(data["frames"].size(), static_cast<std::size_t>(kFrames));
+  for (std::size_t frame = 0; frame < kFrames; ++frame) {
+    const std::vector<std::uint8_t> bytes = bytes_of_base64(data["frames"][frame]["positions"]);
+    ASSERT_EQ(bytes.size(), 6u * 64u);
+    for (std::size_t k = 0; k < 3 * 64; ++k) {
+      const double level = bytes[2 * k] + 256.0 * bytes[2 * k + 1];
+      const double value =
+          data["bounds"]["min"][k % 3].get<double>() + data["bounds"]["size"][k % 3].get<double>() * level / 65535.0;
+      EXPECT_LE(std::abs(value - positions_[frame].data()[k]), animation.error * (1.0 + 1e-12));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sprung
