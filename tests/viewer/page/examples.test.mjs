@@ -13,6 +13,7 @@ test('the menu opens every example, and it moves', async () => {
   const server = await harness.view(harness.example('hanging_cloth'));
   const page = await harness.openPage(server.address);
   await harness.firstFrame(page);
+  await harness.pause(page);
   for (const name of names.filter((name) => name !== refused)) {
     await harness.control(page, 'example').selectOption(name);
     await harness.until(page, (name) => window.sprung.title === `${name}.json` && window.sprung.frame === 1, name);
