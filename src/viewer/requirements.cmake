@@ -5,9 +5,11 @@ find_package(Threads QUIET)
 find_program(NPM npm)
 set(SPRUNG_PAGE_FOLDER ${CMAKE_BINARY_DIR}/viewer_page)
 
+set(SPRUNG_VIEWER_IS_BUILT ON CACHE INTERNAL "") # for tests/sanitize.sh
 function(sprung_no_viewer reason)
   message(STATUS "sprung view is not built: ${reason}. ./examples/view.sh installs what is missing.")
   set(SPRUNG_VIEWER OFF PARENT_SCOPE)
+  set(SPRUNG_VIEWER_IS_BUILT OFF CACHE INTERNAL "")
 endfunction()
 
 if(NOT Boost_FOUND)

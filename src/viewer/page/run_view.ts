@@ -81,6 +81,8 @@ export class RunView {
       const part = own.intersect(large ? box.clone().expandByVector(new Vector3(0, 0.8 * size, 0)) : near);
       if (!part.isEmpty()) box.union(part);
     });
+    // What begins flat falls or swings down.
+    box.min.y = Math.min(box.min.y, box.max.y - 0.6 * size);
     return box;
   }
 

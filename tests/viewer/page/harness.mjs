@@ -106,6 +106,7 @@ export async function until(page, condition, argument) {
   await page.waitForFunction(condition, argument, { timeout: patience, polling: 50 });
 }
 
+/** What the page knows of the run, whether it plays included, is there when this returns. */
 export async function firstFrame(page) {
   await until(page, () => Object.keys(window.sprung?.bodies ?? {}).length > 0 && window.sprung.frame >= 1);
 }

@@ -169,6 +169,7 @@ test('ten tabs show the same run, and closing them all pauses it', async () => {
   await harness.closePage(pages[0]);
   await new Promise((resolve) => setTimeout(resolve, 10_000));
   const page = await harness.openPage(server.address);
+  await harness.firstFrame(page);
   await harness.pause(page);
   const later = await page.evaluate(() => window.sprung.time);
   assert.ok(later < time + 0.8, `it played from ${time} to ${later} s while nobody watched for 10 s`);
