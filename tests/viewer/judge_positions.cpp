@@ -41,7 +41,8 @@ int judge(const std::string& scene, const std::string& file) {
       const Index inside = of_obstacle->count_inside(positions);
       const Index crossings = of_obstacle->count_crossings(elements, positions);
       if (inside + crossings > 0) {
-        std::cout << "frame " << k << ", " << obstacle.name << ": " << inside << " particles inside, " << crossings << " crossings\n";
+        std::cout << "frame " << k << ", " << obstacle.name << ": " << inside << " particles inside, " << crossings
+                  << " crossings\n";
       }
       wrong += inside + crossings;
     }

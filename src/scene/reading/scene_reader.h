@@ -18,8 +18,8 @@ namespace sprung {
 /// The text of a scene file. Throws FileError if it cannot be read.
 [[nodiscard]] std::string read_scene_file(const std::filesystem::path& file);
 
-/// Reads the text of a scene; problems name `file`. Adds problems to `problems` and returns a scene with defaults in their location,
-/// for further checks. Throws InputError if the text contains no JSON object.
+/// Reads the text of a scene; problems name `file`. Adds problems to `problems` and returns a scene with defaults in their
+/// location, for further checks. Throws InputError if the text contains no JSON object.
 [[nodiscard]] Scene read_scene_text(const std::string& text, const std::filesystem::path& file,
                                     const std::vector<std::string>& overrides, TextProblems& problems);
 

