@@ -36,7 +36,7 @@ struct Reader {
 /// Not thread-safe. Each thing that is shown has a number that grows, so that a reader knows what is new to it.
 class Board {
  public:
-  explicit Board(std::string hello) : hello_(text(hello)) {}
+  explicit Board(const std::string& hello) : hello_(text(hello)) {}
 
   void show_scene(std::uint32_t run, const std::string& scene, SharedBytes topology);
   void show_frame(std::uint32_t run, SharedBytes frame);

@@ -14,10 +14,10 @@ namespace sprung {
 namespace {
 
 bool is_live(const std::string& override_text) {
-  static const std::regex live(
+  static const std::regex kLive(
       R"((gravity|air|stretch_limit)(\..*)?|bodies\.[^.]+\.(springs(\..*)?|friction|static_friction|restitution|thickness))"
       R"(|obstacles\.[^.]+\.(friction|static_friction|restitution|thickness))");
-  return std::regex_match(override_text.substr(0, override_text.find('=')), live);
+  return std::regex_match(override_text.substr(0, override_text.find('=')), kLive);
 }
 
 void pin(Index particle, SpringNetwork& network) {

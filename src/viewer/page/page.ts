@@ -96,6 +96,7 @@ export class Page implements SourceListener {
   connected(connected: boolean): void {
     this.shown.connected = connected;
     if (!connected) this.drag.cancel();
+    this.errorUntil = 0;
     this.showStatus();
   }
 
