@@ -14,15 +14,15 @@ template <class Particle>
   constexpr double kLargest = std::numeric_limits<double>::max();
   Double4 low = Double4{} + kLargest;
   Double4 high = Double4{} - kLargest;
-  Double4 strange{};  // no number once something is not finite
+  Double4 zero{};  // stays 0 while all positions are finite, else NaN
   for (Index k = 0; k < count; ++k) {
     const double* p = positions.data() + 3 * static_cast<std::ptrdiff_t>(particle(k));
     const Double4 position = {p[0], p[1], p[2], p[0]};
     low = position < low ? position : low;
     high = position > high ? position : high;
-    strange += 0.0 * position;
+    zero += 0.0 * position;
   }
-  if (strange[0] + strange[1] + strange[2] == 0.0) return {Vector3(low[0], low[1], low[2]), Vector3(high[0], high[1], high[2])};
+  if (zero[0] + zero[1] + zero[2] == 0.0) return {Vector3(low[0], low[1], low[2]), Vector3(high[0], high[1], high[2])};
   Box3 box;
   for (Index k = 0; k < count; ++k) {
     const auto position = positions.col(particle(k));

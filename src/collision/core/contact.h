@@ -1,5 +1,5 @@
-// Where the network comes near an obstacle, or two of its elements come near each other: a particle, a point of a segment or
-// triangle, or the two nearest points of a pair of elements are all the same to those who answer.
+// Contacts: where the network is near an obstacle, or two of its elements are near each other. A contact may belong to a particle,
+// to a point of a segment or triangle, or to the closest points of two elements; contact solvers treat all of them alike.
 #pragma once
 
 #include "base/types.h"
@@ -10,29 +10,29 @@
 
 namespace sprung {
 
-/// A plane below which a weighted sum of particles may not fall, in the world at the end of the step:
-/// normal . (sum_i weights_i x_i - point) >= max(min(gap, most_gap), clearance).
+/// A constraint on a weighted sum of particles at the end of the step, in world coordinates: normal . (sum_i weights_i x_i -
+/// point) >= max(min(gap, most_gap), clearance).
 ///
 /// Against an obstacle the sum is a point of an element: the weights are at least 0 and their sum is 1. Between elements it is the
-/// point of one minus the point of the other: the weights of the one are at least 0, those of the other at most 0, their sum is
-/// 0, and so is `point`.
+/// point of the first minus the point of the second: the weights of the first are at least 0, those of the second at most 0, their
+/// sum is 0, and `point` is 0 too.
 struct Contact {
   static constexpr int kMostParticles = 4;
 
-  std::array<Index, kMostParticles> particles{kNone, kNone, kNone, kNone};  ///< the first `count` of them are used, all different
+  std::array<Index, kMostParticles> particles{kNone, kNone, kNone, kNone};  ///< the first `count` are used, all different
   std::array<double, kMostParticles> weights{};
   int count = 0;
   Index obstacle = kNone;            ///< kNone between elements of the network
-  Index patch = kNone;               ///< of the surface, that it was found with; kNone between elements of the network
+  Index patch = kNone;               ///< of the surface, where the contact was found; kNone between elements of the network
   Vector3 point = Vector3::Zero();   ///< on the obstacle's surface [m]
   Vector3 normal = Vector3::Zero();  ///< unit length, towards the free side
-  Vector3 drift = Vector3::Zero();   ///< how far deforming has taken the surface here in this step, beside the obstacle's pose [m]
-  double distance = 0.0;             ///< normal . (sum_i weights_i x_i - point) where it was found [m], negative behind the plane
-  double most_gap = std::numeric_limits<double>::infinity();  ///< neighbours in a body may be nearer than its thickness [m]
-  double clearance = 0.0;  ///< the least gap that is kept, whatever the thickness: above rounding [m]
+  Vector3 drift = Vector3::Zero();   ///< displacement of the surface by deformation in this step, without the obstacle's pose [m]
+  double distance = 0.0;             ///< normal . (sum_i weights_i x_i - point) at detection [m]; negative behind the plane
+  double most_gap = std::numeric_limits<double>::infinity();  ///< upper limit of the gap: for neighbours in a body [m]
+  double clearance = 0.0;  ///< lower limit of the gap, whatever the thickness: above rounding [m]
 };
 
-/// Contacts of some patches with obstacles, found anew.
+/// New contacts of some patches with obstacles.
 struct FreshContacts {
   std::vector<Index> patches{};  ///< ascending
   std::vector<Contact> contacts{};

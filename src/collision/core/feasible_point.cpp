@@ -9,22 +9,22 @@ namespace {
 
 constexpr int kRounds = 8;
 
-// What turning a position into an obstacle's frame and back does to it, as a part of its largest coordinate; far below the least
-// distance at which regions still tell apart (2^-42).
+// Rounding error of a transform into an obstacle's frame and back, as a fraction of the largest coordinate. It is far below the
+// distance at which safe regions count as touching (2^-42).
 constexpr double kRounding = 0x1p-48;
 
 double rounding(const HalfSpace& half_space, double largest) { return kRounding * std::max(std::abs(half_space.offset), largest); }
 
-/// The part of the way from `safe` to `target` that stays in all half-spaces.
-double free_part(std::span<const HalfSpace> half_spaces, const Vector3& safe, const Vector3& target) {
-  double part = 1.0;
+/// The fraction of the path from `safe` to `target` that is inside all half-spaces.
+double free_fraction(std::span<const HalfSpace> half_spaces, const Vector3& safe, const Vector3& target) {
+  double fraction = 1.0;
   for (const HalfSpace& half_space : half_spaces) {
     const double ahead = half_space.normal.dot(target) - half_space.offset;
     if (ahead >= 0.0) continue;
     const double behind = std::max(0.0, half_space.normal.dot(safe) - half_space.offset);
-    part = std::min(part, behind / (behind - ahead));
+    fraction = std::min(fraction, behind / (behind - ahead));
   }
-  return part;
+  return fraction;
 }
 
 struct Projected {
@@ -64,7 +64,7 @@ std::optional<Vector3> feasible_point(std::span<const HalfSpace> half_spaces, co
   const bool nearer = (projected - target).squaredNorm() < (*from - target).squaredNorm();
   if (converged && nearer) return projected;
   const Vector3 towards = nearer ? projected : target;
-  return *from + free_part(half_spaces, *from, towards) * (towards - *from);
+  return *from + free_fraction(half_spaces, *from, towards) * (towards - *from);
 }
 
 }  // namespace sprung

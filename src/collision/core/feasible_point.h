@@ -1,4 +1,4 @@
-// Where a particle may go when it may not go where it wants.
+// Projection of a point onto an intersection of half-spaces.
 #pragma once
 
 #include "collision/core/half_space.h"
@@ -9,12 +9,13 @@
 
 namespace sprung {
 
-/// Whether p is in all half-spaces, to within the rounding of positions as large as p and the offsets.
+/// Whether p is in all half-spaces, apart from the rounding of coordinates as large as those of p and the offsets.
 [[nodiscard]] bool is_feasible(std::span<const HalfSpace> half_spaces, const Vector3& p);
 
-/// A point of what the half-spaces have in common, near `target`: found by projecting it onto each that it violates, in turn
-/// (Agmon 1954; Motzkin and Schoenberg 1954). Where a few rounds do not suffice, or lead farther from the target than the first of
-/// the `safe` points that is feasible, it is as far as one can go from that point towards it. Nothing if neither finds one.
+/// A point inside all half-spaces, near `target`. It is projected in turn onto each half-space that it violates (Agmon 1954;
+/// Motzkin and Schoenberg 1954). If this does not converge in a few rounds, or ends farther from the target than the first of the
+/// `safe` points that is feasible, the result is on a straight line from that safe point: as far towards the projection or the
+/// target as the half-spaces permit. Empty if the projection does not converge and no safe point is feasible.
 [[nodiscard]] std::optional<Vector3> feasible_point(std::span<const HalfSpace> half_spaces, const Vector3& target,
                                                     std::span<const Vector3> safe);
 

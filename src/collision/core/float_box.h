@@ -1,4 +1,4 @@
-// Boxes of single precision, rounded outward: what walks through a mesh's tree compare with its nodes.
+// Boxes in single precision, rounded outward: traversals of a mesh BVH compare them with its nodes.
 #pragma once
 
 #include "base/types.h"
@@ -8,7 +8,7 @@
 
 namespace sprung {
 
-/// A float somewhat above or below: by a rounding or two, also where floats are hardly more than nothing.
+/// A float above or below the value, by one or two roundings; near 0 by the smallest normal float.
 [[nodiscard]] inline float float_above(double value) {
   const auto nearest = static_cast<float>(value);
   return nearest + (std::abs(nearest) * 0x1p-23F + std::numeric_limits<float>::min());
@@ -20,7 +20,7 @@ struct FloatBox {
   float max[3];
 };
 
-/// Holds the box.
+/// A box that contains `box`.
 [[nodiscard]] inline FloatBox float_box(const Box3& box) {
   FloatBox rounded;
   for (int axis = 0; axis < 3; ++axis) {

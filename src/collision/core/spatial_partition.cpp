@@ -11,7 +11,7 @@ class Bisection {
   Bisection(const Points& middles, std::vector<Index>& order) : middles_(middles), order_(order) {}
 
   void cut(std::size_t begin, std::size_t end, std::size_t groups, std::vector<std::size_t>& starts) {
-    const auto at = [&](std::size_t place) { return order_.begin() + static_cast<std::ptrdiff_t>(place); };
+    const auto at = [&](std::size_t slot) { return order_.begin() + static_cast<std::ptrdiff_t>(slot); };
     if (groups == 1) {
       std::sort(at(begin), at(end));
       starts.push_back(begin);
@@ -19,7 +19,7 @@ class Bisection {
     }
     const std::size_t middle = begin + (end - begin) * (groups / 2) / groups;
     const int axis = longest_axis(begin, end);
-    // Ties are broken by number: which come first is then the same with every standard library.
+    // Ties are broken by number, so that the result does not depend on the standard library.
     std::nth_element(at(begin), at(middle), at(end),
                      [&](Index a, Index b) { return std::pair(middles_(axis, a), a) < std::pair(middles_(axis, b), b); });
     cut(begin, middle, groups / 2, starts);
@@ -29,7 +29,7 @@ class Bisection {
  private:
   [[nodiscard]] int longest_axis(std::size_t begin, std::size_t end) const {
     Box3 box;
-    for (std::size_t place = begin; place < end; ++place) box.extend(middles_.col(order_[place]));
+    for (std::size_t slot = begin; slot < end; ++slot) box.extend(middles_.col(order_[slot]));
     int axis = 0;
     box.sizes().maxCoeff(&axis);
     return axis;

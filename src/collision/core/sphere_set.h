@@ -1,4 +1,4 @@
-// Balls side by side, one for each particle of a patch: which of the particles are outside of theirs.
+// Spheres in SIMD lanes, one for each particle of a patch: finds the particles outside of their spheres.
 #pragma once
 
 #include "base/simd.h"
@@ -8,7 +8,7 @@
 
 namespace sprung {
 
-/// Particles by their columns of `positions` [m], 3 x n, and the way into the frame that the balls are in.
+/// Particles by their columns of `positions` [m], 3 x n, and the transform into the frame of the spheres.
 struct SphereVertices {
   const Points& positions;
   const std::vector<Index>& particles;
@@ -17,16 +17,16 @@ struct SphereVertices {
 
 class SphereSet {
  public:
-  /// None of them holds anything yet.
+  /// All spheres are empty at first.
   explicit SphereSet(std::size_t count) : blocks_((count + kSimdWidth - 1) / kSimdWidth) {}
 
-  /// One of at most no radius [m] holds nothing.
-  void set(Index ball, const Vector3& centre, double radius);
+  /// A sphere with a radius [m] of 0 or less is empty.
+  void set(Index sphere, const Vector3& centre, double radius);
 
-  [[nodiscard]] double radius(Index ball) const { return block(ball).radius[lane(ball)]; }
+  [[nodiscard]] double radius(Index sphere) const { return block(sphere).radius[lane(sphere)]; }
 
-  /// Replaces `outside` by the balls, ascending, whose particle is not in them, or not `margin` [m] >= 0 from their surface.
-  /// Requires as many particles as balls.
+  /// Replaces `outside` by the numbers of the spheres, ascending, whose particle is not inside, at least `margin` [m] >= 0 below
+  /// the surface. Requires one particle per sphere.
   void find_outside(const SphereVertices& asked, double margin, std::vector<Index>& outside) const;
 
  private:
@@ -35,8 +35,8 @@ class SphereSet {
     Double4 radius{};
   };
 
-  [[nodiscard]] const Block& block(Index ball) const { return blocks_[static_cast<std::size_t>(ball) / kSimdWidth]; }
-  [[nodiscard]] static int lane(Index ball) { return ball % kSimdWidth; }
+  [[nodiscard]] const Block& block(Index sphere) const { return blocks_[static_cast<std::size_t>(sphere) / kSimdWidth]; }
+  [[nodiscard]] static int lane(Index sphere) { return sphere % kSimdWidth; }
 
   std::vector<Block> blocks_;
 };

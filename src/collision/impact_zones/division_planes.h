@@ -14,8 +14,8 @@
 
 namespace sprung {
 
-/// Particles that would pass each other on their way to their targets are constrained: each gets a position where it may always
-/// end, and half-spaces within which it may move on from there.
+/// Constrains particles that would pass each other on the path to their targets: each gets a position where it may always end, and
+/// half-spaces that limit how far it may move from there.
 class DivisionPlanes {
  public:
   /// Begins a step without constraints. Constrained sides keep a gap of `kept` [m] if they can. For the other arguments, to which
@@ -23,14 +23,14 @@ class DivisionPlanes {
   DivisionPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned,
                  const ParticleDisplacements& displacements, double kept);
 
-  /// Constrains the particles of pairs that would pass each other on the way to their current ends. A pair whose normal no longer
-  /// separates it gets a new one. Returns whether any end has changed. Then the caller adds the pairs that the new ends may touch,
-  /// and calls it again. That ends: see MotionGroups::unite().
+  /// Constrains the particles of pairs that would pass each other on the path to their current ends. A pair whose normal no longer
+  /// separates it gets a new one. Returns whether any end has changed. If so, the caller adds the pairs that the new ends may
+  /// touch, and calls it again. This terminates: see MotionGroups::unite().
   [[nodiscard]] bool constrain(std::vector<ContactStencil>& pairs);
 
-  /// Relaxes the ends of particles that pins with different motions drag through each other, and of those that they meet. Returns
-  /// whether any end has changed. Then the caller adds the pairs that the new ends may touch, and calls it again: at most six
-  /// times. Requires that constrain() returned false.
+  /// Relaxes the ends of particles that pins with different motions drag through each other, and of the particles that they may
+  /// touch. Returns whether any end has changed. If so, the caller adds the pairs that the new ends may touch, and calls it again:
+  /// at most six times. Requires that constrain() returned false.
   [[nodiscard]] bool relax(std::vector<ContactStencil>& pairs);
 
   /// Whether pairs may have rotated without their normals.

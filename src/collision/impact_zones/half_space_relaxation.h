@@ -24,7 +24,7 @@ class HalfSpaceRelaxation {
   /// Whether the sides have such a plane and it does not separate them.
   [[nodiscard]] bool passes(const ContactStencil& pair, const Points& ends) const;
 
-  /// Changes `ends` until no sides pass each other, for a limited number of sweeps: some may pass still. Returns the moved
+  /// Changes `ends` until no sides pass each other, for a limited number of sweeps: some may still pass. Returns the moved
   /// particles in any order.
   [[nodiscard]] std::vector<Index> move_apart(const std::vector<ContactStencil>& pairs, Points& ends) const;
 

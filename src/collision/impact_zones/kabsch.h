@@ -6,7 +6,8 @@
 namespace sprung {
 
 /// The rotation R that minimises the sum of w |R a - b|^2 over points a and b, relative to their centroids, with weights w.
-/// Requires `covariance`, the sum of w b a^T. Collinear points do not determine the rotation about their line; R then has none.
+/// Requires `covariance`, the sum of w b a^T. Collinear points do not determine the rotation about their line; R then does not
+/// rotate about it.
 [[nodiscard]] Matrix3 kabsch_rotation(const Matrix3& covariance);
 
 }  // namespace sprung

@@ -79,7 +79,7 @@ void MotionGroups::find_means(const std::vector<std::vector<Index>>& pins) {
     Vector3 motion = Vector3::Zero();
     double squares = 0.0;
     double count = 0.0;
-    int rank = 0;  ///< of the rule that the sum is for: a higher one wins
+    int rank = 0;  ///< of the rule that the sum belongs to: the highest rank wins
   };
   std::vector<Sum> sums(groups_.size());
   const auto add = [&](std::size_t number, const Vector3& motion, int rank) {

@@ -16,8 +16,8 @@ struct ParticleDisplacements {
   std::vector<KinematicAnchor> anchors{};     ///< of particles that move as if they were part of an obstacle
 };
 
-/// Each group has a reference motion, which leaves its particles where they were relative to each other, and a fraction: how far
-/// its particles may move from there towards their targets. A locked group has the fraction 0.
+/// Each group has a reference motion, and a fraction: how far its particles may move from their positions after this motion
+/// towards their targets. A locked group has the fraction 0, so that only the reference motion moves it.
 class MotionGroups {
  public:
   /// Begins without groups. Pinned particles (not 0) never belong to one. Positions [m], 3 x n. Keeps references to all arguments.
@@ -25,15 +25,15 @@ class MotionGroups {
                const ParticleDisplacements& displacements);
 
   /// Merges these particles and their groups into one group, which follows the pinned particles among them. If they are one group
-  /// already, locks it. Returns whether anything has changed, which is so a finite number of times: groups only grow, gain pins and
-  /// become locked.
+  /// already, locks it. Returns whether anything has changed. It returns true a finite number of times, because groups only grow,
+  /// gain pins and become locked.
   bool unite(std::span<const Index> particles);
 
   /// Computes one reference motion per group. The first rule that applies wins: (1) locked group with pins: rigid motion of the
-  /// pins, if they have one; (2) pins: mean of their displacements; (3) anchors: their common affine motion, which locks the group;
-  /// (4) particles moved by obstacles: mean of their displacements; (5) otherwise: mean displacement, reduced by the fraction that
-  /// its spread is of it, so that a falling cloth is not slowed and a resting one does not follow what hits it. Resets the
-  /// fractions to 1, and to 0 for locked groups.
+  /// pins, if they have one; (2) pins: mean of their displacements; (3) anchors: their common affine motion, which locks the
+  /// group; (4) particles moved by obstacles: mean of their displacements; (5) otherwise: mean displacement, times 1 - variance /
+  /// mean^2 or 0, so that a falling cloth is not slowed and a resting one does not follow what hits it. Resets the fractions to 1,
+  /// and to 0 for locked groups.
   void find_motions();
 
   /// Number of the particle's group from 0, or kNone, as of the last find_motions().
@@ -54,7 +54,7 @@ class MotionGroups {
   /// Whether any group's motion may be more than a translation.
   [[nodiscard]] bool any_rotates() const;
 
-  /// The plane as the group's motion moves it; constant for kNone and for translations.
+  /// The plane, moved with the group; constant for kNone and for translations.
   [[nodiscard]] MovedPlane moved(Index group, const Vector3& normal) const;
 
   /// Whether the group has the motion of anchors.

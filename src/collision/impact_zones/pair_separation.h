@@ -28,21 +28,22 @@ class PairSeparation {
   /// step: their gap is the mean of the two thicknesses, but at most `most_gap`.
   void begin_step(const Points& before, const Points& after, std::vector<Contact>& contacts);
 
-  /// Discards what is known from step to step. Call it if the next step does not begin where the last one ended.
+  /// Discards the data kept between steps. Call it if the next step does not begin where the last one ended.
   void forget();
 
   /// Begins a substep from `before` [m], where nothing crosses, to expected positions `after`. The calls that follow refer to it.
   void begin_substep(const Points& before, const Points& after);
 
-  /// Constrains the particles that would pass each other on the way to their `targets` [m], and returns them, ascending. All others
-  /// may end at their targets; pinned particles do so in any case. `displacements` are those that obstacles impose. Requires
-  /// begin_step() or begin_substep() with the same `before`.
+  /// Constrains the particles that would pass each other on the path to their `targets` [m], and returns them, ascending. All
+  /// others may end at their targets; pinned particles do so in any case. `displacements` are those that obstacles impose.
+  /// Requires begin_step() or begin_substep() with the same `before`.
   const std::vector<Index>& constrain(const Points& before, const Points& targets, const ParticleDisplacements& displacements = {});
 
-  /// A position where the constrained particle may end in any case [m].
+  /// A position [m] where the constrained particle may always end.
   [[nodiscard]] Vector3 safe_position(Index particle) const;
 
-  /// Appends the half-spaces within which the constrained particle may end; it also has to stay in its ball. Requires constrain().
+  /// Appends the half-spaces within which the constrained particle may end; it also has to stay in its sphere. Requires
+  /// constrain().
   void append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const;
   struct Ball {
     Vector3 center;
@@ -53,13 +54,14 @@ class PairSeparation {
   /// Constrained particles that move with obstacles as anchors do, in any order.
   [[nodiscard]] const std::vector<Index>& anchored() const;
 
-  /// Whether a side of the particle passes another one whatever its end, because pins with different motions drag it.
+  /// Whether an element of the particle passes another one wherever the particle ends, because pins with different motions drag
+  /// them.
   [[nodiscard]] bool passes(Index particle) const;
 
-  /// Pinned particles of such sides that have an element with a free particle; ascending.
+  /// Pinned particles of such elements that share an element with a free particle; ascending.
   [[nodiscard]] std::vector<Index> passing_pins() const;
 
-  /// Whether the constrained particle may end at p [m]: it is in all half-spaces and the ball.
+  /// Whether the constrained particle may end at p [m]: it is in all half-spaces and in the sphere.
   [[nodiscard]] bool allows(Index particle, const Vector3& p) const;
 
   /// Appends, for each pair of two bodies with a constrained particle, the contact between its closest points at the step's begin

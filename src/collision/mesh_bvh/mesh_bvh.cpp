@@ -55,14 +55,14 @@ std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> build_model(const TriangleMesh
 }  // namespace
 
 MeshBvh::MeshBvh(const TriangleMesh& mesh) : model_(build_model(mesh)), magnitude_(mesh.vertices.cwiseAbs().maxCoeff()) {
-  places_.resize(static_cast<std::size_t>(mesh.triangles.cols()));
+  slots_.resize(static_cast<std::size_t>(mesh.triangles.cols()));
   add_node(WideBvhCollapse(*model_), 0, 1);
   place(mesh);
 }
 
 std::array<Vector3, 3> MeshBvh::corners(Index triangle) const {
-  const Place& place = places_[static_cast<std::size_t>(triangle)];
-  return block(place.block).corners(place.lane);
+  const Slot& slot = slots_[static_cast<std::size_t>(triangle)];
+  return block(slot.block).corners(slot.lane);
 }
 
 Box3 MeshBvh::bounds() const {
@@ -70,7 +70,7 @@ Box3 MeshBvh::bounds() const {
   return {root.min_, root.max_};
 }
 
-// FCL refits the model of a moving mesh around the vertices of two frames, the one before and the present one.
+// FCL refits the model of a moving mesh to the vertices of two frames, the previous and the present one.
 void MeshBvh::refit(const Points& from, const Points& to) {
   model_->beginUpdateModel();
   for (Index i = 0; i < from.cols(); ++i) {
@@ -113,7 +113,7 @@ std::int32_t MeshBvh::add_node(const WideBvhCollapse& collapse, int volume, int 
   volumes_.emplace_back().fill(kNone);
   std::copy(children.begin(), children.end(), volumes_.back().begin());
   fit_boxes(number);
-  // Each level leaves all but one lane behind; appending writes up to all lanes past the last kept.
+  // A traversal leaves all lanes of a node but one on the stack, at each level. A push writes up to all lanes past the top.
   stack_size_ = std::max(stack_size_, static_cast<std::size_t>((depth + 1) * kFloatSimdWidth));
   for (std::size_t lane = 0; lane < children.size(); ++lane) {
     const int below = children[lane];
@@ -134,10 +134,10 @@ std::int32_t MeshBvh::add_block(int volume) {
       continue;
     }
     const Index triangle = -first_child - 1;
-    places_[static_cast<std::size_t>(triangle)] = {number, block.count};
+    slots_[static_cast<std::size_t>(triangle)] = {number, block.count};
     block.triangle[block.count++] = triangle;
   }
-  // Double4 beyond `count` repeat the last triangle.
+  // Lanes beyond `count` repeat the last triangle.
   for (int lane = block.count; lane < kSimdWidth; ++lane) block.triangle[lane] = block.triangle[block.count - 1];
   return number;
 }

@@ -15,12 +15,13 @@ namespace {
 constexpr float kFloatMin = std::numeric_limits<float>::min();
 constexpr float kFloatMax = std::numeric_limits<float>::max();
 
-/// A float somewhat above the square of a distance; finite, so that empty boxes, which are infinitely far, are never within it.
+/// A float slightly above the square of a distance. It is finite, so that an empty box, whose distance is infinite, is never
+/// nearer.
 float bound_of(double squared) {
   return std::min(static_cast<float>(std::min(squared, 1e38)) * (1.0F + 0x1p-22F) + kFloatMin, kFloatMax);
 }
 
-/// A position between two floats a coordinate.
+/// A position whose coordinates are each between two floats.
 struct FloatRange {
   float low[3];
   float high[3];
@@ -37,8 +38,8 @@ FloatRange float_range(const Vector3& p) {
   return range;
 }
 
-/// Lower bounds of the children's squared distances. A box's squared distance is at most 6 roundings of 2^-24 too large, which the
-/// factor takes back.
+/// Lower bounds of the children's squared distances. Rounding makes the squared distance of a box too large by at most 6 times
+/// 2^-24, which the factor compensates.
 [[gnu::always_inline]] inline void bound_children(const MeshBvh::Node& node, const FloatRange& p, Float8& bounds) {
   Float8 sum = {};
   for (int axis = 0; axis < 3; ++axis) {
@@ -51,7 +52,7 @@ FloatRange float_range(const Vector3& p) {
   bounds = sum * (1.0F - 0x1p-20F);
 }
 
-/// A triangle of a block; none where there is no block.
+/// A triangle of a block; none if the block is null.
 struct Spot {
   const TrianglePacket* block = nullptr;
   int lane = 0;

@@ -12,7 +12,7 @@ namespace sprung {
 
 namespace {
 
-/// A path in single precision, and how far rounding may have moved anything in it.
+/// A path in single precision, and a bound of the rounding errors in the test against boxes [m].
 struct FloatPath {
   float middle[3];
   float half[3];       ///< half its extent along each axis, >= 0
@@ -20,11 +20,11 @@ struct FloatPath {
   float rounding;
   int main_axis;
   float begin;       ///< position along the main axis
-  float per_length;  ///< fraction of the path per length along the main axis
+  float per_length;  ///< 1 / length along the main axis
 };
 
-/// With all coordinates below M, single precision moves a box, the path and the products of the test below by less than 2^-20 M
-/// (times the direction, for the products); 2^-19 M is given away.
+/// If all coordinates are below M, single precision changes a box, the path and the products of the test below by less than 2^-20
+/// M (times the direction, for the products). The bound is twice that.
 FloatPath float_path(const Vector3& a, const Vector3& b, double magnitude) {
   FloatPath path;
   const Vector3 step = b - a;
@@ -40,8 +40,8 @@ FloatPath float_path(const Vector3& a, const Vector3& b, double magnitude) {
   return path;
 }
 
-/// Appends the children whose box the path may meet (no axis separates them; Gottschalk et al. 1996) before the fraction `bound`,
-/// the first last.
+/// Pushes the children whose box the path may cross before the fraction `bound`, the nearest last. Boxes are excluded by
+/// separating axes (Gottschalk et al. 1996).
 SPRUNG_KERNEL void push_children(const MeshBvh::Node& node, const FloatPath& path, float bound, TraversalStack& stack) {
   const Float8 never = Float8{} + std::numeric_limits<float>::infinity();
   const bool forward = path.direction[path.main_axis] > 0.0F;

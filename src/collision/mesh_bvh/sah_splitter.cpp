@@ -72,8 +72,8 @@ void SahSplitter::computeRule(const fcl::AABB<double>& /*box*/, unsigned int* tr
 
   Bins bins;
   for (int i = 0; i < count; ++i) {
-    const double part = (middle(triangles[i])[axis_] - middles.min()[axis_]) / length;
-    bins[std::min<std::size_t>(static_cast<std::size_t>(kBins * part), kBins - 1)].add({box(triangles[i]), 1});
+    const double fraction = (middle(triangles[i])[axis_] - middles.min()[axis_]) / length;
+    bins[std::min<std::size_t>(static_cast<std::size_t>(kBins * fraction), kBins - 1)].add({box(triangles[i]), 1});
   }
   cut_ = middles.min()[axis_] + length * cheapest_cut(bins).bins_before / kBins;
 }

@@ -1,4 +1,4 @@
-// Where FCL cuts a set of triangles in two when it builds its tree.
+// Surface area heuristic (SAH): where FCL splits a set of triangles when it builds its tree.
 #pragma once
 
 #include "base/types.h"
@@ -8,14 +8,14 @@
 
 namespace sprung {
 
-/// Cuts the longest side of the box around the triangles' middles where the areas of the two sets' boxes, each times its number of
-/// triangles, have the smallest sum (MacDonald and Booth 1990), trying 15 places (Wald 2007). With FCL's own, which cuts at the
-/// mean, walks visit a sixth more blocks.
+/// Splits along the longest side of the box around the triangles' middles. Of 15 positions (Wald 2007) it takes the one with the
+/// smallest sum of the areas of the two sets' boxes, each times its number of triangles (MacDonald and Booth 1990). FCL's own
+/// splitter takes the mean, and traversals of its tree visit a sixth more blocks.
 class SahSplitter final : public fcl::detail::BVSplitterBase<fcl::AABB<double>> {
  public:
   void set(fcl::Vector3<double>* vertices, fcl::Triangle* triangles, fcl::BVHModelType type) override;
   void computeRule(const fcl::AABB<double>& box, unsigned int* triangles, int count) override;
-  /// Whether a triangle with this middle goes to the second child.
+  /// Whether a triangle with this middle belongs to the second child.
   [[nodiscard]] bool apply(const fcl::Vector3<double>& middle) const override { return middle[axis_] > cut_; }
   void clear() override;
 

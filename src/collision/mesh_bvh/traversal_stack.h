@@ -1,4 +1,4 @@
-// The stack of a walk through a tree: on the call stack for trees of usual depth, on the heap for hostile ones.
+// The stack of a tree traversal: in the object itself for trees of usual depth, on the heap for very deep ones.
 #pragma once
 
 #include "base/simd.h"
@@ -11,7 +11,7 @@
 
 namespace sprung {
 
-/// A node (>= 0) or block (~block) still to visit, and a lower bound that may rule it out by then.
+/// A node (>= 0) or block (~block) to visit, and a lower bound of its distance, which may exclude it by then.
 struct TraversalEntry {
   float bound;
   std::int32_t child;
@@ -32,9 +32,9 @@ class TraversalStack {
   void push(TraversalEntry entry) { entries_[size_++] = entry; }
   TraversalEntry pop() { return entries_[--size_]; }
 
-  /// Pushes the children whose bound is at most `limit`, the smallest last, the others in no order: sorting them, or asking before
-  /// each, costs more in branches that nobody can predict than it saves in visits. Writes up to kFloatSimdWidth entries past the
-  /// top.
+  /// Pushes the children whose bound is at most `limit`. The smallest comes last; the others have no order. Sorting them, or
+  /// testing each before it is written, costs more in mispredicted branches than it saves in visits. Writes up to kFloatSimdWidth
+  /// entries past the top.
   [[gnu::always_inline]] void push_within(const Float8& bounds, const std::int32_t* children, float limit) {
     const std::size_t base = size_;
     for (int lane = 0; lane < kFloatSimdWidth; ++lane) {

@@ -1,4 +1,4 @@
-// Up to four triangles side by side: the leaves of a mesh's tree.
+// Up to four triangles in SIMD lanes: the leaves of a mesh BVH.
 #pragma once
 
 #include "base/simd.h"
@@ -9,19 +9,19 @@
 namespace sprung {
 
 struct alignas(64) TrianglePacket {
-  Double4 corner[3][3];        ///< [m]: corner k along axis a, a lane a triangle; lanes beyond `count` repeat the last triangle
-  Index triangle[kSimdWidth];  ///< its number in the mesh
+  Double4 corner[3][3];        ///< [m]: corner k along axis a, one lane per triangle; lanes beyond `count` repeat the last triangle
+  Index triangle[kSimdWidth];  ///< numbers in the mesh
   std::int32_t count;          ///< 1 to kSimdWidth
 
   [[nodiscard]] std::array<Vector3, 3> corners(int lane) const { return {position(lane, 0), position(lane, 1), position(lane, 2)}; }
-  /// Bit i is set for each lane i that holds a triangle.
+  /// Bit i is set for each lane i with a triangle.
   [[nodiscard]] unsigned lanes() const { return (1U << static_cast<unsigned>(count)) - 1U; }
 
  private:
   [[nodiscard]] Vector3 position(int lane, int k) const { return {corner[k][0][lane], corner[k][1][lane], corner[k][2][lane]}; }
 };
 
-/// The triangles whose own box meets `box` [m] or touches it: bit i stands for lane i.
+/// The triangles whose own box intersects or touches `box` [m]: bit i stands for lane i.
 [[gnu::always_inline]] inline unsigned triangles_in_box(const TrianglePacket& block, const Box3& box) {
   Mask4 outside{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -36,7 +36,7 @@ struct alignas(64) TrianglePacket {
   return block.lanes() & ~mask_bits(outside);
 }
 
-/// The triangles that reach above the plane normal . x = limit.
+/// The triangles with a corner above the plane normal . x = limit.
 [[gnu::always_inline]] inline unsigned triangles_above(const TrianglePacket& block, const Vector3& normal, double limit) {
   Mask4 above{};
   for (const auto& x : block.corner) above |= x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2] > limit;

@@ -1,4 +1,4 @@
-// Distances of a position from the triangles of a block, all at once. For the .cpp files of kernels.
+// Distances of a position from all triangles of a packet at once. For .cpp files of kernels only.
 #pragma once
 
 #include "collision/mesh_bvh/triangle_packet.h"
@@ -6,7 +6,7 @@
 
 namespace sprung {
 
-/// Squared distances [m^2], a lane a triangle, each to the last bit that of closest_point_on_triangle.
+/// Squared distances [m^2], one lane per triangle. Each equals the result of closest_point_on_triangle bit for bit.
 [[gnu::always_inline]] inline void squared_distances(const Vector3& position, const TrianglePacket& block, Double4& squared) {
   Vector3x4 p;
   set_all_lanes(position, p);

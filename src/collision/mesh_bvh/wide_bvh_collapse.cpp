@@ -6,7 +6,7 @@ namespace sprung {
 
 namespace {
 
-// What a visit costs, measured in visits of a node.
+// Cost of a visit to a block, relative to a visit to a node.
 constexpr double kBlockCost = 1.5;
 
 double half_area(const fcl::AABB<double>& box) {

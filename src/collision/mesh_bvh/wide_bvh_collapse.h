@@ -1,4 +1,4 @@
-// FCL's binary tree made wide: which of its nodes become the children of a node with eight.
+// Collapses FCL's binary tree into a tree with up to eight children per node.
 #pragma once
 
 #include "base/simd.h"
@@ -10,8 +10,8 @@
 
 namespace sprung {
 
-/// Of all ways to leave nodes out, the one with the least cost: the sum of a node's cost, each times the area of its box, to which
-/// the number of walks that visit it is proportional (Ylitie, Karras and Laine 2017).
+/// Chooses the nodes of the binary tree to leave out so that the total cost is smallest: the sum of the costs of nodes and blocks,
+/// each times the area of its box, which is proportional to the number of its visits (Ylitie, Karras and Laine 2017).
 class WideBvhCollapse {
  public:
   using Tree = fcl::BVHModel<fcl::AABB<double>>;
@@ -19,18 +19,18 @@ class WideBvhCollapse {
   /// Keeps a reference to the tree, which must have been built.
   explicit WideBvhCollapse(const Tree& tree);
 
-  /// Whether so few triangles are below that they become one block.
+  /// Whether the node has so few triangles that they become one block.
   [[nodiscard]] bool is_block(int bv) const { return tree_.getBV(bv).num_primitives <= kSimdWidth; }
 
-  /// The nodes below `bv`, at most kFloatSimdWidth, that become its children. Requires that it is no block.
+  /// The nodes below `bv`, at most kFloatSimdWidth, that become its children. Requires that `bv` is not a block.
   [[nodiscard]] std::vector<int> children(int bv) const;
 
  private:
-  /// Entry i: the least cost of all below a node when up to i + 1 of its parent's lanes hold it.
+  /// Entry i: the lowest cost of a node and all below it if they may use up to i + 1 lanes of the parent.
   using Costs = std::array<float, kFloatSimdWidth - 1>;
 
   struct Share {
-    int first_lanes;  ///< for the first child; the second has the others
+    int first_lanes;  ///< of the first child; the second has the others
     float cost;
   };
   [[nodiscard]] Share best_share(int first_child, int lanes) const;

@@ -15,7 +15,7 @@ namespace {
 using Vector2 = Eigen::Vector2d;
 using TriangleCorners = std::array<Vector3, 3>;
 
-SPRUNG_KERNEL void push_meeting(const MeshBvh::Node& node, const FloatBox& box, TraversalStack& stack) {
+SPRUNG_KERNEL void push_intersecting(const MeshBvh::Node& node, const FloatBox& box, TraversalStack& stack) {
   Float8 apart = {};
   for (int axis = 0; axis < 3; ++axis) {
     const auto outside = (node.min[axis] > box.max[axis]) | (node.max[axis] < box.min[axis]);
@@ -38,20 +38,21 @@ void visit_box(const MeshBvh& tree, const Box3& box, const Visit& visit) {
         visit(block.triangle[lane], block.corners(lane));
       }
     } else {
-      push_meeting(tree.node(entry.child), bounds, stack);
+      push_intersecting(tree.node(entry.child), bounds, stack);
     }
   }
 }
 
-/// What the edge from a to b adds to the winding around p in the plane, p moved a little off every line and point.
+/// Contribution of the edge from a to b to the winding number around p in the plane, with p displaced by an infinitesimal amount,
+/// so that it is on no line and no point.
 int winding_of_edge(const Vector2& a, const Vector2& b, const Vector2& p) {
   if (a.y() <= p.y() && b.y() > p.y()) return side_of_line(a, b, p) > 0.0 ? 1 : 0;
   if (b.y() <= p.y() && a.y() > p.y()) return side_of_line(b, a, p) > 0.0 ? -1 : 0;
   return 0;
 }
 
-/// 1 where the ray from p along x leaves through the triangle, -1 where it enters, 0 where it misses.
-int passing(const TriangleCorners& corners, const Vector3& p) {
+/// 1 if the ray from p along x leaves through the triangle, -1 if it enters, 0 if it misses.
+int crossing_sign(const TriangleCorners& corners, const Vector3& p) {
   const auto along_x = [](const Vector3& q) { return Vector2(q.y(), q.z()); };
   const Vector2 a = along_x(corners[0]);
   const Vector2 b = along_x(corners[1]);
@@ -69,7 +70,7 @@ int winding_number(const MeshBvh& tree, const Vector3& p) {
   Box3 ray(p, p);
   ray.max().x() = std::numeric_limits<double>::infinity();
   int winding = 0;
-  visit_box(tree, ray, [&](Index /*triangle*/, const TriangleCorners& corners) { winding += passing(corners, p); });
+  visit_box(tree, ray, [&](Index /*triangle*/, const TriangleCorners& corners) { winding += crossing_sign(corners, p); });
   return winding;
 }
 

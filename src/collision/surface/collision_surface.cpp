@@ -8,7 +8,7 @@
 namespace sprung {
 namespace {
 
-// 4 x 4 squares of a cloth: larger patches have boxes too loose to reject much, smaller ones are too many to ask for.
+// 4 x 4 squares of a cloth. The boxes of larger patches are too loose to reject much; smaller patches cause too many queries.
 constexpr std::size_t kMostPatchElements = 32;
 
 void add_single_particles(const std::vector<Index>& body_of, std::vector<Element>& elements) {
@@ -74,7 +74,7 @@ std::vector<double> mean_edge_lengths(const std::vector<Element>& elements, cons
   std::vector<double> edges(bodies, 0.0);
   for (const Element& element : elements) {
     const auto body = static_cast<std::size_t>(element.body);
-    // A segment has one edge, which its two corners would name twice.
+    // A segment has one edge; the loop would count it twice.
     const int count = element.corners == 3 ? 3 : element.corners - 1;
     for (int k = 0; k < count; ++k) {
       const Index to = element.particles[static_cast<std::size_t>((k + 1) % element.corners)];

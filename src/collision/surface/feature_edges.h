@@ -1,4 +1,5 @@
-// Edges at which the network's surfaces end or turn: contact of edges matters there, elsewhere corners and faces see to it.
+// Feature edges: boundaries and creases of the network's surfaces. Only they need edge-edge contacts; elsewhere vertex-face
+// contacts are enough.
 #pragma once
 
 #include "collision/surface/surface_topology.h"
@@ -9,13 +10,13 @@ namespace sprung {
 
 class FeatureEdges {
  public:
-  /// All edges count as sharp. Keeps references to both.
+  /// All edges are sharp at first. Keeps references to both arguments.
   FeatureEdges(const CollisionSurface& surface, const SurfaceTopology& features);
 
-  /// Looks at all edges again, with the particles at `positions` [m].
+  /// Classifies all edges for the particles at `positions` [m].
   void update(const Points& positions);
 
-  /// Whether an edge does not belong to two triangles, or they turn by more than 45 degrees.
+  /// Whether the edge does not belong to exactly two triangles, or their normals differ by more than 45 degrees.
   [[nodiscard]] bool is_sharp(Index edge) const { return sharp_[static_cast<std::size_t>(edge)] != 0; }
 
  private:

@@ -54,11 +54,11 @@ class SelfSearch {
               [&](Index p, Index q) { return std::pair(patch_box(p).min().x(), p) < std::pair(patch_box(q).min().x(), q); });
   }
 
-  /// The patch that begins at this place along x, with itself and those that begin within it.
-  void search(std::size_t place, std::vector<CrossingElements>& found) const {
-    const Index patch = by_begin_[place];
+  /// Tests the patch with this number in `by_begin_` against itself and against the patches that begin within its extent along x.
+  void search(std::size_t rank, std::vector<CrossingElements>& found) const {
+    const Index patch = by_begin_[rank];
     search(patch, patch, found);
-    for (std::size_t other = place + 1; other < by_begin_.size(); ++other) {
+    for (std::size_t other = rank + 1; other < by_begin_.size(); ++other) {
       const Index next = by_begin_[other];
       if (patch_box(next).min().x() > patch_box(patch).max().x()) return;
       search(patch, next, found);
@@ -95,7 +95,7 @@ class SelfSearch {
   const Points& positions_;
   std::vector<Box3> boxes_;        ///< by element
   std::vector<Box3> patch_boxes_;  ///< by patch
-  std::vector<Index> by_begin_;    ///< patches by where they begin along x
+  std::vector<Index> by_begin_;    ///< patches, sorted by their begin along x
 };
 
 }  // namespace
@@ -104,14 +104,14 @@ std::vector<CrossingElements> find_self_intersections(const CollisionSurface& su
   const auto any = [](const std::vector<char>& flags) { return std::find(flags.begin(), flags.end(), 1) != flags.end(); };
   if (!any(surface.self) && !any(surface.others)) return {};
   const SelfSearch search(surface, positions);
-  std::vector<std::vector<CrossingElements>> parts(surface.patches.size());
-  parallel_chunks(static_cast<Index>(parts.size()), 1, [&](Index begin, Index end) {
-    for (auto place = static_cast<std::size_t>(begin); place < static_cast<std::size_t>(end); ++place) {
-      search.search(place, parts[place]);
+  std::vector<std::vector<CrossingElements>> results(surface.patches.size());
+  parallel_chunks(static_cast<Index>(results.size()), 1, [&](Index begin, Index end) {
+    for (auto rank = static_cast<std::size_t>(begin); rank < static_cast<std::size_t>(end); ++rank) {
+      search.search(rank, results[rank]);
     }
   });
   std::vector<CrossingElements> all;
-  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  for (const auto& result : results) all.insert(all.end(), result.begin(), result.end());
   std::sort(all.begin(), all.end(),
             [](const auto& a, const auto& b) { return std::pair(a.first, a.second) < std::pair(b.first, b.second); });
   return all;

@@ -1,4 +1,4 @@
-// What of the network crosses itself.
+// Intersections of the network with itself.
 #pragma once
 
 #include "collision/surface/collision_surface.h"
@@ -7,14 +7,14 @@
 
 namespace sprung {
 
-/// Two elements of which an edge of one meets the other, a triangle, without having a particle in common with it.
+/// Two elements that cross: an edge of one crosses the other, a triangle, and has no particle in common with it.
 struct CrossingElements {
   Index first = kNone;
   Index second = kNone;  ///< > first
 };
 
-/// All elements that cross among bodies that collide with themselves or each other, ascending. Judged exactly, with the particles
-/// at `positions` [m], which are finite. Same result for any number of threads.
+/// All elements that cross among bodies that collide with themselves or each other, ascending. Decided exactly, with the particles
+/// at `positions` [m], which must be finite. The result does not depend on the number of threads.
 [[nodiscard]] std::vector<CrossingElements> find_self_intersections(const CollisionSurface& surface, const Points& positions);
 
 }  // namespace sprung

@@ -8,7 +8,7 @@
 namespace sprung {
 namespace {
 
-/// A triangle's edge away from one of its corners.
+/// The edge of a triangle opposite to one of its corners.
 using Rim = std::array<Index, 2>;
 
 std::vector<Rim> rims_around(Index particle, std::span<const Index> around, const std::vector<Element>& elements) {
@@ -23,7 +23,7 @@ std::vector<Rim> rims_around(Index particle, std::span<const Index> around, cons
   return rims;
 }
 
-/// Takes a rim with this end off the list and returns its other end; kNone when there is none.
+/// Removes a rim with this end from the list and returns its other end; kNone if there is none.
 Index follow(Index end, std::vector<Rim>& rims) {
   for (std::size_t i = 0; i < rims.size(); ++i) {
     const Rim rim = rims[i];
@@ -34,7 +34,7 @@ Index follow(Index end, std::vector<Rim>& rims) {
   return kNone;
 }
 
-/// Chains the rims to one line or ring of spokes, if they make one; else the spokes are all their ends in ascending order.
+/// Chains the rims to a single line or ring of spokes if possible; else the spokes are all their ends in ascending order.
 FanKind chain(std::vector<Rim> rims, std::vector<Index>& spokes) {
   std::vector<Index> ends;
   for (const Rim& rim : rims) ends.insert(ends.end(), rim.begin(), rim.end());
@@ -128,7 +128,7 @@ void SurfaceTopology::give_edges(const std::vector<Element>& elements) {
   }
 }
 
-/// Only triangles have something across.
+/// Only triangles have a neighbour across an edge.
 void SurfaceTopology::join(const std::vector<Element>& elements, Side side, Side other) {
   const Element& beside = elements[static_cast<std::size_t>(other.element)];
   if (beside.corners != 3 || elements[static_cast<std::size_t>(side.element)].corners != 3) return;

@@ -1,4 +1,4 @@
-// Corners, edges and fans of the network's elements: what can meet when two elements meet.
+// Topology of the collision mesh: numbers and owners of edges, owners of corners, and the fan of triangles around each particle.
 #pragma once
 
 #include "collision/surface/collision_surface.h"
@@ -9,15 +9,15 @@
 
 namespace sprung {
 
-/// The triangles around a particle. Neighbouring spokes make a triangle with it; in a closed fan the last and the first do too.
+/// The triangles around a particle. Neighbouring spokes form a triangle with it; in a closed fan the last and the first do too.
 enum class FanKind : std::uint8_t {
-  none,  ///< no triangles, or they do not make one fan: spokes are in any order
+  none,  ///< no triangles, or they do not form a single fan: the spokes ascend
   open,
   closed
 };
 
-/// Corner k of an element is its particle k; edge k runs from it to the next one. What several elements share is owned by the first
-/// of them, so that a pair of corner and face, or of edge and edge, is looked at once.
+/// Corner k of an element is its particle k; edge k runs from it to the next one. A corner or edge of several elements is owned by
+/// the first of them, so that each vertex-face and edge-edge pair is tested once.
 [[nodiscard]] inline int edges_of(const Element& element) { return element.corners == 3 ? 3 : element.corners - 1; }
 
 [[nodiscard]] inline std::array<Index, 2> ends_of(const Element& element, int edge) {
@@ -41,7 +41,7 @@ class SurfaceTopology {
   };
   [[nodiscard]] Side owner(Index edge) const { return owners_[static_cast<std::size_t>(edge)]; }
 
-  /// The third corner of the other triangle at an edge of a triangle; kNone where there is none, or where more than two meet.
+  /// The third corner of the other triangle at an edge of a triangle; kNone if there is no other triangle, or more than one.
   [[nodiscard]] Index across(Index element, int edge) const { return across_[slot(element, edge)]; }
 
   [[nodiscard]] FanKind fan(Index particle) const { return fans_[static_cast<std::size_t>(particle)]; }

@@ -4,8 +4,8 @@ namespace sprung {
 
 namespace {
 
-// Crossed elements move with the obstacle as wholes, then the elements that they cross there. Elements that are still crossed move
-// higher above the obstacle each time.
+// Crossed elements move with the obstacle as a whole; then the elements that they cross there do too. Elements that are still
+// crossed move higher above the obstacle in each round.
 constexpr double kLifts[] = {0.0, 0.0, 1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};
 
 }  // namespace

@@ -5,10 +5,10 @@
 
 namespace sprung {
 
-/// Moves the infeasible ones of these particles with an obstacle, from `before` [m], 3 x n, and their neighbours too where an
-/// element would be crossed otherwise. Changes `after` and the outcomes. A neighbourhood that moves with one obstacle as a whole
-/// stays on its side of it, even if the regions' planes lost too much on the way to show it: new regions at `after` decide.
-/// Particles whose elements are crossed there are infeasible.
+/// Moves the infeasible ones of these particles with an obstacle, from `before` [m], 3 x n, and their neighbours too if an element
+/// would be crossed otherwise. Changes `after` and the outcomes. Particles that move together with one obstacle stay on their side
+/// of it, even if the planes of the regions are no longer sharp enough to prove it. So new regions at `after` decide: particles
+/// with a crossed element there are infeasible.
 void move_infeasible(ObstacleSafeRegions& regions, const std::vector<Index>& particles, const Points& before, Points& after,
                      Outcomes& outcomes);
 

@@ -11,17 +11,18 @@ namespace sprung {
 
 namespace {
 
-// A region stops a particle at a tangent plane of the obstacle. Renewed regions let it continue around the obstacle, so many times.
+// A region stops a particle at a tangent plane of the obstacle. Renewed regions let it continue around the obstacle, in at most
+// this many rounds.
 constexpr int kRounds = 8;
 
-// A particle continues if the last round moved it by at least kMinProgress of its path, and if at most kMaxRemaining of the path is
-// left: one that is blocked for good would be moved far around the obstacle. A particle that only the box of a region stops
-// continues whatever is left, since no obstacle is known to block it.
+// A particle continues if the last round moved it by at least kMinProgress of its path, and if at most kMaxRemaining of the path
+// is left: a particle that is blocked for good would be moved far around the obstacle. A particle that is stopped only by the box
+// of a region always continues, since no obstacle is known to block it.
 constexpr double kMinProgress = 0x1p-10;
 constexpr double kMaxRemaining = 0.5;
 
-// An obstacle that approaches a pin swings the element's other corners around the pin. A corner may have to move this many times as
-// far as the obstacle: the closer the obstacle is to the pin, the farther.
+// If an obstacle approaches a pin, the other corners of the pin's elements swing around the pin. A corner may have to move this
+// many times as far as the obstacle: the closer the obstacle is to the pin, the farther.
 constexpr double kLevers[] = {1.0, 4.0, 16.0};
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
@@ -68,8 +69,8 @@ TruncationResult ObstacleTruncation::clip_all(const StepPaths& paths, Points& af
   return truncation;
 }
 
-// Regions from earlier steps may stop a particle, or leave it no admissible position, where new ones would not. New regions bound
-// the particle's neighbours too, which are clipped again.
+// Regions from earlier steps may stop a particle, or leave it no admissible position, although new ones would not. New regions
+// bound the particle's neighbours too, which are clipped again.
 Outcomes ObstacleTruncation::clip_with_fresh_regions(std::vector<Index>& particles, const StepPaths& paths, Points& after) {
   Outcomes outcomes = truncation_.clip(particles, paths, after);
   std::vector<Index> stopped;
@@ -85,8 +86,8 @@ Outcomes ObstacleTruncation::clip_with_fresh_regions(std::vector<Index>& particl
   return truncation_.clip(particles, paths, after);
 }
 
-// An obstacle that approaches a pin does not move it. So the element's other corners have to be out of the obstacle's path before
-// it arrives, farther along than the obstacle moves.
+// A pin does not move out of the path of an obstacle. So the other corners of its elements have to leave that path before the
+// obstacle arrives, farther than the obstacle moves.
 ClippedSubstep ObstacleTruncation::clip_substep(std::vector<Index>& particles, const StepPaths& paths, Points& after) {
   ClippedSubstep clipped = clip_anew(particles, paths, after);
   if (pinned_.empty() || count(clipped.outcomes, Outcome::infeasible) == 0) return clipped;
@@ -119,7 +120,7 @@ ClippedSubstep ObstacleTruncation::clip_anew(std::vector<Index>& particles, cons
   return clipped;
 }
 
-// First the particles move while obstacles and pins rest at the begin of the interval, then all move.
+// First the particles move while obstacles and pins rest at the begin of the interval. Then all move.
 ClippedSubstep ObstacleTruncation::clip_ahead(std::vector<Index>& particles, const StepPaths& paths, const Points& goals,
                                               Points& after) {
   const auto [begin, end] = environment_.interval();
@@ -155,7 +156,7 @@ std::vector<Index> ObstacleTruncation::leaving_pins(const Points& positions) con
   return leaving;
 }
 
-// Pins are not clipped. Where one is outside of its regions, only its end position is known not to be crossed.
+// Pins are not clipped. If one leaves its regions, crossings are known only for its end position.
 bool ObstacleTruncation::check_pins(const std::vector<Index>& particles, const Points& after, Outcomes& outcomes) {
   const std::vector<Index> leaving = leaving_pins(after);
   if (!leaving.empty()) regions_.renew_around(leaving, {after, after, true});

@@ -28,9 +28,9 @@ class ObstacleTruncation {
   /// Clips these movable particles in a substep of the environment's interval.
   ClippedSubstep clip_substep(std::vector<Index>& particles, const StepPaths& paths, Points& after);
 
-  /// Renews the regions of pins that left theirs, and makes those particles infeasible of whose elements an obstacle crosses one
-  /// that it did not cross at the start of the path. Returns whether no pin left its regions: else crossings are known for `after`
-  /// alone.
+  /// Renews the regions of pins that left theirs. Makes a particle infeasible if an obstacle crosses one of its elements and
+  /// crossed none of them at the start of the path. Returns whether no pin left its regions; otherwise crossings are known for
+  /// `after` only.
   bool check_pins(const std::vector<Index>& particles, const Points& after, Outcomes& outcomes);
 
   /// Whether obstacles or pins move. If none does, the start of a path is an admissible position.
@@ -49,12 +49,12 @@ class ObstacleTruncation {
   ClippedSubstep clip_ahead(std::vector<Index>& particles, const StepPaths& paths, const Points& goals, Points& after);
 
   void record_crossed();
-  /// Pins that are outside of their regions there.
+  /// Pins that are outside of their regions at these positions.
   [[nodiscard]] std::vector<Index> leaving_pins(const Points& positions) const;
 
   TruncationResult continue_stopped(const std::vector<Index>& particles, const Outcomes& outcomes, const StepPaths& paths,
                                     Points& after);
-  /// Keeps in `stopped` the particles that may still come farther. Returns how many reached their target.
+  /// Keeps in `stopped` the particles that may still move on. Returns how many reached their target.
   Index continue_once(std::vector<Index>& stopped, const Points& target, Points& after);
   [[nodiscard]] bool can_continue(Index particle, const StepPaths& paths, const Points& now) const;
   void list_infeasible(const std::vector<Index>& particles, const Outcomes& outcomes);

@@ -82,8 +82,8 @@ bool PairTruncation::anchor_infeasible(const Outcomes& outcomes, const Points& b
   return changed;
 }
 
-// Before a deforming surface a region shrinks by all motion that differs from the motion of the closest points. That may be all the
-// room there is. So a particle that moved with the surface is infeasible only if the surface crosses one of its elements.
+// Before a deforming surface a region shrinks by all motion that differs from the motion of the closest points. That may leave no
+// room. So a particle that moved with the surface is infeasible only if the surface crosses one of its elements.
 void PairTruncation::accept_anchored(const Points& after, Outcomes& outcomes) {
   std::vector<Index> anchored;
   for (const Index i : blocked_by_obstacles(outcomes)) {
@@ -98,7 +98,8 @@ void PairTruncation::accept_anchored(const Points& after, Outcomes& outcomes) {
   }
 }
 
-// A particle that obstacles alone left no admissible position moved with one of them, perhaps through another or through itself.
+// A particle without an admissible position before the obstacles alone moved with one of them, which may have moved it through
+// another obstacle or through another section of the same one.
 void PairTruncation::check_unplaced(const Points& after, Outcomes& outcomes) {
   if (unplaced_.empty()) return;
   regions_.renew_around(unplaced_, {after, after, true});

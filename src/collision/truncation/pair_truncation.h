@@ -36,7 +36,7 @@ class PairTruncation {
   [[nodiscard]] Outcomes of_movable(const Outcomes& of_constrained) const;
   /// Constrained particles that obstacles block; without those that pins pull through other elements.
   [[nodiscard]] std::vector<Index> blocked_by_obstacles(const Outcomes& outcomes) const;
-  /// The particle's anchor, or the first of one that comes after it.
+  /// The particle's anchor or, if it has none, the first anchor after it.
   [[nodiscard]] std::vector<KinematicAnchor>::iterator find_anchor(Index particle);
 
   ObstacleSafeRegions& regions_;

@@ -2,7 +2,7 @@
 //
 // An element whose corners stay inside its safe region, which is convex and contains nothing of the obstacle, does not cross the
 // obstacle. So each particle is clipped on its own, to the regions of all elements that it is a corner of ("divide and truncate";
-// compare the CCD filter of IPC, Li 2020). Between elements, division planes take the place of the regions.
+// compare the CCD filter of IPC, Li 2020). Between elements, division planes replace the regions.
 #pragma once
 
 #include "collision/core/contact.h"

@@ -11,17 +11,18 @@ namespace sprung {
 /// The result of clipping all particles in a substep.
 struct ClippedSubstep {
   Outcomes outcomes;
-  bool path_checked = true;  ///< nothing crosses on the path; else that is known for its end alone, since a pin left its regions
+  bool path_checked =
+      true;  ///< no element crosses anything along the path; false if a pin left its regions: then known for the end only
 };
 
 /// Clips particles to positions in `after` [m], 3 x n, in a substep that the environment's interval is set to. Returns the outcomes
 /// of the same particles each time.
 using ClipSubstep = std::function<ClippedSubstep(const StepPaths& paths, Points& after)>;
 
-/// Clips particles in substeps of the environment's interval. Surfaces that close in on each other may leave no admissible position
-/// along a straight path although there is one beside it; shorter substeps find it, since planes are renewed before the surfaces
-/// meet. Substeps are halved, down to 1/64 of the interval, while `clip` reports infeasible particles or an unchecked path. Returns
-/// the outcomes of the last substep, but infeasible for particles that were infeasible in any.
+/// Clips particles in substeps of the environment's interval. Surfaces that close in on each other may leave no admissible
+/// position along a straight path although there is one beside it. Shorter substeps find it, because planes are renewed before the
+/// surfaces touch. Substeps are halved, down to 1/64 of the interval, while `clip` reports infeasible particles or an unchecked
+/// path. Returns the outcomes of the last substep, but infeasible for particles that were infeasible in any.
 Outcomes clip_in_substeps(Environment& environment, const StepPaths& paths, Points& after, const ClipSubstep& clip);
 
 }  // namespace sprung

@@ -16,8 +16,8 @@ constexpr Index kParticleChunk = 256;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-// A particle that an obstacle stops where it is keeps its position to the last bit. Otherwise the rounding of the projections would
-// wear its height away, step by step.
+// A particle that an obstacle stops at its present position keeps it bit for bit. Otherwise the rounding of the projections would
+// reduce its height in every step.
 Vector3 without_rounding(const std::vector<HalfSpace>& bounds, const Vector3& from, const Vector3& position) {
   const bool stays = (position - from).cwiseAbs().maxCoeff() <= kRounding * from.cwiseAbs().maxCoeff() && is_feasible(bounds, from);
   return stays ? from : position;
@@ -67,7 +67,7 @@ Outcome VertexTruncation::clip(Index particle, const StepPaths& paths, Points& p
       position = without_rounding(bounds, paths.from.col(particle), *found);
       return Outcome::stopped;
     }
-    // The ball is not among the bounds: what it shortens may be outside of them.
+    // The sphere is not among the half-spaces: the shortened displacement may violate them.
     const Vector3 shortened = within_ball(particle, *found);
     if (allows(particle, shortened)) {
       position = shortened;

@@ -21,22 +21,23 @@ using Outcomes = std::vector<Outcome>;
 /// Sets those of `outcomes` to infeasible that are infeasible in `before`.
 void keep_infeasible(const Outcomes& before, Outcomes& outcomes);
 
-/// The only place where positions are clipped to half-spaces: to the safe regions before obstacles, and to the division planes
-/// between elements.
+/// Clips positions to half-spaces: to the safe regions before obstacles, and to the division planes between elements. No other
+/// class does so.
 class VertexTruncation {
  public:
-  /// Clips to the safe regions alone, or to `pairs` too: then to particles that PairSeparation::hold() returned. Keeps references.
+  /// Clips to the safe regions alone, or to `pairs` too: then only particles that PairSeparation::constrain() returned. Keeps
+  /// references.
   explicit VertexTruncation(const ObstacleSafeRegions& regions, const PairSeparation* pairs = nullptr);
 
-  /// Moves each of these particles, independent of the others, to its target or to a nearby admissible position: sets its column of
-  /// `positions` [m], 3 x n. A particle without an admissible position moves with an obstacle near it, if one moves, or to its safe
-  /// position among the pairs.
+  /// Moves each of these particles, independently of the others, to its target or to a nearby admissible position: sets its column
+  /// of `positions` [m], 3 x n. A particle without an admissible position moves with an obstacle near it, if one moves, or to its
+  /// safe position among the pairs.
   Outcomes clip(const std::vector<Index>& particles, const StepPaths& paths, Points& positions) const;
 
  private:
   [[nodiscard]] Outcome clip(Index particle, const StepPaths& paths, Points& positions) const;
   [[nodiscard]] bool allows(Index particle, const Vector3& position) const;
-  /// Positions that are admissible unless surfaces close in on the particle. The first is the one to fall back to.
+  /// Positions that are admissible unless surfaces close in on the particle. The first is the fallback.
   [[nodiscard]] std::vector<Vector3> safe_positions(Index particle, const StepPaths& paths) const;
   [[nodiscard]] Vector3 within_ball(Index particle, const Vector3& position) const;
 
