@@ -114,14 +114,14 @@ inline Index truncate(PairSeparation& separation, const Points& before, Points& 
     Vector3 p = targets.col(i);
     half_spaces.clear();
     separation.append_half_spaces(i, half_spaces);
-    const PairSeparation::Ball ball = separation.ball(i);
+    const PairSeparation::Sphere sphere = separation.sphere(i);
     for (int sweep = 0; sweep < 8 && !separation.allows(i, p); ++sweep) {
       for (const HalfSpace& bound : half_spaces) {
         const double depth = bound.offset - bound.normal.dot(p);
         if (depth > 0.0) p += 1.001 * depth * bound.normal;
       }
-      const Vector3 out = p - ball.center;
-      if (out.norm() > ball.radius) p = ball.center + 0.999 * ball.radius / out.norm() * out;
+      const Vector3 out = p - sphere.center;
+      if (out.norm() > sphere.radius) p = sphere.center + 0.999 * sphere.radius / out.norm() * out;
     }
     targets.col(i) = separation.allows(i, p) ? p : separation.safe_position(i);
   }

@@ -9,7 +9,7 @@ namespace sprung {
 struct alignas(64) EdgeLanes {
   Float8 now[2][3];  ///< positions now, by end and axis [m]
   Float8 end[2][3];  ///< positions at the end of the interval [m]
-  Float8 radius;     ///< of the larger ball of its particles, plus a bound of rounding [m]
+  Float8 radius;     ///< of the larger sphere of its particles, plus a bound of rounding [m]
   ElementBvhLeaf::IntLanes particle[2];
   ElementBvhLeaf::IntLanes marked;  ///< -1 if one of its particles is marked, else 0
   ElementBvhLeaf::IntLanes used;    ///< -1 if the lane has an edge, else 0
@@ -21,14 +21,14 @@ struct MovingEdge {
   float end[2][3]{};
   Index particle[2]{kNone, kNone};
   bool marked = false;
-  float reach = 0.0F;   ///< gap between balls up to which other edges are found [m]
-  float radius = 0.0F;  ///< of its larger ball, > 0 [m]
+  float reach = 0.0F;   ///< gap between spheres up to which other edges are found [m]
+  float radius = 0.0F;  ///< of its larger sphere, > 0 [m]
 };
 
 /// The edge in one lane.
 [[nodiscard]] MovingEdge moving_edge(const EdgeLanes& lanes, int lane, float reach);
 
-/// Sets `hits` to the lanes whose edges may come within reach while particles are in their balls: no coordinate axis, and not the
+/// Sets `hits` to the lanes whose edges may come within reach while particles are in their spheres: no coordinate axis, and not the
 /// line between the closest points of now, separates the two by more than the reach both now and at the end. Edges that share a
 /// particle and pairs of unmarked edges are left out. A conservative filter in single precision. Returns whether there are any.
 bool find_edges(const MovingEdge& edge, const EdgeLanes& lanes, LaneBytes& hits);

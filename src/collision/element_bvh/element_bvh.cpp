@@ -103,7 +103,7 @@ void ElementBvh::mark_lanes(const std::vector<Index>& elements) {
   }
 }
 
-void ElementBvh::bound(const VertexBounds& balls, const std::vector<char>& flat, const std::vector<Index>& elements,
+void ElementBvh::bound(const VertexBounds& spheres, const std::vector<char>& flat, const std::vector<Index>& elements,
                        HorizonTimes times) {
   mark_lanes(elements);
   parallel_chunks(static_cast<Index>(marked_.size()), kLeavesPerTask, [&](Index begin, Index end) {
@@ -112,7 +112,7 @@ void ElementBvh::bound(const VertexBounds& balls, const std::vector<char>& flat,
       for (int lane = 0; lane < leaf.count; ++lane) {
         if (leaf.marked[lane] == 0) continue;
         const Index number = leaf.element[static_cast<std::size_t>(lane)];
-        leaf.set(lane, number, surface_.elements[static_cast<std::size_t>(number)], balls, origin_, flat, times);
+        leaf.set(lane, number, surface_.elements[static_cast<std::size_t>(number)], spheres, origin_, flat, times);
       }
       leaf.bound();
     }

@@ -16,9 +16,9 @@ class ElementBvh {
   /// Marks these elements and unmarks all others.
   void mark(const std::vector<Index>& elements);
 
-  /// Marks these elements, unmarks all others, and bounds the balls of the marked elements' particles from time 0 to the end.
+  /// Marks these elements, unmarks all others, and bounds the spheres of the marked elements' particles from time 0 to the end.
   /// Unmarked elements keep their bounds. `flat` has the results of fan_stays_flat() by particle.
-  void bound(const VertexBounds& balls, const std::vector<char>& flat, const std::vector<Index>& elements, HorizonTimes times);
+  void bound(const VertexBounds& spheres, const std::vector<char>& flat, const std::vector<Index>& elements, HorizonTimes times);
 
   [[nodiscard]] Index leaf_count() const { return static_cast<Index>(leaves_.size()); }
   [[nodiscard]] const ElementBvhLeaf& leaf(Index number) const { return leaves_[static_cast<std::size_t>(number)]; }

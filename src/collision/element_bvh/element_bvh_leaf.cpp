@@ -26,7 +26,7 @@ ElementBvhLeaf::ElementBvhLeaf() {
   element.fill(kNone);
 }
 
-void ElementBvhLeaf::set(int lane, Index number, const Element& source, const VertexBounds& balls, const Vector3& origin,
+void ElementBvhLeaf::set(int lane, Index number, const Element& source, const VertexBounds& spheres, const Vector3& origin,
                          const std::vector<char>& is_flat, HorizonTimes times) {
   element[static_cast<std::size_t>(lane)] = number;
   is_triangle[lane] = source.corners == 3 ? -1 : 0;
@@ -35,11 +35,11 @@ void ElementBvhLeaf::set(int lane, Index number, const Element& source, const Ve
   double largest = 0.0;
   for (int k = 0; k < 3; ++k) {
     const Index i = source.particles[k < source.corners ? static_cast<std::size_t>(k) : 0];
-    const Vector3 start = balls.center(i, -times.now) - origin;
-    const Vector3 speed = balls.motion(i);
+    const Vector3 start = spheres.center(i, -times.now) - origin;
+    const Vector3 speed = spheres.motion(i);
     box.extend(start);
     speeds.extend(speed);
-    largest = std::max(largest, balls.radius(i));
+    largest = std::max(largest, spheres.radius(i));
     particle[k][lane] = i;
     flat[k][lane] = source.corners == 3 && is_flat[static_cast<std::size_t>(i)] != 0 ? -1 : 0;
     for (int axis = 0; axis < 3; ++axis) {

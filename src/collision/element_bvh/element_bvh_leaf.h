@@ -12,14 +12,14 @@
 
 namespace sprung {
 
-/// An interval of time [steps]. The balls' centers are given for `now`.
+/// An interval of time [steps]. The spheres' centers are given for `now`.
 struct HorizonTimes {
   double now = 0.0;
   double end = 0.0;
 };
 
 /// Up to eight elements of one body, a lane each; unused lanes have empty bounds. Coordinates are relative to an origin near the
-/// bodies' initial positions. At time t the balls of an element's particles lie between min + t slowest and max + t fastest.
+/// bodies' initial positions. At time t the spheres of an element's particles lie between min + t slowest and max + t fastest.
 struct alignas(64) ElementBvhLeaf {
   using IntLanes = std::int32_t __attribute__((vector_size(kFloatSimdWidth * sizeof(std::int32_t))));
 
@@ -31,7 +31,7 @@ struct alignas(64) ElementBvhLeaf {
   KineticAabb marked_bounds;  ///< of the marked lanes; not set if none is marked
   Float8 corner[3][3];        ///< by corner and axis, at time 0; smaller elements repeat their first corner
   Float8 motion[3][3];        ///< by corner and axis [m per step]
-  Float8 radius;              ///< of the largest ball, plus a bound of rounding
+  Float8 radius;              ///< of the largest sphere, plus a bound of rounding
   IntLanes particle[3];       ///< by corner
   IntLanes flat[3];      ///< by corner: -1 for triangles whose fan around the particle stays flat, see fan_stays_flat(); else 0
   IntLanes marked;       ///< -1 or 0
@@ -42,7 +42,7 @@ struct alignas(64) ElementBvhLeaf {
   ElementBvhLeaf();
 
   /// Sets the lane to an element and bounds it from time 0 to the end. Requires the same origin [m] for all leaves and times.
-  void set(int lane, Index number, const Element& element, const VertexBounds& balls, const Vector3& origin,
+  void set(int lane, Index number, const Element& element, const VertexBounds& spheres, const Vector3& origin,
            const std::vector<char>& is_flat, HorizonTimes times);
 
   /// Sets the bounds of all lanes.

@@ -44,7 +44,7 @@ inline void find_sharing(const ElementBvhLeaf& a, int lane, const ElementBvhLeaf
   }
 }
 
-/// Lanes of b whose balls lie below those of the lane of a along the lane's direction, now and at the end, and so at all times in
+/// Lanes of b whose spheres lie below those of the lane of a along the lane's direction, now and at the end, and so at all times in
 /// between.
 inline void find_planes_apart(const LeafCorners& a, int lane, const LeafCorners& b, const Float8 (&normal)[3], const Float8& radius,
                               IntLanes& apart) {

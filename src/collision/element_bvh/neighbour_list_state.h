@@ -7,10 +7,10 @@
 
 namespace sprung {
 
-/// Particles at `positions` [m], 3 x n, and the balls that bound them for `horizon` [steps] from now.
+/// Particles at `positions` [m], 3 x n, and the spheres that bound them for `horizon` [steps] from now.
 struct NeighbourListState {
   const Points& positions;
-  const VertexBounds& balls;
+  const VertexBounds& spheres;
   double horizon = 0.0;
   const std::vector<char>& marked;  ///< by particle: only pairs with a marked particle (not 0) are searched
 };

@@ -16,23 +16,23 @@ struct Fan {
   std::array<double, kMostSpokes + 1> length;  ///< of each spoke, the largest in between
   std::size_t spokes = 0;
   std::size_t faces = 0;
-  double radius = 0.0;  ///< of the largest ball
+  double radius = 0.0;  ///< of the largest sphere
 };
 
 /// A closed fan repeats its first spoke after the last.
-Fan gather(const SurfaceTopology& features, Index particle, const VertexBounds& balls, double horizon) {
+Fan gather(const SurfaceTopology& features, Index particle, const VertexBounds& spheres, double horizon) {
   Fan fan;
   const auto spokes = features.spokes(particle);
   const bool closed = features.fan(particle) == FanKind::closed;
   fan.spokes = spokes.size() + (closed ? 1 : 0);
   fan.faces = fan.spokes - 1;
-  fan.radius = balls.radius(particle);
+  fan.radius = spheres.radius(particle);
   for (std::size_t k = 0; k < fan.spokes; ++k) {
     const Index other = spokes[k < spokes.size() ? k : 0];
-    fan.begin[k] = balls.center(other) - balls.center(particle);
-    fan.end[k] = fan.begin[k] + horizon * (balls.motion(other) - balls.motion(particle));
+    fan.begin[k] = spheres.center(other) - spheres.center(particle);
+    fan.end[k] = fan.begin[k] + horizon * (spheres.motion(other) - spheres.motion(particle));
     fan.length[k] = std::sqrt(std::max(fan.begin[k].squaredNorm(), fan.end[k].squaredNorm()));
-    fan.radius = std::max(fan.radius, balls.radius(other));
+    fan.radius = std::max(fan.radius, spheres.radius(other));
   }
   return fan;
 }
@@ -82,10 +82,10 @@ bool ends_stay_apart(const Fan& fan, const Vector3& eye) {
 
 }  // namespace
 
-bool fan_stays_flat(const SurfaceTopology& features, Index particle, const VertexBounds& balls, double horizon) {
+bool fan_stays_flat(const SurfaceTopology& features, Index particle, const VertexBounds& spheres, double horizon) {
   const FanKind kind = features.fan(particle);
   if (kind == FanKind::none || features.spokes(particle).size() > kMostSpokes) return false;
-  const Fan fan = gather(features, particle, balls, horizon);
+  const Fan fan = gather(features, particle, spheres, horizon);
   Vector3 eye = Vector3::Zero();
   for (std::size_t k = 0; k < fan.faces; ++k) eye += fan.begin[k].cross(fan.begin[k + 1]);
   eye.normalize();

@@ -7,8 +7,8 @@
 namespace sprung {
 
 /// Whether the triangles around a particle cannot cross each other for `horizon` [steps] from now while their corners stay within
-/// their balls. That is so if all triangles keep facing one direction and surround the particle less than once or, in a closed fan,
-/// exactly once (Volino and Magnenat-Thalmann 1994). False where this is not certain.
-[[nodiscard]] bool fan_stays_flat(const SurfaceTopology& features, Index particle, const VertexBounds& balls, double horizon);
+/// their spheres. That is so if all triangles keep facing one direction and surround the particle less than once or, in a closed
+/// fan, exactly once (Volino and Magnenat-Thalmann 1994). False where this is not certain.
+[[nodiscard]] bool fan_stays_flat(const SurfaceTopology& features, Index particle, const VertexBounds& spheres, double horizon);
 
 }  // namespace sprung

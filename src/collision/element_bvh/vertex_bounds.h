@@ -1,7 +1,7 @@
-// Moving bounding balls of the particles: the skin of the neighbour list.
+// Moving bounding spheres of the particles: the skin of the neighbour list.
 //
-// Elements whose balls stay apart for many steps need no check in any of them. A ball moves at constant velocity until its particle
-// leaves it, so that a body in free flight keeps its balls at any speed.
+// Elements whose spheres stay apart for many steps need no check in any of them. A sphere moves at constant velocity until its
+// particle leaves it, so that a body in free flight keeps its spheres at any speed.
 #pragma once
 
 #include "base/types.h"
@@ -10,11 +10,11 @@
 
 namespace sprung {
 
-/// Times are in steps, from the begin of the current step. A particle that moves linearly and is in its ball at the step's begin
+/// Times are in steps, from the begin of the current step. A particle that moves linearly and is in its sphere at the step's begin
 /// and end is in it throughout the step.
 class VertexBounds {
  public:
-  /// Balls of these radii [m]. Call reset() for each before use.
+  /// Spheres of these radii [m]. Call reset() for each before use.
   explicit VertexBounds(std::vector<double> radius)
       : radius_(std::move(radius)), center_(Points::Zero(3, count())), motion_(center_) {}
 
@@ -23,18 +23,18 @@ class VertexBounds {
   [[nodiscard]] auto motion(Index i) const { return motion_.col(i); }  ///< [m per step]
   [[nodiscard]] Vector3 center(Index i, double time = 0.0) const { return center_.col(i) + time * motion_.col(i); }  ///< [m]
 
-  /// Centers the ball at its particle's position at the step's begin; it moves to the expected position at the end [m].
+  /// Centers the sphere at its particle's position at the step's begin; it moves to the expected position at the end [m].
   void reset(Index i, const Vector3& begin, const Vector3& end) {
     center_.col(i) = begin;
     motion_.col(i) = end.allFinite() ? Vector3(end - begin) : Vector3::Zero();
   }
 
-  /// Whether the ball contains p [m] at this time.
+  /// Whether the sphere contains p [m] at this time.
   [[nodiscard]] bool contains(Index i, const Vector3& p, double time) const {
     return (p - center(i, time)).squaredNorm() <= radius(i) * radius(i);
   }
 
-  /// Moves all balls to the begin of the next step.
+  /// Moves all spheres to the begin of the next step.
   void advance() { center_ += motion_; }
 
  private:

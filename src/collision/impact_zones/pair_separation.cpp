@@ -84,9 +84,9 @@ void PairSeparation::append_half_spaces(Index particle, std::vector<HalfSpace>& 
   for (const DivisionPlanes::Bound& bound : implementation_->bounds_of(particle)) half_spaces.push_back(bound.half_space);
 }
 
-PairSeparation::Ball PairSeparation::ball(Index particle) const {
-  const VertexBounds& balls = implementation_->list.balls();
-  return {balls.center(particle, 1.0), balls.radius(particle)};
+PairSeparation::Sphere PairSeparation::sphere(Index particle) const {
+  const VertexBounds& spheres = implementation_->list.spheres();
+  return {spheres.center(particle, 1.0), spheres.radius(particle)};
 }
 
 const std::vector<Index>& PairSeparation::anchored() const { return implementation_->anchored; }
@@ -111,7 +111,7 @@ std::vector<Index> PairSeparation::passing_pins() const {
 }
 
 bool PairSeparation::allows(Index particle, const Vector3& p) const {
-  if (!implementation_->list.balls().contains(particle, p, 1.0)) return false;
+  if (!implementation_->list.spheres().contains(particle, p, 1.0)) return false;
   const auto bounds = implementation_->bounds_of(particle);
   return std::all_of(bounds.begin(), bounds.end(),
                      [&](const DivisionPlanes::Bound& bound) { return bound.half_space.normal.dot(p) >= bound.half_space.offset; });

@@ -45,11 +45,11 @@ class PairSeparation {
   /// Appends the half-spaces within which the constrained particle may end; it also has to stay in its sphere. Requires
   /// constrain().
   void append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const;
-  struct Ball {
+  struct Sphere {
     Vector3 center;
     double radius;
   };
-  [[nodiscard]] Ball ball(Index particle) const;
+  [[nodiscard]] Sphere sphere(Index particle) const;
 
   /// Constrained particles that move with obstacles as anchors do, in any order.
   [[nodiscard]] const std::vector<Index>& anchored() const;

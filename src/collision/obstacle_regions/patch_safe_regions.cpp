@@ -203,7 +203,7 @@ void PatchSafeRegions::gather_slot(const PatchTopology& topology, const RegionDe
   empty_spheres_.set(i, clear_around, clear);
 }
 
-// The region's radius is that of a ball around the corner. The box is the cube inside the ball.
+// The region's radius is that of a sphere around the corner. The box is the cube inside the sphere.
 Box3 PatchSafeRegions::corner_box(const PatchTopology& topology, Index e, Index slot) const {
   const SafeRegion& region = regions_[at(e)];
   if (!std::isfinite(region.free_radius)) return region.box;

@@ -9,8 +9,8 @@
 namespace sprung {
 namespace {
 
-// Radius of a ball, as a fraction of the shortest edge at its particle. Larger balls last longer, but those of neighbours come too
-// close to each other.
+// Radius of a sphere, as a fraction of the shortest edge at its particle. Larger spheres last longer, but those of neighbours come
+// too close to each other.
 constexpr double kRadius = 0.1;
 
 // If edge lengths differ very much, the shortest edge counts as at least this fraction of the mean.
@@ -31,7 +31,7 @@ constexpr Index kFansPerTask = 128;
 constexpr Index kLeavesPerTask = 64;
 constexpr Index kLeafPairsPerTask = 32;
 
-std::vector<double> ball_radii(const CollisionSurface& surface, const Points& rest) {
+std::vector<double> sphere_radii(const CollisionSurface& surface, const Points& rest) {
   const double largest = *std::max_element(surface.element_size.begin(), surface.element_size.end());
   std::vector<double> radii(static_cast<std::size_t>(rest.cols()), kRadius * largest);
   for (const Element& element : surface.elements) {
@@ -58,7 +58,7 @@ NeighbourList::NeighbourList(const CollisionSurface& surface, const Points& rest
       feature_edges_(surface, topology_),
       tree_(surface, rest),
       corners_(static_cast<std::size_t>(tree_.leaf_count())),
-      balls_(ball_radii(surface, rest)),
+      spheres_(sphere_radii(surface, rest)),
       pair_builder_(surface, topology_),
       proximity_search_(surface, topology_, feature_edges_, tree_, rest_, margin),
       flat_(static_cast<std::size_t>(rest.cols()), 0),
@@ -81,7 +81,7 @@ NeighbourList::NeighbourList(const CollisionSurface& surface, const Points& rest
 
 void NeighbourList::begin_step(const Points& before, const Points& after) {
   age_ += 1.0;
-  balls_.advance();
+  spheres_.advance();
   const double best = best_horizon(before, after);
   if (age_ >= horizon_ || horizon_ - age_ > kMuchLonger * best) {
     horizon_ = best;
@@ -111,7 +111,7 @@ std::vector<Index> NeighbourList::find_leaving(const Points& ends, double time) 
   parallel_chunks(count, kParticlesPerTask, [&](Index begin, Index end) {
     std::vector<Index>& batch = batches[static_cast<std::size_t>(begin / kParticlesPerTask)];
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      if (!balls_.contains(watched_[k], ends.col(watched_[k]), time)) batch.push_back(watched_[k]);
+      if (!spheres_.contains(watched_[k], ends.col(watched_[k]), time)) batch.push_back(watched_[k]);
     }
   });
   std::vector<Index> leaving;
@@ -148,10 +148,10 @@ double NeighbourList::best_horizon(const Points& before, const Points& after) co
 
 void NeighbourList::renew(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
   if (leaving.empty()) return;
-  reset_balls(leaving, before, ends);
+  reset_spheres(leaving, before, ends);
   test_fans();
   mark_elements();
-  tree_.bound(balls_, flat_, marked_elements_, {age_, horizon_});
+  tree_.bound(spheres_, flat_, marked_elements_, {age_, horizon_});
   std::erase_if(pairs_, [&](const ContactStencil& pair) { return has_marked(pair); });
   find_pairs(before);
   renewed_.insert(renewed_.end(), marked_list_.begin(), marked_list_.end());
@@ -165,14 +165,14 @@ void NeighbourList::find_candidates() {
   mark_elements();
   tree_.mark(marked_elements_);
   std::erase_if(candidates_, [&](const ContactCandidate& candidate) { return has_marked(candidate.stencil); });
-  const std::vector<ContactCandidate> found = proximity_search_.find_candidates(balls_, marked_, {age_, horizon_});
+  const std::vector<ContactCandidate> found = proximity_search_.find_candidates(spheres_, marked_, {age_, horizon_});
   candidates_.insert(candidates_.end(), found.begin(), found.end());
   clear_marks();
 }
 
 void NeighbourList::find_pairs(const Points& before) {
   const HorizonTimes times{age_, horizon_};
-  const NeighbourListState state{before, balls_, horizon_ - age_, marked_};
+  const NeighbourListState state{before, spheres_, horizon_ - age_, marked_};
   const std::vector<ElementBvh::LeafPair> leaves = tree_.find_pairs(times, 0.0);
   find_corners_of(leaves, times);
   const auto leaf = [&](Index number) { return PositionedLeaf{tree_.leaf(number), corners_[static_cast<std::size_t>(number)]}; };
@@ -207,17 +207,17 @@ bool NeighbourList::has_marked(const ContactStencil& stencil) const {
   return stencil.any_of([&](Index i) { return is_marked(i); });
 }
 
-void NeighbourList::reset_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
+void NeighbourList::reset_spheres(const std::vector<Index>& leaving, const Points& before, const Points& ends) {
   for (const Index i : leaving) {
     if (is_marked(i)) continue;
     marked_[static_cast<std::size_t>(i)] = 1;
-    balls_.reset(i, before.col(i), ends.col(i));
+    spheres_.reset(i, before.col(i), ends.col(i));
     marked_list_.push_back(i);
   }
 }
 
 /// A fan that is no longer flat has pairs that were never listed. Those without a marked particle still cannot touch: their
-/// particles are in their former balls, for which the fan was flat.
+/// particles are in their former spheres, for which the fan was flat.
 void NeighbourList::test_fans() {
   std::vector<Index> centers;
   const auto visit = [&](Index i) {
@@ -233,7 +233,7 @@ void NeighbourList::test_fans() {
 
   parallel_chunks(static_cast<Index>(centers.size()), kFansPerTask, [&](Index begin, Index end) {
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      const bool stays = fan_stays_flat(topology_, centers[k], balls_, horizon_ - age_);
+      const bool stays = fan_stays_flat(topology_, centers[k], spheres_, horizon_ - age_);
       flat_[static_cast<std::size_t>(centers[k])] = stays ? 1 : 0;
     }
   });

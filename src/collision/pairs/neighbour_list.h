@@ -10,9 +10,9 @@
 
 namespace sprung {
 
-/// Each particle has a moving ball. Elements that are not listed cannot touch, or come within contact's reach, while all particles
-/// are in their balls. If particles leave their balls, the list is renewed around them. The whole list is renewed at its horizon,
-/// and earlier if the motion has changed so that a much shorter horizon pays.
+/// Each particle has a moving sphere. Elements that are not listed cannot touch, or come within contact's reach, while all
+/// particles are in their spheres. If particles leave their spheres, the list is renewed around them. The whole list is renewed at
+/// its horizon, and earlier if the motion has changed so that a much shorter horizon pays.
 class NeighbourList {
  public:
   /// See ProximitySearch for the arguments. Keeps a reference to the surface.
@@ -29,22 +29,22 @@ class NeighbourList {
   /// Lists the pairs of a substep as if it were a step, but no candidates. Discards the list for the steps that follow.
   void begin_substep(const Points& before, const Points& after);
 
-  /// Adds the pairs that may touch if the step ends at `ends` [m] instead: renews the list around particles that leave their balls.
-  /// Requires begin_step() or begin_substep() with the same `before`.
+  /// Adds the pairs that may touch if the step ends at `ends` [m] instead: renews the list around particles that leave their
+  /// spheres. Requires begin_step() or begin_substep() with the same `before`.
   void follow(const Points& before, const Points& ends);
 
   /// The caller may change their normals.
   [[nodiscard]] std::vector<ContactStencil>& pairs() { return pairs_; }
   /// The caller may change their normals and rests.
   [[nodiscard]] std::vector<ContactCandidate>& candidates() { return candidates_; }
-  [[nodiscard]] const VertexBounds& balls() const { return balls_; }
+  [[nodiscard]] const VertexBounds& spheres() const { return spheres_; }
   [[nodiscard]] const SurfaceTopology& topology() const { return topology_; }
 
  private:
   [[nodiscard]] double best_horizon(const Points& before, const Points& after) const;
   [[nodiscard]] std::vector<Index> find_leaving(const Points& ends, double time) const;
   void renew(const std::vector<Index>& leaving, const Points& before, const Points& ends);
-  void reset_balls(const std::vector<Index>& leaving, const Points& before, const Points& ends);
+  void reset_spheres(const std::vector<Index>& leaving, const Points& before, const Points& ends);
   /// Updates `flat_` for all fans with a marked particle.
   void test_fans();
   void mark_elements();
@@ -61,7 +61,7 @@ class NeighbourList {
   FeatureEdges feature_edges_;
   ElementBvh tree_;
   std::vector<LeafCorners> corners_;  ///< by leaf; up to date for the leaves of the last search
-  VertexBounds balls_;
+  VertexBounds spheres_;
   PairBuilder pair_builder_;
   ProximitySearch proximity_search_;
   std::vector<ContactStencil> pairs_;
@@ -73,7 +73,7 @@ class NeighbourList {
   double horizon_ = 0.0;               ///< age at which the whole list is renewed [steps]
   std::vector<char> marked_;           ///< by particle; 0 between calls
   std::vector<Index> marked_list_;
-  std::vector<Index> renewed_;  ///< particles whose balls were reset since the last search for candidates
+  std::vector<Index> renewed_;  ///< particles whose spheres were reset since the last search for candidates
   std::vector<Index> marked_elements_;
   std::vector<char> is_marked_element_;  ///< by element; 0 between calls
   std::vector<char> visited_;            ///< by particle; 0 between calls

@@ -19,15 +19,15 @@ bool share_particle(std::span<const Index> a, std::span<const Index> b) {
   return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
 }
 
-/// Smallest gap along the normal between the balls of both sides from now to the horizon: it is linear in time, so that both ends
+/// Smallest gap along the normal between the spheres of both sides from now to the horizon: it is linear in time, so that both ends
 /// are enough.
 double least_gap(const ContactStencil& pair, const NeighbourListState& state) {
   const auto at = [&](double time) {
     return heights_of(pair,
                       [&](int k) {
                         const Index i = pair.particles[static_cast<std::size_t>(k)];
-                        const double radius = k < pair.first_count ? -state.balls.radius(i) : state.balls.radius(i);
-                        return pair.normal.dot(state.balls.center(i, time)) + radius;
+                        const double radius = k < pair.first_count ? -state.spheres.radius(i) : state.spheres.radius(i);
+                        return pair.normal.dot(state.spheres.center(i, time)) + radius;
                       })
         .gap();
   };

@@ -44,9 +44,9 @@ ProximitySearch::ProximitySearch(const CollisionSurface& surface, const SurfaceT
   }
 }
 
-std::vector<ContactCandidate> ProximitySearch::find_candidates(const VertexBounds& balls, const std::vector<char>& marked,
+std::vector<ContactCandidate> ProximitySearch::find_candidates(const VertexBounds& spheres, const std::vector<char>& marked,
                                                                HorizonTimes times) {
-  const Search search{balls, marked, times};
+  const Search search{spheres, marked, times};
   const std::vector<ElementBvh::LeafPair> pairs = tree_.find_pairs(times, largest_gap_ + margin_);
   prepare_sides(pairs, search);
   const auto count = static_cast<Index>(pairs.size());
@@ -89,7 +89,7 @@ void ProximitySearch::prepare(Side& side, const Search& search) const {
     for (int k = 0; k < 3; ++k) {
       const Index i = side.leaf->particle[k][lane];
       side.largest_displacement =
-          std::max(side.largest_displacement, static_cast<float>(search.balls.motion(i).norm() + search.balls.radius(i)));
+          std::max(side.largest_displacement, static_cast<float>(search.spheres.motion(i).norm() + search.spheres.radius(i)));
     }
   }
   prepare_edges(side, search);
@@ -234,7 +234,7 @@ double ProximitySearch::largest_stray(const ContactStencil& stencil, const Searc
   double second = 0.0;
   for (int k = 0; k < stencil.count(); ++k) {
     double& largest = k < stencil.first_count ? first : second;
-    largest = std::max(largest, search.balls.radius(stencil.particles[static_cast<std::size_t>(k)]));
+    largest = std::max(largest, search.spheres.radius(stencil.particles[static_cast<std::size_t>(k)]));
   }
   return first + second;
 }
@@ -243,7 +243,7 @@ double ProximitySearch::largest_displacement(const ContactStencil& stencil, cons
   double largest = 0.0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(stencil.count()); ++k) {
     const Index i = stencil.particles[k];
-    largest = std::max(largest, search.balls.motion(i).norm() + search.balls.radius(i));
+    largest = std::max(largest, search.spheres.motion(i).norm() + search.spheres.radius(i));
   }
   return largest;
 }
@@ -257,7 +257,7 @@ float ProximitySearch::reach_between(const Side& a, const Side& b) const {
 // Centers move linearly, so that the gap along a fixed direction is smallest at one end of the interval.
 double ProximitySearch::least_distance(ContactStencil& stencil, const Search& search) {
   ContactStencil::PerParticle<Vector3> x;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(stencil.count()); ++k) x[k] = search.balls.center(stencil.particles[k]);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(stencil.count()); ++k) x[k] = search.spheres.center(stencil.particles[k]);
   stencil.normal = closest_points(stencil, x).separation();
   const double distance = stencil.normal.norm();
   if (!(distance > 0.0)) return 0.0;
@@ -265,7 +265,7 @@ double ProximitySearch::least_distance(ContactStencil& stencil, const Search& se
   const double duration = search.times.end - search.times.now;
   const auto height_at_end = [&](int k) {
     const auto at = static_cast<std::size_t>(k);
-    return stencil.normal.dot(x[at] + duration * search.balls.motion(stencil.particles[at]));
+    return stencil.normal.dot(x[at] + duration * search.spheres.motion(stencil.particles[at]));
   };
   return std::min(distance, heights_of(stencil, height_at_end).gap());
 }

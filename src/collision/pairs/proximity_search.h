@@ -19,10 +19,10 @@ class ProximitySearch {
   ProximitySearch(const CollisionSurface& surface, const SurfaceTopology& topology, const FeatureEdges& feature_edges,
                   const ElementBvh& tree, const Points& rest, double margin);
 
-  /// Candidates with a marked particle that may come within their reach between now and the end while particles are in their balls:
-  /// vertices above faces, and pairs of feature edges. Requires that the tree bounds these balls. The order does not depend on the
-  /// number of threads.
-  [[nodiscard]] std::vector<ContactCandidate> find_candidates(const VertexBounds& balls, const std::vector<char>& marked,
+  /// Candidates with a marked particle that may come within their reach between now and the end while particles are in their
+  /// spheres: vertices above faces, and pairs of feature edges. Requires that the tree bounds these spheres. The order does not
+  /// depend on the number of threads.
+  [[nodiscard]] std::vector<ContactCandidate> find_candidates(const VertexBounds& spheres, const std::vector<char>& marked,
                                                               HorizonTimes times);
 
  private:
@@ -34,11 +34,11 @@ class ProximitySearch {
     std::vector<std::array<int, 2>> edges;          ///< lane and number of each edge that they own
     std::vector<std::array<int, 2>> feature_edges;  ///< the feature edges among them
     std::vector<EdgeLanes> edge_lanes{};            ///< the same edges, eight at a time
-    float largest_radius = 0.0F;                    ///< of the leaf's balls [m]
+    float largest_radius = 0.0F;                    ///< of the leaf's spheres [m]
     float largest_displacement = 0.0F;              ///< of its particles in a step, estimated [m]
   };
   struct Search {
-    const VertexBounds& balls;
+    const VertexBounds& spheres;
     const std::vector<char>& marked;
     HorizonTimes times;
   };
@@ -56,13 +56,13 @@ class ProximitySearch {
   void append_edges_near(const Side& a, std::size_t own, const Side& b, std::size_t from, const Search& search,
                          std::vector<ContactCandidate>& candidates) const;
   void append_if_near(ContactCandidate candidate, const Search& search, std::vector<ContactCandidate>& candidates) const;
-  /// Largest displacement of a particle of the stencil in a step, estimated as its ball's motion plus the ball's radius [m].
+  /// Largest displacement of a particle of the stencil in a step, estimated as its sphere's motion plus the sphere's radius [m].
   [[nodiscard]] static double largest_displacement(const ContactStencil& stencil, const Search& search);
   /// Upper bound of the reach between a vertex or edge of `a` and one of `b` [m].
   [[nodiscard]] float reach_between(const Side& a, const Side& b) const;
-  /// How much closer to each other the particles may be than the centers of their balls [m].
+  /// How much closer to each other the particles may be than the centers of their spheres [m].
   [[nodiscard]] static double largest_stray(const ContactStencil& stencil, const Search& search);
-  /// Lower bound of the distance between the balls' centers over the interval [m]; sets the stencil's normal.
+  /// Lower bound of the distance between the spheres' centers over the interval [m]; sets the stencil's normal.
   [[nodiscard]] static double least_distance(ContactStencil& stencil, const Search& search);
   [[nodiscard]] const Element& element(Index number) const { return surface_.elements[static_cast<std::size_t>(number)]; }
   [[nodiscard]] double thickness(Index number) const { return surface_.thickness[element(number).particles[0]]; }

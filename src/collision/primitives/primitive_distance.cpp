@@ -11,7 +11,7 @@ namespace {
 using Vector2 = Eigen::Vector2d;
 
 /// The point of a sphere nearest to p. If p is the centre, the point is in the direction `from_centre`.
-SurfacePoint ball_surface(const Vector3& centre, double radius, const Vector3& p, const Vector3& from_centre) {
+SurfacePoint sphere_surface(const Vector3& centre, double radius, const Vector3& p, const Vector3& from_centre) {
   const Vector3 away = p - centre;
   const double length = away.norm();
   const Vector3 normal = length > 0.0 ? Vector3(away / length) : from_centre;
@@ -77,12 +77,12 @@ Box3 centred_box(double x, double y, double z) { return {Vector3(-x, -y, -z), Ve
 }  // namespace
 
 SurfacePoint surface_point(const SphereGeometry& sphere, const Vector3& p) {
-  return ball_surface(Vector3::Zero(), sphere.radius, p, Vector3::UnitY());
+  return sphere_surface(Vector3::Zero(), sphere.radius, p, Vector3::UnitY());
 }
 
 SurfacePoint surface_point(const CapsuleGeometry& capsule, const Vector3& p) {
   const double half = 0.5 * capsule.length;
-  return ball_surface(std::clamp(p.y(), -half, half) * Vector3::UnitY(), capsule.radius, p, Vector3::UnitX());
+  return sphere_surface(std::clamp(p.y(), -half, half) * Vector3::UnitY(), capsule.radius, p, Vector3::UnitX());
 }
 
 SurfacePoint surface_point(const BoxGeometry& box, const Vector3& p) {

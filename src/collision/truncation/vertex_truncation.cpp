@@ -68,7 +68,7 @@ Outcome VertexTruncation::clip(Index particle, const StepPaths& paths, Points& p
       return Outcome::stopped;
     }
     // The sphere is not among the half-spaces: the shortened displacement may violate them.
-    const Vector3 shortened = within_ball(particle, *found);
+    const Vector3 shortened = within_sphere(particle, *found);
     if (allows(particle, shortened)) {
       position = shortened;
       return Outcome::stopped;
@@ -93,8 +93,8 @@ std::vector<Vector3> VertexTruncation::safe_positions(Index particle, const Step
   return safe;
 }
 
-Vector3 VertexTruncation::within_ball(Index particle, const Vector3& position) const {
-  const auto [center, radius] = pairs_->ball(particle);
+Vector3 VertexTruncation::within_sphere(Index particle, const Vector3& position) const {
+  const auto [center, radius] = pairs_->sphere(particle);
   const double distance = (position - center).norm();
   return distance > radius ? Vector3(center + radius / distance * (position - center)) : position;
 }

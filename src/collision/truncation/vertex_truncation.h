@@ -39,7 +39,7 @@ class VertexTruncation {
   [[nodiscard]] bool allows(Index particle, const Vector3& position) const;
   /// Positions that are admissible unless surfaces close in on the particle. The first is the fallback.
   [[nodiscard]] std::vector<Vector3> safe_positions(Index particle, const StepPaths& paths) const;
-  [[nodiscard]] Vector3 within_ball(Index particle, const Vector3& position) const;
+  [[nodiscard]] Vector3 within_sphere(Index particle, const Vector3& position) const;
 
   const ObstacleSafeRegions& regions_;
   const PairSeparation* pairs_;

@@ -17,12 +17,12 @@ std::size_t near_pairs(const Vector3& offset) {
     network.add_cloth(10, offset + height * kGrid * Vector3::UnitY(), kGrid * Vector3::UnitX(), kGrid * Vector3::UnitZ());
   }
   const CollisionSurface surface = network.surface(0.0);
-  VertexBounds balls(std::vector<double>(static_cast<std::size_t>(network.count()), 0x1p-3 * kGrid));
-  for (Index i = 0; i < network.count(); ++i) balls.reset(i, network.positions.col(i), network.positions.col(i));
+  VertexBounds spheres(std::vector<double>(static_cast<std::size_t>(network.count()), 0x1p-3 * kGrid));
+  for (Index i = 0; i < network.count(); ++i) spheres.reset(i, network.positions.col(i), network.positions.col(i));
   std::vector<Index> all(network.elements.size());
   std::iota(all.begin(), all.end(), 0);
   ElementBvh tree(surface, network.positions);
-  tree.bound(balls, std::vector<char>(static_cast<std::size_t>(network.count()), 0), all, {.now = 0.0, .end = 1.0});
+  tree.bound(spheres, std::vector<char>(static_cast<std::size_t>(network.count()), 0), all, {.now = 0.0, .end = 1.0});
   return tree.find_pairs({.now = 0.0, .end = 1.0}, 0x1p-3 * kGrid).size();
 }
 

@@ -157,17 +157,17 @@ TEST(PairSeparation, AParticleThrownAtASheetKeepsAFractionOfTheThickness) {
   }
 }
 
-// The list is complete only as far as the ball reaches.
-TEST(PairSeparation, NoPositionOutsideAParticlesBallIsAllowed) {
+// The list is complete only as far as the sphere reaches.
+TEST(PairSeparation, NoPositionOutsideAParticlesSphereIsAllowed) {
   const SelfNetwork network = cloth_of(2);
   const CollisionSurface surface = network.surface(kThickness);
   PairSeparation separation(surface, network.positions, kMargin);
   std::vector<Contact> contacts;
   separation.begin_step(network.positions, network.positions, contacts);
   EXPECT_THAT(separation.constrain(network.positions, network.positions), testing::IsEmpty());
-  const PairSeparation::Ball ball = separation.ball(0);
-  EXPECT_TRUE(separation.allows(0, ball.center - 0.99 * ball.radius * kY));
-  EXPECT_FALSE(separation.allows(0, ball.center - 1.01 * ball.radius * kY));
+  const PairSeparation::Sphere sphere = separation.sphere(0);
+  EXPECT_TRUE(separation.allows(0, sphere.center - 0.99 * sphere.radius * kY));
+  EXPECT_FALSE(separation.allows(0, sphere.center - 1.01 * sphere.radius * kY));
 }
 
 /// Each step halves the distance to the sheet, which has to stay well above the rounding of coordinates, 2^-53.

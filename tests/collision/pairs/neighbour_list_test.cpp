@@ -20,13 +20,13 @@ SelfNetwork cloth() {
   return network;
 }
 
-// Gravity moves a particle out of its ball, a tenth of an edge, in sqrt(0.2 edge / g) = 14 ms or 17 steps.
-TEST(NeighbourList, KeepsTheBallsOfAFallingClothForManySteps) {
+// Gravity moves a particle out of its sphere, a tenth of an edge, in sqrt(0.2 edge / g) = 14 ms or 17 steps.
+TEST(NeighbourList, KeepsTheSpheresOfAFallingClothForManySteps) {
   const SelfNetwork network = cloth();
   const CollisionSurface surface = network.surface(kThickness);
   NeighbourList list(surface, network.positions, kMargin);
   Points x = network.positions;
-  Points ball_motion = Points::Zero(3, network.count());
+  Points sphere_motion = Points::Zero(3, network.count());
   Index resets = 0;
   const double dt = 1.0 / 1200.0;
   for (int step = 0; step < 100; ++step) {
@@ -34,8 +34,8 @@ TEST(NeighbourList, KeepsTheBallsOfAFallingClothForManySteps) {
     targets.row(1).array() -= 10.0 * dt + 9.81 * dt * dt * (step + 0.5);
     list.begin_step(x, targets);
     for (Index i = 0; i < network.count(); ++i) {
-      resets += step > 0 && list.balls().motion(i) != ball_motion.col(i) ? 1 : 0;
-      ball_motion.col(i) = list.balls().motion(i);
+      resets += step > 0 && list.spheres().motion(i) != sphere_motion.col(i) ? 1 : 0;
+      sphere_motion.col(i) = list.spheres().motion(i);
     }
     x = targets;
   }

@@ -47,13 +47,13 @@ class Crumpled {
     features_ = std::make_unique<SurfaceTopology>(surface_->elements, network_.count());
     sharp_ = std::make_unique<FeatureEdges>(*surface_, *features_);
     tree_ = std::make_unique<ElementBvh>(*surface_, network_.positions);
-    balls_ = std::make_unique<VertexBounds>(std::vector<double>(static_cast<std::size_t>(network_.count()), kRadius));
+    spheres_ = std::make_unique<VertexBounds>(std::vector<double>(static_cast<std::size_t>(network_.count()), kRadius));
     for (Index i = 0; i < network_.count(); ++i) {
       const Vector3 position = network_.positions.col(i) + random_.between(0.0, 2.0 * kEdge) * random_.direction();
-      balls_->reset(i, position, position + random_.between(0.0, 0.03 * kEdge) * random_.direction());
+      spheres_->reset(i, position, position + random_.between(0.0, 0.03 * kEdge) * random_.direction());
     }
     mark_elements(all());
-    tree_->bound(*balls_, all_of(0), marked_elements_, kTimes);
+    tree_->bound(*spheres_, all_of(0), marked_elements_, kTimes);
   }
 
   [[nodiscard]] std::vector<char> all() const { return all_of(1); }
@@ -67,11 +67,11 @@ class Crumpled {
     mark_elements(marked);
     tree_->mark(marked_elements_);
     ProximitySearch search(*surface_, *features_, *sharp_, *tree_, network_.positions, 0.5 * kGap);
-    return search.find_candidates(*balls_, marked, kTimes);
+    return search.find_candidates(*spheres_, marked, kTimes);
   }
 
-  /// Corners above or below faces, and edges, that share no particle and whose balls' middles are at some time nearer than the gap
-  /// and the balls' radii; in one body the gap is at most 0.4 of the distance at rest.
+  /// Corners above or below faces, and edges, that share no particle and whose spheres' middles are at some time nearer than the
+  /// gap and the spheres' radii; in one body the gap is at most 0.4 of the distance at rest.
   [[nodiscard]] std::set<Key> nearer_than_the_gap() const {
     std::set<Key> found;
     for (const Element& element : surface_->elements) {
@@ -126,7 +126,7 @@ class Crumpled {
   template <class Distance>
   [[nodiscard]] bool comes_near(const Distance& distance, double gap) const {
     for (double time = 0.0; time <= kTimes.end - kTimes.now; time += 0.5) {
-      const double now = distance([&](Index p) { return balls_->center(p, time); });
+      const double now = distance([&](Index p) { return spheres_->center(p, time); });
       if (now < gap + 2.0 * kRadius) return true;
     }
     return false;
@@ -138,7 +138,7 @@ class Crumpled {
   std::unique_ptr<SurfaceTopology> features_;
   std::unique_ptr<FeatureEdges> sharp_;
   std::unique_ptr<ElementBvh> tree_;
-  std::unique_ptr<VertexBounds> balls_;
+  std::unique_ptr<VertexBounds> spheres_;
   std::vector<Index> marked_elements_;
 };
 

@@ -168,14 +168,14 @@ TEST(SelfContactMargin, AnElementThatRotatesDownIsReported) {
   }
 }
 
-/// Each particle rises by `rise` times a small part of the gap, once balls are placed.
+/// Each particle rises by `rise` times a small part of the gap, once spheres are placed.
 Points creep(const Points& x, int step, const Scalars& rise) {
   Points targets = x;
   if (step > 0) targets.row(1) += 0.03 * kGap * rise.transpose();
   return targets;
 }
 
-// What is not looked for again, since nothing leaves its ball, has been looked for as far as both balls let them come.
+// What is not looked for again, since nothing leaves its sphere, has been looked for as far as both spheres let them come.
 TEST(SelfContactMargin, SurfacesThatCreepTogetherAreReported) {
   const SelfNetwork network = sheet_and_particle(1.55 * kGap);
   Scalars rise = Scalars::Ones(network.count());
@@ -184,7 +184,7 @@ TEST(SelfContactMargin, SurfacesThatCreepTogetherAreReported) {
       network, [&](int step, const Points& x) { return creep(x, step, rise); }, height);
 }
 
-// The end of a long segment has a larger ball than the end that it shares with a short one.
+// The end of a long segment has a larger sphere than the end that it shares with a short one.
 TEST(SelfContactMargin, EndsThatCreepTogetherAreReported) {
   SelfNetwork network;
   network.add_rope(2, Vector3::Zero(), 0.04 * Vector3::UnitX());
@@ -197,7 +197,7 @@ TEST(SelfContactMargin, EndsThatCreepTogetherAreReported) {
       network, [&](int step, const Points& x) { return creep(x, step, rise); }, apart);
 }
 
-// What flies together may be stopped on one side in any step, while nothing leaves its ball.
+// What flies together may be stopped on one side in any step, while nothing leaves its sphere.
 TEST(SelfContactMargin, AnElementThatStopsIsReported) {
   for (int stop = 1; stop <= 8; ++stop) {
     SCOPED_TRACE("stops in step " + std::to_string(stop));
@@ -228,7 +228,7 @@ TEST(SelfContactMargin, AParticleThatFallsAcrossAnEdgeIsReported) {
 }
 
 // Passes and surfaces lead particles elsewhere than forces did: what that brings near is looked for in the next step, whatever else
-// leaves its ball then.
+// leaves its sphere then.
 TEST(SelfContactMargin, AParticleMovedThereByPassesIsReported) {
   SelfNetwork network = sheet_and_particle(2.3 * kGap);
   network.add_single_particle({0.5, 0.5, 0.5});
@@ -248,7 +248,7 @@ TEST(SelfContactMargin, AParticleMovedThereByPassesIsReported) {
   EXPECT_EQ(found.size(), 1U);
 }
 
-// One end of a segment above the sheet leaves its ball, the other does not.
+// One end of a segment above the sheet leaves its sphere, the other does not.
 TEST(SelfContactMargin, AParticleThatStaysIsReportedOnce) {
   SelfNetwork network = sheet_and_particle(100.0 * kGap);
   network.add_rope(1, {0.0123, 0.9 * kGap, 0.0171}, {0.011, 0.0, 0.004});
