@@ -65,7 +65,7 @@ bool turns_once(const Fan& fan, const Vector3& eye) {
   return turns == 1;
 }
 
-/// The first and the last spoke stay on different sides of a line through the center, so that they cannot meet behind it.
+/// The first and the last spoke stay on different sides of a line through the center, so that they cannot touch behind it.
 bool ends_stay_apart(const Fan& fan, const Vector3& eye) {
   if (fan.faces <= 2) return true;  // each spans less than half a turn
   const std::size_t last = fan.spokes - 1;

@@ -10,8 +10,8 @@ namespace {
 // An element that slides farther than this fraction of the gap may be closest to another triangle.
 constexpr double kWholeSurface = 1.0;
 
-// With a contact plane that is older than this fraction of the gap an element would slide straight on where the surface is curved:
-// it would press into the surface or leave it.
+// A contact plane is reused until the element has moved by this fraction of the gap. With an older plane the element would slide
+// straight on over a curved surface, and press into it or leave it.
 constexpr double kSameTriangle = 0.02;
 
 }  // namespace

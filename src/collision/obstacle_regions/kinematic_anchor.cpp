@@ -8,7 +8,7 @@ namespace sprung {
 
 namespace {
 
-// From a strain of 1 on a map may turn its group inside out. A fit with more strain than this is rejected.
+// An affine map with a strain of 1 or more may turn its group inside out. A fit with more strain than this is rejected.
 constexpr double kMaxStrain = 0.5;
 
 // Triangles in one plane do not determine the map across the plane. A direction counts as across if the corners' spread along it is

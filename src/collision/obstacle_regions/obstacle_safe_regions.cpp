@@ -14,8 +14,8 @@ constexpr Index kPatchChunk = 4;
 // Contact may push particles out of the box around their patch's paths, by this fraction of its diagonal. Farther ones are clipped.
 constexpr double kDetour = 0.125;
 
-// Where no obstacle moves the broad phase is asked for a box that is larger by this fraction of the diagonal, to be asked less
-// often.
+// If no obstacle moves, the broad phase is queried with a box that is larger by this fraction of the diagonal, so that queries are
+// rarer.
 constexpr double kReserve = 0.25;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
@@ -67,7 +67,8 @@ void ObstacleSafeRegions::find_near(Index p, const StepPaths& paths, double max_
   std::vector<Index> near;
   if (!patch.box.isEmpty()) {
     const double gap = std::max(patch.thickness + set_.max_thickness(), set_.max_clearance(patch.box));
-    // Twice: in the frame of an approaching obstacle the path is longer by its motion, and another obstacle may move the particle.
+    // Twice, because in the frame of an approaching obstacle the path is longer by its motion, and another obstacle may move the
+    // particle.
     const double detour = kDetour * patch.box.diagonal().norm();
     const double reach = gap + margin_ + 2.0 * max_displacement + detour;
     if (!set_.moves() && patch.known.contains(grown(patch.box, reach))) return;

@@ -13,8 +13,8 @@
 
 namespace sprung {
 
-/// A cache: regions stay valid from step to step while their elements stay inside. Where an obstacle moves particles is answered by
-/// ObstacleMotion.
+/// A cache: regions stay valid from step to step while their elements stay inside. ObstacleMotion computes from it how obstacles
+/// move particles.
 class ObstacleSafeRegions {
  public:
   /// Contacts are found up to `margin` [m] beyond their gap. No spring is stretched at `rest` [m], 3 x n. Keeps references to set
@@ -44,7 +44,7 @@ class ObstacleSafeRegions {
   [[nodiscard]] std::vector<Index> leaving() const;
 
   /// Appends contacts of particles (see Environment::contacts), then contacts of obstacles with the inside of edges and faces, at
-  /// the regions' closest points; patch by patch. Where hardly anything moves the margin is smaller. Requires update() for the same
+  /// the regions' closest points; patch by patch. Patches that hardly move have a smaller margin. Requires update() for the same
   /// paths.
   void find_contacts(const StepPaths& paths, std::vector<Contact>& contacts);
   /// Finds the contacts of the patches of these particles alone.
@@ -52,7 +52,8 @@ class ObstacleSafeRegions {
 
   /// Whether the regions of all elements around the particle contain the position at the end of the interval.
   [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
-  /// Whether the regions' planes do, whatever the boxes are: then no known obstacle is between particle and position.
+  /// Whether the planes of these regions allow the position, whatever the boxes are. If so, no known obstacle is between the
+  /// particle and the position.
   [[nodiscard]] bool planes_allow(Index particle, const Vector3& position) const;
   /// Appends the half-spaces that the particle has to stay in at the end of the interval.
   void append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const;
@@ -68,7 +69,7 @@ class ObstacleSafeRegions {
   struct Patch {
     PatchTopology topology;
     std::vector<PatchSafeRegions> regions{};  ///< of the obstacles near it, ascending by obstacle
-    std::vector<char> own{};                  ///< by slot: 1 for particles of no earlier patch
+    std::vector<char> own{};                  ///< by slot: 1 for particles that no earlier patch contains
     std::vector<Index> leaving{};             ///< particles that may leave a region
     std::vector<Index> close{};               ///< slots of particles that may have contacts
     std::vector<Contact> contacts{};          ///< by find_contacts()

@@ -23,7 +23,7 @@ constexpr double kReachOfMotion = 0.5;
 // closest points may be other ones.
 constexpr double kMaxLoss = 0.3;
 
-// An inner sphere has this fraction of the largest possible radius, so that rounding does not let it reach out of a region.
+// An inner sphere has this fraction of the largest possible radius, so that despite rounding it does not exceed a region.
 constexpr double kInnerSphereScale = 1.0 - 0x1p-20;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }

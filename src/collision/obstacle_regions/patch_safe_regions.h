@@ -11,7 +11,7 @@
 
 namespace sprung {
 
-/// What a patch's regions have to provide. All lengths [m].
+/// Requirements of a patch's regions. All lengths [m].
 struct RegionDemand {
   double size = 0.0;       ///< of the elements
   double gap = 0.0;        ///< that contact keeps, at least the clearance
@@ -46,7 +46,7 @@ class PatchSafeRegions {
 
   /// Whether the regions of all elements at the slot contain p.
   [[nodiscard]] bool allow(Index slot, const Vector3& p) const;
-  /// Whether the regions' planes do, whatever the boxes are.
+  /// Whether the planes of these regions contain p, whatever the boxes are.
   [[nodiscard]] bool planes_allow(Index slot, const Vector3& p) const;
 
   /// Replaces `slots` by those, ascending, whose particle may be within `reach` [m] of the surface.
@@ -74,7 +74,7 @@ class PatchSafeRegions {
   const SafeRegion& renew_closest_points(const ObstacleShape& shape, const PatchTopology& topology, const PatchPaths& paths,
                                          const RegionDemand& demand, Index element);
 
-  /// What the last search for the surface point closest to the particle found.
+  /// Result of the last search for the surface point closest to the particle.
   [[nodiscard]] SurfaceMemory& memory(Index slot) { return memories_[static_cast<std::size_t>(slot)]; }
 
  private:

@@ -13,7 +13,7 @@ struct ContactCandidate {
   std::array<Index, 2> elements{};  ///< of the two sides; for a vertex, the element that owns it
   std::array<int, 2> edge{};        ///< of an edge-edge stencil: each edge's number in its element
   double gap = 0.0;                 ///< that contact keeps between the sides [m]
-  double reach = 0.0;               ///< below this distance contact looks at the sides [m]
+  double reach = 0.0;               ///< distance below which contact checks the sides [m]
   int rest = 0;                     ///< steps that may skip the candidate, because its sides are far apart
 };
 

@@ -16,7 +16,7 @@ struct ContactConstraint {
   std::array<double, n> weights{};
   std::array<double, n> shares{};  ///< change of each particle for a unit change of the sum, by inverse mass
   Index obstacle = kNone;          ///< kNone between elements of the network
-  Index patch = kNone;             ///< of the surface that found it
+  Index patch = kNone;             ///< of the surface, where the contact was found
   Vector3 normal = Vector3::Zero();
   double static_friction = 0.0;
   double friction = 0.0;

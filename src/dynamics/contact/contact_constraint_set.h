@@ -107,7 +107,7 @@ class ContactConstraintSet {
     for (const std::size_t c : touching_) for_moved(rows_[c], visit);
   }
 
-  /// Calls `visit(particle, normal)` likewise for contacts that pushed.
+  /// Calls `visit(particle, normal)` in the same way for contacts that pushed.
   template <class Visit>
   void for_pushed(const Visit& visit) const {
     for (std::size_t c = 0; c < rows_.size(); ++c) {

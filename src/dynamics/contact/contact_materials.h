@@ -13,10 +13,10 @@ namespace sprung {
 /// Gap, frictions and restitution of a body and an obstacle (see ContactMaterial).
 [[nodiscard]] ContactMaterial combine(const ContactMaterial& body, const ContactMaterial& obstacle);
 
-/// The same for two bodies, or for a body and itself: the gap is the mean of their thicknesses.
+/// The combined material of two bodies, or of a body with itself: the gap is the mean of their thicknesses.
 [[nodiscard]] ContactMaterial combine_bodies(const ContactMaterial& first, const ContactMaterial& second);
 
-/// Each particle's share of the gap [m]: the thickness of its body.
+/// Each particle's contribution to the gap [m]: the thickness of its body.
 [[nodiscard]] Scalars particle_thickness(const SpringNetwork& network);
 
 /// Combined materials by contact.

@@ -29,7 +29,7 @@ int repeat_until_settled(int max_passes, const Pass& pass) {
 
 class ContactProjection {
  public:
-  /// What push_out() did.
+  /// Result of push_out().
   struct PushOut {
     int passes = 0;
     bool moved = false;  ///< whether any particle moved

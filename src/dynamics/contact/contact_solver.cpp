@@ -22,8 +22,8 @@ constexpr double kTouch = 1.0e-9;
 // `least` of contacts that are left to pins.
 constexpr double kNothingToDo = -std::numeric_limits<double>::infinity();
 
-// A contact is left to pins if they carry more than this fraction of its weights, and if they violate the contact themselves or
-// the other side is an element.
+// A contact is left to pins if they have more than this fraction of its weights, and if they violate the contact themselves or the
+// other side is an element.
 constexpr double kMostPinned = 0.9;
 
 // A contact that begins inside its gap, as truncation or the stretch limit left it, leaves it with the acceleration that takes

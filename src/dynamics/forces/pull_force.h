@@ -1,4 +1,4 @@
-// A hand that takes hold of a body and pulls it.
+// The force of a hand that pulls a body.
 #pragma once
 
 #include "dynamics/forces/force.h"
@@ -16,11 +16,11 @@ namespace sprung {
 /// then change by less than themselves in a step, so no pull makes a step unstable.
 class PullForce final : public Force {
  public:
-  /// Takes hold of particles of the body at `positions` [m] that are within a twentieth of the body's extent of `particle`. Pinned
-  /// particles are left out. `step` is the longest step [s] that follows. The target is where the particle is.
+  /// Attaches to particles of the body at `positions` [m] that are within a twentieth of the body's extent of `particle`. Pinned
+  /// particles are left out. `step` is the longest step [s] that follows. The first target is the position of `particle`.
   PullForce(const SpringNetwork& network, const Points& positions, Index particle, double step);
 
-  /// Where the particle shall go [m].
+  /// Sets the position that the particle is pulled to [m].
   void set_target(const Vector3& target) { target_ = target; }
   [[nodiscard]] const Vector3& target() const { return target_; }
 

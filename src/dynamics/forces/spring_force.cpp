@@ -35,7 +35,7 @@ void add_run(const SpringPlan::Run& run, const Springs& springs, const Kinematic
                   .damping = constant_of(springs.damping, run.spring, run.same_damping, damping)});
 }
 
-/// Springs gathered one by one. Padding entries give forces that nobody reads.
+/// Springs gathered one by one. The forces of padding entries are not used.
 struct GatheredBatch {
   using Vectors = Eigen::Matrix<double, 3, kSpringBatch>;
   Vectors difference = Vectors::Zero();

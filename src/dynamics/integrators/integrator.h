@@ -55,7 +55,8 @@ class Integrator {
   /// is. Default: does nothing.
   virtual void resume(SimulationState& state, const Forces& forces, double dt);
 
-  /// Sets what the scheme keeps in the state between steps, and calls resume(). Call it once, before the first step.
+  /// Initialises the data that the scheme keeps in the state between steps, and calls resume(). Call it once, before the first
+  /// step.
   virtual void start(SimulationState& state, const Forces& forces, double dt);
 
   /// Advances x and v of free particles from t to t + dt. Members of an integrator are scratch memory: the result depends on the

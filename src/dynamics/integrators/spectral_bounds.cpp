@@ -124,7 +124,7 @@ Scalars start_vector(const Scalars& root) {
   return y;
 }
 
-/// Lanczos' method: power iteration that keeps the tridiagonal matrix of what it saw.
+/// Lanczos' method: power iteration that stores the tridiagonal matrix of its iterates.
 template <class Matrix>
 double largest_eigenvalue(const Matrix& matrix) {
   const double bound = matrix.row_sum_bound();

@@ -15,7 +15,7 @@ struct VerletStep {
 void advance_verlet(Index count, const VerletStep& step, const double* gains, const double* forces, double* x, double* x_previous,
                     double* v);
 
-/// The same with the product `gained` = gains * forces [m] given.
+/// As above, with the product `gained` = gains * forces [m] given.
 void advance_verlet(Index count, const VerletStep& step, const double* gained, double* x, double* x_previous, double* v);
 
 /// v = (x - before) per_dt

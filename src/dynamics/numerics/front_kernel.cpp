@@ -76,7 +76,7 @@ template <class Number>
   return true;
 }
 
-/// Eliminates the supernode's own rows of tiles from `t` on, as many as fill whole Tiles.
+/// Eliminates the supernode's own rows of tiles from `t` on, as many as fill whole `Tiles`.
 template <class Lanes, int kVectors, class Number>
 [[gnu::always_inline]] inline bool eliminate_own(const FrontShape& shape, std::size_t stride, Index& t, Number* panel,
                                                  Number* inverse, Number* row) {
@@ -96,7 +96,7 @@ template <class Lanes, int kVectors, class Number>
   return true;
 }
 
-/// Eliminates the rows of tiles below from `t` on, as many as fill whole Tiles, and computes their update.
+/// Eliminates the rows of tiles below from `t` on, as many as fill whole `Tiles`, and computes their update.
 template <class Lanes, int kVectors, class Number>
 [[gnu::always_inline]] inline void eliminate_lower(const FrontShape& shape, std::size_t stride, Index& t, Number* panel,
                                                    const Number* inverse, Number* update, Number* row) {

@@ -73,7 +73,7 @@ template <class Lanes, int kVectors>
   }
 }
 
-/// Subtracts A B^T over `depth` columns. Columns of A are contiguous and hold all rows of the Tiles.
+/// Subtracts A B^T over `depth` columns. Columns of A are contiguous and hold all rows of the `Tiles`.
 template <class Lanes, int kVectors>
 [[gnu::always_inline]] inline void subtract_product(const NumberOf<Lanes>* a, const NumberOf<Lanes>* b, Index depth,
                                                     Tiles<Lanes, kVectors>& from) {

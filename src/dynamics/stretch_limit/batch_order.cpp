@@ -12,8 +12,8 @@ namespace {
 constexpr Index kTaskBatches = 4096 / SpringBatches::kBatchSprings;
 
 // The springs between two chunks extend by a band with each colour on either side, and the chunks must keep some in their middle.
-// With two chunks much may lie between them: in a cloth of 64 x 64 with bend springs each chunk has 1.2 bands per colour, a fifth
-// of the springs remain serial, and two threads save a third of a drape. With fewer batches than this, waiting costs what
+// With two chunks many springs may lie between them: in a cloth of 64 x 64 with bend springs each chunk has 1.2 bands per colour,
+// a fifth of the springs remain serial, and two threads save a third of a drape. With fewer batches than this, waiting costs what
 // parallelism saves.
 constexpr Index kBandsPerColour = 3;
 constexpr Index kBatchesForTwo = 4 * kTaskBatches;

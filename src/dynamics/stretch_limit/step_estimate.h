@@ -15,11 +15,11 @@ struct LoadCase {
 [[nodiscard]] bool is_rigid(const Body& body, const SpringGraph& graph);
 
 /// The relative excess of a body's most loaded limited spring after a Gauss-Seidel pass, per metre that each particle moved down
-/// before it [1/m]; 0 without limited springs. It is the number of carried particles, times the springs that meet at a particle,
-/// divided by the rest length. With pins, the pinned particles with limited springs share the free particles equally; with
-/// tethers, each carries the springs of the longest strand that leads to it. Without pins the body may hang over an obstacle by
-/// its middle: half the springs on the path between its farthest ends. A shared load decreases with the number of springs that
-/// meet. `graph` is that of the limited springs.
+/// before it [1/m]; 0 without limited springs. It is the number of particles that the spring supports, times the number of springs
+/// per particle, divided by the rest length. With pins, the pinned particles with limited springs share the free particles
+/// equally; with tethers, each carries the springs of the longest strand that leads to it. Without pins the body may hang over an
+/// obstacle by its middle: half the springs on the path between its farthest ends. A shared load decreases with the number of
+/// springs per particle. `graph` is the graph of the limited springs.
 double largest_load(const SpringNetwork& network, const Body& body, const SpringGraph& graph, const LoadCase& load_case);
 
 }  // namespace sprung

@@ -39,8 +39,8 @@ class StretchLimit {
   /// convex set (Agmon 1954; Motzkin and Schoenberg 1954). Over-relaxation spreads the excess faster where many springs share it.
   double project(const Points& before, Points& positions, double relaxation = 1.0) const;
 
-  /// Newton's method on all springs that are too long, for the components that `solver` chooses: moves free particles to where
-  /// springs are within max_stretch, with the least weighted displacement. Compression and contact are left to the passes.
+  /// Newton's method on all springs that are too long, for the components that `solver` chooses: moves free particles to positions
+  /// where springs are within max_stretch, with the least weighted displacement. Compression and contact are left to the passes.
   /// `before` are the positions at the beginning of the step. `fall` [m] is a dt^2 with the largest steady acceleration a of
   /// gravity and wind. `handovers` says for each body whether it was handed over; it may be empty. Returns the largest number of
   /// linear systems of a component; none if nothing was too long.
@@ -63,8 +63,8 @@ class StretchLimit {
   [[nodiscard]] bool may_be_handed_over(std::size_t body) const;
 
   /// The step [s] at which `iterations` passes a step keep the excess at about `wanted_excess` while each body hangs at rest under
-  /// `acceleration` [m/s^2] by its pins or over an obstacle: in each step gravity adds g dt^2 per carried particle, which the
-  /// passes must pass on. It is larger with tethers to taut pins (see are_pins_taut). Infinity if nothing is limited, and for
+  /// `acceleration` [m/s^2] by its pins or over an obstacle: in each step gravity adds g dt^2 per supported particle, which the
+  /// passes must distribute. It is larger with tethers to taut pins (see are_pins_taut). Infinity if nothing is limited, and for
   /// bodies that Newton's method solves, which need no small steps.
   [[nodiscard]] double suggested_step(double acceleration) const;
 

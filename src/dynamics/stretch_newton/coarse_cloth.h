@@ -25,9 +25,9 @@ struct CoarseCloth {
 
 /// Makes the coarse copy of a component of the network that springs of `kinds` join. Coarse rows and columns are about two apart,
 /// closer beside an isolated pin. Links join neighbours along rows and columns, and across cells where shear springs are limited.
-/// Each link is as long as the springs that it replaces, so it holds while they hold. Returns none unless the component is all
-/// free particles of a cloth from make_cloth whose limited springs include the structural ones and no other kinds, and if pins
-/// would keep more than half of its particles.
+/// Each link is as long as the springs that it replaces, so its limit is satisfied while theirs are. Returns none unless the
+/// component is all free particles of a cloth from make_cloth whose limited springs include the structural ones and no other
+/// kinds, and if pins would keep more than half of its particles.
 [[nodiscard]] std::optional<CoarseCloth> coarsen(const SpringNetwork& network, const StretchComponent& component,
                                                  const std::vector<SpringKind>& kinds);
 

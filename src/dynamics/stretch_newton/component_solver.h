@@ -18,10 +18,10 @@ class ComponentSolver {
  public:
   virtual ~ComponentSolver() = default;
 
-  /// Moves the component's free particles from the target of the forces, `positions` [m], 3 x particles, to where no link is much
-  /// too long. `before` are the positions at the beginning of the step. `fall` [m] is the displacement of a particle at rest by
-  /// the largest steady acceleration in a step, |g| dt^2. Returns the number of linear systems solved; none if no link was too
-  /// long.
+  /// Moves the component's free particles from the target of the forces, `positions` [m], 3 x particles, to positions where no
+  /// link is much too long. `before` are the positions at the beginning of the step. `fall` [m] is the displacement of a particle
+  /// at rest by the largest steady acceleration in a step, |g| dt^2. Returns the number of linear systems solved; none if no link
+  /// was too long.
   virtual std::optional<int> solve(const Points& before, Points& positions, double fall) = 0;
 
   /// Largest relative deformation in the last solve() [1]: the largest displacement of a point by forces minus the common

@@ -25,10 +25,10 @@ class StretchNewton {
   StretchNewton(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use = {});
   ~StretchNewton();
 
-  /// Moves free particles from the target of the forces, `positions`, to where no limited spring is much too long, with the least
-  /// weighted displacement. `before` are the positions at the beginning of the step; `positions` holds the final positions of
-  /// pins. `fall` is that of ComponentSolver. `handovers` has an entry per body or is empty. Returns the largest number of linear
-  /// systems of a component; none if nothing was too long.
+  /// Moves free particles from the target of the forces, `positions`, to positions where no limited spring is much too long, with
+  /// the least weighted displacement. `before` are the positions at the beginning of the step; `positions` holds the final
+  /// positions of pins. `fall` is that of ComponentSolver. `handovers` has an entry per body or is empty. Returns the largest
+  /// number of linear systems of a component; none if nothing was too long.
   std::optional<int> solve(const Points& before, Points& positions, double fall,
                            const std::vector<StretchHandover>& handovers = {});
 

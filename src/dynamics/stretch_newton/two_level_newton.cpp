@@ -15,7 +15,7 @@ constexpr Index kLeastParticles = 8192;
 constexpr double kLeastTolerance = 0.005;
 constexpr double kFractionOfTolerance = 0.25;
 
-// Taut parts are straightened by at most this fraction of the fall per step, as by the same fraction of gravity. With the whole
+// Taut regions are straightened by at most this fraction of the fall per step, as by the same fraction of gravity. With the whole
 // fall a swinging cloth of 128 x 128 gained 0.4 % of its released energy in steps of 1/960 s; with this fraction a thousandth of a
 // per cent.
 constexpr double kStraightenedOfFall = 1.0 / 16.0;
