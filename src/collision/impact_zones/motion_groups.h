@@ -32,8 +32,8 @@ class MotionGroups {
   /// Computes one reference motion per group. The first rule that applies wins: (1) locked group with pins: rigid motion of the
   /// pins, if they have one; (2) pins: mean of their displacements; (3) anchors: their common affine motion, which locks the
   /// group; (4) particles moved by obstacles: mean of their displacements; (5) otherwise: mean displacement, times 1 - variance /
-  /// mean^2 or 0, so that a falling cloth is not slowed and a resting one does not follow what hits it. Resets the fractions to 1,
-  /// and to 0 for locked groups.
+  /// mean^2 or 0, so that a falling cloth is not slowed and a resting one does not follow a body that hits it. Resets the
+  /// fractions to 1, and to 0 for locked groups.
   void find_motions();
 
   /// Number of the particle's group from 0, or kNone, as of the last find_motions().

@@ -1,4 +1,4 @@
-// Rigid fit to the displacements of pins: the motion of what hangs on them.
+// Rigid fit to the displacements of pins: the motion of a group that hangs on them.
 #pragma once
 
 #include "base/types.h"

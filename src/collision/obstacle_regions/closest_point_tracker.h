@@ -30,7 +30,7 @@ class ClosestPointTracker {
   /// in this interval. The caller makes the search that is returned, then calls set_corners().
   [[nodiscard]] Search next_search(Index element, const ElementCorners& corners, const Vector3& drift, double gap);
 
-  /// Records where the element was in the search that next_search() asked for.
+  /// Records where the element was in the search that next_search() requested.
   void set_corners(Index element, const std::array<Vector3, 3>& corners) {
     records_[static_cast<std::size_t>(element)].corners = corners;
   }

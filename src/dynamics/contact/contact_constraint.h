@@ -36,8 +36,8 @@ struct ContactConstraint {
 };
 
 /// The goal of a constraint: normal . (sum - origin) >= least. For positions [m] the origin is where the sum would be if it moved
-/// with the surface that it touches; for velocities [m/s] it is the velocity of that surface. What remains across the normal is
-/// slip.
+/// with the surface that it touches; for velocities [m/s] it is the velocity of that surface. The remaining component across the
+/// normal is slip.
 struct ContactGoal {
   Vector3 origin = Vector3::Zero();
   double least = 0.0;

@@ -32,7 +32,7 @@ class ContactMaterials {
     Index other_body = kNone;
     bool operator==(const Pair&) const = default;
   };
-  /// The last pair asked for: consecutive contacts mostly share their pair.
+  /// The pair of the last query: consecutive contacts mostly share their pair.
   struct Last {
     Pair pair{};
     ContactMaterial material{};

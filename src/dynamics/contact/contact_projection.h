@@ -12,7 +12,7 @@
 
 namespace sprung {
 
-/// Contact passes that a step makes if no stretch limit asks for more: a particle in a corner between obstacles settles in them.
+/// Contact passes that a step makes if no stretch limit needs more: a particle in a corner between obstacles settles in them.
 inline constexpr int kContactPasses = 8;
 
 /// Contact is settled when a pass changes no push by more than this fraction of the gap.
@@ -72,7 +72,7 @@ class ContactProjection {
   void truncate(const StepMotion& motion, Points& positions, const StepTruncation::Relax& relax = {});
 
   /// Limits the speed of particles that truncation moved with obstacles to the speed that forces gave them: a lever would
-  /// otherwise throw a particle far from the axis of a rotating obstacle. Contact accelerates what touches the obstacle. Requires
+  /// otherwise throw a particle far from the axis of a rotating obstacle. Contact accelerates the particles that touch it. Requires
   /// velocities recovered from positions.
   void limit_speed_of_moved(const StepMotion& motion, SimulationState& state, const Integrator& integrator) const;
 

@@ -69,7 +69,7 @@ class ContactSolver {
   std::vector<RigidTransform> obstacle_motions_;  ///< of each obstacle, from the beginning of the step to its end
   using Sets = std::tuple<ContactConstraintSet<1>, ContactConstraintSet<2>, ContactConstraintSet<3>, ContactConstraintSet<4>>;
   Sets sets_;
-  Sets former_sets_;              ///< what renew() takes out
+  Sets former_sets_;              ///< contacts that renew() removes
   std::vector<Index> order_;      ///< contacts with as many particles as the set that is being filled
   std::vector<Index> first_row_;  ///< see ContactConstraintSet::warm_start
 };

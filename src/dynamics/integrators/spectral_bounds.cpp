@@ -115,7 +115,7 @@ class AngleBendMatrix {
 
 /// The same vector in every run. Zero for pinned particles, so that iterations stay among the free ones.
 Scalars start_vector(const Scalars& root) {
-  std::mt19937 random;  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same bits in every run are what is wanted
+  std::mt19937 random;  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same bits in every run are intended
   Scalars y(root.size());
   for (Index i = 0; i < y.size(); ++i) {
     const double uniform = static_cast<double>(random()) / static_cast<double>(std::mt19937::max());

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The load of rigid surfaces relative to that of others, measured as the comment of largest_load says.
+// The load of rigid surfaces relative to that of others, measured as described at largest_load.
 constexpr double kTetheredShare = 5.0;
 constexpr double kShare = 8.0;
 
@@ -59,7 +59,7 @@ bool is_rigid(const Body& body, const SpringGraph& graph) {
 // excess of all its springs. Measured: 1.8 to 1.9 times the average for hanging ropes (2 springs a particle), 4.0 for
 // cloths (4 springs).
 //
-// Tethers pass on the load that hangs straight below a pin; a strand still carries what hangs sideways. Measured with one pass a
+// Tethers pass on the load that hangs straight below a pin; a strand still carries the load beside it. Measured with one pass a
 // step: cloths of 24, 48 and 64 particles a side on two corners showed 0.8, 0.8 and 0.6 of a rope with as many springs.
 //
 // A cloth that may shrink necks and folds until few springs carry all. One that may not shares the load. Measured on two corners

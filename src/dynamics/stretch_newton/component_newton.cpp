@@ -205,7 +205,7 @@ void ComponentNewton::note_balance(double energy) {
   balanced_target_ = target_;
 }
 
-/// Whether nothing has moved since except in common, and the forces' target is nearly the same.
+/// Whether all points have moved by the same displacement since then, and the forces' target is nearly the same.
 bool ComponentNewton::is_at_rest() const {
   if (balanced_energy_ == kUnknown) return false;
   const Vector3 common = x_.col(0) - balanced_.col(0);

@@ -50,9 +50,9 @@ class StretchEnergy {
   /// For each link k max(0, 1 - L / |d|) at `x`: its contribution to the second derivatives across its direction [kg].
   [[nodiscard]] std::vector<double> stiffness_across(const Points& x) const;
 
-  /// Replaces the residual by what the linearisation at `x` missed on the step to `tried`: links that became longer because the
-  /// step rotated them pull along their directions at `x`, at most by their excess at `tried`. This is a second-order correction
-  /// (Nocedal and Wright 2006, chapter 18).
+  /// Replaces the residual by the forces that the linearisation at `x` missed on the step to `tried`: links that became longer
+  /// because the step rotated them pull along their directions at `x`, at most by their excess at `tried`. This is a second-order
+  /// correction (Nocedal and Wright 2006, chapter 18).
   void take_turning(const Points& x, const Points& tried, StretchSystem& system) const;
 
  private:

@@ -23,7 +23,7 @@ struct StretchLimitSettings {
   Solver solver = Solver::gauss_seidel;
 };
 
-/// What the automatic solver needs to know to choose between passes and Newton's method.
+/// Input of the automatic choice between passes and Newton's method.
 struct LimitUse {
   bool may_collide = true;        ///< contact may oppose the solution
   bool takes_small_steps = true;  ///< springs or angle bends with stiffness need small steps, in which passes suffice
