@@ -17,7 +17,7 @@ Box3 box_of(const TriangleMesh& mesh, Index triangle) {
   return box;
 }
 
-/// Collects the triangles below a node and sees that its boxes hold them.
+/// Collects the triangles below a node and checks that its boxes contain them.
 class TreeInspector {
  public:
   TreeInspector(const TriangleMesh& mesh, const MeshBvh& tree) : mesh_(mesh), tree_(tree) {}
@@ -73,7 +73,7 @@ std::vector<TriangleMesh> samples() {
   TriangleMesh one{Points(3, 3), Triangles(3, 1)};
   one.vertices << 0, 1, 0, 0, 0, 0, 0, 0, 1;
   one.triangles << 0, 1, 2;
-  // Triangles that lie on each other, whose middles nothing tells apart.
+  // Identical triangles, whose middles are equal.
   TriangleMesh pile{one.vertices, Triangles(3, 100)};
   for (Index t = 0; t < 100; ++t) pile.triangles.col(t) = one.triangles.col(0);
   TriangleMesh points{Points::Zero(3, 3), pile.triangles};

@@ -45,7 +45,7 @@ std::optional<Quotient> grid_crossing(const TriangleMesh& mesh, Index t, const G
   return Quotient{over, under, t};
 }
 
-/// The crossing with the smallest fraction; of several the one with the first triangle.
+/// The crossing with the smallest fraction; if several have it, the first triangle's.
 std::optional<Quotient> first_grid_crossing(const TriangleMesh& mesh, const Grid& a, const Grid& b, bool closed) {
   std::optional<Quotient> first;
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {

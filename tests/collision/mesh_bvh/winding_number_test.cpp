@@ -12,7 +12,7 @@ namespace {
 
 using test::Random;
 
-/// Both meshes as components of one.
+/// Both meshes as components of one mesh.
 TriangleMesh together(const TriangleMesh& a, const TriangleMesh& b) {
   TriangleMesh both{Points(3, a.vertices.cols() + b.vertices.cols()), Triangles(3, a.triangles.cols() + b.triangles.cols())};
   both.vertices << a.vertices, b.vertices;
@@ -48,8 +48,7 @@ TEST(MeshInside, WindingNumberIsThatOfSolidAngles) {
 }
 
 TEST(MeshInside, RaysThroughEdgesAndVerticesCountOnce) {
-  // Two boxes with corners on integers, asked from the quarters of a grid: most rays meet edges, many meet vertices, some run
-  // within faces.
+  // Two boxes with integer corners, queried at quarters of a grid: most rays hit edges, many hit vertices, some run within faces.
   const Box3 first(Vector3(0, 0, 0), Vector3(4, 2, 4));
   const Box3 second(Vector3(2, 1, -1), Vector3(6, 3, 3));
   const auto mesh_of = [](const Box3& box) { return moved(box_mesh(box.min(), box.max()), box.center()); };
@@ -78,7 +77,7 @@ TEST(MeshInside, OverlapOfComponentsIsInside) {
   const auto box = [](const Vector3& centre) { return moved(box_mesh(Vector3::Constant(-1), Vector3::Constant(1)), centre); };
   const TriangleMesh mesh = together(box(Vector3::Zero()), box(Vector3(1.0, 0.1, 0.2)));
   const auto shape = make_shape(MeshGeometry{std::make_shared<TriangleMesh>(mesh), true});
-  // Just outside the first box but inside the second: the nearest face is one that the second swallowed.
+  // Just outside the first box but inside the second: the nearest face is inside the second box.
   EXPECT_TRUE(shape->contains(Vector3(1.01, 0.0, 0.0)));
   EXPECT_TRUE(shape->contains(Vector3(0.99, 0.0, 0.0)));
   EXPECT_FALSE(shape->contains(Vector3(2.01, 0.0, 0.0)));
@@ -101,7 +100,7 @@ TEST(MeshInside, BoxFindsTheTrianglesThatItMeets) {
       ++expected;
       ASSERT_THAT(found, testing::Contains(t));
     }
-    // Boxes are rounded outward in single precision, which seldom lets another one in.
+    // Boxes are rounded outward in single precision, which rarely adds another one.
     ASSERT_LE(static_cast<Index>(found.size()), expected + 2);
   }
 }

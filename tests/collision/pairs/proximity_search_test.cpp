@@ -1,4 +1,4 @@
-// What contact of the network with itself looks at, against all pairs of corners and faces and of edges.
+// Compares the candidates of the proximity search with brute force over all vertex-face and edge-edge pairs.
 #include "collision/pairs/proximity_search.h"
 #include "collision/self_networks.h"
 #include "geometry/queries/closest_pair.h"
@@ -24,7 +24,7 @@ constexpr HorizonTimes kTimes{.now = 2.0, .end = 7.0};
 
 using Key = std::tuple<bool, Index, Index, Index, Index>;
 
-/// Edges are the same whichever way and order they are named.
+/// The key of an edge pair does not depend on the order of the edges or of their ends.
 Key key(bool edges, std::array<Index, 4> x) {
   if (edges) {
     std::sort(x.begin(), x.begin() + 2);
@@ -36,7 +36,7 @@ Key key(bool edges, std::array<Index, 4> x) {
   return {edges, x[0], x[1], x[2], x[3]};
 }
 
-/// A sheet and ropes whose particles are anywhere in a small room, each on its own way.
+/// A sheet and ropes with particles at random positions in a small box, each with its own displacement.
 class Crumpled {
  public:
   explicit Crumpled(std::uint64_t seed) : random_(seed) {
@@ -70,8 +70,8 @@ class Crumpled {
     return search.find_candidates(*spheres_, marked, kTimes);
   }
 
-  /// Corners above or below faces, and edges, that share no particle and whose spheres' middles are at some time nearer than the
-  /// gap and the spheres' radii; in one body the gap is at most 0.4 of the distance at rest.
+  /// Vertices above or below faces, and pairs of edges, that share no particle and whose spheres' centers are at some time nearer
+  /// than the gap plus the spheres' radii. Within a body the gap is at most 0.4 of the distance at rest.
   [[nodiscard]] std::set<Key> nearer_than_the_gap() const {
     std::set<Key> found;
     for (const Element& element : surface_->elements) {
@@ -170,7 +170,7 @@ TEST(ProximitySearch, NamesEachOnce) {
 
 TEST(ProximitySearch, LooksAtLittleElse) {
   Crumpled crumpled(5);
-  // What comes as near as gap and margin, by bounds that hold from begin to end: 1.4 times as many were seen.
+  // The search finds all pairs within gap and margin, by bounds over the whole interval. 1.4 times as many were observed.
   EXPECT_LT(crumpled.find(crumpled.all()).size(), 2 * crumpled.nearer_than_the_gap().size());
 }
 

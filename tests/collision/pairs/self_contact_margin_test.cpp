@@ -1,5 +1,5 @@
-// How far beyond their gap contacts of the network with itself are found, and that none is missed by what is not looked at each
-// step.
+// The margin beyond the gap within which contacts of the network with itself are found. None may be missed because a candidate was
+// skipped in a step.
 #include "collision/self_networks.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using test::SelfNetwork;
 constexpr double kEdge = 0.01;  // [m]
 constexpr double kGap = 0.003;  // [m]
 
-/// A sheet that rests at height 0, and a particle above it, the last.
+/// A sheet at rest at height 0, and a particle above it, which is the last.
 SelfNetwork sheet_and_particle(double height) {
   SelfNetwork network;
   network.add_cloth(4, Vector3::Zero(), kEdge * Vector3::UnitX(), kEdge * Vector3::UnitZ());
@@ -24,7 +24,8 @@ SelfNetwork sheet_and_particle(double height) {
   return network;
 }
 
-/// Contacts of a particle on its way down to this height [gaps] by so much [gaps]; found half a gap beyond it at most.
+/// Number of contacts found as a particle falls by `fall` [gaps] to this height [gaps]. They are found at most half a gap beyond
+/// the gap.
 std::size_t contacts(double height, double fall) {
   const SelfNetwork network = sheet_and_particle((height + fall) * kGap);
   const CollisionSurface surface = network.surface(kGap);
@@ -36,7 +37,7 @@ std::size_t contacts(double height, double fall) {
   return found.size();
 }
 
-/// The largest height [gaps] from 1 on, in steps of a hundredth, at which contact is found after this fall [gaps].
+/// The largest height [gaps] above 1, in steps of a hundredth, at which contact is found after this fall [gaps].
 double reach(double fall) {
   double height = 0.99;
   while (contacts(height + 0.01, fall) > 0) height += 0.01;
@@ -55,8 +56,8 @@ TEST(SelfContactMargin, GrowsWithTheMotionUpToTheAskedMargin) {
   EXPECT_EQ(reach(80.0), reach(8.0));
 }
 
-/// Steps to where `go(step, before)` leads, the first of which is 0, until two sides are nearer than the gap, of which contact is
-/// to tell then; `distance` is that between them.
+/// Makes steps to the positions `go(step, before)`, with steps counted from 0, until two sides are nearer than the gap. The step
+/// in which that happens has to find one contact. `distance` is the distance of the sides [m].
 template <class Go, class Distance>
 void expect_contact_in_time(const SelfNetwork& network, const Go& go, const Distance& distance) {
   const CollisionSurface surface = network.surface(kGap);
@@ -74,16 +75,17 @@ void expect_contact_in_time(const SelfNetwork& network, const Go& go, const Dist
   }
 }
 
-/// Of the last particle above the first.
+/// Height of the last particle above the first.
 double height(const Points& x) { return x(1, x.cols() - 1) - x(1, 0); }
 
-/// From 3 gaps above its own at a speed that takes it there in about `steps`; the sheet makes this part of the way.
-void expect_contact_as_they_meet(int steps, double part_of_sheet) {
+/// The particle falls from 3 gaps above its gap, at a speed that closes the distance in about `steps`; the sheet moves by the
+/// fraction `sheet_fraction` of it.
+void expect_contact_as_they_approach(int steps, double sheet_fraction) {
   SCOPED_TRACE(std::to_string(steps) + " steps");
   const auto go = [&](int, const Points& x) {
     const double motion = std::min(3.1 * kGap / steps, height(x) - 0.5 * kGap);
     Points targets = x;
-    targets.row(1).array() += part_of_sheet * motion;
+    targets.row(1).array() += sheet_fraction * motion;
     targets(1, x.cols() - 1) -= motion;
     return targets;
   };
@@ -91,17 +93,18 @@ void expect_contact_as_they_meet(int steps, double part_of_sheet) {
 }
 
 TEST(SelfContactMargin, AParticleNearerToASheetThanItsGapIsReported) {
-  for (int steps = 1; steps <= 70; ++steps) expect_contact_as_they_meet(steps, 0.0);
+  for (int steps = 1; steps <= 70; ++steps) expect_contact_as_they_approach(steps, 0.0);
 }
 
 TEST(SelfContactMargin, AParticleThatASheetApproachesIsReported) {
   for (int steps = 1; steps <= 70; ++steps) {
-    expect_contact_as_they_meet(steps, 0.5);
-    expect_contact_as_they_meet(steps, 1.0);
+    expect_contact_as_they_approach(steps, 0.5);
+    expect_contact_as_they_approach(steps, 1.0);
   }
 }
 
-/// The first `turning` particles turn about the z axis towards the rest, of which the last is the nearest, there in so many steps.
+/// The first `turning` particles rotate about the z axis towards the others, of which the last is the nearest, and reach it in
+/// this many steps.
 template <class Distance>
 void expect_contact_as_it_turns(const SelfNetwork& network, Index turning, int steps, const Distance& distance) {
   SCOPED_TRACE(std::to_string(steps) + " steps");
@@ -141,9 +144,9 @@ TEST(SelfContactMargin, AParticleThatARopeRotatesTowardsIsReported) {
   }
 }
 
-/// The particle goes as `move(step)` says [gaps], from so high [gaps].
+/// The particle moves as `move(step)` says [gaps], from this height [gaps].
 template <class Move>
-void expect_contact_on_its_way(double from, const Move& move) {
+void expect_contact_on_its_path(double from, const Move& move) {
   SCOPED_TRACE("from " + std::to_string(from));
   const auto go = [&](int step, const Points& x) {
     Points targets = x;
@@ -154,28 +157,29 @@ void expect_contact_on_its_way(double from, const Move& move) {
   expect_contact_in_time(sheet_and_particle(from * kGap), go, height);
 }
 
-// What hangs above the sheet until it is let go comes faster in each step.
+// A particle that is released above the sheet moves faster in each step.
 TEST(SelfContactMargin, AParticleThatFallsFromRestIsReported) {
   for (const double gained : {0.001, 0.01, 0.1}) {
-    expect_contact_on_its_way(4.0, [&](int step) { return Vector3(0.0, -(step + 1) * gained, 0.0); });
+    expect_contact_on_its_path(4.0, [&](int step) { return Vector3(0.0, -(step + 1) * gained, 0.0); });
   }
 }
 
-// What goes along the sheet may turn down to it in any step, as fast as it went.
+// An element that moves along the sheet may rotate down to it in any step, as fast as it moved.
 TEST(SelfContactMargin, AnElementThatRotatesDownIsReported) {
   for (double from = 1.02; from < 3.0; from += 0.06) {
-    expect_contact_on_its_way(from, [](int step) -> Vector3 { return -0.2 * (step < 5 ? Vector3::UnitX() : Vector3::UnitY()); });
+    expect_contact_on_its_path(from, [](int step) -> Vector3 { return -0.2 * (step < 5 ? Vector3::UnitX() : Vector3::UnitY()); });
   }
 }
 
-/// Each particle rises by `rise` times a small part of the gap, once spheres are placed.
+/// Each particle rises by `rise` times a small fraction of the gap, once the spheres are set.
 Points creep(const Points& x, int step, const Scalars& rise) {
   Points targets = x;
   if (step > 0) targets.row(1) += 0.03 * kGap * rise.transpose();
   return targets;
 }
 
-// What is not looked for again, since nothing leaves its sphere, has been looked for as far as both spheres let them come.
+// While no particle leaves its sphere, the list is not renewed. So it has to cover the motion of both particles within their
+// spheres.
 TEST(SelfContactMargin, SurfacesThatCreepTogetherAreReported) {
   const SelfNetwork network = sheet_and_particle(1.55 * kGap);
   Scalars rise = Scalars::Ones(network.count());
@@ -197,7 +201,7 @@ TEST(SelfContactMargin, EndsThatCreepTogetherAreReported) {
       network, [&](int step, const Points& x) { return creep(x, step, rise); }, apart);
 }
 
-// What flies together may be stopped on one side in any step, while nothing leaves its sphere.
+// Of two elements that fly together one may be stopped in any step, while no particle leaves its sphere.
 TEST(SelfContactMargin, AnElementThatStopsIsReported) {
   for (int stop = 1; stop <= 8; ++stop) {
     SCOPED_TRACE("stops in step " + std::to_string(stop));
@@ -211,7 +215,7 @@ TEST(SelfContactMargin, AnElementThatStopsIsReported) {
   }
 }
 
-// Either of two segments that cross, the other at rest.
+// Either of two crossed segments moves, the other rests.
 TEST(SelfContactMargin, AParticleThatFallsAcrossAnEdgeIsReported) {
   for (const Index falling : {0, 2}) {
     SelfNetwork network;
@@ -227,14 +231,14 @@ TEST(SelfContactMargin, AParticleThatFallsAcrossAnEdgeIsReported) {
   }
 }
 
-// Passes and surfaces lead particles elsewhere than forces did: what that brings near is looked for in the next step, whatever else
-// leaves its sphere then.
+// Solver passes and obstacles move particles to other positions than forces did. The next step has to search for what is near
+// there, even if another particle leaves its sphere in that step.
 TEST(SelfContactMargin, AParticleMovedThereByPassesIsReported) {
   SelfNetwork network = sheet_and_particle(2.3 * kGap);
   network.add_single_particle({0.5, 0.5, 0.5});
-  const Index led = network.count() - 2;
+  const Index moved = network.count() - 2;
   const Points above = network.positions;
-  network.positions(1, led) = 4.0 * kGap;
+  network.positions(1, moved) = 4.0 * kGap;
   const CollisionSurface surface = network.surface(kGap);
   PairSeparation separation(surface, network.positions, 0.5 * kGap);
   std::vector<Contact> found;
@@ -242,8 +246,8 @@ TEST(SelfContactMargin, AParticleMovedThereByPassesIsReported) {
   separation.constrain(network.positions, above);
   ASSERT_TRUE(found.empty());
   Points targets = above;
-  targets(1, led) = 0.9 * kGap;
-  targets(0, led + 1) += 1.0;
+  targets(1, moved) = 0.9 * kGap;
+  targets(0, moved + 1) += 1.0;
   separation.begin_step(above, targets, found);
   EXPECT_EQ(found.size(), 1U);
 }
@@ -264,9 +268,9 @@ TEST(SelfContactMargin, AParticleThatStaysIsReportedOnce) {
   EXPECT_EQ(found.size(), 2U);
 }
 
-// What waits above the sheet, at rest as far as contact is concerned, is not forgotten.
+// A candidate that rests above the sheet for some steps, and is skipped in them, is checked again.
 TEST(SelfContactMargin, AParticleThatWaitedIsReported) {
-  expect_contact_on_its_way(1.5, [](int step) { return Vector3(0.0, step < 90 ? -1.0e-4 : -0.07, 0.0); });
+  expect_contact_on_its_path(1.5, [](int step) { return Vector3(0.0, step < 90 ? -1.0e-4 : -0.07, 0.0); });
 }
 
 }  // namespace

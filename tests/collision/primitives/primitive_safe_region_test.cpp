@@ -222,7 +222,7 @@ TEST(PrimitiveSafeRegion, ABoxWithoutPlanesExcludesTheObstacle) {
 /// tangent plane there.
 ElementCorners tangent_element(Random& random, const ObstacleShape& shape, int corners_down, double distance, double scale) {
   const SurfacePoint at = *shape.nearest(2.0 * scale * random.direction(), kInfinity);
-  // Behind a sharp rim, only the direction towards the centre leads inside for certain.
+  // Behind a sharp rim, only the direction towards the centre is certain to point inside.
   const Vector3 touching = distance < 0.0 ? Vector3((1.0 + distance / scale) * at.point) : Vector3(at.point + distance * at.normal);
   const Vector3 along = scale * random.between(0.01, 1.0) * at.normal.unitOrthogonal();
   const Vector3 across = at.normal.cross(along);

@@ -63,10 +63,10 @@ TEST(CollisionSurface, PatchesHoldEachElementOnceAndFollowEachOther) {
 }
 
 TEST(CollisionSurface, PatchesAreFewAndSmall) {
-  const Sheet sheet(65);  // 64 x 64 cells of two triangles: 256 patches of 4 x 4 cells hold them
+  const Sheet sheet(65);  // 64 x 64 cells of two triangles are 256 patches of 4 x 4 cells
   const CollisionSurface surface = sheet.surface();
   EXPECT_EQ(surface.patches.size(), 256U);
-  // Halves of halves of a square are squares, whose corners stick out by no more than a cell on each side.
+  // A square halved repeatedly gives squares, whose corners protrude by at most a cell on each side.
   for (const ElementPatch& patch : surface.patches)
     EXPECT_LE(bounds(patch, sheet.positions).sizes().maxCoeff(), 6.0 / 64.0 + 1e-12);
 }
