@@ -1,4 +1,4 @@
-// What obstacles lead round pins.
+// Cloths that obstacles push around their pins.
 #include "scenarios/scenario.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 namespace sprung::testing {
 namespace {
 
-/// The time in which the bar rises by 0.1 m, or the pins sink by as much [s], which of them moves, particles along the cloth, the
-/// step's factor, and whether the cloth collides with itself.
+/// Parameters: the time [s] in which the bar rises by 0.1 m or the pins sink by 0.1 m; whether the pins sink; particles along the
+/// cloth; the factor of the step; whether the cloth has self-contact.
 class LiftedBesideItsPins : public ::testing::TestWithParam<std::tuple<double, bool, int, double, bool>> {};
 INSTANTIATE_TEST_SUITE_P(Lift, LiftedBesideItsPins,
                          ::testing::Combine(::testing::Values(0.2, 0.05, 0.01), ::testing::Bool(), ::testing::Values(8, 24),
@@ -24,9 +24,9 @@ std::string sinking(double time) {
          R"({"time": 1, "position": [0, 0, -0.1]}]})";
 }
 
-// A bar rises through the plane of a cloth that is pinned 3 cm beside it: the cloth's next row, 9 or 29 cm from the pins, is thrown
-// up to ten times as fast.
-TEST_P(LiftedBesideItsPins, TheClothTurnsAboutThem) {
+// A bar rises through the plane of a cloth, 3 cm beside the pins. It moves the next row of the cloth, 9 or 29 cm from the pins, up
+// to ten times as fast as itself.
+TEST_P(LiftedBesideItsPins, TheClothRotatesAboutThem) {
   const auto [rise, pins_sink, columns, step_factor, self] = GetParam();
   std::vector<std::string> overrides = {"bodies.cloth.shape.resolution=[" + std::to_string(columns) + ", 3]",
                                         "bodies.cloth.self_contact=" + std::string(self ? "true" : "false")};
@@ -43,7 +43,8 @@ TEST_P(LiftedBesideItsPins, TheClothTurnsAboutThem) {
   const ScenarioReport report = run_scenario(load_scenario("lifted_beside_pins", overrides, step_factor), watch);
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_EQ(report.infeasible, 0);
-  // The bar is 5 cm above the pins then, and on the right of the line from them to the next row. Faster ones have thrown it round.
+  // At this time the bar is 3 cm beside and 5 cm above the pins. The line from the pins to the next row must pass above the bar. A
+  // faster bar has thrown the row over the pins.
   for (Index row = 0; rise == 0.2 && row < 3; ++row) {
     const Vector3 next = risen.col(row * columns + 1) - risen.col(row * columns);
     EXPECT_GT(0.03 * next.z() - 0.05 * next.x(), 0.0) << "row " << row;
@@ -60,11 +61,11 @@ TEST(LiftedBesidePins, AnInfeasibleStepIsRepeatedInSubsteps) {
       run_scenario(std::move(scene), [&](const Simulator&, const FrameDiagnostics& frame) { substeps += frame.substeps; });
   EXPECT_EQ(report.infeasible, 0) << report;
   EXPECT_GT(substeps, steps);
-  EXPECT_LT(substeps, steps + 2 * 64) << "few steps are made in more parts than one";
+  EXPECT_LT(substeps, steps + 2 * 64) << "only few steps are divided";
 }
 
-// A rope that is pinned at both ends beside the cloth, at several heights, leaves the bar no way: it is infeasible for good, a step
-// before the cloth would be, in the same one or after it.
+// A rope with both ends pinned lies across the path of the bar, beside the cloth. It becomes permanently infeasible: depending on
+// its height, a step before the cloth would, in the same step, or after it.
 TEST(LiftedBesidePins, APermanentlyInfeasibleRopeDoesNotPreventOtherRepeats) {
   for (const double height : {-0.03, -0.02, -0.01, -0.004}) {
     const std::string z = std::to_string(height);
@@ -86,11 +87,11 @@ TEST(LiftedBesidePins, APermanentlyInfeasibleRopeDoesNotPreventOtherRepeats) {
   }
 }
 
-/// The velocity at the end [m/s] of a cloth that flies far off, and in how many parts steps were made.
-std::pair<Vector3, std::int64_t> flight_far_off(const std::string& integrator, const std::string& place) {
+/// The final velocity [m/s] of a cloth that flies far away, and the total number of substeps.
+std::pair<Vector3, std::int64_t> flight_far_away(const std::string& integrator, const std::string& bar_position) {
   const std::vector<std::string> overrides = {
       "bodies.cloth.shape.resolution=[8, 3]", "obstacles.bar.motion.keyframes[1].time=0.05",
-      "obstacles.bar.place.position=" + place, "integrator=" + integrator,
+      "obstacles.bar.place.position=" + bar_position, "integrator=" + integrator,
       R"(bodies.far={"shape": {"type": "cloth", "size": [1, 1], "resolution": [2, 2]}, "mass": 1, "velocity": [1, 0, 0],)"
       R"("springs": {"structural": {"stiffness": 0}}, "place": {"position": [0, 9, 0]}})"};
   Vector3 velocity;
@@ -105,12 +106,12 @@ std::pair<Vector3, std::int64_t> flight_far_off(const std::string& integrator, c
   return {velocity, substeps};
 }
 
-// Verlet's damping is one of each step, in whatever substeps it is made.
+// Verlet damps once a step, whatever the number of substeps.
 TEST(LiftedBesidePins, ARepeatedStepDampsADistantClothOnce) {
   for (const char* integrator : {R"({"type": "verlet", "damping": 0.05})", R"({"type": "verlet", "damping_rate": 3})",
                                  R"({"type": "verlet"})", R"({"type": "symplectic_euler"})"}) {
-    const auto [with_bar, substeps] = flight_far_off(integrator, "[-0.97, 0, -0.05]");
-    const auto [without, steps] = flight_far_off(integrator, "[-0.97, 50, -0.05]");
+    const auto [with_bar, substeps] = flight_far_away(integrator, "[-0.97, 0, -0.05]");
+    const auto [without, steps] = flight_far_away(integrator, "[-0.97, 50, -0.05]");
     EXPECT_GT(substeps, steps) << integrator;
     EXPECT_NEAR(with_bar.x(), without.x(), 1e-9) << integrator;
   }

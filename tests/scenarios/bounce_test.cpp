@@ -1,4 +1,4 @@
-// A bounce reaches the square of the restitution times the height, whatever falls on whatever ground in whatever steps.
+// A body bounces to the square of the restitution times the height from which it fell, for any body, ground and step.
 #include "network/network_builder.h"
 #include "scenarios/scenario.h"
 
@@ -13,7 +13,7 @@ namespace {
 constexpr double kGravity = 9.81;     // [m/s^2]
 constexpr double kRestitution = 0.8;  // of the scene
 constexpr double kThickness = 0.005;  // [m] of the scene
-constexpr double kSceneHeight = 1.0;  // [m] above its thickness
+constexpr double kSceneHeight = 1.0;  // [m], less the thickness
 
 struct Ground {
   const char* name;
@@ -28,7 +28,7 @@ const Ground kMesh = {"mesh", R"(obstacles.ground={"shape": {"type": "mesh", "fi
 const Ground kBall = {"ball",
                       R"(obstacles.ground={"shape": {"type": "sphere", "radius": 0.5}, "place": {"position": [0, -0.5, 0]}})"};
 
-/// The highest point [m] above its thickness that the network's middle reaches between its first bounce and the second.
+/// The greatest height [m], less the thickness, of the network's centre between the first and the second bounce.
 class FirstBounce {
  public:
   void operator()(const Simulator& simulator, const FrameDiagnostics& /*frame*/) {
@@ -48,7 +48,7 @@ class FirstBounce {
   double highest_ = 0.0;
 };
 
-/// Positions are seen a step apart, so the highest one is missed by up to g dt^2 / 8, and so much a scheme's start is off.
+/// Positions are known once a step, so the highest one is missed by up to g dt^2 / 8. The start of a scheme adds as much.
 double tolerance(double step) { return kGravity * step * step; }
 
 void expect_bounce(BuiltScene scene, double height) {
@@ -57,7 +57,7 @@ void expect_bounce(BuiltScene scene, double height) {
   EXPECT_TRUE(report.is_free()) << report;
   const double expected = kRestitution * kRestitution * height;
   EXPECT_NEAR(bounce.highest(), expected, tolerance(report.step)) << "from " << height << " m";
-  EXPECT_LT(tolerance(report.step), 0.02 * expected) << "within 2 % at any rate";
+  EXPECT_LT(tolerance(report.step), 0.02 * expected) << "the tolerance is below 2 %";
 }
 
 class BounceOfAParticle : public ::testing::TestWithParam<std::tuple<Ground, double, const char*>> {};

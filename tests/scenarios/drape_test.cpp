@@ -18,9 +18,9 @@ INSTANTIATE_TEST_SUITE_P(StepFactor, Drape, ::testing::Values(1.0, 4.0));
 TEST_P(Drape, AClothFallsOnTheBunny) {
   const ScenarioReport report = run_scenario(load_scenario("drape", {}, GetParam()));
   EXPECT_TRUE(report.is_free()) << report;
-  // The step is chosen for 0.011 beyond the limit of 0.02 where a cloth hangs at rest, and relaxation leaves a third of that. This
-  // one's sides come at 5 m/s and swing round the ears, 0.7 m away: they pull with 4 g and their weight, which makes 0.018. The
-  // rest is for the corners, which whip.
+  // The suggested step lets a cloth that hangs at rest exceed the limit of 0.02 by 0.011, and relaxation leaves a third of that.
+  // The sides of this cloth arrive at 5 m/s and swing around the ears at a radius of 0.7 m: their centripetal acceleration of 4 g
+  // and their weight make 0.018. The remainder allows for the corners, which whip.
   if (GetParam() == 1.0) {
     EXPECT_LT(report.max_stretch, 0.02 + 0.03) << report;
   }
@@ -29,8 +29,8 @@ TEST_P(Drape, AClothFallsOnTheBunny) {
 TEST_P(Drape, AtRestTheGapIsTheThickness) {
   for (const char* thickness : {"0.0005", "0.002", "0.01"}) {
     double gap = 0.0;
-    // On a floor just below the bunny corners get between the two, which leave less than twice the thickness, and hold what is
-    // next.
+    // The floor is lowered. If it is just below the bunny, corners are caught between the two, which are less than two thicknesses
+    // apart, and keep their neighbours in place.
     const std::vector<std::string> overrides = {"duration=2.5", "bodies.cloth.shape.resolution=[32,32]",
                                                 std::string("bodies.cloth.thickness=").append(thickness),
                                                 "obstacles.floor.shape.offset=-0.6"};
@@ -52,7 +52,7 @@ TEST_P(Drape, ABunnyTurnsUnderACloth) {
   EXPECT_TRUE(report.is_free()) << report;
 }
 
-/// The bunny, 1 m high, as its sides go in and out by a tenth once a second.
+/// The bunny, 1 m high, whose sides move in and out by a tenth, once a second.
 std::shared_ptr<const MeshSequence> breathing_bunny() {
   const TriangleMesh& bunny = benchmarks::bunny(14700);
   MeshSequence sequence;
@@ -73,7 +73,8 @@ TEST_P(Drape, ABunnyBreathesUnderACloth) {
   EXPECT_TRUE(report.is_free()) << report;
 }
 
-// A step's cost hardly knows how fine the mesh is, and triangles far smaller than the cloth's cells and its thickness are met too.
+// The cost of a step hardly depends on the number of triangles. The cloth also collides with triangles that are far smaller than
+// its cells and its thickness.
 TEST(DrapeOverAMillionTriangles, AClothFallsOnARing) {
   BuiltScene scene = load_scenario("drape", {"duration=0.6", "bodies.cloth.shape.resolution=[24,24]"});
   const TriangleMesh ring = test::torus(0.3, 0.1, 1000, 500);

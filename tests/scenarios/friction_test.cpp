@@ -1,4 +1,5 @@
-// Coulomb friction of whole bodies: what is steeper than friction holds slides, and what slides stops where it should.
+// Coulomb friction of whole bodies: a body slides where the slope exceeds the friction angle, and on level ground it stops after
+// its stopping distance.
 #include "base/format.h"
 #include "scenarios/scenario.h"
 
@@ -20,8 +21,8 @@ struct Slope {
   [[nodiscard]] Vector3 normal() const { return {std::sin(angle), std::cos(angle), 0.0}; }
   [[nodiscard]] Vector3 down() const { return {std::cos(angle), -std::sin(angle), 0.0}; }
   [[nodiscard]] double acceleration() const { return kGravity * (std::sin(angle) - kFriction * std::cos(angle)); }
-  /// Where a body lies on it, `height` [m] above, when it lies level with `turn` [degrees] about x.
-  [[nodiscard]] std::string place(double height, double turn) const {
+  /// The pose, as JSON, of a body at `height` [m] above the slope. On level ground it would be rotated by `turn` [degrees] about x.
+  [[nodiscard]] std::string pose(double height, double turn) const {
     const double degrees = -angle * 180.0 / std::numbers::pi;
     std::string result = R"({"position": )";
     result.append(json_text(height * normal())).append(R"(, "rotation": )").append(json_text({turn, 0.0, degrees})).append("}");
@@ -29,28 +30,28 @@ struct Slope {
   }
 };
 
-/// A slope that is steeper by `factor` than what friction holds.
+/// A slope whose tangent is `factor` times the coefficient of friction.
 Slope slope_beyond(double factor) { return {std::atan(kFriction * factor)}; }
 
-/// How far the middle of the network has moved [m], frame by frame.
+/// The distance [m] that the network's centre has moved along a direction, frame by frame.
 class Journey {
  public:
   explicit Journey(const Vector3& along) : along_(along) {}
   void operator()(const Simulator& simulator, const FrameDiagnostics& /*frame*/) {
     const Vector3 middle = simulator.positions().rowwise().mean();
-    if (way_.empty()) start_ = middle;
-    way_.push_back(along_.dot(middle - start_));
+    if (distances_.empty()) start_ = middle;
+    distances_.push_back(along_.dot(middle - start_));
     fastest_ = simulator.state().v.colwise().norm().maxCoeff();
   }
-  [[nodiscard]] double way() const { return way_.back(); }
-  [[nodiscard]] double way(std::size_t frame) const { return way_.at(frame); }
-  [[nodiscard]] std::size_t last_frame() const { return way_.size() - 1; }
+  [[nodiscard]] double distance() const { return distances_.back(); }
+  [[nodiscard]] double distance(std::size_t frame) const { return distances_.at(frame); }
+  [[nodiscard]] std::size_t last_frame() const { return distances_.size() - 1; }
   [[nodiscard]] double fastest() const { return fastest_; }
 
  private:
   Vector3 along_;
   Vector3 start_ = Vector3::Zero();
-  std::vector<double> way_;
+  std::vector<double> distances_;
   double fastest_ = 0.0;
 };
 
@@ -77,7 +78,7 @@ class ClothOnGround : public ::testing::TestWithParam<std::tuple<Ground, double>
 };
 INSTANTIATE_TEST_SUITE_P(StepFactor, ClothOnGround, ::testing::Combine(::testing::ValuesIn(kGrounds), ::testing::Values(1.0, 4.0)));
 
-TEST_P(ClothOnGround, SlidesIfAndOnlyIfItIsSteeperThanFrictionHolds) {
+TEST_P(ClothOnGround, SlidesIfAndOnlyIfTheSlopeExceedsTheFrictionAngle) {
   for (const double factor : {0.99, 1.01}) {
     const Slope slope = slope_beyond(factor);
     Journey journey(Vector3::UnitX());
@@ -85,8 +86,8 @@ TEST_P(ClothOnGround, SlidesIfAndOnlyIfItIsSteeperThanFrictionHolds) {
     const ScenarioReport report =
         run_scenario(scene({std::string("gravity=").append(json_text(gravity)), "duration=1"}), std::ref(journey));
     EXPECT_TRUE(report.is_free()) << report;
-    // Verlet is exact for a constant acceleration; the tolerance is rounding's, of 240 steps on positions of size 1.
-    EXPECT_NEAR(journey.way(), std::max(0.0, 0.5 * slope.acceleration()), 1e-10) << "steeper by " << factor;
+    // Verlet is exact for a constant acceleration. The tolerance is the rounding of 240 steps at positions near 1 m.
+    EXPECT_NEAR(journey.distance(), std::max(0.0, 0.5 * slope.acceleration()), 1e-10) << "steeper by " << factor;
   }
 }
 
@@ -94,47 +95,47 @@ TEST_P(ClothOnGround, StopsAfterItsStoppingDistance) {
   Journey journey(Vector3::UnitX());
   const ScenarioReport report = run_scenario(scene({"bodies.cloth.velocity=[3,0,0]"}), std::ref(journey));
   EXPECT_TRUE(report.is_free()) << report;
-  // Exact up to the step in which it stops: less than mu g dt^2.
+  // The distance is exact except for the step in which the cloth stops, which adds less than mu g dt^2.
   const double distance = 3.0 * 3.0 / (2.0 * kFriction * kGravity);
-  EXPECT_NEAR(journey.way(), distance, kFriction * kGravity * report.step * report.step);
+  EXPECT_NEAR(journey.distance(), distance, kFriction * kGravity * report.step * report.step);
   EXPECT_EQ(journey.fastest(), 0.0);
 }
 
-class TurnedGround : public ::testing::TestWithParam<double> {
+class TiltedGround : public ::testing::TestWithParam<double> {
  protected:
   [[nodiscard]] static std::string ground(const Slope& slope) {
     std::string result = R"(obstacles.ground={"shape": {"type": "box", "size": [20, 1, 20]}, "friction": 0.3, "place": )";
-    result.append(slope.place(-0.5 * kGroundDepth, 0.0)).append("}");
+    result.append(slope.pose(-0.5 * kGroundDepth, 0.0)).append("}");
     return result;
   }
 };
-INSTANTIATE_TEST_SUITE_P(StepFactor, TurnedGround, ::testing::Values(1.0, 4.0));
+INSTANTIATE_TEST_SUITE_P(StepFactor, TiltedGround, ::testing::Values(1.0, 4.0));
 
-TEST_P(TurnedGround, HoldsAClothIfAndOnlyIfFrictionDoes) {
+TEST_P(TiltedGround, StopsAClothIfAndOnlyIfTheSlopeIsBelowTheFrictionAngle) {
   for (const double factor : {0.99, 1.01}) {
     const Slope slope = slope_beyond(factor);
     Journey journey(slope.down());
-    const std::string place = std::string("bodies.cloth.place=").append(slope.place(0.005, -90.0));
+    const std::string pose = std::string("bodies.cloth.place=").append(slope.pose(0.005, -90.0));
     const ScenarioReport report =
-        run_scenario(load_scenario("cloth_on_ground", {ground(slope), place, "duration=1"}, GetParam()), std::ref(journey));
+        run_scenario(load_scenario("cloth_on_ground", {ground(slope), pose, "duration=1"}, GetParam()), std::ref(journey));
     EXPECT_TRUE(report.is_free()) << report;
-    EXPECT_NEAR(journey.way(), std::max(0.0, 0.5 * slope.acceleration()), 1e-10) << "steeper by " << factor;
+    EXPECT_NEAR(journey.distance(), std::max(0.0, 0.5 * slope.acceleration()), 1e-10) << "steeper by " << factor;
   }
 }
 
-// A jelly's step is as long as its springs allow: there is none that is four times coarser, but one that is finer.
-TEST_P(TurnedGround, SlowsAJellyDownIfAndOnlyIfFrictionHolds) {
+// The step of a jelly is as long as its springs allow, so it is tested with a quarter of that step instead of four times as much.
+TEST_P(TiltedGround, SlowsAJellyDownIfAndOnlyIfTheSlopeIsBelowTheFrictionAngle) {
   for (const double factor : {0.99, 1.01}) {
     const Slope slope = slope_beyond(factor);
     Journey journey(slope.down());
-    const std::string place = std::string("bodies.jelly.place=").append(slope.place(0.105, 0.0));
+    const std::string pose = std::string("bodies.jelly.place=").append(slope.pose(0.105, 0.0));
     const ScenarioReport report =
-        run_scenario(load_scenario("jelly_on_ground", {ground(slope), place}, GetParam() / 4.0), std::ref(journey));
+        run_scenario(load_scenario("jelly_on_ground", {ground(slope), pose}, GetParam() / 4.0), std::ref(journey));
     EXPECT_TRUE(report.is_free()) << report;
-    // It begins undeformed, and until it has settled under its weight it slides further than a rigid block. From then on it is one:
-    // the way in the last second but one less that in the last tells its acceleration.
+    // The jelly begins undeformed and slides farther than a rigid block until it has settled under its weight. Then it accelerates
+    // like a rigid block: the distance of the last second exceeds that of the second before by the acceleration times 1 s^2.
     const std::size_t end = journey.last_frame();
-    const double gained = journey.way(end) - 2.0 * journey.way(end - 60) + journey.way(end - 120);
+    const double gained = journey.distance(end) - 2.0 * journey.distance(end - 60) + journey.distance(end - 120);
     if (factor < 1.0) {
       EXPECT_LT(gained, 0.0);
       EXPECT_LT(journey.fastest(), 1e-3) << "it has come to rest";

@@ -49,14 +49,14 @@ Corners corners_of(const JudgedElement& element, const Points& positions) {
   return result;
 }
 
-bool meet(const Corners& a, const Corners& b) {
-  if (a.count > b.count) return meet(b, a);
+bool intersect(const Corners& a, const Corners& b) {
+  if (a.count > b.count) return intersect(b, a);
   if (b.count == 2) return CGAL::do_intersect(a.segment(0, 1), b.segment(0, 1));
   if (a.count == 2) return CGAL::do_intersect(a.segment(0, 1), b.triangle());
   return CGAL::do_intersect(a.triangle(), b.triangle());
 }
 
-/// Turns an element's corners so that those which it shares with the other come first. Returns how many they are.
+/// Reorders the corners of an element so that those shared with the other element come first. Returns the number of shared corners.
 int shared_first(const JudgedElement& element, const JudgedElement& other, Corners& corners) {
   int shared = 0;
   for (int i = 0; i < element.corners; ++i) {
@@ -71,10 +71,10 @@ int shared_first(const JudgedElement& element, const JudgedElement& other, Corne
 /// The side of a triangle opposite its first corner.
 Segment opposite(const Corners& triangle) { return triangle.segment(1, 2); }
 
-// Requires that the first corner of both is the one they share. Both are star-shaped about it: a ray from there through another
-// common point leaves one of them first, at the end or side opposite the corner, while it is still in the other.
-bool meet_beyond_corner(const Corners& a, const Corners& b) {
-  if (a.count > b.count) return meet_beyond_corner(b, a);
+// Requires that the first corner of both is the shared one. A ray from it through another common point leaves one of the elements
+// first, at the end or side opposite the corner, while it is still in the other. So it suffices to test these ends and sides.
+bool intersect_beyond_corner(const Corners& a, const Corners& b) {
+  if (a.count > b.count) return intersect_beyond_corner(b, a);
   const Point& corner = a.points[0];
   if (b.count == 2) {
     return CGAL::collinear(corner, a.points[1], b.points[1]) && CGAL::angle(a.points[1], corner, b.points[1]) == CGAL::ACUTE;
@@ -83,17 +83,18 @@ bool meet_beyond_corner(const Corners& a, const Corners& b) {
   return CGAL::do_intersect(opposite(a), b.triangle()) || CGAL::do_intersect(opposite(b), a.triangle());
 }
 
-// Requires that the first two corners of both are those they share. Only what is folded flat onto itself meets beyond them.
-bool meet_beyond_edge(const Corners& a, const Corners& b) {
+// Requires that the first two corners of both are the shared ones. Triangles intersect beyond a shared edge only if they are folded
+// flat onto each other.
+bool intersect_beyond_edge(const Corners& a, const Corners& b) {
   return a.count == 3 && b.count == 3 && CGAL::coplanar(a.points[0], a.points[1], a.points[2], b.points[2]) &&
          CGAL::coplanar_orientation(a.points[0], a.points[1], a.points[2], b.points[2]) == CGAL::POSITIVE;
 }
 
-bool meet_beyond_shared(const JudgedElement& a, const JudgedElement& b, Corners corners_a, Corners corners_b) {
+bool intersect_beyond_shared(const JudgedElement& a, const JudgedElement& b, Corners corners_a, Corners corners_b) {
   const int shared = shared_first(a, b, corners_a);
   shared_first(b, a, corners_b);
-  if (shared == 0) return meet(corners_a, corners_b);
-  return shared == 1 ? meet_beyond_corner(corners_a, corners_b) : meet_beyond_edge(corners_a, corners_b);
+  if (shared == 0) return intersect(corners_a, corners_b);
+  return shared == 1 ? intersect_beyond_corner(corners_a, corners_b) : intersect_beyond_edge(corners_a, corners_b);
 }
 
 class MeshJudge final : public ObstacleJudge {
@@ -184,7 +185,7 @@ Index count_self_crossings(const std::vector<JudgedElement>& elements, const Poi
   CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const BoxOfElement& a, const BoxOfElement& b) {
     const auto i = static_cast<std::size_t>(a.info());
     const auto k = static_cast<std::size_t>(b.info());
-    count += meet_beyond_shared(elements[i], elements[k], corners[i], corners[k]) ? 1 : 0;
+    count += intersect_beyond_shared(elements[i], elements[k], corners[i], corners[k]) ? 1 : 0;
   });
   return count;
 }

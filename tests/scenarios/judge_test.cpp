@@ -89,7 +89,7 @@ TEST_F(CrossingsOfATriangle, EdgeThroughItsFace) {
 }
 
 TEST_F(CrossingsOfATriangle, ItsTipThroughTheOthersFace) {
-  // No edge of the other meets the mesh's triangle: only its edges go through the other's face.
+  // No edge of the element crosses the triangle of the mesh. Only edges of that triangle cross the element's face.
   EXPECT_EQ(crossings(kTriangle, {{0.9, -9, -9}, {0.9, 9, -9}, {0.9, 0, 9}}), 1);
 }
 
@@ -97,7 +97,7 @@ TEST_F(CrossingsOfATriangle, EdgeAcrossItsEdge) {
   EXPECT_EQ(crossings(kSegment, {{0.5, -1, -0.5}, {0.5, 1, 0.5}}), 1) << "through the middle of a side";
 }
 
-TEST_F(CrossingsOfATriangle, TouchingIsNotFree) {
+TEST_F(CrossingsOfATriangle, TouchingCountsAsCrossing) {
   EXPECT_EQ(crossings(kSegment, {{0.25, 0, 0.25}, {0.25, 1, 0.25}}), 1) << "an end on the face";
   EXPECT_EQ(crossings(kSegment, {{-1, 0, 0}, {0, 0, 0}}), 1) << "end on corner";
   EXPECT_EQ(crossings(kTriangle, {{0, 0, 0}, {0, 1, 0}, {-1, 1, 0}}), 1) << "corner on corner";
@@ -108,7 +108,7 @@ TEST_F(CrossingsOfATriangle, CoplanarOverlapCountsAndCoplanarGapDoesNot) {
   EXPECT_EQ(crossings(kTriangle, {{1, 0, 1}, {0.75, 0, 1}, {1, 0, 0.75}}), 0) << "boxes overlap, triangles do not";
 }
 
-TEST_F(CrossingsOfATriangle, TheSmallestGapIsFree) {
+TEST_F(CrossingsOfATriangle, TheSmallestGapIsNoCrossing) {
   const double tiny = 0x1p-1000;
   EXPECT_EQ(crossings(kTriangle, {{0.1, tiny, 0.1}, {0.1, tiny, 0.2}, {0.2, tiny, 0.1}}), 0);
   EXPECT_EQ(crossings(kTriangle, {{0.1, tiny, 0.1}, {0.1, -tiny, 0.2}, {0.2, tiny, 0.1}}), 1);
@@ -119,7 +119,7 @@ TEST_F(CrossingsOfATriangle, DistanceIsThatOfTheNearestPoint) {
   EXPECT_DOUBLE_EQ(judge_->distance({1.0, 0.0, 1.0}), std::sqrt(0.5));
 }
 
-TEST(SelfCrossings, StrangersThatMeetAreCounted) {
+TEST(SelfCrossings, IntersectingElementsWithoutCommonParticlesAreCounted) {
   const std::vector<JudgedElement> two = {{{0, 1, 2}, 3}, {{3, 4, 5}, 3}};
   const Points crossing = points({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0.25, -1, 0.25}, {0.25, 1, 0.25}, {0.25, 1, 9}});
   EXPECT_EQ(count_self_crossings(two, crossing), 1);
@@ -142,21 +142,21 @@ TEST(SelfCrossings, TheSharedCornerAloneIsNoCrossing) {
   EXPECT_EQ(count_self_crossings({fan[1], fan[0]}, through), 1);
 }
 
-TEST(SelfCrossings, CoplanarFansMeetWhenTheyOverlap) {
+TEST(SelfCrossings, CoplanarFansIntersectWhenTheyOverlap) {
   const std::vector<JudgedElement> fan = {{{0, 1, 2}, 3}, {{0, 3, 4}, 3}};
   EXPECT_EQ(count_self_crossings(fan, points({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0.1, 0, 0.2}, {0.2, 0, 0.1}})), 1);
   EXPECT_EQ(count_self_crossings(fan, points({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {4, 0, 8}, {8, 0, 4}})), 1);
   EXPECT_EQ(count_self_crossings(fan, points({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-0.1, 0, 0.2}, {-0.2, 0, 0.1}})), 0);
 }
 
-TEST(SelfCrossings, ASharedEdgeMeetsBeyondItselfOnlyWhenFoldedFlat) {
+TEST(SelfCrossings, TrianglesIntersectBeyondASharedEdgeOnlyWhenFoldedFlat) {
   const std::vector<JudgedElement> hinge = {{{0, 1, 2}, 3}, {{1, 0, 3}, 3}};
   EXPECT_EQ(count_self_crossings(hinge, points({{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {-1, 0, 0.5}})), 0) << "flat";
   EXPECT_EQ(count_self_crossings(hinge, points({{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {1, 0x1p-60, 0.5}})), 0) << "nearly folded";
   EXPECT_EQ(count_self_crossings(hinge, points({{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {0.3, 0, 0.5}})), 1) << "folded";
 }
 
-TEST(SelfCrossings, ARopeThatTurnsBackOnItselfMeetsItself) {
+TEST(SelfCrossings, ARopeFoldedBackOntoItselfIntersectsItself) {
   const std::vector<JudgedElement> rope = {{{0, 1, kNone}, 2}, {{1, 2, kNone}, 2}};
   EXPECT_EQ(count_self_crossings(rope, points({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}})), 0);
   EXPECT_EQ(count_self_crossings(rope, points({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}})), 0);
@@ -192,7 +192,7 @@ struct PrimitiveCase {
 
 class JudgeOfAPrimitive : public ::testing::TestWithParam<PrimitiveCase> {};
 
-TEST_P(JudgeOfAPrimitive, MeasureIsZeroOnTheSurfaceAndHasTheSideAsItsSign) {
+TEST_P(JudgeOfAPrimitive, MeasureIsZeroOnTheSurfaceNegativeInsideAndPositiveOutside) {
   const PrimitiveCase& c = GetParam();
   EXPECT_NEAR(convex_measure(c.geometry, c.on).value, 0.0, 1e-15);
   EXPECT_LT(convex_measure(c.geometry, c.inside).value, 0.0);
@@ -200,7 +200,7 @@ TEST_P(JudgeOfAPrimitive, MeasureIsZeroOnTheSurfaceAndHasTheSideAsItsSign) {
   EXPECT_LE(convex_measure(c.geometry, c.on + 0.5 * c.outward).value, 0.5 + 1e-15) << "at most the distance";
 }
 
-TEST_P(JudgeOfAPrimitive, NoTangentPlaneIsAboveTheMeasure) {
+TEST_P(JudgeOfAPrimitive, TangentPlanesAreNowhereAboveTheMeasure) {
   const ObstacleGeometry& geometry = GetParam().geometry;
   test::Random random(1);
   const Box3 around(Vector3::Constant(-3.0), Vector3::Constant(3.0));
@@ -213,7 +213,7 @@ TEST_P(JudgeOfAPrimitive, NoTangentPlaneIsAboveTheMeasure) {
   }
 }
 
-TEST_P(JudgeOfAPrimitive, AnElementThatOnlyItsMiddleTakesInsideIsFound) {
+TEST_P(JudgeOfAPrimitive, AnElementWithOnlyItsMiddleInsideIsFound) {
   const PrimitiveCase& c = GetParam();
   const Vector3 other = c.outward.cross(c.direction);
   for (const double depth : {1e-9, -1e-9}) {

@@ -10,29 +10,29 @@
 namespace sprung::testing {
 namespace {
 
-/// Where one segment's shadow crosses another's.
+/// One of the two times that the polyline passes a crossing of its projection.
 struct Passage {
-  double place = 0.0;  ///< along the polyline, in segments
+  double position = 0.0;  ///< along the polyline, in segments
   int crossing = 0;
   bool below = false;
 };
 
 double cross(const Vector3& a, const Vector3& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-struct Meeting {
-  double at_first = 0.0;  ///< part of the segment
+struct CrossingPoint {
+  double at_first = 0.0;  ///< fraction of the segment
   double at_second = 0.0;
 };
 
-std::optional<Meeting> shadows_meet(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
+std::optional<CrossingPoint> projections_cross(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
   const double area = cross(b - a, d - c);
-  const Meeting meeting = {cross(c - a, d - c) / area, cross(c - a, b - a) / area};
-  const auto within = [](double part) { return part > 0.0 && part < 1.0; };
-  if (!within(meeting.at_first) || !within(meeting.at_second)) return std::nullopt;
-  return meeting;
+  const CrossingPoint crossing = {cross(c - a, d - c) / area, cross(c - a, b - a) / area};
+  const auto within = [](double fraction) { return fraction > 0.0 && fraction < 1.0; };
+  if (!within(crossing.at_first) || !within(crossing.at_second)) return std::nullopt;
+  return crossing;
 }
 
-/// All passages in the order in which the polyline comes to them. The shadow falls along z.
+/// All passages in their order along the polyline, which is projected along z.
 std::vector<Passage> passages(const Points& x) {
   const Index n = static_cast<Index>(x.cols());
   std::vector<Passage> result;
@@ -44,28 +44,28 @@ std::vector<Passage> passages(const Points& x) {
       const Vector3 c = x.col(k);
       const Vector3 d = x.col((k + 1) % n);
       if (i == (k + 1) % n) continue;
-      const auto meeting = shadows_meet(a, b, c, d);
-      if (!meeting) continue;
-      const double height_first = a.z() + meeting->at_first * (b.z() - a.z());
-      const double height_second = c.z() + meeting->at_second * (d.z() - c.z());
-      result.push_back({i + meeting->at_first, crossings, height_first < height_second});
-      result.push_back({k + meeting->at_second, crossings, height_first > height_second});
+      const auto crossing = projections_cross(a, b, c, d);
+      if (!crossing) continue;
+      const double height_first = a.z() + crossing->at_first * (b.z() - a.z());
+      const double height_second = c.z() + crossing->at_second * (d.z() - c.z());
+      result.push_back({i + crossing->at_first, crossings, height_first < height_second});
+      result.push_back({k + crossing->at_second, crossings, height_first > height_second});
       ++crossings;
     }
   }
-  std::sort(result.begin(), result.end(), [](const Passage& a, const Passage& b) { return a.place < b.place; });
+  std::sort(result.begin(), result.end(), [](const Passage& a, const Passage& b) { return a.position < b.position; });
   return result;
 }
 
 }  // namespace
 
 int knot_determinant(const Points& closed_polyline) {
-  // Turned so that nothing in a scene, which likes its axes, casts its shadow onto itself.
+  // Ropes of scenes often lie along axes. The rotation keeps their segments from being projected onto each other.
   const Matrix3 askew = Eigen::AngleAxisd(1.234, Vector3(1.0, 0.7, 0.3).normalized()).toRotationMatrix();
   const std::vector<Passage> all = passages(askew * closed_polyline);
   const auto crossings = static_cast<Index>(all.size() / 2);
   if (crossings < 2) return 1;
-  // Strands go from one passage below to the next; as many as crossings.
+  // A strand reaches from one passage below to the next. There are as many strands as crossings.
   Eigen::MatrixXd colours = Eigen::MatrixXd::Zero(crossings, crossings);
   Index strand = 0;
   for (const Passage& passage : all) {

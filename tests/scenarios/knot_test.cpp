@@ -1,4 +1,4 @@
-// The knot's number, on knots that are known.
+// The determinants of known knots.
 #include "scenarios/knot.h"
 
 #include <gtest/gtest.h>
@@ -20,20 +20,20 @@ Points torus_knot(int around, int through) {
   return x;
 }
 
-TEST(Knot, ARingIsNone) {
+TEST(Knot, ARingIsNoKnot) {
   EXPECT_EQ(knot_determinant(torus_knot(1, 0)), 1);
   EXPECT_EQ(knot_determinant(torus_knot(1, 7)), 1) << "a coil";
 }
 
 TEST(Knot, TorusKnotsHaveTheirDeterminants) {
   EXPECT_EQ(knot_determinant(torus_knot(2, 3)), 3);
-  EXPECT_EQ(knot_determinant(torus_knot(3, 2)), 3) << "the same knot, another shadow";
+  EXPECT_EQ(knot_determinant(torus_knot(3, 2)), 3) << "the same knot in another projection";
   EXPECT_EQ(knot_determinant(torus_knot(2, 5)), 5);
   EXPECT_EQ(knot_determinant(torus_knot(2, 7)), 7);
   EXPECT_EQ(knot_determinant(torus_knot(3, 4)), 3);
 }
 
-TEST(Knot, AFigureOfEightHasFive) {
+TEST(Knot, AFigureOfEightHasDeterminantFive) {
   Points x(3, 200);
   for (Index i = 0; i < x.cols(); ++i) {
     const double t = 2.0 * std::numbers::pi * i / static_cast<double>(x.cols());
@@ -43,7 +43,7 @@ TEST(Knot, AFigureOfEightHasFive) {
   EXPECT_EQ(knot_determinant(x), 5);
 }
 
-TEST(Knot, AnOverhandKnotInARopeIsNoLongerOneOncePassedThrough) {
+TEST(Knot, AnOverhandKnotIsUndoneWhenTheRopePassesThroughItself) {
   Points rope(3, 81);
   for (Index i = 0; i < rope.cols(); ++i) {
     const double t = 4.4 * i / 80.0 - 2.2;
@@ -52,7 +52,7 @@ TEST(Knot, AnOverhandKnotInARopeIsNoLongerOneOncePassedThrough) {
   EXPECT_EQ(knot_determinant(closed_far_away(rope)), 3);
   rope.row(2) *= 0.0;
   rope.row(2).setLinSpaced(0.0, 1.0);
-  EXPECT_EQ(knot_determinant(closed_far_away(rope)), 1) << "the same shadow, rising all the way";
+  EXPECT_EQ(knot_determinant(closed_far_away(rope)), 1) << "the same projection, rising throughout";
 }
 
 }  // namespace

@@ -11,10 +11,10 @@ namespace {
 class Moving : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(StepFactor, Moving, ::testing::Values(1.0, 4.0));
 
-TEST_P(Moving, ABallShotAtAHangingClothTakesItAlong) {
+TEST_P(Moving, ABallShotAtAHangingClothPushesIt) {
   const ScenarioReport report =
       run_scenario(load_scenario("hanging_cloth", {}, GetParam()), [](const Simulator& simulator, const FrameDiagnostics& frame) {
-        // By then the ball has pushed through where the cloth hung, and is not far enough for the cloth to slip off it.
+        // At this time the ball has passed the plane in which the cloth hung, but not far enough for the cloth to slip off.
         if (frame.time < 0.16 || frame.time > 0.17) return;
         const double front = 1.0 - 20.0 * (frame.time - 0.1) - 0.12;
         EXPECT_LT(simulator.positions().row(2).minCoeff(), front) << "at " << frame.time << " s";
@@ -23,7 +23,7 @@ TEST_P(Moving, ABallShotAtAHangingClothTakesItAlong) {
 }
 
 // The plate's acceleration stays below 0.5 g, so that friction can make the cloth follow.
-TEST_P(Moving, ARisingTurningPlateCarriesAClothWithoutSlip) {
+TEST_P(Moving, AClothDoesNotSlipOnARisingRotatingPlate) {
   Points start;
   double slip = 0.0;
   const Watch watch = [&](const Simulator& simulator, const FrameDiagnostics& frame) {

@@ -1,4 +1,4 @@
-// The bits of one run, pinned: what is meant to change no result is shown to change none.
+// Pins the hash of one run, to show that a change which should not alter results does not.
 #include "base/parallel.h"
 #include "scenarios/position_hash.h"
 #include "scenarios/scenario.h"
@@ -26,13 +26,13 @@ std::uint64_t hash_of_run(int threads, const std::vector<std::string>& overrides
 // If the change is not intended, tests/compare_frames.sh names the first frame and particle that differ. If it is intended and all
 // scenarios pass, write the new hash above and say in the commit's body why results change. A new setting enters the scene with the
 // value that keeps the hash.
-TEST(PinnedHash, OneRunHasTheSameBitsAsEverWithOneThreadAndWithTwo) {
+TEST(PinnedHash, OneRunHasThePinnedBitsWithOneThreadAndWithTwo) {
   EXPECT_EQ(hash_of_run(1), kHash);
   EXPECT_EQ(hash_of_run(2), kHash);
 }
 
-// Otherwise the hash says nothing about them.
-TEST(PinnedHash, ContactWithItselfAndWithObstaclesMattersInThatRun) {
+// Without this the hash would not cover contact.
+TEST(PinnedHash, TheRunDependsOnSelfContactAndObstacles) {
   EXPECT_NE(hash_of_run(2, {"bodies.cloth.self_contact=false"}), kHash);
   EXPECT_NE(hash_of_run(2, {"obstacles.ball.shape.radius=0.07"}), kHash);
 }

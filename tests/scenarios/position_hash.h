@@ -1,4 +1,4 @@
-// A number for the bits of positions: two runs with the same hash are taken for the same run.
+// A hash of the bits of positions. Two runs with the same hash count as identical.
 #pragma once
 
 #include "base/types.h"

@@ -44,9 +44,9 @@ ConvexMeasure measure(const ConeGeometry& cone, const Vector3& p) {
 }
 
 ConvexMeasure measure(const EllipsoidGeometry& ellipsoid, const Vector3& p) {
-  const Vector3 on_ball = p.cwiseQuotient(ellipsoid.radii);
+  const Vector3 scaled = p.cwiseQuotient(ellipsoid.radii);
   const double least_radius = ellipsoid.radii.minCoeff();
-  return {least_radius * (on_ball.norm() - 1.0), least_radius * on_ball.normalized().cwiseQuotient(ellipsoid.radii)};
+  return {least_radius * (scaled.norm() - 1.0), least_radius * scaled.normalized().cwiseQuotient(ellipsoid.radii)};
 }
 
 ConvexMeasure measure(const HalfSpaceGeometry& half_space, const Vector3& p) {
@@ -58,26 +58,26 @@ ConvexMeasure measure(const SequenceGeometry& /*sequence*/, const Vector3& /*p*/
   throw std::invalid_argument("a mesh is no primitive");
 }
 
-// Golden section: each round keeps 0.618 of the interval, 64 of them 4e-14. A function that changes by at most `most_slope` times
-// the way is no more looked at once it is positive for certain.
+// The least value on [0, 1], by golden-section search: each round keeps 0.618 of the interval, and 64 rounds keep 4e-14. The search
+// ends early once the function is certainly positive on the remaining interval, where its slope is at most `most_slope`.
 double least(const std::function<double(double)>& convex, double most_slope) {
-  constexpr double kPart = std::numbers::phi - 1.0;
+  constexpr double kFraction = std::numbers::phi - 1.0;
   double low = 0.0;
   double high = 1.0;
-  double left = high - kPart;
-  double right = low + kPart;
+  double left = high - kFraction;
+  double right = low + kFraction;
   double at_left = convex(left);
   double at_right = convex(right);
   double best = std::min({convex(low), convex(high), at_left, at_right});
   for (int round = 0; round < 64 && best > 0.0 && best <= most_slope * (high - low); ++round) {
     if (at_left <= at_right) {
       high = std::exchange(right, left);
-      left = high - kPart * (high - low);
+      left = high - kFraction * (high - low);
       at_right = std::exchange(at_left, convex(left));
       best = std::min(best, at_left);
     } else {
       low = std::exchange(left, right);
-      right = low + kPart * (high - low);
+      right = low + kFraction * (high - low);
       at_left = std::exchange(at_right, convex(right));
       best = std::min(best, at_right);
     }

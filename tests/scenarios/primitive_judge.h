@@ -7,8 +7,8 @@ namespace sprung::testing {
 
 /// A convex function of position: negative inside the primitive, 0 on its surface, and outside at most the distance.
 struct ConvexMeasure {
-  double value = 0.0;               ///< [m]; between two points it differs by no more than the way
-  Vector3 slope = Vector3::Zero();  ///< of a plane that touches the function here and is nowhere above it
+  double value = 0.0;               ///< [m]; at two points it differs by at most their distance
+  Vector3 slope = Vector3::Zero();  ///< of a tangent plane, which is nowhere above the function
 };
 
 /// Requires a primitive.

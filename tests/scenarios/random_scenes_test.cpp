@@ -1,4 +1,4 @@
-// Scenes that nobody thought of: random networks thrown at random obstacles that move, turn and deform, at random steps.
+// Random networks thrown at random obstacles that move, rotate and deform, with random steps: combinations that no other test has.
 #include "base/error.h"
 #include "base/test_seed.h"
 #include "collision/sample_meshes.h"
@@ -26,9 +26,11 @@ double one_of(Random& random, std::initializer_list<double> values) {
   return values.begin()[random.below(static_cast<Index>(values.size()))];
 }
 
-Matrix3 random_turn(Random& random) { return rotation_from_degrees(180.0 * random.in_box({-Vector3::Ones(), Vector3::Ones()})); }
+Matrix3 random_rotation(Random& random) {
+  return rotation_from_degrees(180.0 * random.in_box({-Vector3::Ones(), Vector3::Ones()}));
+}
 
-/// A coarse cloth, a rope or a jelly, so thin that the limit or a few soft springs alone hold it.
+/// A coarse cloth, a rope or a jelly, constrained by the stretch limit or by a few soft springs alone.
 BodyShape random_shape(Random& random) {
   const SpringMaterial limp{.value = 0.0};
   const SpringMaterial soft{.value = 1.0, .damping = 0.01};
@@ -49,7 +51,7 @@ void add_random_body(NetworkBuilder& builder, const std::string& name, Random& r
   set_total_mass(shape, 1.0);
   const Vector3 direction = random.direction();
   RigidTransform pose = RigidTransform::Identity();
-  pose.linear() = random_turn(random);
+  pose.linear() = random_rotation(random);
   pose.translation() = -random.between(0.3, 1.0) * direction + 0.2 * random.direction();
   place(shape, pose, one_of(random, {0.0, 1.0, 10.0, 100.0}) * direction);
   const double friction = one_of(random, {0.0, 0.5, 2.0});
@@ -101,7 +103,7 @@ ObstacleGeometry random_primitive(Random& random) {
   }
 }
 
-/// The mesh sheared and stretched by up to a tenth, or three, differently in each frame.
+/// The mesh, sheared and stretched by up to one or three tenths, differently in each frame.
 SequenceGeometry deforming(const MeshGeometry& rest, Random& random) {
   MeshSequence sequence;
   sequence.triangles = rest.mesh->triangles;
@@ -129,7 +131,7 @@ ObstacleGeometry random_geometry(Random& random) {
 
 Obstacle random_obstacle(Random& random) {
   Obstacle obstacle{.name = "obstacle", .geometry = random_geometry(random)};
-  obstacle.rest_pose.linear() = random_turn(random);
+  obstacle.rest_pose.linear() = random_rotation(random);
   obstacle.material = {.thickness = one_of(random, {0.0, 0.002}), .friction = 0.5, .static_friction = 0.5};
   if (random.below(2) == 0) return obstacle;
   obstacle.motion.keyframes = {{.time = 0.0},
@@ -152,7 +154,7 @@ BuiltScene random_scene(Random& random, const NetworkBuilder& builder, std::vect
 
 using Reports = std::vector<std::pair<std::uint64_t, ScenarioReport>>;
 
-/// Runs the scenes that `make` makes of random numbers, but those that begin across something, or that are not `wanted`.
+/// Runs scenes that `make` builds from random numbers, except those that start with an intersection or are not `wanted`.
 template <class Make, class Wanted>
 Reports run_scenes(std::uint64_t scenes, Judge judge, const Make& make, const Wanted& wanted) {
   Reports reports;
@@ -171,7 +173,7 @@ Reports run_scenes(std::uint64_t scenes, Judge judge, const Make& make, const Wa
 
 bool deforms(const BuiltScene& scene) { return std::holds_alternative<SequenceGeometry>(scene.obstacles.front().geometry); }
 
-/// A rigid obstacle that swings above a floor, to which it leaves room.
+/// A rigid obstacle that swings above a floor and always leaves room between the two.
 std::vector<Obstacle> swing_above_floor(Random& random) {
   Obstacle obstacle{.name = "swings"};
   if (random.below(2) == 0) {
@@ -186,8 +188,9 @@ std::vector<Obstacle> swing_above_floor(Random& random) {
   const Vector3 position = kSwing * random.direction();
   const Vector3 rotation = one_of(random, {0.0, 90.0, 500.0}) * random.direction();
   for (int k = 0; 0.5 * k * period < 1.0; ++k) {
-    const double part = k % 2;
-    obstacle.motion.keyframes.push_back({.time = 0.5 * k * period, .position = part * position, .rotation = part * rotation});
+    const double fraction = k % 2;
+    obstacle.motion.keyframes.push_back(
+        {.time = 0.5 * k * period, .position = fraction * position, .rotation = fraction * rotation});
   }
   const ContactMaterial rough{.friction = 0.3, .static_friction = 0.3};
   obstacle.material = rough;
@@ -201,21 +204,21 @@ BuiltScene scene_of_one(Random& random) {
   return random_scene(random, builder, {random_obstacle(random)});
 }
 
-/// Whether the pin comes this near [m] to the obstacle at any time of the scene.
+/// Whether the pin comes within `distance` [m] of the obstacle at any time of the scene.
 bool comes_near(const Pin& pin, const Vector3& pinned, const Obstacle& obstacle, double distance, double duration) {
   const std::unique_ptr<const ObstacleShape> shape = make_shape(obstacle.geometry);
   const RigidTransform origin(Eigen::Translation3d(pin.origin));
   constexpr int kTimes = 400;
   for (int k = 0; k <= kTimes; ++k) {
     const double time = duration * k / kTimes;
-    const Vector3 place = pin.motion.pose(origin, time) * origin.inverse() * pinned;
-    const Vector3 local = obstacle.motion.pose(obstacle.rest_pose, time).inverse() * place;
+    const Vector3 position = pin.motion.pose(origin, time) * origin.inverse() * pinned;
+    const Vector3 local = obstacle.motion.pose(obstacle.rest_pose, time).inverse() * position;
     if (shape->nearest(local, distance) || shape->contains(local)) return true;
   }
   return false;
 }
 
-/// A body that one or two of its particles hold, and a primitive that moves beside them, or that they move beside.
+/// A body with one or two pinned particles, and a primitive. Either the pins or the primitive move.
 BuiltScene scene_with_pins(Random& random, bool self) {
   NetworkBuilder builder;
   add_random_body(builder, "body", random, {.self = self});
@@ -231,8 +234,9 @@ BuiltScene scene_with_pins(Random& random, bool self) {
   return random_scene(random, builder, {obstacle});
 }
 
-/// Round pins that nothing comes near there is a place for what hangs on each of them alone.
-bool leaves_pins_alone(const BuiltScene& scene) {
+/// Whether the obstacle stays away from all pins and no spring joins two pins. The free particles around a pin then have room
+/// beside the obstacle.
+bool has_room_around_pins(const BuiltScene& scene) {
   constexpr double kRoom = 0.03;
   const auto is_pinned = [&](Index i) { return scene.network.inverse_masses[i] == 0.0; };
   const Springs& springs = scene.network.springs;
@@ -269,7 +273,7 @@ TEST_F(RandomScenes, NothingCrossesAnyObstacleInAnyStep) {
   EXPECT_GT(reports.size(), 250);
 }
 
-/// Before one rigid obstacle there always is a place.
+// With a single rigid obstacle an admissible position always exists.
 TEST_F(RandomScenes, NothingCrossesItselfOrAnotherOrARigidObstacleInAnyStep) {
   const Reports reports =
       run_scenes(200, Judge::obstacles_and_self, scene_of_three, [](const BuiltScene& scene) { return !deforms(scene); });
@@ -279,8 +283,8 @@ TEST_F(RandomScenes, NothingCrossesItselfOrAnotherOrARigidObstacleInAnyStep) {
   EXPECT_GT(reports.size(), 40);
 }
 
-/// Between them there is room, which may be found in small parts of the step only.
-TEST_F(RandomScenes, NothingCrossesItselfOrAnotherBetweenAnObstacleThatMovesAndAFloor) {
+// There is room between obstacle and floor, though it may be found only in substeps.
+TEST_F(RandomScenes, NothingCrossesItselfOrAnotherBetweenAMovingObstacleAndAFloor) {
   const Reports reports = run_scenes(200, Judge::obstacles_and_self, scene_above_floor, [](const BuiltScene&) { return true; });
   for (const auto& [number, report] : reports) {
     EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
@@ -288,20 +292,21 @@ TEST_F(RandomScenes, NothingCrossesItselfOrAnotherBetweenAnObstacleThatMovesAndA
   EXPECT_GT(reports.size(), 40);
 }
 
-/// A pin's neighbours go farther than the obstacle does that leads them round the pin.
+// An obstacle that pushes the neighbours of a pin around it moves them farther than it moves itself.
 TEST_F(RandomScenes, NothingCrossesBesideItsPins) {
   const auto make = [](Random& random) { return scene_with_pins(random, false); };
-  const Reports reports = run_scenes(1000, Judge::obstacles, make, leaves_pins_alone);
+  const Reports reports = run_scenes(1000, Judge::obstacles, make, has_room_around_pins);
   for (const auto& [number, report] : reports) {
     EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
   }
   EXPECT_GT(reports.size(), 250);
 }
 
-/// What is knotted at a pin goes with it as it is, and has no place where it meets the obstacle so: that is rare, and told.
+// Elements tangled at a pin move rigidly with it. They have no admissible position if that motion drives them into the obstacle.
+// This is rare, and it is reported.
 TEST_F(RandomScenes, NothingCrossesItselfBesideItsPins) {
   const auto make = [](Random& random) { return scene_with_pins(random, true); };
-  const Reports reports = run_scenes(300, Judge::obstacles_and_self, make, leaves_pins_alone);
+  const Reports reports = run_scenes(300, Judge::obstacles_and_self, make, has_room_around_pins);
   std::size_t infeasible = 0;
   for (const auto& [number, report] : reports) {
     EXPECT_TRUE(report.is_free() || report.infeasible > 0) << "scene " << number << ": " << report;
@@ -311,7 +316,7 @@ TEST_F(RandomScenes, NothingCrossesItselfBesideItsPins) {
   EXPECT_GT(reports.size(), 100);
 }
 
-TEST_F(RandomScenes, NothingCrossesItselfOrAnotherBeforeASurfaceThatDeforms) {
+TEST_F(RandomScenes, NothingCrossesItselfOrAnotherOrADeformingSurface) {
   const Reports reports = run_scenes(200, Judge::obstacles_and_self, scene_of_three, deforms);
   for (const auto& [number, report] : reports) EXPECT_TRUE(report.is_free()) << "scene " << number << ": " << report;
   EXPECT_GT(reports.size(), 10);

@@ -1,4 +1,4 @@
-// What lies on the ground stays there: no jitter, no energy from nothing.
+// Bodies on the ground come to rest and stay at rest: they do not jitter and gain no energy.
 #include "scenarios/scenario.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,8 @@ class Extremes {
   [[nodiscard]] double lowest() const { return lowest_; }
   [[nodiscard]] double highest() const { return highest_; }
   [[nodiscard]] double fastest() const { return fastest_; }
-  [[nodiscard]] double energy_growth() const { return energy_growth_; }  ///< above the least so far, whenever that was
+  /// The largest rise of the energy [J] above its lowest earlier value, over the whole run.
+  [[nodiscard]] double energy_growth() const { return energy_growth_; }
 
  private:
   double since_;
@@ -57,7 +58,7 @@ class Rest : public ::testing::TestWithParam<std::tuple<const char*, double>> {
 };
 INSTANTIATE_TEST_SUITE_P(StepFactor, Rest, ::testing::Combine(::testing::ValuesIn(kGrounds), ::testing::Values(1.0, 4.0)));
 
-TEST_P(Rest, AClothThatLiesAtItsThicknessDoesNotStir) {
+TEST_P(Rest, AClothThatLiesAtItsThicknessDoesNotMove) {
   Extremes extremes(0.0);
   const ScenarioReport report = run_scenario(scene({"duration=5"}), std::ref(extremes));
   EXPECT_TRUE(report.is_free()) << report;
@@ -75,12 +76,12 @@ TEST_P(Rest, AClothThatFellAskewComesToRestAtItsThickness) {
   EXPECT_NEAR(extremes.lowest(), kThickness, 0.05 * kThickness);
   EXPECT_NEAR(extremes.highest(), kThickness, 0.05 * kThickness);
   EXPECT_LT(extremes.fastest(), 1e-3);
-  // Of 0.3 J it fell with.
+  // The fall released 0.3 J.
   EXPECT_LT(extremes.energy_growth(), 1e-12);
 }
 
-// From rest, and from so little above that nothing warns of it but its own fall.
-TEST(RestOfAPile, AClothDroppedOntoAnotherStaysAGapAboveIt) {
+// The upper cloth starts at rest, so its velocity does not announce the contact; only its fall in the step does.
+TEST(RestOfAPile, AClothDroppedOntoAnotherStaysOneGapAboveIt) {
   for (const double step_factor : {0.25, 1.0, 4.0}) {
     for (const double height : {0.012, 0.02, 0.04}) {
       const std::string upper =
@@ -103,21 +104,21 @@ TEST(RestOfAPile, AClothDroppedOntoAnotherStaysAGapAboveIt) {
       EXPECT_TRUE(report.is_free()) << report;
       EXPECT_GT(nearest, 0.95 * kThickness) << height << " m at " << step_factor;
       EXPECT_LT(farthest, 1.05 * kThickness) << height << " m at " << step_factor;
-      // Passes end when none moves anything by more than a thousandth of the gap: as high they may lift both cloths.
+      // Passes end when they move no particle by more than a thousandth of the gap. They may lift both cloths by that height.
       EXPECT_LT(all.energy_growth(), 0.2 * 9.81 * 1e-3 * kThickness) << height << " m at " << step_factor;
     }
   }
 }
 
-TEST(RestOfAJelly, ItsWeightIsCarriedAtItsThickness) {
+TEST(RestOfAJelly, ItRestsAtItsThickness) {
   for (const double step_factor : {0.25, 1.0}) {
     Extremes extremes(2.5);
     const ScenarioReport report = run_scenario(load_scenario("jelly_on_ground", {}, step_factor), std::ref(extremes));
     EXPECT_TRUE(report.is_free()) << report;
     EXPECT_NEAR(extremes.lowest(), kThickness, 0.05 * kThickness);
     EXPECT_LT(extremes.fastest(), 1e-3);
-    // Verlet's velocity is half a step old, and the jelly swings four times a second, at first with 0.03 J: of that 26 / s times
-    // half a step of 1 / 540 s goes to and fro between motion and springs meanwhile.
+    // Verlet's velocity is half a step old. The jelly oscillates four times a second, at first with 0.03 J. In half a step,
+    // 1 / 1080 s, a fraction of 26 / 1080 = 0.024 of that moves between kinetic and elastic energy.
     EXPECT_LT(extremes.energy_growth(), 0.024 * 0.03);
   }
 }

@@ -1,5 +1,5 @@
-// A world that is larger or smaller by a power of two, with its gravity, is the same world to the last bit: there is no length,
-// speed or distance in the code that is not measured by the scene's own.
+// Scaling a scene and its gravity by a power of two scales all positions bit for bit: the code contains no absolute length or
+// speed.
 #include "output/scratch_folder.h"
 #include "scenarios/scenario.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Multiplies all that is measured in metres, m/s or m/s^2. Meshes are files, so it is their scale.
+/// Multiplies all values in m, m/s or m/s^2. A mesh is a file, so its scale is multiplied.
 void scale_lengths(Json& json, double factor) {
   static const std::set<std::string> kLengths = {"gravity", "size",  "position", "velocity",  "radius", "height",
                                                  "length",  "radii", "offset",   "thickness", "from",   "to"};
@@ -66,7 +66,7 @@ TEST_P(Scaling, ByAPowerOfTwoScalesPositionsBitForBit) {
     ASSERT_EQ(run.frames.size(), expected.frames.size());
     for (std::size_t frame = 0; frame < run.frames.size(); ++frame) {
       ASSERT_TRUE(run.frames[frame] == factor * expected.frames[frame])
-          << "frame " << frame + 1 << " of the world times " << factor;
+          << "frame " << frame + 1 << " of the scene times " << factor;
     }
   }
 }

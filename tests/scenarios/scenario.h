@@ -11,17 +11,17 @@
 
 namespace sprung::testing {
 
-/// The scene tests/scenarios/scenes/<name>.json (or <name>.json, when that is an absolute path) with overrides as given to --set,
-/// its step `step_factor` times the one that the scene itself leads to. Larger steps make fewer frames, not fewer steps a frame;
-/// smaller ones more steps a frame.
+/// Loads the scene tests/scenarios/scenes/<name>.json (or <name>.json, if that is an absolute path) with overrides as given to
+/// --set. The step is `step_factor` times the step that the scene itself leads to. A larger step gives fewer frames, with as many
+/// steps each; a smaller one gives more steps a frame.
 [[nodiscard]] BuiltScene load_scenario(const std::string& name, const std::vector<std::string>& overrides = {},
                                        double step_factor = 1.0);
 
-/// The same for what is as stiff as jellies are. Explicit schemes choose steps almost as long as springs allow: implicit Euler
-/// makes those that are longer.
+/// The same for scenes with stiff springs, such as jellies. Explicit schemes choose a step almost as long as the springs allow, so
+/// a longer step is made with implicit Euler.
 [[nodiscard]] BuiltScene load_stiff_scenario(const std::string& name, double step_factor);
 
-/// What the judge saw in all frames, the first included.
+/// The judge's findings in all frames, including the first.
 struct ScenarioReport {
   int frames = 0;
   double step = 0.0;  ///< [s]
@@ -43,7 +43,7 @@ std::ostream& operator<<(std::ostream& stream, const ScenarioReport& report);
 /// What is judged in each frame.
 enum class Judge : std::uint8_t { nothing, obstacles, obstacles_and_self };
 
-/// Looks at a frame, the first included.
+/// Is called after each frame, including the first.
 using Watch = std::function<void(const Simulator& simulator, const FrameDiagnostics& frame)>;
 
 /// Throws StepError when the network diverges, InputError when it cannot start.

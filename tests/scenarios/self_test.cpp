@@ -1,4 +1,4 @@
-// Networks that meet themselves and each other.
+// Contact of networks with themselves and with each other.
 #include "base/format.h"
 #include "scenarios/judge.h"
 #include "scenarios/knot.h"
@@ -25,18 +25,18 @@ class SelfContact : public ::testing::TestWithParam<double> {
 };
 INSTANTIATE_TEST_SUITE_P(StepFactor, SelfContact, ::testing::Values(1.0, 4.0));
 
-TEST_P(SelfContact, AClothTwistedTwoTurnsDoesNotPassItself) {
+TEST_P(SelfContact, AClothTwistedTwoTurnsDoesNotCrossItself) {
   const ScenarioReport report = run("twisted_cloth");
   EXPECT_TRUE(report.is_free()) << report;
 }
 
-TEST_P(SelfContact, AClothSwungTwoTurnsByItsUpperCornersDoesNotPassItself) {
+TEST_P(SelfContact, AClothSwungTwoTurnsByItsUpperCornersDoesNotCrossItself) {
   const ScenarioReport report = run("twisted_cloth", {R"(bodies.cloth.pins=[{"at": "corner", "which": ["min_max", "max_max"],
                                 "motion": {"keyframes": [{"time": 0}, {"time": 2, "rotation": [0, 720, 0]}]}}])"});
   EXPECT_TRUE(report.is_free()) << report;
 }
 
-/// A sheet's lower edge goes round the axis between both sheets by 300 degrees a second, in chords.
+/// An override that moves the lower edge of a sheet around the axis between both sheets, at 300 degrees a second and in chords.
 std::string around_axis(const std::string& body, double distance) {
   constexpr int kChords = 96;
   std::string keys;
@@ -51,7 +51,7 @@ std::string around_axis(const std::string& body, double distance) {
   return "bodies." + body + ".pins[1].motion={\"keyframes\": [" + keys + "]}";
 }
 
-// Pins of both go the same way but for the chords: no pin drags anything through anything.
+// The pins of both sheets have the same motion except for the chords, so no pin drives elements through each other.
 TEST(SelfContactAtPins, TwoSheetsTurnedTogetherStayFeasible) {
   BuiltScene scene = load_scenario("two_sheets_turned", {around_axis("front", 0.025), around_axis("back", -0.025)});
   const ScenarioReport report = run_scenario(std::move(scene), {}, Judge::obstacles_and_self);
@@ -59,29 +59,29 @@ TEST(SelfContactAtPins, TwoSheetsTurnedTogetherStayFeasible) {
   EXPECT_EQ(report.infeasible, 0);
 }
 
-// By 2.8 turns, until it is a rope.
-TEST(SelfContactAtPins, AClothTwistedAtBothEndsDoesNotPassItself) {
+// 2.8 turns twist the cloth into a rope.
+TEST(SelfContactAtPins, AClothTwistedAtBothEndsDoesNotCrossItself) {
   const ScenarioReport report = run_scenario(load_scenario("cloth_twisted_at_both_ends", {}), {}, Judge::obstacles_and_self);
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_EQ(report.infeasible, 0);
 }
 
-// Without a thickness nothing keeps gaps open: pins of both ends draw all of it at once.
-TEST(SelfContactAtPins, AThinClothTwistedAtBothEndsDoesNotPassItself) {
+// Without a thickness nothing keeps gaps open, and the pins of both ends pull on the whole cloth at once.
+TEST(SelfContactAtPins, AThinClothTwistedAtBothEndsDoesNotCrossItself) {
   const ScenarioReport report =
       run_scenario(load_scenario("cloth_twisted_at_both_ends", {"bodies.cloth.thickness=0"}), {}, Judge::obstacles_and_self);
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_EQ(report.infeasible, 0);
 }
 
-// An edge between two pins goes through a triangle of which only the edge between two others is pinned.
+// An edge between two pins is driven through a triangle with two other pins and one free particle.
 TEST(SelfContactAtPins, PinsThatDriveElementsThroughEachOtherAreReported) {
   const ScenarioReport report = run_scenario(load_scenario("pins_through_each_other", {}), {}, Judge::obstacles_and_self);
   EXPECT_FALSE(report.is_free());
   EXPECT_GT(report.infeasible, 0);
 }
 
-/// Cloths of n x n particles, whose middles are to lie over the top of the ball one above the other.
+/// Expects that the centres of five cloths of n x n particles lie above the ball in their initial order.
 void expect_a_pile(Index n, double step_factor) {
   const Watch watch = [n](const Simulator& simulator, const FrameDiagnostics& frame) {
     if (frame.frame % 30 != 1) return;
@@ -106,11 +106,11 @@ void expect_a_pile(Index n, double step_factor) {
 
 TEST(SelfContactOfAPile, FiveClothsLieOnABallInOrder) { expect_a_pile(20, 1.0); }
 
-// Steps in which cloths pass each other's places altogether have many pairs: finer cloths take too long.
+// In such steps cloths would move far past each other, which makes many pairs: finer cloths take too long.
 TEST(SelfContactOfAPile, FiveClothsLieOnABallInOrderAtAStepFourTimesCoarser) { expect_a_pile(10, 4.0); }
 
-/// The least distance [m] of segments of one rope that are at least `apart` segments from each other along it.
-double least_distance_within(const Points& rope, Index apart) {
+/// The least distance [m] between segments of a rope that are at least `apart` segments away from each other along the rope.
+double least_distance_between_segments(const Points& rope, Index apart) {
   double least = std::numeric_limits<double>::infinity();
   for (Index i = 0; i + 1 < rope.cols(); ++i) {
     for (Index k = i + apart; k + 1 < rope.cols(); ++k) least = std::min(least, segment_distance(rope, {i, i + 1}, {k, k + 1}));
@@ -123,7 +123,7 @@ TEST_P(SelfContact, AnOverhandKnotPulledTightStaysAKnot) {
   double least = std::numeric_limits<double>::infinity();
   const ScenarioReport report = run("overhand_knot", {}, [&](const Simulator& simulator, const FrameDiagnostics& frame) {
     ASSERT_EQ(knot_determinant(closed_far_away(simulator.positions())), 3) << "frame " << frame.frame;
-    least = std::min(least, least_distance_within(simulator.positions(), 4));
+    least = std::min(least, least_distance_between_segments(simulator.positions(), 4));
   });
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_GT(least, 0.5 * kThickness);
@@ -148,7 +148,7 @@ class SelfContactOfAJelly : public ::testing::TestWithParam<double> {
 };
 INSTANTIATE_TEST_SUITE_P(StepFactor, SelfContactOfAJelly, ::testing::Values(0.25, 1.0, 4.0));
 
-TEST_P(SelfContactOfAJelly, AClothHeldAtItsCornersCatchesIt) {
+TEST_P(SelfContactOfAJelly, AClothPinnedAtItsCornersCatchesIt) {
   double lowest = 0.0;
   const ScenarioReport report = run("jelly_on_cloth", [&](const Simulator& simulator, const FrameDiagnostics&) {
     const Body& jelly = simulator.network().bodies.back();
@@ -172,7 +172,7 @@ TEST_P(SelfContactOfAJelly, AClothWrapsIt) {
   });
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_EQ(report.infeasible, 0);
-  EXPECT_TRUE(cloth.contains(jelly)) << "at the end, when its corners are drawn together above";
+  EXPECT_TRUE(cloth.contains(jelly)) << "at the end, when the corners of the cloth are drawn together above the jelly";
 }
 
 }  // namespace

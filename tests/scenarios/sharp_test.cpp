@@ -1,4 +1,4 @@
-// Things thinner than the network is fine: tips, edges and rings that may meet no particle at all.
+// Tips, edges and rings that are finer than the network's cells and may touch no particle at all.
 #include "scenarios/scenario.h"
 
 #include <gtest/gtest.h>
@@ -35,8 +35,8 @@ TEST_P(Sharp, ACoarseClothHangsOnACone) {
   EXPECT_GT(highest.y, 0.9 * kTip);
 }
 
-// At 30 m/s, for 3 m.
-TEST_P(Sharp, ASpikeShotUpTakesACoarseClothAlong) {
+// The spike moves up by 3 m at 30 m/s.
+TEST_P(Sharp, ASpikeShotUpLiftsACoarseCloth) {
   const char* const shot = R"(obstacles.spike.motion={"keyframes": [{"time": 0}, {"time": 0.1, "position": [0, 3, 0]}]})";
   Highest highest;
   const ScenarioReport report =
@@ -52,7 +52,7 @@ TEST_P(Sharp, ARopeHangsOverAKnife) {
   EXPECT_GT(highest.y, -0.05) << "the edge is at 0 m";
 }
 
-/// How often the rope passes the disc that the torus is around, from below to above less from above to below.
+/// The number of passages of the rope through the hole of the torus: those from below to above minus those from above to below.
 int passages_through_torus(const Simulator& simulator) {
   constexpr double kRing = 0.5;  // [m]
   const Obstacle& torus = simulator.environment().obstacles().front();
@@ -62,8 +62,8 @@ int passages_through_torus(const Simulator& simulator) {
     const double below = x(1, i);
     const double above = x(1, i + 1);
     if ((below < 0.0) == (above < 0.0)) continue;
-    const Vector3 meeting = x.col(i) + below / (below - above) * (x.col(i + 1) - x.col(i));
-    if (meeting.norm() < kRing) passages += below < 0.0 ? 1 : -1;
+    const Vector3 crossing = x.col(i) + below / (below - above) * (x.col(i + 1) - x.col(i));
+    if (crossing.norm() < kRing) passages += below < 0.0 ? 1 : -1;
   }
   return passages;
 }
@@ -76,14 +76,15 @@ TEST_P(Sharp, ARopeThroughATorusStaysThroughIt) {
   EXPECT_TRUE(report.is_free()) << report;
 }
 
-// The step is chosen for half the limit and the tolerance, 0.011, beyond the limit when the rope hangs at rest, and relaxation
-// leaves a third of that. Dragged along it swings at up to 4.5 m/s in bends of 1 m: it pulls with 2 g and its weight.
+// The suggested step lets a rope that hangs at rest exceed the limit by half the limit and the tolerance, 0.011, and relaxation
+// leaves a third of that. The dragged rope swings at up to 4.5 m/s in bends of radius 1 m: its centripetal acceleration of 2 g and
+// its weight make three times as much.
 TEST(DraggedRope, KeepsItsLength) {
   const ScenarioReport report = run_scenario(load_scenario("rope_through_torus"), {}, Judge::nothing);
   EXPECT_LT(report.max_stretch, 0.02 + 0.011) << report;
 }
 
-/// What has no thickness comes as near as rounding lets it, where normals between points nearly the same tell nothing.
+// A cloth without thickness comes as near as rounding allows. The direction between two nearly equal points is no usable normal.
 TEST(Thin, AClothWithoutThicknessHangsOverPrimitives) {
   for (const char* shape : {R"({"type": "box", "size": [0.3, 0.5, 0.3]})", R"({"type": "cylinder", "radius": 0.2, "height": 0.5})",
                             R"({"type": "cone", "radius": 0.25, "height": 0.5})"}) {

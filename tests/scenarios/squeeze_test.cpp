@@ -1,4 +1,4 @@
-// Networks between obstacles that close in on them.
+// Networks compressed between obstacles, or hit by an obstacle at a pin.
 #include "scenarios/scenario.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 class JellyBetweenPlates : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(StepFactor, JellyBetweenPlates, ::testing::Values(0.25, 1.0, 4.0));
 
-TEST_P(JellyBetweenPlates, IsSqueezedToHalfItsHeight) {
+TEST_P(JellyBetweenPlates, IsCompressedToHalfItsHeight) {
   double height = 0.0;
   const ScenarioReport report =
       run_scenario(load_stiff_scenario("squeezed_jelly", GetParam()), [&](const Simulator& simulator, const FrameDiagnostics&) {
@@ -20,7 +20,7 @@ TEST_P(JellyBetweenPlates, IsSqueezedToHalfItsHeight) {
       });
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_EQ(report.infeasible, 0);
-  // The plates end 0.11 m apart and each keeps the thickness of 5 mm.
+  // The plates end 0.11 m apart, and the jelly keeps its thickness of 5 mm from each.
   EXPECT_NEAR(height, 0.1, 0.05 * 0.005);
 }
 
@@ -29,7 +29,7 @@ struct Press {
   double fastest = 0.0;  ///< [m/s]
 };
 
-/// Plates close in on a cloth until they are `gap` [m] apart, or overlap, and open again, at 0.2 m/s.
+/// Two plates close on a cloth at 0.2 m/s until they are `gap` [m] apart, or overlap if `gap` is negative, and open again.
 Press press(double gap, double step_factor) {
   const std::string closed = json_text({0.0, gap - 0.1, 0.0});
   std::string plate = R"(obstacles.upper={"shape": {"type": "box", "size": [1, 0.1, 1]}, "place": {"position": [0, 0.2, 0]},)";
@@ -46,7 +46,7 @@ Press press(double gap, double step_factor) {
 class ClothBetweenPlates : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(StepFactor, ClothBetweenPlates, ::testing::Values(1.0, 4.0));
 
-TEST_P(ClothBetweenPlates, HoldsInLessThanItsThickness) {
+TEST_P(ClothBetweenPlates, StaysFreeInLessThanItsThickness) {
   for (const double gap : {0.009, 0.005, 0.001}) {
     const Press pressed = press(gap, GetParam());
     EXPECT_TRUE(pressed.report.is_free()) << "plates " << gap << " m apart: " << pressed.report;
@@ -63,11 +63,11 @@ TEST_P(ClothBetweenPlates, IsReportedWhereThereIsNoRoomAndFreeAgainAfterwards) {
   EXPECT_LT(pressed.fastest, 0.5) << "of the order of the plate's speed";
 }
 
-// The pin follows its motion, whatever is in the way.
-class PinInTheWay : public ::testing::TestWithParam<double> {};
-INSTANTIATE_TEST_SUITE_P(StepFactor, PinInTheWay, ::testing::Values(1.0, 4.0));
+// A pin follows its own motion, even where an obstacle passes over it.
+class PinInTheBallsPath : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(StepFactor, PinInTheBallsPath, ::testing::Values(1.0, 4.0));
 
-TEST_P(PinInTheWay, OfABallTheClothGetsFreeAgain) {
+TEST_P(PinInTheBallsPath, TheClothBecomesFreeAgain) {
   double stretch = 0.0;
   const ScenarioReport report =
       run_scenario(load_scenario("hanging_cloth", {"obstacles.ball.place.position=[0.5, 0.5, 1]"}, GetParam()),
@@ -78,7 +78,7 @@ TEST_P(PinInTheWay, OfABallTheClothGetsFreeAgain) {
   EXPECT_LT(stretch, 0.2) << "at the end; a ball of 0.12 m that is stuck stretches a spring of 0.04 m by more than its length";
 }
 
-TEST_P(PinInTheWay, OfABallTheClothAroundItIsNotDraggedAlong) {
+TEST_P(PinInTheBallsPath, TheClothAroundThePinIsNotDraggedAlong) {
   double stretch = 0.0;
   const ScenarioReport report =
       run_scenario(load_scenario("hanging_cloth", {R"(bodies.cloth.pins=[{"nearest": [0.03, 0.05, 0]}])"}, GetParam()),
@@ -86,7 +86,7 @@ TEST_P(PinInTheWay, OfABallTheClothAroundItIsNotDraggedAlong) {
   EXPECT_FALSE(report.is_free()) << report;
   EXPECT_GT(report.infeasible, 0) << "it is reported";
   EXPECT_LT(report.last_wrong_frame, 0.2 * report.frames) << report;
-  // The ball is gone in 0.1 s, in which it goes 50 times as far as springs are long. Measured: 0.11 and 0.87.
+  // The ball passes in 0.1 s, in which it moves 50 times as far as a spring is long. Measured: 0.11 and 0.87.
   EXPECT_LT(report.max_stretch, 2.0) << report;
   EXPECT_LT(stretch, 0.1) << "at the end";
 }

@@ -1,4 +1,4 @@
-// What starts in obstacles is led out of them before time 0, as the judge says, and goes on from there.
+// Bodies that start in obstacles are moved out before time 0, as the judge confirms, and the run continues from there.
 #include "base/error.h"
 #include "base/parallel.h"
 #include "collision/sample_meshes.h"
@@ -101,12 +101,12 @@ struct StartCase {
   std::string name;
   SpringNetwork network;
   Obstacle in;
-  Index moved;  ///< particles, at most
+  Index most_moved;  ///< the largest permitted number of moved particles
 };
 
 std::ostream& operator<<(std::ostream& stream, const StartCase& start) { return stream << start.name; }
 
-/// How many particles move was measured; a tenth more may.
+/// The numbers of moved particles are measured ones plus a tenth.
 std::vector<StartCase> starts() {
   const Obstacle ball = obstacle(SphereGeometry{0.3});
   const Obstacle bunny = obstacle(mesh_of(test::bunny(), true));
@@ -132,7 +132,7 @@ std::vector<StartCase> starts() {
       {"AnEarIsThroughACloth", network_of(cloth(), pose_at({0, 0.4, 0}, kLying)), bunny, 16},
       {"ACubeIsInTheBunny", network_of(cube(), pose_at({0, 0.45, 0})), bunny, 43},
       {"ARingIsTooTight", network_of(ring(0.32, 0.05), pose_at({0, 0, 0})), obstacle(CylinderGeometry{0.3, 4.0}), 220},
-      {"APartOfARopeIsInAPill", network_of(rope({Vector3(0.05, 0.1, 0.0), Vector3(0.5, 2.0, 0.0)}), pose_at({0, 0, 0})),
+      {"OneEndOfARopeIsInACapsule", network_of(rope({Vector3(0.05, 0.1, 0.0), Vector3(0.5, 2.0, 0.0)}), pose_at({0, 0, 0})),
        obstacle(CapsuleGeometry{0.2, 0.1}), 6},
   };
 }
@@ -149,7 +149,7 @@ TEST_P(EveryStart, IsRefusedOrPushedOutAndContinues) {
   ASSERT_EQ(simulator.warnings().size(), 1U);
   EXPECT_THAT(simulator.warnings()[0],
               HasSubstr("body \"body\" intersected an obstacle or a body at the start and was moved out: "));
-  // The gap is body's and obstacle's thickness; passes end within a thousandth of it.
+  // The gap is the sum of both thicknesses; passes end within a thousandth of it.
   EXPECT_GE(least_distance(simulator, in), 0.998 * (kThickness + in.material.thickness));
 
   Index moved = 0;
@@ -169,7 +169,7 @@ TEST(StartScenario, ParticlesBelowTheFloorAreLiftedToTheirGapAndNoFarther) {
   for (Index i = 0; i < network.particle_count(); ++i) {
     const Vector3 wanted = network.positions.col(i);
     const Vector3 expected(wanted.x(), std::max(wanted.y(), 0.02 + kThickness + 0.001), wanted.z());
-    // A thousandth of the gap is what passes leave, and a millionth of a stride of 2.5 cm what settling does.
+    // The passes leave an error of a thousandth of the gap. The final solve leaves a millionth of a stride of 2.5 cm.
     EXPECT_NEAR((simulator.positions().col(i) - expected).norm(), 0.0, 4e-6) << i;
   }
 }
@@ -184,7 +184,7 @@ TEST(StartScenario, AThinSheetLeavesABodyOnTheSideWhereMostOfItIs) {
   }
 }
 
-TEST(StartScenario, ARopeThatTouchesAHoleStaysInIt) {
+TEST(StartScenario, ARopeThroughATorusStaysInItsHole) {
   const SpringNetwork network =
       network_of(rope({Vector3(-0.9, 0.05, 0), Vector3(0, -0.14, 0.05), Vector3(0.9, 0.05, 0)}), pose_at({0, 0, 0}));
   const Obstacle torus = obstacle(mesh_of(test::torus(0.3, 0.12, 40, 20), true), pose_at({0, 0.1, 0}, {0, 0, 90}));
@@ -229,16 +229,16 @@ SpringNetwork network_of_several(const std::vector<Placed>& bodies) {
   return builder.build();
 }
 
-struct AcrossCase {
+struct IntersectingCase {
   std::string name;
   std::vector<Placed> bodies;
 };
 
-std::ostream& operator<<(std::ostream& stream, const AcrossCase& across) { return stream << across.name; }
+std::ostream& operator<<(std::ostream& stream, const IntersectingCase& intersecting) { return stream << intersecting.name; }
 
-class EveryStartAcross : public ::testing::TestWithParam<AcrossCase> {};
+class EveryIntersectingStart : public ::testing::TestWithParam<IntersectingCase> {};
 
-TEST_P(EveryStartAcross, IsRefusedOrPushedApartAndContinues) {
+TEST_P(EveryIntersectingStart, IsRefusedOrPushedApartAndContinues) {
   const SpringNetwork network = network_of_several(GetParam().bodies);
   const std::vector<Obstacle> floor = {obstacle(HalfSpaceGeometry{Vector3::UnitY(), 0.0})};
   const std::vector<JudgedElement> elements = judged_elements(network);
@@ -249,8 +249,9 @@ TEST_P(EveryStartAcross, IsRefusedOrPushedApartAndContinues) {
   EXPECT_EQ(count_self_crossings(elements, simulator.positions()), 0);
   expect_free(simulator);
   const Body& first = network.bodies.front();
-  EXPECT_EQ(simulator.positions().leftCols(first.particle_count), network.positions.leftCols(first.particle_count)) << "it stays";
-  // In a direction along an axis or across them, and no farther than the bodies measure.
+  EXPECT_EQ(simulator.positions().leftCols(first.particle_count), network.positions.leftCols(first.particle_count))
+      << "the first body stays";
+  // The others move by no more than the extent of the bodies.
   EXPECT_LT((simulator.positions() - network.positions).colwise().norm().maxCoeff(), 1.0);
 
   for (int step = 0; step < 50; ++step) simulator.step();
@@ -259,18 +260,18 @@ TEST_P(EveryStartAcross, IsRefusedOrPushedApartAndContinues) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    StartScenario, EveryStartAcross,
-    ::testing::Values(AcrossCase{"ACubeIsInACube",
-                                 {{cube(), pose_at({0, 0.3, 0})}, {cube(), pose_at({0.1, 0.5, 0.05}, {10, 20, 30})}}},
-                      AcrossCase{"TwoClothsCutEachOther",
-                                 {{cloth(), pose_at({0, 0.6, 0}, kLying)}, {cloth(), pose_at({0.1, 0.62, 0}, {-80, 0, 0})}}},
-                      AcrossCase{"ThreeClothsCutEachOther",
-                                 {{cloth(), pose_at({0, 0.6, 0}, kLying)},
-                                  {cloth(), pose_at({0.1, 0.61, 0}, {-87, 5, 0})},
-                                  {cloth(), pose_at({0.05, 0.63, 0.03}, {-92, 0, 3})}}},
-                      AcrossCase{"ARopeIsThroughACube",
-                                 {{cube(), pose_at({0, 0.5, 0})},
-                                  {rope({Vector3(-0.9, 0.55, 0.01), Vector3(0.9, 0.45, 0.02)}), pose_at({0, 0, 0})}}}),
+    StartScenario, EveryIntersectingStart,
+    ::testing::Values(IntersectingCase{"ACubeIsInACube",
+                                       {{cube(), pose_at({0, 0.3, 0})}, {cube(), pose_at({0.1, 0.5, 0.05}, {10, 20, 30})}}},
+                      IntersectingCase{"TwoClothsCutEachOther",
+                                       {{cloth(), pose_at({0, 0.6, 0}, kLying)}, {cloth(), pose_at({0.1, 0.62, 0}, {-80, 0, 0})}}},
+                      IntersectingCase{"ThreeClothsCutEachOther",
+                                       {{cloth(), pose_at({0, 0.6, 0}, kLying)},
+                                        {cloth(), pose_at({0.1, 0.61, 0}, {-87, 5, 0})},
+                                        {cloth(), pose_at({0.05, 0.63, 0.03}, {-92, 0, 3})}}},
+                      IntersectingCase{"ARopeIsThroughACube",
+                                       {{cube(), pose_at({0, 0.5, 0})},
+                                        {rope({Vector3(-0.9, 0.55, 0.01), Vector3(0.9, 0.45, 0.02)}), pose_at({0, 0, 0})}}}),
     [](const auto& of) { return of.param.name; });
 
 TEST(StartScenario, AClothPinnedAcrossAWallIsRefused) {
@@ -291,7 +292,7 @@ TEST(StartScenario, PinnedParticlesStay) {
   EXPECT_EQ(simulator.positions().col(20), network.positions.col(20));
 }
 
-/// The cloth that a ball cuts, and all that has a length scaled.
+/// Start positions of the cloth that intersects a ball, with all lengths of the scene multiplied by `scale`.
 Points scaled_start(double scale) {
   SpringNetwork network = network_of(cloth(), pose_at({0, 0.1, 0}, kLying));
   network.positions *= scale;

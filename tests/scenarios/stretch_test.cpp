@@ -11,7 +11,7 @@ namespace {
 
 const char* const kLevel = "bodies.cloth.place.rotation=[-90,0,0]";
 
-/// The largest stretch that structural springs have in any frame.
+/// The largest stretch of a structural spring in any frame.
 double stretch(const std::string& name, const std::vector<std::string>& overrides) {
   return run_scenario(load_scenario(name, overrides), {}, Judge::nothing).max_stretch;
 }
@@ -27,24 +27,24 @@ double stretch_of_rope(int particles, std::vector<std::string> overrides) {
   return stretch("limited_rope", overrides);
 }
 
-TEST(Stretch, HangingClothsOfAnyResolutionHoldTheirLimit) {
+TEST(Stretch, HangingClothsOfAnyResolutionKeepTheirLimit) {
   EXPECT_LT(stretch_of_cloth(64, {}), 0.01);
   EXPECT_LT(stretch_of_cloth(128, {"duration=1"}), 0.02);
   EXPECT_LT(stretch_of_cloth(256, {"duration=0.25"}), 0.02);
 }
 
-TEST(Stretch, SwingingClothsOfAnyResolutionHoldTheirLimit) {
+TEST(Stretch, SwingingClothsOfAnyResolutionKeepTheirLimit) {
   EXPECT_LT(stretch_of_cloth(64, {kLevel, "duration=1.5"}), 0.02);
   EXPECT_LT(stretch_of_cloth(128, {kLevel, "duration=0.5"}), 0.02);
 }
 
-TEST(Stretch, PassesHoldAHangingClothToo) {
+TEST(Stretch, PassesKeepTheLimitOfAHangingClothToo) {
   EXPECT_LT(stretch_of_cloth(64, {R"(stretch_limit={"max_stretch": 0, "max_compression": 0, "kinds": ["structural", "shear"],
                                      "iterations": 1, "tolerance": 0.01, "tethers": true, "solver": "gauss_seidel"})"}),
             0.02);
 }
 
-TEST(Stretch, RopesHoldTheirLimit) {
+TEST(Stretch, RopesKeepTheirLimit) {
   const std::string level = "bodies.rope.shape.points=[[0, 0, 0], [1, 0, 0]]";
   EXPECT_LT(stretch_of_rope(1000, {}), 0.005);
   EXPECT_LT(stretch_of_rope(1000, {level}), 0.005);
@@ -56,7 +56,7 @@ class StretchOfADrape : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Obstacle, StretchOfADrape,
                          ::testing::Values(R"({"type": "sphere", "radius": 0.4})", R"({"type": "mesh", "file": "bunny.obj"})"));
 
-TEST_P(StretchOfADrape, IsAtMostThreePerCentAndNothingPasses) {
+TEST_P(StretchOfADrape, IsAtMostThreePerCentAndNothingCrosses) {
   const std::vector<std::string> overrides = {std::string("obstacles.bunny.shape=").append(GetParam()),
                                               "bodies.cloth.shape.resolution=[32,32]", "stretch_limit.max_stretch=0.01"};
   const ScenarioReport report = run_scenario(load_scenario("drape", overrides));

@@ -1,4 +1,4 @@
-// Cloths thrown at thin things: a step may take them many times the thickness of what they hit, and of themselves.
+// Cloths thrown at thin obstacles. In one step they may move many times the thickness of the obstacle and their own thickness.
 #include "base/format.h"
 #include "scenarios/scenario.h"
 
@@ -61,7 +61,7 @@ TEST_P(ThrownCloth, StaysOnItsSideOfAThinSheet) {
   const ScenarioReport report = run_scenario(scene({}), std::ref(lowest));
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_GT(lowest.y, 0.0);
-  EXPECT_LT(lowest.y, 0.0021) << "it got there";
+  EXPECT_LT(lowest.y, 0.0021) << "it reached the obstacle";
 }
 
 TEST_P(ThrownCloth, StaysOnItsSideOfAThinBox) {
@@ -69,10 +69,10 @@ TEST_P(ThrownCloth, StaysOnItsSideOfAThinBox) {
   const ScenarioReport report = run_scenario(scene({kWideBox}), std::ref(lowest));
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_GT(lowest.y, 0.0);
-  EXPECT_LT(lowest.y, 0.0021) << "it got there";
+  EXPECT_LT(lowest.y, 0.0021) << "it reached the obstacle";
 }
 
-TEST_P(ThrownCloth, WrapsAroundASmallBoxOutsideOfIt) {
+TEST_P(ThrownCloth, WrapsAroundASmallBoxWithoutCrossingIt) {
   const ScenarioReport report = run_scenario(scene({kSmallBox}));
   EXPECT_TRUE(report.is_free()) << report;
 }

@@ -1,4 +1,4 @@
-// A cloth that meets itself on a surface that deforms.
+// A cloth with self-contact on a deforming surface.
 #include "network/network_builder.h"
 #include "scenarios/scenario.h"
 
@@ -40,7 +40,7 @@ SequenceGeometry waves() {
   return {.sequence = std::make_shared<const MeshSequence>(std::move(sequence)), .closed = false};
 }
 
-/// It falls 0.6 m, in steps as long as frames, and is rough and thick.
+/// A rough and thick cloth falls 0.6 m onto the waves, with one step a frame.
 BuiltScene cloth_on_waves() {
   const SpringMaterial limp{.value = 0.0};
   BodyShape cloth = make_cloth({.size = {0.6, 0.6}, .resolution = {6, 6}}, {limp, limp, limp});
@@ -62,7 +62,7 @@ BuiltScene cloth_on_waves() {
   return scene;
 }
 
-TEST(Waves, CrumpleAClothThatStaysBeforeThem) {
+TEST(Waves, CrumpleAClothThatDoesNotCrossThem) {
   const ScenarioReport report = run_scenario(cloth_on_waves(), {}, Judge::obstacles_and_self);
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_EQ(report.infeasible, 0);
