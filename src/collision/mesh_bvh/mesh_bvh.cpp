@@ -57,7 +57,7 @@ std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> build_model(const TriangleMesh
 MeshBvh::MeshBvh(const TriangleMesh& mesh) : model_(build_model(mesh)), magnitude_(mesh.vertices.cwiseAbs().maxCoeff()) {
   slots_.resize(static_cast<std::size_t>(mesh.triangles.cols()));
   add_node(WideBvhCollapse(*model_), 0, 1);
-  place(mesh);
+  set_positions(mesh);
 }
 
 std::array<Vector3, 3> MeshBvh::corners(Index triangle) const {
@@ -90,7 +90,7 @@ void MeshBvh::take_boxes(const MeshBvh& refitted) {
   magnitude_ = refitted.magnitude_;
 }
 
-void MeshBvh::place(const TriangleMesh& mesh) {
+void MeshBvh::set_positions(const TriangleMesh& mesh) {
   parallel_chunks(static_cast<Index>(blocks_.size()), kBlocksPerTask, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) fill_lanes(mesh, blocks_[static_cast<std::size_t>(i)]);
   });

@@ -37,7 +37,7 @@ class MeshBvh {
   void take_boxes(const MeshBvh& refitted);
 
   /// Sets the positions of the triangles, which must be within the boxes. Requires the triangles of the tree. Not thread-safe.
-  void place(const TriangleMesh& mesh);
+  void set_positions(const TriangleMesh& mesh);
 
   /// The box around all boxes [m].
   [[nodiscard]] Box3 bounds() const;

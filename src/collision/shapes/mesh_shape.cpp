@@ -63,8 +63,8 @@ void MeshShape::set_interval(double t, double t_end) {
     tree_->refit(from, to);
     tree_before_->take_boxes(*tree_);
   }
-  tree_->place(deforming_->after());
-  tree_before_->place(deforming_->before());
+  tree_->set_positions(deforming_->after());
+  tree_before_->set_positions(deforming_->before());
   bounds_ = tree_->bounds();
 }
 

@@ -64,7 +64,7 @@ bool is_rigid(const Body& body, const SpringGraph& graph) {
 //
 // A cloth that may shrink necks and folds until few springs carry all. One that may not shares the load. Measured on two corners
 // with one pass a step: without tethers, structural and shear springs (7.3 to 7.6 a particle) with 16 and 32 particles a side 1.0
-// of carried / d, with bend springs (10.8 and 11.3) 0.26; with tethers 0.37, 0.48, 0.56 and 0.65 for 16, 32, 64 and 128 a side,
+// of load / d, with bend springs (10.8 and 11.3) 0.26; with tethers 0.37, 0.48, 0.56 and 0.65 for 16, 32, 64 and 128 a side,
 // with bend springs 0.21, 0.29 and 0.39.
 double largest_load(const SpringNetwork& network, const Body& body, const SpringGraph& graph, const LoadCase& load_case) {
   double shortest = kInfinity;
@@ -86,9 +86,9 @@ double largest_load(const SpringNetwork& network, const Body& body, const Spring
   if (pins.empty()) return half_path(body, graph, joined) * ends_per_particle / shortest;
   const auto free = network.inverse_masses.segment(body.first_particle, body.particle_count).array() > 0.0;
   const double shared = static_cast<double>(free.count()) / static_cast<double>(pins.size());
-  const double carried = load_case.tethers ? farthest_from(body, graph, pins).springs : shared;
+  const double load = load_case.tethers ? farthest_from(body, graph, pins).springs : shared;
   const double spread = load_case.shared ? (load_case.tethers ? kTetheredShare : kShare) / ends_per_particle : ends_per_particle;
-  return carried * spread / shortest_at_pin;
+  return load * spread / shortest_at_pin;
 }
 
 }  // namespace sprung

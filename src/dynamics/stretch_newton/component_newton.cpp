@@ -77,19 +77,19 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
     write_to(positions);
     return 0;
   }
-  energy_.set_weight(1.0);
+  energy_.set_load(1.0);
   const double beyond = energy_.value(target_, target_);
   if (beyond == 0.0) {
     balanced_energy_ = kUnknown;
     return std::nullopt;
   }
-  const double weight = carried_weight(fall);
-  energy_.set_weight(weight);
+  const double load = link_load(fall);
+  energy_.set_load(load);
   energy_.find_near(target_);
   // Ordering takes time, and a component that is never solved needs none.
   if (!solver_) solver_ = make_system_solver(component_);
   // At the target of the forces the inertia term is zero: all energy is in links and proportional to the load.
-  const int iterations = minimise(weight * beyond);
+  const int iterations = minimise(load * beyond);
   last_iterations_ = iterations;
   if (clips_) clip();
   write_to(positions);
@@ -124,7 +124,7 @@ Vector3 ComponentNewton::common_move() const {
 // The load follows from the acceleration. A particle that moves by u in a step on a circle of radius r has the centripetal
 // acceleration u^2 / r; without one, the excess of links gives it. A link that is too stiff for a small step would take more from
 // a swing than it stores: with a stiffness as large as the masses it stops the swing within a step.
-double ComponentNewton::carried_weight(double fall) const {
+double ComponentNewton::link_load(double fall) const {
   const double inwards = extent_ > 0.0 ? farthest_squared_ / extent_ : 0.0;
   return mass_ / std::max(component_.pin_count(), Index{1}) *
          std::max({fall, inwards, energy_.give(), fall + inwards > 0.0 ? 0.0 : most_beyond()});

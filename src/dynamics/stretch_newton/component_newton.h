@@ -37,7 +37,7 @@ class ComponentNewton final : public ComponentSolver {
 
   void gather(const Points& before, const Points& positions);
   [[nodiscard]] Vector3 common_move() const;
-  [[nodiscard]] double carried_weight(double fall) const;
+  [[nodiscard]] double link_load(double fall) const;
   [[nodiscard]] double most_beyond() const;
   void set_initial_iterate();
   void write_to(Points& positions) const;

@@ -17,7 +17,7 @@ constexpr double kNear = 0.9;
 // Springs with stiffness keep most links nearly at their limit. There a link passes half of its excess to each neighbour, and a
 // link with more slack than that stays slack. Treating it as pushing cost a cloth 11 iterations a step instead of 2, and solves
 // that ended sooner added energy.
-constexpr double kHandedOn = 0.5;
+constexpr double kPassedOn = 0.5;
 
 // The smallest tolerance that sets the links' stiffness: stiffer links take more iterations.
 constexpr double kLeastTolerance = 4.0e-4;
@@ -42,7 +42,7 @@ void StretchEnergy::find_near(const Points& y) {
     const double squared = (y.col(link.second) - y.col(link.first)).squaredNorm();
     longest = std::max(longest, squared / (limits_[s].length * limits_[s].length));
   }
-  near_ = std::max(kNear, 1.0 - kHandedOn * (std::sqrt(longest) - 1.0));
+  near_ = std::max(kNear, 1.0 - kPassedOn * (std::sqrt(longest) - 1.0));
 }
 
 double StretchEnergy::value(const Points& x, const Points& y) const {
@@ -56,7 +56,7 @@ double StretchEnergy::value(const Points& x, const Points& y) const {
     const double excess = std::sqrt(squared) - limits_[s].length;
     elastic += limits_[s].stiffness * excess * excess;
   }
-  return 0.5 * (inertia + weight_ * elastic);
+  return 0.5 * (inertia + load_ * elastic);
 }
 
 void StretchEnergy::note_overshot(const Points& x) {
@@ -92,7 +92,7 @@ double StretchEnergy::linearise(const Points& x, const Points& y, NearLimit near
     }
     const double length = std::sqrt(squared);
     const Vector3 direction = between / length;
-    const double stiffness = weight_ * limit.stiffness;
+    const double stiffness = load_ * limit.stiffness;
     const double excess = length - limit.length;
     const double across = stiffness * std::max(0.0, excess / length);
     system.blocks[s] = SymmetricMatrix3::along(across, stiffness - across, direction);
@@ -111,7 +111,7 @@ std::vector<double> StretchEnergy::stiffness_across(const Points& x) const {
     const StretchComponent::Link& link = component_.links[s];
     const double squared = (x.col(link.second) - x.col(link.first)).squaredNorm();
     const bool pulls = squared > limits_[s].length * limits_[s].length;
-    across.push_back(pulls ? weight_ * limits_[s].stiffness * (1.0 - limits_[s].length / std::sqrt(squared)) : 0.0);
+    across.push_back(pulls ? load_ * limits_[s].stiffness * (1.0 - limits_[s].length / std::sqrt(squared)) : 0.0);
   }
   return across;
 }
@@ -127,7 +127,7 @@ void StretchEnergy::take_turning(const Points& x, const Points& tried, StretchSy
     if (excess <= 0.0) continue;
     const Vector3 direction = (x.col(link.second) - x.col(link.first)).normalized();
     const double turned = length - direction.dot(between);
-    const Vector3 pull = weight_ * limits_[s].stiffness * std::min(turned, excess) * direction;
+    const Vector3 pull = load_ * limits_[s].stiffness * std::min(turned, excess) * direction;
     system.residual.col(link.first) += pull;
     if (component_.is_free(link.second)) system.residual.col(link.second) -= pull;
   }

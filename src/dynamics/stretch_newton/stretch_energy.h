@@ -26,7 +26,7 @@ class StretchEnergy {
   StretchEnergy(const StretchComponent& component, const StretchLimitSettings& settings);
 
   /// Sets the load W [kg m] > 0.
-  void set_weight(double weight) { weight_ = weight; }
+  void set_load(double load) { load_ = load; }
 
   /// The largest excess length of a link that carries the load [m].
   [[nodiscard]] double give() const { return give_; }
@@ -58,13 +58,13 @@ class StretchEnergy {
  private:
   struct Limit {
     double length;     ///< L [m]
-    double stiffness;  ///< k for a weight of 1 [1/m]
+    double stiffness;  ///< k for a load of 1 kg m [1/m]
   };
 
   const StretchComponent& component_;
   std::vector<Limit> limits_;   ///< of links
   std::vector<char> overshot_;  ///< a flag per link; empty while none is marked
-  double weight_ = 0.0;
+  double load_ = 0.0;
   double give_ = 0.0;
   double near_;  ///< links are near their limit from this fraction of it
 };

@@ -47,8 +47,8 @@ double least_energy(const StretchEnergy& energy, const StretchComponent& compone
   return least;
 }
 
-// A step that begins at the target adds no motion: links carry the component's mass against the fall alone, which sets the
-// energy's weight. Iterations end when a forecast was accurate to a tenth of the energy, so no more than that remains.
+// A step that begins at the target adds no motion: links carry the component's mass against the fall alone, which sets the load
+// of the energy. Iterations end when a forecast was accurate to a tenth of the energy, so no more than that remains.
 TEST(ComponentNewton, ConvergesToTheMinimum) {
   const SpringNetwork network = make_test_cloth(8, 0.0, 0.0, false);
   const StretchLimitSettings settings{.max_stretch = 0.0};
@@ -59,7 +59,7 @@ TEST(ComponentNewton, ConvergesToTheMinimum) {
 
   const StretchComponent component = component_of(network);
   StretchEnergy energy(component, settings);
-  energy.set_weight(network.masses.sum() * kFall);
+  energy.set_load(network.masses.sum() * kFall);
   const auto of_points = [&](const Points& all) {
     Points points(3, component.free_count);
     for (Index i = 0; i < component.free_count; ++i) points.col(i) = all.col(component.points[i]);
@@ -136,7 +136,7 @@ TEST(ComponentNewton, ReportsTheRelativeDeformation) {
 /// The energy of a cloth whose links are slightly too long or too short.
 class EnergyOfACloth : public ::testing::Test {
  protected:
-  EnergyOfACloth() { energy_.set_weight(1.0); }
+  EnergyOfACloth() { energy_.set_load(1.0); }
 
   [[nodiscard]] double linearise(NearLimit near, StretchSystem& system) const { return energy_.linearise(x_, x_, near, system); }
   [[nodiscard]] Vector3 between(std::size_t link) const {
@@ -168,8 +168,8 @@ TEST_F(EnergyOfACloth, BlocksAreNeverIndefinite) {
 }
 
 // A stiff link acts like a spring of stiffness k: it resists a displacement along the link with k and one across it not at all.
-// The energy's weight is 1, so k is 1 / (give times rest length), the same for all links of this cloth. Blocks are sums of a few
-// terms no larger than k.
+// The load is 1 kg m, so k is 1 / (give times rest length), the same for all links of this cloth. Blocks are sums of a few terms no
+// larger than k.
 TEST_F(EnergyOfACloth, LinksNearTheLimitAreStiffButDoNotPull) {
   StretchSystem slack;
   StretchSystem stiff;
@@ -227,7 +227,7 @@ class TurnedChain : public ::testing::Test {
     const Vector3 across = between_.unitOrthogonal();
     const Points tried = (Eigen::AngleAxisd(kAngle, across).matrix() * (longer * (x.colwise() - pin))).colwise() + pin;
     StretchEnergy energy(component_, {.max_stretch = 0.0});
-    energy.set_weight(1.0);
+    energy.set_load(1.0);
     energy.linearise(x, x, NearLimit::slack, system_);
     stiffness_ = between_.normalized().dot(system_.blocks.front() * between_.normalized());
     energy.take_turning(x, tried, system_);

@@ -56,7 +56,7 @@ TEST_P(Solvers, AgreeWithADenseSolver) {
   std::mt19937 random(3);
   for (StretchComponent& component : stretch_components(network, {SpringKind::structural})) {
     StretchEnergy energy(component, {.max_stretch = 0.0});
-    energy.set_weight(1.0e-3 * network.masses.sum());
+    energy.set_load(1.0e-3 * network.masses.sum());
     Points x(3, component.points.size());
     for (Index i = 0; i < x.cols(); ++i) x.col(i) = network.positions.col(component.points[i]);
     x.reshaped() += random_displacement(random, static_cast<Index>(x.size()), 0.01);
@@ -85,7 +85,7 @@ TEST_P(Solvers, ResidualIsTheNegativeGradient) {
   std::mt19937 random(4);
   const StretchComponent component = stretch_components(network, {SpringKind::structural}).front();
   StretchEnergy energy(component, {.max_stretch = 0.0});
-  energy.set_weight(1.0e-3);
+  energy.set_load(1.0e-3);
   Points x(3, component.points.size());
   for (Index i = 0; i < x.cols(); ++i) x.col(i) = 1.05 * network.positions.col(component.points[i]);
   Points target = x;
@@ -143,14 +143,14 @@ TEST(StretchNewton, TheSameStepsHaveTheSameBits) {
 }
 
 // Each solve leaves at most a tenth of the residual, measured by M + K, so its result is as near to that of a new factor. The
-// second and third systems are similar to the first; the fourth has a thousand times the weight and is not.
+// second and third systems are similar to the first; the fourth has a thousand times the load and is not.
 TEST(PcgSolver, OldFactorsAreAccurateEnough) {
   StretchedCloth cloth;
   const StretchComponent component = stretch_components(cloth.network, {SpringKind::structural}).front();
   StretchEnergy energy(component, {.max_stretch = 0.0});
   PcgSolver used(component);
-  for (const double weight : {1.0, 1.0, 1.0, 1000.0}) {
-    energy.set_weight(weight);
+  for (const double load : {1.0, 1.0, 1.0, 1000.0}) {
+    energy.set_load(load);
     const Points x = cloth.next();
     Points points(3, component.free_count);
     for (Index i = 0; i < component.free_count; ++i) points.col(i) = x.col(component.points[i]);
@@ -162,7 +162,7 @@ TEST(PcgSolver, OldFactorsAreAccurateEnough) {
     const Eigen::MatrixXd matrix = dense(component, system);
     const Scalars exact = matrix.ldlt().solve(Scalars(system.residual.reshaped()));
     const auto size = [&](const Scalars& of) { return std::sqrt(of.dot(matrix * of)); };
-    EXPECT_LT(size(step.reshaped() - exact), 0.15 * size(exact)) << weight;
+    EXPECT_LT(size(step.reshaped() - exact), 0.15 * size(exact)) << load;
   }
 }
 
@@ -178,15 +178,15 @@ TEST(PcgSolver, OldFactorsPreconditionConjugateGradients) {
   for (Index i = 0; i < points.cols(); ++i) points.col(i) = x.col(component.points[i]);
   StretchEnergy energy(component, {.max_stretch = 0.0});
   StretchSystem system;
-  const auto of_weight = [&](double weight) {
-    energy.set_weight(weight);
+  const auto of_load = [&](double load) {
+    energy.set_load(load);
     energy.linearise(points, points, NearLimit::slack, system);
   };
   PcgSolver used(component);
   Points step;
-  of_weight(1.0);
+  of_load(1.0);
   used.solve(system, step);
-  of_weight(16.0);
+  of_load(16.0);
   system.is_like_last = true;
   const double left = used.solve(system, step);
   const Eigen::MatrixXd matrix = dense(component, system);
@@ -213,10 +213,10 @@ TEST(PcgSolver, OldFactorsLeaveThePermittedError) {
     StretchSystem system;
     PcgSolver used(component);
     Points step;
-    energy.set_weight(1.0);
+    energy.set_load(1.0);
     energy.linearise(points, points, NearLimit::slack, system);
     used.solve(system, step);
-    energy.set_weight(16.0);
+    energy.set_load(16.0);
     energy.linearise(points, points, NearLimit::slack, system);
     const Scalars now = system.residual.reshaped();
     const double gain = 0.5 * now.dot(dense(component, system).ldlt().solve(now));
