@@ -44,9 +44,10 @@ class LiveViewer : public ::testing::Test {
 class PausedPage : public TestPage {
  public:
   explicit PausedPage(const std::string& port) : TestPage(port) {
+    const auto playing = text("scene")["generation"].get<std::uint32_t>();
     send({{"do", "pause"}});
     send({{"do", "reset"}});
-    frame([](const Received& message) { return message.time() == 0.0; });
+    frame([&](const Received& message) { return message.generation() > playing; });
   }
 };
 
