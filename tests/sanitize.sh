@@ -4,8 +4,8 @@
 #
 #   tests/sanitize.sh [thread|address [FOLDER...]]    # both, with all folders, without argument
 #
-# All folders take 25 minutes with the address sanitizer on two cores, so CI takes those that everything else stands on. Scenarios,
-# examples and tests of the project's own files are left out; the presets asan and tsan build them too, and tests/night.sh runs them.
+# Scenarios, examples, tests of the project's own files and a few long tests of laws of motion are left out, so that both take less
+# than half an hour on two cores. The presets asan and tsan build them too, and tests/night.sh runs them with the thread sanitizer.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -18,8 +18,10 @@ address() {
     if grep --quiet '^SPRUNG_VIEWER_IS_BUILT:INTERNAL=ON' build/asan/CMakeCache.txt; then folders+=(viewer); fi
   fi
   cmake --build --preset asan --target "${folders[@]/%/_tests}"
+  # Laws of motion over many steps of the same code; they take a third of the time.
+  local long='^(LimitEnergy|LimitMotion|Materials|ImplicitEuler|HangingChain|AngleBends|CollidingBodies)\.'
   # Programs that are not built register a test named ..._NOT_BUILT.
-  ctest --preset asan --parallel "$(nproc)" --exclude-regex '^Style\.|^Install\.|^Meshes\.|^Page\.|_NOT_BUILT'
+  ctest --preset asan --parallel "$(nproc)" --exclude-regex "$long|^Style\.|^Install\.|^Meshes\.|^Page\.|_NOT_BUILT"
 }
 
 # Sources that choose a number of threads hold the tests that run with more than one.
