@@ -1,12 +1,13 @@
 #include "viewer/html_export.h"
 
+#include <zlib.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -15,20 +16,28 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kLevels = 65535.0;
 
-std::string base64(const std::uint8_t* bytes, std::size_t size) {
+std::string base64(const Bytes& bytes) {
   constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
-  text.reserve((size + 2) / 3 * 4);
-  for (std::size_t k = 0; k < size; k += 3) {
-    const std::uint32_t second = k + 1 < size ? bytes[k + 1] : 0U;
-    const std::uint32_t third = k + 2 < size ? bytes[k + 2] : 0U;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    const std::uint32_t second = k + 1 < bytes.size() ? bytes[k + 1] : 0U;
+    const std::uint32_t third = k + 2 < bytes.size() ? bytes[k + 2] : 0U;
     const std::uint32_t three = (static_cast<std::uint32_t>(bytes[k]) << 16U) | (second << 8U) | third;
     text += kDigits[three >> 18U];
     text += kDigits[(three >> 12U) & 63U];
-    text += k + 1 < size ? kDigits[(three >> 6U) & 63U] : '=';
-    text += k + 2 < size ? kDigits[three & 63U] : '=';
+    text += k + 1 < bytes.size() ? kDigits[(three >> 6U) & 63U] : '=';
+    text += k + 2 < bytes.size() ? kDigits[three & 63U] : '=';
   }
   return text;
+}
+
+Bytes compressed(const Bytes& bytes) {
+  uLongf size = compressBound(bytes.size());
+  Bytes result(size);
+  if (compress2(result.data(), &size, bytes.data(), bytes.size(), Z_BEST_COMPRESSION) != Z_OK) throw std::bad_alloc();
+  result.resize(size);
+  return result;
 }
 
 /// Rounds positions to levels within a box.
@@ -41,20 +50,14 @@ class Quantiser {
     }
   }
 
-  /// Base 64 of the levels, u16[3n].
-  [[nodiscard]] std::string text(const Points& points) {
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(static_cast<std::size_t>(6 * points.cols()));
+  void append(const Points& points, std::vector<std::uint16_t>& levels) {
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       for (Eigen::Index d = 0; d < 3; ++d) {
         const double level = std::clamp(std::round((points(d, i) - min_[d]) / size_[d] * kLevels), 0.0, kLevels);
         error_ = std::max(error_, std::abs(min_[d] + size_[d] * level / kLevels - points(d, i)));
-        const auto number = static_cast<std::uint16_t>(level);
-        bytes.push_back(static_cast<std::uint8_t>(number & 255U));
-        bytes.push_back(static_cast<std::uint8_t>(number >> 8U));
+        levels.push_back(static_cast<std::uint16_t>(level));
       }
     }
-    return base64(bytes.data(), bytes.size());
   }
 
   [[nodiscard]] Json bounds() const { return {{"min", {min_[0], min_[1], min_[2]}}, {"size", {size_[0], size_[1], size_[2]}}}; }
@@ -65,6 +68,24 @@ class Quantiser {
   Vector3 size_;
   double error_ = 0.0;
 };
+
+std::vector<std::uint16_t> levels_of(const FrameState& state, Quantiser& quantiser) {
+  std::vector<std::uint16_t> levels;
+  quantiser.append(state.positions, levels);
+  for (const Points& vertices : state.deformed) quantiser.append(vertices, levels);
+  return levels;
+}
+
+/// Differences to the levels before, modulo 2^16: all low bytes, then all high bytes. High bytes are nearly all 0 or 255, which
+/// zlib stores in little space.
+void append_differences(const std::vector<std::uint16_t>& before, const std::vector<std::uint16_t>& levels, Bytes& bytes) {
+  for (const unsigned shift : {0U, 8U}) {
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+      const auto difference = static_cast<std::uint16_t>(levels[k] - before[k]);
+      bytes.push_back(static_cast<std::uint8_t>(difference >> shift));
+    }
+  }
+}
 
 Box3 bounds_of(const Points& points, Box3 box) {
   for (Eigen::Index i = 0; i < points.cols(); ++i) box.extend(Vector3(points.col(i)));
@@ -91,19 +112,23 @@ HtmlAnimation html_animation(const Replay& replay, const std::string& page) {
     for (const Points& vertices : state.deformed) box = bounds_of(vertices, box);
   }
   Quantiser quantiser(box);
-  Json frames = Json::array();
+  Bytes bytes = topology_message({.run = 0, .generation = 1}, replay.topology());
+  const std::size_t topology_bytes = bytes.size();
+  Json times = Json::array();
+  std::vector<std::uint16_t> before;
   for (int frame = 1; frame <= count; ++frame) {
-    const FrameState state = replay.state(frame);
-    Json obstacles = Json::array();
-    for (const Points& vertices : state.deformed) obstacles.push_back(quantiser.text(vertices));
-    frames.push_back({{"time", replay.time(frame)}, {"positions", quantiser.text(state.positions)}, {"obstacles", obstacles}});
+    std::vector<std::uint16_t> levels = levels_of(replay.state(frame), quantiser);
+    before.resize(levels.size());  // zeros before the first frame
+    append_differences(before, levels, bytes);
+    before = std::move(levels);
+    times.push_back(replay.time(frame));
   }
-  const Bytes topology = topology_message({.run = 0, .generation = 1}, replay.topology());
   const Json data{{"scene", Json::parse(replay.scene_text())},
-                  {"topology", base64(topology.data(), topology.size())},
                   {"bounds", quantiser.bounds()},
                   {"error", quantiser.error()},
-                  {"frames", frames}};
+                  {"times", std::move(times)},
+                  {"topology_bytes", topology_bytes},
+                  {"data", base64(compressed(bytes))}};
   const std::string element = "<script type=\"application/json\" id=\"sprung-run\">" + escaped(data.dump()) + "</script>";
   return {.text = page.substr(0, place) + element + page.substr(place), .error = quantiser.error()};
 }

@@ -7,14 +7,16 @@
 
 namespace sprung {
 
-/// The text of the file: the viewer's page with the run within it. Positions are quantised to 16 bits a coordinate within the run's
-/// bounds, compressed frame by frame as differences.
+/// The viewer's page with a run in its head, as JSON in an element with the id `sprung-run`. Positions and the vertices of
+/// deforming obstacles are rounded to 16 bits a coordinate within the run's bounds. The key `data` is base 64 of a zlib stream: the
+/// topology message (`topology_bytes` long), then for each time of `times` the differences of all levels to the frame before, u16:
+/// their low bytes, then their high bytes.
 struct HtmlAnimation {
   std::string text;
   double error = 0.0;  ///< largest distance of a coordinate from that of the run [m]
 };
 
-/// Requires the text of the page. Throws as Replay::state().
+/// Requires the text of the page. Throws what Replay::state() throws.
 [[nodiscard]] HtmlAnimation html_animation(const Replay& replay, const std::string& page);
 
 }  // namespace sprung

@@ -1,6 +1,7 @@
 # Sets SPRUNG_VIEWER to OFF, with the reason, where something is missing that the viewer needs. The npm packages of the page are
 # installed into the build folder, at the versions of its lock file.
 find_package(Boost 1.74 QUIET)
+find_package(ZLIB QUIET)
 find_package(Threads QUIET)
 find_program(NPM npm)
 set(SPRUNG_PAGE_FOLDER ${CMAKE_BINARY_DIR}/viewer_page)
@@ -14,6 +15,8 @@ endfunction()
 
 if(NOT Boost_FOUND)
   sprung_no_viewer("Boost is missing")
+elseif(NOT ZLIB_FOUND)
+  sprung_no_viewer("zlib is missing")
 elseif(NOT NPM)
   sprung_no_viewer("npm is missing")
 else()

@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 namespace sprung {
 namespace {
@@ -128,15 +129,28 @@ TEST_F(RecordedCloth, AnHtmlFileHasThePositionsWithinTheErrorThatItTells) {
   EXPECT_EQ(data["error"], animation.error);
   // Half a level of the largest side, which the cloth, the floor and the ball keep below 10 m.
   EXPECT_LE(animation.error, 0.5 * 10.0 / 65535.0 * (1.0 + 1e-9));
-  ASSERT_EQ(data["frames"].size(), static_cast<std::size_t>(kFrames));
+  ASSERT_EQ(data["times"].size(), static_cast<std::size_t>(kFrames));
+  const std::vector<std::uint8_t> packed = bytes_of_base64(data["data"]);
+  const auto topology_bytes = data["topology_bytes"].get<std::size_t>();
+  const Replay replay(run_folder(), {});
+  const std::size_t values = 3 * (64 + static_cast<std::size_t>(replay.state(1).deformed.at(0).cols()));
+  std::vector<std::uint8_t> bytes(topology_bytes + 2 * values * kFrames);
+  uLongf size = bytes.size();
+  ASSERT_EQ(uncompress(bytes.data(), &size, packed.data(), packed.size()), Z_OK);
+  ASSERT_EQ(size, bytes.size());
+  const Bytes topology = topology_message({.run = 0, .generation = 1}, replay.topology());
+  EXPECT_TRUE(
+      std::equal(topology.begin(), topology.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(topology_bytes)));
+  std::vector<std::uint16_t> levels(values);
   for (std::size_t frame = 0; frame < kFrames; ++frame) {
-    const std::vector<std::uint8_t> bytes = bytes_of_base64(data["frames"][frame]["positions"]);
-    ASSERT_EQ(bytes.size(), 6u * 64u);
-    for (std::size_t k = 0; k < 3 * 64; ++k) {
-      const double level = bytes[2 * k] + 256.0 * bytes[2 * k + 1];
+    const std::uint8_t* low = bytes.data() + topology_bytes + 2 * values * frame;
+    const Points ball = replay.state(static_cast<int>(frame) + 1).deformed[0];
+    for (std::size_t k = 0; k < values; ++k) {
+      levels[k] = static_cast<std::uint16_t>(levels[k] + low[k] + 256U * low[values + k]);
       const double value =
-          data["bounds"]["min"][k % 3].get<double>() + data["bounds"]["size"][k % 3].get<double>() * level / 65535.0;
-      EXPECT_LE(std::abs(value - positions_[frame].data()[k]), animation.error * (1.0 + 1e-12));
+          data["bounds"]["min"][k % 3].get<double>() + data["bounds"]["size"][k % 3].get<double>() * levels[k] / 65535.0;
+      const double exact = k < 192 ? positions_[frame].data()[k] : ball.data()[k - 192];
+      EXPECT_LE(std::abs(value - exact), animation.error * (1.0 + 1e-12));
     }
   }
 }

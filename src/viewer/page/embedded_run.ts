@@ -2,13 +2,14 @@ import { decodeTopology, FRAME, TOPOLOGY } from './protocol';
 import type { Command, Frame, FrameNumbers, Header, SceneMessage, Topology } from './protocol';
 import type { Source, SourceListener } from './source';
 
-interface EmbeddedFrame { time: number; positions: string; obstacles: string[] }
+/** See html_export.h. */
 interface Embedded {
   scene: SceneMessage;
-  topology: string;
   bounds: { min: number[]; size: number[] };
   error: number;
-  frames: EmbeddedFrame[];
+  times: number[];
+  topology_bytes: number;
+  data: string;
 }
 
 const LEVELS = 65535;
@@ -20,20 +21,42 @@ function bytesOf(text: string): Uint8Array<ArrayBuffer> {
   return bytes;
 }
 
-/** The run inside the page, or null. */
-export function embeddedRun(): EmbeddedRun | null {
+async function decompressed(bytes: Uint8Array<ArrayBuffer>): Promise<ArrayBuffer> {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return await new Response(stream).arrayBuffer();
+}
+
+/** Levels of all frames, from their differences. */
+function levelsOf(bytes: Uint8Array, frames: number): Uint16Array[] {
+  const values = bytes.length / (2 * frames);
+  const levels: Uint16Array[] = [];
+  for (let frame = 0; frame < frames; ++frame) {
+    const low = bytes.subarray(2 * values * frame, 2 * values * (frame + 1));
+    const before = levels.at(-1) ?? new Uint16Array(values);
+    levels.push(before.map((level, k) => level + low[k] + 256 * low[values + k]));
+  }
+  return levels;
+}
+
+/** The run inside the page, or null. Throws where the browser cannot decompress it. */
+export async function embeddedRun(): Promise<EmbeddedRun | null> {
   const text = document.getElementById('sprung-run')?.textContent;
-  return text ? new EmbeddedRun(JSON.parse(text) as Embedded) : null;
+  if (!text) return null;
+  const data = JSON.parse(text) as Embedded;
+  const bytes = await decompressed(bytesOf(data.data));
+  const levels = levelsOf(new Uint8Array(bytes, data.topology_bytes), data.times.length);
+  return new EmbeddedRun(data, decodeTopology(bytes.slice(0, data.topology_bytes)), levels);
 }
 
 /** A run that `sprung export --format html` wrote into the page. Answers `seek` as the server does. */
 export class EmbeddedRun implements Source {
-  private readonly topology: Topology;
   private listener: SourceListener | null = null;
 
-  constructor(private readonly data: Embedded) {
-    this.topology = decodeTopology(bytesOf(data.topology).buffer);
-  }
+  constructor(
+    private readonly data: Embedded,
+    private readonly topology: Topology,
+    private readonly levels: Uint16Array[],
+  ) {}
 
   /** What rounding has changed. */
   get note(): string {
@@ -42,7 +65,7 @@ export class EmbeddedRun implements Source {
 
   start(listener: SourceListener): void {
     this.listener = listener;
-    const scene = { ...this.data.scene, run: 0, generation: 1, frames: this.data.frames.length };
+    const scene = { ...this.data.scene, run: 0, generation: 1, frames: this.data.times.length };
     listener.connected(true);
     listener.text({ type: 'hello', version: '', mode: 'replay', title: '', examples: [] });
     listener.text(scene);
@@ -55,31 +78,39 @@ export class EmbeddedRun implements Source {
   }
 
   private answer(frame: number): void {
-    const number = Math.min(Math.max(Math.round(frame), 1), this.data.frames.length);
-    const { positions, obstacles } = this.data.frames[number - 1];
+    const number = Math.min(Math.max(Math.round(frame), 1), this.data.times.length);
     const count = this.topology.particles;
+    const positions = this.positions(number);
     const decoded: Frame = {
       numbers: this.numbers(number),
-      positions: this.dequantised(positions),
+      positions: positions.subarray(0, 3 * count),
       speeds: new Float32Array(count),
       states: new Uint8Array(count),
       poses: [],
-      deformed: obstacles.map((text) => this.dequantised(text)),
+      deformed: this.deformed(positions.subarray(3 * count)),
     };
     this.listener?.frame(this.header(FRAME, number), decoded);
   }
 
   private header(kind: number, frame: number): Header {
-    const { time } = this.data.frames[frame - 1];
+    const time = this.data.times[frame - 1];
     return { kind, run: 0, generation: 1, frame, time, particles: this.topology.particles, playing: false };
   }
 
-  private dequantised(text: string): Float32Array {
-    const levels = new Uint16Array(bytesOf(text).buffer);
+  private positions(frame: number): Float32Array {
     const { min, size } = this.data.bounds;
-    const positions = new Float32Array(levels.length);
-    for (let k = 0; k < levels.length; ++k) positions[k] = min[k % 3] + (size[k % 3] * levels[k]) / LEVELS;
-    return positions;
+    return Float32Array.from(this.levels[frame - 1], (level, k) => min[k % 3] + (size[k % 3] * level) / LEVELS);
+  }
+
+  /** The vertices of each obstacle that deforms. */
+  private deformed(vertices: Float32Array): Float32Array[] {
+    let begin = 0;
+    return this.data.scene.obstacles.flatMap(({ motion }, k) => {
+      if (motion !== 'deforming') return [];
+      const from = begin;
+      begin += this.topology.obstacles[k].vertices.length;
+      return [vertices.subarray(from, begin)];
+    });
   }
 
   private numbers(frame: number): FrameNumbers {

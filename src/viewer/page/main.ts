@@ -14,12 +14,21 @@ function sceneView(): SceneView | null {
   }
 }
 
-const embedded = embeddedRun();
-const view = sceneView();
-if (view) {
-  new Page(embedded ?? new Connection(), view).start();
-} else {
-  new Notices(() => undefined).showSentence(
-    'This browser has no WebGL, which the picture needs. Switch on hardware acceleration in its settings, or take another browser.',
-  );
+function sentence(text: string): void {
+  new Notices(() => undefined).showSentence(text);
 }
+
+async function start(): Promise<void> {
+  const view = sceneView();
+  if (!view) {
+    sentence('This browser has no WebGL, which the picture needs. Switch on hardware acceleration in its settings, or take another browser.');
+    return;
+  }
+  try {
+    new Page((await embeddedRun()) ?? new Connection(), view).start();
+  } catch (error) {
+    sentence(`This browser cannot show the run. Take a newer one. (${String(error)})`);
+  }
+}
+
+void start();
