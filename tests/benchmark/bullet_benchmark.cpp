@@ -1,4 +1,4 @@
-// The drape of a cloth on the bunny, Bullet's soft body against Sprung, frame by frame in the same run.
+// The drape of a cloth on the bunny: Bullet's soft body and Sprung in the same run.
 #include "benchmark/bullet_drape.h"
 #include "benchmark/field_drape.h"
 #include "benchmark/processor_time.h"
@@ -14,22 +14,23 @@
 namespace sprung::benchmarks {
 namespace {
 
-// One second: the cloth meets the bunny in frame 2 and hangs folded around it at the end.
+// One second: the cloth touches the bunny in frame 2 and hangs folded around it at the end.
 constexpr int kFrames = 60;
 
-// From here on it slides and settles: the longest springs of a single frame tell little.
+// From this frame on the cloth slides and settles. Stretch is averaged over these frames, as the longest springs vary from frame to
+// frame.
 constexpr int kFirstMeasured = 30;
 
-/// How many of a hundred springs are no longer, as parts of their rest length.
+/// Percentiles of the springs' stretch, as fractions of their rest length.
 struct Stretch {
-  double of_50 = 0.0;
-  double of_99 = 0.0;
-  double of_all = 0.0;
+  double median = 0.0;
+  double percentile_99 = 0.0;
+  double largest = 0.0;
 };
 
 struct Measured {
   double seconds = 0.0;  ///< of all frames
-  int most_inside = 0;   ///< particles inside in the worst frame
+  int most_inside = 0;   ///< particles inside the bunny in the worst frame
   Stretch stretch;       ///< mean of the frames from kFirstMeasured on
 };
 
@@ -41,9 +42,9 @@ void add_stretch(const Springs& springs, const Points& positions, Stretch& mean)
   }
   std::sort(stretches.begin(), stretches.end());
   constexpr int kMeasured = kFrames - kFirstMeasured;
-  mean.of_50 += stretches[stretches.size() / 2] / kMeasured;
-  mean.of_99 += stretches[stretches.size() * 99 / 100] / kMeasured;
-  mean.of_all += stretches.back() / kMeasured;
+  mean.median += stretches[stretches.size() / 2] / kMeasured;
+  mean.percentile_99 += stretches[stretches.size() * 99 / 100] / kMeasured;
+  mean.largest += stretches.back() / kMeasured;
 }
 
 template <class Drape>
@@ -61,12 +62,12 @@ Measured run_drape(Drape drape, const Springs& springs, const InsideCount& insid
 
 void show(const std::string& name, const Measured& measured, benchmark::State& state) {
   state.counters[name + "_inside"] = measured.most_inside;
-  state.counters[name + "_stretch_of_50"] = measured.stretch.of_50;
-  state.counters[name + "_stretch_of_99"] = measured.stretch.of_99;
-  state.counters[name + "_stretch_of_all"] = measured.stretch.of_all;
+  state.counters[name + "_median_stretch"] = measured.stretch.median;
+  state.counters[name + "_99th_percentile_stretch"] = measured.stretch.percentile_99;
+  state.counters[name + "_largest_stretch"] = measured.stretch.largest;
 }
 
-/// Arguments: triangles, particles along a side. One thread. The time is Sprung's, a frame.
+/// Arguments: triangles, particles along a side. One thread. The reported time is Sprung's time a frame.
 void drape_against_bullet(benchmark::State& state) {
   const auto triangles = static_cast<Index>(state.range(0));
   const auto side = static_cast<Index>(state.range(1));

@@ -1,5 +1,5 @@
-// The drape of field_drape.h by Bullet's soft body, as well as it can do it: all lengths times ten, since Bullet takes a triangle
-// for a prism 0.06 thick, cells of its distance field a tenth of a unit large, 4 steps a frame of 5 passes.
+// The drape of field_drape.h with Bullet's soft body and its best settings. All lengths are multiplied by ten, as Bullet treats a
+// triangle as a prism 0.06 thick; cells of its distance field are 0.1 wide; a frame has 4 steps of 5 passes.
 #pragma once
 
 #include "base/types.h"

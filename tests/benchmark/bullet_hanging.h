@@ -1,4 +1,4 @@
-// A network that hangs by its pins, by Bullet's soft body: its springs are links, which passes of projection hold.
+// A network that hangs from its pins, simulated by Bullet's soft body. Its springs are links, constrained by passes of projection.
 #pragma once
 
 #include "network/spring_network.h"
@@ -9,7 +9,7 @@ namespace sprung::benchmarks {
 
 class BulletHanging {
  public:
-  /// Gravity [m/s^2] along -y. A frame [s] is one step of so many passes.
+  /// Gravity [m/s^2] acts along -y. A frame of `frame_time` [s] is one step of `passes` passes.
   BulletHanging(const SpringNetwork& network, double gravity, double frame_time, int passes);
   ~BulletHanging();
 

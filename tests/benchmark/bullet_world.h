@@ -1,4 +1,4 @@
-// An empty world of Bullet's soft bodies, and networks as it takes them. For the .cpp files that speak to Bullet.
+// An empty world of Bullet's soft bodies, and networks converted to them. For the .cpp files that use Bullet.
 #pragma once
 
 #include "network/spring_network.h"
@@ -13,12 +13,12 @@
 namespace sprung::benchmarks {
 
 struct BulletWorld {
-  /// Gravity [m/s^2] along -y; `scale` of Bullet's units are a metre.
+  /// Gravity [m/s^2] acts along -y; a metre has `scale` units of Bullet.
   BulletWorld(double gravity, double scale);
   BulletWorld(const BulletWorld&) = delete;
   BulletWorld& operator=(const BulletWorld&) = delete;
 
-  /// A body of the network's particles, and its springs as links.
+  /// A body with the network's particles, and its springs as links.
   [[nodiscard]] std::unique_ptr<btSoftBody> make_body(const SpringNetwork& network);
 
   [[nodiscard]] btVector3 scaled(const Vector3& p) const;

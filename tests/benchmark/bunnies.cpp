@@ -65,7 +65,7 @@ TriangleMesh simplified(const TriangleMesh& mesh, Index triangles) {
   return to_triangles(halfedges);
 }
 
-/// Each triangle cut into four at the middles of its edges.
+/// Each triangle divided into four at the midpoints of its edges.
 TriangleMesh subdivided(const TriangleMesh& mesh) {
   const Edges edges = unique_edges(mesh.triangles);
   const auto vertex_count = static_cast<Index>(mesh.vertices.cols());

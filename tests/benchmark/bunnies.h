@@ -5,9 +5,9 @@
 
 namespace sprung::benchmarks {
 
-/// About so many triangles. Up to 69,000 they come from collapsing edges of Debian's bunny (Lindstrom and Turk 1998, by CGAL),
-/// beyond that from cutting each triangle of the bunny of a fourth of them into four. Made once for each number. Throws InputError
-/// when the bunny is not installed.
+/// The bunny with about `triangles` triangles. Up to 69,000 the edges of Debian's bunny are collapsed (Lindstrom and Turk 1998, by
+/// CGAL); beyond that each triangle of the bunny with a quarter of them is divided into four. Each mesh is built once. Throws
+/// InputError if the bunny is not installed.
 [[nodiscard]] const TriangleMesh& bunny(Index triangles);
 
 }  // namespace sprung::benchmarks

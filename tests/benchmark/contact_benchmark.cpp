@@ -1,4 +1,4 @@
-// Contact search of particles near the bunny at 3,700 to 280,000 triangles, beside fcl::collide per particle in the same run.
+// Contact search of particles near the bunny with 3,700 to 280,000 triangles, and fcl::collide per particle in the same run.
 #include "base/parallel.h"
 #include "benchmark/bunnies.h"
 #include "collision/sample_meshes.h"
@@ -18,8 +18,8 @@ constexpr Index kParticles = 64 * 64;
 constexpr double kThickness = 0.005;
 constexpr double kMargin = 0.0025;
 
-/// Particles as a cloth has them when it lies on the mesh: rows of neighbours, at distances around the gap, moving little. A
-/// cloth's rows are drawn by casting a grid of points onto the mesh from above.
+/// Particles like those of a cloth that lies on the mesh: rows of neighbours that move little, at distances around the gap. A grid
+/// of points is cast onto the mesh from above.
 struct Cloth {
   Points before;
   Points after;
@@ -93,8 +93,8 @@ void contact_search_far(benchmark::State& state) {
   report(state, contacts);
 }
 
-/// What one writes without a search of one's own: a sphere a particle against FCL's tree of oriented boxes. Arguments: triangles,
-/// contacts asked for. One contact is any of them; only all of them hold the deepest.
+/// The search that FCL offers: one sphere per particle against its tree of oriented boxes. Arguments: triangles, largest number of
+/// contacts. A single contact is any one of them; the deepest is known only if all are found.
 void fcl_collide_near(benchmark::State& state) {
   const TriangleMesh& mesh = benchmarks::bunny(static_cast<Index>(state.range(0)));
   const Cloth cloth = cloth_on(mesh);
@@ -114,10 +114,10 @@ void fcl_collide_near(benchmark::State& state) {
   for (auto _ : state) {
     contacts = 0;
     for (Index i = 0; i < kParticles; ++i) {
-      RigidTransform place = RigidTransform::Identity();
-      place.translation() = cloth.after.col(i);
+      RigidTransform pose = RigidTransform::Identity();
+      pose.translation() = cloth.after.col(i);
       fcl::CollisionResult<double> result;
-      contacts += fcl::collide(&sphere, place, &model, RigidTransform(RigidTransform::Identity()), request, result) > 0;
+      contacts += fcl::collide(&sphere, pose, &model, RigidTransform(RigidTransform::Identity()), request, result) > 0;
     }
   }
   report(state, contacts);

@@ -1,4 +1,4 @@
-// The main job: time of a frame while a cloth drapes over the bunny.
+// The time of a frame while a cloth drapes over the bunny, the main use of Sprung.
 #include "base/parallel.h"
 #include "benchmark/field_drape.h"
 #include "scene/building/scene_builder.h"
@@ -10,7 +10,7 @@
 namespace sprung::benchmarks {
 namespace {
 
-/// The drape of field_drape.h, its first second. Arguments: triangles, particles along a side, threads.
+/// The first second of the drape of field_drape.h. Arguments: triangles, particles along a side, threads.
 void field_drape(benchmark::State& state) {
   const ThreadLimit limit(static_cast<int>(state.range(2)));
   SprungDrape drape(static_cast<Index>(state.range(0)), static_cast<Index>(state.range(1)));
@@ -25,7 +25,7 @@ BENCHMARK(field_drape)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-// The cloth meets the ears in frame 5 and is folded over the back by frame 20.
+// The cloth touches the ears in frame 5 and is folded over the back by frame 20.
 constexpr int kFirstFrame = 15;
 constexpr int kFrames = 15;
 

@@ -1,5 +1,5 @@
-// Sparse factors of a cloth's equations: L D L^T by supernodes of 3 x 3 blocks in double and in single precision, and Eigen's
-// simplicial one by scalars beside them in the same run.
+// Sparse factors of a cloth's equations: supernodal L D L^T of 3 x 3 blocks in double and in single precision, and Eigen's
+// simplicial L D L^T of scalars in the same run.
 #include "benchmark/processor_time.h"
 #include "dynamics/numerics/block_cholesky.h"
 #include "network/network_builder.h"
@@ -18,7 +18,7 @@ constexpr int kRepeats = 5;
 
 enum Springs : std::uint8_t { structural, all };
 
-/// Small masses joined by springs of random directions, as those of a crumpled cloth are.
+/// Small masses joined by springs of random directions, like those of a crumpled cloth.
 BlockMatrix cloth_matrix(Index side, Springs kinds) {
   SpringMaterials materials;
   materials.structural = SpringMaterial{.value = 1.0};

@@ -14,8 +14,8 @@ constexpr double kMass = 0.2;         // [kg]
 constexpr double kBunnySize = 0.6;    // [m]
 constexpr double kDropHeight = 0.01;  // [m] above the bunny's highest point
 
-// As many as Bullet's. More and smaller steps stretch it less, and cost more: 5 take a tenth longer. The length
-// that 99 of a hundred springs do not exceed is less than with Bullet throughout, that of 999 of a thousand once the cloth lies.
+// As many steps as with Bullet. More and smaller steps stretch the cloth less and cost more: 5 take a tenth longer. The 99th
+// percentile of stretch is below Bullet's throughout, the 99.9th once the cloth lies.
 constexpr int kSteps = 4;
 static_assert(kPasses % kSteps == 0);
 

@@ -1,5 +1,5 @@
-// Cloths and ropes that the stretch limit alone carries: time of a frame, and how far they stretch, with Bullet's soft body of 20
-// passes in one step beside them in the same run.
+// Cloths and ropes that the stretch limit alone carries: time of a frame and largest stretch. Bullet's soft body, with one step of
+// 20 passes a frame, is measured in the same run.
 #include "base/parallel.h"
 #include "benchmark/bullet_hanging.h"
 #include "benchmark/processor_time.h"
@@ -16,15 +16,16 @@ namespace sprung::benchmarks {
 namespace {
 
 constexpr int kFrames = 300;
-constexpr int kFirstFrame = 30;  // from here on the stretch counts: what hangs has settled
+constexpr int kFirstFrame = 30;  // stretch is measured from this frame on: hanging bodies have settled
 constexpr double kFrameRate = 60.0;
 constexpr double kGravity = 9.81;
 constexpr int kBulletPasses = 20;
 
 enum Motion : std::uint8_t { hanging, swinging };
 
-/// Of cloths: neither stretch nor compression but a tolerance of 1 %, of structural and shear springs: links of Bullet hold both
-/// ways too, of these and of bend springs. Small steps of one pass reach it sooner than larger ones of more.
+/// For cloths with passes: structural and shear springs may neither stretch nor shrink, with a tolerance of 1 %. Bullet's links,
+/// which include bend springs, limit both too. Small steps of one pass reach the tolerance sooner than larger steps of several
+/// passes.
 const StretchLimitSettings kClothLimit{.max_stretch = 0.0,
                                        .max_compression = 0.0,
                                        .kinds = {SpringKind::structural, SpringKind::shear},
@@ -32,12 +33,12 @@ const StretchLimitSettings kClothLimit{.max_stretch = 0.0,
                                        .tolerance = 0.01,
                                        .tethers = true};
 
-/// Of cloths by a global solve: as small a tolerance of what is too long; that what is too short pushes back takes passes.
+/// For cloths with a global solve: the same tolerance for stretch alone. Limits of compression need passes.
 const StretchLimitSettings kSolvedClothLimit{.max_stretch = 0.0, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};
 
 const StretchLimitSettings& cloth_limit(bool solved) { return solved ? kSolvedClothLimit : kClothLimit; }
 
-/// Of ropes: a tolerance of 0.4 %, for which a global solve needs no small steps.
+/// For ropes: a tolerance of 0.4 %, for which a global solve needs no small steps.
 const StretchLimitSettings kRopeLimit{.max_stretch = 0.0, .tolerance = 0.004, .solver = StretchLimitSettings::Solver::automatic};
 
 Scene scene_of(BodyScene body, const StretchLimitSettings& limit) {
@@ -76,7 +77,7 @@ Scene rope(Index particles, Motion motion) {
                   kRopeLimit);
 }
 
-/// Largest stretch of structural springs.
+/// The largest stretch of a structural spring.
 double stretch(const SpringNetwork& network, const Points& x) {
   const Springs& springs = network.springs;
   double most = 0.0;
@@ -89,8 +90,8 @@ double stretch(const SpringNetwork& network, const Points& x) {
 
 struct Measured {
   double seconds = 0.0;  ///< a frame
-  double worst = 0.0;    ///< stretch after any frame from kFirstFrame on
-  double end = 0.0;      ///< stretch after the last
+  double worst = 0.0;    ///< largest stretch after a frame from kFirstFrame on
+  double end = 0.0;      ///< stretch after the last frame
 };
 
 template <class StepFrame, class Positions>
@@ -120,7 +121,7 @@ Measured run_bullet(const SpringNetwork& network) {
       network, [&] { bullet.step_frame(); }, [&] { return bullet.positions(); });
 }
 
-/// The time is Sprung's, a frame.
+/// The reported time is Sprung's time a frame.
 Measured report(benchmark::State& state, const BuiltScene& built) {
   const Measured sprung = run_sprung(built);
   state.SetIterationTime(sprung.seconds);
@@ -131,7 +132,7 @@ Measured report(benchmark::State& state, const BuiltScene& built) {
   return sprung;
 }
 
-/// Arguments: particles along a side, motion, whether a global solve holds the limit. One thread.
+/// Arguments: particles along a side, motion, whether a global solve enforces the limit. One thread.
 void cloth_against_bullet(benchmark::State& state) {
   const ThreadLimit one_thread(1);
   const BuiltScene built =
@@ -152,18 +153,19 @@ void limited_rope(benchmark::State& state) {
   for ([[maybe_unused]] auto _ : state) report(state, built);
 }
 
-/// Of motion and height [J] after `frames`, by `parts` of the chosen step, each of which may be halved as the settings say.
-double energy_after(const BuiltScene& built, int frames, int parts, int max_substeps) {
+/// Kinetic and potential energy [J] after `frames` frames. The chosen step is divided by `divisor`, and each step may have up to
+/// `max_substeps` substeps.
+double energy_after(const BuiltScene& built, int frames, int divisor, int max_substeps) {
   SimulatorSettings settings = built.settings;
-  settings.step /= parts;
+  settings.step /= divisor;
   settings.max_substeps = max_substeps;
   Simulator simulator(built.network, settings);
-  for (int step = 0; step < frames * built.steps_per_frame * parts; ++step) simulator.step();
+  for (int step = 0; step < frames * built.steps_per_frame * divisor; ++step) simulator.step();
   return 0.5 * built.network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose()) + simulator.gravity_energy();
 }
 
-/// By how much the energy of a cloth after 2 s of swinging differs from that at a tenth of the step, as a part of what its fall by
-/// half its length sets free. Arguments: particles along a side, whether a global solve holds the limit.
+/// The error of the energy of a cloth after 2 s of swinging, compared with a tenth of the step, as a fraction of the energy that a
+/// fall by half the cloth's length releases. Arguments: particles along a side, whether a global solve enforces the limit.
 void swing_energy(benchmark::State& state) {
   constexpr int kTwoSeconds = 120;
   const BuiltScene built = build_scene(cloth(static_cast<Index>(state.range(0)), swinging, cloth_limit(state.range(1) != 0)));

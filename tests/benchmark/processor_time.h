@@ -1,11 +1,11 @@
-// Time for ratios within a run.
+// Processor time, for ratios of times within a run.
 #pragma once
 
 #include <ctime>
 
 namespace sprung::benchmarks {
 
-/// Seconds of this process alone, of all its threads, whatever else the machine does.
+/// Processor time [s] of all threads of this process, independent of other processes.
 [[nodiscard]] inline double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 }  // namespace sprung::benchmarks

@@ -1,4 +1,4 @@
-// What contact of a cloth with itself costs: the same scene with and without it, in the same run.
+// The cost of self-contact: the same scene with and without it, in the same run.
 #include "benchmark/field_drape.h"
 #include "benchmark/processor_time.h"
 
@@ -14,13 +14,14 @@
 namespace sprung::benchmarks {
 namespace {
 
-// The drape's first second, at 60 frames a second; the twist's first two, at 30, in which the cloth is turned by a turn and a
+// The first second of the drape at 60 frames a second, and the first two seconds of the twist at 30, in which it makes a turn and a
 // third.
 constexpr int kDrapeFrames = 60;
 constexpr int kTwistFrames = 60;
 
-// Automatic steps are 145 of 20 passes. In a third of them, of three times as many passes, contact has less to find: it takes 4 to
-// 5 times as long as without, not 6. Cloths with and without are stretched by 1.4 and 1.2 % beyond the limit, not by 0.5 %.
+// The automatic choice is 145 steps a frame of 20 passes. A third of the steps with three times the passes needs fewer searches: a
+// frame takes 4 to 5 times as long as without self-contact, instead of 6 times. Cloths with and without self-contact exceed the
+// stretch limit by 1.4 and 1.2 %, instead of 0.5 %.
 constexpr int kTwistSteps = 48;
 constexpr int kTwistPasses = 60;
 
@@ -36,7 +37,7 @@ double drape(bool self_contact) {
   return seconds_a_frame(kDrapeFrames, [&] { drape.step_frame(); });
 }
 
-/// tests/scenarios/scenes/twisted_cloth.json, of 64 x 64 particles.
+/// tests/scenarios/scenes/twisted_cloth.json with 64 x 64 particles.
 double twist(bool self_contact) {
   const Scene scene = read_scene(SPRUNG_SOURCE_DIR "/tests/scenarios/scenes/twisted_cloth.json",
                                  {"bodies.cloth.shape.resolution=[64,64]", "step=" + format_number(1.0 / (30.0 * kTwistSteps)),
@@ -49,7 +50,7 @@ double twist(bool self_contact) {
   });
 }
 
-/// One thread. The time is that of a frame with self-contact.
+/// One thread. The reported time is that of a frame with self-contact.
 template <double (*Scene)(bool)>
 void self_contact(benchmark::State& state) {
   const ThreadLimit one_thread(1);

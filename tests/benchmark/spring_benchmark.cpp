@@ -1,4 +1,4 @@
-// Forces and projection of cloths, a textbook's objects and pointers against ours.
+// Forces and projection of cloths, compared with a textbook network of objects and pointers.
 #include "base/parallel.h"
 #include "benchmark/textbook_springs.h"
 #include "dynamics/forces/spring_force.h"
@@ -26,7 +26,7 @@ SpringNetwork cloth(Index side) {
   return builder.build();
 }
 
-/// Waves, so that no spring has its rest length and most are stretched.
+/// Adds waves, so that no spring has its rest length and most are stretched.
 void disturb(SpringNetwork& network) {
   for (Index i = 0; i < network.particle_count(); ++i) {
     network.positions.col(i) *= 1.05;
@@ -66,15 +66,15 @@ void forces(benchmark::State& state) {
   count_springs(state, network.springs.count());
 }
 
-/// What a pass is measured with: a play of 2 % that only stretch can leave, or none, neither way.
+/// The limits of the measured passes: a stretch of at most 2 %, or neither stretch nor compression.
 StretchLimitSettings limit_of(bool both_sides) {
   return both_sides ? StretchLimitSettings{.max_stretch = 0.0, .max_compression = 0.0} : StretchLimitSettings{.max_stretch = 0.02};
 }
 
-/// A step's, one after the other, as limits are used: what a thread has moved is then still at hand for it.
+/// The passes of one step, in a row as in a simulation: positions that a thread has moved are then still in its cache.
 constexpr int kPasses = 20;
 
-// All start from the same stretched cloth; copying it is part of what is measured, for both.
+// Both benchmarks start from the same stretched cloth. The measured time includes copying it.
 void textbook_projection(benchmark::State& state) {
   SpringNetwork network = cloth(static_cast<Index>(state.range(0)));
   disturb(network);

@@ -1,5 +1,5 @@
-// The textbook's network of objects and pointers, as in the manual and the OpenGL page: what SpringForce and StretchLimit are
-// measured against.
+// A textbook network of objects and pointers, as in the manual and the OpenGL page. SpringForce and StretchLimit are compared with
+// it.
 #pragma once
 
 #include "network/spring_network.h"
@@ -56,7 +56,7 @@ class Spring {
   double damping_;
 };
 
-/// The masses and springs of a network, made in the order in which a cloth's loops make them: by their first particle.
+/// The masses and springs of a network, in the order in which the loops over a cloth create them: by their first particle.
 class Network {
  public:
   explicit Network(const SpringNetwork& network) {

@@ -1,4 +1,4 @@
-// What the viewer costs: cloth_on_bunny, live and as a replay, watched by one page that only receives.
+// The cost of the viewer: cloth_on_bunny, live and as a replay, watched by one page that only receives.
 #include "base/parallel.h"
 #include "output/run_output.h"
 #include "simulation/diagnostics.h"
@@ -26,21 +26,21 @@ SceneSource bunny_scene(const std::vector<std::string>& overrides = {}) {
   return {.file = SPRUNG_SOURCE_DIR "/examples/cloth_on_bunny.json", .overrides = overrides, .mesh_paths = {SPRUNG_TEST_MESHES}};
 }
 
-/// The time is that of a frame of the simulation alone, the first 90. `ms_watched` is that of a frame that a page receives,
-/// `ms_hand_over` what making and publishing a frame takes of the simulation's thread.
+/// The reported time is the mean time of the first 90 frames of the simulation alone. `ms_watched` is the time of a frame that a
+/// page receives, and `ms_publishing` the time that the simulation's thread needs to make and publish a frame.
 void live_view(benchmark::State& state) {
   for ([[maybe_unused]] auto _ : state) {
     LiveRun run(bunny_scene());
     const int steps = run.loaded().steps_per_frame;
     double simulating = 0.0;
-    double handing_over = 0.0;
+    double publishing = 0.0;
     for (int frame = 0; frame < kFrames; ++frame) {
       const auto begin = Clock::now();
       for (int k = 0; k < steps; ++k) run.step();
       simulating += seconds_since(begin);
       const auto computed = Clock::now();
       benchmark::DoNotOptimize(std::make_shared<const Bytes>(frame_message({}, run.numbers(), run.state())));
-      handing_over += seconds_since(computed);
+      publishing += seconds_since(computed);
     }
     state.SetIterationTime(simulating / kFrames);
 
@@ -57,7 +57,7 @@ void live_view(benchmark::State& state) {
     for (std::uint32_t number = 0; number < kFrames; ++received) number = page.frame().frame();
     state.counters["ms_watched"] = 1e3 * seconds_since(played) / kFrames;
     state.counters["frames_received"] = received;
-    state.counters["ms_hand_over"] = 1e3 * handing_over / kFrames;
+    state.counters["ms_publishing"] = 1e3 * publishing / kFrames;
   }
 }
 BENCHMARK(live_view)->Name("live_cloth_on_bunny_64")->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
@@ -75,7 +75,7 @@ void record(const std::filesystem::path& folder) {
   output.finish("done");
 }
 
-/// The time is that of a frame that a page asks for and receives.
+/// The reported time is that of a frame that a page requests and receives.
 void replay_view(benchmark::State& state) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "sprung_viewer_benchmark";
   record(folder);
