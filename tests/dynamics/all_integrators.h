@@ -1,4 +1,4 @@
-// The schemes for tests of laws that hold for any scheme.
+// All integration schemes, for tests of laws that are valid for each of them.
 #pragma once
 
 #include "dynamics/integrators/integrator.h"

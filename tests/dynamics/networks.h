@@ -7,7 +7,7 @@
 
 namespace sprung {
 
-/// A square cloth of side x side particles, 1 m wide, its two `max` corners pinned when asked.
+/// A square cloth of side x side particles, 1 m wide, its two `max` corners pinned if `pinned`.
 inline SpringNetwork make_test_cloth(Index side, double stiffness, double damping, bool pinned = true, double mass = 0.2) {
   SpringMaterials materials;
   materials.structural = SpringMaterial{.value = stiffness, .damping = damping};
@@ -42,7 +42,7 @@ inline SpringNetwork make_random_network(Index particles, Index springs, bool pi
   return builder.build();
 }
 
-/// Two particles of `mass` on the x axis, `distance` apart, joined by one spring; the first is pinned when asked.
+/// Two particles of `mass` on the x axis, `distance` apart, joined by one spring. The first one may be pinned.
 inline SpringNetwork make_pair(double distance, double stiffness, double rest_length, double damping = 0.0, bool pinned = false,
                                double mass = 1.0) {
   NetworkBuilder builder;

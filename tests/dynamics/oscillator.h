@@ -40,7 +40,7 @@ struct Oscillator {
   }
 };
 
-/// The oscillator, moved by an integrator of ours.
+/// The oscillator, moved by one of Sprung's integrators.
 class OscillatorRun {
  public:
   OscillatorRun(const Oscillator& of, const IntegratorSettings& settings, double dt)

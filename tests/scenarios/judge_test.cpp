@@ -1,4 +1,4 @@
-// The judge itself, on cases made by hand.
+// Tests the judge itself on hand-made cases.
 #include "scenarios/judge.h"
 
 #include "collision/sample_meshes.h"

@@ -1,4 +1,4 @@
-// Laws of the solver for contacts made by hand: of particles, of points of triangles, of pairs of elements.
+// Laws of the contact solver for hand-made contacts of particles, of points of triangles and of pairs of elements.
 #include "dynamics/contact/contact_solver.h"
 
 #include "dynamics/all_integrators.h"

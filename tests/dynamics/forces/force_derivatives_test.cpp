@@ -138,7 +138,7 @@ TEST(ForceDerivatives, OfAirAndGravityAreTheDifferencesOfTheirForces) {
   expect_near(gravity.derivatives().by_position, gravity.differences_by_position());
 }
 
-/// A particle a tenth of its gap deep in a tilted floor.
+/// A particle that penetrates the gap of a tilted floor by a tenth.
 struct OnTheFloor {
   explicit OnTheFloor(const Vector3& velocity, double friction)
       : environment({{.name = "floor",
@@ -206,7 +206,7 @@ TEST(PenaltyContact, UsesObstaclePosesAtTheTimeOfEvaluation) {
   }
 }
 
-TEST(BlockMatrix, MultipliesAsItsDenseSelf) {
+TEST(BlockMatrix, MultipliesLikeItsDenseCopy) {
   const SpringNetwork network = random_springs(0.7, 1.0);
   const Case springs(network, std::in_place_type<SpringForce>);
   const BlockMatrix matrix = springs.derivatives().by_position;

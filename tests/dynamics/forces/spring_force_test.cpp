@@ -20,7 +20,7 @@ Points forces_at(const SpringNetwork& network, const Points& x, const Points& v)
 }
 
 /// Eq. 5-12 spring by spring, with the sign of the manual's code.
-Points forces_by_the_book(const SpringNetwork& network, const Points& x, const Points& v) {
+Points forces_by_the_manual(const SpringNetwork& network, const Points& x, const Points& v) {
   Points forces = Points::Zero(3, network.particle_count());
   const Springs& springs = network.springs;
   for (Index k = 0; k < springs.count(); ++k) {
@@ -162,13 +162,13 @@ TEST(SpringForce, HasNoNetForceAndNoNetTorque) {
 
 TEST(SpringForce, RunsAndSingleSpringsFollowTheManual) {
   std::vector<SpringNetwork> networks;
-  // Widths near the kernel's lanes and batches, and networks of several blocks.
+  // Widths near the kernel's SIMD width and batch size, and networks of several blocks.
   for (const Index side : {2, 3, 9, 65, 66, 69, 130}) networks.push_back(make_test_cloth(side, 400.0, 0.1));
   for (SpringNetwork& network : networks) disturb(network);
   networks.push_back(make_random_network(3000, 20000));
   for (const SpringNetwork& network : networks) {
     const Points forces = forces_at(network, network.positions, network.velocities);
-    const Points expected = forces_by_the_book(network, network.positions, network.velocities);
+    const Points expected = forces_by_the_manual(network, network.positions, network.velocities);
     // A particle has some 12 (cloth) to 30 springs, each rounded a few times relative to k d.
     const double per_spring = force_scale(network, network.positions, network.velocities) / network.springs.count();
     EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(), 200 * kEpsilon * per_spring) << network.particle_count();
@@ -183,7 +183,7 @@ TEST(SpringForce, SpringsWithoutStiffnessAndDampingGiveNoForce) {
     if (k % 41 < 15) network.springs.damping[k] = 0.0;
   }
   const Points forces = forces_at(network, network.positions, network.velocities);
-  const Points expected = forces_by_the_book(network, network.positions, network.velocities);
+  const Points expected = forces_by_the_manual(network, network.positions, network.velocities);
   const double per_spring = force_scale(network, network.positions, network.velocities) / network.springs.count();
   EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(), 200 * kEpsilon * per_spring);
 }
@@ -197,7 +197,7 @@ TEST(SpringForce, EachSpringOfARunUsesItsOwnConstants) {
     network.springs.damping[k] *= 1.0 + 0.1 * (k % 3);
   }
   const Points forces = forces_at(network, network.positions, network.velocities);
-  const Points expected = forces_by_the_book(network, network.positions, network.velocities);
+  const Points expected = forces_by_the_manual(network, network.positions, network.velocities);
   const double per_spring = force_scale(network, network.positions, network.velocities) / network.springs.count();
   EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(), 200 * kEpsilon * per_spring);
 }

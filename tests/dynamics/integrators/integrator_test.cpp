@@ -65,7 +65,7 @@ TEST(Verlet, FollowsThePrintedFormula) {
   }
 }
 
-TEST(Verlet, StartsAtRestAsTheWebPageWhenAsked) {
+TEST(Verlet, StartsAtRestLikeTheWebPageIfRequested) {
   OscillatorRun run(kDamped, VerletSettings{.start_at_rest = true}, 1.0e-2);
   run.step();
   const double expected = kDamped.start + kDamped.acceleration(kDamped.start, kDamped.start_velocity) * 1.0e-4;

@@ -42,7 +42,7 @@ double velocity_after_a_second(const IntegratorSettings& settings, double power)
 constexpr double kRounding = 32 * std::numeric_limits<double>::epsilon();
 
 // sum dt (k dt) = (1 - dt) / 2 over steps k from 0.
-TEST(IntegratorsInTime, EulersAndVerletUseTheForceAtTheBeginOfTheStep) {
+TEST(IntegratorsInTime, EulersAndVerletUseTheForceAtTheBeginningOfTheStep) {
   for (const IntegratorSettings& settings :
        {IntegratorSettings{ExplicitEulerSettings{}}, {SymplecticEulerSettings{}}, {VerletSettings{}}}) {
     EXPECT_NEAR(velocity_after_a_second(settings, 1.0), 0.5 * (1.0 - kStep), kRounding);

@@ -66,7 +66,7 @@ TEST(SpectralBounds, AreTheLimitOfALongRope) {
   expect_just_above(spectral_bounds(rope).elastic, 4.0 * 50.0 / rope.masses[0]);
 }
 
-TEST(SpectralBounds, HaveTheBitsOfTheRunBefore) {
+TEST(SpectralBounds, HaveTheSameBitsInEveryRun) {
   const SpringNetwork cloth = make_test_cloth(40, 400.0, 0.1);
   EXPECT_EQ(spectral_bounds(cloth).elastic, spectral_bounds(cloth).elastic);
 }
@@ -154,7 +154,7 @@ std::vector<SpectralBounds> bounds_of_all_dampings() {
 constexpr double kNoGrowth = 1.0 + 1.0e-7;
 
 // One mass on a spring of omega = 10 1/s.
-TEST(ResonantStep, GivesSixStepsAPeriodToHardlyDampedModes) {
+TEST(ResonantStep, GivesSixStepsAPeriodToLightlyDampedModes) {
   const double slack = 1.0 / std::sqrt(1.016);
   const auto step = [](const SpringNetwork& network, const IntegratorSettings& settings, double drag = 0.0) {
     return resonant_step(settings, spectral_bounds(network, drag));

@@ -51,9 +51,9 @@ void expect_the_same_bits() {
       for (Number& number : panel) number = unit(random);
       for (Index i = 0; i < shape.width(); ++i) panel[shape.index(i, i)] = static_cast<Number>(1 + shape.width());
       const auto narrow = eliminated<Number>(shape, panel, eliminate_front_narrow);
-      const auto taken = eliminated<Number>(shape, panel, eliminate_front<Number>);
-      EXPECT_TRUE(narrow.positive && taken.positive);
-      EXPECT_EQ(narrow.numbers, taken.numbers) << own << " and " << lower;
+      const auto chosen = eliminated<Number>(shape, panel, eliminate_front<Number>);
+      EXPECT_TRUE(narrow.positive && chosen.positive);
+      EXPECT_EQ(narrow.numbers, chosen.numbers) << own << " and " << lower;
     }
   }
 }

@@ -62,7 +62,7 @@ double project_by_hand(const SpringNetwork& network, const SpringBatches& batche
 }
 
 /// Earlier positions, from which springs have rotated and stretched since.
-Points somewhat_before(const Points& x, std::mt19937& random) {
+Points earlier_positions(const Points& x, std::mt19937& random) {
   std::uniform_real_distribution<double> displacement(-0.1, 0.1);
   return x.unaryExpr([&](double coordinate) { return coordinate + displacement(random); });
 }
@@ -81,7 +81,7 @@ TEST(StretchKernel, AgreesWithPlainCode) {
       for (const double relaxation : {1.0, 1.8}) {
         Points x = network.positions;
         Points expected = x;
-        const Points before = somewhat_before(x, random);
+        const Points before = earlier_positions(x, random);
         const double excess = project_by_hand(network, batches, range, relaxation, before, expected);
         const SquaredLengths measured = project_springs_narrow(batches, all, range, relaxation, before.data(), x.data());
         // Springs are at most 10 times their rest length and rounded a few times each; a particle has a dozen of them, which pass
@@ -104,14 +104,14 @@ TEST(StretchKernel, GivesTheSameBitsWithAnyLaneCount) {
     const BatchRange all{0, static_cast<Index>(batches.batch.size())};
     for (const LengthRange& range : kRanges) {
       Points narrow = network.positions;
-      Points taken = network.positions;
-      const Points before = somewhat_before(narrow, random);
+      Points chosen = network.positions;
+      const Points before = earlier_positions(narrow, random);
       const SquaredLengths measured_narrow = project_springs_narrow(batches, all, range, 1.0, before.data(), narrow.data());
-      const SquaredLengths measured_taken = project_springs(batches, all, range, 1.0, before.data(), taken.data());
-      EXPECT_EQ(narrow, taken) << row;
-      EXPECT_EQ(measured_narrow.excess(range), measured_taken.excess(range)) << row;
+      const SquaredLengths measured_chosen = project_springs(batches, all, range, 1.0, before.data(), chosen.data());
+      EXPECT_EQ(narrow, chosen) << row;
+      EXPECT_EQ(measured_narrow.excess(range), measured_chosen.excess(range)) << row;
       EXPECT_EQ(measure_springs_narrow(batches, all, narrow.data()).excess(range),
-                measure_springs(batches, all, taken.data()).excess(range));
+                measure_springs(batches, all, chosen.data()).excess(range));
     }
   }
 }

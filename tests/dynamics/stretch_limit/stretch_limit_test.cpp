@@ -51,7 +51,7 @@ TEST(StretchLimit, ProjectsACompressedSpringOntoItsLimit) {
 }
 
 // A push along the present direction would speed up a rotating spring.
-TEST(StretchLimit, PushesAlongTheDirectionAtTheBeginOfTheStep) {
+TEST(StretchLimit, PushesAlongTheDirectionAtTheBeginningOfTheStep) {
   const SpringNetwork network = make_pair(2.0, 0.0, 2.0);
   const StretchLimit limit(network, {.max_compression = 0.0});
   const double angle = 0.25;
@@ -61,7 +61,7 @@ TEST(StretchLimit, PushesAlongTheDirectionAtTheBeginOfTheStep) {
   limit.project(network.positions, x);
   EXPECT_GT(x(0, 1), turned.x());
   EXPECT_EQ(x(1, 1), turned.y());
-  // The missing twentieth, as a fraction of the former length, which was longer by a twentieth.
+  // The correction, a twentieth of the length, is scaled by the former length, which is a twentieth longer: a second-order error.
   EXPECT_NEAR(length_of(x, 0, 1), 2.0, 2.0 * 0.05 * 0.05);
 }
 
@@ -308,7 +308,7 @@ SpringNetwork curtain(Index side) {
   return network;
 }
 
-// The promised bound, with a tenth for residual motion. With twice the step the limit is lost, so the step is not needlessly
+// The promised bound, with a tenth for residual motion. Twice the step exceeds the limit, so the suggestion is not needlessly
 // small.
 TEST(SuggestedStep, KeepsAHangingBodyWithinTheLimit) {
   const StretchLimitSettings settings;
@@ -335,7 +335,7 @@ TEST(SuggestedStep, IsLargerWithTethersToTautPinsAndKeepsTheLimit) {
   }
 }
 
-// Between the bounds measured for 16 to 128 particles a side. With twice the step the limit is lost, so the step is not needlessly
+// Between the bounds measured for 16 to 128 particles a side. Twice the step exceeds the limit, so the suggestion is not needlessly
 // small.
 TEST(SuggestedStep, IsLargerForRigidSurfacesThatMayNotShrink) {
   const SpringNetwork cloth = make_test_cloth(24, 0.0, 0.0);

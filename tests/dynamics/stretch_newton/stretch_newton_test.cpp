@@ -246,7 +246,7 @@ TEST(StretchNewton, ReportsTheLargestDeformationOfAComponent) {
   }
 }
 
-// Without any load, not even gravity, links that begin too long reach their limit nevertheless.
+// Without any load, not even gravity, links that are too long at first reach their limit.
 TEST(StretchNewton, EnforcesTheLimitWithoutGravity) {
   const SpringNetwork network = make_test_cloth(8, 0.0, 0.0, false);
   const Points before = 1.2 * network.positions;
@@ -325,7 +325,7 @@ TEST(StretchLimit, FollowsTheTurnWhereGlobalSolvesEnforceAllSprings) {
   EXPECT_TRUE(StretchLimit(rope, {.solver = Solver::automatic}).follows_turn());
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).follows_turn());
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_turn());
-  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_turn({{.solved_since = 0}})) << "handed over";
+  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_turn({{.solved_since = 0}})) << "left to global solves";
   EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).may_follow_turn());
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::newton}).may_follow_turn()) << "it follows the turn already";
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).may_follow_turn());

@@ -229,10 +229,10 @@ TEST(LongRangeAttachments, GiveTheSameBitsWithAnyLaneCount) {
   if (!has_wide_lanes()) GTEST_SKIP() << "this machine has no AVX-512, so both are the same code";
   for (const auto& [run, lengths, before] : random_runs()) {
     Points narrow = before;
-    Points taken = before;
+    Points chosen = before;
     project_tethers_narrow(run, lengths.data(), narrow.data());
-    project_tethers(run, lengths.data(), taken.data());
-    EXPECT_EQ(narrow, taken);
+    project_tethers(run, lengths.data(), chosen.data());
+    EXPECT_EQ(narrow, chosen);
   }
 }
 

@@ -101,7 +101,7 @@ TEST(Motion, SpinIsAnAngularVelocityVector) {
   EXPECT_LE((motion.pose(placed_at({0, 0, 0}), 0.7).linear() - expected.toRotationMatrix()).cwiseAbs().maxCoeff(), kRounding);
 }
 
-TEST(Motion, TurnAddsUpForthAndBack) {
+TEST(Motion, TurnAddsUpBackAndForth) {
   const Motion motion{.keyframes = {{.time = 0.0}, {.time = 1.0, .rotation = {0.0, 80.0, 0.0}}, {.time = 2.0}},
                       .spin = {0.0, 30.0, 40.0}};
   EXPECT_EQ(motion.turn(0.5, 0.75), 0.25 * (80.0 + 50.0));
