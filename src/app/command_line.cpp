@@ -98,11 +98,12 @@ class Parser {
     view->add_option("--threads", view_.threads, "Maximum number of threads; results do not depend on it")
         ->check(CLI::Range(1, kMaxThreads))
         ->type_name("N");
-    view->add_flag("!--no-open", view_.open, "Print the address, but open no browser");
+    view->add_flag_callback(
+        "--no-open", [this] { view_.open = false; }, "Print the address, but open no browser");
   }
 
   void add_export() {
-    CLI::App* command = app_.add_subcommand("export", "Writes what a run wrote in another format");
+    CLI::App* command = app_.add_subcommand("export", "Writes a run in another file format");
     command->add_option("DIR", export_.folder, "Folder of a run")->required()->type_name("");
     command->add_option("--format", export_.formats, "html: one file that plays in a browser")
         ->required()

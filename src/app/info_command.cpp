@@ -27,8 +27,8 @@ std::string volume_text(double volume) { return format_number(volume, kDigits) +
 std::string surface_text(const Points& vertices, const Triangles& triangles, const MeshReport& report, const std::string& volume) {
   std::string text = text_row("size", describe_size(report.bounds) + ", from " + point_text(report.bounds.min()) + " to " +
                                           point_text(report.bounds.max()));
-  text += text_row("vertices", fmt::format("{} (welded from {} corners as read)", vertices.cols(), report.vertices_read));
-  text += text_row("triangles", fmt::format("{} ({} as read)", triangles.cols(), report.faces_read));
+  text += text_row("vertices", fmt::format("{} ({} before welding)", vertices.cols(), report.vertices_read));
+  text += text_row("triangles", fmt::format("{} ({} before repairs)", triangles.cols(), report.faces_read));
   text += text_row("surface", describe_closedness(report));
   if (report.closed) text += text_row("volume", volume);
   text += text_row("components", std::to_string(report.components));

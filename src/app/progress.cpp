@@ -14,6 +14,7 @@ namespace {
 constexpr std::chrono::milliseconds kBarPause{100};
 constexpr std::chrono::seconds kLeastLinePause{1};
 constexpr std::chrono::seconds kLinePause{5};
+constexpr double kLongFrame = 0.9995;  // [s]; three digits of it are 1000 ms
 constexpr int kLines = 10;
 constexpr int kBarWidth = 30;
 constexpr const char* kClearToEnd = "\x1b[K";
@@ -55,7 +56,8 @@ bool Progress::is_due(int frame, Clock::time_point now) const {
 
 std::string Progress::line(int frame, double seconds) const {
   const double per_frame = seconds / frame;
-  std::string text = fmt::format("frame {}/{}, {:.3g} ms per frame", frame, frames_, 1e3 * per_frame);
+  const std::string pace = per_frame < kLongFrame ? fmt::format("{:.3g} ms", 1e3 * per_frame) : describe_duration(per_frame);
+  std::string text = fmt::format("frame {}/{}, {} per frame", frame, frames_, pace);
   if (frame < frames_) text += ", " + describe_duration(per_frame * (frames_ - frame)) + " left";
   return text;
 }

@@ -21,7 +21,7 @@ std::string time_text(const LoadedScene& loaded) {
                                  ? "the largest stable step is " + format_upper_bound(loaded.largest_stable_step) + " s"
                                  : "every step is stable";
   return text_row("frames", fmt::format("{} at {} per second", loaded.frames, format_number(loaded.scene.frame_rate, kDigits))) +
-         text_row("each", describe_steps(loaded) + "; " + stable);
+         text_row("per frame", describe_steps(loaded) + "; " + stable);
 }
 
 const char* shape_name(const ObstacleGeometry& geometry) {

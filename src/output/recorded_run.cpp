@@ -20,9 +20,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kRemedy = "give the folder of a run, as sprung run --out writes it";
+constexpr const char* kFrameRemedy = "restore this frame, or run the scene again";
 
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& key, const std::string& rule) {
-  throw InputError({file.string(), key, "", rule, kRemedy});
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& key, const std::string& rule,
+                       const char* remedy = kRemedy) {
+  throw InputError({file.string(), key, "", rule, remedy});
 }
 
 /// Requires that the record has the key with a value of this type.
@@ -117,14 +119,14 @@ Points RecordedRun::positions(const RecordedMesh& mesh, int frame) const {
   if (!mesh.changes()) return mesh.first.vertices;
   const std::filesystem::path file = folder_ / fill_pattern(mesh.pattern, frame);
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file, "", "is missing");
+  if (!stream) fail(file, "", "is missing", kFrameRemedy);
   std::ostringstream text;
   text << stream.rdbuf();
   Points positions = read_vertex_lines(text.str());
   if (positions.cols() != mesh.first.vertices.cols()) {
-    fail(
-        file, "",
-        "has " + std::to_string(positions.cols()) + " vertices, the first frame has " + std::to_string(mesh.first.vertices.cols()));
+    fail(file, "",
+         "has " + std::to_string(positions.cols()) + " vertices, the first frame has " + std::to_string(mesh.first.vertices.cols()),
+         kFrameRemedy);
   }
   return positions;
 }
