@@ -1,4 +1,4 @@
-// A mass on a spring: the manual's Mass, Spring and Simulation.
+// A mass on a spring swings for two seconds.
 #include "network/network_builder.h"
 #include "simulation/simulator.h"
 
