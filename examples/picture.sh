@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Makes a picture of some frames of a run, side by side. Bodies are red, obstacles grey. Ropes are tubes with beads.
+# Makes a picture of some frames of a run, side by side. Installs the packages for it. Bodies are red, obstacles grey.
 #   examples/picture.sh FRAMES_FOLDER PICTURE.png FRAME...
 # Environment variables: SHIFT [m] draws all frames in one view at one scale, this distance apart; without it each frame has its own
-# view. HIDE="floor wall" hides obstacles. AZIMUTH and ELEVATION [degrees] turn the camera. RADIUS [m] is that of tubes. SIZE is the
-# size of a view in pixels, for example 360,320.
+# view. HIDE="floor wall" hides obstacles. AZIMUTH and ELEVATION [degrees] turn the camera. RADIUS [m] is the radius of the tubes that
+# show ropes. SIZE is the size of a view in pixels, for example 360,320.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

@@ -28,7 +28,7 @@ cat <<END
 The frames are in $frames: a folder for each body and each moving obstacle, with an OBJ file for each frame.
 Fixed obstacles are in the folder obstacles.
   The last frame:  f3d --up=+Y "$last"    (Debian package f3d)
-  A picture:       HIDE=floor examples/picture.sh "$frames" picture.png 1 $(find "$(dirname "$last")" -name '*.obj' | wc -l)
+  A picture:       HIDE=floor examples/picture.sh "$frames" picture.png 1 $(find "$(dirname "$last")" -name '*.obj' | wc -l)    (installs packages of 340 MB)
   The animation:   in Blender, import the frames with the add-on Stop-motion-OBJ, and the obstacles as Wavefront (.obj).
 END
 exit $status
