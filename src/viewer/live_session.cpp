@@ -281,7 +281,7 @@ void LiveSession::publish_frame(Shown& shown) {
     shown.measured_time = shown.run.simulator().time();
   }
   if (shown.run.failure()) {
-    if (!shown.told_divergence) publisher_->show_divergence(shown.number, diverged_text(shown.number, shown.run));
+    if (!shown.told_divergence) publisher_->show_divergence(shown.number, diverged_text(shown.number, shown.generation, shown.run));
     shown.told_divergence = true;
     return;  // the state is not finite
   }

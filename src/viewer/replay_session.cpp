@@ -76,7 +76,7 @@ std::string Replay::scene_text() const {
                      {"steps_per_frame", run_.steps_per_frame()},
                      {"frame_rate", run_.frame_rate()},
                      {"frames", run_.frames()},
-                     {"stable_step", Json()},
+                     {"largest_stable_step", Json()},
                      {"live", false},
                      {"complete", live_ != nullptr},
                      {"scene", scene},

@@ -1,6 +1,7 @@
 #include "viewer/text_messages.h"
 
 #include "base/error.h"
+#include "base/format.h"
 
 #include <nlohmann/json.hpp>
 
@@ -38,7 +39,7 @@ Json obstacles_of(const Simulator& simulator) {
 }
 
 /// The body of a failure and, of the network, its particle and spring.
-void add_place(const StepFailure& failure, const SpringNetwork& network, Json& message) {
+void add_location(const StepFailure& failure, const SpringNetwork& network, Json& message) {
   message["springs"] = Json::array();
   for (const Body& body : network.bodies) {
     if (body.name != failure.body) continue;
@@ -67,7 +68,7 @@ std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live
                   {"steps_per_frame", loaded.steps_per_frame},
                   {"frame_rate", loaded.scene.frame_rate},
                   {"frames", loaded.frames},
-                  {"stable_step", or_null(loaded.largest_stable_step)},
+                  {"largest_stable_step", or_null(loaded.largest_stable_step)},
                   {"live", live},
                   {"complete", true},
                   {"scene", scene},
@@ -94,11 +95,14 @@ std::string problems_text(std::optional<std::uint32_t> run, const std::string& k
   return text_of({{"type", "problems"}, {"run", run ? Json(*run) : Json()}, {"key", key}, {"problems", list}});
 }
 
-std::string diverged_text(std::uint32_t run, const LiveRun& diverged) {
-  const StepFailure& failure = *diverged.failure();
-  Json message{{"type", "diverged"}, {"run", run}, {"text", StepError(failure).what()}};
-  add_place(failure, diverged.simulator().network(), message);
-  message["stable_step"] = or_null(diverged.loaded().largest_stable_step);
+std::string diverged_text(std::uint32_t number, std::uint32_t generation, const LiveRun& run) {
+  StepFailure failure = *run.failure();
+  const auto step = run.stable_step();
+  // The post-mortem names the step that the page offers.
+  if (step) failure.remedy = "use a step of at most " + format_number(*step) + " s, or \"auto\"";
+  Json message{{"type", "diverged"}, {"run", number}, {"generation", generation}, {"text", StepError(failure).what()}};
+  add_location(failure, run.simulator().network(), message);
+  message["stable_step"] = step ? Json(*step) : Json();
   return text_of(message);
 }
 

@@ -22,7 +22,7 @@ struct PlayState {
 /// Without a run there is none to show.
 [[nodiscard]] std::string problems_text(std::optional<std::uint32_t> run, const std::string& key,
                                         const std::vector<Problem>& problems);
-[[nodiscard]] std::string diverged_text(std::uint32_t run, const LiveRun& diverged);
+[[nodiscard]] std::string diverged_text(std::uint32_t number, std::uint32_t generation, const LiveRun& run);
 [[nodiscard]] std::string obj_message(const std::string& name, const std::string& text);
 [[nodiscard]] std::string error_text(const std::string& text);
 [[nodiscard]] std::string removed_text(std::uint32_t run);

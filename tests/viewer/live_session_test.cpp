@@ -1,6 +1,7 @@
 // Laws of the live viewer, as a page sees them through the server.
 #include "viewer/live_session.h"
 #include "base/error.h"
+#include "base/format.h"
 #include "scene/scene_text.h"
 #include "viewer/test_client.h"
 
@@ -22,6 +23,12 @@ constexpr const char* kScene = R"({"version": 1, "duration": 1, "frame_rate": 50
   "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 11}, "mass": 0.1,
                       "springs": {"structural": {"stiffness": 100, "damping": 0.1}}, "pins": [{"indices": [0]}]}},
   "obstacles": {"ball": {"shape": {"type": "sphere", "radius": 0.2}, "place": {"position": [0.5, -2, 0]}}}})";
+
+// The step of 0.02 s is beyond the largest stable one.
+constexpr const char* kDivergingScene = R"({"version": 1, "duration": 10, "frame_rate": 50, "step": 0.02, "stability": "warn",
+  "integrator": {"type": "symplectic_euler"},
+  "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 11}, "mass": 0.1,
+                      "springs": {"structural": {"stiffness": 10000}}, "pins": [{"indices": [0]}]}}})";
 
 class LiveViewer : public ::testing::Test {
  protected:
@@ -206,19 +213,37 @@ TEST_F(LiveViewer, TwoIntegratorsRunSideBySide) {
 }
 
 TEST_F(LiveViewer, ADivergedRunTellsWhereAndWhichStepIsStable) {
-  serve(
-      R"({"version": 1, "duration": 10, "frame_rate": 50, "step": 0.02, "stability": "warn", "integrator": {"type": "explicit_euler"},
-    "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 11}, "mass": 0.1,
-                        "springs": {"structural": {"stiffness": 10000}}, "pins": [{"indices": [0]}]}}})");
+  serve(kDivergingScene);
   TestPage page(server_->port());
   page.send({{"do", "speed"}, {"factor", 0}});
+  const Json scene = page.text("scene");
   const Json post_mortem = page.text("diverged");
+  EXPECT_EQ(post_mortem["generation"], scene["generation"]);
   EXPECT_EQ(post_mortem["body"], "rope");
   EXPECT_TRUE(post_mortem["springs"].size() == 1 || post_mortem.contains("particle"));
-  EXPECT_TRUE(post_mortem["stable_step"].is_number());
+  const std::string advice = "use a step of at most " + format_number(post_mortem["stable_step"].get<double>());
+  EXPECT_THAT(post_mortem["text"].get<std::string>(), HasSubstr(advice));
   page.send({{"do", "pause"}});
   page.send({{"do", "reset"}});
   EXPECT_EQ(page.frame([](const Received& message) { return message.frame() == 1; }).time(), 0.0);
+}
+
+// The step that the page offers is the one that the check of the scene advises, and the run does not diverge with it.
+TEST_F(LiveViewer, TheOfferedStepIsTheOneThatValidationAdvises) {
+  const std::string file = folder_.write("scene.json", kDivergingScene).string();
+  LiveRun run({.file = file});
+  while (!run.failure()) run.step();
+  ASSERT_TRUE(run.stable_step());
+  try {
+    (void)load_scene({.file = file, .overrides = {"stability=refuse"}});
+    FAIL() << "the step is too large";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("use at most " + format_number(*run.stable_step())));
+  }
+  run.change({"step=" + format_number(*run.stable_step())});
+  for (int step = 0; step < 1000; ++step) run.step();
+  EXPECT_FALSE(run.failure());
+  EXPECT_FALSE(run.stable_step()) << "the step is as large as it may be";
 }
 
 TEST_F(LiveViewer, UnknownMessagesGetAnAnswer) {

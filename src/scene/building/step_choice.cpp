@@ -49,8 +49,8 @@ int substeps_for_passes(const Scene& scene, const std::optional<StretchLimit>& l
 }
 
 std::string advice_for_unstable(const Scene& scene, double largest_stable) {
-  if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest_stable)) {
-    return "use at most " + format_number(step_of(scene.frame_rate, *steps)) + " or \"auto\"";
+  if (const auto step = largest_step_of_frame(scene.frame_rate, largest_stable)) {
+    return "use at most " + format_number(*step) + " or \"auto\"";
   }
   return "use \"auto\"";
 }

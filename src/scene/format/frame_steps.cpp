@@ -26,4 +26,9 @@ std::optional<int> fewest_steps_per_frame(double frame_rate, double largest) {
   return static_cast<int>(steps);
 }
 
+std::optional<double> largest_step_of_frame(double frame_rate, double largest) {
+  const auto steps = fewest_steps_per_frame(frame_rate, largest);
+  return steps ? std::optional(step_of(frame_rate, *steps)) : std::nullopt;
+}
+
 }  // namespace sprung

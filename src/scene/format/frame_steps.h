@@ -21,4 +21,7 @@ inline constexpr double kMostStepsPerFrame = 1e8;
 /// The smallest number of steps per frame for which the step is at most `largest` [s] > 0; none if it exceeds kMostStepsPerFrame.
 [[nodiscard]] std::optional<int> fewest_steps_per_frame(double frame_rate, double largest);
 
+/// The step [s] of fewest_steps_per_frame().
+[[nodiscard]] std::optional<double> largest_step_of_frame(double frame_rate, double largest);
+
 }  // namespace sprung

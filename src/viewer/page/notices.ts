@@ -1,11 +1,12 @@
 import { byId, control, element, short } from './dom';
-import type { Command, DivergedMessage, Problem, SceneMessage } from './protocol';
+import type { Command, DivergedMessage, Problem } from './protocol';
 
 /** What a scene's author has to know, over the picture: mistakes, warnings, a run that diverged. */
 export class Notices {
   private readonly problems = control('problems');
   private readonly warnings = byId<HTMLDetailsElement>('warnings');
   private readonly diverged = control('diverged');
+  private divergedRun = 0;
 
   constructor(private readonly send: (command: Command) => void) {}
 
@@ -38,23 +39,24 @@ export class Notices {
     this.warnings.hidden = texts.length === 0;
   }
 
-  showDivergence(message: DivergedMessage, scene: SceneMessage, title: string): void {
-    const step = stableStep(message.stable_step, scene);
+  /** The buttons come first: they stay in reach where a long text has to be scrolled. */
+  showDivergence(message: DivergedMessage, title: string): void {
+    const { run, stable_step: step } = message;
+    const buttons = [...(step === null ? [] : [this.stepButton(step, run)]), this.closeButton(this.diverged)];
     this.diverged.replaceChildren(
-      element('strong', { textContent: title }),
+      element('div', { className: 'message-head' }, element('strong', { textContent: title }), ...buttons),
       element('p', { textContent: message.text }),
-      ...(step === null ? [] : [this.stepButton(step, message.run)]),
-      this.closeButton(this.diverged),
     );
     this.diverged.hidden = false;
+    this.divergedRun = run;
   }
 
-  clearDivergence(): void {
-    this.diverged.hidden = true;
+  clearDivergence(run: number): void {
+    if (run === this.divergedRun) this.diverged.hidden = true;
   }
 
   private stepButton(step: number, run: number): HTMLElement {
-    const button = element('button', { type: 'button', className: 'primary', textContent: `Use a step of ${short(step)} s` });
+    const button = element('button', { type: 'button', className: 'primary', textContent: `Use a step of ${short(step, 6)} s` });
     button.dataset.testid = 'use-stable-step';
     button.addEventListener('click', () => {
       this.send({ do: 'set', run, key: 'step', value: step });
@@ -68,10 +70,4 @@ export class Notices {
     button.addEventListener('click', () => (panel.hidden = true));
     return button;
   }
-}
-
-/** The largest step that is stable with a margin and divides a frame; null where none is. */
-function stableStep(largest: number | null, scene: SceneMessage): number | null {
-  if (largest === null || !(largest > 0)) return null;
-  return 1 / (scene.frame_rate * Math.max(Math.ceil(1 / (scene.frame_rate * 0.9 * largest) - 1e-9), 1));
 }

@@ -159,7 +159,7 @@ export class Page implements SourceListener {
     this.scenes.set(message.run, message);
     this.shown.problems = [];
     this.notices.clearProblems();
-    this.notices.clearDivergence();
+    this.notices.clearDivergence(message.run);
     this.drag.cancel();
     if (message.run === 0) {
       this.setTitle(message.title);
@@ -228,11 +228,12 @@ export class Page implements SourceListener {
   }
 
   private showDivergence(message: DivergedMessage): void {
-    const model = this.coming.get(message.run) ?? this.shown.models[message.run];
+    const models = [this.coming.get(message.run), this.shown.models[message.run]];
+    const model = models.find((each) => each?.scene.generation === message.generation);
     if (!model) return;
     model.diverged = message;
     const name = this.shown.models.length > 1 ? `${integratorLabel(model.scene.integrator)} diverged` : 'The run diverged';
-    this.notices.showDivergence(message, model.scene, name);
+    this.notices.showDivergence(message, name);
     this.view.invalidate();
   }
 
@@ -249,6 +250,7 @@ export class Page implements SourceListener {
   private remove(run: number): void {
     this.coming.delete(run);
     this.scenes.delete(run);
+    this.notices.clearDivergence(run);
     if (this.shown.models.length > run) this.shown.models.length = run;
     this.view.setRun(run, null);
     this.toolbar.setCompared(null);

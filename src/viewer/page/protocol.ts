@@ -19,7 +19,7 @@ export interface SceneMessage {
   steps_per_frame: number;
   frame_rate: number;
   frames: number;
-  stable_step: number | null;
+  largest_stable_step: number | null;
   live: boolean;
   complete: boolean;
   scene: { [key: string]: Json };
@@ -34,6 +34,7 @@ export interface StateMessage { type: 'state'; playing: boolean; every: number; 
 export interface DivergedMessage {
   type: 'diverged';
   run: number;
+  generation: number;
   text: string;
   body?: string;
   particle?: number;

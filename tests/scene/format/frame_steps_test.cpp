@@ -22,6 +22,12 @@ TEST(FrameSteps, RoundingOfTheDurationLosesNoFrame) {
   }
 }
 
+TEST(FrameSteps, TheLargestStepOfAFrameDividesIt) {
+  EXPECT_EQ(largest_step_of_frame(50.0, 0.0063), 0.005);
+  EXPECT_EQ(largest_step_of_frame(50.0, std::numeric_limits<double>::infinity()), 0.02);
+  EXPECT_EQ(largest_step_of_frame(50.0, 1e-12), std::nullopt) << "too many steps";
+}
+
 TEST(FrameSteps, StepsThatDivideAFrameAreWhole) {
   EXPECT_EQ(steps_per_frame(30.0, 1.0 / 30.0), 1);
   EXPECT_EQ(steps_per_frame(25.0, 0.001), 40);
