@@ -47,6 +47,8 @@ class Simulator {
 
   void set_gravity(const Vector3& acceleration);   ///< [m/s^2]
   void set_air(double drag, const Vector3& wind);  ///< see SimulatorSettings
+
+  /// Springs that exceed the new limit are shortened at once, as far as obstacles and bodies permit; velocities stay as they are.
   void set_stretch_limit(const std::optional<StretchLimitSettings>& limit);
 
   /// Gives all springs of a kind in a body this stiffness [N/m] and damping [N s/m].

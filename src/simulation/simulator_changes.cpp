@@ -42,6 +42,10 @@ void check_change(const SpringNetwork& network, const SimulatorSettings& setting
   problems.throw_if_any();
 }
 
+double excess_of(const StepConstraints& constraints, const Points& positions) {
+  return constraints.limit() != nullptr ? constraints.limit()->excess(positions) : 0.0;
+}
+
 void check_number(const std::string& key, double number, ProblemList& problems) {
   if (std::isfinite(number) && number >= 0.0) return;
   problems.add(key, format_number(number, 6), "must be finite and not negative", "");
@@ -72,6 +76,7 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   }
   constraints.roll_back(before.constraints.permitted_crossings());
   environment.set_interval(time(), time());
+  if (excess_of(constraints, state.x) > excess_of(before.constraints, state.x)) constraints.correct_positions(state, before.dt());
   if (before.settings.integrator.index() == settings.integrator.index()) {
     integrator->resume(state, forces, before.dt());
   } else {

@@ -19,6 +19,7 @@ using ::testing::HasSubstr;
 using testing::kGravity;
 using testing::one_particle;
 using testing::run;
+using testing::sheet;
 
 constexpr double kStep = 1.0e-3;  // [s]
 
@@ -98,6 +99,37 @@ TEST(SimulatorChanges, AStretchLimitHoldsFromTheStepAfterItIsSet) {
   simulator.set_stretch_limit(std::nullopt);
   run(simulator, 6.0);  // the swing of 0.4 m fades by exp(-c t / 2 m) = exp(-15)
   EXPECT_NEAR(simulator.positions()(1, 1), -1.0 - kGravity / 20.0, 1e-6);
+}
+
+// The bob rests 0.49 m below its rest length. In one step the way to the limit is a speed of 390 m/s.
+TEST(SimulatorChanges, ATighterStretchLimitMovesParticlesWithoutGivingThemVelocity) {
+  for (const IntegratorSettings& integrator : all_integrators()) {
+    Simulator simulator(hanging_mass(20.0, 5.0), {.step = kStep, .integrator = integrator});
+    run(simulator, 6.0);
+    simulator.set_stretch_limit(StretchLimitSettings{.max_stretch = 0.1});
+    for (int step = 0; step < 100; ++step) {
+      simulator.step();
+      EXPECT_LT(simulator.state().v.col(1).norm(), 2.0 * kGravity * kStep) << integrator.index();
+      EXPECT_GT(simulator.positions()(1, 1), -1.1 * (1.0 + 2.0 * StretchLimitSettings{}.tolerance)) << integrator.index();
+    }
+  }
+}
+
+// The pin is on the other side of the sheet: the limit pulls the bob to it.
+TEST(SimulatorChanges, ATighterStretchLimitMovesParticlesThroughNoObstacle) {
+  NetworkBuilder builder;
+  builder.begin_body("pair", {.thickness = 0.01});
+  const Index hook = builder.add_particle({0.0, -1.0, 0.0}, 1.0);
+  const Index bob = builder.add_particle({0.1, 0.5, 0.2}, 1.0);
+  builder.add_spring(hook, bob, 0.0, 0.5);
+  builder.pin(hook);
+  Simulator simulator(builder.build(), {.step = kStep}, {sheet(2.0, {.thickness = 0.01})});
+  simulator.step();
+  simulator.set_stretch_limit(StretchLimitSettings{.max_stretch = 0.1});
+  EXPECT_GT(simulator.positions()(1, bob), 0.0);
+  EXPECT_LT(simulator.positions()(1, bob), 0.1) << "it stops at the sheet";
+  run(simulator, 0.1);
+  EXPECT_GT(simulator.positions()(1, bob), 0.0);
 }
 
 TEST(SimulatorChanges, APinnedParticleStaysAndAReleasedOneFallsFromRest) {

@@ -20,6 +20,9 @@ constexpr int kResponses = 6;
 constexpr int kRelaxRounds = 16;
 constexpr int kRelaxPasses = 2;
 
+// Calls of the limit's solver and passes that correct_positions() makes at most. Excess that remains is corrected by the steps.
+constexpr int kCorrections = 16;
+
 }  // namespace
 
 StepConstraints::StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, double steady_acceleration,
@@ -43,13 +46,36 @@ void StepConstraints::apply(SimulationState& state, const Forces& forces, double
   truncate(state, forces, report);
 }
 
+void StepConstraints::correct_positions(SimulationState& state, double dt) {
+  dt_ = dt;
+  StepReport report;
+  for (int k = 0; limit_ && k < kCorrections && limit_->excess(state.x) > limit_->settings().tolerance; ++k) {
+    begin(state);
+    const Points start = state.x;
+    advanced_ = start;
+    if (projects_contacts()) contacts_.find(motion());
+    make_passes(state, report);
+    int rounds = 0;
+    const double excess = limit_->excess(state.x);
+    const StepTruncation::Relax relax_again = [&](Points& positions) {
+      return rounds++ < max_relax_rounds() && relax(positions, excess);
+    };
+    if (contacts_.can_collide()) contacts_.truncate(motion(), state.x, relax_again);
+    state.x_previous += state.x - start;
+  }
+}
+
+void StepConstraints::project(SimulationState& state, const Forces& forces, StepReport& report) {
+  if (projects_contacts()) contacts_.find(motion());
+  if (projects_contacts() && integrator_.responds_to_contact()) respond_to_contact(state, forces);
+  make_passes(state, report);
+}
+
 // Contact comes before the limit in each pass. Where they disagree, the last one is satisfied and the other is violated by the
 // motion of one pass. The limit's motion is within the gap, of which truncation leaves half. In the reverse order, a cloth that
 // hangs over a tip would stretch by the same amount, which in few passes is a fifth of its length and more.
-void StepConstraints::project(SimulationState& state, const Forces& forces, StepReport& report) {
+void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
   const bool projects = projects_contacts();
-  if (projects) contacts_.find(motion());
-  if (projects && integrator_.responds_to_contact()) respond_to_contact(state, forces);
   const double fall = steady_acceleration_ * dt_ * dt_;
   const std::optional<int> solves =
       limit_ ? limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers) : std::nullopt;
@@ -80,8 +106,7 @@ void StepConstraints::respond_to_contact(SimulationState& state, const Forces& f
 void StepConstraints::truncate(SimulationState& state, const Forces& forces, StepReport& report) {
   const bool can_collide = contacts_.can_collide();
   const bool responds = !limit_ && integrator_.responds_to_contact() && projects_contacts();
-  const int relax_rounds = limit_ ? std::min(kRelaxRounds, limit_->settings().iterations / kRelaxPasses) : 0;
-  const int max_rounds = responds ? kResponses : relax_rounds;
+  const int max_rounds = responds ? kResponses : max_relax_rounds();
   int rounds = 0;
   const StepTruncation::Relax relax_again = [&](Points& positions) {
     if (rounds++ >= max_rounds) return false;
@@ -95,6 +120,10 @@ void StepConstraints::truncate(SimulationState& state, const Forces& forces, Ste
   report.truncated = contacts_.truncated_count();
   report.infeasible = contacts_.infeasible_count();
   if (limit_ && (rounds > 0 || report.truncated > 0)) report.stretch_excess = limit_->excess(state.x);
+}
+
+int StepConstraints::max_relax_rounds() const {
+  return limit_ ? std::min(kRelaxRounds, limit_->settings().iterations / kRelaxPasses) : 0;
 }
 
 // Truncation stopped particles at surfaces for which no contact was found; find_again() finds these. Excess from before truncation

@@ -31,6 +31,11 @@ class StepConstraints {
   /// is the step's.
   void apply(SimulationState& state, const Forces& forces, double dt, StepReport& report);
 
+  /// Moves particles from rest onto the stretch limit, as far as obstacles and other bodies permit. Velocities stay as they are.
+  /// Call it when a limit became tighter: a step would give particles the velocity of that motion (pre-stabilization: Macklin et
+  /// al. 2014). Requires that the environment's interval is the present time. Does nothing without a limit.
+  void correct_positions(SimulationState& state, double dt);
+
   /// Positions at the beginning of the step [m], 3 x n. Valid after apply().
   [[nodiscard]] const Points& positions_before(const SimulationState& state) const {
     return copies_positions() ? before_ : state.x_previous;
@@ -41,8 +46,10 @@ class StepConstraints {
 
  private:
   void project(SimulationState& state, const Forces& forces, StepReport& report);
+  void make_passes(SimulationState& state, StepReport& report);
   void respond_to_contact(SimulationState& state, const Forces& forces);
   void truncate(SimulationState& state, const Forces& forces, StepReport& report);
+  [[nodiscard]] int max_relax_rounds() const;
   [[nodiscard]] bool relax(Points& positions, double excess_before);
   [[nodiscard]] bool respond_to_truncation(SimulationState& state, const Forces& forces);
   [[nodiscard]] bool projects_contacts() const;
