@@ -16,11 +16,7 @@ std::optional<Outgoing> if_new(const Item& item, std::uint64_t& seen, bool binar
 }  // namespace
 
 void Board::show_scene(std::uint32_t run, const std::string& scene, SharedBytes topology) {
-  Run& shown = runs_[run];
-  shown.scene = {text(scene), ++last_};
-  shown.topology = {std::move(topology), ++last_};
-  shown.frame = {};
-  shown.divergence = {};
+  runs_[run] = {.scene = {text(scene), ++last_}, .topology = {std::move(topology), ++last_}};
 }
 
 void Board::show_frame(std::uint32_t run, SharedBytes frame) { runs_[run].frame = {std::move(frame), ++last_}; }
@@ -39,6 +35,9 @@ std::optional<Outgoing> Board::next(Reader& reader) const {
   }
   for (const auto& [number, run] : runs_) {
     Reader::Seen& seen = reader.seen[number];
+    if (seen.scene > 0) {
+      if (auto found = if_new(run.removal, seen.removal, false)) return found;
+    }
     if (auto found = if_new(run.scene, seen.scene, false)) return found;
     if (auto found = if_new(run.topology, seen.topology, true)) return found;
     if (auto found = if_new(run.frame, seen.frame, true)) return found;

@@ -25,6 +25,7 @@ struct Reader {
     std::uint64_t topology = 0;
     std::uint64_t frame = 0;
     std::uint64_t divergence = 0;
+    std::uint64_t removal = 0;
   };
   bool greeted = false;
   std::uint64_t state = 0;
@@ -33,7 +34,8 @@ struct Reader {
   std::deque<Outgoing> waiting;
 };
 
-/// Not thread-safe. Each thing that is shown has a number that grows, so that a reader knows what is new to it.
+/// Not thread-safe. Keeps what is newest, however many scenes and frames are shown before a reader asks. Each thing that is shown
+/// has a number that grows, so that a reader knows what is new to it.
 class Board {
  public:
   explicit Board(const std::string& hello) : hello_(text(hello)) {}
@@ -41,7 +43,7 @@ class Board {
   void show_scene(std::uint32_t run, const std::string& scene, SharedBytes topology);
   void show_frame(std::uint32_t run, SharedBytes frame);
   void show_divergence(std::uint32_t run, const std::string& divergence) { runs_[run].divergence = {text(divergence), ++last_}; }
-  void remove_run(std::uint32_t run) { runs_.erase(run); }
+  void remove_run(std::uint32_t run, const std::string& removal) { runs_[run] = {.removal = {text(removal), ++last_}}; }
   void show_state(const std::string& state) { state_ = {text(state), ++last_}; }
   void show_failure(const std::string& failure) { failure_ = {failure.empty() ? nullptr : text(failure), ++last_}; }
 
@@ -56,10 +58,11 @@ class Board {
     std::uint64_t number = 0;
   };
   struct Run {
-    Item scene;
-    Item topology;
-    Item frame;
-    Item divergence;
+    Item scene{};
+    Item topology{};
+    Item frame{};
+    Item divergence{};
+    Item removal{};  ///< for readers that know the run
   };
 
   SharedBytes hello_;

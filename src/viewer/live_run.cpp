@@ -8,17 +8,45 @@
 
 #include <algorithm>
 #include <array>
-#include <regex>
+#include <initializer_list>
+#include <string_view>
 #include <utility>
 
 namespace sprung {
 namespace {
 
-bool is_live(const std::string& override_text) {
-  static const std::regex kLive(
-      R"((gravity|air|stretch_limit)(\..*)?|bodies\.[^.]+\.(springs(\..*)?|friction|static_friction|restitution|thickness))"
-      R"(|obstacles\.[^.]+\.(friction|static_friction|restitution|thickness))");
-  return std::regex_match(override_text.substr(0, override_text.find('=')), kLive);
+/// The key of `key.path=json`.
+std::string_view key_of(const std::string& override_text) {
+  return std::string_view(override_text).substr(0, override_text.find('='));
+}
+
+std::vector<std::string_view> names_of(std::string_view key) {
+  std::vector<std::string_view> names;
+  while (true) {
+    const std::size_t dot = key.find('.');
+    names.push_back(key.substr(0, dot));
+    if (dot == std::string_view::npos) return names;
+    key.remove_prefix(dot + 1);
+  }
+}
+
+bool is_one_of(std::string_view name, std::initializer_list<std::string_view> all) {
+  return std::ranges::find(all, name) != all.end();
+}
+
+/// Whether a run may go on with a change of this key.
+bool is_live(std::string_view key) {
+  const std::vector<std::string_view> names = names_of(key);
+  if (is_one_of(names[0], {"gravity", "air", "stretch_limit"})) return true;
+  if (names.size() < 3 || !is_one_of(names[0], {"bodies", "obstacles"})) return false;
+  if (names[0] == "bodies" && names[2] == "springs") return true;
+  return names.size() == 3 && is_one_of(names[2], {"friction", "static_friction", "restitution", "thickness"});
+}
+
+/// Whether a later change of `key` leaves nothing of this one.
+bool is_replaced(const std::string& override_text, std::string_view key) {
+  const std::string_view own = key_of(override_text);
+  return own.starts_with(key) && (own.size() == key.size() || own[key.size()] == '.' || own[key.size()] == '[');
 }
 
 void pin(Index particle, SpringNetwork& network) {
@@ -33,9 +61,21 @@ void free(Index particle, SpringNetwork& network) {
   network.inverse_masses[particle] = 1.0 / network.masses[particle];
 }
 
+SimulatorSettings with_step(double step, SimulatorSettings settings) {
+  settings.step = step;
+  return settings;
+}
+
+/// Replaces the file by its text.
+const SceneSource& read_text(SceneSource& source) {
+  source.text = scene_text(source);
+  return source;
+}
+
 }  // namespace
 
-LiveRun::LiveRun(SceneSource source) : source_(std::move(source)), loaded_(load_scene(source_)) {}
+// The text is read once, so that a file that changes meanwhile does not change the run.
+LiveRun::LiveRun(SceneSource source) : source_(std::move(source)), loaded_(load_scene(read_text(source_))) {}
 
 std::string LiveRun::changed_scene() const {
   JsonText json = parse_json(scene_text(source_), source_.file);
@@ -51,12 +91,16 @@ std::optional<double> LiveRun::stable_step() const {
 
 bool LiveRun::change(const std::vector<std::string>& overrides) {
   SceneSource source = source_;
-  source.overrides.insert(source.overrides.end(), overrides.begin(), overrides.end());
+  for (const std::string& change : overrides) {
+    std::erase_if(source.overrides, [&](const std::string& earlier) { return is_replaced(earlier, key_of(change)); });
+    source.overrides.push_back(change);
+  }
   LoadedScene changed = load_scene(source);
   source_ = std::move(source);
-  if (!failure_ && std::ranges::all_of(overrides, is_live) && continue_with(changed)) return true;
+  const bool live = std::ranges::all_of(overrides, [](const std::string& change) { return is_live(key_of(change)); });
+  if (!failure_ && live && continue_with(changed)) return true;
   loaded_ = std::move(changed);
-  reset_hands();
+  forget_interaction();
   return false;
 }
 
@@ -65,10 +109,8 @@ bool LiveRun::continue_with(LoadedScene& changed) try {
   Simulator& simulator = loaded_.simulator;
   const std::vector<Obstacle>& obstacles = changed.simulator.environment().obstacles();
   SpringNetwork network = changed.simulator.network();
-  set_hands(network);
-  SimulatorSettings settings = changed.simulator.settings();
-  settings.step = simulator.settings().step;
-  simulator.continue_with(std::move(network), std::move(settings));
+  set_pins(network);
+  simulator.continue_with(std::move(network), with_step(simulator.settings().step, changed.simulator.settings()));
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     if (obstacles[k].material != simulator.environment().obstacles()[k].material) {
       simulator.set_obstacle_material(k, obstacles[k].material);
@@ -82,12 +124,12 @@ bool LiveRun::continue_with(LoadedScene& changed) try {
   return false;
 }
 
-void LiveRun::set_hands(SpringNetwork& network) const {
+void LiveRun::set_pins(SpringNetwork& network) const {
   for (const Index particle : released_) free(particle, network);
   for (const Index particle : pinned_) pin(particle, network);
 }
 
-void LiveRun::reset_hands() {
+void LiveRun::forget_interaction() {
   failure_.reset();
   pull_.reset();
   pulled_ = kNone;
@@ -99,7 +141,7 @@ void LiveRun::reset_hands() {
 
 void LiveRun::reset() {
   loaded_ = load_scene(source_);
-  reset_hands();
+  forget_interaction();
 }
 
 void LiveRun::step() {
@@ -116,10 +158,14 @@ void LiveRun::stop_when(std::function<bool()> stops) {
   loaded_.simulator.stop_when(stops_);
 }
 
+bool LiveRun::may_change(Index particle) const {
+  return !failure_ && particle >= 0 && particle < simulator().network().particle_count();
+}
+
 void LiveRun::grab(Index particle) {
-  Simulator& simulator = loaded_.simulator;
-  if (particle < 0 || particle >= simulator.network().particle_count() || simulator.network().is_pinned(particle)) return;
+  if (!may_change(particle) || simulator().network().is_pinned(particle)) return;
   drop(false);
+  Simulator& simulator = loaded_.simulator;
   pull_ = std::make_shared<PullForce>(simulator.network(), simulator.positions(), particle, simulator.settings().step);
   pulled_ = particle;
   simulator.add_force(pull_);
@@ -130,9 +176,9 @@ void LiveRun::drag(const Vector3& target) {
 }
 
 void LiveRun::drop(bool pin) {
-  if (!pull_) return;
-  loaded_.simulator.remove_force(*pull_);
-  pull_.reset();
+  const std::shared_ptr<PullForce> pull = std::exchange(pull_, nullptr);
+  if (!pull || failure_) return;
+  loaded_.simulator.remove_force(*pull);
   if (!pin) return;
   loaded_.simulator.pin(pulled_);
   pinned_.insert(pulled_);
@@ -140,9 +186,8 @@ void LiveRun::drop(bool pin) {
 }
 
 void LiveRun::release(Index particle) {
-  Simulator& simulator = loaded_.simulator;
-  if (particle < 0 || particle >= simulator.network().particle_count() || !simulator.network().is_pinned(particle)) return;
-  simulator.release(particle);
+  if (!may_change(particle) || !simulator().network().is_pinned(particle)) return;
+  loaded_.simulator.release(particle);
   released_.insert(particle);
   pinned_.erase(particle);
 }

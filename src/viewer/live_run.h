@@ -16,7 +16,7 @@ namespace sprung {
 
 class LiveRun {
  public:
-  /// Throws as load_scene().
+  /// Reads the scene's file, once. Throws as load_scene().
   explicit LiveRun(SceneSource source);
 
   [[nodiscard]] const SceneSource& source() const { return source_; }
@@ -36,19 +36,21 @@ class LiveRun {
   /// Throws as load_scene(), and is unchanged then.
   bool change(const std::vector<std::string>& overrides);
 
-  /// Begins anew.
+  /// Begins anew. Throws as load_scene(), if a mesh of the scene is gone, and is unchanged then.
   void reset();
 
   /// One step. Does nothing after a divergence, which failure() then describes. Throws StoppedError if `stops` says so.
   void step();
   void stop_when(std::function<bool()> stops);
 
+  // These do nothing after a divergence, or if there is no such particle.
+
   /// Takes hold of a particle, unless it is pinned.
   void grab(Index particle);
   void drag(const Vector3& target);
   /// Lets go; with `pin` the particle is fixed where it is.
   void drop(bool pin);
-  /// Frees a pinned particle.
+  /// Frees a pinned particle. Throws InputError if the step is too large for the network without the pin, which stays then.
   void release(Index particle);
 
   [[nodiscard]] Topology topology() const;
@@ -60,8 +62,9 @@ class LiveRun {
 
  private:
   bool continue_with(LoadedScene& changed);
-  void set_hands(SpringNetwork& network) const;
-  void reset_hands();
+  void set_pins(SpringNetwork& network) const;
+  void forget_interaction();
+  [[nodiscard]] bool may_change(Index particle) const;
 
   SceneSource source_;
   LoadedScene loaded_;

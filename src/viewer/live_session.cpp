@@ -7,8 +7,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <iterator>
+#include <limits>
 #include <optional>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -16,11 +20,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMaxCommands = 10000;  // a page that sends more than the simulation takes loses its last ones
+constexpr int kMostStepsShownAtOnce = 1'000'000;
+
+// Factors to real time.
+constexpr double kLeastSpeed = 1e-3;
+constexpr double kGreatestSpeed = 1e3;
 
 double seconds_between(Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); }
-
-Vector3 vector_of(const Json& json) { return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()}; }
 
 }  // namespace
 
@@ -42,14 +48,7 @@ struct LiveSession::Shown {
 LiveSession::LiveSession(SceneSource source, std::vector<ExampleScene> examples)
     : first_source_(std::move(source)), examples_(std::move(examples)) {}
 
-LiveSession::~LiveSession() {
-  {
-    const std::lock_guard lock(mutex_);
-    ending_ = true;
-  }
-  changed_.notify_all();
-  if (thread_.joinable()) thread_.join();
-}
+LiveSession::~LiveSession() { stop(); }
 
 std::string LiveSession::hello() const {
   std::vector<std::string> names;
@@ -62,10 +61,19 @@ void LiveSession::start(Publisher& publisher) {
   thread_ = std::thread([this] { simulate(); });
 }
 
+void LiveSession::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
 void LiveSession::handle(ClientId client, std::string text) {
   {
     const std::lock_guard lock(mutex_);
-    if (commands_.size() < kMaxCommands) commands_.emplace_back(client, std::move(text));
+    if (messages_.size() < kMaxMessages) messages_.push_back({.client = client, .text = std::move(text)});
   }
   changed_.notify_all();
 }
@@ -78,165 +86,231 @@ void LiveSession::set_watchers(int count) {
   changed_.notify_all();
 }
 
+void LiveSession::leave(ClientId client) {
+  {
+    const std::lock_guard lock(mutex_);
+    messages_.push_back({.client = client, .text = "", .is_last = true});
+  }
+  changed_.notify_all();
+}
+
 void LiveSession::simulate() {
-  open(first_source_, "");
+  open(first_source_);
   publish_state();
-  std::vector<std::pair<ClientId, std::string>> commands;
+  std::vector<Message> messages;
   while (true) {
-    take_commands(commands);
+    take_messages(messages);
     {
       const std::lock_guard lock(mutex_);
       if (ending_) return;
     }
-    for (const auto& [client, text] : commands) obey(client, text);
-    if (!commands.empty()) continue;
+    for (const Message& message : messages) obey(message);
+    if (!messages.empty()) continue;
     const auto now = Clock::now();
     if (play_.speed > 0.0 && now < due_) continue;
     try {
-      advance(steps_of_frame());
+      advance_frame();
     } catch (const StoppedError&) {
       return;
     }
-    const double simulated = runs_.front()->run.simulator().settings().step * steps_of_frame();
+    const Shown& first = *runs_.front();
+    const double simulated = first.run.simulator().settings().step * steps_of_frame(first);
     const auto frame = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(play_.speed > 0.0 ? simulated / play_.speed : 0.0));
     due_ = std::max(due_ + frame, now);  // a simulation that is late does not hurry afterwards
   }
 }
 
-/// Waits until there are commands, or the next frame is due.
-void LiveSession::take_commands(std::vector<std::pair<ClientId, std::string>>& commands) {
-  commands.clear();
+/// Waits until there are messages, or the next frame is due.
+void LiveSession::take_messages(std::vector<Message>& messages) {
   std::unique_lock lock(mutex_);
-  const auto called = [&] { return ending_ || !commands_.empty(); };
+  const auto called = [&] { return ending_ || !messages_.empty(); };
   const auto runs = [&] { return play_.playing && watchers_ > 0 && !runs_.empty() && !all_diverged(); };
   if (!called() && !runs()) changed_.wait(lock, [&] { return called() || runs(); });
   if (!called() && play_.speed > 0.0) changed_.wait_until(lock, due_, called);
-  commands.assign(commands_.begin(), commands_.end());
-  commands_.clear();
+  messages.assign(std::make_move_iterator(messages_.begin()), std::make_move_iterator(messages_.end()));
+  messages_.clear();
 }
 
-void LiveSession::obey(ClientId client, const std::string& text) try {
-  const Json message = Json::parse(text);
-  const auto what = message.at("do").get<std::string>();
-  const auto shown = [&]() -> Shown& { return *runs_.at(message.value("run", std::size_t{0})); };
-  if (what == "play" || what == "pause") {
-    play_.playing = what == "play";
-    due_ = Clock::now();
-    for (auto& run : runs_) run->measured_from = {};
-    publish_state();
-  } else if (what == "step" || what == "frame") {
-    play_.playing = false;
-    publish_state();
-    advance(what == "step" ? 1 : steps_of_frame());
-  } else if (what == "reset") {
-    for (auto& run : runs_) run->run.reset();
-    for (const auto& run : runs_) begin_run(run->number, false);
-  } else if (what == "every") {
-    play_.every = std::clamp(message.at("steps").get<int>(), 0, 1000000);
-    publish_state();
-  } else if (what == "speed") {
-    play_.speed = std::clamp(message.at("factor").get<double>(), 0.0, 1000.0);
-    due_ = Clock::now();
-    publish_state();
-  } else if (what == "set") {
-    const std::optional<std::uint32_t> run =
-        message.contains("run") ? std::optional(message.at("run").get<std::uint32_t>()) : std::nullopt;
-    change(run, message.at("key").get<std::string>(), message.at("value").dump());
-  } else if (what == "compare") {
-    compare(message.at("integrator").get<std::string>());
-  } else if (what == "single") {
-    while (runs_.size() > 1) {
-      publisher_->remove_run(runs_.back()->number);
-      runs_.pop_back();
-    }
-  } else if (what == "open") {
-    const auto name = message.at("example").get<std::string>();
-    const auto found = std::ranges::find(examples_, name, &ExampleScene::name);
-    if (found == examples_.end()) return publisher_->tell(client, error_text("there is no example " + name));
-    open({.file = found->file, .overrides = {}, .mesh_paths = first_source_.mesh_paths}, "");
-  } else if (what == "grab") {
-    shown().run.grab(message.at("particle").get<Index>());
-  } else if (what == "drag") {
-    for (auto& run : runs_) run->run.drag(vector_of(message.at("target")));
-  } else if (what == "drop") {
-    for (auto& run : runs_) {
-      run->run.drop(message.value("pin", false));
-      publish_frame(*run);
-    }
-  } else if (what == "release") {
-    shown().run.release(message.at("particle").get<Index>());
-    publish_frame(shown());
-  } else if (what == "obj") {
-    const Simulator& simulator = shown().run.simulator();
-    const auto name = message.at("body").get<std::string>();
-    for (const Body& body : simulator.network().bodies) {
-      if (body.name != name) continue;
-      const Points vertices = simulator.positions().middleCols(body.first_particle, body.particle_count);
-      publisher_->tell(client, obj_message(name + ".obj", obj_text(vertices, body.surface.faces, body.surface.segments)));
-    }
-  } else {
-    publisher_->tell(client, error_text("there is no command " + what));
+void LiveSession::obey(const Message& message) try {
+  if (!message.is_last) {
+    obey(message.client, PageCommand(message.text));
+  } else if (message.client == puller_) {
+    drop(false);
   }
-} catch (const Json::exception& error) {
-  publisher_->tell(client, error_text(std::string("the message was not understood: ") + error.what()));
-} catch (const std::out_of_range&) {
-  publisher_->tell(client, error_text("there is no such run"));
+} catch (const PageCommandError& error) {
+  publisher_->tell(message.client, error_text(error.what()));
 } catch (const StoppedError&) {
   return;
+} catch (const std::exception& error) {
+  publisher_->tell(message.client, error_text(std::string("this was not possible: ") + error.what()));
+}
+
+void LiveSession::obey(ClientId client, const PageCommand& command) {
+  if (control(command) || interact(client, command)) return;
+  if (command.name() == "set") {
+    const auto run = command.has("run") ? std::optional(run_of(command).number) : std::nullopt;
+    change(run, command.text("key"), command.json("value"));
+  } else if (command.name() == "compare") {
+    compare(command.text("integrator"));
+  } else if (command.name() == "single") {
+    end_comparison();
+  } else if (command.name() == "open") {
+    open_example(client, command.text("example"));
+  } else if (command.name() == "obj") {
+    tell_obj(client, run_of(command), command.text("body"));
+  } else {
+    throw PageCommandError("there is no command " + command.name());
+  }
+}
+
+/// Obeys commands about time; returns whether it was one.
+bool LiveSession::control(const PageCommand& command) {
+  const std::string& name = command.name();
+  if (name == "play" || name == "pause") {
+    play(name == "play");
+  } else if (name == "step") {
+    play(false);
+    for (auto& shown : runs_) advance(*shown, 1);
+  } else if (name == "frame") {
+    play(false);
+    advance_frame();
+  } else if (name == "reset") {
+    reset();
+  } else if (name == "every") {
+    play_.every = static_cast<int>(command.integer("steps", 0, kMostStepsShownAtOnce));
+    publish_state();
+  } else if (name == "speed") {
+    const double factor = command.number("factor");
+    play_.speed = factor > 0.0 ? std::clamp(factor, kLeastSpeed, kGreatestSpeed) : 0.0;
+    due_ = Clock::now();
+    publish_state();
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// Obeys commands about particles; returns whether it was one.
+bool LiveSession::interact(ClientId client, const PageCommand& command) {
+  const auto particle = [&] { return static_cast<Index>(command.integer("particle", 0, std::numeric_limits<Index>::max())); };
+  if (command.name() == "grab") {
+    run_of(command).run.grab(particle());
+    puller_ = client;
+  } else if (command.name() == "drag") {
+    for (auto& shown : runs_) shown->run.drag(command.vector("target"));
+  } else if (command.name() == "drop") {
+    drop(command.flag("pin"));
+  } else if (command.name() == "release") {
+    Shown& shown = run_of(command);
+    attempt(shown.number, "", [&] { shown.run.release(particle()); });
+    publish_frame(shown);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+LiveSession::Shown& LiveSession::run_of(const PageCommand& command) {
+  const auto number = command.has("run") ? command.integer("run", 0, 1) : 0;
+  if (number >= static_cast<std::int64_t>(runs_.size())) throw PageCommandError("there is no such run");
+  return *runs_[static_cast<std::size_t>(number)];
+}
+
+void LiveSession::play(bool playing) {
+  play_.playing = playing;
+  due_ = Clock::now();
+  for (auto& shown : runs_) shown->measured_from = {};
+  publish_state();
+}
+
+void LiveSession::reset() {
+  for (const auto& shown : runs_) {
+    attempt(shown->number, "", [&] {
+      shown->run.reset();
+      begin_run(shown->number, false);
+    });
+  }
+}
+
+void LiveSession::open_example(ClientId client, const std::string& name) {
+  const auto found = std::ranges::find(examples_, name, &ExampleScene::name);
+  if (found == examples_.end()) return publisher_->tell(client, error_text("there is no example " + name));
+  open({.file = found->file, .overrides = {}, .mesh_paths = first_source_.mesh_paths});
 }
 
 /// A scene with mistakes leaves what is there.
-void LiveSession::open(const SceneSource& source, const std::string& key) {
-  try {
+void LiveSession::open(const SceneSource& source) {
+  attempt(std::nullopt, "", [&] {
     auto opened = std::make_unique<Shown>(0, source);
-    while (runs_.size() > 1) {
-      publisher_->remove_run(runs_.back()->number);
-      runs_.pop_back();
-    }
+    end_comparison();
     runs_.clear();
     runs_.push_back(std::move(opened));
     publisher_->show_failure("");
     begin_run(0, false);
-  } catch (const InputError& error) {
-    const std::string text = problems_text(std::nullopt, key, error.problems());
-    if (runs_.empty()) {
-      publisher_->show_failure(text);
-    } else {
-      publisher_->tell_all(text);
-    }
-  } catch (const FileError& error) {
-    const std::string text = problems_text(std::nullopt, key, {{source.file, "", "", error.what(), ""}});
-    if (runs_.empty()) {
-      publisher_->show_failure(text);
-    } else {
-      publisher_->tell_all(text);
-    }
-  }
+  });
 }
 
-void LiveSession::compare(const std::string& integrator) try {
+void LiveSession::compare(const std::string& integrator) {
   if (runs_.empty()) return;
-  SceneSource source = runs_.front()->run.source();
-  source.overrides.push_back("integrator={\"type\":" + Json(integrator).dump() + "}");
-  auto second = std::make_unique<Shown>(1, std::move(source));
-  if (runs_.size() > 1) runs_.pop_back();
-  runs_.push_back(std::move(second));
-  runs_.front()->run.reset();
-  begin_run(0, false);
-  begin_run(1, false);
-} catch (const InputError& error) {
-  publisher_->tell_all(problems_text(1, "integrator", error.problems()));
+  attempt(1, "integrator", [&] {
+    SceneSource source = runs_.front()->run.source();
+    source.overrides.push_back("integrator={\"type\":" + Json(integrator).dump() + "}");
+    auto second = std::make_unique<Shown>(1, std::move(source));
+    runs_.front()->run.reset();
+    runs_.resize(1);
+    runs_.push_back(std::move(second));
+    begin_run(0, false);
+    begin_run(1, false);
+  });
+}
+
+void LiveSession::end_comparison() {
+  if (runs_.size() < 2) return;
+  publisher_->remove_run(runs_.back()->number, removed_text(runs_.back()->number));
+  runs_.pop_back();
 }
 
 void LiveSession::change(std::optional<std::uint32_t> run, const std::string& key, const std::string& value) {
   for (const auto& shown : runs_) {
     if (run && *run != shown->number) continue;
-    try {
-      begin_run(shown->number, shown->run.change({key + "=" + value}));
-    } catch (const InputError& error) {
-      publisher_->tell_all(problems_text(shown->number, key, error.problems()));
-    }
+    attempt(shown->number, key, [&] { begin_run(shown->number, shown->run.change({key + "=" + value})); });
+  }
+}
+
+void LiveSession::drop(bool pin) {
+  puller_ = 0;
+  for (auto& shown : runs_) {
+    shown->run.drop(pin);
+    publish_frame(*shown);
+  }
+}
+
+void LiveSession::tell_obj(ClientId client, const Shown& shown, const std::string& body_name) {
+  const Simulator& simulator = shown.run.simulator();
+  const std::vector<Body>& bodies = simulator.network().bodies;
+  const auto body = std::ranges::find(bodies, body_name, &Body::name);
+  if (body == bodies.end()) throw PageCommandError("there is no body " + body_name);
+  const Points vertices = simulator.positions().middleCols(body->first_particle, body->particle_count);
+  publisher_->tell(client, obj_message(body_name + ".obj", obj_text(vertices, body->surface.faces, body->surface.segments)));
+}
+
+/// Shows the problems of an action that the scene does not permit.
+template <class Action>
+void LiveSession::attempt(std::optional<std::uint32_t> run, const std::string& key, const Action& action) try {
+  action();
+} catch (const InputError& error) {
+  refuse(run, key, error.problems());
+} catch (const FileError& error) {
+  refuse(run, key, {Problem{.rule = error.what()}});
+}
+
+void LiveSession::refuse(std::optional<std::uint32_t> run, const std::string& key, const std::vector<Problem>& problems) {
+  const std::string text = problems_text(runs_.empty() ? std::nullopt : run, key, problems);
+  if (runs_.empty()) {
+    publisher_->show_failure(text);
+  } else {
+    publisher_->tell_all(text);
   }
 }
 
@@ -258,18 +332,19 @@ void LiveSession::begin_run(std::uint32_t number, bool live) {
   publish_frame(shown);
 }
 
-void LiveSession::advance(int steps) {
-  for (auto& shown : runs_) {
-    const auto begin = Clock::now();
-    if (shown->measured_from == Clock::time_point{}) {
-      shown->measured_from = begin;
-      shown->measured_time = shown->run.simulator().time();
-    }
-    for (int k = 0; k < steps; ++k) shown->run.step();
-    const auto end = Clock::now();
-    shown->frame_ms = 1e3 * seconds_between(begin, end);
-    publish_frame(*shown);
+void LiveSession::advance_frame() {
+  for (auto& shown : runs_) advance(*shown, steps_of_frame(*shown));
+}
+
+void LiveSession::advance(Shown& shown, int steps) {
+  const auto begin = Clock::now();
+  if (shown.measured_from == Clock::time_point{}) {
+    shown.measured_from = begin;
+    shown.measured_time = shown.run.simulator().time();
   }
+  for (int k = 0; k < steps; ++k) shown.run.step();
+  shown.frame_ms = 1e3 * seconds_between(begin, Clock::now());
+  publish_frame(shown);
 }
 
 void LiveSession::publish_frame(Shown& shown) {
@@ -298,9 +373,11 @@ void LiveSession::publish_frame(Shown& shown) {
 
 void LiveSession::publish_state() { publisher_->show_state(state_text(play_)); }
 
-int LiveSession::steps_of_frame() const {
-  if (play_.every > 0) return play_.every;
-  return runs_.empty() ? 1 : runs_.front()->run.loaded().steps_per_frame;
+/// Runs with different steps stay at the same time: `every` counts the steps of the first one.
+int LiveSession::steps_of_frame(const Shown& shown) const {
+  if (play_.every == 0) return shown.run.loaded().steps_per_frame;
+  const double steps = play_.every * runs_.front()->run.simulator().settings().step / shown.run.simulator().settings().step;
+  return static_cast<int>(std::clamp(std::round(steps), 1.0, static_cast<double>(kMostStepsShownAtOnce)));
 }
 
 bool LiveSession::all_diverged() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "viewer/live_run.h"
+#include "viewer/page_command.h"
 #include "viewer/session.h"
 #include "viewer/text_messages.h"
 
@@ -13,7 +14,6 @@
 #include <optional>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace sprung {
@@ -32,23 +32,44 @@ class LiveSession final : public ViewSession {
 
   [[nodiscard]] std::string hello() const override;
   void start(Publisher& publisher) override;
+  void stop() override;
   void handle(ClientId client, std::string text) override;
   void set_watchers(int count) override;
+  void leave(ClientId client) override;
 
  private:
   struct Shown;
+  struct Message {
+    ClientId client = 0;
+    std::string text;
+    bool is_last = false;  ///< the page is gone; there is no text
+  };
 
   void simulate();
-  void take_commands(std::vector<std::pair<ClientId, std::string>>& commands);
-  void obey(ClientId client, const std::string& text);
-  void open(const SceneSource& source, const std::string& key);
+  void take_messages(std::vector<Message>& messages);
+  void obey(const Message& message);
+  void obey(ClientId client, const PageCommand& command);
+  [[nodiscard]] bool control(const PageCommand& command);
+  [[nodiscard]] bool interact(ClientId client, const PageCommand& command);
+  [[nodiscard]] Shown& run_of(const PageCommand& command);
+  void play(bool playing);
+  void reset();
+  void open_example(ClientId client, const std::string& name);
+  void open(const SceneSource& source);
   void compare(const std::string& integrator);
+  void end_comparison();
   void change(std::optional<std::uint32_t> run, const std::string& key, const std::string& value);
+  void drop(bool pin);
+  void tell_obj(ClientId client, const Shown& shown, const std::string& body_name);
+  template <class Action>
+  void attempt(std::optional<std::uint32_t> run, const std::string& key, const Action& action);
+  void refuse(std::optional<std::uint32_t> run, const std::string& key, const std::vector<Problem>& problems);
   void begin_run(std::uint32_t number, bool live);
-  void advance(int steps);
+  void advance_frame();
+  void advance(Shown& shown, int steps);
   void publish_frame(Shown& shown);
   void publish_state();
-  [[nodiscard]] int steps_of_frame() const;
+  [[nodiscard]] int steps_of_frame(const Shown& shown) const;
   [[nodiscard]] bool all_diverged() const;
 
   const SceneSource first_source_;
@@ -58,13 +79,14 @@ class LiveSession final : public ViewSession {
   // Shared with the server's thread.
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::pair<ClientId, std::string>> commands_;
+  std::deque<Message> messages_;
   int watchers_ = 0;
   bool ending_ = false;
 
   // Of the simulation's thread.
   std::vector<std::unique_ptr<Shown>> runs_;
   PlayState play_;
+  ClientId puller_ = 0;  ///< the page that took hold of a particle last
   std::uint32_t next_generation_ = 1;
   std::chrono::steady_clock::time_point due_;  ///< of the next frame
 

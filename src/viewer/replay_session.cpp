@@ -3,12 +3,14 @@
 #include "base/error.h"
 #include "output/run_record.h"
 #include "viewer/live_run.h"
+#include "viewer/page_command.h"
 #include "viewer/text_messages.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sprung {
 namespace {
@@ -66,12 +68,12 @@ std::string Replay::scene_text() const {
   for (const RecordedMesh& obstacle : run_.obstacles()) {
     obstacles.push_back({{"name", obstacle.name}, {"motion", obstacle.changes() ? "deforming" : "fixed"}});
   }
-  const Json integrator = scene.value("integrator", Json::object());
+  const Json integrator = scene.contains("integrator") ? scene["integrator"] : Json();
   const Json message{{"type", "scene"},
                      {"run", 0},
                      {"generation", kGeneration},
                      {"title", run_.folder().string()},
-                     {"integrator", integrator.value("type", "verlet")},
+                     {"integrator", integrator.is_object() ? integrator.value("type", Json("verlet")) : Json("verlet")},
                      {"step", run_.step()},
                      {"steps_per_frame", run_.steps_per_frame()},
                      {"frame_rate", run_.frame_rate()},
@@ -131,19 +133,24 @@ FrameState Replay::state(int frame) const {
 
 FrameNumbers Replay::numbers(int frame) const {
   const auto value = [&](const char* name) { return column(run_.diagnostics(), name, static_cast<std::size_t>(frame - 1)); };
+  const auto count = [&](const char* name) {
+    return static_cast<Index>(std::clamp(value(name), 0.0, static_cast<double>(std::numeric_limits<Index>::max())));
+  };
   return {.kinetic = value("kinetic_energy"),
           .elastic = value("elastic_energy"),
           .gravity = value("gravity_energy"),
           .max_stretch = value("max_stretch"),
-          .contacts = static_cast<Index>(value("contacts")),
+          .contacts = count("contacts"),
           .frame_ms = value("frame_ms"),
-          .infeasible = static_cast<Index>(value("infeasible"))};
+          .infeasible = count("infeasible")};
 }
 
 ReplaySession::ReplaySession(const std::filesystem::path& folder, const std::vector<std::string>& mesh_paths)
     : replay_(folder, mesh_paths) {}
 
-ReplaySession::~ReplaySession() {
+ReplaySession::~ReplaySession() { stop(); }
+
+void ReplaySession::stop() {
   {
     const std::lock_guard lock(mutex_);
     ending_ = true;
@@ -165,7 +172,7 @@ void ReplaySession::start(Publisher& publisher) {
 void ReplaySession::handle(ClientId client, std::string text) {
   {
     const std::lock_guard lock(mutex_);
-    messages_.emplace_back(client, std::move(text));
+    if (messages_.size() < kMaxMessages) messages_.emplace_back(client, std::move(text));
   }
   changed_.notify_all();
 }
@@ -185,16 +192,10 @@ void ReplaySession::answer_all() {
 }
 
 void ReplaySession::answer(ClientId client, const std::string& text) try {
-  const Json message = Json::parse(text);
-  const auto what = message.at("do").get<std::string>();
-  if (what == "seek") {
-    publisher_->send(client, frame(std::clamp(message.at("frame").get<int>(), 1, replay_.run().frames())));
-  } else {
-    publisher_->tell(client, error_text("a replay has no command " + what));
-  }
-} catch (const Json::exception& error) {
-  publisher_->tell(client, error_text(std::string("the message was not understood: ") + error.what()));
-} catch (const InputError& error) {
+  const PageCommand command(text);
+  if (command.name() != "seek") throw PageCommandError("a replay has no command " + command.name());
+  publisher_->send(client, frame(static_cast<int>(command.integer("frame", 1, replay_.run().frames()))));
+} catch (const std::exception& error) {
   publisher_->tell(client, error_text(error.what()));
 }
 

@@ -50,8 +50,10 @@ class ReplaySession final : public ViewSession {
 
   [[nodiscard]] std::string hello() const override;
   void start(Publisher& publisher) override;
+  void stop() override;
   void handle(ClientId client, std::string text) override;
   void set_watchers(int /*count*/) override {}
+  void leave(ClientId /*client*/) override {}
 
  private:
   void answer_all();

@@ -14,8 +14,11 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <map>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 namespace sprung {
@@ -30,6 +33,8 @@ using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
 
 constexpr std::chrono::seconds kRequestTime{10};
+constexpr std::chrono::seconds kAnswerTime{60};  // the page through a slow tunnel
+constexpr std::chrono::milliseconds kAcceptPause{100};
 constexpr std::chrono::milliseconds kStopCheck{50};
 constexpr std::size_t kMaxRequest = 64 * 1024;  // [bytes]
 constexpr std::size_t kMaxMessage = 64 * 1024;  // [bytes]
@@ -41,9 +46,13 @@ std::string_view view_of(beast::string_view text) { return {text.data(), text.si
 /// One WebSocket. Lives as long as operations on it do.
 class Page : public std::enable_shared_from_this<Page> {
  public:
-  Page(tcp::socket socket, ClientId id, const Board& board, std::function<void(ClientId, std::string)> receive,
-       std::function<void(ClientId)> leave)
-      : stream_(std::move(socket)), id_(id), board_(board), receive_(std::move(receive)), leave_(std::move(leave)) {}
+  struct Calls {
+    std::function<std::optional<Outgoing>(Reader&)> next;  ///< the next message for the page, if there is one
+    std::function<void(ClientId, std::string)> receive;
+    std::function<void(ClientId)> leave;
+  };
+
+  Page(tcp::socket socket, ClientId id, Calls calls) : stream_(std::move(socket)), id_(id), calls_(std::move(calls)) {}
 
   template <class Opened>
   void accept(const Request& request, Opened opened) {
@@ -67,7 +76,7 @@ class Page : public std::enable_shared_from_this<Page> {
   /// Sends what is new to this page, one message at a time.
   void send_next() {
     if (!open_ || writing_) return;
-    auto next = board_.next(reader_);
+    auto next = calls_.next(reader_);
     if (!next) return;
     writing_ = true;
     stream_.binary(next->binary);
@@ -90,7 +99,8 @@ class Page : public std::enable_shared_from_this<Page> {
   void read() {
     stream_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t) {
       if (error) return self->end();
-      self->receive_(self->id_, beast::buffers_to_string(self->buffer_.data()));
+      if (self->stream_.got_binary()) return self->close();
+      self->calls_.receive(self->id_, beast::buffers_to_string(self->buffer_.data()));
       self->buffer_.consume(self->buffer_.size());
       self->read();
     });
@@ -99,15 +109,13 @@ class Page : public std::enable_shared_from_this<Page> {
   void end() {
     if (!open_) return;
     open_ = false;
-    leave_(id_);
+    calls_.leave(id_);
   }
 
   websocket::stream<beast::tcp_stream> stream_;
   ClientId id_;
-  const Board& board_;
+  Calls calls_;
   Reader reader_;
-  std::function<void(ClientId, std::string)> receive_;
-  std::function<void(ClientId)> leave_;
   beast::flat_buffer buffer_;
   bool open_ = false;
   bool writing_ = false;
@@ -144,23 +152,22 @@ struct ViewServer::Implementation final : Publisher {
 
   // The session calls these from its thread.
   void show_scene(std::uint32_t run, std::string scene, SharedBytes topology) override {
-    in_server([this, run, scene = std::move(scene), topology = std::move(topology)] { board.show_scene(run, scene, topology); });
+    show([&] { board.show_scene(run, scene, std::move(topology)); });
   }
   void show_frame(std::uint32_t run, SharedBytes frame) override {
-    in_server([this, run, frame = std::move(frame)] { board.show_frame(run, frame); });
+    show([&] { board.show_frame(run, std::move(frame)); });
   }
   void show_divergence(std::uint32_t run, std::string text) override {
-    in_server([this, run, text = std::move(text)] { board.show_divergence(run, text); });
+    show([&] { board.show_divergence(run, text); });
   }
-  void remove_run(std::uint32_t run) override {
-    in_server([this, run] { board.remove_run(run); });
-    tell_all(removed_text(run));
+  void remove_run(std::uint32_t run, std::string text) override {
+    show([&] { board.remove_run(run, text); });
   }
   void show_state(std::string text) override {
-    in_server([this, text = std::move(text)] { board.show_state(text); });
+    show([&] { board.show_state(text); });
   }
   void show_failure(std::string text) override {
-    in_server([this, text = std::move(text)] { board.show_failure(text); });
+    show([&] { board.show_failure(text); });
   }
   void tell_all(std::string text) override {
     asio::post(context, [this, bytes = Board::text(text)] { for_all([&](Page& page) { page.push({bytes, false}); }); });
@@ -168,12 +175,23 @@ struct ViewServer::Implementation final : Publisher {
   void tell(ClientId client, std::string text) override { push(client, {Board::text(text), false}); }
   void send(ClientId client, SharedBytes frame) override { push(client, {std::move(frame), true}); }
 
+  /// Changes the board, and wakes the server unless it is about to look at the board anyway.
   template <class Show>
-  void in_server(Show show) {
-    asio::post(context, [this, show = std::move(show)] {
-      show();
+  void show(const Show& change) {
+    {
+      const std::lock_guard lock(board_mutex);
+      change();
+    }
+    if (woken.exchange(true)) return;
+    asio::post(context, [this] {
+      woken = false;
       for_all([](Page& page) { page.send_next(); });
     });
+  }
+
+  [[nodiscard]] std::optional<Outgoing> next(Reader& reader) {
+    const std::lock_guard lock(board_mutex);
+    return board.next(reader);
   }
 
   void push(ClientId client, Outgoing message) {
@@ -193,8 +211,17 @@ struct ViewServer::Implementation final : Publisher {
   void accept() {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error) receive(std::make_shared<Visitor>(std::move(socket)));
+      if (error) return accept_later();
+      receive(std::make_shared<Visitor>(std::move(socket)));
       accept();
+    });
+  }
+
+  /// A system that is out of sockets fails at once, again and again.
+  void accept_later() {
+    accept_timer.expires_after(kAcceptPause);
+    accept_timer.async_wait([this](beast::error_code error) {
+      if (!error) accept();
     });
   }
 
@@ -228,6 +255,7 @@ struct ViewServer::Implementation final : Publisher {
       response.body() = "403: use the address that sprung view printed, with its token.\n";
     }
     response.prepare_payload();
+    visitor->stream.expires_after(kAnswerTime);
     http::async_write(visitor->stream, response, [visitor](beast::error_code, std::size_t) {
       beast::error_code ignored;
       visitor->stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -237,13 +265,15 @@ struct ViewServer::Implementation final : Publisher {
   void open_page(Visitor& visitor, const Request& request) {
     visitor.stream.expires_never();
     const ClientId id = ++last_id;
-    const auto page = std::make_shared<Page>(
-        visitor.stream.release_socket(), id, board,
-        [this](ClientId client, std::string text) { session.handle(client, std::move(text)); },
-        [this](ClientId client) {
-          pages.erase(client);
-          session.set_watchers(static_cast<int>(pages.size()));
-        });
+    const Page::Calls calls{.next = [this](Reader& reader) { return next(reader); },
+                            .receive = [this](ClientId client, std::string text) { session.handle(client, std::move(text)); },
+                            .leave =
+                                [this](ClientId client) {
+                                  pages.erase(client);
+                                  session.leave(client);
+                                  session.set_watchers(static_cast<int>(pages.size()));
+                                }};
+    const auto page = std::make_shared<Page>(visitor.stream.release_socket(), id, calls);
     page->accept(request, [this, id, page] {
       pages[id] = page;
       session.set_watchers(static_cast<int>(pages.size()));
@@ -264,7 +294,10 @@ struct ViewServer::Implementation final : Publisher {
   asio::io_context context{1};
   tcp::acceptor acceptor;
   asio::steady_timer timer{context};
+  asio::steady_timer accept_timer{context};
+  std::mutex board_mutex;
   Board board;
+  std::atomic<bool> woken{false};  ///< whether the server is about to look at the board
   std::map<ClientId, std::shared_ptr<Page>> pages;
   ClientId last_id = 0;
 };
@@ -279,6 +312,11 @@ std::string ViewServer::address() const {
 }
 
 void ViewServer::serve(const std::function<bool()>& stops) {
+  // The session must not publish to a server that is gone, whichever way this ends.
+  struct Stop {
+    ViewSession& session;
+    ~Stop() { session.stop(); }
+  } const stop{implementation_->session};
   implementation_->session.start(*implementation_);
   implementation_->accept();
   implementation_->watch_for_stop(stops);

@@ -25,7 +25,7 @@ class ViewServer {
   /// `http://127.0.0.1:PORT/?token=TOKEN`
   [[nodiscard]] std::string address() const;
 
-  /// Starts the session and serves until `stops` returns true, which is asked twenty times a second.
+  /// Starts the session and serves until `stops` returns true, which is asked twenty times a second. Then stops the session.
   void serve(const std::function<bool()>& stops);
 
  private:

@@ -11,7 +11,10 @@ namespace sprung {
 /// A page that is connected.
 using ClientId = std::uint64_t;
 
-/// Where a session publishes. All functions are thread-safe and return at once. Texts are JSON, see PROTOCOL.md.
+/// A session that is busy for long drops messages beyond so many.
+inline constexpr std::size_t kMaxMessages = 10000;
+
+/// Where a session publishes. Functions are thread-safe and return at once. Texts are JSON, see PROTOCOL.md.
 class Publisher {
  public:
   virtual ~Publisher() = default;
@@ -25,7 +28,8 @@ class Publisher {
   /// Ends a run with the text `diverged`, which pages get that come later too.
   virtual void show_divergence(std::uint32_t run, std::string text) = 0;
 
-  virtual void remove_run(std::uint32_t run) = 0;
+  /// Ends a run with the text `removed`.
+  virtual void remove_run(std::uint32_t run, std::string text) = 0;
 
   /// Replaces the text `state`, which pages get that come later too.
   virtual void show_state(std::string text) = 0;
@@ -47,14 +51,20 @@ class ViewSession {
   /// The text `hello`.
   [[nodiscard]] virtual std::string hello() const = 0;
 
-  /// Begins to publish; ends with the session. Call it once. The publisher must live longer than the session.
+  /// Begins to publish. Call it once.
   virtual void start(Publisher& publisher) = 0;
 
-  /// Takes a message of a page. Thread-safe; returns at once.
+  /// Ends what start() began: the publisher is not used any more when this returns.
+  virtual void stop() = 0;
+
+  /// Takes a message of a page, which may be anything. Thread-safe; returns at once.
   virtual void handle(ClientId client, std::string text) = 0;
 
   /// Takes the number of pages. Thread-safe; returns at once.
   virtual void set_watchers(int count) = 0;
+
+  /// A page is gone. Thread-safe; returns at once.
+  virtual void leave(ClientId client) = 0;
 };
 
 }  // namespace sprung

@@ -61,8 +61,20 @@ TEST(Board, RunsComeAndGo) {
   board.show_scene(0, "left", Board::text("left topology"));
   board.show_scene(1, "right", Board::text("right topology"));
   EXPECT_EQ(read_all(board, reader), (Messages{"hello", "left", "left topology", "right", "right topology"}));
-  board.remove_run(1);
-  EXPECT_EQ(read_all(board, reader), Messages{});
+  board.remove_run(1, "right is gone");
+  EXPECT_EQ(read_all(board, reader), Messages{"right is gone"});
+  Reader late;
+  EXPECT_EQ(read_all(board, late), (Messages{"hello", "left", "left topology"})) << "it never knew of the run";
+  board.show_scene(1, "again", Board::text("topology again"));
+  EXPECT_EQ(read_all(board, reader), (Messages{"again", "topology again"}));
+}
+
+TEST(Board, ARunThatBeginsAnewReplacesItsRemoval) {
+  Board board("hello");
+  board.show_scene(1, "right", Board::text("topology"));
+  Reader reader;
+  read_all(board, reader);
+  board.remove_run(1, "right is gone");
   board.show_scene(1, "again", Board::text("topology again"));
   EXPECT_EQ(read_all(board, reader), (Messages{"again", "topology again"}));
 }

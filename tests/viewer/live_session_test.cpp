@@ -8,6 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 namespace sprung {
 namespace {
 
@@ -254,6 +257,12 @@ TEST_F(LiveViewer, UnknownMessagesGetAnAnswer) {
                                                {{"do", 3}},
                                                {{"do", "set"}},
                                                {{"do", "grab"}, {"run", 7}, {"particle", 0}},
+                                               {{"do", "grab"}, {"run", -1}, {"particle", 0}},
+                                               {{"do", "set"}, {"run", 1}, {"key", "gravity"}, {"value", {0, 0, 0}}},
+                                               {{"do", "release"}, {"run", 0}, {"particle", -5}},
+                                               {{"do", "every"}, {"steps", 1e300}},
+                                               {{"do", "speed"}, {"factor", nullptr}},
+                                               {{"do", "obj"}, {"body", "none"}},
                                                {{"do", "drag"}, {"target", {1}}},
                                                {{"do", "open"}, {"example", "none"}}}) {
     page.send(message);
@@ -261,9 +270,94 @@ TEST_F(LiveViewer, UnknownMessagesGetAnAnswer) {
   }
   // These name a particle that is not there, and are ignored.
   page.send({{"do", "grab"}, {"run", 0}, {"particle", 1000000}});
-  page.send({{"do", "release"}, {"run", 0}, {"particle", -5}});
+  page.send({{"do", "release"}, {"run", 0}, {"particle", 1000000}});
   page.send({{"do", "frame"}});
   EXPECT_EQ(page.frame([](const Received& message) { return message.time() > 0.0; }).frame(), 2u);
+}
+
+// A key that no scene has, as long as a message may be.
+TEST_F(LiveViewer, ALongKeyIsRefusedAsAnyOther) {
+  serve();
+  PausedPage page(server_->port());
+  for (const std::string& key :
+       std::vector<std::string>{"gravity." + std::string(50'000, 'x'), std::string(50'000, '.'), "gravity=1", ""}) {
+    page.send({{"do", "set"}, {"key", key}, {"value", 1}});
+    EXPECT_FALSE(page.text("problems")["problems"].empty());
+  }
+}
+
+TEST_F(LiveViewer, AChangeOfTheFileMeanwhileDoesNotChangeTheRun) {
+  serve();
+  PausedPage page(server_->port());
+  folder_.write("scene.json", R"({"version": 1, "duration": -1})");
+  page.send({{"do", "reset"}});
+  EXPECT_EQ(page.text("scene")["bodies"][0]["name"], "rope");
+  page.send({{"do", "set"}, {"key", "gravity"}, {"value", {0, 1, 0}}});
+  EXPECT_TRUE(page.text("scene")["live"]);
+}
+
+// The ball's mesh is gone when the run is to begin anew.
+TEST_F(LiveViewer, AResetThatFailsTellsWhyAndTheRunGoesOn) {
+  const std::string tetrahedron = "v 0 -3 0\nv 1 -3 0\nv 0 -2 0\nv 0 -3 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const std::filesystem::path mesh = folder_.write("rock.obj", tetrahedron);
+  Json scene = Json::parse(kScene);
+  scene["obstacles"] = {{"rock", {{"shape", {{"type", "mesh"}, {"file", "rock.obj"}}}}}};
+  serve(scene.dump());
+  PausedPage page(server_->port());
+  std::filesystem::remove(mesh);
+  for (const Json& message : std::vector<Json>{{{"do", "reset"}}, {{"do", "compare"}, {"integrator", "rk4"}}}) {
+    page.send(message);
+    EXPECT_THAT(page.text("problems").dump(), HasSubstr("rock.obj"));
+  }
+  page.send({{"do", "frame"}});
+  EXPECT_EQ(page.frame([](const Received& message) { return message.time() > 0.0; }).frame(), 2u);
+}
+
+// Explicit Euler takes much smaller steps than Verlet here.
+TEST_F(LiveViewer, RunsWithDifferentStepsStaySideBySideInTime) {
+  Json scene = Json::parse(kScene);
+  scene["step"] = "auto";
+  serve(scene.dump());
+  PausedPage page(server_->port());
+  page.send({{"do", "compare"}, {"integrator", "explicit_euler"}});
+  std::array<double, 2> steps{};
+  for (int k = 0; k < 2; ++k) {
+    const Json shown = page.text("scene");
+    steps.at(shown["run"]) = shown["step"];
+  }
+  ASSERT_LT(steps[1], 0.9 * steps[0]);
+  for (const int every : {0, 3}) {
+    page.send({{"do", "every"}, {"steps", every}});
+    page.send({{"do", "reset"}});
+    page.frame([](const Received& message) { return message.time() == 0.0; });
+    page.send({{"do", "frame"}});
+    const auto moved = [](int run) {
+      return [run](const Received& m) { return m.run() == static_cast<std::uint32_t>(run) && m.time() > 0.0; };
+    };
+    const double first = page.frame(moved(0)).time();
+    EXPECT_NEAR(page.frame(moved(1)).time(), first, steps[1]) << every;
+  }
+}
+
+TEST_F(LiveViewer, APageThatLeavesLetsGoOfWhatItPulled) {
+  serve();
+  PausedPage watcher(server_->port());
+  {
+    TestPage other(server_->port());
+    other.frame();
+    other.send({{"do", "grab"}, {"run", 0}, {"particle", 10}});
+    other.send({{"do", "drag"}, {"target", {0.0, 5.0, 0.0}}});
+    other.send({{"do", "every"}, {"steps", 7}});
+    while (other.text("state")["every"] != 7) continue;
+  }
+  double lowest = 0.0;
+  for (std::uint32_t frame = 1; frame <= 60; ++frame) {
+    watcher.send({{"do", "frame"}});
+    const double time = frame * 7 * 0.002;
+    const Received shown = watcher.frame([&](const Received& message) { return message.time() > time - 0.001; });
+    lowest = std::min(lowest, shown.position(10).y());
+  }
+  EXPECT_LT(lowest, -0.5) << "it falls";
 }
 
 TEST_F(LiveViewer, AnExampleOpens) {

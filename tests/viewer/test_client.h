@@ -6,6 +6,7 @@
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -112,6 +113,11 @@ class TestPage {
   void send(const Json& message) {
     stream_.text(true);
     stream_.write(boost::asio::buffer(message.dump()));
+  }
+
+  void send_bytes(const std::string& bytes, bool as_text) {
+    stream_.text(as_text);
+    stream_.write(boost::asio::buffer(bytes));
   }
 
   Received receive() {
