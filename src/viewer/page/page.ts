@@ -115,8 +115,7 @@ export class Page implements SourceListener {
     } else if (message.type === 'obj') {
       downloadText(message.name, message.text);
     } else if (message.type === 'error') {
-      this.status.textContent = message.text;
-      this.errorUntil = performance.now() + ERROR_MS;
+      this.showError(message.text);
     } else if (message.type === 'removed') {
       this.remove(message.run);
     }
@@ -240,11 +239,11 @@ export class Page implements SourceListener {
   private showProblems(message: ProblemsMessage): void {
     this.shown.problems = message.problems.map(({ text }) => text);
     const fatal = message.run === null && this.shown.models.length === 0;
-    const second = this.shown.models[1]?.scene.integrator ?? null;
-    this.toolbar.setCompared(second);
-    if (fatal || !(message.run !== 1 || this.shown.models.length > 1) || !this.settings.tell(message)) {
-      this.notices.showProblems(message.problems, fatal);
-    }
+    const second = this.shown.models[1];
+    this.toolbar.setCompared(second?.scene.integrator ?? null);
+    // The field of the integrator is that of the first run.
+    const comparison = message.run === 1 && !second;
+    if (fatal || comparison || !this.settings.tell(message)) this.notices.showProblems(message.problems, fatal);
   }
 
   private remove(run: number): void {
@@ -281,7 +280,11 @@ export class Page implements SourceListener {
     const record = control('record');
     control('save-picture').addEventListener('click', () => savePicture(this.view, 'sprung'));
     record.addEventListener('click', () => {
-      record.textContent = this.recorder.toggle(this.view.canvas, 'sprung') ? 'Stop recording' : 'Record';
+      try {
+        record.textContent = this.recorder.toggle(this.view.canvas, 'sprung') ? 'Stop recording' : 'Record';
+      } catch {
+        this.showError('this browser cannot record WebM');
+      }
     });
     control('copy-scene').addEventListener('click', () => void copyScene(this.scenes.get(0)?.changed ?? {}));
   }
@@ -316,10 +319,17 @@ export class Page implements SourceListener {
     control('readout').textContent = `frame ${model.frame}, ${model.time.toFixed(3)} s${infeasible}`;
   }
 
+  private showError(text: string): void {
+    this.status.textContent = text;
+    this.errorUntil = performance.now() + ERROR_MS;
+  }
+
   private showStatus(): void {
     if (performance.now() < this.errorUntil) return;
     const state = this.source instanceof EmbeddedRun ? this.source.note : this.shown.connected ? 'connected' : 'disconnected';
     this.status.dataset.state = this.shown.connected ? 'connected' : 'disconnected';
-    this.status.textContent = this.shown.connected && this.shown.fps > 0 ? `${state}, ${Math.round(this.shown.fps)} frames/s` : state;
+    // A screen reader speaks each text that is set.
+    if (this.status.textContent !== state) this.status.textContent = state;
+    control('fps').textContent = this.shown.connected && this.shown.fps > 0 ? `${Math.round(this.shown.fps)} frames/s` : '';
   }
 }

@@ -25,7 +25,7 @@ export function savePicture(view: SceneView, name: string): void {
 export class Recorder {
   private recorder: MediaRecorder | null = null;
 
-  /** Returns whether it records now. */
+  /** Returns whether it records now. Throws where the browser cannot record. */
   toggle(canvas: HTMLCanvasElement, name: string): boolean {
     if (this.recorder) {
       this.recorder.stop();
@@ -33,9 +33,13 @@ export class Recorder {
       return false;
     }
     const pieces: Blob[] = [];
-    const recorder = new MediaRecorder(canvas.captureStream(60), { mimeType: 'video/webm', videoBitsPerSecond: 12e6 });
+    const stream = canvas.captureStream(60);
+    const recorder = new MediaRecorder(stream, { mimeType: 'video/webm', videoBitsPerSecond: 12e6 });
     recorder.ondataavailable = ({ data }) => pieces.push(data);
-    recorder.onstop = () => download(`${name}.webm`, new Blob(pieces, { type: 'video/webm' }));
+    recorder.onstop = () => {
+      for (const track of stream.getTracks()) track.stop();
+      download(`${name}.webm`, new Blob(pieces, { type: 'video/webm' }));
+    };
     recorder.start();
     this.recorder = recorder;
     return true;

@@ -31,9 +31,12 @@ export class SceneView {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setScissorTest(true);
     this.canvas = this.renderer.domElement;
+    this.canvas.setAttribute('role', 'img');
     this.canvas.setAttribute('aria-label', 'Simulation');
+    this.canvas.tabIndex = 0;
     parent.append(this.canvas);
     this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.listenToKeyEvents(this.canvas);
     this.controls.addEventListener('change', () => this.touch());
     new ResizeObserver(() => this.resize()).observe(parent);
     this.resize();

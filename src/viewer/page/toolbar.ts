@@ -17,6 +17,9 @@ export interface ToolbarActions {
   seek(frame: number): void;
 }
 
+const TAKES_LETTERS = 'select, textarea, input:not([type="checkbox"], [type="range"])';
+const TAKES_SPACE = 'button, summary, input';
+
 /** Playback, speed, examples and the second run, by buttons and by keys. */
 export class Toolbar {
   private readonly playButton = control<HTMLButtonElement>('play');
@@ -83,7 +86,8 @@ export class Toolbar {
 
   private press(event: KeyboardEvent): void {
     const target = event.target as HTMLElement | null;
-    if (event.ctrlKey || event.metaKey || event.altKey || target?.matches('input, select, textarea, button, summary')) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || target?.matches(TAKES_LETTERS)) return;
+    if (event.key === ' ' && target?.matches(TAKES_SPACE)) return;
     if (event.key === ' ') this.actions.play(!this.playing);
     else if (event.key === '.') this.actions.frame();
     else if (event.key === 'r') this.actions.reset();

@@ -4,9 +4,9 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import * as harness from './harness.mjs';
 
-async function openExample(name) {
+async function openExample(name, options) {
   const server = await harness.view(harness.example(name));
-  const page = await harness.openPage(server.address);
+  const page = await harness.openPage(server.address, options);
   await harness.firstFrame(page);
   return { server, page };
 }
@@ -125,15 +125,75 @@ test('two integrators run side by side', async () => {
 });
 
 test('a run that diverges shows why and offers a stable step', async () => {
-  const { page } = await openExample('too_large_step_warned');
+  const { page } = await openExample('too_large_step_warned', { viewport: { width: 800, height: 500 } });
   await harness.control(page, 'speed').selectOption('0');
   await harness.play(page);
-  await harness.control(page, 'diverged').waitFor();
-  assert.match(await harness.control(page, 'diverged').innerText(), /diverge|finite|energy/i);
-  const before = await page.evaluate(() => window.sprung.runs[0].scene.step);
+  const panel = harness.control(page, 'diverged');
+  await panel.waitFor();
+  assert.match(await panel.innerText(), /diverge|finite|energy/i);
+  const picture = await page.locator('canvas').first().boundingBox();
+  const { height } = await panel.boundingBox();
+  assert.ok(height < 0.45 * picture.height, `the panel covers ${height} of ${picture.height} pixels`);
+  const offered = /of (\S+) s/.exec(await harness.control(page, 'use-stable-step').innerText())[1];
+  let advice = '';
+  try {
+    harness.sprung('validate', harness.example('too_large_step_warned'), '--set', 'stability=refuse');
+  } catch (error) {
+    advice = error.message;
+  }
+  const advised = /use at most ([\d.e-]+)/.exec(advice)?.[1];
+  assert.ok(Math.abs(Number(offered) - Number(advised)) < 1e-5 * Number(advised), `${offered} is not what it says: ${advice}`);
   await harness.control(page, 'use-stable-step').click();
-  await harness.until(page, (before) => window.sprung.runs[0].scene.step < before, before);
-  await harness.control(page, 'diverged').waitFor({ state: 'hidden' });
+  await harness.until(page, (step) => Math.abs(window.sprung.runs[0].scene.step - step) < 1e-5 * step, Number(advised));
+  await panel.waitFor({ state: 'hidden' });
+  await harness.closePage(page);
+});
+
+test('scenes that are opened one after the other leave no buffers behind', async () => {
+  const { page } = await openExample('lab_rope');
+  await page.evaluate(() => {
+    window.buffers = 0;
+    for (const [name, change] of [['createBuffer', 1], ['deleteBuffer', -1]]) {
+      const call = WebGL2RenderingContext.prototype[name];
+      WebGL2RenderingContext.prototype[name] = function (...values) {
+        window.buffers += change;
+        return call.apply(this, values);
+      };
+    }
+  });
+  const counts = [];
+  for (let round = 0; round < 4; ++round) {
+    for (const name of ['hanging_cloth', 'five_node_rope']) {
+      await harness.control(page, 'example').selectOption(name);
+      await harness.until(page, (title) => window.sprung.runs[0].scene.title === title && window.sprung.frame >= 3, `${name}.json`);
+    }
+    counts.push(await page.evaluate(() => window.buffers));
+  }
+  assert.equal(new Set(counts).size, 1, `${counts} buffers`);
+  await harness.closePage(page);
+});
+
+test('keys play, step and move the view', async () => {
+  const { page } = await openExample('lab_rope');
+  await harness.pause(page);
+  const canvas = page.locator('canvas').first();
+  await canvas.focus();
+  const before = await page.evaluate(() => ({
+    frame: window.sprung.frame,
+    at: window.sprung.project('rope', 0),
+    generation: window.sprung.runs[0].scene.generation,
+  }));
+  await page.keyboard.press('.');
+  await harness.until(page, (frame) => window.sprung.frame > frame, before.frame);
+  await page.keyboard.press('ArrowLeft');
+  await harness.until(page, (x) => Math.abs(window.sprung.project('rope', 0).x - x) > 1, before.at.x);
+  await page.keyboard.press(' ');
+  await harness.until(page, () => window.sprung.playing);
+  await harness.control(page, 'theme').focus();
+  await page.keyboard.press('r');
+  await harness.until(page, (generation) => window.sprung.runs[0].scene.generation > generation, before.generation);
+  await page.keyboard.press(' '); // presses the button
+  assert.ok(await page.evaluate(() => window.sprung.playing));
   await harness.closePage(page);
 });
 
