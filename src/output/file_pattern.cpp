@@ -28,7 +28,8 @@ std::string fill_pattern(const std::string& pattern, int frame) {
   const std::size_t end = pattern.find_last_of('#') + 1;
   if (begin == std::string::npos) return pattern;
   const std::string number = std::to_string(frame);
-  return pattern.substr(0, begin) + std::string(end - begin - number.size(), '0') + number + pattern.substr(end);
+  const std::size_t width = std::max(end - begin, number.size());
+  return pattern.substr(0, begin) + std::string(width - number.size(), '0') + number + pattern.substr(end);
 }
 
 bool stays_inside(const std::string& pattern) {

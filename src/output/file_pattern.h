@@ -10,7 +10,7 @@ namespace sprung {
 /// `name.####.obj`, with as many `#` as the number of frames has digits, at least 4. File names then sort by frame number.
 [[nodiscard]] std::string sequence_pattern(const std::string& name, int frames);
 
-/// The file name of a frame. Requires frame >= 0 with at most as many digits as the pattern has `#`.
+/// The file name of a frame. Requires frame >= 0. A number with more digits than the pattern has `#` takes more room.
 [[nodiscard]] std::string fill_pattern(const std::string& pattern, int frame);
 
 /// Whether the pattern is a relative path without `.` and `..`, so that its files lie below the folder.

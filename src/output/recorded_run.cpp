@@ -19,6 +19,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// A scene has fewer levels than 64, and functions that copy and write JSON call themselves once a level.
+constexpr int kMostLevels = 66;
+
 constexpr const char* kRemedy = "give the folder of a run, as sprung run --out writes it";
 constexpr const char* kFrameRemedy = "restore this frame, or run the scene again";
 
@@ -75,7 +78,13 @@ void RecordedRun::read_record() {
   const std::filesystem::path file = folder_ / kRunRecordFile;
   std::ifstream stream(file);
   if (!stream) fail(file, "", "is missing, so this is not the folder of a run");
-  const Json record = Json::parse(stream, nullptr, false);
+  const Json record = Json::parse(
+      stream,
+      [&](int level, Json::parse_event_t, const Json&) {
+        if (level > kMostLevels) fail(file, "", "is nested too deeply");
+        return true;
+      },
+      false);
   const auto patterns = files_of_run(file);
   if (!patterns) fail(file, "", "is not the record of a run");
   frames_ = read<int>(record, "frames_written", file);

@@ -32,6 +32,8 @@ TEST(FilePattern, NamesSortAsTheirNumbersDo) {
   EXPECT_EQ(before, "a/a.12000.obj");
 }
 
+TEST(FilePattern, GrowsWithTheNumber) { EXPECT_EQ(fill_pattern("a.##.obj", 123), "a.123.obj"); }
+
 TEST(FilePattern, WithoutDigitsIsTheNameItself) { EXPECT_EQ(fill_pattern("run.json", 7), "run.json"); }
 
 TEST(FilePattern, FindsFilesOfTheSequenceAndNoOthers) {

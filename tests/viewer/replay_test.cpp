@@ -103,6 +103,12 @@ TEST_F(RecordedCloth, ABrokenFolderSaysWhatIsMissing) {
   EXPECT_THAT(refusal(run_folder()), HasSubstr("cloth.0005.obj"));
   folder_.write("frames/cloth/cloth.0005.obj", "v 0 0 0\n");
   EXPECT_THAT(refusal(run_folder()), HasSubstr("1 vertices"));
+  Json record = Json::parse(std::ifstream(run_folder() / "run.json"));
+  record["frames_written"] = 2000000000;
+  folder_.write("frames/run.json", record.dump());
+  EXPECT_THROW((void)Replay(run_folder(), {}).state(20000), InputError) << "more digits than the names of the files have";
+  folder_.write("frames/run.json", R"({"scene": )" + std::string(100000, '[') + std::string(100000, ']') + "}");
+  EXPECT_THAT(refusal(run_folder()), HasSubstr("nested too deeply"));
   folder_.write("frames/run.json", "{}");
   EXPECT_THAT(refusal(run_folder()), HasSubstr("run.json"));
 }
