@@ -8,7 +8,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-kFirstCommit=ddbfc3f
+kFirstCommit=31d74f0
 kMostFiles=100 # some 5 s each on one core
 build=build/release
 
