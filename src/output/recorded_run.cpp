@@ -23,6 +23,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kMostLevels = 66;
 
 constexpr const char* kRemedy = "give the folder of a run, as sprung run --out writes it";
+constexpr const char* kObstacles = "obstacles/";
 constexpr const char* kFrameRemedy = "restore this frame, or run the scene again";
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& key, const std::string& rule,
@@ -40,6 +41,15 @@ Value read(const Json& record, const char* key, const std::filesystem::path& fil
     fail(file, key, "has a value of the wrong type");
   }
   fail(file, key, "is missing");
+}
+
+/// Requires a whole number.
+int read_count(const Json& record, const char* key, const std::filesystem::path& file) {
+  const auto number = read<double>(record, key, file);
+  if (!(number >= 0.0 && number <= std::numeric_limits<int>::max()) || number != std::floor(number)) {
+    fail(file, key, "must be a whole number");
+  }
+  return static_cast<int>(number);
 }
 
 std::vector<std::string> fields_of(const std::string& line) {
@@ -87,10 +97,10 @@ void RecordedRun::read_record() {
       false);
   const auto patterns = files_of_run(file);
   if (!patterns) fail(file, "", "is not the record of a run");
-  frames_ = read<int>(record, "frames_written", file);
+  frames_ = read_count(record, "frames_written", file);
   frame_rate_ = read<double>(record, "frame_rate", file);
   step_ = read<double>(record, "step", file);
-  steps_per_frame_ = read<int>(record, "steps_per_frame", file);
+  steps_per_frame_ = read_count(record, "steps_per_frame", file);
   warnings_ = read<std::vector<std::string>>(record, "warnings", file);
   if (record.contains("scene") && record["scene"].is_object()) scene_ = record["scene"].dump();
   if (frames_ < 1) fail(file, "frames_written", "is 0: the run has no frame to show");
@@ -103,9 +113,12 @@ void RecordedRun::read_meshes(const std::vector<std::string>& patterns) {
   for (const std::string& pattern : patterns) {
     if (!pattern.ends_with(".obj")) continue;
     if (!stays_inside(pattern)) fail(folder_ / kRunRecordFile, "files", "lead out of the folder: " + pattern);
+    if (!pattern.starts_with(kObstacles) && fill_pattern(pattern, 1) == pattern) {
+      fail(folder_ / kRunRecordFile, "files", "name no file of each frame: " + pattern);
+    }
     RecordedMesh mesh{.name = name_of(pattern), .pattern = pattern, .first = {}};
     mesh.first = read_obj(folder_ / (mesh.changes() ? fill_pattern(pattern, 1) : pattern));
-    (pattern.starts_with("obstacles/") ? obstacles_ : bodies_).push_back(std::move(mesh));
+    (pattern.starts_with(kObstacles) ? obstacles_ : bodies_).push_back(std::move(mesh));
   }
   if (bodies_.empty()) fail(folder_ / kRunRecordFile, "files", "name no body");
 }
@@ -127,6 +140,10 @@ void RecordedRun::read_diagnostics() {
 Points RecordedRun::positions(const RecordedMesh& mesh, int frame) const {
   if (!mesh.changes()) return mesh.first.vertices;
   const std::filesystem::path file = folder_ / fill_pattern(mesh.pattern, frame);
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored)) {
+    fail(file, "", "is not a regular file", kFrameRemedy);
+  }
   std::ifstream stream(file, std::ios::binary);
   if (!stream) fail(file, "", "is missing", kFrameRemedy);
   std::ostringstream text;
@@ -137,6 +154,7 @@ Points RecordedRun::positions(const RecordedMesh& mesh, int frame) const {
          "has " + std::to_string(positions.cols()) + " vertices, the first frame has " + std::to_string(mesh.first.vertices.cols()),
          kFrameRemedy);
   }
+  if (!positions.allFinite()) fail(file, "", "has a position that is not finite", kFrameRemedy);
   return positions;
 }
 

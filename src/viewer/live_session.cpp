@@ -100,11 +100,11 @@ void LiveSession::simulate() {
   std::vector<Message> messages;
   while (true) {
     take_messages(messages);
-    {
-      const std::lock_guard lock(mutex_);
-      if (ending_) return;
+    if (is_ending()) return;
+    for (const Message& message : messages) {
+      obey(message);
+      if (is_ending()) return;
     }
-    for (const Message& message : messages) obey(message);
     if (!messages.empty()) continue;
     const auto now = Clock::now();
     if (play_.speed > 0.0 && now < due_) continue;
@@ -119,6 +119,11 @@ void LiveSession::simulate() {
         std::chrono::duration<double>(play_.speed > 0.0 ? simulated / play_.speed : 0.0));
     due_ = std::max(due_ + frame, now);  // a simulation that is late does not hurry afterwards
   }
+}
+
+bool LiveSession::is_ending() {
+  const std::lock_guard lock(mutex_);
+  return ending_;
 }
 
 /// Waits until there are messages, or the next frame is due.
@@ -224,7 +229,9 @@ void LiveSession::play(bool playing) {
   publish_state();
 }
 
+/// Without a run, because the scene had a mistake, loads the scene again.
 void LiveSession::reset() {
+  if (runs_.empty()) return open(first_source_);
   for (const auto& shown : runs_) {
     attempt(shown->number, "", [&] {
       shown->run.reset();
@@ -321,10 +328,7 @@ void LiveSession::begin_run(std::uint32_t number, bool live) {
   shown.told_divergence = false;
   shown.measured_from = {};
   due_ = Clock::now();
-  shown.run.stop_when([this] {
-    const std::lock_guard lock(mutex_);
-    return ending_;
-  });
+  shown.run.stop_when([this] { return is_ending(); });
   const MessageHeader header{
       .run = number, .generation = shown.generation, .frame = shown.run.frame(), .time = shown.run.simulator().time()};
   publisher_->show_scene(number, scene_text(number, shown.generation, live, shown.run),

@@ -46,6 +46,7 @@ class LiveSession final : public ViewSession {
   };
 
   void simulate();
+  [[nodiscard]] bool is_ending();
   void take_messages(std::vector<Message>& messages);
   void obey(const Message& message);
   void obey(ClientId client, const PageCommand& command);

@@ -40,6 +40,7 @@ constexpr std::size_t kMaxRequest = 64 * 1024;  // [bytes]
 constexpr std::size_t kMaxMessage = 64 * 1024;  // [bytes]
 // A page that lets so many answers wait does not read any more.
 constexpr std::size_t kMaxWaiting = 1000;
+constexpr std::size_t kMaxWaitingBytes = 256 * 1024 * 1024;
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -68,7 +69,9 @@ class Page : public std::enable_shared_from_this<Page> {
   }
 
   void push(Outgoing message) {
-    if (reader_.waiting.size() >= kMaxWaiting) return close();
+    std::size_t bytes = 0;
+    for (const Outgoing& waiting : reader_.waiting) bytes += waiting.bytes->size();
+    if (reader_.waiting.size() >= kMaxWaiting || bytes >= kMaxWaitingBytes) return close();
     reader_.waiting.push_back(std::move(message));
     send_next();
   }

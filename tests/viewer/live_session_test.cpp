@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include <algorithm>
 #include <array>
 
@@ -383,6 +385,35 @@ TEST_F(LiveViewer, TenPagesSeeTheSameRunAndItRestsWithoutThem) {
   std::this_thread::sleep_for(std::chrono::seconds(1));
   TestPage page(server_->port());
   EXPECT_LT(page.frame().time(), latest + 0.5);  // it plays at real time
+}
+
+TEST_F(LiveViewer, AResetLoadsASceneWhoseMistakesAreMended) {
+  serve("{");
+  TestPage page(server_->port());
+  EXPECT_TRUE(page.text("problems")["run"].is_null());
+  folder_.write("scene.json", kScene);
+  page.send({{"do", "reset"}});
+  EXPECT_EQ(page.text("scene")["bodies"][0]["name"], "rope");
+}
+
+TEST_F(LiveViewer, EndsAtOnceWhileManyMessagesWait) {
+  serve();
+  TestPage page(server_->port());
+  page.text("scene");
+  for (int k = 0; k < 5000; ++k) page.send({{"do", "reset"}});
+  const auto begin = std::chrono::steady_clock::now();
+  server_.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+}
+
+// Its depth would make each path a text of its own length.
+TEST_F(LiveViewer, AKeyWithManyLevelsIsRefusedAtOnce) {
+  serve();
+  PausedPage page(server_->port());
+  std::string key = "a";
+  for (int k = 0; k < 30000; ++k) key += ".a";
+  page.send({{"do", "set"}, {"key", key}, {"value", 1}});
+  EXPECT_LT(page.text("problems")["problems"][0]["text"].get<std::string>().size(), 1000u);
 }
 
 TEST_F(LiveViewer, ABusyPortIsNamedWithTheRemedy) {

@@ -7,7 +7,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <zlib.h>
+
+#include <fstream>
 
 namespace sprung {
 namespace {
@@ -111,6 +114,33 @@ TEST_F(RecordedCloth, ABrokenFolderSaysWhatIsMissing) {
   EXPECT_THAT(refusal(run_folder()), HasSubstr("nested too deeply"));
   folder_.write("frames/run.json", "{}");
   EXPECT_THAT(refusal(run_folder()), HasSubstr("run.json"));
+}
+
+TEST_F(RecordedCloth, AFrameOrARecordThatNoRunWritesIsRefused) {
+  const Json record = Json::parse(std::ifstream(run_folder() / "run.json"));
+  const auto refusal = [&](const char* key, const Json& value) -> std::string {
+    Json changed = record;
+    changed[key] = value;
+    folder_.write("frames/run.json", changed.dump());
+    try {
+      (void)Replay(run_folder(), {}).state(2);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const Json& count : std::vector<Json>{1.5, -1, 3e9, 1e300}) {
+    EXPECT_THAT(refusal("frames_written", count), HasSubstr("whole number")) << count;
+  }
+  EXPECT_THAT(refusal("files", {"cloth.obj"}), HasSubstr("cloth.obj"));
+  const std::filesystem::path frame = run_folder() / "cloth" / "cloth.0002.obj";
+  std::string vertices = "v nan 0 0\n";
+  for (int k = 1; k < 64; ++k) vertices += "v 0 0 0\n";
+  folder_.write("frames/cloth/cloth.0002.obj", vertices);
+  EXPECT_THAT(refusal("version", "0"), HasSubstr("not finite"));
+  std::filesystem::remove(frame);
+  ASSERT_EQ(::mkfifo(frame.c_str(), 0600), 0);
+  EXPECT_THAT(refusal("version", "0"), HasSubstr("not a regular file"));
 }
 
 std::vector<std::uint8_t> bytes_of_base64(const std::string& text) {
