@@ -45,6 +45,9 @@ std::string read_mesh_file(const std::filesystem::path& file) {
   const std::filesystem::file_status status = std::filesystem::status(file, ignored);
   if (status.type() == std::filesystem::file_type::not_found) refuse(file, "does not exist", "check the path");
   if (status.type() == std::filesystem::file_type::directory) refuse(file, "is a folder", "name a mesh file in it");
+  if (status.type() != std::filesystem::file_type::regular && status.type() != std::filesystem::file_type::none) {
+    refuse(file, "is not a regular file", "a pipe or a device may never end; copy it to a file");
+  }
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream bytes;

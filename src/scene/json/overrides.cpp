@@ -15,6 +15,8 @@ namespace {
 
 using PathElement = std::variant<std::string, std::size_t>;
 
+constexpr std::size_t kMostElements = 64;  // no scene is deeper
+
 constexpr const char* kForm = "write key.path=value, for example bodies.rope.pins[0].nearest=[0,1,0]";
 
 std::optional<std::size_t> index_in_brackets(std::string_view text) {
@@ -44,7 +46,7 @@ std::optional<std::vector<PathElement>> split_path(std::string_view path) {
   std::vector<PathElement> elements;
   while (true) {
     const std::size_t dot = path.find('.');
-    if (!append_elements(path.substr(0, dot), elements)) return std::nullopt;
+    if (!append_elements(path.substr(0, dot), elements) || elements.size() > kMostElements) return std::nullopt;
     if (dot == std::string_view::npos) return elements;
     path.remove_prefix(dot + 1);
   }
@@ -143,11 +145,20 @@ std::optional<std::string> missing_entry(const Json& document, const std::vector
   return (names.empty() ? "" : "choose from " + joined(names) + ", or ") + "set its shape first, to add it";
 }
 
+/// The text, cut where it is too long for a message.
+std::string beginning_of(const std::string& text) {
+  constexpr std::size_t kLongest = 200;
+  if (text.size() <= kLongest) return text;
+  std::size_t cut = kLongest;
+  while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0U) == 0x80U) --cut;  // not inside a UTF-8 character
+  return text.substr(0, cut) + "...";
+}
+
 }  // namespace
 
 void apply_override(const std::string& override_text, Json& document, std::vector<Problem>& problems) {
   const auto report = [&](const std::string& rule, const std::string& remedy) {
-    problems.push_back({"", "--set", override_text, rule, remedy});
+    problems.push_back({"", "--set", beginning_of(override_text), rule, remedy});
   };
   const std::size_t equals = override_text.find('=');
   const auto elements = equals == std::string::npos ? std::nullopt : split_path(std::string_view(override_text).substr(0, equals));

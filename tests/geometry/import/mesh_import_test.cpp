@@ -10,6 +10,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -248,6 +249,14 @@ TEST_F(ImportMesh, RefusesMissingAndEmptyFilesAndFolders) {
   std::filesystem::create_directory(folder() / "folder.obj");
   EXPECT_THAT(error_of(folder() / "folder.obj"), HasSubstr("is a folder"));
   EXPECT_THAT(error_of("empty.stl", ""), HasSubstr("is empty"));
+}
+
+// To read them would wait for ever, or take all memory.
+TEST_F(ImportMesh, RefusesPipesAndDevices) {
+  ASSERT_EQ(::mkfifo((folder() / "pipe.obj").c_str(), 0600), 0);
+  std::filesystem::create_symlink("/dev/zero", folder() / "zero.obj");
+  for (const char* name : {"pipe.obj", "zero.obj"})
+    EXPECT_THAT(error_of(folder() / name), HasSubstr("is not a regular file")) << name;
 }
 
 TEST_F(ImportMesh, RefusesAFileWithoutReadPermission) {
