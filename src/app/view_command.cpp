@@ -71,6 +71,9 @@ ExitCode export_run(const ExportOptions& options) {
   if (!options.overwrite && std::filesystem::exists(file)) {
     throw InputError({file.string(), "", "", "exists", "give --overwrite to replace it, or another file by --out"});
   }
+  if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
+    throw InputError({file.string(), "", "", "is a folder, a pipe or a device", "give the name of a file by --out"});
+  }
   const HtmlAnimation animation = html_animation(Replay(options.folder, options.mesh_paths), viewer_page());
   write_file(file, animation.text);
   print_message(fmt::format("{}: positions within {} m of the run's", file.string(), format_number(animation.error, 2)));

@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 
 namespace sprung {
@@ -140,6 +142,14 @@ TEST_F(CommandLine, FullDiskEndsWithFiveAndLeavesNoHalfFrame) {
 
 TEST_F(CommandLine, ResultThatCannotBePrintedEndsWithFive) {
   EXPECT_EQ(Program({"--help"}, {.output = "/dev/full"}).wait().code, 5);
+}
+
+TEST_F(CommandLine, AnExportNeverReplacesAPipeOrADevice) {
+  ASSERT_EQ(run({"run", save(rope_scene()), "--out", out()}).code, 0);
+  const std::filesystem::path pipe = std::filesystem::path(out()) / "pipe.html";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(run({"export", out(), "--format", "html", "--out", pipe.string(), "--overwrite"}).code, 3);
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 TEST_F(CommandLine, FolderThatIsNotEmptyIsOverwrittenOnlyWhenAsked) {
