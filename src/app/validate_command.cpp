@@ -71,7 +71,9 @@ ExitCode validate(const ValidateOptions& options) {
   for (const Obstacle& obstacle : loaded.simulator.environment().obstacles()) text += obstacle_row(obstacle);
   for (const NamedReport& mesh : loaded.meshes) text += mesh_row(mesh);
   for (const std::string& warning : loaded.warnings) text += text_row("warning", warning);
-  print_result(text + text_row("valid", "the scene has no errors"));
+  const std::size_t warnings = loaded.warnings.size();
+  print_result(text + (warnings == 0 ? text_row("valid", "the scene has no errors")
+                                     : fmt::format("valid, with {}\n", counted(warnings, "warning"))));
   return ExitCode::done;
 }
 

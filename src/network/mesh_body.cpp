@@ -131,6 +131,7 @@ void set_mesh_measures(BodyShape& shape) {
     add_segment_measures(surface.segments, lengths_of(surface.segments, shape.positions), shape.measures);
   }
   shape.measure = std::accumulate(shape.measures.begin(), shape.measures.end(), 0.0);
+  shape.drag_areas = shape.dimension > 0 ? shape.measures : std::vector<double>(shape.positions.size(), 1.0);
 }
 
 void set_mesh_surface(BodyShape& shape, const PolygonMesh& mesh) {
@@ -138,13 +139,6 @@ void set_mesh_surface(BodyShape& shape, const PolygonMesh& mesh) {
   surface.faces = mesh.faces;
   surface.triangles = triangulate(mesh.faces);
   surface.segments = lines_without_triangles(mesh.lines, surface.triangles);
-
-  shape.drag_areas = vertex_areas(shape.positions, surface.triangles);
-  std::vector<bool> has_surface(shape.positions.size(), false);
-  for (const Index vertex : mesh.faces.vertex) has_surface[vertex] = true;
-  for (std::size_t v = 0; v < has_surface.size(); ++v) {
-    if (!has_surface[v]) shape.drag_areas[v] = 1.0;
-  }
 }
 
 }  // namespace

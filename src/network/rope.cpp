@@ -116,7 +116,6 @@ BodyShape make_rope(const RopeShape& rope, const SpringMaterials& materials) {
   add_springs(shape.springs, rest_lengths, materials);
   add_angle_bends(shape.angle_bends, rest_lengths, materials);
 
-  shape.drag_areas.assign(shape.positions.size(), 1.0);
   shape.surface.segments.resize(2, static_cast<Eigen::Index>(segments));
   for (Eigen::Index k = 0; k < shape.surface.segments.cols(); ++k) {
     shape.surface.segments.col(k) << static_cast<Index>(k), static_cast<Index>(k) + 1;
@@ -125,6 +124,7 @@ BodyShape make_rope(const RopeShape& rope, const SpringMaterials& materials) {
   shape.measure = length;
   shape.measures.assign(shape.positions.size(), 0.0);
   add_segment_measures(shape.surface.segments, rest_lengths, shape.measures);
+  shape.drag_areas = shape.measures;
   return shape;
 }
 

@@ -90,8 +90,8 @@ struct SpringNetwork {
   Points velocities;       ///< at time 0 [m/s], 3 x n; 0 of pinned particles
   Scalars masses;          ///< [kg], > 0
   Scalars inverse_masses;  ///< [1/kg]; 0 for pinned particles
-  Scalars drag_areas;      ///< factor of the air drag: a third of the area [m^2] of the surface triangles of each
-                           ///< particle, 0 inside a solid; 1 for particles of ropes and without a surface
+  Scalars drag_areas;      ///< factor of the air drag: the particle's share in the area [m^2] of its body's surface; in the
+                           ///< length [m] of a body without faces; 1 without faces and segments
   Springs springs;
   AngleBends angle_bends;
   std::vector<Body> bodies;

@@ -72,12 +72,12 @@ TEST(Rope, ModulusPullsAlikeAtAnyResolution) {
   }
 }
 
-TEST(Rope, HasSegmentsAndADragAreaPerParticle) {
+TEST(Rope, HasSegmentsAndDragByLength) {
   const BodyShape rope = make_rope(kStraight, {});
   EXPECT_EQ(rope.surface.segments.cols(), 6);
   EXPECT_EQ(rope.surface.segments.col(5), (Eigen::Matrix<Index, 2, 1>(5, 6)));
   EXPECT_EQ(rope.surface.triangles.cols(), 0);
-  EXPECT_EQ(rope.drag_areas, std::vector<double>(7, 1.0));
+  EXPECT_EQ(rope.drag_areas, rope.measures);
 }
 
 TEST(Rope, MayPassThroughAPointTwice) {

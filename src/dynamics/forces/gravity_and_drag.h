@@ -18,7 +18,8 @@ class Gravity final : public Force {
   Points weights_;  ///< m g of each particle [N]
 };
 
-/// Linear air drag, -c A (v - wind): c per particle [kg/s] for ropes (A = 1), per area [kg/(m^2 s)] for surfaces.
+/// Linear air drag, -c A (v - wind). A is the network's drag area: c is by length [kg/(m s)] for ropes, by area [kg/(m^2 s)] for
+/// surfaces, and by particle [kg/s] for bodies that have neither.
 class AirDrag final : public Force {
  public:
   AirDrag(const SpringNetwork& network, double drag, const Vector3& wind);  ///< drag >= 0, wind [m/s]

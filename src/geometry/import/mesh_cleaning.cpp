@@ -1,3 +1,4 @@
+#include "geometry/import/flat_faces.h"
 #include "geometry/import/mesh_import.h"
 #include "geometry/import/mesh_orientation.h"
 #include "geometry/mesh/mesh_sequence.h"
@@ -11,9 +12,6 @@
 
 namespace sprung {
 namespace {
-
-// A triangle whose height over longest side is below this is a line: its normal would be rounding error.
-constexpr double kFlat = 1e-12;
 
 Index vertex_count(const MeshSequence& mesh) { return static_cast<Index>(mesh.frames.front().cols()); }
 
@@ -50,29 +48,8 @@ void weld(MeshSequence& mesh, MeshReport& report) {
   for (Index i = 0; i < std::ssize(first); ++i) report.welded_vertices += first[i] != i ? 1 : 0;
 }
 
-bool is_flat(const Vector3& a, const Vector3& b, const Vector3& c) {
-  const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  return area_normal(a, b, c).norm() <= kFlat * longest2;
-}
-
-bool is_degenerate(const MeshSequence& mesh, Index triangle) {
-  const auto corner = mesh.triangles.col(triangle);
-  return std::all_of(mesh.frames.begin(), mesh.frames.end(), [&](const Points& frame) {
-    return is_flat(frame.col(corner[0]), frame.col(corner[1]), frame.col(corner[2]));
-  });
-}
-
 void keep_faces(MeshSequence& mesh, const std::vector<Index>& kept) {
   mesh.triangles = Triangles(mesh.triangles(Eigen::all, kept));
-}
-
-void drop_degenerate_faces(MeshSequence& mesh, MeshReport& report) {
-  std::vector<Index> kept;
-  for (Index t = 0; t < mesh.triangles.cols(); ++t) {
-    if (!is_degenerate(mesh, t)) kept.push_back(t);
-  }
-  report.degenerate_faces = static_cast<Index>(mesh.triangles.cols() - std::ssize(kept));
-  keep_faces(mesh, kept);
 }
 
 void drop_duplicate_faces(MeshSequence& mesh, MeshReport& report) {
@@ -169,7 +146,7 @@ ImportedSequence clean_sequence(MeshSequence raw) {
   report.vertices_read = vertex_count(mesh);
   report.faces_read = static_cast<Index>(mesh.triangles.cols());
   weld(mesh, report);
-  drop_degenerate_faces(mesh, report);
+  report.degenerate_faces = remove_flat_faces(mesh);
   drop_duplicate_faces(mesh, report);
   drop_doubled_quads(mesh, report);
   drop_unused_vertices(mesh, report);

@@ -14,9 +14,10 @@ struct ImportedMesh {
   MeshReport report;
 };
 
-/// Welds vertices with equal coordinates, drops degenerate faces, duplicate faces (regardless of winding) and unused vertices, and
-/// orients faces. Neighbours agree, and a closed component faces outward, or into the cavity that it bounds. The remaining
-/// vertices and faces keep their order. Requires finite positions and indices in range.
+/// Welds vertices with equal coordinates, drops faces without area (and splits the neighbour where one closes a T-junction),
+/// duplicate faces (regardless of winding) and unused vertices, and orients faces. Neighbours agree, and a closed component faces
+/// outward, or into the cavity that it bounds. The remaining vertices and faces keep their order. Requires finite positions and
+/// indices in range.
 [[nodiscard]] ImportedMesh clean_mesh(const TriangleMesh& raw);
 
 /// Reads an OBJ, STL, PLY, OFF, glTF 2.0 (.gltf, .glb) or 3DS file, applies all node transforms, and cleans the mesh. Axes are

@@ -1,7 +1,8 @@
 #include "geometry/mesh/topology.h"
 
+#include "geometry/mesh/union_find.h"
+
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 namespace sprung {
@@ -29,12 +30,6 @@ std::vector<HalfEdge> sorted_half_edges(const Triangles& triangles) {
     return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
   });
   return halves;
-}
-
-// Path halving keeps the trees flat.
-Index find_root(std::vector<Index>& parent, Index i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
 }
 
 }  // namespace
@@ -82,17 +77,15 @@ VertexTriangles triangles_around_vertices(const Triangles& triangles, Index vert
 
 Index connected_components(const Triangles& triangles) {
   if (triangles.cols() == 0) return 0;
-  std::vector<Index> parent(triangles.maxCoeff() + 1);
-  std::iota(parent.begin(), parent.end(), 0);
+  const Index vertices = triangles.maxCoeff() + 1;
+  UnionFind sets(vertices);
   for (Index t = 0; t < triangles.cols(); ++t) {
-    for (Index corner = 1; corner < 3; ++corner) {
-      parent[find_root(parent, triangles(corner, t))] = find_root(parent, triangles(0, t));
-    }
+    for (Index corner = 1; corner < 3; ++corner) sets.join(triangles(corner, t), triangles(0, t));
   }
-  std::vector<bool> counted(parent.size(), false);
+  std::vector<bool> counted(static_cast<std::size_t>(vertices), false);
   Index count = 0;
   for (Index t = 0; t < triangles.cols(); ++t) {
-    const Index root = find_root(parent, triangles(0, t));
+    const Index root = sets.root(triangles(0, t));
     if (!counted[root]) ++count;
     counted[root] = true;
   }

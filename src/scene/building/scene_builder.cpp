@@ -1,7 +1,10 @@
 #include "scene/building/scene_builder.h"
 
+#include "base/format.h"
 #include "base/machine_memory.h"
+#include "network/body_names.h"
 #include "network/network_builder.h"
+#include "network/spring_pieces.h"
 #include "scene/building/body_builder.h"
 #include "scene/building/memory_check.h"
 #include "scene/building/obstacle_builder.h"
@@ -10,6 +13,7 @@
 #include "scene/json/json_text.h"
 
 #include <cstdlib>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -67,12 +71,31 @@ void name_file(const std::string& file, std::vector<Problem>& problems) {
   }
 }
 
-std::vector<std::string> warnings_of(const BuiltScene& built) {
+std::vector<std::string> pieces_warnings(const SpringNetwork& network, const Body& body) {
+  if (body.particle_count < 2) return {};
+  const SpringPieces pieces = spring_pieces(network, body);
+  if (pieces.count == 0) return {"no springs, so its particles move independently"};
   std::vector<std::string> warnings;
-  for (const Body& body : built.network.bodies) {
-    if (body.spring_count > 0 || body.angle_bend_count > 0 || body.particle_count < 2) continue;
-    warnings.push_back("body \"" + body.name + "\" has no springs: its particles move independently");
+  if (pieces.alone > 0) {
+    warnings.push_back(counted(pieces.alone, "particle") +
+                       " without a spring, which move independently. Add lines or faces to the "
+                       "mesh that join them, or remove them.");
   }
+  if (pieces.touch) {
+    warnings.push_back(counted(pieces.count + pieces.alone, "piece") +
+                       " that touch but are not joined, so they fall apart. Merge "
+                       "vertices at the same place in the mesh.");
+  }
+  return warnings;
+}
+
+std::vector<std::string> warnings_of(const BuiltScene& built) {
+  std::map<std::string, std::vector<std::string>> bodies;  // by what is said of them
+  for (const Body& body : built.network.bodies) {
+    for (const std::string& text : pieces_warnings(built.network, body)) bodies[text].push_back(body.name);
+  }
+  std::vector<std::string> warnings;
+  for (const auto& [text, names] : bodies) warnings.push_back(bodies_text(names) + ": " + text);
   for (const NamedReport& mesh : built.meshes) {
     for (const std::string& note : mesh.report.notes) warnings.push_back("obstacle \"" + mesh.obstacle + "\": " + note);
   }

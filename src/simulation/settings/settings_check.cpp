@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/format.h"
+#include "network/body_names.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,13 +108,15 @@ std::vector<std::string> weak_springs(const SimulatorSettings& settings, const S
       most = std::max(most, least);
     }
   }
+  std::map<std::string, std::vector<std::string>> bodies;  // by what they need
+  for (const auto& [body, least] : needed) bodies[format_number(least, 3)].push_back(body);
   std::vector<std::string> warnings;
-  for (const auto& [body, least] : needed) {
+  for (const auto& [least, names] : bodies) {
     warnings.push_back(
-        "bodies." + body +
+        bodies_text(names) +
         ": the springs are too weak for the angle bends. A bend shortens them, and its force grows as they shorten, so the body "
         "is likely to gain energy. Use a structural stiffness of at least " +
-        format_number(least, 3) + " N/m, less bend stiffness, or \"stretch_limit\": {\"max_compression\": 0}.");
+        least + " N/m, less bend stiffness, or \"stretch_limit\": {\"max_compression\": 0}.");
   }
   return warnings;
 }

@@ -32,7 +32,7 @@ inline constexpr int kMaxSubsteps = 1 << 16;
 struct SimulatorSettings {
   double step = 1.0e-3;              ///< dt [s]
   Vector3 gravity{0.0, -9.81, 0.0};  ///< [m/s^2]
-  double air_drag = 0.0;             ///< [kg/s] per particle of a rope, [kg/(m^2 s)] for surfaces
+  double air_drag = 0.0;             ///< by length of ropes [kg/(m s)], by area of surfaces [kg/(m^2 s)]
   Vector3 wind = Vector3::Zero();    ///< [m/s]
   IntegratorSettings integrator = VerletSettings{};
   std::optional<StretchLimitSettings> stretch_limit{};

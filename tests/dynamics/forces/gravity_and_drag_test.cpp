@@ -86,6 +86,19 @@ TEST(AirDrag, OfAClothDoesNotDependOnItsResolution) {
   }
 }
 
+TEST(AirDrag, OfARopeDoesNotDependOnItsResolution) {
+  for (const Index particles : {2, 5, 17}) {
+    NetworkBuilder builder;
+    BodyShape rope = make_rope({{Vector3(0, 0, 0), Vector3(2, 0, 0)}, particles, std::nullopt}, {});
+    set_total_mass(rope, 1.0);
+    builder.add_body("rope", rope);
+    SpringNetwork network = builder.build();
+    network.velocities.row(2).setConstant(3.0);
+    const Points forces = forces_of(AirDrag(network, 0.5, Vector3::Zero()), network);
+    EXPECT_NEAR(forces.row(2).sum(), -0.5 * 2.0 * 3.0, 1e-13) << particles;  // drag times 2 m times 3 m/s
+  }
+}
+
 TEST(Forces, ThatHaveNoPotentialHaveNoEnergy) {
   const SpringNetwork network = make_pair(1.0, 0.0, 1.0);
   EXPECT_EQ(AirDrag(network, 1.0, Vector3::Zero()).energy(network.positions), 0.0);

@@ -46,6 +46,46 @@ TEST(CleanMesh, LeavesAGoodMeshAsItIs) {
   EXPECT_THAT(report.notes, IsEmpty());
 }
 
+// A face without area lies between an edge and the vertices on it, as in meshes from CAD programs.
+TEST(CleanMesh, StaysClosedWhereAFlatFaceClosesATJunction) {
+  TriangleMesh cube = test::make_cube();
+  const Index a = cube.triangles(0, 0);
+  const Index b = cube.triangles(1, 0);
+  const Index c = cube.triangles(2, 0);
+  const auto on_edge = [&](double part) -> Vector3 { return cube.vertices.col(a) * (1.0 - part) + cube.vertices.col(b) * part; };
+  const Points corners = cube.vertices;
+  cube.vertices.resize(3, 10);
+  cube.vertices << corners, Vector3(on_edge(0.5)), Vector3(on_edge(0.25));
+  const Index half = 8;
+  const Index quarter = 9;
+  const Triangles faces = cube.triangles.rightCols(11);
+  cube.triangles.resize(3, 16);
+  // The face a b c in three parts; flat faces between its edge a b and the neighbour.
+  cube.triangles << faces,
+      test::make_triangles({{a, quarter, c}, {quarter, half, c}, {half, b, c}, {b, half, a}, {half, quarter, a}});
+  const auto [mesh, report] = clean_mesh(cube);
+  EXPECT_EQ(report.degenerate_faces, 2);
+  EXPECT_EQ(report.border_edges, 0);
+  EXPECT_TRUE(report.closed);
+  EXPECT_EQ(mesh.triangles.cols(), 16) << "the neighbour is in three parts too";
+  EXPECT_DOUBLE_EQ(signed_volume(mesh), 1.0);
+}
+
+// Each end of an edge lies within the other's flat face: the splits must end.
+TEST(CleanMesh, EndsWhenFlatFacesAreNeighbours) {
+  const TriangleMesh line{test::make_points({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 1, 0}}),
+                          test::make_triangles({{0, 1, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 2}, {0, 3, 4}})};
+  const auto [mesh, report] = clean_mesh(line);
+  EXPECT_EQ(report.degenerate_faces, 4);
+  EXPECT_EQ(report.non_manifold_edges, 0);
+  EXPECT_GE(mesh.triangles.cols(), 1);
+  double area = 0.0;
+  for (const auto& face : mesh.triangles.colwise()) {
+    area += 0.5 * area_normal(mesh.vertices.col(face[0]), mesh.vertices.col(face[1]), mesh.vertices.col(face[2])).norm();
+  }
+  EXPECT_DOUBLE_EQ(area, 1.5);
+}
+
 TEST(CleanMesh, WeldsASoupIntoASurface) {
   const auto [mesh, report] = clean_mesh(unwelded(test::make_cube()));
   EXPECT_EQ(mesh.vertices.cols(), 8);

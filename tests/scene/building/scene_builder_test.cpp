@@ -344,7 +344,31 @@ TEST(SceneBuilder, AngleBendsAreMadeIfTheSceneSelectsThem) {
 
 TEST(SceneBuilder, WarnsOfABodyWithoutSprings) {
   const SceneFolder folder;
-  EXPECT_THAT(build(folder, {"bodies.banner.springs={}"}).warnings, ElementsAre(HasSubstr("\"banner\" has no springs")));
+  EXPECT_THAT(build(folder, {"bodies.banner.springs={}"}).warnings, ElementsAre(HasSubstr("body \"banner\": no springs")));
+}
+
+TEST(SceneBuilder, TellsEqualWarningsOnce) {
+  const SceneFolder folder;
+  const std::string loose = R"({"shape": {"type": "rope", "from": [0, 5, 0], "to": [1, 5, 0], "particles": 3}, "mass": 1})";
+  EXPECT_THAT(build(folder, {"bodies.banner.springs={}", "bodies.one=" + loose, "bodies.two=" + loose}).warnings,
+              ElementsAre(HasSubstr("bodies \"banner\", \"one\" and 1 more: no springs")));
+}
+
+// Two triangles side by side that share no vertex, and a vertex of its own.
+TEST(SceneBuilder, WarnsOfPiecesThatNoSpringJoins) {
+  const SceneFolder folder;
+  folder.write("loose.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 3 0 0\nf 1 2 3\nf 4 5 6\n");
+  const auto warnings = [&](const std::string& file) {
+    return build(folder, {R"(bodies.banner={"shape": {"type": "mesh", "file": ")" + file +
+                          R"("}, "mass": 1, "springs": {"structural": {"stiffness": 1}}})"})
+        .warnings;
+  };
+  EXPECT_THAT(warnings("loose.obj"), ::testing::UnorderedElementsAre(HasSubstr("1 particle without a spring"),
+                                                                     HasSubstr("3 pieces that touch but are not joined")));
+  folder.write("joined.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+  EXPECT_THAT(warnings("joined.obj"), IsEmpty());
+  folder.write("apart.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nv 3 1 0\nf 1 2 3\nf 4 5 6\n");
+  EXPECT_THAT(warnings("apart.obj"), IsEmpty()) << "pieces that do not touch, as strands of hair";
 }
 
 TEST(SceneBuilder, MeshPathsComeFromTheEnvironment) {
