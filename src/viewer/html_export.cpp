@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
@@ -35,7 +36,7 @@ std::string base64(const Bytes& bytes) {
 Bytes compressed(const Bytes& bytes) {
   uLongf size = compressBound(bytes.size());
   Bytes result(size);
-  if (compress2(result.data(), &size, bytes.data(), bytes.size(), Z_BEST_COMPRESSION) != Z_OK) throw std::bad_alloc();
+  if (compress(result.data(), &size, bytes.data(), bytes.size()) != Z_OK) throw std::bad_alloc();
   result.resize(size);
   return result;
 }

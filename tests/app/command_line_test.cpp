@@ -200,7 +200,18 @@ TEST_F(CommandLine, ValidatePrintsDerivedQuantities) {
   EXPECT_EQ(ending.err, "");
   EXPECT_THAT(ending.out, AllOf(HasSubstr("4900 particles"), HasSubstr("9660 structural"), HasSubstr("9522 shear"),
                                 HasSubstr("7 at 30 per second"), HasSubstr("(automatic)"), HasSubstr("largest stable step"),
-                                HasSubstr("ball: sphere")));
+                                HasSubstr("ball: sphere"), HasSubstr("valid       the scene has no errors\n")));
+}
+
+TEST_F(CommandLine, ValidateCountsItsWarnings) {
+  json scene = cloth_scene();
+  scene["bodies"]["cloth"].erase("springs");
+  scene["air"] = {{"wind", {1, 0, 0}}};
+  const Ending ending = run({"validate", save(scene)});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.out,
+              AllOf(HasSubstr("warning     body \"cloth\": no springs"), HasSubstr("warning     air.wind has no effect"),
+                    HasSubstr("\nvalid, with 2 warnings\n"), Not(HasSubstr("no errors"))));
 }
 
 // A step at which four passes cannot hold a cloth that hangs by two corners.

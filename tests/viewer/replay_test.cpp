@@ -132,7 +132,7 @@ TEST_F(RecordedCloth, AFrameOrARecordThatNoRunWritesIsRefused) {
   for (const Json& count : std::vector<Json>{1.5, -1, 3e9, 1e300}) {
     EXPECT_THAT(refusal("frames_written", count), HasSubstr("whole number")) << count;
   }
-  EXPECT_THAT(refusal("files", {"cloth.obj"}), HasSubstr("cloth.obj"));
+  EXPECT_THAT(refusal("files", {"cloth.obj"}), HasSubstr("name no file of each frame: cloth.obj"));
   const std::filesystem::path frame = run_folder() / "cloth" / "cloth.0002.obj";
   std::string vertices = "v nan 0 0\n";
   for (int k = 1; k < 64; ++k) vertices += "v 0 0 0\n";

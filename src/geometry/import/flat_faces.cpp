@@ -39,8 +39,8 @@ class SplitFaces {
     for (const auto& corners : mesh.triangles.colwise()) add({corners[0], corners[1], corners[2]});
   }
 
-  /// Longest first, so that a flat neighbour is split into shorter ones. Their number is bounded, so that rounding cannot make
-  /// this endless.
+  /// Longest first, so that a flat neighbour is split into shorter ones. The number of splits is bounded, so that rounding cannot
+  /// make this endless.
   void remove_flat() {
     std::size_t splits = 3 * flat_.size();
     while (!flat_.empty()) {
@@ -118,9 +118,9 @@ class SplitFaces {
 }  // namespace
 
 Index remove_flat_faces(MeshSequence& mesh) {
-  Index count = 0;
-  for (const auto& corners : mesh.triangles.colwise())
-    count += is_line_in_all(mesh.frames, {corners[0], corners[1], corners[2]}) ? 1 : 0;
+  const auto is_flat = [&](const auto& corners) { return is_line_in_all(mesh.frames, {corners[0], corners[1], corners[2]}); };
+  const auto faces_read = mesh.triangles.colwise();
+  const auto count = static_cast<Index>(std::count_if(faces_read.begin(), faces_read.end(), is_flat));
   if (count == 0) return 0;
   SplitFaces faces(mesh);
   faces.remove_flat();

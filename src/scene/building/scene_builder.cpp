@@ -2,7 +2,6 @@
 
 #include "base/format.h"
 #include "base/machine_memory.h"
-#include "network/body_names.h"
 #include "network/network_builder.h"
 #include "network/spring_pieces.h"
 #include "scene/building/body_builder.h"
@@ -74,17 +73,17 @@ void name_file(const std::string& file, std::vector<Problem>& problems) {
 std::vector<std::string> pieces_warnings(const SpringNetwork& network, const Body& body) {
   if (body.particle_count < 2) return {};
   const SpringPieces pieces = spring_pieces(network, body);
-  if (pieces.count == 0) return {"no springs, so its particles move independently"};
+  if (pieces.count == 0) return {"no springs, so the particles move independently"};
   std::vector<std::string> warnings;
   if (pieces.alone > 0) {
     warnings.push_back(counted(pieces.alone, "particle") +
-                       " without a spring, which move independently. Add lines or faces to the "
-                       "mesh that join them, or remove them.");
+                       " without a spring, which nothing holds to the rest. Add lines or faces to the mesh that lead there, or "
+                       "remove such vertices.");
   }
   if (pieces.touch) {
-    warnings.push_back(counted(pieces.count + pieces.alone, "piece") +
-                       " that touch but are not joined, so they fall apart. Merge "
-                       "vertices at the same place in the mesh.");
+    warnings.push_back(
+        std::to_string(pieces.count + pieces.alone) +
+        " pieces that no spring joins, though some touch: they fall apart. Merge vertices at the same place in the mesh.");
   }
   return warnings;
 }

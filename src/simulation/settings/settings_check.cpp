@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/format.h"
-#include "network/body_names.h"
 
 #include <algorithm>
 #include <cmath>

@@ -24,11 +24,14 @@ async function start(): Promise<void> {
     sentence('This browser has no WebGL, which the picture needs. Switch on hardware acceleration in its settings, or take another browser.');
     return;
   }
+  let embedded = null;
   try {
-    new Page((await embeddedRun()) ?? new Connection(), view).start();
+    embedded = await embeddedRun();
   } catch (error) {
-    sentence(`This browser cannot show the run. Take a newer one. (${String(error)})`);
+    sentence(`This browser cannot unpack the run. Take a newer one. (${String(error)})`);
+    return;
   }
+  new Page(embedded ?? new Connection(), view).start();
 }
 
 void start();

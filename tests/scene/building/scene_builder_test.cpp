@@ -364,7 +364,7 @@ TEST(SceneBuilder, WarnsOfPiecesThatNoSpringJoins) {
         .warnings;
   };
   EXPECT_THAT(warnings("loose.obj"), ::testing::UnorderedElementsAre(HasSubstr("1 particle without a spring"),
-                                                                     HasSubstr("3 pieces that touch but are not joined")));
+                                                                     HasSubstr("3 pieces that no spring joins")));
   folder.write("joined.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
   EXPECT_THAT(warnings("joined.obj"), IsEmpty());
   folder.write("apart.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nv 3 1 0\nf 1 2 3\nf 4 5 6\n");

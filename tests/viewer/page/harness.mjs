@@ -72,8 +72,8 @@ export async function view(target, ...options) {
   return server;
 }
 
-/** Opens an address in a tab of its own. `closePage` checks that the tab printed no error. */
-export async function openPage(address, { viewport = { width: 1000, height: 640 }, hasTouch = false } = {}) {
+/** Opens an address in a tab of its own, where `before` runs first. `closePage` checks that the tab printed no error. */
+export async function openPage(address, { viewport = { width: 1000, height: 640 }, hasTouch = false, before } = {}) {
   browser ??= await chromium.launch({
     executablePath: process.env.SPRUNG_CHROMIUM,
     args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
@@ -86,6 +86,7 @@ export async function openPage(address, { viewport = { width: 1000, height: 640 
     if (message.type() === 'error') page.complaints.push(message.text());
   });
   page.on('pageerror', (error) => page.complaints.push(String(error)));
+  if (before) await page.addInitScript(before);
   await page.goto(address);
   return page;
 }

@@ -105,6 +105,19 @@ test('a scene with a mistake shows it in place of the picture', async () => {
   await harness.closePage(page);
 });
 
+test('a browser without WebGL gets a sentence', async () => {
+  const server = await harness.view(harness.example('hanging_cloth'));
+  const before = () => {
+    const { getContext } = HTMLCanvasElement.prototype;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+      return kind.startsWith('webgl') ? null : getContext.call(this, kind, ...rest);
+    };
+  };
+  const page = await harness.openPage(server.address, { before });
+  await page.getByText('This browser has no WebGL').waitFor();
+  await page.context().close(); // three has printed why there is no picture
+});
+
 test('two integrators run side by side', async () => {
   const { page } = await openExample('five_node_rope');
   await harness.control(page, 'compare').selectOption('explicit_euler');

@@ -80,3 +80,10 @@ test('an exported page shows the positions within its error, without a server', 
   assert.deepEqual(requests.filter((url) => !url.startsWith('blob:') && !url.startsWith('data:')), []);
   await harness.closePage(page);
 });
+
+test('a browser that cannot unpack an exported page says so', async () => {
+  harness.sprung('export', run, '--format', 'html', '--overwrite', '--out', exported);
+  const page = await harness.openPage(pathToFileURL(exported).href, { before: () => delete window.DecompressionStream });
+  await page.getByText('Take a newer one').waitFor();
+  await harness.closePage(page);
+});

@@ -1,0 +1,66 @@
+// Which pieces of a body springs leave apart.
+#include "network/spring_pieces.h"
+#include "network/network_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace sprung {
+namespace {
+
+SpringPieces pieces_of(const NetworkBuilder& builder) {
+  const SpringNetwork network = builder.build();
+  return spring_pieces(network, network.bodies.back());
+}
+
+/// Four particles on a line, 1 m apart.
+NetworkBuilder four_particles() {
+  NetworkBuilder builder;
+  for (const double x : {0.0, 1.0, 2.0, 3.0}) builder.add_particle(Vector3(x, 0, 0), 1.0);
+  return builder;
+}
+
+TEST(SpringPieces, AreSetsThatSpringsJoin) {
+  NetworkBuilder builder = four_particles();
+  EXPECT_EQ(pieces_of(builder).alone, 4);
+  builder.add_spring(0, 1, 1.0, 1.0);
+  EXPECT_EQ(pieces_of(builder).count, 1);
+  EXPECT_EQ(pieces_of(builder).alone, 2);
+  builder.add_spring(2, 3, 1.0, 1.0);
+  EXPECT_EQ(pieces_of(builder).count, 2);
+  builder.add_spring(1, 2, 1.0, 1.0);
+  EXPECT_EQ(pieces_of(builder).count, 1);
+  EXPECT_EQ(pieces_of(builder).alone, 0);
+}
+
+TEST(SpringPieces, AngleBendsJoinToo) {
+  NetworkBuilder builder = four_particles();
+  builder.add_angle_bend(0, 1, 2, 1.0);
+  EXPECT_EQ(pieces_of(builder).count, 1);
+  EXPECT_EQ(pieces_of(builder).alone, 1);
+}
+
+TEST(SpringPieces, TouchOnlyWhereTheyAreDifferentPieces) {
+  NetworkBuilder builder = four_particles();
+  const Index same_place = builder.add_particle(Vector3(3, 0, 0), 1.0);
+  builder.add_particle(Vector3(9, 0, 0), 1.0);  // a piece that touches nothing
+  for (const auto& [first, second] : {std::array<Index, 2>{0, 1}, {1, 2}, {2, 3}}) builder.add_spring(first, second, 1.0, 1.0);
+  EXPECT_TRUE(pieces_of(builder).touch);
+  builder.add_spring(same_place, 0, 1.0, 3.0);
+  EXPECT_FALSE(pieces_of(builder).touch) << "a rope may pass through a point twice";
+}
+
+TEST(SpringPieces, OtherBodiesDoNotCount) {
+  NetworkBuilder builder = four_particles();
+  builder.begin_body("other");
+  builder.add_particle(Vector3(0, 0, 0), 1.0);
+  builder.add_particle(Vector3(0, 1, 0), 1.0);
+  builder.add_spring(4, 5, 1.0, 1.0);
+  EXPECT_EQ(pieces_of(builder).count, 1);
+  EXPECT_EQ(pieces_of(builder).alone, 0);
+  EXPECT_FALSE(pieces_of(builder).touch);
+}
+
+}  // namespace
+}  // namespace sprung
