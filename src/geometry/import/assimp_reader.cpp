@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -154,6 +155,11 @@ TriangleMesh read_with_assimp(const std::filesystem::path& file, const CheckedFi
   Collector collector(*scene);
   if (scene->mRootNode != nullptr) collector.add_node(*scene->mRootNode, Eigen::Matrix4d::Identity());
   TriangleMesh mesh = collector.mesh();
+  if (!checked.positions.empty()) {
+    if (mesh.vertices.cols() != std::ssize(checked.positions))
+      throw std::logic_error("assimp did not keep the vertices of a PLY file");
+    for (Index i = 0; i < mesh.vertices.cols(); ++i) mesh.vertices.col(i) = checked.positions[i];
+  }
   if (!mesh.vertices.allFinite()) problems.add("", "", "its nodes move vertices to positions that are not finite");
   problems.throw_if_any();
   return mesh;

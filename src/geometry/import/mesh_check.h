@@ -3,12 +3,16 @@
 // written anew with only its surface: no materials, names or animations.
 #pragma once
 
+#include "base/types.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sprung {
 
@@ -16,6 +20,7 @@ namespace sprung {
 struct CheckedFile {
   std::string extension;  ///< of the format, without its dot
   std::string bytes;
+  std::vector<Vector3> positions{};  ///< of the vertices of a PLY file, because assimp rounds them to floats
 };
 
 /// Largest number of corners of a face. No exporter writes larger faces, and the run time of assimp's triangulation is quadratic
@@ -23,35 +28,28 @@ struct CheckedFile {
 inline constexpr std::int64_t kMostCorners = 10'000;
 inline constexpr const char* kMostCornersRule = "a face must have at most 10000 corners";
 
-/// Writes a surface as PLY. Coordinates are either text, which assimp rounds as in the original format, or floats.
+/// Writes a surface as PLY, with positions as floats, and keeps the exact positions beside it.
 class PlyWriter {
  public:
-  enum class Kind : std::uint8_t { ascii, binary };
-
-  explicit PlyWriter(Kind kind, std::string_view x = "float", std::string_view y = "float", std::string_view z = "float");
-
-  /// Requires an ASCII file and words that are finite numbers of the types given to the constructor.
-  void add_vertex(std::string_view x, std::string_view y, std::string_view z);
-
-  /// Requires a binary file.
-  void add_vertex(float x, float y, float z);
+  void add_vertex(const Vector3& position);
 
   /// Leaves out points and lines. Requires corners in [0, 2^31).
   void add_face(std::span<const std::int64_t> corners);
 
-  [[nodiscard]] CheckedFile finish() const;
+  /// Leaves the writer empty.
+  [[nodiscard]] CheckedFile finish();
 
  private:
-  Kind kind_;
-  std::string types_[3];
-  std::string vertices_;
+  std::vector<Vector3> positions_;
   std::string faces_;
-  std::size_t vertex_count_ = 0;
   std::size_t face_count_ = 0;
 };
 
-/// Whether the word is a finite number.
-[[nodiscard]] bool is_finite_number(std::string_view word);
+/// The double nearest to the number that the word spells; none unless it is finite.
+[[nodiscard]] std::optional<double> finite_number(std::string_view word);
+
+/// The position that the first three words spell; none unless there are three finite numbers.
+[[nodiscard]] std::optional<Vector3> finite_position(std::span<const std::string_view> words);
 
 // Each function throws InputError that names the location if the file is shorter than it declares, a number is malformed, a face
 // has no corners or an index is out of range.

@@ -1,5 +1,7 @@
 #include "geometry/import/mesh_file.h"
 
+#include "base/text_encoding.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -59,5 +61,7 @@ std::string read_mesh_file(const std::filesystem::path& file) {
   if (text.empty()) refuse(file, "is empty", "export it again");
   return text;
 }
+
+std::string read_mesh_text(const std::filesystem::path& file) { return utf8_text(read_mesh_file(file)); }
 
 }  // namespace sprung

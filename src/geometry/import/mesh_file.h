@@ -32,4 +32,7 @@ class FileProblems {
 /// The whole file. Throws InputError if it is missing, is not a regular file, cannot be opened or is empty.
 [[nodiscard]] std::string read_mesh_file(const std::filesystem::path& file);
 
+/// The whole file, in UTF-8 without a byte order mark if it is text (`text_encoding.h`). Throws as `read_mesh_file` does.
+[[nodiscard]] std::string read_mesh_text(const std::filesystem::path& file);
+
 }  // namespace sprung

@@ -9,7 +9,7 @@ namespace {
 
 CheckedFile read_checked(const std::filesystem::path& file) {
   const std::string extension = lower_case_extension(file);
-  const auto checked = [&](auto check) { return check(file, read_mesh_file(file)); };
+  const auto checked = [&](auto check) { return check(file, read_mesh_text(file)); };
   if (extension == ".obj") return checked(checked_obj);
   if (extension == ".stl") return checked(checked_stl);
   if (extension == ".ply") return checked(checked_ply);

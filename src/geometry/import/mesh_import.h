@@ -1,5 +1,4 @@
-// Meshes of the environment: checked, read by assimp, then welded, cleaned and oriented. Vertices are reordered; `polygon_mesh.h`
-// reads simulated bodies.
+// Meshes of the environment: checked, read by assimp, then welded, cleaned and oriented; `polygon_mesh.h` reads simulated bodies.
 #pragma once
 
 #include "geometry/mesh/mesh_report.h"
@@ -21,7 +20,8 @@ struct ImportedMesh {
 [[nodiscard]] ImportedMesh clean_mesh(const TriangleMesh& raw);
 
 /// Reads an OBJ, STL, PLY, OFF, glTF 2.0 (.gltf, .glb) or 3DS file, applies all node transforms, and cleans the mesh. Axes are
-/// those of the format (glTF: Y up; others: as stored). Positions have the precision of a float. Throws InputError that names the
+/// those of the format (glTF: Y up; others: as stored). A position from a text file is the double nearest to its text (glTF has
+/// floats). Throws InputError that names the
 /// file if it is missing, unreadable, truncated, damaged, of another format, has no triangle with an area, or contains a position
 /// that is not finite or an index out of range. `mesh_check.h` keeps away files on which assimp asserts or crashes.
 [[nodiscard]] ImportedMesh import_mesh(const std::filesystem::path& file);

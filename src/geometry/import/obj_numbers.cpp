@@ -105,12 +105,11 @@ class Scanner {
 }  // namespace
 
 std::string plain_obj_text(const std::string& text) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   std::string plain;
   plain.reserve(text.size() + 1);
   std::size_t joined_lines = 0;
   bool in_comment = false;
-  for (std::size_t i = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0; i < text.size(); ++i) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
     const bool carriage_return = text[i] == '\r';
     if (carriage_return && i + 1 < text.size() && text[i + 1] == '\n') continue;
     const char c = carriage_return ? '\n' : text[i];

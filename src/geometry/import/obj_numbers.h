@@ -18,7 +18,7 @@ struct ObjNumbers {
   std::vector<std::array<Index, 2>> lines;       ///< `l` polylines, cut into edges
 };
 
-/// OBJ text with one element per line: no byte order mark, no comments, continued lines joined, '\n' at line
+/// OBJ text with one element per line: no comments, continued lines joined, '\n' at line
 /// ends. Line numbers are kept.
 [[nodiscard]] std::string plain_obj_text(const std::string& text);
 

@@ -93,7 +93,7 @@ class FaceBuilder {
 }  // namespace
 
 PolygonMesh read_obj(const std::filesystem::path& file) {
-  const std::string text = plain_obj_text(read_mesh_file(file));
+  const std::string text = plain_obj_text(read_mesh_text(file));
   ObjNumbers numbers = read_obj_numbers(file, text);
   if (numbers.positions.empty()) {
     throw InputError(

@@ -3,6 +3,7 @@
 #include "geometry/import/text_words.h"
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -62,10 +63,9 @@ class OffChecker {
   }
 
   void add_vertex() {
-    for (std::size_t word = 0; word < 3; ++word) {
-      if (word >= words_.size() || !is_finite_number(words_[word])) return report("a vertex must have three finite coordinates");
-    }
-    writer_.add_vertex(words_[0], words_[1], words_[2]);
+    const std::optional<Vector3> position = finite_position(words_);
+    if (!position) return report("a vertex must have three finite coordinates");
+    writer_.add_vertex(*position);
   }
 
   void add_face(std::int64_t vertices) {
@@ -93,7 +93,7 @@ class OffChecker {
   std::string_view rest_;
   std::vector<std::string_view> words_;
   std::vector<std::int64_t> corners_;
-  PlyWriter writer_{PlyWriter::Kind::ascii};
+  PlyWriter writer_;
   std::size_t line_number_ = 0;
 };
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace sprung {
@@ -23,7 +24,6 @@ struct Type {
 
 struct Property {
   std::string name;
-  std::string type_name;
   Type type;
   std::optional<Type> count;  // of a list
 };
@@ -70,11 +70,11 @@ Format format_of(std::string_view word) {
 }
 
 Property property_of(const std::vector<std::string_view>& words) {
-  if (words[1] != "list") return {std::string(words[2]), std::string(words[1]), type_of(words[1]), std::nullopt};
+  if (words[1] != "list") return {std::string(words[2]), type_of(words[1]), std::nullopt};
   if (words.size() < 5) throw InvalidPly("its header has a list property without types and name");
   const Type count = type_of(words[2]);
   if (count.kind == Kind::real) throw InvalidPly("its header has a list property whose count is not an integer");
-  return {std::string(words[4]), std::string(words[3]), type_of(words[3]), count};
+  return {std::string(words[4]), type_of(words[3]), count};
 }
 
 void read_header_line(const std::vector<std::string_view>& words, Header& header) {
@@ -92,12 +92,21 @@ void read_header_line(const std::vector<std::string_view>& words, Header& header
   }
 }
 
+// Where carriage returns alone end lines, a line feed after the header is the first byte of a binary body.
+std::string_view take_header_line(std::string_view& rest, bool carriage_returns) {
+  if (!carriage_returns) return take_line(rest);
+  const std::string_view line = rest.substr(0, rest.find('\r'));
+  rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+  return line;
+}
+
 Header take_header(std::string_view& rest) {
   Header header;
-  if (take_line(rest) != "ply") throw InvalidPly("must begin with ply");
+  const bool carriage_returns = rest.starts_with("ply\r") && !rest.starts_with("ply\r\n");
+  if (take_header_line(rest, carriage_returns) != "ply") throw InvalidPly("must begin with ply");
   std::vector<std::string_view> words;
   while (!rest.empty()) {
-    split_words(take_line(rest), words);
+    split_words(take_header_line(rest, carriage_returns), words);
     if (words.empty()) continue;
     if (words[0] == "end_header") {
       if (!header.format) throw InvalidPly("its header does not say whether it is ascii or binary");
@@ -130,22 +139,15 @@ class Body {
     return type.kind == Kind::integer && value >= range / 2 ? value - range : value;
   }
 
-  std::optional<float> number(const Type& type) {
+  std::optional<double> number(const Type& type) {
     if (type.kind != Kind::real) {
       const std::optional<std::int64_t> value = integer(type);
-      return value ? std::optional<float>(static_cast<float>(*value)) : std::nullopt;
+      return value ? std::optional(static_cast<double>(*value)) : std::nullopt;
     }
+    if (format_ == Format::ascii) return finite_number(take_word());
     const std::optional<std::uint64_t> bits = take_bits(type.size);
     if (!bits) return std::nullopt;
-    return type.size == sizeof(float) ? std::bit_cast<float>(static_cast<std::uint32_t>(*bits))
-                                      : static_cast<float>(std::bit_cast<double>(*bits));
-  }
-
-  /// The next word of an ASCII body as written; none unless it is a finite number of the type.
-  std::optional<std::string_view> word(const Type& type) {
-    const std::string_view text = take_word();
-    const bool fits = type.kind == Kind::real ? is_finite_number(text) : parse_number<std::int32_t>(text).has_value();
-    return fits ? std::optional(text) : std::nullopt;
+    return type.size == sizeof(float) ? std::bit_cast<float>(static_cast<std::uint32_t>(*bits)) : std::bit_cast<double>(*bits);
   }
 
  private:
@@ -176,9 +178,7 @@ class Body {
 class Elements {
  public:
   Elements(const Header& header, std::string_view rest)
-      : header_(header), ascii_(header.format == Format::ascii), body_(*header.format, rest), writer_(writer_of(header)) {
-    vertices_ = find(header, "vertex")->count;
-  }
+      : header_(header), body_(*header.format, rest), vertices_(checked_vertices(header).count) {}
 
   CheckedFile read() {
     for (const Element& element : header_.elements) {
@@ -194,24 +194,25 @@ class Elements {
 
  private:
   // A missing coordinate is an error: assimp would read it as 0.
-  static PlyWriter writer_of(const Header& header) {
+  static const Element& checked_vertices(const Header& header) {
     const Element* vertex = find(header, "vertex");
     if (vertex == nullptr) throw InvalidPly("has no vertices");
-    std::array<std::string, 3> types;
+    std::array<bool, 3> found{};
     for (const Property& property : vertex->properties) {
-      const std::size_t axis = axis_of(property);
-      if (axis < 3 && !types[axis].empty()) throw InvalidPly("its header has the property \"" + property.name + "\" twice");
-      if (axis < 3) types[axis] = property.type_name;
+      const std::optional<Index> axis = axis_of(property);
+      if (axis && std::exchange(found[*axis], true)) {
+        throw InvalidPly("its header has the property \"" + property.name + "\" twice");
+      }
     }
-    for (const std::string& type : types) {
-      if (type.empty()) throw InvalidPly("its vertices must have x, y and z");
-    }
-    if (header.format == Format::ascii) return PlyWriter(PlyWriter::Kind::ascii, types[0], types[1], types[2]);
-    return PlyWriter(PlyWriter::Kind::binary);
+    if (std::ranges::count(found, true) < 3) throw InvalidPly("its vertices must have x, y and z");
+    return *vertex;
   }
 
-  static std::size_t axis_of(const Property& property) {
-    return property.count || property.name.size() != 1 ? 3 : std::min<std::size_t>(std::string_view("xyz").find(property.name), 3);
+  static std::optional<Index> axis_of(const Property& property) {
+    constexpr std::string_view kAxes = "xyz";
+    if (property.count || property.name.size() != 1) return std::nullopt;
+    const std::size_t axis = kAxes.find(property.name);
+    return axis == std::string_view::npos ? std::nullopt : std::optional(static_cast<Index>(axis));
   }
 
   bool read_one(const Element& element) {
@@ -226,23 +227,18 @@ class Elements {
   }
 
   bool read_vertex(const Element& element) {
-    std::array<std::string_view, 3> words;
-    std::array<float, 3> x{};
+    Vector3 position = Vector3::Zero();
     for (const Property& property : element.properties) {
-      const std::size_t axis = axis_of(property);
-      if (axis == 3) {
+      const std::optional<Index> axis = axis_of(property);
+      if (!axis) {
         if (!skip(property)) return false;
-      } else if (ascii_) {
-        const std::optional<std::string_view> word = body_.word(property.type);
-        if (!word) return false;
-        words[axis] = *word;
-      } else {
-        const std::optional<float> value = body_.number(property.type);
-        if (!value) return false;
-        x[axis] = *value;
+        continue;
       }
+      const std::optional<double> value = body_.number(property.type);
+      if (!value) return false;
+      position[*axis] = *value;
     }
-    ascii_ ? writer_.add_vertex(words[0], words[1], words[2]) : writer_.add_vertex(x[0], x[1], x[2]);
+    writer_.add_vertex(position);
     return true;
   }
 
@@ -275,10 +271,9 @@ class Elements {
   }
 
   const Header& header_;
-  bool ascii_;
   Body body_;
   PlyWriter writer_;
-  std::int64_t vertices_ = 0;
+  std::int64_t vertices_;
   std::int64_t face_ = 0;
   std::vector<std::int64_t> corners_;
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -17,41 +18,45 @@ void append(std::string& bytes, Value value) {
 
 }  // namespace
 
-PlyWriter::PlyWriter(Kind kind, std::string_view x, std::string_view y, std::string_view z)
-    : kind_(kind), types_{std::string(x), std::string(y), std::string(z)} {}
-
-void PlyWriter::add_vertex(std::string_view x, std::string_view y, std::string_view z) {
-  for (const std::string_view word : {x, y, z}) (vertices_ += word) += ' ';
-  vertices_.back() = '\n';
-  ++vertex_count_;
-}
-
-void PlyWriter::add_vertex(float x, float y, float z) {
-  for (const float value : {x, y, z}) append(vertices_, value);
-  ++vertex_count_;
-}
+void PlyWriter::add_vertex(const Vector3& position) { positions_.push_back(position); }
 
 void PlyWriter::add_face(std::span<const std::int64_t> corners) {
   if (corners.size() < 3) return;
-  if (kind_ == Kind::binary) {
-    append(faces_, static_cast<std::uint32_t>(corners.size()));
-    for (const std::int64_t corner : corners) append(faces_, static_cast<std::uint32_t>(corner));
-  } else {
-    faces_ += std::to_string(corners.size());
-    for (const std::int64_t corner : corners) (faces_ += ' ') += std::to_string(corner);
-    faces_ += '\n';
-  }
+  append(faces_, static_cast<std::uint32_t>(corners.size()));
+  for (const std::int64_t corner : corners) append(faces_, static_cast<std::uint32_t>(corner));
   ++face_count_;
 }
 
-CheckedFile PlyWriter::finish() const {
-  std::string bytes = kind_ == Kind::ascii ? "ply\nformat ascii 1.0\n" : "ply\nformat binary_little_endian 1.0\n";
-  bytes += "element vertex " + std::to_string(vertex_count_) + '\n';
-  for (std::size_t k = 0; k < 3; ++k) bytes += "property " + types_[k] + ' ' + "xyz"[k] + '\n';
-  bytes += "element face " + std::to_string(face_count_) + "\nproperty list uint uint vertex_indices\nend_header\n";
-  return {"ply", bytes + vertices_ + faces_};
+CheckedFile PlyWriter::finish() {
+  // assimp skips line ends after the header, even if they are the first bytes of a number: each vertex begins with a byte of 1.
+  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(positions_.size()) +
+                      "\nproperty uchar guard\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                      std::to_string(face_count_) + "\nproperty list uint uint vertex_indices\nend_header\n";
+  bytes.reserve(bytes.size() + (1 + 3 * sizeof(float)) * positions_.size() + faces_.size());
+  for (const Vector3& position : positions_) {
+    append(bytes, std::uint8_t{1});
+    for (const double coordinate : position) append(bytes, static_cast<float>(coordinate));
+  }
+  bytes += faces_;
+  faces_.clear();
+  face_count_ = 0;
+  return {"ply", std::move(bytes), std::exchange(positions_, {})};
 }
 
-bool is_finite_number(std::string_view word) { return std::isfinite(parse_number<double>(word).value_or(std::nan(""))); }
+std::optional<double> finite_number(std::string_view word) {
+  const std::optional<double> number = parse_number<double>(word);
+  return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+std::optional<Vector3> finite_position(std::span<const std::string_view> words) {
+  Vector3 position;
+  if (words.size() < 3) return std::nullopt;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<double> coordinate = finite_number(words[axis]);
+    if (!coordinate) return std::nullopt;
+    position[static_cast<Index>(axis)] = *coordinate;
+  }
+  return position;
+}
 
 }  // namespace sprung

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <string_view>
 
 namespace sprung {
@@ -71,8 +72,9 @@ class SolidText {
     std::array<std::string_view, 3> words;
     for (std::string_view& word : words) word = next();
     corners_.push_back(vertices_++);
-    if (!std::all_of(words.begin(), words.end(), is_finite_number)) return report("a vertex must have three finite coordinates");
-    writer_.add_vertex(words[0], words[1], words[2]);
+    const std::optional<Vector3> position = finite_position(words);
+    if (!position) return report("a vertex must have three finite coordinates");
+    writer_.add_vertex(*position);
   }
 
   void end_face() {
@@ -93,16 +95,16 @@ class SolidText {
   std::vector<std::int64_t> corners_;
   std::int64_t vertices_ = 0;
   std::int64_t faces_ = 0;
-  PlyWriter writer_{PlyWriter::Kind::ascii};
+  PlyWriter writer_;
 };
 
 CheckedFile faces_of_binary(const std::string& bytes) {
-  PlyWriter writer(PlyWriter::Kind::binary);
+  PlyWriter writer;
   std::array<std::int64_t, 3> corners{0, 1, 2};
   for (std::size_t face = kFacesBegin; face < bytes.size(); face += kFace) {
     std::array<float, 9> x{};
     std::memcpy(x.data(), bytes.data() + face + kNormal, sizeof(x));
-    for (std::size_t k = 0; k < x.size(); k += 3) writer.add_vertex(x[k], x[k + 1], x[k + 2]);
+    for (std::size_t k = 0; k < x.size(); k += 3) writer.add_vertex({x[k], x[k + 1], x[k + 2]});
     writer.add_face(corners);
     for (std::int64_t& corner : corners) corner += 3;
   }

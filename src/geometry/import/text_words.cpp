@@ -14,10 +14,11 @@ void split_words(std::string_view line, std::vector<std::string_view>& words) {
 }
 
 std::string_view take_line(std::string_view& text) {
-  const std::size_t end = std::min(text.find('\n'), text.size());
-  std::string_view line = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  if (line.ends_with('\r')) line.remove_suffix(1);
+  const auto is_end = [](char c) { return c == '\n' || c == '\r'; };
+  const auto end = std::find_if(text.begin(), text.end(), is_end);
+  const std::string_view line(text.begin(), end);
+  text.remove_prefix(line.size());
+  text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, text.size()));
   return line;
 }
 

@@ -25,7 +25,7 @@ template <class Number>
   return number;
 }
 
-/// Removes the first line from `text` and returns it without its end.
+/// Removes the first line from `text` and returns it without its end: a line feed, a carriage return, or both.
 [[nodiscard]] std::string_view take_line(std::string_view& text);
 
 }  // namespace sprung

@@ -32,7 +32,6 @@ bool is_non_finite_literal(std::string_view rest) {
 
 /// The most likely mistake at `offset`, the first character that does not fit, and its remedy.
 std::pair<std::string, std::string> explain_syntax(std::string_view text, std::size_t offset) {
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return {"is UTF-16, not UTF-8", "save the file as UTF-8"};
   if (trimmed_right(text).empty()) return {"is empty", "write a scene, beginning with {"};
   const std::string_view rest = text.substr(std::min(offset, text.size()));
   const std::string_view before = trimmed_right(text.substr(0, std::min(offset, text.size())));

@@ -1,5 +1,6 @@
 #include "scene/reading/scene_reader.h"
 
+#include "base/text_encoding.h"
 #include "scene/json/overrides.h"
 #include "scene/reading/scene_rules.h"
 
@@ -44,7 +45,7 @@ std::string read_scene_file(const std::filesystem::path& file) {
   if (!stream) fail(errno != 0 ? errno : EIO);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (stream.bad()) fail(EIO);
-  return text;
+  return utf8_text(std::move(text));
 }
 
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {

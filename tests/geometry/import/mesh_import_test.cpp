@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -38,9 +39,9 @@ TriangleMesh reference_shape() {
   return mesh;
 }
 
-// Binary coordinates are rounded to the nearest float, text possibly to its neighbour.
+// Binary coordinates are rounded to the nearest float.
 double float_tolerance(const TriangleMesh& mesh) {
-  return 2.0 * std::numeric_limits<float>::epsilon() * mesh.vertices.cwiseAbs().maxCoeff();
+  return std::numeric_limits<float>::epsilon() * mesh.vertices.cwiseAbs().maxCoeff();
 }
 
 // The vertex of `mesh` at `p`, or none.
@@ -149,6 +150,21 @@ TEST_P(ImportFormat, SurvivesDamage) {
   }
 }
 
+class ImportText : public ImportFormat {};
+
+// Welding, repairs and triangulation move no vertex.
+TEST_P(ImportText, PositionsAreTheDoublesOfTheText) {
+  const TriangleMesh mesh = import_mesh(write(GetParam().name, GetParam().write(reference_shape()))).mesh;
+  const TriangleMesh expected = reference_shape();
+  ASSERT_EQ(mesh.vertices.cols(), expected.vertices.cols());
+  for (const Vector3& vertex : mesh.vertices.colwise()) EXPECT_NE(vertex_at(expected, vertex, 0.0), kNone) << vertex.transpose();
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ImportText,
+                         testing::Values(Format{"shape.obj", obj}, Format{"shape.stl", meshes::stl_text},
+                                         Format{"shape.ply", meshes::ply_text}, Format{"shape.off", meshes::off_text}),
+                         [](const auto& parameter) { return std::string(parameter.param.name).substr(6); });
+
 INSTANTIATE_TEST_SUITE_P(All, ImportFormat,
                          testing::Values(Format{"shape.obj", obj}, Format{"shape.stl", meshes::stl_bytes},
                                          Format{"shape_ascii.stl", meshes::stl_text}, Format{"shape.ply", meshes::ply_bytes},
@@ -191,7 +207,8 @@ TEST_F(ImportMesh, WeldsAcrossMaterials) {
   for (int face = 0; face < 6; ++face) middle = text.find("f ", middle + 1);
   text.insert(middle, "usemtl blue\n");
   const auto [mesh, report] = import_mesh(write("two.obj", text));
-  EXPECT_EQ(mesh.vertices.cols(), 8);
+  EXPECT_EQ(mesh.vertices, test::make_cube().vertices);
+  EXPECT_EQ(report.vertices_read, 8);
   EXPECT_TRUE(report.closed);
 }
 
@@ -208,10 +225,43 @@ TEST_F(ImportMesh, AcceptsIndentedLinesAndCoordinatesWithoutADigitBeforeThePoint
   EXPECT_EQ(mesh.triangles.cols(), 2);
 }
 
-TEST_F(ImportMesh, AcceptsAByteOrderMark) {
-  const auto file = write("mark.obj", "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_EQ(import_mesh(file).mesh.vertices.cols(), 3);
-  EXPECT_EQ(read_obj(file).vertices.cols(), 3);
+std::string replaced(const std::string& text, const std::string& end) {
+  std::string result;
+  for (const char c : text) result += c == '\n' ? end : std::string(1, c);
+  return result;
+}
+
+// The text in UTF-16, for ASCII text.
+std::string two_bytes_each(const std::string& text, bool big_endian) {
+  std::string bytes;
+  for (const char c : text) (bytes += big_endian ? '\0' : c) += big_endian ? c : '\0';
+  return bytes;
+}
+
+TEST_P(ImportText, EncodingsAndLineEndsDoNotMatter) {
+  const std::string text = GetParam().write(reference_shape());
+  const TriangleMesh expected = import_mesh(write(GetParam().name, text)).mesh;
+  for (const std::string& written :
+       {"\xEF\xBB\xBF" + text, two_bytes_each(text, false), two_bytes_each(text, true), "\xFF\xFE" + two_bytes_each(text, false),
+        "\xFE\xFF" + two_bytes_each(text, true), replaced(text, "\r\n"), replaced(text, "\r")}) {
+    const std::filesystem::path file = write(GetParam().name, written);
+    EXPECT_EQ(import_mesh(file).mesh.vertices, expected.vertices);
+    EXPECT_EQ(import_mesh(file).mesh.triangles, expected.triangles);
+    if (file.extension() != ".obj") continue;
+    EXPECT_EQ(read_obj(file).vertices, reference_shape().vertices);
+  }
+}
+
+// 10 is the code of a line feed.
+TEST_F(ImportMesh, ABinaryPlyBodyMayBeginWithALineFeed) {
+  TriangleMesh cube = test::make_cube();
+  const float first = std::bit_cast<float>(10U);
+  cube.vertices(0, 0) = first;
+  std::string bytes = meshes::ply_bytes(cube);
+  const std::size_t body = bytes.find("end_header\n") + 11;
+  ASSERT_EQ(bytes[body], '\n');
+  const TriangleMesh mesh = import_mesh(write("a.ply", replaced(bytes.substr(0, body), "\r") + bytes.substr(body))).mesh;
+  EXPECT_EQ(mesh.vertices, cube.vertices);
 }
 
 TEST_F(ImportMesh, TriangulatesPolygonsThatAreNotConvex) {

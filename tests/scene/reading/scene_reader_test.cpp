@@ -5,6 +5,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 namespace sprung {
 namespace {
 
@@ -206,6 +208,18 @@ TEST(SceneReader, ResolvedSceneReadsBackAsItself) {
 TEST(SceneReader, WholeNumbersMayBeWrittenWithAPoint) {
   const Scene scene = SceneFolder().read(kPlainScene, {"bodies.banner.shape.resolution=[64.0,6.4e1]"});
   EXPECT_THAT(std::get<ClothShape>(scene.bodies[0].shape).resolution, ElementsAre(64, 64));
+}
+
+TEST(SceneReader, EncodingsAndLineEndsDoNotMatter) {
+  const SceneFolder folder;
+  const std::string plain = kPlainScene;
+  std::string utf16 = "\xFF\xFE";
+  for (const char letter : plain) (utf16 += letter) += '\0';
+  std::string returns = plain;
+  std::ranges::replace(returns, '\n', '\r');
+  for (const std::string& text : {"\xEF\xBB\xBF" + plain, utf16, utf16.substr(2), returns}) {
+    EXPECT_EQ(folder.read(text).resolved, folder.read(plain).resolved);
+  }
 }
 
 TEST(SceneReader, AMissingFileOrAFolderIsAFileError) {
