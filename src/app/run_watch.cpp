@@ -2,13 +2,17 @@
 
 #include "app/console.h"
 #include "base/format.h"
+#include "base/grouped_warnings.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace sprung {
 
@@ -57,8 +61,10 @@ void RunWatch::note_frame(const FrameDiagnostics& frame) {
   note_stretch(frame);
   note_handovers();
   note_truncated(frame);
-  energy_.note_frame(frame.frame,
-                     {.kinetic = frame.kinetic_energy, .elastic = frame.elastic_energy, .gravity = frame.gravity_energy});
+  energy_.note_frame(frame.frame, {.kinetic = frame.kinetic_energy,
+                                   .elastic = frame.elastic_energy,
+                                   .gravity = frame.gravity_energy,
+                                   .contact = frame.contact_energy});
 }
 
 void RunWatch::finish() {
@@ -94,11 +100,15 @@ void RunWatch::note_stretch(const FrameDiagnostics& frame) {
 void RunWatch::note_handovers() {
   const std::vector<StretchHandover>& handovers = simulator_.state().stretch_handovers;
   handed_over_.resize(handovers.size(), false);
+  std::map<std::int64_t, std::vector<std::string>> bodies;  // by step
   for (std::size_t b = 0; b < handovers.size(); ++b) {
     if (quiet_ || handed_over_[b] || !handovers[b].solved_since) continue;
     handed_over_[b] = true;
-    print_message(fmt::format("gauss_seidel kept missing the stretch limit of \"{}\"; newton solves it after step {}",
-                              simulator_.network().bodies[b].name, *handovers[b].solved_since));
+    bodies[*handovers[b].solved_since].push_back(simulator_.network().bodies[b].name);
+  }
+  for (const auto& [step, names] : bodies) {
+    print_message(fmt::format("gauss_seidel kept missing the stretch limit of {}; newton solves it after step {}",
+                              names_text("body", "bodies", names), step));
   }
 }
 

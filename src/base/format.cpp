@@ -36,11 +36,4 @@ std::string counted(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-std::string bodies_text(const std::vector<std::string>& names) {
-  const auto quoted = [&](std::size_t k) { return "\"" + names[k] + "\""; };
-  if (names.size() == 1) return "body " + quoted(0);
-  if (names.size() == 2) return "bodies " + quoted(0) + " and " + quoted(1);
-  return "bodies " + quoted(0) + ", " + quoted(1) + " and " + std::to_string(names.size() - 2) + " more";
-}
-
 }  // namespace sprung

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <string>
-#include <vector>
 
 namespace sprung {
 
@@ -21,8 +20,5 @@ void append_number(std::string& text, double value);
 
 /// "1 spring", "2 springs".
 [[nodiscard]] std::string counted(std::size_t count, const std::string& what);
-
-/// `body "a"`, `bodies "a" and "b"`, `bodies "a", "b" and 22 more`. Requires a name.
-[[nodiscard]] std::string bodies_text(const std::vector<std::string>& names);
 
 }  // namespace sprung

@@ -22,6 +22,7 @@ FrameDiagnostics measure(const Simulator& simulator, int frame) {
   diagnostics.kinetic_energy = kinetic_energy(simulator);
   diagnostics.elastic_energy = simulator.elastic_energy();
   diagnostics.gravity_energy = simulator.gravity_energy();
+  diagnostics.contact_energy = simulator.contact_energy();
   diagnostics.max_stretch = max_stretch(simulator);
   diagnostics.contacts = simulator.contact_count();
   diagnostics.min_distance = simulator.environment().min_distance(simulator.positions(), distance_range(simulator));

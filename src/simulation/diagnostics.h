@@ -14,6 +14,7 @@ struct FrameDiagnostics {
   double kinetic_energy = 0.0;         ///< [J]
   double elastic_energy = 0.0;         ///< [J]
   double gravity_energy = 0.0;         ///< [J]
+  double contact_energy = 0.0;         ///< of penalty springs [J]
   double max_stretch = 0.0;            ///< largest (|s| - d) / d of structural springs
   double stretch_excess = 0.0;         ///< largest excess over the stretch limit [fraction of the rest length]
   Index contacts = 0;                  ///< particles that contact pushed in the last step

@@ -3,6 +3,7 @@
 #include "collision/obstacles/obstacle_set.h"
 #include "dynamics/forces/shared_force.h"
 #include "simulation/settings/settings_check.h"
+#include "simulation/settings/unused_settings.h"
 #include "simulation/simulator_implementation.h"
 #include "simulation/start/start.h"
 #include "simulation/step/limit_handover.h"
@@ -57,7 +58,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
     penalty = add_force<PenaltyContact>(environment, settings.contact.stiffness, settings.contact.damping, dt());
   }
   for (const std::shared_ptr<Force>& force : external_forces) forces.push_back(std::make_unique<SharedForce>(force));
-  for (const auto& more : {unused_settings(settings, network), weak_springs(settings, network)}) {
+  for (const auto& more : {unused_settings(settings, network, environment.obstacles()), weak_springs(settings, network)}) {
     warnings.insert(warnings.end(), more.begin(), more.end());
   }
 }
@@ -196,7 +197,7 @@ void Simulator::Implementation::check_state() {
     if (const auto failure = divergence.overstretched(state.x)) fail(*failure);
   }
   if (state.step > 1 && state.step % (kStepsPerEnergy * check_interval) != 0) return;
-  if (!energy_watch.watches() || !external_forces.empty()) return;
+  if (!external_forces.empty()) return;
   const Energies now = energies();
   energy_watch.note(state.step, now);
   check_energy(now);
@@ -214,10 +215,13 @@ double Simulator::Implementation::elastic_energy() const {
   return springs->energy(state.x) + (angles != nullptr ? angles->energy(state.x) : 0.0);
 }
 
+double Simulator::Implementation::contact_energy() const { return penalty != nullptr ? penalty->energy(state.x) : 0.0; }
+
 Energies Simulator::Implementation::energies() const {
   return {.kinetic = 0.5 * network.masses.dot(state.v.colwise().squaredNorm().transpose()),
           .elastic = elastic_energy(),
-          .gravity = gravity->energy(state.x)};
+          .gravity = gravity->energy(state.x),
+          .contact = contact_energy()};
 }
 
 void Simulator::Implementation::fail(StepFailure failure) const {
@@ -254,6 +258,7 @@ const std::vector<std::string>& Simulator::warnings() const { return implementat
 double Simulator::time() const { return implementation_->time(); }
 double Simulator::gravity_energy() const { return implementation_->gravity->energy(state().x); }
 double Simulator::elastic_energy() const { return implementation_->elastic_energy(); }
+double Simulator::contact_energy() const { return implementation_->contact_energy(); }
 
 std::string Simulator::stretch_solver() const {
   const StretchLimit* limit = implementation_->constraints.limit();

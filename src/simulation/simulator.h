@@ -96,9 +96,10 @@ class Simulator {
   void check() const;
 
   /// Elastic energy [J]: sum of 1/2 k_s (|s| - d)^2 and the energy of angle bends. Potential energy of gravity [J]: sum of -m g .
-  /// x.
+  /// x. Energy of contact [J]: that of penalty springs; 0 with projection.
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] double gravity_energy() const;
+  [[nodiscard]] double contact_energy() const;
 
  private:
   struct Implementation;

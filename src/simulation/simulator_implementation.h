@@ -67,6 +67,7 @@ struct Simulator::Implementation {
   void substep_changed(double dt_before);
   void move_pins(double time);
   [[nodiscard]] double elastic_energy() const;
+  [[nodiscard]] double contact_energy() const;
   [[nodiscard]] Energies energies() const;
   [[nodiscard]] std::vector<Index> contacts() const;
   void check_state();

@@ -228,7 +228,7 @@ TEST_F(CommandLine, ReportsTheSolverOfTheStretchLimitAndItsHandover) {
               HasSubstr("solved by gauss_seidel, then newton for what keeps missing the limit"));
   const Ending ending = run({"run", save(scene), "--out", out()});
   EXPECT_EQ(ending.code, 0) << ending.err;
-  EXPECT_THAT(ending.err, HasSubstr("gauss_seidel kept missing the stretch limit of \"cloth\"; newton solves it after step " +
+  EXPECT_THAT(ending.err, HasSubstr("gauss_seidel kept missing the stretch limit of body \"cloth\"; newton solves it after step " +
                                     record()["newton_from"][0]["step"].dump()));
   EXPECT_GT(record()["limit_solves"], 0);
 }

@@ -64,11 +64,5 @@ TEST(Counted, UsesThePluralExceptForOne) {
   EXPECT_EQ(counted(2, "spring"), "2 springs");
 }
 
-TEST(Format, NamesTwoBodiesAndCountsTheRest) {
-  EXPECT_EQ(bodies_text({"a"}), "body \"a\"");
-  EXPECT_EQ(bodies_text({"a", "b"}), "bodies \"a\" and \"b\"");
-  EXPECT_EQ(bodies_text({"a", "b", "c", "d"}), "bodies \"a\", \"b\" and 2 more");
-}
-
 }  // namespace
 }  // namespace sprung

@@ -8,7 +8,7 @@ namespace {
 TEST(DiagnosticsCsv, ColumnsAreThoseOfTheContract) {
   EXPECT_EQ(csv_head(),
             "frame,time,kinetic_energy,elastic_energy,gravity_energy,max_stretch,contacts,min_distance,frame_ms,"
-            "stretch_excess,truncated,infeasible,limit_solves,substeps\n");
+            "stretch_excess,truncated,infeasible,limit_solves,substeps,contact_energy\n");
 }
 
 TEST(DiagnosticsCsv, RowHoldsTheShortestNumbersInTheColumnsOrder) {
@@ -17,6 +17,7 @@ TEST(DiagnosticsCsv, RowHoldsTheShortestNumbersInTheColumnsOrder) {
                                .kinetic_energy = 1.0 / 3.0,
                                .elastic_energy = 2.0,
                                .gravity_energy = -3.5,
+                               .contact_energy = 0.125,
                                .max_stretch = 1e-20,
                                .stretch_excess = 0.25,
                                .contacts = 4,
@@ -26,13 +27,13 @@ TEST(DiagnosticsCsv, RowHoldsTheShortestNumbersInTheColumnsOrder) {
                                .substeps = 10,
                                .limit_solves = 9,
                                .frame_ms = 8.5};
-  EXPECT_EQ(csv_row(frame), "12,0.1,0.3333333333333333,2,-3.5,1e-20,4,0.005,8.5,0.25,6,7,9,10\n");
+  EXPECT_EQ(csv_row(frame), "12,0.1,0.3333333333333333,2,-3.5,1e-20,4,0.005,8.5,0.25,6,7,9,10,0.125\n");
 }
 
 TEST(DiagnosticsCsv, DistanceThatIsNotKnownIsEmpty) {
   FrameDiagnostics frame;
   frame.time = 0.5;
-  EXPECT_EQ(csv_row(frame), "1,0.5,0,0,0,0,0,,0,0,0,0,0,0\n");
+  EXPECT_EQ(csv_row(frame), "1,0.5,0,0,0,0,0,,0,0,0,0,0,0,0\n");
 }
 
 }  // namespace

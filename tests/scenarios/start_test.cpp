@@ -147,8 +147,7 @@ TEST_P(EveryStart, IsRefusedOrPushedOutAndContinues) {
   expect_free(simulator);
   EXPECT_EQ(simulator.state().v, network.velocities);
   ASSERT_EQ(simulator.warnings().size(), 1U);
-  EXPECT_THAT(simulator.warnings()[0],
-              HasSubstr("body \"body\" intersected an obstacle or a body at the start and was moved out: "));
+  EXPECT_THAT(simulator.warnings()[0], HasSubstr("body \"body\": intersected an obstacle or a body at the start and moved out: "));
   // The gap is the sum of both thicknesses; passes end within a thousandth of it.
   EXPECT_GE(least_distance(simulator, in), 0.998 * (kThickness + in.material.thickness));
 

@@ -180,6 +180,36 @@ TEST_P(ContactSolver, APenaltySupportsTheWeightAtItsStaticDepth) {
   EXPECT_EQ(simulator.contact_count(), 1);
 }
 
+// A velocity Verlet step conserves K + P (1 - (w dt)^2 / 4) of a harmonic motion of energy K + P, w^2 = k / m. In the two steps in
+// which the particle enters and leaves the gap, it moves by at most v dt within it, where the force is not linear. Each of them
+// changes the energy by at most k (v dt)^2 / 2 = K (w dt)^2.
+TEST(PenaltyContact, ABounceConservesTheEnergy) {
+  constexpr double kStiffness = 500.0;
+  constexpr double kMass = 0.1;
+  constexpr double kGap = 0.1;
+  for (const Obstacle& obstacle : landing_surfaces()) {
+    for (const double step : {1e-3, 1e-4}) {
+      const SimulatorSettings settings{.step = step,
+                                       .integrator = VelocityVerletSettings{},
+                                       .contact = {.response = ContactSettings::Response::penalty, .stiffness = kStiffness}};
+      Simulator simulator(one_particle({0.0, kGap + 0.2, 0.0}, {.thickness = kGap}), settings, {obstacle});
+      const double start = simulator.gravity_energy();
+      const double supplied = kMass * kGravity * (0.2 + kGap);
+      const double tolerance = (0.25 + 2.0) * kStiffness / kMass * step * step * supplied;
+      double most_stored = 0.0;
+      for (int i = 0; i < std::lround(0.6 / step); ++i) {
+        simulator.step();
+        const double total = kinetic_energy(simulator) + simulator.gravity_energy() + simulator.contact_energy();
+        ASSERT_NEAR(total, start, tolerance) << obstacle.name << ", step " << i << " of " << step;
+        most_stored = std::max(most_stored, simulator.contact_energy());
+      }
+      // The fall of 0.2 m and the depth both feed the spring.
+      EXPECT_GT(most_stored, kMass * kGravity * 0.2) << obstacle.name;
+      EXPECT_GT(simulator.positions()(1, 0), kGap) << "it has left the surface";
+    }
+  }
+}
+
 TEST(ContactCount, CountsSupportedParticles) {
   Simulator simulator(testing::cloth(5, 0.005, {.thickness = 0.005}), {.step = 2.5e-4}, {ground()});
   FrameRunner frames(simulator, 100);

@@ -27,10 +27,14 @@ struct PenaltyContact::Touch {
   bool slides = false;              ///< friction cannot stop it within a step
 };
 
+ContactMaterial PenaltyContact::pair_of(const Contact& contact) const {
+  const Obstacle& obstacle = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)];
+  return combine(network_.body_of(contact.particles[0]).material, obstacle.material);
+}
+
 PenaltyContact::Touch PenaltyContact::touch(const Contact& contact, const Kinematics& at) const {
   const Index i = contact.particles[0];
-  const Obstacle& obstacle = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)];
-  const ContactMaterial pair = combine(network_.body_of(i).material, obstacle.material);
+  const ContactMaterial pair = pair_of(contact);
   const Vector3 relative = at.v.col(i) - environment_.surface_velocity(contact.obstacle, at.x.col(i), at.time, dt_);
   const double speed = contact.normal.dot(relative);
   Touch touch;
@@ -63,6 +67,15 @@ void PenaltyContact::add_derivatives(const Kinematics& at, ForceDerivatives& der
     if (touched.slides) tangential -= touched.along * touched.along.transpose() / touched.along.squaredNorm();
     derivatives.by_velocity.add(i, i, -damping_ * out - touched.rub * tangential);
   }
+}
+
+double PenaltyContact::energy(const Points& positions) const {
+  double energy = 0.0;
+  for (const Contact& contact : environment_.contacts({positions, positions, thickness_})) {
+    const double depth = pair_of(contact).thickness - contact.distance;
+    if (depth > 0.0) energy += 0.5 * stiffness_ * depth * depth;
+  }
+  return energy;
 }
 
 std::vector<Index> PenaltyContact::touching(const Points& positions) const {

@@ -25,11 +25,15 @@ class PenaltyContact final : public Force {
   /// symmetric.
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
+  /// The energy k p^2 / 2 of all penetrations at the obstacles' present positions [J].
+  [[nodiscard]] double energy(const Points& positions) const override;
+
   /// Particles nearer to an obstacle than their gap, ascending.
   [[nodiscard]] std::vector<Index> touching(const Points& positions) const;
 
  private:
   struct Touch;
+  [[nodiscard]] ContactMaterial pair_of(const Contact& contact) const;
   [[nodiscard]] Touch touch(const Contact& contact, const Kinematics& at) const;
 
   const SpringNetwork& network_;

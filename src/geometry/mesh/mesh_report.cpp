@@ -9,8 +9,13 @@ namespace {
 constexpr int kDigits = 6;
 
 // Extents [m] beyond which the unit of a mesh is probably not the metre.
-constexpr double kLargestUsual = 1000.0;
+constexpr double kLargestUsual = 100.0;
 constexpr double kSmallestUsual = 0.001;
+
+// A mesh in millimetres is a thousand times too large. A floor may well be a hundred times as large as what lies on it, but then it
+// is rarely larger than a room.
+constexpr double kLargestInRoom = 10.0;
+constexpr double kLargestRatio = 100.0;
 
 }  // namespace
 
@@ -27,14 +32,17 @@ void describe_surface(const TriangleMesh& mesh, MeshReport& report) {
                          " edge(s) have more than two faces: the mesh has no inside and is treated as a sheet");
 }
 
-std::optional<std::string> unit_note(const Box3& bounds, double scale) {
+std::optional<std::string> unit_note(const Box3& bounds, double scale, double others) {
   if (bounds.isEmpty()) return std::nullopt;
   const double extent = scale * bounds.sizes().maxCoeff();
-  if (kSmallestUsual <= extent && extent <= kLargestUsual) return std::nullopt;
-  const std::string size = "its largest extent is " + format_number(extent, kDigits) + " m";
-  if (scale != 1.0) return size + " with \"scale\" " + format_number(scale, kDigits) + ": is that intended?";
-  return size + ": if the file is not in metres, place it with a \"scale\"" +
-         (extent > kLargestUsual ? ", 0.001 for millimetres" : "");
+  const bool outgrows = others > 0.0 && extent > kLargestInRoom && extent > kLargestRatio * others;
+  if (extent >= kSmallestUsual && extent <= kLargestUsual && !outgrows) return std::nullopt;
+  std::string size = "its largest extent is " + format_number(extent, kDigits) + " m";
+  if (scale != 1.0) size += " with \"scale\" " + format_number(scale, kDigits);
+  if (outgrows) size += ", " + format_number(extent / others, 3) + " times that of anything else in the scene";
+  if (scale != 1.0) return size + ": is that intended?";
+  if (extent < kSmallestUsual) return size + ": if the file is not in metres, place it with a larger \"scale\"";
+  return size + ": if the file is in millimetres, place it with \"scale\": 0.001";
 }
 
 }  // namespace sprung

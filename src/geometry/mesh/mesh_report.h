@@ -29,8 +29,9 @@ struct MeshReport {
 /// Sets the members from `non_manifold_edges` to `bounds` from the mesh as it is now, and adds notes.
 void describe_surface(const TriangleMesh& mesh, MeshReport& report);
 
-/// A question to the user about the units of a mesh with these bounds and this scale; none if its largest extent lies between a
-/// millimetre and a kilometre. Empty bounds get a question too.
-[[nodiscard]] std::optional<std::string> unit_note(const Box3& bounds, double scale = 1.0);
+/// A question to the user about the units of a mesh with these bounds and this scale: if its largest extent is below a millimetre,
+/// above 100 m, or above 10 m and more than 100 times that of anything else in the scene (`others` [m]; 0 if there is nothing
+/// else). Empty bounds get no question.
+[[nodiscard]] std::optional<std::string> unit_note(const Box3& bounds, double scale = 1.0, double others = 0.0);
 
 }  // namespace sprung

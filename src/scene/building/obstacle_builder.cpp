@@ -102,7 +102,6 @@ std::vector<std::filesystem::path> ObstacleBuilder::find_files(const ObstacleSce
 void ObstacleBuilder::add_report(const ObstacleScene& obstacle, const std::vector<std::filesystem::path>& files,
                                  const MeshReport& report) {
   reports_.push_back({obstacle.name, files.front(), files.size(), report});
-  if (auto note = unit_note(report.bounds, obstacle.place.scale)) reports_.back().report.notes.push_back(std::move(*note));
 }
 
 void ObstacleBuilder::add_new_problems(const InputError& error) {

@@ -1,6 +1,7 @@
 #include "scene/building/scene_builder.h"
 
 #include "base/format.h"
+#include "base/grouped_warnings.h"
 #include "base/machine_memory.h"
 #include "network/network_builder.h"
 #include "network/spring_pieces.h"
@@ -8,11 +9,13 @@
 #include "scene/building/memory_check.h"
 #include "scene/building/obstacle_builder.h"
 #include "scene/building/step_choice.h"
+#include "scene/building/unlikely_settings.h"
 #include "scene/format/frame_steps.h"
 #include "scene/json/json_text.h"
 
+#include <algorithm>
 #include <cstdlib>
-#include <map>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -88,16 +91,19 @@ std::vector<std::string> pieces_warnings(const SpringNetwork& network, const Bod
   return warnings;
 }
 
-std::vector<std::string> warnings_of(const BuiltScene& built) {
-  std::map<std::string, std::vector<std::string>> bodies;  // by what is said of them
+std::vector<std::string> warnings_of(const Scene& scene, const BuiltScene& built) {
+  GroupedWarnings bodies("body", "bodies");
   for (const Body& body : built.network.bodies) {
-    for (const std::string& text : pieces_warnings(built.network, body)) bodies[text].push_back(body.name);
+    for (const std::string& text : pieces_warnings(built.network, body)) bodies.add(body.name, text);
   }
-  std::vector<std::string> warnings;
-  for (const auto& [text, names] : bodies) warnings.push_back(bodies_text(names) + ": " + text);
+  GroupedWarnings obstacles("obstacle", "obstacles");
   for (const NamedReport& mesh : built.meshes) {
-    for (const std::string& note : mesh.report.notes) warnings.push_back("obstacle \"" + mesh.obstacle + "\": " + note);
+    for (const std::string& note : mesh.report.notes) obstacles.add(mesh.obstacle, note);
   }
+  note_unusual_sizes(scene, built, bodies, obstacles);
+  note_unused_springs(scene, built.network, bodies);
+  std::vector<std::string> warnings = bodies.lines();
+  std::ranges::move(obstacles.lines(), std::back_inserter(warnings));
   return warnings;
 }
 
@@ -131,7 +137,7 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
   }
   problems.insert(problems.begin(), known.all.begin(), known.all.end());
   if (!problems.empty()) throw InputError(std::move(problems));
-  built.warnings = warnings_of(built);
+  built.warnings = warnings_of(scene, built);
   if (step_warning) built.warnings.push_back(std::move(*step_warning));
   return built;
 }

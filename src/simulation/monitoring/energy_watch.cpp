@@ -50,13 +50,9 @@ double rounding_speed(const Points& positions, double step) {
   return positions.cols() == 0 ? 0.0 : kRounding * positions.cwiseAbs().maxCoeff() / step;
 }
 
-bool uses_penalty(const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
-  return settings.contact.response == ContactSettings::Response::penalty && !obstacles.empty();
-}
-
 bool is_undriven(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
   const bool wind = settings.air_drag > 0.0 && !settings.wind.isZero(0.0);
-  return !uses_penalty(settings, obstacles) && !wind && !std::holds_alternative<ExplicitEulerSettings>(settings.integrator) &&
+  return !wind && !std::holds_alternative<ExplicitEulerSettings>(settings.integrator) &&
          std::ranges::none_of(network.pins, [](const Pin& pin) { return pin.motion.moves(); }) &&
          std::ranges::none_of(obstacles, [](const Obstacle& obstacle) { return obstacle.changes(); });
 }
@@ -68,7 +64,6 @@ EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& 
       step_(settings.step),
       gravity_(settings.gravity.norm()),
       bounce_height_(bounce_height_of(network, settings)),
-      watches_(!uses_penalty(settings, obstacles)),
       undriven_(is_undriven(network, settings, obstacles)),
       bounce_gain_(bounce_gain(network, obstacles)),
       fastest_drive_(settings.air_drag > 0.0 ? settings.wind.norm() : 0.0) {
@@ -77,16 +72,16 @@ EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& 
 }
 
 void EnergyWatch::note(std::int64_t step, const Energies& energies) {
-  if (step <= 1) start_ = std::max(start_, energies.kinetic + energies.elastic);
+  if (step <= 1) start_ = std::max(start_, energies.kinetic + energies.of_springs());
   highest_ = step == 0 ? energies.gravity : std::max(highest_, energies.gravity);
   max_kinetic_ = std::max(max_kinetic_, energies.kinetic);
-  if (max_kinetic_ < kSlow * energies.elastic) stored_ = std::max(stored_, energies.elastic);
+  if (max_kinetic_ < kSlow * energies.of_springs()) stored_ = std::max(stored_, energies.of_springs());
 }
 
 std::optional<std::string> EnergyWatch::explosion(const Energies& energies) const {
-  const double present = energies.kinetic + energies.elastic;
-  if (!watches_ || present <= kExploded * supplied(energies)) return std::nullopt;
-  return "the energy exploded: kinetic and elastic energy are " + format_number(present, 3) + " J, but at most " +
+  const double present = energies.kinetic + energies.of_springs();
+  if (present <= kExploded * supplied(energies)) return std::nullopt;
+  return "the energy exploded: the energies of motion and springs are " + format_number(present, 3) + " J, but at most " +
          format_number(supplied(energies), 3) + " J can have been supplied";
 }
 
@@ -97,7 +92,7 @@ double EnergyWatch::supplied(const Energies& energies) const {
 
 void EnergyWatch::note_frame(int frame, const Energies& energies) {
   if (!undriven_ || frame == 1) return;
-  const FrameEnergy now{frame, energies.kinetic + energies.elastic + energies.gravity};
+  const FrameEnergy now{frame, energies.kinetic + energies.of_springs() + energies.gravity};
   max_frame_kinetic_ = std::max(max_frame_kinetic_, energies.kinetic);
   if (!lowest_ || now.energy < lowest_->energy) lowest_ = now;
   if (now.energy - lowest_->energy <= rise_end_.energy - rise_begin_.energy) return;

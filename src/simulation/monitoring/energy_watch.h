@@ -16,6 +16,9 @@ struct Energies {
   double kinetic = 0.0;
   double elastic = 0.0;
   double gravity = 0.0;
+  double contact = 0.0;  ///< of penalty springs
+
+  [[nodiscard]] double of_springs() const { return elastic + contact; }
 };
 
 /// Answers two questions. explosion(): does the state have more energy than anything can have supplied? It looks at steps and ends
@@ -24,11 +27,9 @@ class EnergyWatch {
  public:
   EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles);
 
-  /// Whether explosion() can find anything. It cannot with penalty contact, whose energy is unknown.
-  [[nodiscard]] bool watches() const { return watches_; }
-
   /// Records the energies after a step. Steps 0 and 1 both count as the start, as limits and contact may add energy in the first.
-  /// Elastic energy counts as supplied by pins or obstacles while the kinetic energy so far is below 1 % of it: an explosion moves.
+  /// Energy of springs counts as supplied by pins or obstacles while the kinetic energy so far is below 1 % of it: an explosion
+  /// moves.
   void note(std::int64_t step, const Energies& energies);
 
   /// Records the speed [m/s] of a pin.
@@ -41,10 +42,10 @@ class EnergyWatch {
     if (speed > 0.0) fastest_drive_ = std::max(fastest_drive_, bounce_gain_ * speed);
   }
 
-  /// Describes the explosion if kinetic and elastic energy exceed 1,000 times the energy that can have been supplied. That is the
-  /// sum of: the energy at the start; the potential energy released since; the energy supplied slowly (see note()); the kinetic
-  /// energy of all particles at the speed of the fastest pin, wind or obstacle; the energy to stretch every spring to twice its
-  /// length and fold every angle; with a stretch limit, the energy to lift all particles by one spring length; and rounding.
+  /// Describes the explosion if the energies of motion and springs exceed 1,000 times the energy that can have been supplied. That
+  /// is the sum of: the energy at the start; the potential energy released since; the energy supplied slowly (see note()); the
+  /// kinetic energy of all particles at the speed of the fastest pin, wind or obstacle; the energy to stretch every spring to twice
+  /// its length and fold every angle; with a stretch limit, the energy to lift all particles by one spring length; and rounding.
   [[nodiscard]] std::optional<std::string> explosion(const Energies& energies) const;
 
   /// Records the energies of a frame. Frame 1 is ignored, as limits and contact may add energy in the first steps.
@@ -52,7 +53,7 @@ class EnergyWatch {
 
   /// Describes the largest rise of the total energy between two frames, if it exceeds half of the largest kinetic energy and what
   /// step size, stretch limit and rounding explain. `positions` [m] give the size of rounding. Empty if the scene is driven:
-  /// moving pins or obstacles, wind, penalty contact, or explicit Euler, which gains energy by itself.
+  /// moving pins or obstacles, wind, or explicit Euler, which gains energy by itself.
   [[nodiscard]] std::optional<std::string> gain(const Points& positions) const;
 
  private:
@@ -68,14 +69,13 @@ class EnergyWatch {
   double step_;                        ///< [s]
   double gravity_;                     ///< [m/s^2]
   double bounce_height_;               ///< length of the longest spring, with a stretch limit [m]
-  bool watches_;                       ///< for explosions
   bool undriven_;                      ///< see gain()
   double bounce_gain_;                 ///< factor on the speed of obstacles
   double fastest_drive_;               ///< [m/s]
   double capacity_;                    ///< of springs, angles and limits [J]
   double start_ = 0.0;                 ///< [J]
   double highest_ = 0.0;               ///< largest potential energy of gravity [J]
-  double stored_ = 0.0;                ///< elastic energy supplied slowly [J]
+  double stored_ = 0.0;                ///< energy of springs supplied slowly [J]
   double max_kinetic_ = 0.0;           ///< of steps [J]
   double max_frame_kinetic_ = 0.0;     ///< of frames [J]
   std::optional<FrameEnergy> lowest_;  ///< frame of the smallest total energy

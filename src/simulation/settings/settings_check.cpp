@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/format.h"
+#include "base/grouped_warnings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,26 +38,6 @@ class Rules {
   std::vector<Problem> problems_;
 };
 
-std::string names_of(const std::vector<SpringKind>& kinds) {
-  std::string names;
-  for (const SpringKind kind : kinds) {
-    names += (names.empty() ? "\"" : ", \"") + std::string(kSpringKindNames[static_cast<std::size_t>(kind)]) + "\"";
-  }
-  return "[" + names + "]";
-}
-
-std::vector<std::string> unused_kinds(const SimulatorSettings& settings, const SpringNetwork& network) {
-  if (!settings.stretch_limit) return {};
-  std::vector<SpringKind> present;
-  for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bend}) {
-    if (std::ranges::find(network.springs.kind, kind) != network.springs.kind.end()) present.push_back(kind);
-  }
-  const std::vector<SpringKind>& kinds = settings.stretch_limit->kinds;
-  if (present.empty() || std::ranges::find_first_of(kinds, present) != kinds.end()) return {};
-  return {"stretch_limit.kinds = " + names_of(kinds) + " limits no spring: the network has only springs of the kinds " +
-          names_of(present)};
-}
-
 }  // namespace
 
 SimulatorSettings checked_settings(SimulatorSettings settings) {
@@ -81,13 +62,6 @@ SimulatorSettings checked_settings(SimulatorSettings settings) {
   return settings;
 }
 
-std::vector<std::string> unused_settings(const SimulatorSettings& settings, const SpringNetwork& network) {
-  std::vector<std::string> unused = unused_kinds(settings, network);
-  if (settings.air_drag == 0.0 && !settings.wind.isZero(0.0))
-    unused.emplace_back("air.wind has no effect without air.drag. Add air.drag.");
-  return unused;
-}
-
 std::vector<std::string> weak_springs(const SimulatorSettings& settings, const SpringNetwork& network) {
   const AngleBends& bends = network.angle_bends;
   if (bends.count() == 0 || (settings.stretch_limit && settings.stretch_limit->max_compression <= 0.5)) return {};
@@ -107,17 +81,15 @@ std::vector<std::string> weak_springs(const SimulatorSettings& settings, const S
       most = std::max(most, least);
     }
   }
-  std::map<std::string, std::vector<std::string>> bodies;  // by what they need
-  for (const auto& [body, least] : needed) bodies[format_number(least, 3)].push_back(body);
-  std::vector<std::string> warnings;
-  for (const auto& [least, names] : bodies) {
-    warnings.push_back(
-        bodies_text(names) +
-        ": the springs are too weak for the angle bends. A bend shortens them, and its force grows as they shorten, so the body "
+  GroupedWarnings warnings("body", "bodies");
+  for (const auto& [body, least] : needed) {
+    warnings.add(
+        body,
+        "the springs are too weak for the angle bends. A bend shortens them, and its force grows as they shorten, so the body "
         "is likely to gain energy. Use a structural stiffness of at least " +
-        least + " N/m, less bend stiffness, or \"stretch_limit\": {\"max_compression\": 0}.");
+            format_number(least, 3) + " N/m, less bend stiffness, or \"stretch_limit\": {\"max_compression\": 0}.");
   }
-  return warnings;
+  return warnings.lines();
 }
 
 }  // namespace sprung

@@ -1,6 +1,7 @@
 #include "simulation/start/start.h"
 
 #include "base/format.h"
+#include "base/grouped_warnings.h"
 #include "dynamics/contact/collision_surface_builder.h"
 #include "simulation/start/push_out.h"
 #include "simulation/start/start_check.h"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace sprung {
 
@@ -22,21 +24,21 @@ StartIntersections find_all(const Environment& environment, const CollisionSurfa
 }
 
 std::vector<std::string> describe_moved(const SpringNetwork& network, const Points& from, const Points& to) {
-  std::vector<std::string> lines;
+  std::vector<std::string> names;
+  std::size_t count = 0;
+  double farthest = 0.0;
   for (const Body& body : network.bodies) {
-    Index count = 0;
-    double farthest = 0.0;
+    const std::size_t before = count;
     for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
       if (from.col(i) == to.col(i)) continue;
       ++count;
       farthest = std::max(farthest, (to.col(i) - from.col(i)).norm());
     }
-    if (count == 0) continue;
-    lines.push_back("body \"" + body.name +
-                    "\" intersected an obstacle or a body at the start and was moved out: " + std::to_string(count) +
-                    (count == 1 ? " particle by " : " particles by up to ") + format_number(farthest, 3) + " m");
+    if (count > before) names.push_back(body.name);
   }
-  return lines;
+  if (names.empty()) return {};
+  return {names_text("body", "bodies", names) + ": intersected an obstacle or a body at the start and moved out: " +
+          counted(count, "particle") + (count == 1 ? " by " : " by up to ") + format_number(farthest, 3) + " m"};
 }
 
 /// Bodies with an obstacle deep in their gap: contact will accelerate them out of it.
@@ -46,7 +48,11 @@ std::vector<std::string> describe_too_near(const SpringNetwork& network, const E
   for (const Obstacle& obstacle : environment.obstacles()) {
     obstacle_thickness = std::min(obstacle_thickness, obstacle.material.thickness);
   }
-  std::vector<std::string> lines;
+  struct TooNear {
+    std::vector<std::string> bodies;
+    double nearest = std::numeric_limits<double>::infinity();
+  };
+  std::map<double, TooNear> of_gaps;
   for (const Body& body : network.bodies) {
     const double gap = body.material.thickness + obstacle_thickness;
     if (!std::isfinite(gap) || gap == 0.0) continue;
@@ -56,7 +62,13 @@ std::vector<std::string> describe_too_near(const SpringNetwork& network, const E
     }
     const auto nearest = environment.min_distance(positions(Eigen::all, free), gap);
     if (!nearest || *nearest >= kDeep * gap) continue;
-    lines.push_back("body \"" + body.name + "\" starts " + format_number(*nearest, 3) +
+    TooNear& found = of_gaps[gap];
+    found.bodies.push_back(body.name);
+    found.nearest = std::min(found.nearest, *nearest);
+  }
+  std::vector<std::string> lines;
+  for (const auto& [gap, found] : of_gaps) {
+    lines.push_back(names_text("body", "bodies", found.bodies) + ": starts " + format_number(found.nearest, 3) +
                     " m from an obstacle, deep within the thickness of " + format_number(gap, 3) +
                     " m. Contact will accelerate it away. Start farther away, or use a smaller thickness.");
   }

@@ -246,16 +246,23 @@ TEST(CleanMesh, CountsNonManifoldEdges) {
   EXPECT_DOUBLE_EQ(signed_volume(mesh), 2.0);
 }
 
-std::string unit_note_of_cube(double side, double scale = 1.0) {
-  return unit_note(bounds(test::make_cube(side).vertices), scale).value_or("");
+std::string unit_note_of_cube(double side, double scale = 1.0, double others = 0.0) {
+  return unit_note(bounds(test::make_cube(side).vertices), scale, others).value_or("");
 }
 
-TEST(UnitNote, AsksAboutSizesBelowAMillimetreOrAboveAKilometre) {
-  EXPECT_THAT(unit_note_of_cube(2500.0), AllOf(HasSubstr("2500 m"), HasSubstr("\"scale\", 0.001 for millimetres")));
-  EXPECT_THAT(unit_note_of_cube(0.0005), AllOf(HasSubstr("0.0005 m"), HasSubstr("\"scale\"")));
-  EXPECT_EQ(unit_note_of_cube(1000.0), "");
+TEST(UnitNote, AsksAboutSizesBelowAMillimetreOrAbove100Metres) {
+  EXPECT_EQ(unit_note_of_cube(632.0), "its largest extent is 632 m: if the file is in millimetres, place it with \"scale\": 0.001");
+  EXPECT_THAT(unit_note_of_cube(0.0005), AllOf(HasSubstr("0.0005 m"), HasSubstr("a larger \"scale\"")));
+  EXPECT_EQ(unit_note_of_cube(100.0), "");
   EXPECT_EQ(unit_note_of_cube(0.001), "");
   EXPECT_EQ(unit_note(Box3()), std::nullopt);
+}
+
+// A cup of 8 cm in millimetres, and a cloth.
+TEST(UnitNote, AsksAboutSizesFarAboveThoseOfOtherThings) {
+  EXPECT_THAT(unit_note_of_cube(80.0, 1.0, 0.4), AllOf(HasSubstr("80 m, 200 times that of anything else"), HasSubstr("0.001")));
+  EXPECT_EQ(unit_note_of_cube(80.0, 1.0, 1.0), "");
+  EXPECT_EQ(unit_note_of_cube(10.0, 1.0, 0.01), "") << "a room for a small thing";
 }
 
 TEST(UnitNote, AppliesTheScaleOfThePlacement) {

@@ -294,6 +294,32 @@ TEST(SceneBuilder, WarnsOfUnitsByTheScaledSizeOfAMesh) {
   EXPECT_THAT(build(folder, {shape}).warnings, ElementsAre(HasSubstr("obstacle \"a\": its largest extent is 18000 m")));
 }
 
+// The banner is 1 m large.
+TEST(SceneBuilder, WarnsOfMeshesFarLargerThanTheRestOnceWithTheirNames) {
+  const SceneFolder folder;
+  folder.write("mesh.obj", "v 0 0 0\nv 101 0 0\nv 0 101 0\nf 1 2 3\n");
+  const auto warnings = [&](const std::string& scale) {
+    const std::string shape = R"({"shape":{"type":"mesh","file":"mesh.obj"},"place":{"scale":)" + scale + "}}";
+    return build(folder, {"obstacles.a=" + shape, "obstacles.b=" + shape}).warnings;
+  };
+  EXPECT_THAT(warnings("1"),
+              ElementsAre(HasSubstr("obstacles \"a\" and \"b\": its largest extent is 101 m: if the file is in mill")));
+  EXPECT_THAT(warnings("0.99"), IsEmpty());
+  folder.write("body.obj", "v 0 0 0\nv 632 0 0\nv 0 632 0\nf 1 2 3\n");
+  EXPECT_THAT(build(folder, {R"(bodies.banner.shape={"type":"mesh","file":"body.obj"})", "bodies.banner.pins=[]"}).warnings,
+              ElementsAre(HasSubstr("body \"banner\": its largest extent is 632 m: if")));
+}
+
+TEST(SceneBuilder, WarnsOfSpringsThatAShapeDoesNotHave) {
+  const SceneFolder folder;
+  EXPECT_THAT(build(folder, {"bodies.banner.shape.resolution=[2,2]", "bodies.banner.springs.bend.stiffness=1"}).warnings,
+              ElementsAre("body \"banner\": springs.bend has no effect: its shape has no such springs"));
+  EXPECT_THAT(build(folder, {"bodies.banner.springs.bend={\"stiffness\":1,\"model\":\"angle\"}",
+                             "bodies.banner.springs.structural.stiffness=1e4"})
+                  .warnings,
+              IsEmpty());
+}
+
 TEST(SceneBuilder, PrimitivesAreScaled) {
   const SceneFolder folder;
   const BuiltScene built = build(folder, {R"(obstacles.a={"shape":{"type":"capsule","radius":1,"length":2},"place":{"scale":3}})",

@@ -119,7 +119,7 @@ TEST(Start, APushedParticleEndsAtItsGapFromTheNearestSurface) {
   EXPECT_LT((simulator.positions().col(0) - Vector3(0.31, 0.0, 0.0)).norm(), 1e-5);
   ASSERT_EQ(simulator.warnings().size(), 1U);
   EXPECT_EQ(simulator.warnings()[0],
-            "body \"ball\" intersected an obstacle or a body at the start and was moved out: 1 particle by 0.21 m");
+            "body \"ball\": intersected an obstacle or a body at the start and moved out: 1 particle by 0.21 m");
 }
 
 TEST(Start, PushingOutKeepsVelocities) {
@@ -150,6 +150,16 @@ TEST(Start, AParticleDeepInItsGapCausesAWarning) {
   };
   EXPECT_THAT(warnings(0.29), ElementsAre(HasSubstr("starts 0.29 m from an obstacle, deep within the thickness of 0.6 m")));
   EXPECT_THAT(warnings(0.31), IsEmpty());
+}
+
+TEST(Start, BodiesDeepInTheSameGapAreToldOnceWithTheNearest) {
+  NetworkBuilder builder;
+  for (const auto& [name, height] : {std::pair{"a", 0.2}, {"b", 0.1}, {"c", 0.15}}) {
+    builder.begin_body(name, {.thickness = 0.5});
+    builder.add_particle({0.0, height, 0.0}, 0.1);
+  }
+  EXPECT_THAT(Simulator(builder.build(), {.step = 1e-3}, {ground()}).warnings(),
+              ElementsAre(HasSubstr("bodies \"a\", \"b\" and 1 more: starts 0.1 m from an obstacle")));
 }
 
 TEST(Start, PenaltyContactPushesOutToo) {

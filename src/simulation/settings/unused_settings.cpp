@@ -1,0 +1,165 @@
+#include "simulation/settings/unused_settings.h"
+
+#include "base/grouped_warnings.h"
+#include "dynamics/contact/contact_materials.h"
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+std::string names_of(const std::vector<SpringKind>& kinds) {
+  std::string names;
+  for (const SpringKind kind : kinds) {
+    names += (names.empty() ? "\"" : ", \"") + std::string(kSpringKindNames[static_cast<std::size_t>(kind)]) + "\"";
+  }
+  return "[" + names + "]";
+}
+
+class Finder {
+ public:
+  Finder(const SimulatorSettings& settings, const SpringNetwork& network, const std::vector<Obstacle>& obstacles)
+      : settings_(settings), network_(network), obstacles_(obstacles) {}
+
+  std::vector<std::string> find() {
+    if (settings_.stretch_limit) check_limit(*settings_.stretch_limit);
+    if (settings_.air_drag == 0.0 && !settings_.wind.isZero(0.0)) {
+      warnings_.emplace_back("air.wind has no effect without air.drag. Add air.drag.");
+    }
+    if (settings_.contact.response == ContactSettings::Response::penalty) check_penalty();
+    check_friction();
+    return std::move(warnings_);
+  }
+
+ private:
+  void check_limit(const StretchLimitSettings& limit) {
+    std::vector<SpringKind> present;
+    for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bend}) {
+      if (std::ranges::find(network_.springs.kind, kind) != network_.springs.kind.end()) present.push_back(kind);
+    }
+    std::vector<SpringKind> absent = limit.kinds;
+    std::erase_if(absent, [&](SpringKind kind) { return std::ranges::find(present, kind) != present.end(); });
+    if (!present.empty() && !absent.empty()) {
+      warnings_.push_back("stretch_limit.kinds = " + names_of(limit.kinds) + " limits no spring" +
+                          (absent.size() < limit.kinds.size() ? " of the kinds " + names_of(absent) : "") +
+                          ": the network has only springs of the kinds " + names_of(present));
+    }
+    if (limit.tethers && network_.pins.empty()) {
+      warnings_.emplace_back(
+          "stretch_limit.tethers has no effect without pins: tethers hold particles to pins. Remove it, or add pins.");
+    }
+  }
+
+  void check_penalty() {
+    check_gaps();
+    check_bounces();
+    const auto collides = [](const Body& body) { return body.contact.others; };
+    if (std::ranges::count_if(network_.bodies, collides) > 1) {
+      warnings_.emplace_back(
+          "contact.response \"penalty\" acts between bodies and obstacles only: bodies pass through each other. Use "
+          "\"projection\", or "
+          "set body_contact of the bodies to false.");
+    }
+  }
+
+  void check_gaps() {
+    GroupedWarnings of_bodies("body", "bodies");
+    for (const Body& body : network_.bodies) {
+      std::vector<std::string> names;
+      for (const Obstacle& obstacle : obstacles_) {
+        if (combine(body.material, obstacle.material).thickness == 0.0) names.push_back(obstacle.name);
+      }
+      if (names.empty()) continue;
+      of_bodies.add(body.name, "the penalty of contact has no effect before " + names_text("obstacle", "obstacles", names) +
+                                   ": it acts within the thickness, which is 0. Give the body or the obstacle a thickness.");
+    }
+    add(of_bodies);
+  }
+
+  // A penalty bounces by its damping, and has one coefficient of friction.
+  void check_bounces() {
+    for (const auto& [one, several, materials] : things()) {
+      GroupedWarnings of_things(one, several);
+      for (const auto& [name, material] : materials) {
+        if (material->restitution > 0.0) {
+          of_things.add(
+              name, "restitution has no effect with penalty contact. Choose the bounce by contact.damping, or use \"projection\".");
+        }
+        if (material->static_friction > material->friction) {
+          of_things.add(name, "static_friction has no effect with penalty contact, which uses friction. Use \"projection\".");
+        }
+      }
+      add(of_things);
+    }
+  }
+
+  // The friction of a pair is the geometric mean, so it is 0 if one side has none.
+  void check_friction() {
+    GroupedWarnings of_bodies("body", "bodies");
+    for (const Body& body : network_.bodies) {
+      if (has_friction(body.material) && may_touch(body) && !rubs(body)) of_bodies.add(body.name, kFrictionOfOneSide);
+    }
+    add(of_bodies);
+    GroupedWarnings of_obstacles("obstacle", "obstacles");
+    const bool bodies_rub = std::ranges::any_of(network_.bodies, [](const Body& body) { return has_friction(body.material); });
+    for (const Obstacle& obstacle : obstacles_) {
+      if (has_friction(obstacle.material) && !bodies_rub) of_obstacles.add(obstacle.name, kFrictionOfOneSide);
+    }
+    add(of_obstacles);
+  }
+
+  static constexpr const char* kFrictionOfOneSide =
+      "friction has no effect: nothing that it can touch has friction, and a pair has the geometric mean of both. Give the other "
+      "side "
+      "friction too.";
+
+  static bool has_friction(const ContactMaterial& material) { return material.static_friction > 0.0; }
+
+  [[nodiscard]] bool acts_between_bodies() const { return settings_.contact.response == ContactSettings::Response::projection; }
+
+  [[nodiscard]] bool may_meet(const Body& body, const Body& other) const {
+    return acts_between_bodies() && (&body == &other ? body.contact.self : body.contact.others && other.contact.others);
+  }
+
+  [[nodiscard]] bool may_touch(const Body& body) const {
+    return !obstacles_.empty() || std::ranges::any_of(network_.bodies, [&](const Body& other) { return may_meet(body, other); });
+  }
+
+  /// Requires a body with friction.
+  [[nodiscard]] bool rubs(const Body& body) const {
+    return std::ranges::any_of(obstacles_, [](const Obstacle& obstacle) { return has_friction(obstacle.material); }) ||
+           std::ranges::any_of(network_.bodies,
+                               [&](const Body& other) { return may_meet(body, other) && has_friction(other.material); });
+  }
+
+  struct Things {
+    const char* one;
+    const char* several;
+    std::vector<std::pair<std::string, const ContactMaterial*>> materials;
+  };
+
+  [[nodiscard]] std::vector<Things> things() const {
+    std::vector<Things> all{{"body", "bodies", {}}, {"obstacle", "obstacles", {}}};
+    for (const Body& body : network_.bodies) all[0].materials.emplace_back(body.name, &body.material);
+    for (const Obstacle& obstacle : obstacles_) all[1].materials.emplace_back(obstacle.name, &obstacle.material);
+    return all;
+  }
+
+  void add(const GroupedWarnings& grouped) {
+    for (std::string& line : grouped.lines()) warnings_.push_back(std::move(line));
+  }
+
+  const SimulatorSettings& settings_;
+  const SpringNetwork& network_;
+  const std::vector<Obstacle>& obstacles_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace
+
+std::vector<std::string> unused_settings(const SimulatorSettings& settings, const SpringNetwork& network,
+                                         const std::vector<Obstacle>& obstacles) {
+  return Finder(settings, network, obstacles).find();
+}
+
+}  // namespace sprung

@@ -1,0 +1,18 @@
+// Settings that do nothing.
+#pragma once
+
+#include "collision/shapes/obstacle.h"
+#include "simulation/settings/simulator_settings.h"
+
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// Warnings about settings without effect on this network and these obstacles: a stretch limit of kinds that no spring has,
+/// tethers without pins, wind without drag, penalty contact without thickness and what it ignores, and friction whose partners have
+/// none.
+[[nodiscard]] std::vector<std::string> unused_settings(const SimulatorSettings& settings, const SpringNetwork& network,
+                                                       const std::vector<Obstacle>& obstacles);
+
+}  // namespace sprung

@@ -1,0 +1,87 @@
+#include "simulation/settings/unused_settings.h"
+
+#include "simulation/scenes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace sprung {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::ground;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// Particles of these materials, a body each: "a", "b" and so on.
+SpringNetwork particles(const std::vector<ContactMaterial>& materials, const BodyContact& contact = {.others = false}) {
+  NetworkBuilder builder;
+  for (std::size_t k = 0; k < materials.size(); ++k) {
+    builder.begin_body(std::string(1, static_cast<char>('a' + k)), materials[k], contact);
+    builder.add_particle({static_cast<double>(k), 1.0, 0.0}, 0.1);
+  }
+  return builder.build();
+}
+
+SimulatorSettings penalty() {
+  return {.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1000.0, .damping = 1.0}};
+}
+
+ContactMaterial rough(double friction) { return {.thickness = 0.01, .friction = friction, .static_friction = friction}; }
+
+TEST(UnusedSettings, APenaltyNeedsAThickness) {
+  const std::vector<Obstacle> hard{ground()};
+  EXPECT_THAT(
+      unused_settings(penalty(), particles({{}, {}, {}, {.thickness = 0.01}}), hard),
+      ElementsAre(HasSubstr("bodies \"a\", \"b\" and 1 more: the penalty of contact has no effect before obstacle \"ground\"")));
+  EXPECT_THAT(unused_settings(penalty(), particles({{}}), {ground({.thickness = 0.01})}), IsEmpty());
+  EXPECT_THAT(unused_settings({}, particles({{}}), hard), IsEmpty());
+  EXPECT_THAT(unused_settings(penalty(), particles({{}}), {}), IsEmpty());
+}
+
+TEST(UnusedSettings, APenaltyActsOnlyBeforeObstacles) {
+  const ContactMaterial thick{.thickness = 0.01};
+  EXPECT_THAT(unused_settings(penalty(), particles({thick, thick}, {.others = true}), {}),
+              ElementsAre(HasSubstr("bodies pass through each other")));
+  EXPECT_THAT(unused_settings(penalty(), particles({thick}, {.others = true}), {}), IsEmpty());
+}
+
+TEST(UnusedSettings, APenaltyHasNoRestitutionAndOneFriction) {
+  const ContactMaterial bouncing{.thickness = 0.01, .restitution = 0.5};
+  ContactMaterial sticky = rough(0.2);
+  sticky.static_friction = 0.3;
+  EXPECT_THAT(unused_settings(penalty(), particles({bouncing}), {ground()}),
+              ElementsAre(HasSubstr("body \"a\": restitution has no effect with penalty")));
+  EXPECT_THAT(unused_settings(penalty(), particles({rough(0.2)}), {ground(sticky)}),
+              ElementsAre(HasSubstr("obstacle \"ground\": static_friction has no effect with penalty")));
+  EXPECT_THAT(unused_settings({}, particles({bouncing}), {ground(bouncing)}), IsEmpty());
+}
+
+TEST(UnusedSettings, FrictionNeedsBothSides) {
+  EXPECT_THAT(unused_settings({}, particles({rough(0.5)}), {ground()}),
+              ElementsAre(HasSubstr("body \"a\": friction has no effect")));
+  EXPECT_THAT(unused_settings({}, particles({{}}), {ground(rough(0.5))}),
+              ElementsAre(HasSubstr("obstacle \"ground\": friction has no effect")));
+  EXPECT_THAT(unused_settings({}, particles({rough(0.5)}), {ground(), ground(rough(0.1))}), IsEmpty());
+  EXPECT_THAT(unused_settings({}, particles({rough(0.5)}), {}), IsEmpty()) << "it can touch nothing";
+}
+
+TEST(UnusedSettings, FrictionActsBetweenBodiesThatCollide) {
+  EXPECT_THAT(unused_settings({}, particles({rough(0.5), rough(0.5)}, {.others = true}), {ground()}), IsEmpty());
+  EXPECT_THAT(unused_settings({}, particles({rough(0.5), {}}, {.others = true}), {}),
+              ElementsAre(HasSubstr("body \"a\": friction")));
+  EXPECT_THAT(unused_settings({}, particles({rough(0.5)}, {.self = true}), {ground()}), IsEmpty());
+}
+
+TEST(UnusedSettings, TethersNeedPins) {
+  const SimulatorSettings tethered{.stretch_limit = StretchLimitSettings{.tethers = true}};
+  NetworkBuilder builder;
+  const Index a = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+  builder.add_spring(a, builder.add_particle({1.0, 0.0, 0.0}, 1.0), 1.0, 1.0, 0.0);
+  EXPECT_THAT(unused_settings(tethered, builder.build(), {}), ElementsAre(HasSubstr("tethers has no effect without pins")));
+  builder.pin(a, {});
+  EXPECT_THAT(unused_settings(tethered, builder.build(), {}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace sprung
