@@ -23,6 +23,7 @@ constexpr const char* kExamples = R"(Examples:
   sprung view examples/cloth_on_bunny.json
   sprung view frames
   sprung export frames --format html
+  sprung materials cotton
 
 Meshes are searched beside the scene file, in each --mesh-path, then in the folders of SPRUNG_MESH_PATH.
 
@@ -41,6 +42,7 @@ class Parser {
     add_info();
     add_view();
     add_export();
+    add_materials();
   }
 
   [[nodiscard]] Command parse(int argc, const char* const* argv) {
@@ -57,6 +59,7 @@ class Parser {
     if (app_.got_subcommand("validate")) return validate_;
     if (app_.got_subcommand("view")) return view_;
     if (app_.got_subcommand("export")) return export_;
+    if (app_.got_subcommand("materials")) return materials_;
     return info_;
   }
 
@@ -117,6 +120,11 @@ class Parser {
     command->add_flag("--overwrite", export_.overwrite, "Replace the file if it exists");
   }
 
+  void add_materials() {
+    CLI::App* command = app_.add_subcommand("materials", "Lists the materials of bodies, or the values of one and their sources");
+    command->add_option("NAME", materials_.name, "Name of a material; all by default")->type_name("");
+  }
+
   static std::string is_token(const std::string& token) {
     const bool good = !token.empty() && std::ranges::all_of(token, [](unsigned char letter) {
       return std::isalnum(letter) != 0 || letter == '-' || letter == '_';
@@ -169,6 +177,7 @@ class Parser {
   InfoOptions info_;
   ViewOptions view_;
   ExportOptions export_;
+  MaterialsOptions materials_;
 };
 
 }  // namespace

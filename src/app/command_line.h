@@ -44,12 +44,16 @@ struct ExportOptions {
   bool overwrite = false;
 };
 
+struct MaterialsOptions {
+  std::string name;  ///< empty: all
+};
+
 /// The text of --help or --version, to print.
 struct PrintOptions {
   std::string text;
 };
 
-using Command = std::variant<RunOptions, ValidateOptions, InfoOptions, ViewOptions, ExportOptions, PrintOptions>;
+using Command = std::variant<RunOptions, ValidateOptions, InfoOptions, ViewOptions, ExportOptions, MaterialsOptions, PrintOptions>;
 
 /// An invalid command line; one problem per line.
 class UsageError : public std::runtime_error {

@@ -23,4 +23,7 @@ ExitCode view(const ViewOptions& options);
 /// written.
 ExitCode export_run(const ExportOptions& options);
 
+/// Prints the materials of bodies, or the values of one with their sources. Throws UsageError for an unknown name.
+ExitCode print_materials(const MaterialsOptions& options);
+
 }  // namespace sprung

@@ -30,11 +30,12 @@ void require_materials(const SpringMaterials& materials, ProblemList& problems) 
     problems.require_not_negative(key + (modulus ? ".modulus" : ".stiffness"), material->value,
                                   "use 0 for springs that only a stretch limit constrains");
     problems.require_not_negative(key + ".damping", material->damping, "use 0 for springs without damping");
+    problems.require_not_negative(key + ".damping_time", material->damping_time, "use 0 for springs without damping");
     if (!material->damping_ratio) continue;
     problems.require_not_negative(key + ".damping_ratio", *material->damping_ratio, "use 0 for springs without damping");
-    if (material->damping != 0.0)
-      problems.add(key + ".damping_ratio", format_number(*material->damping_ratio), "must not be given together with damping",
-                   "remove one of them");
+    if (material->damping != 0.0 || material->damping_time != 0.0)
+      problems.add(key + ".damping_ratio", format_number(*material->damping_ratio),
+                   "must not be given together with damping or damping_time", "remove one of them");
     if (material->value == 0.0)
       problems.add(key + ".damping_ratio", format_number(*material->damping_ratio),
                    "needs springs with stiffness, because it is a fraction of their critical damping", "give damping instead");

@@ -32,6 +32,8 @@ double stiffness_of(const SpringMaterial& material, double cross_section, double
   return material.value * cross_section / rest_length;
 }
 
+double damping_of(const SpringMaterial& material, double stiffness) { return material.damping + material.damping_time * stiffness; }
+
 void set_surface(BodyShape& shape, const Triangles& triangles) {
   shape.surface.faces = to_polygons(triangles);
   shape.surface.triangles = triangles;

@@ -27,6 +27,7 @@ struct BodyShape {
   std::vector<double> measures;
   /// Per kind of spring, in the order of SpringKind: the damping ratio from which NetworkBuilder computes k_d.
   std::array<std::optional<double>, 3> damping_ratios{};
+  bool stretch_limited = true;  ///< whether the stretch limit applies to its springs
 };
 
 /// Stiffness and damping of one kind of spring.
@@ -46,6 +47,9 @@ struct SpringMaterial {
   /// is critically damped. A pair of particles of reduced mass m has k_d = 2 zeta sqrt(k_s m). Motion of a higher frequency omega'
   /// has the ratio zeta omega' / omega. Angle bends use `bending_frequency` instead.
   std::optional<double> damping_ratio{};
+  /// Alternative to `damping` [s], >= 0: k_d = damping_time k. Motion of the frequency omega decays with the ratio damping_time
+  /// omega / 2, at any resolution (Kelvin-Voigt).
+  double damping_time = 0.0;
 };
 
 /// The springs of a body. A kind without a material has no springs.

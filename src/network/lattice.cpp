@@ -42,8 +42,8 @@ void add_family(const Lattice& lattice, const Direction& direction, Index stride
         if (on_border(1, j)) cross_section /= 2.0;
         if (on_border(2, k)) cross_section /= 2.0;
         const Index particle = lattice.number({i, j, k});
-        springs.append(particle, particle + offset, rest_length, stiffness_of(material, cross_section, rest_length),
-                       material.damping, kind);
+        const double stiffness = stiffness_of(material, cross_section, rest_length);
+        springs.append(particle, particle + offset, rest_length, stiffness, damping_of(material, stiffness), kind);
       }
     }
   }
@@ -116,8 +116,8 @@ void add_lattice_angle_bends(const Lattice& lattice, const SpringMaterial& mater
         const bool on_border = row == 0 || row + 1 == lattice.resolution[across];
         const double width = on_border ? spacing[across] / 2.0 : spacing[across];
         const Index first = lattice.number({i, j, 0});
-        bends.append({first, first + stride, first + 2 * stride}, lengths, stiffness_of(material, width, spacing[axis]),
-                     material.damping);
+        const double stiffness = stiffness_of(material, width, spacing[axis]);
+        bends.append({first, first + stride, first + 2 * stride}, lengths, stiffness, damping_of(material, stiffness));
       }
     }
   }

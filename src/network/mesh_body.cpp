@@ -82,17 +82,18 @@ void check(const PolygonMesh& mesh, const SpringMaterials& materials) {
   problems.throw_if_any();
 }
 
+// Without faces the mesh is a rope of lines, whose cross-section is 1.
 void add_springs(const std::vector<Joint>& joints, SpringKind kind, const SpringMaterial& material, const std::string& key,
-                 BodyShape& shape, ProblemList& problems) {
+                 bool has_faces, BodyShape& shape, ProblemList& problems) {
   std::vector<Joint> unusable;
   for (const Joint& joint : joints) {
     if (joint.kind != kind) continue;
     const double length = (shape.positions[joint.second] - shape.positions[joint.first]).norm();
-    if (material.measure == SpringMaterial::Measure::modulus && !(length > 0.0 && joint.area > 0.0)) {
+    if (material.measure == SpringMaterial::Measure::modulus && !(length > 0.0 && (joint.area > 0.0 || !has_faces))) {
       unusable.push_back(joint);
     } else {
-      shape.springs.append(joint.first, joint.second, length, stiffness_of(material, joint.area / length, length), material.damping,
-                           kind);
+      const double stiffness = stiffness_of(material, has_faces ? joint.area / length : 1.0, length);
+      shape.springs.append(joint.first, joint.second, length, stiffness, damping_of(material, stiffness), kind);
     }
   }
   if (unusable.empty()) return;
@@ -149,7 +150,7 @@ BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materia
   const std::vector<Joint> joints = mesh_joints(mesh);
   ProblemList problems;
   const auto add = [&](const std::optional<SpringMaterial>& material, SpringKind kind, const std::string& key) {
-    if (material) add_springs(joints, kind, *material, key, shape, problems);
+    if (material) add_springs(joints, kind, *material, key, mesh.faces.face_count() > 0, shape, problems);
   };
   add(materials.structural, SpringKind::structural, "springs.structural.modulus");
   add(materials.shear, SpringKind::shear, "springs.shear.modulus");

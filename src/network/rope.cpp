@@ -82,7 +82,9 @@ std::vector<Vector3> resample(const std::vector<Vector3>& points, const std::vec
 
 void add_springs(Springs& springs, const std::vector<double>& rest_lengths, const SpringMaterials& materials) {
   const auto add = [&](Index first, Index second, double rest, const std::optional<SpringMaterial>& material, SpringKind kind) {
-    if (material) springs.append(first, second, rest, stiffness_of(*material, 1.0, rest), material->damping, kind);
+    if (!material) return;
+    const double stiffness = stiffness_of(*material, 1.0, rest);
+    springs.append(first, second, rest, stiffness, damping_of(*material, stiffness), kind);
   };
   const Index count = static_cast<Index>(rest_lengths.size());
   for (Index i = 0; i < count; ++i) add(i, i + 1, rest_lengths[i], materials.structural, SpringKind::structural);
@@ -95,7 +97,7 @@ void add_angle_bends(AngleBends& bends, const std::vector<double>& rest_lengths,
   for (Index i = 0; i + 1 < static_cast<Index>(rest_lengths.size()); ++i) {
     const std::array<double, 2> lengths{rest_lengths[i], rest_lengths[i + 1]};
     const double stiffness = stiffness_of(*materials.bend, 1.0, (lengths[0] + lengths[1]) / 2.0);
-    bends.append({i, i + 1, i + 2}, lengths, stiffness, materials.bend->damping);
+    bends.append({i, i + 1, i + 2}, lengths, stiffness, damping_of(*materials.bend, stiffness));
   }
 }
 

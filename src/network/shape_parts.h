@@ -16,6 +16,9 @@ void add_segment_measures(const Edges& segments, const std::vector<double>& leng
 /// k_s [N/m] of a spring that represents a `cross_section` (rope 1, cloth [m], solid [m^2]) of the body.
 [[nodiscard]] double stiffness_of(const SpringMaterial& material, double cross_section, double rest_length);
 
+/// k_d [N s/m] of a spring of this stiffness, without regard to `damping_ratio`.
+[[nodiscard]] double damping_of(const SpringMaterial& material, double stiffness);
+
 /// Sets the surface and the exported faces of a body, and gives each particle a third of the area of its triangles as drag area.
 void set_surface(BodyShape& shape, const Triangles& triangles);
 

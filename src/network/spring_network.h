@@ -75,6 +75,7 @@ struct Body {
   Surface surface;
   ContactMaterial material;
   BodyContact contact;
+  bool stretch_limited = true;  ///< whether the stretch limit applies to its springs
 };
 
 /// Particles that follow a prescribed motion. With the default motion they rest.

@@ -56,8 +56,9 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
 
     {"scene/format", {}},
     {"scene/json", {}},
-    {"scene/reading", {"format", "json"}},
-    {"scene/building", {"format", "json"}},
+    {"scene/materials", {}},
+    {"scene/reading", {"format", "json", "materials"}},
+    {"scene/building", {"format", "json", "materials"}},
 };
 
 struct Library {

@@ -92,7 +92,7 @@ inline constexpr const char* kFullScene = R"({
   "air": { "drag": 0.25, "wind": [1, 0, -2] },
   "integrator": { "type": "verlet", "damping": 0.001, "start_at_rest": true },
   "stretch_limit": { "max_stretch": 0.03, "max_compression": 0.9, "kinds": ["structural", "bend"], "iterations": 16,
-                     "tolerance": 0.002, "tethers": true, "solver": "newton" },
+                     "tolerance": 0.002, "tethers": true, "solver": "newton", "bodies": ["zebra", "rope"] },
   "contact": { "response": "penalty", "stiffness": 1000, "damping": 0.5, "start": "push_out" },
   "stability": "warn",
   "bodies": {
@@ -119,7 +119,12 @@ inline constexpr const char* kFullScene = R"({
     "line": { "shape": { "type": "rope", "points": [[0, 0, 0], [1, 0, 0], [1, 1, 0]] }, "density": 0.1 },
     "jelly": { "shape": { "type": "solid", "size": [1, 2, 3], "resolution": [4, 5, 6] }, "density": 1000,
                "pins": [ { "at": "corner", "which": ["max_min_max"] } ] },
-    "shirt": { "shape": { "type": "mesh", "file": "shirt.obj" }, "mass": 0.3 }
+    "shirt": { "shape": { "type": "mesh", "file": "shirt.obj" }, "mass": 0.3 },
+    "scarf": { "shape": { "type": "cloth", "size": [1, 2], "resolution": [3, 5] }, "material": "wool", "mass": 0.3,
+               "springs": { "structural": { "stiffness": 400 }, "bend": { "damping_time": 0.002 } } },
+    "cable": { "shape": { "type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 5 }, "material": "steel_cable",
+               "diameter": 0.008, "friction": 0.1 },
+    "sponge": { "shape": { "type": "solid", "size": [1, 2, 3], "resolution": [4, 5, 6] }, "material": "foam" }
   },
   "obstacles": {
     "bunny": { "shape": { "type": "mesh", "file": "bunny.obj" }, "place": { "position": [0, 0, 1], "scale": 0.6 },

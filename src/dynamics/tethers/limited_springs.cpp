@@ -6,8 +6,10 @@ namespace sprung {
 
 namespace {
 
-bool is_measurable(const Springs& springs, const std::vector<SpringKind>& kinds, Index spring) {
-  return springs.rest_length[spring] > 0.0 && std::ranges::find(kinds, springs.kind[spring]) != kinds.end();
+bool is_measurable(const SpringNetwork& network, const std::vector<SpringKind>& kinds, Index spring) {
+  const Springs& springs = network.springs;
+  return springs.rest_length[spring] > 0.0 && std::ranges::find(kinds, springs.kind[spring]) != kinds.end() &&
+         network.body_of(springs.first[spring]).stretch_limited;
 }
 
 }  // namespace
@@ -15,14 +17,13 @@ bool is_measurable(const Springs& springs, const std::vector<SpringKind>& kinds,
 bool is_limited(const SpringNetwork& network, const std::vector<SpringKind>& kinds, Index spring) {
   const Springs& springs = network.springs;
   const bool between_pins = network.is_pinned(springs.first[spring]) && network.is_pinned(springs.second[spring]);
-  return !between_pins && is_measurable(springs, kinds, spring);
+  return !between_pins && is_measurable(network, kinds, spring);
 }
 
 std::vector<Index> measurable_springs(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
-  const Springs& springs = network.springs;
   std::vector<Index> measurable;
-  for (Index s = 0; s < springs.count(); ++s) {
-    if (is_measurable(springs, kinds, s)) measurable.push_back(s);
+  for (Index s = 0; s < network.springs.count(); ++s) {
+    if (is_measurable(network, kinds, s)) measurable.push_back(s);
   }
   return measurable;
 }

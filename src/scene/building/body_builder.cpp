@@ -4,6 +4,8 @@
 #include "geometry/import/mesh_file.h"
 #include "geometry/mesh/polygon_mesh.h"
 #include "scene/json/json_text.h"
+#include "scene/json/nearest_name.h"
+#include "scene/materials/materials.h"
 
 namespace sprung {
 namespace {
@@ -51,7 +53,21 @@ class ShapeMaker {
     if (!file) return std::nullopt;
     PolygonMesh polygons = read_obj(*file);
     polygons.vertices *= body_.place.scale;
+    check_preset(polygons);
     return make_mesh_body(polygons, body_.springs);
+  }
+
+  /// A mesh with faces is a cloth, a mesh of lines alone is a rope.
+  void check_preset(const PolygonMesh& mesh) {
+    if (body_.preset.empty()) return;
+    const MaterialKind kind = mesh.faces.face_count() > 0 ? MaterialKind::cloth : MaterialKind::rope;
+    const Material* const preset = find_material(body_.preset);
+    if (preset == nullptr || preset->kind == kind) return;
+    const std::string mesh_is =
+        kind == MaterialKind::cloth ? "a mesh with faces, which is a cloth" : "a mesh of lines, which is a rope";
+    problems_.push_back({scene_.file.string(), key_ + ".material", "\"" + body_.preset + "\"",
+                         "must be a material for " + mesh_is + ": " + joined(material_names({kind})),
+                         body_.preset + " is for a " + std::string(material_kind_name(preset->kind))});
   }
 
   /// Problems of a mesh file name it already; those of a shape get its key in the scene.

@@ -38,8 +38,10 @@ std::vector<BodyScene> valid_bodies(const Scene& scene, const TextProblems& know
 
 void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder, NetworkBuilder& network,
               std::vector<Problem>& problems) {
-  const auto shape = build_body(scene, body, finder, problems);
+  auto shape = build_body(scene, body, finder, problems);
   if (!shape) return;
+  const auto& limited = scene.limited_bodies;
+  shape->stretch_limited = limited.empty() || std::ranges::find(limited, body.name) != limited.end();
   const std::vector<ResolvedPin> pins = resolve_pins(scene, body, *shape, problems);
   const Index first = network.add_body(body.name, *shape, body.material, body.contact);
   for (const ResolvedPin& pin : pins) {

@@ -66,6 +66,8 @@ struct MassScene {
 struct BodyScene {
   std::string name;
   BodyShapeScene shape;
+  std::string preset;                  ///< name of its material; empty: none
+  bool preset_limits_stretch = false;  ///< whether a stretch limit stands in for the stiffness of the material
   MassScene mass;
   SpringMaterials springs;
   Placement place;
@@ -85,13 +87,14 @@ struct ObstacleScene {
 
 struct Scene {
   std::filesystem::path file;
-  double duration = 0.0;                 ///< [s]
-  double frame_rate = 30.0;              ///< [1/s]
-  std::optional<double> step;            ///< [s]; none: "auto"
-  SimulatorSettings settings;            ///< without the step
-  std::vector<BodyScene> bodies;         ///< in the order of the file
-  std::vector<ObstacleScene> obstacles;  ///< in the order of the file
-  std::string resolved;                  ///< the whole scene as JSON text, overrides applied and defaults filled in
+  double duration = 0.0;                    ///< [s]
+  double frame_rate = 30.0;                 ///< [1/s]
+  std::optional<double> step;               ///< [s]; none: "auto"
+  SimulatorSettings settings;               ///< without the step
+  std::vector<std::string> limited_bodies;  ///< to which the stretch limit applies; empty: to all
+  std::vector<BodyScene> bodies;            ///< in the order of the file
+  std::vector<ObstacleScene> obstacles;     ///< in the order of the file
+  std::string resolved;                     ///< the whole scene as JSON text, overrides applied and defaults filled in
 };
 
 }  // namespace sprung

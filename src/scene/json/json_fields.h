@@ -60,6 +60,7 @@ class Fields {
 
   [[nodiscard]] bool has(const std::string& key);
   [[nodiscard]] const Json& json() const { return json_; }
+  [[nodiscard]] Json& json() { return json_; }
   [[nodiscard]] const JsonLocation& location() const { return location_; }
   void reject_unknown_keys() const;
 

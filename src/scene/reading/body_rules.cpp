@@ -1,4 +1,5 @@
 #include "network/corners.h"
+#include "scene/reading/material_rules.h"
 #include "scene/reading/scene_rules.h"
 
 #include <optional>
@@ -107,13 +108,18 @@ SpringMaterial read_spring(Fields& fields) {
   }
   if (fields.has("damping_ratio")) {
     (void)fields.optional("damping", number(kNotNegative));
-    fields.one_of({"damping", "damping_ratio"});
+    (void)fields.optional("damping_time", number(kNotNegative));
+    fields.one_of({"damping", "damping_ratio", "damping_time"});
     material.damping_ratio = fields.optional("damping_ratio", number(kNotNegative));
     if (value == 0.0) {
       fields.location()
           .at("damping_ratio")
           .report(fields.json()["damping_ratio"], "needs springs with stiffness", "give damping instead");
     }
+  } else if (fields.has("damping_time")) {
+    (void)fields.optional("damping", number(kNotNegative));
+    fields.one_of({"damping", "damping_time"});
+    material.damping_time = fields.optional("damping_time", number(kNotNegative)).value_or(0.0);
   } else {
     material.damping = fields.value("damping", number(kNotNegative), 0.0).value_or(0.0);
   }
@@ -144,6 +150,7 @@ BodyScene read_body(Fields& fields) {
   BodyScene body;
   const auto shape = fields.required("shape", object_of<BodyShapeScene>(read_shape));
   body.shape = shape.value_or(BodyShapeScene{});
+  read_preset(fields, shape, body);
   body.mass = read_mass(fields);
   body.springs = fields.value("springs", object_of<SpringMaterials>(read_springs), Json::object()).value_or(SpringMaterials{});
   body.place = fields.value("place", placement_rule(), Json::object()).value_or(Placement{});

@@ -106,8 +106,8 @@ Scene read_scene_fields(Fields& fields) {
   fields.optional("$schema", text());
   fields.value("version", integer(1, 1), 1);
   read_time(fields, scene);
-  scene.settings = read_settings(fields);
   scene.bodies = fields.required("bodies", named(body_rule(), false)).value_or(std::vector<BodyScene>{});
+  read_settings(fields, scene);
   check_self_contact(scene, fields.location());
   const auto obstacles = fields.value("obstacles", named(obstacle_rule(scene.frame_rate), true), Json::object());
   scene.obstacles = obstacles.value_or(std::vector<ObstacleScene>{});

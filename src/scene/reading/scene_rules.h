@@ -20,8 +20,9 @@ namespace sprung {
 [[nodiscard]] Rule<BodyScene> body_rule();
 [[nodiscard]] Rule<ObstacleScene> obstacle_rule(double frame_rate);
 
-/// gravity, air, integrator, stretch_limit, contact, stability.
-[[nodiscard]] SimulatorSettings read_settings(Fields& fields);
+/// gravity, air, integrator, stretch_limit, contact, stability. Without a `stretch_limit`, the bodies that need one for their
+/// materials get it. Requires the scene's bodies.
+void read_settings(Fields& fields, Scene& scene);
 
 /// The whole document.
 [[nodiscard]] Rule<Scene> scene_rule();

@@ -1,3 +1,4 @@
+#include "scene/json/nearest_name.h"
 #include "scene/reading/scene_rules.h"
 
 namespace sprung {
@@ -50,8 +51,35 @@ std::vector<SpringKind> read_kinds(Fields& fields) {
   return result;
 }
 
-StretchLimitSettings read_stretch_limit(Fields& fields) {
-  StretchLimitSettings limit;
+/// The name of an entry of `bodies`. Any name is accepted if `bodies` is no object, which is reported elsewhere.
+Rule<std::string> name_of(const Json& bodies) {
+  return [=](Json& json, const JsonLocation& location) -> std::optional<std::string> {
+    const auto name = text()(json, location);
+    if (!name || !bodies.is_object() || bodies.contains(*name)) return name;
+    std::vector<std::string> names;
+    for (const auto& body : bodies.items()) names.push_back(body.key());
+    location.report(json, "must be the name of a body", suggestion(*name, names));
+    return std::nullopt;
+  };
+}
+
+std::vector<std::string> bodies_limited_by_materials(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const BodyScene& body : scene.bodies) {
+    if (body.preset_limits_stretch) names.push_back(body.name);
+  }
+  return names;
+}
+
+/// The settings of the limit, and the names of the bodies to which it applies.
+struct StretchLimitScene {
+  StretchLimitSettings settings;
+  std::vector<std::string> bodies;
+};
+
+StretchLimitScene read_stretch_limit(Fields& fields, const Json& bodies) {
+  StretchLimitScene read;
+  StretchLimitSettings& limit = read.settings;
   limit.max_stretch = fields.value("max_stretch", number(kNotNegative), limit.max_stretch).value_or(0.0);
   limit.max_compression = fields.value("max_compression", number(kFraction), limit.max_compression).value_or(0.0);
   limit.kinds = read_kinds(fields);
@@ -60,7 +88,8 @@ StretchLimitSettings read_stretch_limit(Fields& fields) {
   limit.solver = static_cast<StretchLimitSettings::Solver>(solver.value_or(0));
   limit.tolerance = fields.value("tolerance", number(kNotNegative), limit.tolerance).value_or(0.0);
   limit.tethers = fields.value("tethers", boolean(), limit.tethers).value_or(false);
-  return limit;
+  read.bodies = fields.optional("bodies", list_of(name_of(bodies), 1)).value_or(std::vector<std::string>{});
+  return read;
 }
 
 ContactSettings read_contact(Fields& fields) {
@@ -77,20 +106,27 @@ ContactSettings read_contact(Fields& fields) {
 
 }  // namespace
 
-SimulatorSettings read_settings(Fields& fields) {
-  SimulatorSettings settings;
+void read_settings(Fields& fields, Scene& scene) {
+  SimulatorSettings& settings = scene.settings;
   settings.gravity = fields.value("gravity", vector3(), {0, -9.81, 0}).value_or(Vector3::Zero());
   const Air air = fields.value("air", object_of<Air>(read_air), Json::object()).value_or(Air{});
   settings.air_drag = air.drag;
   settings.wind = air.wind;
   const auto integrator = fields.value("integrator", object_of<IntegratorSettings>(read_integrator), {{"type", "verlet"}});
   settings.integrator = integrator.value_or(IntegratorSettings{});
-  settings.stretch_limit = fields.optional("stretch_limit", object_of<StretchLimitSettings>(read_stretch_limit));
+  const Json bodies = fields.json().value("bodies", Json());
+  const auto read_limit = object_of<StretchLimitScene>([&](Fields& keys) { return read_stretch_limit(keys, bodies); });
+  const std::vector<std::string> limited = bodies_limited_by_materials(scene);
+  const auto limit = limited.empty() ? fields.optional("stretch_limit", read_limit)
+                                     : fields.value("stretch_limit", read_limit, {{"bodies", limited}});
+  if (limit) {
+    settings.stretch_limit = limit->settings;
+    scene.limited_bodies = limit->bodies;
+  }
   const auto contact = fields.value("contact", object_of<ContactSettings>(read_contact), Json::object());
   settings.contact = contact.value_or(ContactSettings{});
   const auto stability = fields.value("stability", word_of({"refuse", "warn"}), "refuse");
   settings.stability = stability == 1 ? StabilityCheck::warn : StabilityCheck::refuse;
-  return settings;
 }
 
 }  // namespace sprung

@@ -1,0 +1,144 @@
+#include "scene/reading/material_rules.h"
+
+#include "scene/json/nearest_name.h"
+#include "scene/materials/materials.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+const std::vector<MaterialKind> kAllKinds{MaterialKind::cloth, MaterialKind::rope, MaterialKind::solid};
+
+/// A shape with its article, and the kinds of materials that it may have.
+struct ShapeMaterials {
+  std::string shape;
+  std::vector<MaterialKind> kinds;
+};
+
+ShapeMaterials materials_of(const std::optional<BodyShapeScene>& shape) {
+  if (!shape) return {"a body", kAllKinds};
+  struct Visitor {
+    ShapeMaterials operator()(const RopeShape& /*rope*/) const { return {"a rope", {MaterialKind::rope}}; }
+    ShapeMaterials operator()(const ClothShape& /*cloth*/) const { return {"a cloth", {MaterialKind::cloth}}; }
+    ShapeMaterials operator()(const SolidShape& /*solid*/) const { return {"a solid", {MaterialKind::solid}}; }
+    // With faces a mesh is a cloth, otherwise a rope. The builder compares it with the file.
+    ShapeMaterials operator()(const MeshFile& /*mesh*/) const { return {"a mesh", {MaterialKind::cloth, MaterialKind::rope}}; }
+  };
+  return std::visit(Visitor{}, *shape);
+}
+
+/// The material that the body names; null after a report.
+const Material* find_preset(Json& json, const JsonLocation& location, const ShapeMaterials& allowed) {
+  const std::vector<std::string> names = material_names(allowed.kinds);
+  const std::string rule = "must be a material for " + allowed.shape + ": " + joined(names);
+  if (!json.is_string()) {
+    location.report(json, rule);
+    return nullptr;
+  }
+  const auto& name = json.get_ref<const std::string&>();
+  const Material* material = find_material(name);
+  if (material == nullptr) {
+    const auto near = nearest_name(name, names);
+    location.report(json, rule, near ? "did you mean \"" + *near + "\"?" : "");
+  } else if (std::ranges::find(allowed.kinds, material->kind) == allowed.kinds.end()) {
+    location.report(json, rule, name + " is for a " + std::string(material_kind_name(material->kind)));
+    return nullptr;
+  }
+  return material;
+}
+
+bool has_any(const Json& object, std::initializer_list<const char*> keys) {
+  return std::ranges::any_of(keys, [&](const char* key) { return object.contains(key); });
+}
+
+/// Writes the value unless the object has one of the keys.
+void fill(Json& object, std::initializer_list<const char*> keys, const char* key, const Json& value) {
+  if (!has_any(object, keys)) object[key] = value;
+}
+
+/// The object of a kind of springs; null if the user wrote something else there.
+Json* springs_of_kind(Json& body, const std::string& kind) {
+  if (!body.contains("springs")) body["springs"] = Json::object();
+  Json& springs = body["springs"];
+  if (!springs.is_object()) return nullptr;
+  if (!springs.contains(kind)) springs[kind] = Json::object();
+  return springs[kind].is_object() ? &springs[kind] : nullptr;
+}
+
+/// Fills `springs.KIND.KEY`.
+void fill_spring(const std::string& key, double value, Json& body) {
+  const std::size_t dot = key.find('.', std::string("springs.").size());
+  const std::string kind = key.substr(std::string("springs.").size(), dot - std::string("springs.").size());
+  Json* const spring = springs_of_kind(body, kind);
+  if (spring == nullptr) return;
+  if (kind == "bend") fill(*spring, {"model"}, "model", "angle");
+  if (key.ends_with(".modulus")) return fill(*spring, {"modulus", "stiffness"}, "modulus", value);
+  fill(*spring, {"damping", "damping_ratio", "damping_time"}, "damping_time", value);
+}
+
+void fill_value(const std::string& key, double value, bool has_angles, Json& body) {
+  if (key.starts_with("springs.")) {
+    if (has_angles || !key.starts_with("springs.bend.")) fill_spring(key, value, body);
+  } else if (key == "density") {
+    fill(body, {"mass", "particle_mass", "density"}, "density", value);
+  } else if (key == "static_friction") {
+    fill(body, {"friction", "static_friction"}, "static_friction", value);  // it follows a friction that is given
+  } else if (key == "friction") {
+    const Json at_rest = body.value("static_friction", Json());
+    fill(body, {"friction"}, "friction", at_rest.is_number() ? std::min(value, at_rest.get<double>()) : value);
+  } else {
+    fill(body, {key.c_str()}, key.c_str(), value);
+  }
+}
+
+/// Springs for which the user gave some keys, but neither a stiffness nor the preset has one.
+void complete_springs(Json& body) {
+  if (!body.contains("springs") || !body["springs"].is_object()) return;
+  for (const char* kind : kSpringKindNames) {
+    if (!body["springs"].contains(kind) || !body["springs"][kind].is_object()) continue;
+    fill(body["springs"][kind], {"modulus", "stiffness"}, "modulus", 0.0);
+  }
+}
+
+bool gives_stiffness(const Json& body) {
+  if (!body.contains("springs") || !body["springs"].is_object() || !body["springs"].contains("structural")) return false;
+  return has_any(body["springs"]["structural"], {"modulus", "stiffness"});
+}
+
+}  // namespace
+
+void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, BodyScene& body) {
+  const bool has_material = fields.has("material");
+  const auto diameter = fields.optional("diameter", number(kPositive));
+  Json& json = fields.json();
+  if (!has_material) {
+    if (fields.has("diameter")) {
+      fields.location()
+          .at("diameter")
+          .report(json["diameter"], "needs a rope's material", "add one of " + joined(material_names({MaterialKind::rope})));
+    }
+    return;
+  }
+  const Material* const preset = find_preset(json["material"], fields.location().at("material"), materials_of(shape));
+  if (preset == nullptr) {
+    fill(json, {"mass", "particle_mass", "density"}, "density", 1.0);
+    return complete_springs(json);
+  }
+  const bool is_rope = preset->kind == MaterialKind::rope;
+  if (fields.has("diameter") && !is_rope) {
+    fields.location()
+        .at("diameter")
+        .report(json["diameter"], "needs a rope's material", preset->name + " has no diameter: remove it");
+  }
+  const double scale = is_rope && diameter ? *diameter / preset->find("diameter")->value : 1.0;
+  const bool has_angles = !shape || !std::holds_alternative<MeshFile>(*shape);
+  if (preset->stretch_limited && !gives_stiffness(json)) body.preset_limits_stretch = true;
+  body.preset = preset->name;
+  for (const MaterialValue& value : preset->values)
+    fill_value(value.key, value.value * std::pow(scale, value.power), has_angles, json);
+  complete_springs(json);
+}
+
+}  // namespace sprung
