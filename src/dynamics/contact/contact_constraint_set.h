@@ -107,11 +107,11 @@ class ContactConstraintSet {
     for (const std::size_t c : touching_) for_moved(rows_[c], visit);
   }
 
-  /// Calls `visit(particle, normal)` in the same way for contacts that pushed.
+  /// Calls `visit(particle, row, goal)` in the same way for contacts that pushed.
   template <class Visit>
   void for_pushed(const Visit& visit) const {
     for (std::size_t c = 0; c < rows_.size(); ++c) {
-      if (goals_[c].push > 0.0) for_moved(rows_[c], [&](Index particle) { visit(particle, rows_[c].normal); });
+      if (goals_[c].push > 0.0) for_moved(rows_[c], [&](Index particle) { visit(particle, rows_[c], goals_[c]); });
     }
   }
 

@@ -42,7 +42,7 @@ ContactProjection::PushOut ContactProjection::push_out(Points& positions, int ma
   PushOut done;
   done.passes = repeat_until_settled(max_passes, [&](int) {
     const double push = project(positions);
-    done.moved = done.moved || push > 0.0;
+    done.largest = std::max(done.largest, push);
     return push <= kContactTolerance;
   });
   return done;
@@ -75,7 +75,7 @@ TruncationResult ContactProjection::truncate_bodies(const StepMotion& motion, Po
   Points solved = positions;
   TruncationResult result = truncation_.truncate(motion.before, positions);
   for (int round = 0; round < kBodyRounds && add_body_contacts(result.body_contacts, motion); ++round) {
-    if (!push_out(solved).moved) break;
+    if (!push_out(solved).moved()) break;
     positions = solved;
     result = truncation_.truncate(motion.before, positions);
   }

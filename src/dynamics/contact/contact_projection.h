@@ -32,7 +32,8 @@ class ContactProjection {
   /// Result of push_out().
   struct PushOut {
     int passes = 0;
-    bool moved = false;  ///< whether any particle moved
+    double largest = 0.0;  ///< largest change of a push in a pass relative to the gap
+    [[nodiscard]] bool moved() const { return largest > 0.0; }
   };
 
   /// Keeps references to the network and the environment.
@@ -63,7 +64,9 @@ class ContactProjection {
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {
     solver_.settle_velocities(motion, state, integrator);
   }
-  void constrain_pushed(ConstrainedDirections& constrained) const { solver_.constrain_pushed(constrained); }
+  void constrain_pushed(const StepMotion& motion, ConstrainedDirections& constrained) const {
+    solver_.constrain_pushed(motion, constrained);
+  }
   [[nodiscard]] std::vector<Index> pushed() const { return solver_.pushed(); }
 
   /// Clips positions [m] so that no element crosses a surface that it did not cross at the beginning of the step. If two bodies

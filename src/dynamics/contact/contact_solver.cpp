@@ -185,16 +185,25 @@ void ContactSolver::settle_velocities(const StepMotion& motion, SimulationState&
   });
 }
 
-void ContactSolver::constrain_pushed(ConstrainedDirections& constrained) const {
+void ContactSolver::constrain_pushed(const StepMotion& motion, ConstrainedDirections& constrained) const {
   for_each_set(sets_, [&](const auto& set) {
-    set.for_pushed([&](Index particle, const Vector3& normal) { constrained.add(particle, normal); });
+    set.for_pushed([&](Index particle, const auto& row, const ContactGoal& goal) {
+      if (row.obstacle == kNone) {
+        constrained.add(particle, row.normal);
+      } else {
+        constrained.add(particle, Support{.normal = row.normal,
+                                          .displacement = goal.origin - row.sum(motion.before),
+                                          .static_friction = row.static_friction,
+                                          .friction = row.friction});
+      }
+    });
   });
 }
 
 std::vector<Index> ContactSolver::pushed() const {
   std::vector<Index> pushed;
   for_each_set(sets_,
-               [&](const auto& set) { set.for_pushed([&](Index particle, const Vector3&) { pushed.push_back(particle); }); });
+               [&](const auto& set) { set.for_pushed([&](Index particle, const auto&...) { pushed.push_back(particle); }); });
   std::sort(pushed.begin(), pushed.end());
   pushed.erase(std::unique(pushed.begin(), pushed.end()), pushed.end());
   return pushed;

@@ -48,8 +48,8 @@ class ContactSolver {
   /// push out of the gap adds no speed. Requires the motion that `start` was given, and velocities recovered from positions.
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator);
 
-  /// Adds the normals along which particles were pushed in this step.
-  void constrain_pushed(ConstrainedDirections& constrained) const;
+  /// Adds the normals along which particles were pushed in this step. Those of obstacles are supports with friction.
+  void constrain_pushed(const StepMotion& motion, ConstrainedDirections& constrained) const;
 
   /// Particles pushed in this step, ascending.
   [[nodiscard]] std::vector<Index> pushed() const;

@@ -27,8 +27,10 @@ void ImplicitSystem::assemble(const ForceDerivatives& derivatives, double dt) {
   matrix_.add_scaled(derivatives.by_position, -dt * dt);
 }
 
-void ImplicitSystem::constrain(Index particle, const Matrix3& projection) {
-  matrix_.add(particle, particle, kConstraintWeight * matrix_.diagonal(particle).trace() * projection);
+Matrix3 ImplicitSystem::constrain(Index particle, const Matrix3& projection, const Matrix3& stiffness) {
+  const Matrix3 added = kConstraintWeight * matrix_.diagonal(particle).trace() * projection + stiffness;
+  matrix_.add(particle, particle, added);
+  return added;
 }
 
 void ImplicitSystem::solve(Points& vectors) {

@@ -19,9 +19,10 @@ class ImplicitSystem {
   void assemble(const ForceDerivatives& derivatives, double dt);
 
   /// Constrains the solution of a free particle to have no component in the range of `projection`, by a large weight (the
-  /// constraints of Baraff and Witkin 1998). A zero projection constrains nothing. Call after `assemble`, at most once per
-  /// particle. Thread-safe for different particles.
-  void constrain(Index particle, const Matrix3& projection);
+  /// constraints of Baraff and Witkin 1998), and adds `stiffness`, symmetric, to its equations. A zero projection constrains
+  /// nothing. Returns what it added to the matrix. Call after `assemble`, at most once per particle. Thread-safe for different
+  /// particles.
+  Matrix3 constrain(Index particle, const Matrix3& projection, const Matrix3& stiffness = Matrix3::Zero());
 
   /// Replaces the right-hand sides b of free particles by the solution y, and those of pinned particles by zero; 3 x n. The result
   /// is not finite if the matrix is not.

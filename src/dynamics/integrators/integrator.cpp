@@ -27,8 +27,10 @@ void Integrator::start(SimulationState& state, const Forces& forces, double dt) 
 
 void Integrator::step_changed(SimulationState&, const Forces&, double, double) {}
 
-void Integrator::respond_to_contact(const StepMotion&, const Forces&, const Points&, const ConstrainedDirections&,
-                                    SimulationState&) {}
+bool Integrator::respond_to_contact(const StepMotion&, const Forces&, const Points&, const ConstrainedDirections&,
+                                    SimulationState&) {
+  return false;
+}
 
 void Integrator::recover_velocities(SimulationState& state, const Forces&, const Points&, const Points& advanced, double dt) {
   for_free_particles(network_, [&](Index i) { state.v.col(i) += (state.x.col(i) - advanced.col(i)) / dt; });

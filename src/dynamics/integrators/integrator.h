@@ -68,8 +68,9 @@ class Integrator {
 
   /// Responds to contact, which moved some particles from `from` (the result of `advance` or of the last response) to state.x [m].
   /// A scheme that solves for the forces at the end of the step moves all particles to the new solution, except along their
-  /// constrained directions, where contact balances any force. Default: does nothing.
-  virtual void respond_to_contact(const StepMotion& motion, const Forces& forces, const Points& from,
+  /// constrained directions, where contact balances any force. Supports add friction. Returns whether friction is not settled: a
+  /// further call then changes it. Default: does nothing.
+  virtual bool respond_to_contact(const StepMotion& motion, const Forces& forces, const Points& from,
                                   const ConstrainedDirections& constrained, SimulationState& state);
 
   /// Computes the velocities after constraints moved the particles from `advanced` (the result of `advance`) to state.x; `before`

@@ -95,10 +95,14 @@ void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
 void StepConstraints::respond_to_contact(SimulationState& state, const Forces& forces) {
   responded_ = advanced_;
   constrained_.clear(static_cast<Index>(state.x.cols()));
-  for (int round = 0; round < kResponses && contacts_.push_out(state.x).moved; ++round) {
+  double settled = 0.0;
+  bool again = false;
+  for (int round = 0; round < kResponses; ++round) {
+    if (!(contacts_.push_out(state.x).largest > settled) && !again) break;
+    settled = kContactTolerance;
     constrained_.clear(static_cast<Index>(state.x.cols()));
-    contacts_.constrain_pushed(constrained_);
-    integrator_.respond_to_contact(motion(), forces, responded_, constrained_, state);
+    contacts_.constrain_pushed(motion(), constrained_);
+    again = integrator_.respond_to_contact(motion(), forces, responded_, constrained_, state);
     responded_ = state.x;
   }
 }
