@@ -5,6 +5,7 @@
 #include "base/format.h"
 #include "base/parallel.h"
 #include "output/file_writer.h"
+#include "output/run_record.h"
 #include "viewer/html_export.h"
 #include "viewer/live_session.h"
 #include "viewer/page.h"
@@ -38,10 +39,15 @@ std::vector<ExampleScene> scenes_beside(const std::filesystem::path& scene) {
   return scenes;
 }
 
+// The page shows problems of a scene; who opens the scene reads the terminal first.
+void print_problems(const std::vector<Problem>& problems) {
+  for (const Problem& problem : problems) print_error(to_string(problem));
+}
+
 std::unique_ptr<ViewSession> session_of(const SceneSource& scene) {
   std::error_code ignored;
   if (std::filesystem::is_directory(scene.file, ignored)) return std::make_unique<ReplaySession>(scene.file, scene.mesh_paths);
-  return std::make_unique<LiveSession>(scene, scenes_beside(scene.file));
+  return std::make_unique<LiveSession>(scene, scenes_beside(scene.file), print_problems);
 }
 
 void open_in_browser(const std::string& address) {
@@ -67,12 +73,12 @@ ExitCode view(const ViewOptions& options) {
 
 ExitCode export_run(const ExportOptions& options) {
   const std::filesystem::path file =
-      options.out.empty() ? std::filesystem::path(options.folder) / "animation.html" : std::filesystem::path(options.out);
+      options.out.empty() ? std::filesystem::path(options.folder) / kAnimationFile : std::filesystem::path(options.out);
   if (!options.overwrite && std::filesystem::exists(file)) {
-    throw InputError({file.string(), "", "", "exists", "give --overwrite to replace it, or another file by --out"});
+    throw FileError("write", file.string(), "it exists; replace it with --overwrite, or give another file by --out");
   }
   if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
-    throw InputError({file.string(), "", "", "is a folder, a pipe or a device", "give the name of a file by --out"});
+    throw FileError("write", file.string(), "it is a folder, a pipe or a device; give the name of a file by --out");
   }
   const HtmlAnimation animation = html_animation(Replay(options.folder, options.mesh_paths), viewer_page());
   write_file(file, animation.text);

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kDiagnosticsFile = "diagnostics.csv";
 
 std::vector<std::string> patterns_of(const std::vector<ObjSequence>& sequences) {
-  std::vector<std::string> patterns{kRunRecordFile, kDiagnosticsFile};
+  std::vector<std::string> patterns{kRunRecordFile, kDiagnosticsFile, kAnimationFile};
   for (const ObjSequence& sequence : sequences) patterns.push_back(sequence.pattern());
   return patterns;
 }

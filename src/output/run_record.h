@@ -12,6 +12,9 @@ namespace sprung {
 
 inline constexpr const char* kRunRecordFile = "run.json";
 
+/// What an export of the run as HTML writes into its folder. It is listed among the run's files, so that it goes with them.
+inline constexpr const char* kAnimationFile = "animation.html";
+
 /// Facts that are known before the run starts.
 struct RunFacts {
   std::string scene{};       ///< resolved scene as JSON text, or empty

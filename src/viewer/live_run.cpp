@@ -248,7 +248,8 @@ FrameNumbers LiveRun::numbers() const {
           .gravity = simulator.gravity_energy(),
           .max_stretch = max_stretch(simulator),
           .contacts = simulator.contact_count(),
-          .infeasible = infeasible_};
+          .infeasible = infeasible_,
+          .contact_energy = simulator.contact_energy()};
 }
 
 std::uint32_t LiveRun::frame() const { return 1 + static_cast<std::uint32_t>(simulator().state().step / loaded_.steps_per_frame); }

@@ -45,8 +45,8 @@ struct LiveSession::Shown {
   double realtime = 0.0;
 };
 
-LiveSession::LiveSession(SceneSource source, std::vector<ExampleScene> examples)
-    : first_source_(std::move(source)), examples_(std::move(examples)) {}
+LiveSession::LiveSession(SceneSource source, std::vector<ExampleScene> examples, TellProblems tell_problems)
+    : first_source_(std::move(source)), examples_(std::move(examples)), tell_problems_(std::move(tell_problems)) {}
 
 LiveSession::~LiveSession() { stop(); }
 
@@ -96,6 +96,7 @@ void LiveSession::leave(ClientId client) {
 
 void LiveSession::simulate() {
   open(first_source_);
+  tell_problems_ = {};
   publish_state();
   std::vector<Message> messages;
   while (true) {
@@ -313,6 +314,7 @@ void LiveSession::attempt(std::optional<std::uint32_t> run, const std::string& k
 }
 
 void LiveSession::refuse(std::optional<std::uint32_t> run, const std::string& key, const std::vector<Problem>& problems) {
+  if (tell_problems_) tell_problems_(problems);
   const std::string text = problems_text(runs_.empty() ? std::nullopt : run, key, problems);
   if (runs_.empty()) {
     publisher_->show_failure(text);

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -26,8 +27,11 @@ struct ExampleScene {
 
 class LiveSession final : public ViewSession {
  public:
-  /// Throws FileError if the scene cannot be read. Problems of the scene are shown on the page.
-  LiveSession(SceneSource source, std::vector<ExampleScene> examples);
+  using TellProblems = std::function<void(const std::vector<Problem>&)>;
+
+  /// Throws FileError if the scene cannot be read. Problems of the scene are shown on the page; those of the first attempt to open
+  /// it are also told to `tell_problems`, in the thread of the session.
+  LiveSession(SceneSource source, std::vector<ExampleScene> examples, TellProblems tell_problems = {});
   ~LiveSession() override;
 
   [[nodiscard]] std::string hello() const override;
@@ -75,6 +79,7 @@ class LiveSession final : public ViewSession {
 
   const SceneSource first_source_;
   const std::vector<ExampleScene> examples_;
+  TellProblems tell_problems_;  ///< until the scene was opened once
   Publisher* publisher_ = nullptr;
 
   // Shared with the server's thread.

@@ -50,6 +50,7 @@ struct FrameNumbers {
   double frame_ms = 0.0;
   double realtime = 0.0;  ///< factor to real time that is reached
   Index infeasible = 0;
+  double contact_energy = 0.0;
 };
 
 /// Bits of a particle's state.

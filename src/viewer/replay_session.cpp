@@ -142,7 +142,8 @@ FrameNumbers Replay::numbers(int frame) const {
           .max_stretch = value("max_stretch"),
           .contacts = count("contacts"),
           .frame_ms = value("frame_ms"),
-          .infeasible = count("infeasible")};
+          .infeasible = count("infeasible"),
+          .contact_energy = value("contact_energy")};
 }
 
 ReplaySession::ReplaySession(const std::filesystem::path& folder, const std::vector<std::string>& mesh_paths)

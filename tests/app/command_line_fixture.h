@@ -46,7 +46,7 @@ inline json cloth_scene() {
         "thickness": 0.005, "friction": 0.3
       }
     },
-    "obstacles": { "ball": { "shape": { "type": "sphere", "radius": 0.3 } } }
+    "obstacles": { "ball": { "shape": { "type": "sphere", "radius": 0.3 }, "friction": 0.3 } }
   })");
 }
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -310,12 +311,14 @@ TEST_F(RunOutputFiles, FrameWhoseRowFitsNoMoreIsTakenBack) {
 
 TEST_F(RunOutputFiles, RunWithTheSameNamesReplacesThemWhenAsked) {
   run(3);
+  std::ofstream(file(kAnimationFile)) << "the exported run";
   simulator_ = small_world();
   {
     RunOutput output(OutputFolder(scratch_ / "out", true), {.frames = 1}, simulator_);
     output.write_frame(simulator_, FrameRunner(simulator_, 1).first_frame());
   }
   EXPECT_THAT(listing(scratch_ / "out"), Not(Contains("rope/rope.0002.obj")));
+  EXPECT_THAT(listing(scratch_ / "out"), Not(Contains(kAnimationFile)));
   EXPECT_THAT(listing(scratch_ / "out"), Contains("rope/rope.0001.obj"));
 }
 

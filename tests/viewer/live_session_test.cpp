@@ -8,10 +8,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
-
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <future>
 
 namespace sprung {
 namespace {
@@ -414,6 +414,18 @@ TEST_F(LiveViewer, AKeyWithManyLevelsIsRefusedAtOnce) {
   for (int k = 0; k < 30000; ++k) key += ".a";
   page.send({{"do", "set"}, {"key", key}, {"value", 1}});
   EXPECT_LT(page.text("problems")["problems"][0]["text"].get<std::string>().size(), 1000u);
+}
+
+TEST_F(LiveViewer, ProblemsOfTheFirstSceneAreToldOnce) {
+  std::promise<std::string> told;
+  session_ =
+      std::make_unique<LiveSession>(SceneSource{.file = folder_.write("scene.json", R"({"duration": -1})").string()}, examples_,
+                                    [&](const std::vector<Problem>& problems) { told.set_value(to_string(problems.at(0))); });
+  server_ = std::make_unique<ServingServer>(*session_);
+  EXPECT_THAT(told.get_future().get(), HasSubstr("duration"));
+  TestPage page(server_->port());
+  page.send({{"do", "reset"}});  // a second call would throw
+  EXPECT_THAT(page.text("problems").dump(), HasSubstr("duration"));
 }
 
 TEST_F(LiveViewer, ABusyPortIsNamedWithTheRemedy) {

@@ -3,6 +3,7 @@
 #include "scene/format/file_wildcard.h"
 #include "scene/json/nearest_name.h"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -12,6 +13,15 @@ namespace {
 bool is_file(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored);
+}
+
+void add_files_beside(const std::filesystem::path& missing, std::vector<std::string>& names) {
+  const std::filesystem::path folder = missing.has_parent_path() ? missing.parent_path() : ".";
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (entry.is_regular_file(ignored)) names.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);  // folders have no order
 }
 
 }  // namespace
@@ -49,12 +59,18 @@ std::vector<std::filesystem::path> MeshFinder::find_all(const std::string& patte
 void MeshFinder::report_missing(const std::string& file, const std::string& key, const std::string& rule,
                                 std::vector<Problem>& problems) const {
   std::vector<std::string> looked;
+  std::vector<std::string> beside;
   for (const std::filesystem::path& folder : folders_) {
-    const std::string candidate = (folder / file).string();
-    if (looked.empty() || looked.back() != candidate) looked.push_back(candidate);
+    const std::filesystem::path candidate = folder / file;
+    if (!looked.empty() && looked.back() == candidate.string()) continue;
+    looked.push_back(candidate.string());
+    add_files_beside(candidate, beside);
   }
+  const std::filesystem::path named(file);
+  const auto near = nearest_name(named.filename().string(), beside);
   problems.push_back({scene_file_.string(), key, "\"" + file + "\"", rule + ": looked for " + joined(looked),
-                      "put it beside the scene, or name its folder with --mesh-path or SPRUNG_MESH_PATH"});
+                      (near ? "did you mean \"" + (named.parent_path() / *near).string() + "\"? Otherwise " : std::string()) +
+                          "put it beside the scene, or name its folder with --mesh-path or SPRUNG_MESH_PATH"});
 }
 
 }  // namespace sprung

@@ -128,6 +128,7 @@ export class EmbeddedRun implements Source {
       frameMs: value('frame_ms'),
       realtime: 0,
       infeasible: value('infeasible'),
+      contactEnergy: value('contact_energy'),
     };
   }
 }

@@ -1,7 +1,7 @@
 import type { Diagnostics, FrameNumbers } from './protocol';
 
-export type Quantity = 'kinetic' | 'elastic' | 'gravity' | 'total' | 'stretch' | 'contacts' | 'ms';
-export const QUANTITIES: readonly Quantity[] = ['kinetic', 'elastic', 'gravity', 'total', 'stretch', 'contacts', 'ms'];
+export type Quantity = 'kinetic' | 'elastic' | 'gravity' | 'contact' | 'total' | 'stretch' | 'contacts' | 'ms';
+export const QUANTITIES: readonly Quantity[] = ['kinetic', 'elastic', 'gravity', 'contact', 'total', 'stretch', 'contacts', 'ms'];
 
 const CAPACITY = 1200;
 
@@ -12,6 +12,7 @@ export class History {
     kinetic: [],
     elastic: [],
     gravity: [],
+    contact: [],
     total: [],
     stretch: [],
     contacts: [],
@@ -25,8 +26,8 @@ export class History {
     if (this.times[this.times.length - 1] === time) return;
     if (this.times.length > 0 && ++this.skipped < this.stride) return;
     this.skipped = 0;
-    const { kinetic, elastic, gravity, maxStretch, contacts, frameMs } = numbers;
-    this.push(time, [kinetic, elastic, gravity, kinetic + elastic + gravity, maxStretch, contacts, frameMs]);
+    const { kinetic, elastic, gravity, contactEnergy, maxStretch, contacts, frameMs } = numbers;
+    this.push(time, [kinetic, elastic, gravity, contactEnergy, kinetic + elastic + gravity + contactEnergy, maxStretch, contacts, frameMs]);
     if (this.times.length >= CAPACITY) this.thin();
   }
 
@@ -34,11 +35,11 @@ export class History {
   load(diagnostics: Diagnostics, frameRate: number): void {
     this.clear();
     const column = (name: string) => diagnostics.columns.indexOf(name);
-    const columns = ['kinetic_energy', 'elastic_energy', 'gravity_energy', '', 'max_stretch', 'contacts', 'frame_ms'].map(column);
+    const columns = ['kinetic_energy', 'elastic_energy', 'gravity_energy', 'contact_energy', '', 'max_stretch', 'contacts', 'frame_ms'].map(column);
     const time = column('time');
     diagnostics.rows.forEach((row, k) => {
       const numbers = columns.map((index) => row[index] ?? 0);
-      numbers[3] = numbers[0] + numbers[1] + numbers[2];
+      numbers[4] = numbers[0] + numbers[1] + numbers[2] + numbers[3];
       this.push(row[time] ?? k / frameRate, numbers);
     });
   }

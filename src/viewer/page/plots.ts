@@ -15,6 +15,7 @@ const SPECS: PlotSpec[] = [
       { quantity: 'kinetic', label: 'kinetic', color: '#0072b2' },
       { quantity: 'elastic', label: 'elastic', color: '#e69f00' },
       { quantity: 'gravity', label: 'gravity', color: '#009e73' },
+      { quantity: 'contact', label: 'contact', color: '#cc79a7' },
       { quantity: 'total', label: 'total', color: '' },
     ],
   },

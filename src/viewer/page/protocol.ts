@@ -98,6 +98,7 @@ export interface FrameNumbers {
   frameMs: number;
   realtime: number;
   infeasible: number;
+  contactEnergy: number;
 }
 
 export interface Frame {
@@ -177,7 +178,7 @@ export function decodeTopology(buffer: ArrayBuffer): Topology {
 /** All poses come before all deformed vertices. */
 export function decodeFrame(buffer: ArrayBuffer, header: Header, scene: SceneMessage, topology: Topology): Frame {
   const reader = new Reader(buffer);
-  const [kinetic, elastic, gravity, maxStretch, contacts, frameMs, realtime, infeasible] = reader.f32(8);
+  const [kinetic, elastic, gravity, maxStretch, contacts, frameMs, realtime, infeasible, contactEnergy] = reader.f32(9);
   const positions = reader.f32(3 * header.particles);
   const speeds = reader.f32(header.particles);
   const states = reader.u8(header.particles);
@@ -190,7 +191,7 @@ export function decodeFrame(buffer: ArrayBuffer, header: Header, scene: SceneMes
     if (obstacle.motion === 'deforming') deformed.push(reader.f32(topology.obstacles[k].vertices.length));
   });
   return {
-    numbers: { kinetic, elastic, gravity, maxStretch, contacts, frameMs, realtime, infeasible },
+    numbers: { kinetic, elastic, gravity, maxStretch, contacts, frameMs, realtime, infeasible, contactEnergy },
     positions,
     speeds,
     states,

@@ -15,6 +15,7 @@ using testing::EndsWith;
 using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 constexpr const char* kTetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
@@ -192,7 +193,16 @@ TEST(SceneBuilder, AMissingMeshIsReportedWithTheTriedPaths) {
       [&] { (void)build(folder, {"obstacles.floor.shape={\"type\":\"mesh\",\"file\":\"no.obj\"}"}, {"/nowhere/meshes"}); });
   ASSERT_THAT(problems, ElementsAre(problem("obstacles.floor.shape.file", "no such file: looked for ")));
   EXPECT_THAT(problems[0].rule, AllOf(HasSubstr((folder.path() / "no.obj").string()), HasSubstr("/nowhere/meshes/no.obj")));
-  EXPECT_THAT(problems[0].remedy, AllOf(HasSubstr("--mesh-path"), HasSubstr("SPRUNG_MESH_PATH")));
+  EXPECT_THAT(problems[0].remedy, AllOf(HasSubstr("--mesh-path"), HasSubstr("SPRUNG_MESH_PATH"), Not(HasSubstr("did you mean"))));
+}
+
+TEST(SceneBuilder, AMissingMeshIsReportedWithTheNearestName) {
+  const SceneFolder folder;
+  folder.write("first/meshes/bunny.obj", kTetrahedron);
+  const std::vector<std::string> change{R"(obstacles.floor.shape={"type":"mesh","file":"meshes/buny.OBJ"})"};
+  const auto problems = problems_of([&] { (void)build(folder, change, {folder.path() / "first"}); });
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_THAT(problems[0].remedy, HasSubstr("did you mean \"meshes/bunny.obj\"?"));
 }
 
 TEST(SceneBuilder, ObstacleMeshesAreSharedUnlessScaled) {
