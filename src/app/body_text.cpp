@@ -2,6 +2,7 @@
 
 #include "app/mesh_text.h"
 #include "base/format.h"
+#include "network/stiffness_estimate.h"
 
 #include <fmt/format.h>
 
@@ -106,6 +107,31 @@ std::string body_rows(const SpringNetwork& network, const Body& body) {
     if (kinds[kind].count > 0) text += spring_row(kSpringKindNames[kind], kinds[kind]);
   }
   if (body.angle_bend_count > 0) text += angle_row(network.angle_bends, body);
+  return text;
+}
+
+std::string stiffness_rows(const Simulator& simulator, const Body& body) {
+  constexpr int kEstimateDigits = 2;
+  const double gravity = simulator.settings().gravity.norm();
+  if (gravity == 0.0 || body.measure == 0.0 || body.particle_count < 2) return {};
+  const StiffnessEstimate estimate = estimate_stiffness(simulator.network(), body, gravity);
+  const auto number = [](double value) { return format_number(value, kEstimateDigits); };
+  const auto& limit = simulator.settings().stretch_limit;
+  const bool limited =
+      limit && body.stretch_limited && std::ranges::find(limit->kinds, SpringKind::structural) != limit->kinds.end();
+  const double most = limited ? limit->max_stretch * estimate.length : std::numeric_limits<double>::infinity();
+  std::string sag = "nothing holds its length";
+  if (estimate.sag > most) {
+    sag = fmt::format("sinks by {} m under its weight, held by the stretch limit", number(most));
+  } else if (std::isfinite(estimate.sag)) {
+    sag = fmt::format("sinks by {} m under its weight", number(estimate.sag));
+  }
+  std::string periods = fmt::format("swings in {} s", number(estimate.swing_period));
+  if (std::isfinite(estimate.stretch_period)) periods += fmt::format(", bounces in {} s", number(estimate.stretch_period));
+  std::string text =
+      text_row("stiffness", fmt::format("estimated, hung by one end, {} m long: {}, {}", number(estimate.length), sag, periods));
+  if (estimate.overhang > 0.0)
+    text += text_row("", fmt::format("an overhang of {} m droops by 41 degrees", number(estimate.overhang)));
   return text;
 }
 

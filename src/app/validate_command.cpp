@@ -24,6 +24,19 @@ std::string time_text(const LoadedScene& loaded) {
          text_row("per frame", describe_steps(loaded) + "; " + stable);
 }
 
+/// How long a frame takes on one thread, from what cloths of 64 x 64 took on the machine of README's tables. Newton's method takes
+/// longer.
+std::string cost_row(const LoadedScene& loaded) {
+  constexpr double kFree = 0.1e-3;      // [ms] per particle and step
+  constexpr double kContact = 0.55e-3;  // in contact with a mesh
+  const auto milliseconds = [](double time) { return format_number(time < 10.0 ? time : std::round(time), time < 10.0 ? 2 : 6); };
+  const double moved = static_cast<double>(loaded.steps_per_frame) * loaded.simulator.network().particle_count();
+  const std::string contact = loaded.simulator.environment().obstacles().empty()
+                                  ? ""
+                                  : fmt::format(", {} ms with all particles in contact", milliseconds(moved * kContact));
+  return text_row("cost", fmt::format("estimated, one thread: {} ms a frame{}", milliseconds(moved * kFree), contact));
+}
+
 const char* shape_name(const ObstacleGeometry& geometry) {
   constexpr std::array<const char*, std::variant_size_v<ObstacleGeometry>> kNames{
       "mesh", "sequence", "sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "half-space"};
@@ -64,10 +77,10 @@ std::string obstacle_row(const Obstacle& obstacle) {
 ExitCode validate(const ValidateOptions& options) {
   const LoadedScene loaded = load_scene(options.scene);
   const SpringNetwork& network = loaded.simulator.network();
-  std::string text = text_row("scene", loaded.scene.file.string()) + time_text(loaded);
+  std::string text = text_row("scene", loaded.scene.file.string()) + time_text(loaded) + cost_row(loaded);
   if (const std::string solver = loaded.simulator.stretch_solver(); !solver.empty())
     text += text_row("stretch", "solved by " + solver);
-  for (const Body& body : network.bodies) text += body_rows(network, body);
+  for (const Body& body : network.bodies) text += body_rows(network, body) + stiffness_rows(loaded.simulator, body);
   for (const Obstacle& obstacle : loaded.simulator.environment().obstacles()) text += obstacle_row(obstacle);
   for (const NamedReport& mesh : loaded.meshes) text += mesh_row(mesh);
   for (const std::string& warning : loaded.warnings) text += text_row("warning", warning);

@@ -18,6 +18,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using testing::Ending;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::listing;
 using testing::Program;
 using testing::read_text;
@@ -250,6 +251,30 @@ TEST_F(CommandLine, ValidatePrintsDerivedMaterials) {
                     HasSubstr("structural  k_s 15 to 30 N/m, k_d 0.25 N s/m, rest length 0.5 m"),
                     HasSubstr("shear       k_s 7 N/m, k_d 0."), HasSubstr("rest length 0.707107 m"),
                     HasSubstr("bend        14 angles, k 0.2 to 0.4 N m, damping 0.01 N m s, between segments of 0.5 m")));
+}
+
+// A rope of 1 m with EA = 1000 N and 0.1 kg hangs by g m L / (2 EA) = 0.49 mm lower and swings as a rod of that length: 1.64 s.
+TEST_F(CommandLine, ValidateEstimatesHowStiffABodyIs) {
+  json scene = rope_scene();
+  scene["bodies"]["rope"]["springs"] = json::parse(R"({"structural": {"modulus": 1000}})");
+  const std::string text = run({"validate", save(scene)}).out;
+  EXPECT_THAT(text, HasSubstr("1 m long: sinks by 0.00049 m under its weight, swings in 1.6 s, bounces in 0.04 s\n"));
+  EXPECT_THAT(text, HasSubstr("cost        estimated, one thread: "));
+  EXPECT_THAT(text, Not(HasSubstr("droops")));
+  scene["bodies"]["rope"]["springs"] = json::parse(R"({"structural": {"stiffness": 0}})");
+  EXPECT_THAT(run({"validate", save(scene)}).out, HasSubstr("nothing holds its length, swings in 1.6 s\n"));
+  scene["stretch_limit"] = {{"max_stretch", 0.05}};
+  EXPECT_THAT(run({"validate", save(scene)}).out, HasSubstr("sinks by 0.05 m under its weight, held by the stretch limit"));
+}
+
+TEST_F(CommandLine, MaterialsListsAllOrDescribesOne) {
+  const Ending all = run({"materials"});
+  EXPECT_EQ(all.code, 0);
+  EXPECT_THAT(all.out, AllOf(HasSubstr("\ncotton "), HasSubstr("\nsteel_cable "), HasSubstr("\nsoft_jelly ")));
+  EXPECT_THAT(run({"materials", "cotton"}).out, HasSubstr("density = 0.1238 kg/m^2\n    published: "));
+  const Ending unknown = run({"materials", "coton"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("sprung: error: there is no material coton; did you mean \"cotton\"?\n"));
 }
 
 TEST_F(CommandLine, InfoDescribesAMeshAsObstacleAndAsBody) {
