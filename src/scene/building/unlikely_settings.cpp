@@ -60,6 +60,7 @@ void note_unusual_sizes(const Scene& scene, const BuiltScene& built, GroupedWarn
 
 void note_unused_springs(const Scene& scene, const SpringNetwork& network, GroupedWarnings& bodies) {
   for (const BodyScene& body : scene.bodies) {
+    if (!body.preset.empty()) continue;  // a material has springs for every shape
     const Body& built = *std::ranges::find(network.bodies, body.name, &Body::name);
     const std::array<const std::optional<SpringMaterial>*, 3> materials{&body.springs.structural, &body.springs.shear,
                                                                         &body.springs.bend};

@@ -330,6 +330,13 @@ TEST(SceneBuilder, WarnsOfSpringsThatAShapeDoesNotHave) {
               IsEmpty());
 }
 
+TEST(SceneBuilder, SpringsOfAMaterialThatAMeshDoesNotHaveCauseNoWarning) {
+  const SceneFolder folder;
+  folder.write("body.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_THAT(build(folder, {R"(bodies.banner={"shape":{"type":"mesh","file":"body.obj"},"material":"cotton"})"}).warnings,
+              IsEmpty());
+}
+
 TEST(SceneBuilder, PrimitivesAreScaled) {
   const SceneFolder folder;
   const BuiltScene built = build(folder, {R"(obstacles.a={"shape":{"type":"capsule","radius":1,"length":2},"place":{"scale":3}})",
