@@ -307,20 +307,22 @@ std::vector<Material> make_materials() {
       "; 10/17 E of structural and 36/85 E of shear springs make an isotropic solid of Poisson's ratio 1/4, the one of springs";
   all.push_back(solid({
       "soft_jelly",
-      "a gelatin gel, 1 part of powder in 20 of water",
-      {1020.0, chosen("water and 5 % of gelatin")},
-      {4340.0, published("E = 4.34 kPa in compression, Bonavia 2025, arXiv 2512.20502" + isotropic)},
-      {5e-3, chosen("a cube of 0.3 m wobbles for about a second")},
-      {0.25, 0.30, rubbing("wet gels slip")},
-  }));
-  all.push_back(solid({
-      "firm_jelly",
       "a gelatin gel, 1 part of powder in 10 of water",
       {1040.0, chosen("water and 10 % of gelatin")},
       {15200.0, published("E = 15.2 kPa, from the power law between 4.34 kPa at 20:1 and 277 kPa at 2:1, Bonavia 2025, arXiv "
                           "2512.20502" +
                           isotropic)},
       {3e-3, chosen("a cube of 0.3 m wobbles for about a second")},
+      {0.25, 0.30, rubbing("wet gels slip")},
+  }));
+  all.push_back(solid({
+      "firm_jelly",
+      "a gelatin gel, 1 part of powder in 5 of water",
+      {1060.0, chosen("water and 20 % of gelatin")},
+      {53000.0, published("E = 53 kPa, from the power law between 4.34 kPa at 20:1 and 277 kPa at 2:1, Bonavia 2025, arXiv "
+                          "2512.20502" +
+                          isotropic)},
+      {1e-3, chosen("a cube of 0.3 m wobbles for about a second")},
       {0.25, 0.30, rubbing("wet gels slip")},
   }));
   all.push_back(solid({
