@@ -27,8 +27,8 @@ class ClosestPointTracker {
 
   /// The search that the element needs: none until it has moved by a small fraction of `gap` [m], the whole surface once its
   /// displacements since the last such search add up to `gap`. `drift` [m] is the displacement of the surface at the closest point
-  /// in this interval. The caller makes the search that is returned, then calls set_corners().
-  [[nodiscard]] Search next_search(Index element, const ElementCorners& corners, const Vector3& drift, double gap);
+  /// in this interval. `is_round` as of ObstacleShape. The caller makes the search that is returned, then calls set_corners().
+  [[nodiscard]] Search next_search(Index element, const ElementCorners& corners, const Vector3& drift, double gap, bool is_round);
 
   /// Records where the element was in the search that next_search() requested.
   void set_corners(Index element, const std::array<Vector3, 3>& corners) {

@@ -160,7 +160,7 @@ const SafeRegion& PatchSafeRegions::renew_closest_points(const ObstacleShape& sh
   const PatchTopology::Corners& corners = topology.corners(e);
   ElementCorners from{.count = corners.count};
   for (std::size_t k = 0; k < at(corners.count); ++k) from.x[k] = paths.from(corners.slots[k]);
-  const auto search = closest_points_.next_search(e, from, region.drift, demand.gap);
+  const auto search = closest_points_.next_search(e, from, region.drift, demand.gap, shape.is_round());
   if (search == ClosestPointTracker::Search::none) return region;
   SafeRegionRequest asked = request(demand, corners.pinned, ElementPath(paths, corners));
   asked.reach = std::max(asked.reach, asked.exact);

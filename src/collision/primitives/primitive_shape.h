@@ -47,6 +47,10 @@ class PrimitiveShape final : public ObstacleShape {
     region.weights = again.weights;
   }
 
+  [[nodiscard]] bool is_round() const override {
+    return !std::is_same_v<Geometry, BoxGeometry> && !std::is_same_v<Geometry, HalfSpaceGeometry>;
+  }
+
   [[nodiscard]] bool touches(const ElementCorners& element, double tolerance) const override {
     return !(separation(geometry_, element, box_around(element, tolerance)).gap > tolerance);
   }

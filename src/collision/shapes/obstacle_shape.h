@@ -94,6 +94,9 @@ class ObstacleShape {
   virtual void update_closest_points(const ElementCorners& element, const SafeRegionRequest& request, bool fresh,
                                      SafeRegion& region) const = 0;
 
+  /// Whether the surface curves within the size of an element.
+  [[nodiscard]] virtual bool is_round() const { return false; }
+
   /// Advances a region from the end of the previous interval to the end of this one: it moves with a surface that deforms. Returns
   /// false if the region belongs to another time and cannot be advanced.
   virtual bool advance_region(SafeRegion& /*region*/) const { return true; }
