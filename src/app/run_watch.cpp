@@ -101,15 +101,21 @@ void RunWatch::note_handovers() {
   const std::vector<StretchHandover>& handovers = simulator_.state().stretch_handovers;
   handed_over_.resize(handovers.size(), false);
   std::map<std::int64_t, std::vector<std::string>> bodies;  // by step
+  std::vector<std::string> back;
   for (std::size_t b = 0; b < handovers.size(); ++b) {
-    if (quiet_ || handed_over_[b] || !handovers[b].solved_since) continue;
-    handed_over_[b] = true;
-    bodies[*handovers[b].solved_since].push_back(simulator_.network().bodies[b].name);
+    const std::optional<std::int64_t>& since = handovers[b].solved_since;
+    const std::string& name = simulator_.network().bodies[b].name;
+    if (!quiet_ && since && !handed_over_[b]) bodies[*since].push_back(name);
+    if (!quiet_ && !since && handed_over_[b]) back.push_back(name);
+    handed_over_[b] = since.has_value();
   }
   for (const auto& [step, names] : bodies) {
     print_message(fmt::format("gauss_seidel kept missing the stretch limit of {}; newton solves it after step {}",
                               names_text("body", "bodies", names), step));
   }
+  if (back.empty()) return;
+  print_message(
+      fmt::format("newton holds the stretch limit of {} no better; gauss_seidel goes on", names_text("body", "bodies", back)));
 }
 
 void RunWatch::note_truncated(const FrameDiagnostics& frame) {

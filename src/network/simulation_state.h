@@ -8,9 +8,13 @@
 
 namespace sprung {
 
+/// Passes remove the excess of an impact in fewer steps than this, and substeps have reached their smallest length by then.
+inline constexpr int kFirstPatience = 16;
+
 /// The stretch limit of one body: passes or a global solve enforce it.
 struct StretchHandover {
-  int missed_steps = 0;                      ///< consecutive steps, up to the last one, in which passes missed the limit
+  int missed_steps = 0;           ///< consecutive steps, up to the last one, in which the present solver missed the limit
+  int patience = kFirstPatience;  ///< missed steps after which the other solver is tried
   std::optional<std::int64_t> solved_since;  ///< the step after which the global solve took over; none: passes enforce the limit
 };
 

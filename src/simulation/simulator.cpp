@@ -80,16 +80,18 @@ bool Simulator::Implementation::anything_moves() const {
 }
 
 StepReport Simulator::Implementation::step() {
-  if (constraints.contacts().can_collide()) {
+  const std::vector<std::size_t> compared = bodies_to_compare(state);
+  if (constraints.contacts().can_collide() || !compared.empty()) {
     begin = {state, energy_watch, constraints.permitted_crossings()};
   }
   kept_contacts.reset();
   const int factor = factor_for_rotation();
   StepReport report = make_step(factor, std::numeric_limits<Index>::max());
   if (may_retry(report.max_infeasible, begin.state)) report = repeat_step(report, factor);
+  if (!compared.empty()) report = compare_solvers(compared, report, factor);
   note_step(report.infeasible, state);
   if (refinement) choose_substeps(report);
-  if (const StretchLimit* limit = constraints.limit()) hand_over_missed(network, *limit, report.stretch_excess, state);
+  if (const StretchLimit* limit = constraints.limit()) note_missed(network, *limit, report.stretch_excess, state);
   return report;
 }
 

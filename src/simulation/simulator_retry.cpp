@@ -1,7 +1,9 @@
 #include "base/error.h"
 #include "simulation/simulator_implementation.h"
+#include "simulation/step/limit_handover.h"
 #include "simulation/step/step_retry.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace sprung {
@@ -20,13 +22,40 @@ StepReport Simulator::Implementation::repeat_step(const StepReport& first, int f
     if (report) best = attempt_of(*report);
   }
   constraints.look_ahead(false);
+  const StepReport report = best.report;
+  take(std::move(best));
+  note_retry(first.max_infeasible, report.max_infeasible, state);
+  return report;
+}
+
+// What a solver missed in former steps says nothing of what the other would miss in them, so both make the same step.
+StepReport Simulator::Implementation::compare_solvers(const std::vector<std::size_t>& bodies, const StepReport& first, int factor) {
+  const double excess = stretch_excess_of(bodies);
+  Attempt present = attempt_of(first);
+  const bool to_newton = !begin.state.stretch_handovers[bodies.front()].solved_since;
+  change_solver(bodies, begin.state);
+  const auto other = attempt(factor, first.max_infeasible + 1);
+  const bool changes = other && is_worth_changing(to_newton, excess, stretch_excess_of(bodies));
+  const StepReport report = changes ? *other : present.report;
+  if (!changes) take(std::move(present));
+  note_comparison(bodies, changes, state);
+  return report;
+}
+
+/// The largest excess of these bodies over the stretch limit [fraction of the rest length].
+double Simulator::Implementation::stretch_excess_of(const std::vector<std::size_t>& bodies) const {
+  double largest = 0.0;
+  for (const std::size_t b : bodies) largest = std::max(largest, constraints.limit()->excess(state.x, network.bodies[b]));
+  return largest;
+}
+
+/// Goes on from an attempt.
+void Simulator::Implementation::take(Attempt&& best) {
   constraints.roll_back(best.crossings);
   state = std::move(best.state);
   environment.set_interval(time(), time());
   energy_watch = best.watch;
   kept_contacts = std::move(best.contacts);
-  note_retry(first.max_infeasible, best.report.max_infeasible, state);
-  return best.report;
 }
 
 Attempt Simulator::Implementation::attempt_of(const StepReport& report) const {

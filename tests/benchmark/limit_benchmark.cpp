@@ -31,7 +31,8 @@ const StretchLimitSettings kClothLimit{.max_stretch = 0.0,
                                        .kinds = {SpringKind::structural, SpringKind::shear},
                                        .iterations = 1,
                                        .tolerance = 0.01,
-                                       .tethers = true};
+                                       .tethers = true,
+                                       .solver = StretchLimitSettings::Solver::gauss_seidel};
 
 /// For cloths with a global solve: the same tolerance for stretch alone. Limits of compression need passes.
 const StretchLimitSettings kSolvedClothLimit{.max_stretch = 0.0, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};

@@ -15,6 +15,8 @@
 namespace sprung {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 // Without any tolerance a limit is never reached exactly: steps are chosen for this excess then.
 constexpr double kLeastExcess = 1.0e-3;
 
@@ -37,6 +39,20 @@ SquaredLengths extremes(const SpringBatches& batches, Index begin, Index end, co
 
 LengthRange length_range(const StretchLimitSettings& settings) {
   return {.least = 1.0 - settings.max_compression, .most = 1.0 + settings.max_stretch};
+}
+
+// Layers of a cloth that meet within a step are stopped by truncation, which knows no springs: those between stopped and moving
+// particles stretch. Layers of a body that falls by its own extent L reach a speed of about sqrt(a L), so they need a step in which
+// they move by at most half the thickness. Measured on a cloth of 64 x 64 that drapes over a bunny: 36 % of stretch with a third of
+// these steps, 7 % with these. Springs with stiffness pull such particles back by themselves.
+double step_for_layers(const SpringNetwork& network, const Body& body, double acceleration) {
+  const double thickness = body.material.thickness;
+  if (!body.contact.self || thickness == 0.0 || acceleration == 0.0) return kInfinity;
+  const auto springs_end = network.springs.stiffness.begin() + body.first_spring + body.spring_count;
+  if (std::any_of(springs_end - body.spring_count, springs_end, [](double stiffness) { return stiffness > 0.0; })) return kInfinity;
+  const auto positions = network.positions.middleCols(body.first_particle, body.particle_count);
+  const double extent = (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff()).maxCoeff();
+  return 0.5 * thickness / std::sqrt(acceleration * extent);
 }
 
 /// Whether springs may shrink by no more than a fraction of the wanted excess.
@@ -126,11 +142,11 @@ double StretchLimit::suggested_step(double acceleration) const {
     const double worth = shared ? 1.0 + std::pow(passes - 1.0, 1.5) : std::cbrt(passes * passes);
     return std::min(alone, largest_load(network_, body, graph, {.tethers = true, .shared = shared}) / worth);
   };
-  double smallest = std::numeric_limits<double>::infinity();
+  double smallest = kInfinity;
   for (const Body& body : network_.bodies) {
     if (newton_ && newton_->solves(body) && settings_.max_compression == 1.0) continue;
     const double gained = acceleration * gained_by(body);
-    if (gained > 0.0) smallest = std::min(smallest, std::sqrt(excess / gained));
+    if (gained > 0.0) smallest = std::min({smallest, std::sqrt(excess / gained), step_for_layers(network_, body, acceleration)});
   }
   return smallest;
 }

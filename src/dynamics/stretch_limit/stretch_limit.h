@@ -64,8 +64,9 @@ class StretchLimit {
 
   /// The step [s] at which `iterations` passes a step keep the excess at about `wanted_excess` while each body hangs at rest under
   /// `acceleration` [m/s^2] by its pins or over an obstacle: in each step gravity adds g dt^2 per supported particle, which the
-  /// passes must distribute. It is larger with tethers to taut pins (see are_pins_taut). Infinity if nothing is limited, and for
-  /// bodies that Newton's method solves, which need no small steps.
+  /// passes must distribute. It is larger with tethers to taut pins (see are_pins_taut). For bodies with self-contact and without
+  /// stiffness it is also at most the time in which falling layers move by half their thickness. Infinity if nothing is limited,
+  /// and for bodies that Newton's method solves, which need no small steps.
   [[nodiscard]] double suggested_step(double acceleration) const;
 
   /// Whether steps may be refined where the limit is missed. The correction of an excess in a smaller step gives springs more

@@ -3,9 +3,13 @@
 
 #include "network/spring_network.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace sprung {
+
+/// A quarter of `max_stretch`, at least 0.001: a limit that is a tenth as tight needs a tenth of the passes.
+[[nodiscard]] constexpr double default_tolerance(double max_stretch) { return std::max(0.25 * max_stretch, 0.001); }
 
 struct StretchLimitSettings {
   enum class Solver : std::uint8_t {
@@ -17,10 +21,10 @@ struct StretchLimitSettings {
   double max_stretch = 0.02;                              ///< >= 0: lengths stay below d (1 + max_stretch)
   double max_compression = 1.0;                           ///< in [0, 1]: lengths stay above d (1 - max_compression)
   std::vector<SpringKind> kinds{SpringKind::structural};  ///< which springs are limited
-  int iterations = 32;       ///< largest number of passes a step, >= 1; more where surfaces stop particles
-  double tolerance = 0.001;  ///< passes end at this excess over the limit, relative to d, >= 0
-  bool tethers = false;      ///< particles stay within reach of their pins: see LongRangeAttachments
-  Solver solver = Solver::gauss_seidel;
+  int iterations = 32;                                ///< largest number of passes a step, >= 1; more where surfaces stop particles
+  double tolerance = default_tolerance(max_stretch);  ///< passes end at this excess over the limit, relative to d, >= 0
+  bool tethers = false;                               ///< particles stay within reach of their pins: see LongRangeAttachments
+  Solver solver = Solver::automatic;
 };
 
 /// Input of the automatic choice between passes and Newton's method.

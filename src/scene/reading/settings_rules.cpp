@@ -84,9 +84,9 @@ StretchLimitScene read_stretch_limit(Fields& fields, const Json& bodies) {
   limit.max_compression = fields.value("max_compression", number(kFraction), limit.max_compression).value_or(0.0);
   limit.kinds = read_kinds(fields);
   limit.iterations = fields.value("iterations", integer(1, 1'000'000), limit.iterations).value_or(1);
-  const auto solver = fields.value("solver", word_of({"gauss_seidel", "newton", "auto"}), "gauss_seidel");
+  const auto solver = fields.value("solver", word_of({"gauss_seidel", "newton", "auto"}), "auto");
   limit.solver = static_cast<StretchLimitSettings::Solver>(solver.value_or(0));
-  limit.tolerance = fields.value("tolerance", number(kNotNegative), limit.tolerance).value_or(0.0);
+  limit.tolerance = fields.value("tolerance", number(kNotNegative), default_tolerance(limit.max_stretch)).value_or(0.0);
   limit.tethers = fields.value("tethers", boolean(), limit.tethers).value_or(false);
   read.bodies = fields.optional("bodies", list_of(name_of(bodies), 1)).value_or(std::vector<std::string>{});
   return read;

@@ -1,16 +1,28 @@
-// Hands bodies whose stretch limit the Gauss-Seidel passes keep missing over to a global solve.
+// Hands bodies whose stretch limit their solver keeps missing over to the other one, if that holds it better on the same step.
 #pragma once
 
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "network/simulation_state.h"
 
+#include <vector>
+
 namespace sprung {
 
-/// Passes remove the excess of an impact in fewer steps than this, and substeps have reached their smallest length by then.
-inline constexpr int kMaxMissedSteps = 16;
+/// Counts for each eligible body the steps in a row that ended with more than wanted_excess(). `excess` is the largest excess of
+/// all bodies after the present step [fraction of the rest length].
+void note_missed(const SpringNetwork& network, const StretchLimit& limit, double excess, SimulationState& state);
 
-/// Hands over, permanently, each eligible body whose excess was larger than wanted_excess() after kMaxMissedSteps steps in a row.
-/// `excess` is the largest excess of all bodies after the present step [fraction of the rest length].
-void hand_over_missed(const SpringNetwork& network, const StretchLimit& limit, double excess, SimulationState& state);
+/// The bodies, by number, for which the other solver is to be tried in the next step.
+[[nodiscard]] std::vector<std::size_t> bodies_to_compare(const SimulationState& state);
+
+/// Changes the solver of these bodies.
+void change_solver(const std::vector<std::size_t>& bodies, SimulationState& state);
+
+/// Whether the other solver is worth the change, by the excess that each left after the same step. Newton's method costs more, so
+/// it must leave at most four fifths of the excess of the passes.
+[[nodiscard]] bool is_worth_changing(bool to_newton, double excess, double excess_of_other);
+
+/// Starts to count again. Bodies that kept their solver wait twice as long as before.
+void note_comparison(const std::vector<std::size_t>& bodies, bool changed, SimulationState& state);
 
 }  // namespace sprung

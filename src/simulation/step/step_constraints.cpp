@@ -23,6 +23,9 @@ constexpr int kRelaxPasses = 2;
 // Calls of the limit's solver and passes that correct_positions() makes at most. Excess that remains is corrected by the steps.
 constexpr int kCorrections = 16;
 
+// The excess at which correct_positions() ends. The next step would remove more of it at once, with speed.
+constexpr double kCorrected = 1.0e-6;
+
 }  // namespace
 
 StepConstraints::StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, double steady_acceleration,
@@ -49,12 +52,16 @@ void StepConstraints::apply(SimulationState& state, const Forces& forces, double
 void StepConstraints::correct_positions(SimulationState& state, double dt) {
   dt_ = dt;
   StepReport report;
-  for (int k = 0; limit_ && k < kCorrections && limit_->excess(state.x) > limit_->settings().tolerance; ++k) {
+  for (int k = 0; limit_ && k < kCorrections && limit_->excess(state.x) > kCorrected; ++k) {
     begin(state);
     const Points start = state.x;
     advanced_ = start;
     if (projects_contacts()) contacts_.find(motion());
     make_passes(state, report);
+    for (int pass = 0; pass < limit_->settings().iterations; ++pass) {
+      if (projects_contacts()) contacts_.project(state.x);
+      if (limit_->project(start, state.x) <= kCorrected) break;
+    }
     int rounds = 0;
     const double excess = limit_->excess(state.x);
     const StepTruncation::Relax relax_again = [&](Points& positions) {
@@ -78,7 +85,7 @@ void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
   const bool projects = projects_contacts();
   const double fall = steady_acceleration_ * dt_ * dt_;
   const std::optional<int> solves =
-      limit_ ? limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers) : std::nullopt;
+      limit_ && !repeats_ ? limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers) : std::nullopt;
   report.limit_solves = solves.value_or(0);
   const int limit_passes = limit_ ? limit_->settings().iterations + (solves ? 1 : 0) : 0;  // the first after a solve only measures
   if (projects) report.iterations = contacts_.push_out(state.x, kContactPasses - limit_passes).passes;

@@ -24,7 +24,12 @@ class StepConstraints {
   /// See StepTruncation.
   [[nodiscard]] const PermittedCrossings& permitted_crossings() const { return contacts_.permitted_crossings(); }
   void roll_back(const PermittedCrossings& permitted) { contacts_.roll_back(permitted); }
-  void look_ahead(bool ahead) { contacts_.look_ahead(ahead); }
+  /// While a step with infeasible particles is repeated, contacts are found farther ahead, and passes alone enforce the limit: a
+  /// global solve does not know contacts and moves particles far.
+  void look_ahead(bool ahead) {
+    contacts_.look_ahead(ahead);
+    repeats_ = ahead;
+  }
 
   /// Projects the advanced state onto contact and the stretch limit, truncates it, and recovers the velocities at the end of the
   /// step of `dt` [s]. Adds counts and the remaining stretch to the report. Requires begin(), and that the environment's interval
@@ -69,6 +74,7 @@ class StepConstraints {
   ConstrainedDirections constrained_;  ///< of the last call of Integrator::respond_to_contact
   Points responded_;                   ///< positions after that call
   double dt_ = 0.0;
+  bool repeats_ = false;
 };
 
 }  // namespace sprung

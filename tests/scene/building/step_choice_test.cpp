@@ -117,7 +117,7 @@ TEST(StepChoice, APenaltyBounceTakesThreeAutoSteps) {
 TEST(StepChoice, AutoRespectsTheStretchLimit) {
   const BuiltScene free = build(0.0);
   const BuiltScene limited =
-      build(0.0, {"bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1,\"tolerance\":1e-3,\"max_stretch\":0}"});
+      build(0.0, {"bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1,\"tolerance\":1e-3,\"max_stretch\":0,\"solver\":\"gauss_seidel\"}"});
   EXPECT_LT(limited.settings.step, free.settings.step);
   const StretchLimit limit(limited.network, *limited.settings.stretch_limit);
   EXPECT_LE(limited.settings.step, limit.suggested_step(9.81));
@@ -128,7 +128,7 @@ TEST(StepChoice, AutoAllowsSubstepsForSuitableCloths) {
   const auto substeps = [](const std::vector<std::string>& changes) {
     const SceneFolder folder;
     const std::string text = R"({"duration": 1, "stretch_limit": {"max_compression": 0, "kinds": ["structural", "shear"],
-        "tethers": true}, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [8, 8]}, "mass": 1,
+        "tethers": true, "solver": "gauss_seidel"}, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [8, 8]}, "mass": 1,
         "springs": {"structural": {"stiffness": 0}, "shear": {"stiffness": 0}},
         "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
     return build_scene(folder.read(text, changes)).settings.max_substeps;
@@ -209,7 +209,7 @@ TEST(StepChoice, AutoOfImplicitEulerIsAFrameOrTheStepOfTheStretchLimit) {
   EXPECT_TRUE(std::isinf(free.largest_stable_step));
   EXPECT_EQ(free.steps_per_frame, 1);
   EXPECT_EQ(build(1.0e6, {implicit, "step=0.1"}).steps_per_frame, 1) << "a given step is never refused";
-  const BuiltScene limited = build(0.0, {implicit, "bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1}"});
+  const BuiltScene limited = build(0.0, {implicit, "bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1,\"solver\":\"gauss_seidel\"}"});
   EXPECT_GT(limited.steps_per_frame, 1);
   EXPECT_LE(limited.settings.step, StretchLimit(limited.network, *limited.settings.stretch_limit).suggested_step(9.81));
 }

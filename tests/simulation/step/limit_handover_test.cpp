@@ -58,24 +58,52 @@ Outcome run(const SpringNetwork& network, Solver solver, int steps, const std::v
   return outcome;
 }
 
-TEST(LimitHandover, HappensAfterEnoughMissedStepsInARow) {
+TEST(LimitHandover, IsDueAfterEnoughMissedStepsInARow) {
   const SpringNetwork network = limp_cloth(4, true);
   const StretchLimit limit(network, limit_of(Solver::automatic));
   SimulationState state = initial_state(network);
   const double most = wanted_excess(limit.settings());
-  const auto see = [&](double stretch, int times) {
+  const auto is_due_after = [&](double stretch, int times) {
     state.x = (1.0 + limit.settings().max_stretch + stretch) * network.positions;
-    for (int k = 0; k < times; ++k, ++state.step) hand_over_missed(network, limit, limit.excess(state.x), state);
-    return state.stretch_handovers.front().solved_since;
+    for (int k = 0; k < times; ++k, ++state.step) note_missed(network, limit, limit.excess(state.x), state);
+    return !bodies_to_compare(state).empty();
   };
-  EXPECT_FALSE(see(1.01 * most, kMaxMissedSteps - 1));
-  EXPECT_FALSE(see(0.99 * most, 1));
-  EXPECT_FALSE(see(1.01 * most, kMaxMissedSteps - 1));
-  EXPECT_EQ(see(1.01 * most, 1), 2 * kMaxMissedSteps - 1);
-  EXPECT_EQ(see(0.0, 100), 2 * kMaxMissedSteps - 1) << "the handover is permanent";
+  EXPECT_FALSE(is_due_after(1.01 * most, kFirstPatience - 1));
+  EXPECT_FALSE(is_due_after(0.99 * most, 1));
+  EXPECT_FALSE(is_due_after(1.01 * most, kFirstPatience - 1));
+  EXPECT_TRUE(is_due_after(1.01 * most, 1));
 }
 
-TEST(LimitHandover, HappensPerBody) {
+TEST(LimitHandover, WaitsTwiceAsLongAfterAComparisonThatChangedNothing) {
+  SimulationState state = initial_state(limp_cloth(4, true));
+  state.stretch_handovers[0].missed_steps = kFirstPatience;
+  note_comparison({0}, false, state);
+  EXPECT_TRUE(bodies_to_compare(state).empty());
+  state.stretch_handovers[0].missed_steps = 2 * kFirstPatience - 1;
+  EXPECT_TRUE(bodies_to_compare(state).empty());
+  ++state.stretch_handovers[0].missed_steps;
+  EXPECT_EQ(bodies_to_compare(state), std::vector<std::size_t>{0});
+  note_comparison({0}, true, state);
+  EXPECT_EQ(state.stretch_handovers[0].patience, kFirstPatience);
+}
+
+TEST(LimitHandover, GoesThereAndBack) {
+  SimulationState state = initial_state(limp_cloth(4, true));
+  state.step = 5;
+  change_solver({0}, state);
+  EXPECT_EQ(state.stretch_handovers[0].solved_since, 5);
+  change_solver({0}, state);
+  EXPECT_FALSE(state.stretch_handovers[0].solved_since);
+}
+
+TEST(LimitHandover, IsWorthItWhereNewtonLeavesFourFifthsOrPassesHoldItAsWell) {
+  EXPECT_TRUE(is_worth_changing(true, 0.1, 0.079));
+  EXPECT_FALSE(is_worth_changing(true, 0.1, 0.081));
+  EXPECT_TRUE(is_worth_changing(false, 0.1, 0.1));
+  EXPECT_FALSE(is_worth_changing(false, 0.1, 0.11));
+}
+
+TEST(LimitHandover, CountsPerBody) {
   NetworkBuilder builder;
   const SpringMaterials materials{.structural = SpringMaterial{}, .shear = {}, .bend = {}};
   for (const char* name : {"first", "second"}) {
@@ -89,9 +117,8 @@ TEST(LimitHandover, HappensPerBody) {
   state.x.rightCols(9) *= 1.5;
   EXPECT_EQ(limit.excess(state.x, network.bodies[0]), 0.0);
   EXPECT_EQ(limit.excess(state.x, network.bodies[1]), limit.excess(state.x));
-  for (int step = 0; step < 100; ++step) hand_over_missed(network, limit, limit.excess(state.x), state);
-  EXPECT_FALSE(state.stretch_handovers[0].solved_since);
-  EXPECT_TRUE(state.stretch_handovers[1].solved_since);
+  for (int step = 0; step < 100; ++step) note_missed(network, limit, limit.excess(state.x), state);
+  EXPECT_EQ(bodies_to_compare(state), std::vector<std::size_t>{1});
 }
 
 TEST(LimitHandover, ExcludesSolidsCompressionLimitsAndExplicitPasses) {
