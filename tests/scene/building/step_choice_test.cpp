@@ -117,7 +117,8 @@ TEST(StepChoice, APenaltyBounceTakesThreeAutoSteps) {
 TEST(StepChoice, AutoRespectsTheStretchLimit) {
   const BuiltScene free = build(0.0);
   const BuiltScene limited =
-      build(0.0, {"bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1,\"tolerance\":1e-3,\"max_stretch\":0,\"solver\":\"gauss_seidel\"}"});
+      build(0.0, {"bodies.pair.shape.particles=50",
+                  "stretch_limit={\"iterations\":1,\"tolerance\":1e-3,\"max_stretch\":0,\"solver\":\"gauss_seidel\"}"});
   EXPECT_LT(limited.settings.step, free.settings.step);
   const StretchLimit limit(limited.network, *limited.settings.stretch_limit);
   EXPECT_LE(limited.settings.step, limit.suggested_step(9.81));
@@ -209,7 +210,8 @@ TEST(StepChoice, AutoOfImplicitEulerIsAFrameOrTheStepOfTheStretchLimit) {
   EXPECT_TRUE(std::isinf(free.largest_stable_step));
   EXPECT_EQ(free.steps_per_frame, 1);
   EXPECT_EQ(build(1.0e6, {implicit, "step=0.1"}).steps_per_frame, 1) << "a given step is never refused";
-  const BuiltScene limited = build(0.0, {implicit, "bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1,\"solver\":\"gauss_seidel\"}"});
+  const BuiltScene limited =
+      build(0.0, {implicit, "bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1,\"solver\":\"gauss_seidel\"}"});
   EXPECT_GT(limited.steps_per_frame, 1);
   EXPECT_LE(limited.settings.step, StretchLimit(limited.network, *limited.settings.stretch_limit).suggested_step(9.81));
 }
