@@ -76,7 +76,7 @@ void add(const std::string& title, const std::string& scene, const std::vector<s
       ->Unit(benchmark::kMillisecond);
 }
 
-[[maybe_unused]] const bool added = [] {
+[[maybe_unused]] const bool kAdded = [] {
   for (const int side : {64, 128, 256}) add("drape/" + std::to_string(side), "drape", {resolution("cloth", side)});
   for (const int side : {64, 128}) {
     add("drape_with_self_contact/" + std::to_string(side), "drape", {resolution("cloth", side), "bodies.cloth.self_contact=true"});
