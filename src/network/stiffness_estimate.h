@@ -1,4 +1,4 @@
-// Closed-form estimates of how far a body gives way to its own weight.
+// Estimates of a body's stiffness: how far its own weight stretches and bends it, and how long its swings take.
 #pragma once
 
 #include "network/spring_network.h"
@@ -11,8 +11,8 @@ struct StiffnessEstimate {
   double sag = 0.0;             ///< rho g L^2 / (2 M): how far the lower end sinks as springs stretch [m], without a stretch limit
   double stretch_period = 0.0;  ///< 4 L sqrt(rho / M): slowest motion along the length [s]
   double swing_period = 0.0;    ///< 2 pi sqrt(2 L / (3 g)): of a rigid pendulum [s]
-  double overhang =
-      0.0;  ///< 2 (B / (rho g))^(1/3) [m]: the length that droops by 41.5 degrees (Peirce 1930); 0 without angle bends
+  /// 2 (B / (rho g))^(1/3) [m]: the length that droops by 41.5 degrees (Peirce 1930); 0 without angle bends.
+  double overhang = 0.0;
 };
 
 /// M is the modulus along the longest side that the springs have if other directions are held. Requires a body with a measure and

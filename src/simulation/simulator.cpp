@@ -80,15 +80,15 @@ bool Simulator::Implementation::anything_moves() const {
 }
 
 StepReport Simulator::Implementation::step() {
-  const std::vector<std::size_t> compared = bodies_to_compare(state);
-  if (constraints.contacts().can_collide() || !compared.empty()) {
+  const std::optional<std::size_t> compared = body_to_compare(state);
+  if (constraints.contacts().can_collide() || compared) {
     begin = {state, energy_watch, constraints.permitted_crossings()};
   }
   kept_contacts.reset();
   const int factor = factor_for_rotation();
   StepReport report = make_step(factor, std::numeric_limits<Index>::max());
   if (may_retry(report.max_infeasible, begin.state)) report = repeat_step(report, factor);
-  if (!compared.empty()) report = compare_solvers(compared, report, factor);
+  if (compared) report = compare_solvers(*compared, report, factor);
   note_step(report.infeasible, state);
   if (refinement) choose_substeps(report);
   if (const StretchLimit* limit = constraints.limit()) note_missed(network, *limit, report.stretch_excess, state);
@@ -148,7 +148,9 @@ void Simulator::Implementation::choose_substeps(const StepReport& report) {
   const StretchLimit& limit = *constraints.limit();
   if (limit.follows_turn(state.stretch_handovers)) {
     refinement->choose_by_turn(report.turn, state);
-  } else if (!waits_for_turn) {
+  } else if (waits_for_turn) {
+    state.substeps = settings.max_substeps;  // which the solve did not need before the body came back
+  } else {
     refinement->choose(report.stretch_excess, state);
   }
   substep_changed(dt_before);

@@ -60,8 +60,7 @@ struct Simulator::Implementation {
   StepReport make_step(int factor, Index max_infeasible);
   [[nodiscard]] Attempt attempt_of(const StepReport& report) const;
   StepReport repeat_step(const StepReport& first, int factor_at_first);
-  StepReport compare_solvers(const std::vector<std::size_t>& bodies, const StepReport& first, int factor);
-  [[nodiscard]] double stretch_excess_of(const std::vector<std::size_t>& bodies) const;
+  StepReport compare_solvers(std::size_t body, const StepReport& first, int factor);
   void take(Attempt&& best);
   std::optional<StepReport> attempt(int factor, Index max_infeasible);
   StepReport make_substep();

@@ -3,7 +3,6 @@
 #include "simulation/step/limit_handover.h"
 #include "simulation/step/step_retry.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace sprung {
@@ -29,24 +28,18 @@ StepReport Simulator::Implementation::repeat_step(const StepReport& first, int f
 }
 
 // What a solver missed in former steps says nothing of what the other would miss in them, so both make the same step.
-StepReport Simulator::Implementation::compare_solvers(const std::vector<std::size_t>& bodies, const StepReport& first, int factor) {
-  const double excess = stretch_excess_of(bodies);
+StepReport Simulator::Implementation::compare_solvers(std::size_t body, const StepReport& first, int factor) {
+  const auto excess = [&] { return constraints.limit()->excess(state.x, network.bodies[body]); };
+  const double excess_of_first = excess();
   Attempt present = attempt_of(first);
-  const bool to_newton = !begin.state.stretch_handovers[bodies.front()].solved_since;
-  change_solver(bodies, begin.state);
+  const bool to_newton = !begin.state.stretch_handovers[body].solved_since;
+  change_solver(body, begin.state);
   const auto other = attempt(factor, first.max_infeasible + 1);
-  const bool changes = other && is_worth_changing(to_newton, excess, stretch_excess_of(bodies));
+  const bool changes = other && is_worth_changing(to_newton, excess_of_first, excess());
   const StepReport report = changes ? *other : present.report;
   if (!changes) take(std::move(present));
-  note_comparison(bodies, changes, state);
+  note_comparison(body, changes, state);
   return report;
-}
-
-/// The largest excess of these bodies over the stretch limit [fraction of the rest length].
-double Simulator::Implementation::stretch_excess_of(const std::vector<std::size_t>& bodies) const {
-  double largest = 0.0;
-  for (const std::size_t b : bodies) largest = std::max(largest, constraints.limit()->excess(state.x, network.bodies[b]));
-  return largest;
 }
 
 /// Goes on from an attempt.

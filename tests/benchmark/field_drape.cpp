@@ -23,8 +23,10 @@ SimulatorSettings settings() {
   using enum SpringKind;
   return {.step = kFrameTime / kSteps,
           .gravity = {0.0, -kGravity, 0.0},
-          .stretch_limit =
-              StretchLimitSettings{.max_stretch = 0.0, .kinds = {structural, shear, bend}, .iterations = kPasses / kSteps}};
+          .stretch_limit = StretchLimitSettings{.max_stretch = 0.0,
+                                                .kinds = {structural, shear, bend},
+                                                .iterations = kPasses / kSteps,
+                                                .solver = StretchLimitSettings::Solver::gauss_seidel}};
 }
 
 Obstacle obstacle(Index triangles) {

@@ -44,7 +44,7 @@ LengthRange length_range(const StretchLimitSettings& settings) {
 // Layers of a cloth that meet within a step are stopped by truncation, which knows no springs: those between stopped and moving
 // particles stretch. Layers of a body that falls by its own extent L reach a speed of about sqrt(a L), so they need a step in which
 // they move by at most half the thickness. Measured on a cloth of 64 x 64 that drapes over a bunny: 36 % of stretch with a third of
-// these steps, 7 % with these. Springs with stiffness pull such particles back by themselves.
+// these steps, 3 % with these. Springs with stiffness pull such particles back by themselves.
 double step_for_layers(const SpringNetwork& network, const Body& body, double acceleration) {
   const double thickness = body.material.thickness;
   if (!body.contact.self || thickness == 0.0 || acceleration == 0.0) return kInfinity;

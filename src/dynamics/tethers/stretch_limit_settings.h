@@ -8,7 +8,7 @@
 
 namespace sprung {
 
-/// A quarter of `max_stretch`, at least 0.001: a limit that is a tenth as tight needs a tenth of the passes.
+/// A quarter of `max_stretch`, at least 0.001 [1].
 [[nodiscard]] constexpr double default_tolerance(double max_stretch) { return std::max(0.25 * max_stretch, 0.001); }
 
 struct StretchLimitSettings {

@@ -41,11 +41,17 @@ double largest_auto_step(const Scene& scene, const LimitUse& use, const std::opt
   return largest;
 }
 
+/// The steps per frame that hold `needed` steps as substeps.
+int whole_steps(int needed, int substeps) { return 1 + (needed - 1) / substeps; }
+
 /// The number of substeps (a power of two) with which `without_passes` steps per frame come near the `needed` steps per frame,
-/// without exceeding them; 1 if substeps are not allowed.
+/// without exceeding them; fewer if whole steps would then need many more. 1 if substeps are not allowed.
 int substeps_for_passes(const Scene& scene, const std::optional<StretchLimit>& limit, int needed, int without_passes) {
   if (!limit || !limit->may_follow_turn() || damps_steps(scene.settings.integrator)) return 1;
-  return std::min(1 << std::ilogb(static_cast<double>(needed) / without_passes), kMaxSubsteps);
+  constexpr double kMore = 1.0 / 8.0;
+  int substeps = std::min(1 << std::ilogb(static_cast<double>(needed) / without_passes), kMaxSubsteps);
+  while (whole_steps(needed, substeps) * substeps > (1.0 + kMore) * needed) substeps /= 2;
+  return substeps;
 }
 
 std::string advice_for_unstable(const Scene& scene, double largest_stable) {
@@ -84,7 +90,7 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
   const double largest = std::min(without_passes, for_passes);
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
     const int substeps = substeps_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));
-    choice.steps_per_frame = 1 + (*steps - 1) / substeps;
+    choice.steps_per_frame = whole_steps(*steps, substeps);
     choice.step = step_of(scene.frame_rate, choice.steps_per_frame);
     choice.max_substeps = may_have_substeps(scene, limit) ? kAutoSubsteps : substeps;
     choice.warning = many_steps_warning(scene, network, choice, for_passes < without_passes);

@@ -109,9 +109,8 @@ class Finder {
   }
 
   static constexpr const char* kFrictionOfOneSide =
-      "friction has no effect: nothing that it can touch has friction, and a pair has the geometric mean of both. Give the other "
-      "side "
-      "friction too.";
+      "friction has no effect: nothing that it can touch has friction, and a pair has the geometric mean of both. "
+      "Give the other side friction too.";
 
   static bool has_friction(const ContactMaterial& material) { return material.static_friction > 0.0; }
 

@@ -23,31 +23,26 @@ void note_missed(const SpringNetwork& network, const StretchLimit& limit, double
   }
 }
 
-std::vector<std::size_t> bodies_to_compare(const SimulationState& state) {
-  std::vector<std::size_t> bodies;
-  for (std::size_t b = 0; b < state.stretch_handovers.size(); ++b) {
-    if (state.stretch_handovers[b].missed_steps >= state.stretch_handovers[b].patience) bodies.push_back(b);
-  }
-  return bodies;
+std::optional<std::size_t> body_to_compare(const SimulationState& state) {
+  const auto due = std::ranges::find_if(state.stretch_handovers,
+                                        [](const StretchHandover& handover) { return handover.missed_steps >= handover.patience; });
+  if (due == state.stretch_handovers.end()) return std::nullopt;
+  return static_cast<std::size_t>(due - state.stretch_handovers.begin());
 }
 
-void change_solver(const std::vector<std::size_t>& bodies, SimulationState& state) {
-  for (const std::size_t b : bodies) {
-    auto& since = state.stretch_handovers[b].solved_since;
-    since = since ? std::nullopt : std::optional(state.step);
-  }
+void change_solver(std::size_t body, SimulationState& state) {
+  auto& since = state.stretch_handovers[body].solved_since;
+  since = since ? std::nullopt : std::optional(state.step);
 }
 
 bool is_worth_changing(bool to_newton, double excess, double excess_of_other) {
   return excess_of_other <= (to_newton ? kWorthwhile : 1.0) * excess;
 }
 
-void note_comparison(const std::vector<std::size_t>& bodies, bool changed, SimulationState& state) {
-  for (const std::size_t b : bodies) {
-    StretchHandover& handover = state.stretch_handovers[b];
-    handover.missed_steps = 0;
-    handover.patience = changed ? kFirstPatience : std::min(2 * handover.patience, kMostPatience);
-  }
+void note_comparison(std::size_t body, bool changed, SimulationState& state) {
+  StretchHandover& handover = state.stretch_handovers[body];
+  handover.missed_steps = 0;
+  handover.patience = changed ? kFirstPatience : std::min(2 * handover.patience, kMostPatience);
 }
 
 }  // namespace sprung

@@ -4,7 +4,8 @@
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "network/simulation_state.h"
 
-#include <vector>
+#include <cstddef>
+#include <optional>
 
 namespace sprung {
 
@@ -12,17 +13,17 @@ namespace sprung {
 /// all bodies after the present step [fraction of the rest length].
 void note_missed(const SpringNetwork& network, const StretchLimit& limit, double excess, SimulationState& state);
 
-/// The bodies, by number, for which the other solver is to be tried in the next step.
-[[nodiscard]] std::vector<std::size_t> bodies_to_compare(const SimulationState& state);
+/// The first body, by number, for which the other solver is to be tried in the next step.
+[[nodiscard]] std::optional<std::size_t> body_to_compare(const SimulationState& state);
 
-/// Changes the solver of these bodies.
-void change_solver(const std::vector<std::size_t>& bodies, SimulationState& state);
+/// Changes the solver of a body.
+void change_solver(std::size_t body, SimulationState& state);
 
 /// Whether the other solver is worth the change, by the excess that each left after the same step. Newton's method costs more, so
 /// it must leave at most four fifths of the excess of the passes.
 [[nodiscard]] bool is_worth_changing(bool to_newton, double excess, double excess_of_other);
 
-/// Starts to count again. Bodies that kept their solver wait twice as long as before.
-void note_comparison(const std::vector<std::size_t>& bodies, bool changed, SimulationState& state);
+/// Starts to count again. A body that kept its solver waits twice as long as before.
+void note_comparison(std::size_t body, bool changed, SimulationState& state);
 
 }  // namespace sprung
