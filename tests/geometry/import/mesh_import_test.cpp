@@ -157,7 +157,7 @@ TEST_P(ImportText, PositionsAreTheDoublesOfTheText) {
   const TriangleMesh mesh = import_mesh(write(GetParam().name, GetParam().write(reference_shape()))).mesh;
   const TriangleMesh expected = reference_shape();
   ASSERT_EQ(mesh.vertices.cols(), expected.vertices.cols());
-  for (const Vector3& vertex : mesh.vertices.colwise()) EXPECT_NE(vertex_at(expected, vertex, 0.0), kNone) << vertex.transpose();
+  for (const auto& vertex : mesh.vertices.colwise()) EXPECT_NE(vertex_at(expected, vertex, 0.0), kNone) << vertex.transpose();
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ImportText,
