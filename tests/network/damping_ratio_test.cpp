@@ -92,6 +92,26 @@ TEST(DampingRatio, IsRefusedTogetherWithDampingWithoutStiffnessAndBelowZero) {
   EXPECT_THAT(refused(ratio(1.0, -0.1)), ElementsAre("springs.bend.damping_ratio"));
 }
 
+// k_d = damping_time * k_s. The damping time is a power of two, so that the product is exact.
+TEST(DampingTime, IsTheRatioOfDampingToStiffness) {
+  const SpringMaterial damped{.value = 40.0, .measure = SpringMaterial::Measure::modulus, .damping_time = 0.25};
+  SpringMaterials materials = every_kind(damped);
+  const BodyShape solid = make_solid({.size = {1.0, 2.0, 3.0}, .resolution = {3, 4, 3}}, materials);
+  PolygonMesh square;
+  square.vertices = (Points(3, 4) << 0, 3, 3, 0, 0, 0, 2, 2, 0, 0, 0, 0).finished();
+  square.faces = to_polygons((Triangles(3, 2) << 0, 0, 1, 2, 2, 3).finished());
+  const BodyShape mesh = make_mesh_body(square, materials);
+  materials.bend_model = SpringMaterials::BendModel::angle;
+  const BodyShape cloth = make_cloth({.size = {1.0, 2.0}, .resolution = {4, 6}}, materials);
+  EXPECT_GT(cloth.angle_bends.count(), 0);
+  for (const BodyShape* shape : {&solid, &mesh, &cloth}) {
+    EXPECT_GT(shape->springs.count(), 0);
+    for (Index s = 0; s < shape->springs.count(); ++s) EXPECT_EQ(shape->springs.damping[s], 0.25 * shape->springs.stiffness[s]);
+    for (Index e = 0; e < shape->angle_bends.count(); ++e)
+      EXPECT_EQ(shape->angle_bends.damping[e], 0.25 * shape->angle_bends.stiffness[e]);
+  }
+}
+
 TEST(Density, GivesEachParticleTheMassOfTheRegionNearestToIt) {
   BodyShape cloth = make_cloth({.size = {2.0, 4.0}, .resolution = {3, 3}}, {});
   set_density(cloth, 3.0);

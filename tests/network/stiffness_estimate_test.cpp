@@ -51,6 +51,14 @@ TEST(StiffnessEstimate, AClothSagsAsItsModuliSayInAnyPose) {
   }
 }
 
+// The rigidity is the mean of both directions, and counts inner particles alone: of n cells along a direction, n - 1.
+TEST(StiffnessEstimate, AClothBendsAsItsRigiditySays) {
+  const BodyShape cloth = make_cloth({.size = {0.5, 2.0}, .resolution = {6, 21}},
+                                     {.bend = modulus(0.03), .bend_model = SpringMaterials::BendModel::angle});
+  const double rigidity = 0.03 * (4.0 / 5.0 + 19.0 / 20.0) / 2.0;
+  EXPECT_NEAR(estimate(cloth, 0.2, {10, 20, 30}).overhang, 2.0 * std::cbrt(rigidity / (0.2 * kGravity)), 1e-9);
+}
+
 TEST(StiffnessEstimate, WithoutStiffnessTheSagIsInfinite) {
   const BodyShape rope = make_rope({.points = {{0, 0, 0}, {1, 0, 0}}, .particles = 11, .length = {}}, {.structural = modulus(0.0)});
   EXPECT_TRUE(std::isinf(estimate(rope, 0.1, {0, 0, 0}).sag));

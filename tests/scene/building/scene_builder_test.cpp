@@ -315,6 +315,11 @@ TEST(SceneBuilder, WarnsOfMeshesFarLargerThanTheRestOnceWithTheirNames) {
   EXPECT_THAT(warnings("1"),
               ElementsAre(HasSubstr("obstacles \"a\" and \"b\": its largest extent is 101 m: if the file is in mill")));
   EXPECT_THAT(warnings("0.99"), IsEmpty());
+  folder.write("cup.obj", "v 0 0 0\nv 80 0 0\nv 0 80 0\nf 1 2 3\n");
+  const std::string cup = R"(obstacles.cup.shape={"type":"mesh","file":"cup.obj"})";
+  EXPECT_THAT(build(folder, {cup}).warnings, IsEmpty());
+  EXPECT_THAT(build(folder, {cup, "bodies.banner.shape.size=[0.5,0.5]"}).warnings,
+              ElementsAre(HasSubstr("obstacle \"cup\": its largest extent is 80 m, 160 times that of anything else in the scene")));
   folder.write("body.obj", "v 0 0 0\nv 632 0 0\nv 0 632 0\nf 1 2 3\n");
   EXPECT_THAT(build(folder, {R"(bodies.banner.shape={"type":"mesh","file":"body.obj"})", "bodies.banner.pins=[]"}).warnings,
               ElementsAre(HasSubstr("body \"banner\": its largest extent is 632 m: if")));

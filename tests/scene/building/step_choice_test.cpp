@@ -125,6 +125,24 @@ TEST(StepChoice, AutoRespectsTheStretchLimit) {
   EXPECT_GT(1.0 / (10.0 * (limited.steps_per_frame - 1)), limit.suggested_step(9.81));
 }
 
+// Layers of a cloth that falls by its own extent L reach a speed of sqrt(g L). In a step they move by half their thickness at most,
+// unless springs pull them back.
+TEST(StepChoice, AutoRespectsLayersOfAClothWithoutStiffness) {
+  const auto built = [](const std::vector<std::string>& changes) {
+    const SceneFolder folder;
+    const std::string text = R"({"duration": 1, "frame_rate": 10, "stretch_limit": {"solver": "gauss_seidel"},
+        "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 2], "resolution": [4, 8]}, "mass": 1, "thickness": 0.002,
+        "self_contact": true, "springs": {"structural": {"stiffness": 0}}, "pins": [{"at": "corner", "which": ["min_max"]}]}}})";
+    return build_scene(folder.read(text, changes));
+  };
+  const double bound = 0.5 * 0.002 / std::sqrt(9.81 * 2.0);
+  const BuiltScene layers = built({});
+  EXPECT_LE(layers.settings.step, bound);
+  EXPECT_GT(1.0 / (10.0 * (layers.steps_per_frame - 1)), bound);
+  EXPECT_GT(built({"bodies.cloth.self_contact=false"}).settings.step, 2.0 * bound);
+  EXPECT_GT(built({"bodies.cloth.springs.structural.stiffness=0.001"}).settings.step, 2.0 * bound);
+}
+
 TEST(StepChoice, AutoAllowsSubstepsForSuitableCloths) {
   const auto substeps = [](const std::vector<std::string>& changes) {
     const SceneFolder folder;

@@ -181,6 +181,17 @@ TEST(Materials, KeysBesideTheMaterialWin) {
             SpringMaterials::BendModel::spring);
 }
 
+TEST(Materials, SpringsThatNeitherKeysNorTheMaterialGiveAStiffnessHaveNone) {
+  const SceneFolder folder;
+  const std::string damped = R"(, "springs": {"bend": {"damping": 0.5}})";
+  const BodyScene block = folder.read(scene_of(*find_material("foam"), damped)).bodies.front();
+  EXPECT_EQ(block.springs.bend->value, 0.0);
+  EXPECT_EQ(block.springs.bend->damping, 0.5);
+  Material misspelt = *find_material("cotton");
+  misspelt.name = "coton";
+  EXPECT_EQ(problems_of([&] { (void)folder.read(scene_of(misspelt, damped)); }).size(), 1U) << "the name is the only problem";
+}
+
 TEST(Materials, TheLimitOfAMaterialHoldsItsBodiesAlone) {
   const SceneFolder folder;
   const std::string two = R"({"duration": 0.1, "bodies": {
