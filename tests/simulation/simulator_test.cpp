@@ -129,6 +129,27 @@ TEST(Simulator, ADivergingStepNamesParticleAndSpring) {
   }
 }
 
+// The springs have no stiffness, so a bob that no limit holds falls freely: Verlet is exact then.
+TEST(Simulator, AStretchLimitHoldsItsBodiesAlone) {
+  using Solver = StretchLimitSettings::Solver;
+  BodyShape shape = make_rope({{Vector3::Zero(), -Vector3::UnitY()}, 2, std::nullopt}, {.structural = SpringMaterial{}});
+  set_total_mass(shape, 2.0);
+  for (const Solver solver : {Solver::gauss_seidel, Solver::newton, Solver::automatic}) {
+    for (const bool tethers : {false, true}) {
+      NetworkBuilder builder;
+      for (const bool limited : {true, false}) {
+        shape.stretch_limited = limited;
+        builder.pin(builder.add_body(limited ? "limited" : "free", shape));
+      }
+      const StretchLimitSettings limit{.max_stretch = 0.1, .tethers = tethers, .solver = solver};
+      Simulator simulator(builder.build(), {.step = 1e-3, .stretch_limit = limit});
+      run(simulator, 0.5);
+      EXPECT_GT(simulator.positions()(1, 1), -1.1 - limit.tolerance);
+      EXPECT_NEAR(simulator.positions()(1, 3), -1.0 - testing::kGravity * 0.5 * 0.5 / 2.0, 1e-9);
+    }
+  }
+}
+
 TEST(Simulator, WarnsOfAStretchLimitOfKindsThatNoSpringHas) {
   const auto warnings = [](const SpringNetwork& network, std::vector<SpringKind> kinds) {
     return Simulator(network, {.stretch_limit = StretchLimitSettings{.kinds = std::move(kinds)}}).warnings();

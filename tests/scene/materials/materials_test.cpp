@@ -204,6 +204,7 @@ TEST(Materials, TheLimitOfAMaterialHoldsItsBodiesAlone) {
   EXPECT_FALSE(built.network.bodies[1].stretch_limited);
 
   EXPECT_THAT(folder.read(two, {"stretch_limit.max_stretch=0.1"}).limited_bodies, IsEmpty()) << "the scene's own limit holds all";
+  EXPECT_THAT(folder.read(two, {"stretch_limit.bodies=[\"soft\"]"}).limited_bodies, ElementsAre("soft"));
   const Scene own = folder.read(two, {"bodies.stiff.springs.structural.stiffness=1000"});
   EXPECT_FALSE(own.settings.stretch_limit.has_value()) << "a structural stiffness of the body needs no limit";
 }
