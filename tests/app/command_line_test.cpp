@@ -254,6 +254,8 @@ TEST_F(CommandLine, ValidatePrintsDerivedMaterials) {
 }
 
 // A rope of 1 m with EA = 1000 N and 0.1 kg hangs by g m L / (2 EA) = 0.49 mm lower and swings as a rod of that length: 1.64 s.
+// With EI = 0.1 N m^2 in three inner particles of four segments, its bending length is cbrt(0.75 EI / (g m / L)) = 0.424 m; twice
+// that droops by 41 degrees.
 TEST_F(CommandLine, ValidateEstimatesHowStiffABodyIs) {
   json scene = rope_scene();
   scene["bodies"]["rope"]["springs"] = json::parse(R"({"structural": {"modulus": 1000}})");
@@ -261,6 +263,9 @@ TEST_F(CommandLine, ValidateEstimatesHowStiffABodyIs) {
   EXPECT_THAT(text, HasSubstr("1 m long: sinks by 0.00049 m under its weight, swings in 1.6 s, bounces in 0.04 s\n"));
   EXPECT_THAT(text, HasSubstr("cost        estimated, one thread: "));
   EXPECT_THAT(text, Not(HasSubstr("droops")));
+  scene["bodies"]["rope"]["springs"] =
+      json::parse(R"({"structural": {"modulus": 1000}, "bend": {"model": "angle", "modulus": 0.1}})");
+  EXPECT_THAT(run({"validate", save(scene)}).out, HasSubstr("an overhang of 0.85 m droops by 41 degrees\n"));
   scene["bodies"]["rope"]["springs"] = json::parse(R"({"structural": {"stiffness": 0}})");
   EXPECT_THAT(run({"validate", save(scene)}).out, HasSubstr("nothing holds its length, swings in 1.6 s\n"));
   scene["stretch_limit"] = {{"max_stretch", 0.05}};
