@@ -1,13 +1,13 @@
 #include "simulation/start/push_out.h"
 
 #include "collision/obstacles/obstacle_intersections.h"
-#include "collision/surface/self_intersections.h"
 #include "simulation/start/approach.h"
+#include "simulation/start/layers.h"
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <optional>
+#include <set>
 #include <vector>
 
 namespace sprung {
@@ -35,13 +35,9 @@ std::vector<Vector3> escape_directions() {
   return directions;
 }
 
-bool crosses_another(const CollisionSurface& surface, Index body, const Points& positions) {
-  const auto body_of = [&](Index element) { return surface.elements[static_cast<std::size_t>(element)].body; };
-  const std::vector<CrossingElements> found = find_self_intersections(surface, positions);
-  return std::any_of(found.begin(), found.end(), [&](const CrossingElements& crossing) {
-    const Index first = body_of(crossing.first);
-    const Index second = body_of(crossing.second);
-    return first != second && (first == body || second == body);
+bool crosses_another(const std::set<BodyPair>& crossing, Index body) {
+  return std::any_of(crossing.begin(), crossing.end(), [&](const BodyPair& pair) {
+    return pair.first != pair.second && (pair.first == body || pair.second == body);
   });
 }
 
@@ -77,8 +73,9 @@ class FreePosition {
 
   /// A position of the whole body outside obstacles and other bodies.
   [[nodiscard]] std::optional<Points> outside_all() const {
-    return translated(kFirstDistance * surface_.element_size[static_cast<std::size_t>(body_)],
-                      [&](const Points& x) { return !crosses_another(surface_, body_, x) && is_outside_obstacles(x); });
+    return translated(kFirstDistance * surface_.element_size[static_cast<std::size_t>(body_)], [&](const Points& x) {
+      return !crosses_another(crossing_bodies(surface_, x), body_) && is_outside_obstacles(x);
+    });
   }
 
  private:
@@ -132,15 +129,47 @@ class FreePosition {
   std::vector<char> movable_;  ///< per particle: 1 for unpinned particles of the body
 };
 
-/// Bodies that should stay come last: pinned bodies, and of the others the first.
-std::vector<Index> in_order_of_moving(const SpringNetwork& network) {
-  std::vector<Index> order(network.bodies.size());
-  std::iota(order.rbegin(), order.rend(), 0);
-  std::stable_partition(order.begin(), order.end(), [&](Index number) {
+/// Bodies by their claim to stay.
+struct Ranks {
+  std::vector<Index> unpinned;  ///< those that come first in the network should stay
+  std::vector<Index> pinned;    ///< at least in part: moving them would stretch them
+};
+
+Ranks ranks_of(const SpringNetwork& network) {
+  Ranks ranks;
+  for (Index number = 0; number < static_cast<Index>(network.bodies.size()); ++number) {
     const Body& body = network.bodies[static_cast<std::size_t>(number)];
-    return (network.inverse_masses.segment(body.first_particle, body.particle_count).array() > 0.0).all();
-  });
-  return order;
+    const bool free = (network.inverse_masses.segment(body.first_particle, body.particle_count).array() > 0.0).all();
+    (free ? ranks.unpinned : ranks.pinned).push_back(number);
+  }
+  return ranks;
+}
+
+std::vector<Index> joined(std::vector<Index> first, const std::vector<Index>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+/// Layers are put on one after another, in the given order: each body is lifted off those before it that it crosses. Those after it
+/// do not matter yet.
+void put_on(const SpringNetwork& network, Environment& environment, const CollisionSurface& surface,
+            const std::vector<Index>& order, Points& positions) {
+  std::set<BodyPair> crossing = crossing_bodies(surface, positions);
+  SpringNetwork worn = network;
+  for (Body& body : worn.bodies) body.contact.others = false;
+  std::vector<Index> below;
+  for (const Index body : order) {
+    const auto number = static_cast<std::size_t>(body);
+    worn.bodies[number].contact.others = network.bodies[number].contact.others;
+    const auto crosses = [&](Index other) { return crossing.contains(std::minmax(body, other)); };
+    if (std::any_of(below.begin(), below.end(), crosses)) {
+      if (const auto free = lifted_off(network, environment, surface, body, below, positions)) {
+        positions = Approach(worn, environment, body).run(*free, positions);
+        crossing = crossing_bodies(surface, positions);
+      }
+    }
+    below.push_back(body);
+  }
 }
 
 }  // namespace
@@ -156,9 +185,17 @@ Points push_out(const SpringNetwork& network, Environment& environment, const Co
     approach_from(body, FreePosition(environment, surface, body, positions).outside_obstacles());
   }
   if (!apart) return positions;
-  for (const Index body : in_order_of_moving(network)) {
-    if (crosses_another(surface, body, positions))
-      approach_from(body, FreePosition(environment, surface, body, positions).outside_all());
+  auto [unpinned, pinned] = ranks_of(network);
+  put_on(network, environment, surface, joined(pinned, unpinned), positions);
+  // A body that could not be lifted off one that should rather stay: now the other way round.
+  std::reverse(unpinned.begin(), unpinned.end());
+  std::reverse(pinned.begin(), pinned.end());
+  put_on(network, environment, surface, joined(pinned, unpinned), positions);
+  std::set<BodyPair> crossing = crossing_bodies(surface, positions);
+  for (const Index body : joined(unpinned, pinned)) {
+    if (!crosses_another(crossing, body)) continue;
+    approach_from(body, FreePosition(environment, surface, body, positions).outside_all());
+    crossing = crossing_bodies(surface, positions);
   }
   return positions;
 }
