@@ -25,12 +25,14 @@ int thread_count(const RunOptions& options) {
 }
 
 RunFacts facts_of(const LoadedScene& loaded, int threads) {
+  const SimulatorSettings& settings = loaded.simulator.settings();
   return {.scene = loaded.scene.resolved,
           .frame_rate = loaded.scene.frame_rate,
           .frames = loaded.frames,
           .steps_per_frame = loaded.steps_per_frame,
           .threads = threads,
           .stretch_solver = loaded.simulator.stretch_solver(),
+          .seed = settings.perturb ? std::optional(settings.seed) : std::nullopt,
           .warnings = loaded.warnings};
 }
 

@@ -39,7 +39,7 @@ RunRecord::RunRecord(const RunFacts& facts, double step, const std::vector<std::
                      {"steps", 0},
                      {"substeps", 0},
                      {"smallest_step", 0.0},
-                     {"seed", facts.seed},
+                     {"seed", facts.seed ? Json(*facts.seed) : Json()},
                      {"threads", facts.threads},
                      {"wall_seconds", 0.0},
                      {"stretch_solver", facts.stretch_solver},

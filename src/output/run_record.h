@@ -22,8 +22,8 @@ struct RunFacts {
   int frames = 1;            ///< to write
   int steps_per_frame = 1;
   int threads = 1;
-  std::string stretch_solver{};  ///< of the stretch limit; empty without one
-  std::uint64_t seed = 0;        ///< of random numbers, which no part uses yet
+  std::string stretch_solver{};         ///< of the stretch limit; empty without one
+  std::optional<std::uint64_t> seed{};  ///< of random pushes; none without them
   std::vector<std::string> warnings{};
 };
 

@@ -50,6 +50,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
     refinement.emplace(limit->settings(), settings.max_substeps);
     if (waits_for_turn || (limit->follows_turn() && anything_moves())) state.substeps = settings.max_substeps;
   }
+  if (settings.perturb) symmetry.emplace(network, settings.seed);
   gravity = add_force<Gravity>(settings.gravity);
   springs = add_force<SpringForce>();
   if (network.angle_bends.count() > 0) angles = add_force<BendingAngleForce>();
@@ -80,6 +81,7 @@ bool Simulator::Implementation::anything_moves() const {
 }
 
 StepReport Simulator::Implementation::step() {
+  if (symmetry && constraints.contacts().can_collide() && symmetry->may_push(state.x)) break_symmetry();
   const std::optional<std::size_t> compared = body_to_compare(state);
   if (constraints.contacts().can_collide() || compared) {
     begin = {state, energy_watch, constraints.permitted_crossings()};
@@ -93,6 +95,10 @@ StepReport Simulator::Implementation::step() {
   if (refinement) choose_substeps(report);
   if (const StretchLimit* limit = constraints.limit()) note_missed(network, *limit, report.stretch_excess, state);
   return report;
+}
+
+void Simulator::Implementation::break_symmetry() {
+  symmetry->push(penalty != nullptr ? penalty->normals(state.x) : constraints.contacts().normals(), dt(), *integrator, state);
 }
 
 /// In the frame of a rotating obstacle, particles are assumed to move straight in a substep: after half a turn, through its center.

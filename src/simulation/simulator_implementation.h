@@ -10,6 +10,7 @@
 #include "simulation/simulator.h"
 #include "simulation/step/step_constraints.h"
 #include "simulation/step/step_refinement.h"
+#include "simulation/step/symmetry_breaker.h"
 
 #include <memory>
 #include <optional>
@@ -56,6 +57,7 @@ struct Simulator::Implementation {
   void take_state(const Implementation& before);
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
+  void break_symmetry();
   [[nodiscard]] int factor_for_rotation() const;
   StepReport make_step(int factor, Index max_infeasible);
   [[nodiscard]] Attempt attempt_of(const StepReport& report) const;
@@ -94,6 +96,7 @@ struct Simulator::Implementation {
   StepConstraints constraints;
   std::function<bool()> stops;               ///< see Simulator::stop_when
   std::optional<StepRefinement> refinement;  ///< none if a step has one substep
+  std::optional<SymmetryBreaker> symmetry;   ///< none unless the settings ask for it
   bool waits_for_turn;                       ///< see StretchLimit::may_follow_turn
   DivergenceCheck divergence;
   EnergyWatch energy_watch;

@@ -40,6 +40,13 @@ TEST_F(CommandLine, RunWritesTheFramesAndSaysSoOnStandardErrorOnly) {
   EXPECT_EQ(record()["scene"]["bodies"]["rope"]["mass"], 0.1);
 }
 
+TEST_F(CommandLine, RunRecordsTheSeedOfPushes) {
+  EXPECT_EQ(run({"run", save(rope_scene()), "--set", "seed=7", "--out", out()}).code, 0);
+  EXPECT_EQ(record()["seed"], 7);
+  EXPECT_EQ(run({"run", save(rope_scene()), "--set", "perturb=false", "--out", out(), "--overwrite"}).code, 0);
+  EXPECT_TRUE(record()["seed"].is_null());
+}
+
 TEST_F(CommandLine, QuietSaysNothing) {
   const Ending ending = run({"run", save(rope_scene()), "--out", out(), "--quiet"});
   EXPECT_EQ(ending.code, 0);

@@ -209,10 +209,11 @@ TEST_F(RunOutputFiles, DiagnosticsHaveARowAFrame) {
   EXPECT_THAT(starts, ElementsAre("frame,time", "1,0", "2,0.02", "3,0.04", "4,0.06"));
 }
 
-// Nothing is random yet: the record has the key for what will be.
-TEST_F(RunOutputFiles, RecordHasASeed) {
+TEST_F(RunOutputFiles, RecordTellsTheSeedIfThereIsOne) {
   run(1);
-  EXPECT_TRUE(record()["seed"].is_number_unsigned());
+  EXPECT_TRUE(record()["seed"].is_null());
+  const RunOutput output(OutputFolder(scratch_ / "out", true), {.seed = 7}, simulator_);
+  EXPECT_EQ(record()["seed"], 7);
 }
 
 TEST_F(RunOutputFiles, RecordReportsTheProgressOfTheRun) {

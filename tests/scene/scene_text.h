@@ -95,6 +95,8 @@ inline constexpr const char* kFullScene = R"({
                      "tolerance": 0.002, "tethers": true, "solver": "newton", "bodies": ["zebra", "rope"] },
   "contact": { "response": "penalty", "stiffness": 1000, "damping": 0.5, "start": "push_out" },
   "stability": "warn",
+  "perturb": false,
+  "seed": 7,
   "bodies": {
     "zebra": {
       "shape": { "type": "cloth", "size": [1.0, 2.0], "resolution": [64, 32] },

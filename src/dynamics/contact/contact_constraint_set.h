@@ -101,10 +101,10 @@ class ContactConstraintSet {
     return largest;
   }
 
-  /// Calls `visit(particle)` for each particle that a touching contact can move, once per contact.
+  /// Calls `visit(particle, row)` for each particle that a touching contact can move, once per contact.
   template <class Visit>
   void for_touching(const Visit& visit) const {
-    for (const std::size_t c : touching_) for_moved(rows_[c], visit);
+    for (const std::size_t c : touching_) for_moved(rows_[c], [&](Index particle) { visit(particle, rows_[c]); });
   }
 
   /// Calls `visit(particle, row, goal)` in the same way for contacts that pushed.

@@ -68,6 +68,7 @@ class ContactProjection {
     solver_.constrain_pushed(motion, constrained);
   }
   [[nodiscard]] std::vector<Index> pushed() const { return solver_.pushed(); }
+  [[nodiscard]] std::vector<ContactNormal> normals() const { return solver_.normals(); }
 
   /// Clips positions [m] so that no element crosses a surface that it did not cross at the beginning of the step. If two bodies
   /// block each other, the contacts between them are solved first, which conserves momentum. `relax` may then move truncated

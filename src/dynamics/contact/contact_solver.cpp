@@ -181,7 +181,7 @@ void ContactSolver::settle_velocities(const StepMotion& motion, SimulationState&
     if (largest <= kVelocityTolerance * first) break;
   }
   for_each_set(sets_, [&](auto& set) {
-    set.for_touching([&](Index particle) { integrator.velocity_changed(state, particle, motion.dt); });
+    set.for_touching([&](Index particle, const auto&) { integrator.velocity_changed(state, particle, motion.dt); });
   });
 }
 
@@ -207,6 +207,14 @@ std::vector<Index> ContactSolver::pushed() const {
   std::sort(pushed.begin(), pushed.end());
   pushed.erase(std::unique(pushed.begin(), pushed.end()), pushed.end());
   return pushed;
+}
+
+std::vector<ContactNormal> ContactSolver::normals() const {
+  std::vector<ContactNormal> normals;
+  for_each_set(sets_, [&](const auto& set) {
+    set.for_touching([&](Index particle, const auto& row) { normals.push_back({particle, row.normal}); });
+  });
+  return normals;
 }
 
 }  // namespace sprung

@@ -9,6 +9,7 @@
 #include "collision/obstacles/environment.h"
 #include "dynamics/contact/contact_constraint_set.h"
 #include "dynamics/contact/contact_materials.h"
+#include "dynamics/contact/contact_normal.h"
 #include "dynamics/integrators/constrained_directions.h"
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/integrators/step_motion.h"
@@ -53,6 +54,9 @@ class ContactSolver {
 
   /// Particles pushed in this step, ascending.
   [[nodiscard]] std::vector<Index> pushed() const;
+
+  /// The normals of touching contacts at the end of the last step, for each particle that they can move.
+  [[nodiscard]] std::vector<ContactNormal> normals() const;
 
  private:
   /// Adds contacts of n particles from index `begin` on; those before it stay.

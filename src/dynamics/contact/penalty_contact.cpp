@@ -86,4 +86,12 @@ std::vector<Index> PenaltyContact::touching(const Points& positions) const {
   return particles;
 }
 
+std::vector<ContactNormal> PenaltyContact::normals(const Points& positions) const {
+  std::vector<ContactNormal> normals;
+  for (const Contact& contact : environment_.contacts({positions, positions, thickness_})) {
+    normals.push_back({contact.particles[0], contact.normal});
+  }
+  return normals;
+}
+
 }  // namespace sprung

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/obstacles/environment.h"
+#include "dynamics/contact/contact_normal.h"
 #include "dynamics/forces/force.h"
 #include "network/spring_network.h"
 
@@ -30,6 +31,9 @@ class PenaltyContact final : public Force {
 
   /// Particles nearer to an obstacle than their gap, ascending.
   [[nodiscard]] std::vector<Index> touching(const Points& positions) const;
+
+  /// The normals of obstacles at these particles.
+  [[nodiscard]] std::vector<ContactNormal> normals(const Points& positions) const;
 
  private:
   struct Touch;

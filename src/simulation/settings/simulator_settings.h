@@ -4,6 +4,7 @@
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
 
+#include <cstdint>
 #include <optional>
 
 namespace sprung {
@@ -41,6 +42,9 @@ struct SimulatorSettings {
   /// Maximum number of substeps in a step, in [1, kMaxSubsteps]; see StepRefinement. All of them are made while Gauss-Seidel passes
   /// solve a limit that may be handed over to a global solve.
   int max_substeps = 1;
+  /// Whether bodies that stand compressed, exactly in a line or plane, get a tiny push off it; see SymmetryBreaker.
+  bool perturb = true;
+  std::uint64_t seed = 0;  ///< of the directions of such pushes
 };
 
 }  // namespace sprung

@@ -1,0 +1,158 @@
+#include "simulation/step/symmetry_breaker.h"
+
+#include "geometry/mesh/union_find.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+namespace sprung {
+namespace {
+
+// Distance from a line or plane that counts as rounding, relative to the extent.
+constexpr double kFlatness = 1.0e-12;
+
+// Sine of the angle between a line or plane and a normal that counts as lying in it.
+constexpr double kInclination = 1.0e-6;
+
+// Compression of a spring that is more than rounding.
+constexpr double kCompression = 1.0e-9;
+
+// Largest displacement in a step, relative to the mean rest length.
+constexpr double kPush = 1.0e-9;
+
+/// In [0, 1) (SplitMix64, Steele et al. 2014).
+double random_number(std::uint64_t seed, Index particle) {
+  std::uint64_t mixed = seed + (static_cast<std::uint64_t>(particle) + 1) * 0x9e3779b97f4a7c15U;
+  mixed = (mixed ^ (mixed >> 30U)) * 0xbf58476d1ce4e5b9U;
+  mixed = (mixed ^ (mixed >> 27U)) * 0x94d049bb133111ebU;
+  return std::ldexp(static_cast<double>((mixed ^ (mixed >> 31U)) >> 11U), -std::numeric_limits<double>::digits);
+}
+
+/// The particle for which `distance(particle)` is largest, the first of several.
+template <class Distance>
+Index farthest(const std::vector<Index>& particles, const Distance& distance) {
+  Index found = particles.front();
+  double largest = distance(found);
+  for (const Index i : particles) {
+    const double d = distance(i);
+    if (d <= largest) continue;
+    largest = d;
+    found = i;
+  }
+  return found;
+}
+
+}  // namespace
+
+SymmetryBreaker::SymmetryBreaker(const SpringNetwork& network, std::uint64_t seed)
+    : network_(network), seed_(seed), piece_of_(static_cast<std::size_t>(network.particle_count()), kNone) {
+  const Springs& springs = network.springs;
+  UnionFind sets(network.particle_count());
+  for (Index s = 0; s < springs.count(); ++s) sets.join(springs.first[s], springs.second[s]);
+  for (Index s = 0; s < springs.count(); ++s) {
+    Index& piece = piece_of_[sets.root(springs.first[s])];
+    if (piece == kNone) {
+      piece = static_cast<Index>(pieces_.size());
+      pieces_.emplace_back();
+    }
+    pieces_[piece].springs.push_back(s);
+    pieces_[piece].mean_length += springs.rest_length[s];
+  }
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    piece_of_[i] = piece_of_[sets.root(i)];
+    if (piece_of_[i] != kNone) pieces_[piece_of_[i]].particles.push_back(i);
+  }
+  for (Piece& piece : pieces_) {
+    piece.mean_length /= static_cast<double>(piece.springs.size());
+    piece.corners.fill(piece.particles.front());
+  }
+}
+
+bool SymmetryBreaker::may_push(const Points& positions) {
+  return std::ranges::any_of(pieces_, [&](const Piece& piece) { return span_of(piece.corners, positions).dimension < 3; });
+}
+
+void SymmetryBreaker::push(const std::vector<ContactNormal>& contacts, double dt, const Integrator& integrator,
+                           SimulationState& state) {
+  std::map<Index, Flat> flats;  // by piece; without dimension once the piece was pushed
+  Index last = kNone;
+  Flat* flat = nullptr;
+  for (const auto& [particle, normal] : contacts) {
+    const Index p = piece_of_[particle];
+    if (p == kNone) continue;
+    if (p != last) {
+      const auto [found, is_new] = flats.try_emplace(p);
+      if (is_new) found->second = measure(pieces_[p], state.x);
+      flat = &found->second;
+      last = p;
+    }
+    if (!flat->contains(normal)) continue;
+    push(pieces_[p], *flat, dt, integrator, state);
+    *flat = {};
+  }
+}
+
+bool SymmetryBreaker::Flat::contains(const Vector3& unit) const {
+  if (dimension == 1) return direction.cross(unit).norm() <= kInclination;
+  return dimension == 2 && std::abs(direction.dot(unit)) <= kInclination;
+}
+
+SymmetryBreaker::Flat SymmetryBreaker::span_of(const std::array<Index, 4>& corners, const Points& positions) {
+  const auto from_first = [&](std::size_t k) -> Vector3 { return positions.col(corners[k]) - positions.col(corners[0]); };
+  const Vector3 along = from_first(1);
+  const double extent = along.norm();
+  if (extent == 0.0) return {.dimension = 0};
+  const Vector3 normal = along.cross(from_first(2));
+  if (normal.norm() <= kFlatness * extent * extent) return {.dimension = 1, .direction = along / extent};
+  const Vector3 unit = normal.normalized();
+  if (std::abs(unit.dot(from_first(3))) <= kFlatness * extent) return {.dimension = 2, .direction = unit};
+  return {};
+}
+
+/// Finds the particles that span the most.
+SymmetryBreaker::Flat SymmetryBreaker::measure(Piece& piece, const Points& positions) {
+  if (const Flat flat = span_of(piece.corners, positions); flat.dimension == 3) return flat;
+  piece.corners.fill(piece.particles.front());
+  const Vector3 origin = positions.col(piece.corners[0]);
+  piece.corners[1] = farthest(piece.particles, [&](Index i) { return (positions.col(i) - origin).squaredNorm(); });
+  const Vector3 along = positions.col(piece.corners[1]) - origin;
+  piece.corners[2] =
+      farthest(piece.particles, [&](Index i) { return along.cross(Vector3(positions.col(i) - origin)).squaredNorm(); });
+  const Vector3 normal = along.cross(Vector3(positions.col(piece.corners[2]) - origin));
+  piece.corners[3] = farthest(piece.particles, [&](Index i) { return std::abs(normal.dot(positions.col(i) - origin)); });
+  return span_of(piece.corners, positions);
+}
+
+/// At most 1 long.
+Vector3 SymmetryBreaker::direction_across(const Flat& flat, Index particle) const {
+  const double turn = random_number(seed_, particle);
+  if (flat.dimension == 2) return (2.0 * turn - 1.0) * flat.direction;
+  const Vector3 side = flat.direction.unitOrthogonal();
+  const double angle = 2.0 * std::numbers::pi * turn;
+  return std::cos(angle) * side + std::sin(angle) * flat.direction.cross(side);
+}
+
+void SymmetryBreaker::push(const Piece& piece, const Flat& flat, double dt, const Integrator& integrator,
+                           SimulationState& state) const {
+  const Springs& springs = network_.springs;
+  std::vector<Index> ends;
+  for (const Index s : piece.springs) {
+    const Index a = springs.first[s];
+    const Index b = springs.second[s];
+    if ((state.x.col(a) - state.x.col(b)).norm() >= (1.0 - kCompression) * springs.rest_length[s]) continue;
+    ends.insert(ends.end(), {a, b});
+  }
+  std::ranges::sort(ends);
+  const auto repeated = std::ranges::unique(ends);
+  ends.erase(repeated.begin(), repeated.end());
+  for (const Index i : ends) {
+    if (network_.is_pinned(i)) continue;
+    state.v.col(i) += kPush * piece.mean_length / dt * direction_across(flat, i);
+    integrator.velocity_changed(state, i, dt);
+  }
+}
+
+}  // namespace sprung
