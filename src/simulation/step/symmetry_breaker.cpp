@@ -71,7 +71,7 @@ SymmetryBreaker::SymmetryBreaker(const SpringNetwork& network, std::uint64_t see
   }
 }
 
-bool SymmetryBreaker::may_push(const Points& positions) {
+bool SymmetryBreaker::may_push(const Points& positions) const {
   return std::ranges::any_of(pieces_, [&](const Piece& piece) { return span_of(piece.corners, positions).dimension < 3; });
 }
 

@@ -7,6 +7,7 @@
 
 #include "dynamics/contact/contact_normal.h"
 #include "dynamics/integrators/integrator.h"
+#include "network/simulation_state.h"
 #include "network/spring_network.h"
 
 #include <array>
@@ -21,7 +22,7 @@ class SymmetryBreaker {
   SymmetryBreaker(const SpringNetwork& network, std::uint64_t seed);
 
   /// Whether any piece may lie in a line or plane. Takes a few operations per piece that does not.
-  [[nodiscard]] bool may_push(const Points& positions);
+  [[nodiscard]] bool may_push(const Points& positions) const;
 
   /// Gives a speed to the free particles at compressed springs of each piece that lies in a line or plane together with the normal
   /// of one of its contacts. The speed is across the line or plane, and moves a particle by at most 1e-9 of the piece's mean rest
