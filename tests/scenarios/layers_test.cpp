@@ -37,12 +37,12 @@ BodyShape body_of(const TriangleMesh& triangles) {
   return make_mesh_body(mesh, kSprings);
 }
 
-SpringNetwork network_of(const std::vector<BodyShape>& shapes) {
+SpringNetwork network_of(const std::vector<BodyShape>& shapes, bool self_contact = true) {
   NetworkBuilder builder;
   for (std::size_t k = 0; k < shapes.size(); ++k) {
     BodyShape shape = shapes[k];
     set_total_mass(shape, 0.2);
-    builder.add_body("body" + std::to_string(k), shape, {.thickness = kGap}, {.self = true});
+    builder.add_body("body" + std::to_string(k), shape, {.thickness = kGap}, {.self = self_contact});
   }
   return builder.build();
 }
@@ -76,15 +76,16 @@ TriangleMesh turned(Index rings, Index around, const PointOf& point, bool capped
 }
 
 constexpr Index kAround = 24;
+constexpr Index kFine = 90;
 
 /// An open tube 0.5 m long whose radius is mean + wave cos(waves angle), turned by `turn` degrees and moved along its axis.
-TriangleMesh tube(double mean, double wave, int waves, double turn = 0.0, double shift = 0.0) {
+TriangleMesh tube(double mean, double wave, int waves, double turn = 0.0, double shift = 0.0, Index around = kAround) {
   const auto point = [&](Index ring, double angle) {
     const double at = angle + turn * kPi / 180.0;
     const double radius = mean + wave * std::cos(waves * at);
     return Vector3(radius * std::cos(at), shift - 0.25 + 0.5 * static_cast<double>(ring) / 6.0, radius * std::sin(at));
   };
-  return turned(7, kAround, point, false);
+  return turned(7, around, point, false);
 }
 
 BodyShape tube_body(double mean, double wave, int waves, double turn = 0.0, double shift = 0.0) {
@@ -124,6 +125,25 @@ BodyShape rippled_sheet() {
   return body_of(sheet);
 }
 
+/// A tube 0.1 m long with cells of 11 to 13 mm.
+BodyShape fine_tube(double mean, double wave) {
+  const auto point = [&](Index ring, double angle) {
+    const double radius = mean + wave * std::cos(2.0 * angle);
+    return Vector3(radius * std::cos(angle), 0.0125 * static_cast<double>(ring), radius * std::sin(angle));
+  };
+  return body_of(turned(9, kFine, point, false));
+}
+
+/// A cloth of 1 m, tilted by 3 degrees, that cuts the top of box() along two of its edges and is beside it beyond them.
+BodyShape tilted_cloth() {
+  BodyShape cloth = make_cloth({.size = {1.0, 1.0}, .resolution = {21, 21}}, kSprings);
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = rotation_from_degrees({-87.0, 0.0, 0.0});
+  pose.translation() = Vector3(0.0, 0.203, 0.0);
+  place(cloth, pose, Vector3::Zero());
+  return cloth;
+}
+
 /// A rope along x that dips `depth` [m] below the plane y = 0 in three places.
 BodyShape weaving_rope(double depth) {
   std::vector<Vector3> points;
@@ -147,8 +167,8 @@ std::ostream& operator<<(std::ostream& stream, const LayersCase& layers) { retur
 
 class EveryPairOfLayers : public ::testing::TestWithParam<LayersCase> {};
 
-void expect_apart_near(const std::vector<BodyShape>& bodies, double most) {
-  const SpringNetwork network = network_of(bodies);
+void expect_apart_near(const std::vector<BodyShape>& bodies, double most, bool self_contact = true) {
+  const SpringNetwork network = network_of(bodies, self_contact);
   const std::vector<JudgedElement> elements = judged_elements(network);
   EXPECT_GT(count_self_crossings(elements, network.positions), 0);
 
@@ -197,6 +217,9 @@ std::vector<LayersCase> layers() {
   result.push_back({"EqualTubes", {tube_body(0.16, 0.006, 2), tube_body(0.16, 0.006, 2)}, kGap + tube_facets});
   result.push_back({"EqualBoxes", {box(6), box(5)}, std::sqrt(3.0) * kGap});
   result.push_back({"ASheetWithRipplesInASolid", {box(17), rippled_sheet()}, 0.005 + kGap + solid_facets});
+  result.push_back({"TubesThatOverlapByMoreThanACell",
+                    {fine_tube(0.16, 0.02), fine_tube(0.16, 0.0)},
+                    0.02 + kGap + 2.0 * sagitta(0.18, 2.0 * kPi / kFine)});
   result.push_back({"ARopeThatWeavesThroughACloth", {body_of(test::flat_sheet(2)), weaving_rope(0.009)}, 0.009 + kGap});
   return result;
 }
@@ -212,6 +235,22 @@ TEST(LayersScenario, ThreeTubesAreWornInEveryOrder) {
   do {
     expect_apart_near({tubes[order[0]], tubes[order[1]], tubes[order[2]]}, most);
   } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST(LayersScenario, EachOfThreeTubesIsPutOnAsIfTheLaterOnesWereNotThereYet) {
+  // The middle one stays. The others overlap it by 3 and 1 mm, so the outer one need not move more because the inner one does.
+  const auto fine = [](double mean, double wave, int waves, double turn) {
+    return body_of(tube(mean, wave, waves, turn, 0.0, kFine));
+  };
+  const double most = 0.003 + kGap + 2.0 * sagitta(0.168, 2.0 * kPi / kFine);
+  expect_apart_near({fine(0.163, 0.0, 0, 5.0), fine(0.16, 0.006, 2, 0.0), fine(0.165, 0.003, 3, 0.0)}, most);
+}
+
+TEST(LayersScenario, AClothIsNotFoldedAroundTheEdgeOfASolid) {
+  // It is lifted off the top, but not off the sides, where it would be pressed flat: the solid moves. Without self-contact nothing
+  // else would prevent that. The edge of the solid slides along the cloth by at most a gap.
+  const double overlap = 0.2 * std::tan(kPi / 60.0) - 0.003;
+  expect_apart_near({box(7), tilted_cloth()}, overlap + 2.0 * kGap, false);
 }
 
 TEST(LayersScenario, TheFirstOfTwoTubesStays) {
