@@ -30,6 +30,7 @@ struct SimulationState {
   Points x;                     ///< positions [m], 3 x n
   Points v;                     ///< velocities [m/s], 3 x n
   Points x_previous;            ///< Verlet's positions one step ago [m], 3 x n
+  Points slip;                  ///< displacement along a touched obstacle that friction gives back [m], 3 x n
   std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
 };
 

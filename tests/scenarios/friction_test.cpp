@@ -130,7 +130,7 @@ TEST_P(TiltedGround, SlowsAJellyDownIfAndOnlyIfTheSlopeIsBelowTheFrictionAngle) 
     Journey journey(slope.down());
     const std::string pose = std::string("bodies.jelly.place=").append(slope.pose(0.105, 0.0));
     const ScenarioReport report =
-        run_scenario(load_scenario("jelly_on_ground", {ground(slope), pose}, GetParam() / 4.0), std::ref(journey));
+        run_scenario(load_scenario("jelly_on_ground", {ground(slope), pose, "duration=4"}, GetParam() / 4.0), std::ref(journey));
     EXPECT_TRUE(report.is_free()) << report;
     // The jelly begins undeformed and slides farther than a rigid block until it has settled under its weight. Then it accelerates
     // like a rigid block: the distance of the last second exceeds that of the second before by the acceleration times 1 s^2.

@@ -41,11 +41,15 @@ struct ContactConstraint {
 struct ContactGoal {
   Vector3 origin = Vector3::Zero();
   double least = 0.0;
-  double touch = 0.0;  ///< the constraint touches if it is within this distance of `least`, even without a push
-  double push = 0.0;   ///< accumulated change along the normal, >= 0
+  double touch = 0.0;                     ///< the constraint touches if it is within this distance of `least`, even without a push
+  double push = 0.0;                      ///< accumulated change along the normal, >= 0
+  Vector3 slip_before = Vector3::Zero();  ///< across the normal, of earlier steps; see ContactSolver
   Vector3 friction_change = Vector3::Zero();  ///< accumulated change by friction across the normal
   bool touches = false;                       ///< result of the last projection
 };
+
+/// The fraction of the slip that friction takes back in a step. It is elastic: a jelly at rest would ring with all of it.
+inline constexpr double kReturn = 0.1;
 
 /// The total change that friction makes across the normal, where `needed` would leave no slip: `needed` itself while static
 /// friction suffices, otherwise what kinetic friction gives (Coulomb).
@@ -73,7 +77,7 @@ double project_constraint(const ContactConstraint<n>& row, ContactGoal& goal, Po
   Vector3 correction = change * row.normal;
   if (row.static_friction > 0.0) {
     const Vector3 across = moved - along * row.normal;
-    const Vector3 friction = friction_of(row, goal, goal.friction_change - across);
+    const Vector3 friction = friction_of(row, goal, goal.friction_change - across - kReturn * goal.slip_before);
     correction += friction - goal.friction_change;
     goal.friction_change = friction;
   }

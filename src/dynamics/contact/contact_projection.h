@@ -64,6 +64,7 @@ class ContactProjection {
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator) {
     solver_.settle_velocities(motion, state, integrator);
   }
+  void note_slip(const StepMotion& motion, SimulationState& state) const { solver_.note_slip(motion, state); }
   void constrain_pushed(const StepMotion& motion, ConstrainedDirections& constrained) const {
     solver_.constrain_pushed(motion, constrained);
   }

@@ -61,6 +61,9 @@ bool set_particles(const Contact& contact, const Scalars& inverse_masses, Contac
   return true;
 }
 
+/// The part of a vector across a normal of unit length.
+Vector3 across(const Vector3& normal, const Vector3& vector) { return vector - normal.dot(vector) * normal; }
+
 /// How an element before an obstacle turns about its pins.
 struct Lever {
   double arm = std::numeric_limits<double>::infinity();  ///< lever arm of the contact's point [m]: a displacement of this length
@@ -149,6 +152,9 @@ void ContactSolver::fill_one(const Contact& contact, const ContactMaterial& pair
   goal = {.origin = moved_with_obstacle(contact, row.sum(motion.before)), .touch = kTouch * gap};
   const double recovery = std::min(1.0, (motion.dt / kRecovery) * (motion.dt / kRecovery));
   const double back = gap - contact.normal.dot(goal.origin - contact.point);
+  if (contact.obstacle != kNone && row.static_friction > 0.0) {
+    goal.slip_before = across(row.normal, turned_with_obstacle(contact.obstacle, row.sum(motion.slip_before)));
+  }
   goal.least = moves ? std::min(back, std::max(back - gap, 0.0) + recovery * gap) : kNothingToDo;
   if (!moves || contact.obstacle == kNone) return;
   const auto [arm, share] = lever(row, motion.before);
@@ -163,6 +169,11 @@ Vector3 ContactSolver::moved_with_obstacle(const Contact& contact, const Vector3
   const auto k = static_cast<std::size_t>(contact.obstacle);
   if (!environment_.obstacles()[k].motion.moves()) return from + contact.drift;
   return obstacle_motions_[k] * from + contact.drift;
+}
+
+Vector3 ContactSolver::turned_with_obstacle(Index obstacle, const Vector3& direction) const {
+  const auto k = static_cast<std::size_t>(obstacle);
+  return environment_.obstacles()[k].motion.moves() ? obstacle_motions_[k].linear() * direction : direction;
 }
 
 double ContactSolver::project(Points& positions) {
@@ -182,6 +193,24 @@ void ContactSolver::settle_velocities(const StepMotion& motion, SimulationState&
   }
   for_each_set(sets_, [&](auto& set) {
     set.for_touching([&](Index particle, const auto&) { integrator.velocity_changed(state, particle, motion.dt); });
+  });
+}
+
+void ContactSolver::note_slip(const StepMotion& motion, SimulationState& state) const {
+  std::vector<double> most(static_cast<std::size_t>(state.x.cols()), 0.0);
+  state.slip.setZero();
+  for_each_set(sets_, [&](const auto& set) {
+    set.for_pushed([&](Index particle, const auto& row, const ContactGoal& goal) {
+      const double limit = row.friction * goal.push;
+      double& most_before = most[static_cast<std::size_t>(particle)];
+      if (row.obstacle == kNone || !(limit > most_before)) return;
+      most_before = limit;
+      const Vector3 stuck = motion.before.col(particle) - row.sum(motion.before) - motion.slip_before.col(particle);
+      const Vector3 carried = goal.origin + turned_with_obstacle(row.obstacle, stuck);
+      const Vector3 slip = across(row.normal, state.x.col(particle) - carried);
+      const double length = slip.norm();
+      state.slip.col(particle) = length > limit ? limit / length * slip : slip;
+    });
   });
 }
 

@@ -5,11 +5,12 @@
 
 namespace sprung {
 
-/// A step of `dt` [s] that begins at positions `before` [m] with velocities `v_before` [m/s]; forces alone would end it at
-/// `advanced` [m].
+/// A step of `dt` [s] that begins at positions `before` [m] with velocities `v_before` [m/s] and the state's slip `slip_before`
+/// [m]; forces alone would end it at `advanced` [m].
 struct StepMotion {
   const Points& before;
   const Points& v_before;
+  const Points& slip_before;
   const Points& advanced;
   double dt = 0.0;
 };

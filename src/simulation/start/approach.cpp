@@ -44,8 +44,8 @@ Approach::Approach(const SpringNetwork& network, Environment& environment, Index
 double Approach::stride(Points& x, const Points& advanced) {
   const Points before = x;
   x = advanced;
-  const Points v = Points::Zero(3, x.cols());
-  const StepMotion motion{before, v, advanced, 1.0};
+  const Points none = Points::Zero(3, x.cols());
+  const StepMotion motion{before, none, none, advanced, 1.0};
   contacts_.find(motion);
   contacts_.push_out(x);
   contacts_.truncate(motion, x);

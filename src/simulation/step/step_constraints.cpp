@@ -37,7 +37,9 @@ StepConstraints::StepConstraints(const SpringNetwork& network, const SimulatorSe
 
 void StepConstraints::begin(const SimulationState& state) {
   if (copies_positions()) before_ = state.x;
-  if (contacts_.can_collide()) v_before_ = state.v;
+  if (!contacts_.can_collide()) return;
+  v_before_ = state.v;
+  slip_before_ = state.slip;
 }
 
 void StepConstraints::apply(SimulationState& state, const Forces& forces, double dt, StepReport& report) {
@@ -128,6 +130,7 @@ void StepConstraints::truncate(SimulationState& state, const Forces& forces, Ste
   integrator_.recover_velocities(state, forces, positions_before(state), advanced_, dt_);
   if (can_collide) contacts_.limit_speed_of_moved(motion(), state, integrator_);
   if (can_collide) contacts_.settle_velocities(motion(), state, integrator_);
+  if (can_collide) contacts_.note_slip(motion(), state);
   report.truncated = contacts_.truncated_count();
   report.infeasible = contacts_.infeasible_count();
   if (limit_ && (rounds > 0 || report.truncated > 0)) report.stretch_excess = limit_->excess(state.x);

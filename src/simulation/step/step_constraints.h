@@ -59,7 +59,7 @@ class StepConstraints {
   [[nodiscard]] bool respond_to_truncation(SimulationState& state, const Forces& forces);
   [[nodiscard]] bool projects_contacts() const;
   [[nodiscard]] bool copies_positions() const { return contacts_.can_collide() || !integrator_.keeps_positions(); }
-  [[nodiscard]] StepMotion motion() const { return {before_, v_before_, advanced_, dt_}; }
+  [[nodiscard]] StepMotion motion() const { return {before_, v_before_, slip_before_, advanced_, dt_}; }
 
   const SimulatorSettings& settings_;
   double steady_acceleration_;
@@ -70,6 +70,7 @@ class StepConstraints {
   // State of the present step.
   Points before_;                      ///< positions at the beginning; for contact, or if the integrator does not keep them
   Points v_before_;                    ///< velocities at the beginning; for contact
+  Points slip_before_;                 ///< slip at the beginning; for contact
   Points advanced_;                    ///< positions after forces and pins; for contact, or if the integrator needs them
   ConstrainedDirections constrained_;  ///< of the last call of Integrator::respond_to_contact
   Points responded_;                   ///< positions after that call

@@ -41,7 +41,8 @@ class World {
     const Points v_before = state.v;
     integrator->advance(state, forces, dt);
     const Points advanced = state.x;
-    const StepMotion motion{before, v_before, advanced, dt};
+    const Points slip_before = state.slip;
+    const StepMotion motion{before, v_before, slip_before, advanced, dt};
     solver.start(contacts, motion);
     for (int pass = 0; pass < passes; ++pass) {
       if (2 * pass == passes && !again.empty()) solver.renew({{0}, again}, motion);
@@ -296,7 +297,7 @@ TEST(ContactSolver, AContactThatIsNotFoundAgainIsRemoved) {
   Contact in_other_patch = on_floor({1.0}, 1);
   in_other_patch.patch = 1;
   const Points before = world.state.x;
-  const StepMotion motion{before, world.state.v, before, world.dt};
+  const StepMotion motion{before, world.state.v, world.state.slip, before, world.dt};
   world.solver.start({on_floor({1.0}), in_other_patch}, motion);
   world.solver.renew({.patches = {0}}, motion);
   world.solver.project(world.state.x);
