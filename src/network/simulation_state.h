@@ -31,6 +31,9 @@ struct SimulationState {
   Points v;                     ///< velocities [m/s], 3 x n
   Points x_previous;            ///< Verlet's positions one step ago [m], 3 x n
   Points slip;                  ///< displacement along a touched obstacle that friction gives back [m], 3 x n
+  Points x_at_rest{};           ///< positions when the present rest began [m], 3 x n; empty at first
+  double rest_since = 0.0;      ///< time of that [s]
+  bool asleep = false;          ///< steps change nothing but the time
   std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
 };
 

@@ -27,6 +27,16 @@ constexpr Index kStepsPerEnergy = 64;
 // Largest rotation of an obstacle or a pin in a substep [degrees].
 constexpr double kMaxTurn = 45.0;
 
+/// The time from which on no pin and no obstacle moves [s]; infinity if one moves or deforms for ever.
+double end_of_motions(const SpringNetwork& network, const std::vector<Obstacle>& obstacles) {
+  double end = 0.0;
+  for (const Pin& pin : network.pins) end = std::max(end, pin.motion.end());
+  for (const Obstacle& obstacle : obstacles) {
+    end = std::max(end, obstacle.deforms() ? std::numeric_limits<double>::infinity() : obstacle.motion.end());
+  }
+  return end;
+}
+
 }  // namespace
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared,
@@ -43,6 +53,8 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       waits_for_turn(constraints.limit() != nullptr && constraints.limit()->may_follow_turn()),
       divergence(network),
       energy_watch(network, settings, environment.obstacles()),
+      rest(network, settings.gravity.norm()),
+      driven_until(end_of_motions(network, environment.obstacles())),
       state(initial_state(network)),
       begin{state, energy_watch, {}} {
   const StretchLimit* limit = constraints.limit();
@@ -81,6 +93,10 @@ bool Simulator::Implementation::anything_moves() const {
 }
 
 StepReport Simulator::Implementation::step() {
+  if (state.asleep) {
+    ++state.step;
+    return {};
+  }
   if (symmetry && constraints.contacts().can_collide() && symmetry->may_push(state.x)) break_symmetry();
   const std::optional<std::size_t> compared = body_to_compare(state);
   if (constraints.contacts().can_collide() || compared) {
@@ -94,12 +110,25 @@ StepReport Simulator::Implementation::step() {
   note_step(report.infeasible, state);
   if (refinement) choose_substeps(report);
   if (const StretchLimit* limit = constraints.limit()) note_missed(network, *limit, report.stretch_excess, state);
+  if (may_sleep() && rest.rests(time(), state)) fall_asleep();
   return report;
 }
 
-void Simulator::Implementation::break_symmetry() {
-  symmetry->push(penalty != nullptr ? penalty->normals(state.x) : constraints.contacts().normals(), dt(), *integrator, state);
+/// External forces may change at any time. Bodies sink into a penalty for long, and are not at rest while they do.
+bool Simulator::Implementation::may_sleep() const {
+  return settings.sleep && penalty == nullptr && constraints.contacts().can_collide() && external_forces.empty() &&
+         time() >= driven_until;
 }
+
+void Simulator::Implementation::fall_asleep() {
+  const std::vector<ContactNormal> normals = constraints.contacts().normals();
+  if (!rest.all_touch(normals) || (symmetry && symmetry->has_standing(normals, state.x))) return;
+  state.asleep = true;
+  state.v.setZero();
+  for (Index i = 0; i < network.particle_count(); ++i) integrator->velocity_changed(state, i, dt());
+}
+
+void Simulator::Implementation::break_symmetry() { symmetry->push(contact_normals(), dt(), *integrator, state); }
 
 /// In the frame of a rotating obstacle, particles are assumed to move straight in a substep: after half a turn, through its center.
 int Simulator::Implementation::factor_for_rotation() const {
@@ -193,6 +222,10 @@ void Simulator::Implementation::move_pins(double time) {
       energy_watch.note_pin(state.v.col(i).norm());
     }
   }
+}
+
+std::vector<ContactNormal> Simulator::Implementation::contact_normals() const {
+  return penalty != nullptr ? penalty->normals(state.x) : constraints.contacts().normals();
 }
 
 std::vector<Index> Simulator::Implementation::contacts() const {

@@ -64,6 +64,8 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   const int max_substeps = refinement ? settings.max_substeps : 1;
   stops = before.stops;
   state = before.state;
+  state.asleep = false;
+  state.x_at_rest.resize(3, 0);
   for (Index i = 0; i < network.particle_count(); ++i) {
     if (network.is_pinned(i)) {
       if (!before.network.is_pinned(i)) state.v.col(i).setZero();

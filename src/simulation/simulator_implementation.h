@@ -8,6 +8,7 @@
 #include "simulation/monitoring/divergence.h"
 #include "simulation/monitoring/energy_watch.h"
 #include "simulation/simulator.h"
+#include "simulation/step/rest_detector.h"
 #include "simulation/step/step_constraints.h"
 #include "simulation/step/step_refinement.h"
 #include "simulation/step/symmetry_breaker.h"
@@ -58,6 +59,8 @@ struct Simulator::Implementation {
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
   void break_symmetry();
+  [[nodiscard]] bool may_sleep() const;
+  void fall_asleep();
   [[nodiscard]] int factor_for_rotation() const;
   StepReport make_step(int factor, Index max_infeasible);
   [[nodiscard]] Attempt attempt_of(const StepReport& report) const;
@@ -73,6 +76,7 @@ struct Simulator::Implementation {
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] double contact_energy() const;
   [[nodiscard]] Energies energies() const;
+  [[nodiscard]] std::vector<ContactNormal> contact_normals() const;
   [[nodiscard]] std::vector<Index> contacts() const;
   void check_state();
   void check_energy(const Energies& now) const;
@@ -100,6 +104,8 @@ struct Simulator::Implementation {
   bool waits_for_turn;                       ///< see StretchLimit::may_follow_turn
   DivergenceCheck divergence;
   EnergyWatch energy_watch;
+  RestDetector rest;
+  double driven_until;  ///< the time from which on no pin and no obstacle moves [s]
   SimulationState state;
   StepBegin begin;
   std::optional<std::vector<Index>> kept_contacts;  ///< of the last step, if a later attempt changed the constraints

@@ -93,6 +93,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"PenaltyWithoutStiffness", {"contact={\"response\":\"penalty\",\"damping\":1}"}, "contact.stiffness", "is missing"},
       {"StiffnessOfProjection", {"contact={\"response\":\"projection\",\"stiffness\":10}"}, "contact.stiffness", "is not a known key; only \"response\": \"penalty\" has it"},
       {"UnknownStability", {"stability=ignore"}, "stability", "must be one of refuse, warn"},
+      {"SleepIsNoBoolean", {"sleep=1"}, "sleep", "must be true or false"},
       {"PerturbIsNoBoolean", {"perturb=1"}, "perturb", "must be true or false"},
       {"NegativeSeed", {"seed=-1"}, "seed", "must be at least 0"},
       {"SeedIsNotWhole", {"seed=0.5"}, "seed", "must be a whole number"},

@@ -95,6 +95,7 @@ inline constexpr const char* kFullScene = R"({
                      "tolerance": 0.002, "tethers": true, "solver": "newton", "bodies": ["zebra", "rope"] },
   "contact": { "response": "penalty", "stiffness": 1000, "damping": 0.5, "start": "push_out" },
   "stability": "warn",
+  "sleep": false,
   "perturb": false,
   "seed": 7,
   "bodies": {

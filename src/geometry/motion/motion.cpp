@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace sprung {
@@ -66,6 +67,11 @@ Matrix3 rotation_from_degrees(const Vector3& degrees) {
 bool Motion::moves() const {
   const auto differs = [](const Keyframe& a, const Keyframe& b) { return a.position != b.position || a.rotation != b.rotation; };
   return spin != Vector3::Zero() || std::adjacent_find(keyframes.begin(), keyframes.end(), differs) != keyframes.end();
+}
+
+double Motion::end() const {
+  if (spin != Vector3::Zero()) return std::numeric_limits<double>::infinity();
+  return keyframes.empty() ? 0.0 : keyframes.back().time;
 }
 
 double Motion::turn(double begin, double end) const {

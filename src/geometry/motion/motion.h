@@ -28,6 +28,9 @@ struct Motion {
   /// False if the pose is the same at all times.
   [[nodiscard]] bool moves() const;
 
+  /// The time from which on the pose stays the same [s]; infinity with a spin, 0 without motion.
+  [[nodiscard]] double end() const;
+
   /// Upper bound of the angle turned between two times, forth and back added [degrees].
   [[nodiscard]] double turn(double begin, double end) const;
 

@@ -17,6 +17,9 @@ constexpr double kFlatness = 1.0e-12;
 // Sine of the angle between a line or plane and a normal that counts as lying in it.
 constexpr double kInclination = 1.0e-6;
 
+// Both, for pieces that are about to fall over.
+constexpr double kNearly = 1.0e-3;
+
 // Compression of a spring that is more than rounding.
 constexpr double kCompression = 1.0e-9;
 
@@ -72,7 +75,19 @@ SymmetryBreaker::SymmetryBreaker(const SpringNetwork& network, std::uint64_t see
 }
 
 bool SymmetryBreaker::may_push(const Points& positions) const {
-  return std::ranges::any_of(pieces_, [&](const Piece& piece) { return span_of(piece.corners, positions).dimension < 3; });
+  return std::ranges::any_of(pieces_,
+                             [&](const Piece& piece) { return span_of(piece.corners, positions, kFlatness).dimension < 3; });
+}
+
+bool SymmetryBreaker::has_standing(const std::vector<ContactNormal>& contacts, const Points& positions) {
+  std::map<Index, Flat> flats;  // by piece
+  return std::ranges::any_of(contacts, [&](const ContactNormal& contact) {
+    const Index p = piece_of_[contact.particle];
+    if (p == kNone) return false;
+    const auto [found, is_new] = flats.try_emplace(p);
+    if (is_new) found->second = measure(pieces_[p], positions, kNearly);
+    return found->second.contains(contact.normal, kNearly);
+  });
 }
 
 void SymmetryBreaker::push(const std::vector<ContactNormal>& contacts, double dt, const Integrator& integrator,
@@ -85,36 +100,36 @@ void SymmetryBreaker::push(const std::vector<ContactNormal>& contacts, double dt
     if (p == kNone) continue;
     if (p != last) {
       const auto [found, is_new] = flats.try_emplace(p);
-      if (is_new) found->second = measure(pieces_[p], state.x);
+      if (is_new) found->second = measure(pieces_[p], state.x, kFlatness);
       flat = &found->second;
       last = p;
     }
-    if (!flat->contains(normal)) continue;
+    if (!flat->contains(normal, kInclination)) continue;
     push(pieces_[p], *flat, dt, integrator, state);
     *flat = {};
   }
 }
 
-bool SymmetryBreaker::Flat::contains(const Vector3& unit) const {
-  if (dimension == 1) return direction.cross(unit).norm() <= kInclination;
-  return dimension == 2 && std::abs(direction.dot(unit)) <= kInclination;
+bool SymmetryBreaker::Flat::contains(const Vector3& unit, double inclination) const {
+  if (dimension == 1) return direction.cross(unit).norm() <= inclination;
+  return dimension == 2 && std::abs(direction.dot(unit)) <= inclination;
 }
 
-SymmetryBreaker::Flat SymmetryBreaker::span_of(const std::array<Index, 4>& corners, const Points& positions) {
+SymmetryBreaker::Flat SymmetryBreaker::span_of(const std::array<Index, 4>& corners, const Points& positions, double flatness) {
   const auto from_first = [&](std::size_t k) -> Vector3 { return positions.col(corners[k]) - positions.col(corners[0]); };
   const Vector3 along = from_first(1);
   const double extent = along.norm();
   if (extent == 0.0) return {.dimension = 0};
   const Vector3 normal = along.cross(from_first(2));
-  if (normal.norm() <= kFlatness * extent * extent) return {.dimension = 1, .direction = along / extent};
+  if (normal.norm() <= flatness * extent * extent) return {.dimension = 1, .direction = along / extent};
   const Vector3 unit = normal.normalized();
-  if (std::abs(unit.dot(from_first(3))) <= kFlatness * extent) return {.dimension = 2, .direction = unit};
+  if (std::abs(unit.dot(from_first(3))) <= flatness * extent) return {.dimension = 2, .direction = unit};
   return {};
 }
 
 /// Finds the particles that span the most.
-SymmetryBreaker::Flat SymmetryBreaker::measure(Piece& piece, const Points& positions) {
-  if (const Flat flat = span_of(piece.corners, positions); flat.dimension == 3) return flat;
+SymmetryBreaker::Flat SymmetryBreaker::measure(Piece& piece, const Points& positions, double flatness) {
+  if (const Flat flat = span_of(piece.corners, positions, flatness); flat.dimension == 3) return flat;
   piece.corners.fill(piece.particles.front());
   const Vector3 origin = positions.col(piece.corners[0]);
   piece.corners[1] = farthest(piece.particles, [&](Index i) { return (positions.col(i) - origin).squaredNorm(); });
@@ -123,7 +138,7 @@ SymmetryBreaker::Flat SymmetryBreaker::measure(Piece& piece, const Points& posit
       farthest(piece.particles, [&](Index i) { return along.cross(Vector3(positions.col(i) - origin)).squaredNorm(); });
   const Vector3 normal = along.cross(Vector3(positions.col(piece.corners[2]) - origin));
   piece.corners[3] = farthest(piece.particles, [&](Index i) { return std::abs(normal.dot(positions.col(i) - origin)); });
-  return span_of(piece.corners, positions);
+  return span_of(piece.corners, positions, flatness);
 }
 
 /// At most 1 long.

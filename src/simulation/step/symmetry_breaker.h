@@ -24,6 +24,10 @@ class SymmetryBreaker {
   /// Whether any piece may lie in a line or plane. Takes a few operations per piece that does not.
   [[nodiscard]] bool may_push(const Points& positions) const;
 
+  /// Whether a piece stands like a card on its edge: it lies nearly, within a thousandth, in a line or plane together with the
+  /// normal of one of its contacts. It is slow while it begins to fall over.
+  [[nodiscard]] bool has_standing(const std::vector<ContactNormal>& contacts, const Points& positions);
+
   /// Gives a speed to the free particles at compressed springs of each piece that lies in a line or plane together with the normal
   /// of one of its contacts. The speed is across the line or plane, and moves a particle by at most 1e-9 of the piece's mean rest
   /// length in a step of `dt` [s], in which contact acts as on any motion.
@@ -42,11 +46,11 @@ class SymmetryBreaker {
   struct Flat {
     int dimension = 3;                     ///< 1: a line, 2: a plane; otherwise the piece has none
     Vector3 direction = Vector3::UnitX();  ///< of the line; the plane's normal
-    [[nodiscard]] bool contains(const Vector3& unit) const;
+    [[nodiscard]] bool contains(const Vector3& unit, double inclination) const;
   };
 
-  [[nodiscard]] static Flat span_of(const std::array<Index, 4>& corners, const Points& positions);
-  [[nodiscard]] static Flat measure(Piece& piece, const Points& positions);
+  [[nodiscard]] static Flat span_of(const std::array<Index, 4>& corners, const Points& positions, double flatness);
+  [[nodiscard]] static Flat measure(Piece& piece, const Points& positions, double flatness);
   [[nodiscard]] Vector3 direction_across(const Flat& flat, Index particle) const;
   void push(const Piece& piece, const Flat& flat, double dt, const Integrator& integrator, SimulationState& state) const;
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace sprung {
@@ -41,6 +42,12 @@ TEST(Motion, WithoutKeyframesAndSpinKeepsThePlacedPose) {
   const RigidTransform placed = placed_at({1, 2, 3}, {10, 20, 30});
   EXPECT_FALSE(Motion{}.moves());
   EXPECT_TRUE(same(Motion{}.pose(placed, 7.5), placed));
+}
+
+TEST(Motion, EndsWithItsLastKeyframeAndNeverWithASpin) {
+  EXPECT_EQ(Motion{}.end(), 0.0);
+  EXPECT_EQ((Motion{.keyframes = {{1.0, {1, 0, 0}, {0, 0, 0}}, {2.5, {5, 0, 0}, {0, 90, 0}}}}.end()), 2.5);
+  EXPECT_EQ((Motion{.spin = {0, 90, 0}}.end()), std::numeric_limits<double>::infinity());
 }
 
 TEST(Motion, IsConstantOutsideItsKeyframes) {

@@ -59,6 +59,7 @@ TEST(SceneReader, TimeAndSettingsArrive) {
   EXPECT_EQ(scene.settings.contact.damping, 0.5);
   EXPECT_EQ(scene.settings.contact.start, ContactSettings::Start::push_out);
   EXPECT_EQ(scene.settings.stability, StabilityCheck::warn);
+  EXPECT_FALSE(scene.settings.sleep);
   EXPECT_FALSE(scene.settings.perturb);
   EXPECT_EQ(scene.settings.seed, 7U);
 }
@@ -184,6 +185,7 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(scene.settings.contact.response, ContactSettings::Response::projection);
   EXPECT_EQ(scene.settings.contact.start, ContactSettings::Start::refuse);
   EXPECT_EQ(scene.settings.stability, StabilityCheck::refuse);
+  EXPECT_TRUE(scene.settings.sleep);
   EXPECT_TRUE(scene.settings.perturb);
   EXPECT_EQ(scene.settings.seed, 0U);
   EXPECT_EQ(scene.bodies[0].place.scale, 1.0);

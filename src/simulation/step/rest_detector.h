@@ -1,0 +1,39 @@
+// Finds out when a simulation has come to rest, so that it can sleep.
+//
+// The rule is that of rigid bodies in games (Catto, Box2D; Rouwe, Jolt): whoever has been slow for half a second sleeps. Slow is
+// what gravity gives in a millisecond, 1 cm/s on earth. Without contact nothing sleeps: a pendulum is slow at the end of each
+// swing.
+#pragma once
+
+#include "dynamics/contact/contact_normal.h"
+#include "network/simulation_state.h"
+#include "network/spring_network.h"
+
+#include <vector>
+
+namespace sprung {
+
+class RestDetector {
+ public:
+  /// Keeps a reference to the network. `gravity` in m/s^2.
+  RestDetector(const SpringNetwork& network, double gravity);
+
+  /// Records the positions after a step, at `time` [s]. Returns whether for half a second no free particle was farther from where
+  /// it was at its beginning than the distance of a slow motion, or a quarter of the shortest spring, and the root mean square of
+  /// their speeds is slow now. If it is not, half a second begins anew.
+  [[nodiscard]] bool rests(double time, SimulationState& state) const;
+
+  /// Whether each body with free particles touches something.
+  [[nodiscard]] bool all_touch(const std::vector<ContactNormal>& contacts) const;
+
+ private:
+  [[nodiscard]] bool has_moved(const SimulationState& state) const;
+  [[nodiscard]] double mean_square_speed(const Points& velocities) const;
+
+  const SpringNetwork& network_;
+  std::vector<Index> free_;  ///< particles that are not pinned
+  double slow_;              ///< [m/s]
+  double longest_ = 0.0;     ///< displacement at rest [m]
+};
+
+}  // namespace sprung

@@ -1,0 +1,147 @@
+// What rests in contact sleeps, nothing else does, and any change wakes it.
+#include "dynamics/forces/pull_force.h"
+#include "simulation/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+
+namespace sprung::testing {
+namespace {
+
+constexpr double kGap = 0.01;  // of a body and an obstacle [m]
+
+const ContactMaterial kRough{.thickness = 0.5 * kGap, .friction = 0.4, .static_friction = 0.4};
+
+SimulatorSettings settings_of(const IntegratorSettings& integrator = VerletSettings{}) {
+  SimulatorSettings settings;
+  settings.step = integrator.index() == 0 ? 1.0e-4 : 5.0e-4;
+  settings.integrator = integrator;
+  settings.stability = StabilityCheck::warn;  // explicit Euler warns of growth that dampers outweigh
+  return settings;
+}
+
+/// A cloth that lies on the ground at its gap.
+Simulator lying_cloth(const SimulatorSettings& settings, const Motion& of_ground = {}) {
+  Obstacle floor = ground(kRough);
+  floor.motion = of_ground;
+  return Simulator(cloth(4, kGap, kRough), settings, {floor});
+}
+
+bool sleeps(const Simulator& simulator) { return simulator.state().asleep; }
+
+TEST(RestDetector, AClothThatLiesStillSleepsAfterHalfASecondWithEachScheme) {
+  for (const IntegratorSettings& integrator : all_integrators()) {
+    Simulator simulator = lying_cloth(settings_of(integrator));
+    run(simulator, 0.4);
+    EXPECT_FALSE(sleeps(simulator)) << "integrator " << integrator.index();
+    run(simulator, 0.2);
+    ASSERT_TRUE(sleeps(simulator)) << "integrator " << integrator.index();
+    const Points positions = simulator.positions();
+    const std::int64_t steps = simulator.state().step;
+    EXPECT_EQ(simulator.step().substeps, 0);
+    EXPECT_EQ(simulator.state().step, steps + 1);
+    EXPECT_EQ(simulator.positions(), positions);
+    EXPECT_TRUE(simulator.state().v.isZero(0.0));
+  }
+}
+
+TEST(RestDetector, TheSettingKeepsItAwake) {
+  SimulatorSettings settings = settings_of();
+  settings.sleep = false;
+  Simulator simulator = lying_cloth(settings);
+  run(simulator, 1.5);
+  EXPECT_FALSE(sleeps(simulator));
+  EXPECT_EQ(simulator.step().substeps, 1);
+}
+
+// Its speed is below that of rest all the time.
+TEST(RestDetector, WithoutContactASlowSwingGoesOn) {
+  NetworkBuilder builder;
+  builder.begin_body("pendulum", kRough);
+  builder.add_particle({0.0, 2.0, 0.0}, 0.1);
+  builder.add_particle({0.002, 1.0, 0.0}, 0.1);
+  builder.add_spring(0, 1, 1000.0, 1.0, 0.0);
+  builder.pin(0);
+  Simulator simulator(builder.build(), settings_of(), {ground(kRough)});
+  run(simulator, 2.0);
+  EXPECT_FALSE(sleeps(simulator));
+}
+
+TEST(RestDetector, ABodyThatTouchesNothingKeepsAllAwake) {
+  NetworkBuilder builder;
+  builder.begin_body("lies", kRough);
+  builder.add_particle({0.0, kGap, 0.0}, 0.1);
+  builder.begin_body("hangs", kRough);
+  builder.add_particle({1.0, 2.0, 0.0}, 0.1);
+  builder.add_particle({1.0, 1.0, 0.0}, 0.1);
+  builder.add_spring(1, 2, 1000.0, 1.0 - 0.1 * kGravity / 1000.0, 0.0);
+  builder.pin(1);
+  SpringNetwork network = builder.build();
+  Simulator awake(network, settings_of(), {ground(kRough)});
+  run(awake, 1.5);
+  EXPECT_FALSE(sleeps(awake));
+  network.inverse_masses[2] = 0.0;  // a body of pins alone need not touch anything
+  network.pins.front().particles.push_back(2);
+  Simulator asleep(network, settings_of(), {ground(kRough)});
+  run(asleep, 1.5);
+  EXPECT_TRUE(sleeps(asleep));
+}
+
+// The ground waits for two seconds and then throws the cloth up.
+TEST(RestDetector, AMotionThatIsStillToComeKeepsItAwake) {
+  Simulator simulator = lying_cloth(settings_of(), {.keyframes = {{.time = 2.0}, {.time = 2.1, .position = {0.0, 0.5, 0.0}}}});
+  run(simulator, 1.9);
+  EXPECT_FALSE(sleeps(simulator));
+  run(simulator, 0.3);
+  EXPECT_GT(simulator.positions().row(1).minCoeff(), 0.5);
+  run(simulator, 2.0);
+  EXPECT_TRUE(sleeps(simulator)) << "the motion has ended";
+}
+
+TEST(RestDetector, AnObstacleThatTurnsForEverKeepsItAwake) {
+  Simulator simulator = lying_cloth(settings_of(), {.spin = {0.0, 1.0e-9, 0.0}});
+  run(simulator, 1.5);
+  EXPECT_FALSE(sleeps(simulator));
+}
+
+// Gravity at 45 degrees is more than a friction of 0.4 holds: the cloth accelerates by g (1 - 0.4) along the ground.
+TEST(RestDetector, AChangeOfGravityWakesIt) {
+  Simulator simulator = lying_cloth(settings_of());
+  run(simulator, 1.0);
+  ASSERT_TRUE(sleeps(simulator));
+  const double before = simulator.positions().row(0).mean();
+  simulator.set_gravity({kGravity, -kGravity, 0.0});
+  run(simulator, 1.0);
+  EXPECT_NEAR(simulator.positions().row(0).mean() - before, 0.5 * 0.6 * kGravity, 0.01 * 0.5 * 0.6 * kGravity);
+}
+
+TEST(RestDetector, AnExternalForceWakesItAndKeepsItAwake) {
+  Simulator simulator = lying_cloth(settings_of());
+  run(simulator, 1.0);
+  ASSERT_TRUE(sleeps(simulator));
+  const auto pull = std::make_shared<PullForce>(simulator.network(), simulator.positions(), 0, simulator.settings().step);
+  pull->set_target(simulator.positions().col(0));
+  simulator.add_force(pull);
+  run(simulator, 1.0);
+  EXPECT_FALSE(sleeps(simulator));
+  simulator.remove_force(*pull);
+  run(simulator, 1.0);
+  EXPECT_TRUE(sleeps(simulator));
+}
+
+// One per cent above the friction angle gravity accelerates a body by 3.6 cm/s^2, to 1.8 cm/s in half a second.
+TEST(RestDetector, ASlowSlideIsNoRest) {
+  const double angle = std::atan(1.01 * 0.4);
+  const Obstacle slope = ground(kRough, angle);
+  const Vector3 up = std::get<HalfSpaceGeometry>(slope.geometry).normal;
+  Simulator simulator(one_particle(kGap * up, kRough), settings_of(), {slope});
+  run(simulator, 3.0);
+  EXPECT_FALSE(sleeps(simulator));
+  const double acceleration = kGravity * (std::sin(angle) - 0.4 * std::cos(angle));
+  EXPECT_NEAR((simulator.positions().col(0) - kGap * up).norm(), 0.5 * acceleration * 9.0, 0.02 * 0.5 * acceleration * 9.0);
+}
+
+}  // namespace
+}  // namespace sprung::testing
