@@ -6,7 +6,8 @@ SimulationState initial_state(const SpringNetwork& network) {
   return {.x = network.positions,
           .v = network.velocities,
           .x_previous = network.positions,
-          .slip = Points::Zero(3, network.positions.cols()),
+          .slip = {.displacement = Points::Zero(3, network.positions.cols()),
+                   .obstacle = std::vector<Index>(static_cast<std::size_t>(network.positions.cols()), kNone)},
           .stretch_handovers = std::vector<StretchHandover>(network.bodies.size())};
 }
 

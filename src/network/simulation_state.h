@@ -18,6 +18,12 @@ struct StretchHandover {
   std::optional<std::int64_t> solved_since;  ///< the step after which the global solve took over; none: passes enforce the limit
 };
 
+/// What friction with obstacles remembers of each particle.
+struct Slip {
+  Points displacement;          ///< along the obstacle since the particle stuck to it [m], 3 x n; zero without a contact
+  std::vector<Index> obstacle;  ///< that the particle touches, n; kNone without a contact
+};
+
 struct SimulationState {
   std::int64_t step = 0;        ///< number of completed steps
   int substeps = 1;             ///< number of equal substeps of the current step
@@ -30,9 +36,10 @@ struct SimulationState {
   Points x;                     ///< positions [m], 3 x n
   Points v;                     ///< velocities [m/s], 3 x n
   Points x_previous;            ///< Verlet's positions one step ago [m], 3 x n
-  Points slip;                  ///< displacement along a touched obstacle that friction gives back [m], 3 x n
+  Slip slip;                    ///< since particles stuck to obstacles
   Points x_at_rest{};           ///< positions when the present rest began [m], 3 x n; empty at first
   double rest_since = 0.0;      ///< time of that [s]
+  double rest_speed2 = 0.0;     ///< mean square of the speeds then [m^2/s^2]
   bool asleep = false;          ///< steps change nothing but the time
   std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
 };

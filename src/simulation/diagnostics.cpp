@@ -68,7 +68,7 @@ FrameDiagnostics FrameRunner::next_frame() {
   diagnostics.truncated = all.truncated;
   diagnostics.infeasible = all.infeasible;
   diagnostics.substeps = all.substeps;
-  diagnostics.smallest_step = simulator_.settings().step / max_substeps;
+  diagnostics.smallest_step = all.substeps > 0 ? simulator_.settings().step / max_substeps : 0.0;
   diagnostics.limit_solves = all.limit_solves;
   diagnostics.frame_ms = elapsed.count();
   return diagnostics;

@@ -30,7 +30,9 @@ constexpr double kMaxTurn = 45.0;
 /// The time from which on no pin and no obstacle moves [s]; infinity if one moves or deforms for ever.
 double end_of_motions(const SpringNetwork& network, const std::vector<Obstacle>& obstacles) {
   double end = 0.0;
-  for (const Pin& pin : network.pins) end = std::max(end, pin.motion.end());
+  for (const Pin& pin : network.pins) {
+    if (!pin.particles.empty()) end = std::max(end, pin.motion.end());
+  }
   for (const Obstacle& obstacle : obstacles) {
     end = std::max(end, obstacle.deforms() ? std::numeric_limits<double>::infinity() : obstacle.motion.end());
   }
@@ -95,7 +97,7 @@ bool Simulator::Implementation::anything_moves() const {
 StepReport Simulator::Implementation::step() {
   if (state.asleep) {
     ++state.step;
-    return {};
+    return {.stretch_excess = constraints.limit() != nullptr ? constraints.limit()->excess(state.x) : 0.0};
   }
   if (symmetry && constraints.contacts().can_collide() && symmetry->may_push(state.x)) break_symmetry();
   const std::optional<std::size_t> compared = body_to_compare(state);
@@ -110,7 +112,7 @@ StepReport Simulator::Implementation::step() {
   note_step(report.infeasible, state);
   if (refinement) choose_substeps(report);
   if (const StretchLimit* limit = constraints.limit()) note_missed(network, *limit, report.stretch_excess, state);
-  if (may_sleep() && rest.rests(time(), state)) fall_asleep();
+  if (report.infeasible == 0 && may_sleep() && rest.rests(time(), state)) fall_asleep();
   return report;
 }
 

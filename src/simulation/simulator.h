@@ -30,6 +30,7 @@ class Simulator {
   /// rotates by more than 45 degrees in a substep. A step with infeasible particles is repeated with 4, 16 and 64 times the
   /// substeps until there are none: a long step can miss an admissible position near a pin or before a fast obstacle. Repetitions
   /// without effect become rarer (see step_retry.h). Throws StepError if the network diverged; the state is then not usable.
+  /// Once the simulation sleeps (see RestDetector), a step changes the time alone.
   StepReport step();
 
   /// Lets step() call `stops` before each substep and throw StoppedError if it returns true; the state is then not usable. A step

@@ -37,7 +37,11 @@ StepReport Simulator::Implementation::compare_solvers(std::size_t body, const St
   const auto other = attempt(factor, first.max_infeasible + 1);
   const bool changes = other && is_worth_changing(to_newton, excess_of_first, excess());
   const StepReport report = changes ? *other : present.report;
-  if (!changes) take(std::move(present));
+  if (changes) {
+    kept_contacts.reset();
+  } else {
+    take(std::move(present));
+  }
   note_comparison(body, changes, state);
   return report;
 }

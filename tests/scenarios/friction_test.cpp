@@ -95,10 +95,13 @@ TEST_P(ClothOnGround, StopsAfterItsStoppingDistance) {
   Journey journey(Vector3::UnitX());
   const ScenarioReport report = run_scenario(scene({"bodies.cloth.velocity=[3,0,0]"}), std::ref(journey));
   EXPECT_TRUE(report.is_free()) << report;
-  // The distance is exact except for the step in which the cloth stops, which adds less than mu g dt^2.
-  const double distance = 3.0 * 3.0 / (2.0 * kFriction * kGravity);
-  EXPECT_NEAR(journey.distance(), distance, kFriction * kGravity * report.step * report.step);
-  EXPECT_EQ(journey.fastest(), 0.0);
+  // The distance is exact except for the step in which the cloth stops, which adds less than mu g dt^2, and for the slip that
+  // friction takes back, as much at most: a tenth of what is left of it in each step.
+  const double stop = 3.0 / (kFriction * kGravity);
+  const double slip = kFriction * kGravity * report.step * report.step;
+  EXPECT_NEAR(journey.distance(), 0.5 * 3.0 * stop, 2.0 * slip);
+  const double steps_since = (2.0 - stop) / report.step - 2.0;
+  EXPECT_LT(journey.fastest(), 0.1 * slip / report.step * std::pow(0.9, steps_since));
 }
 
 class TiltedGround : public ::testing::TestWithParam<double> {

@@ -102,7 +102,9 @@ BuiltScene load_scenario(const std::string& name, const std::vector<std::string>
   const std::filesystem::path root = SPRUNG_SOURCE_DIR;
   const std::filesystem::path file = root / "tests" / "scenarios" / "scenes" / (name + ".json");
   const std::vector<std::filesystem::path> meshes = {root / "meshes", SPRUNG_TEST_MESHES};
-  BuiltScene built = build_scene(read_scene(file, overrides), meshes);
+  std::vector<std::string> changes = {"sleep=false"};  // laws of rest are judged awake
+  changes.insert(changes.end(), overrides.begin(), overrides.end());
+  BuiltScene built = build_scene(read_scene(file, changes), meshes);
   built.settings.step *= step_factor;
   if (step_factor < 1.0) {
     built.steps_per_frame = static_cast<int>(std::lround(built.steps_per_frame / step_factor));

@@ -9,6 +9,9 @@
 
 namespace sprung {
 
+/// The part of a vector across a normal of unit length.
+[[nodiscard]] inline Vector3 across(const Vector3& normal, const Vector3& vector) { return vector - normal.dot(vector) * normal; }
+
 /// A weighted sum of n particles that is constrained along a normal.
 template <std::size_t n>
 struct ContactConstraint {
@@ -26,6 +29,16 @@ struct ContactConstraint {
   [[nodiscard]] Vector3 sum(const Points& q) const {
     Vector3 result = weights[0] * q.col(particles[0]);
     for (std::size_t k = 1; k < n; ++k) result += weights[k] * q.col(particles[k]);
+    return result;
+  }
+
+  /// The same over the particles i with `counts(i)`.
+  template <class Counts>
+  [[nodiscard]] Vector3 sum_if(const Points& q, const Counts& counts) const {
+    Vector3 result = Vector3::Zero();
+    for (std::size_t k = 0; k < n; ++k) {
+      if (counts(particles[k])) result += weights[k] * q.col(particles[k]);
+    }
     return result;
   }
 
@@ -48,7 +61,8 @@ struct ContactGoal {
   bool touches = false;                       ///< result of the last projection
 };
 
-/// The fraction of the slip that friction takes back in a step. It is elastic: a jelly at rest would ring with all of it.
+/// The fraction of the slip of earlier steps that friction takes back in a step. All of it would be a stiff spring: a jelly at rest
+/// would ring.
 inline constexpr double kReturn = 0.1;
 
 /// The total change that friction makes across the normal, where `needed` would leave no slip: `needed` itself while static
@@ -76,8 +90,8 @@ double project_constraint(const ContactConstraint<n>& row, ContactGoal& goal, Po
   goal.push += change;
   Vector3 correction = change * row.normal;
   if (row.static_friction > 0.0) {
-    const Vector3 across = moved - along * row.normal;
-    const Vector3 friction = friction_of(row, goal, goal.friction_change - across - kReturn * goal.slip_before);
+    const Vector3 slip = moved - along * row.normal;
+    const Vector3 friction = friction_of(row, goal, goal.friction_change - slip - kReturn * goal.slip_before);
     correction += friction - goal.friction_change;
     goal.friction_change = friction;
   }

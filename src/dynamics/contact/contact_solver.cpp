@@ -61,9 +61,6 @@ bool set_particles(const Contact& contact, const Scalars& inverse_masses, Contac
   return true;
 }
 
-/// The part of a vector across a normal of unit length.
-Vector3 across(const Vector3& normal, const Vector3& vector) { return vector - normal.dot(vector) * normal; }
-
 /// How an element before an obstacle turns about its pins.
 struct Lever {
   double arm = std::numeric_limits<double>::infinity();  ///< lever arm of the contact's point [m]: a displacement of this length
@@ -153,7 +150,10 @@ void ContactSolver::fill_one(const Contact& contact, const ContactMaterial& pair
   const double recovery = std::min(1.0, (motion.dt / kRecovery) * (motion.dt / kRecovery));
   const double back = gap - contact.normal.dot(goal.origin - contact.point);
   if (contact.obstacle != kNone && row.static_friction > 0.0) {
-    goal.slip_before = across(row.normal, turned_with_obstacle(contact.obstacle, row.sum(motion.slip_before)));
+    const Vector3 slip = row.sum_if(motion.slip_before.displacement, [&](Index i) {
+      return motion.slip_before.obstacle[static_cast<std::size_t>(i)] == contact.obstacle;
+    });
+    goal.slip_before = across(row.normal, turned_with_obstacle(contact.obstacle, slip));
   }
   goal.least = moves ? std::min(back, std::max(back - gap, 0.0) + recovery * gap) : kNothingToDo;
   if (!moves || contact.obstacle == kNone) return;
@@ -197,19 +197,22 @@ void ContactSolver::settle_velocities(const StepMotion& motion, SimulationState&
 }
 
 void ContactSolver::note_slip(const StepMotion& motion, SimulationState& state) const {
-  std::vector<double> most(static_cast<std::size_t>(state.x.cols()), 0.0);
-  state.slip.setZero();
+  std::vector<double> largest_bound(static_cast<std::size_t>(state.x.cols()), 0.0);
+  state.slip.displacement.setZero();
+  std::ranges::fill(state.slip.obstacle, kNone);
   for_each_set(sets_, [&](const auto& set) {
     set.for_pushed([&](Index particle, const auto& row, const ContactGoal& goal) {
-      const double limit = row.friction * goal.push;
-      double& most_before = most[static_cast<std::size_t>(particle)];
-      if (row.obstacle == kNone || !(limit > most_before)) return;
-      most_before = limit;
-      const Vector3 stuck = motion.before.col(particle) - row.sum(motion.before) - motion.slip_before.col(particle);
-      const Vector3 carried = goal.origin + turned_with_obstacle(row.obstacle, stuck);
-      const Vector3 slip = across(row.normal, state.x.col(particle) - carried);
+      const auto i = static_cast<std::size_t>(particle);
+      const double bound = row.friction * goal.push;
+      if (row.obstacle == kNone || !(bound > largest_bound[i])) return;
+      largest_bound[i] = bound;
+      Vector3 stuck = motion.before.col(particle);
+      if (motion.slip_before.obstacle[i] == row.obstacle) stuck -= motion.slip_before.displacement.col(particle);
+      const Vector3 moved = goal.origin + turned_with_obstacle(row.obstacle, stuck - row.sum(motion.before));
+      const Vector3 slip = across(row.normal, state.x.col(particle) - moved);
       const double length = slip.norm();
-      state.slip.col(particle) = length > limit ? limit / length * slip : slip;
+      state.slip.displacement.col(particle) = length > bound ? bound / length * slip : slip;
+      state.slip.obstacle[i] = row.obstacle;
     });
   });
 }

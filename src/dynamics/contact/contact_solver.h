@@ -4,9 +4,9 @@
 // Friction is a displacement, not a velocity: it reduces the motion along the surface in the positions too, so that a particle at
 // rest on a slope does not creep by g sin(angle) dt^2 each step. The velocity follows from the position.
 //
-// A load that passes find only roughly exceeds friction in some steps and not in others. If friction forgot what a particle slipped
-// in the former, a cloth would creep off a bunny by 8 mm/s. So friction with an obstacle pulls a particle back to where it stuck,
-// as in the springs between grains of Cundall and Strack (1979), but never by more than friction may move it in a step.
+// Passes find a load only roughly, so that friction suffices in some steps and not in others. Without memory particles creep.
+// Friction with an obstacle therefore takes a particle back to where it stuck, as do the springs between grains of Cundall and
+// Strack (1979), within Coulomb's bound.
 #pragma once
 
 #include "collision/core/contact.h"
@@ -54,8 +54,8 @@ class ContactSolver {
   void settle_velocities(const StepMotion& motion, SimulationState& state, const Integrator& integrator);
 
   /// Sets the slip of the state at the end of the step: of a particle that an obstacle pushes, its displacement along the obstacle
-  /// since it stuck, at most friction times the push; of others 0. If several contacts push a particle, the one counts that can
-  /// hold it most.
+  /// since it stuck, at most friction times the push; of others 0. If several contacts push a particle, the one with the largest
+  /// bound of friction counts.
   void note_slip(const StepMotion& motion, SimulationState& state) const;
 
   /// Adds the normals along which particles were pushed in this step. Those of obstacles are supports with friction.

@@ -71,7 +71,7 @@ bool Motion::moves() const {
 
 double Motion::end() const {
   if (spin != Vector3::Zero()) return std::numeric_limits<double>::infinity();
-  return keyframes.empty() ? 0.0 : keyframes.back().time;
+  return moves() ? keyframes.back().time : 0.0;
 }
 
 double Motion::turn(double begin, double end) const {

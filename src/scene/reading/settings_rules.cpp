@@ -129,8 +129,8 @@ void read_settings(Fields& fields, Scene& scene) {
   settings.contact = contact.value_or(ContactSettings{});
   const auto stability = fields.value("stability", word_of({"refuse", "warn"}), "refuse");
   settings.stability = stability == 1 ? StabilityCheck::warn : StabilityCheck::refuse;
-  settings.sleep = fields.value("sleep", boolean(), settings.sleep).value_or(true);
-  settings.perturb = fields.value("perturb", boolean(), settings.perturb).value_or(true);
+  settings.sleep = fields.value("sleep", boolean(), settings.sleep).value_or(settings.sleep);
+  settings.perturb = fields.value("perturb", boolean(), settings.perturb).value_or(settings.perturb);
   settings.seed = static_cast<std::uint64_t>(fields.value("seed", integer(0, std::numeric_limits<Index>::max()), 0).value_or(0));
 }
 

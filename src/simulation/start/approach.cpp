@@ -45,7 +45,8 @@ double Approach::stride(Points& x, const Points& advanced) {
   const Points before = x;
   x = advanced;
   const Points none = Points::Zero(3, x.cols());
-  const StepMotion motion{before, none, none, advanced, 1.0};
+  const Slip no_slip{.displacement = none, .obstacle = std::vector<Index>(static_cast<std::size_t>(x.cols()), kNone)};
+  const StepMotion motion{before, none, no_slip, advanced, 1.0};
   contacts_.find(motion);
   contacts_.push_out(x);
   contacts_.truncate(motion, x);

@@ -14,6 +14,12 @@ constexpr double kFall = 1.0e-3;
 // Displacement at rest, as a fraction of the shortest spring.
 constexpr double kOfSpring = 0.25;
 
+// Root mean square of the displacements at rest, as a fraction of the largest: a body that glides moves as a whole.
+constexpr double kDrift = 0.1;
+
+// Speed that is noise, as a fraction of a slow speed.
+constexpr double kNoise = 1.0e-3;
+
 }  // namespace
 
 RestDetector::RestDetector(const SpringNetwork& network, double gravity)
@@ -27,15 +33,18 @@ RestDetector::RestDetector(const SpringNetwork& network, double gravity)
 }
 
 bool RestDetector::rests(double time, SimulationState& state) const {
-  if (state.x_at_rest.cols() == 0 || has_moved(state)) {
-    state.x_at_rest = state.x;
-    state.rest_since = time;
-    return false;
-  }
-  if (time - state.rest_since < kRest) return false;
+  const bool first = state.x_at_rest.cols() == 0;
+  const bool moved = !first && has_moved(state);
+  if (!first && !moved && time - state.rest_since < kRest) return false;
+  const double drift = first ? 0.0 : mean_square(state.x - state.x_at_rest);
+  const double speed_before = state.rest_speed2;
   state.x_at_rest = state.x;
   state.rest_since = time;
-  return mean_square_speed(state.v) <= slow_ * slow_;
+  state.rest_speed2 = mean_square(state.v);
+  if (first || moved) return false;
+  const double slow2 = slow_ * slow_;
+  return drift <= kDrift * kDrift * longest_ * longest_ && state.rest_speed2 <= slow2 &&
+         state.rest_speed2 <= std::max(speed_before, kNoise * kNoise * slow2);
 }
 
 bool RestDetector::all_touch(const std::vector<ContactNormal>& contacts) const {
@@ -56,9 +65,9 @@ bool RestDetector::has_moved(const SimulationState& state) const {
       free_, [&](Index i) { return !((state.x.col(i) - state.x_at_rest.col(i)).squaredNorm() <= longest_ * longest_); });
 }
 
-double RestDetector::mean_square_speed(const Points& velocities) const {
+double RestDetector::mean_square(const Points& vectors) const {
   double sum = 0.0;
-  for (const Index i : free_) sum += velocities.col(i).squaredNorm();
+  for (const Index i : free_) sum += vectors.col(i).squaredNorm();
   return free_.empty() ? 0.0 : sum / static_cast<double>(free_.size());
 }
 

@@ -18,9 +18,10 @@ class RestDetector {
   /// Keeps a reference to the network. `gravity` in m/s^2.
   RestDetector(const SpringNetwork& network, double gravity);
 
-  /// Records the positions after a step, at `time` [s]. Returns whether for half a second no free particle was farther from where
-  /// it was at its beginning than the distance of a slow motion, or a quarter of the shortest spring, and the root mean square of
-  /// their speeds is slow now. If it is not, half a second begins anew.
+  /// Compares the positions after a step, at `time` [s], with those at the beginning of a window of half a second. A new window
+  /// begins at its end, or if a free particle moved farther than a slow motion does in half a second, or than a quarter of the
+  /// shortest spring. Returns true at the end of a window if the root mean square of the displacements is a tenth of that at most,
+  /// and that of the speeds is slow and did not grow: what begins to slide or to fall over is slow at first.
   [[nodiscard]] bool rests(double time, SimulationState& state) const;
 
   /// Whether each body with free particles touches something.
@@ -28,7 +29,7 @@ class RestDetector {
 
  private:
   [[nodiscard]] bool has_moved(const SimulationState& state) const;
-  [[nodiscard]] double mean_square_speed(const Points& velocities) const;
+  [[nodiscard]] double mean_square(const Points& vectors) const;
 
   const SpringNetwork& network_;
   std::vector<Index> free_;  ///< particles that are not pinned

@@ -56,6 +56,7 @@ void StepConstraints::correct_positions(SimulationState& state, double dt) {
   StepReport report;
   for (int k = 0; limit_ && k < kCorrections && limit_->excess(state.x) > kCorrected; ++k) {
     begin(state);
+    slip_before_.displacement.setZero();  // this is no step: friction takes nothing back
     const Points start = state.x;
     advanced_ = start;
     if (projects_contacts()) contacts_.find(motion());

@@ -70,7 +70,7 @@ class StepConstraints {
   // State of the present step.
   Points before_;                      ///< positions at the beginning; for contact, or if the integrator does not keep them
   Points v_before_;                    ///< velocities at the beginning; for contact
-  Points slip_before_;                 ///< slip at the beginning; for contact
+  Slip slip_before_;                   ///< slip at the beginning; for contact
   Points advanced_;                    ///< positions after forces and pins; for contact, or if the integrator needs them
   ConstrainedDirections constrained_;  ///< of the last call of Integrator::respond_to_contact
   Points responded_;                   ///< positions after that call

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -80,14 +81,16 @@ bool SymmetryBreaker::may_push(const Points& positions) const {
 }
 
 bool SymmetryBreaker::has_standing(const std::vector<ContactNormal>& contacts, const Points& positions) {
-  std::map<Index, Flat> flats;  // by piece
-  return std::ranges::any_of(contacts, [&](const ContactNormal& contact) {
-    const Index p = piece_of_[contact.particle];
-    if (p == kNone) return false;
-    const auto [found, is_new] = flats.try_emplace(p);
-    if (is_new) found->second = measure(pieces_[p], positions, kNearly);
-    return found->second.contains(contact.normal, kNearly);
-  });
+  std::map<Index, std::pair<Flat, bool>> pieces;  // and whether all normals so far lie in it
+  for (const auto& [particle, normal] : contacts) {
+    const Index p = piece_of_[particle];
+    if (p == kNone) continue;
+    const auto [found, is_new] = pieces.try_emplace(p, Flat{}, true);
+    auto& [flat, stands] = found->second;
+    if (is_new) flat = measure(pieces_[p], positions, kNearly);
+    stands = stands && flat.contains(normal, kNearly);
+  }
+  return std::ranges::any_of(pieces, [](const auto& piece) { return piece.second.second; });
 }
 
 void SymmetryBreaker::push(const std::vector<ContactNormal>& contacts, double dt, const Integrator& integrator,

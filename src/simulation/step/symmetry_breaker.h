@@ -25,11 +25,11 @@ class SymmetryBreaker {
   [[nodiscard]] bool may_push(const Points& positions) const;
 
   /// Whether a piece stands like a card on its edge: it lies nearly, within a thousandth, in a line or plane together with the
-  /// normal of one of its contacts. It is slow while it begins to fall over.
+  /// normals of all its contacts. It is slow while it begins to fall over.
   [[nodiscard]] bool has_standing(const std::vector<ContactNormal>& contacts, const Points& positions);
 
-  /// Gives a speed to the free particles at compressed springs of each piece that lies in a line or plane together with the normal
-  /// of one of its contacts. The speed is across the line or plane, and moves a particle by at most 1e-9 of the piece's mean rest
+  /// Gives a speed to the free particles at compressed springs of each piece that lies in a line or plane together with the normals
+  /// of all its contacts. The speed is across the line or plane, and moves a particle by at most 1e-9 of the piece's mean rest
   /// length in a step of `dt` [s], in which contact acts as on any motion.
   void push(const std::vector<ContactNormal>& contacts, double dt, const Integrator& integrator, SimulationState& state);
 

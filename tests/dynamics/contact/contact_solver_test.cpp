@@ -41,7 +41,7 @@ class World {
     const Points v_before = state.v;
     integrator->advance(state, forces, dt);
     const Points advanced = state.x;
-    const Points slip_before = state.slip;
+    const Slip slip_before = state.slip;
     const StepMotion motion{before, v_before, slip_before, advanced, dt};
     solver.start(contacts, motion);
     for (int pass = 0; pass < passes; ++pass) {

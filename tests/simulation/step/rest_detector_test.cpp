@@ -131,6 +131,42 @@ TEST(RestDetector, AnExternalForceWakesItAndKeepsItAwake) {
   EXPECT_TRUE(sleeps(simulator));
 }
 
+// A cloth of 1 m on its edge, tilted by four thousandths, falls over at a rate of about 5 1/s: for a second it is slower than what
+// rests.
+TEST(RestDetector, ABodyThatBeginsToFallOverIsNotAtRest) {
+  SpringNetwork network = cloth(4, 0.0, kRough);
+  const Matrix3 upright = rotation_from_degrees({89.8, 0.0, 0.0});
+  network.positions = upright * network.positions;
+  network.positions.row(1).array() += kGap - network.positions.row(1).minCoeff();
+  Simulator simulator(std::move(network), settings_of(), {ground(kRough)});
+  run(simulator, 6.0);
+  EXPECT_LT(simulator.positions().row(1).maxCoeff(), 0.1);
+}
+
+// A wall beside it does not make it stand.
+TEST(RestDetector, AClothThatLiesBesideAWallSleeps) {
+  const Obstacle wall{
+      .name = "wall", .geometry = HalfSpaceGeometry{.normal = Vector3::UnitX(), .offset = -0.5 - kGap}, .material = kRough};
+  Simulator simulator(cloth(4, kGap, kRough), settings_of(), {ground(kRough), wall});
+  run(simulator, 2.0);
+  EXPECT_TRUE(sleeps(simulator));
+}
+
+TEST(RestDetector, AGlideWithoutFrictionGoesOn) {
+  Simulator simulator(one_particle({0.0, kGap, 0.0}, {.thickness = 0.5 * kGap}, {0.005, 0.0, 0.0}), settings_of(),
+                      {ground({.thickness = 0.5 * kGap})});
+  run(simulator, 3.0);
+  EXPECT_NEAR(simulator.positions()(0, 0), 0.015, 1e-6);
+}
+
+TEST(RestDetector, WithPenaltyContactNothingSleeps) {
+  SimulatorSettings settings = settings_of();
+  settings.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1000.0, .damping = 1.0};
+  Simulator simulator = lying_cloth(settings);
+  run(simulator, 3.0);
+  EXPECT_FALSE(sleeps(simulator));
+}
+
 // One per cent above the friction angle gravity accelerates a body by 3.6 cm/s^2, to 1.8 cm/s in half a second.
 TEST(RestDetector, ASlowSlideIsNoRest) {
   const double angle = std::atan(1.01 * 0.4);
