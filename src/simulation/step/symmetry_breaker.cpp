@@ -164,8 +164,7 @@ void SymmetryBreaker::push(const Piece& piece, const Flat& flat, double dt, cons
     ends.insert(ends.end(), {a, b});
   }
   std::ranges::sort(ends);
-  const auto repeated = std::ranges::unique(ends);
-  ends.erase(repeated.begin(), repeated.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (const Index i : ends) {
     if (network_.is_pinned(i)) continue;
     state.v.col(i) += kPush * piece.mean_length / dt * direction_across(flat, i);
