@@ -99,7 +99,9 @@ StepReport Simulator::Implementation::step() {
     ++state.step;
     return {.stretch_excess = constraints.limit() != nullptr ? constraints.limit()->excess(state.x) : 0.0};
   }
-  if (symmetry && constraints.contacts().can_collide() && symmetry->may_push(state.x)) break_symmetry();
+  if (symmetry && constraints.contacts().can_collide() && symmetry->may_push(state.x)) {
+    symmetry->push(contact_normals(), dt(), *integrator, state);
+  }
   const std::optional<std::size_t> compared = body_to_compare(state);
   if (constraints.contacts().can_collide() || compared) {
     begin = {state, energy_watch, constraints.permitted_crossings()};
@@ -123,14 +125,12 @@ bool Simulator::Implementation::may_sleep() const {
 }
 
 void Simulator::Implementation::fall_asleep() {
-  const std::vector<ContactNormal> normals = constraints.contacts().normals();
+  const std::vector<ContactNormal> normals = contact_normals();
   if (!rest.all_touch(normals) || (symmetry && symmetry->has_standing(normals, state.x))) return;
   state.asleep = true;
   state.v.setZero();
   for (Index i = 0; i < network.particle_count(); ++i) integrator->velocity_changed(state, i, dt());
 }
-
-void Simulator::Implementation::break_symmetry() { symmetry->push(contact_normals(), dt(), *integrator, state); }
 
 /// In the frame of a rotating obstacle, particles are assumed to move straight in a substep: after half a turn, through its center.
 int Simulator::Implementation::factor_for_rotation() const {

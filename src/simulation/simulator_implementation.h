@@ -58,7 +58,6 @@ struct Simulator::Implementation {
   void take_state(const Implementation& before);
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
-  void break_symmetry();
   [[nodiscard]] bool may_sleep() const;
   void fall_asleep();
   [[nodiscard]] int factor_for_rotation() const;

@@ -57,7 +57,7 @@ class ContactConstraintSet {
       const auto f = static_cast<std::size_t>(*link);
       goals_[c].push = former.goals_[f].push;
       const Vector3& friction = former.goals_[f].friction_change;
-      goals_[c].friction_change = friction - rows_[c].normal.dot(friction) * rows_[c].normal;  // the normal may differ
+      goals_[c].friction_change = across(rows_[c].normal, friction);  // the normal may differ
       *link = next_row[f];
     }
     for (const ContactConstraint<n>& row : former.rows_) first_of(row, first_row) = kNone;

@@ -80,14 +80,14 @@ bool SymmetryBreaker::may_push(const Points& positions) const {
                              [&](const Piece& piece) { return span_of(piece.corners, positions, kFlatness).dimension < 3; });
 }
 
-bool SymmetryBreaker::has_standing(const std::vector<ContactNormal>& contacts, const Points& positions) {
+bool SymmetryBreaker::has_standing(const std::vector<ContactNormal>& contacts, const Points& positions) const {
   std::map<Index, std::pair<Flat, bool>> pieces;  // and whether all normals so far lie in it
   for (const auto& [particle, normal] : contacts) {
     const Index p = piece_of_[particle];
     if (p == kNone) continue;
     const auto [found, is_new] = pieces.try_emplace(p, Flat{}, true);
     auto& [flat, stands] = found->second;
-    if (is_new) flat = measure(pieces_[p], positions, kNearly);
+    if (is_new) flat = span_of(spanning_corners(pieces_[p].particles, positions), positions, kNearly);
     stands = stands && flat.contains(normal, kNearly);
   }
   return std::ranges::any_of(pieces, [](const auto& piece) { return piece.second.second; });
@@ -95,21 +95,16 @@ bool SymmetryBreaker::has_standing(const std::vector<ContactNormal>& contacts, c
 
 void SymmetryBreaker::push(const std::vector<ContactNormal>& contacts, double dt, const Integrator& integrator,
                            SimulationState& state) {
-  std::map<Index, Flat> flats;  // by piece; without dimension once the piece was pushed
-  Index last = kNone;
-  Flat* flat = nullptr;
+  std::map<Index, Flat> flats;  // by piece
   for (const auto& [particle, normal] : contacts) {
     const Index p = piece_of_[particle];
     if (p == kNone) continue;
-    if (p != last) {
-      const auto [found, is_new] = flats.try_emplace(p);
-      if (is_new) found->second = measure(pieces_[p], state.x, kFlatness);
-      flat = &found->second;
-      last = p;
-    }
-    if (!flat->contains(normal, kInclination)) continue;
-    push(pieces_[p], *flat, dt, integrator, state);
-    *flat = {};
+    const auto [found, is_new] = flats.try_emplace(p);
+    Flat& flat = found->second;
+    if (is_new) flat = measure(pieces_[p], state.x);
+    if (!flat.contains(normal, kInclination)) continue;
+    push(pieces_[p], flat, dt, integrator, state);
+    flat = {};  // once is enough
   }
 }
 
@@ -130,18 +125,24 @@ SymmetryBreaker::Flat SymmetryBreaker::span_of(const std::array<Index, 4>& corne
   return {};
 }
 
-/// Finds the particles that span the most.
-SymmetryBreaker::Flat SymmetryBreaker::measure(Piece& piece, const Points& positions, double flatness) {
-  if (const Flat flat = span_of(piece.corners, positions, flatness); flat.dimension == 3) return flat;
-  piece.corners.fill(piece.particles.front());
-  const Vector3 origin = positions.col(piece.corners[0]);
-  piece.corners[1] = farthest(piece.particles, [&](Index i) { return (positions.col(i) - origin).squaredNorm(); });
-  const Vector3 along = positions.col(piece.corners[1]) - origin;
-  piece.corners[2] =
-      farthest(piece.particles, [&](Index i) { return along.cross(Vector3(positions.col(i) - origin)).squaredNorm(); });
-  const Vector3 normal = along.cross(Vector3(positions.col(piece.corners[2]) - origin));
-  piece.corners[3] = farthest(piece.particles, [&](Index i) { return std::abs(normal.dot(positions.col(i) - origin)); });
-  return span_of(piece.corners, positions, flatness);
+/// The particles that span the most.
+std::array<Index, 4> SymmetryBreaker::spanning_corners(const std::vector<Index>& particles, const Points& positions) {
+  std::array<Index, 4> corners{};
+  corners.fill(particles.front());
+  const auto from_first = [&](Index i) -> Vector3 { return positions.col(i) - positions.col(corners[0]); };
+  corners[1] = farthest(particles, [&](Index i) { return from_first(i).squaredNorm(); });
+  const Vector3 along = from_first(corners[1]);
+  corners[2] = farthest(particles, [&](Index i) { return along.cross(from_first(i)).squaredNorm(); });
+  const Vector3 normal = along.cross(from_first(corners[2]));
+  corners[3] = farthest(particles, [&](Index i) { return std::abs(normal.dot(from_first(i))); });
+  return corners;
+}
+
+/// Corners that span a volume need no search.
+SymmetryBreaker::Flat SymmetryBreaker::measure(Piece& piece, const Points& positions) {
+  if (const Flat flat = span_of(piece.corners, positions, kFlatness); flat.dimension == 3) return flat;
+  piece.corners = spanning_corners(piece.particles, positions);
+  return span_of(piece.corners, positions, kFlatness);
 }
 
 /// At most 1 long.

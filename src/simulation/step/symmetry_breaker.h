@@ -26,10 +26,10 @@ class SymmetryBreaker {
 
   /// Whether a piece stands like a card on its edge: it lies nearly, within a thousandth, in a line or plane together with the
   /// normals of all its contacts. It is slow while it begins to fall over.
-  [[nodiscard]] bool has_standing(const std::vector<ContactNormal>& contacts, const Points& positions);
+  [[nodiscard]] bool has_standing(const std::vector<ContactNormal>& contacts, const Points& positions) const;
 
-  /// Gives a speed to the free particles at compressed springs of each piece that lies in a line or plane together with the normals
-  /// of all its contacts. The speed is across the line or plane, and moves a particle by at most 1e-9 of the piece's mean rest
+  /// Gives a speed to the free particles at compressed springs of each piece that lies in a line or plane together with the normal
+  /// of one of its contacts. The speed is across the line or plane, and moves a particle by at most 1e-9 of the piece's mean rest
   /// length in a step of `dt` [s], in which contact acts as on any motion.
   void push(const std::vector<ContactNormal>& contacts, double dt, const Integrator& integrator, SimulationState& state);
 
@@ -50,7 +50,8 @@ class SymmetryBreaker {
   };
 
   [[nodiscard]] static Flat span_of(const std::array<Index, 4>& corners, const Points& positions, double flatness);
-  [[nodiscard]] static Flat measure(Piece& piece, const Points& positions, double flatness);
+  [[nodiscard]] static std::array<Index, 4> spanning_corners(const std::vector<Index>& particles, const Points& positions);
+  [[nodiscard]] static Flat measure(Piece& piece, const Points& positions);
   [[nodiscard]] Vector3 direction_across(const Flat& flat, Index particle) const;
   void push(const Piece& piece, const Flat& flat, double dt, const Integrator& integrator, SimulationState& state) const;
 
