@@ -36,6 +36,17 @@ class Random {
   std::mt19937_64 engine_;
 };
 
+/// The same faces as polygons.
+inline PolygonMesh polygons(const TriangleMesh& triangles) {
+  PolygonMesh mesh;
+  mesh.vertices = triangles.vertices;
+  for (const auto& corners : triangles.triangles.colwise()) {
+    mesh.faces.vertex.insert(mesh.faces.vertex.end(), corners.begin(), corners.end());
+    mesh.faces.corner_begin.push_back(static_cast<Index>(mesh.faces.vertex.size()));
+  }
+  return mesh;
+}
+
 /// A closed torus about the y axis, with outward normals.
 inline TriangleMesh torus(double radius, double tube, Index around, Index across) {
   TriangleMesh mesh{Points(3, around * across), Triangles(3, 2 * around * across)};

@@ -27,15 +27,7 @@ const SpringMaterials kSprings{.structural = SpringMaterial{.value = 50.0, .damp
                                .shear = SpringMaterial{.value = 25.0, .damping = 0.005},
                                .bend = {}};
 
-BodyShape body_of(const TriangleMesh& triangles) {
-  PolygonMesh mesh;
-  mesh.vertices = triangles.vertices;
-  for (const auto& corners : triangles.triangles.colwise()) {
-    mesh.faces.vertex.insert(mesh.faces.vertex.end(), corners.begin(), corners.end());
-    mesh.faces.corner_begin.push_back(static_cast<Index>(mesh.faces.vertex.size()));
-  }
-  return make_mesh_body(mesh, kSprings);
-}
+BodyShape body_of(const TriangleMesh& triangles) { return make_mesh_body(test::polygons(triangles), kSprings); }
 
 SpringNetwork network_of(const std::vector<BodyShape>& shapes, bool self_contact = true) {
   NetworkBuilder builder;

@@ -54,16 +54,7 @@ BodyShape rope(const std::vector<Vector3>& points) {
   return make_rope({.points = points, .particles = 61, .length = {}}, kSprings);
 }
 
-BodyShape ring(double radius, double tube) {
-  const TriangleMesh torus = test::torus(radius, tube, 40, 12);
-  PolygonMesh mesh;
-  mesh.vertices = torus.vertices;
-  for (const auto& corners : torus.triangles.colwise()) {
-    mesh.faces.vertex.insert(mesh.faces.vertex.end(), corners.begin(), corners.end());
-    mesh.faces.corner_begin.push_back(static_cast<Index>(mesh.faces.vertex.size()));
-  }
-  return make_mesh_body(mesh, kSprings);
-}
+BodyShape ring(double radius, double tube) { return make_mesh_body(test::polygons(test::torus(radius, tube, 40, 12)), kSprings); }
 
 Obstacle obstacle(const ObstacleGeometry& geometry, const RigidTransform& rest_pose = RigidTransform::Identity()) {
   return {.name = "obstacle", .geometry = geometry, .rest_pose = rest_pose, .material = {.thickness = 0.001}};

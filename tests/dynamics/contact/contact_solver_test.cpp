@@ -23,10 +23,10 @@ constexpr double kStep = 1.0 / 256.0;  // [s]
 class World {
  public:
   World(SpringNetwork model, double gravity, const ContactMaterial& floor = {}, const IntegratorSettings& scheme = VerletSettings{},
-        double step_length = kStep)
+        double step_length = kStep, const Motion& of_floor = {})
       : dt(step_length),
         network(std::move(model)),
-        environment({{.name = "floor", .geometry = HalfSpaceGeometry{}, .material = floor}}),
+        environment({{.name = "floor", .geometry = HalfSpaceGeometry{}, .motion = of_floor, .material = floor}}),
         solver(network, environment),
         integrator(make_integrator(scheme, network)),
         state(initial_state(network)) {
@@ -50,6 +50,7 @@ class World {
     }
     integrator->recover_velocities(state, forces, before, advanced, dt);
     solver.settle_velocities(motion, state, *integrator);
+    solver.note_slip(motion, state);
     ++state.step;
   }
 
@@ -91,6 +92,57 @@ Contact over_triangle(const std::array<double, 3>& weights, const Vector3& norma
   contact.count = 4;
   contact.normal = normal;
   return contact;
+}
+
+/// A particle rests on a floor that moves. It slipped by `slip` [m] on an obstacle; one step follows.
+World after_slip(const Vector3& slip, Index obstacle, const Motion& of_floor = {}) {
+  const ContactMaterial rough{.thickness = kGap, .friction = 0.5, .static_friction = 0.5};
+  NetworkBuilder builder;
+  add_body(builder, "ball", {{0.0, kGap, 0.0}}, {0.1}, Vector3::Zero(), rough);
+  World world(builder.build(), kGravity, {.friction = 0.5, .static_friction = 0.5}, VerletSettings{}, kStep, of_floor);
+  world.state.slip.displacement.col(0) = slip;
+  world.state.slip.obstacle[0] = obstacle;
+  world.step({on_floor({1.0})});
+  return world;
+}
+
+// Rounding of positions of 0.01 m.
+constexpr double kRounding = 1.0e-17;
+
+TEST(FrictionThatRemembers, TakesBackATenthOfTheSlipOnItsObstacle) {
+  const World world = after_slip({1.0e-5, 0.0, 0.0}, 0);
+  EXPECT_NEAR(world.state.x(0, 0), -1.0e-6, kRounding);
+  EXPECT_NEAR(world.state.slip.displacement(0, 0), 0.9e-5, kRounding);
+  EXPECT_EQ(world.state.slip.obstacle[0], 0);
+}
+
+TEST(FrictionThatRemembers, KnowsNothingOfAnotherObstacle) {
+  const World world = after_slip({1.0e-5, 0.0, 0.0}, 1);
+  EXPECT_EQ(world.state.x(0, 0), 0.0);
+  EXPECT_EQ(world.state.slip.displacement(0, 0), 0.0);
+}
+
+// The floor turns x to -z about the place where the particle stands.
+TEST(FrictionThatRemembers, TurnsTheSlipWithItsObstacle) {
+  const World world = after_slip({1.0e-5, 0.0, 0.0}, 0, {.spin = {0.0, 90.0 / kStep, 0.0}});
+  EXPECT_NEAR(world.state.x(0, 0), 0.0, kRounding);
+  EXPECT_NEAR(world.state.x(2, 0), 1.0e-6, kRounding);
+  EXPECT_NEAR(world.state.slip.displacement(2, 0), -0.9e-5, kRounding);
+}
+
+// The first step from rest presses the particle by g dt^2 / 2 into the floor. Friction moves it by at most mu times that.
+TEST(FrictionThatRemembers, StaysWithinCoulombsBound) {
+  const World world = after_slip({1.0, 0.0, 0.0}, 0);
+  const double bound = 0.5 * 0.5 * kGravity * kStep * kStep;
+  EXPECT_NEAR(world.state.x(0, 0), -bound, kRounding);
+  EXPECT_NEAR(world.state.slip.displacement(0, 0), bound, kRounding);
+}
+
+TEST(FrictionThatRemembers, ForgetsWhatLeavesItsObstacle) {
+  World world = after_slip({1.0e-5, 0.0, 0.0}, 0);
+  world.step({});
+  EXPECT_EQ(world.state.slip.displacement(0, 0), 0.0);
+  EXPECT_EQ(world.state.slip.obstacle[0], kNone);
 }
 
 class ContactSolverLaws : public ::testing::TestWithParam<std::size_t> {
