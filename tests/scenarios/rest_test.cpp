@@ -157,5 +157,25 @@ TEST(RestOfADrape, ALimpClothAtRestOnABunnyCostsNothing) {
   EXPECT_EQ(substeps, 0);
 }
 
+// Both stand on their ends at first, off their plane or line by the tiny push alone, and are slower than what rests for seconds.
+TEST(RestOfWhatStands, AStiffClothAndASteelRopeFallOverBeforeTheySleep) {
+  const std::string board = R"(bodies={"board": {"shape": {"type": "cloth", "size": [0.4, 1.6], "resolution": [3, 9]}, "mass": 1,
+      "springs": {"structural": {"stiffness": 4000, "damping": 1}, "shear": {"stiffness": 2000, "damping": 1},
+                  "bend": {"model": "angle", "stiffness": 50, "damping": 0.5}},
+      "place": {"position": [0, 0.805, 0]}, "thickness": 0.005, "friction": 0.8}})";
+  const std::string rope = R"(bodies={"rope": {"shape": {"type": "rope", "from": [0, 0.01, 0], "to": [0, 0.11, 0], "particles": 6},
+      "material": "steel_cable"}})";
+  for (const std::string& bodies : {board, rope}) {
+    double highest = 0.0;
+    BuiltScene scene = load_scenario("cloth_on_ground", {bodies, "duration=9", "sleep=true", "integrator={\"type\": \"verlet\"}"});
+    scene.settings.stretch_limit.reset();
+    run_scenario(
+        std::move(scene),
+        [&](const Simulator& simulator, const FrameDiagnostics&) { highest = simulator.positions().row(1).maxCoeff(); },
+        Judge::nothing);
+    EXPECT_LT(highest, 0.02) << bodies;
+  }
+}
+
 }  // namespace
 }  // namespace sprung::testing
