@@ -4,7 +4,8 @@
 #
 #   tests/sanitize.sh [thread|address [FOLDER...]]    # both, with all folders, without argument
 #
-# All folders take 25 to 45 minutes with the address sanitizer on two cores, so CI takes three; tests/sanitize.sh address takes all.
+# All folders take 25 to 45 minutes with the address sanitizer on two cores, so CI takes three; the thread sanitizer takes ten and is
+# left to this script and tests/night.sh.
 # Scenarios, examples, tests of the project's own files and a few long tests of laws of motion are left out. The presets asan and tsan
 # build them too, and tests/night.sh runs them with the thread sanitizer.
 set -euo pipefail
