@@ -91,4 +91,12 @@ std::string utf8_text(std::string bytes) {
   return text;
 }
 
+bool is_utf32(std::string_view bytes) {
+  using std::string_view_literals::operator""sv;
+  constexpr std::size_t kUnit = 4;
+  const std::string_view first = bytes.substr(0, kUnit);
+  if (first == "\xFF\xFE\0\0"sv || first == "\0\0\xFE\xFF"sv) return true;
+  return first.size() == kUnit && (first.ends_with("\0\0\0"sv) != first.starts_with("\0\0\0"sv));
+}
+
 }  // namespace sprung

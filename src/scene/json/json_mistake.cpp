@@ -80,6 +80,10 @@ Problem syntax_problem(std::string_view text, std::size_t position, const std::s
   return problem_at(text, begin, std::string(first_word(text, begin)), std::move(rule), std::move(remedy));
 }
 
+Problem nul_problem(std::string_view text, std::size_t position) {
+  return problem_at(text, position, "", "is a NUL byte, which no text has", "is the file damaged? Save the scene in UTF-8");
+}
+
 Problem overflow_problem(std::string_view text, std::size_t position, const std::string& token) {
   const std::size_t end = std::min(position, text.size());
   return problem_at(text, end - std::min(end, token.size()), token, "is too large for a number", "write a number below 1e308");

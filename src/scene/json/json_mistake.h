@@ -13,7 +13,10 @@ namespace sprung {
 /// the parser has read. The last of them ended `token`, the last string or number and what followed it.
 [[nodiscard]] Problem syntax_problem(std::string_view text, std::size_t position, const std::string& token);
 
-/// Likewise for `token`, a number too large for a double.
+/// For a NUL byte at `position`.
+[[nodiscard]] Problem nul_problem(std::string_view text, std::size_t position);
+
+/// As syntax_problem(), for `token`, a number too large for a double.
 [[nodiscard]] Problem overflow_problem(std::string_view text, std::size_t position, const std::string& token);
 
 }  // namespace sprung

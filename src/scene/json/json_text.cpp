@@ -1,5 +1,6 @@
 #include "scene/json/json_text.h"
 
+#include "base/text_encoding.h"
 #include "scene/json/json_mistake.h"
 
 #include <cstddef>
@@ -96,6 +97,16 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
 
 JsonText parse_json(std::string_view text, const std::string& file) {
   JsonText result;
+  if (is_utf32(text)) {
+    result.problems.push_back({file, "", "", "is text in UTF-32", "save it in UTF-8"});
+    return result;
+  }
+  // The parser takes this byte for the end of the text.
+  if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+    result.problems.push_back(nul_problem(text, nul));
+    result.problems.back().file = file;
+    return result;
+  }
   DocumentBuilder builder(text, file, result);
   Json::sax_parse(text.begin(), text.end(), &builder);
   return result;
