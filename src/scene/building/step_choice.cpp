@@ -55,8 +55,8 @@ int substeps_for_passes(const Scene& scene, const std::optional<StretchLimit>& l
 }
 
 std::string advice_for_unstable(const Scene& scene, double largest_stable) {
-  if (const auto step = largest_step_of_frame(scene.frame_rate, largest_stable)) {
-    return "use at most " + format_number(*step) + " or \"auto\"";
+  if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest_stable)) {
+    return "use at most " + step_text(scene.frame_rate, *steps) + " or \"auto\"";
   }
   return "use \"auto\"";
 }

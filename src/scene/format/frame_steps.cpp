@@ -1,5 +1,7 @@
 #include "scene/format/frame_steps.h"
 
+#include "base/format.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,6 +20,15 @@ std::optional<int> steps_per_frame(double frame_rate, double step) {
 }
 
 double step_of(double frame_rate, double steps) { return 1.0 / (frame_rate * steps); }
+
+std::string step_text(double frame_rate, int steps) {
+  const double step = step_of(frame_rate, steps);
+  for (int digits = 1; digits < std::numeric_limits<double>::max_digits10; ++digits) {
+    const std::string text = format_number(step, digits);
+    if (steps_per_frame(frame_rate, std::stod(text)) == steps) return text;
+  }
+  return format_number(step);
+}
 
 std::optional<int> fewest_steps_per_frame(double frame_rate, double largest) {
   double steps = std::max(1.0, std::floor(1.0 / (frame_rate * largest)));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 namespace sprung {
 
@@ -17,6 +18,9 @@ inline constexpr double kMostStepsPerFrame = 1e8;
 
 /// 1 / (frame_rate * steps) [s]
 [[nodiscard]] double step_of(double frame_rate, double steps);
+
+/// step_of() as a decimal for users to type: the shortest for which steps_per_frame() is `steps`.
+[[nodiscard]] std::string step_text(double frame_rate, int steps);
 
 /// The smallest number of steps per frame for which the step is at most `largest` [s] > 0; none if it exceeds kMostStepsPerFrame.
 [[nodiscard]] std::optional<int> fewest_steps_per_frame(double frame_rate, double largest);

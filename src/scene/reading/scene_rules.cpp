@@ -66,9 +66,11 @@ std::optional<StepScene> read_step(Json& json, const JsonLocation& location) {
 void check_step_divides_frame(double step, double frame_rate, const JsonLocation& location) {
   if (steps_per_frame(frame_rate, step)) return;
   const double steps = 1.0 / (frame_rate * step);
-  std::string remedy = "use " + format_number(step_of(frame_rate, std::floor(std::max(steps, 1.0))));
-  if (steps > 1.0) remedy += " or " + format_number(step_of(frame_rate, std::ceil(steps)));
-  if (steps > kMostStepsPerFrame) remedy = "use a larger step";
+  std::string remedy = "use a larger step";
+  if (steps < kMostStepsPerFrame) {
+    remedy = "use " + step_text(frame_rate, static_cast<int>(std::max(steps, 1.0)));
+    if (steps > 1.0) remedy += " or " + step_text(frame_rate, static_cast<int>(std::ceil(steps)));
+  }
   location.report(Json(step), "must divide a frame: 1 / (frame_rate * step) is " + format_number(steps) + ", not a whole number",
                   remedy + ", or \"auto\"");
 }

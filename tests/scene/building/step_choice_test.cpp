@@ -242,6 +242,11 @@ TEST(StepChoice, StepBeyondTheStableOneIsRefusedNamingTheLargestPossibleOne) {
                                           Field(&Problem::remedy, AllOf(HasSubstr("use at most 0.05 or \"auto\""),
                                                                         HasSubstr("\"stability\": \"warn\""))))));
   EXPECT_EQ(build(1000.0, {"step=0.05"}).steps_per_frame, 2);
+  // 2 / sqrt(8200) = 0.0221: 1 / 60 is the largest that divides a frame, told with as many digits as are needed.
+  EXPECT_THAT(problems_of([] {
+                (void)build(8200.0, {"frame_rate=30", "step=0.03333333333333333"});
+              }),
+              ElementsAre(Field(&Problem::remedy, HasSubstr("use at most 0.01666666667 or"))));
 }
 
 TEST(StepChoice, StepBeyondTheStableOneRunsWithAWarning) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace sprung {
 namespace {
@@ -34,6 +35,16 @@ TEST(FrameSteps, StepsThatDivideAFrameAreWhole) {
   EXPECT_EQ(steps_per_frame(1.0, 1.0), 1);
   for (const int steps : {1, 3, 7, 1000, 99'999, 1'234'567, 99'999'999}) {
     EXPECT_EQ(steps_per_frame(29.97, step_of(29.97, steps)), steps);
+  }
+}
+
+TEST(FrameSteps, TheTextOfAStepIsTheShortestThatIsAccepted) {
+  EXPECT_EQ(step_text(25.0, 400), "0.0001");
+  EXPECT_EQ(step_text(30.0, 333), "0.0001001001001");  // without the last three digits: 333.0000003 steps
+  for (const double frame_rate : {24.0, 29.97, 30.0, 60.0}) {
+    for (const int steps : {1, 3, 7, 333, 99'999, 99'999'999}) {
+      EXPECT_EQ(steps_per_frame(frame_rate, std::stod(step_text(frame_rate, steps))), steps) << frame_rate;
+    }
   }
 }
 
