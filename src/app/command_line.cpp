@@ -122,7 +122,8 @@ class Parser {
 
   void add_materials() {
     CLI::App* command = app_.add_subcommand("materials", "Lists the materials of bodies, or the values of one and their sources");
-    command->add_option("NAME", materials_.name, "Name of a material; all by default")->type_name("");
+    command->add_option("NAME", materials_.name, "Name of a material; or cloth, rope or solid: all of this kind; all by default")
+        ->type_name("");
   }
 
   static std::string is_token(const std::string& token) {

@@ -287,6 +287,12 @@ TEST_F(CommandLine, MaterialsListsAllOrDescribesOne) {
   const Ending unknown = run({"materials", "coton"});
   EXPECT_EQ(unknown.code, 2);
   EXPECT_THAT(unknown.err, HasSubstr("sprung: error: there is no material coton; did you mean \"cotton\"?\n"));
+  EXPECT_THAT(run({"materials", "jelly"}).err, HasSubstr("did you mean \"soft_jelly\" or \"firm_jelly\"?\n"));
+  for (const char* kind : {"rope", "ropes"}) {
+    const Ending ropes = run({"materials", kind});
+    EXPECT_EQ(ropes.code, 0);
+    EXPECT_THAT(ropes.out, AllOf(HasSubstr("\nhemp "), HasSubstr("\nsteel_cable "), Not(HasSubstr("cotton"))));
+  }
 }
 
 TEST_F(CommandLine, InfoDescribesAMeshAsObstacleAndAsBody) {

@@ -39,6 +39,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"LimitOfNoBody", {"stretch_limit.bodies=[]"}, "stretch_limit.bodies", "must have at least 1 entry"},
       {"NegativeDampingRatio", {"bodies.banner.springs.shear={\"modulus\":1,\"damping_ratio\":-0.1}"}, "bodies.banner.springs.shear.damping_ratio", "must be at least 0"},
       {"DampingRatioWithoutStiffness", {"bodies.banner.springs.shear={\"stiffness\":0,\"damping_ratio\":0.1}"}, "bodies.banner.springs.shear.damping_ratio", "needs springs with stiffness; give damping instead", false},
+      {"PartOfANameOfAMaterial", {"bodies.banner.shape={\"type\":\"solid\",\"size\":[1,1,1],\"resolution\":[2,2,2]}", "bodies.banner.pins=[]", "bodies.banner.material=jelly"}, "bodies.banner.material", "did you mean \"soft_jelly\" or \"firm_jelly\"?"},
       {"UnknownBendModel", {"bodies.banner.springs.bend={\"modulus\":1,\"model\":\"angel\"}"}, "bodies.banner.springs.bend.model", "must be one of spring, angle; did you mean \"angle\"?"},
       {"ModelOfStructuralSprings", {"bodies.banner.springs.structural={\"modulus\":1,\"model\":\"angle\"}"}, "bodies.banner.springs.structural.model", "is not a known key"},
       {"UnknownKeyOfAPin", {"bodies.banner.pins[0].wich=[]"}, "bodies.banner.pins[0].wich", "did you mean \"which\"?"},

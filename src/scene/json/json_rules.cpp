@@ -89,8 +89,7 @@ Rule<std::size_t> word_of(std::vector<std::string> words) {
     const auto& word = json.get_ref<const std::string&>();
     const auto found = std::find(words.begin(), words.end(), word);
     if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
-    const auto near = nearest_name(word, words);
-    location.report(json, rule, near ? "did you mean \"" + *near + "\"?" : "");
+    location.report(json, rule, did_you_mean(word, words));
     return std::nullopt;
   };
 }

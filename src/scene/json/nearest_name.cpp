@@ -40,6 +40,19 @@ std::size_t distance_of(const std::string& word, const std::string& name) {
   return edit_distance(word, name);
 }
 
+/// In lower case, between underscores.
+std::string framed(std::string_view word) { return std::string("_").append(lower_case(word)).append("_"); }
+
+/// The names that consist of `word` and other words, joined by underscores.
+std::vector<std::string> names_with(std::string_view word, const std::vector<std::string>& names) {
+  const std::string given = framed(word);
+  std::vector<std::string> result;
+  for (const std::string& name : names) {
+    if (framed(name).find(given) != std::string::npos) result.push_back(name);
+  }
+  return result;
+}
+
 }  // namespace
 
 std::optional<std::string> nearest_name(std::string_view word, const std::vector<std::string>& names) {
@@ -61,9 +74,22 @@ std::optional<std::string> nearest_name(std::string_view word, const std::vector
   return best;
 }
 
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::string> meant = names_with(word, names);
+  if (meant.empty() || meant.size() > kMost) {
+    const auto near = nearest_name(word, names);
+    if (!near) return "";
+    meant = {*near};
+  }
+  std::string text = "did you mean \"" + meant.front() + "\"";
+  for (std::size_t k = 1; k < meant.size(); ++k) text += (k + 1 < meant.size() ? ", \"" : " or \"") + meant[k] + "\"";
+  return text + "?";
+}
+
 std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
-  if (const auto near = nearest_name(word, names)) return "did you mean \"" + *near + "\"?";
-  return "choose from " + joined(names);
+  const std::string meant = did_you_mean(word, names);
+  return meant.empty() ? "choose from " + joined(names) : meant;
 }
 
 std::string joined(const std::vector<std::string>& names) {

@@ -90,6 +90,8 @@ std::vector<std::string> material_names(const std::vector<MaterialKind>& kinds) 
   return names;
 }
 
+std::string materials_overview(MaterialKind kind) { return aligned(rows_of(kind)) + "\n" + stretch_limit_rule(); }
+
 std::string materials_overview() {
   std::string text;
   for (const MaterialKind kind : {MaterialKind::cloth, MaterialKind::rope, MaterialKind::solid})

@@ -47,6 +47,9 @@ struct Material {
 /// Why a stretch limit stands in for the stiffness of some presets; a sentence a line.
 [[nodiscard]] std::string stretch_limit_rule();
 
+/// The presets of one kind in aligned columns, with their default values.
+[[nodiscard]] std::string materials_overview(MaterialKind kind);
+
 /// A table of all presets in aligned columns: the output of `sprung materials`, and a part of examples/README.md.
 [[nodiscard]] std::string materials_overview();
 

@@ -40,8 +40,7 @@ const Material* find_preset(Json& json, const JsonLocation& location, const Shap
   const auto& name = json.get_ref<const std::string&>();
   const Material* material = find_material(name);
   if (material == nullptr) {
-    const auto near = nearest_name(name, names);
-    location.report(json, rule, near ? "did you mean \"" + *near + "\"?" : "");
+    location.report(json, rule, did_you_mean(name, names));
   } else if (std::ranges::find(allowed.kinds, material->kind) == allowed.kinds.end()) {
     location.report(json, rule, name + " is for a " + std::string(material_kind_name(material->kind)));
     return nullptr;

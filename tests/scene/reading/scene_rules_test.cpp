@@ -215,5 +215,15 @@ TEST(NearestName, PrefersAMisspeltNameToItsBeginning) {
   EXPECT_EQ(nearest_name("damp", {"drag", "damping", "damping_rate"}), "damping");
 }
 
+TEST(NearestName, WordsOfNamesSuggestThemUnlessThereAreMany) {
+  const std::vector<std::string> names{"soft_jelly", "firm_jelly", "foam", "rubber_block", "rubber_sheet"};
+  EXPECT_EQ(did_you_mean("jelly", names), "did you mean \"soft_jelly\" or \"firm_jelly\"?");
+  EXPECT_EQ(did_you_mean("Rubber", names), "did you mean \"rubber_block\" or \"rubber_sheet\"?");
+  EXPECT_EQ(did_you_mean("foma", names), "did you mean \"foam\"?");
+  EXPECT_EQ(did_you_mean("rope", names), "");
+  EXPECT_EQ(did_you_mean("x", {"x_a", "x_b", "x_c"}), "did you mean \"x_a\", \"x_b\" or \"x_c\"?");
+  EXPECT_EQ(did_you_mean("x", {"x_a", "x_b", "x_c", "x_d"}), "");
+}
+
 }  // namespace
 }  // namespace sprung
