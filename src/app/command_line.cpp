@@ -58,7 +58,12 @@ class Parser {
     if (app_.got_subcommand("run")) return run_;
     if (app_.got_subcommand("validate")) return validate_;
     if (app_.got_subcommand("view")) return view_;
-    if (app_.got_subcommand("export")) return export_;
+    if (app_.got_subcommand("export")) {
+      if (export_.formats.empty()) {
+        throw UsageError(fmt::format("--format is required: choose from {}; see sprung export --help", joined(export_formats())));
+      }
+      return export_;
+    }
     if (app_.got_subcommand("materials")) return materials_;
     return info_;
   }
@@ -108,10 +113,9 @@ class Parser {
   void add_export() {
     CLI::App* command = app_.add_subcommand("export", "Writes a run in another file format");
     command->add_option("DIR", export_.folder, "Folder of a run")->required()->type_name("");
-    command->add_option("--format", export_.formats, "html: one file that plays in a browser")
-        ->required()
+    command->add_option("--format", export_.formats, "Required. html: one file that plays in a browser")
         ->delimiter(',')
-        ->check(CLI::IsMember({"html"}))
+        ->check(CLI::IsMember(export_formats()))
         ->type_name("FORMAT");
     command->add_option("--out", export_.out, "File to write; DIR/animation.html by default")->type_name("PATH");
     command->add_option("--mesh-path", export_.mesh_paths, "Folder to search for meshes; may be repeated")
@@ -125,6 +129,8 @@ class Parser {
     command->add_option("NAME", materials_.name, "Name of a material; or cloth, rope or solid: all of this kind; all by default")
         ->type_name("");
   }
+
+  static std::vector<std::string> export_formats() { return {"html"}; }
 
   static std::string is_token(const std::string& token) {
     const bool good = !token.empty() && std::ranges::all_of(token, [](unsigned char letter) {

@@ -46,6 +46,8 @@ TEST_F(CommandLine, WrongUsageEndsWithTwoAndSuggests) {
   refused({"run", scene, "--out", out(), "--frames", "0"}, "--frames");
   refused({"run", scene, "--out", out(), "--frames", "many"}, "--frames");
   refused({"run", scene, "--out", out(), "--threads", "-1"}, "--threads");
+  refused({"export", out()}, "--format is required: choose from html");
+  refused({"export", out(), "--format", "obj"}, "html");
 }
 
 TEST_F(CommandLine, InvalidSceneEndsWithThreeNamesEveryProblemAndWritesNothing) {
