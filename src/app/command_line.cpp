@@ -25,7 +25,7 @@ constexpr const char* kExamples = R"(Examples:
   sprung export frames --format html
   sprung materials cotton
 
-Meshes are searched beside the scene file, in each --mesh-path, then in the folders of SPRUNG_MESH_PATH.
+Meshes are searched beside the scene file (by info: where you are), in each --mesh-path, then in the folders of SPRUNG_MESH_PATH.
 
 Exit codes: 0 done, 2 wrong usage, 3 invalid scene or mesh, 4 the simulation diverged, 5 the scene file cannot be
 read or the output cannot be written, 130 interrupted, 1 anything else.)";
@@ -93,6 +93,7 @@ class Parser {
     info->add_option("MESH", info_.meshes, "Mesh file; several files are checked as the frames of a sequence")
         ->required()
         ->type_name("");
+    add_mesh_path(info, info_.mesh_paths);
   }
 
   void add_view() {
@@ -118,9 +119,7 @@ class Parser {
         ->check(CLI::IsMember(export_formats()))
         ->type_name("FORMAT");
     command->add_option("--out", export_.out, "File to write; DIR/animation.html by default")->type_name("PATH");
-    command->add_option("--mesh-path", export_.mesh_paths, "Folder to search for meshes; may be repeated")
-        ->allow_extra_args(false)
-        ->type_name("DIR");
+    add_mesh_path(command, export_.mesh_paths);
     command->add_flag("--overwrite", export_.overwrite, "Replace the file if it exists");
   }
 
@@ -148,7 +147,11 @@ class Parser {
     command->add_option("--set", scene.overrides, "Replaces a value of the scene; may be repeated")
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
-    command->add_option("--mesh-path", scene.mesh_paths, "Folder to search for meshes; may be repeated")
+    add_mesh_path(command, scene.mesh_paths);
+  }
+
+  static void add_mesh_path(CLI::App* command, std::vector<std::string>& mesh_paths) {
+    command->add_option("--mesh-path", mesh_paths, "Folder to search for meshes; may be repeated")
         ->allow_extra_args(false)
         ->type_name("DIR");
   }

@@ -25,7 +25,8 @@ struct ValidateOptions {
 };
 
 struct InfoOptions {
-  std::vector<std::string> meshes;  ///< one, or the frames of a sequence
+  std::vector<std::string> meshes;      ///< one, or the frames of a sequence
+  std::vector<std::string> mesh_paths;  ///< folders
 };
 
 struct ViewOptions {

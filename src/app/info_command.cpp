@@ -6,11 +6,14 @@
 #include "geometry/import/mesh_file.h"
 #include "geometry/mesh/mesh_sequence.h"
 #include "geometry/mesh/polygon_mesh.h"
+#include "scene/building/mesh_finder.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -86,7 +89,7 @@ std::string body_text(const PolygonMesh& mesh) {
 }
 
 // An OBJ file of lines cannot be an obstacle, but it can be a body.
-std::optional<std::string> body_text_of(const std::string& file) {
+std::optional<std::string> body_text_of(const std::filesystem::path& file) {
   if (lower_case_extension(file) != ".obj") return std::nullopt;
   try {
     return body_text(read_obj(file));
@@ -95,7 +98,7 @@ std::optional<std::string> body_text_of(const std::string& file) {
   }
 }
 
-std::string mesh_text(const std::string& file) {
+std::string mesh_text(const std::filesystem::path& file) {
   const std::optional<std::string> body = body_text_of(file);
   try {
     return obstacle_text(import_mesh(file)) + (body ? "\n" + *body : "");
@@ -105,11 +108,20 @@ std::string mesh_text(const std::string& file) {
   }
 }
 
+std::vector<std::filesystem::path> find_meshes(const InfoOptions& options) {
+  const MeshFinder finder("", all_mesh_paths(options.mesh_paths));
+  std::vector<std::filesystem::path> files;
+  std::vector<Problem> problems;
+  for (const std::string& mesh : options.meshes) files.push_back(finder.find(mesh, "", problems).value_or(mesh));
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return files;
+}
+
 }  // namespace
 
 ExitCode info(const InfoOptions& options) {
-  print_result(options.meshes.size() == 1 ? mesh_text(options.meshes.front())
-                                          : sequence_text(import_sequence({options.meshes.begin(), options.meshes.end()})));
+  const std::vector<std::filesystem::path> files = find_meshes(options);
+  print_result(files.size() == 1 ? mesh_text(files.front()) : sequence_text(import_sequence(files)));
   return ExitCode::done;
 }
 

@@ -1,6 +1,7 @@
 #include "scene/load_scene.h"
 
 #include "base/error.h"
+#include "scene/building/mesh_finder.h"
 #include "scene/reading/scene_reader.h"
 
 #include <algorithm>
@@ -9,13 +10,6 @@
 
 namespace sprung {
 namespace {
-
-std::vector<std::filesystem::path> mesh_paths(const SceneSource& source) {
-  std::vector<std::filesystem::path> paths(source.mesh_paths.begin(), source.mesh_paths.end());
-  const std::vector<std::filesystem::path> more = mesh_paths_from_environment();
-  paths.insert(paths.end(), more.begin(), more.end());
-  return paths;
-}
 
 void add_new(std::vector<std::string>& all, const std::vector<std::string>& more) {
   for (const std::string& text : more) {
@@ -26,7 +20,7 @@ void add_new(std::vector<std::string>& all, const std::vector<std::string>& more
 LoadedScene load(const SceneSource& source) {
   TextProblems problems;
   Scene scene = read_scene_text(scene_text(source), source.file, source.overrides, problems);
-  BuiltScene built = build_scene(scene, mesh_paths(source), problems);
+  BuiltScene built = build_scene(scene, all_mesh_paths(source.mesh_paths), problems);
   LoadedScene loaded{.scene = std::move(scene),
                      .simulator = Simulator(std::move(built.network), built.settings, std::move(built.obstacles)),
                      .frames = built.frames,

@@ -302,6 +302,16 @@ TEST_F(CommandLine, InfoDescribesAMeshAsObstacleAndAsBody) {
   EXPECT_THAT(ending.out, AllOf(HasSubstr("closed"), HasSubstr("components  1"), HasSubstr("as a body"), HasSubstr("size")));
 }
 
+TEST_F(CommandLine, InfoFindsMeshesAsScenesDo) {
+  const std::string meshes = SPRUNG_SOURCE_DIR "/meshes";
+  const Ending missing = run({"info", "torus.ply", "--mesh-path", scratch_.path().string()});
+  EXPECT_EQ(missing.code, 3);
+  EXPECT_THAT(missing.err, AllOf(HasSubstr("no such file: looked for torus.ply, " + (scratch_ / "torus.ply").string()),
+                                 HasSubstr("name its folder with --mesh-path")));
+  EXPECT_EQ(run({"info", "torus.ply", "--mesh-path", meshes}).code, 0);
+  EXPECT_EQ(Program({"info", "torus.ply"}, {.mesh_path = meshes}).wait().code, 0);
+}
+
 TEST_F(CommandLine, ValidateDescribesDeformingObstacles) {
   json scene = rope_scene();
   write_text(scratch_ / "lung.1.obj", "v 0 -50 0\nv 1 -50 0\nv 0 -50 1\nf 1 3 2\n");

@@ -4,6 +4,8 @@
 #include "scene/json/nearest_name.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -70,7 +72,18 @@ void MeshFinder::report_missing(const std::string& file, const std::string& key,
   const auto near = nearest_name(named.filename().string(), beside);
   problems.push_back({scene_file_.string(), key, "\"" + file + "\"", rule + ": looked for " + joined(looked),
                       (near ? "did you mean \"" + (named.parent_path() / *near).string() + "\"? Otherwise " : std::string()) +
-                          "put it beside the scene, or name its folder with --mesh-path or SPRUNG_MESH_PATH"});
+                          (scene_file_.empty() ? "" : "put it beside the scene, or ") +
+                          "name its folder with --mesh-path or SPRUNG_MESH_PATH"});
+}
+
+std::vector<std::filesystem::path> all_mesh_paths(const std::vector<std::string>& given) {
+  std::vector<std::filesystem::path> folders(given.begin(), given.end());
+  const char* value = std::getenv("SPRUNG_MESH_PATH");
+  std::istringstream paths(value == nullptr ? "" : value);
+  for (std::string folder; std::getline(paths, folder, ':');) {
+    if (!folder.empty()) folders.emplace_back(folder);
+  }
+  return folders;
 }
 
 }  // namespace sprung

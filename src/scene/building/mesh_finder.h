@@ -12,7 +12,8 @@ namespace sprung {
 
 class MeshFinder {
  public:
-  /// Looks beside the scene file, then in `mesh_paths`, in this order.
+  /// Looks beside the scene file, then in `mesh_paths`, in this order. Without a scene file (an empty path), first where the
+  /// program runs.
   MeshFinder(std::filesystem::path scene_file, const std::vector<std::filesystem::path>& mesh_paths);
 
   /// The file that the scene names under `key`. If it does not exist, adds a problem with the paths that were tried.
@@ -31,5 +32,8 @@ class MeshFinder {
   std::filesystem::path scene_file_;
   std::vector<std::filesystem::path> folders_;
 };
+
+/// The folders `given`, then those of the environment variable SPRUNG_MESH_PATH, which are separated by colons.
+[[nodiscard]] std::vector<std::filesystem::path> all_mesh_paths(const std::vector<std::string>& given);
 
 }  // namespace sprung

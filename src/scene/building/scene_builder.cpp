@@ -14,9 +14,7 @@
 #include "scene/json/json_text.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <iterator>
-#include <sstream>
 #include <utility>
 
 namespace sprung {
@@ -142,16 +140,6 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
   built.warnings = warnings_of(scene, built);
   if (step_warning) built.warnings.push_back(std::move(*step_warning));
   return built;
-}
-
-std::vector<std::filesystem::path> mesh_paths_from_environment() {
-  const char* value = std::getenv("SPRUNG_MESH_PATH");
-  std::vector<std::filesystem::path> folders;
-  std::istringstream paths(value == nullptr ? "" : value);
-  for (std::string folder; std::getline(paths, folder, ':');) {
-    if (!folder.empty()) folders.emplace_back(folder);
-  }
-  return folders;
 }
 
 }  // namespace sprung

@@ -34,7 +34,4 @@ struct BuiltScene {
 [[nodiscard]] BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::path>& mesh_paths = {},
                                      const TextProblems& known = {});
 
-/// Folders of the environment variable SPRUNG_MESH_PATH, separated by colons.
-[[nodiscard]] std::vector<std::filesystem::path> mesh_paths_from_environment();
-
 }  // namespace sprung

@@ -1,6 +1,7 @@
 #include "scene/building/scene_builder.h"
 
 #include "geometry/mesh/polygon_mesh.h"
+#include "scene/building/mesh_finder.h"
 #include "scene/scene_text.h"
 
 #include <gmock/gmock.h>
@@ -419,11 +420,11 @@ TEST(SceneBuilder, WarnsOfPiecesThatNoSpringJoins) {
   EXPECT_THAT(warnings("apart.obj"), IsEmpty()) << "pieces that do not touch, as strands of hair";
 }
 
-TEST(SceneBuilder, MeshPathsComeFromTheEnvironment) {
+TEST(SceneBuilder, MeshPathsComeFromTheEnvironmentToo) {
   setenv("SPRUNG_MESH_PATH", "/a/b::/c", 1);
-  EXPECT_THAT(mesh_paths_from_environment(), ElementsAre("/a/b", "/c"));
+  EXPECT_THAT(all_mesh_paths({"d"}), ElementsAre("d", "/a/b", "/c"));
   unsetenv("SPRUNG_MESH_PATH");
-  EXPECT_THAT(mesh_paths_from_environment(), IsEmpty());
+  EXPECT_THAT(all_mesh_paths({}), IsEmpty());
 }
 
 struct BrokenMesh {
