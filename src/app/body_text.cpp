@@ -93,6 +93,16 @@ std::string mass_row(const SpringNetwork& network, const Body& body) {
   return text_row("mass", text + ", " + extremes.text("kg") + " per particle");
 }
 
+std::string material_row(const ContactMaterial& contact, const std::string& name) {
+  std::string text = name.empty() ? "" : name + ", ";
+  text += "friction " + format_number(contact.friction, kDigits);
+  if (contact.static_friction != contact.friction)
+    text += fmt::format(" ({} static)", format_number(contact.static_friction, kDigits));
+  text += fmt::format(", thickness {} m", format_number(contact.thickness, kDigits));
+  if (contact.restitution > 0.0) text += ", restitution " + format_number(contact.restitution, kDigits);
+  return text_row("material", text);
+}
+
 std::string spring_row(const char* name, const SpringRanges& kind) {
   return text_row(name, fmt::format("k_s {}, k_d {}, rest length {}", kind.stiffness.text("N/m"), kind.damping.text("N s/m"),
                                     kind.rest_length.text("m")));
@@ -100,9 +110,9 @@ std::string spring_row(const char* name, const SpringRanges& kind) {
 
 }  // namespace
 
-std::string body_rows(const SpringNetwork& network, const Body& body) {
+std::string body_rows(const SpringNetwork& network, const Body& body, const std::string& material) {
   const std::array<SpringRanges, 3> kinds = kinds_of(network.springs, body);
-  std::string text = head_row(network, body, kinds) + mass_row(network, body);
+  std::string text = head_row(network, body, kinds) + mass_row(network, body) + material_row(body.material, material);
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     if (kinds[kind].count > 0) text += spring_row(kSpringKindNames[kind], kinds[kind]);
   }

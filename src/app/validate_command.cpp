@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -35,6 +36,11 @@ std::string cost_row(const LoadedScene& loaded) {
                                   ? ""
                                   : fmt::format(", {} ms with all particles in contact", milliseconds(moved * kContact));
   return text_row("cost", fmt::format("estimated, one thread: {} ms a frame{}", milliseconds(moved * kFree), contact));
+}
+
+std::string material_of(const Scene& scene, const Body& body) {
+  const auto found = std::ranges::find(scene.bodies, body.name, &BodyScene::name);
+  return found == scene.bodies.end() ? "" : found->preset;
 }
 
 const char* shape_name(const ObstacleGeometry& geometry) {
@@ -80,7 +86,8 @@ ExitCode validate(const ValidateOptions& options) {
   std::string text = text_row("scene", loaded.scene.file.string()) + time_text(loaded) + cost_row(loaded);
   if (const std::string solver = loaded.simulator.stretch_solver(); !solver.empty())
     text += text_row("stretch", "solved by " + solver);
-  for (const Body& body : network.bodies) text += body_rows(network, body) + stiffness_rows(loaded.simulator, body);
+  for (const Body& body : network.bodies)
+    text += body_rows(network, body, material_of(loaded.scene, body)) + stiffness_rows(loaded.simulator, body);
   for (const Obstacle& obstacle : loaded.simulator.environment().obstacles()) text += obstacle_row(obstacle);
   for (const NamedReport& mesh : loaded.meshes) text += mesh_row(mesh);
   for (const std::string& warning : loaded.warnings) text += text_row("warning", warning);

@@ -209,6 +209,13 @@ TEST_F(CommandLine, ValidatePrintsDerivedQuantities) {
   EXPECT_THAT(ending.out, AllOf(HasSubstr("4900 particles"), HasSubstr("9660 structural"), HasSubstr("9522 shear"),
                                 HasSubstr("7 at 30 per second"), HasSubstr("(automatic)"), HasSubstr("largest stable step"),
                                 HasSubstr("ball: sphere"), HasSubstr("valid       the scene has no errors\n")));
+  EXPECT_THAT(ending.out, HasSubstr("\nmaterial    friction 0.3, thickness 0.005 m\n"));
+  json cotton = cloth_scene();
+  cotton["bodies"]["cloth"] = {{"shape", cotton["bodies"]["cloth"]["shape"]}, {"material", "cotton"}, {"restitution", 0.1}};
+  cotton["bodies"]["cloth"].update({{"friction", 0.25}, {"static_friction", 0.5}, {"thickness", 0.002}});
+  cotton.erase("obstacles");
+  EXPECT_THAT(run({"validate", save(cotton)}).out,
+              HasSubstr("\nmaterial    cotton, friction 0.25 (0.5 static), thickness 0.002 m, restitution 0.1\n"));
 }
 
 TEST_F(CommandLine, ValidateCountsItsWarnings) {
