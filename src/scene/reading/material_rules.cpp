@@ -9,6 +9,9 @@
 namespace sprung {
 namespace {
 
+// From a spider's thread to a chimney [m]. What is scaled by them stays far within the numbers that the other keys may have.
+constexpr Range kDiameters{.lower = 1e-6, .upper = 10.0};
+
 const std::vector<MaterialKind> kAllKinds{MaterialKind::cloth, MaterialKind::rope, MaterialKind::solid};
 
 /// A shape with its article, and the kinds of materials that it may have.
@@ -57,6 +60,12 @@ void fill(Json& object, std::initializer_list<const char*> keys, const char* key
   if (!has_any(object, keys)) object[key] = value;
 }
 
+/// Whether the body has an object for a kind of springs.
+bool gives_springs(const Json& body, const std::string& kind) {
+  if (!body.contains("springs") || !body["springs"].is_object()) return false;
+  return body["springs"].contains(kind) && body["springs"][kind].is_object();
+}
+
 /// The object of a kind of springs; null if the user wrote something else there.
 Json* springs_of_kind(Json& body, const std::string& kind) {
   if (!body.contains("springs")) body["springs"] = Json::object();
@@ -66,20 +75,25 @@ Json* springs_of_kind(Json& body, const std::string& kind) {
   return springs[kind].is_object() ? &springs[kind] : nullptr;
 }
 
-/// Fills `springs.KIND.KEY`.
-void fill_spring(const std::string& key, double value, Json& body) {
+/// Fills `springs.KIND.KEY`. A material bends by angles, so the bend springs that a user asks for get no stiffness from it.
+void fill_spring(const std::string& key, double value, bool has_angles, Json& body) {
   const std::size_t dot = key.find('.', std::string("springs.").size());
   const std::string kind = key.substr(std::string("springs.").size(), dot - std::string("springs.").size());
+  const bool bends = kind == "bend";
+  if (bends && !has_angles && !gives_springs(body, kind)) return;
   Json* const spring = springs_of_kind(body, kind);
   if (spring == nullptr) return;
-  if (kind == "bend") fill(*spring, {"model"}, "model", "angle");
-  if (key.ends_with(".modulus")) return fill(*spring, {"modulus", "stiffness"}, "modulus", value);
-  fill(*spring, {"damping", "damping_ratio", "damping_time"}, "damping_time", value);
+  if (bends && has_angles) fill(*spring, {"model"}, "model", "angle");
+  if (!key.ends_with(".modulus")) {
+    fill(*spring, {"damping", "damping_ratio", "damping_time"}, "damping_time", value);
+  } else if (!bends || (has_angles && (*spring)["model"] != "spring")) {
+    fill(*spring, {"modulus", "stiffness"}, "modulus", value);
+  }
 }
 
 void fill_value(const std::string& key, double value, bool has_angles, Json& body) {
   if (key.starts_with("springs.")) {
-    if (has_angles || !key.starts_with("springs.bend.")) fill_spring(key, value, body);
+    fill_spring(key, value, has_angles, body);
   } else if (key == "density") {
     fill(body, {"mass", "particle_mass", "density"}, "density", value);
   } else if (key == "static_friction") {
@@ -94,23 +108,26 @@ void fill_value(const std::string& key, double value, bool has_angles, Json& bod
 
 /// Springs for which the user gave some keys, but neither a stiffness nor the preset has one.
 void complete_springs(Json& body) {
-  if (!body.contains("springs") || !body["springs"].is_object()) return;
   for (const char* kind : kSpringKindNames) {
-    if (!body["springs"].contains(kind) || !body["springs"][kind].is_object()) continue;
-    fill(body["springs"][kind], {"modulus", "stiffness"}, "modulus", 0.0);
+    if (gives_springs(body, kind)) fill(body["springs"][kind], {"modulus", "stiffness"}, "modulus", 0.0);
   }
 }
 
+void check_bend_springs(const Material& preset, const JsonLocation& location, const Json& body) {
+  if (!gives_springs(body, "bend") || has_any(body["springs"]["bend"], {"modulus", "stiffness"})) return;
+  location.at("springs").at("bend").report_key("must have one of stiffness, modulus",
+                                               preset.name + " has none for bend springs: add one of them, or remove bend");
+}
+
 bool gives_stiffness(const Json& body) {
-  if (!body.contains("springs") || !body["springs"].is_object() || !body["springs"].contains("structural")) return false;
-  return has_any(body["springs"]["structural"], {"modulus", "stiffness"});
+  return gives_springs(body, "structural") && has_any(body["springs"]["structural"], {"modulus", "stiffness"});
 }
 
 }  // namespace
 
 void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, BodyScene& body) {
   const bool has_material = fields.has("material");
-  const auto diameter = fields.optional("diameter", number(kPositive));
+  const auto diameter = fields.optional("diameter", number(kDiameters));
   Json& json = fields.json();
   if (!has_material) {
     if (fields.has("diameter")) {
@@ -137,6 +154,7 @@ void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, Bod
   body.preset = preset->name;
   for (const MaterialValue& value : preset->values)
     fill_value(value.key, value.value * std::pow(scale, value.power), has_angles, json);
+  check_bend_springs(*preset, fields.location(), json);
   complete_springs(json);
 }
 
