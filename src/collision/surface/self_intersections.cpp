@@ -20,21 +20,23 @@ bool has(const Element& element, Index particle) {
   return std::find(element.particles.begin(), element.particles.end(), particle) != element.particles.end();
 }
 
-bool edge_intersects(const Element& from, const Element& triangle, const Points& positions) {
-  if (triangle.corners != 3) return false;
-  const std::array<Vector3, 3> corners{positions.col(triangle.particles[0]), positions.col(triangle.particles[1]),
-                                       positions.col(triangle.particles[2])};
-  const Vector3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
-  const Vector3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
-  const int edges = from.corners == 3 ? 3 : from.corners - 1;
+bool is_triangle(const Element& element) { return element.corners == 3; }
+
+bool edge_intersects(const Element& from, const Element& other, const Points& positions) {
+  const auto corners = static_cast<std::size_t>(other.corners);
+  const std::array<Vector3, 3> x{positions.col(other.particles[0]), positions.col(other.particles[1 % corners]),
+                                 positions.col(other.particles[2 % corners])};
+  const Vector3 low = x[0].cwiseMin(x[1]).cwiseMin(x[2]);
+  const Vector3 high = x[0].cwiseMax(x[1]).cwiseMax(x[2]);
+  const int edges = from.corners == 3 ? 3 : 1;
   for (int k = 0; k < edges; ++k) {
     const Index a = from.particles[static_cast<std::size_t>(k)];
     const Index b = from.particles[static_cast<std::size_t>((k + 1) % from.corners)];
-    if (has(triangle, a) || has(triangle, b)) continue;
+    if (has(other, a) || has(other, b)) continue;
     const Vector3 begin = positions.col(a);
     const Vector3 end = positions.col(b);
     if ((begin.cwiseMin(end).array() > high.array()).any() || (begin.cwiseMax(end).array() < low.array()).any()) continue;
-    if (intersects(begin, end, corners)) return true;
+    if (is_triangle(other) ? intersects(begin, end, x) : intersects(begin, end, x[0], x[1])) return true;
   }
   return false;
 }
@@ -77,6 +79,16 @@ class SelfSearch {
     return a == b ? surface_.self[a] != 0 : surface_.others[a] != 0 && surface_.others[b] != 0;
   }
 
+  /// Whether pins hold an end of both segments at one point. Ropes may do so.
+  [[nodiscard]] bool hang_from_one_hook(const Element& a, const Element& b) const {
+    if (is_triangle(a) || is_triangle(b)) return false;
+    const auto is_pinned = [&](Index i) { return surface_.pinned[static_cast<std::size_t>(i)] != 0; };
+    return std::ranges::any_of(corners_of(a), [&](Index i) {
+      return is_pinned(i) &&
+             std::ranges::any_of(corners_of(b), [&](Index j) { return is_pinned(j) && positions_.col(i) == positions_.col(j); });
+    });
+  }
+
   void search(Index p, Index q, std::vector<CrossingElements>& found) const {
     if (!may_collide(element(patch(p).first_element).body, element(patch(q).first_element).body)) return;
     if (!patch_box(p).intersects(patch_box(q))) return;
@@ -84,7 +96,7 @@ class SelfSearch {
       const Index a = patch(p).first_element + i;
       for (Index j = p == q ? i + 1 : 0; j < patch(q).element_count; ++j) {
         const Index b = patch(q).first_element + j;
-        if (!element_box(a).intersects(element_box(b))) continue;
+        if (!element_box(a).intersects(element_box(b)) || hang_from_one_hook(element(a), element(b))) continue;
         if (!edge_intersects(element(a), element(b), positions_) && !edge_intersects(element(b), element(a), positions_)) continue;
         found.push_back({std::min(a, b), std::max(a, b)});
       }

@@ -41,6 +41,11 @@ bool intersects_in_plane(const Vector3& a, const Vector3& b, const std::array<Ve
   return false;
 }
 
+/// Whether the boxes round two segments overlap: if these lie on one line, whether they do.
+bool boxes_overlap(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
+  return (a.cwiseMin(b).array() <= c.cwiseMax(d).array()).all() && (c.cwiseMin(d).array() <= a.cwiseMax(b).array()).all();
+}
+
 }  // namespace
 
 bool intersects(const Vector3& a, const Vector3& b, const std::array<Vector3, 3>& triangle) {
@@ -50,6 +55,21 @@ bool intersects(const Vector3& a, const Vector3& b, const std::array<Vector3, 3>
   if (!differ(side_a, side_b)) return false;
   if (side_a == 0.0 && side_b == 0.0) return intersects_in_plane(a, b, triangle);
   return one_side(side_of_plane(a, b, u, v), side_of_plane(a, b, v, w), side_of_plane(a, b, w, u));
+}
+
+bool intersects(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
+  if (!boxes_overlap(a, b, c, d) || side_of_plane(a, b, c, d) != 0.0) return false;
+  // All points lie in one plane. An axis along which they do not all fall on one line shows whether the segments cross.
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto seen = [axis](const Vector3& p) { return Vector2(p[(axis + 1) % 3], p[(axis + 2) % 3]); };
+    const double side_a = side_of_line(seen(c), seen(d), seen(a));
+    const double side_b = side_of_line(seen(c), seen(d), seen(b));
+    const double side_c = side_of_line(seen(a), seen(b), seen(c));
+    const double side_d = side_of_line(seen(a), seen(b), seen(d));
+    if (side_a == 0.0 && side_b == 0.0 && side_c == 0.0 && side_d == 0.0) continue;
+    return differ(side_a, side_b) && differ(side_c, side_d);
+  }
+  return true;
 }
 
 bool intersects(const Simplex& simplex, const std::array<Vector3, 3>& triangle) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -96,6 +97,30 @@ TEST_F(SimplexCrossing, AgreesWithIntegerArithmeticForTouchingAndCoplanarSimplic
         EXPECT_GT(intersecting, 20) << "range " << range << " corners " << count;
       }
     }
+  }
+}
+
+TEST_F(SimplexCrossing, SegmentsAgreeWithIntegerArithmeticInSpaceInAPlaneAndOnALine) {
+  const std::array<std::vector<Grid>, 3> spans{
+      std::vector<Grid>{Grid(1, 0, 0), Grid(0, 1, 0), Grid(0, 0, 1)}, {Grid(3, 1, 2), Grid(-1, 2, 1)}, {Grid(2, 0, -3)}};
+  for (const std::vector<Grid>& span : spans) {
+    int intersecting = 0;
+    for (int trial = 0; trial < 4000; ++trial) {
+      Corners x = corners(4, span.size() == 1 ? 8 : 3);
+      for (Grid& corner : x) {
+        Grid point = Grid::Zero();
+        for (std::size_t k = 0; k < span.size(); ++k) point += corner[static_cast<Eigen::Index>(k)] * span[k];
+        corner = point;
+      }
+      const bool expected = expected_to_intersect({x[0], x[1]}, {x[2], x[3]});
+      intersecting += expected ? 1 : 0;
+      for (const double scale : {1.0, 0x1p-40}) {
+        ASSERT_EQ(intersects(scaled(x[0], scale), scaled(x[1], scale), scaled(x[2], scale), scaled(x[3], scale)), expected)
+            << span.size() << " dimensions, trial " << trial;
+      }
+    }
+    EXPECT_GT(intersecting, 100) << span.size() << " dimensions";
+    EXPECT_LT(intersecting, 3900) << span.size() << " dimensions";
   }
 }
 

@@ -3,7 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace sprung {
 namespace {
@@ -193,6 +196,66 @@ TEST(Start, PinnedBodiesThatIntersectAreRefused) {
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_THAT(lines[0],
               AllOf(HasSubstr("intersects body \"needle\""), HasSubstr("found no free position"), HasSubstr("body_contact")));
+}
+
+/// Two ropes "first" and "second" of five particles between two points each.
+SpringNetwork two_ropes(const std::array<Vector3, 4>& ends, const std::vector<Index>& pinned = {}) {
+  NetworkBuilder builder;
+  for (std::size_t k = 0; k < 2; ++k) {
+    BodyShape rope = make_rope({.points = {ends[2 * k], ends[2 * k + 1]}, .particles = 5, .length = {}}, {});
+    set_total_mass(rope, 1.0);
+    builder.add_body(k == 0 ? "first" : "second", rope, {.thickness = 0.01}, {});
+  }
+  if (!pinned.empty()) builder.pin(pinned);
+  return builder.build();
+}
+
+TEST(Start, RopesWithACommonPointAreRefusedOrPushedApart) {
+  const Vector3 left(-1.0, 0.0, 0.0);
+  const Vector3 right(1.0, 0.0, 0.0);
+  const Vector3 front(0.0, 0.0, 1.0);
+  const Vector3 back(0.0, 0.0, -1.0);
+  struct Case {
+    std::array<Vector3, 4> ends;
+    int pairs;
+  };
+  // Of equal ropes, each of the four segments has points in common with its counterpart and that one's neighbours. Of ropes that
+  // cross in their middle particles, two segments of each have that point in common.
+  for (const auto& [ends, pairs] :
+       {Case{{left, right, left, right}, 10}, Case{{left, right, right, left}, 10},
+        Case{{left, right, left + 0.25 * right, 3.0 * right}, 0}, Case{{left, right, front, back}, 4}}) {
+    const SpringNetwork network = two_ropes(ends);
+    const auto lines = refusal(network, {}, {});
+    ASSERT_EQ(lines.size(), 1U);
+    EXPECT_THAT(lines[0], HasSubstr("intersects body \"second\" at the start: segment of particles"));
+    if (pairs > 0) {
+      EXPECT_THAT(lines[0], HasSubstr("bodies.first = " + std::to_string(pairs) + " pairs of elements"));
+    }
+    const std::vector<Index> particles = moved(network);
+    EXPECT_THAT(particles, AllOf(IsSubsetOf({5, 6, 7, 8, 9}), SizeIs(Ge(1))));
+  }
+  EXPECT_THAT(refusal(two_ropes({left, right, left + 1e-9 * front, right + 1e-9 * front}), {}, {}), IsEmpty());
+}
+
+TEST(Start, RopesMayHangFromOneHook) {
+  const auto hung = [](const Vector3& second_end) {
+    return two_ropes({Vector3::Zero(), Vector3::UnitX(), Vector3::Zero(), second_end}, {0, 5});
+  };
+  EXPECT_THAT(refusal(hung(-Vector3::UnitX()), {}, {}), IsEmpty());
+  // Beyond the segments at the hook, equal ropes coincide.
+  EXPECT_THAT(refusal(hung(Vector3::UnitX()), {}, {}), ElementsAre(HasSubstr("bodies.first = 9 pairs of elements")));
+}
+
+TEST(Start, EqualClothsAreRefusedOrPushedApart) {
+  NetworkBuilder builder;
+  for (const char* name : {"first", "second"}) {
+    BodyShape sheet = make_cloth({.size = {1.0, 1.0}, .resolution = {4, 4}}, {});
+    set_total_mass(sheet, 1.0);
+    builder.add_body(name, sheet, {.thickness = 0.01}, {});
+  }
+  const SpringNetwork network = builder.build();
+  EXPECT_THAT(refusal(network, {}, {}), ElementsAre(HasSubstr("intersects body \"second\"")));
+  EXPECT_THAT(moved(network), AllOf(SizeIs(Ge(1)), IsSubsetOf({16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31})));
 }
 
 TEST(Start, BodiesThatDoNotCollideAreNotPushedApart) { EXPECT_THAT(moved(needle_and_patch({.others = false})), IsEmpty()); }
