@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace sprung {
 
@@ -39,6 +41,52 @@ std::vector<std::string> describe_moved(const SpringNetwork& network, const Poin
   if (names.empty()) return {};
   return {names_text("body", "bodies", names) + ": intersected an obstacle or a body at the start and moved out: " +
           counted(count, "particle") + (count == 1 ? " by " : " by up to ") + format_number(farthest, 3) + " m"};
+}
+
+/// The obstacles that a body intersects, or "another body" if there is none.
+std::string intersected_by(Index body, const StartIntersections& found, const CollisionSurface& surface,
+                           const SpringNetwork& network, const Environment& environment) {
+  std::set<Index> obstacles;
+  for (const auto& crossing : found.with_obstacles.crossings) {
+    if (surface.elements[static_cast<std::size_t>(crossing.element)].body == body) obstacles.insert(crossing.obstacle);
+  }
+  for (const auto& inside : found.with_obstacles.inside) {
+    if (&network.body_of(inside.particle) == &network.bodies[static_cast<std::size_t>(body)]) obstacles.insert(inside.obstacle);
+  }
+  std::vector<std::string> names;
+  for (const Index k : obstacles) names.push_back(environment.obstacles()[static_cast<std::size_t>(k)].name);
+  return names.empty() ? "another body" : names_text("obstacle", "obstacles", names);
+}
+
+/// By which fraction the edge of the body that push_out lengthened most became longer.
+double lengthening(const SpringNetwork& network, const Body& body, const Points& from, const Points& to) {
+  const Springs& springs = network.springs;
+  double most = 0.0;
+  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+    if (springs.kind[s] != SpringKind::structural) continue;
+    const double before = (from.col(springs.first[s]) - from.col(springs.second[s])).norm();
+    const double after = (to.col(springs.first[s]) - to.col(springs.second[s])).norm();
+    if (before > 0.0) most = std::max(most, after / before - 1.0);
+  }
+  return most;
+}
+
+/// Bodies that push_out stretched so much that their springs will throw them off: those that an obstacle pierces, for example.
+std::vector<std::string> describe_lengthened(const SpringNetwork& network, const Environment& environment,
+                                             const CollisionSurface& surface, const StartIntersections& found, const Points& from,
+                                             const Points& to) {
+  constexpr double kMuch = 0.5;
+  std::vector<std::string> lines;
+  for (Index number = 0; number < static_cast<Index>(network.bodies.size()); ++number) {
+    const Body& body = network.bodies[static_cast<std::size_t>(number)];
+    const double most = lengthening(network, body, from, to);
+    if (most <= kMuch) continue;
+    lines.push_back("body \"" + body.name + "\": \"push_out\" moved it off " +
+                    intersected_by(number, found, surface, network, environment) + " and made an edge " +
+                    format_number(100.0 * most, 3) +
+                    " % longer, so that its springs will throw it off. Start it elsewhere: change \"place\".");
+  }
+  return lines;
 }
 
 /// Bodies with an obstacle deep in their gap: contact will accelerate them out of it.
@@ -79,17 +127,22 @@ std::vector<std::string> describe_too_near(const SpringNetwork& network, const E
 
 Start find_start(const SpringNetwork& network, Environment& environment, const ContactSettings& contact, const Points& positions) {
   const CollisionSurface surface = contact_surface(network);
-  StartIntersections found = find_all(environment, surface, contact, positions);
-  if (found.empty()) return {positions, describe_too_near(network, environment, positions)};
-  Points start = positions;
-  std::string remedy = "move one of them by \"place\", or set contact.start to \"push_out\"";
+  const StartIntersections wanted = find_all(environment, surface, contact, positions);
+  if (wanted.empty()) return {positions, describe_too_near(network, environment, positions)};
   if (contact.start == ContactSettings::Start::push_out) {
-    start = push_out(network, environment, surface, positions, contact.response == ContactSettings::Response::projection);
-    found = find_all(environment, surface, contact, start);
-    if (found.empty()) return {start, describe_moved(network, positions, start)};
-    remedy = "\"push_out\" found no free position: move one of them by \"place\"";
+    const Points start =
+        push_out(network, environment, surface, positions, contact.response == ContactSettings::Response::projection);
+    const StartIntersections left = find_all(environment, surface, contact, start);
+    if (!left.empty()) {
+      const std::string remedy = "\"push_out\" found no free position: move one of them by \"place\"";
+      throw InputError(start_problems(left, network, environment, surface, start, remedy));
+    }
+    std::vector<std::string> warnings = describe_moved(network, positions, start);
+    std::ranges::move(describe_lengthened(network, environment, surface, wanted, positions, start), std::back_inserter(warnings));
+    return {start, warnings};
   }
-  throw InputError(start_problems(found, network, environment, surface, start, remedy));
+  const std::string remedy = "move one of them by \"place\", or set contact.start to \"push_out\"";
+  throw InputError(start_problems(wanted, network, environment, surface, positions, remedy));
 }
 
 }  // namespace sprung

@@ -13,6 +13,7 @@ namespace {
 
 using ::testing::AllOf;
 using testing::cloth;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::Ge;
 using testing::ground;
@@ -256,6 +257,19 @@ TEST(Start, EqualClothsAreRefusedOrPushedApart) {
   const SpringNetwork network = builder.build();
   EXPECT_THAT(refusal(network, {}, {}), ElementsAre(HasSubstr("intersects body \"second\"")));
   EXPECT_THAT(moved(network), AllOf(SizeIs(Ge(1)), IsSubsetOf({16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31})));
+}
+
+// A horizontal cloth through the middle of a ball as wide as half of it: push_out lifts it, and presses it back onto the ball.
+TEST(Start, PushingOutWarnsOfABodyThatItStretches) {
+  const auto warnings = [](double height) {
+    SimulatorSettings settings = pushing_out();
+    settings.step = 1.0e-4;
+    return Simulator(cloth(21, height), settings, {ball(0.25, Vector3::Zero())}).warnings();
+  };
+  EXPECT_THAT(warnings(0.0),
+              Contains(AllOf(HasSubstr("body \"cloth\": \"push_out\" moved it off obstacle \"ball\" and made an edge"),
+                             HasSubstr(" % longer"), HasSubstr("Start it elsewhere"))));
+  EXPECT_THAT(warnings(0.249), ElementsAre(HasSubstr("moved out")));
 }
 
 TEST(Start, BodiesThatDoNotCollideAreNotPushedApart) { EXPECT_THAT(moved(needle_and_patch({.others = false})), IsEmpty()); }
