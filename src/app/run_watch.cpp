@@ -83,9 +83,8 @@ void RunWatch::note_infeasible(const FrameDiagnostics& frame) {
   infeasible_ = true;
   warn(
       fmt::format("frame {}: {} had no admissible position and may intersect (column infeasible in diagnostics.csv). Increase the "
-                  "clearance, or "
-                  "slow the obstacles and pins that close on them.",
-                  frame.frame, frame.infeasible == 1 ? "1 vertex" : fmt::format("{} vertices", frame.infeasible)));
+                  "clearance, move pins out of obstacles, or slow the obstacles and pins that close on them.",
+                  frame.frame, frame.max_infeasible == 1 ? "1 vertex" : fmt::format("{} vertices", frame.max_infeasible)));
 }
 
 void RunWatch::note_stretch(const FrameDiagnostics& frame) {

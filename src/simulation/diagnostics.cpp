@@ -67,6 +67,7 @@ FrameDiagnostics FrameRunner::next_frame() {
   diagnostics.stretch_excess = all.stretch_excess;
   diagnostics.truncated = all.truncated;
   diagnostics.infeasible = all.infeasible;
+  diagnostics.max_infeasible = all.max_infeasible;
   diagnostics.substeps = all.substeps;
   diagnostics.smallest_step = all.substeps > 0 ? simulator_.settings().step / max_substeps : 0.0;
   diagnostics.limit_solves = all.limit_solves;

@@ -22,6 +22,7 @@ struct FrameDiagnostics {
                                        ///< are farther than the size of the network
   Index truncated = 0;                 ///< particles that truncation stopped, summed
   Index infeasible = 0;                ///< particles without an admissible position, summed
+  Index max_infeasible = 0;            ///< the most of them in one substep
   std::int64_t substeps = 0;           ///< number of substeps
   double smallest_step = 0.0;          ///< length of the shortest substep [s]; 0 without steps
   std::int64_t limit_solves = 0;       ///< linear systems solved for the stretch limit, summed

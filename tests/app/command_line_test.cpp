@@ -122,6 +122,21 @@ TEST_F(CommandLine, RunWarnsOnceOfInfeasibleVerticesBetweenObstacles) {
   EXPECT_THAT(record()["warnings"][0].get<std::string>(), StartsWith("frame "));
 }
 
+// Each of the 100 particles is infeasible in each step, which the column sums.
+TEST_F(CommandLine, RunCountsEachPinnedVertexInAnObstacleOnce) {
+  json scene = cloth_scene();
+  json& cloth = scene["bodies"]["cloth"];
+  cloth["shape"]["resolution"] = {10, 10};
+  cloth["place"]["position"] = {0, -0.3, 0};
+  cloth["pins"] = {{{"box", {{-1, -1, -1}, {1, 1, 1}}}}};
+  scene["obstacles"] = {{"floor", {{"shape", {{"type", "half_space"}, {"offset", 0}}}}}};
+  scene["step"] = 1.0 / 120.0;
+  const Ending ending = run({"run", save(scene), "--out", out()});
+  EXPECT_EQ(ending.code, 0) << ending.err;
+  EXPECT_THAT(ending.err,
+              AllOf(HasSubstr("frame 2: 100 vertices had no admissible position"), HasSubstr("move pins out of obstacles")));
+}
+
 TEST_F(CommandLine, RunReportsAMissedStretchLimitAndTheRemedy) {
   json scene = rope_scene();
   scene["bodies"]["rope"]["shape"]["particles"] = 50;
