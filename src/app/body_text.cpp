@@ -2,6 +2,7 @@
 
 #include "app/mesh_text.h"
 #include "base/format.h"
+#include "network/spring_pieces.h"
 #include "network/stiffness_estimate.h"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace sprung {
 namespace {
@@ -117,6 +119,9 @@ std::string body_rows(const SpringNetwork& network, const Body& body, const std:
     if (kinds[kind].count > 0) text += spring_row(kSpringKindNames[kind], kinds[kind]);
   }
   if (body.angle_bend_count > 0) text += angle_row(network.angle_bends, body);
+  const SpringPieces pieces = spring_pieces(network, body);
+  if (const Index count = pieces.count + pieces.alone; count > 1)
+    text += text_row("pieces", std::to_string(count) + " that no spring joins");
   return text;
 }
 

@@ -33,7 +33,8 @@ RunFacts facts_of(const LoadedScene& loaded, int threads) {
           .threads = threads,
           .stretch_solver = loaded.simulator.stretch_solver(),
           .seed = settings.perturb ? std::optional(settings.seed) : std::nullopt,
-          .warnings = loaded.warnings};
+          .warnings = loaded.warnings,
+          .sources = loaded.sources};
 }
 
 void announce(const LoadedScene& loaded) {

@@ -133,6 +133,7 @@ void set_mesh_measures(BodyShape& shape) {
   }
   shape.measure = std::accumulate(shape.measures.begin(), shape.measures.end(), 0.0);
   shape.drag_areas = shape.dimension > 0 ? shape.measures : std::vector<double>(shape.positions.size(), 1.0);
+  if (shape.dimension == 2) add_segment_measures(surface.segments, lengths_of(surface.segments, shape.positions), shape.drag_areas);
 }
 
 void set_mesh_surface(BodyShape& shape, const PolygonMesh& mesh) {

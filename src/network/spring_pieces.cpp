@@ -1,10 +1,10 @@
 #include "network/spring_pieces.h"
 
 #include "geometry/mesh/union_find.h"
+#include "geometry/mesh/weld.h"
 
 #include <algorithm>
-#include <numeric>
-#include <tuple>
+#include <cmath>
 #include <vector>
 
 namespace sprung {
@@ -24,31 +24,40 @@ UnionFind sets_of(const SpringNetwork& network, const Body& body) {
   return sets;
 }
 
-/// Whether particles of different sets have the same position. `set_of` holds each particle's set.
-bool any_touch(const Points& positions, Index first, const std::vector<Index>& set_of) {
-  const auto key = [&](Index i) {
-    const auto x = positions.col(first + i);
-    return std::tuple(x[0], x[1], x[2], set_of[i]);
-  };
-  std::vector<Index> order(set_of.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
-  return std::adjacent_find(order.begin(), order.end(), [&](Index a, Index b) {
-           return set_of[a] != set_of[b] && positions.col(first + a) == positions.col(first + b);
-         }) != order.end();
+double power_of_ten_below(double value) { return std::pow(10.0, std::ceil(std::log10(value)) - 1.0); }
+
+double touch_distance(const Points& positions, const SpringNetwork& network, const Body& body) {
+  constexpr double kShareOfExtent = 1e-6;
+  const auto first = network.springs.rest_length.begin() + body.first_spring;
+  const double shortest = body.spring_count > 0 ? *std::min_element(first, first + body.spring_count) : 0.0;
+  const double extent = (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff()).maxCoeff();
+  const double near = std::pow(10.0, std::round(std::log10(kShareOfExtent * extent)));
+  return near < shortest ? near : (shortest > 0.0 ? power_of_ten_below(shortest) : 0.0);
+}
+
+void add_touching(const SpringNetwork& network, const Body& body, UnionFind& sets, SpringPieces& pieces) {
+  const Points positions = network.positions.middleCols(body.first_particle, body.particle_count);
+  pieces.touch_distance = touch_distance(positions, network, body);
+  const std::vector<Index> places = coincident_groups(positions, pieces.touch_distance);
+  pieces.count_welded = pieces.count + pieces.alone;
+  for (Index i = 0; i < body.particle_count; ++i) {
+    if (sets.root(i) == sets.root(places[i])) continue;
+    pieces.touch = true;
+    --pieces.count_welded;
+    sets.join(i, places[i]);
+  }
 }
 
 }  // namespace
 
 SpringPieces spring_pieces(const SpringNetwork& network, const Body& body) {
   UnionFind sets = sets_of(network, body);
-  std::vector<Index> set_of(static_cast<std::size_t>(body.particle_count));
-  std::vector<Index> sizes(set_of.size(), 0);
-  for (Index i = 0; i < body.particle_count; ++i) ++sizes[set_of[i] = sets.root(i)];
+  std::vector<Index> sizes(static_cast<std::size_t>(body.particle_count), 0);
+  for (Index i = 0; i < body.particle_count; ++i) ++sizes[sets.root(i)];
   SpringPieces pieces;
   pieces.alone = static_cast<Index>(std::count(sizes.begin(), sizes.end(), 1));
   pieces.count = static_cast<Index>(std::count_if(sizes.begin(), sizes.end(), [](Index size) { return size > 1; }));
-  pieces.touch = pieces.count + pieces.alone > 1 && any_touch(network.positions, body.first_particle, set_of);
+  if (pieces.count + pieces.alone > 1) add_touching(network, body, sets, pieces);
   return pieces;
 }
 

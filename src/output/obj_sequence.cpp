@@ -66,11 +66,23 @@ void check_names(const Simulator& simulator) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-ObjSequence body_sequence(const Body& body, int frames) {
-  const auto vertices = [first = body.first_particle, count = body.particle_count](const Simulator& simulator) -> Points {
-    return simulator.positions().middleCols(first, count);
-  };
-  return {sequence_pattern(body.name + "/" + body.name, frames), vertices, body.surface.faces, body.surface.segments};
+std::string surface_text(const Simulator& simulator, const Body& body, const std::string& elements) {
+  return vertex_lines(simulator.positions().middleCols(body.first_particle, body.particle_count)) + elements;
+}
+
+std::string element_lines(const Body& body) { return obj_text(Points(3, 0), body.surface.faces, body.surface.segments); }
+
+ObjSequence body_sequence(const Simulator& simulator, std::size_t number, const ObjSources& sources, int frames) {
+  const Body& body = simulator.network().bodies[number];
+  const std::string pattern = sequence_pattern(body.name + "/" + body.name, frames);
+  if (const auto source = sources.find(body.name); source != sources.end()) {
+    return {pattern, [number, source = source->second](const Simulator& present) {
+              return body_obj_text(present, present.network().bodies[number], source.get());
+            }};
+  }
+  return {pattern, [number, elements = element_lines(body)](const Simulator& present) {
+            return surface_text(present, present.network().bodies[number], elements);
+          }};
 }
 
 TriangleMesh surface_mesh(const Obstacle& obstacle, const Box3& scene) {
@@ -88,18 +100,17 @@ ObjSequence obstacle_sequence(const Obstacle& obstacle, Index number, const Box3
   };
   const std::string name = kObstacleFolder + "/" + obstacle.name;
   const std::string pattern = obstacle.changes() ? sequence_pattern(name + "/" + obstacle.name, frames) : name + ".obj";
-  return {pattern, vertices, to_polygons(mesh.triangles), Edges(2, 0)};
+  const auto text = [vertices, elements = obj_text(Points(3, 0), to_polygons(mesh.triangles), Edges(2, 0))](
+                        const Simulator& simulator) { return vertex_lines(vertices(simulator)) + elements; };
+  return {pattern, text};
 }
 
 }  // namespace
 
-ObjSequence::ObjSequence(std::string pattern, std::function<Points(const Simulator&)> vertices, const PolygonFaces& faces,
-                         const Edges& lines)
-    : pattern_(std::move(pattern)), vertices_(std::move(vertices)), elements_(obj_text(Points(3, 0), faces, lines)) {}
+ObjSequence::ObjSequence(std::string pattern, std::function<std::string(const Simulator&)> text)
+    : pattern_(std::move(pattern)), text_(std::move(text)) {}
 
 bool ObjSequence::changes() const { return pattern_.find('#') != std::string::npos; }
-
-std::string ObjSequence::text(const Simulator& simulator) const { return vertex_lines(vertices_(simulator)) + elements_; }
 
 std::string vertex_lines(const Points& vertices) {
   const Index count = static_cast<Index>(vertices.cols());
@@ -112,18 +123,20 @@ std::string vertex_lines(const Points& vertices) {
 
 Points read_vertex_lines(const std::string& text) {
   std::vector<double> numbers;
+  const auto is_blank = [](char letter) { return letter == ' ' || letter == '\t'; };
+  const auto ends_line = [](char letter) { return letter == '\n' || letter == '\r'; };
   const char* const end = text.data() + text.size();
   for (const char* line = text.data(); line != end;) {
-    const char* const line_end = std::find(line, end, '\n');
-    if (line_end - line > 2 && line[0] == 'v' && line[1] == ' ') {
+    const char* const line_end = std::find_if(line, end, ends_line);
+    const char* at = std::find_if_not(line, line_end, is_blank);
+    if (line_end - at > 2 && at[0] == 'v' && is_blank(at[1])) {
       const std::size_t before = numbers.size();
-      const char* at = line + 2;
       double number = 0.0;
-      while (numbers.size() < before + 3) {
-        const auto read = std::from_chars(at, line_end, number);
+      for (++at; numbers.size() < before + 3;) {
+        const auto read = std::from_chars(std::find_if_not(at, line_end, is_blank), line_end, number);
         if (read.ec != std::errc{}) break;
         numbers.push_back(number);
-        at = std::find_if(read.ptr, line_end, [](char letter) { return letter != ' '; });
+        at = read.ptr;
       }
       if (numbers.size() < before + 3) numbers.resize(before);
     }
@@ -132,16 +145,31 @@ Points read_vertex_lines(const std::string& text) {
   return Points::Map(numbers.data(), 3, static_cast<Eigen::Index>(numbers.size() / 3));
 }
 
-std::vector<ObjSequence> obj_sequences(const Simulator& simulator, int frames) {
+std::string body_obj_text(const Simulator& simulator, const Body& body, const ObjSource* source) {
+  if (source == nullptr) return surface_text(simulator, body, element_lines(body));
+  return source->text(simulator.positions().middleCols(body.first_particle, body.particle_count), body.surface.triangles);
+}
+
+std::vector<ObjSequence> obj_sequences(const Simulator& simulator, const ObjSources& sources, int frames) {
   check_names(simulator);
   std::vector<ObjSequence> sequences;
-  for (const Body& body : simulator.network().bodies) sequences.push_back(body_sequence(body, frames));
+  for (std::size_t i = 0; i < simulator.network().bodies.size(); ++i) {
+    sequences.push_back(body_sequence(simulator, i, sources, frames));
+  }
   const std::vector<Obstacle>& obstacles = simulator.environment().obstacles();
   const Box3 scene = scene_bounds(simulator);
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     sequences.push_back(obstacle_sequence(obstacles[i], static_cast<Index>(i), scene, frames));
   }
   return sequences;
+}
+
+std::vector<CopiedFile> copied_files(const ObjSources& sources) {
+  std::vector<CopiedFile> files;
+  for (const auto& [body, source] : sources) {
+    for (const MaterialFile& file : source->materials.files) files.push_back({.path = body + "/" + file.place, .file = file});
+  }
+  return files;
 }
 
 }  // namespace sprung

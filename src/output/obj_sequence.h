@@ -1,6 +1,7 @@
 // The OBJ files of one body or obstacle. Lines that do not change between frames are formatted once.
 #pragma once
 
+#include "geometry/obj_source/obj_source.h"
 #include "simulation/simulator.h"
 
 #include <functional>
@@ -13,8 +14,8 @@ namespace sprung {
 class ObjSequence {
  public:
   /// `pattern` names the files relative to the run's folder (see `file_pattern.h`). A pattern without `#` names one file, of the
-  /// first frame. `vertices` returns the positions [m], 3 x n, at the simulator's present time; column i is the i-th `v` line.
-  ObjSequence(std::string pattern, std::function<Points(const Simulator&)> vertices, const PolygonFaces& faces, const Edges& lines);
+  /// first frame. `text` returns the file at the simulator's present time.
+  ObjSequence(std::string pattern, std::function<std::string(const Simulator&)> text);
 
   [[nodiscard]] const std::string& pattern() const { return pattern_; }
 
@@ -22,24 +23,34 @@ class ObjSequence {
   [[nodiscard]] bool changes() const;
 
   /// The file at the simulator's present time.
-  [[nodiscard]] std::string text(const Simulator& simulator) const;
+  [[nodiscard]] std::string text(const Simulator& simulator) const { return text_(simulator); }
 
  private:
   std::string pattern_;
-  std::function<Points(const Simulator&)> vertices_;
-  std::string elements_;  ///< the `vt`, `g`, `f` and `l` lines
+  std::function<std::string(const Simulator&)> text_;
+};
+
+/// A file that is written with the first frame.
+struct CopiedFile {
+  std::string path;  ///< relative to the run's folder
+  MaterialFile file;
 };
 
 /// The `v` lines of positions [m], 3 x n, with the shortest numbers that read back to the same bits. The text does not depend on
 /// the number of threads.
 [[nodiscard]] std::string vertex_lines(const Points& vertices);
 
-/// The positions of the `v` lines of a text that vertex_lines() made, 3 x n. Lines that are no `v` lines, or hold no three numbers,
-/// are left out.
+/// The positions of the `v` lines of a frame, 3 x n. Lines that are no `v` lines, or hold no three numbers, are left out.
 [[nodiscard]] Points read_vertex_lines(const std::string& text);
+
+/// The body's OBJ text at the simulator's present time: its source with new `v` lines. Without a source (null), its surface.
+[[nodiscard]] std::string body_obj_text(const Simulator& simulator, const Body& body, const ObjSource* source);
 
 /// The sequences of all bodies, then of all obstacles. Throws InputError for names that are not valid folder names: a name with
 /// characters other than letters, digits, `_` and `-`, a name that is used twice, or a body with the name `obstacles`.
-[[nodiscard]] std::vector<ObjSequence> obj_sequences(const Simulator& simulator, int frames);
+[[nodiscard]] std::vector<ObjSequence> obj_sequences(const Simulator& simulator, const ObjSources& sources, int frames);
+
+/// The materials of all bodies, in the folders of their frames.
+[[nodiscard]] std::vector<CopiedFile> copied_files(const ObjSources& sources);
 
 }  // namespace sprung

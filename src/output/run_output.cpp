@@ -1,9 +1,14 @@
 #include "output/run_output.h"
 
+#include "base/error.h"
 #include "output/diagnostics_csv.h"
 #include "output/file_pattern.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
 #include <utility>
 
 namespace sprung {
@@ -11,10 +16,21 @@ namespace {
 
 constexpr const char* kDiagnosticsFile = "diagnostics.csv";
 
-std::vector<std::string> patterns_of(const std::vector<ObjSequence>& sequences) {
+std::vector<std::string> patterns_of(const std::vector<ObjSequence>& sequences, const std::vector<CopiedFile>& copies) {
   std::vector<std::string> patterns{kRunRecordFile, kDiagnosticsFile, kAnimationFile};
   for (const ObjSequence& sequence : sequences) patterns.push_back(sequence.pattern());
+  for (const CopiedFile& copy : copies) patterns.push_back(copy.path);
   return patterns;
+}
+
+std::string content_of(const MaterialFile& file) {
+  if (file.text) return *file.text;
+  errno = 0;
+  std::ifstream stream(file.source, std::ios::binary);
+  std::ostringstream bytes;
+  if (stream.peek() != std::ifstream::traits_type::eof()) bytes << stream.rdbuf();
+  if (!stream.is_open() || stream.bad()) throw FileError("copy", file.source.string(), std::strerror(errno));
+  return std::move(bytes).str();
 }
 
 std::vector<NewtonFrom> handed_over(const Simulator& simulator) {
@@ -30,9 +46,10 @@ std::vector<NewtonFrom> handed_over(const Simulator& simulator) {
 
 RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator)
     : folder_(std::move(folder)),
-      sequences_(obj_sequences(simulator, facts.frames)),
-      record_(facts, simulator.settings().step, patterns_of(sequences_)) {
-  folder_.expect_free(patterns_of(sequences_));
+      sequences_(obj_sequences(simulator, facts.sources, facts.frames)),
+      copies_(copied_files(facts.sources)),
+      record_(facts, simulator.settings().step, patterns_of(sequences_, copies_)) {
+  folder_.expect_free(patterns_of(sequences_, copies_));
   write_record();
   folder_.write(kDiagnosticsFile, csv_head());
 }
@@ -55,6 +72,11 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
       const std::string file = fill_pattern(sequence.pattern(), progress_.frames_written);
       folder_.write(file, sequence.text(simulator));
       written.push_back(file);
+    }
+    for (const CopiedFile& copy : copies_) {
+      if (before.frames_written > 0) break;
+      folder_.write(copy.path, content_of(copy.file));
+      written.push_back(copy.path);
     }
     write_record();
     folder_.append(kDiagnosticsFile, csv_row(diagnostics));

@@ -21,8 +21,8 @@ class RunOutput {
   RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator);
 
   /// Writes the OBJ files of all bodies and moving obstacles at the simulator's present time, and the row of the frame. The first
-  /// call also writes the static obstacles. Requires the simulator of the constructor. Throws FileError; no part of the frame then
-  /// remains.
+  /// call also writes the static obstacles and copies the materials of bodies. Requires the simulator of the constructor. Throws
+  /// FileError; no part of the frame then remains.
   void write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics);
 
   /// Adds a warning; the next frame, or `finish`, writes it to run.json.
@@ -36,6 +36,7 @@ class RunOutput {
 
   OutputFolder folder_;
   std::vector<ObjSequence> sequences_;
+  std::vector<CopiedFile> copies_;
   RunRecord record_;
   RunProgress progress_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

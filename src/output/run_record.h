@@ -1,6 +1,8 @@
 // run.json: scene, settings, progress and outcome of a run.
 #pragma once
 
+#include "geometry/obj_source/obj_source.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -25,6 +27,7 @@ struct RunFacts {
   std::string stretch_solver{};         ///< of the stretch limit; empty without one
   std::optional<std::uint64_t> seed{};  ///< of random pushes; none without them
   std::vector<std::string> warnings{};
+  ObjSources sources{};  ///< of bodies that are written as their files are
 };
 
 /// A body whose stretch limit was handed over from Gauss-Seidel passes to Newton.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 namespace sprung {
@@ -17,16 +18,34 @@ void add_new(std::vector<std::string>& all, const std::vector<std::string>& more
   }
 }
 
+/// Pieces of a mesh that touch are no reason to change its shape.
+[[noreturn]] void refuse_start(const InputError& error, const std::map<std::string, std::string>& weld_remedies) {
+  std::vector<Problem> problems = error.problems();
+  for (Problem& problem : problems) {
+    for (const auto& [body, remedy] : weld_remedies) {
+      if (problem.key == "bodies." + body && problem.rule.starts_with("intersects itself")) problem.remedy = remedy;
+    }
+  }
+  throw InputError(std::move(problems));
+}
+
+Simulator start(BuiltScene& built) try {
+  return Simulator(std::move(built.network), built.settings, std::move(built.obstacles));
+} catch (const InputError& error) {
+  refuse_start(error, built.weld_remedies);
+}
+
 LoadedScene load(const SceneSource& source) {
   TextProblems problems;
   Scene scene = read_scene_text(scene_text(source), source.file, source.overrides, problems);
   BuiltScene built = build_scene(scene, all_mesh_paths(source.mesh_paths), problems);
   LoadedScene loaded{.scene = std::move(scene),
-                     .simulator = Simulator(std::move(built.network), built.settings, std::move(built.obstacles)),
+                     .simulator = start(built),
                      .frames = built.frames,
                      .steps_per_frame = built.steps_per_frame,
                      .largest_stable_step = built.largest_stable_step,
                      .meshes = std::move(built.meshes),
+                     .sources = std::move(built.sources),
                      .warnings = {}};
   add_new(loaded.warnings, built.warnings);
   add_new(loaded.warnings, loaded.simulator.warnings());

@@ -28,6 +28,7 @@ struct LoadedScene {
   int steps_per_frame = 1;
   double largest_stable_step = 0.0;  ///< [s]; infinity without a bound
   std::vector<NamedReport> meshes;
+  ObjSources sources;                 ///< the files of bodies
   std::vector<std::string> warnings;  ///< without duplicates
 };
 

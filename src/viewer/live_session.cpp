@@ -1,7 +1,7 @@
 #include "viewer/live_session.h"
 
 #include "base/error.h"
-#include "geometry/mesh/polygon_mesh.h"
+#include "output/obj_sequence.h"
 
 #include <nlohmann/json.hpp>
 
@@ -299,8 +299,10 @@ void LiveSession::tell_obj(ClientId client, const Shown& shown, const std::strin
   const std::vector<Body>& bodies = simulator.network().bodies;
   const auto body = std::ranges::find(bodies, body_name, &Body::name);
   if (body == bodies.end()) throw PageCommandError("there is no body " + body_name);
-  const Points vertices = simulator.positions().middleCols(body->first_particle, body->particle_count);
-  publisher_->tell(client, obj_message(body_name + ".obj", obj_text(vertices, body->surface.faces, body->surface.segments)));
+  const ObjSources& sources = shown.run.loaded().sources;
+  const auto source = sources.find(body_name);
+  const std::string text = body_obj_text(simulator, *body, source == sources.end() ? nullptr : source->second.get());
+  publisher_->tell(client, obj_message(body_name + ".obj", text));
 }
 
 /// Shows the problems of an action that the scene does not permit.

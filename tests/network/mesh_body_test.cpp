@@ -137,8 +137,9 @@ TEST(MeshBody, LinesBecomeSpringsAndSegments) {
   EXPECT_THAT(pairs(body, SpringKind::structural), ElementsAre(Pair{0, 1}, Pair{0, 2}, Pair{0, 3}, Pair{1, 2}));
   ASSERT_EQ(body.surface.segments.cols(), 1) << "a line along an edge of a triangle is not a segment";
   EXPECT_EQ(body.surface.segments.col(0), (Eigen::Matrix<Index, 2, 1>(0, 3)));
-  EXPECT_EQ(body.drag_areas[3], 0.0) << "a line of a mesh with faces has no area";
-  EXPECT_NEAR(body.drag_areas[0], 0.5 / 3, 1e-16);
+  EXPECT_EQ(body.measures[3], 0.0) << "a line of a mesh with faces has no area";
+  EXPECT_EQ(body.drag_areas[3], 1.0) << "half of the 2 m of the line";
+  EXPECT_NEAR(body.drag_areas[0], 0.5 / 3 + 1.0, 1e-15);
   EXPECT_NEAR(body.measure, 0.5, 1e-15) << "the area of the faces";
   EXPECT_THAT(problem_keys([&] {
                 return make_mesh_body(mesh, {modular(5), std::nullopt, std::nullopt});

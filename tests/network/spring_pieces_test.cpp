@@ -51,6 +51,27 @@ TEST(SpringPieces, TouchOnlyWhereTheyAreDifferentPieces) {
   EXPECT_FALSE(pieces_of(builder).touch) << "a rope may pass through a point twice";
 }
 
+TEST(SpringPieces, TouchWithinAMillionthOfTheExtent) {
+  NetworkBuilder builder = four_particles();
+  builder.add_particle(Vector3(3, 1e-6, 0), 1.0);
+  builder.add_particle(Vector3(3, 5e-6, 0), 1.0);
+  for (const auto& [first, second] : {std::array<Index, 2>{0, 1}, {1, 2}, {2, 3}}) builder.add_spring(first, second, 1.0, 1.0);
+  const SpringPieces pieces = pieces_of(builder);
+  EXPECT_TRUE(pieces.touch);
+  EXPECT_DOUBLE_EQ(pieces.touch_distance, 1e-6) << "the power of ten next to 3e-6";
+  EXPECT_EQ(pieces.count + pieces.alone, 3);
+  EXPECT_EQ(pieces.count_welded, 2);
+}
+
+TEST(SpringPieces, TouchWithinLessThanTheShortestSpring) {
+  NetworkBuilder builder = four_particles();
+  const Index near = builder.add_particle(Vector3(0, 5e-7, 0), 1.0);
+  builder.add_spring(0, near, 1.0, 5e-7);
+  EXPECT_DOUBLE_EQ(pieces_of(builder).touch_distance, 1e-7);
+  builder.add_spring(1, 2, 1.0, 0.0);
+  EXPECT_EQ(pieces_of(builder).touch_distance, 0.0);
+}
+
 TEST(SpringPieces, OtherBodiesDoNotCount) {
   NetworkBuilder builder = four_particles();
   builder.begin_body("other");

@@ -27,6 +27,7 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"geometry/motion", {}},
     {"geometry/mesh", {"queries"}},
     {"geometry/import", {"mesh"}},
+    {"geometry/obj_source", {"mesh", "import"}},
 
     {"collision/core", {}},
     {"collision/surface", {"core"}},

@@ -122,7 +122,7 @@ inline constexpr const char* kFullScene = R"({
     "line": { "shape": { "type": "rope", "points": [[0, 0, 0], [1, 0, 0], [1, 1, 0]] }, "density": 0.1 },
     "jelly": { "shape": { "type": "solid", "size": [1, 2, 3], "resolution": [4, 5, 6] }, "density": 1000,
                "pins": [ { "at": "corner", "which": ["max_min_max"] } ] },
-    "shirt": { "shape": { "type": "mesh", "file": "shirt.obj" }, "mass": 0.3 },
+    "shirt": { "shape": { "type": "mesh", "file": "shirt.obj", "weld": 1e-6 }, "mass": 0.3, "normals": true },
     "scarf": { "shape": { "type": "cloth", "size": [1, 2], "resolution": [3, 5] }, "material": "wool", "mass": 0.3,
                "springs": { "structural": { "stiffness": 400 }, "bend": { "damping_time": 0.002 } } },
     "cable": { "shape": { "type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 5 }, "material": "steel_cable",

@@ -3,6 +3,7 @@
 #include "base/format.h"
 #include "geometry/import/mesh_file.h"
 #include "geometry/mesh/polygon_mesh.h"
+#include "geometry/mesh/weld.h"
 #include "scene/json/json_text.h"
 #include "scene/json/nearest_name.h"
 #include "scene/materials/materials.h"
@@ -15,7 +16,7 @@ class ShapeMaker {
   ShapeMaker(const Scene& scene, const BodyScene& body, const MeshFinder& finder, std::vector<Problem>& problems)
       : scene_(scene), body_(body), finder_(finder), problems_(problems), key_(join_path("bodies", body.name)) {}
 
-  std::optional<BodyShape> make() {
+  std::optional<BuiltBody> make() {
     try {
       return std::visit([&](const auto& shape) { return from(shape); }, body_.shape);
     } catch (const InputError& error) {
@@ -26,23 +27,23 @@ class ShapeMaker {
 
  private:
   // Springs are built from the scaled sizes, because the stiffness that follows from a modulus depends on lengths.
-  std::optional<BodyShape> from(RopeShape rope) const {
+  std::optional<BuiltBody> from(RopeShape rope) const {
     for (Vector3& point : rope.points) point *= body_.place.scale;
     if (rope.length) *rope.length *= body_.place.scale;
-    return make_rope(rope, body_.springs);
+    return BuiltBody{make_rope(rope, body_.springs)};
   }
 
-  std::optional<BodyShape> from(ClothShape cloth) const {
+  std::optional<BuiltBody> from(ClothShape cloth) const {
     for (double& side : cloth.size) side *= body_.place.scale;
-    return make_cloth(cloth, body_.springs);
+    return BuiltBody{make_cloth(cloth, body_.springs)};
   }
 
-  std::optional<BodyShape> from(SolidShape solid) const {
+  std::optional<BuiltBody> from(SolidShape solid) const {
     solid.size *= body_.place.scale;
-    return make_solid(solid, body_.springs);
+    return BuiltBody{make_solid(solid, body_.springs)};
   }
 
-  std::optional<BodyShape> from(const MeshFile& mesh) {
+  std::optional<BuiltBody> from(const MeshFile& mesh) {
     const std::string key = key_ + ".shape.file";
     if (lower_case_extension(mesh.file) != ".obj") {
       problems_.push_back({scene_.file.string(), key, "\"" + mesh.file + "\"", "a simulated body is read from an .obj file",
@@ -54,7 +55,13 @@ class ShapeMaker {
     PolygonMesh polygons = read_obj(*file);
     polygons.vertices *= body_.place.scale;
     check_preset(polygons);
-    return make_mesh_body(polygons, body_.springs);
+    ObjSource source = read_obj_source(*file, body_.normals ? ObjTemplate::Normals::per_vertex : ObjTemplate::Normals::as_given);
+    if (mesh.weld) {
+      WeldedMesh welded = weld(std::move(polygons), *mesh.weld);
+      polygons = std::move(welded.mesh);
+      source.particle_of = std::move(welded.vertex_of);
+    }
+    return BuiltBody{make_mesh_body(polygons, body_.springs), std::move(source)};
   }
 
   /// A mesh with faces is a cloth, a mesh of lines alone is a rope.
@@ -99,12 +106,12 @@ void set_mass(const MassScene& mass, BodyShape& shape) {
 
 }  // namespace
 
-std::optional<BodyShape> build_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder,
+std::optional<BuiltBody> build_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder,
                                     std::vector<Problem>& problems) {
-  auto shape = ShapeMaker(scene, body, finder, problems).make();
-  if (!shape) return std::nullopt;
+  auto built = ShapeMaker(scene, body, finder, problems).make();
+  if (!built) return std::nullopt;
   try {
-    set_mass(body.mass, *shape);
+    set_mass(body.mass, built->shape);
   } catch (const InputError& error) {
     for (Problem problem : error.problems()) {
       problem.file = scene.file.string();
@@ -113,8 +120,8 @@ std::optional<BodyShape> build_body(const Scene& scene, const BodyScene& body, c
     }
     return std::nullopt;
   }
-  place(*shape, pose_of(body.place), body.velocity);
-  return shape;
+  place(built->shape, pose_of(body.place), body.velocity);
+  return built;
 }
 
 RigidTransform pose_of(const Placement& placement) {

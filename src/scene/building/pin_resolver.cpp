@@ -12,8 +12,13 @@ namespace {
 /// Finds the particles of one pin.
 class PinFinder {
  public:
-  PinFinder(const Scene& scene, const BodyScene& body, const BodyShape& placed, std::string key, std::vector<Problem>& problems)
-      : scene_(scene), body_(body), positions_(placed.positions), key_(std::move(key)), problems_(problems) {}
+  PinFinder(const Scene& scene, const BodyScene& body, const BuiltBody& placed, std::string key, std::vector<Problem>& problems)
+      : scene_(scene),
+        body_(body),
+        placed_(placed),
+        positions_(placed.shape.positions),
+        key_(std::move(key)),
+        problems_(problems) {}
 
   std::vector<Index> find(const PinScene& pin) {
     std::vector<Index> particles = std::visit([&](const auto& where) { return at(where); }, pin.where);
@@ -41,13 +46,16 @@ class PinFinder {
 
   std::vector<Index> at(const PinIndices& indices) {
     std::vector<Index> particles;
+    const bool welded = placed_.source && !placed_.source->particle_of.empty();
+    const std::size_t count = welded ? placed_.source->particle_of.size() : positions_.size();
     for (std::size_t i = 0; i < indices.indices.size(); ++i) {
-      const Index particle = indices.indices[i];
-      if (particle < static_cast<Index>(positions_.size())) {
-        particles.push_back(particle);
+      const Index index = indices.indices[i];
+      if (static_cast<std::size_t>(index) < count) {
+        particles.push_back(welded ? placed_.source->particle_of[index] : index);
       } else {
-        report(join_path(".indices", i), std::to_string(particle), "the body has " + counted(positions_.size(), "particle"),
-               "they are numbered from 0 to " + std::to_string(positions_.size() - 1));
+        report(join_path(".indices", i), std::to_string(index),
+               welded ? "the file has " + std::to_string(count) + " vertices" : "the body has " + counted(count, "particle"),
+               "they are numbered from 0 to " + std::to_string(count - 1));
       }
     }
     return particles;
@@ -88,6 +96,7 @@ class PinFinder {
 
   const Scene& scene_;
   const BodyScene& body_;
+  const BuiltBody& placed_;
   const std::vector<Vector3>& positions_;
   std::string key_;
   std::vector<Problem>& problems_;
@@ -95,7 +104,7 @@ class PinFinder {
 
 }  // namespace
 
-std::vector<ResolvedPin> resolve_pins(const Scene& scene, const BodyScene& body, const BodyShape& placed,
+std::vector<ResolvedPin> resolve_pins(const Scene& scene, const BodyScene& body, const BuiltBody& placed,
                                       std::vector<Problem>& problems) {
   const std::string key = join_path("bodies", body.name) + ".pins";
   std::map<Index, std::size_t> first_pin;  // the first pin of a particle

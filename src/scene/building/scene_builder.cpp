@@ -14,6 +14,7 @@
 #include "scene/json/json_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -34,14 +35,15 @@ std::vector<BodyScene> valid_bodies(const Scene& scene, const TextProblems& know
   return bodies;
 }
 
-void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder, NetworkBuilder& network,
+void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder, NetworkBuilder& network, ObjSources& sources,
               std::vector<Problem>& problems) {
-  auto shape = build_body(scene, body, finder, problems);
-  if (!shape) return;
+  auto built = build_body(scene, body, finder, problems);
+  if (!built) return;
   const auto& limited = scene.limited_bodies;
-  shape->stretch_limited = limited.empty() || std::ranges::find(limited, body.name) != limited.end();
-  const std::vector<ResolvedPin> pins = resolve_pins(scene, body, *shape, problems);
-  const Index first = network.add_body(body.name, *shape, body.material, body.contact);
+  built->shape.stretch_limited = limited.empty() || std::ranges::find(limited, body.name) != limited.end();
+  const std::vector<ResolvedPin> pins = resolve_pins(scene, body, *built, problems);
+  const Index first = network.add_body(body.name, built->shape, body.material, body.contact);
+  if (built->source) sources[body.name] = std::make_shared<const ObjSource>(std::move(*built->source));
   for (const ResolvedPin& pin : pins) {
     std::vector<Index> particles = pin.particles;
     for (Index& particle : particles) particle += first;
@@ -51,12 +53,12 @@ void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finde
 
 /// The network; none if a body or the scene's text has problems.
 std::optional<SpringNetwork> build_network(const Scene& scene, const MeshFinder& finder, const TextProblems& known,
-                                           std::vector<Problem>& problems) {
+                                           ObjSources& sources, std::vector<Problem>& problems) {
   const std::vector<BodyScene> bodies = valid_bodies(scene, known);
   check_memory(bodies, machine_memory(), problems);
   if (!problems.empty()) return std::nullopt;
   NetworkBuilder network;
-  for (const BodyScene& body : bodies) add_body(scene, body, finder, network, problems);
+  for (const BodyScene& body : bodies) add_body(scene, body, finder, network, sources, problems);
   if (!problems.empty() || !known.only_unknown_keys) return std::nullopt;
   try {
     return network.build();
@@ -73,9 +75,16 @@ void name_file(const std::string& file, std::vector<Problem>& problems) {
   }
 }
 
-std::vector<std::string> pieces_warnings(const SpringNetwork& network, const Body& body) {
+/// What to do with pieces of a mesh that touch.
+std::string weld_remedy(const SpringPieces& pieces) {
+  if (pieces.touch_distance == 0.0) return "Merge vertices at the same place in the mesh.";
+  const std::string distance = "1e" + std::to_string(std::lround(std::log10(pieces.touch_distance)));
+  return "Weld vertices within " + distance + " m with \"weld\": " + distance + " in its shape, which leaves " +
+         counted(static_cast<std::size_t>(pieces.count_welded), "piece") + ".";
+}
+
+std::vector<std::string> pieces_warnings(const Body& body, const SpringPieces& pieces, bool is_mesh) {
   if (body.particle_count < 2) return {};
-  const SpringPieces pieces = spring_pieces(network, body);
   if (pieces.count == 0) return {"no springs, so the particles move independently"};
   std::vector<std::string> warnings;
   if (pieces.alone > 0) {
@@ -84,17 +93,41 @@ std::vector<std::string> pieces_warnings(const SpringNetwork& network, const Bod
                        "remove such vertices.");
   }
   if (pieces.touch) {
-    warnings.push_back(
-        std::to_string(pieces.count + pieces.alone) +
-        " pieces that no spring joins, though some touch: they fall apart. Merge vertices at the same place in the mesh.");
+    warnings.push_back(std::to_string(pieces.count + pieces.alone) +
+                       " pieces that no spring joins, though some touch: they fall apart. " +
+                       (is_mesh ? weld_remedy(pieces) : "Join them by springs."));
   }
   return warnings;
 }
 
-std::vector<std::string> warnings_of(const Scene& scene, const BuiltScene& built) {
+std::vector<std::string> source_warnings(const ObjSource& source) {
+  std::vector<std::string> warnings;
+  const auto warn = [&](const std::vector<std::string>& names, const std::string& text) {
+    if (!names.empty()) warnings.push_back("the mesh names the material " + names_text("file", "files", names) + text);
+  };
+  const MaterialFiles& materials = source.materials;
+  warn(materials.missing, ", which Sprung does not find and does not copy beside the frames.");
+  warn(materials.unusual, ", which Sprung does not copy: another file has the name there, or the name has a # or ends in .obj.");
+  warn(materials.outside, ", outside of its folder. The copies are beside the frames, which still name the place outside.");
+  if (source.file.has_given_normals() && !source.file.writes_normals()) {
+    warnings.push_back(
+        "the normals (vn) of the mesh are written as they are, though they go stale as the body deforms. Write them "
+        "anew with \"normals\": true, or remove them from the mesh.");
+  }
+  return warnings;
+}
+
+/// Sets the remedies of bodies too.
+std::vector<std::string> warnings_of(const Scene& scene, BuiltScene& built) {
   GroupedWarnings bodies("body", "bodies");
   for (const Body& body : built.network.bodies) {
-    for (const std::string& text : pieces_warnings(built.network, body)) bodies.add(body.name, text);
+    const auto source = built.sources.find(body.name);
+    const bool is_mesh = source != built.sources.end();
+    const SpringPieces pieces = spring_pieces(built.network, body);
+    for (const std::string& text : pieces_warnings(body, pieces, is_mesh)) bodies.add(body.name, text);
+    if (!is_mesh) continue;
+    if (pieces.touch) built.weld_remedies[body.name] = weld_remedy(pieces);
+    for (const std::string& text : source_warnings(*source->second)) bodies.add(body.name, text);
   }
   GroupedWarnings obstacles("obstacle", "obstacles");
   for (const NamedReport& mesh : built.meshes) {
@@ -113,7 +146,7 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
   std::vector<Problem> problems;
   const MeshFinder finder(scene.file, mesh_paths);
   BuiltScene built;
-  auto network = build_network(scene, finder, known, problems);
+  auto network = build_network(scene, finder, known, built.sources, problems);
   name_file(scene.file.string(), problems);
 
   ObstacleBuilder obstacles(scene, finder, problems);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "geometry/import/mesh_import.h"
+#include "geometry/obj_source/obj_source.h"
 #include "scene/format/scene.h"
 #include "scene/format/text_problems.h"
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,8 @@ struct BuiltScene {
   int steps_per_frame = 1;
   double largest_stable_step = 0.0;  ///< [s]; infinity if every step is stable
   std::vector<NamedReport> meshes;
+  ObjSources sources;                                ///< the files of bodies
+  std::map<std::string, std::string> weld_remedies;  ///< for bodies of a mesh whose pieces touch, by their names
   std::vector<std::string> warnings;
 };
 

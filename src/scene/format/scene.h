@@ -24,6 +24,7 @@ struct Placement {
 /// A mesh file, as named in the scene.
 struct MeshFile {
   std::string file;
+  std::optional<double> weld{};  ///< of a body: vertices at most this far apart are one particle [m]
 };
 
 /// The OBJ files of a deforming mesh, one per frame.
@@ -75,6 +76,7 @@ struct BodyScene {
   Vector3 velocity = Vector3::Zero();
   ContactMaterial material;
   BodyContact contact;
+  bool normals = false;  ///< whether the frames of a mesh have new normals
 };
 
 struct ObstacleScene {

@@ -52,7 +52,7 @@ SolidShape read_solid(Fields& fields) {
 std::optional<BodyShapeScene> read_shape(Fields& fields) {
   const auto kind = fields.kind("type", {"rope", "cloth", "solid", "mesh"});
   if (!kind) {
-    fields.accept_keys_of_all_kinds({"from", "to", "points", "particles", "length", "size", "resolution", "file"});
+    fields.accept_keys_of_all_kinds({"from", "to", "points", "particles", "length", "size", "resolution", "file", "weld"});
     return std::nullopt;
   }
   switch (*kind) {
@@ -63,7 +63,7 @@ std::optional<BodyShapeScene> read_shape(Fields& fields) {
     case 2:
       return read_solid(fields);
     default:
-      return MeshFile{fields.required("file", text()).value_or("")};
+      return MeshFile{.file = fields.required("file", text()).value_or(""), .weld = fields.optional("weld", number(kNotNegative))};
   }
 }
 
@@ -146,6 +146,17 @@ BodyContact read_body_contact(Fields& fields) {
           .others = fields.value("body_contact", boolean(), fallback.others).value_or(fallback.others)};
 }
 
+/// Whether a mesh is written with new normals. Only frames of a mesh have normals.
+bool read_normals(Fields& fields, const std::optional<BodyShapeScene>& shape) {
+  const bool mesh = shape && std::holds_alternative<MeshFile>(*shape);
+  if (mesh) return fields.value("normals", boolean(), false).value_or(false);
+  const auto normals = fields.optional("normals", boolean());
+  if (normals && shape) {
+    fields.location().at("normals").report(fields.json()["normals"], "is for bodies with a mesh as their shape", "remove it");
+  }
+  return false;
+}
+
 BodyScene read_body(Fields& fields) {
   BodyScene body;
   const auto shape = fields.required("shape", object_of<BodyShapeScene>(read_shape));
@@ -159,6 +170,7 @@ BodyScene read_body(Fields& fields) {
   body.velocity = fields.value("velocity", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
   body.material = read_material(fields);
   body.contact = read_body_contact(fields);
+  body.normals = read_normals(fields, shape);
   return body;
 }
 

@@ -1,0 +1,20 @@
+#include "geometry/obj_source/obj_source.h"
+
+#include "geometry/import/mesh_file.h"
+#include "geometry/mesh/vertex_normals.h"
+
+namespace sprung {
+
+std::string ObjSource::text(const Points& particles, const Triangles& triangles) const {
+  const auto of_file = [&](const Points& points) -> Points {
+    return particle_of.empty() ? points : points(Eigen::all, particle_of);
+  };
+  return file.text(of_file(particles), file.writes_normals() ? of_file(vertex_normals(particles, triangles)) : Points(3, 0));
+}
+
+ObjSource read_obj_source(const std::filesystem::path& file, ObjTemplate::Normals normals) {
+  const std::string text = read_mesh_text(file);
+  return {.file = ObjTemplate(text, normals), .particle_of = {}, .materials = find_material_files(file, text)};
+}
+
+}  // namespace sprung
