@@ -91,8 +91,8 @@ struct SpringNetwork {
   Points velocities;       ///< at time 0 [m/s], 3 x n; 0 of pinned particles
   Scalars masses;          ///< [kg], > 0
   Scalars inverse_masses;  ///< [1/kg]; 0 for pinned particles
-  Scalars drag_areas;      ///< factor of the air drag: the particle's share in the area [m^2] of its body's surface; in the
-                           ///< length [m] of a body without faces; 1 without faces and segments
+  Scalars drag_areas;      ///< factor of the air drag: the particle's share in the area [m^2] of its body's faces, plus that
+                           ///< in the length [m] of its segments; 1 in a body without either
   Springs springs;
   AngleBends angle_bends;
   std::vector<Body> bodies;

@@ -325,9 +325,10 @@ TEST_F(RunOutputFiles, RunWithTheSameNamesReplacesThemWhenAsked) {
 
 TEST(RunOutput, NamesThatCannotBeFoldersAreAllReported) {
   NetworkBuilder builder;
+  double x = 0.0;
   for (const char* name : {"../up", "obstacles"}) {
     builder.begin_body(name);
-    builder.add_particle(Vector3::Zero(), 1.0);
+    builder.add_particle(Vector3(x++, 0.0, 0.0), 1.0);
   }
   const Obstacle ball = still("ball", SphereGeometry{0.2}, {0.0, 3.0, 0.0});
   const Simulator simulator(builder.build(), {}, {ball, ball});
