@@ -7,6 +7,7 @@
 #include "geometry/import/mesh_import.h"
 #include "geometry/mesh/mesh_sequence.h"
 #include "geometry/mesh/polygon_mesh.h"
+#include "geometry/obj_source/obj_source.h"
 
 #include <algorithm>
 #include <string_view>
@@ -41,6 +42,12 @@ void check_environment(const std::filesystem::path& file) {
   });
 }
 
+Points read_vertices(const std::string& obj_text) {
+  const std::filesystem::path frame = own_file("frame.obj");
+  write_bytes(frame, obj_text.data(), obj_text.size());
+  return read_obj(frame).vertices;
+}
+
 void check_body(const std::filesystem::path& file) {
   refuse_or_read([&] {
     const PolygonMesh mesh = read_obj(file);
@@ -50,7 +57,10 @@ void check_body(const std::filesystem::path& file) {
     for (const Index corner : mesh.faces.texcoord) {
       require(corner == kNone || in_range(corner, std::ssize(mesh.faces.texcoords)), "a body's texture coordinates are in range");
     }
-    (void)triangulate(mesh.faces);
+    const ObjSource source = read_obj_source(file, ObjTemplate::Normals::per_vertex);
+    require(source.file.vertex_count() == mesh.vertices.cols(), "a body's file is written with all of its vertices");
+    const std::string frame = source.text(mesh.vertices, triangulate(mesh.faces));
+    require(read_vertices(frame) == mesh.vertices, "a frame has the positions of the body");
   });
 }
 
