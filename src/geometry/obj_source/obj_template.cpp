@@ -74,8 +74,11 @@ std::string ObjTemplate::text(const Points& positions, const Points& normals) co
   parallel_chunks(count, kVerticesPerChunk, [&](Index begin, Index end) {
     append(chunks[static_cast<std::size_t>(begin / kVerticesPerChunk)], begin, end, positions, normals);
   });
-  const std::size_t head = position_at_.empty() ? text_.size() : position_at_.front();
-  return std::accumulate(chunks.begin(), chunks.end(), text_.substr(0, head));
+  std::string whole(text_, 0, position_at_.empty() ? text_.size() : position_at_.front());
+  whole.reserve(std::accumulate(chunks.begin(), chunks.end(), whole.size(),
+                                [](std::size_t size, const std::string& chunk) { return size + chunk.size(); }));
+  for (const std::string& chunk : chunks) whole += chunk;
+  return whole;
 }
 
 void ObjTemplate::append(std::string& out, Index begin, Index end, const Points& positions, const Points& normals) const {
