@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace sprung {
 namespace {
@@ -19,14 +20,32 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t kGeneration = 1;
 
+/// The particle of each vertex of a body's frames, counted within the body.
+std::vector<Index> particles_of(const LoadedScene& scene, const Body& body) {
+  const auto source = scene.sources.find(body.name);
+  if (source != scene.sources.end() && !source->second->particle_of.empty()) return source->second->particle_of;
+  std::vector<Index> particles(static_cast<std::size_t>(body.particle_count));
+  std::iota(particles.begin(), particles.end(), 0);
+  return particles;
+}
+
+std::vector<Index> particles_of_frames(const LiveRun* live) {
+  std::vector<Index> particles;
+  if (live == nullptr) return particles;
+  for (const Body& body : live->simulator().network().bodies) {
+    for (const Index particle : particles_of(live->loaded(), body)) particles.push_back(body.first_particle + particle);
+  }
+  return particles;
+}
+
 /// The simulator of the run's scene, if it has the run's particles.
 std::unique_ptr<const LiveRun> scene_of(const RecordedRun& run, const std::vector<std::string>& mesh_paths) try {
   if (run.scene().empty()) return nullptr;
   auto live = std::make_unique<const LiveRun>(SceneSource{
       .file = (run.folder() / kRunRecordFile).string(), .overrides = {}, .mesh_paths = mesh_paths, .text = run.scene()});
   const std::vector<Body>& bodies = live->simulator().network().bodies;
-  const bool same = std::ranges::equal(bodies, run.bodies(), [](const Body& body, const RecordedMesh& mesh) {
-    return body.name == mesh.name && body.particle_count == mesh.first.vertices.cols();
+  const bool same = std::ranges::equal(bodies, run.bodies(), [&](const Body& body, const RecordedMesh& mesh) {
+    return body.name == mesh.name && std::ssize(particles_of(live->loaded(), body)) == mesh.first.vertices.cols();
   });
   return same ? std::move(live) : nullptr;
 } catch (const std::runtime_error&) {
@@ -53,7 +72,7 @@ Json table_of(const RecordedDiagnostics& diagnostics) {
 }  // namespace
 
 Replay::Replay(const std::filesystem::path& folder, const std::vector<std::string>& mesh_paths)
-    : run_(folder), live_(scene_of(run_, mesh_paths)) {}
+    : run_(folder), live_(scene_of(run_, mesh_paths)), particle_of_(particles_of_frames(live_.get())) {}
 Replay::~Replay() = default;
 
 std::string Replay::scene_text() const {
@@ -103,6 +122,9 @@ Topology Replay::topology() const {
     first += static_cast<Index>(body.first.vertices.cols());
   }
   topology.particles = first;
+  std::vector<Index> vertex_of(particle_of_.size());  // one of those of a particle
+  for (std::size_t i = 0; i < particle_of_.size(); ++i) vertex_of[particle_of_[i]] = static_cast<Index>(i);
+  for (Index& end : topology.springs.reshaped()) end = vertex_of[end];
   for (const RecordedMesh& obstacle : run_.obstacles()) {
     TriangleMesh mesh;
     mesh.vertices = obstacle.first.vertices;
@@ -125,7 +147,7 @@ FrameState Replay::state(int frame) const {
   }
   state.states.assign(static_cast<std::size_t>(state.positions.cols()), 0);
   for (std::size_t i = 0; live_ && i < state.states.size(); ++i) {
-    if (live_->simulator().network().is_pinned(static_cast<Index>(i))) state.states[i] = kPinned;
+    if (live_->simulator().network().is_pinned(particle_of_[i])) state.states[i] = kPinned;
   }
   state.speeds = Scalars::Zero(state.positions.cols());
   return state;

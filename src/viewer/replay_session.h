@@ -40,6 +40,7 @@ class Replay {
  private:
   RecordedRun run_;
   std::unique_ptr<const LiveRun> live_;  ///< of the scene, at time 0; null if it does not build
+  std::vector<Index> particle_of_;       ///< of each vertex of the bodies' frames; a weld gives several the same one
 };
 
 class ReplaySession final : public ViewSession {

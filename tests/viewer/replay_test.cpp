@@ -23,6 +23,37 @@ using testing::TestPage;
 
 constexpr int kFrames = 5;
 
+// Two triangles of three vertices each, welded along the edge that they share: six vertices, four particles, five springs.
+TEST(Replay, SpringsAndPinsOfAWeldedMeshAreAtItsVertices) {
+  const SceneFolder folder;
+  folder.write("seam.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n");
+  const std::string mesh = (folder.path() / "seam.obj").string();
+  const std::string scene = R"({"version": 1, "duration": 0, "bodies": {
+      "line": {"shape": {"type": "rope", "from": [5, 0, 0], "to": [6, 0, 0], "particles": 2}, "mass": 1,
+               "springs": {"structural": {"stiffness": 10}}},
+      "seam": {"shape": {"type": "mesh", "file": ")" +
+                            mesh + R"(", "weld": 0}, "mass": 1, "pins": [{"indices": [1]}],
+               "springs": {"structural": {"stiffness": 10}}}}})";
+  LoadedScene loaded = load_scene({.file = folder.write("scene.json", scene).string()});
+  RunOutput output(OutputFolder((folder.path() / "run").string(), false),
+                   {.scene = loaded.scene.resolved, .steps_per_frame = loaded.steps_per_frame, .sources = loaded.sources},
+                   loaded.simulator);
+  output.write_frame(loaded.simulator, FrameRunner(loaded.simulator, loaded.steps_per_frame).first_frame());
+  const Replay replay(folder.path() / "run", {});
+  EXPECT_THAT(replay.scene_text(), HasSubstr("\"complete\":true"));
+  const Topology topology = replay.topology();
+  const FrameState state = replay.state(1);
+  ASSERT_EQ(state.positions.cols(), 8);
+  ASSERT_EQ(topology.springs.cols(), 1 + 5);
+  for (Eigen::Index s = 0; s < topology.springs.cols(); ++s) {
+    const auto ends = topology.springs.col(s);
+    // Rest lengths are floats.
+    EXPECT_FLOAT_EQ(static_cast<float>((state.positions.col(ends[0]) - state.positions.col(ends[1])).norm()),
+                    topology.rest_lengths[static_cast<std::size_t>(s)]);
+  }
+  EXPECT_THAT(state.states, ::testing::ElementsAre(0, 0, 0, kPinned, 0, kPinned, 0, 0)) << "both vertices of the pinned particle";
+}
+
 /// A cloth that falls on a ball that moves, recorded.
 class RecordedCloth : public ::testing::Test {
  protected:
