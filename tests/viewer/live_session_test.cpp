@@ -2,6 +2,7 @@
 #include "viewer/live_session.h"
 #include "base/error.h"
 #include "base/format.h"
+#include "scene/format/frame_steps.h"
 #include "scene/scene_text.h"
 #include "viewer/test_client.h"
 
@@ -243,7 +244,8 @@ TEST_F(LiveViewer, TheOfferedStepIsTheOneThatValidationAdvises) {
     (void)load_scene({.file = file, .overrides = {"stability=refuse"}});
     FAIL() << "the step is too large";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("use at most " + format_number(*run.stable_step())));
+    const double rate = run.loaded().scene.frame_rate;
+    EXPECT_THAT(error.what(), HasSubstr("use at most " + step_text(rate, steps_per_frame(rate, *run.stable_step()).value_or(0))));
   }
   run.change({"step=" + format_number(*run.stable_step())});
   for (int step = 0; step < 1000; ++step) run.step();
