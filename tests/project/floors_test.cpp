@@ -28,6 +28,7 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"geometry/mesh", {"queries"}},
     {"geometry/import", {"mesh"}},
     {"geometry/obj_source", {"mesh", "import"}},
+    {"geometry/tetrahedra", {"import"}},
 
     {"collision/core", {}},
     {"collision/surface", {"core"}},
