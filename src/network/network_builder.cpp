@@ -2,9 +2,11 @@
 
 #include "network/damping_ratio.h"
 #include "network/network_check.h"
+#include "network/pin_schedule.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -100,6 +102,8 @@ void NetworkBuilder::pin(std::vector<Index> particles, const Motion& motion, con
   pins_.push_back({std::move(particles), origin, motion});
 }
 
+void NetworkBuilder::add_pin(Pin pin) { pins_.push_back(std::move(pin)); }
+
 NetworkBuilder::Draft& NetworkBuilder::open_draft() {
   if (drafts_.empty() || drafts_.back().whole) begin_body("network");
   return drafts_.back();
@@ -171,12 +175,10 @@ SpringNetwork NetworkBuilder::build() const {
                               draft.material, draft.contact, draft.shape.stretch_limited});
   }
   network.inverse_masses = network.masses.cwiseInverse();
-  network.pins = pins_;
-  for (const Pin& pin : pins_) {
-    for (const Index particle : pin.particles) {
-      network.inverse_masses[particle] = 0.0;
-      network.velocities.col(particle).setZero();
-    }
+  network.later_pins = pins_;
+  change_pins(network, std::numeric_limits<double>::min());  // those that begin at time 0
+  for (const Pin& pin : network.pins) {
+    for (const Index particle : pin.particles) network.velocities.col(particle).setZero();
   }
   for (std::size_t b = 0; b < drafts.size(); ++b) damp_by_ratio(drafts[b].shape.damping_ratios, network.bodies[b], network);
   return network;

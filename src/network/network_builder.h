@@ -36,9 +36,13 @@ class NetworkBuilder {
   void pin(Index particle, const Motion& motion = {}, const Vector3& origin = Vector3::Zero());
   void pin(std::vector<Index> particles, const Motion& motion = {}, const Vector3& origin = Vector3::Zero());
 
+  /// Adds a pin that follows an obstacle, or that begins or ends after time 0.
+  void add_pin(Pin pin);
+
   /// The network. Throws InputError that names every problem: a network or body without particles, bodies of one name, masses that
   /// are not positive, springs and angle bends that join a particle to itself, to another body or to none, negative or non-finite
-  /// quantities, contact materials out of range, pins of particles that do not exist, and particles pinned twice.
+  /// quantities, contact materials out of range, pins of particles that do not exist, particles
+  /// pinned twice at one time, and pins that end before they begin.
   [[nodiscard]] SpringNetwork build() const;
 
  private:

@@ -2,9 +2,12 @@
 
 #include "base/format.h"
 #include "geometry/motion/motion_check.h"
+#include "network/pin_schedule.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 namespace sprung {
 namespace {
@@ -107,6 +110,14 @@ bool same_sizes(const BodyShape& shape) {
          springs.damping.size() == count && springs.kind.size() == count && same_sizes(shape.angle_bends);
 }
 
+void check_times(const std::string& key, const Pin& pin, ProblemList& problems) {
+  if (!std::isfinite(pin.from) || pin.from < 0.0)
+    problems.add(key + ".from", format_number(pin.from), "must be finite and not negative", "give a time in s");
+  if (!(pin.until > pin.from))
+    problems.add(key + ".until", format_number(pin.until), "must be later than from, " + format_number(pin.from) + " s",
+                 "from is when the pin begins, until when it ends");
+}
+
 }  // namespace
 
 void check_body(const std::string& key, const BodyShape& shape, const ContactMaterial& material, ProblemList& problems) {
@@ -127,24 +138,25 @@ void check_body(const std::string& key, const BodyShape& shape, const ContactMat
 }
 
 void check_pins(const std::vector<Pin>& pins, Index particle_count, ProblemList& problems) {
-  std::vector<bool> pinned(static_cast<std::size_t>(particle_count), false);
+  std::map<Index, std::vector<const Pin*>> pins_of;  // by particle
   for (std::size_t p = 0; p < pins.size(); ++p) {
+    const Pin& pin = pins[p];
     const std::string key = entry_key("pins", p);
-    if (pins[p].particles.empty())
-      problems.add(key, "", "must contain at least one particle", "name a particle or leave the pin out");
-    if (!pins[p].origin.allFinite())
-      problems.add(key + ".origin", vector_text(pins[p].origin), "must be finite", "give a point in m");
-    check_motion(key + ".motion", pins[p].motion, problems);
-    for (const Index particle : pins[p].particles) {
+    if (pin.particles.empty()) problems.add(key, "", "must contain at least one particle", "name a particle or leave the pin out");
+    if (!pin.origin.allFinite()) problems.add(key + ".origin", vector_text(pin.origin), "must be finite", "give a point in m");
+    check_motion(key + ".motion", pin.motion, problems);
+    check_times(key, pin, problems);
+    for (const Index particle : pin.particles) {
       if (particle < 0 || particle >= particle_count) {
         problems.add(key, "particle " + std::to_string(particle),
                      "must be a particle of the network, which has " + std::to_string(particle_count),
                      "use a number that add_particle or add_body returned");
-      } else if (pinned[particle]) {
-        problems.add(key, "particle " + std::to_string(particle), "must be pinned only once", "leave it out of one of its pins");
-      } else {
-        pinned[particle] = true;
+        continue;
       }
+      std::vector<const Pin*>& others = pins_of[particle];
+      if (std::ranges::any_of(others, [&](const Pin* other) { return hold_together(*other, pin); }))
+        problems.add(key, "particle " + std::to_string(particle), "must be pinned only once", "leave it out of one of its pins");
+      others.push_back(&pin);
     }
   }
 }

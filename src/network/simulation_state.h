@@ -24,6 +24,14 @@ struct Slip {
   std::vector<Index> obstacle;  ///< that the particle touches, n; kNone without a contact
 };
 
+/// Where a pin took a particle.
+struct PinAnchor {
+  Index particle = kNone;
+  std::int64_t step = 0;               ///< after which the pin took it
+  Vector3 position = Vector3::Zero();  ///< [m]
+  Index triangle = kNone;              ///< nearest then, of a deforming obstacle that the pin follows
+};
+
 struct SimulationState {
   std::int64_t step = 0;        ///< number of completed steps
   int substeps = 1;             ///< number of equal substeps of the current step
@@ -42,6 +50,7 @@ struct SimulationState {
   double rest_speed2 = 0.0;     ///< mean square of the speeds then [m^2/s^2]
   bool asleep = false;          ///< steps change nothing but the time
   std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
+  std::vector<PinAnchor> anchors{};  ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle
 };
 
 /// Number of completed steps, plus the completed fraction of the current step. The time is this number times the step length. After

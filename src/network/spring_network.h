@@ -7,6 +7,7 @@
 #include "geometry/motion/motion.h"
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -78,11 +79,19 @@ struct Body {
   bool stretch_limited = true;  ///< whether the stretch limit applies to its springs
 };
 
-/// Particles that follow a prescribed motion. With the default motion they rest.
+/// Particles that follow a prescribed motion or an obstacle. With the default motion they rest. A pin that begins after time 0
+/// takes its particles where they are then, and moves them by what its motion differs from its pose at that time. A simulator
+/// rounds both times to steps.
 struct Pin {
   std::vector<Index> particles;      ///< of the network
   Vector3 origin = Vector3::Zero();  ///< origin of the rotation [m]
   Motion motion;
+  Index obstacle = kNone;  ///< of the simulator, which the particles follow instead of `motion`; kNone: none
+  double from = 0.0;       ///< when it takes its particles [s], >= 0
+  double until = std::numeric_limits<double>::infinity();  ///< when it lets go of them [s], > from
+
+  [[nodiscard]] bool moves() const { return obstacle != kNone || motion.moves(); }
+  [[nodiscard]] bool holds_always() const { return from == 0.0 && until == std::numeric_limits<double>::infinity(); }
 };
 
 /// The model of a network, constant once built by NetworkBuilder.
@@ -96,7 +105,8 @@ struct SpringNetwork {
   Springs springs;
   AngleBends angle_bends;
   std::vector<Body> bodies;
-  std::vector<Pin> pins;
+  std::vector<Pin> pins;        ///< that hold their particles
+  std::vector<Pin> later_pins;  ///< that have not begun
 
   [[nodiscard]] Index particle_count() const { return static_cast<Index>(masses.size()); }
   [[nodiscard]] bool is_pinned(Index particle) const { return inverse_masses[particle] == 0.0; }

@@ -2,6 +2,7 @@
 
 #include "collision/obstacles/obstacle_set.h"
 #include "dynamics/forces/shared_force.h"
+#include "network/pin_schedule.h"
 #include "simulation/settings/settings_check.h"
 #include "simulation/settings/unused_settings.h"
 #include "simulation/simulator_implementation.h"
@@ -27,11 +28,15 @@ constexpr Index kStepsPerEnergy = 64;
 // Largest rotation of an obstacle or a pin in a substep [degrees].
 constexpr double kMaxTurn = 45.0;
 
-/// The time from which on no pin and no obstacle moves [s]; infinity if one moves or deforms for ever.
-double end_of_motions(const SpringNetwork& network, const std::vector<Obstacle>& obstacles) {
+/// The time from which on no pin begins, ends or moves, and no obstacle moves [s]; infinity if one moves or deforms for ever.
+double end_of_motions(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step) {
   double end = 0.0;
-  for (const Pin& pin : network.pins) {
-    if (!pin.particles.empty()) end = std::max(end, pin.motion.end());
+  for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
+    for (const Pin& pin : *pins) {
+      if (pin.particles.empty()) continue;
+      const double until = std::isfinite(pin.until) ? pin.until + step : 0.0;  // rounded to a step
+      end = std::max({end, pin.from > 0.0 ? pin.from + step : 0.0, until, std::min(pin.motion.end(), pin.until)});
+    }
   }
   for (const Obstacle& obstacle : obstacles) {
     end = std::max(end, obstacle.deforms() ? std::numeric_limits<double>::infinity() : obstacle.motion.end());
@@ -52,11 +57,12 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       warnings(check_step(settings, bounds)),
       integrator(make_integrator(settings.integrator, network)),
       constraints(network, settings, settings.gravity.norm() + bounds.drag * settings.wind.norm(), environment, *integrator),
+      pin_paths(network, environment.obstacles(), settings.step),
       waits_for_turn(constraints.limit() != nullptr && constraints.limit()->may_follow_turn()),
       divergence(network),
       energy_watch(network, settings, environment.obstacles()),
       rest(network, settings.gravity.norm()),
-      driven_until(end_of_motions(network, environment.obstacles())),
+      driven_until(end_of_motions(network, environment.obstacles(), settings.step)),
       state(initial_state(network)),
       begin{state, energy_watch, {}} {
   const StretchLimit* limit = constraints.limit();
@@ -81,6 +87,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles)
     : Implementation(std::move(model), std::move(chosen), std::make_shared<Environment>(std::move(obstacles)), {}) {
   environment.set_interval(0.0, 0.0);
+  pin_paths.take(state);
   move_pins(0.0);
   Start start = find_start(network, environment, settings.contact, state.x);
   state.x = std::move(start.positions);
@@ -91,7 +98,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
 
 /// Whether anything moves at the start, when the rotation in a step is not known yet.
 bool Simulator::Implementation::anything_moves() const {
-  return !network.velocities.isZero(0.0) || std::ranges::any_of(network.pins, [](const Pin& pin) { return pin.motion.moves(); });
+  return !network.velocities.isZero(0.0) || std::ranges::any_of(network.pins, &Pin::moves);
 }
 
 StepReport Simulator::Implementation::step() {
@@ -138,7 +145,9 @@ int Simulator::Implementation::factor_for_rotation() const {
   double turn = 0.0;
   for (const Obstacle& obstacle : environment.obstacles())
     turn = std::max(turn, obstacle.motion.turn(start, start + settings.step));
-  for (const Pin& pin : network.pins) turn = std::max(turn, pin.motion.turn(start, start + settings.step));
+  for (const Pin& pin : network.pins) {
+    if (pin.obstacle == kNone) turn = std::max(turn, pin.motion.turn(start, start + settings.step));
+  }
   const double needed = std::ceil(turn / (kMaxTurn * state.substeps));
   return static_cast<int>(
       std::clamp(needed, 1.0, static_cast<double>(std::min(kRetryFactors.back(), kMaxSubsteps / state.substeps))));
@@ -210,21 +219,7 @@ void Simulator::Implementation::substep_changed(double dt_before) {
   }
 }
 
-// A pin has the velocity of the next substep, which the dampers of its neighbours use.
-void Simulator::Implementation::move_pins(double time) {
-  for (const Pin& pin : network.pins) {
-    if (!pin.motion.moves()) continue;
-    const RigidTransform origin(Eigen::Translation3d(pin.origin));
-    const RigidTransform now = pin.motion.pose(origin, time) * origin.inverse();
-    const RigidTransform next = pin.motion.pose(origin, time + dt()) * origin.inverse();
-    for (const Index i : pin.particles) {
-      const Vector3 start = network.positions.col(i);
-      state.x.col(i) = now * start;
-      state.v.col(i) = (next * start - state.x.col(i)) / dt();
-      energy_watch.note_pin(state.v.col(i).norm());
-    }
-  }
-}
+void Simulator::Implementation::move_pins(double time) { energy_watch.note_pin(pin_paths.move(time, dt(), state)); }
 
 std::vector<ContactNormal> Simulator::Implementation::contact_normals() const {
   return penalty != nullptr ? penalty->normals(state.x) : constraints.contacts().normals();
@@ -293,7 +288,16 @@ Simulator::~Simulator() = default;
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
-StepReport Simulator::step() { return implementation_->step(); }
+StepReport Simulator::step() {
+  const Implementation& now = *implementation_;
+  if (have_pins_changed(now.network, due_before(now.state.step, now.settings.step))) {
+    auto next = std::make_unique<Implementation>(now.network, now.settings, now.external_forces, now);
+    next->warnings = now.warnings;  // with those of the start
+    implementation_ = std::move(next);
+  }
+  return implementation_->step();
+}
+
 void Simulator::stop_when(std::function<bool()> stops) { implementation_->stops = std::move(stops); }
 const SpringNetwork& Simulator::network() const { return implementation_->network; }
 const SimulatorSettings& Simulator::settings() const { return implementation_->settings; }

@@ -30,7 +30,8 @@ class Simulator {
   /// rotates by more than 45 degrees in a substep. A step with infeasible particles is repeated with 4, 16 and 64 times the
   /// substeps until there are none: a long step can miss an admissible position near a pin or before a fast obstacle. Repetitions
   /// without effect become rarer (see step_retry.h). Throws StepError if the network diverged; the state is then not usable.
-  /// Once the simulation sleeps (see RestDetector), a step changes the time alone.
+  /// Once the simulation sleeps (see RestDetector), a step changes the time alone. If pins begin or end, which is at the step
+  /// nearest to their time, it first rebuilds what follows from them, as changes do (below).
   StepReport step();
 
   /// Lets step() call `stops` before each substep and throw StoppedError if it returns true; the state is then not usable. A step
@@ -58,7 +59,7 @@ class Simulator {
   void set_body_material(std::size_t body, const ContactMaterial& material);
   void set_obstacle_material(std::size_t obstacle, const ContactMaterial& material);
 
-  /// Fixes a particle where it is. Does nothing if it is pinned already.
+  /// Fixes a particle where it is. Does nothing if it is pinned already. A pin of the network that begins later leaves it out.
   void pin(Index particle);
 
   /// Frees a particle from its pin; it continues with the pin's velocity. Does nothing if it is not pinned.

@@ -1,6 +1,7 @@
 #include "base/error.h"
 #include "base/format.h"
 #include "base/problem_list.h"
+#include "network/pin_schedule.h"
 #include "simulation/simulator_implementation.h"
 
 #include <algorithm>
@@ -42,6 +43,11 @@ void check_change(const SpringNetwork& network, const SimulatorSettings& setting
   problems.throw_if_any();
 }
 
+SpringNetwork with_pins_of(SpringNetwork network, std::int64_t step, double step_length) {
+  change_pins(network, due_before(step, step_length));
+  return network;
+}
+
 double excess_of(const StepConstraints& constraints, const Points& positions) {
   return constraints.limit() != nullptr ? constraints.limit()->excess(positions) : 0.0;
 }
@@ -55,8 +61,30 @@ void check_number(const std::string& key, double number, ProblemList& problems) 
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, ExternalForces external,
                                           const Implementation& before)
-    : Implementation(std::move(model), std::move(chosen), before.shared_environment, std::move(external)) {
+    : Implementation(with_pins_of(std::move(model), before.state.step, before.settings.step), std::move(chosen),
+                     before.shared_environment, std::move(external)) {
   take_state(before);
+}
+
+/// A pin lets go of its particles with the velocity of its last substep.
+/// Returns whether any pin changed.
+bool Simulator::Implementation::take_pins(const Implementation& before) {
+  Points last_velocities = state.v;
+  before.pin_paths.set_last_velocities(time(), before.dt(), last_velocities);
+  bool changed = pin_paths.take(state);
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (network.is_pinned(i) == before.network.is_pinned(i)) continue;
+    changed = true;
+    if (network.is_pinned(i)) continue;
+    state.v.col(i) = last_velocities.col(i);
+    integrator->velocity_changed(state, i, before.dt());
+  }
+  for (const Pin& pin : network.pins) {
+    if (pin.moves()) continue;
+    for (const Index i : pin.particles) state.v.col(i).setZero();
+  }
+  if (changed) move_pins(time());
+  return changed;
 }
 
 /// A body stays handed over to a global solve only if the limit may still hand it over.
@@ -66,13 +94,7 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   state = before.state;
   state.asleep = false;
   state.x_at_rest.resize(3, 0);
-  for (Index i = 0; i < network.particle_count(); ++i) {
-    if (network.is_pinned(i)) {
-      if (!before.network.is_pinned(i)) state.v.col(i).setZero();
-    } else if (before.network.is_pinned(i)) {
-      integrator->velocity_changed(state, i, before.dt());
-    }
-  }
+  const bool pins_changed = take_pins(before);
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
     if (constraints.limit() == nullptr || !constraints.limit()->may_be_handed_over(b)) state.stretch_handovers[b] = {};
   }
@@ -84,7 +106,7 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   } else {
     integrator->start(state, forces, before.dt());
   }
-  set_substeps(std::min(state.substeps, max_substeps));
+  set_substeps(pins_changed ? max_substeps : std::min(state.substeps, max_substeps));
   if (penalty != nullptr) penalty->set_step(dt());
   energy_watch.note(0, energies());
   begin = {state, energy_watch, constraints.permitted_crossings()};

@@ -8,6 +8,7 @@
 #include "simulation/monitoring/divergence.h"
 #include "simulation/monitoring/energy_watch.h"
 #include "simulation/simulator.h"
+#include "simulation/step/pin_paths.h"
 #include "simulation/step/rest_detector.h"
 #include "simulation/step/step_constraints.h"
 #include "simulation/step/step_refinement.h"
@@ -72,6 +73,7 @@ struct Simulator::Implementation {
   void set_substeps(int substeps);
   void substep_changed(double dt_before);
   void move_pins(double time);
+  bool take_pins(const Implementation& before);
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] double contact_energy() const;
   [[nodiscard]] Energies energies() const;
@@ -97,6 +99,7 @@ struct Simulator::Implementation {
   PenaltyContact* penalty = nullptr;          ///< null unless contact is by penalty
   std::unique_ptr<Integrator> integrator;
   StepConstraints constraints;
+  PinPaths pin_paths;
   std::function<bool()> stops;               ///< see Simulator::stop_when
   std::optional<StepRefinement> refinement;  ///< none if a step has one substep
   std::optional<SymmetryBreaker> symmetry;   ///< none unless the settings ask for it
@@ -104,7 +107,7 @@ struct Simulator::Implementation {
   DivergenceCheck divergence;
   EnergyWatch energy_watch;
   RestDetector rest;
-  double driven_until;  ///< the time from which on no pin and no obstacle moves [s]
+  double driven_until;  ///< the time from which on no pin begins, ends or moves, and no obstacle moves [s]
   SimulationState state;
   StepBegin begin;
   std::optional<std::vector<Index>> kept_contacts;  ///< of the last step, if a later attempt changed the constraints

@@ -1,6 +1,7 @@
 #include "viewer/live_run.h"
 
 #include "base/error.h"
+#include "network/pin_schedule.h"
 #include "output/scene_extent.h"
 #include "scene/format/frame_steps.h"
 #include "scene/json/overrides.h"
@@ -109,6 +110,7 @@ bool LiveRun::continue_with(LoadedScene& changed) try {
   Simulator& simulator = loaded_.simulator;
   const std::vector<Obstacle>& obstacles = changed.simulator.environment().obstacles();
   SpringNetwork network = changed.simulator.network();
+  change_pins(network, due_before(simulator.state().step, simulator.settings().step));  // before what the user did since
   set_pins(network);
   simulator.continue_with(std::move(network), with_step(simulator.settings().step, changed.simulator.settings()));
   for (std::size_t k = 0; k < obstacles.size(); ++k) {

@@ -58,7 +58,7 @@ BodyScene body_of(BodyShapeScene shape, double mass, const std::vector<std::stri
   body.shape = std::move(shape);
   body.mass = {.kind = MassScene::Kind::body, .value = mass};
   body.springs.structural = SpringMaterial{};
-  body.pins.push_back({.where = PinCorners{pinned_corners}, .motion = {}});
+  body.pins.push_back({.where = CornersSelector{pinned_corners}, .motion = {}});
   return body;
 }
 

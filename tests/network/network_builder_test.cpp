@@ -246,6 +246,33 @@ TEST(NetworkBuilder, RejectsEmptyPinsAndParticlesPinnedTwice) {
   EXPECT_THAT(keys(builder), ElementsAre("pins[1]", "pins[2]", "pins[2]", "pins[3]"));
 }
 
+TEST(NetworkBuilder, PinsHoldAParticleOneAfterTheOther) {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 2.0, Vector3(1, 2, 3));
+  builder.add_pin({.particles = {0}, .motion = {}, .from = 1.0, .until = 2.0});
+  builder.add_pin({.particles = {0}, .motion = {}, .from = 3.0});
+  builder.add_pin({.particles = {0}, .motion = {}, .from = 2.0, .until = 3.0});
+  const SpringNetwork network = builder.build();
+  EXPECT_TRUE(network.pins.empty());
+  EXPECT_EQ(network.later_pins.size(), 3U);
+  EXPECT_EQ(network.inverse_masses[0], 0.5);
+  EXPECT_EQ(network.velocities.col(0), Vector3(1, 2, 3));
+  builder.add_pin({.particles = {0}, .motion = {}, .from = 2.5, .until = 2.75});
+  EXPECT_THAT(keys(builder), ElementsAre("pins[3]"));
+}
+
+TEST(NetworkBuilder, PinsThatEndBeforeTheyBeginAreProblems) {
+  NetworkBuilder builder;
+  for (int i = 0; i < 5; ++i) builder.add_particle(Vector3::Zero(), 1.0);
+  builder.add_pin({.particles = {0}, .motion = {}, .from = 2.0, .until = 1.0});
+  builder.add_pin({.particles = {1}, .motion = {}, .from = 2.0, .until = 2.0});
+  builder.add_pin({.particles = {2}, .motion = {}, .from = -1.0});
+  builder.add_pin({.particles = {3}, .motion = {}, .from = kNan});
+  builder.add_pin({.particles = {4}, .motion = {}, .until = kNan});
+  EXPECT_THAT(keys(builder),
+              ElementsAre("pins[0].until", "pins[1].until", "pins[2].from", "pins[3].from", "pins[3].until", "pins[4].until"));
+}
+
 TEST(NetworkBuilder, RejectsInvalidMotions) {
   NetworkBuilder builder;
   for (int i = 0; i < 3; ++i) builder.add_particle(Vector3::Zero(), 1.0);

@@ -94,8 +94,11 @@ std::vector<Tether> find_tethers(const SpringNetwork& network, const std::vector
 bool are_pins_taut(const SpringNetwork& network, const Body& body, const std::vector<Tether>& tethers, double max_stretch) {
   constexpr double kRounding = 1.0 + 1.0e-9;  // covers the rounding of sums of lengths
   const auto is_of_body = [&](Index i) { return i >= body.first_particle && i < body.first_particle + body.particle_count; };
-  const auto moves = [&](const Pin& pin) { return pin.motion.moves() && std::ranges::any_of(pin.particles, is_of_body); };
-  if (std::ranges::any_of(network.pins, moves)) return false;
+  // A pin that began after time 0 may be anywhere.
+  const auto leaves_place = [&](const Pin& pin) {
+    return (pin.moves() || pin.from > 0.0) && std::ranges::any_of(pin.particles, is_of_body);
+  };
+  if (std::ranges::any_of(network.pins, leaves_place)) return false;
 
   const auto path_length = [](const Tether& a, const Tether& b) { return a.length + b.length; };
   std::map<std::pair<Index, Index>, std::pair<Tether, Tether>> shortest;

@@ -4,12 +4,20 @@
 #include "geometry/import/mesh_file.h"
 #include "geometry/mesh/polygon_mesh.h"
 #include "geometry/mesh/weld.h"
+#include "scene/building/particle_selector.h"
 #include "scene/json/json_text.h"
 #include "scene/json/nearest_name.h"
 #include "scene/materials/materials.h"
 
+#include <algorithm>
+
 namespace sprung {
 namespace {
+
+bool names_groups(const BodyScene& body) {
+  const auto names_group = [](const auto& entry) { return std::holds_alternative<GroupSelector>(entry.where); };
+  return std::ranges::any_of(body.pins, names_group) || std::ranges::any_of(body.point_masses, names_group);
+}
 
 class ShapeMaker {
  public:
@@ -61,7 +69,8 @@ class ShapeMaker {
       polygons = std::move(welded.mesh);
       source.particle_of = std::move(welded.vertex_of);
     }
-    return BuiltBody{make_mesh_body(polygons, body_.springs), std::move(source)};
+    return BuiltBody{make_mesh_body(polygons, body_.springs), std::move(source),
+                     names_groups(body_) ? read_obj_groups(*file) : ObjGroups{}};
   }
 
   /// A mesh with faces is a cloth, a mesh of lines alone is a rope.
@@ -104,6 +113,15 @@ void set_mass(const MassScene& mass, BodyShape& shape) {
   }
 }
 
+void add_point_masses(const Scene& scene, const BodyScene& body, BuiltBody& built, std::vector<Problem>& problems) {
+  const std::string key = join_path(join_path("bodies", body.name), "point_masses");
+  for (std::size_t p = 0; p < body.point_masses.size(); ++p) {
+    const PointMassScene& point_mass = body.point_masses[p];
+    const SelectorPlace place{scene.file.string(), join_path(key, p)};
+    for (const Index i : select_particles(point_mass.where, body, built, place, problems)) built.shape.masses[i] += point_mass.mass;
+  }
+}
+
 }  // namespace
 
 std::optional<BuiltBody> build_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder,
@@ -121,6 +139,7 @@ std::optional<BuiltBody> build_body(const Scene& scene, const BodyScene& body, c
     return std::nullopt;
   }
   place(built->shape, pose_of(body.place), body.velocity);
+  add_point_masses(scene, body, *built, problems);
   return built;
 }
 

@@ -1,6 +1,7 @@
 // Builds particles, springs and pins from a body of a scene.
 #pragma once
 
+#include "geometry/import/obj_groups.h"
 #include "geometry/obj_source/obj_source.h"
 #include "network/network_builder.h"
 #include "scene/building/mesh_finder.h"
@@ -15,22 +16,19 @@ namespace sprung {
 struct BuiltBody {
   BodyShape shape;                    ///< particles and springs at time 0, with their masses
   std::optional<ObjSource> source{};  ///< of a mesh
+  ObjGroups groups{};                 ///< of a mesh, if a selector names one; with the vertices of the file
 };
 
 /// Adds all problems; none if there are any.
 [[nodiscard]] std::optional<BuiltBody> build_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder,
                                                   std::vector<Problem>& problems);
 
-/// Particles that rest or move together; counted from 0 within the body.
-struct ResolvedPin {
-  std::vector<Index> particles;  ///< ascending, each once
-  Motion motion;
-};
-
-/// The particles of the body's pins. Indices count the vertices of a mesh's file. Pins that rest are merged into one. Adds a problem
-/// for each pin that contains no particle, names a particle that does not exist, or contains a particle that another pin moves.
-[[nodiscard]] std::vector<ResolvedPin> resolve_pins(const Scene& scene, const BodyScene& body, const BuiltBody& placed,
-                                                    std::vector<Problem>& problems);
+/// The particles of the body's pins, counted from 0 within the body. Indices count the vertices of a mesh's file. Pins that rest
+/// for ever are merged into one. Adds a problem for each pin that contains no particle, names a particle or a group that does not
+/// exist, or contains a particle that another pin holds at the same time. Requires that the scene has the obstacles that pins
+/// follow.
+[[nodiscard]] std::vector<Pin> resolve_pins(const Scene& scene, const BodyScene& body, const BuiltBody& placed,
+                                            std::vector<Problem>& problems);
 
 /// The pose of a placement, without its scale.
 [[nodiscard]] RigidTransform pose_of(const Placement& placement);

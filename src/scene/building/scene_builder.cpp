@@ -29,7 +29,10 @@ std::vector<BodyScene> valid_bodies(const Scene& scene, const TextProblems& know
     if (known.affect(key + ".shape")) continue;
     if (known.affect(key + ".springs")) body.springs = {};
     if (body.mass.value == 0.0) body.mass = {.kind = MassScene::Kind::body, .value = 1.0};
-    if (known.affect(key + ".place")) body.pins.clear();
+    if (known.affect(key + ".place")) {
+      body.pins.clear();
+      body.point_masses.clear();
+    }
     bodies.push_back(std::move(body));
   }
   return bodies;
@@ -41,13 +44,12 @@ void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finde
   if (!built) return;
   const auto& limited = scene.limited_bodies;
   built->shape.stretch_limited = limited.empty() || std::ranges::find(limited, body.name) != limited.end();
-  const std::vector<ResolvedPin> pins = resolve_pins(scene, body, *built, problems);
+  std::vector<Pin> pins = resolve_pins(scene, body, *built, problems);
   const Index first = network.add_body(body.name, built->shape, body.material, body.contact);
   if (built->source) sources[body.name] = std::make_shared<const ObjSource>(std::move(*built->source));
-  for (const ResolvedPin& pin : pins) {
-    std::vector<Index> particles = pin.particles;
-    for (Index& particle : particles) particle += first;
-    network.pin(std::move(particles), pin.motion, body.place.position);
+  for (Pin& pin : pins) {
+    for (Index& particle : pin.particles) particle += first;
+    network.add_pin(std::move(pin));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "scene/building/step_choice.h"
 
 #include "base/format.h"
+#include "network/pin_schedule.h"
 #include "scene/building/many_steps.h"
 #include "scene/format/frame_steps.h"
 #include "simulation/step/step_check.h"
@@ -67,21 +68,10 @@ std::string advice_for_too_many_steps(const Scene& scene) {
          "less stiffness, more mass, or a higher frame_rate";
 }
 
-}  // namespace
-
-StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems) {
-  const SpectralBounds bounds = simulation_bounds(network, scene.settings, !scene.obstacles.empty());
+/// The automatic step for the pins that hold in the network. Adds a problem if there is none.
+StepChoice automatic_step(const Scene& scene, const SpringNetwork& network, const SpectralBounds& bounds,
+                          std::vector<Problem>& problems) {
   StepChoice choice;
-  choice.largest_stable = largest_stable_step(scene.settings.integrator, bounds);
-  if (scene.step) {
-    choice.step = *scene.step;
-    choice.steps_per_frame = steps_per_frame(scene.frame_rate, choice.step).value_or(1);
-    if (is_unstable(choice.step, choice.largest_stable) && scene.settings.stability == StabilityCheck::refuse) {
-      problems.push_back(unstable_step(choice.step, choice.largest_stable, advice_for_unstable(scene, choice.largest_stable)));
-      problems.back().file = scene.file.string();
-    }
-    return choice;
-  }
   std::optional<StretchLimit> limit;
   const LimitUse use = limit_use(network, scene.settings, !scene.obstacles.empty());
   if (scene.settings.stretch_limit) limit.emplace(network, *scene.settings.stretch_limit, use);
@@ -100,6 +90,37 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
                         advice_for_too_many_steps(scene)});
   }
   return choice;
+}
+
+}  // namespace
+
+StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems) {
+  const SpectralBounds bounds = simulation_bounds(network, scene.settings, !scene.obstacles.empty());
+  StepChoice choice;
+  choice.largest_stable = largest_stable_step(scene.settings.integrator, bounds);
+  if (scene.step) {
+    choice.step = *scene.step;
+    choice.steps_per_frame = steps_per_frame(scene.frame_rate, choice.step).value_or(1);
+    if (is_unstable(choice.step, choice.largest_stable) && scene.settings.stability == StabilityCheck::refuse) {
+      problems.push_back(unstable_step(choice.step, choice.largest_stable, advice_for_unstable(scene, choice.largest_stable)));
+      problems.back().file = scene.file.string();
+    }
+    return choice;
+  }
+  StepChoice automatic = automatic_step(scene, network, bounds, problems);
+  automatic.largest_stable = choice.largest_stable;
+  const std::vector<double> changes = pin_changes(network);
+  if (changes.empty()) return automatic;
+  SpringNetwork later = network;
+  for (const double time : changes) {
+    if (!problems.empty()) break;
+    change_pins(later, std::nextafter(time, std::numeric_limits<double>::infinity()));
+    StepChoice other = automatic_step(scene, later, bounds, problems);
+    other.largest_stable = choice.largest_stable;
+    other.max_substeps = automatic.max_substeps = std::max(automatic.max_substeps, other.max_substeps);
+    if (other.steps_per_frame > automatic.steps_per_frame) automatic = std::move(other);
+  }
+  return automatic;
 }
 
 }  // namespace sprung

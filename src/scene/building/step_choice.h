@@ -34,7 +34,7 @@ struct StepChoice {
 /// a body under a global solve turns too much in one step; not with Verlet's `damping`, which acts on each step. If bodies may be
 /// handed over from passes to a global solve, the step is one that suffices for the global solve, and passes use substeps of it.
 /// Adds a problem if the scene's step exceeds the largest stable one and `stability` is refuse, or if a frame would take too many
-/// steps. Warns of very many steps.
+/// steps. Warns of very many steps. An automatic step suffices for all pins that ever hold together.
 [[nodiscard]] StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems);
 
 }  // namespace sprung

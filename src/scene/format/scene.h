@@ -7,6 +7,7 @@
 
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -39,23 +40,42 @@ using BodyShapeScene = std::variant<RopeShape, ClothShape, SolidShape, MeshFile>
 using ObstacleShapeScene = std::variant<MeshFile, MeshFiles, SphereGeometry, BoxGeometry, CapsuleGeometry, CylinderGeometry,
                                         ConeGeometry, EllipsoidGeometry, HalfSpaceGeometry>;
 
-struct PinCorners {
+struct CornersSelector {
   std::vector<std::string> which;
 };  ///< `min_min`, ... of a cloth, `min_min_min`, ... of a solid, `from`, `to` of a rope
-struct PinIndices {
+struct IndicesSelector {
   std::vector<Index> indices;
 };  ///< of particles of the body
-struct PinNearest {
+struct NearestSelector {
   Vector3 point;
 };  ///< the particle nearest to a point in the world [m]
-struct PinBox {
+struct BoxSelector {
   Vector3 lower;
   Vector3 upper;
 };  ///< particles in a box in the world [m]
+struct SphereSelector {
+  Vector3 centre;
+  double radius;
+};  ///< particles in a sphere in the world [m]
+struct GroupSelector {
+  std::string name;
+};  ///< vertices of the faces and lines of a group, object or material of a mesh
+
+/// Particles of a body, by their places at time 0.
+using Selector = std::variant<CornersSelector, IndicesSelector, NearestSelector, BoxSelector, SphereSelector, GroupSelector>;
 
 struct PinScene {
-  std::variant<PinCorners, PinIndices, PinNearest, PinBox> where;
-  Motion motion;
+  Selector where;
+  Motion motion{};
+  std::string follow{};  ///< name of the obstacle that the particles follow instead of `motion`; empty: none
+  double from = 0.0;     ///< [s]
+  double until = std::numeric_limits<double>::infinity();  ///< [s]
+};
+
+/// A mass [kg] that each of the particles has in addition.
+struct PointMassScene {
+  Selector where;
+  double mass = 0.0;
 };
 
 /// Exactly one of mass [kg] of the body, of each particle, or per length, area or volume.
@@ -73,6 +93,7 @@ struct BodyScene {
   SpringMaterials springs;
   Placement place;
   std::vector<PinScene> pins;
+  std::vector<PointMassScene> point_masses;
   Vector3 velocity = Vector3::Zero();
   ContactMaterial material;
   BodyContact contact;

@@ -67,21 +67,21 @@ std::optional<BodyShapeScene> read_shape(Fields& fields) {
   }
 }
 
-/// The names of the corners of the shape; those of all shapes if it is invalid.
-std::vector<std::string> corners_of(const std::optional<BodyShapeScene>& shape) {
+/// What selectors may name in the shape; in any shape if it is invalid.
+NamedParts named_parts(const std::optional<BodyShapeScene>& shape) {
   if (!shape) {
-    std::vector<std::string> names;
+    NamedParts all{.corners = {}, .groups = true};
     for (const auto& some : {corner_names(RopeShape{}), corner_names(ClothShape{}), corner_names(SolidShape{})})
-      names.insert(names.end(), some.begin(), some.end());
-    return names;
+      all.corners.insert(all.corners.end(), some.begin(), some.end());
+    return all;
   }
-  struct Names {
-    std::vector<std::string> operator()(const MeshFile& /*mesh*/) const { return {}; }
-    std::vector<std::string> operator()(const RopeShape& rope) const { return corner_names(rope); }
-    std::vector<std::string> operator()(const ClothShape& cloth) const { return corner_names(cloth); }
-    std::vector<std::string> operator()(const SolidShape& solid) const { return corner_names(solid); }
+  struct Parts {
+    NamedParts operator()(const MeshFile& /*mesh*/) const { return {.corners = {}, .groups = true}; }
+    NamedParts operator()(const RopeShape& rope) const { return {.corners = corner_names(rope)}; }
+    NamedParts operator()(const ClothShape& cloth) const { return {.corners = corner_names(cloth)}; }
+    NamedParts operator()(const SolidShape& solid) const { return {.corners = corner_names(solid)}; }
   };
-  return std::visit(Names{}, *shape);
+  return std::visit(Parts{}, *shape);
 }
 
 MassScene read_mass(Fields& fields) {
@@ -165,8 +165,11 @@ BodyScene read_body(Fields& fields) {
   body.mass = read_mass(fields);
   body.springs = fields.value("springs", object_of<SpringMaterials>(read_springs), Json::object()).value_or(SpringMaterials{});
   body.place = fields.value("place", placement_rule(), Json::object()).value_or(Placement{});
-  const auto pins = fields.value("pins", list_of(pin_rule(corners_of(shape)), 0), Json::array());
+  const NamedParts parts = named_parts(shape);
+  const auto pins = fields.value("pins", list_of(pin_rule(parts), 0), Json::array());
   body.pins = pins.value_or(std::vector<PinScene>{});
+  const auto point_masses = fields.value("point_masses", list_of(point_mass_rule(parts), 0), Json::array());
+  body.point_masses = point_masses.value_or(std::vector<PointMassScene>{});
   body.velocity = fields.value("velocity", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
   body.material = read_material(fields);
   body.contact = read_body_contact(fields);

@@ -1,56 +1,50 @@
+#include "base/format.h"
 #include "scene/reading/scene_rules.h"
 
 namespace sprung {
 namespace {
 
-void read_corners(Fields& fields, const std::vector<std::string>& corners, PinScene& pin) {
-  if (corners.empty()) {
-    fields.accept("which");
-    fields.location().at("at").report(fields.json()["at"], "needs a rope, a cloth or a solid: other shapes have no named corners",
-                                      "pin by indices, nearest or box");
-    return;
+void read_times(Fields& fields, PinScene& pin) {
+  const auto from = fields.value("from", number(kNotNegative), 0.0);
+  const auto until = fields.optional("until", number(kNotNegative));
+  pin.from = from.value_or(pin.from);
+  pin.until = until.value_or(pin.until);
+  if (from && until && !(*until > *from)) {
+    fields.location().at("until").report(Json(*until), "must be later than from, " + format_number(*from) + " s",
+                                         "from is when the pin begins, until when it ends");
   }
-  if (fields.json()["at"] != "corner") {
-    fields.accept("which");
-    fields.location().at("at").report(fields.json()["at"], "must be \"corner\"", "pin other particles by indices, nearest or box");
-    return;
-  }
-  const auto which = fields.required("which", list_of(word_of(corners), 1));
-  if (!which) return;
-  PinCorners named;
-  for (const std::size_t corner : *which) named.which.push_back(corners[corner]);
-  pin.where = std::move(named);
 }
 
-std::optional<PinBox> read_box(Fields& fields) {
-  const auto box = fields.optional("box", array_of<2>(vector3()));
-  if (!box) return std::nullopt;
-  if (((*box)[0].array() > (*box)[1].array()).any()) {
-    fields.location().at("box").report(fields.json()["box"], "must begin with the smaller coordinates",
-                                       "write [[x_min, y_min, z_min], [x_max, y_max, z_max]]");
-    return std::nullopt;
-  }
-  return PinBox{(*box)[0], (*box)[1]};
-}
-
-PinScene read_pin(Fields& fields, const std::vector<std::string>& corners) {
+PinScene read_pin(Fields& fields, const NamedParts& parts) {
   PinScene pin;
-  if (fields.has("at")) read_corners(fields, corners, pin);
-  const auto indices = fields.optional("indices", list_of(integer(0, kMaxBodyParticles - 1), 1));
-  const auto nearest = fields.optional("nearest", vector3());
-  const auto box = read_box(fields);
-  const std::string key = fields.one_of({"at", "indices", "nearest", "box"}).value_or("");
-  if (key == "indices") pin.where = PinIndices{indices.value_or(std::vector<Index>{})};
-  if (key == "nearest") pin.where = PinNearest{nearest.value_or(Vector3::Zero())};
-  if (key == "box" && box) pin.where = *box;
-  pin.motion = fields.value("motion", motion_rule(), Json::object()).value_or(Motion{});
+  if (auto where = read_selector(fields, parts)) pin.where = std::move(*where);
+  const auto follow = fields.optional("follow", text());
+  pin.follow = follow.value_or("");
+  if (!fields.has("follow")) {
+    pin.motion = fields.value("motion", motion_rule(), Json::object()).value_or(Motion{});
+  } else if (fields.has("motion")) {
+    (void)fields.optional("motion", motion_rule());
+    fields.one_of({"follow", "motion"});
+  }
+  read_times(fields, pin);
   return pin;
+}
+
+PointMassScene read_point_mass(Fields& fields, const NamedParts& parts) {
+  PointMassScene point_mass;
+  if (auto where = read_selector(fields, parts)) point_mass.where = std::move(*where);
+  point_mass.mass = fields.required("mass", number(kPositive)).value_or(0.0);
+  return point_mass;
 }
 
 }  // namespace
 
-Rule<PinScene> pin_rule(const std::vector<std::string>& corners) {
-  return object_of<PinScene>([corners](Fields& fields) { return read_pin(fields, corners); });
+Rule<PinScene> pin_rule(const NamedParts& parts) {
+  return object_of<PinScene>([parts](Fields& fields) { return read_pin(fields, parts); });
+}
+
+Rule<PointMassScene> point_mass_rule(const NamedParts& parts) {
+  return object_of<PointMassScene>([parts](Fields& fields) { return read_point_mass(fields, parts); });
 }
 
 }  // namespace sprung

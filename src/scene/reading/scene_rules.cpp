@@ -2,6 +2,7 @@
 
 #include "base/format.h"
 #include "scene/format/frame_steps.h"
+#include "scene/json/nearest_name.h"
 
 #include <algorithm>
 #include <cctype>
@@ -103,6 +104,22 @@ void check_self_contact(const Scene& scene, const JsonLocation& location) {
   }
 }
 
+// The obstacle may have problems of its own, so the names are those of the text.
+void check_followed(const Scene& scene, const Json& obstacles, const JsonLocation& location) {
+  if (!obstacles.is_object()) return;
+  std::vector<std::string> names;
+  for (const auto& obstacle : obstacles.items()) names.push_back(obstacle.key());
+  for (const BodyScene& body : scene.bodies) {
+    const JsonLocation pins = location.at("bodies").at(body.name).at("pins");
+    for (std::size_t p = 0; p < body.pins.size(); ++p) {
+      const std::string& name = body.pins[p].follow;
+      if (name.empty() || std::ranges::find(names, name) != names.end()) continue;
+      pins.at(p).at("follow").report(Json(name), "must be the name of an obstacle",
+                                     names.empty() ? "the scene has none" : suggestion(name, names));
+    }
+  }
+}
+
 Scene read_scene_fields(Fields& fields) {
   Scene scene;
   fields.optional("$schema", text());
@@ -113,6 +130,7 @@ Scene read_scene_fields(Fields& fields) {
   check_self_contact(scene, fields.location());
   const auto obstacles = fields.value("obstacles", named(obstacle_rule(scene.frame_rate), true), Json::object());
   scene.obstacles = obstacles.value_or(std::vector<ObstacleScene>{});
+  check_followed(scene, fields.json()["obstacles"], fields.location());
   return scene;
 }
 

@@ -13,8 +13,18 @@ namespace sprung {
 /// thickness, friction, static_friction, restitution.
 [[nodiscard]] ContactMaterial read_material(Fields& fields);
 
-/// Pins of a body; `corners` are the names of the corners of its shape.
-[[nodiscard]] Rule<PinScene> pin_rule(const std::vector<std::string>& corners);
+/// What selectors may name in a body of some shape.
+struct NamedParts {
+  std::vector<std::string> corners{};
+  bool groups = false;  ///< whether it is a mesh
+};
+
+/// The one selector of an object; none if there is none or it is invalid.
+[[nodiscard]] std::optional<Selector> read_selector(Fields& fields, const NamedParts& parts);
+
+/// Pins and point masses of a body.
+[[nodiscard]] Rule<PinScene> pin_rule(const NamedParts& parts);
+[[nodiscard]] Rule<PointMassScene> point_mass_rule(const NamedParts& parts);
 
 /// A body or an obstacle, without its name. `frame_rate` is the default of sequences.
 [[nodiscard]] Rule<BodyScene> body_rule();

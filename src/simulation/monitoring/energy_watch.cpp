@@ -53,7 +53,7 @@ double rounding_speed(const Points& positions, double step) {
 bool is_undriven(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
   const bool wind = settings.air_drag > 0.0 && !settings.wind.isZero(0.0);
   return !wind && !std::holds_alternative<ExplicitEulerSettings>(settings.integrator) &&
-         std::ranges::none_of(network.pins, [](const Pin& pin) { return pin.motion.moves(); }) &&
+         std::ranges::none_of(network.pins, &Pin::moves) && std::ranges::none_of(network.later_pins, &Pin::moves) &&
          std::ranges::none_of(obstacles, [](const Obstacle& obstacle) { return obstacle.changes(); });
 }
 

@@ -44,7 +44,7 @@ class Finder {
                           (absent.size() < limit.kinds.size() ? " of the kinds " + names_of(absent) : "") +
                           ": the network has only springs of the kinds " + names_of(present));
     }
-    if (limit.tethers && network_.pins.empty()) {
+    if (limit.tethers && network_.pins.empty() && network_.later_pins.empty()) {
       warnings_.emplace_back(
           "stretch_limit.tethers has no effect without pins: tethers hold particles to pins. Remove it, or add pins.");
     }

@@ -1,6 +1,7 @@
 #include "simulation/step/step_check.h"
 
 #include "base/format.h"
+#include "network/pin_schedule.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +23,7 @@ bool grows_transversally(const IntegratorSettings& integrator, const SpectralBou
   return std::holds_alternative<ExplicitEulerSettings>(integrator) && bounds.elastic > 0.0 && bounds.least_drag == 0.0;
 }
 
-}  // namespace
-
-SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {
+SpectralBounds bounds_of(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {
   SpectralBounds bounds = spectral_bounds(network, settings.air_drag);
   if (has_obstacles && settings.contact.response == ContactSettings::Response::penalty) {
     // A penalty connects a particle to the fixed obstacle: it adds to the Laplacian's diagonal, and at most this to its
@@ -35,6 +34,13 @@ SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSe
     bounds.damping += settings.contact.damping * largest_inverse_mass;
   }
   return bounds;
+}
+
+}  // namespace
+
+SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {
+  const bool change = !network.later_pins.empty() || !std::ranges::all_of(network.pins, &Pin::holds_always);
+  return bounds_of(change ? freest(network) : network, settings, has_obstacles);
 }
 
 LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {

@@ -133,6 +133,8 @@ TEST(SceneBuilder, PinsFindTheirParticles) {
   EXPECT_THAT(pins(R"([{"nearest": [0.25, 2, 0]}])"), ElementsAre(4)) << "the first of two equally near particles";
   EXPECT_THAT(pins(R"([{"box": [[-1, 2.5, 0], [1, 2.5, 0]]}])"), ElementsAre(6, 7, 8)) << "a box may be flat";
   EXPECT_THAT(pins(R"([{"box": [[-1, 2, -1], [1, 3, 1]]}, {"indices": [3, 0]}])"), ElementsAre(0, 3, 4, 5, 6, 7, 8));
+  EXPECT_THAT(pins(R"([{"sphere": [[0, 2, 0], 0.5]}])"), ElementsAre(1, 3, 4, 5, 7)) << "its surface belongs to it";
+  EXPECT_THAT(pins(R"([{"sphere": [[0.5, 2.5, 0], 0.49]}])"), ElementsAre(8));
   EXPECT_THAT(pins("[]"), IsEmpty());
 }
 
@@ -160,6 +162,86 @@ TEST(SceneBuilder, RestingPinsAreMergedAndMovingOnesTurnAboutThePositionOfTheBod
   EXPECT_THAT(built.network.pins[1].particles, ElementsAre(0, 1, 2));
 }
 
+// A quad per group, object or material; welded, its corners are particles of both.
+constexpr const char* kGarment =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\n"
+    "g body\nusemtl wool\nf 1 2 3 4\no Sleeve\ng left cuff\nusemtl silk\nf 5 6 7 8\n";
+
+TEST(SceneBuilder, PinsFindTheGroupsObjectsAndMaterialsOfAMesh) {
+  const SceneFolder folder;
+  folder.write("garment.obj", kGarment);
+  const auto pins = [&](const std::string& group, const std::string& weld) {
+    return pinned(build(folder, {"bodies.banner.shape={\"type\":\"mesh\",\"file\":\"garment.obj\"" + weld + "}",
+                                 "bodies.banner.pins=[{\"group\":\"" + group + "\"}]"})
+                      .network);
+  };
+  for (const char* group : {"cuff", "left", "Sleeve", "silk"}) {
+    EXPECT_THAT(pins(group, ""), ElementsAre(4, 5, 6, 7)) << group;
+    EXPECT_THAT(pins(group, ",\"weld\":1e-6"), ElementsAre(1, 2, 4, 5)) << group;
+  }
+  EXPECT_THAT(pins("wool", ",\"weld\":1e-6"), ElementsAre(0, 1, 2, 3));
+}
+
+TEST(SceneBuilder, UnknownGroupsAreProblemsThatListTheKnownOnes) {
+  const SceneFolder folder;
+  folder.write("garment.obj", kGarment);
+  folder.write("plain.obj", kTetrahedron);
+  const auto problems = [&](const std::string& mesh) {
+    return problems_of([&] {
+      (void)build(folder,
+                  {"bodies.banner.shape={\"type\":\"mesh\",\"file\":\"" + mesh + "\"}", "bodies.banner.pins=[{\"group\":\"cufs\"}]",
+                   "bodies.banner.point_masses=[{\"group\":\"hem\",\"mass\":1}]"});
+    });
+  };
+  const std::string rule = "must be a group, object or material of the mesh: Sleeve, body, cuff, left, silk, wool";
+  EXPECT_THAT(problems("garment.obj"),
+              ElementsAre(AllOf(problem("bodies.banner.point_masses[0].group", rule), Field(&Problem::remedy, "")),
+                          AllOf(problem("bodies.banner.pins[0].group", rule), Field(&Problem::value, "\"cufs\""),
+                                Field(&Problem::remedy, "did you mean \"cuff\"?"))));
+  EXPECT_THAT(problems("plain.obj"), ElementsAre(problem("bodies.banner.point_masses[0].group", "no group, object or material"),
+                                                 problem("bodies.banner.pins[0].group", "no group, object or material")));
+}
+
+TEST(SceneBuilder, PointMassesAreAddedToEachSelectedParticle) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {"bodies.banner.mass=0.9",
+                                          R"(bodies.banner.point_masses=[{"indices":[8,1],"mass":0.75},
+                                             {"at":"corner","which":["max_max"],"mass":0.25}])"});
+  for (Index i = 0; i < 9; ++i) {
+    const double added = i == 8 ? 1.0 : (i == 1 ? 0.75 : 0.0);
+    EXPECT_NEAR(built.network.masses[i], 0.1 + added, 1e-15) << i;
+  }
+}
+
+// The weights of both ends hang on the spring; after 100 times its decay time 2 m / c it is at rest.
+TEST(SceneBuilder, APointMassStretchesASpringByItsWeightOverTheStiffness) {
+  const SceneFolder folder;
+  const std::string text = R"({"duration": 1, "frame_rate": 100, "bodies": {"line": {
+      "shape": {"type": "rope", "from": [0, 0, 0], "to": [0, -1, 0], "particles": 2}, "particle_mass": 0.25,
+      "springs": {"structural": {"stiffness": 400, "damping": 40}}, "pins": [{"at": "corner", "which": ["from"]}],
+      "point_masses": [{"at": "corner", "which": ["to"], "mass": 0.75}]}}})";
+  BuiltScene built = build_scene(folder.read(text));
+  Simulator simulator(std::move(built.network), built.settings);
+  while (simulator.time() < 5.0) simulator.step();
+  EXPECT_NEAR(simulator.positions()(1, 1), -1.0 - (0.25 + 0.75) * 9.81 / 400.0, 1e-9);
+}
+
+TEST(SceneBuilder, PinsKnowTheirTimesAndTheNumberOfTheObstacleThatTheyFollow) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {R"(obstacles.hand={"shape":{"type":"sphere","radius":0.1},"place":{"position":[9,9,9]}})",
+                                          R"(bodies.banner.pins=[{"indices":[0],"follow":"hand","from":0.25,"until":0.5},
+                                             {"indices":[0,1],"from":0.5},{"indices":[2],"follow":"hand","until":0.5}])"});
+  ASSERT_EQ(built.network.pins.size(), 1U);
+  EXPECT_THAT(built.network.pins[0].particles, ElementsAre(2));
+  EXPECT_EQ(built.network.pins[0].obstacle, 1);
+  EXPECT_EQ(built.network.pins[0].until, 0.5);
+  ASSERT_EQ(built.network.later_pins.size(), 2U);
+  EXPECT_EQ(built.network.later_pins[0].obstacle, 1);
+  EXPECT_EQ(built.network.later_pins[0].from, 0.25);
+  EXPECT_EQ(built.network.later_pins[1].obstacle, kNone);
+  EXPECT_THAT(built.network.later_pins[1].particles, ElementsAre(0, 1));
+}
+
 TEST(SceneBuilder, PinsOfLaterBodiesCountFromTheirOwnFirstParticle) {
   const SceneFolder folder;
   const BuiltScene built = build(folder, {R"(bodies.rope={"shape":{"type":"rope","from":[0,5,0],"to":[1,5,0],"particles":4},
@@ -173,7 +255,12 @@ TEST(SceneBuilder, InvalidPinsAreProblems) {
   EXPECT_THAT(build_problems({"bodies.banner.pins=[{\"box\":[[5,5,5],[6,6,6]]}]"}),
               ElementsAre(problem("bodies.banner.pins[0].box", "contains no particle")));
   EXPECT_THAT(build_problems({"bodies.banner.pins=[{\"indices\":[0]},{\"indices\":[0],\"motion\":{\"spin\":[0,1,0]}}]"}),
-              ElementsAre(problem("bodies.banner.pins[1]", "pins particle 0 like pins[0]")));
+              ElementsAre(problem("bodies.banner.pins[1]", "pins particle 0 like pins[0], but with another motion")));
+  EXPECT_THAT(build_problems({"bodies.banner.pins=[{\"indices\":[0],\"until\":2},{\"indices\":[1,0],\"from\":1}]"}),
+              ElementsAre(problem("bodies.banner.pins[1]", "pins particle 0 like pins[0], but at the same time")));
+  EXPECT_THAT(build_problems({"bodies.banner.pins=[{\"sphere\":[[0,0,3],2.5]}]"}),
+              ElementsAre(AllOf(problem("bodies.banner.pins[0].sphere", "contains no particle"),
+                                Field(&Problem::remedy, HasSubstr("the nearest particle is 3 m from its centre")))));
 }
 
 TEST(SceneBuilder, MeshesAreFoundBesideTheSceneThenInTheMeshPathsInOrder) {

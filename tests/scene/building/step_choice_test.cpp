@@ -35,6 +35,14 @@ TEST(StepChoice, LargestStableStepHasItsClosedForm) {
   EXPECT_GE(built.largest_stable_step, 0.2 * (1.0 - kBoundSlack));
 }
 
+// While both particles are free, omega^2 = 2 k / m.
+TEST(StepChoice, LargestStableStepIsThatOfTheFreestNetwork) {
+  const double free = std::sqrt(0.5) * 0.2;
+  for (const char* times : {"bodies.pair.pins[0].until=0.5", "bodies.pair.pins[0].from=0.5"}) {
+    EXPECT_NEAR(build(100.0, {times}).largest_stable_step, free, kBoundSlack * free) << times;
+  }
+}
+
 TEST(StepChoice, LargestStableStepDependsOnTheScheme) {
   EXPECT_NEAR(build(100.0, {R"(integrator={"type": "velocity_verlet"})"}).largest_stable_step, 0.2, kBoundSlack * 0.2);
   EXPECT_NEAR(build(100.0, {R"(integrator={"type": "rk4"})"}).largest_stable_step, 0.2828, kBoundSlack * 0.2828);

@@ -102,17 +102,36 @@ TEST(SceneReader, FieldsOfABodyArrive) {
 TEST(SceneReader, PinsArrive) {
   const Scene scene = SceneFolder().read(kFullScene);
   const std::vector<PinScene>& pins = scene.bodies[0].pins;
-  ASSERT_EQ(pins.size(), 4U);
-  EXPECT_THAT(std::get<PinCorners>(pins[0].where).which, ElementsAre("min_min", "max_min"));
+  ASSERT_EQ(pins.size(), 5U);
+  EXPECT_THAT(std::get<CornersSelector>(pins[0].where).which, ElementsAre("min_min", "max_min"));
   EXPECT_FALSE(pins[0].motion.moves());
-  EXPECT_EQ(std::get<PinNearest>(pins[1].where).point, Vector3(0, 2, 0));
-  EXPECT_EQ(std::get<PinBox>(pins[2].where).lower, Vector3(-1, 1, -1));
-  EXPECT_EQ(std::get<PinBox>(pins[2].where).upper, Vector3(1, 3, 1));
+  EXPECT_EQ(std::get<NearestSelector>(pins[1].where).point, Vector3(0, 2, 0));
+  EXPECT_EQ(std::get<BoxSelector>(pins[2].where).lower, Vector3(-1, 1, -1));
+  EXPECT_EQ(std::get<BoxSelector>(pins[2].where).upper, Vector3(1, 3, 1));
   EXPECT_EQ(pins[2].motion.spin, Vector3(0, 90, 0));
-  EXPECT_THAT(std::get<PinIndices>(pins[3].where).indices, ElementsAre(3, 5));
+  EXPECT_THAT(std::get<IndicesSelector>(pins[3].where).indices, ElementsAre(3, 5));
   EXPECT_EQ(pins[3].motion.interpolation, Interpolation::smooth);
   ASSERT_EQ(pins[3].motion.keyframes.size(), 2U);
   EXPECT_EQ(pins[3].motion.keyframes[1].position, Vector3(0, 1, 0));
+  EXPECT_EQ(pins[3].follow, "");
+  EXPECT_EQ(pins[3].from, 0.0);
+  EXPECT_EQ(pins[3].until, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(std::get<SphereSelector>(pins[4].where).centre, Vector3(0, 1, 0));
+  EXPECT_EQ(std::get<SphereSelector>(pins[4].where).radius, 0.25);
+  EXPECT_EQ(pins[4].follow, "ball");
+  EXPECT_EQ(pins[4].from, 0.5);
+  EXPECT_EQ(pins[4].until, 2.0);
+  EXPECT_EQ(std::get<GroupSelector>(scene.bodies[4].pins[0].where).name, "collar");
+}
+
+TEST(SceneReader, PointMassesArrive) {
+  const Scene scene = SceneFolder().read(kFullScene);
+  const std::vector<PointMassScene>& masses = scene.bodies[0].point_masses;
+  ASSERT_EQ(masses.size(), 5U);
+  EXPECT_THAT(std::get<CornersSelector>(masses[0].where).which, ElementsAre("max_max"));
+  EXPECT_EQ(masses[0].mass, 0.75);
+  EXPECT_EQ(std::get<SphereSelector>(masses[4].where).radius, 4.0);
+  EXPECT_EQ(std::get<GroupSelector>(scene.bodies[4].point_masses[0].where).name, "hem");
 }
 
 TEST(SceneReader, ShapesOfBodiesArrive) {
@@ -250,9 +269,9 @@ TEST(SceneReader, OverridesReplaceAddAppendAndRemove) {
                     "bodies.banner.pins[1].nearest=[0,1,0]", "air.wind=[1,0,0]", "bodies.banner.mass=null",
                     "bodies.banner.density=0.3", "bodies.banner.place.position=[0, 1e-3, 0]"});
   EXPECT_THAT(std::get<ClothShape>(scene.bodies[0].shape).resolution, ElementsAre(128, 64));
-  EXPECT_THAT(std::get<PinCorners>(scene.bodies[0].pins[0].where).which, ElementsAre("max_max"));
+  EXPECT_THAT(std::get<CornersSelector>(scene.bodies[0].pins[0].where).which, ElementsAre("max_max"));
   EXPECT_EQ(scene.settings.stability, StabilityCheck::warn);
-  EXPECT_EQ(std::get<PinNearest>(scene.bodies[0].pins[1].where).point, Vector3(0, 1, 0));
+  EXPECT_EQ(std::get<NearestSelector>(scene.bodies[0].pins[1].where).point, Vector3(0, 1, 0));
   EXPECT_EQ(scene.settings.wind, Vector3(1, 0, 0));
   EXPECT_EQ(scene.bodies[0].mass.kind, MassScene::Kind::density);
   EXPECT_EQ(scene.bodies[0].place.position, Vector3(0, 1e-3, 0));

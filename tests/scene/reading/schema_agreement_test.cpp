@@ -59,7 +59,8 @@ void collect(const Json& instance, const Json& unresolved, const std::string& po
   const Json node = resolved(unresolved);
   if (instance.is_array()) {
     for (std::size_t i = 0; i < instance.size(); ++i) {
-      collect(instance[i], node.value("items", Json::object()), pointer + "/" + std::to_string(i), objects);
+      const Json items = node.is_object() ? node.value("items", Json::object()) : Json::object();
+      collect(instance[i], items.is_array() ? items[i] : items, pointer + "/" + std::to_string(i), objects);
     }
     return;
   }
@@ -138,10 +139,11 @@ const std::map<std::string, std::vector<std::string>>& rules_beyond_the_schema()
   static const std::map<std::string, std::vector<std::string>> kRules{
       {"times that must fit together", {"must divide a frame", "makes more than"}},
       {"the product of values", {"must make at most"}},
-      {"the order of values", {"must be later than the keyframe before it", "must begin with the smaller coordinates"}},
+      {"the order of values",
+       {"must be later than the keyframe before it", "must be later than from", "must begin with the smaller coordinates"}},
       {"a value that another one bounds", {"must be at least friction", "needs springs with stiffness"}},
-      {"a value that another object forbids", {"needs contact.response", "needs a rope, a cloth or a solid"}},
-      {"a name of another object", {"must be the name of a body"}},
+      {"a value that another object forbids", {"needs contact.response", "needs a rope, a cloth or a solid", "needs a mesh"}},
+      {"a name of another object", {"must be the name of a body", "must be the name of an obstacle"}},
       {"a vector without a direction", {"must not be zero"}},
   };
   return kRules;
@@ -150,7 +152,7 @@ const std::map<std::string, std::vector<std::string>>& rules_beyond_the_schema()
 /// Whether the problem is a corner of another shape: the schema does not compare a pin with its body.
 bool is_corner_of_another_shape(const Problem& problem) {
   if (problem.key.find(".which[") == std::string::npos) return false;
-  const Json corners = scene_schema()["definitions"]["pin"]["oneOf"][0]["properties"]["which"]["items"]["enum"];
+  const Json corners = scene_schema()["definitions"]["corners"]["items"]["enum"];
   return std::any_of(corners.begin(), corners.end(), [&](const Json& corner) { return corner.dump() == problem.value; });
 }
 

@@ -1,0 +1,22 @@
+// The particles of a body that a selector of a scene names.
+#pragma once
+
+#include "scene/building/body_builder.h"
+
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// Where a selector is written, for the report of its problems.
+struct SelectorPlace {
+  std::string file;
+  std::string key;  ///< of the object that has it
+};
+
+/// Ascending, each once; counted from 0 within the body. Adds a problem if the selector names a particle or a group that does not
+/// exist, or if there is none in its box or sphere.
+[[nodiscard]] std::vector<Index> select_particles(const Selector& selector, const BodyScene& body, const BuiltBody& placed,
+                                                  const SelectorPlace& place, std::vector<Problem>& problems);
+
+}  // namespace sprung

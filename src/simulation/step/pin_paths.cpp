@@ -1,0 +1,162 @@
+#include "simulation/step/pin_paths.h"
+
+#include "base/problem_list.h"
+#include "network/pin_schedule.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+void check_obstacles(const SpringNetwork& network, std::size_t count) {
+  ProblemList problems;
+  for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
+    for (std::size_t p = 0; p < pins->size(); ++p) {
+      const Index obstacle = (*pins)[p].obstacle;
+      if (obstacle == kNone || (obstacle >= 0 && static_cast<std::size_t>(obstacle) < count)) continue;
+      problems.add(entry_key("pins", p) + ".obstacle", std::to_string(obstacle),
+                   "must be the number of an obstacle; there are " + std::to_string(count), "count obstacles from 0");
+    }
+  }
+  problems.throw_if_any();
+}
+
+const MeshSequence* sequence_of(const Obstacle& obstacle) {
+  return obstacle.deforms() ? std::get<SequenceGeometry>(obstacle.geometry).sequence.get() : nullptr;
+}
+
+const PinAnchor* find(const std::vector<PinAnchor>& anchors, Index particle) {
+  const auto found = std::ranges::lower_bound(anchors, particle, {}, &PinAnchor::particle);
+  return found != anchors.end() && found->particle == particle ? &*found : nullptr;
+}
+
+}  // namespace
+
+RigidTransform PinPaths::Path::origin() const { return RigidTransform(Eigen::Translation3d(pin->origin)); }
+
+RigidTransform PinPaths::Path::pose(double time) const {
+  return obstacle != nullptr ? obstacle->motion.pose(obstacle->rest_pose, time) : pin->motion.pose(origin(), time);
+}
+
+/// Where a path has its particles at one time.
+class PinPaths::Placing {
+ public:
+  Placing(const PinPaths& paths, const Path& path, double time) : paths_(paths), path_(path), time_(time), pose_(path.pose(time)) {}
+
+  Vector3 operator()(const Held& held) {
+    const bool relative = held.step != kNone;
+    if (relative && time_ == paths_.time_of(held.step)) return held.start;  // without the rounding of poses
+    if (path_.sequence != nullptr) return pose_ * anchored_position(*path_.sequence, held.surface, time_);
+    if (!motion_ || held.step != step_) {
+      step_ = held.step;
+      motion_ = pose_ * (relative ? path_.pose(paths_.time_of(step_)) : path_.origin()).inverse();
+    }
+    return *motion_ * held.start;
+  }
+
+ private:
+  const PinPaths& paths_;
+  const Path& path_;
+  double time_;
+  RigidTransform pose_;
+  std::int64_t step_ = kNone;
+  std::optional<RigidTransform> motion_;  ///< since step_
+};
+
+PinPaths::PinPaths(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length)
+    : network_(network), step_length_(step_length) {
+  check_obstacles(network, obstacles.size());
+  for (const Pin& pin : network.pins) {
+    if (!pin.moves()) continue;
+    Path path{.pin = &pin};
+    if (pin.obstacle != kNone) {
+      path.obstacle = &obstacles[static_cast<std::size_t>(pin.obstacle)];
+      path.sequence = sequence_of(*path.obstacle);
+    }
+    paths_.push_back(std::move(path));
+  }
+}
+
+bool PinPaths::take(SimulationState& state) {
+  std::vector<PinAnchor> all;
+  bool is_new = false;
+  for (Path& path : paths_) {
+    path.particles.clear();
+    if (!path.needs_anchors()) {
+      const std::int64_t step = path.obstacle != nullptr ? 0 : kNone;
+      for (const Index i : path.pin->particles) path.particles.push_back({i, step, network_.positions.col(i), {}});
+      continue;
+    }
+    for (const PinAnchor& anchor : anchors_of(path, state, is_new)) {
+      Held held{anchor.particle, anchor.step, anchor.position, {}};
+      if (path.sequence != nullptr) {
+        const double time = time_of(anchor.step);
+        held.surface = anchored(*path.sequence, anchor.triangle, time, path.pose(time).inverse() * anchor.position);
+      }
+      path.particles.push_back(held);
+      all.push_back(anchor);
+    }
+  }
+  std::ranges::sort(all, {}, &PinAnchor::particle);
+  state.anchors = std::move(all);
+  return is_new;
+}
+
+/// Those of the state that this pin made, and new ones for its other particles.
+std::vector<PinAnchor> PinPaths::anchors_of(const Path& path, const SimulationState& state, bool& is_new) const {
+  const double from = path.pin->from;
+  const bool later = from > 0.0;
+  std::vector<PinAnchor> anchors;
+  std::vector<std::size_t> added;
+  std::vector<Vector3> points;  // of those, in the obstacle's frame
+  for (const Index i : path.pin->particles) {
+    const PinAnchor* known = find(state.anchors, i);
+    if (known != nullptr && from < due_before(known->step, step_length_)) {
+      anchors.push_back(*known);
+      continue;
+    }
+    const std::int64_t step = later ? state.step : 0;
+    const Vector3 position = later ? state.x.col(i) : network_.positions.col(i);
+    added.push_back(anchors.size());
+    points.push_back(path.pose(time_of(step)).inverse() * position);
+    anchors.push_back({i, step, position, kNone});
+  }
+  if (added.empty()) return anchors;
+  is_new = true;
+  if (path.sequence == nullptr) return anchors;
+  const double time = time_of(anchors[added.front()].step);
+  const std::vector<Index> triangles = nearest_triangles(*path.sequence, time, points);
+  for (std::size_t k = 0; k < added.size(); ++k) anchors[added[k]].triangle = triangles[k];
+  return anchors;
+}
+
+double PinPaths::move(double time, double dt, SimulationState& state) const {
+  double fastest = 0.0;
+  for (const Path& path : paths_) {
+    Placing now(*this, path, time);
+    Placing next(*this, path, time + dt);
+    for (const Held& held : path.particles) {
+      const Index i = held.particle;
+      state.x.col(i) = now(held);
+      state.v.col(i) = (next(held) - state.x.col(i)) / dt;
+      fastest = std::max(fastest, state.v.col(i).norm());
+    }
+  }
+  return fastest;
+}
+
+void PinPaths::set_last_velocities(double time, double dt, Points& velocities) const {
+  for (const Path& path : paths_) {
+    Placing now(*this, path, time);
+    Placing before(*this, path, time - dt);
+    for (const Held& held : path.particles) {
+      const double begin = held.step == kNone ? 0.0 : time_of(held.step);
+      if (time - 0.5 * dt > begin) velocities.col(held.particle) = (now(held) - before(held)) / dt;
+    }
+  }
+}
+
+}  // namespace sprung

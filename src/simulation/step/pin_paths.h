@@ -1,0 +1,57 @@
+// The paths on which pins move their particles.
+#pragma once
+
+#include "collision/shapes/obstacle.h"
+#include "collision/shapes/surface_anchor.h"
+#include "network/simulation_state.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// The particles of a pin with a motion of its own, or which follows a rigid obstacle, move rigidly. Those of a pin that follows a
+/// deforming obstacle each move with the triangle that was nearest when the pin began.
+class PinPaths {
+ public:
+  /// Keeps references to both. Requires `take` before all else. Throws InputError if a pin follows an obstacle that does not exist.
+  /// `step_length` [s] is that of the simulation.
+  PinPaths(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length);
+
+  /// Notes where pins that have begun took their particles, and forgets what other pins noted. Returns whether anything is new.
+  bool take(SimulationState& state);
+
+  /// Moves the particles to where they are at a time [s], and gives them the mean velocity of the following `dt` [s], which the
+  /// dampers of their neighbours use. Returns the largest speed [m/s].
+  double move(double time, double dt, SimulationState& state) const;
+
+  /// Sets the mean velocities [m/s] of the particles in the `dt` [s] before a time, if their pins held them in it.
+  void set_last_velocities(double time, double dt, Points& velocities) const;
+
+ private:
+  struct Held {
+    Index particle;
+    std::int64_t step;      ///< to whose pose its path is relative; kNone: to the pose without motion
+    Vector3 start;          ///< position there [m]
+    SurfaceAnchor surface;  ///< on a deforming obstacle, in its frame
+  };
+  struct Path {
+    const Pin* pin;
+    const Obstacle* obstacle = nullptr;      ///< that the pin follows
+    const MeshSequence* sequence = nullptr;  ///< of the obstacle, if it deforms
+    std::vector<Held> particles{};
+
+    [[nodiscard]] bool needs_anchors() const { return pin->from > 0.0 || sequence != nullptr; }
+    [[nodiscard]] RigidTransform origin() const;
+    [[nodiscard]] RigidTransform pose(double time) const;
+  };
+  class Placing;
+
+  [[nodiscard]] double time_of(std::int64_t step) const { return static_cast<double>(step) * step_length_; }
+  std::vector<PinAnchor> anchors_of(const Path& path, const SimulationState& state, bool& is_new) const;
+
+  const SpringNetwork& network_;
+  double step_length_;
+  std::vector<Path> paths_;
+};
+
+}  // namespace sprung
