@@ -58,6 +58,7 @@ RunWatch::RunWatch(const Simulator& simulator, RunOutput& output, bool quiet)
 
 void RunWatch::note_frame(const FrameDiagnostics& frame) {
   note_infeasible(frame);
+  note_inverted(frame);
   note_stretch(frame);
   note_handovers();
   note_truncated(frame);
@@ -85,6 +86,15 @@ void RunWatch::note_infeasible(const FrameDiagnostics& frame) {
       fmt::format("frame {}: {} had no admissible position and may intersect (column infeasible in diagnostics.csv). Increase the "
                   "clearance, move pins out of obstacles, or slow the obstacles and pins that close on them.",
                   frame.frame, frame.max_infeasible == 1 ? "1 vertex" : fmt::format("{} vertices", frame.max_infeasible)));
+}
+
+void RunWatch::note_inverted(const FrameDiagnostics& frame) {
+  if (inverted_ || frame.inverted_cells == 0) return;
+  inverted_ = true;
+  warn(fmt::format(
+      "frame {}: {} inside out (column inverted_cells in diagnostics.csv). Use \"volume\": {{ \"preserve\": true }} for "
+      "the solid, or more stiffness.",
+      frame.frame, frame.inverted_cells == 1 ? "1 cell is" : fmt::format("{} cells are", frame.inverted_cells)));
 }
 
 void RunWatch::note_stretch(const FrameDiagnostics& frame) {

@@ -26,6 +26,7 @@ class RunWatch {
  private:
   void warn(const std::string& warning);
   void note_infeasible(const FrameDiagnostics& frame);
+  void note_inverted(const FrameDiagnostics& frame);
   void note_stretch(const FrameDiagnostics& frame);
   void note_handovers();
   void note_truncated(const FrameDiagnostics& frame);
@@ -42,6 +43,7 @@ class RunWatch {
   RunOutput& output_;
   bool quiet_;
   bool infeasible_ = false;
+  bool inverted_ = false;
   Missed missed_;
   EnergyWatch energy_;
   int frames_ = 0;

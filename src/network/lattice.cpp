@@ -91,6 +91,19 @@ std::vector<double> Lattice::measures() const {
   return measures;
 }
 
+Cells lattice_cells(const Lattice& lattice) {
+  Cells cells;
+  for (Index k = 0; k + 1 < lattice.resolution[2]; ++k) {
+    for (Index j = 0; j + 1 < lattice.resolution[1]; ++j) {
+      for (Index i = 0; i + 1 < lattice.resolution[0]; ++i) {
+        Hexahedron& cell = cells.hexahedra.emplace_back();
+        for (Index c = 0; c < 8; ++c) cell[c] = lattice.number({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)});
+      }
+    }
+  }
+  return cells;
+}
+
 void add_lattice_springs(const Lattice& lattice, const SpringMaterials& materials, Springs& springs) {
   for (const Direction& direction : kAxes) {
     if (materials.structural) add_family(lattice, direction, 1, *materials.structural, SpringKind::structural, springs);

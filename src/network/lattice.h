@@ -24,6 +24,9 @@ struct Lattice {
   [[nodiscard]] std::vector<double> measures() const;
 };
 
+/// The cells between the nodes of a solid.
+[[nodiscard]] Cells lattice_cells(const Lattice& lattice);
+
 /// Structural springs along the axes, shear springs along face and space diagonals, bend springs along the axes, skipping one
 /// node.
 void add_lattice_springs(const Lattice& lattice, const SpringMaterials& materials, Springs& springs);

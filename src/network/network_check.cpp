@@ -83,6 +83,21 @@ void check_angle_bends(const std::string& key, const BodyShape& shape, ProblemLi
   require_quantities(bends.damping, {key + ".angle_bends.damping", rule, "give a damping in N m s"}, problems);
 }
 
+template <class Cell>
+void check_cells(const std::string& key, const std::vector<Cell>& cells, const Points& positions, ProblemList& problems) {
+  const auto exist = [&](const Cell& cell) {
+    return std::ranges::all_of(cell, [&](Index particle) { return particle >= 0 && particle < positions.cols(); });
+  };
+  const auto text = [&](std::size_t c) { return counts_text(cells[c]); };
+  problems.require_each(
+      cells.size(), [&](std::size_t c) { return exist(cells[c]); }, text,
+      EntryRule{key, "must join particles of the body, which has " + std::to_string(positions.cols()),
+                "use the numbers of the body's particles, counted from 0"});
+  problems.require_each(
+      cells.size(), [&](std::size_t c) { return !exist(cells[c]) || !is_inverted(cells[c], positions); }, text,
+      EntryRule{key, "must have a positive volume", "order its corners as network/cells.h says, and repair the mesh"});
+}
+
 template <class Elements>
 bool names_particles(const Elements& elements, std::size_t particles) {
   return elements.size() == 0 || (elements.minCoeff() >= 0 && static_cast<std::size_t>(elements.maxCoeff()) < particles);
@@ -134,6 +149,10 @@ void check_body(const std::string& key, const BodyShape& shape, const ContactMat
   check_springs(key, shape, problems);
   check_angle_bends(key, shape, problems);
   check_surface(key, shape, problems);
+  Points positions(3, static_cast<Index>(shape.positions.size()));
+  for (Index i = 0; i < positions.cols(); ++i) positions.col(i) = shape.positions[i];
+  check_cells(key + ".cells.hexahedra", shape.cells.hexahedra, positions, problems);
+  check_cells(key + ".cells.tetrahedra", shape.cells.tetrahedra, positions, problems);
   check_material(key, material, problems);
 }
 

@@ -26,6 +26,7 @@ BodyShape make_solid(const SolidShape& solid, const SpringMaterials& materials) 
   const Lattice lattice{solid.size, solid.resolution};
   BodyShape shape = shape_of_particles(lattice.positions(), materials);
   add_lattice_springs(lattice, materials, shape.springs);
+  shape.cells = lattice_cells(lattice);
 
   std::vector<std::array<Index, 3>> triangles;
   for (int axis = 0; axis < 3; ++axis) {

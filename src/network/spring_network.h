@@ -5,6 +5,7 @@
 #include "base/types.h"
 #include "geometry/mesh/polygon_mesh.h"
 #include "geometry/motion/motion.h"
+#include "network/cells.h"
 
 #include <array>
 #include <limits>
@@ -76,7 +77,11 @@ struct Body {
   Surface surface;
   ContactMaterial material;
   BodyContact contact;
-  bool stretch_limited = true;  ///< whether the stretch limit applies to its springs
+  bool stretch_limited = true;   ///< whether the stretch limit applies to its springs
+  Cells cells;                   ///< of solids; in the numbering of the body
+  bool preserve_volume = false;  ///< whether passes keep the volume of the cells
+  double volume_factor = 0.0;    ///< of a closed surface: the multiple of its volume at rest that passes keep; 0: none
+  double pressure = 0.0;         ///< in a closed surface, along the normals of its triangles [Pa]
 };
 
 /// Particles that follow a prescribed motion or an obstacle. With the default motion they rest. A pin that begins after time 0

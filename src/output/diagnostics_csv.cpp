@@ -14,7 +14,7 @@ struct Column {
 
 using Frame = FrameDiagnostics;
 
-const std::array<Column, 15> kColumns{{
+const std::array<Column, 16> kColumns{{
     {"frame", [](const Frame& frame) { return std::to_string(frame.frame); }},
     {"time", [](const Frame& frame) { return format_number(frame.time); }},
     {"kinetic_energy", [](const Frame& frame) { return format_number(frame.kinetic_energy); }},
@@ -30,6 +30,7 @@ const std::array<Column, 15> kColumns{{
     {"limit_solves", [](const Frame& frame) { return std::to_string(frame.limit_solves); }},
     {"substeps", [](const Frame& frame) { return std::to_string(frame.substeps); }},
     {"contact_energy", [](const Frame& frame) { return format_number(frame.contact_energy); }},
+    {"inverted_cells", [](const Frame& frame) { return std::to_string(frame.inverted_cells); }},
 }};
 
 template <class Field>

@@ -15,6 +15,14 @@ double distance_range(const Simulator& simulator) {
   return covered.diagonal().norm() + 10.0 * thickest;
 }
 
+Index inverted_cells(const Simulator& simulator) {
+  Index count = 0;
+  for (const Body& body : simulator.network().bodies) {
+    count += count_inverted(body.cells, simulator.positions().middleCols(body.first_particle, body.particle_count));
+  }
+  return count;
+}
+
 FrameDiagnostics measure(const Simulator& simulator, int frame) {
   FrameDiagnostics diagnostics;
   diagnostics.frame = frame;
@@ -25,6 +33,7 @@ FrameDiagnostics measure(const Simulator& simulator, int frame) {
   diagnostics.contact_energy = simulator.contact_energy();
   diagnostics.max_stretch = max_stretch(simulator);
   diagnostics.contacts = simulator.contact_count();
+  diagnostics.inverted_cells = inverted_cells(simulator);
   diagnostics.min_distance = simulator.environment().min_distance(simulator.positions(), distance_range(simulator));
   return diagnostics;
 }

@@ -23,6 +23,7 @@ struct FrameDiagnostics {
   Index truncated = 0;                 ///< particles that truncation stopped, summed
   Index infeasible = 0;                ///< particles without an admissible position, summed
   Index max_infeasible = 0;            ///< the most of them in one substep
+  Index inverted_cells = 0;            ///< cells of solids that are inside out
   std::int64_t substeps = 0;           ///< number of substeps
   double smallest_step = 0.0;          ///< length of the shortest substep [s]; 0 without steps
   std::int64_t limit_solves = 0;       ///< linear systems solved for the stretch limit, summed

@@ -1,6 +1,8 @@
 #include "simulation/simulator.h"
 
 #include "collision/obstacles/obstacle_set.h"
+#include "dynamics/constraints/cell_volume.h"
+#include "dynamics/constraints/enclosed_volume.h"
 #include "dynamics/forces/shared_force.h"
 #include "network/pin_schedule.h"
 #include "simulation/settings/settings_check.h"
@@ -77,6 +79,11 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   if (settings.air_drag > 0.0) add_force<AirDrag>(settings.air_drag, settings.wind);
   if (settings.contact.response == ContactSettings::Response::penalty && !environment.obstacles().empty()) {
     penalty = add_force<PenaltyContact>(environment, settings.contact.stiffness, settings.contact.damping, dt());
+  }
+  if (has_pressure(network)) pressure = add_force<PressureForce>();
+  if (std::ranges::any_of(network.bodies, &Body::preserve_volume)) constraints.add(std::make_unique<CellVolume>(network));
+  if (std::ranges::any_of(network.bodies, [](const Body& body) { return body.volume_factor != 0.0; })) {
+    constraints.add(std::make_unique<EnclosedVolume>(network));
   }
   for (const std::shared_ptr<Force>& force : external_forces) forces.push_back(std::make_unique<SharedForce>(force));
   for (const auto& more : {unused_settings(settings, network, environment.obstacles()), weak_springs(settings, network)}) {
@@ -179,7 +186,7 @@ StepReport Simulator::Implementation::make_substep() {
   energy_watch.note_obstacle(environment.set().max_displacement(state.x) / dt());
 
   StepReport report{.substeps = 1};
-  constraints.apply(state, forces, dt(), report);
+  constraints.apply(state, forces, dt(), t_end, report);
   if (++state.substep == state.substeps) {
     ++state.step;
     state.substep = 0;
@@ -252,7 +259,8 @@ void Simulator::Implementation::check_energy(const Energies& now) const {
 }
 
 double Simulator::Implementation::elastic_energy() const {
-  return springs->energy(state.x) + (angles != nullptr ? angles->energy(state.x) : 0.0);
+  return springs->energy(state.x) + (angles != nullptr ? angles->energy(state.x) : 0.0) +
+         (pressure != nullptr ? pressure->energy(state.x) : 0.0);
 }
 
 double Simulator::Implementation::contact_energy() const { return penalty != nullptr ? penalty->energy(state.x) : 0.0; }

@@ -4,6 +4,7 @@
 #include "dynamics/contact/penalty_contact.h"
 #include "dynamics/forces/bending_angle_force.h"
 #include "dynamics/forces/gravity_and_drag.h"
+#include "dynamics/forces/pressure_force.h"
 #include "dynamics/forces/spring_force.h"
 #include "simulation/monitoring/divergence.h"
 #include "simulation/monitoring/energy_watch.h"
@@ -96,6 +97,7 @@ struct Simulator::Implementation {
   const Gravity* gravity = nullptr;
   const SpringForce* springs = nullptr;
   const BendingAngleForce* angles = nullptr;  ///< null without angle bends
+  const PressureForce* pressure = nullptr;    ///< null without pressure in a body
   PenaltyContact* penalty = nullptr;          ///< null unless contact is by penalty
   std::unique_ptr<Integrator> integrator;
   StepConstraints constraints;

@@ -46,6 +46,7 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"dynamics/numerics", {}},
     {"dynamics/forces", {"numerics"}},
     {"dynamics/integrators", {"numerics", "forces"}},
+    {"dynamics/constraints", {}},
     {"dynamics/contact", {"forces", "integrators"}},
     {"dynamics/tethers", {"numerics"}},
     {"dynamics/stretch_newton", {"numerics", "tethers"}},

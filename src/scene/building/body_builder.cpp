@@ -3,6 +3,8 @@
 #include "base/format.h"
 #include "geometry/import/mesh_file.h"
 #include "geometry/mesh/polygon_mesh.h"
+#include "geometry/mesh/topology.h"
+#include "geometry/mesh/triangle_mesh.h"
 #include "geometry/mesh/weld.h"
 #include "scene/building/particle_selector.h"
 #include "scene/json/json_text.h"
@@ -10,6 +12,7 @@
 #include "scene/materials/materials.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sprung {
 namespace {
@@ -48,7 +51,9 @@ class ShapeMaker {
 
   std::optional<BuiltBody> from(SolidShape solid) const {
     solid.size *= body_.place.scale;
-    return BuiltBody{make_solid(solid, body_.springs)};
+    BuiltBody body{make_solid(solid, body_.springs)};
+    body.shape.preserve_volume = body_.preserve_volume;
+    return body;
   }
 
   std::optional<BuiltBody> from(const MeshFile& mesh) {
@@ -69,8 +74,30 @@ class ShapeMaker {
       polygons = std::move(welded.mesh);
       source.particle_of = std::move(welded.vertex_of);
     }
-    return BuiltBody{make_mesh_body(polygons, body_.springs), std::move(source),
-                     names_groups(body_) ? read_obj_groups(*file) : ObjGroups{}};
+    BuiltBody body{make_mesh_body(polygons, body_.springs), std::move(source),
+                   names_groups(body_) ? read_obj_groups(*file) : ObjGroups{}};
+    fill(body.shape);
+    return body;
+  }
+
+  /// Fills a closed mesh with a gas or a liquid.
+  void fill(BodyShape& shape) {
+    if (body_.pressure == 0.0 && body_.volume_factor == 0.0) return;
+    const std::string key = key_ + (body_.pressure != 0.0 ? ".pressure" : ".volume.factor");
+    const std::string value = format_number(body_.pressure != 0.0 ? body_.pressure : body_.volume_factor, 6);
+    if (!is_closed(shape.surface.triangles)) {
+      problems_.push_back({scene_.file.string(), key, value, "needs a closed mesh, in which each edge belongs to two faces",
+                           "`sprung info` counts the border edges of the file; fill its holes, or remove the key"});
+      return;
+    }
+    Points positions(3, static_cast<Index>(shape.positions.size()));
+    for (Index i = 0; i < positions.cols(); ++i) positions.col(i) = shape.positions[i];
+    const double volume = signed_volume(positions, shape.surface.triangles);
+    if (volume == 0.0) {
+      problems_.push_back({scene_.file.string(), key, value, "needs a mesh that encloses a volume", "remove it"});
+    }
+    shape.pressure = std::copysign(1.0, volume) * body_.pressure;
+    shape.volume_factor = body_.volume_factor;
   }
 
   /// A mesh with faces is a cloth, a mesh of lines alone is a rope.

@@ -98,6 +98,9 @@ struct BodyScene {
   ContactMaterial material;
   BodyContact contact;
   bool normals = false;  ///< whether the frames of a mesh have new normals
+  bool preserve_volume = false;  ///< of the cells of a solid
+  double volume_factor = 0.0;    ///< of a closed mesh, which keeps this multiple of its volume; 0: none
+  double pressure = 0.0;         ///< in a closed mesh [Pa]
 };
 
 struct ObstacleScene {

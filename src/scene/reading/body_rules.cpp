@@ -157,6 +157,38 @@ bool read_normals(Fields& fields, const std::optional<BodyShapeScene>& shape) {
   return false;
 }
 
+/// `preserve` of what has cells, `factor` of a closed mesh.
+struct VolumeScene {
+  bool preserve = false;
+  double factor = 0.0;
+};
+
+VolumeScene read_volume(Fields& fields, const std::optional<BodyShapeScene>& shape) {
+  VolumeScene volume;
+  const auto report = [&](const char* key, const std::string& rule, const std::string& remedy) {
+    fields.location().at(key).report(fields.json()[key], rule, remedy);
+  };
+  volume.preserve = fields.value("preserve", boolean(), false).value_or(false);
+  if (volume.preserve && shape && !std::holds_alternative<SolidShape>(*shape)) {
+    report("preserve", "needs cells, which only a solid has", "a closed mesh has \"factor\" instead; or remove it");
+  }
+  if (const auto factor = fields.optional("factor", number(kPositive))) {
+    volume.factor = *factor;
+    if (shape && !std::holds_alternative<MeshFile>(*shape)) {
+      report("factor", "needs a closed mesh", "a solid has \"preserve\" instead; or remove it");
+    }
+  }
+  return volume;
+}
+
+double read_pressure(Fields& fields, const std::optional<BodyShapeScene>& shape) {
+  const auto pressure = fields.value("pressure", number(), 0.0);
+  if (pressure.value_or(0.0) != 0.0 && shape && !std::holds_alternative<MeshFile>(*shape)) {
+    fields.location().at("pressure").report(fields.json()["pressure"], "needs a closed mesh", "remove it");
+  }
+  return pressure.value_or(0.0);
+}
+
 BodyScene read_body(Fields& fields) {
   BodyScene body;
   const auto shape = fields.required("shape", object_of<BodyShapeScene>(read_shape));
@@ -171,6 +203,11 @@ BodyScene read_body(Fields& fields) {
   const auto point_masses = fields.value("point_masses", list_of(point_mass_rule(parts), 0), Json::array());
   body.point_masses = point_masses.value_or(std::vector<PointMassScene>{});
   body.velocity = fields.value("velocity", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
+  const auto volume_rule = object_of<VolumeScene>([&](Fields& keys) { return read_volume(keys, shape); });
+  const auto volume = fields.value("volume", volume_rule, Json::object()).value_or(VolumeScene{});
+  body.preserve_volume = volume.preserve;
+  body.volume_factor = volume.factor;
+  body.pressure = read_pressure(fields, shape);
   body.material = read_material(fields);
   body.contact = read_body_contact(fields);
   body.normals = read_normals(fields, shape);

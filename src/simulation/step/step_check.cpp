@@ -1,6 +1,7 @@
 #include "simulation/step/step_check.h"
 
 #include "base/format.h"
+#include "dynamics/forces/pressure_force.h"
 #include "network/pin_schedule.h"
 
 #include <algorithm>
@@ -33,6 +34,7 @@ SpectralBounds bounds_of(const SpringNetwork& network, const SimulatorSettings& 
     bounds.elastic += bounds.penalty;
     bounds.damping += settings.contact.damping * largest_inverse_mass;
   }
+  if (has_pressure(network)) bounds.elastic += PressureForce(network).largest_eigenvalue();
   return bounds;
 }
 

@@ -3,6 +3,7 @@
 #include "simulation/step/step_check.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sprung {
 namespace {
@@ -10,6 +11,11 @@ namespace {
 // Over-relaxation of the stretch limit between the first pass and the last. It leaves a third of a hanging cloth's excess. A single
 // spring reaches its limit in the first pass and must not oscillate about it, so the first and last pass are not over-relaxed.
 constexpr double kRelaxation = 1.8;
+
+// Passes that constraints get, if the stretch limit does not ask for more: so many a second, and at least so many a step. What
+// passes miss is small in small steps, and the next step continues from there.
+constexpr double kConstraintPassRate = 1200.0;
+constexpr double kMinConstraintPasses = 4.0;
 
 // Calls of Integrator::respond_to_contact a step after contact passes, and as many after truncation.
 constexpr int kResponses = 6;
@@ -42,8 +48,9 @@ void StepConstraints::begin(const SimulationState& state) {
   slip_before_ = state.slip;
 }
 
-void StepConstraints::apply(SimulationState& state, const Forces& forces, double dt, StepReport& report) {
-  if (!contacts_.can_collide() && !limit_) return;
+void StepConstraints::apply(SimulationState& state, const Forces& forces, double dt, double time, StepReport& report) {
+  if (!contacts_.can_collide() && !limit_ && constraints_.empty()) return;
+  for (const auto& constraint : constraints_) constraint->prepare(time);
   if (contacts_.can_collide() || integrator_.needs_advanced()) advanced_ = state.x;
   dt_ = dt;
   project(state, forces, report);
@@ -63,12 +70,14 @@ void StepConstraints::correct_positions(SimulationState& state, double dt) {
     make_passes(state, report);
     for (int pass = 0; pass < limit_->settings().iterations; ++pass) {
       if (projects_contacts()) contacts_.project(state.x);
+      sprung::project(constraints_, start, state.x);
       if (limit_->project(start, state.x) <= kCorrected) break;
     }
     int rounds = 0;
     const double excess = limit_->excess(state.x);
+    const double violation = residual(constraints_, state.x);
     const StepTruncation::Relax relax_again = [&](Points& positions) {
-      return rounds++ < max_relax_rounds() && relax(positions, excess);
+      return rounds++ < max_relax_rounds() && relax(positions, excess, violation);
     };
     if (contacts_.can_collide()) contacts_.truncate(motion(), state.x, relax_again);
     state.x_previous += state.x - start;
@@ -91,13 +100,18 @@ void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
       limit_ && !repeats_ ? limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers) : std::nullopt;
   report.limit_solves = solves.value_or(0);
   const int limit_passes = limit_ ? limit_->settings().iterations + (solves ? 1 : 0) : 0;  // the first after a solve only measures
-  if (projects) report.iterations = contacts_.push_out(state.x, kContactPasses - limit_passes).passes;
-  report.iterations += repeat_until_settled(limit_passes, [&](int pass) {
-    const bool between = pass > 0 && pass + 1 < limit_passes;
+  const int passes = std::max(limit_passes, constraint_passes());
+  if (projects) report.iterations = contacts_.push_out(state.x, kContactPasses - passes).passes;
+  report.iterations += repeat_until_settled(passes, [&](int pass) {
+    const bool between = pass > 0 && pass + 1 < passes;
     const double push = projects ? contacts_.project(state.x) : 0.0;
-    const double excess = solves && pass == 0 ? limit_->excess(state.x)
-                                              : limit_->project(positions_before(state), state.x, between ? kRelaxation : 1.0);
-    return excess <= limit_->settings().tolerance && push <= kContactTolerance;
+    const double violation = sprung::project(constraints_, positions_before(state), state.x);
+    double excess = 0.0;
+    if (limit_) {
+      excess = solves && pass == 0 ? limit_->excess(state.x)
+                                   : limit_->project(positions_before(state), state.x, between ? kRelaxation : 1.0);
+    }
+    return (!limit_ || excess <= limit_->settings().tolerance) && violation <= 1.0 && push <= kContactTolerance;
   });
 }
 
@@ -119,12 +133,13 @@ void StepConstraints::respond_to_contact(SimulationState& state, const Forces& f
 
 void StepConstraints::truncate(SimulationState& state, const Forces& forces, StepReport& report) {
   const bool can_collide = contacts_.can_collide();
-  const bool responds = !limit_ && integrator_.responds_to_contact() && projects_contacts();
+  const bool responds = !limit_ && constraints_.empty() && integrator_.responds_to_contact() && projects_contacts();
   const int max_rounds = responds ? kResponses : max_relax_rounds();
+  const double violation = can_collide ? residual(constraints_, state.x) : 0.0;
   int rounds = 0;
   const StepTruncation::Relax relax_again = [&](Points& positions) {
     if (rounds++ >= max_rounds) return false;
-    return responds ? respond_to_truncation(state, forces) : relax(positions, report.stretch_excess);
+    return responds ? respond_to_truncation(state, forces) : relax(positions, report.stretch_excess, violation);
   };
   if (responds) responded_ = state.x;
   if (can_collide) contacts_.truncate(motion(), state.x, relax_again);
@@ -138,18 +153,25 @@ void StepConstraints::truncate(SimulationState& state, const Forces& forces, Ste
 }
 
 int StepConstraints::max_relax_rounds() const {
-  return limit_ ? std::min(kRelaxRounds, limit_->settings().iterations / kRelaxPasses) : 0;
+  const int passes = std::max(limit_ ? limit_->settings().iterations : 0, constraint_passes());
+  return std::min(kRelaxRounds, passes / kRelaxPasses);
+}
+
+int StepConstraints::constraint_passes() const {
+  return constraints_.empty() ? 0 : static_cast<int>(std::max(kMinConstraintPasses, std::round(kConstraintPassRate * dt_)));
 }
 
 // Truncation stopped particles at surfaces for which no contact was found; find_again() finds these. Excess from before truncation
 // is not relaxed here, unless it exceeds max_stretch: then further passes are needed in any case.
-bool StepConstraints::relax(Points& positions, double excess_before) {
-  const StretchLimitSettings& limits = limit_->settings();
-  if (limit_->excess(positions) <= std::max(limits.tolerance, std::min(excess_before, limits.max_stretch))) return false;
+bool StepConstraints::relax(Points& positions, double excess_before, double violation_before) {
+  const bool stretched = limit_ && limit_->excess(positions) > std::max(limit_->settings().tolerance,
+                                                                        std::min(excess_before, limit_->settings().max_stretch));
+  if (!stretched && residual(constraints_, positions) <= std::max(1.0, violation_before)) return false;
   if (projects_contacts()) contacts_.find_again(motion(), positions);
   for (int pass = 0; pass < kRelaxPasses; ++pass) {
     if (projects_contacts()) contacts_.project(positions);
-    limit_->project(before_, positions);
+    sprung::project(constraints_, before_, positions);
+    if (limit_) limit_->project(before_, positions);
   }
   return true;
 }

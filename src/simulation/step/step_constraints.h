@@ -1,6 +1,7 @@
-// The constraints of a step after forces have advanced the state: contact, the stretch limit, and truncation.
+// The constraints of a step after forces have advanced the state: contact, the stretch limit, other constraints, and truncation.
 #pragma once
 
+#include "dynamics/constraints/constraint.h"
 #include "dynamics/contact/contact_projection.h"
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
@@ -31,10 +32,13 @@ class StepConstraints {
     repeats_ = ahead;
   }
 
-  /// Projects the advanced state onto contact and the stretch limit, truncates it, and recovers the velocities at the end of the
-  /// step of `dt` [s]. Adds counts and the remaining stretch to the report. Requires begin(), and that the environment's interval
-  /// is the step's.
-  void apply(SimulationState& state, const Forces& forces, double dt, StepReport& report);
+  /// Adds a constraint that passes restore in each step.
+  void add(std::unique_ptr<Constraint> constraint) { constraints_.push_back(std::move(constraint)); }
+
+  /// Projects the advanced state onto contact, constraints and the stretch limit, truncates it, and recovers the velocities at the
+  /// end of the step of `dt` [s], which ends at `time` [s]. Adds counts and the remaining stretch to the report. Requires begin(),
+  /// and that the environment's interval is the step's.
+  void apply(SimulationState& state, const Forces& forces, double dt, double time, StepReport& report);
 
   /// Moves particles from rest onto the stretch limit, as far as obstacles and other bodies permit. Velocities stay as they are.
   /// Call it when a limit became tighter: a step would give particles the velocity of that motion (pre-stabilization: Macklin et
@@ -55,7 +59,8 @@ class StepConstraints {
   void respond_to_contact(SimulationState& state, const Forces& forces);
   void truncate(SimulationState& state, const Forces& forces, StepReport& report);
   [[nodiscard]] int max_relax_rounds() const;
-  [[nodiscard]] bool relax(Points& positions, double excess_before);
+  [[nodiscard]] int constraint_passes() const;
+  [[nodiscard]] bool relax(Points& positions, double excess_before, double violation_before);
   [[nodiscard]] bool respond_to_truncation(SimulationState& state, const Forces& forces);
   [[nodiscard]] bool projects_contacts() const;
   [[nodiscard]] bool copies_positions() const { return contacts_.can_collide() || !integrator_.keeps_positions(); }
@@ -66,6 +71,7 @@ class StepConstraints {
   Integrator& integrator_;
   std::optional<StretchLimit> limit_;
   ContactProjection contacts_;
+  Constraints constraints_;
 
   // State of the present step.
   Points before_;                      ///< positions at the beginning; for contact, or if the integrator does not keep them

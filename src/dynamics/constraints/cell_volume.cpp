@@ -1,0 +1,208 @@
+#include "dynamics/constraints/cell_volume.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace sprung {
+namespace {
+
+constexpr double kTolerance = 0.01;  // of a region's volume
+constexpr double kLeastFraction = 0.1;
+
+// A part below this multiple of its least volume may fall below it when the volume of its region changes.
+constexpr double kWatched = 4.0;
+
+constexpr Index kRegionsPerChunk = 128;
+
+// A region has at most as many particles as a byte can number; its gradients lie on the stack.
+constexpr std::size_t kMaxParticles = 256;
+
+/// The volume of a tetrahedron [m^3 / 6], and its derivatives by the positions of its corners.
+struct PartVolume {
+  double volume;
+  std::array<Vector3, 4> gradients;
+
+  PartVolume(const Vector3& origin, const Vector3& first, const Vector3& second, const Vector3& third) {
+    const Vector3 a = first - origin;
+    const Vector3 b = second - origin;
+    const Vector3 c = third - origin;
+    gradients[1] = b.cross(c);
+    gradients[2] = c.cross(a);
+    gradients[3] = a.cross(b);
+    gradients[0] = -(gradients[1] + gradients[2] + gradients[3]);
+    volume = a.dot(gradients[1]);
+  }
+};
+
+PartVolume part_volume(std::span<const Index> particles, const std::array<std::uint8_t, 4>& corners, const Points& positions) {
+  return {positions.col(particles[corners[0]]), positions.col(particles[corners[1]]), positions.col(particles[corners[2]]),
+          positions.col(particles[corners[3]])};
+}
+
+template <class Number>
+std::array<std::uint8_t, 4> bytes(const std::array<Number, 4>& numbers) {
+  std::array<std::uint8_t, 4> result{};
+  std::ranges::transform(numbers, result.begin(), [](Number number) { return static_cast<std::uint8_t>(number); });
+  return result;
+}
+
+/// Moves particles along the gradients of a volume, in proportion to their inverse masses, so that it changes by `change` to first
+/// order. Does nothing if no particle can move.
+void change_volume(double change, std::span<const Index> particles, std::span<const Vector3> gradients,
+                   const Scalars& inverse_masses, Points& positions) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < particles.size(); ++i) sum += inverse_masses[particles[i]] * gradients[i].squaredNorm();
+  if (!(sum > 0.0)) return;
+  const double scale = change / sum;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    positions.col(particles[i]) += scale * inverse_masses[particles[i]] * gradients[i];
+  }
+}
+
+}  // namespace
+
+CellVolume::CellVolume(const SpringNetwork& network) : network_(network) {
+  for (const Body& body : network.bodies) {
+    if (!body.preserve_volume) continue;
+    add_hexahedra(body);
+    add_stars(body);
+  }
+  sort_by_colour();
+}
+
+void CellVolume::add_hexahedra(const Body& body) {
+  constexpr double kAny = -std::numeric_limits<double>::infinity();
+  std::vector<Part> parts;
+  for (const auto& corners : kTetrahedraOfHexahedron) {
+    parts.push_back({.corners = bytes(corners), .least = parts.size() < kCornersOfHexahedron ? 0.0 : kAny});
+  }
+  for (const Hexahedron& cell : body.cells.hexahedra) {
+    std::vector<Index> particles(cell.begin(), cell.end());
+    for (Index& particle : particles) particle += body.first_particle;
+    add(particles, parts);
+  }
+}
+
+void CellVolume::add_stars(const Body& body) {
+  std::vector<std::vector<const Tetrahedron*>> stars(body.particle_count);
+  for (const Tetrahedron& cell : body.cells.tetrahedra) {
+    for (const Index corner : cell) stars[corner].push_back(&cell);
+  }
+  for (const auto& star : stars) {
+    std::vector<Index> particles;
+    std::vector<Part> parts;
+    for (const Tetrahedron* cell : star) {
+      std::array<std::ptrdiff_t, 4> corners{};
+      for (std::size_t c = 0; c < corners.size(); ++c) {
+        const auto known = std::ranges::find(particles, body.first_particle + (*cell)[c]);
+        corners[c] = known - particles.begin();
+        if (known == particles.end()) particles.push_back(body.first_particle + (*cell)[c]);
+      }
+      if (particles.size() > kMaxParticles) break;
+      parts.push_back({.corners = bytes(corners), .least = 0.0});
+    }
+    if (!parts.empty()) add(particles, parts);
+  }
+}
+
+/// Computes the volumes at rest.
+void CellVolume::add(const std::vector<Index>& particles, std::vector<Part> parts) {
+  double volume = 0.0;
+  for (Part& part : parts) {
+    const double of_part = part_volume(particles, part.corners, network_.positions).volume;
+    if (part.least == 0.0) part.least = kLeastFraction * of_part;
+    volume += of_part;
+  }
+  particles_.insert(particles_.end(), particles.begin(), particles.end());
+  parts_.insert(parts_.end(), parts.begin(), parts.end());
+  particles_begin_.push_back(particles_.size());
+  parts_begin_.push_back(parts_.size());
+  volumes_.push_back(volume);
+}
+
+/// Each region gets the lowest colour that none of its particles has. Regions that find none of 64 follow one after the other.
+void CellVolume::sort_by_colour() {
+  constexpr std::size_t kColours = 64;
+  std::vector<std::uint64_t> taken(network_.particle_count(), 0);
+  std::vector<std::size_t> colours(volumes_.size());
+  for (std::size_t r = 0; r < volumes_.size(); ++r) {
+    std::uint64_t used = 0;
+    for (const Index particle : region(r).particles) used |= taken[particle];
+    colours[r] = static_cast<std::size_t>(std::countr_one(used));
+    if (colours[r] == kColours) continue;
+    for (const Index particle : region(r).particles) taken[particle] |= std::uint64_t{1} << colours[r];
+  }
+  order_.resize(volumes_.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
+  std::ranges::stable_sort(order_, {}, [&](std::size_t r) { return colours[r]; });
+  for (std::size_t k = 1; k <= order_.size(); ++k) {
+    const bool ends = k == order_.size() || colours[order_[k]] == kColours || colours[order_[k]] != colours[order_[k - 1]];
+    if (ends) colour_begin_.push_back(k);
+  }
+}
+
+CellVolume::Region CellVolume::region(std::size_t number) const {
+  return {
+      .particles = std::span(particles_).subspan(particles_begin_[number], particles_begin_[number + 1] - particles_begin_[number]),
+      .parts = std::span(parts_).subspan(parts_begin_[number], parts_begin_[number + 1] - parts_begin_[number]),
+      .volume = volumes_[number]};
+}
+
+double CellVolume::project(const Points& /*before*/, Points& positions) const {
+  std::vector<double> changes(order_.size());
+  for (std::size_t c = 0; c + 1 < colour_begin_.size(); ++c) {
+    const std::size_t first = colour_begin_[c];
+    parallel_chunks(static_cast<Index>(colour_begin_[c + 1] - first), kRegionsPerChunk, [&](Index begin, Index end) {
+      for (std::size_t k = first + begin; k < first + end; ++k) changes[k] = project(region(order_[k]), positions);
+    });
+  }
+  return changes.empty() ? 0.0 : std::ranges::max(changes) / kTolerance;
+}
+
+double CellVolume::residual(const Points& positions) const {
+  double largest = 0.0;
+  for (std::size_t r = 0; r < volumes_.size(); ++r) {
+    largest = std::max(largest, std::abs(volume_of(region(r), positions) / volumes_[r] - 1.0));
+  }
+  return largest / kTolerance;
+}
+
+double CellVolume::volume_of(const Region& region, const Points& positions) const {
+  double sum = 0.0;
+  for (const Part& part : region.parts) sum += part_volume(region.particles, part.corners, positions).volume;
+  return sum;
+}
+
+/// Returns the relative change of volume before.
+double CellVolume::project(const Region& region, Points& positions) const {
+  std::array<Vector3, kMaxParticles> gradients;
+  std::fill_n(gradients.begin(), region.particles.size(), Vector3::Zero());
+  double volume = 0.0;
+  bool flat = false;
+  for (const Part& part : region.parts) {
+    const PartVolume of_part = part_volume(region.particles, part.corners, positions);
+    for (std::size_t c = 0; c < part.corners.size(); ++c) gradients[part.corners[c]] += of_part.gradients[c];
+    volume += of_part.volume;
+    flat = flat || of_part.volume < kWatched * part.least;
+  }
+  change_volume(region.volume - volume, region.particles, gradients, network_.inverse_masses, positions);
+  if (flat) project_parts(region, positions);
+  return std::abs(volume / region.volume - 1.0);
+}
+
+void CellVolume::project_parts(const Region& region, Points& positions) const {
+  for (const Part& part : region.parts) {
+    const PartVolume of_part = part_volume(region.particles, part.corners, positions);
+    if (of_part.volume >= part.least) continue;
+    const std::array<Index, 4> particles{region.particles[part.corners[0]], region.particles[part.corners[1]],
+                                         region.particles[part.corners[2]], region.particles[part.corners[3]]};
+    change_volume(part.least - of_part.volume, particles, of_part.gradients, network_.inverse_masses, positions);
+  }
+}
+
+}  // namespace sprung

@@ -1,0 +1,67 @@
+// Keeps the volume of the cells of solids.
+#pragma once
+
+#include "dynamics/constraints/constraint.h"
+#include "network/spring_network.h"
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// Keeps the volume of each hexahedron and, of tetrahedra, the volume around each particle: one condition per tetrahedron would
+/// leave a mesh no freedom to bend (volumetric locking; Bonet and Burton 1998 average over particles for this reason). No
+/// tetrahedron, and none at the corner of a hexahedron, may shrink below a tenth of its volume at rest, so that no cell turns
+/// inside out.
+class CellVolume final : public Constraint {
+ public:
+  /// Of all bodies whose volume is kept (Body::preserve_volume), which are at rest at the positions of the network. Keeps a
+  /// reference to the network.
+  explicit CellVolume(const SpringNetwork& network);
+
+  [[nodiscard]] std::string name() const override { return "volume"; }
+  double project(const Points& before, Points& positions) const override;
+
+  /// A volume may differ by 1 % from that at rest.
+  [[nodiscard]] double residual(const Points& positions) const override;
+
+ private:
+  /// A tetrahedron within a region.
+  struct Part {
+    std::array<std::uint8_t, 4> corners;  ///< as numbers of the region's particles
+    double least;                         ///< the least volume that it may have [m^3 / 6]; minus infinity if it may have any
+  };
+
+  /// Tetrahedra whose total volume is kept.
+  struct Region {
+    std::span<const Index> particles;
+    std::span<const Part> parts;
+    double volume;  ///< sum of the parts at rest [m^3 / 6], > 0
+  };
+
+  void add_hexahedra(const Body& body);
+  void add_stars(const Body& body);
+  void add(const std::vector<Index>& particles, std::vector<Part> parts);
+  void sort_by_colour();
+  [[nodiscard]] Region region(std::size_t number) const;
+  [[nodiscard]] double volume_of(const Region& region, const Points& positions) const;
+  double project(const Region& region, Points& positions) const;
+  void project_parts(const Region& region, Points& positions) const;
+
+  const SpringNetwork& network_;
+
+  // Region r has the particles [particles_begin_[r], particles_begin_[r + 1]), and so on.
+  std::vector<std::size_t> particles_begin_{0};
+  std::vector<std::size_t> parts_begin_{0};
+  std::vector<Index> particles_;
+  std::vector<Part> parts_;
+  std::vector<double> volumes_;
+
+  /// Numbers of regions. Those of one colour, [colour_begin_[c], colour_begin_[c + 1]), share no particle.
+  std::vector<std::size_t> order_;
+  std::vector<std::size_t> colour_begin_{0};
+};
+
+}  // namespace sprung

@@ -1,0 +1,41 @@
+// The interface of constraints on positions.
+#pragma once
+
+#include "base/types.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// A condition on positions that the passes of a step restore, beside contact and the stretch limit, after forces have moved the
+/// particles (position-based dynamics: Mueller et al. 2007). Displacements become velocities at the end of the step.
+class Constraint {
+ public:
+  virtual ~Constraint() = default;
+
+  /// Name for messages, "volume" for example.
+  [[nodiscard]] virtual std::string name() const = 0;
+
+  /// Prepares the constraint for passes of a step that ends at `time` [s]. Not thread-safe. Default: does nothing.
+  virtual void prepare(double time);
+
+  /// One Gauss-Seidel pass over `positions` [m], 3 x n, of a step that began at `before`. Each particle moves in proportion to its
+  /// inverse mass, so that momentum is conserved; pinned particles do not move. Gives the same bits for any number of threads.
+  /// Returns the residual at the start of the pass.
+  virtual double project(const Points& before, Points& positions) const = 0;
+
+  /// The largest violation as a multiple of what is tolerated: passes end once it is at most 1.
+  [[nodiscard]] virtual double residual(const Points& positions) const = 0;
+};
+
+using Constraints = std::vector<std::unique_ptr<Constraint>>;
+
+/// One pass over all constraints. Returns the largest residual at its start; 0 without constraints.
+double project(const Constraints& constraints, const Points& before, Points& positions);
+
+/// The largest residual; 0 without constraints.
+[[nodiscard]] double residual(const Constraints& constraints, const Points& positions);
+
+}  // namespace sprung

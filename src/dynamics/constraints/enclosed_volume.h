@@ -1,0 +1,36 @@
+// Keeps the volume that closed bodies enclose.
+#pragma once
+
+#include "dynamics/constraints/constraint.h"
+#include "network/spring_network.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// Keeps the volume within the surface of each body with a volume factor at that factor times its volume at rest (Mueller et al.
+/// 2007, balloons), as of a bag full of water.
+class EnclosedVolume final : public Constraint {
+ public:
+  /// Of all bodies with a factor (Body::volume_factor), which are at rest at the positions of the network. Keeps a reference to the
+  /// network.
+  explicit EnclosedVolume(const SpringNetwork& network);
+
+  [[nodiscard]] std::string name() const override { return "enclosed volume"; }
+  double project(const Points& before, Points& positions) const override;
+
+  /// A volume may differ by 0.1 % from what it is kept at.
+  [[nodiscard]] double residual(const Points& positions) const override;
+
+ private:
+  struct Kept {
+    std::size_t body;
+    double volume;  ///< [m^3]
+  };
+  [[nodiscard]] double change(const Kept& kept, const Points& positions) const;
+
+  const SpringNetwork& network_;
+  std::vector<Kept> kept_;
+};
+
+}  // namespace sprung
