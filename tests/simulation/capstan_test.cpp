@@ -67,12 +67,10 @@ double sunk(const Drum& drum, double friction) {
   Obstacle obstacle{.name = "drum", .geometry = drum.geometry, .material = {.friction = friction, .static_friction = friction}};
   obstacle.rest_pose.linear() = rotation_from_degrees({90.0, 0.0, 0.0});
   const bool is_implicit = std::holds_alternative<ImplicitEulerSettings>(drum.scheme);
-  Simulator simulator(rope_over_drum(friction),
-                      {.step = is_implicit ? 1.0 / 240.0 : 1.0 / 7680.0,
-                       .gravity = Vector3::Zero(),
-                       .integrator = drum.scheme,
-                       .perturb = !is_implicit},
-                      {obstacle});
+  Simulator simulator(
+      rope_over_drum(friction),
+      {.step = is_implicit ? 1.0 / 240.0 : 1.0 / 7680.0, .gravity = Vector3::Zero(), .integrator = drum.scheme, .sleep = false},
+      {obstacle});
   constexpr int kRamp = 60;
   for (int k = 1; k <= kRamp; ++k) {
     simulator.set_gravity({0.0, -testing::kGravity * k / kRamp, 0.0});
@@ -85,10 +83,14 @@ double sunk(const Drum& drum, double friction) {
 
 std::vector<Drum> drums() {
   const CylinderGeometry cylinder{.radius = kRadius, .height = 0.3};
+  const EllipsoidGeometry ellipsoid{.radii = {kRadius, 0.3, kRadius}};
   const VerletSettings verlet{.damping_rate = 5.0};
+  const ImplicitEulerSettings implicit{};
   return {{"cylinder", cylinder, verlet},
           {"capsule", CapsuleGeometry{.radius = kRadius, .length = 0.3}, verlet},
-          {"ellipsoid", EllipsoidGeometry{.radii = {kRadius, 0.3, kRadius}}, verlet}};
+          {"ellipsoid", ellipsoid, verlet},
+          {"cylinder, implicit Euler", cylinder, implicit},
+          {"ellipsoid, implicit Euler", ellipsoid, implicit}};
 }
 
 class Capstan : public ::testing::TestWithParam<Drum> {};
@@ -96,12 +98,6 @@ INSTANTIATE_TEST_SUITE_P(Drums, Capstan, ::testing::ValuesIn(drums()));
 
 // 0.1 mm/s.
 TEST_P(Capstan, ARopeRestsWithoutCreeping) { EXPECT_LT(std::abs(sunk(GetParam(), 0.3)), 1.0e-4); }
-
-// In its plane, as the capstan equation has it. Off it by any distance, even 1e-13 m, implicit Euler's rope slips sideways by half
-// a millimetre and sinks by 0.9 mm/s.
-TEST(ImplicitCapstan, ARopeOfImplicitEulerRestsWithoutCreepingInItsPlane) {
-  EXPECT_LT(std::abs(sunk({"cylinder", CylinderGeometry{.radius = kRadius, .height = 0.3}, ImplicitEulerSettings{}}, 0.3)), 1.0e-4);
-}
 
 // A rope that slides has more and more weight on its long side.
 TEST_P(Capstan, FrictionIsRightToFivePerCent) {

@@ -107,12 +107,20 @@ class ContactConstraintSet {
     for (const std::size_t c : touching_) for_moved(rows_[c], [&](Index particle) { visit(particle, rows_[c]); });
   }
 
-  /// Calls `visit(particle, row, goal)` in the same way for contacts that pushed.
+  /// Calls `visit(row, goal)` for each contact that pushed.
+  template <class Visit>
+  void for_pushing(const Visit& visit) const {
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      if (goals_[c].push > 0.0) visit(rows_[c], goals_[c]);
+    }
+  }
+
+  /// Calls `visit(particle, row, goal)` for each particle that a contact that pushed can move, once per contact.
   template <class Visit>
   void for_pushed(const Visit& visit) const {
-    for (std::size_t c = 0; c < rows_.size(); ++c) {
-      if (goals_[c].push > 0.0) for_moved(rows_[c], [&](Index particle) { visit(particle, rows_[c], goals_[c]); });
-    }
+    for_pushing([&](const ContactConstraint<n>& row, const ContactGoal& goal) {
+      for_moved(row, [&](Index particle) { visit(particle, row, goal); });
+    });
   }
 
  private:

@@ -219,17 +219,37 @@ void ContactSolver::note_slip(const StepMotion& motion, SimulationState& state) 
 
 void ContactSolver::constrain_pushed(const StepMotion& motion, ConstrainedDirections& constrained) const {
   for_each_set(sets_, [&](const auto& set) {
-    set.for_pushed([&](Index particle, const auto& row, const ContactGoal& goal) {
+    set.for_pushing([&](const auto& row, const ContactGoal& goal) {
       if (row.obstacle == kNone) {
-        constrained.add(particle, row.normal);
-      } else {
-        constrained.add(particle, Support{.normal = row.normal,
-                                          .displacement = goal.origin - row.sum(motion.before),
-                                          .static_friction = row.static_friction,
-                                          .friction = row.friction});
+        constrained.add(element_contact(row, goal));
+        return;
+      }
+      Support support{.normal = row.normal,
+                      .displacement = goal.origin - kReturn * goal.slip_before - row.sum(motion.before),
+                      .static_friction = row.static_friction,
+                      .friction = row.friction};
+      for (std::size_t k = 0; k < row.particles.size(); ++k) {
+        if (row.shares[k] == 0.0) continue;
+        support.weight = row.weights[k] * goal.push;
+        constrained.add(row.particles[k], support);
       }
     });
   });
+}
+
+template <std::size_t n>
+ElementContact ContactSolver::element_contact(const ContactConstraint<n>& row, const ContactGoal& goal) const {
+  ElementContact contact{.count = n,
+                         .push = goal.push * row.normal + goal.friction_change,
+                         .support = {.normal = row.normal, .static_friction = row.static_friction, .friction = row.friction}};
+  std::copy(row.particles.begin(), row.particles.end(), contact.particles.begin());
+  std::copy(row.weights.begin(), row.weights.end(), contact.weights.begin());
+  double mobility = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    mobility += row.weights[k] * row.weights[k] * network_.inverse_masses[row.particles[k]];
+  }
+  contact.mass = 1.0 / mobility;
+  return contact;
 }
 
 std::vector<Index> ContactSolver::pushed() const {

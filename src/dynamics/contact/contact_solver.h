@@ -58,7 +58,7 @@ class ContactSolver {
   /// bound of friction counts.
   void note_slip(const StepMotion& motion, SimulationState& state) const;
 
-  /// Adds the normals along which particles were pushed in this step. Those of obstacles are supports with friction.
+  /// Adds the supports of particles that obstacles pushed in this step, and the contacts between elements that pushed.
   void constrain_pushed(const StepMotion& motion, ConstrainedDirections& constrained) const;
 
   /// Particles pushed in this step, ascending.
@@ -74,6 +74,8 @@ class ContactSolver {
   template <std::size_t n>
   void fill_one(const Contact& contact, const ContactMaterial& pair, const StepMotion& motion, ContactConstraintSet<n>& set,
                 std::size_t slot);
+  template <std::size_t n>
+  [[nodiscard]] ElementContact element_contact(const ContactConstraint<n>& row, const ContactGoal& goal) const;
   [[nodiscard]] Vector3 moved_with_obstacle(const Contact& contact, const Vector3& from) const;
   [[nodiscard]] Vector3 turned_with_obstacle(Index obstacle, const Vector3& direction) const;
 

@@ -26,8 +26,7 @@ void sum_forces(const Forces& forces, const Kinematics& at, Points& total) {
   }
 }
 
-ForceDerivatives make_derivatives(const Forces& forces, Index particles) {
-  std::vector<ParticlePair> pairs;
+ForceDerivatives make_derivatives(const Forces& forces, Index particles, std::vector<ParticlePair> pairs) {
   for (const auto& force : forces) force->couple(pairs);
   return {BlockMatrix(particles, pairs), BlockMatrix(particles, pairs)};
 }

@@ -54,8 +54,8 @@ using Forces = std::vector<std::unique_ptr<Force>>;
 /// Writes the sum of all forces [N], 3 x n, to `total`.
 void sum_forces(const Forces& forces, const Kinematics& at, Points& total);
 
-/// Zero derivatives with the pairs of all forces, for `differentiate`.
-[[nodiscard]] ForceDerivatives make_derivatives(const Forces& forces, Index particles);
+/// Zero derivatives with the pairs of all forces, and with further ones, for `differentiate`.
+[[nodiscard]] ForceDerivatives make_derivatives(const Forces& forces, Index particles, std::vector<ParticlePair> pairs = {});
 
 /// Writes the derivatives of the sum of all forces to `derivatives`, which `make_derivatives` made for the same forces.
 void differentiate(const Forces& forces, const Kinematics& at, ForceDerivatives& derivatives);

@@ -12,6 +12,10 @@ namespace {
 // Friction is settled when it changes by less than this fraction.
 constexpr double kSettled = 1.0e-3;
 
+// What slipped and stuck again as often as this in a step sticks for the rest of it. Particles that pull at each other through
+// stiff springs would otherwise take turns, and a rope at rest on a drum would creep.
+constexpr int kReturns = 4;
+
 /// The largest friction impulses, by Coulomb's law.
 struct FrictionLimits {
   bool loaded = false;  ///< whether any support pushes
@@ -56,13 +60,14 @@ bool ImplicitFriction::update(std::span<const Support> supports, const Matrix3& 
   if (state_ == State::sticks) {
     const Vector3 friction = impulse - normals * impulse;
     const double length = friction.norm();
-    if (length <= limits.at_rest) return false;
+    if (length <= limits.at_rest || returns_ >= kReturns) return false;
     state_ = State::slips;
     set_impulse(normals, limits.slipping / length * friction, Vector3::Zero());
     return true;
   }
   const double length = slip.norm();
   state_ = former.dot(slip) > 0.0 ? State::sticks : State::slips;
+  if (state_ == State::sticks) ++returns_;
   const bool has_friction = state_ == State::slips && length > 0.0;
   set_impulse(normals, has_friction ? Vector3(-limits.slipping / length * slip) : Vector3::Zero(), slip);
   return state_ != former_state || (impulse_ - former).norm() > kSettled * limits.slipping;

@@ -35,6 +35,7 @@ class ImplicitFriction {
   enum class State : char { none, slips, sticks, leaves };
 
   State state_ = State::none;
+  int returns_ = 0;  ///< number of times that slipping ended in this step
   Vector3 impulse_ = Vector3::Zero();
   Matrix3 stiffness_ = Matrix3::Zero();
 };

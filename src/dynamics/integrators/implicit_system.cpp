@@ -1,5 +1,7 @@
 #include "dynamics/integrators/implicit_system.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -25,11 +27,25 @@ void ImplicitSystem::assemble(const ForceDerivatives& derivatives, double dt) {
   for (Index i = 0; i < matrix_.size(); ++i) matrix_.add(i, i, network_.masses[i] * Matrix3::Identity());
   matrix_.add_scaled(derivatives.by_velocity, -dt);
   matrix_.add_scaled(derivatives.by_position, -dt * dt);
+  weights_.resize(matrix_.size());
+  for (Index i = 0; i < matrix_.size(); ++i) weights_[i] = kConstraintWeight * matrix_.diagonal(i).trace();
 }
 
 Matrix3 ImplicitSystem::constrain(Index particle, const Matrix3& projection, const Matrix3& stiffness) {
-  const Matrix3 added = kConstraintWeight * matrix_.diagonal(particle).trace() * projection + stiffness;
+  const Matrix3 added = weights_[particle] * projection + stiffness;
   matrix_.add(particle, particle, added);
+  return added;
+}
+
+Matrix3 ImplicitSystem::constrain(const ElementContact& contact, const Matrix3& projection, const Matrix3& stiffness) {
+  double weight = 0.0;
+  for (std::size_t k = 0; k < contact.count; ++k) weight = std::max(weight, weights_[contact.particles[k]]);
+  const Matrix3 added = weight * projection + stiffness;
+  for (std::size_t k = 0; k < contact.count; ++k) {
+    for (std::size_t l = 0; l <= k; ++l) {
+      matrix_.add(contact.particles[k], contact.particles[l], contact.weights[k] * contact.weights[l] * added);
+    }
+  }
   return added;
 }
 

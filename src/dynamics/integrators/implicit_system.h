@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dynamics/forces/force.h"
+#include "dynamics/integrators/constrained_directions.h"
 #include "dynamics/numerics/block_cholesky.h"
 #include "network/spring_network.h"
 
@@ -24,6 +25,9 @@ class ImplicitSystem {
   /// particles.
   Matrix3 constrain(Index particle, const Matrix3& projection, const Matrix3& stiffness = Matrix3::Zero());
 
+  /// Constrains the weighted sum of the contact's particles in the same way. Its pairs must be in the pattern. Not thread-safe.
+  Matrix3 constrain(const ElementContact& contact, const Matrix3& projection, const Matrix3& stiffness);
+
   /// Replaces the right-hand sides b of free particles by the solution y, and those of pinned particles by zero; 3 x n. The result
   /// is not finite if the matrix is not.
   void solve(Points& vectors);
@@ -31,6 +35,7 @@ class ImplicitSystem {
  private:
   const SpringNetwork& network_;
   BlockMatrix matrix_;  ///< of the whole network, including pinned particles
+  Scalars weights_;     ///< of constraints on each particle
   BlockCholesky<double> factor_;
 };
 

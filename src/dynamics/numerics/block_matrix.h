@@ -3,6 +3,7 @@
 
 #include "base/types.h"
 
+#include <compare>
 #include <vector>
 
 namespace sprung {
@@ -11,6 +12,8 @@ namespace sprung {
 struct ParticlePair {
   Index first = kNone;
   Index second = kNone;
+
+  [[nodiscard]] auto operator<=>(const ParticlePair&) const = default;
 };
 
 /// A sparse symmetric matrix of 3 x 3 blocks, one block row and column per particle. Stores the blocks on and below the diagonal
