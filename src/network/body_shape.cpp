@@ -54,7 +54,12 @@ void set_total_mass(BodyShape& shape, double total) {
   ProblemList problems;
   problems.require_positive("mass", total, "give the mass of the whole body in kg");
   problems.throw_if_any();
-  shape.masses.assign(shape.positions.size(), total / static_cast<double>(shape.positions.size()));
+  if (shape.carried.empty()) {
+    shape.masses.assign(shape.positions.size(), total / static_cast<double>(shape.positions.size()));
+  } else {
+    shape.masses = shape.measures;
+    for (double& mass : shape.masses) mass *= total / shape.measure;
+  }
 }
 
 void set_density(BodyShape& shape, double density) {

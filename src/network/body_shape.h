@@ -27,11 +27,12 @@ struct BodyShape {
   std::vector<double> measures;
   /// Per kind of spring, in the order of SpringKind: the damping ratio from which NetworkBuilder computes k_d.
   std::array<std::optional<double>, 3> damping_ratios{};
-  bool stretch_limited = true;   ///< whether the stretch limit applies to its springs
-  Cells cells;                   ///< of solids
-  bool preserve_volume = false;  ///< see Body
-  double volume_factor = 0.0;    ///< see Body
-  double pressure = 0.0;         ///< see Body
+  bool stretch_limited = true;     ///< whether the stretch limit applies to its springs
+  Cells cells;                     ///< of solids
+  std::vector<CellPoint> carried;  ///< see Body
+  bool preserve_volume = false;    ///< see Body
+  double volume_factor = 0.0;      ///< see Body
+  double pressure = 0.0;           ///< see Body
 };
 
 /// Stiffness and damping of one kind of spring.
@@ -99,6 +100,23 @@ struct SolidShape {
   std::array<Index, 3> resolution{2, 2, 2};  ///< particles per side, >= 2
 };
 
+/// Cubes that fill a closed surface and carry it. Springs lie in the cells as in those of a solid; each cell contributes to the
+/// stiffness and the mass of its corners in proportion to its fraction.
+struct LatticeShape {
+  struct Cell {
+    std::array<Index, 3> at;  ///< its numbers along x, y and z, from the origin
+    double fraction = 1.0;    ///< of its volume that is within the surface, in (0, 1]
+  };
+  using Numbers = std::array<Index, 3>;
+  /// The cell at a point [m].
+  [[nodiscard]] Numbers cell_at(const Vector3& point) const;
+
+  PolygonMesh surface;               ///< each vertex lies in a cell
+  Vector3 origin = Vector3::Zero();  ///< the lowest corner of cell (0, 0, 0) [m]
+  double cell_size = 1.0;            ///< [m], > 0
+  std::vector<Cell> cells;           ///< each once
+};
+
 /// The make_ functions throw InputError that names every broken rule of the shape (keys as in a scene: `size[0]`, `points[3]`) and
 /// of the materials (`springs.bend.damping`).
 [[nodiscard]] BodyShape make_rope(const RopeShape& rope, const SpringMaterials& materials);
@@ -111,7 +129,12 @@ struct SolidShape {
 /// shear precedes bend. Rest lengths are the distances in the mesh.
 [[nodiscard]] BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materials);
 
-/// Gives each particle the same share of `total` [kg]. Throws InputError unless `total` is positive and finite.
+/// The particles of the surface come first, in the order of its vertices, then the corners of the cells. A quarter of the mass of
+/// the corners belongs to the vertices that they carry.
+[[nodiscard]] BodyShape make_lattice_body(const LatticeShape& lattice, const SpringMaterials& materials);
+
+/// Gives each particle the same share of `total` [kg]; of a carried surface and its cells, a share in proportion to its measure.
+/// Throws InputError unless `total` is positive and finite.
 void set_total_mass(BodyShape& shape, double total);
 
 /// Gives each particle the mass of the region nearest to it: `density` [kg/m], [kg/m^2] or [kg/m^3] times its entry of `measures`.

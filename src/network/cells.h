@@ -14,6 +14,12 @@ using Hexahedron = std::array<Index, 8>;
 /// Corners of a tetrahedron: the others turn counter-clockwise seen from the first, so that its volume is positive.
 using Tetrahedron = std::array<Index, 4>;
 
+/// A point within a cell as a weighted sum of its corners; the weights are at least 0 and add up to 1.
+struct CellPoint {
+  Hexahedron corners;
+  std::array<double, 8> weights;
+};
+
 struct Cells {
   std::vector<Hexahedron> hexahedra;
   std::vector<Tetrahedron> tetrahedra;

@@ -172,7 +172,7 @@ SpringNetwork NetworkBuilder::build() const {
     network.bodies.push_back({draft.name, draft.first_particle, static_cast<Index>(draft.shape.positions.size()), first_spring,
                               network.springs.count() - first_spring, first_bend, network.angle_bends.count() - first_bend,
                               draft.shape.dimension, draft.shape.measure, draft.shape.resolution, draft.shape.surface,
-                              draft.material, draft.contact, draft.shape.stretch_limited, draft.shape.cells,
+                              draft.material, draft.contact, draft.shape.stretch_limited, draft.shape.cells, draft.shape.carried,
                               draft.shape.preserve_volume, draft.shape.volume_factor, draft.shape.pressure});
   }
   network.inverse_masses = network.masses.cwiseInverse();

@@ -49,7 +49,7 @@ struct AngleBends {
   void append(const std::array<Index, 3>& particles, const std::array<double, 2>& lengths, double k, double k_d);
 };
 
-/// The surface of a body, for collision and export. Vertex i is particle i of the body.
+/// The surface of a body, for collision and export. Vertex i is particle i of the body; particles that follow are inside.
 struct Surface {
   PolygonFaces faces;   ///< as exported
   Triangles triangles;  ///< of the triangulated faces
@@ -77,11 +77,16 @@ struct Body {
   Surface surface;
   ContactMaterial material;
   BodyContact contact;
-  bool stretch_limited = true;   ///< whether the stretch limit applies to its springs
-  Cells cells;                   ///< of solids; in the numbering of the body
+  bool stretch_limited = true;  ///< whether the stretch limit applies to its springs
+  Cells cells;                  ///< of solids; in the numbering of the body
+  /// Where the first particles of the body lie in its cells: passes keep them there. Empty unless cells carry a surface.
+  std::vector<CellPoint> carried;
   bool preserve_volume = false;  ///< whether passes keep the volume of the cells
   double volume_factor = 0.0;    ///< of a closed surface: the multiple of its volume at rest that passes keep; 0: none
   double pressure = 0.0;         ///< in a closed surface, along the normals of its triangles [Pa]
+
+  /// The number of particles, the first ones, that are vertices of the surface.
+  [[nodiscard]] Index vertex_count() const { return carried.empty() ? particle_count : static_cast<Index>(carried.size()); }
 };
 
 /// Particles that follow a prescribed motion or an obstacle. With the default motion they rest. A pin that begins after time 0

@@ -67,7 +67,7 @@ void check_names(const Simulator& simulator) {
 }
 
 std::string surface_text(const Simulator& simulator, const Body& body, const std::string& elements) {
-  return vertex_lines(simulator.positions().middleCols(body.first_particle, body.particle_count)) + elements;
+  return vertex_lines(simulator.positions().middleCols(body.first_particle, body.vertex_count())) + elements;
 }
 
 std::string element_lines(const Body& body) { return obj_text(Points(3, 0), body.surface.faces, body.surface.segments); }
@@ -147,7 +147,7 @@ Points read_vertex_lines(const std::string& text) {
 
 std::string body_obj_text(const Simulator& simulator, const Body& body, const ObjSource* source) {
   if (source == nullptr) return surface_text(simulator, body, element_lines(body));
-  return source->text(simulator.positions().middleCols(body.first_particle, body.particle_count), body.surface.triangles);
+  return source->text(simulator.positions().middleCols(body.first_particle, body.vertex_count()), body.surface.triangles);
 }
 
 std::vector<ObjSequence> obj_sequences(const Simulator& simulator, const ObjSources& sources, int frames) {

@@ -1,6 +1,7 @@
 #include "simulation/simulator.h"
 
 #include "collision/obstacles/obstacle_set.h"
+#include "dynamics/constraints/carried_surface.h"
 #include "dynamics/constraints/cell_volume.h"
 #include "dynamics/constraints/enclosed_volume.h"
 #include "dynamics/forces/shared_force.h"
@@ -79,6 +80,9 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   if (settings.air_drag > 0.0) add_force<AirDrag>(settings.air_drag, settings.wind);
   if (settings.contact.response == ContactSettings::Response::penalty && !environment.obstacles().empty()) {
     penalty = add_force<PenaltyContact>(environment, settings.contact.stiffness, settings.contact.damping, dt());
+  }
+  if (std::ranges::any_of(network.bodies, [](const Body& body) { return !body.carried.empty(); })) {
+    constraints.add(std::make_unique<CarriedSurface>(network));
   }
   if (has_pressure(network)) pressure = add_force<PressureForce>();
   if (std::ranges::any_of(network.bodies, &Body::preserve_volume)) constraints.add(std::make_unique<CellVolume>(network));

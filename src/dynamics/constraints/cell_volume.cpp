@@ -3,10 +3,8 @@
 #include "base/parallel.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace sprung {
 namespace {
@@ -72,7 +70,7 @@ CellVolume::CellVolume(const SpringNetwork& network) : network_(network) {
     add_hexahedra(body);
     add_stars(body);
   }
-  sort_by_colour();
+  colouring_ = colour_groups(volumes_.size(), network.particle_count(), [&](std::size_t r) { return region(r).particles; });
 }
 
 void CellVolume::add_hexahedra(const Body& body) {
@@ -125,27 +123,6 @@ void CellVolume::add(const std::vector<Index>& particles, std::vector<Part> part
   volumes_.push_back(volume);
 }
 
-/// Each region gets the lowest colour that none of its particles has. Regions that find none of 64 follow one after the other.
-void CellVolume::sort_by_colour() {
-  constexpr std::size_t kColours = 64;
-  std::vector<std::uint64_t> taken(network_.particle_count(), 0);
-  std::vector<std::size_t> colours(volumes_.size());
-  for (std::size_t r = 0; r < volumes_.size(); ++r) {
-    std::uint64_t used = 0;
-    for (const Index particle : region(r).particles) used |= taken[particle];
-    colours[r] = static_cast<std::size_t>(std::countr_one(used));
-    if (colours[r] == kColours) continue;
-    for (const Index particle : region(r).particles) taken[particle] |= std::uint64_t{1} << colours[r];
-  }
-  order_.resize(volumes_.size());
-  std::iota(order_.begin(), order_.end(), std::size_t{0});
-  std::ranges::stable_sort(order_, {}, [&](std::size_t r) { return colours[r]; });
-  for (std::size_t k = 1; k <= order_.size(); ++k) {
-    const bool ends = k == order_.size() || colours[order_[k]] == kColours || colours[order_[k]] != colours[order_[k - 1]];
-    if (ends) colour_begin_.push_back(k);
-  }
-}
-
 CellVolume::Region CellVolume::region(std::size_t number) const {
   return {
       .particles = std::span(particles_).subspan(particles_begin_[number], particles_begin_[number + 1] - particles_begin_[number]),
@@ -154,11 +131,11 @@ CellVolume::Region CellVolume::region(std::size_t number) const {
 }
 
 double CellVolume::project(const Points& /*before*/, Points& positions) const {
-  std::vector<double> changes(order_.size());
-  for (std::size_t c = 0; c + 1 < colour_begin_.size(); ++c) {
-    const std::size_t first = colour_begin_[c];
-    parallel_chunks(static_cast<Index>(colour_begin_[c + 1] - first), kRegionsPerChunk, [&](Index begin, Index end) {
-      for (std::size_t k = first + begin; k < first + end; ++k) changes[k] = project(region(order_[k]), positions);
+  std::vector<double> changes(colouring_.order.size());
+  for (std::size_t c = 0; c + 1 < colouring_.colour_begin.size(); ++c) {
+    const std::size_t first = colouring_.colour_begin[c];
+    parallel_chunks(static_cast<Index>(colouring_.colour_begin[c + 1] - first), kRegionsPerChunk, [&](Index begin, Index end) {
+      for (std::size_t k = first + begin; k < first + end; ++k) changes[k] = project(region(colouring_.order[k]), positions);
     });
   }
   return changes.empty() ? 0.0 : std::ranges::max(changes) / kTolerance;

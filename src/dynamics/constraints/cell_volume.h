@@ -1,6 +1,7 @@
 // Keeps the volume of the cells of solids.
 #pragma once
 
+#include "dynamics/constraints/colouring.h"
 #include "dynamics/constraints/constraint.h"
 #include "network/spring_network.h"
 
@@ -44,7 +45,6 @@ class CellVolume final : public Constraint {
   void add_hexahedra(const Body& body);
   void add_stars(const Body& body);
   void add(const std::vector<Index>& particles, std::vector<Part> parts);
-  void sort_by_colour();
   [[nodiscard]] Region region(std::size_t number) const;
   [[nodiscard]] double volume_of(const Region& region, const Points& positions) const;
   double project(const Region& region, Points& positions) const;
@@ -59,9 +59,7 @@ class CellVolume final : public Constraint {
   std::vector<Part> parts_;
   std::vector<double> volumes_;
 
-  /// Numbers of regions. Those of one colour, [colour_begin_[c], colour_begin_[c + 1]), share no particle.
-  std::vector<std::size_t> order_;
-  std::vector<std::size_t> colour_begin_{0};
+  Colouring colouring_;
 };
 
 }  // namespace sprung

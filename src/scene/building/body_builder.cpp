@@ -2,11 +2,13 @@
 
 #include "base/format.h"
 #include "geometry/import/mesh_file.h"
+#include "geometry/import/mesh_import.h"
 #include "geometry/mesh/polygon_mesh.h"
 #include "geometry/mesh/topology.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "geometry/mesh/weld.h"
 #include "scene/building/particle_selector.h"
+#include "scene/building/lattice_filling.h"
 #include "scene/json/json_text.h"
 #include "scene/json/nearest_name.h"
 #include "scene/materials/materials.h"
@@ -77,6 +79,26 @@ class ShapeMaker {
     BuiltBody body{make_mesh_body(polygons, body_.springs), std::move(source),
                    names_groups(body_) ? read_obj_groups(*file) : ObjGroups{}};
     fill(body.shape);
+    return body;
+  }
+
+  std::optional<BuiltBody> from(const LatticeFile& lattice) {
+    const auto file = finder_.find(lattice.file, key_ + ".shape.file", problems_);
+    if (!file) return std::nullopt;
+    PolygonMesh surface;
+    std::optional<ObjSource> source;
+    if (lower_case_extension(*file) == ".obj") {
+      surface = read_obj(*file);
+      source = read_obj_source(*file, body_.normals ? ObjTemplate::Normals::per_vertex : ObjTemplate::Normals::as_given);
+    } else {
+      const TriangleMesh mesh = import_mesh(*file).mesh;
+      surface = {.vertices = mesh.vertices, .faces = to_polygons(mesh.triangles), .lines = Edges(2, 0)};
+    }
+    surface.vertices *= body_.place.scale;
+    const double longest = (surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff()).maxCoeff();
+    const double cell_size = lattice.cells > 0 ? longest / lattice.cells : lattice.cell_size;
+    BuiltBody body{make_lattice_body(fill_with_cells(std::move(surface), cell_size), body_.springs), std::move(source)};
+    body.shape.preserve_volume = body_.preserve_volume;
     return body;
   }
 

@@ -37,6 +37,7 @@ class ParticleFinder {
   }
 
   static std::optional<Index> corner(const MeshFile& /*mesh*/, const std::string& /*name*/) { return std::nullopt; }
+  static std::optional<Index> corner(const LatticeFile& /*lattice*/, const std::string& /*name*/) { return std::nullopt; }
   template <class Shape>
   static std::optional<Index> corner(const Shape& shape, const std::string& name) {
     return corner_particle(shape, name);

@@ -36,7 +36,14 @@ struct MeshFiles {
   bool loop = false;
 };
 
-using BodyShapeScene = std::variant<RopeShape, ClothShape, SolidShape, MeshFile>;
+/// A closed mesh that cells fill.
+struct LatticeFile {
+  std::string file;
+  Index cells = 0;         ///< along the longest side; 0: `cell_size` says it
+  double cell_size = 0.0;  ///< after scaling [m]
+};
+
+using BodyShapeScene = std::variant<RopeShape, ClothShape, SolidShape, MeshFile, LatticeFile>;
 using ObstacleShapeScene = std::variant<MeshFile, MeshFiles, SphereGeometry, BoxGeometry, CapsuleGeometry, CylinderGeometry,
                                         ConeGeometry, EllipsoidGeometry, HalfSpaceGeometry>;
 
@@ -97,7 +104,7 @@ struct BodyScene {
   Vector3 velocity = Vector3::Zero();
   ContactMaterial material;
   BodyContact contact;
-  bool normals = false;  ///< whether the frames of a mesh have new normals
+  bool normals = false;          ///< whether the frames of a mesh have new normals
   bool preserve_volume = false;  ///< of the cells of a solid
   double volume_factor = 0.0;    ///< of a closed mesh, which keeps this multiple of its volume; 0: none
   double pressure = 0.0;         ///< in a closed mesh [Pa]

@@ -7,6 +7,8 @@
 namespace sprung {
 namespace {
 
+constexpr Index kMaxLatticeCells = 1024;  // along the longest side
+
 Rule<Index> particle_count() { return integer(2, kMaxBodyParticles); }
 
 RopeShape read_rope(Fields& fields) {
@@ -49,10 +51,21 @@ SolidShape read_solid(Fields& fields) {
   return {.size = size.value_or(Vector3::Zero()), .resolution = read_resolution<3>(fields)};
 }
 
+LatticeFile read_lattice(Fields& fields) {
+  LatticeFile lattice{.file = fields.required("file", text()).value_or("")};
+  const auto cells = fields.optional("cells", integer(1, kMaxLatticeCells));
+  const auto cell_size = fields.optional("cell_size", number(kPositive));
+  const auto key = fields.one_of({"cells", "cell_size"});
+  if (key == "cells") lattice.cells = cells.value_or(1);
+  if (key == "cell_size") lattice.cell_size = cell_size.value_or(1.0);
+  return lattice;
+}
+
 std::optional<BodyShapeScene> read_shape(Fields& fields) {
-  const auto kind = fields.kind("type", {"rope", "cloth", "solid", "mesh"});
+  const auto kind = fields.kind("type", {"rope", "cloth", "solid", "mesh", "lattice"});
   if (!kind) {
-    fields.accept_keys_of_all_kinds({"from", "to", "points", "particles", "length", "size", "resolution", "file", "weld"});
+    fields.accept_keys_of_all_kinds(
+        {"from", "to", "points", "particles", "length", "size", "resolution", "file", "weld", "cells", "cell_size"});
     return std::nullopt;
   }
   switch (*kind) {
@@ -62,6 +75,8 @@ std::optional<BodyShapeScene> read_shape(Fields& fields) {
       return read_cloth(fields);
     case 2:
       return read_solid(fields);
+    case 4:
+      return read_lattice(fields);
     default:
       return MeshFile{.file = fields.required("file", text()).value_or(""), .weld = fields.optional("weld", number(kNotNegative))};
   }
@@ -77,6 +92,7 @@ NamedParts named_parts(const std::optional<BodyShapeScene>& shape) {
   }
   struct Parts {
     NamedParts operator()(const MeshFile& /*mesh*/) const { return {.corners = {}, .groups = true}; }
+    NamedParts operator()(const LatticeFile& /*lattice*/) const { return {}; }
     NamedParts operator()(const RopeShape& rope) const { return {.corners = corner_names(rope)}; }
     NamedParts operator()(const ClothShape& cloth) const { return {.corners = corner_names(cloth)}; }
     NamedParts operator()(const SolidShape& solid) const { return {.corners = corner_names(solid)}; }
@@ -163,14 +179,18 @@ struct VolumeScene {
   double factor = 0.0;
 };
 
+bool has_cells(const BodyShapeScene& shape) {
+  return std::holds_alternative<SolidShape>(shape) || std::holds_alternative<LatticeFile>(shape);
+}
+
 VolumeScene read_volume(Fields& fields, const std::optional<BodyShapeScene>& shape) {
   VolumeScene volume;
   const auto report = [&](const char* key, const std::string& rule, const std::string& remedy) {
     fields.location().at(key).report(fields.json()[key], rule, remedy);
   };
   volume.preserve = fields.value("preserve", boolean(), false).value_or(false);
-  if (volume.preserve && shape && !std::holds_alternative<SolidShape>(*shape)) {
-    report("preserve", "needs cells, which only a solid has", "a closed mesh has \"factor\" instead; or remove it");
+  if (volume.preserve && shape && !has_cells(*shape)) {
+    report("preserve", "needs cells, which a solid and a lattice have", "a closed mesh has \"factor\" instead; or remove it");
   }
   if (const auto factor = fields.optional("factor", number(kPositive))) {
     volume.factor = *factor;

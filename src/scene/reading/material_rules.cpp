@@ -26,6 +26,7 @@ ShapeMaterials materials_of(const std::optional<BodyShapeScene>& shape) {
     ShapeMaterials operator()(const RopeShape& /*rope*/) const { return {"a rope", {MaterialKind::rope}}; }
     ShapeMaterials operator()(const ClothShape& /*cloth*/) const { return {"a cloth", {MaterialKind::cloth}}; }
     ShapeMaterials operator()(const SolidShape& /*solid*/) const { return {"a solid", {MaterialKind::solid}}; }
+    ShapeMaterials operator()(const LatticeFile& /*lattice*/) const { return {"a lattice", {MaterialKind::solid}}; }
     // With faces a mesh is a cloth, otherwise a rope. The builder compares it with the file.
     ShapeMaterials operator()(const MeshFile& /*mesh*/) const { return {"a mesh", {MaterialKind::cloth, MaterialKind::rope}}; }
   };

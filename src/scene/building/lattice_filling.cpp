@@ -1,0 +1,106 @@
+#include "scene/building/lattice_filling.h"
+
+#include "base/error.h"
+#include "base/format.h"
+#include "base/machine_memory.h"
+#include "collision/mesh_bvh/winding_number.h"
+#include "geometry/import/mesh_import.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sprung {
+namespace {
+
+constexpr Index kMaxCells = 1024;        // along a side
+constexpr double kMargin = 1.0e-3;       // of a cell, around the surface: no vertex lies on the border of the lattice
+constexpr int kSamples = 3;              // along each side of a cell
+constexpr double kBytesOfCell = 4000.0;  // springs, corners and volume of a cell, measured with a million
+constexpr double kGigabyte = 1.0e9;
+
+/// What is inside and what is outside of a surface. Vertices at the same place, as along the seams of UVs, count as one.
+class Inside {
+ public:
+  explicit Inside(const PolygonMesh& surface) : Inside(clean_mesh({surface.vertices, triangulate(surface.faces)})) {}
+
+  /// The fraction [0, 1] of a box that is inside.
+  [[nodiscard]] double fraction(const Box3& box) const {
+    find_in_box(tree_, box, near_);
+    const int samples = near_.empty() ? 1 : kSamples;
+    int inside = 0;
+    for (int i = 0; i < samples * samples * samples; ++i) {
+      const Vector3 at(i % samples, i / samples % samples, i / (samples * samples));
+      const Vector3 point = box.min() + (at + Vector3::Constant(0.5)).cwiseProduct(box.sizes()) / samples;
+      if (winding_number(tree_, point) != 0) ++inside;
+    }
+    return static_cast<double>(inside) / (samples * samples * samples);
+  }
+
+ private:
+  explicit Inside(const ImportedMesh& mesh) : tree_(mesh.mesh) {
+    if (mesh.report.closed) return;
+    throw InputError({.key = "file",
+                      .value = "an open mesh, with " + std::to_string(mesh.report.border_edges) + " border edges",
+                      .rule = "must be a closed mesh, so that it has an inside",
+                      .remedy = "fill its holes; `sprung info` describes them"});
+  }
+
+  MeshBvh tree_;
+  mutable std::vector<Index> near_;
+};
+
+void check_size(const Vector3& cells, double cell_size) {
+  const std::string value = format_number(cell_size, 6) + " m";
+  if (!(cells.maxCoeff() <= kMaxCells)) {
+    throw InputError({.key = "cell_size",
+                      .value = value,
+                      .rule = "makes " + format_number(cells.maxCoeff(), 3) + " cells along a side, where at most " +
+                              std::to_string(kMaxCells) + " are possible",
+                      .remedy = "use larger cells"});
+  }
+  const double bytes = kBytesOfCell * cells.prod();
+  if (bytes <= machine_memory()) return;
+  throw InputError({.key = "cell_size",
+                    .value = value,
+                    .rule = "makes a lattice that takes up to " + format_number(bytes / kGigabyte, 3) +
+                            " GB of memory, and this machine has " + format_number(machine_memory() / kGigabyte, 3) + " GB",
+                    .remedy = "use larger cells"});
+}
+
+}  // namespace
+
+LatticeShape fill_with_cells(PolygonMesh surface, double cell_size) {
+  const Inside inside(surface);
+  const Vector3 lower = surface.vertices.rowwise().minCoeff();
+  const Vector3 upper = surface.vertices.rowwise().maxCoeff();
+  LatticeShape lattice;
+  lattice.surface = std::move(surface);
+  const Vector3 cells = ((upper - lower) / cell_size).array().ceil().max(1.0);
+  check_size(cells, cell_size);
+  // A box whose size is a multiple of the cells gets no further layer for the margin's sake.
+  lattice.cell_size = (1.0 + 2.0 * kMargin) * cell_size;
+  lattice.origin = 0.5 * (lower + upper) - 0.5 * lattice.cell_size * cells;
+
+  std::set<LatticeShape::Numbers> with_vertex;
+  for (const auto& vertex : lattice.surface.vertices.colwise()) with_vertex.insert(lattice.cell_at(vertex));
+  const auto [nx, ny, nz] =
+      std::array<Index, 3>{static_cast<Index>(cells[0]), static_cast<Index>(cells[1]), static_cast<Index>(cells[2])};
+  for (Index k = 0; k < nz; ++k) {
+    for (Index j = 0; j < ny; ++j) {
+      for (Index i = 0; i < nx; ++i) {
+        const Vector3 corner = lattice.origin + lattice.cell_size * Vector3(i, j, k);
+        const double fraction = inside.fraction(Box3(corner, corner + Vector3::Constant(lattice.cell_size)));
+        const double least = with_vertex.contains({i, j, k}) ? 1.0 / (kSamples * kSamples * kSamples) : 0.0;
+        if (std::max(fraction, least) > 0.0) lattice.cells.push_back({{i, j, k}, std::max(fraction, least)});
+      }
+    }
+  }
+  return lattice;
+}
+
+}  // namespace sprung
