@@ -15,7 +15,7 @@ using Node = std::array<Index, 3>;
 
 // Part of the mass that surface vertices get. Contact and friction act on them: light ones would take long to pass on what they
 // feel.
-constexpr double kMassOfSurface = 0.25;
+constexpr double kMassOfSurface = 0.5;
 
 /// The corners of cells, numbered in the order in which cells name them.
 class Nodes {

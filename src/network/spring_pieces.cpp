@@ -16,6 +16,7 @@ UnionFind sets_of(const SpringNetwork& network, const Body& body) {
   for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
     join(network.springs.first[s], network.springs.second[s]);
   }
+  for (std::size_t v = 0; v < body.carried.size(); ++v) sets.join(static_cast<Index>(v), body.carried[v].corners.front());
   const AngleBends& bends = network.angle_bends;
   for (Index a = body.first_angle_bend; a < body.first_angle_bend + body.angle_bend_count; ++a) {
     join(bends.before[a], bends.middle[a]);

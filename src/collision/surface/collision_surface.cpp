@@ -17,7 +17,7 @@ void add_single_particles(const std::vector<Index>& body_of, std::vector<Element
     for (const Index particle : corners_of(element)) used[static_cast<std::size_t>(particle)] = 1;
   }
   for (std::size_t i = 0; i < body_of.size(); ++i) {
-    if (used[i] == 0) elements.push_back({{static_cast<Index>(i), kNone, kNone}, 1, body_of[i]});
+    if (used[i] == 0 && body_of[i] != kNone) elements.push_back({{static_cast<Index>(i), kNone, kNone}, 1, body_of[i]});
   }
   std::stable_sort(elements.begin(), elements.end(), [](const Element& a, const Element& b) { return a.body < b.body; });
 }

@@ -36,7 +36,7 @@ struct PatchSlot {
   Index slot = kNone;  ///< index in `particles` of the patch
 };
 
-/// Every particle of the network belongs to at least one element. Elements of a patch are consecutive and belong to one body.
+/// A particle that collides belongs to at least one element. Elements of a patch are consecutive and belong to one body.
 struct CollisionSurface {
   std::vector<Element> elements;
   std::vector<ElementPatch> patches;
@@ -52,7 +52,8 @@ struct CollisionSurface {
 };
 
 /// Divides the elements, which are sorted by body, into patches of neighbours by bisection of their middles at `positions` [m], 3
-/// x n. A particle without an element gets an element of its own. `body_of` is the body of each particle. Element sizes are
+/// x n. A particle without an element gets an element of its own. `body_of` is the body of each particle; kNone: it does not
+/// collide. Element sizes are
 /// measured at `positions`. The other arguments become the members of the same name.
 [[nodiscard]] CollisionSurface make_collision_surface(std::vector<Element> elements, const Points& positions,
                                                       const std::vector<Index>& body_of, Scalars thickness,

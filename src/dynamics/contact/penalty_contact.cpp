@@ -3,6 +3,7 @@
 #include "dynamics/contact/contact_materials.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace sprung {
 
@@ -12,7 +13,12 @@ PenaltyContact::PenaltyContact(const SpringNetwork& network, Environment& enviro
       stiffness_(stiffness),
       damping_(damping),
       dt_(dt),
-      thickness_(particle_thickness(network)) {}
+      thickness_(particle_thickness(network)) {
+  for (const Body& body : network.bodies) {  // what carries a surface does not collide
+    const Index inside = body.particle_count - body.vertex_count();
+    thickness_.segment(body.first_particle + body.vertex_count(), inside).setConstant(-std::numeric_limits<double>::infinity());
+  }
+}
 
 void PenaltyContact::prepare(double time) {
   const Environment::Interval interval = environment_.interval();

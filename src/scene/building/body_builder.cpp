@@ -89,7 +89,7 @@ class ShapeMaker {
     std::optional<ObjSource> source;
     if (lower_case_extension(*file) == ".obj") {
       surface = read_obj(*file);
-      source = read_obj_source(*file, body_.normals ? ObjTemplate::Normals::per_vertex : ObjTemplate::Normals::as_given);
+      source = read_obj_source(*file, ObjTemplate::Normals::as_given);
     } else {
       const TriangleMesh mesh = import_mesh(*file).mesh;
       surface = {.vertices = mesh.vertices, .faces = to_polygons(mesh.triangles), .lines = Edges(2, 0)};

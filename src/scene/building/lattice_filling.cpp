@@ -19,6 +19,7 @@ namespace {
 
 constexpr Index kMaxCells = 1024;        // along a side
 constexpr double kMargin = 1.0e-3;       // of a cell, around the surface: no vertex lies on the border of the lattice
+constexpr double kLeastFraction = 0.25;  // of a cell: lighter and softer ones turn inside out under their neighbours
 constexpr int kSamples = 3;              // along each side of a cell
 constexpr double kBytesOfCell = 4000.0;  // springs, corners and volume of a cell, measured with a million
 constexpr double kGigabyte = 1.0e9;
@@ -95,8 +96,8 @@ LatticeShape fill_with_cells(PolygonMesh surface, double cell_size) {
       for (Index i = 0; i < nx; ++i) {
         const Vector3 corner = lattice.origin + lattice.cell_size * Vector3(i, j, k);
         const double fraction = inside.fraction(Box3(corner, corner + Vector3::Constant(lattice.cell_size)));
-        const double least = with_vertex.contains({i, j, k}) ? 1.0 / (kSamples * kSamples * kSamples) : 0.0;
-        if (std::max(fraction, least) > 0.0) lattice.cells.push_back({{i, j, k}, std::max(fraction, least)});
+        if (fraction == 0.0 && !with_vertex.contains({i, j, k})) continue;
+        lattice.cells.push_back({{i, j, k}, std::max(fraction, kLeastFraction)});
       }
     }
   }

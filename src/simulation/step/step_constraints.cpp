@@ -16,7 +16,7 @@ constexpr double kRelaxation = 1.8;
 // Passes that constraints get, if the stretch limit does not ask for more: so many a second, and at least so many a step. What
 // passes miss is small in small steps, and the next step continues from there.
 constexpr double kConstraintPassRate = 1200.0;
-constexpr double kMinConstraintPasses = 4.0;
+constexpr double kMinConstraintPasses = 8.0;
 
 // Calls of Integrator::respond_to_contact a step after contact passes, at most. Friction settles in 2 to 20 of them: with 6, a
 // rope does not slide on a drum whose friction is 5 % too small.
