@@ -165,7 +165,7 @@ TEST_P(Pins, ParticlesKeepTheirPlaceOverADeformingObstacleThatTheyFollow) {
 
 // A change between steps builds the simulator anew, and the pin must not take its particle a second time.
 TEST_P(Pins, AChangeOfTheSimulatorDoesNotDisturbAPinThatHolds) {
-  const SpringNetwork network = pinned_particle({pin_of({0}, 0.2, 0.6, kOneMetrePerSecond)});
+  const SpringNetwork network = pinned_particle({pin_of({0}, 0.2, 0.6, {.keyframes = {}, .spin = {10.0, 20.0, 300.0}})});
   Simulator whole(network, settings());
   Simulator changed(network, settings());
   for (int k = 0; k < 7; ++k) {
@@ -195,19 +195,30 @@ TEST(PinTimes, ARunSleepsOnlyOnceNoPinWillBeginOrEnd) {
 TEST(PinTimes, TheLargestStableStepHoldsForEverySetOfPins) {
   const double stiffness = 1000.0;
   const double mass = 0.1;
+  const SimulatorSettings settings{.step = 0.9 * 2.0 / std::sqrt(stiffness / mass), .integrator = SymplecticEulerSettings{}};
   const auto start = [&](double from, double until) {
     NetworkBuilder builder;
     builder.add_particle({0.0, 0.0, 0.0}, mass);
     builder.add_particle({1.0, 0.0, 0.0}, mass);
     builder.add_spring(0, 1, stiffness, 1.0);
     builder.add_pin(pin_of({0}, from, until));
-    const double step = 0.9 * 2.0 / std::sqrt(stiffness / mass);
-    Simulator simulator(builder.build(), {.step = step, .integrator = SymplecticEulerSettings{}});
-    run(simulator, 1.0);
+    const Simulator simulator(builder.build(), settings);
   };
   EXPECT_NO_THROW(start(0.0, std::numeric_limits<double>::infinity()));
   EXPECT_THROW(start(0.0, 0.5), InputError);
   EXPECT_THROW(start(0.5, std::numeric_limits<double>::infinity()), InputError);
+}
+
+// Near the largest stable step, a bound that each set of pins had for itself could refuse the step in the middle of the run.
+TEST(PinTimes, AStepThatIsAcceptedAtTheStartIsAcceptedWheneverPinsChange) {
+  const Index side = 6;
+  SpringNetwork network = testing::cloth(side, 1.0);
+  network.later_pins = {pin_of({0, side - 1}, 0.05, 0.1), pin_of({0}, 0.1), pin_of({7, 8, 9}, 0.02, 0.15)};
+  const double largest = largest_stable_step(SymplecticEulerSettings{}, spectral_bounds(network, 0.0));
+  Simulator simulator(network, {.step = largest, .integrator = SymplecticEulerSettings{}});
+  EXPECT_NO_THROW(run(simulator, 0.3));
+  EXPECT_TRUE(simulator.network().later_pins.empty());
+  EXPECT_EQ(simulator.network().pins.size(), 1U);
 }
 
 TEST(PinTimes, APinOfAMissingObstacleIsAProblem) {
