@@ -63,6 +63,7 @@ BodyShape make_tetrahedra_body(const TetrahedraMesh& mesh, const SpringMaterials
   BodyShape shape = shape_of_particles({mesh.vertices.colwise().begin(), mesh.vertices.colwise().end()}, materials);
   if (materials.structural) add_springs(mesh, *materials.structural, shape);
   set_surface(shape, boundary_triangles(mesh.tetrahedra));
+  shape.cells.tetrahedra = mesh.tetrahedra;
   shape.dimension = 3;
   shape.measures = quarter_volumes(mesh);
   shape.measure = std::accumulate(shape.measures.begin(), shape.measures.end(), 0.0);

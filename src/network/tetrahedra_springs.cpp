@@ -24,8 +24,8 @@ constexpr double kLeastRelaxed = 0.5;
 constexpr int kMonomials = 15;
 using Moments = Eigen::Matrix<double, kMonomials, 1>;
 
-// The independent components of n n n n, each times the square root of the number of its equals, so that the dot product of two
-// is (n . m)^4.
+// The independent components of n (x) n (x) n (x) n, each times the square root of the number of its equals, so that the dot
+// product of two is (n . m)^4.
 Moments fourth_moments(const Vector3& n) {
   const Vector3 n2 = n.cwiseProduct(n);
   const double root4 = 2.0;
@@ -76,8 +76,8 @@ std::vector<TetrahedraEdge> shared_volumes(const Points& vertices, const std::ve
   return edges;
 }
 
-// Least squares: |sum of w f n n n n - isotropic|^2 + kEvenness (sum of w (f - 1)^2), with w the parts of the volume. Its minimum
-// has f - 1 = G : n n n n.
+// Least squares: |sum of w f n (x) n (x) n (x) n - isotropic|^2 + kEvenness (sum of w (f - 1)^2), with w the parts of the volume.
+// Its minimum has f - 1 = G : n (x) n (x) n (x) n.
 void weigh_directions(const Points& vertices, std::vector<TetrahedraEdge>& edges) {
   double volume = 0.0;
   Moments sum = Moments::Zero();

@@ -141,6 +141,7 @@ TEST(TetrahedraBody, HasOneSpringPerEdgeAndTheBoundaryAsItsSurface) {
   EXPECT_NEAR(signed_volume(mesh.vertices, body.surface.triangles), 1.5, 1e-13);
   EXPECT_NEAR(body.measure, 1.5, 1e-13);
   EXPECT_EQ(body.dimension, 3);
+  EXPECT_EQ(body.cells.tetrahedra, mesh.tetrahedra);
 }
 
 TEST(TetrahedraBody, EachVertexHasAQuarterOfTheTetrahedraAroundIt) {

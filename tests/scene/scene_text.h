@@ -132,7 +132,9 @@ inline constexpr const char* kFullScene = R"({
                "springs": { "structural": { "stiffness": 400 }, "bend": { "damping_time": 0.002 } } },
     "cable": { "shape": { "type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 5 }, "material": "steel_cable",
                "diameter": 0.008, "friction": 0.1 },
-    "sponge": { "shape": { "type": "solid", "size": [1, 2, 3], "resolution": [4, 5, 6] }, "material": "foam" }
+    "sponge": { "shape": { "type": "solid", "size": [1, 2, 3], "resolution": [4, 5, 6] }, "material": "foam" },
+    "ham": { "shape": { "type": "tetrahedra", "file": "ham.msh" }, "material": "firm_jelly", "friction": 0.3,
+             "volume": { "preserve": true } }
   },
   "obstacles": {
     "bunny": { "shape": { "type": "mesh", "file": "bunny.obj" }, "place": { "position": [0, 0, 1], "scale": 0.6 },

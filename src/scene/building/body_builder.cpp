@@ -7,8 +7,9 @@
 #include "geometry/mesh/topology.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "geometry/mesh/weld.h"
-#include "scene/building/particle_selector.h"
+#include "network/tetrahedra_body.h"
 #include "scene/building/lattice_filling.h"
+#include "scene/building/particle_selector.h"
 #include "scene/json/json_text.h"
 #include "scene/json/nearest_name.h"
 #include "scene/materials/materials.h"
@@ -54,6 +55,16 @@ class ShapeMaker {
   std::optional<BuiltBody> from(SolidShape solid) const {
     solid.size *= body_.place.scale;
     BuiltBody body{make_solid(solid, body_.springs)};
+    body.shape.preserve_volume = body_.preserve_volume;
+    return body;
+  }
+
+  std::optional<BuiltBody> from(const TetrahedraFile& tetrahedra) {
+    const auto file = finder_.find(tetrahedra.file, key_ + ".shape.file", problems_);
+    if (!file) return std::nullopt;
+    TetrahedraMesh mesh = read_tetrahedra(*file);
+    mesh.vertices *= body_.place.scale;
+    BuiltBody body{make_tetrahedra_body(mesh, body_.springs)};
     body.shape.preserve_volume = body_.preserve_volume;
     return body;
   }

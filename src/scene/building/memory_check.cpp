@@ -30,8 +30,9 @@ struct ShapeBytes {
   }
   double operator()(const ClothShape& cloth) const { return kBytesOfCloth * product(cloth.resolution); }
   double operator()(const SolidShape& solid) const { return kBytesOfSolid * product(solid.resolution); }
-  double operator()(const MeshFile& /*mesh*/) const { return 0.0; }        // it is not read yet
-  double operator()(const LatticeFile& /*lattice*/) const { return 0.0; }  // likewise
+  double operator()(const MeshFile& /*mesh*/) const { return 0.0; }              // it is not read yet
+  double operator()(const LatticeFile& /*lattice*/) const { return 0.0; }        // likewise
+  double operator()(const TetrahedraFile& /*tetrahedra*/) const { return 0.0; }  // likewise
 };
 
 double bytes_of(const BodyScene& body) { return std::visit(ShapeBytes{}, body.shape); }

@@ -36,6 +36,7 @@ class ParticleFinder {
     return particles;
   }
 
+  static std::optional<Index> corner(const TetrahedraFile& /*tetrahedra*/, const std::string& /*name*/) { return std::nullopt; }
   static std::optional<Index> corner(const MeshFile& /*mesh*/, const std::string& /*name*/) { return std::nullopt; }
   static std::optional<Index> corner(const LatticeFile& /*lattice*/, const std::string& /*name*/) { return std::nullopt; }
   template <class Shape>

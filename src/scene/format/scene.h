@@ -43,7 +43,12 @@ struct LatticeFile {
   double cell_size = 0.0;  ///< after scaling [m]
 };
 
-using BodyShapeScene = std::variant<RopeShape, ClothShape, SolidShape, MeshFile, LatticeFile>;
+/// A file of tetrahedra, or one of the two that TetGen writes.
+struct TetrahedraFile {
+  std::string file;
+};
+
+using BodyShapeScene = std::variant<RopeShape, ClothShape, SolidShape, MeshFile, LatticeFile, TetrahedraFile>;
 using ObstacleShapeScene = std::variant<MeshFile, MeshFiles, SphereGeometry, BoxGeometry, CapsuleGeometry, CylinderGeometry,
                                         ConeGeometry, EllipsoidGeometry, HalfSpaceGeometry>;
 

@@ -62,7 +62,7 @@ LatticeFile read_lattice(Fields& fields) {
 }
 
 std::optional<BodyShapeScene> read_shape(Fields& fields) {
-  const auto kind = fields.kind("type", {"rope", "cloth", "solid", "mesh", "lattice"});
+  const auto kind = fields.kind("type", {"rope", "cloth", "solid", "mesh", "lattice", "tetrahedra"});
   if (!kind) {
     fields.accept_keys_of_all_kinds(
         {"from", "to", "points", "particles", "length", "size", "resolution", "file", "weld", "cells", "cell_size"});
@@ -77,6 +77,8 @@ std::optional<BodyShapeScene> read_shape(Fields& fields) {
       return read_solid(fields);
     case 4:
       return read_lattice(fields);
+    case 5:
+      return TetrahedraFile{fields.required("file", text()).value_or("")};
     default:
       return MeshFile{.file = fields.required("file", text()).value_or(""), .weld = fields.optional("weld", number(kNotNegative))};
   }
@@ -93,6 +95,7 @@ NamedParts named_parts(const std::optional<BodyShapeScene>& shape) {
   struct Parts {
     NamedParts operator()(const MeshFile& /*mesh*/) const { return {.corners = {}, .groups = true}; }
     NamedParts operator()(const LatticeFile& /*lattice*/) const { return {}; }
+    NamedParts operator()(const TetrahedraFile& /*tetrahedra*/) const { return {}; }
     NamedParts operator()(const RopeShape& rope) const { return {.corners = corner_names(rope)}; }
     NamedParts operator()(const ClothShape& cloth) const { return {.corners = corner_names(cloth)}; }
     NamedParts operator()(const SolidShape& solid) const { return {.corners = corner_names(solid)}; }
@@ -142,7 +145,17 @@ SpringMaterial read_spring(Fields& fields) {
   return material;
 }
 
-SpringMaterials read_springs(Fields& fields) {
+/// Springs of a kind that tetrahedra lack.
+void refuse_other_springs(Fields& fields, const std::optional<BodyShapeScene>& shape) {
+  if (!shape || !std::holds_alternative<TetrahedraFile>(*shape)) return;
+  for (const char* kind : {"shear", "bend"}) {
+    if (!fields.has(kind)) continue;
+    fields.location().at(kind).report_key("is not for tetrahedra, which have structural springs along their edges and no others",
+                                          "remove it");
+  }
+}
+
+SpringMaterials read_springs(Fields& fields, const std::optional<BodyShapeScene>& shape) {
   const auto spring = object_of<SpringMaterial>(read_spring);
   SpringMaterials materials;
   materials.structural = fields.optional("structural", spring);
@@ -153,6 +166,7 @@ SpringMaterials read_springs(Fields& fields) {
     return read_spring(keys);
   });
   materials.bend = fields.optional("bend", bend);
+  refuse_other_springs(fields, shape);
   return materials;
 }
 
@@ -180,7 +194,8 @@ struct VolumeScene {
 };
 
 bool has_cells(const BodyShapeScene& shape) {
-  return std::holds_alternative<SolidShape>(shape) || std::holds_alternative<LatticeFile>(shape);
+  return std::holds_alternative<SolidShape>(shape) || std::holds_alternative<LatticeFile>(shape) ||
+         std::holds_alternative<TetrahedraFile>(shape);
 }
 
 VolumeScene read_volume(Fields& fields, const std::optional<BodyShapeScene>& shape) {
@@ -190,7 +205,8 @@ VolumeScene read_volume(Fields& fields, const std::optional<BodyShapeScene>& sha
   };
   volume.preserve = fields.value("preserve", boolean(), false).value_or(false);
   if (volume.preserve && shape && !has_cells(*shape)) {
-    report("preserve", "needs cells, which a solid and a lattice have", "a closed mesh has \"factor\" instead; or remove it");
+    report("preserve", "needs cells, which a solid, a lattice and tetrahedra have",
+           "a closed mesh has \"factor\" instead; or remove it");
   }
   if (const auto factor = fields.optional("factor", number(kPositive))) {
     volume.factor = *factor;
@@ -215,7 +231,8 @@ BodyScene read_body(Fields& fields) {
   body.shape = shape.value_or(BodyShapeScene{});
   read_preset(fields, shape, body);
   body.mass = read_mass(fields);
-  body.springs = fields.value("springs", object_of<SpringMaterials>(read_springs), Json::object()).value_or(SpringMaterials{});
+  const auto springs = object_of<SpringMaterials>([&](Fields& keys) { return read_springs(keys, shape); });
+  body.springs = fields.value("springs", springs, Json::object()).value_or(SpringMaterials{});
   body.place = fields.value("place", placement_rule(), Json::object()).value_or(Placement{});
   const NamedParts parts = named_parts(shape);
   const auto pins = fields.value("pins", list_of(pin_rule(parts), 0), Json::array());

@@ -12,6 +12,9 @@ namespace {
 // From a spider's thread to a chimney [m]. What is scaled by them stays far within the numbers that the other keys may have.
 constexpr Range kDiameters{.lower = 1e-6, .upper = 10.0};
 
+// Of Young's modulus, which is that of tetrahedra, to the structural modulus of a solid's material (material_table.cpp).
+constexpr double kYoungByStructural = 17.0 / 10.0;
+
 const std::vector<MaterialKind> kAllKinds{MaterialKind::cloth, MaterialKind::rope, MaterialKind::solid};
 
 /// A shape with its article, and the kinds of materials that it may have.
@@ -27,6 +30,7 @@ ShapeMaterials materials_of(const std::optional<BodyShapeScene>& shape) {
     ShapeMaterials operator()(const ClothShape& /*cloth*/) const { return {"a cloth", {MaterialKind::cloth}}; }
     ShapeMaterials operator()(const SolidShape& /*solid*/) const { return {"a solid", {MaterialKind::solid}}; }
     ShapeMaterials operator()(const LatticeFile& /*lattice*/) const { return {"a lattice", {MaterialKind::solid}}; }
+    ShapeMaterials operator()(const TetrahedraFile& /*tetrahedra*/) const { return {"tetrahedra", {MaterialKind::solid}}; }
     // With faces a mesh is a cloth, otherwise a rope. The builder compares it with the file.
     ShapeMaterials operator()(const MeshFile& /*mesh*/) const { return {"a mesh", {MaterialKind::cloth, MaterialKind::rope}}; }
   };
@@ -151,11 +155,16 @@ void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, Bod
   }
   const double scale = is_rope && diameter ? *diameter / preset->find("diameter")->value : 1.0;
   const bool has_angles = !shape || !std::holds_alternative<MeshFile>(*shape);
+  const bool tetrahedra = shape && std::holds_alternative<TetrahedraFile>(*shape);
   if (preset->stretch_limited && !gives_stiffness(json)) body.preset_limits_stretch = true;
   body.preset = preset->name;
-  for (const MaterialValue& value : preset->values)
-    fill_value(value.key, value.value * std::pow(scale, value.power), has_angles, json);
-  check_bend_springs(*preset, fields.location(), json);
+  for (const MaterialValue& value : preset->values) {
+    if (tetrahedra && value.key.starts_with("springs.shear")) continue;
+    const double factor =
+        tetrahedra && value.key == "springs.structural.modulus" ? kYoungByStructural : std::pow(scale, value.power);
+    fill_value(value.key, value.value * factor, has_angles, json);
+  }
+  if (!tetrahedra) check_bend_springs(*preset, fields.location(), json);
   complete_springs(json);
 }
 

@@ -448,6 +448,33 @@ TEST(SceneBuilder, BodyMeshesAreReadInTheirOrder) {
   EXPECT_EQ(built.network.springs.count(), 6);
 }
 
+TEST(SceneBuilder, TetrahedraAreReadAndScaled) {
+  const SceneFolder folder;
+  folder.write("corner.node", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n");
+  folder.write("corner.ele", "1 4 0\n1 1 2 3 4\n");
+  for (const char* file : {"corner.node", "corner.ele"}) {
+    const BuiltScene built = build(folder, {std::string(R"(bodies.banner.shape={"type":"tetrahedra","file":")") + file + "\"}",
+                                            "bodies.banner.pins=[{\"nearest\":[0,0,9]}]", "bodies.banner.place.scale=2"});
+    EXPECT_EQ(built.network.positions.col(3), Vector3(0, 0, 2));
+    EXPECT_EQ(built.network.springs.count(), 6);
+    EXPECT_EQ(built.network.springs.stiffness[2], 400.0);
+    EXPECT_EQ(built.network.bodies[0].surface.triangles.cols(), 4);
+    EXPECT_DOUBLE_EQ(built.network.bodies[0].measure, 8.0 / 6.0);
+    EXPECT_THAT(pinned(built.network), ElementsAre(3));
+  }
+}
+
+TEST(SceneBuilder, ProblemsOfTetrahedraNameTheirFile) {
+  const SceneFolder folder;
+  folder.write("corner.node", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n");
+  folder.write("corner.ele", "1 4 0\n1 1 2 3 5\n");
+  const auto problems = problems_of([&] {
+    (void)build(folder, {R"(bodies.banner.shape={"type":"tetrahedra","file":"corner.node"})", "bodies.banner.pins=[]"});
+  });
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_THAT(to_string(problems[0]), HasSubstr("corner.ele: line 2 = 5: must be the number of one of the 4 nodes"));
+}
+
 TEST(SceneBuilder, BodyMeshesOfOtherFormatsAreRefused) {
   EXPECT_THAT(build_problems({R"(bodies.banner.shape={"type":"mesh","file":"body.stl"})", "bodies.banner.pins=[]"}),
               ElementsAre(problem("bodies.banner.shape.file", "read from an .obj file")));

@@ -289,6 +289,19 @@ double energy_density(const Eigen::Matrix3d& gradient) {
   return energy / built.network.bodies.front().measure;
 }
 
+// The springs of tetrahedra are made from Young's modulus, a solid's from 10/17 of it and from a modulus of shear.
+TEST(Materials, TetrahedraTakeYoungsModulusAndNoShearSprings) {
+  const SceneFolder folder;
+  const std::string scene =
+      R"({"duration": 1, "bodies": {"thing": {"shape": {"type": "tetrahedra", "file": "a.msh"}, "material": "foam"}}})";
+  const BodyScene body = folder.read(scene).bodies.front();
+  EXPECT_NEAR(body.springs.structural->value, 3.0e5, 5e-4 * 3.0e5) << "foam; values of the table have four digits";
+  EXPECT_EQ(body.springs.structural->damping_time, find_material("foam")->find("springs.structural.damping_time")->value);
+  EXPECT_FALSE(body.springs.shear);
+  EXPECT_FALSE(body.springs.bend);
+  EXPECT_EQ(folder.read(scene, {"bodies.thing.springs.structural.modulus=7"}).bodies.front().springs.structural->value, 7.0);
+}
+
 // An isotropic solid has the energy 1/2 E eps^2 under a tension that leaves its sides free to contract by eps / 4, and 1/2 G
 // gamma^2 with G = E / (2 (1 + 1/4)) under shear, in any direction. Values of the table have four digits.
 TEST(Materials, ASolidHasItsYoungsModulusInEachDirection) {

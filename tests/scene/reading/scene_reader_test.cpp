@@ -65,12 +65,12 @@ TEST(SceneReader, TimeAndSettingsArrive) {
 }
 
 TEST(SceneReader, SchemaForEditorsIsAKnownKey) {
-  EXPECT_EQ(SceneFolder().read(kFullScene, {"$schema=scene.schema.json"}).bodies.size(), 8U);
+  EXPECT_EQ(SceneFolder().read(kFullScene, {"$schema=scene.schema.json"}).bodies.size(), 9U);
 }
 
 TEST(SceneReader, BodiesArriveInTheOrderOfTheFile) {
   const Scene scene = SceneFolder().read(kFullScene);
-  EXPECT_THAT(names_of(scene.bodies), ElementsAre("zebra", "rope", "line", "jelly", "shirt", "scarf", "cable", "sponge"));
+  EXPECT_THAT(names_of(scene.bodies), ElementsAre("zebra", "rope", "line", "jelly", "shirt", "scarf", "cable", "sponge", "ham"));
   EXPECT_THAT(names_of(scene.obstacles),
               ElementsAre("bunny", "floor", "ball", "crate", "pill", "can", "hat", "egg", "heart", "lung"));
 }
