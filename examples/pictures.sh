@@ -9,6 +9,7 @@ cmake --build --preset release --target sprung
 declare -A frames=(
   [cloth_on_bunny]="1 12 121"
   [jelly_on_stairs]="1 25 45 121"
+  [horse_on_stairs]="1 14 30 91"
   [cloth_on_waves]="1 12 66 78"
   [hanging_cloth]="1 12 24 121"
   [rope_over_torus]="1 10 20 91"
@@ -22,6 +23,7 @@ declare -A frames=(
 declare -A look=(
   [cloth_on_bunny]="HIDE=floor SIZE=600,460"
   [jelly_on_stairs]="HIDE=floor"
+  [horse_on_stairs]="HIDE=floor"
   [cloth_on_waves]="ELEVATION=30 SIZE=400,270"
   [hanging_cloth]="AZIMUTH=25"
   [gripper]="AZIMUTH=25 ELEVATION=5 HIDE=floor SHIFT=1 SIZE=1400,500"

@@ -50,12 +50,12 @@ double end_of_motions(const SpringNetwork& network, const std::vector<Obstacle>&
 }  // namespace
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared,
-                                          ExternalForces external)
+                                          External added)
     : network(std::move(model)),
       settings(checked_settings(std::move(chosen))),
       shared_environment(std::move(shared)),
       environment(*shared_environment),
-      external_forces(std::move(external)),
+      external(std::move(added)),
       bounds(simulation_bounds(network, settings, !environment.obstacles().empty())),
       warnings(check_step(settings, bounds)),
       integrator(make_integrator(settings.integrator, network)),
@@ -89,7 +89,8 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   if (std::ranges::any_of(network.bodies, [](const Body& body) { return body.volume_factor != 0.0; })) {
     constraints.add(std::make_unique<EnclosedVolume>(network));
   }
-  for (const std::shared_ptr<Force>& force : external_forces) forces.push_back(std::make_unique<SharedForce>(force));
+  for (const std::shared_ptr<Force>& force : external.forces) forces.push_back(std::make_unique<SharedForce>(force));
+  for (const std::shared_ptr<Constraint>& constraint : external.constraints) constraints.add(constraint);
   for (const auto& more : {unused_settings(settings, network, environment.obstacles()), weak_springs(settings, network)}) {
     warnings.insert(warnings.end(), more.begin(), more.end());
   }
@@ -138,8 +139,7 @@ StepReport Simulator::Implementation::step() {
 
 /// External forces may change at any time. Bodies sink into a penalty for long, and are not at rest while they do.
 bool Simulator::Implementation::may_sleep() const {
-  return settings.sleep && penalty == nullptr && constraints.contacts().can_collide() && external_forces.empty() &&
-         time() >= driven_until;
+  return settings.sleep && penalty == nullptr && constraints.contacts().can_collide() && external.empty() && time() >= driven_until;
 }
 
 void Simulator::Implementation::fall_asleep() {
@@ -248,7 +248,7 @@ void Simulator::Implementation::check_state() {
     if (const auto failure = divergence.overstretched(state.x)) fail(*failure);
   }
   if (state.step > 1 && state.step % (kStepsPerEnergy * check_interval) != 0) return;
-  if (!external_forces.empty()) return;
+  if (!external.empty()) return;
   const Energies now = energies();
   energy_watch.note(state.step, now);
   check_energy(now);
@@ -303,7 +303,7 @@ Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 StepReport Simulator::step() {
   const Implementation& now = *implementation_;
   if (have_pins_changed(now.network, due_before(now.state.step, now.settings.step))) {
-    auto next = std::make_unique<Implementation>(now.network, now.settings, now.external_forces, now);
+    auto next = std::make_unique<Implementation>(now.network, now.settings, now.external, now);
     next->warnings = now.warnings;  // with those of the start
     implementation_ = std::move(next);
   }
@@ -331,7 +331,7 @@ Index Simulator::contact_count() const { return static_cast<Index>(contact_parti
 
 void Simulator::check() const {
   if (const auto failure = implementation_->divergence.overstretched(state().x)) implementation_->fail(*failure);
-  if (implementation_->external_forces.empty()) implementation_->check_energy(implementation_->energies());
+  if (implementation_->external.empty()) implementation_->check_energy(implementation_->energies());
 }
 
 }  // namespace sprung

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/obstacles/environment.h"
+#include "dynamics/constraints/constraint.h"
 #include "dynamics/forces/force.h"
 #include "dynamics/integrators/stable_step.h"
 #include "network/simulation_state.h"
@@ -70,6 +71,13 @@ class Simulator {
   /// supply any amount.
   void add_force(std::shared_ptr<Force> force);
 
+  /// Adds a constraint, which the passes of each step restore. The caller may change its parameters between steps. The constraint
+  /// must not keep references to network(). The energy is not checked while there are added constraints.
+  void add_constraint(std::shared_ptr<Constraint> constraint);
+
+  /// Removes a constraint. Does nothing if it was not added.
+  void remove_constraint(const Constraint& constraint);
+
   /// Removes an external force. Does nothing if it was not added.
   void remove_force(const Force& force);
 
@@ -106,6 +114,9 @@ class Simulator {
 
  private:
   struct Implementation;
+  struct External;  ///< the forces and constraints that were added
+  void continue_with_external(External external);
+
   std::unique_ptr<Implementation> implementation_;
 };
 

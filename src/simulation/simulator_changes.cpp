@@ -59,10 +59,10 @@ void check_number(const std::string& key, double number, ProblemList& problems) 
 
 }  // namespace
 
-Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, ExternalForces external,
+Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, External added,
                                           const Implementation& before)
     : Implementation(with_pins_of(std::move(model), before.state.step, before.settings.step), std::move(chosen),
-                     before.shared_environment, std::move(external)) {
+                     before.shared_environment, std::move(added)) {
   take_state(before);
 }
 
@@ -115,7 +115,7 @@ void Simulator::Implementation::take_state(const Implementation& before) {
 void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings) {
   const Implementation& now = *implementation_;
   check_change(network, settings, now.network, now.settings);
-  implementation_ = std::make_unique<Implementation>(std::move(network), std::move(settings), now.external_forces, now);
+  implementation_ = std::make_unique<Implementation>(std::move(network), std::move(settings), now.external, now);
 }
 
 void Simulator::set_gravity(const Vector3& acceleration) {
@@ -191,17 +191,32 @@ void Simulator::release(Index particle) {
 }
 
 void Simulator::add_force(std::shared_ptr<Force> force) {
-  Implementation& now = *implementation_;
-  Implementation::ExternalForces forces = now.external_forces;
-  forces.push_back(std::move(force));
-  implementation_ = std::make_unique<Implementation>(now.network, now.settings, std::move(forces), now);
+  External external = implementation_->external;
+  external.forces.push_back(std::move(force));
+  continue_with_external(std::move(external));
 }
 
 void Simulator::remove_force(const Force& force) {
-  Implementation& now = *implementation_;
-  Implementation::ExternalForces forces = now.external_forces;
-  if (std::erase_if(forces, [&](const std::shared_ptr<Force>& added) { return added.get() == &force; }) == 0) return;
-  implementation_ = std::make_unique<Implementation>(now.network, now.settings, std::move(forces), now);
+  External external = implementation_->external;
+  const auto is_it = [&](const std::shared_ptr<Force>& added) { return added.get() == &force; };
+  if (std::erase_if(external.forces, is_it) > 0) continue_with_external(std::move(external));
+}
+
+void Simulator::add_constraint(std::shared_ptr<Constraint> constraint) {
+  External external = implementation_->external;
+  external.constraints.push_back(std::move(constraint));
+  continue_with_external(std::move(external));
+}
+
+void Simulator::remove_constraint(const Constraint& constraint) {
+  External external = implementation_->external;
+  const auto is_it = [&](const std::shared_ptr<Constraint>& added) { return added.get() == &constraint; };
+  if (std::erase_if(external.constraints, is_it) > 0) continue_with_external(std::move(external));
+}
+
+void Simulator::continue_with_external(External external) {
+  const Implementation& now = *implementation_;
+  implementation_ = std::make_unique<Implementation>(now.network, now.settings, std::move(external), now);
 }
 
 }  // namespace sprung

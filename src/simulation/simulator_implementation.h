@@ -39,15 +39,19 @@ struct Attempt {
   std::vector<Index> contacts;
 };
 
-struct Simulator::Implementation {
-  using ExternalForces = std::vector<std::shared_ptr<Force>>;
+struct Simulator::External {
+  std::vector<std::shared_ptr<Force>> forces;
+  Constraints constraints;
+  [[nodiscard]] bool empty() const { return forces.empty() && constraints.empty(); }
+};
 
+struct Simulator::Implementation {
   /// At time 0.
   Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles);
   /// In the state of another simulator of the same particles and obstacles.
-  Implementation(SpringNetwork model, SimulatorSettings chosen, ExternalForces external, const Implementation& before);
+  Implementation(SpringNetwork model, SimulatorSettings chosen, External added, const Implementation& before);
   /// Without a state.
-  Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared, ExternalForces external);
+  Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared, External added);
 
   template <class F, class... Arguments>
   F* add_force(Arguments&&... arguments) {
@@ -90,7 +94,7 @@ struct Simulator::Implementation {
   SimulatorSettings settings;
   std::shared_ptr<Environment> shared_environment;  ///< shared while a change is made
   Environment& environment;
-  ExternalForces external_forces;
+  External external;
   SpectralBounds bounds;
   std::vector<std::string> warnings;
   Forces forces;

@@ -67,12 +67,33 @@ TEST(JellyOnStairs, TumblesDownAndStaysOutside) {
     ASSERT_EQ(count_inside(parity, positions), 0) << "frame " << frame;
     ASSERT_GE(positions.row(1).minCoeff(), 0.0) << "frame " << frame;
   }
+  for (const double cells : run.column("inverted_cells")) EXPECT_EQ(cells, 0);
   const Points end = run.positions("jelly", run.frames());
   // A step is 0.3 m deep. Measured: 2.2 m.
   EXPECT_GT(end.row(0).mean(), run.positions("jelly", 1).row(0).mean() + 2 * 0.3) << "it went down some steps";
   // However a cube is turned, the box around it is no smaller. Its weight presses it flatter by at most the part
   // density g side / modulus = 1000 * 9.81 * 0.4 / 150000 = 2.6 %. Measured: 2.2 cubes.
   EXPECT_GT((end.rowwise().maxCoeff() - end.rowwise().minCoeff()).prod(), 0.97 * 0.4 * 0.4 * 0.4) << "it is still a jelly";
+}
+
+TEST(HorseOnStairs, FallsDownOutsideOfThemAndKeepsItsVolume) {
+  const ExampleRun run("horse_on_stairs", {"--mesh-path", SPRUNG_TEST_MESHES});
+  ASSERT_EQ(run.exit_code(), 0) << run.messages();
+  const TriangleMesh stairs = import_mesh(run.output() / "obstacles" / "stairs.obj").mesh;
+  const TriangleMesh horse = import_mesh(std::filesystem::path(SPRUNG_TEST_MESHES) / "horse.3ds").mesh;
+  const Parity parity(stairs);
+  const double volume = signed_volume(run.positions("horse", 1), horse.triangles);
+  for (int frame = 1; frame <= run.frames(); ++frame) {
+    const Points positions = run.positions("horse", frame);
+    ASSERT_EQ(positions.cols(), horse.vertices.cols()) << "the horse alone is exported, not its cells";
+    ASSERT_EQ(count_inside(parity, positions), 0) << "frame " << frame;
+    ASSERT_GE(positions.row(1).minCoeff(), 0.0) << "frame " << frame;
+    // Cells keep their volume to within a hundredth at rest; thin parts that stick out of them count too.
+    EXPECT_NEAR(signed_volume(positions, horse.triangles) / volume, 1.0, 0.05) << "frame " << frame;
+  }
+  for (const double cells : run.column("inverted_cells")) EXPECT_EQ(cells, 0);
+  EXPECT_LT(run.positions("horse", run.frames()).row(1).mean(), run.positions("horse", 1).row(1).mean() - 0.9)
+      << "it fell on the stairs or down them";
 }
 
 TEST(ClothOnWaves, RisesWithTheWavesAndDoesNotDrift) {

@@ -30,7 +30,7 @@ class Constraint {
   [[nodiscard]] virtual double residual(const Points& positions) const = 0;
 };
 
-using Constraints = std::vector<std::unique_ptr<Constraint>>;
+using Constraints = std::vector<std::shared_ptr<Constraint>>;
 
 /// One pass over all constraints. Returns the largest residual at its start; 0 without constraints.
 double project(const Constraints& constraints, const Points& before, Points& positions);

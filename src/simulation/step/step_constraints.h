@@ -33,7 +33,7 @@ class StepConstraints {
   }
 
   /// Adds a constraint that passes restore in each step.
-  void add(std::unique_ptr<Constraint> constraint) { constraints_.push_back(std::move(constraint)); }
+  void add(std::shared_ptr<Constraint> constraint) { constraints_.push_back(std::move(constraint)); }
 
   /// Projects the advanced state onto contact, constraints and the stretch limit, truncates it, and recovers the velocities at the
   /// end of the step of `dt` [s], which ends at `time` [s]. Adds counts and the remaining stretch to the report. Requires begin(),
