@@ -91,10 +91,12 @@ void RunWatch::note_infeasible(const FrameDiagnostics& frame) {
 void RunWatch::note_inverted(const FrameDiagnostics& frame) {
   if (inverted_ || frame.inverted_cells == 0) return;
   inverted_ = true;
+  const bool preserved =
+      std::ranges::all_of(simulator_.network().bodies, [](const Body& body) { return body.preserve_volume || body.cells.empty(); });
   warn(fmt::format(
-      "frame {}: {} inside out (column inverted_cells in diagnostics.csv). Use \"volume\": {{ \"preserve\": true }} for "
-      "the solid, or more stiffness.",
-      frame.frame, frame.inverted_cells == 1 ? "1 cell is" : fmt::format("{} cells are", frame.inverted_cells)));
+      "frame {}: {} inside out (column inverted_cells in diagnostics.csv). Use {}.", frame.frame,
+      frame.inverted_cells == 1 ? "1 cell is" : fmt::format("{} cells are", frame.inverted_cells),
+      preserved ? "a smaller step, or more stiffness" : "\"volume\": { \"preserve\": true } for the solid, or more stiffness"));
 }
 
 void RunWatch::note_stretch(const FrameDiagnostics& frame) {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kTolerance = 0.01;  // of a region's volume
 constexpr double kLeastFraction = 0.1;
+constexpr double kInverted = 1.0;  // what a part that is inside out counts as: a change by all of the volume
 
 // A part below this multiple of its least volume may fall below it when the volume of its region changes.
 constexpr double kWatched = 4.0;
@@ -144,16 +145,18 @@ double CellVolume::project(const Points& /*before*/, Points& positions) const {
 double CellVolume::residual(const Points& positions) const {
   double largest = 0.0;
   for (std::size_t r = 0; r < volumes_.size(); ++r) {
-    largest = std::max(largest, std::abs(volume_of(region(r), positions) / volumes_[r] - 1.0));
+    double volume = 0.0;
+    for (const Part& part : region(r).parts) {
+      const double of_part = part_volume(region(r).particles, part.corners, positions).volume;
+      if (is_inverted(part, of_part)) largest = std::max(largest, kInverted);
+      volume += of_part;
+    }
+    largest = std::max(largest, std::abs(volume / volumes_[r] - 1.0));
   }
   return largest / kTolerance;
 }
 
-double CellVolume::volume_of(const Region& region, const Points& positions) const {
-  double sum = 0.0;
-  for (const Part& part : region.parts) sum += part_volume(region.particles, part.corners, positions).volume;
-  return sum;
-}
+bool CellVolume::is_inverted(const Part& part, double volume) { return volume <= 0.0 && part.least > 0.0; }
 
 /// Returns the relative change of volume before.
 double CellVolume::project(const Region& region, Points& positions) const {
@@ -161,15 +164,17 @@ double CellVolume::project(const Region& region, Points& positions) const {
   std::fill_n(gradients.begin(), region.particles.size(), Vector3::Zero());
   double volume = 0.0;
   bool flat = false;
+  bool inverted = false;
   for (const Part& part : region.parts) {
     const PartVolume of_part = part_volume(region.particles, part.corners, positions);
     for (std::size_t c = 0; c < part.corners.size(); ++c) gradients[part.corners[c]] += of_part.gradients[c];
     volume += of_part.volume;
     flat = flat || of_part.volume < kWatched * part.least;
+    inverted = inverted || is_inverted(part, of_part.volume);
   }
   change_volume(region.volume - volume, region.particles, gradients, network_.inverse_masses, positions);
   if (flat) project_parts(region, positions);
-  return std::abs(volume / region.volume - 1.0);
+  return std::max(std::abs(volume / region.volume - 1.0), inverted ? kInverted : 0.0);
 }
 
 void CellVolume::project_parts(const Region& region, Points& positions) const {

@@ -25,7 +25,7 @@ class CellVolume final : public Constraint {
   [[nodiscard]] std::string name() const override { return "volume"; }
   double project(const Points& before, Points& positions) const override;
 
-  /// A volume may differ by 1 % from that at rest.
+  /// A volume may differ by 1 % from that at rest, and nothing may be inside out, which counts as 100.
   [[nodiscard]] double residual(const Points& positions) const override;
 
  private:
@@ -46,7 +46,7 @@ class CellVolume final : public Constraint {
   void add_stars(const Body& body);
   void add(const std::vector<Index>& particles, std::vector<Part> parts);
   [[nodiscard]] Region region(std::size_t number) const;
-  [[nodiscard]] double volume_of(const Region& region, const Points& positions) const;
+  [[nodiscard]] static bool is_inverted(const Part& part, double volume);
   double project(const Region& region, Points& positions) const;
   void project_parts(const Region& region, Points& positions) const;
 

@@ -18,6 +18,11 @@ constexpr double kRelaxation = 1.8;
 constexpr double kConstraintPassRate = 1200.0;
 constexpr double kMinConstraintPasses = 8.0;
 
+// While a constraint is violated by more than this multiple of its tolerance, as by an impact, it gets up to so many times the
+// passes.
+constexpr double kGrossViolation = 10.0;
+constexpr int kPassesOfGrossViolation = 4;
+
 // Calls of Integrator::respond_to_contact a step after contact passes, at most. Friction settles in 2 to 20 of them: with 6, a
 // rope does not slide on a drum whose friction is 5 % too small.
 constexpr int kResponses = 24;
@@ -111,7 +116,8 @@ void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
   const int limit_passes = limit_ ? limit_->settings().iterations + (solves ? 1 : 0) : 0;  // the first after a solve only measures
   const int passes = std::max(limit_passes, constraint_passes());
   if (projects) report.iterations = contacts_.push_out(state.x, kContactPasses - passes).passes;
-  report.iterations += repeat_until_settled(passes, [&](int pass) {
+  const int max_passes = constraints_.empty() ? passes : kPassesOfGrossViolation * passes;
+  report.iterations += repeat_until_settled(max_passes, [&](int pass) {
     const bool between = pass > 0 && pass + 1 < passes;
     const double push = projects ? contacts_.project(state.x) : 0.0;
     const double violation = sprung::project(constraints_, positions_before(state), state.x);
@@ -120,6 +126,7 @@ void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
       excess = solves && pass == 0 ? limit_->excess(state.x)
                                    : limit_->project(positions_before(state), state.x, between ? kRelaxation : 1.0);
     }
+    if (pass + 1 >= passes && violation <= kGrossViolation) return true;
     return (!limit_ || excess <= limit_->settings().tolerance) && violation <= 1.0 && push <= kContactTolerance;
   });
 }
