@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -79,8 +82,41 @@ TEST(Volume, OfASqueezedJellyIsKeptAndItBulges) {
 constexpr double kMembrane = 100.0;  // [N/m]
 constexpr double kRadius = 0.1;      // [m]
 
+/// An octahedron on a sphere, each triangle of which is divided into four so many times.
+TriangleMesh sphere_of(int divisions) {
+  std::vector<Vector3> vertices{Vector3::UnitX(),  Vector3::UnitY(),  Vector3::UnitZ(),
+                                -Vector3::UnitX(), -Vector3::UnitY(), -Vector3::UnitZ()};
+  std::vector<std::array<Index, 3>> triangles;
+  for (const Index x : {0, 3}) {
+    for (const Index y : {1, 4}) {
+      for (const Index z : {2, 5}) {
+        const bool outward = ((x == 0) != (y == 1)) != (z == 2);
+        triangles.push_back(outward ? std::array{x, y, z} : std::array{x, z, y});
+      }
+    }
+  }
+  for (int division = 0; division < divisions; ++division) {
+    std::map<std::pair<Index, Index>, Index> middles;
+    const auto middle = [&](Index a, Index b) {
+      const auto [found, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<Index>(vertices.size()));
+      if (is_new) vertices.push_back((vertices[a] + vertices[b]).normalized());
+      return found->second;
+    };
+    std::vector<std::array<Index, 3>> finer;
+    for (const auto& [a, b, c] : triangles) {
+      const std::array<Index, 3> m{middle(a, b), middle(b, c), middle(c, a)};
+      finer.insert(finer.end(), {{a, m[0], m[2]}, {b, m[1], m[0]}, {c, m[2], m[1]}, m});
+    }
+    triangles = std::move(finer);
+  }
+  TriangleMesh mesh{Points(3, static_cast<Index>(vertices.size())), Triangles(3, static_cast<Index>(triangles.size()))};
+  for (Index v = 0; v < mesh.vertices.cols(); ++v) mesh.vertices.col(v) = kRadius * vertices[v];
+  for (Index t = 0; t < mesh.triangles.cols(); ++t) mesh.triangles.col(t) << triangles[t][0], triangles[t][1], triangles[t][2];
+  return mesh;
+}
+
 Simulator balloon(double pressure, double factor) {
-  const TriangleMesh sphere = obstacle_mesh(SphereGeometry{.radius = kRadius}, 0.0);
+  const TriangleMesh sphere = sphere_of(3);
   SpringMaterials materials;
   materials.structural = SpringMaterial{.value = kMembrane, .measure = SpringMaterial::Measure::modulus};
   BodyShape shape = make_mesh_body({sphere.vertices, to_polygons(sphere.triangles), Edges(2, 0)}, materials);
@@ -109,18 +145,28 @@ Surface surface_of(const Points& positions, const Triangles& triangles) {
   return surface;
 }
 
-// The gas does the work p dV, which the membrane's tension T takes up as T dA. A surface that grows alike everywhere has dA / dV =
-// 2 A / (3 V), so p = 2 T / R with R = 3 V / A, as of a sphere. The tension is the modulus times the strain.
+// At rest the gas and the springs together do no work when all is scaled by 1 + e: p dV = p 3 V e, and each spring of force F and
+// length l takes up F l e. With T = sum F l / (2 A), the mean tension of the membrane, that is p = 2 T / R with R = 3 V / A, as of
+// a sphere.
 TEST(Volume, ABalloonInEquilibriumHasThePressureOfItsTension) {
   Simulator simulator = balloon(200.0, 0.0);
-  const Triangles& triangles = simulator.network().bodies[0].surface.triangles;
+  const SpringNetwork& network = simulator.network();
+  const Triangles& triangles = network.bodies[0].surface.triangles;
   const Surface before = surface_of(simulator.positions(), triangles);
   run(simulator, 1.0);
   EXPECT_LT(simulator.state().v.cwiseAbs().maxCoeff(), 1.0e-3);
   const Surface after = surface_of(simulator.positions(), triangles);
+  double work = 0.0;
+  for (Index s = 0; s < network.springs.count(); ++s) {
+    const double length =
+        (simulator.positions().col(network.springs.second[s]) - simulator.positions().col(network.springs.first[s])).norm();
+    work += network.springs.stiffness[s] * (length - network.springs.rest_length[s]) * length;
+  }
+  const double tension = work / (2.0 * after.area);
+  EXPECT_NEAR(2.0 * tension / (3.0 * after.volume / after.area), 200.0, 0.01 * 200.0);
+  // The modulus times the strain, for a surface that has become wider; uneven triangles do not grow alike. Measured: 3.4 % off.
   const double strain = std::cbrt(after.volume / before.volume) - 1.0;
-  EXPECT_GT(strain, 0.1);
-  EXPECT_NEAR(kMembrane * strain * 2.0 * after.area / (3.0 * after.volume), 200.0, 0.01 * 200.0);
+  EXPECT_NEAR(tension, kMembrane * strain / (1.0 + strain), 0.05 * tension);
 }
 
 TEST(Volume, ABagOfWaterKeepsItsFactor) {
