@@ -1,7 +1,7 @@
 // Text that describes a simulated body.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 #include "simulation/simulator.h"
 
 #include <string>

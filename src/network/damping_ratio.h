@@ -1,7 +1,7 @@
 // Damping as a fraction of critical damping.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <array>
 #include <optional>

@@ -1,8 +1,8 @@
 #include "network/network_builder.h"
 
 #include "network/damping_ratio.h"
+#include "network/model/pin_schedule.h"
 #include "network/network_check.h"
-#include "network/pin_schedule.h"
 
 #include <algorithm>
 #include <cstdint>

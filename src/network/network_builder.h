@@ -1,8 +1,8 @@
 // Builds a network particle by particle, or from whole bodies (rope, cloth, solid, mesh).
 #pragma once
 
-#include "network/body_shape.h"
-#include "network/spring_network.h"
+#include "network/bodies/body_shape.h"
+#include "network/model/spring_network.h"
 
 #include <string>
 #include <vector>

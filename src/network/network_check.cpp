@@ -2,7 +2,7 @@
 
 #include "base/format.h"
 #include "geometry/motion/motion_check.h"
-#include "network/pin_schedule.h"
+#include "network/model/pin_schedule.h"
 
 #include <algorithm>
 #include <array>
@@ -95,7 +95,7 @@ void check_cells(const std::string& key, const std::vector<Cell>& cells, const P
                 "use the numbers of the body's particles, counted from 0"});
   problems.require_each(
       cells.size(), [&](std::size_t c) { return !exist(cells[c]) || !is_inverted(cells[c], positions); }, text,
-      EntryRule{key, "must have a positive volume", "order its corners as network/cells.h says, and repair the mesh"});
+      EntryRule{key, "must have a positive volume", "order its corners as network/model/cells.h says, and repair the mesh"});
 }
 
 template <class Elements>

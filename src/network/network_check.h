@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/problem_list.h"
-#include "network/body_shape.h"
-#include "network/spring_network.h"
+#include "network/bodies/body_shape.h"
+#include "network/model/spring_network.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // The pieces that the springs of a body leave apart.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 namespace sprung {
 

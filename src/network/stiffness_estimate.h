@@ -1,7 +1,7 @@
 // Estimates of a body's stiffness: how far its own weight stretches and bends it, and how long its swings take.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 namespace sprung {
 

@@ -5,7 +5,7 @@
 #include "dynamics/constraints/cell_volume.h"
 #include "dynamics/constraints/enclosed_volume.h"
 #include "dynamics/forces/shared_force.h"
-#include "network/pin_schedule.h"
+#include "network/model/pin_schedule.h"
 #include "simulation/settings/settings_check.h"
 #include "simulation/settings/unused_settings.h"
 #include "simulation/simulator_implementation.h"

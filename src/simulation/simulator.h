@@ -5,8 +5,8 @@
 #include "dynamics/constraints/constraint.h"
 #include "dynamics/forces/force.h"
 #include "dynamics/integrators/stable_step.h"
-#include "network/simulation_state.h"
-#include "network/spring_network.h"
+#include "network/model/simulation_state.h"
+#include "network/model/spring_network.h"
 #include "simulation/settings/simulator_settings.h"
 #include "simulation/step/step_report.h"
 

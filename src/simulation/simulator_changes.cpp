@@ -1,7 +1,7 @@
 #include "base/error.h"
 #include "base/format.h"
 #include "base/problem_list.h"
-#include "network/pin_schedule.h"
+#include "network/model/pin_schedule.h"
 #include "simulation/simulator_implementation.h"
 
 #include <algorithm>

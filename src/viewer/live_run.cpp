@@ -1,7 +1,7 @@
 #include "viewer/live_run.h"
 
 #include "base/error.h"
-#include "network/pin_schedule.h"
+#include "network/model/pin_schedule.h"
 #include "output/scene_extent.h"
 #include "scene/format/frame_steps.h"
 #include "scene/json/overrides.h"

@@ -1,7 +1,7 @@
 // A network that hangs from its pins, simulated by Bullet's soft body. Its springs are links, constrained by passes of projection.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <memory>
 

@@ -1,7 +1,7 @@
 // An empty world of Bullet's soft bodies, and networks converted to them. For the .cpp files that use Bullet.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>

@@ -2,7 +2,7 @@
 // it.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <algorithm>
 #include <memory>

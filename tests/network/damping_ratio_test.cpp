@@ -2,7 +2,7 @@
 
 #include "geometry/mesh/polygon_mesh.h"
 #include "network/network_builder.h"
-#include "network_helpers.h"
+#include "network/network_helpers.h"
 
 #include <gmock/gmock.h>
 

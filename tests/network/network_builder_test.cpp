@@ -1,7 +1,7 @@
 #include "network/network_builder.h"
 
-#include "network/simulation_state.h"
-#include "network_helpers.h"
+#include "network/model/simulation_state.h"
+#include "network/network_helpers.h"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/error.h"
-#include "network/body_shape.h"
+#include "network/bodies/body_shape.h"
 
 #include <algorithm>
 #include <string>

@@ -83,5 +83,21 @@ TEST(SpringPieces, OtherBodiesDoNotCount) {
   EXPECT_FALSE(pieces_of(builder).touch);
 }
 
+TEST(SpringPieces, CellsHoldTheSurfaceThatTheyCarry) {
+  LatticeShape lattice;
+  lattice.surface.vertices = (Points(3, 3) << 0.1, 0.9, 0.1, 0.1, 0.1, 0.9, 0.5, 0.5, 0.5).finished();
+  lattice.surface.faces = to_polygons((Triangles(3, 1) << 0, 1, 2).finished());
+  lattice.surface.lines.resize(2, 0);
+  lattice.cells.push_back({{0, 0, 0}, 1.0});
+  SpringMaterials materials;
+  materials.structural = SpringMaterial{.value = 1.0};
+  BodyShape body = make_lattice_body(lattice, materials);
+  set_total_mass(body, 1.0);
+  NetworkBuilder builder;
+  builder.add_body("lattice", body);
+  EXPECT_EQ(pieces_of(builder).count, 1);
+  EXPECT_EQ(pieces_of(builder).alone, 0);
+}
+
 }  // namespace
 }  // namespace sprung

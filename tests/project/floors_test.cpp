@@ -30,6 +30,9 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"geometry/obj_source", {"mesh", "import"}},
     {"geometry/tetrahedra", {"import"}},
 
+    {"network/model", {}},
+    {"network/bodies", {"model"}},
+
     {"collision/core", {}},
     {"collision/surface", {"core"}},
     {"collision/mesh_bvh", {"core"}},

@@ -13,7 +13,7 @@ struct Include {
 };
 
 struct SourceFile {
-  std::string path;    ///< from src/, as "network/spring_network.h"
+  std::string path;    ///< from src/, as "network/model/spring_network.h"
   std::string folder;  ///< the first part of its path
   std::vector<Include> includes;
 

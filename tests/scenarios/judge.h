@@ -5,7 +5,7 @@
 #pragma once
 
 #include "collision/shapes/obstacle.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <array>
 #include <memory>

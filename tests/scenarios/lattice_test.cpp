@@ -21,6 +21,25 @@ TEST_P(LatticeScenario, ABallIsThrownAtASpike) {
   EXPECT_TRUE(report.is_free()) << report;
 }
 
+// Corners of cells lie outside of the ball, and so below the ground when the ball lies on it.
+TEST(LatticeAtRest, ItsSurfaceLiesOnTheGroundAndItsCellsDoNotCollide) {
+  const char* const ground = R"(obstacles={"ground": {"shape": {"type": "half_space"}, "friction": 0.3}})";
+  const char* const low = "bodies.ball.place.position=[0, 0.16, 0]";
+  for (const char* const contact :
+       {R"(contact={"response": "projection"})", R"(contact={"response": "penalty", "stiffness": 500})"}) {
+    const BuiltScene scene = load_scenario("lattice_on_spike", {ground, low, contact});
+    Simulator simulator(scene.network, scene.settings, scene.obstacles);
+    const Body& ball = simulator.network().bodies[0];
+    while (simulator.time() < 1.0) simulator.step();
+    const auto vertices = simulator.positions().leftCols(ball.vertex_count());
+    const auto corners = simulator.positions().rightCols(ball.particle_count - ball.vertex_count());
+    EXPECT_LT(vertices.row(1).minCoeff(), 1.1 * ball.material.thickness) << "on the ground, at the thickness or below it";
+    EXPECT_LT(corners.row(1).minCoeff(), 0.0) << "a cell is 0.05 m wide";
+    EXPECT_GT(simulator.contact_count(), 0);
+    EXPECT_LT(simulator.contact_particles().back(), ball.vertex_count());
+  }
+}
+
 // The spike moves up by 1.5 m at 15 m/s.
 TEST_P(LatticeScenario, ASpikeIsShotAtABall) {
   const char* const shot = R"(obstacles.spike.motion={"keyframes": [{"time": 0}, {"time": 0.1, "position": [0, 1.5, 0]}]})";

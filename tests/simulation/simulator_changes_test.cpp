@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 
@@ -248,6 +249,36 @@ TEST(SimulatorChanges, AnExternalForceActsUntilItIsRemoved) {
   const double height = simulator.positions()(1, 0);
   run(simulator, 0.5);
   EXPECT_NEAR(simulator.positions()(1, 0), height - 0.5 * kGravity * 0.25, 3.0 * kGravity * kStep * 0.5);
+}
+
+/// Keeps particle 0 at a height [m].
+class Shelf final : public Constraint {
+ public:
+  explicit Shelf(double height) : height_(height) {}
+  [[nodiscard]] std::string name() const override { return "shelf"; }
+  double project(const Points& /*before*/, Points& positions) const override {
+    const double off = residual(positions);
+    positions(1, 0) = height_;
+    return off;
+  }
+  [[nodiscard]] double residual(const Points& positions) const override { return std::abs(positions(1, 0) - height_) / 1.0e-12; }
+
+ private:
+  double height_;
+};
+
+TEST(SimulatorChanges, AnAddedConstraintHoldsUntilItIsRemoved) {
+  for (const IntegratorSettings& integrator : all_integrators()) {
+    Simulator simulator(one_particle({0.0, 0.0, 0.0}), {.step = kStep, .integrator = integrator});
+    const auto shelf = std::make_shared<Shelf>(0.0);
+    simulator.add_constraint(shelf);
+    run(simulator, 0.5);
+    EXPECT_EQ(simulator.positions()(1, 0), 0.0);
+    simulator.remove_constraint(*shelf);
+    run(simulator, 0.5);
+    // At rest when it was let go, but for the first step's motion, which schemes define differently.
+    EXPECT_NEAR(simulator.positions()(1, 0), -0.5 * kGravity * 0.25, 3.0 * kGravity * kStep * 0.5);
+  }
 }
 
 // A free particle reaches the target and stays, at any step: it never moves past its target by more than it came.

@@ -3,7 +3,7 @@
 
 #include "dynamics/constraints/colouring.h"
 #include "dynamics/constraints/constraint.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dynamics/constraints/constraint.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <vector>
 

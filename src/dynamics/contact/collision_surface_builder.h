@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/surface/collision_surface.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 namespace sprung {
 

@@ -4,7 +4,7 @@
 #include "base/contact_material.h"
 #include "collision/core/contact.h"
 #include "collision/shapes/obstacle.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <vector>
 

@@ -5,7 +5,7 @@
 #include "collision/truncation/step_truncation.h"
 #include "dynamics/contact/contact_solver.h"
 #include "dynamics/integrators/integrator.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <set>
 #include <vector>

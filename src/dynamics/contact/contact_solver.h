@@ -17,7 +17,7 @@
 #include "dynamics/integrators/constrained_directions.h"
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/integrators/step_motion.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <tuple>
 #include <vector>

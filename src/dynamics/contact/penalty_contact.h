@@ -4,7 +4,7 @@
 #include "collision/obstacles/environment.h"
 #include "dynamics/contact/contact_normal.h"
 #include "dynamics/forces/force.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 namespace sprung {
 

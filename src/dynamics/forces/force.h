@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dynamics/numerics/block_matrix.h"
-#include "network/simulation_state.h"
+#include "network/model/simulation_state.h"
 
 #include <memory>
 #include <vector>

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "dynamics/forces/force.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <memory>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dynamics/forces/spring_kernel.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <vector>
 

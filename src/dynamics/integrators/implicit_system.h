@@ -4,7 +4,7 @@
 #include "dynamics/forces/force.h"
 #include "dynamics/integrators/constrained_directions.h"
 #include "dynamics/numerics/block_cholesky.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 namespace sprung {
 

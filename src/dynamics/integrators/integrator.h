@@ -5,7 +5,7 @@
 #include "dynamics/forces/force.h"
 #include "dynamics/integrators/constrained_directions.h"
 #include "dynamics/integrators/step_motion.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <memory>
 #include <variant>

@@ -1,7 +1,7 @@
 // Bounds on the fastest modes of a network.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 namespace sprung {
 

@@ -1,7 +1,7 @@
 // The motion of a step before constraints and contact respond.
 #pragma once
 
-#include "network/simulation_state.h"
+#include "network/model/simulation_state.h"
 
 namespace sprung {
 

@@ -1,7 +1,7 @@
 // The springs of a stretch limit in batches without common particles.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <vector>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "dynamics/tethers/stretch_limit_settings.h"
-#include "network/simulation_state.h"
-#include "network/spring_network.h"
+#include "network/model/simulation_state.h"
+#include "network/model/spring_network.h"
 
 #include <memory>
 #include <optional>

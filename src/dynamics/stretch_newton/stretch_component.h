@@ -1,7 +1,7 @@
 // Components of free particles that limited springs join: a global solve handles one at a time.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <vector>
 

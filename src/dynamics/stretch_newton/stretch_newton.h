@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dynamics/tethers/stretch_limit_settings.h"
-#include "network/simulation_state.h"
+#include "network/model/simulation_state.h"
 
 #include <memory>
 #include <optional>

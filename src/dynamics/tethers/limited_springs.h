@@ -1,7 +1,7 @@
 // The springs that a stretch limit constrains.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <vector>
 

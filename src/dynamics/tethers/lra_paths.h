@@ -1,7 +1,7 @@
 // Shortest paths along limited springs from particles to their pins.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <vector>
 

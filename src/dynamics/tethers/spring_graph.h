@@ -1,7 +1,7 @@
 // The graph of some of a network's springs.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <span>
 #include <vector>

@@ -1,7 +1,7 @@
 // The settings of the stretch limit.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <algorithm>
 #include <vector>

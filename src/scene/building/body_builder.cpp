@@ -7,7 +7,7 @@
 #include "geometry/mesh/topology.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "geometry/mesh/weld.h"
-#include "network/tetrahedra_body.h"
+#include "network/bodies/tetrahedra_body.h"
 #include "scene/building/lattice_filling.h"
 #include "scene/building/particle_selector.h"
 #include "scene/json/json_text.h"

@@ -1,7 +1,7 @@
 // Fills closed meshes with the cells of a lattice.
 #pragma once
 
-#include "network/body_shape.h"
+#include "network/bodies/body_shape.h"
 
 namespace sprung {
 

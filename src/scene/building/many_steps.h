@@ -1,7 +1,7 @@
 // Warns of automatic steps that are very small.
 #pragma once
 
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 #include "scene/building/step_choice.h"
 #include "scene/format/scene.h"
 

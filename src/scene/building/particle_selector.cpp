@@ -1,7 +1,7 @@
 #include "scene/building/particle_selector.h"
 
 #include "base/format.h"
-#include "network/corners.h"
+#include "network/bodies/corners.h"
 #include "scene/json/json_text.h"
 #include "scene/json/nearest_name.h"
 

@@ -1,4 +1,4 @@
-#include "network/pin_schedule.h"
+#include "network/model/pin_schedule.h"
 #include "scene/building/body_builder.h"
 #include "scene/building/particle_selector.h"
 #include "scene/json/json_text.h"

@@ -1,7 +1,7 @@
 #include "scene/building/step_choice.h"
 
 #include "base/format.h"
-#include "network/pin_schedule.h"
+#include "network/model/pin_schedule.h"
 #include "scene/building/many_steps.h"
 #include "scene/format/frame_steps.h"
 #include "simulation/step/step_check.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/shapes/obstacle.h"
-#include "network/body_shape.h"
+#include "network/bodies/body_shape.h"
 #include "simulation/simulator.h"
 
 #include <array>

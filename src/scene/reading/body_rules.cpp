@@ -1,4 +1,4 @@
-#include "network/corners.h"
+#include "network/bodies/corners.h"
 #include "scene/reading/material_rules.h"
 #include "scene/reading/scene_rules.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/error.h"
-#include "network/simulation_state.h"
-#include "network/spring_network.h"
+#include "network/model/simulation_state.h"
+#include "network/model/spring_network.h"
 
 #include <optional>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include "collision/obstacles/environment.h"
 #include "collision/surface/collision_surface.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 namespace sprung {
 

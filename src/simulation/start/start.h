@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/obstacles/environment.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 #include "simulation/settings/simulator_settings.h"
 
 #include <string>

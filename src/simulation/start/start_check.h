@@ -6,7 +6,7 @@
 #include "collision/obstacles/obstacle_intersections.h"
 #include "collision/surface/collision_surface.h"
 #include "collision/surface/self_intersections.h"
-#include "network/spring_network.h"
+#include "network/model/spring_network.h"
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dynamics/stretch_limit/stretch_limit.h"
-#include "network/simulation_state.h"
+#include "network/model/simulation_state.h"
 
 #include <cstddef>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "simulation/step/pin_paths.h"
 
 #include "base/problem_list.h"
-#include "network/pin_schedule.h"
+#include "network/model/pin_schedule.h"
 
 #include <algorithm>
 #include <optional>

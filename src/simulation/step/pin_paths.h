@@ -3,7 +3,7 @@
 
 #include "collision/shapes/obstacle.h"
 #include "collision/shapes/surface_anchor.h"
-#include "network/simulation_state.h"
+#include "network/model/simulation_state.h"
 
 #include <vector>
 

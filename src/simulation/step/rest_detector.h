@@ -6,8 +6,8 @@
 #pragma once
 
 #include "dynamics/contact/contact_normal.h"
-#include "network/simulation_state.h"
-#include "network/spring_network.h"
+#include "network/model/simulation_state.h"
+#include "network/model/spring_network.h"
 
 #include <vector>
 

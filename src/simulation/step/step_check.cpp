@@ -2,7 +2,7 @@
 
 #include "base/format.h"
 #include "dynamics/forces/pressure_force.h"
-#include "network/pin_schedule.h"
+#include "network/model/pin_schedule.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Decides when a step with infeasible particles is repeated with more substeps.
 #pragma once
 
-#include "network/simulation_state.h"
+#include "network/model/simulation_state.h"
 
 #include <array>
 

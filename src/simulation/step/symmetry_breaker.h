@@ -7,8 +7,8 @@
 
 #include "dynamics/contact/contact_normal.h"
 #include "dynamics/integrators/integrator.h"
-#include "network/simulation_state.h"
-#include "network/spring_network.h"
+#include "network/model/simulation_state.h"
+#include "network/model/spring_network.h"
 
 #include <array>
 #include <cstdint>

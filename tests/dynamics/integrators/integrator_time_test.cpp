@@ -1,7 +1,7 @@
 // The times at which schemes evaluate forces: under a force m t^p alone, v is a quadrature rule.
 #include "dynamics/integrators/integrator.h"
+#include "network/model/simulation_state.h"
 #include "network/network_builder.h"
-#include "network/simulation_state.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "dynamics/forces/gravity_and_drag.h"
 #include "dynamics/forces/spring_force.h"
 #include "dynamics/networks.h"
-#include "network/simulation_state.h"
+#include "network/model/simulation_state.h"
 
 #include <gmock/gmock.h>
 #include <Eigen/Eigenvalues>

@@ -1,7 +1,7 @@
 // The presets of "material": one table for the program, the schema and the documentation.
 #include "scene/materials/materials.h"
 
-#include "network/body_shape.h"
+#include "network/bodies/body_shape.h"
 #include "scene/building/scene_builder.h"
 #include "scene/scene_schema.h"
 #include "scene/scene_text.h"

@@ -131,6 +131,21 @@ TEST(RestDetector, AnExternalForceWakesItAndKeepsItAwake) {
   EXPECT_TRUE(sleeps(simulator));
 }
 
+/// A condition that always holds.
+class Nothing final : public Constraint {
+ public:
+  [[nodiscard]] std::string name() const override { return "nothing"; }
+  double project(const Points& /*before*/, Points& /*positions*/) const override { return 0.0; }
+  [[nodiscard]] double residual(const Points& /*positions*/) const override { return 0.0; }
+};
+
+TEST(RestDetector, AnAddedConstraintKeepsItAwakeAsItMayChange) {
+  Simulator simulator = lying_cloth(settings_of());
+  simulator.add_constraint(std::make_shared<Nothing>());
+  run(simulator, 1.0);
+  EXPECT_FALSE(sleeps(simulator));
+}
+
 // A cloth of 1 m on its edge, tilted by four thousandths, falls over at a rate of about 5 1/s: for a second it is slower than what
 // rests.
 TEST(RestDetector, ABodyThatBeginsToFallOverIsNotAtRest) {

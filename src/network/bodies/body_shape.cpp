@@ -1,0 +1,84 @@
+#include "network/bodies/body_shape.h"
+
+#include "base/format.h"
+#include "base/problem_list.h"
+#include "network/bodies/shape_parts.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace sprung {
+
+BodyShape shape_of_particles(std::vector<Vector3> positions, const SpringMaterials& materials) {
+  BodyShape shape;
+  shape.positions = std::move(positions);
+  shape.velocities.assign(shape.positions.size(), Vector3::Zero());
+  shape.masses.assign(shape.positions.size(), 0.0);
+  const std::optional<SpringMaterial>* kinds[] = {&materials.structural, &materials.shear, &materials.bend};
+  for (std::size_t kind = 0; kind < shape.damping_ratios.size(); ++kind) {
+    if (*kinds[kind]) shape.damping_ratios[kind] = (*kinds[kind])->damping_ratio;
+  }
+  return shape;
+}
+
+void add_segment_measures(const Edges& segments, const std::vector<double>& lengths, std::vector<double>& measures) {
+  for (Eigen::Index s = 0; s < segments.cols(); ++s) {
+    for (const Index end : segments.col(s)) measures[end] += lengths[s] / 2.0;
+  }
+}
+
+double stiffness_of(const SpringMaterial& material, double cross_section, double rest_length) {
+  if (material.measure == SpringMaterial::Measure::stiffness) return material.value;
+  return material.value * cross_section / rest_length;
+}
+
+double damping_of(const SpringMaterial& material, double stiffness) { return material.damping + material.damping_time * stiffness; }
+
+void set_surface(BodyShape& shape, const Triangles& triangles) {
+  shape.surface.faces = to_polygons(triangles);
+  shape.surface.triangles = triangles;
+  shape.drag_areas = vertex_areas(shape.positions, triangles);
+}
+
+std::vector<double> vertex_areas(const std::vector<Vector3>& positions, const Triangles& triangles) {
+  std::vector<double> areas(positions.size(), 0.0);
+  for (const auto& corners : triangles.colwise()) {
+    const Vector3& a = positions[corners[0]];
+    const double third = (positions[corners[1]] - a).cross(positions[corners[2]] - a).norm() / 6.0;
+    for (const Index corner : corners) areas[corner] += third;
+  }
+  return areas;
+}
+
+void set_total_mass(BodyShape& shape, double total) {
+  ProblemList problems;
+  problems.require_positive("mass", total, "give the mass of the whole body in kg");
+  problems.throw_if_any();
+  if (shape.carried.empty()) {
+    shape.masses.assign(shape.positions.size(), total / static_cast<double>(shape.positions.size()));
+  } else {
+    shape.masses = shape.measures;
+    for (double& mass : shape.masses) mass *= total / shape.measure;
+  }
+}
+
+void set_density(BodyShape& shape, double density) {
+  ProblemList problems;
+  problems.require_positive("density", density, "give the mass of a metre, a square metre or a cubic metre in kg");
+  const auto bare = std::find(shape.measures.begin(), shape.measures.end(), 0.0);
+  if (bare != shape.measures.end()) {
+    problems.add("density", format_number(density),
+                 "gives no mass to particle " + std::to_string(bare - shape.measures.begin()) +
+                     ", which is in no face (in a mesh without faces: in no line)",
+                 "give mass or particle_mass, or remove such vertices from the mesh");
+  }
+  problems.throw_if_any();
+  for (std::size_t i = 0; i < shape.masses.size(); ++i) shape.masses[i] = density * shape.measures[i];
+}
+
+void place(BodyShape& shape, const RigidTransform& pose, const Vector3& velocity) {
+  for (Vector3& position : shape.positions) position = pose * position;
+  for (Vector3& own : shape.velocities) own = pose.linear() * own + velocity;
+}
+
+}  // namespace sprung

@@ -1,0 +1,33 @@
+// Which pins hold their particles at which time.
+#pragma once
+
+#include "network/model/spring_network.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// The time before which pins begin and end that do so at this step of a simulation or an earlier one: times are rounded to steps.
+/// [s], as `step_length`.
+[[nodiscard]] inline double due_before(std::int64_t step, double step_length) {
+  return (static_cast<double>(step) + 0.5) * step_length;
+}
+
+/// Whether both pins hold particles at some time.
+[[nodiscard]] bool hold_together(const Pin& a, const Pin& b);
+
+/// Whether a pin begins or ends before `time` [s] and `change_pins` has not yet taken notice.
+[[nodiscard]] bool have_pins_changed(const SpringNetwork& network, double time);
+
+/// Ends the pins that end before `time` [s], which makes their particles free. Then lets the others of `later_pins` that begin
+/// before `time` hold their particles, but for those that another pin holds. Sets the inverse masses.
+void change_pins(SpringNetwork& network, double time);
+
+/// The times after 0 at which pins begin and end, ascending, each once [s].
+[[nodiscard]] std::vector<double> pin_changes(const SpringNetwork& network);
+
+/// The network with all particles free that are free at some time. No set of pins that hold together allows a smaller stable step
+/// than these: to pin a particle restricts the motion, which does not raise the largest eigenvalue (Cauchy interlacing).
+[[nodiscard]] SpringNetwork freest(SpringNetwork network);
+
+}  // namespace sprung

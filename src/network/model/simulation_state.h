@@ -1,0 +1,65 @@
+// All that a step changes. Time is counted in steps and substeps, never accumulated.
+#pragma once
+
+#include "network/model/spring_network.h"
+
+#include <optional>
+#include <vector>
+
+namespace sprung {
+
+/// Passes remove the excess of an impact in fewer steps than this, and substeps have reached their smallest length by then.
+inline constexpr int kFirstPatience = 16;
+
+/// The stretch limit of one body: passes or a global solve enforce it.
+struct StretchHandover {
+  int missed_steps = 0;           ///< consecutive steps, up to the last one, in which the present solver missed the limit
+  int patience = kFirstPatience;  ///< missed steps after which the other solver is tried
+  std::optional<std::int64_t> solved_since;  ///< the step after which the global solve took over; none: passes enforce the limit
+};
+
+/// What friction with obstacles remembers of each particle.
+struct Slip {
+  Points displacement;          ///< along the obstacle since the particle stuck to it [m], 3 x n; zero without a contact
+  std::vector<Index> obstacle;  ///< that the particle touches, n; kNone without a contact
+};
+
+/// Where a pin took a particle.
+struct PinAnchor {
+  Index particle = kNone;
+  std::int64_t step = 0;               ///< after which the pin took it
+  Vector3 position = Vector3::Zero();  ///< [m]
+  Index triangle = kNone;              ///< nearest then, of a deforming obstacle that the pin follows
+};
+
+struct SimulationState {
+  std::int64_t step = 0;        ///< number of completed steps
+  int substeps = 1;             ///< number of equal substeps of the current step
+  int substep = 0;              ///< number of completed substeps of the current step
+  int calm_steps = 0;           ///< consecutive steps that did not need their substeps
+  int feasible_steps = 0;       ///< consecutive steps without infeasible particles
+  std::int64_t retry_from = 0;  ///< steps before this one are not repeated because of infeasible particles
+  int retry_wait = 0;           ///< number of steps to wait after a repetition without effect
+  Index retry_infeasible = 0;   ///< exception: steps with more infeasible particles than this are repeated despite the wait
+  Points x;                     ///< positions [m], 3 x n
+  Points v;                     ///< velocities [m/s], 3 x n
+  Points x_previous;            ///< Verlet's positions one step ago [m], 3 x n
+  Slip slip;                    ///< since particles stuck to obstacles
+  Points x_at_rest{};           ///< positions when the present rest began [m], 3 x n; empty at first
+  double rest_since = 0.0;      ///< time of that [s]
+  double rest_speed2 = 0.0;     ///< mean square of the speeds then [m^2/s^2]
+  bool asleep = false;          ///< steps change nothing but the time
+  std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
+  std::vector<PinAnchor> anchors{};  ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle
+};
+
+/// Number of completed steps, plus the completed fraction of the current step. The time is this number times the step length. After
+/// a whole step the number is exact.
+[[nodiscard]] inline double steps_done(const SimulationState& state) {
+  return static_cast<double>(state.step) + static_cast<double>(state.substep) / state.substeps;
+}
+
+/// The state at time 0. The integrator, which knows the step, sets x_previous for Verlet.
+[[nodiscard]] SimulationState initial_state(const SpringNetwork& network);
+
+}  // namespace sprung

@@ -1,0 +1,130 @@
+// The network: masses, springs, bodies and pins. Constant once built; what a step changes is in `simulation_state.h`.
+#pragma once
+
+#include "base/contact_material.h"
+#include "base/types.h"
+#include "geometry/mesh/polygon_mesh.h"
+#include "geometry/motion/motion.h"
+#include "network/model/cells.h"
+
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+enum class SpringKind : std::uint8_t { structural, shear, bend };
+inline constexpr std::array<const char*, 3> kSpringKindNames{"structural", "shear", "bend"};  ///< in the order of the kinds
+
+/// Springs as arrays; entry s of each array belongs to spring s. Within a body they are sorted by (second - first, first), so that
+/// neighbours in a lattice make contiguous runs.
+struct Springs {
+  std::vector<Index> first;         ///< particle at one end, the lower index
+  std::vector<Index> second;        ///< particle at the other end
+  std::vector<double> rest_length;  ///< d [m], >= 0
+  std::vector<double> stiffness;    ///< k_s [N/m], >= 0
+  std::vector<double> damping;      ///< k_d [N s/m], >= 0
+  std::vector<SpringKind> kind;
+
+  [[nodiscard]] Index count() const { return static_cast<Index>(first.size()); }
+  /// Adds a spring; sorts its two ends.
+  void append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind);
+};
+
+/// Elements that keep three particles in line, as arrays; entry a of each array belongs to element a. The bond middle - after
+/// deviates from the direction of the bond before - middle by an angle theta, from 0 (in line) to pi (folded back). The energy is
+/// 1/2 k theta^2 [J].
+struct AngleBends {
+  std::vector<Index> before;
+  std::vector<Index> middle;
+  std::vector<Index> after;
+  std::vector<double> length_before;  ///< rest lengths of the bonds [m], > 0
+  std::vector<double> length_after;
+  std::vector<double> stiffness;  ///< k [N m/rad], >= 0
+  std::vector<double> damping;    ///< of the rate of theta [N m s], >= 0
+
+  [[nodiscard]] Index count() const { return static_cast<Index>(middle.size()); }
+  /// Particles and bond lengths in the order before, middle, after.
+  void append(const std::array<Index, 3>& particles, const std::array<double, 2>& lengths, double k, double k_d);
+};
+
+/// The surface of a body, for collision and export. Vertex i is particle i of the body; particles that follow are inside.
+struct Surface {
+  PolygonFaces faces;   ///< as exported
+  Triangles triangles;  ///< of the triangulated faces
+  Edges segments;       ///< of ropes: the edges without a triangle
+};
+
+/// The bodies with which a body collides.
+struct BodyContact {
+  bool self = false;   ///< with its own elements, as in a cloth that folds onto itself
+  bool others = true;  ///< with other bodies for which this is set too
+};
+
+/// A named range of particles, springs and angle bends.
+struct Body {
+  std::string name;
+  Index first_particle = 0;
+  Index particle_count = 0;
+  Index first_spring = 0;
+  Index spring_count = 0;
+  Index first_angle_bend = 0;
+  Index angle_bend_count = 0;
+  int dimension = 0;                  ///< of its measure, see BodyShape
+  double measure = 0.0;               ///< length [m], area [m^2] or volume [m^3]; 0 for particles added one by one
+  std::array<Index, 2> resolution{};  ///< of a cloth, see BodyShape
+  Surface surface;
+  ContactMaterial material;
+  BodyContact contact;
+  bool stretch_limited = true;  ///< whether the stretch limit applies to its springs
+  Cells cells;                  ///< of solids; in the numbering of the body
+  /// Where the first particles of the body lie in its cells: passes keep them there. Empty unless cells carry a surface.
+  std::vector<CellPoint> carried;
+  bool preserve_volume = false;  ///< whether passes keep the volume of the cells
+  double volume_factor = 0.0;    ///< of a closed surface: the multiple of its volume at rest that passes keep; 0: none
+  double pressure = 0.0;         ///< in a closed surface, along the normals of its triangles [Pa]
+
+  /// The number of particles, the first ones, that are vertices of the surface.
+  [[nodiscard]] Index vertex_count() const { return carried.empty() ? particle_count : static_cast<Index>(carried.size()); }
+};
+
+/// Particles that follow a prescribed motion or an obstacle. With the default motion they rest. A pin that begins after time 0
+/// takes its particles where they are then, and moves them by what its motion differs from its pose at that time. A simulator
+/// rounds both times to steps.
+struct Pin {
+  std::vector<Index> particles;      ///< of the network
+  Vector3 origin = Vector3::Zero();  ///< origin of the rotation [m]
+  Motion motion;
+  Index obstacle = kNone;  ///< of the simulator, which the particles follow instead of `motion`; kNone: none
+  double from = 0.0;       ///< when it takes its particles [s], >= 0
+  double until = std::numeric_limits<double>::infinity();  ///< when it lets go of them [s], > from
+
+  [[nodiscard]] bool moves() const { return obstacle != kNone || motion.moves(); }
+  [[nodiscard]] bool holds_always() const { return from == 0.0 && until == std::numeric_limits<double>::infinity(); }
+};
+
+/// The model of a network, constant once built by NetworkBuilder.
+struct SpringNetwork {
+  Points positions;        ///< at time 0 [m], 3 x n
+  Points velocities;       ///< at time 0 [m/s], 3 x n; 0 of pinned particles
+  Scalars masses;          ///< [kg], > 0
+  Scalars inverse_masses;  ///< [1/kg]; 0 for pinned particles
+  Scalars drag_areas;      ///< factor of the air drag: the particle's share in the area [m^2] of its body's faces, plus that
+                           ///< in the length [m] of its segments; 1 in a body without either
+  Springs springs;
+  AngleBends angle_bends;
+  std::vector<Body> bodies;
+  std::vector<Pin> pins;        ///< that hold their particles
+  std::vector<Pin> later_pins;  ///< that have not begun
+
+  [[nodiscard]] Index particle_count() const { return static_cast<Index>(masses.size()); }
+  [[nodiscard]] bool is_pinned(Index particle) const { return inverse_masses[particle] == 0.0; }
+  /// The body of a particle. Requires a particle of the network.
+  [[nodiscard]] const Body& body_of(Index particle) const;
+};
+
+/// Whether a body may collide with itself or with another body.
+[[nodiscard]] bool bodies_may_collide(const SpringNetwork& network);
+
+}  // namespace sprung
