@@ -32,6 +32,11 @@ std::string format_upper_bound(double bound) {
   return format_number(std::floor(bound / unit * kRounding) * unit, kDigits);
 }
 
+std::string lower_case(std::string text) {
+  for (char& letter : text) letter = 'A' <= letter && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+  return text;
+}
+
 std::string counted(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }

@@ -18,6 +18,9 @@ void append_number(std::string& text, double value);
 /// Requires bound > 0.
 [[nodiscard]] std::string format_upper_bound(double bound);
 
+/// With small letters for the capital ones of ASCII.
+[[nodiscard]] std::string lower_case(std::string text);
+
 /// "1 spring", "2 springs".
 [[nodiscard]] std::string counted(std::size_t count, const std::string& what);
 

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/format.h"
 #include "base/parallel.h"
+#include "geometry/import/text_words.h"
 #include "output/file_pattern.h"
 #include "output/scene_extent.h"
 
@@ -123,7 +124,6 @@ std::string vertex_lines(const Points& vertices) {
 
 Points read_vertex_lines(const std::string& text) {
   std::vector<double> numbers;
-  const auto is_blank = [](char letter) { return letter == ' ' || letter == '\t'; };
   const auto ends_line = [](char letter) { return letter == '\n' || letter == '\r'; };
   const char* const end = text.data() + text.size();
   for (const char* line = text.data(); line != end;) {

@@ -73,10 +73,11 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
       folder_.write(file, sequence.text(simulator));
       written.push_back(file);
     }
-    for (const CopiedFile& copy : copies_) {
-      if (before.frames_written > 0) break;
-      folder_.write(copy.path, content_of(copy.file));
-      written.push_back(copy.path);
+    if (before.frames_written == 0) {
+      for (const CopiedFile& copy : copies_) {
+        folder_.write(copy.path, content_of(copy.file));
+        written.push_back(copy.path);
+      }
     }
     write_record();
     folder_.append(kDiagnosticsFile, csv_row(diagnostics));

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "scene/building/mesh_finder.h"
 #include "scene/reading/scene_reader.h"
+#include "simulation/start/start_check.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -23,7 +24,7 @@ void add_new(std::vector<std::string>& all, const std::vector<std::string>& more
   std::vector<Problem> problems = error.problems();
   for (Problem& problem : problems) {
     for (const auto& [body, remedy] : weld_remedies) {
-      if (problem.key == "bodies." + body && problem.rule.starts_with("intersects itself")) problem.remedy = remedy;
+      if (problem.key == "bodies." + body && problem.rule.starts_with(kIntersectsItself)) problem.remedy = remedy;
     }
   }
   throw InputError(std::move(problems));

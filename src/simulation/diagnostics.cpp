@@ -23,18 +23,6 @@ Index inverted_cells(const Simulator& simulator) {
   return count;
 }
 
-/// Positions of the particles that collide [m].
-Points surface_positions(const Simulator& simulator) {
-  Index count = 0;
-  Points positions(3, simulator.network().particle_count());
-  for (const Body& body : simulator.network().bodies) {
-    positions.middleCols(count, body.vertex_count()) = simulator.positions().middleCols(body.first_particle, body.vertex_count());
-    count += body.vertex_count();
-  }
-  positions.conservativeResize(3, count);
-  return positions;
-}
-
 FrameDiagnostics measure(const Simulator& simulator, int frame) {
   FrameDiagnostics diagnostics;
   diagnostics.frame = frame;
@@ -46,7 +34,8 @@ FrameDiagnostics measure(const Simulator& simulator, int frame) {
   diagnostics.max_stretch = max_stretch(simulator);
   diagnostics.contacts = simulator.contact_count();
   diagnostics.inverted_cells = inverted_cells(simulator);
-  diagnostics.min_distance = simulator.environment().min_distance(surface_positions(simulator), distance_range(simulator));
+  diagnostics.min_distance =
+      simulator.environment().min_distance(vertex_positions(simulator.network(), simulator.positions()), distance_range(simulator));
   return diagnostics;
 }
 

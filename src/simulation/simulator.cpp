@@ -104,6 +104,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   Start start = find_start(network, environment, settings.contact, state.x);
   state.x = std::move(start.positions);
   warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
+  if (constraints.violation(state.x) > 1.0) constraints.correct_positions(state, dt());
   integrator->start(state, forces, dt());
   energy_watch.note(0, energies());
 }

@@ -105,9 +105,8 @@ class Simulator {
   /// Throws StepError if a spring is overstretched or the energy exploded. step() checks large networks only every few steps.
   void check() const;
 
-  /// Elastic energy [J]: sum of 1/2 k_s (|s| - d)^2, the energy of angle bends, and -p V of bodies
-  /// with a pressure. Potential energy of gravity [J]: sum of -m g .
-  /// x. Energy of contact [J]: that of penalty springs; 0 with projection.
+  /// Elastic energy [J]: sum of 1/2 k_s (|s| - d)^2, the energy of angle bends, and -p V of bodies with a pressure. Potential
+  /// energy of gravity [J]: sum of -m g . x. Energy of contact [J]: that of penalty springs; 0 with projection.
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] double gravity_energy() const;
   [[nodiscard]] double contact_energy() const;

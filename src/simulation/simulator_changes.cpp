@@ -66,8 +66,8 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   take_state(before);
 }
 
-/// A pin lets go of its particles with the velocity of its last substep.
-/// Returns whether any pin changed.
+/// Lets pins begin and end. A particle that becomes free gets its pin's mean velocity over the last `dt`. Returns whether a pin
+/// changed.
 bool Simulator::Implementation::take_pins(const Implementation& before) {
   Points last_velocities = state.v;
   before.pin_paths.set_last_velocities(time(), before.dt(), last_velocities);
@@ -100,7 +100,10 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   }
   constraints.roll_back(before.constraints.permitted_crossings());
   environment.set_interval(time(), time());
-  if (excess_of(constraints, state.x) > excess_of(before.constraints, state.x)) constraints.correct_positions(state, before.dt());
+  if (excess_of(constraints, state.x) > excess_of(before.constraints, state.x) ||
+      constraints.violation(state.x) > std::max(1.0, before.constraints.violation(state.x))) {
+    constraints.correct_positions(state, before.dt());
+  }
   if (before.settings.integrator.index() == settings.integrator.index()) {
     integrator->resume(state, forces, before.dt());
   } else {

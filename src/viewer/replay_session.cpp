@@ -1,6 +1,7 @@
 #include "viewer/replay_session.h"
 
 #include "base/error.h"
+#include "network/model/pin_schedule.h"
 #include "output/run_record.h"
 #include "viewer/live_run.h"
 #include "viewer/page_command.h"
@@ -24,7 +25,7 @@ constexpr std::uint32_t kGeneration = 1;
 std::vector<Index> particles_of(const LoadedScene& scene, const Body& body) {
   const auto source = scene.sources.find(body.name);
   if (source != scene.sources.end() && !source->second->particle_of.empty()) return source->second->particle_of;
-  std::vector<Index> particles(static_cast<std::size_t>(body.particle_count));
+  std::vector<Index> particles(static_cast<std::size_t>(body.vertex_count()));
   std::iota(particles.begin(), particles.end(), 0);
   return particles;
 }
@@ -122,9 +123,7 @@ Topology Replay::topology() const {
     first += static_cast<Index>(body.first.vertices.cols());
   }
   topology.particles = first;
-  std::vector<Index> vertex_of(particle_of_.size());  // one of those of a particle
-  for (std::size_t i = 0; i < particle_of_.size(); ++i) vertex_of[particle_of_[i]] = static_cast<Index>(i);
-  for (Index& end : topology.springs.reshaped()) end = vertex_of[end];
+  if (live_) show_springs_of_vertices(topology);
   for (const RecordedMesh& obstacle : run_.obstacles()) {
     TriangleMesh mesh;
     mesh.vertices = obstacle.first.vertices;
@@ -132,6 +131,38 @@ Topology Replay::topology() const {
     topology.obstacles.push_back(std::move(mesh));
   }
   return topology;
+}
+
+/// Springs of particles that frames do not hold, such as those of cells that carry a surface, are left out.
+void Replay::show_springs_of_vertices(Topology& topology) const {
+  std::vector<Index> vertex_of(live_->simulator().network().particle_count(), kNone);  // one of those of a particle
+  for (std::size_t i = 0; i < particle_of_.size(); ++i) vertex_of[particle_of_[i]] = static_cast<Index>(i);
+  Index kept = 0;
+  for (Index s = 0; s < topology.springs.cols(); ++s) {
+    const Index first = vertex_of[topology.springs(0, s)];
+    const Index second = vertex_of[topology.springs(1, s)];
+    if (first == kNone || second == kNone) continue;
+    topology.springs.col(kept) << first, second;
+    topology.rest_lengths[kept] = topology.rest_lengths[s];
+    topology.kinds[kept++] = topology.kinds[s];
+  }
+  topology.springs.conservativeResize(2, kept);
+  topology.rest_lengths.resize(kept);
+  topology.kinds.resize(kept);
+}
+
+/// Whether pins hold each particle of the network in a frame.
+std::vector<char> Replay::pinned(int frame) const {
+  const SpringNetwork& network = live_->simulator().network();
+  std::vector<char> pinned(network.particle_count(), 0);
+  const double time = due_before(static_cast<std::int64_t>(frame - 1) * run_.steps_per_frame(), run_.step());
+  for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
+    for (const Pin& pin : *pins) {
+      if (!holds_at(pin, time)) continue;
+      for (const Index particle : pin.particles) pinned[particle] = 1;
+    }
+  }
+  return pinned;
 }
 
 FrameState Replay::state(int frame) const {
@@ -146,8 +177,9 @@ FrameState Replay::state(int frame) const {
     if (obstacle.changes()) state.deformed.push_back(run_.positions(obstacle, frame));
   }
   state.states.assign(static_cast<std::size_t>(state.positions.cols()), 0);
+  const std::vector<char> is_pinned = live_ ? pinned(frame) : std::vector<char>();
   for (std::size_t i = 0; live_ && i < state.states.size(); ++i) {
-    if (live_->simulator().network().is_pinned(particle_of_[i])) state.states[i] = kPinned;
+    if (is_pinned[particle_of_[i]] != 0) state.states[i] = kPinned;
   }
   state.speeds = Scalars::Zero(state.positions.cols());
   return state;

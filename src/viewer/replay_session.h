@@ -38,6 +38,9 @@ class Replay {
   [[nodiscard]] double time(int frame) const { return (frame - 1) / run_.frame_rate(); }
 
  private:
+  void show_springs_of_vertices(Topology& topology) const;
+  [[nodiscard]] std::vector<char> pinned(int frame) const;
+
   RecordedRun run_;
   std::unique_ptr<const LiveRun> live_;  ///< of the scene, at time 0; null if it does not build
   std::vector<Index> particle_of_;       ///< of each vertex of the bodies' frames; a weld gives several the same one

@@ -24,11 +24,12 @@ TEST_P(LatticeScenario, ABallIsThrownAtASpike) {
 // Corners of cells lie outside of the ball, and so below the ground when the ball lies on it.
 TEST(LatticeAtRest, ItsSurfaceLiesOnTheGroundAndItsCellsDoNotCollide) {
   const char* const ground = R"(obstacles={"ground": {"shape": {"type": "half_space"}, "friction": 0.3}})";
-  const char* const low = "bodies.ball.place.position=[0, 0.16, 0]";
+  const char* const low = R"(bodies.ball.place={"position": [0, 0.16, 0], "rotation": [45, 0, 45]})";
   for (const char* const contact :
-       {R"(contact={"response": "projection"})", R"(contact={"response": "penalty", "stiffness": 500})"}) {
+       {R"(contact={"response": "projection"})", R"(contact={"response": "penalty", "stiffness": 500, "damping": 1})"}) {
     const BuiltScene scene = load_scenario("lattice_on_spike", {ground, low, contact});
     Simulator simulator(scene.network, scene.settings, scene.obstacles);
+    EXPECT_TRUE(simulator.warnings().empty()) << simulator.warnings().front();
     const Body& ball = simulator.network().bodies[0];
     while (simulator.time() < 1.0) simulator.step();
     const auto vertices = simulator.positions().leftCols(ball.vertex_count());
@@ -38,6 +39,20 @@ TEST(LatticeAtRest, ItsSurfaceLiesOnTheGroundAndItsCellsDoNotCollide) {
     EXPECT_GT(simulator.contact_count(), 0);
     EXPECT_LT(simulator.contact_particles().back(), ball.vertex_count());
   }
+}
+
+// A surface that moved alone would be pulled back by its cells at once, with tens of joules.
+TEST(LatticeAtTheStart, PushOutMovesItAsAWhole) {
+  const char* const ground = R"(obstacles={"ground": {"shape": {"type": "half_space"}, "friction": 0.3}})";
+  const BuiltScene scene = load_scenario(
+      "lattice_on_spike", {ground, R"(bodies.ball.place={"position": [0, 0.05, 0]})", R"(contact={"start": "push_out"})"});
+  Simulator simulator(scene.network, scene.settings, scene.obstacles);
+  const Points moved = simulator.positions() - scene.network.positions;
+  EXPECT_GT(moved(1, 0), 0.1);
+  EXPECT_LT((moved.colwise() - moved.col(0)).cwiseAbs().maxCoeff(), 1.0e-12);
+  const double weight = scene.network.masses.sum() * 9.81;
+  simulator.step();
+  EXPECT_LT(kinetic_energy(simulator), weight * 1.0e-3) << "less than from a fall by a millimetre";
 }
 
 // The spike moves up by 1.5 m at 15 m/s.

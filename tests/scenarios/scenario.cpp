@@ -31,15 +31,6 @@ Points local_positions(const Obstacle& obstacle, const Simulator& simulator) {
   return obstacle.motion.pose(obstacle.rest_pose, simulator.time()).inverse() * simulator.positions();
 }
 
-/// The columns of the particles that are vertices of surfaces; the cells that carry a surface are not seen.
-Points vertices_of(const SpringNetwork& network, const Points& positions) {
-  std::vector<Index> vertices;
-  for (const Body& body : network.bodies) {
-    for (Index v = 0; v < body.vertex_count(); ++v) vertices.push_back(body.first_particle + v);
-  }
-  return positions(Eigen::all, vertices);
-}
-
 class FrameJudge {
  public:
   FrameJudge(const Simulator& simulator, Judge judge)
@@ -56,7 +47,7 @@ class FrameJudge {
       const Obstacle& obstacle = simulator_.environment().obstacles()[k];
       if (std::holds_alternative<SequenceGeometry>(obstacle.geometry)) judges_[k] = judge_of(obstacle.geometry, simulator_.time());
       const Points local = local_positions(obstacle, simulator_);
-      inside += judges_[k]->count_inside(vertices_of(simulator_.network(), local));
+      inside += judges_[k]->count_inside(vertex_positions(simulator_.network(), local));
       crossings += judges_[k]->count_crossings(elements_, local);
     }
     const Index self_crossings = self_ ? count_self_crossings(elements_, simulator_.positions()) : 0;

@@ -134,7 +134,10 @@ inline constexpr const char* kFullScene = R"({
                "diameter": 0.008, "friction": 0.1 },
     "sponge": { "shape": { "type": "solid", "size": [1, 2, 3], "resolution": [4, 5, 6] }, "material": "foam" },
     "ham": { "shape": { "type": "tetrahedra", "file": "ham.msh" }, "material": "firm_jelly", "friction": 0.3,
-             "volume": { "preserve": true } }
+             "volume": { "preserve": true } },
+    "horse": { "shape": { "type": "lattice", "file": "horse.obj", "cells": 24 }, "material": "foam", "normals": true },
+    "cow": { "shape": { "type": "lattice", "file": "cow.stl", "cell_size": 0.1 }, "material": "foam" },
+    "balloon": { "shape": { "type": "mesh", "file": "ball.obj" }, "mass": 0.1, "pressure": 250, "volume": { "factor": 1.5 } }
   },
   "obstacles": {
     "bunny": { "shape": { "type": "mesh", "file": "bunny.obj" }, "place": { "position": [0, 0, 1], "scale": 0.6 },

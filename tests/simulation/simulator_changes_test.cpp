@@ -255,7 +255,6 @@ TEST(SimulatorChanges, AnExternalForceActsUntilItIsRemoved) {
 class Shelf final : public Constraint {
  public:
   explicit Shelf(double height) : height_(height) {}
-  [[nodiscard]] std::string name() const override { return "shelf"; }
   double project(const Points& /*before*/, Points& positions) const override {
     const double off = residual(positions);
     positions(1, 0) = height_;

@@ -1,8 +1,10 @@
 // Solids keep their volume, and gas and water fill closed meshes.
 #include "geometry/mesh/triangle_mesh.h"
+#include "network/total_volume.h"
 #include "simulation/scenes.h"
 #include "simulation/step/step_check.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -37,7 +39,9 @@ Simulator simulator_of(const SpringNetwork& network, std::vector<Obstacle> obsta
   return Simulator(network, settings, std::move(obstacles));
 }
 
-double volume_of(const Simulator& simulator) { return total_volume(simulator.network().bodies[0].cells, simulator.positions()); }
+double volume_of(const Simulator& simulator) {
+  return testing::total_volume(simulator.network().bodies[0].cells, simulator.positions());
+}
 
 void run(Simulator& simulator, double seconds) {
   const double end = simulator.time() + seconds;
@@ -175,6 +179,26 @@ TEST(Volume, ABagOfWaterKeepsItsFactor) {
   const double before = surface_of(simulator.positions(), triangles).volume;
   run(simulator, 0.5);
   EXPECT_NEAR(surface_of(simulator.positions(), triangles).volume, 1.3 * before, 0.002 * before);
+}
+
+TEST(Volume, ABagStartsFilledAndAtRest) {
+  Simulator simulator = balloon(0.0, 1.3);
+  const Triangles& triangles = simulator.network().bodies[0].surface.triangles;
+  const double empty = surface_of(simulator.network().positions, triangles).volume;
+  EXPECT_NEAR(surface_of(simulator.positions(), triangles).volume, 1.3 * empty, 0.002 * empty);
+  simulator.step();
+  // The membrane pulls with T = 100 N/m times 9 %, and only friction with the water would stop what it moves along itself: far less
+  // than the 0.009 m / step by which the surface moved at the start.
+  EXPECT_LT(simulator.state().v.cwiseAbs().maxCoeff(), 0.1 * 0.009 / simulator.settings().step);
+}
+
+TEST(Volume, AFactorThatTheLimitForbidsIsToldOf) {
+  Simulator bag = balloon(0.0, 1.3);
+  SimulatorSettings settings = bag.settings();
+  settings.stretch_limit = StretchLimitSettings{.max_stretch = 0.02};
+  const Simulator simulator(bag.network(), settings);
+  ASSERT_FALSE(simulator.warnings().empty());
+  EXPECT_THAT(simulator.warnings().front(), ::testing::HasSubstr("volume.factor = 1.3 needs springs that stretch by 9.14 %"));
 }
 
 }  // namespace

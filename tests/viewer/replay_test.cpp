@@ -54,6 +54,42 @@ TEST(Replay, SpringsAndPinsOfAWeldedMeshAreAtItsVertices) {
   EXPECT_THAT(state.states, ::testing::ElementsAre(0, 0, 0, kPinned, 0, kPinned, 0, 0)) << "both vertices of the pinned particle";
 }
 
+// A cube of one cell carries a tetrahedron; a rope is pinned from frame 1 until frame 3 and from frame 4 on.
+TEST(Replay, ShowsTheOtherBodiesOfALatticeAndPinsWhileTheyHold) {
+  const SceneFolder folder;
+  folder.write("tetrahedron.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const std::string mesh = (folder.path() / "tetrahedron.obj").string();
+  const std::string scene = R"({"version": 1, "duration": 1, "frame_rate": 10, "bodies": {
+      "lattice": {"shape": {"type": "lattice", "file": ")" +
+                            mesh + R"(", "cells": 1}, "material": "foam"},
+      "line": {"shape": {"type": "rope", "from": [5, 0, 0], "to": [6, 0, 0], "particles": 2}, "mass": 1,
+               "springs": {"structural": {"stiffness": 10}},
+               "pins": [{"indices": [0], "until": 0.2}, {"indices": [0], "from": 0.3}]}}})";
+  LoadedScene loaded = load_scene({.file = folder.write("scene.json", scene).string()});
+  RunOutput output(OutputFolder((folder.path() / "run").string(), false),
+                   {.scene = loaded.scene.resolved,
+                    .frame_rate = 10.0,
+                    .frames = kFrames,
+                    .steps_per_frame = loaded.steps_per_frame,
+                    .sources = loaded.sources},
+                   loaded.simulator);
+  FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
+  for (int frame = 1; frame <= kFrames; ++frame) {
+    output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
+  }
+  output.finish("done");
+  const Replay replay(folder.path() / "run", {});
+  EXPECT_THAT(replay.scene_text(), HasSubstr("\"complete\":true"));
+  const Topology topology = replay.topology();
+  EXPECT_EQ(topology.particles, 4 + 2);
+  ASSERT_EQ(topology.springs.cols(), 1) << "of the rope; those of the cell have ends that frames do not hold";
+  EXPECT_EQ(topology.springs.col(0), Eigen::Vector2i(4, 5));
+  EXPECT_EQ(topology.rest_lengths, std::vector<float>{1.0F});
+  std::vector<int> holds;
+  for (int frame = 1; frame <= kFrames; ++frame) holds.push_back(replay.state(frame).states[4] == kPinned ? 1 : 0);
+  EXPECT_THAT(holds, ::testing::ElementsAre(1, 1, 0, 1, 1));
+}
+
 /// A cloth that falls on a ball that moves, recorded.
 class RecordedCloth : public ::testing::Test {
  protected:

@@ -53,8 +53,7 @@ struct CollisionSurface {
 
 /// Divides the elements, which are sorted by body, into patches of neighbours by bisection of their middles at `positions` [m], 3
 /// x n. A particle without an element gets an element of its own. `body_of` is the body of each particle; kNone: it does not
-/// collide. Element sizes are
-/// measured at `positions`. The other arguments become the members of the same name.
+/// collide. Element sizes are measured at `positions`. The other arguments become the members of the same name.
 [[nodiscard]] CollisionSurface make_collision_surface(std::vector<Element> elements, const Points& positions,
                                                       const std::vector<Index>& body_of, Scalars thickness,
                                                       std::vector<char> pinned, std::vector<char> self, std::vector<char> others);

@@ -5,7 +5,6 @@
 #include "dynamics/constraints/constraint.h"
 #include "network/model/spring_network.h"
 
-#include <string>
 #include <vector>
 
 namespace sprung {
@@ -17,7 +16,6 @@ class CarriedSurface final : public Constraint {
   /// Keeps a reference to the network.
   explicit CarriedSurface(const SpringNetwork& network);
 
-  [[nodiscard]] std::string name() const override { return "carried surface"; }
   double project(const Points& before, Points& positions) const override;
 
   /// A particle may be off by a thousandth of its cell.

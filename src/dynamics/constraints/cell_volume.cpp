@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTolerance = 0.01;  // of a region's volume
 constexpr double kLeastFraction = 0.1;
-constexpr double kInverted = 1.0;  // what a part that is inside out counts as: a change by all of the volume
+constexpr double kInverted = 1.0;  // residual of an inverted part, as a relative change of volume
 
 // A part below this multiple of its least volume may fall below it when the volume of its region changes.
 constexpr double kWatched = 4.0;
@@ -75,15 +75,12 @@ CellVolume::CellVolume(const SpringNetwork& network) : network_(network) {
 }
 
 void CellVolume::add_hexahedra(const Body& body) {
-  constexpr double kAny = -std::numeric_limits<double>::infinity();
-  std::vector<Part> parts;
-  for (const auto& corners : kTetrahedraOfHexahedron) {
-    parts.push_back({.corners = bytes(corners), .least = parts.size() < kCornersOfHexahedron ? 0.0 : kAny});
-  }
+  std::vector<Corners> parts;
+  for (const auto& corners : kTetrahedraOfHexahedron) parts.push_back(bytes(corners));
   for (const Hexahedron& cell : body.cells.hexahedra) {
     std::vector<Index> particles(cell.begin(), cell.end());
     for (Index& particle : particles) particle += body.first_particle;
-    add(particles, parts);
+    add(particles, parts, kCornersOfHexahedron);
   }
 }
 
@@ -94,31 +91,31 @@ void CellVolume::add_stars(const Body& body) {
   }
   for (const auto& star : stars) {
     std::vector<Index> particles;
-    std::vector<Part> parts;
+    std::vector<Corners> parts;
     for (const Tetrahedron* cell : star) {
+      if (particles.size() + cell->size() > kMaxParticles) break;  // other stars have the rest
       std::array<std::ptrdiff_t, 4> corners{};
       for (std::size_t c = 0; c < corners.size(); ++c) {
         const auto known = std::ranges::find(particles, body.first_particle + (*cell)[c]);
         corners[c] = known - particles.begin();
         if (known == particles.end()) particles.push_back(body.first_particle + (*cell)[c]);
       }
-      if (particles.size() > kMaxParticles) break;
-      parts.push_back({.corners = bytes(corners), .least = 0.0});
+      parts.push_back(bytes(corners));
     }
-    if (!parts.empty()) add(particles, parts);
+    if (!parts.empty()) add(particles, parts, parts.size());
   }
 }
 
 /// Computes the volumes at rest.
-void CellVolume::add(const std::vector<Index>& particles, std::vector<Part> parts) {
+void CellVolume::add(const std::vector<Index>& particles, const std::vector<Corners>& parts, std::size_t upright) {
   double volume = 0.0;
-  for (Part& part : parts) {
-    const double of_part = part_volume(particles, part.corners, network_.positions).volume;
-    if (part.least == 0.0) part.least = kLeastFraction * of_part;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const double of_part = part_volume(particles, parts[p], network_.positions).volume;
+    const double least = p < upright ? kLeastFraction * of_part : -std::numeric_limits<double>::infinity();
+    parts_.push_back({.corners = parts[p], .least = least});
     volume += of_part;
   }
   particles_.insert(particles_.end(), particles.begin(), particles.end());
-  parts_.insert(parts_.end(), parts.begin(), parts.end());
   particles_begin_.push_back(particles_.size());
   parts_begin_.push_back(parts_.size());
   volumes_.push_back(volume);

@@ -7,7 +7,6 @@
 
 #include <array>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace sprung {
@@ -22,17 +21,18 @@ class CellVolume final : public Constraint {
   /// reference to the network.
   explicit CellVolume(const SpringNetwork& network);
 
-  [[nodiscard]] std::string name() const override { return "volume"; }
   double project(const Points& before, Points& positions) const override;
 
   /// A volume may differ by 1 % from that at rest, and nothing may be inside out, which counts as 100.
   [[nodiscard]] double residual(const Points& positions) const override;
 
  private:
+  using Corners = std::array<std::uint8_t, 4>;  ///< of a tetrahedron, as numbers of the region's particles
+
   /// A tetrahedron within a region.
   struct Part {
-    std::array<std::uint8_t, 4> corners;  ///< as numbers of the region's particles
-    double least;                         ///< the least volume that it may have [m^3 / 6]; minus infinity if it may have any
+    Corners corners;
+    double least;  ///< the least volume that it may have [m^3 / 6]; minus infinity if it may have any
   };
 
   /// Tetrahedra whose total volume is kept.
@@ -44,7 +44,8 @@ class CellVolume final : public Constraint {
 
   void add_hexahedra(const Body& body);
   void add_stars(const Body& body);
-  void add(const std::vector<Index>& particles, std::vector<Part> parts);
+  /// The first `upright` parts may not turn inside out.
+  void add(const std::vector<Index>& particles, const std::vector<Corners>& parts, std::size_t upright);
   [[nodiscard]] Region region(std::size_t number) const;
   [[nodiscard]] static bool is_inverted(const Part& part, double volume);
   double project(const Region& region, Points& positions) const;

@@ -4,7 +4,6 @@
 #include "base/types.h"
 
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace sprung {
@@ -14,9 +13,6 @@ namespace sprung {
 class Constraint {
  public:
   virtual ~Constraint() = default;
-
-  /// Name for messages, "volume" for example.
-  [[nodiscard]] virtual std::string name() const = 0;
 
   /// Prepares the constraint for passes of a step that ends at `time` [s]. Not thread-safe. Default: does nothing.
   virtual void prepare(double time);

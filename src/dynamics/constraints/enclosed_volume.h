@@ -16,7 +16,6 @@ class EnclosedVolume final : public Constraint {
   /// network.
   explicit EnclosedVolume(const SpringNetwork& network);
 
-  [[nodiscard]] std::string name() const override { return "enclosed volume"; }
   double project(const Points& before, Points& positions) const override;
 
   /// A volume may differ by 0.1 % from what it is kept at.

@@ -3,6 +3,7 @@
 #include "geometry/mesh/triangle_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sprung {
 
@@ -13,14 +14,8 @@ bool has_pressure(const SpringNetwork& network) {
 void PressureForce::add(const Kinematics& at, Points& forces) const {
   for (const Body& body : network_.bodies) {
     if (body.pressure == 0.0) continue;
-    for (const auto& triangle : body.surface.triangles.colwise()) {
-      const Index a = body.first_particle + triangle[0];
-      const Index b = body.first_particle + triangle[1];
-      const Index c = body.first_particle + triangle[2];
-      const Vector3 origin = at.x.col(a);
-      const Vector3 push = body.pressure / 6.0 * (at.x.col(b) - origin).cross(at.x.col(c) - origin);
-      for (const Index corner : {a, b, c}) forces.col(corner) += push;
-    }
+    add_volume_gradients(at.x.middleCols(body.first_particle, body.particle_count), body.surface.triangles, body.pressure,
+                         forces.middleCols(body.first_particle, body.particle_count));
   }
 }
 

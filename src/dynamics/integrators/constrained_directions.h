@@ -13,10 +13,10 @@ namespace sprung {
 /// An obstacle or an element that pushes.
 struct Support {
   Vector3 normal = Vector3::Zero();
-  Vector3 displacement = Vector3::Zero();  ///< in the step, of what static friction holds [m]
+  Vector3 displacement = Vector3::Zero();  ///< in the step, of the point to which static friction ties the particle [m]
   double static_friction = 0.0;
   double friction = 0.0;
-  double weight = 1.0;  ///< where several count as one: their mean by weight does
+  double weight = 1.0;  ///< of this support in the mean of merged supports
 };
 
 /// Two elements of the network that push each other. Their distance is a weighted sum of particles, as in Contact.
@@ -27,7 +27,7 @@ struct ElementContact {
   std::array<double, kMostParticles> weights{};
   std::size_t count = 0;
   double mass = 0.0;               ///< of the sum: its velocity changes by an impulse divided by this mass [kg]
-  Vector3 push = Vector3::Zero();  ///< by which contact changed the sum, with friction [m]
+  Vector3 push = Vector3::Zero();  ///< displacement of the sum by contact and friction [m]
   Support support{};
 
   /// The weighted sum of the particles' columns of q.

@@ -12,6 +12,16 @@
 namespace sprung {
 namespace {
 
+/// The particles of a contact between elements, and which of them are on the first one: the same four can be the contact of a
+/// vertex with a face and that of two edges.
+using ElementKey = std::pair<decltype(ElementContact::particles), std::array<bool, ElementContact::kMostParticles>>;
+
+ElementKey key_of(const ElementContact& contact) {
+  ElementKey key{contact.particles, {}};
+  for (std::size_t k = 0; k < contact.count; ++k) key.second[k] = contact.weights[k] > 0.0;
+  return key;
+}
+
 class ImplicitEuler final : public Integrator {
  public:
   explicit ImplicitEuler(const SpringNetwork& network) : Integrator(network) {}
@@ -146,7 +156,7 @@ class ImplicitEuler final : public Integrator {
     for (std::size_t c = 0; c < contacts.size(); ++c) {
       const ElementContact& contact = contacts[c];
       const Vector3 slip = slip_of(motion, contact, state);
-      ImplicitFriction& friction = element_friction_[contact.particles];
+      ImplicitFriction& friction = element_friction_[key_of(contact)];
       if (!friction.begun()) friction.begin(along(contact), contact.push, slip, contact.mass / motion.dt * contact.push);
       const Vector3& impulse = friction.impulse();
       for (std::size_t k = 0; k < contact.count; ++k) impulses_.col(contact.particles[k]) += contact.weights[k] * impulse;
@@ -213,7 +223,7 @@ class ImplicitEuler final : public Integrator {
   Points impulses_;                       // of contact, apart from its constraints [N s]
   std::vector<Matrix3> added_;            // to the matrix by contact
   std::vector<ImplicitFriction> friction_;
-  std::map<decltype(ElementContact::particles), ImplicitFriction> element_friction_;
+  std::map<ElementKey, ImplicitFriction> element_friction_;
   std::vector<ElementSolve> element_solves_;
   Points v_;
 };

@@ -12,8 +12,8 @@ namespace {
 // Friction is settled when it changes by less than this fraction.
 constexpr double kSettled = 1.0e-3;
 
-// What slipped and stuck again as often as this in a step sticks for the rest of it. Particles that pull at each other through
-// stiff springs would otherwise take turns, and a rope at rest on a drum would creep.
+// A particle that slipped and stuck again this often in a step sticks for the rest of it. Otherwise particles joined by stiff
+// springs alternate, and a rope at rest on a drum creeps.
 constexpr int kReturns = 4;
 
 /// The largest friction impulses, by Coulomb's law.

@@ -1,5 +1,6 @@
 #include "geometry/import/mesh_file.h"
 
+#include "base/format.h"
 #include "base/text_encoding.h"
 
 #include <algorithm>
@@ -35,12 +36,7 @@ void FileProblems::throw_if_any() const {
   throw InputError(std::move(all));
 }
 
-std::string lower_case_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return extension;
-}
+std::string lower_case_extension(const std::filesystem::path& file) { return lower_case(file.extension().string()); }
 
 std::string read_mesh_file(const std::filesystem::path& file) {
   std::error_code ignored;

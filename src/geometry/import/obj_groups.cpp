@@ -50,7 +50,7 @@ class GroupReader {
       if (written != 0) vertices_.push_back(written > 0 ? written - 1 : vertices_so_far_ + written);
     }
     for (const std::string& group : groups_) append(group);
-    if (std::ranges::find(groups_, object_) == groups_.end()) append(object_);
+    append(object_);
     append(material_);
   }
 

@@ -10,9 +10,8 @@
 
 namespace sprung {
 
-/// The vertices of the file, ascending and each once, that the faces, lines and points of each group (`g`, each of its names),
-/// object
-/// (`o`) and material (`usemtl`) have. Parts of one name are one part. A name that has no such element is left out.
+/// For each group (`g`, each of its names), object (`o`) and material (`usemtl`): the vertices of its faces, lines and points,
+/// ascending, each once. Elements under the same name belong together. A name without elements is left out.
 using ObjGroups = std::map<std::string, std::vector<Index>>;
 
 /// Requires a file that `read_obj` accepts. Throws as it does.

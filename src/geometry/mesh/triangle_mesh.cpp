@@ -17,7 +17,7 @@ Vector3 area_normal(const TriangleMesh& mesh, Index triangle) {
 
 double signed_volume(const TriangleMesh& mesh) { return signed_volume(mesh.vertices, mesh.triangles); }
 
-double signed_volume(const Points& vertices, const Triangles& triangles) {
+double signed_volume(const Eigen::Ref<const Points>& vertices, const Triangles& triangles) {
   if (triangles.cols() == 0) return 0.0;
   // Any apex gives the same sum; one on the mesh keeps the digits of a small mesh far from the origin.
   const Vector3 apex = vertices.col(triangles(0, 0));
@@ -27,6 +27,15 @@ double signed_volume(const Points& vertices, const Triangles& triangles) {
     six_volumes += area_normal(a, vertices.col(corners[1]), vertices.col(corners[2])).dot(a - apex);
   }
   return six_volumes / 6.0;
+}
+
+// Each triangle gives a third of its area along its normal to each corner; the sums are the derivatives if the mesh is closed.
+void add_volume_gradients(const Eigen::Ref<const Points>& vertices, const Triangles& triangles, double factor,
+                          Eigen::Ref<Points> sums) {
+  for (const auto& corners : triangles.colwise()) {
+    const Vector3 share = factor / 6.0 * area_normal(vertices.col(corners[0]), vertices.col(corners[1]), vertices.col(corners[2]));
+    for (const Index corner : corners) sums.col(corner) += share;
+  }
 }
 
 }  // namespace sprung

@@ -19,6 +19,10 @@ struct TriangleMesh {
 
 /// Enclosed volume [m^3] by the divergence theorem. Requires a closed mesh; negative if its faces point inwards.
 [[nodiscard]] double signed_volume(const TriangleMesh& mesh);
-[[nodiscard]] double signed_volume(const Points& vertices, const Triangles& triangles);
+[[nodiscard]] double signed_volume(const Eigen::Ref<const Points>& vertices, const Triangles& triangles);
+
+/// Adds `factor` times the derivatives of that volume by the vertices [m^2] to `sums`, 3 x n. Requires a closed mesh.
+void add_volume_gradients(const Eigen::Ref<const Points>& vertices, const Triangles& triangles, double factor,
+                          Eigen::Ref<Points> sums);
 
 }  // namespace sprung

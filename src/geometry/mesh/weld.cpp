@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kRounding = 1e-12;
 constexpr int kDigits = 3;
+const char* const kRemedy = "give a smaller distance, or repair the mesh";
 
 struct ShortestEdge {
   double length = std::numeric_limits<double>::infinity();
@@ -48,13 +49,17 @@ ShortestEdge shortest_edge(const PolygonMesh& mesh) {
   throw InputError(Problem{.key = "weld", .value = format_number(distance), .rule = std::move(rule), .remedy = std::move(remedy)});
 }
 
-void check_faces(const PolygonFaces& faces, double distance) {
+void check_elements(const PolygonMesh& mesh, double distance) {
+  const PolygonFaces& faces = mesh.faces;
   for (Index face = 0; face < faces.face_count(); ++face) {
     std::vector<Index> corners(faces.vertex.begin() + faces.corner_begin[face],
                                faces.vertex.begin() + faces.corner_begin[face + 1]);
     std::sort(corners.begin(), corners.end());
     if (std::adjacent_find(corners.begin(), corners.end()) == corners.end()) continue;
-    refuse(distance, "welds two corners of face " + std::to_string(face + 1), "give a smaller distance, or repair the mesh");
+    refuse(distance, "welds two corners of face " + std::to_string(face), kRemedy);
+  }
+  for (Index line = 0; line < mesh.lines.cols(); ++line) {
+    if (mesh.lines(0, line) == mesh.lines(1, line)) refuse(distance, "welds both ends of line " + std::to_string(line), kRemedy);
   }
 }
 
@@ -104,7 +109,7 @@ WeldedMesh weld(PolygonMesh mesh, double distance) {
   mesh.vertices.conservativeResize(3, kept);
   for (Index& vertex : mesh.faces.vertex) vertex = welded.vertex_of[vertex];
   for (Index& end : mesh.lines.reshaped()) end = welded.vertex_of[end];
-  check_faces(mesh.faces, distance);
+  check_elements(mesh, distance);
   welded.mesh = std::move(mesh);
   return welded;
 }

@@ -1,5 +1,6 @@
 #include "geometry/obj_source/material_files.h"
 
+#include "base/format.h"
 #include "base/text_encoding.h"
 #include "geometry/import/text_words.h"
 #include "geometry/obj_source/obj_lines.h"
@@ -17,14 +18,8 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 5> kTextureKeys{"bump", "disp", "decal", "refl", "norm"};
 constexpr std::string_view kAntialiasing = "map_aat";  // on or off, no file
 
-std::string lower_case(std::string_view word) {
-  std::string lower(word);
-  for (char& c : lower) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
-}
-
 bool names_texture(std::string_view word) {
-  const std::string key = lower_case(word);
+  const std::string key = lower_case(std::string(word));
   return (key.starts_with("map_") && key != kAntialiasing) || std::ranges::find(kTextureKeys, key) != kTextureKeys.end();
 }
 
@@ -32,7 +27,7 @@ bool names_texture(std::string_view word) {
 std::size_t name_word(std::string_view text, const ObjLine& line) {
   std::size_t word = 1;
   while (word < line.words.size() && line.word(text, word).starts_with('-')) {
-    const std::string option = lower_case(line.word(text, word++));
+    const std::string option = lower_case(std::string(line.word(text, word++)));
     const bool vector = option == "-o" || option == "-s" || option == "-t";
     const std::size_t most = vector ? 3 : (option == "-mm" ? 2 : 1);
     for (std::size_t value = 0; value < most && word < line.words.size(); ++value, ++word) {

@@ -11,7 +11,7 @@ constexpr int kSides[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 }  // namespace
 
-double tetrahedron_volume(const Points& vertices, const std::array<Index, 4>& corners) {
+double tetrahedron_volume(const Eigen::Ref<const Points>& vertices, const std::array<Index, 4>& corners) {
   const Vector3 origin = vertices.col(corners[0]);
   const Vector3 b = vertices.col(corners[1]) - origin;
   const Vector3 c = vertices.col(corners[2]) - origin;

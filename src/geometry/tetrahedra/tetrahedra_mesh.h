@@ -15,7 +15,7 @@ struct TetrahedraMesh {
 };
 
 /// Signed volume [m^3]: positive if b - a, c - a, d - a, from the corners a, b, c, d, are a right-handed system.
-[[nodiscard]] double tetrahedron_volume(const Points& vertices, const std::array<Index, 4>& corners);
+[[nodiscard]] double tetrahedron_volume(const Eigen::Ref<const Points>& vertices, const std::array<Index, 4>& corners);
 
 /// A side of a tetrahedron.
 struct TetrahedronSide {

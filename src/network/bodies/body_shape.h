@@ -129,8 +129,8 @@ struct LatticeShape {
 /// shear precedes bend. Rest lengths are the distances in the mesh.
 [[nodiscard]] BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materials);
 
-/// The particles of the surface come first, in the order of its vertices, then the corners of the cells. A quarter of the mass of
-/// the corners belongs to the vertices that they carry.
+/// The particles of the surface come first, in the order of its vertices, then the corners of the cells. Half of the mass of each
+/// corner that carries vertices belongs to these vertices.
 [[nodiscard]] BodyShape make_lattice_body(const LatticeShape& lattice, const SpringMaterials& materials);
 
 /// Gives each particle the same share of `total` [kg]; of a carried surface and its cells, a share in proportion to its measure.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -21,7 +22,7 @@ constexpr double kMassOfSurface = 0.5;
 class Nodes {
  public:
   Index number(const Node& node) {
-    const auto [entry, is_new] = numbers_.try_emplace({node[2], node[1], node[0]}, static_cast<Index>(nodes_.size()));
+    const auto [entry, is_new] = numbers_.try_emplace(node, static_cast<Index>(nodes_.size()));
     if (is_new) nodes_.push_back(node);
     return entry->second;
   }

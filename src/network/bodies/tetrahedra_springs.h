@@ -14,8 +14,8 @@
 // direction.
 //
 // Relaxation. Under an even strain the forces on an inner particle do not cancel unless the edges around it are symmetric. If it
-// alone follows its force f, it releases the energy f K^-1 f / 2. The springs are too soft by the sum of these energies, relative to
-// the energy of the strain.
+// alone follows its force f, it releases the energy f K^-1 f / 2. The springs are too soft by the sum of these energies, relative
+// to the energy of the strain.
 //
 // The README of network/ lists what bars pull with and without these factors.
 #pragma once

@@ -1,5 +1,7 @@
 #include "network/model/cells.h"
 
+#include "geometry/tetrahedra/tetrahedra_mesh.h"
+
 #include <algorithm>
 
 namespace sprung {
@@ -26,13 +28,7 @@ void Cells::append(const Cells& cells, Index offset) {
   append_shifted(tetrahedra, cells.tetrahedra, offset);
 }
 
-double volume_of(const Tetrahedron& cell, const Eigen::Ref<const Points>& positions) {
-  const Vector3 origin = positions.col(cell[0]);
-  const Vector3 a = positions.col(cell[1]) - origin;
-  const Vector3 b = positions.col(cell[2]) - origin;
-  const Vector3 c = positions.col(cell[3]) - origin;
-  return a.cross(b).dot(c) / 6.0;
-}
+double volume_of(const Tetrahedron& cell, const Eigen::Ref<const Points>& positions) { return tetrahedron_volume(positions, cell); }
 
 double volume_of(const Hexahedron& cell, const Eigen::Ref<const Points>& positions) {
   double sum = 0.0;
@@ -52,13 +48,6 @@ bool is_inverted(const Hexahedron& cell, const Eigen::Ref<const Points>& positio
 Index count_inverted(const Cells& cells, const Eigen::Ref<const Points>& positions) {
   const auto inverted = [&](const auto& cell) { return is_inverted(cell, positions); };
   return static_cast<Index>(std::ranges::count_if(cells.hexahedra, inverted) + std::ranges::count_if(cells.tetrahedra, inverted));
-}
-
-double total_volume(const Cells& cells, const Eigen::Ref<const Points>& positions) {
-  double sum = 0.0;
-  for (const Hexahedron& cell : cells.hexahedra) sum += volume_of(cell, positions);
-  for (const Tetrahedron& cell : cells.tetrahedra) sum += volume_of(cell, positions);
-  return sum;
 }
 
 }  // namespace sprung

@@ -11,7 +11,7 @@ namespace sprung {
 /// Corners of a cell of a lattice: x runs fastest, then y, then z. Corner c has x, y, z = bits 0, 1, 2 of c.
 using Hexahedron = std::array<Index, 8>;
 
-/// Corners of a tetrahedron: the others turn counter-clockwise seen from the first, so that its volume is positive.
+/// Corners of a tetrahedron: the others turn clockwise seen from the first, so that its volume is positive.
 using Tetrahedron = std::array<Index, 4>;
 
 /// A point within a cell as a weighted sum of its corners; the weights are at least 0 and add up to 1.
@@ -25,7 +25,6 @@ struct Cells {
   std::vector<Tetrahedron> tetrahedra;
 
   [[nodiscard]] bool empty() const { return hexahedra.empty() && tetrahedra.empty(); }
-  [[nodiscard]] Index count() const { return static_cast<Index>(hexahedra.size() + tetrahedra.size()); }
   void append(const Cells& cells, Index offset);
 };
 
@@ -54,8 +53,5 @@ inline constexpr std::size_t kCornersOfHexahedron = 8;
 
 /// Number of cells that are inside out.
 [[nodiscard]] Index count_inverted(const Cells& cells, const Eigen::Ref<const Points>& positions);
-
-/// Volume [m^3] of all cells.
-[[nodiscard]] double total_volume(const Cells& cells, const Eigen::Ref<const Points>& positions);
 
 }  // namespace sprung

@@ -12,6 +12,8 @@ void free_particle(SpringNetwork& network, Index particle) { network.inverse_mas
 
 }  // namespace
 
+bool holds_at(const Pin& pin, double time) { return pin.from < time && !(pin.until < time); }
+
 bool hold_together(const Pin& a, const Pin& b) { return a.from < b.until && b.from < a.until; }
 
 bool have_pins_changed(const SpringNetwork& network, double time) {

@@ -13,14 +13,17 @@ namespace sprung {
   return (static_cast<double>(step) + 0.5) * step_length;
 }
 
+/// Whether a pin has begun and not ended before `time` [s].
+[[nodiscard]] bool holds_at(const Pin& pin, double time);
+
 /// Whether both pins hold particles at some time.
 [[nodiscard]] bool hold_together(const Pin& a, const Pin& b);
 
 /// Whether a pin begins or ends before `time` [s] and `change_pins` has not yet taken notice.
 [[nodiscard]] bool have_pins_changed(const SpringNetwork& network, double time);
 
-/// Ends the pins that end before `time` [s], which makes their particles free. Then lets the others of `later_pins` that begin
-/// before `time` hold their particles, but for those that another pin holds. Sets the inverse masses.
+/// Ends the pins that end before `time` [s], which makes their particles free. Then moves the pins of `later_pins` that begin
+/// before `time` to `pins`. A particle that another pin holds stays with that pin. Sets the inverse masses.
 void change_pins(SpringNetwork& network, double time);
 
 /// The times after 0 at which pins begin and end, ascending, each once [s].

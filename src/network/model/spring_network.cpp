@@ -29,6 +29,17 @@ const Body& SpringNetwork::body_of(Index particle) const {
   return *std::prev(after);
 }
 
+Points vertex_positions(const SpringNetwork& network, const Points& positions) {
+  Index count = 0;
+  Points vertices(3, network.particle_count());
+  for (const Body& body : network.bodies) {
+    vertices.middleCols(count, body.vertex_count()) = positions.middleCols(body.first_particle, body.vertex_count());
+    count += body.vertex_count();
+  }
+  vertices.conservativeResize(3, count);
+  return vertices;
+}
+
 bool bodies_may_collide(const SpringNetwork& network) {
   const auto collides_with_itself = [](const Body& body) { return body.contact.self; };
   const auto collides_with_others = [](const Body& body) { return body.contact.others; };

@@ -90,8 +90,8 @@ struct Body {
 };
 
 /// Particles that follow a prescribed motion or an obstacle. With the default motion they rest. A pin that begins after time 0
-/// takes its particles where they are then, and moves them by what its motion differs from its pose at that time. A simulator
-/// rounds both times to steps.
+/// takes its particles at their positions at that time. Then it moves them by the change of its pose since. A simulator rounds both
+/// times to steps.
 struct Pin {
   std::vector<Index> particles;      ///< of the network
   Vector3 origin = Vector3::Zero();  ///< origin of the rotation [m]
@@ -123,6 +123,9 @@ struct SpringNetwork {
   /// The body of a particle. Requires a particle of the network.
   [[nodiscard]] const Body& body_of(Index particle) const;
 };
+
+/// The columns of the particles that are vertices of surfaces, without the cells that carry some of them, 3 x m.
+[[nodiscard]] Points vertex_positions(const SpringNetwork& network, const Points& positions);
 
 /// Whether a body may collide with itself or with another body.
 [[nodiscard]] bool bodies_may_collide(const SpringNetwork& network);

@@ -81,7 +81,7 @@ class ShapeMaker {
     PolygonMesh polygons = read_obj(*file);
     polygons.vertices *= body_.place.scale;
     check_preset(polygons);
-    ObjSource source = read_obj_source(*file, body_.normals ? ObjTemplate::Normals::per_vertex : ObjTemplate::Normals::as_given);
+    ObjSource source = read_obj_source(*file, normals());
     if (mesh.weld) {
       WeldedMesh welded = weld(std::move(polygons), *mesh.weld);
       polygons = std::move(welded.mesh);
@@ -100,7 +100,7 @@ class ShapeMaker {
     std::optional<ObjSource> source;
     if (lower_case_extension(*file) == ".obj") {
       surface = read_obj(*file);
-      source = read_obj_source(*file, ObjTemplate::Normals::as_given);
+      source = read_obj_source(*file, normals());
     } else {
       const TriangleMesh mesh = import_mesh(*file).mesh;
       surface = {.vertices = mesh.vertices, .faces = to_polygons(mesh.triangles), .lines = Edges(2, 0)};
@@ -113,6 +113,10 @@ class ShapeMaker {
     return body;
   }
 
+  [[nodiscard]] ObjTemplate::Normals normals() const {
+    return body_.normals ? ObjTemplate::Normals::per_vertex : ObjTemplate::Normals::as_given;
+  }
+
   /// Fills a closed mesh with a gas or a liquid.
   void fill(BodyShape& shape) {
     if (body_.pressure == 0.0 && body_.volume_factor == 0.0) return;
@@ -120,7 +124,7 @@ class ShapeMaker {
     const std::string value = format_number(body_.pressure != 0.0 ? body_.pressure : body_.volume_factor, 6);
     if (!is_closed(shape.surface.triangles)) {
       problems_.push_back({scene_.file.string(), key, value, "needs a closed mesh, in which each edge belongs to two faces",
-                           "`sprung info` counts the border edges of the file; fill its holes, or remove the key"});
+                           "fill its holes, join vertices at the same place with \"weld\" in its shape, or remove the key"});
       return;
     }
     Points positions(3, static_cast<Index>(shape.positions.size()));

@@ -81,9 +81,9 @@ LatticeShape fill_with_cells(PolygonMesh surface, double cell_size) {
   const Vector3 upper = surface.vertices.rowwise().maxCoeff();
   LatticeShape lattice;
   lattice.surface = std::move(surface);
-  const Vector3 cells = ((upper - lower) / cell_size).array().ceil().max(1.0);
+  // Rounding must not add a layer of cells to a side that is a multiple of them.
+  const Vector3 cells = (((upper - lower) / cell_size).array() - kMargin).ceil().max(1.0);
   check_size(cells, cell_size);
-  // A box whose size is a multiple of the cells gets no further layer for the margin's sake.
   lattice.cell_size = (1.0 + 2.0 * kMargin) * cell_size;
   lattice.origin = 0.5 * (lower + upper) - 0.5 * lattice.cell_size * cells;
 

@@ -22,30 +22,25 @@ class PinComparison {
   PinComparison(const Scene& scene, std::string key, std::vector<Problem>& problems)
       : scene_(scene), key_(std::move(key)), problems_(problems) {}
 
-  /// Compares pin number p of the body with those before.
-  void add(std::size_t p, const Pin& pin) {
+  /// Compares the next pin of the body with those before.
+  void add(const Pin& pin) {
+    const std::size_t p = pins_.size();
     bool reported = false;
     for (const Index particle : pin.particles) {
-      std::vector<std::pair<std::size_t, Pin>>& others = pins_of_[particle];
-      for (const auto& [number, other] : others) {
+      std::vector<std::size_t>& others = pins_of_[particle];
+      for (const std::size_t number : others) {
+        const Pin& other = pins_[number];
         if (reported || !hold_together(other, pin) || (rests_for_ever(other) && rests_for_ever(pin))) continue;
         report(p, pin, particle, number, other);
         reported = true;
       }
-      others.emplace_back(p, without_particles(pin));
+      others.push_back(p);
     }
+    pins_.push_back(pin);
+    pins_.back().particles.clear();
   }
 
  private:
-  static Pin without_particles(const Pin& pin) {
-    return {.particles = {},
-            .origin = pin.origin,
-            .motion = pin.motion,
-            .obstacle = pin.obstacle,
-            .from = pin.from,
-            .until = pin.until};
-  }
-
   void report(std::size_t p, const Pin& pin, Index particle, std::size_t number, const Pin& other) {
     const bool always = pin.holds_always() && other.holds_always();
     problems_.push_back({scene_.file.string(), join_path(key_, p), "",
@@ -57,7 +52,8 @@ class PinComparison {
   const Scene& scene_;
   std::string key_;
   std::vector<Problem>& problems_;
-  std::map<Index, std::vector<std::pair<std::size_t, Pin>>> pins_of_;  // by particle, with their numbers
+  std::vector<Pin> pins_;                              // without their particles
+  std::map<Index, std::vector<std::size_t>> pins_of_;  // numbers of the pins of a particle
 };
 
 }  // namespace
@@ -75,7 +71,7 @@ std::vector<Pin> resolve_pins(const Scene& scene, const BodyScene& body, const B
             .obstacle = number_of_obstacle(scene, text.follow),
             .from = text.from,
             .until = text.until};
-    comparison.add(p, pin);
+    comparison.add(pin);
     if (rests_for_ever(pin)) {
       still.particles.insert(still.particles.end(), pin.particles.begin(), pin.particles.end());
     } else {

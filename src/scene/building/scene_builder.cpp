@@ -85,6 +85,12 @@ std::string weld_remedy(const SpringPieces& pieces) {
          counted(static_cast<std::size_t>(pieces.count_welded), "piece") + ".";
 }
 
+std::string join_remedy(const Body& body, const SpringPieces& pieces, bool is_mesh) {
+  if (is_mesh) return weld_remedy(pieces);
+  if (!body.cells.tetrahedra.empty()) return "Merge nodes at the same place in the file (Gmsh: Coherence Mesh).";
+  return "Join them by springs.";
+}
+
 std::vector<std::string> pieces_warnings(const Body& body, const SpringPieces& pieces, bool is_mesh) {
   if (body.particle_count < 2) return {};
   if (pieces.count == 0) return {"no springs, so the particles move independently"};
@@ -96,8 +102,7 @@ std::vector<std::string> pieces_warnings(const Body& body, const SpringPieces& p
   }
   if (pieces.touch) {
     warnings.push_back(std::to_string(pieces.count + pieces.alone) +
-                       " pieces that no spring joins, though some touch: they fall apart. " +
-                       (is_mesh ? weld_remedy(pieces) : "Join them by springs."));
+                       " pieces that no spring joins, though some touch: they fall apart. " + join_remedy(body, pieces, is_mesh));
   }
   return warnings;
 }

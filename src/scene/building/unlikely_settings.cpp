@@ -24,7 +24,8 @@ struct Thing {
 Thing thing_of(const BodyScene& body, const SpringNetwork& network, GroupedWarnings& warnings) {
   const auto built = std::ranges::find(network.bodies, body.name, &Body::name);
   const auto placed = network.positions.middleCols(built->first_particle, built->particle_count);
-  const bool is_mesh = std::holds_alternative<MeshFile>(body.shape) || std::holds_alternative<TetrahedraFile>(body.shape);
+  const bool is_mesh = std::holds_alternative<MeshFile>(body.shape) || std::holds_alternative<LatticeFile>(body.shape) ||
+                       std::holds_alternative<TetrahedraFile>(body.shape);
   return {body.name, bounds(pose_of(body.place).inverse() * placed), body.place.scale, is_mesh, &warnings};
 }
 

@@ -1,18 +1,13 @@
 #include "scene/json/nearest_name.h"
 
+#include "base/format.h"
+
 #include <algorithm>
-#include <cctype>
 #include <limits>
 #include <utility>
 
 namespace sprung {
 namespace {
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  for (char& letter : result) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  return result;
-}
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> before_previous;
@@ -41,7 +36,7 @@ std::size_t distance_of(const std::string& word, const std::string& name) {
 }
 
 /// In lower case, between underscores.
-std::string framed(std::string_view word) { return std::string("_").append(lower_case(word)).append("_"); }
+std::string framed(std::string_view word) { return std::string("_").append(lower_case(std::string(word))).append("_"); }
 
 /// The names that consist of `word` and other words, joined by underscores.
 std::vector<std::string> names_with(std::string_view word, const std::vector<std::string>& names) {
@@ -63,8 +58,8 @@ std::optional<std::string> nearest_name(std::string_view word, const std::vector
   std::optional<std::string> best;
   std::pair best_distance(most, std::numeric_limits<std::size_t>::max());
   for (const std::string& name : names) {
-    const std::string known = lower_case(name);
-    const std::string given = lower_case(word);
+    const std::string known = lower_case(std::string(name));
+    const std::string given = lower_case(std::string(word));
     const std::pair distance(distance_of(given, known), edit_distance(given, known));
     if (distance < best_distance && distance.first < std::max(name.size(), word.size())) {
       best = name;

@@ -147,11 +147,15 @@ SpringMaterial read_spring(Fields& fields) {
 
 /// Springs of a kind that tetrahedra lack.
 void refuse_other_springs(Fields& fields, const std::optional<BodyShapeScene>& shape) {
+  const auto refuse = [&](const char* kind, const std::string& rule) {
+    if (fields.has(kind)) fields.location().at(kind).report_key(rule, "remove it");
+  };
+  if (shape && std::holds_alternative<LatticeFile>(*shape)) {
+    refuse("bend", "is not for a lattice, which has structural and shear springs along its cells");
+  }
   if (!shape || !std::holds_alternative<TetrahedraFile>(*shape)) return;
   for (const char* kind : {"shear", "bend"}) {
-    if (!fields.has(kind)) continue;
-    fields.location().at(kind).report_key("is not for tetrahedra, which have structural springs along their edges and no others",
-                                          "remove it");
+    refuse(kind, "is not for tetrahedra, which have structural springs along their edges and no others");
   }
 }
 
@@ -176,13 +180,14 @@ BodyContact read_body_contact(Fields& fields) {
           .others = fields.value("body_contact", boolean(), fallback.others).value_or(fallback.others)};
 }
 
-/// Whether a mesh is written with new normals. Only frames of a mesh have normals.
+/// Whether a mesh is written with new normals. Only frames that follow a file have normals.
 bool read_normals(Fields& fields, const std::optional<BodyShapeScene>& shape) {
-  const bool mesh = shape && std::holds_alternative<MeshFile>(*shape);
+  const bool mesh = shape && (std::holds_alternative<MeshFile>(*shape) || std::holds_alternative<LatticeFile>(*shape));
   if (mesh) return fields.value("normals", boolean(), false).value_or(false);
   const auto normals = fields.optional("normals", boolean());
   if (normals && shape) {
-    fields.location().at("normals").report(fields.json()["normals"], "is for bodies with a mesh as their shape", "remove it");
+    fields.location().at("normals").report(fields.json()["normals"], "is for bodies with a mesh or a lattice as their shape",
+                                           "remove it");
   }
   return false;
 }

@@ -164,7 +164,8 @@ void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, Bod
         tetrahedra && value.key == "springs.structural.modulus" ? kYoungByStructural : std::pow(scale, value.power);
     fill_value(value.key, value.value * factor, has_angles, json);
   }
-  if (!tetrahedra) check_bend_springs(*preset, fields.location(), json);
+  const bool lattice = shape && std::holds_alternative<LatticeFile>(*shape);
+  if (!tetrahedra && !lattice) check_bend_springs(*preset, fields.location(), json);
   complete_springs(json);
 }
 

@@ -3,18 +3,19 @@
 namespace sprung {
 namespace {
 
-constexpr const char* kOthers = "select particles by indices, nearest, box, sphere or group";
-
-std::optional<Selector> read_corners(Fields& fields, const std::vector<std::string>& corners) {
+std::optional<Selector> read_corners(Fields& fields, const NamedParts& parts) {
+  const std::vector<std::string>& corners = parts.corners;
+  const std::string others =
+      std::string("select particles by indices, nearest, box") + (parts.groups ? ", sphere or group" : " or sphere");
   const JsonLocation at = fields.location().at("at");
   if (corners.empty()) {
     fields.accept("which");
-    at.report(fields.json()["at"], "needs a rope, a cloth or a solid: other shapes have no named corners", kOthers);
+    at.report(fields.json()["at"], "needs a rope, a cloth or a solid: other shapes have no named corners", others);
     return std::nullopt;
   }
   if (fields.json()["at"] != "corner") {
     fields.accept("which");
-    at.report(fields.json()["at"], "must be \"corner\"", kOthers);
+    at.report(fields.json()["at"], "must be \"corner\"", others);
     return std::nullopt;
   }
   const auto which = fields.required("which", list_of(word_of(corners), 1));
@@ -57,7 +58,7 @@ std::optional<Selector> read_group(Fields& fields, bool has_groups) {
 
 std::optional<Selector> read_selector(Fields& fields, const NamedParts& parts) {
   std::optional<Selector> corners;
-  if (fields.has("at")) corners = read_corners(fields, parts.corners);
+  if (fields.has("at")) corners = read_corners(fields, parts);
   const auto indices = fields.optional("indices", list_of(integer(0, kMaxBodyParticles - 1), 1));
   const auto nearest = fields.optional("nearest", vector3());
   const auto box = read_box(fields);

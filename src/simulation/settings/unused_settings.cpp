@@ -1,9 +1,11 @@
 #include "simulation/settings/unused_settings.h"
 
+#include "base/format.h"
 #include "base/grouped_warnings.h"
 #include "dynamics/contact/contact_materials.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sprung {
 namespace {
@@ -43,6 +45,14 @@ class Finder {
       warnings_.push_back("stretch_limit.kinds = " + names_of(limit.kinds) + " limits no spring" +
                           (absent.size() < limit.kinds.size() ? " of the kinds " + names_of(absent) : "") +
                           ": the network has only springs of the kinds " + names_of(present));
+    }
+    const double largest = std::pow(1.0 + limit.max_stretch, 3);
+    for (const Body& body : network_.bodies) {
+      if (!body.stretch_limited || body.volume_factor <= largest) continue;
+      warnings_.push_back("body \"" + body.name + "\": volume.factor = " + format_number(body.volume_factor, 4) +
+                          " needs springs that stretch by " + format_number(100.0 * (std::cbrt(body.volume_factor) - 1.0), 3) +
+                          " %, but stretch_limit.max_stretch is " + format_number(100.0 * limit.max_stretch, 3) +
+                          " %. Use a smaller factor, or a larger max_stretch.");
     }
     if (limit.tethers && network_.pins.empty() && network_.later_pins.empty()) {
       warnings_.emplace_back(

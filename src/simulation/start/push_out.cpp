@@ -41,20 +41,24 @@ bool crosses_another(const std::set<BodyPair>& crossing, Index body) {
   });
 }
 
+/// Whether a body moves as a whole or not at all: a surface that moved alone would be out of the cells that carry it.
+bool stays_whole(const SpringNetwork& network, Index body) {
+  return !network.bodies[static_cast<std::size_t>(body)].carried.empty();
+}
+
 class FreePosition {
  public:
-  FreePosition(const Environment& environment, const CollisionSurface& surface, Index body, const Points& wanted)
+  FreePosition(const SpringNetwork& network, const Environment& environment, const CollisionSurface& surface, Index body,
+               const Points& wanted)
       : environment_(environment),
         surface_(surface),
         body_(body),
         wanted_(wanted),
+        stays_whole_(stays_whole(network, body)),
         movable_(static_cast<std::size_t>(wanted.cols())) {
-    for (const Element& element : surface.elements) {
-      if (element.body != body) continue;
-      for (std::size_t k = 0; k < static_cast<std::size_t>(element.corners); ++k) {
-        const auto i = static_cast<std::size_t>(element.particles[k]);
-        movable_[i] = surface.pinned[i] == 0 ? 1 : 0;
-      }
+    const Body& own = network.bodies[static_cast<std::size_t>(body)];
+    for (Index i = own.first_particle; i < own.first_particle + own.particle_count; ++i) {
+      movable_[static_cast<std::size_t>(i)] = network.is_pinned(i) ? 0 : 1;
     }
   }
 
@@ -62,13 +66,13 @@ class FreePosition {
     double depth = 0.0;
     for (const auto& inside : intersections(wanted_).inside) depth = std::max(depth, inside.depth);
     const double size = surface_.element_size[static_cast<std::size_t>(body_)];
-    const bool shallow = depth <= size || size == 0.0;
+    const bool shallow = !stays_whole_ && (depth <= size || size == 0.0);
     if (shallow) {
       if (auto moved = away_from_surfaces(size, depth)) return moved;
     }
     const auto is_outside = [&](const Points& x) { return is_outside_obstacles(x); };
     if (auto moved = translated(kFirstDistance * (size > 0.0 ? size : depth), is_outside)) return moved;
-    return shallow ? std::nullopt : away_from_surfaces(size, depth);
+    return shallow || stays_whole_ ? std::nullopt : away_from_surfaces(size, depth);
   }
 
   /// A position of the whole body outside obstacles and other bodies.
@@ -126,6 +130,7 @@ class FreePosition {
   const CollisionSurface& surface_;
   Index body_;
   const Points& wanted_;
+  bool stays_whole_;
   std::vector<char> movable_;  ///< per particle: 1 for unpinned particles of the body
 };
 
@@ -162,7 +167,7 @@ void put_on(const SpringNetwork& network, Environment& environment, const Collis
     const auto number = static_cast<std::size_t>(body);
     worn.bodies[number].contact.others = network.bodies[number].contact.others;
     const auto crosses = [&](Index other) { return crossing.contains(std::minmax(body, other)); };
-    if (std::any_of(below.begin(), below.end(), crosses)) {
+    if (!stays_whole(network, body) && std::any_of(below.begin(), below.end(), crosses)) {
       if (const auto free = lifted_off(network, environment, surface, body, below, positions)) {
         positions = Approach(worn, environment, body).run(*free, positions);
         crossing = crossing_bodies(surface, positions);
@@ -178,11 +183,12 @@ Points push_out(const SpringNetwork& network, Environment& environment, const Co
                 bool apart) {
   Points positions = wanted;
   const auto approach_from = [&](Index body, const std::optional<Points>& free) {
-    if (free) positions = Approach(network, environment, body).run(*free, positions);
+    if (!free) return;
+    positions = stays_whole(network, body) ? *free : Approach(network, environment, body).run(*free, positions);
   };
   for (Index body = 0; body < static_cast<Index>(network.bodies.size()); ++body) {
     if (find_intersections(environment.set(), surface, positions, body).empty()) continue;
-    approach_from(body, FreePosition(environment, surface, body, positions).outside_obstacles());
+    approach_from(body, FreePosition(network, environment, surface, body, positions).outside_obstacles());
   }
   if (!apart) return positions;
   auto [unpinned, pinned] = ranks_of(network);
@@ -194,7 +200,7 @@ Points push_out(const SpringNetwork& network, Environment& environment, const Co
   std::set<BodyPair> crossing = crossing_bodies(surface, positions);
   for (const Index body : joined(unpinned, pinned)) {
     if (!crosses_another(crossing, body)) continue;
-    approach_from(body, FreePosition(environment, surface, body, positions).outside_all());
+    approach_from(body, FreePosition(network, environment, surface, body, positions).outside_all());
     crossing = crossing_bodies(surface, positions);
   }
   return positions;

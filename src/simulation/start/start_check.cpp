@@ -105,7 +105,7 @@ Problem problem_of(const std::vector<std::string>& pairs, const std::string& bod
   const bool self = body == other;
   return {.key = "bodies." + body,
           .value = counted(pairs.size(), "pair") + " of elements",
-          .rule = "intersects " + (self ? "itself" : "body \"" + other + "\"") + " at the start: " + first_of(pairs),
+          .rule = (self ? kIntersectsItself : "intersects body \"" + other + "\" at the start") + ": " + first_of(pairs),
           .remedy = self ? "change its shape, or set its self_contact to false"
                          : remedy + ", or set body_contact of one of them to false"};
 }

@@ -13,6 +13,9 @@
 
 namespace sprung {
 
+/// The rule that a body breaks whose elements intersect each other.
+inline const std::string kIntersectsItself = "intersects itself at the start";
+
 struct StartIntersections {
   Intersections with_obstacles;
   std::vector<CrossingElements> with_each_other;

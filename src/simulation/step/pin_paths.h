@@ -17,7 +17,7 @@ class PinPaths {
   /// `step_length` [s] is that of the simulation.
   PinPaths(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length);
 
-  /// Notes where pins that have begun took their particles, and forgets what other pins noted. Returns whether anything is new.
+  /// Records where pins that have begun took their particles, and drops the anchors of other pins. Returns whether anything is new.
   bool take(SimulationState& state);
 
   /// Moves the particles to where they are at a time [s], and gives them the mean velocity of the following `dt` [s], which the
@@ -30,7 +30,7 @@ class PinPaths {
  private:
   struct Held {
     Index particle;
-    std::int64_t step;      ///< to whose pose its path is relative; kNone: to the pose without motion
+    std::int64_t step;      ///< at which the pin took the particle; kNone: it moves from its position in the network
     Vector3 start;          ///< position there [m]
     SurfaceAnchor surface;  ///< on a deforming obstacle, in its frame
   };

@@ -11,8 +11,8 @@
 
 namespace sprung {
 
-/// `spectral_bounds` of the network with air drag and, if there are obstacles, penalty contact. They hold for all pins that ever
-/// hold together.
+/// `spectral_bounds` of the network with air drag and, if there are obstacles, penalty contact. The bounds
+/// hold for every set of pins that are active together.
 [[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
 
 /// Properties of the simulation that the stretch limit depends on.

@@ -13,8 +13,8 @@ namespace {
 // spring reaches its limit in the first pass and must not oscillate about it, so the first and last pass are not over-relaxed.
 constexpr double kRelaxation = 1.8;
 
-// Passes that constraints get, if the stretch limit does not ask for more: so many a second, and at least so many a step. What
-// passes miss is small in small steps, and the next step continues from there.
+// Minimum number of passes if there are constraints: a rate [1/s] and a number per substep. Errors that remain are small in small
+// steps, and the next step corrects them.
 constexpr double kConstraintPassRate = 1200.0;
 constexpr double kMinConstraintPasses = 8.0;
 
@@ -74,24 +74,27 @@ void StepConstraints::apply(SimulationState& state, const Forces& forces, double
 
 void StepConstraints::correct_positions(SimulationState& state, double dt) {
   dt_ = dt;
-  StepReport report;
-  for (int k = 0; limit_ && k < kCorrections && limit_->excess(state.x) > kCorrected; ++k) {
+  const auto excess = [&](const Points& x) { return limit_ ? limit_->excess(x) : 0.0; };
+  for (int k = 0; k < kCorrections && (excess(state.x) > kCorrected || violation(state.x) > 1.0); ++k) {
     begin(state);
     slip_before_.displacement.setZero();  // this is no step: friction takes nothing back
     const Points start = state.x;
     advanced_ = start;
     if (projects_contacts()) contacts_.find(motion());
+    StepReport report;
     make_passes(state, report);
-    for (int pass = 0; pass < limit_->settings().iterations; ++pass) {
+    const int passes = std::max(limit_ ? limit_->settings().iterations : 0, constraint_passes());
+    repeat_until_settled(passes, [&](int /*pass*/) {
       if (projects_contacts()) contacts_.project(state.x);
-      sprung::project(constraints_, start, state.x);
-      if (limit_->project(start, state.x) <= kCorrected) break;
-    }
+      const double violation_before = sprung::project(constraints_, start, state.x);
+      const double excess_before = limit_ ? limit_->project(start, state.x) : 0.0;
+      return excess_before <= kCorrected && violation_before <= 1.0;
+    });
     int rounds = 0;
-    const double excess = limit_->excess(state.x);
-    const double violation = residual(constraints_, state.x);
+    const double excess_left = excess(state.x);
+    const double violation_left = violation(state.x);
     const StepTruncation::Relax relax_again = [&](Points& positions) {
-      return rounds++ < max_relax_rounds() && relax(positions, excess, violation);
+      return rounds++ < max_relax_rounds() && relax(positions, excess_left, violation_left);
     };
     if (contacts_.can_collide()) contacts_.truncate(motion(), state.x, relax_again);
     state.x_previous += state.x - start;
@@ -153,11 +156,11 @@ void StepConstraints::truncate(SimulationState& state, const Forces& forces, Ste
   const bool can_collide = contacts_.can_collide();
   const bool responds = !limit_ && constraints_.empty() && integrator_.responds_to_contact() && projects_contacts();
   const int max_rounds = responds ? kTruncationResponses : max_relax_rounds();
-  const double violation = can_collide ? residual(constraints_, state.x) : 0.0;
+  const double violation_before = can_collide ? violation(state.x) : 0.0;
   int rounds = 0;
   const StepTruncation::Relax relax_again = [&](Points& positions) {
     if (rounds++ >= max_rounds) return false;
-    return responds ? respond_to_truncation(state, forces) : relax(positions, report.stretch_excess, violation);
+    return responds ? respond_to_truncation(state, forces) : relax(positions, report.stretch_excess, violation_before);
   };
   if (responds) responded_ = state.x;
   if (can_collide) contacts_.truncate(motion(), state.x, relax_again);
@@ -184,7 +187,7 @@ int StepConstraints::constraint_passes() const {
 bool StepConstraints::relax(Points& positions, double excess_before, double violation_before) {
   const bool stretched = limit_ && limit_->excess(positions) > std::max(limit_->settings().tolerance,
                                                                         std::min(excess_before, limit_->settings().max_stretch));
-  if (!stretched && residual(constraints_, positions) <= std::max(1.0, violation_before)) return false;
+  if (!stretched && violation(positions) <= std::max(1.0, violation_before)) return false;
   if (projects_contacts()) contacts_.find_again(motion(), positions);
   for (int pass = 0; pass < kRelaxPasses; ++pass) {
     if (projects_contacts()) contacts_.project(positions);

@@ -40,10 +40,13 @@ class StepConstraints {
   /// and that the environment's interval is the step's.
   void apply(SimulationState& state, const Forces& forces, double dt, double time, StepReport& report);
 
-  /// Moves particles from rest onto the stretch limit, as far as obstacles and other bodies permit. Velocities stay as they are.
-  /// Call it when a limit became tighter: a step would give particles the velocity of that motion (pre-stabilization: Macklin et
-  /// al. 2014). Requires that the environment's interval is the present time. Does nothing without a limit.
+  /// Moves particles from rest onto the stretch limit and the constraints, as far as obstacles and other bodies permit. Velocities
+  /// stay as they are. Call it at the start, and when a limit or constraint changed: a step would give particles the velocity of
+  /// that motion (pre-stabilization: Macklin et al. 2014). Requires that the environment's interval is the present time.
   void correct_positions(SimulationState& state, double dt);
+
+  /// The largest residual of the constraints that were added (see Constraint).
+  [[nodiscard]] double violation(const Points& positions) const { return residual(constraints_, positions); }
 
   /// Positions at the beginning of the step [m], 3 x n. Valid after apply().
   [[nodiscard]] const Points& positions_before(const SimulationState& state) const {

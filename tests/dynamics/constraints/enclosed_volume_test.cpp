@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include <Eigen/Eigenvalues>
 
 namespace sprung {
@@ -39,6 +41,28 @@ TEST(EnclosedVolume, PassesReachTheFactorAndConserveMomentum) {
   EXPECT_NEAR(volume_of_bag(network, positions), 1.5, 1.5e-3);
   EXPECT_LT(((positions - network.positions) * network.masses).norm(), 1.0e-14);
   EXPECT_EQ(positions.col(0), network.positions.col(0));
+}
+
+TEST(EnclosedVolume, SeveralBagsKeepTheirOwnAndPinnedParticlesStay) {
+  NetworkBuilder builder;
+  for (const double factor : {1.2, 0.0, 0.7}) {
+    BodyShape shape = make_solid({}, {});
+    set_total_mass(shape, 1.0);
+    shape.volume_factor = factor;
+    builder.add_body("bag" + std::to_string(factor), shape);
+  }
+  builder.pin(3);
+  const SpringNetwork network = builder.build();
+  const EnclosedVolume volume(network);
+  Points positions = network.positions;
+  for (int pass = 0; pass < 10; ++pass) volume.project(network.positions, positions);
+  const auto volume_of = [&](Index body) {
+    return signed_volume(positions.middleCols(8 * body, 8), network.bodies[body].surface.triangles);
+  };
+  EXPECT_NEAR(volume_of(0), 1.2, 1.2e-3);
+  EXPECT_EQ(positions.middleCols(8, 8), network.positions.middleCols(8, 8));
+  EXPECT_NEAR(volume_of(2), 0.7, 0.7e-3);
+  EXPECT_EQ(positions.col(3), network.positions.col(3));
 }
 
 TEST(PressureForce, IsTheNegativeGradientOfItsEnergyAndHasNoSum) {

@@ -65,7 +65,15 @@ TEST(Weld, RefusesAChainThatClosesAFace) {
   const double y = std::sqrt(0.75 * 0.75 - 0.25);
   mesh.vertices.conservativeResize(3, 7);
   mesh.vertices.col(6) = Vector3(x, 0.0, y);
-  EXPECT_THAT(error_of(mesh, 0.76), HasSubstr("welds two corners of face 1"));
+  EXPECT_THAT(error_of(mesh, 0.76), HasSubstr("welds two corners of face 0"));
+}
+
+TEST(Weld, RefusesAChainThatClosesALine) {
+  PolygonMesh mesh;
+  mesh.vertices = (Points(3, 3) << 0.0, 0.6, 1.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0).finished();
+  mesh.faces = to_polygons(Triangles(3, 0));
+  mesh.lines = (Edges(2, 1) << 0, 2).finished();
+  EXPECT_THAT(error_of(mesh, 0.7), HasSubstr("welds both ends of line 0"));
 }
 
 TEST(Weld, GroupsAreThoseOfAllPairs) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 namespace sprung {
@@ -53,6 +54,18 @@ TEST(LatticeBody, MassIsThatOfTheFractionsAndEveryParticleHasSome) {
   set_total_mass(body, 3.0);
   EXPECT_NEAR(std::accumulate(body.masses.begin(), body.masses.end(), 0.0), 3.0, 1.0e-12);
   EXPECT_NE(body.masses.front(), body.masses.back()) << "in proportion to the volume";
+}
+
+// A corner of the bar belongs to one cell, an eighth of which is nearest to it.
+TEST(LatticeBody, ACornerGivesHalfOfItsMassToTheVerticesThatItCarries) {
+  const BodyShape body = make_lattice_body(bar(1.0), {});
+  constexpr double kOfCorner = kSide * kSide * kSide / 8.0;
+  EXPECT_GT(body.carried[0].weights[0], 0.0);
+  EXPECT_DOUBLE_EQ(body.measures[body.carried[0].corners[0]], 0.5 * kOfCorner);
+  const auto corner_at = [&](const Vector3& place) {
+    return static_cast<std::size_t>(std::find(body.positions.begin() + 4, body.positions.end(), place) - body.positions.begin());
+  };
+  EXPECT_DOUBLE_EQ(body.measures[corner_at({2.0, 1.0, 0.0})], kOfCorner) << "its cell carries no vertex";
 }
 
 // Each cell gives a quarter of its cross-section to each of its four edges along the bar, so the sum over a cut is that of the bar.

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "network/network_builder.h"
+#include "network/total_volume.h"
 
 #include <gtest/gtest.h>
 
@@ -77,8 +78,9 @@ TEST(Cells, ThoseOfASolidFillIt) {
   builder.add_body("solid", solid);
   const SpringNetwork network = builder.build();
   const Body& body = network.bodies[1];
-  EXPECT_EQ(body.cells.count(), 2 * 3 * 1);
-  EXPECT_NEAR(total_volume(body.cells, network.positions.middleCols(body.first_particle, body.particle_count)), 6.0, 1.0e-14);
+  EXPECT_EQ(body.cells.hexahedra.size(), 2U * 3U * 1U);
+  EXPECT_NEAR(testing::total_volume(body.cells, network.positions.middleCols(body.first_particle, body.particle_count)), 6.0,
+              1.0e-14);
 }
 
 TEST(Cells, ABodyRefusesThoseThatAreInsideOut) {

@@ -51,6 +51,12 @@ TEST(LatticeFilling, ABoxIsFilledByItsCells) {
   for (const LatticeShape::Cell& cell : lattice.cells) EXPECT_EQ(cell.fraction, 1.0);
 }
 
+// 1.1 / (1.1 / 15) is more than 15 in doubles.
+TEST(LatticeFilling, RoundingAddsNoCells) {
+  const LatticeShape lattice = fill_with_cells(surface_of(BoxGeometry{.size = {1.1, 1.1, 1.1}}), 1.1 / 15);
+  EXPECT_EQ(lattice.cells.size(), 15U * 15U * 15U);
+}
+
 TEST(LatticeFilling, RefusesAnOpenMeshWithItsBorder) {
   PolygonMesh open = surface_of(BoxGeometry{.size = {1.0, 1.0, 1.0}});
   open.faces = to_polygons(triangulate(open.faces).rightCols(11));

@@ -65,7 +65,7 @@ TEST(SceneReader, TimeAndSettingsArrive) {
 }
 
 TEST(SceneReader, SchemaForEditorsIsAKnownKey) {
-  EXPECT_EQ(SceneFolder().read(kFullScene, {"$schema=scene.schema.json"}).bodies.size(), 9U);
+  EXPECT_EQ(SceneFolder().read(kFullScene, {"$schema=scene.schema.json"}).bodies.size(), 12U);
 }
 
 TEST(SceneReader, BodiesArriveInTheOrderOfTheFile) {
@@ -97,6 +97,18 @@ TEST(SceneReader, FieldsOfABodyArrive) {
   EXPECT_EQ(body.material.static_friction, 0.4);
   EXPECT_EQ(body.material.restitution, 0.1);
   EXPECT_FALSE(body.contact.others);
+}
+
+TEST(SceneReader, WhatFillsBodiesArrives) {
+  const Scene scene = SceneFolder().read(kFullScene);
+  const auto body = [&](const char* name) { return *std::ranges::find(scene.bodies, name, &BodyScene::name); };
+  EXPECT_TRUE(body("ham").preserve_volume);
+  EXPECT_EQ(std::get<LatticeFile>(body("horse").shape).cells, 24);
+  EXPECT_TRUE(body("horse").normals);
+  EXPECT_FALSE(body("horse").preserve_volume);
+  EXPECT_EQ(std::get<LatticeFile>(body("cow").shape).cell_size, 0.1);
+  EXPECT_EQ(body("balloon").pressure, 250.0);
+  EXPECT_EQ(body("balloon").volume_factor, 1.5);
 }
 
 TEST(SceneReader, PinsArrive) {

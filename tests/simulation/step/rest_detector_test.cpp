@@ -134,7 +134,6 @@ TEST(RestDetector, AnExternalForceWakesItAndKeepsItAwake) {
 /// A condition that always holds.
 class Nothing final : public Constraint {
  public:
-  [[nodiscard]] std::string name() const override { return "nothing"; }
   double project(const Points& /*before*/, Points& /*positions*/) const override { return 0.0; }
   [[nodiscard]] double residual(const Points& /*positions*/) const override { return 0.0; }
 };
