@@ -11,6 +11,7 @@
 #include "simulation/simulator_implementation.h"
 #include "simulation/start/start.h"
 #include "simulation/step/limit_handover.h"
+#include "simulation/step/network_forces.h"
 #include "simulation/step/step_check.h"
 #include "simulation/step/step_retry.h"
 
@@ -56,14 +57,15 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       shared_environment(std::move(shared)),
       environment(*shared_environment),
       external(std::move(added)),
-      bounds(simulation_bounds(network, settings, !environment.obstacles().empty())),
+      bounds(simulation_bounds(network, settings, !environment.obstacles().empty(), external.forces)),
       warnings(check_step(settings, bounds)),
+      forces(network_forces(network, settings)),
       integrator(make_integrator(settings.integrator, network)),
       constraints(network, settings, settings.gravity.norm() + bounds.drag * settings.wind.norm(), environment, *integrator),
       pin_paths(network, environment.obstacles(), settings.step),
       waits_for_turn(constraints.limit() != nullptr && constraints.limit()->may_follow_turn()),
       divergence(network),
-      energy_watch(network, settings, environment.obstacles()),
+      energy_watch(network, settings, environment.obstacles(), forces),
       rest(network, settings.gravity.norm()),
       driven_until(end_of_motions(network, environment.obstacles(), settings.step)),
       state(initial_state(network)),
@@ -74,17 +76,14 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
     if (waits_for_turn || (limit->follows_turn() && anything_moves())) state.substeps = settings.max_substeps;
   }
   if (settings.perturb) symmetry.emplace(network, settings.seed);
-  gravity = add_force<Gravity>(settings.gravity);
-  springs = add_force<SpringForce>();
-  if (network.angle_bends.count() > 0) angles = add_force<BendingAngleForce>();
-  if (settings.air_drag > 0.0) add_force<AirDrag>(settings.air_drag, settings.wind);
   if (settings.contact.response == ContactSettings::Response::penalty && !environment.obstacles().empty()) {
-    penalty = add_force<PenaltyContact>(environment, settings.contact.stiffness, settings.contact.damping, dt());
+    auto force = std::make_unique<PenaltyContact>(network, environment, settings.contact.stiffness, settings.contact.damping, dt());
+    penalty = force.get();
+    forces.push_back(std::move(force));
   }
   if (std::ranges::any_of(network.bodies, [](const Body& body) { return !body.carried.empty(); })) {
     constraints.add(std::make_unique<CarriedSurface>(network));
   }
-  if (has_pressure(network)) pressure = add_force<PressureForce>();
   if (std::ranges::any_of(network.bodies, &Body::preserve_volume)) constraints.add(std::make_unique<CellVolume>(network));
   if (std::ranges::any_of(network.bodies, [](const Body& body) { return body.volume_factor != 0.0; })) {
     constraints.add(std::make_unique<EnclosedVolume>(network));
@@ -263,18 +262,11 @@ void Simulator::Implementation::check_energy(const Energies& now) const {
   fail(std::move(failure));
 }
 
-double Simulator::Implementation::elastic_energy() const {
-  return springs->energy(state.x) + (angles != nullptr ? angles->energy(state.x) : 0.0) +
-         (pressure != nullptr ? pressure->energy(state.x) : 0.0);
-}
-
-double Simulator::Implementation::contact_energy() const { return penalty != nullptr ? penalty->energy(state.x) : 0.0; }
-
 Energies Simulator::Implementation::energies() const {
   return {.kinetic = 0.5 * network.masses.dot(state.v.colwise().squaredNorm().transpose()),
-          .elastic = elastic_energy(),
-          .gravity = gravity->energy(state.x),
-          .contact = contact_energy()};
+          .elastic = energy(EnergyKind::elastic),
+          .gravity = energy(EnergyKind::gravity),
+          .contact = energy(EnergyKind::contact)};
 }
 
 void Simulator::Implementation::fail(StepFailure failure) const {
@@ -318,9 +310,9 @@ const SimulationState& Simulator::state() const { return implementation_->state;
 const Environment& Simulator::environment() const { return implementation_->environment; }
 const std::vector<std::string>& Simulator::warnings() const { return implementation_->warnings; }
 double Simulator::time() const { return implementation_->time(); }
-double Simulator::gravity_energy() const { return implementation_->gravity->energy(state().x); }
-double Simulator::elastic_energy() const { return implementation_->elastic_energy(); }
-double Simulator::contact_energy() const { return implementation_->contact_energy(); }
+double Simulator::gravity_energy() const { return implementation_->energy(EnergyKind::gravity); }
+double Simulator::elastic_energy() const { return implementation_->energy(EnergyKind::elastic); }
+double Simulator::contact_energy() const { return implementation_->energy(EnergyKind::contact); }
 
 std::string Simulator::stretch_solver() const {
   const StretchLimit* limit = implementation_->constraints.limit();

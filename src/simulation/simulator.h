@@ -67,8 +67,8 @@ class Simulator {
   void release(Index particle);
 
   /// Adds an external force. The caller may change its parameters between steps. The force must not keep references to network().
-  /// The largest stable step does not account for it. The energy is not checked while there are external forces, as they may
-  /// supply any amount.
+  /// The largest stable step accounts for the elements that the force appends. Throws InputError if the step is beyond it. The
+  /// energy is not checked while there are external forces, as they may supply any amount.
   void add_force(std::shared_ptr<Force> force);
 
   /// Adds a constraint, which the passes of each step restore. The caller may change its parameters between steps. The constraint
@@ -105,8 +105,9 @@ class Simulator {
   /// Throws StepError if a spring is overstretched or the energy exploded. step() checks large networks only every few steps.
   void check() const;
 
-  /// Elastic energy [J]: sum of 1/2 k_s (|s| - d)^2, the energy of angle bends, and -p V of bodies with a pressure. Potential
-  /// energy of gravity [J]: sum of -m g . x. Energy of contact [J]: that of penalty springs; 0 with projection.
+  /// Elastic energy [J]: sum of 1/2 k_s (|s| - d)^2, the energy of angle bends, -p V of bodies with a pressure, and the energies of
+  /// added forces. Potential energy of gravity [J]: sum of -m g . x. Energy of contact [J]: that of penalty springs; 0 with
+  /// projection.
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] double gravity_energy() const;
   [[nodiscard]] double contact_energy() const;

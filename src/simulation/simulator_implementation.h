@@ -2,10 +2,6 @@
 #pragma once
 
 #include "dynamics/contact/penalty_contact.h"
-#include "dynamics/forces/bending_angle_force.h"
-#include "dynamics/forces/gravity_and_drag.h"
-#include "dynamics/forces/pressure_force.h"
-#include "dynamics/forces/spring_force.h"
 #include "simulation/monitoring/divergence.h"
 #include "simulation/monitoring/energy_watch.h"
 #include "simulation/simulator.h"
@@ -53,14 +49,6 @@ struct Simulator::Implementation {
   /// Without a state.
   Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared, External added);
 
-  template <class F, class... Arguments>
-  F* add_force(Arguments&&... arguments) {
-    auto force = std::make_unique<F>(network, std::forward<Arguments>(arguments)...);
-    F* kept = force.get();
-    forces.push_back(std::move(force));
-    return kept;
-  }
-
   void take_state(const Implementation& before);
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
@@ -79,8 +67,7 @@ struct Simulator::Implementation {
   void substep_changed(double dt_before);
   void move_pins(double time);
   bool take_pins(const Implementation& before);
-  [[nodiscard]] double elastic_energy() const;
-  [[nodiscard]] double contact_energy() const;
+  [[nodiscard]] double energy(EnergyKind kind) const { return energy_of(forces, kind, state.x); }
   [[nodiscard]] Energies energies() const;
   [[nodiscard]] std::vector<ContactNormal> contact_normals() const;
   [[nodiscard]] std::vector<Index> contacts() const;
@@ -98,11 +85,7 @@ struct Simulator::Implementation {
   SpectralBounds bounds;
   std::vector<std::string> warnings;
   Forces forces;
-  const Gravity* gravity = nullptr;
-  const SpringForce* springs = nullptr;
-  const BendingAngleForce* angles = nullptr;  ///< null without angle bends
-  const PressureForce* pressure = nullptr;    ///< null without pressure in a body
-  PenaltyContact* penalty = nullptr;          ///< null unless contact is by penalty
+  PenaltyContact* penalty = nullptr;  ///< null unless contact is by penalty
   std::unique_ptr<Integrator> integrator;
   StepConstraints constraints;
   PinPaths pin_paths;

@@ -3,6 +3,7 @@
 #include "benchmark/textbook_springs.h"
 #include "dynamics/forces/spring_force.h"
 #include "dynamics/integrators/stable_step.h"
+#include "dynamics/network_bounds.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "network/network_builder.h"
 

@@ -1,4 +1,5 @@
 // A step below the largest stable one can explode by resonance. The advised step does not.
+#include "dynamics/network_bounds.h"
 #include "simulation/scenes.h"
 #include "simulation/step/step_check.h"
 

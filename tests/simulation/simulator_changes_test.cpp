@@ -251,6 +251,35 @@ TEST(SimulatorChanges, AnExternalForceActsUntilItIsRemoved) {
   EXPECT_NEAR(simulator.positions()(1, 0), height - 0.5 * kGravity * 0.25, 3.0 * kGravity * kStep * 0.5);
 }
 
+/// Pulls particle 0 to the origin.
+class Anchor final : public Force {
+ public:
+  explicit Anchor(double stiffness) : stiffness_(stiffness) {}
+  [[nodiscard]] std::string name() const override { return "an anchor"; }
+  void add(const Kinematics& at, Points& forces) const override { forces.col(0) -= stiffness_ * at.x.col(0); }
+  void append_elements(std::vector<LinearElement>& elements) const override {
+    elements.push_back(LinearElement::anchor(0, stiffness_, 0.0));
+  }
+  [[nodiscard]] double energy(const Points& positions) const override { return 0.5 * stiffness_ * positions.col(0).squaredNorm(); }
+
+ private:
+  double stiffness_;  ///< [N/m]
+};
+
+// The largest step of k / m = 1.0e8 / s^2 is 2.0e-4 s.
+TEST(SimulatorChanges, AnExternalForceThatNeedsASmallerStepIsRefused) {
+  Simulator simulator(one_particle({0.0, 1.0, 0.0}), {.step = 1.0e-3});
+  const double mass = simulator.network().masses[0];
+  try {
+    simulator.add_force(std::make_shared<Anchor>(1.0e8 * mass));
+    FAIL() << "was added";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is beyond the largest stable step, 0.0002 s, bounded by an anchor"));
+  }
+  simulator.add_force(std::make_shared<Anchor>(100.0 * mass));
+  EXPECT_DOUBLE_EQ(simulator.elastic_energy(), 50.0 * mass);
+}
+
 /// Keeps particle 0 at a height [m].
 class Shelf final : public Constraint {
  public:

@@ -84,6 +84,7 @@ TEST(Simulator, AnUnstableStepIsRefusedAndTheLargestStableStepIsNamed) {
     EXPECT_EQ(error.problems()[0].key, "step");
     EXPECT_THAT(error.what(), HasSubstr("0.021"));
     EXPECT_THAT(error.what(), HasSubstr("largest stable step, 0.0"));
+    EXPECT_THAT(error.what(), HasSubstr("bounded by springs"));
   }
   EXPECT_NO_THROW(Simulator(two_masses(1e4), {.step = 0.018}));
 }

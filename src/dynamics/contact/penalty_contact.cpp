@@ -75,6 +75,10 @@ void PenaltyContact::add_derivatives(const Kinematics& at, ForceDerivatives& der
   }
 }
 
+void PenaltyContact::append_elements(std::vector<LinearElement>& elements) const {
+  append_penalty_elements(network_, stiffness_, damping_, elements);
+}
+
 double PenaltyContact::energy(const Points& positions) const {
   double energy = 0.0;
   for (const Contact& contact : environment_.contacts({positions, positions, thickness_})) {
@@ -98,6 +102,10 @@ std::vector<ContactNormal> PenaltyContact::normals(const Points& positions) cons
     normals.push_back({contact.particles[0], contact.normal});
   }
   return normals;
+}
+
+void append_penalty_elements(const SpringNetwork& network, double stiffness, double damping, std::vector<LinearElement>& elements) {
+  for (Index i = 0; i < network.particle_count(); ++i) elements.push_back(LinearElement::anchor(i, stiffness, damping));
 }
 
 }  // namespace sprung

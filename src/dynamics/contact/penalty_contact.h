@@ -18,6 +18,8 @@ class PenaltyContact final : public Force {
   /// Steps are `dt` [s] long from now on.
   void set_step(double dt) { dt_ = dt; }
 
+  [[nodiscard]] std::string name() const override { return "penalty contact"; }
+
   /// Moves the obstacles to `time`: the environment's interval becomes (time, time).
   void prepare(double time) override;
   void add(const Kinematics& at, Points& forces) const override;
@@ -26,8 +28,11 @@ class PenaltyContact final : public Force {
   /// symmetric.
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
+  void append_elements(std::vector<LinearElement>& elements) const override;
+
   /// The energy k p^2 / 2 of all penetrations at the obstacles' present positions [J].
   [[nodiscard]] double energy(const Points& positions) const override;
+  [[nodiscard]] EnergyKind energy_kind() const override { return EnergyKind::contact; }
 
   /// Particles nearer to an obstacle than their gap, ascending.
   [[nodiscard]] std::vector<Index> touching(const Points& positions) const;
@@ -47,5 +52,8 @@ class PenaltyContact final : public Force {
   double dt_;
   Scalars thickness_;
 };
+
+/// An anchor for each particle of a network, as an obstacle may touch any: a penalty connects it to the obstacle.
+void append_penalty_elements(const SpringNetwork& network, double stiffness, double damping, std::vector<LinearElement>& elements);
 
 }  // namespace sprung

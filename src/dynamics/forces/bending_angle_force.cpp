@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace sprung {
@@ -149,6 +150,21 @@ void BendingAngleForce::add_derivatives(const Kinematics& at, ForceDerivatives& 
       add_products(particles, across, stiffness * (Matrix3::Identity() - along * along.transpose()), derivatives.by_position);
     }
   }
+}
+
+void BendingAngleForce::append_elements(std::vector<LinearElement>& elements) const {
+  const AngleBends& bends = network_.angle_bends;
+  for (Index e = 0; e < bends.count(); ++e) {
+    const double before = 1.0 / bends.length_before[e];
+    const double after = 1.0 / bends.length_after[e];
+    elements.push_back({particles_of(bends, e), {before, -(before + after), after}, bends.stiffness[e], bends.damping[e]});
+  }
+}
+
+double BendingAngleForce::capacity() const {
+  double energy = 0.0;
+  for (const double k : network_.angle_bends.stiffness) energy += 0.5 * k * std::numbers::pi * std::numbers::pi;
+  return energy;
 }
 
 double BendingAngleForce::energy(const Points& positions) const {

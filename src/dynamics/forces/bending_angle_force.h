@@ -21,6 +21,7 @@ class BendingAngleForce final : public Force {
   /// Keeps a reference to the network.
   explicit BendingAngleForce(const SpringNetwork& network);
 
+  [[nodiscard]] std::string name() const override { return "angle bends"; }
   void add(const Kinematics& at, Points& forces) const override;
   void couple(std::vector<ParticlePair>& pairs) const override;
 
@@ -28,8 +29,15 @@ class BendingAngleForce final : public Force {
   /// theta cot(theta / 2) w w^T with w = (1 / |a|, -1 / |a| - 1 / |b|, 1 / |b|). In the straight configuration the two are exact.
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
+  /// Those of straight bends, with weights (1/a, -1/a - 1/b, 1/b) for bonds a and b at rest. No bent configuration with such bonds
+  /// has a faster mode: no weight grows, and the signs already alternate.
+  void append_elements(std::vector<LinearElement>& elements) const override;
+
   /// sum 1/2 k theta^2 f(a) f(b) [J]
   [[nodiscard]] double energy(const Points& positions) const override;
+
+  /// sum 1/2 k pi^2 [J], of bends that are folded back
+  [[nodiscard]] double capacity() const override;
 
  private:
   const SpringNetwork& network_;

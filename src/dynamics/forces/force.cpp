@@ -4,6 +4,16 @@
 
 namespace sprung {
 
+LinearElement LinearElement::anchor(Index particle, double stiffness, double damping) {
+  return {{particle, particle, particle}, {1.0, 0.0, 0.0}, stiffness, damping};
+}
+
+LinearElement LinearElement::pair(Index first, Index second, double stiffness, double damping) {
+  return {{first, second, first}, {1.0, -1.0, 0.0}, stiffness, damping};
+}
+
+std::string Force::name() const { return "added forces"; }
+
 void Force::prepare(double) {}
 
 bool Force::is_constant() const { return false; }
@@ -12,10 +22,24 @@ void Force::couple(std::vector<ParticlePair>&) const {}
 
 void Force::add_derivatives(const Kinematics&, ForceDerivatives&) const {}
 
+void Force::append_elements(std::vector<LinearElement>&) const {}
+
 double Force::energy(const Points&) const { return 0.0; }
+
+EnergyKind Force::energy_kind() const { return EnergyKind::elastic; }
+
+double Force::capacity() const { return 0.0; }
 
 bool are_constant(const Forces& forces) {
   return std::ranges::all_of(forces, [](const auto& force) { return force->is_constant(); });
+}
+
+double energy_of(const Forces& forces, EnergyKind kind, const Points& positions) {
+  double energy = 0.0;
+  for (const auto& force : forces) {
+    if (force->energy_kind() == kind) energy += force->energy(positions);
+  }
+  return energy;
 }
 
 void sum_forces(const Forces& forces, const Kinematics& at, Points& total) {

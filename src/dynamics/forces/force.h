@@ -4,7 +4,9 @@
 #include "dynamics/numerics/block_matrix.h"
 #include "network/model/simulation_state.h"
 
+#include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace sprung {
@@ -22,9 +24,29 @@ struct ForceDerivatives {
   BlockMatrix by_velocity;  ///< dF/dv [N s/m]
 };
 
+/// A spring and a damper on one weighted sum w_1 u_1 + w_2 u_2 + w_3 u_3 of displacements u [m]: stiffness k and damping c have the
+/// matrices k w w^T and c w w^T. Entries with weight 0 are unused.
+struct LinearElement {
+  std::array<Index, 3> particles{};
+  std::array<double, 3> weights{};
+  double stiffness = 0.0;  ///< k [N/m] for weights without a unit
+  double damping = 0.0;    ///< c [N s/m]
+
+  /// On the position of one particle.
+  [[nodiscard]] static LinearElement anchor(Index particle, double stiffness, double damping);
+  /// On the difference of the positions of two particles.
+  [[nodiscard]] static LinearElement pair(Index first, Index second, double stiffness, double damping);
+};
+
+/// The column of diagnostics in which the energy of a force counts.
+enum class EnergyKind : std::uint8_t { elastic, gravity, contact };
+
 class Force {
  public:
   virtual ~Force() = default;
+
+  /// For messages, such as "springs". Default: "added forces".
+  [[nodiscard]] virtual std::string name() const;
 
   /// Prepares the force for evaluations at `time` [s]. Not thread-safe. Default: does nothing.
   virtual void prepare(double time);
@@ -42,14 +64,29 @@ class Force {
   /// compressed spring, are left out (filtering, Baraff and Witkin 1998). Default: none.
   virtual void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const;
 
-  /// Potential energy [J]; 0 for a force without a potential.
+  /// Appends elements that together bound the step: the sums of their matrices are at least the derivatives of the force by
+  /// positions and by velocities, as quadratic forms, wherever the force acts as the step's bound assumes (see SpectralBounds).
+  /// Default: none, for a force that bounds no step.
+  virtual void append_elements(std::vector<LinearElement>& elements) const;
+
+  /// Potential energy [J]. Default: 0, for a force without a potential.
   [[nodiscard]] virtual double energy(const Points& positions) const;
+
+  /// Default: elastic.
+  [[nodiscard]] virtual EnergyKind energy_kind() const;
+
+  /// The energy [J] that the force may store before an explosion is suspected, such as that of springs at twice their length.
+  /// Default: 0.
+  [[nodiscard]] virtual double capacity() const;
 };
 
 using Forces = std::vector<std::unique_ptr<Force>>;
 
 /// Whether the sum of all forces is the same at all positions, velocities and times.
 [[nodiscard]] bool are_constant(const Forces& forces);
+
+/// The sum of the potential energies of one kind [J].
+[[nodiscard]] double energy_of(const Forces& forces, EnergyKind kind, const Points& positions);
 
 /// Writes the sum of all forces [N], 3 x n, to `total`.
 void sum_forces(const Forces& forces, const Kinematics& at, Points& total);

@@ -37,4 +37,10 @@ void AirDrag::add_derivatives(const Kinematics&, ForceDerivatives& derivatives) 
   }
 }
 
+void AirDrag::append_elements(std::vector<LinearElement>& elements) const {
+  for (Index i = 0; i < network_.particle_count(); ++i) {
+    elements.push_back(LinearElement::anchor(i, 0.0, drag_ * network_.drag_areas[i]));
+  }
+}
+
 }  // namespace sprung

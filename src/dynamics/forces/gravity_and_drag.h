@@ -10,9 +10,11 @@ namespace sprung {
 class Gravity final : public Force {
  public:
   Gravity(const SpringNetwork& network, const Vector3& acceleration);  ///< [m/s^2]
+  [[nodiscard]] std::string name() const override { return "gravity"; }
   [[nodiscard]] bool is_constant() const override { return true; }
   void add(const Kinematics& at, Points& forces) const override;
   [[nodiscard]] double energy(const Points& positions) const override;
+  [[nodiscard]] EnergyKind energy_kind() const override { return EnergyKind::gravity; }
 
  private:
   Points weights_;  ///< m g of each particle [N]
@@ -23,8 +25,10 @@ class Gravity final : public Force {
 class AirDrag final : public Force {
  public:
   AirDrag(const SpringNetwork& network, double drag, const Vector3& wind);  ///< drag >= 0, wind [m/s]
+  [[nodiscard]] std::string name() const override { return "air drag"; }
   void add(const Kinematics& at, Points& forces) const override;
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
+  void append_elements(std::vector<LinearElement>& elements) const override;
 
  private:
   const SpringNetwork& network_;

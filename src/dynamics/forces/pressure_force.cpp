@@ -29,10 +29,11 @@ double PressureForce::energy(const Points& positions) const {
 }
 
 /// A corner that moves by u turns and scales the pushes p / 6 (b - a) x (c - a) on three corners: each changes by at most p / 6 |e|
-/// |u| with the edge e opposite to it. The largest row sum bounds the eigenvalues.
-double PressureForce::largest_eigenvalue() const {
+/// |u| with the edge e opposite to it. A matrix is at most the diagonal of its absolute row sums.
+void PressureForce::append_elements(std::vector<LinearElement>& elements) const {
   Scalars sums = Scalars::Zero(network_.particle_count());
   for (const Body& body : network_.bodies) {
+    if (body.pressure == 0.0) continue;
     for (const auto& triangle : body.surface.triangles.colwise()) {
       double edges = 0.0;
       for (int k = 0; k < 3; ++k) {
@@ -43,7 +44,9 @@ double PressureForce::largest_eigenvalue() const {
       for (const Index corner : triangle) sums[body.first_particle + corner] += std::abs(body.pressure) / 6.0 * edges;
     }
   }
-  return sums.cwiseProduct(network_.inverse_masses).maxCoeff();
+  for (Index i = 0; i < sums.size(); ++i) {
+    if (sums[i] > 0.0) elements.push_back(LinearElement::anchor(i, sums[i], 0.0));
+  }
 }
 
 }  // namespace sprung

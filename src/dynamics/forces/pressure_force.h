@@ -13,11 +13,12 @@ class PressureForce final : public Force {
   /// Of all bodies with a pressure (Body::pressure). Keeps a reference to the network.
   explicit PressureForce(const SpringNetwork& network) : network_(network) {}
 
+  [[nodiscard]] std::string name() const override { return "pressure"; }
   void add(const Kinematics& at, Points& forces) const override;
   [[nodiscard]] double energy(const Points& positions) const override;
 
-  /// An upper bound of the largest eigenvalue of M^-1 dF/dx at the positions of the network [1/s^2].
-  [[nodiscard]] double largest_eigenvalue() const;
+  /// An anchor for each vertex, for the triangles at the positions of the network.
+  void append_elements(std::vector<LinearElement>& elements) const override;
 
  private:
   const SpringNetwork& network_;

@@ -14,6 +14,7 @@ class SharedForce final : public Force {
  public:
   explicit SharedForce(std::shared_ptr<Force> force) : force_(std::move(force)) {}
 
+  [[nodiscard]] std::string name() const override { return force_->name(); }
   void prepare(double time) override { force_->prepare(time); }
   [[nodiscard]] bool is_constant() const override { return force_->is_constant(); }
   void add(const Kinematics& at, Points& forces) const override { force_->add(at, forces); }
@@ -21,7 +22,10 @@ class SharedForce final : public Force {
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override {
     force_->add_derivatives(at, derivatives);
   }
+  void append_elements(std::vector<LinearElement>& elements) const override { force_->append_elements(elements); }
   [[nodiscard]] double energy(const Points& positions) const override { return force_->energy(positions); }
+  [[nodiscard]] EnergyKind energy_kind() const override { return force_->energy_kind(); }
+  [[nodiscard]] double capacity() const override { return force_->capacity(); }
 
  private:
   std::shared_ptr<Force> force_;

@@ -120,6 +120,22 @@ void SpringForce::add_derivatives(const Kinematics& at, ForceDerivatives& deriva
   }
 }
 
+void SpringForce::append_elements(std::vector<LinearElement>& elements) const {
+  const Springs& springs = network_.springs;
+  for (Index s = 0; s < springs.count(); ++s) {
+    elements.push_back(LinearElement::pair(springs.first[s], springs.second[s], springs.stiffness[s], springs.damping[s]));
+  }
+}
+
+double SpringForce::capacity() const {
+  const Springs& springs = network_.springs;
+  double energy = 0.0;
+  for (Index s = 0; s < springs.count(); ++s) {
+    energy += 0.5 * springs.stiffness[s] * springs.rest_length[s] * springs.rest_length[s];
+  }
+  return energy;
+}
+
 double SpringForce::energy(const Points& positions) const {
   const Springs& springs = network_.springs;
   double energy = 0.0;

@@ -21,6 +21,8 @@ class SpringForce final : public Force {
   explicit SpringForce(const SpringNetwork& network);
   ~SpringForce() override;
 
+  [[nodiscard]] std::string name() const override { return "springs"; }
+
   [[nodiscard]] bool is_constant() const override;
 
   void add(const Kinematics& at, Points& forces) const override;
@@ -31,8 +33,14 @@ class SpringForce final : public Force {
   /// e e^T. The rotation of the damper's direction is left out, as it is not symmetric.
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
+  /// A pair for each spring: no spring that is not compressed is stiffer in any direction.
+  void append_elements(std::vector<LinearElement>& elements) const override;
+
   /// sum 1/2 k_s (|s| - d)^2 [J]
   [[nodiscard]] double energy(const Points& positions) const override;
+
+  /// sum 1/2 k_s d^2 [J], of springs at twice their rest length
+  [[nodiscard]] double capacity() const override;
 
  private:
   const SpringNetwork& network_;

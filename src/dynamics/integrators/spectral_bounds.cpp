@@ -21,35 +21,43 @@ constexpr int kMostIterations = 100;
 // A start vector without a component in the fastest mode would have a misleading residual. This margin is always added.
 constexpr double kMargin = 1.005;
 
-/// M^-1/2 L M^-1/2, which has the eigenvalues of M^-1 L, of the springs with non-zero weight. Pinned particles are left out.
-class Laplacian {
+using Weight = double LinearElement::*;
+
+/// M^-1/2 K M^-1/2, which has the eigenvalues of M^-1 K, of the elements that it keeps. Pinned particles are left out.
+class ElementMatrix {
  public:
-  Laplacian(const SpringNetwork& network, const std::vector<double>& weights)
-      : springs_(network.springs), weights_(weights), root_(network.inverse_masses.cwiseSqrt()) {}
+  /// `weight` is the stiffness or the damping of the elements.
+  ElementMatrix(const std::vector<const LinearElement*>& elements, Weight weight, const Scalars& inverse_masses)
+      : elements_(elements), weight_(weight), root_(inverse_masses.cwiseSqrt()) {}
 
   Scalars operator*(const Scalars& y) const {
     Scalars result = Scalars::Zero(y.size());
-    for (std::size_t s = 0; s < weights_.size(); ++s) {
-      const Index a = springs_.first[s];
-      const Index b = springs_.second[s];
-      const double pull = weights_[s] * (root_[a] * y[a] - root_[b] * y[b]);
-      result[a] += root_[a] * pull;
-      result[b] -= root_[b] * pull;
+    for (const LinearElement* element : elements_) {
+      const auto& [a, b, c] = element->particles;
+      const double of_a = element->weights[0] * root_[a];
+      const double of_b = element->weights[1] * root_[b];
+      const double of_c = element->weights[2] * root_[c];
+      const double pull = element->*weight_ * (of_a * y[a] + of_b * y[b] + of_c * y[c]);
+      result[a] += of_a * pull;
+      result[b] += of_b * pull;
+      result[c] += of_c * pull;
     }
     return result;
   }
 
-  /// An upper bound: the largest row sum of K B^T M^-1 B, the matrix that acts on springs instead of particles.
+  /// An upper bound: the largest row sum of B^T M^-1 B K, the matrix that acts on elements instead of particles.
   [[nodiscard]] double row_sum_bound() const {
-    Scalars diagonal = Scalars::Zero(root_.size());
-    for (std::size_t s = 0; s < weights_.size(); ++s) {
-      diagonal[springs_.first[s]] += weights_[s];
-      diagonal[springs_.second[s]] += weights_[s];
+    Scalars sums = Scalars::Zero(root_.size());
+    for (const LinearElement* element : elements_) {
+      for (int k = 0; k < 3; ++k) sums[element->particles[k]] += element->*weight_ * std::abs(element->weights[k]);
     }
-    diagonal.array() *= root_.array().square();
+    sums.array() *= root_.array().square();
     double bound = 0.0;
-    for (std::size_t s = 0; s < weights_.size(); ++s) {
-      if (weights_[s] > 0.0) bound = std::max(bound, diagonal[springs_.first[s]] + diagonal[springs_.second[s]]);
+    for (const LinearElement* element : elements_) {
+      if (element->*weight_ == 0.0) continue;
+      double row = 0.0;
+      for (int k = 0; k < 3; ++k) row += std::abs(element->weights[k]) * sums[element->particles[k]];
+      bound = std::max(bound, row);
     }
     return bound;
   }
@@ -57,59 +65,8 @@ class Laplacian {
   [[nodiscard]] const Scalars& root() const { return root_; }
 
  private:
-  const Springs& springs_;
-  const std::vector<double>& weights_;
-  Scalars root_;
-};
-
-/// M^-1/2 K M^-1/2 of straight angle bends: the sum of w^T w weighted by stiffness or damping, w = (1/a, -1/a - 1/b, 1/b) with
-/// bonds a and b at rest. No bent configuration with such bonds has a faster mode: no entry of w grows, and the signs already
-/// alternate.
-class AngleBendMatrix {
- public:
-  AngleBendMatrix(const SpringNetwork& network, const std::vector<double>& weights)
-      : bends_(network.angle_bends), weights_(weights), root_(network.inverse_masses.cwiseSqrt()) {}
-
-  Scalars operator*(const Scalars& y) const {
-    Scalars result = Scalars::Zero(y.size());
-    for (std::size_t e = 0; e < weights_.size(); ++e) {
-      const Eigen::Array3d scale = turns(e) * root_of(e);
-      const double turn =
-          weights_[e] * (scale[0] * y[bends_.before[e]] - scale[1] * y[bends_.middle[e]] + scale[2] * y[bends_.after[e]]);
-      result[bends_.before[e]] += scale[0] * turn;
-      result[bends_.middle[e]] -= scale[1] * turn;
-      result[bends_.after[e]] += scale[2] * turn;
-    }
-    return result;
-  }
-
-  /// An upper bound: the largest row sum of M^-1 |K|.
-  [[nodiscard]] double row_sum_bound() const {
-    Scalars sums = Scalars::Zero(root_.size());
-    for (std::size_t e = 0; e < weights_.size(); ++e) {
-      const Eigen::Array3d turn = turns(e);
-      const double all = weights_[e] * (turn * (root_of(e) > 0.0).cast<double>()).sum();
-      sums[bends_.before[e]] += turn[0] * all;
-      sums[bends_.middle[e]] += turn[1] * all;
-      sums[bends_.after[e]] += turn[2] * all;
-    }
-    return sums.size() > 0 ? (sums.array() * root_.array().square()).maxCoeff() : 0.0;
-  }
-
-  [[nodiscard]] const Scalars& root() const { return root_; }
-
- private:
-  [[nodiscard]] Eigen::Array3d turns(std::size_t e) const {
-    const double before = 1.0 / bends_.length_before[e];
-    const double after = 1.0 / bends_.length_after[e];
-    return {before, before + after, after};
-  }
-  [[nodiscard]] Eigen::Array3d root_of(std::size_t e) const {
-    return {root_[bends_.before[e]], root_[bends_.middle[e]], root_[bends_.after[e]]};
-  }
-
-  const AngleBends& bends_;
-  const std::vector<double>& weights_;
+  const std::vector<const LinearElement*>& elements_;
+  Weight weight_;
   Scalars root_;
 };
 
@@ -125,8 +82,7 @@ Scalars start_vector(const Scalars& root) {
 }
 
 /// Lanczos' method: power iteration that stores the tridiagonal matrix of its iterates.
-template <class Matrix>
-double largest_eigenvalue(const Matrix& matrix) {
+double largest_eigenvalue(const ElementMatrix& matrix) {
   const double bound = matrix.row_sum_bound();
   Scalars y = start_vector(matrix.root());
   if (bound == 0.0 || y.isZero(0.0)) return 0.0;
@@ -151,50 +107,64 @@ double largest_eigenvalue(const Matrix& matrix) {
   return std::min(bound, kMargin * estimate);
 }
 
-/// The stiffness of springs that hardly damp motion of this omega [1/s], and 0 for the others; `drag` [1/s] damps all.
-std::vector<double> hardly_damped(const std::vector<double>& stiffness, const std::vector<double>& damping, double omega,
-                                  double drag) {
-  std::vector<double> weights(stiffness.size(), 0.0);
-  for (std::size_t i = 0; i < stiffness.size(); ++i) {
-    const double rate = stiffness[i] > 0.0 ? damping[i] / stiffness[i] * omega * omega + drag : kInfinity;
-    if (rate < 2.0 * kHardlyDamped * omega) weights[i] = stiffness[i];
+/// The elements with stiffness that hardly damp motion of this omega [1/s]; `drag` [1/s] damps all.
+std::vector<const LinearElement*> hardly_damped(const std::vector<const LinearElement*>& elements, double omega, double drag) {
+  std::vector<const LinearElement*> hardly;
+  for (const LinearElement* element : elements) {
+    if (element->stiffness == 0.0) continue;
+    const double rate = element->damping / element->stiffness * omega * omega + drag;
+    if (rate < 2.0 * kHardlyDamped * omega) hardly.push_back(element);
   }
-  return weights;
+  return hardly;
 }
 
-/// The smallest damping / stiffness [s] of elements with stiffness; infinity if there is none.
-double least_damping_time(const std::vector<double>& stiffness, const std::vector<double>& damping) {
+/// The smallest damping / stiffness [s] of elements with stiffness; 0 if there is none.
+double least_damping_time(const std::vector<const LinearElement*>& elements) {
   double least = kInfinity;
-  for (std::size_t i = 0; i < stiffness.size(); ++i) {
-    if (stiffness[i] > 0.0) least = std::min(least, damping[i] / stiffness[i]);
+  for (const LinearElement* element : elements) {
+    if (element->stiffness > 0.0) least = std::min(least, element->damping / element->stiffness);
   }
-  return least;
+  return least < kInfinity ? least : 0.0;
+}
+
+/// Of each free particle [1/s]: damping without stiffness, relative to nothing but space.
+Scalars drag_rates(const std::vector<const LinearElement*>& elements, const Scalars& inverse_masses) {
+  Scalars rates = Scalars::Zero(inverse_masses.size());
+  for (const LinearElement* element : elements) {
+    const bool is_anchor = element->weights[1] == 0.0 && element->weights[2] == 0.0;
+    if (is_anchor && element->stiffness == 0.0) rates[element->particles[0]] += element->damping;
+  }
+  return rates.cwiseProduct(inverse_masses);
 }
 
 }  // namespace
 
-SpectralBounds spectral_bounds(const SpringNetwork& network, double drag) {
-  const Springs& springs = network.springs;
-  const AngleBends& bends = network.angle_bends;
-  const auto largest = [&](const std::vector<double>& of_springs, const std::vector<double>& of_bends) {
-    return largest_eigenvalue(Laplacian(network, of_springs)) + largest_eigenvalue(AngleBendMatrix(network, of_bends));
+SpectralBounds spectral_bounds(const std::vector<LinearElement>& all, const Scalars& inverse_masses) {
+  std::vector<const LinearElement*> elements;
+  for (const LinearElement& element : all) elements.push_back(&element);
+  const auto largest = [&](const std::vector<const LinearElement*>& of, Weight weight) {
+    return largest_eigenvalue(ElementMatrix(of, weight, inverse_masses));
   };
-  SpectralBounds bounds{.elastic = largest(springs.stiffness, bends.stiffness), .damping = largest(springs.damping, bends.damping)};
-  const double least =
-      std::min(least_damping_time(springs.stiffness, springs.damping), least_damping_time(bends.stiffness, bends.damping));
-  bounds.damping_time = least < kInfinity ? least : 0.0;
+  SpectralBounds bounds{.elastic = largest(elements, &LinearElement::stiffness),
+                        .damping = largest(elements, &LinearElement::damping),
+                        .damping_time = least_damping_time(elements)};
+  const Scalars rates = drag_rates(elements, inverse_masses);
   bounds.least_drag = kInfinity;
-  for (Index i = 0; i < network.particle_count(); ++i) {
-    if (network.is_pinned(i)) continue;
-    const double rate = drag * network.drag_areas[i] * network.inverse_masses[i];
-    bounds.drag = std::max(bounds.drag, rate);
-    bounds.least_drag = std::min(bounds.least_drag, rate);
+  for (Index i = 0; i < inverse_masses.size(); ++i) {
+    if (inverse_masses[i] == 0.0) continue;
+    bounds.drag = std::max(bounds.drag, rates[i]);
+    bounds.least_drag = std::min(bounds.least_drag, rates[i]);
   }
   if (bounds.least_drag == kInfinity) bounds.least_drag = 0.0;
-  const double omega = std::sqrt(bounds.elastic);
-  bounds.undamped = largest(hardly_damped(springs.stiffness, springs.damping, omega, bounds.least_drag),
-                            hardly_damped(bends.stiffness, bends.damping, omega, bounds.least_drag));
+  bounds.undamped = largest(hardly_damped(elements, std::sqrt(bounds.elastic), bounds.least_drag), &LinearElement::stiffness);
   return bounds;
+}
+
+SpectralBounds quick_bounds(const std::vector<LinearElement>& all, const Scalars& inverse_masses) {
+  std::vector<const LinearElement*> elements;
+  for (const LinearElement& element : all) elements.push_back(&element);
+  return {.elastic = ElementMatrix(elements, &LinearElement::stiffness, inverse_masses).row_sum_bound(),
+          .damping = ElementMatrix(elements, &LinearElement::damping, inverse_masses).row_sum_bound()};
 }
 
 }  // namespace sprung

@@ -1,7 +1,10 @@
 // Bounds on the fastest modes of a network.
 #pragma once
 
-#include "network/model/spring_network.h"
+#include "dynamics/forces/force.h"
+
+#include <string>
+#include <vector>
 
 namespace sprung {
 
@@ -9,22 +12,25 @@ namespace sprung {
 /// crumpled at three times their wave speed explode at half of it, and calm down at this value.
 inline constexpr double kHardlyDamped = 0.01;
 
-/// Bounds on the network's fastest modes: the largest eigenvalues of M^-1 L_k and M^-1 L_d, the scalar Laplacians weighted by
-/// stiffness and damping, plus those of straight angle bends. Pinned particles are left out. The bounds hold in every
-/// configuration in which no spring and no bond of an angle bend is compressed. Power iteration (Lanczos) from a fixed start
-/// vector finds them. It converges from below, so the final residual (at most 1 %) and another 0.5 % are added.
+/// Bounds on the fastest modes of all forces together: the largest eigenvalues of M^-1 K and M^-1 C, the sums of the matrices of
+/// their elements. Pinned particles are left out. The bounds hold in every configuration in which no spring and no bond of an angle
+/// bend is compressed. Power iteration (Lanczos) from a fixed start vector finds them. It converges from below, so the final
+/// residual (at most 1 %) and another 0.5 % are added.
 struct SpectralBounds {
   double elastic = 0.0;   ///< l_K [1/s^2]
-  double damping = 0.0;   ///< l_D [1/s]
-  double undamped = 0.0;  ///< l_K of the springs that hardly damp the fastest mode [1/s^2]
+  double damping = 0.0;   ///< l_D, with drag [1/s]
+  double undamped = 0.0;  ///< l_K of the elements that hardly damp the fastest mode [1/s^2]
   double penalty = 0.0;   ///< largest k_c / m of penalty contact [1/s^2]; included in `elastic`
-  double drag = 0.0;      ///< largest c A / m of air drag [1/s]
-  double damping_time =
-      0.0;  ///< smallest k_d / k_s of springs and angle bends with stiffness [s]: a mode is damped by this times omega^2
-  double least_drag = 0.0;  ///< smallest c A / m of air drag [1/s]
+  double drag = 0.0;      ///< largest damping of a particle on its own, such as air drag, by its mass [1/s]; included in `damping`
+  double damping_time = 0.0;  ///< smallest c / k of elements with stiffness [s]: a mode is damped by this times omega^2
+  double least_drag = 0.0;    ///< as `drag`, the smallest [1/s]
+  std::string strictest{};    ///< name of the force that bounds the step most
 };
 
-/// `drag` is that of AirDrag.
-[[nodiscard]] SpectralBounds spectral_bounds(const SpringNetwork& network, double drag = 0.0);
+/// Inverse masses [1/kg] of n particles, 0 of pinned ones.
+[[nodiscard]] SpectralBounds spectral_bounds(const std::vector<LinearElement>& elements, const Scalars& inverse_masses);
+
+/// Upper bounds of `elastic` and `damping` at little cost.
+[[nodiscard]] SpectralBounds quick_bounds(const std::vector<LinearElement>& elements, const Scalars& inverse_masses);
 
 }  // namespace sprung

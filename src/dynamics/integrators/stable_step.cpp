@@ -69,7 +69,7 @@ struct LargestStep {
 }  // namespace
 
 double largest_stable_step(const IntegratorSettings& settings, const SpectralBounds& bounds) {
-  return std::visit(LargestStep{bounds.elastic, bounds.damping + bounds.drag}, settings);
+  return std::visit(LargestStep{bounds.elastic, bounds.damping}, settings);
 }
 
 // A period of n steps has omega dt = 2 sin(pi / n).

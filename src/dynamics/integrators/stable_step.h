@@ -7,7 +7,7 @@
 namespace sprung {
 
 /// The largest stable step [s]. Symplectic Euler: dt^2 l_K + 2 dt l_D < 4. Verlet: the same with 4 - 2 d, d the damping per step.
-/// Drag counts as damping. Velocity Verlet: dt^2 l_K + 2 dt l_D - dt^2 l_D^2 < 4 while dt l_D <= 1, then dt^2 l_K < 3 and dt l_D <
+/// Velocity Verlet: dt^2 l_K + 2 dt l_D - dt^2 l_D^2 < 4 while dt l_D <= 1, then dt^2 l_K < 3 and dt l_D <
 /// 2. RK4: dt sqrt(l_K) <= 2.828 while dt l_D <= 1.7, then 2.615; and dt l_D <= 2.785. Explicit Euler: the smaller of 2 / omega
 /// and 2 / l_D; below it modes may still grow slowly, see growth_time. Infinity for implicit Euler, and without springs and drag.
 [[nodiscard]] double largest_stable_step(const IntegratorSettings& settings, const SpectralBounds& bounds);

@@ -102,7 +102,8 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
     choice.step = *scene.step;
     choice.steps_per_frame = steps_per_frame(scene.frame_rate, choice.step).value_or(1);
     if (is_unstable(choice.step, choice.largest_stable) && scene.settings.stability == StabilityCheck::refuse) {
-      problems.push_back(unstable_step(choice.step, choice.largest_stable, advice_for_unstable(scene, choice.largest_stable)));
+      problems.push_back(
+          unstable_step(choice.step, choice.largest_stable, bounds, advice_for_unstable(scene, choice.largest_stable)));
       problems.back().file = scene.file.string();
     }
     return choice;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace sprung {
 namespace {
@@ -22,15 +21,6 @@ constexpr double kMaxGain = 0.5;
 
 // Displacement in a step, as a fraction of the coordinates, that rounding may cause.
 constexpr double kRounding = 0x1p-26;
-
-double capacity_of(const SpringNetwork& network) {
-  const Springs& springs = network.springs;
-  double energy = 0.0;
-  for (Index s = 0; s < springs.count(); ++s)
-    energy += 0.5 * springs.stiffness[s] * springs.rest_length[s] * springs.rest_length[s];
-  for (const double k : network.angle_bends.stiffness) energy += 0.5 * k * std::numbers::pi * std::numbers::pi;
-  return energy;
-}
 
 /// A limit stores energy as stiff springs do: a body that hangs by a slightly overstretched limit bounces by less than the length
 /// of a spring [m].
@@ -59,7 +49,8 @@ bool is_undriven(const SpringNetwork& network, const SimulatorSettings& settings
 
 }  // namespace
 
-EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles)
+EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles,
+                         const Forces& forces)
     : mass_(network.masses.sum()),
       step_(settings.step),
       gravity_(settings.gravity.norm()),
@@ -68,7 +59,8 @@ EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& 
       bounce_gain_(bounce_gain(network, obstacles)),
       fastest_drive_(settings.air_drag > 0.0 ? settings.wind.norm() : 0.0) {
   const double rounding = rounding_speed(network.positions, step_);
-  capacity_ = capacity_of(network) + mass_ * gravity_ * bounce_height_ + 0.5 * mass_ * rounding * rounding;
+  capacity_ = mass_ * gravity_ * bounce_height_ + 0.5 * mass_ * rounding * rounding;
+  for (const auto& force : forces) capacity_ += force->capacity();
 }
 
 void EnergyWatch::note(std::int64_t step, const Energies& energies) {

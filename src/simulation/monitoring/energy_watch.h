@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/shapes/obstacle.h"
+#include "dynamics/forces/force.h"
 #include "simulation/settings/simulator_settings.h"
 
 #include <algorithm>
@@ -25,7 +26,8 @@ struct Energies {
 /// the run. gain(): did the energy of an undriven scene rise between two frames? It looks at frames and gives a warning.
 class EnergyWatch {
  public:
-  EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles);
+  EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles,
+              const Forces& forces);
 
   /// Records the energies after a step. Steps 0 and 1 both count as the start, as limits and contact may add energy in the first.
   /// Energy of springs counts as supplied by pins or obstacles while the kinetic energy so far is below 1 % of it: an explosion
@@ -44,8 +46,8 @@ class EnergyWatch {
 
   /// Describes the explosion if the energies of motion and springs exceed 1,000 times the energy that can have been supplied. That
   /// is the sum of: the energy at the start; the potential energy released since; the energy supplied slowly (see note()); the
-  /// kinetic energy of all particles at the speed of the fastest pin, wind or obstacle; the energy to stretch every spring to twice
-  /// its length and fold every angle; with a stretch limit, the energy to lift all particles by one spring length; and rounding.
+  /// kinetic energy of all particles at the speed of the fastest pin, wind or obstacle; the capacity of all
+  /// forces (see Force::capacity); with a stretch limit, the energy to lift all particles by one spring length; and rounding.
   [[nodiscard]] std::optional<std::string> explosion(const Energies& energies) const;
 
   /// Records the energies of a frame. Frame 1 is ignored, as limits and contact may add energy in the first steps.
@@ -72,7 +74,7 @@ class EnergyWatch {
   bool undriven_;                      ///< see gain()
   double bounce_gain_;                 ///< factor on the speed of obstacles
   double fastest_drive_;               ///< [m/s]
-  double capacity_;                    ///< of springs, angles and limits [J]
+  double capacity_;                    ///< of forces and limits [J]
   double start_ = 0.0;                 ///< [J]
   double highest_ = 0.0;               ///< largest potential energy of gravity [J]
   double stored_ = 0.0;                ///< energy of springs supplied slowly [J]

@@ -1,8 +1,9 @@
 #include "simulation/step/step_check.h"
 
 #include "base/format.h"
-#include "dynamics/forces/pressure_force.h"
+#include "dynamics/contact/penalty_contact.h"
 #include "network/model/pin_schedule.h"
+#include "simulation/step/network_forces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,25 +25,62 @@ bool grows_transversally(const IntegratorSettings& integrator, const SpectralBou
   return std::holds_alternative<ExplicitEulerSettings>(integrator) && bounds.elastic > 0.0 && bounds.least_drag == 0.0;
 }
 
-SpectralBounds bounds_of(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {
-  SpectralBounds bounds = spectral_bounds(network, settings.air_drag);
-  if (has_obstacles && settings.contact.response == ContactSettings::Response::penalty) {
-    // A penalty connects a particle to the fixed obstacle: it adds to the Laplacian's diagonal, and at most this to its
-    // eigenvalues.
-    const double largest_inverse_mass = network.inverse_masses.maxCoeff();
-    bounds.penalty = settings.contact.stiffness * largest_inverse_mass;
-    bounds.elastic += bounds.penalty;
-    bounds.damping += settings.contact.damping * largest_inverse_mass;
+/// The elements of all forces, and the force that alone would permit the smallest step.
+class StepElements {
+ public:
+  StepElements(const SpringNetwork& network, const IntegratorSettings& integrator) : network_(network), integrator_(integrator) {}
+
+  void add(const std::string& name, const std::vector<LinearElement>& elements) {
+    const double step = largest_stable_step(integrator_, quick_bounds(elements, network_.inverse_masses));
+    if (step < smallest_step_) {
+      smallest_step_ = step;
+      strictest_ = name;
+    }
+    elements_.insert(elements_.end(), elements.begin(), elements.end());
   }
-  if (has_pressure(network)) bounds.elastic += PressureForce(network).largest_eigenvalue();
+
+  void add(const Force& force) {
+    std::vector<LinearElement> elements;
+    force.append_elements(elements);
+    add(force.name(), elements);
+  }
+
+  [[nodiscard]] SpectralBounds bounds() const {
+    SpectralBounds bounds = spectral_bounds(elements_, network_.inverse_masses);
+    bounds.strictest = strictest_;
+    return bounds;
+  }
+
+ private:
+  const SpringNetwork& network_;
+  const IntegratorSettings& integrator_;
+  std::vector<LinearElement> elements_;
+  double smallest_step_ = std::numeric_limits<double>::infinity();
+  std::string strictest_;
+};
+
+SpectralBounds bounds_of(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles,
+                         const std::vector<std::shared_ptr<Force>>& external) {
+  StepElements elements(network, settings.integrator);
+  for (const auto& force : network_forces(network, settings)) elements.add(*force);
+  const bool penalty = has_obstacles && settings.contact.response == ContactSettings::Response::penalty;
+  if (penalty) {
+    std::vector<LinearElement> anchors;
+    append_penalty_elements(network, settings.contact.stiffness, settings.contact.damping, anchors);
+    elements.add("penalty contact", anchors);
+  }
+  for (const auto& force : external) elements.add(*force);
+  SpectralBounds bounds = elements.bounds();
+  if (penalty) bounds.penalty = settings.contact.stiffness * network.inverse_masses.maxCoeff();
   return bounds;
 }
 
 }  // namespace
 
-SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {
+SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles,
+                                 const std::vector<std::shared_ptr<Force>>& external) {
   const bool change = !network.later_pins.empty() || !std::ranges::all_of(network.pins, &Pin::holds_always);
-  return bounds_of(change ? freest(network) : network, settings, has_obstacles);
+  return bounds_of(change ? freest(network) : network, settings, has_obstacles, external);
 }
 
 LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {
@@ -61,10 +99,11 @@ bool is_unstable(double step, double largest_stable) {
   return step > kRounding * largest_stable;
 }
 
-Problem unstable_step(double step, double largest_stable, const std::string& advice) {
+Problem unstable_step(double step, double largest_stable, const SpectralBounds& bounds, const std::string& advice) {
   return {.key = "step",
           .value = format_number(step),
-          .rule = "is beyond the largest stable step, " + format_upper_bound(largest_stable) + " s",
+          .rule = "is beyond the largest stable step, " + format_upper_bound(largest_stable) + " s, which " + bounds.strictest +
+                  " need",
           .remedy = advice + "; \"stability\": \"warn\" runs it nevertheless"};
 }
 
@@ -75,7 +114,7 @@ std::vector<std::string> check_step(const SimulatorSettings& settings, const Spe
   }
   const double largest = largest_stable_step(settings.integrator, bounds);
   if (is_unstable(step, largest)) {
-    const Problem problem = unstable_step(step, largest, "use at most that, or \"auto\"");
+    const Problem problem = unstable_step(step, largest, bounds, "use at most that, or \"auto\"");
     if (settings.stability == StabilityCheck::refuse) throw InputError(problem);
     return {"step = " + problem.value + " " + problem.rule + ": the simulation is likely to diverge. Use a smaller step."};
   }

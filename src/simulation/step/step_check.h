@@ -6,14 +6,16 @@
 #include "dynamics/integrators/stable_step.h"
 #include "simulation/settings/simulator_settings.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace sprung {
 
-/// `spectral_bounds` of the network with air drag and, if there are obstacles, penalty contact. The bounds
-/// hold for every set of pins that are active together.
-[[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
+/// The bounds of all forces, among them penalty contact if there are obstacles, and external ones. They hold for every set of pins
+/// that are active together.
+[[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles,
+                                               const std::vector<std::shared_ptr<Force>>& external = {});
 
 /// Properties of the simulation that the stretch limit depends on.
 [[nodiscard]] LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
@@ -25,8 +27,9 @@ namespace sprung {
 /// Whether a step exceeds the largest stable one by more than rounding [s].
 [[nodiscard]] bool is_unstable(double step, double largest_stable);
 
-/// The problem of a step beyond the largest stable one. `advice` names what to use instead.
-[[nodiscard]] Problem unstable_step(double step, double largest_stable, const std::string& advice);
+/// The problem of a step beyond the largest stable one. It names the force that bounds the step most. `advice` names what to use
+/// instead.
+[[nodiscard]] Problem unstable_step(double step, double largest_stable, const SpectralBounds& bounds, const std::string& advice);
 
 /// Returns warnings about the step. Throws InputError if the step is not positive, or if it is beyond the largest stable one and
 /// `settings.stability` is not warn.

@@ -5,6 +5,7 @@
 #include "dynamics/forces/gravity_and_drag.h"
 #include "dynamics/forces/spring_force.h"
 #include "dynamics/integrators/stable_step.h"
+#include "dynamics/network_bounds.h"
 #include "dynamics/networks.h"
 
 #include <gmock/gmock.h>

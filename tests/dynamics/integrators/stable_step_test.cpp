@@ -3,6 +3,7 @@
 #include "dynamics/forces/bending_angle_force.h"
 #include "dynamics/forces/gravity_and_drag.h"
 #include "dynamics/forces/spring_force.h"
+#include "dynamics/network_bounds.h"
 #include "dynamics/networks.h"
 #include "network/model/simulation_state.h"
 
@@ -94,7 +95,7 @@ TEST(SpectralBounds, IgnoreSpringsBetweenPins) {
 }
 
 TEST(StableStep, SolvesItsInequality) {
-  const SpectralBounds bounds{.elastic = 900.0, .damping = 7.0, .drag = 2.0};
+  const SpectralBounds bounds{.elastic = 900.0, .damping = 9.0};
   const auto left = [&](double dt) { return dt * dt * 900.0 + 2.0 * dt * 9.0; };
   EXPECT_NEAR(left(largest_stable_step(SymplecticEulerSettings{}, bounds)), 4.0, 1e-13);
   EXPECT_NEAR(left(largest_stable_step(VerletSettings{.damping = 0.25}, bounds)), 3.5, 1e-13);
@@ -351,6 +352,31 @@ TEST(SpectralBounds, OfALongRodAreThoseOfTheZigzag) {
   expect_just_above(bounds.elastic, 16.0 * 4.0 / (length * length * 0.1) + 4.0 / 0.1);
   expect_just_above(bounds.damping, 16.0 * 0.5 / (length * length * 0.1));
   EXPECT_EQ(bounds.damping_time, 0.0) << "of its springs";
+}
+
+// A spring and an anchor on different particles do not add up; on one particle they do.
+TEST(SpectralBounds, OfSeveralForcesAreThoseOfTheirSum) {
+  const SpringNetwork pair = make_pair(1.0, 8.0, 1.0, 2.0, true, 0.5);  // particle 0 is pinned: k / m = 16
+  const auto with_anchor = [&](Index particle) {
+    std::vector<LinearElement> elements;
+    SpringForce(pair).append_elements(elements);
+    elements.push_back(LinearElement::anchor(particle, 5.0, 1.0));
+    return spectral_bounds(elements, pair.inverse_masses);
+  };
+  expect_just_above(with_anchor(1).elastic, 26.0);
+  expect_just_above(with_anchor(1).damping, 6.0);
+  expect_just_above(with_anchor(0).elastic, 16.0);
+}
+
+// The quick bound is one of the same matrix.
+TEST(SpectralBounds, AreBelowTheQuickOnes) {
+  for (const SpringNetwork& network : {make_random_network(40, 100), make_test_cloth(16, 400.0, 0.1), make_test_rope(100, 50.0)}) {
+    std::vector<LinearElement> elements;
+    SpringForce(network).append_elements(elements);
+    const SpectralBounds quick = quick_bounds(elements, network.inverse_masses);
+    EXPECT_GE(quick.elastic, dense_eigenvalue(network, network.springs.stiffness));
+    EXPECT_GE(quick.damping, dense_eigenvalue(network, network.springs.damping));
+  }
 }
 
 /// The largest eigenvalue of M^-1 times the second derivative of the angle bends' energy, by differences of forces.

@@ -1,6 +1,7 @@
 #include "simulation/monitoring/energy_watch.h"
 
 #include "network/network_builder.h"
+#include "simulation/step/network_forces.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,10 @@ SpringNetwork two_masses(double stiffness, double rest_length) {
   return builder.build();
 }
 
-EnergyWatch watch(const SpringNetwork& network) { return {network, SimulatorSettings{.step = 0.01}, {}}; }
+EnergyWatch watch(const SpringNetwork& network) {
+  const SimulatorSettings settings{.step = 0.01};
+  return {network, settings, {}, network_forces(network, settings)};
+}
 
 TEST(EnergyWatch, AllowsAThousandTimesTheInitialKineticEnergy) {
   EnergyWatch energy = watch(one_particle());
@@ -61,11 +65,11 @@ TEST(EnergyWatch, EveryParticleMayMoveAsFastAsThePins) {
 TEST(EnergyWatch, EveryParticleMayMoveAsFastAsObstaclesDriveIt) {
   const SpringNetwork network = one_particle();
   Obstacle obstacle{.name = "wall", .geometry = HalfSpaceGeometry{}};
-  EnergyWatch hard(network, {.step = 0.01}, {obstacle});
+  EnergyWatch hard(network, {.step = 0.01}, {obstacle}, {});
   obstacle.material.restitution = 0.5;
-  EnergyWatch bouncing(network, {.step = 0.01}, {obstacle});
+  EnergyWatch bouncing(network, {.step = 0.01}, {obstacle}, {});
   obstacle.material.restitution = 1.0;
-  EnergyWatch lossless(network, {.step = 0.01}, {obstacle});
+  EnergyWatch lossless(network, {.step = 0.01}, {obstacle}, {});
   for (EnergyWatch* energy : {&hard, &bouncing, &lossless}) {
     energy->note(0, {.kinetic = 1.0e-6});
     energy->note_obstacle(0.0);
@@ -119,7 +123,7 @@ TEST(EnergyWatch, RoundingIsNoExplosion) {
 TEST(EnergyWatch, AParticleAtItsStretchLimitMayBounceByTheLengthOfASpring) {
   const SpringNetwork network = two_masses(0.0, 2.0);
   const SimulatorSettings settings{.step = 0.01, .gravity = {0.0, -10.0, 0.0}, .stretch_limit = StretchLimitSettings{}};
-  EnergyWatch energy(network, settings, {});
+  EnergyWatch energy(network, settings, {}, network_forces(network, settings));
   energy.note(0, {});
   EXPECT_FALSE(energy.explosion({.kinetic = 39999.0}));
   EXPECT_TRUE(energy.explosion({.kinetic = 40001.0}));

@@ -1,0 +1,20 @@
+#include "simulation/step/network_forces.h"
+
+#include "dynamics/forces/bending_angle_force.h"
+#include "dynamics/forces/gravity_and_drag.h"
+#include "dynamics/forces/pressure_force.h"
+#include "dynamics/forces/spring_force.h"
+
+namespace sprung {
+
+Forces network_forces(const SpringNetwork& network, const SimulatorSettings& settings) {
+  Forces forces;
+  forces.push_back(std::make_unique<Gravity>(network, settings.gravity));
+  forces.push_back(std::make_unique<SpringForce>(network));
+  if (network.angle_bends.count() > 0) forces.push_back(std::make_unique<BendingAngleForce>(network));
+  if (settings.air_drag > 0.0) forces.push_back(std::make_unique<AirDrag>(network, settings.air_drag, settings.wind));
+  if (has_pressure(network)) forces.push_back(std::make_unique<PressureForce>(network));
+  return forces;
+}
+
+}  // namespace sprung
