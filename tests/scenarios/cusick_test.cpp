@@ -185,8 +185,9 @@ struct Band {
 
 class CusickBand : public ::testing::TestWithParam<Band> {};
 
-// Materials whose class has a published range, or that are too stiff to hang. Another shake changes the coefficient by up to 3
-// points with the same number of folds.
+// Materials whose class has a published range, or that are too stiff to hang, and those without a published range: the drape
+// follows from the bending length (B / (density g))^(1/3). Another shake changes the coefficient by up to 3 points with the same
+// number of folds.
 TEST_P(CusickBand, DrapesWithinTheRangeOfItsClass) {
   const double drape = drape_coefficient(GetParam().material);
   EXPECT_GE(drape, GetParam().least - 3.0) << GetParam().source;
@@ -197,7 +198,9 @@ INSTANTIATE_TEST_SUITE_P(Materials, CusickBand,
                          ::testing::Values(Band{"leather", 47.35, 69.9, "five sheep leathers, Memon et al. 2021"},
                                            Band{"denim", 70.0, 90.0, "class of denims, as quoted by ppf-contact-solver"},
                                            Band{"jersey", 18.0, 31.0, "single jerseys, Fibres and Textiles 1/2018"},
-                                           Band{"paper", 95.0, 100.1, "a ring of 6 cm of paper sinks by millimetres"}),
+                                           Band{"paper", 95.0, 100.1, "a ring of 6 cm of paper sinks by millimetres"},
+                                           Band{"felt", 80.0, 100.1, "a bending length of 3.0 cm; cotton has 2.7 and 82.9 %"},
+                                           Band{"rubber_sheet", 40.0, 70.0, "1.7 cm; wool has 1.8 and 49.8 %"}),
                          [](const auto& test) { return test.param.material; });
 
 }  // namespace
