@@ -177,6 +177,11 @@ SpringNetwork NetworkBuilder::build() const {
   }
   network.inverse_masses = network.masses.cwiseInverse();
   network.later_pins = pins_;
+  for (std::size_t p = 0; p < pins_.size(); ++p) {
+    std::string& name = network.later_pins[p].name;
+    if (name.empty()) name = entry_key("pins", p);
+    network.pin_names.push_back(name);
+  }
   change_pins(network, std::numeric_limits<double>::min());  // those that begin at time 0
   for (const Pin& pin : network.pins) {
     for (const Index particle : pin.particles) network.velocities.col(particle).setZero();

@@ -36,7 +36,7 @@ class NetworkBuilder {
   void pin(Index particle, const Motion& motion = {}, const Vector3& origin = Vector3::Zero());
   void pin(std::vector<Index> particles, const Motion& motion = {}, const Vector3& origin = Vector3::Zero());
 
-  /// Adds a pin that follows an obstacle, or that begins or ends after time 0.
+  /// Adds a pin that follows an obstacle, that begins or ends after time 0, or that has a name.
   void add_pin(Pin pin);
 
   /// The network. Throws InputError that names every problem: a network or body without particles, bodies of one name, masses that

@@ -91,7 +91,7 @@ void write_file(const fs::path& file, std::string_view text) {
   }
 }
 
-void append_to_file(const fs::path& file, std::string_view text) {
+std::uintmax_t append_to_file(const fs::path& file, std::string_view text) {
   OpenFile open(file, O_APPEND, file);
   const off_t before = open.size();
   try {
@@ -101,6 +101,7 @@ void append_to_file(const fs::path& file, std::string_view text) {
     throw;
   }
   open.close();
+  return static_cast<std::uintmax_t>(before);
 }
 
 void make_folder(const fs::path& folder) {

@@ -1,6 +1,7 @@
 // Writes files such that an error, as a full disk or a missing permission, leaves no partial file.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -14,8 +15,8 @@ namespace sprung {
 /// the existing file is then unchanged, and no temporary file and no empty new folder remains.
 void write_file(const std::filesystem::path& file, std::string_view text);
 
-/// Appends to a file and creates it if missing. Throws FileError; the file is then unchanged.
-void append_to_file(const std::filesystem::path& file, std::string_view text);
+/// Appends to a file and creates it if missing. Returns its size before. Throws FileError; the file is then unchanged.
+std::uintmax_t append_to_file(const std::filesystem::path& file, std::string_view text);
 
 /// Creates a folder and its parents. Throws FileError.
 void make_folder(const std::filesystem::path& folder);

@@ -72,7 +72,14 @@ void OutputFolder::expect_free(const std::vector<std::string>& patterns) const {
 
 void OutputFolder::write(const fs::path& file, const std::string& text) const { write_file(folder_ / file, text); }
 
-void OutputFolder::append(const fs::path& file, const std::string& text) const { append_to_file(folder_ / file, text); }
+std::uintmax_t OutputFolder::append(const fs::path& file, const std::string& text) const {
+  return append_to_file(folder_ / file, text);
+}
+
+void OutputFolder::shorten(const fs::path& file, std::uintmax_t size) const noexcept {
+  std::error_code ignored;
+  fs::resize_file(folder_ / file, size, ignored);
+}
 
 void OutputFolder::remove(const fs::path& file) const noexcept {
   std::error_code ignored;

@@ -1,6 +1,7 @@
 // The output folder of a run. Files of an earlier run are removed only on request, and no other files ever.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -23,8 +24,11 @@ class OutputFolder {
   /// remains.
   void write(const std::filesystem::path& file, const std::string& text) const;
 
-  /// Appends to a file (path relative to the folder). Throws FileError; the file is then unchanged.
-  void append(const std::filesystem::path& file, const std::string& text) const;
+  /// Appends to a file (path relative to the folder). Returns its size before. Throws FileError; the file is then unchanged.
+  std::uintmax_t append(const std::filesystem::path& file, const std::string& text) const;
+
+  /// Takes an append back: shortens a file (path relative to the folder) to a size, if possible.
+  void shorten(const std::filesystem::path& file, std::uintmax_t size) const noexcept;
 
   /// Removes a file (path relative to the folder) if it exists.
   void remove(const std::filesystem::path& file) const noexcept;

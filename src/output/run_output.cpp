@@ -3,11 +3,13 @@
 #include "base/error.h"
 #include "output/diagnostics_csv.h"
 #include "output/file_pattern.h"
+#include "output/forces_csv.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -15,9 +17,12 @@ namespace sprung {
 namespace {
 
 constexpr const char* kDiagnosticsFile = "diagnostics.csv";
+constexpr const char* kForcesFile = "forces.csv";
 
-std::vector<std::string> patterns_of(const std::vector<ObjSequence>& sequences, const std::vector<CopiedFile>& copies) {
+std::vector<std::string> patterns_of(const std::vector<ObjSequence>& sequences, const std::vector<CopiedFile>& copies,
+                                     bool has_forces) {
   std::vector<std::string> patterns{kRunRecordFile, kDiagnosticsFile, kAnimationFile};
+  if (has_forces) patterns.emplace_back(kForcesFile);
   for (const ObjSequence& sequence : sequences) patterns.push_back(sequence.pattern());
   for (const CopiedFile& copy : copies) patterns.push_back(copy.path);
   return patterns;
@@ -48,15 +53,18 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
     : folder_(std::move(folder)),
       sequences_(obj_sequences(simulator, facts.sources, facts.frames)),
       copies_(copied_files(facts.sources)),
-      record_(facts, simulator.settings().step, patterns_of(sequences_, copies_)) {
-  folder_.expect_free(patterns_of(sequences_, copies_));
+      has_forces_(simulator.settings().record_forces),
+      record_(facts, simulator.settings().step, patterns_of(sequences_, copies_, has_forces_)) {
+  folder_.expect_free(patterns_of(sequences_, copies_, has_forces_));
   write_record();
   folder_.write(kDiagnosticsFile, csv_head());
+  if (has_forces_) folder_.write(kForcesFile, forces_csv_head());
 }
 
 void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics) {
   const RunProgress before = progress_;
   std::vector<std::string> written;
+  std::optional<std::uintmax_t> forces_before;
   ++progress_.frames_written;
   progress_.steps = simulator.state().step;
   progress_.substeps += diagnostics.substeps;
@@ -80,8 +88,12 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
       }
     }
     write_record();
+    if (has_forces_) {
+      forces_before = folder_.append(kForcesFile, forces_csv_rows(diagnostics.frame, diagnostics.time, simulator.reactions()));
+    }
     folder_.append(kDiagnosticsFile, csv_row(diagnostics));
   } catch (...) {
+    if (forces_before) folder_.shorten(kForcesFile, *forces_before);
     for (const std::string& file : written) folder_.remove(file);
     progress_ = before;
     throw;

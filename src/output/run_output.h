@@ -1,4 +1,4 @@
-// The output of a run: OBJ sequences of bodies and obstacles, diagnostics.csv, run.json.
+// The output of a run: OBJ sequences of bodies and obstacles, diagnostics.csv, forces.csv on request, run.json.
 #pragma once
 
 #include "output/obj_sequence.h"
@@ -13,14 +13,15 @@
 
 namespace sprung {
 
-/// Writes one frame after the other. A frame is complete (OBJ files of all bodies, row of diagnostics.csv) or absent. run.json is
-/// updated with each frame.
+/// Writes one frame after the other. A frame is complete (OBJ files of all bodies, rows of diagnostics.csv and forces.csv) or
+/// absent. run.json is updated with each frame.
 class RunOutput {
  public:
-  /// Writes run.json and the head of diagnostics.csv. Throws FileError, and InputError for names that are not valid folder names.
+  /// Writes run.json and the heads of diagnostics.csv and, if the simulator records forces, forces.csv. Throws FileError, and
+  /// InputError for names that are not valid folder names.
   RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator);
 
-  /// Writes the OBJ files of all bodies and moving obstacles at the simulator's present time, and the row of the frame. The first
+  /// Writes the OBJ files of all bodies and moving obstacles at the simulator's present time, and the rows of the frame. The first
   /// call also writes the static obstacles and copies the materials of bodies. Requires the simulator of the constructor. Throws
   /// FileError; no part of the frame then remains.
   void write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics);
@@ -37,6 +38,7 @@ class RunOutput {
   OutputFolder folder_;
   std::vector<ObjSequence> sequences_;
   std::vector<CopiedFile> copies_;
+  bool has_forces_;
   RunRecord record_;
   RunProgress progress_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

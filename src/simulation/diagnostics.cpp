@@ -63,6 +63,7 @@ FrameDiagnostics FrameRunner::first_frame() const { return measure(simulator_, 1
 
 FrameDiagnostics FrameRunner::next_frame() {
   const auto begin = std::chrono::steady_clock::now();
+  simulator_.reset_forces();
   StepReport all;
   int max_substeps = 1;
   for (int step = 0; step < steps_per_frame_; ++step) {

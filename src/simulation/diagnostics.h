@@ -45,7 +45,7 @@ class FrameRunner {
   /// Diagnostics of the state at time 0.
   [[nodiscard]] FrameDiagnostics first_frame() const;
 
-  /// Runs the steps of the next frame. Throws StepError.
+  /// Runs the steps of the next frame. Forces of pins and springs are then means over the frame. Throws StepError.
   FrameDiagnostics next_frame();
 
  private:

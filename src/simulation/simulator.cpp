@@ -106,6 +106,14 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   if (constraints.violation(state.x) > 1.0) constraints.correct_positions(state, dt());
   integrator->start(state, forces, dt());
   energy_watch.note(0, energies());
+  begin_recording();
+}
+
+/// Before this, pins take the speed with which they begin, which is no impulse.
+void Simulator::Implementation::begin_recording() {
+  if (!settings.record_forces) return;
+  forces_since = time();
+  state.impulses = {.on_pinned = Points::Zero(3, network.particle_count()), .of_springs = Scalars::Zero(network.springs.count())};
 }
 
 /// Whether anything moves at the start, when the rotation in a step is not known yet.
@@ -116,8 +124,13 @@ bool Simulator::Implementation::anything_moves() const {
 StepReport Simulator::Implementation::step() {
   if (state.asleep) {
     ++state.step;
+    if (state.impulses.on()) {
+      state.impulses.on_pinned += state.impulses_asleep.on_pinned;
+      state.impulses.of_springs += state.impulses_asleep.of_springs;
+    }
     return {.stretch_excess = constraints.limit() != nullptr ? constraints.limit()->excess(state.x) : 0.0};
   }
+  state.impulses_asleep = state.impulses;
   if (symmetry && constraints.contacts().can_collide() && symmetry->may_push(state.x)) {
     symmetry->push(contact_normals(), dt(), *integrator, state);
   }
@@ -146,6 +159,10 @@ void Simulator::Implementation::fall_asleep() {
   const std::vector<ContactNormal> normals = contact_normals();
   if (!rest.all_touch(normals) || (symmetry && symmetry->has_standing(normals, state.x))) return;
   state.asleep = true;
+  if (state.impulses.on()) {
+    state.impulses_asleep = {.on_pinned = state.impulses.on_pinned - state.impulses_asleep.on_pinned,
+                             .of_springs = state.impulses.of_springs - state.impulses_asleep.of_springs};
+  }
   state.v.setZero();
   for (Index i = 0; i < network.particle_count(); ++i) integrator->velocity_changed(state, i, dt());
 }
@@ -230,7 +247,19 @@ void Simulator::Implementation::substep_changed(double dt_before) {
   }
 }
 
-void Simulator::Implementation::move_pins(double time) { energy_watch.note_pin(pin_paths.move(time, dt(), state)); }
+void Simulator::Implementation::move_pins(double time) {
+  const Points v_before = state.impulses.on() ? state.v : Points();
+  energy_watch.note_pin(pin_paths.move(time, dt(), state));
+  if (!state.impulses.on()) return;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (network.is_pinned(i)) record_gain(i, v_before.col(i));
+  }
+}
+
+/// Its pin, not what acts on the particle, changed the velocity. Requires that the state records impulses.
+void Simulator::Implementation::record_gain(Index particle, const Vector3& velocity_before) {
+  state.impulses.on_pinned.col(particle) -= network.masses[particle] * (state.v.col(particle) - velocity_before);
+}
 
 std::vector<ContactNormal> Simulator::Implementation::contact_normals() const {
   return penalty != nullptr ? penalty->normals(state.x) : constraints.contacts().normals();
@@ -313,6 +342,22 @@ double Simulator::time() const { return implementation_->time(); }
 double Simulator::gravity_energy() const { return implementation_->energy(EnergyKind::gravity); }
 double Simulator::elastic_energy() const { return implementation_->energy(EnergyKind::elastic); }
 double Simulator::contact_energy() const { return implementation_->energy(EnergyKind::contact); }
+
+std::vector<Reaction> Simulator::reactions() const {
+  if (!state().impulses.on()) return {};
+  return implementation_->reactions.reactions(network(), state().impulses, time() - implementation_->forces_since);
+}
+
+Scalars Simulator::limit_tensions() const {
+  const double duration = time() - implementation_->forces_since;
+  if (!state().impulses.on() || duration <= 0.0) return Scalars::Zero(network().springs.count());
+  return state().impulses.of_springs / duration;
+}
+
+void Simulator::reset_forces() {
+  implementation_->reactions.reset();
+  implementation_->begin_recording();
+}
 
 std::string Simulator::stretch_solver() const {
   const StretchLimit* limit = implementation_->constraints.limit();

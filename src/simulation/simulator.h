@@ -7,6 +7,7 @@
 #include "dynamics/integrators/stable_step.h"
 #include "network/model/simulation_state.h"
 #include "network/model/spring_network.h"
+#include "simulation/reaction.h"
 #include "simulation/settings/simulator_settings.h"
 #include "simulation/step/step_report.h"
 
@@ -111,6 +112,18 @@ class Simulator {
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] double gravity_energy() const;
   [[nodiscard]] double contact_energy() const;
+
+  // With SimulatorSettings::record_forces; otherwise there is nothing to read.
+
+  /// The mean force of each pin on its body [N] since reset_forces() was called last, or since time 0: its impulse divided by that
+  /// time. In the order in which the pins were added; a pin that did not hold then has no force. Empty without the setting.
+  [[nodiscard]] std::vector<Reaction> reactions() const;
+
+  /// The mean force with which the stretch limit pulled each spring's ends together since then [N]; negative: it pushed.
+  [[nodiscard]] Scalars limit_tensions() const;
+
+  /// Begins a new interval for both.
+  void reset_forces();
 
  private:
   struct Implementation;

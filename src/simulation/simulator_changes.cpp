@@ -69,6 +69,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
 /// Lets pins begin and end. A particle that becomes free gets its pin's mean velocity over the last `dt`. Returns whether a pin
 /// changed.
 bool Simulator::Implementation::take_pins(const Implementation& before) {
+  const Points v_before = state.v;
   Points last_velocities = state.v;
   before.pin_paths.set_last_velocities(time(), before.dt(), last_velocities);
   bool changed = pin_paths.take(state);
@@ -77,11 +78,16 @@ bool Simulator::Implementation::take_pins(const Implementation& before) {
     changed = true;
     if (network.is_pinned(i)) continue;
     state.v.col(i) = last_velocities.col(i);
+    if (state.impulses.on()) record_gain(i, v_before.col(i));
     integrator->velocity_changed(state, i, before.dt());
   }
+  reactions.collect(before.network.pins, state.impulses);
   for (const Pin& pin : network.pins) {
     if (pin.moves()) continue;
-    for (const Index i : pin.particles) state.v.col(i).setZero();
+    for (const Index i : pin.particles) {
+      state.v.col(i).setZero();
+      if (state.impulses.on()) record_gain(i, v_before.col(i));
+    }
   }
   if (changed) move_pins(time());
   return changed;
@@ -92,6 +98,14 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   const int max_substeps = refinement ? settings.max_substeps : 1;
   stops = before.stops;
   state = before.state;
+  reactions = before.reactions;
+  forces_since = before.forces_since;
+  if (settings.record_forces != state.impulses.on()) {
+    state.impulses = {};
+    begin_recording();
+  } else if (state.impulses.of_springs.size() != network.springs.count()) {
+    if (state.impulses.on()) state.impulses.of_springs.setZero(network.springs.count());
+  }
   state.asleep = false;
   state.x_at_rest.resize(3, 0);
   const bool pins_changed = take_pins(before);
@@ -179,7 +193,12 @@ void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMateria
 void Simulator::pin(Index particle) {
   SpringNetwork network = implementation_->network;
   if (network.is_pinned(particle)) return;
-  network.pins.push_back({{particle}, Vector3::Zero(), {}});
+  const Body& body = network.body_of(particle);
+  const std::string name = body.name + ".particles[" + std::to_string(particle - body.first_particle) + "]";
+  if (std::ranges::find(network.pin_names, name) == network.pin_names.end()) network.pin_names.push_back(name);
+  Pin& pin = network.pins.emplace_back();
+  pin.particles = {particle};
+  pin.name = name;
   network.inverse_masses[particle] = 0.0;
   continue_with(std::move(network), implementation_->settings);
 }

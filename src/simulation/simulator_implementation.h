@@ -6,6 +6,7 @@
 #include "simulation/monitoring/energy_watch.h"
 #include "simulation/simulator.h"
 #include "simulation/step/pin_paths.h"
+#include "simulation/step/reaction_record.h"
 #include "simulation/step/rest_detector.h"
 #include "simulation/step/step_constraints.h"
 #include "simulation/step/step_refinement.h"
@@ -66,6 +67,8 @@ struct Simulator::Implementation {
   void set_substeps(int substeps);
   void substep_changed(double dt_before);
   void move_pins(double time);
+  void record_gain(Index particle, const Vector3& velocity_before);
+  void begin_recording();
   bool take_pins(const Implementation& before);
   [[nodiscard]] double energy(EnergyKind kind) const { return energy_of(forces, kind, state.x); }
   [[nodiscard]] Energies energies() const;
@@ -99,6 +102,8 @@ struct Simulator::Implementation {
   double driven_until;  ///< the time from which on no pin begins, ends or moves, and no obstacle moves [s]
   SimulationState state;
   StepBegin begin;
+  ReactionRecord reactions;                         ///< by pins that have ended or changed in the present interval
+  double forces_since = 0.0;                        ///< begin of that interval [s]
   std::optional<std::vector<Index>> kept_contacts;  ///< of the last step, if a later attempt changed the constraints
 };
 

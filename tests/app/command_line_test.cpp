@@ -17,6 +17,7 @@ using testing::CommandLine;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using testing::Ending;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using testing::listing;
 using ::testing::Not;
@@ -45,6 +46,22 @@ TEST_F(CommandLine, RunRecordsTheSeedOfPushes) {
   EXPECT_EQ(record()["seed"], 7);
   EXPECT_EQ(run({"run", save(rope_scene()), "--set", "perturb=false", "--out", out(), "--overwrite"}).code, 0);
   EXPECT_TRUE(record()["seed"].is_null());
+}
+
+// A row for each of 7 frames and 2 pins; from the first frame on the pins hold the rope together.
+TEST_F(CommandLine, RunWritesTheForcesOfPinsOnRequest) {
+  json scene = rope_scene();
+  scene["bodies"]["rope"]["pins"].push_back({{"indices", {4}}, {"until", 0.1}});
+  EXPECT_EQ(run({"run", save(scene), "--set", "output.forces=true", "--out", out()}).code, 0);
+  const std::string text = read_text(scratch_ / "out/forces.csv");
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 7 * 2);
+  EXPECT_THAT(text, StartsWith("frame,time,name,force_x,force_y,force_z\n1,0,rope.pins[0],0,0,0\n1,0,rope.pins[1],0,0,0\n2,"));
+  EXPECT_THAT(text, EndsWith(",rope.pins[1],0,0,0\n"));
+  EXPECT_THAT(record()["files"], Contains("forces.csv"));
+  EXPECT_EQ(record()["scene"]["output"]["forces"], true);
+  EXPECT_EQ(run({"run", save(scene), "--out", out(), "--overwrite"}).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "out/forces.csv"));
+  EXPECT_EQ(record()["scene"]["output"]["forces"], false);
 }
 
 TEST_F(CommandLine, QuietSaysNothing) {

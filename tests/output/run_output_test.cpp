@@ -310,6 +310,41 @@ TEST_F(RunOutputFiles, FrameWhoseRowFitsNoMoreIsTakenBack) {
   EXPECT_EQ(record()["frames_written"], 2);
 }
 
+/// A particle that hangs at a pin, with a record of its force.
+Simulator hanging_particle() {
+  NetworkBuilder builder;
+  builder.add_particle(Vector3::Zero(), 0.5);
+  builder.add_pin({.particles = {0}, .motion = {}, .name = "hook"});
+  return Simulator(builder.build(), {.step = 0.01, .gravity = {0.0, -8.0, 0.0}, .record_forces = true});
+}
+
+TEST_F(RunOutputFiles, ForcesAreWrittenOnRequestAndReplacedWithTheRun) {
+  simulator_ = hanging_particle();
+  run(3);
+  // 0.5 kg at 8 m/s^2; the steps of 0.01 s are summed, not the time.
+  EXPECT_EQ(read_text(file("forces.csv")),
+            "frame,time,name,force_x,force_y,force_z\n1,0,hook,0,0,0\n2,0.02,hook,0,4,0\n3,0.04,hook,0,4,0\n");
+  EXPECT_THAT(record()["files"].get<std::vector<std::string>>(), Contains("forces.csv"));
+  simulator_ = small_world();
+  const RunOutput output(OutputFolder(scratch_ / "out", true), {.frames = 1}, simulator_);
+  EXPECT_THAT(listing(scratch_ / "out"), Not(Contains("forces.csv")));
+  EXPECT_THAT(record()["files"].get<std::vector<std::string>>(), Not(Contains("forces.csv")));
+}
+
+TEST_F(RunOutputFiles, ForcesOfAFrameWhoseRowFitsNoMoreAreTakenBack) {
+  simulator_ = hanging_particle();
+  RunOutput output = open(3);
+  FrameRunner runner(simulator_, 2);
+  output.write_frame(simulator_, runner.first_frame());
+  const std::string forces = read_text(file("forces.csv"));
+  std::filesystem::resize_file(file("diagnostics.csv"), 100'000);
+  {
+    const FileSizeLimit limit(100'010);
+    EXPECT_THROW(output.write_frame(simulator_, runner.next_frame()), FileError);
+  }
+  EXPECT_EQ(read_text(file("forces.csv")), forces);
+}
+
 TEST_F(RunOutputFiles, RunWithTheSameNamesReplacesThemWhenAsked) {
   run(3);
   std::ofstream(file(kAnimationFile)) << "the exported run";

@@ -98,6 +98,7 @@ inline constexpr const char* kFullScene = R"({
   "sleep": false,
   "perturb": false,
   "seed": 7,
+  "output": { "forces": true },
   "bodies": {
     "zebra": {
       "shape": { "type": "cloth", "size": [1.0, 2.0], "resolution": [64, 32] },

@@ -64,8 +64,18 @@ double CarriedSurface::project(const Vertex& vertex, Points& positions) const {
     for (std::size_t c = 0; c < vertex.point.corners.size(); ++c) {
       positions.col(vertex.point.corners[c]) += vertex.point.weights[c] * inverse_masses[vertex.point.corners[c]] / sum * off;
     }
+    if (recorder().on()) record_pinned(vertex, off / sum);
   }
   return off.norm() / vertex.tolerance;
+}
+
+/// `multiplier` [kg m] is the momentum that the projection gives to the corners, minus that of the particle.
+void CarriedSurface::record_pinned(const Vertex& vertex, const Vector3& multiplier) const {
+  if (network_.is_pinned(vertex.particle)) recorder().add_to_pinned(vertex.particle, -multiplier);
+  for (std::size_t c = 0; c < vertex.point.corners.size(); ++c) {
+    const Index corner = vertex.point.corners[c];
+    if (network_.is_pinned(corner)) recorder().add_to_pinned(corner, vertex.point.weights[c] * multiplier);
+  }
 }
 
 double CarriedSurface::residual(const Points& positions) const {

@@ -28,6 +28,7 @@ class CarriedSurface final : public Constraint {
     double tolerance;  ///< [m]
   };
   double project(const Vertex& vertex, Points& positions) const;
+  void record_pinned(const Vertex& vertex, const Vector3& multiplier) const;
 
   const SpringNetwork& network_;
   std::vector<Vertex> vertices_;         ///< those in one cell follow each other

@@ -53,13 +53,14 @@ std::array<std::uint8_t, 4> bytes(const std::array<Number, 4>& numbers) {
 /// Moves particles along the gradients of a volume, in proportion to their inverse masses, so that it changes by `change` to first
 /// order. Does nothing if no particle can move.
 void change_volume(double change, std::span<const Index> particles, std::span<const Vector3> gradients,
-                   const Scalars& inverse_masses, Points& positions) {
+                   const Scalars& inverse_masses, const ImpulseRecorder& recorder, Points& positions) {
   double sum = 0.0;
   for (std::size_t i = 0; i < particles.size(); ++i) sum += inverse_masses[particles[i]] * gradients[i].squaredNorm();
   if (!(sum > 0.0)) return;
   const double scale = change / sum;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     positions.col(particles[i]) += scale * inverse_masses[particles[i]] * gradients[i];
+    if (recorder.on() && inverse_masses[particles[i]] == 0.0) recorder.add_to_pinned(particles[i], scale * gradients[i]);
   }
 }
 
@@ -169,7 +170,7 @@ double CellVolume::project(const Region& region, Points& positions) const {
     flat = flat || of_part.volume < kWatched * part.least;
     inverted = inverted || is_inverted(part, of_part.volume);
   }
-  change_volume(region.volume - volume, region.particles, gradients, network_.inverse_masses, positions);
+  change_volume(region.volume - volume, region.particles, gradients, network_.inverse_masses, recorder(), positions);
   if (flat) project_parts(region, positions);
   return std::max(std::abs(volume / region.volume - 1.0), inverted ? kInverted : 0.0);
 }
@@ -180,7 +181,7 @@ void CellVolume::project_parts(const Region& region, Points& positions) const {
     if (of_part.volume >= part.least) continue;
     const std::array<Index, 4> particles{region.particles[part.corners[0]], region.particles[part.corners[1]],
                                          region.particles[part.corners[2]], region.particles[part.corners[3]]};
-    change_volume(part.least - of_part.volume, particles, of_part.gradients, network_.inverse_masses, positions);
+    change_volume(part.least - of_part.volume, particles, of_part.gradients, network_.inverse_masses, recorder(), positions);
   }
 }
 

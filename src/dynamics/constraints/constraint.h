@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/types.h"
+#include "network/model/recorded_impulses.h"
 
 #include <memory>
 #include <vector>
@@ -24,6 +25,17 @@ class Constraint {
 
   /// The largest violation as a multiple of what is tolerated: passes end once it is at most 1.
   [[nodiscard]] virtual double residual(const Points& positions) const = 0;
+
+  /// Lets the next calls of project() record impulses, so that pins know what they hold.
+  void record(const ImpulseRecorder& recorder) { recorder_ = recorder; }
+
+ protected:
+  /// Where project() adds what a pinned particle withstands: minus the momentum that the rest of its stencil gained. To record
+  /// nothing is right for a constraint that holds its particles in space. Often off.
+  [[nodiscard]] const ImpulseRecorder& recorder() const { return recorder_; }
+
+ private:
+  ImpulseRecorder recorder_;
 };
 
 using Constraints = std::vector<std::shared_ptr<Constraint>>;

@@ -32,6 +32,10 @@ double EnclosedVolume::project(const Points& /*before*/, Points& positions) cons
     add_volume_gradients(particles, body.surface.triangles, 1.0, gradients);
     const double sum = gradients.colwise().squaredNorm().dot(inverse_masses);
     if (sum > 0.0) particles += (missing / sum) * (gradients.array().rowwise() * inverse_masses.array()).matrix();
+    for (Index i = 0; sum > 0.0 && recorder().on() && i < body.particle_count; ++i) {
+      const Index particle = body.first_particle + i;
+      if (network_.is_pinned(particle)) recorder().add_to_pinned(particle, missing / sum * gradients.col(i));
+    }
     largest = std::max(largest, std::abs(missing / kept.volume));
   }
   return largest / kTolerance;

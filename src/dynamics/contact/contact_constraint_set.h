@@ -77,6 +77,7 @@ class ContactConstraintSet {
   void begin_settling(const StepMotion& motion, const Points& positions, Points& velocities) {
     touching_.clear();
     velocity_goals_.clear();
+    taken_.clear();
     for (std::size_t c = 0; c < rows_.size(); ++c) {
       if (!goals_[c].touches) continue;
       const ContactConstraint<n>& row = rows_[c];
@@ -86,7 +87,11 @@ class ContactConstraintSet {
       const SpeedRange range = settled_speeds(row, goals_[c], motion, surface_velocity, speed - pushed);
       // At most its own push: other contacts remove theirs.
       const double taken = std::min(speed - range.most, goals_[c].push / motion.dt);
-      if (taken > 0.0) row.change_sum(-taken * row.normal + friction_lost(row, goals_[c], taken, motion.dt), velocities);
+      taken_.emplace_back(Vector3::Zero());
+      if (taken > 0.0) {
+        taken_.back() = -taken * row.normal + friction_lost(row, goals_[c], taken, motion.dt);
+        row.change_sum(taken_.back(), velocities);
+      }
       touching_.push_back(c);
       velocity_goals_.push_back({.origin = surface_velocity, .least = range.least});
     }
@@ -112,6 +117,16 @@ class ContactConstraintSet {
   void for_pushing(const Visit& visit) const {
     for (std::size_t c = 0; c < rows_.size(); ++c) {
       if (goals_[c].push > 0.0) visit(rows_[c], goals_[c]);
+    }
+  }
+
+  /// Calls `visit(row, change)` for each touching contact, with the total change of its sum's velocity by settling [m/s].
+  template <class Visit>
+  void for_settled(const Visit& visit) const {
+    for (std::size_t t = 0; t < touching_.size(); ++t) {
+      const ContactConstraint<n>& row = rows_[touching_[t]];
+      const ContactGoal& goal = velocity_goals_[t];
+      visit(row, Vector3(taken_[t] + goal.push * row.normal + goal.friction_change));
     }
   }
 
@@ -173,6 +188,7 @@ class ContactConstraintSet {
   std::vector<double> gaps_;
   std::vector<std::size_t> touching_;
   std::vector<ContactGoal> velocity_goals_;  ///< of touching contacts
+  std::vector<Vector3> taken_;               ///< change of their sums' velocities in begin_settling() [m/s]
 };
 
 }  // namespace sprung

@@ -68,6 +68,7 @@ class ContactProjection {
   void constrain_pushed(const StepMotion& motion, ConstrainedDirections& constrained) const {
     solver_.constrain_pushed(motion, constrained);
   }
+  void record(const StepMotion& motion, const ImpulseRecorder& recorder) const { solver_.record(motion, recorder); }
   [[nodiscard]] std::vector<Index> pushed() const { return solver_.pushed(); }
   [[nodiscard]] std::vector<ContactNormal> normals() const { return solver_.normals(); }
 

@@ -252,6 +252,25 @@ ElementContact ContactSolver::element_contact(const ContactConstraint<n>& row, c
   return contact;
 }
 
+void ContactSolver::record(const StepMotion& motion, const ImpulseRecorder& recorder) const {
+  for_each_set(sets_, [&](const auto& set) {
+    set.for_pushing(
+        [&](const auto& row, const ContactGoal& goal) { record(row, goal.push * row.normal + goal.friction_change, recorder); });
+    set.for_settled([&](const auto& row, const Vector3& change) { record(row, motion.dt * change, recorder); });
+  });
+}
+
+/// `moved` [m] is the displacement of the sum that the contact made.
+template <std::size_t n>
+void ContactSolver::record(const ContactConstraint<n>& row, const Vector3& moved, const ImpulseRecorder& recorder) const {
+  double mobility = 0.0;
+  for (std::size_t k = 0; k < n; ++k) mobility += row.weights[k] * row.weights[k] * network_.inverse_masses[row.particles[k]];
+  if (mobility == 0.0) return;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (network_.is_pinned(row.particles[k])) recorder.add_to_pinned(row.particles[k], row.weights[k] / mobility * moved);
+  }
+}
+
 std::vector<Index> ContactSolver::pushed() const {
   std::vector<Index> pushed;
   for_each_set(sets_,

@@ -61,6 +61,10 @@ class ContactSolver {
   /// Adds the supports of particles that obstacles pushed in this step, and the contacts between elements that pushed.
   void constrain_pushed(const StepMotion& motion, ConstrainedDirections& constrained) const;
 
+  /// Records the impulses of the contacts of a step that ended on the pinned particles among theirs. With an integrator that
+  /// responds to contact they are those of the passes, not of its response. Requires settle_velocities().
+  void record(const StepMotion& motion, const ImpulseRecorder& recorder) const;
+
   /// Particles pushed in this step, ascending.
   [[nodiscard]] std::vector<Index> pushed() const;
 
@@ -68,6 +72,8 @@ class ContactSolver {
   [[nodiscard]] std::vector<ContactNormal> normals() const;
 
  private:
+  template <std::size_t n>
+  void record(const ContactConstraint<n>& row, const Vector3& moved, const ImpulseRecorder& recorder) const;
   /// Adds contacts of n particles from index `begin` on; those before it stay.
   template <std::size_t n>
   void fill(ContactConstraintSet<n>& set, std::size_t first, const std::vector<Contact>& contacts, const StepMotion& motion);

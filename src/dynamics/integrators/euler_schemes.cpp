@@ -9,6 +9,7 @@ class ExplicitEuler final : public Integrator {
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
     evaluate(state, forces, dt, total_);
+    record(total_, dt, state);
     for_free_particles(network(), [&](Index i) {
       state.x.col(i) += dt * state.v.col(i);
       state.v.col(i) += dt * network().inverse_masses[i] * total_.col(i);
@@ -25,6 +26,7 @@ class SymplecticEuler final : public Integrator {
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
     evaluate(state, forces, dt, total_);
+    record(total_, dt, state);
     for_free_particles(network(), [&](Index i) {
       state.v.col(i) += dt * network().inverse_masses[i] * total_.col(i);
       state.x.col(i) += dt * state.v.col(i);

@@ -42,7 +42,12 @@ class ImplicitEuler final : public Integrator {
     alone_->derivatives.by_position.add_product(state.v, dt, gained_);
     gained_ *= dt;
     alone_->system.assemble(alone_->derivatives, dt);
+    if (state.impulses.on()) {
+      recorded_.setZero(3, gained_.cols());
+      constant_ = gained_;
+    }
     alone_->system.solve(gained_);
+    record_solution(alone_->derivatives, dt, state);
     for_free_particles(network(), [&](Index i) {
       state.v.col(i) += gained_.col(i);
       state.x.col(i) += dt * state.v.col(i);
@@ -67,6 +72,7 @@ class ImplicitEuler final : public Integrator {
     sum_forces(forces, at, gained_);
     differentiate(forces, at, linear.derivatives);
     linear.system.assemble(linear.derivatives, motion.dt);
+    if (state.impulses.on()) constant_ = motion.dt * gained_;
     added_.resize(friction_.size());
     for_free_particles(network(), [&](Index i) {
       gained_.col(i) = motion.dt * gained_.col(i) + impulses_.col(i) - network().masses[i] * (v_.col(i) - motion.v_before.col(i));
@@ -74,12 +80,24 @@ class ImplicitEuler final : public Integrator {
     });
     constrain_elements(linear.system, constrained.element_contacts(), motion.dt);
     linear.system.solve(gained_);
+    record_solution(linear.derivatives, motion.dt, state);
     for_free_particles(network(), [&](Index i) { state.x.col(i) += motion.dt * gained_.col(i); });
     const bool changed = update_friction(motion, constrained, state);
     return update_element_friction(motion, constrained.element_contacts(), state) || changed;
   }
 
  private:
+  /// Records the impulses of the linearised forces, in place of those of an earlier solve in the step. Requires the solution, and
+  /// its impulses without the change of the velocities in `constant_`.
+  void record_solution(const ForceDerivatives& derivatives, double dt, SimulationState& state) {
+    if (!state.impulses.on()) return;
+    derivatives.by_velocity.add_product(gained_, dt, constant_);
+    derivatives.by_position.add_product(gained_, dt * dt, constant_);
+    record(recorded_, -1.0, state);
+    record(constant_, 1.0, state);
+    recorded_ = constant_;
+  }
+
   /// The linear system with the pattern of all forces and of further pairs, ascending.
   struct Linearization {
     Linearization(const SpringNetwork& network, const Forces& forces, std::vector<ParticlePair> further)
@@ -226,6 +244,8 @@ class ImplicitEuler final : public Integrator {
   std::map<ElementKey, ImplicitFriction> element_friction_;
   std::vector<ElementSolve> element_solves_;
   Points v_;
+  Points constant_;  // impulses of the linearised forces [N s]; see record_solution
+  Points recorded_;  // those of the last solve of the step
 };
 
 }  // namespace

@@ -36,6 +36,13 @@ void Integrator::recover_velocities(SimulationState& state, const Forces&, const
   for_free_particles(network_, [&](Index i) { state.v.col(i) += (state.x.col(i) - advanced.col(i)) / dt; });
 }
 
+void Integrator::record(const Points& forces, double dt, SimulationState& state) const {
+  if (!state.impulses.on()) return;
+  for (Index i = 0; i < network_.particle_count(); ++i) {
+    if (network_.is_pinned(i)) state.impulses.on_pinned.col(i) += dt * forces.col(i);
+  }
+}
+
 void Integrator::velocity_changed(SimulationState&, Index, double) const {}
 
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings, const SpringNetwork& network) {

@@ -1,5 +1,6 @@
 // Time integration: advances all free particles by one step. The caller moves pinned particles (inverse mass 0). Where a scheme
-// evaluates forces within a step, pinned particles move on the straight line x + v t.
+// evaluates forces within a step, pinned particles move on the straight line x + v t. If the state records impulses, a scheme adds
+// those of the forces on pinned particles, with the weights that it gives them in a step.
 #pragma once
 
 #include "dynamics/forces/force.h"
@@ -97,6 +98,9 @@ class Integrator {
 
  protected:
   [[nodiscard]] const SpringNetwork& network() const { return network_; }
+
+  /// Adds `dt` [s] times the forces [N] on pinned particles to the impulses of the state, if it records them.
+  void record(const Points& forces, double dt, SimulationState& state) const;
 
  private:
   const SpringNetwork& network_;

@@ -26,6 +26,7 @@ class RungeKutta4 final : public Integrator {
     acceleration_.setZero(3, n);
     for (const Stage& stage : kStages) {
       sum_forces(forces, {.x = x_, .v = v_, .time = step_begin(state, dt) + stage.time * dt}, total_);
+      record(total_, stage.weight * dt, state);
       add_slope(stage, state, dt);
     }
     for_free_particles(network(), [&](Index i) {

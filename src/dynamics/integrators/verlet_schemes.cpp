@@ -58,6 +58,7 @@ class Verlet final : public Integrator {
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
     if (!forces_are_constant_) evaluate(state, forces, dt, total_);
+    record(total_, dt, state);
     set_gains(dt);
     for (const Index i : pinned_) state.x_previous.col(i) = state.x.col(i);
     const VerletStep step{.kept = kept(dt), .per_dt = 1.0 / dt};
@@ -135,6 +136,7 @@ class VelocityVerlet final : public Integrator {
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
     evaluate(state, forces, dt, total_);
+    record(total_, 0.5 * dt, state);
     x_ = state.x;
     v_ = state.v;
     for_particles(network(), [&](Index i) {
@@ -143,6 +145,7 @@ class VelocityVerlet final : public Integrator {
       v_.col(i) += gained;
     });
     sum_forces(forces, {.x = x_, .v = v_, .time = step_begin(state, dt) + dt}, total_);
+    record(total_, 0.5 * dt, state);
     for_free_particles(network(), [&](Index i) {
       state.x.col(i) = x_.col(i);
       state.v.col(i) = 0.5 * (state.v.col(i) + v_.col(i) + dt * network().inverse_masses[i] * total_.col(i));
@@ -156,6 +159,8 @@ class VelocityVerlet final : public Integrator {
     Integrator::recover_velocities(state, forces, before, advanced, dt);
     for_free_particles(network(), [&](Index i) { v_.col(i) += (state.x.col(i) - advanced.col(i)) / dt; });
     sum_forces(forces, {.x = state.x, .v = v_, .time = step_begin(state, dt) + dt}, constrained_);
+    record(constrained_, 0.5 * dt, state);
+    record(total_, -0.5 * dt, state);
     for_free_particles(network(), [&](Index i) {
       state.v.col(i) += 0.5 * dt * network().inverse_masses[i] * (constrained_.col(i) - total_.col(i));
     });

@@ -157,6 +157,7 @@ class Filler {
   void append(Index s) {
     const Index a = network_.springs.first[s];
     const Index b = network_.springs.second[s];
+    batches_.spring.push_back(s);
     batches_.first.push_back(a);
     batches_.second.push_back(b);
     batches_.rest_length.push_back(network_.springs.rest_length[s]);

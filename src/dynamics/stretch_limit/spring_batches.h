@@ -10,6 +10,7 @@ namespace sprung {
 /// Entry s of each array belongs to limited spring s. The springs of a batch are contiguous; its last spring is repeated to fill a
 /// multiple of kSimdWidth.
 struct SpringBatches {
+  std::vector<Index> spring;  ///< of the network
   std::vector<Index> first;
   std::vector<Index> second;
   std::vector<double> rest_length;  ///< d [m], > 0

@@ -1,6 +1,7 @@
 #include "dynamics/stretch_limit/stretch_limit.h"
 
 #include "base/parallel.h"
+#include "dynamics/stretch_limit/batch_recorder.h"
 #include "dynamics/stretch_limit/step_estimate.h"
 #include "dynamics/stretch_limit/stretch_kernel.h"
 #include "dynamics/stretch_newton/stretch_newton.h"
@@ -74,22 +75,29 @@ StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSetti
 }
 StretchLimit::~StretchLimit() = default;
 
-double StretchLimit::project(const Points& before, Points& positions, double relaxation) const {
-  if (tethers_) tethers_->project(positions);
+double StretchLimit::project(const Points& before, Points& positions, double relaxation, const ImpulseRecorder& recorder) const {
+  if (tethers_ && recorder.on()) tethers_->project(positions, network_.masses, recorder);
+  if (tethers_ && !recorder.on()) tethers_->project(positions);
   const LengthRange range = length_range(settings_);
+  const auto project_range = [&](const BatchRange& batch_range) {
+    return project_springs(*batches_, batch_range, range, relaxation, before.data(), positions.data());
+  };
+  std::optional<BatchRecorder> recorded;
+  if (recorder.on()) recorded.emplace(network_, *batches_);
   SquaredLengths measured;
   for (std::size_t stage = 0; stage + 1 < batches_->stage_begin.size(); ++stage) {
     measured.include(
         extremes(*batches_, batches_->stage_begin[stage], batches_->stage_begin[stage + 1], [&](const BatchRange& batch_range) {
-          return project_springs(*batches_, batch_range, range, relaxation, before.data(), positions.data());
+          return recorded ? recorded->project(batch_range, positions, project_range) : project_range(batch_range);
         }));
   }
+  if (recorded) recorded->write_to(recorder, positions);
   return measured.excess(range);
 }
 
 std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double fall,
-                                       const std::vector<StretchHandover>& handovers) const {
-  return newton_ ? newton_->solve(before, positions, fall, handovers) : std::nullopt;
+                                       const std::vector<StretchHandover>& handovers, const ImpulseRecorder& recorder) const {
+  return newton_ ? newton_->solve(before, positions, fall, handovers, recorder) : std::nullopt;
 }
 
 double StretchLimit::excess(const Points& positions) const {

@@ -37,15 +37,17 @@ class StretchLimit {
   ///
   /// `relaxation`, in (0, 2), scales the corrections. Passes still converge on lengths that are not too long, because these are a
   /// convex set (Agmon 1954; Motzkin and Schoenberg 1954). Over-relaxation spreads the excess faster where many springs share it.
-  double project(const Points& before, Points& positions, double relaxation = 1.0) const;
+  ///
+  /// A recorder gets the impulses of springs and tethers, which takes a pass about twice the time.
+  double project(const Points& before, Points& positions, double relaxation = 1.0, const ImpulseRecorder& recorder = {}) const;
 
   /// Newton's method on all springs that are too long, for the components that `solver` chooses: moves free particles to positions
   /// where springs are within max_stretch, with the least weighted displacement. Compression and contact are left to the passes.
   /// `before` are the positions at the beginning of the step. `fall` [m] is a dt^2 with the largest steady acceleration a of
   /// gravity and wind. `handovers` says for each body whether it was handed over; it may be empty. Returns the largest number of
-  /// linear systems of a component; none if nothing was too long.
-  std::optional<int> solve(const Points& before, Points& positions, double fall,
-                           const std::vector<StretchHandover>& handovers = {}) const;
+  /// linear systems of a component; none if nothing was too long. A recorder gets the impulses of springs.
+  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers = {},
+                           const ImpulseRecorder& recorder = {}) const;
 
   /// The largest relative excess over the limits.
   [[nodiscard]] double excess(const Points& positions) const;

@@ -91,7 +91,7 @@ class Finder {
       }
       const Index second = point_[other];
       if (second < i) continue;
-      component.links.push_back({i, second, network_.springs.rest_length[spring]});
+      component.links.push_back({i, second, network_.springs.rest_length[spring], spring});
       if (!component.is_free(second)) continue;
       component.is_tree = component.is_tree && (parent == kNone || parent == second);
       parent = second;

@@ -1,6 +1,7 @@
 #include "dynamics/stretch_newton/stretch_newton.h"
 
 #include "base/parallel.h"
+#include "dynamics/stretch_newton/component_impulses.h"
 #include "dynamics/stretch_newton/two_level_newton.h"
 
 #include <algorithm>
@@ -25,9 +26,12 @@ Taken taken_by_itself(const StretchComponent& component, const Body& body, const
 
 }  // namespace
 
-StretchNewton::StretchNewton(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use) {
+StretchNewton::StretchNewton(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use)
+    : network_(network), settings_(settings) {
   const bool chooses = settings.solver == StretchLimitSettings::Solver::automatic;
+  std::size_t number = 0;
   for (StretchComponent& component : stretch_components(network, settings.kinds)) {
+    const std::size_t of_component = number++;
     const Body& body = network.body_of(component.points.front());
     const Taken taken = chooses ? taken_by_itself(component, body, settings, use) : Taken::from_start;
     if (taken != Taken::from_start) {
@@ -36,23 +40,39 @@ StretchNewton::StretchNewton(const SpringNetwork& network, const StretchLimitSet
     if (taken == Taken::never) continue;
     components_.push_back({.solver = make_component_solver(network, std::move(component), settings, use),
                            .body = static_cast<std::size_t>(&body - network.bodies.data()),
-                           .from_start = taken == Taken::from_start});
+                           .from_start = taken == Taken::from_start,
+                           .number = of_component});
   }
   std::ranges::sort(left_);
 }
 StretchNewton::~StretchNewton() = default;
 
 std::optional<int> StretchNewton::solve(const Points& before, Points& positions, double fall,
-                                        const std::vector<StretchHandover>& handovers) {
+                                        const std::vector<StretchHandover>& handovers, const ImpulseRecorder& recorder) {
+  const Points target = recorder.on() ? positions : Points();
   std::vector<std::optional<int>> iterations(components_.size());
   parallel_chunks(static_cast<Index>(components_.size()), 1, [&](Index begin, Index end) {
     for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p) {
       const SolvedComponent& component = components_[p];
-      const bool handed_over = !handovers.empty() && handovers[component.body].solved_since;
-      if (component.from_start || handed_over) iterations[p] = component.solver->solve(before, positions, fall);
+      if (component.is_solved(handovers)) iterations[p] = component.solver->solve(before, positions, fall);
     }
   });
+  if (recorder.on()) record(target, positions, handovers, recorder);
   return iterations.empty() ? std::nullopt : *std::ranges::max_element(iterations);
+}
+
+// Components may share pins, so one records after the other.
+void StretchNewton::record(const Points& target, const Points& positions, const std::vector<StretchHandover>& handovers,
+                           const ImpulseRecorder& recorder) {
+  if (impulses_.empty()) {
+    std::vector<StretchComponent> all = stretch_components(network_, settings_.kinds);
+    for (const SolvedComponent& component : components_) {
+      impulses_.push_back(std::make_unique<ComponentImpulses>(std::move(all[component.number]), settings_));
+    }
+  }
+  for (std::size_t p = 0; p < components_.size(); ++p) {
+    if (components_[p].is_solved(handovers)) impulses_[p]->record(target, positions, recorder);
+  }
 }
 
 double StretchNewton::turn() const {

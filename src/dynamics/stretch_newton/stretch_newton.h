@@ -10,6 +10,7 @@
 
 namespace sprung {
 
+class ComponentImpulses;
 class ComponentSolver;
 struct StretchComponent;
 
@@ -21,16 +22,17 @@ class StretchNewton {
  public:
   /// Solves for all components from the start if `settings.solver` is newton. If it is automatic: from the start for chains,
   /// trees, ropes, and surfaces that may shrink freely and that `use` does not reserve for passes; for other ropes and surfaces
-  /// after their body was handed over; never for the rest.
+  /// after their body was handed over; never for the rest. Keeps a reference to the network.
   StretchNewton(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use = {});
   ~StretchNewton();
 
   /// Moves free particles from the target of the forces, `positions`, to positions where no limited spring is much too long, with
   /// the least weighted displacement. `before` are the positions at the beginning of the step; `positions` holds the final
   /// positions of pins. `fall` is that of ComponentSolver. `handovers` has an entry per body or is empty. Returns the largest
-  /// number of linear systems of a component; none if nothing was too long.
-  std::optional<int> solve(const Points& before, Points& positions, double fall,
-                           const std::vector<StretchHandover>& handovers = {});
+  /// number of linear systems of a component; none if nothing was too long. A recorder costs about a linear system per component
+  /// with several links to pins.
+  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers = {},
+                           const ImpulseRecorder& recorder = {});
 
   /// Whether all limited springs of a body are solved for from the start.
   [[nodiscard]] bool solves(const Body& body) const;
@@ -52,10 +54,22 @@ class StretchNewton {
     std::unique_ptr<ComponentSolver> solver;
     std::size_t body;
     bool from_start;
+    std::size_t number;  ///< of the component among all of the network
+
+    [[nodiscard]] bool is_solved(const std::vector<StretchHandover>& handovers) const {
+      return from_start || (!handovers.empty() && handovers[body].solved_since);
+    }
   };
 
+  void record(const Points& target, const Points& positions, const std::vector<StretchHandover>& handovers,
+              const ImpulseRecorder& recorder);
+
+  const SpringNetwork& network_;
+  StretchLimitSettings settings_;
+
   std::vector<SolvedComponent> components_;
-  std::vector<Index> left_;  ///< particles that are not solved for from the start, ascending
+  std::vector<std::unique_ptr<ComponentImpulses>> impulses_;  ///< of the components; empty until something is recorded
+  std::vector<Index> left_;                                   ///< particles that are not solved for from the start, ascending
 };
 
 }  // namespace sprung

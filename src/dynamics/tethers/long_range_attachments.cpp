@@ -54,4 +54,16 @@ void LongRangeAttachments::project(Points& positions) const {
   });
 }
 
+// One run after the other: its particles differ, so that each moved by one tether.
+void LongRangeAttachments::project(Points& positions, const Scalars& masses, const ImpulseRecorder& recorder) const {
+  for (const LraRun& run : runs_) {
+    const Points before = positions.middleCols(run.particle, run.count);
+    project_tethers(run, lengths_.data(), positions.data());
+    for (Index i = 0; i < run.count; ++i) {
+      const Vector3 moved = positions.col(run.particle + i) - before.col(i);
+      recorder.add_to_pinned(run.one_pin ? run.pin : run.pin + i, -masses[run.particle + i] * moved);
+    }
+  }
+}
+
 }  // namespace sprung

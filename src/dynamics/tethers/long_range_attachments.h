@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dynamics/tethers/lra_kernel.h"
+#include "network/model/recorded_impulses.h"
 #include "network/model/spring_network.h"
 
 #include <vector>
@@ -19,6 +20,9 @@ class LongRangeAttachments {
   /// Moves each particle that is too far from a pin straight towards it, one pin after the other. Gives the same bits for any
   /// number of threads.
   void project(Points& positions) const;
+
+  /// The same bits. Records the impulses on pinned particles; `masses` [kg] are those of the particles.
+  void project(Points& positions, const Scalars& masses, const ImpulseRecorder& recorder) const;
 
  private:
   std::vector<double> lengths_;  ///< allowed length of each tether [m]

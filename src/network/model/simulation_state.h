@@ -1,6 +1,7 @@
 // All that a step changes. Time is counted in steps and substeps, never accumulated.
 #pragma once
 
+#include "network/model/recorded_impulses.h"
 #include "network/model/spring_network.h"
 
 #include <optional>
@@ -50,7 +51,9 @@ struct SimulationState {
   double rest_speed2 = 0.0;     ///< mean square of the speeds then [m^2/s^2]
   bool asleep = false;          ///< steps change nothing but the time
   std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
-  std::vector<PinAnchor> anchors{};  ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle
+  std::vector<PinAnchor> anchors{};    ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle
+  RecordedImpulses impulses{};         ///< empty unless the settings ask for forces
+  RecordedImpulses impulses_asleep{};  ///< that each step adds to these while asleep
 };
 
 /// Number of completed steps, plus the completed fraction of the current step. The time is this number times the step length. After

@@ -99,6 +99,7 @@ struct Pin {
   Index obstacle = kNone;  ///< of the simulator, which the particles follow instead of `motion`; kNone: none
   double from = 0.0;       ///< when it takes its particles [s], >= 0
   double until = std::numeric_limits<double>::infinity();  ///< when it lets go of them [s], > from
+  std::string name{};  ///< under which its force is reported; NetworkBuilder gives `pins[k]` to its pin k if it has none
 
   [[nodiscard]] bool moves() const { return obstacle != kNone || motion.moves(); }
   [[nodiscard]] bool holds_always() const { return from == 0.0 && until == std::numeric_limits<double>::infinity(); }
@@ -115,8 +116,9 @@ struct SpringNetwork {
   Springs springs;
   AngleBends angle_bends;
   std::vector<Body> bodies;
-  std::vector<Pin> pins;        ///< that hold their particles
-  std::vector<Pin> later_pins;  ///< that have not begun
+  std::vector<Pin> pins;                 ///< that hold their particles
+  std::vector<Pin> later_pins;           ///< that have not begun
+  std::vector<std::string> pin_names{};  ///< of all pins, in the order in which they were added, also of those that have ended
 
   [[nodiscard]] Index particle_count() const { return static_cast<Index>(masses.size()); }
   [[nodiscard]] bool is_pinned(Index particle) const { return inverse_masses[particle] == 0.0; }

@@ -23,10 +23,10 @@ struct BuiltBody {
 [[nodiscard]] std::optional<BuiltBody> build_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder,
                                                   std::vector<Problem>& problems);
 
-/// The particles of the body's pins, counted from 0 within the body. Indices count the vertices of a mesh's file. Pins that rest
-/// for ever are merged into one. Adds a problem for each pin that contains no particle, names a particle or a group that does not
-/// exist, or contains a particle that another pin holds at the same time. Requires that the scene has the obstacles that pins
-/// follow.
+/// The particles of the body's pins, counted from 0 within the body. Indices count the vertices of a mesh's file. A
+/// particle of several pins that rest for ever belongs to the first of them; a pin that is left without particles is left out. Adds
+/// a problem for each pin that contains no particle, names a particle or a group that does not exist, or contains a particle that
+/// another pin holds at the same time. Requires that the scene has the obstacles that pins follow.
 [[nodiscard]] std::vector<Pin> resolve_pins(const Scene& scene, const BodyScene& body, const BuiltBody& placed,
                                             std::vector<Problem>& problems);
 

@@ -1,3 +1,4 @@
+#include "base/problem_list.h"
 #include "network/model/pin_schedule.h"
 #include "scene/building/body_builder.h"
 #include "scene/building/particle_selector.h"
@@ -5,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace sprung {
 namespace {
@@ -61,7 +63,7 @@ class PinComparison {
 std::vector<Pin> resolve_pins(const Scene& scene, const BodyScene& body, const BuiltBody& placed, std::vector<Problem>& problems) {
   const std::string key = join_path("bodies", body.name) + ".pins";
   PinComparison comparison(scene, key, problems);
-  Pin still;
+  std::set<Index> at_rest;
   std::vector<Pin> resolved;
   for (std::size_t p = 0; p < body.pins.size(); ++p) {
     const PinScene& text = body.pins[p];
@@ -70,18 +72,16 @@ std::vector<Pin> resolve_pins(const Scene& scene, const BodyScene& body, const B
             .motion = text.motion,
             .obstacle = number_of_obstacle(scene, text.follow),
             .from = text.from,
-            .until = text.until};
+            .until = text.until,
+            .name = body.name + "." + entry_key("pins", p)};
     comparison.add(pin);
     if (rests_for_ever(pin)) {
-      still.particles.insert(still.particles.end(), pin.particles.begin(), pin.particles.end());
-    } else {
-      resolved.push_back(std::move(pin));
+      std::ranges::sort(pin.particles);
+      std::erase_if(pin.particles, [&](Index particle) { return !at_rest.insert(particle).second; });
+      if (pin.particles.empty()) continue;
     }
+    resolved.push_back(std::move(pin));
   }
-  if (still.particles.empty()) return resolved;
-  std::ranges::sort(still.particles);
-  still.particles.erase(std::unique(still.particles.begin(), still.particles.end()), still.particles.end());
-  resolved.push_back(std::move(still));
   return resolved;
 }
 

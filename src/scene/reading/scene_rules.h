@@ -30,8 +30,8 @@ struct NamedParts {
 [[nodiscard]] Rule<BodyScene> body_rule();
 [[nodiscard]] Rule<ObstacleScene> obstacle_rule(double frame_rate);
 
-/// gravity, air, integrator, stretch_limit, contact, stability. Without a `stretch_limit`, the bodies that need one for their
-/// materials get it. Requires the scene's bodies.
+/// gravity, air, integrator, stretch_limit, contact, stability, output and others. Without a `stretch_limit`, the bodies that need
+/// one for their materials get it. Requires the scene's bodies.
 void read_settings(Fields& fields, Scene& scene);
 
 /// The whole document.

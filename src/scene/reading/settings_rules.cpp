@@ -106,6 +106,8 @@ ContactSettings read_contact(Fields& fields) {
   return contact;
 }
 
+bool read_output(Fields& fields) { return fields.value("forces", boolean(), false).value_or(false); }
+
 }  // namespace
 
 void read_settings(Fields& fields, Scene& scene) {
@@ -132,6 +134,7 @@ void read_settings(Fields& fields, Scene& scene) {
   settings.sleep = fields.value("sleep", boolean(), settings.sleep).value_or(settings.sleep);
   settings.perturb = fields.value("perturb", boolean(), settings.perturb).value_or(settings.perturb);
   settings.seed = static_cast<std::uint64_t>(fields.value("seed", integer(0, std::numeric_limits<Index>::max()), 0).value_or(0));
+  settings.record_forces = fields.value("output", object_of<bool>(read_output), Json::object()).value_or(false);
 }
 
 }  // namespace sprung

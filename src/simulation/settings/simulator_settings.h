@@ -47,6 +47,8 @@ struct SimulatorSettings {
   /// Whether bodies that stand compressed, exactly in a line or plane, get a tiny push off it; see SymmetryBreaker.
   bool perturb = true;
   std::uint64_t seed = 0;  ///< of the directions of such pushes
+  /// Whether steps record the impulses of pins and springs, for Simulator::reactions and spring_tensions. Changes no other result.
+  bool record_forces = false;
 };
 
 }  // namespace sprung

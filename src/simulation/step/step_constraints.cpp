@@ -67,13 +67,16 @@ void StepConstraints::apply(SimulationState& state, const Forces& forces, double
   for (const auto& constraint : constraints_) constraint->prepare(time);
   if (contacts_.can_collide() || integrator_.needs_advanced()) advanced_ = state.x;
   dt_ = dt;
+  record(ImpulseRecorder(state.impulses, dt));
   project(state, forces, report);
   report.stretch_excess = limit_ ? limit_->excess(state.x) : 0.0;
   truncate(state, forces, report);
+  record({});
 }
 
 void StepConstraints::correct_positions(SimulationState& state, double dt) {
   dt_ = dt;
+  record({});  // velocities stay as they are
   const auto excess = [&](const Points& x) { return limit_ ? limit_->excess(x) : 0.0; };
   for (int k = 0; k < kCorrections && (excess(state.x) > kCorrected || violation(state.x) > 1.0); ++k) {
     begin(state);
@@ -113,8 +116,9 @@ void StepConstraints::project(SimulationState& state, const Forces& forces, Step
 void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
   const bool projects = projects_contacts();
   const double fall = steady_acceleration_ * dt_ * dt_;
-  const std::optional<int> solves =
-      limit_ && !repeats_ ? limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers) : std::nullopt;
+  const std::optional<int> solves = limit_ && !repeats_
+                                        ? limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers, recorder_)
+                                        : std::nullopt;
   report.limit_solves = solves.value_or(0);
   const int limit_passes = limit_ ? limit_->settings().iterations + (solves ? 1 : 0) : 0;  // the first after a solve only measures
   const int passes = std::max(limit_passes, constraint_passes());
@@ -127,7 +131,7 @@ void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
     double excess = 0.0;
     if (limit_) {
       excess = solves && pass == 0 ? limit_->excess(state.x)
-                                   : limit_->project(positions_before(state), state.x, between ? kRelaxation : 1.0);
+                                   : limit_->project(positions_before(state), state.x, between ? kRelaxation : 1.0, recorder_);
     }
     if (pass + 1 >= passes && violation <= kGrossViolation) return true;
     return (!limit_ || excess <= limit_->settings().tolerance) && violation <= 1.0 && push <= kContactTolerance;
@@ -167,6 +171,7 @@ void StepConstraints::truncate(SimulationState& state, const Forces& forces, Ste
   integrator_.recover_velocities(state, forces, positions_before(state), advanced_, dt_);
   if (can_collide) contacts_.limit_speed_of_moved(motion(), state, integrator_);
   if (can_collide) contacts_.settle_velocities(motion(), state, integrator_);
+  if (recorder_.on() && projects_contacts()) contacts_.record(motion(), recorder_);
   if (can_collide) contacts_.note_slip(motion(), state);
   report.truncated = contacts_.truncated_count();
   report.infeasible = contacts_.infeasible_count();
@@ -192,7 +197,7 @@ bool StepConstraints::relax(Points& positions, double excess_before, double viol
   for (int pass = 0; pass < kRelaxPasses; ++pass) {
     if (projects_contacts()) contacts_.project(positions);
     sprung::project(constraints_, before_, positions);
-    if (limit_) limit_->project(before_, positions);
+    if (limit_) limit_->project(before_, positions, 1.0, recorder_);
   }
   return true;
 }
@@ -207,6 +212,11 @@ bool StepConstraints::respond_to_truncation(SimulationState& state, const Forces
   integrator_.respond_to_contact(motion(), forces, responded_, constrained_, state);
   responded_ = state.x;
   return true;
+}
+
+void StepConstraints::record(const ImpulseRecorder& recorder) {
+  recorder_ = recorder;
+  for (const auto& constraint : constraints_) constraint->record(recorder);
 }
 
 bool StepConstraints::projects_contacts() const {

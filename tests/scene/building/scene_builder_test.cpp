@@ -150,16 +150,19 @@ TEST(SceneBuilder, AFlatBoxContainsARowDespiteRoundingOfItsPosition) {
   }
 }
 
-TEST(SceneBuilder, RestingPinsAreMergedAndMovingOnesTurnAboutThePositionOfTheBody) {
+TEST(SceneBuilder, AParticleOfSeveralRestingPinsBelongsToTheFirstAndMovingPinsTurnAboutThePositionOfTheBody) {
   const SceneFolder folder;
   const BuiltScene built = build(folder, {"bodies.banner.place.position=[0,2,0]",
-                                          R"(bodies.banner.pins=[{"indices":[0,1]},{"indices":[8],"motion":{"spin":[0,90,0]}},
-                                             {"indices":[1,2]}])"});
-  ASSERT_EQ(built.network.pins.size(), 2U);
-  EXPECT_THAT(built.network.pins[0].particles, ElementsAre(8));
-  EXPECT_EQ(built.network.pins[0].origin, Vector3(0, 2, 0));
-  EXPECT_EQ(built.network.pins[0].motion.spin, Vector3(0, 90, 0));
-  EXPECT_THAT(built.network.pins[1].particles, ElementsAre(0, 1, 2));
+                                          R"(bodies.banner.pins=[{"indices":[1,0]},{"indices":[8],"motion":{"spin":[0,90,0]}},
+                                             {"indices":[1,0]},{"indices":[1,2]}])"});
+  const std::vector<Pin>& pins = built.network.pins;
+  ASSERT_EQ(pins.size(), 3U);
+  EXPECT_THAT(pins[0].particles, ElementsAre(0, 1));
+  EXPECT_THAT(pins[1].particles, ElementsAre(8));
+  EXPECT_EQ(pins[1].origin, Vector3(0, 2, 0));
+  EXPECT_EQ(pins[1].motion.spin, Vector3(0, 90, 0));
+  EXPECT_THAT(pins[2].particles, ElementsAre(2));
+  EXPECT_THAT(built.network.pin_names, ElementsAre("banner.pins[0]", "banner.pins[1]", "banner.pins[3]"));
 }
 
 // A quad per group, object or material; welded, its corners are particles of both.
@@ -240,6 +243,8 @@ TEST(SceneBuilder, PinsKnowTheirTimesAndTheNumberOfTheObstacleThatTheyFollow) {
   EXPECT_EQ(built.network.later_pins[0].from, 0.25);
   EXPECT_EQ(built.network.later_pins[1].obstacle, kNone);
   EXPECT_THAT(built.network.later_pins[1].particles, ElementsAre(0, 1));
+  EXPECT_THAT(built.network.pin_names, ElementsAre("banner.pins[0]", "banner.pins[1]", "banner.pins[2]"));
+  EXPECT_EQ(built.network.later_pins[1].name, "banner.pins[1]");
 }
 
 TEST(SceneBuilder, PinsOfLaterBodiesCountFromTheirOwnFirstParticle) {

@@ -62,6 +62,7 @@ TEST(SceneReader, TimeAndSettingsArrive) {
   EXPECT_FALSE(scene.settings.sleep);
   EXPECT_FALSE(scene.settings.perturb);
   EXPECT_EQ(scene.settings.seed, 7U);
+  EXPECT_TRUE(scene.settings.record_forces);
 }
 
 TEST(SceneReader, SchemaForEditorsIsAKnownKey) {
@@ -219,6 +220,7 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_TRUE(scene.settings.sleep);
   EXPECT_TRUE(scene.settings.perturb);
   EXPECT_EQ(scene.settings.seed, 0U);
+  EXPECT_FALSE(scene.settings.record_forces);
   EXPECT_EQ(scene.bodies[0].place.scale, 1.0);
   EXPECT_EQ(scene.bodies[0].velocity, Vector3(0, 0, 0));
   EXPECT_FALSE(scene.bodies[0].contact.self);

@@ -1,0 +1,17 @@
+// forces.csv: a row per frame and pin.
+#pragma once
+
+#include "simulation/reaction.h"
+
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// The line of column names: frame, time [s], name of the pin, and the force [N] on its body, a mean since the frame before.
+[[nodiscard]] std::string forces_csv_head();
+
+/// The lines of a frame at `time` [s], in the given order.
+[[nodiscard]] std::string forces_csv_rows(int frame, double time, const std::vector<Reaction>& reactions);
+
+}  // namespace sprung

@@ -1,0 +1,33 @@
+// The impulses of pins since the last reading.
+#pragma once
+
+#include "network/model/recorded_impulses.h"
+#include "network/model/spring_network.h"
+#include "simulation/reaction.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// A step records impulses by particle; before pins begin or end they are added up by pin. A pinned particle of mass m gains the
+/// momentum m dv of its pin's motion, so its pin gives it m dv minus the impulses of all that acts on it: springs, gravity, drag,
+/// the stretch limit, constraints and contact.
+class ReactionRecord {
+ public:
+  /// Adds the recorded impulses on particles to their pins, and sets these to zero.
+  void collect(const std::vector<Pin>& pins, RecordedImpulses& impulses);
+
+  /// The mean forces over `duration` [s] of all pins of the network, in the order in which they were added, from what was collected
+  /// and what the present pins have on top. Zero if the duration is zero.
+  [[nodiscard]] std::vector<Reaction> reactions(const SpringNetwork& network, const RecordedImpulses& impulses,
+                                                double duration) const;
+
+  void reset() { by_name_.clear(); }
+
+ private:
+  std::map<std::string, Vector3> by_name_;  ///< impulses of pins on their bodies [N s]
+};
+
+}  // namespace sprung

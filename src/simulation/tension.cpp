@@ -1,0 +1,32 @@
+#include "simulation/tension.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+Scalars spring_tensions(const Simulator& simulator) {
+  const Springs& springs = simulator.network().springs;
+  const Points& x = simulator.state().x;
+  const Points& v = simulator.state().v;
+  Scalars tensions = simulator.limit_tensions();
+  for (Index s = 0; s < springs.count(); ++s) {
+    const Vector3 between = x.col(springs.second[s]) - x.col(springs.first[s]);
+    const double length = between.norm();
+    if (length == 0.0) continue;
+    const double rate = between.dot(v.col(springs.second[s]) - v.col(springs.first[s])) / length;
+    tensions[s] += springs.stiffness[s] * (length - springs.rest_length[s]) + springs.damping[s] * rate;
+  }
+  return tensions;
+}
+
+Scalars particle_tensions(const Simulator& simulator) {
+  const Springs& springs = simulator.network().springs;
+  const Scalars of_springs = spring_tensions(simulator);
+  Scalars tensions = Scalars::Zero(simulator.network().particle_count());
+  for (Index s = 0; s < springs.count(); ++s) {
+    for (const Index i : {springs.first[s], springs.second[s]}) tensions[i] = std::max(tensions[i], of_springs[s]);
+  }
+  return tensions;
+}
+
+}  // namespace sprung
