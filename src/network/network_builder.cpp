@@ -15,7 +15,7 @@ namespace {
 
 void append_spring(Springs& springs, const Springs& from, std::size_t s, Index offset) {
   springs.append(from.first[s] + offset, from.second[s] + offset, from.rest_length[s], from.stiffness[s], from.damping[s],
-                 from.kind[s]);
+                 from.kind[s], from.law(static_cast<Index>(s)));
 }
 
 // Appends the springs of a body, sorted by (second - first, first). Springs between the same two particles keep their order.
@@ -75,8 +75,9 @@ Index NetworkBuilder::add_particle(const Vector3& position, double mass, const V
   return particle_count_++;
 }
 
-void NetworkBuilder::add_spring(Index i, Index j, double stiffness, double rest_length, double damping, SpringKind kind) {
-  springs_.append(i, j, rest_length, stiffness, damping, kind);
+void NetworkBuilder::add_spring(Index i, Index j, double stiffness, double rest_length, double damping, SpringKind kind,
+                                const SpringLaw& law) {
+  springs_.append(i, j, rest_length, stiffness, damping, kind, law);
 }
 
 void NetworkBuilder::add_angle_bend(Index before, Index middle, Index after, double stiffness, double damping) {

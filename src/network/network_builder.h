@@ -19,7 +19,7 @@ class NetworkBuilder {
 
   /// Joins two particles of one body by a spring with k_s [N/m], rest length [m] and k_d [N s/m], all >= 0.
   void add_spring(Index i, Index j, double stiffness, double rest_length, double damping = 0.0,
-                  SpringKind kind = SpringKind::structural);
+                  SpringKind kind = SpringKind::structural, const SpringLaw& law = {});
 
   /// Keeps three particles of one body in line, with k [N m/rad] and a damping of the angle's rate [N m s], both >= 0. The rest
   /// lengths are the current distances.

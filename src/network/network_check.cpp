@@ -56,6 +56,14 @@ void check_springs(const std::string& key, const BodyShape& shape, ProblemList& 
   require_quantities(springs.rest_length, {key + ".springs.rest_length", rule, "give a length in m"}, problems);
   require_quantities(springs.stiffness, {key + ".springs.stiffness", rule, "give k_s in N/m"}, problems);
   require_quantities(springs.damping, {key + ".springs.damping", rule, "give k_d in N s/m"}, problems);
+  problems.require_each(
+      springs.laws.size(), [&](std::size_t s) { return springs.laws[s].yield > 0.0; },
+      [&](std::size_t s) { return format_number(springs.laws[s].yield); },
+      EntryRule{key + ".springs.yield", "must be greater than 0", "leave it out for springs that do not yield"});
+  problems.require_each(
+      springs.laws.size(), [&](std::size_t s) { return springs.laws[s].break_length > 0.0; },
+      [&](std::size_t s) { return format_number(springs.laws[s].break_length); },
+      EntryRule{key + ".springs.break", "must be greater than 0", "leave it out for springs that do not break"});
 }
 
 void check_angle_bends(const std::string& key, const BodyShape& shape, ProblemList& problems) {
@@ -122,7 +130,8 @@ bool same_sizes(const BodyShape& shape) {
   const auto count = static_cast<std::size_t>(springs.count());
   return shape.velocities.size() == particles && shape.masses.size() == particles && shape.drag_areas.size() == particles &&
          springs.second.size() == count && springs.rest_length.size() == count && springs.stiffness.size() == count &&
-         springs.damping.size() == count && springs.kind.size() == count && same_sizes(shape.angle_bends);
+         springs.damping.size() == count && springs.kind.size() == count &&
+         (springs.laws.empty() || springs.laws.size() == count) && same_sizes(shape.angle_bends);
 }
 
 void check_times(const std::string& key, const Pin& pin, ProblemList& problems) {

@@ -71,7 +71,11 @@ std::string surface_text(const Simulator& simulator, const Body& body, const std
   return vertex_lines(simulator.positions().middleCols(body.first_particle, body.vertex_count())) + elements;
 }
 
-std::string element_lines(const Body& body) { return obj_text(Points(3, 0), body.surface.faces, body.surface.segments); }
+std::string element_lines(const Body& body) {
+  const Surface& surface = body.surface;
+  if (surface.torn.empty()) return obj_text(Points(3, 0), surface.faces, surface.segments);
+  return obj_text(Points(3, 0), without_faces(surface.faces, surface.torn), surface.segments);
+}
 
 ObjSequence body_sequence(const Simulator& simulator, std::size_t number, const ObjSources& sources, int frames) {
   const Body& body = simulator.network().bodies[number];
@@ -82,7 +86,8 @@ ObjSequence body_sequence(const Simulator& simulator, std::size_t number, const 
             }};
   }
   return {pattern, [number, elements = element_lines(body)](const Simulator& present) {
-            return surface_text(present, present.network().bodies[number], elements);
+            const Body& now = present.network().bodies[number];
+            return surface_text(present, now, present.network().broken_springs == 0 ? elements : element_lines(now));
           }};
 }
 
@@ -147,7 +152,8 @@ Points read_vertex_lines(const std::string& text) {
 
 std::string body_obj_text(const Simulator& simulator, const Body& body, const ObjSource* source) {
   if (source == nullptr) return surface_text(simulator, body, element_lines(body));
-  return source->text(simulator.positions().middleCols(body.first_particle, body.vertex_count()), body.surface.triangles);
+  return source->text(simulator.positions().middleCols(body.first_particle, body.vertex_count()), body.surface.triangles,
+                      body.surface.torn);
 }
 
 std::vector<ObjSequence> obj_sequences(const Simulator& simulator, const ObjSources& sources, int frames) {

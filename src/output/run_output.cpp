@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -47,6 +48,21 @@ std::vector<NewtonFrom> handed_over(const Simulator& simulator) {
   return bodies;
 }
 
+/// Adds the faces of bodies that are gone and not yet listed.
+void list_torn(const Simulator& simulator, int frame, std::vector<TornFaces>& torn_faces) {
+  if (simulator.network().broken_springs == 0) return;
+  for (const Body& body : simulator.network().bodies) {
+    std::vector<Index> listed;
+    for (const TornFaces& torn : torn_faces) {
+      if (torn.body == body.name) listed.insert(listed.end(), torn.faces.begin(), torn.faces.end());
+    }
+    std::ranges::sort(listed);
+    TornFaces now{.body = body.name, .frame = frame, .faces = {}};
+    std::ranges::set_difference(body.surface.torn, listed, std::back_inserter(now.faces));
+    if (!now.faces.empty()) torn_faces.push_back(std::move(now));
+  }
+}
+
 }  // namespace
 
 RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator)
@@ -74,6 +90,7 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
   }
   progress_.limit_solves += diagnostics.limit_solves;
   progress_.newton_from = handed_over(simulator);
+  list_torn(simulator, progress_.frames_written, progress_.torn_faces);
   try {
     for (const ObjSequence& sequence : sequences_) {
       if (before.frames_written > 0 && !sequence.changes()) continue;

@@ -45,6 +45,7 @@ RunRecord::RunRecord(const RunFacts& facts, double step, const std::vector<std::
                      {"stretch_solver", facts.stretch_solver},
                      {"newton_from", Json::array()},
                      {"limit_solves", 0},
+                     {"torn_faces", Json::array()},
                      {"warnings", facts.warnings},
                      {"files", files},
                      {"scene", facts.scene.empty() ? Json() : Json::parse(facts.scene)}};
@@ -67,6 +68,10 @@ std::string RunRecord::text(const RunProgress& progress) const {
     json["newton_from"].push_back({{"body", from.body}, {"step", from.step}, {"frame", frame}});
   }
   json["limit_solves"] = progress.limit_solves;
+  json["torn_faces"] = Json::array();
+  for (const TornFaces& torn : progress.torn_faces) {
+    json["torn_faces"].push_back({{"body", torn.body}, {"frame", torn.frame}, {"faces", torn.faces}});
+  }
   json["wall_seconds"] = progress.wall_seconds;
   // A warning may quote a file name that is not UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

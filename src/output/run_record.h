@@ -36,6 +36,13 @@ struct NewtonFrom {
   std::int64_t step = 0;  ///< after which it was handed over
 };
 
+/// Faces of a body that tore.
+struct TornFaces {
+  std::string body;
+  int frame = 0;             ///< the first one without them
+  std::vector<Index> faces;  ///< counted from 0 in the first frame, ascending
+};
+
 /// Progress of a run.
 struct RunProgress {
   std::string outcome = "running";  ///< `running`, `done`, `interrupted`, `diverged: ...`
@@ -45,6 +52,7 @@ struct RunProgress {
   double smallest_step = 0.0;     ///< length of the shortest substep [s]; 0 without steps
   std::int64_t limit_solves = 0;  ///< linear systems solved for the stretch limit
   std::vector<NewtonFrom> newton_from{};
+  std::vector<TornFaces> torn_faces{};
   double wall_seconds = 0.0;  ///< since the output was opened [s], including writing
 };
 

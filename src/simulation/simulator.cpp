@@ -6,6 +6,7 @@
 #include "dynamics/constraints/enclosed_volume.h"
 #include "dynamics/forces/shared_force.h"
 #include "network/model/pin_schedule.h"
+#include "network/model/spring_failure.h"
 #include "simulation/settings/settings_check.h"
 #include "simulation/settings/unused_settings.h"
 #include "simulation/simulator_implementation.h"
@@ -144,6 +145,7 @@ StepReport Simulator::Implementation::step() {
   if (may_retry(report.max_infeasible, begin.state)) report = repeat_step(report, factor);
   if (compared) report = compare_solvers(*compared, report, factor);
   note_step(report.infeasible, state);
+  let_yield(network.springs, state.x);
   if (refinement) choose_substeps(report);
   if (const StretchLimit* limit = constraints.limit()) note_missed(network, *limit, report.stretch_excess, state);
   if (report.infeasible == 0 && may_sleep() && rest.rests(time(), state)) fall_asleep();
@@ -324,8 +326,11 @@ Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
 StepReport Simulator::step() {
   const Implementation& now = *implementation_;
-  if (have_pins_changed(now.network, due_before(now.state.step, now.settings.step))) {
-    auto next = std::make_unique<Implementation>(now.network, now.settings, now.external, now);
+  const std::vector<Index> broken = breaking_springs(now.network, now.state.x);
+  if (!broken.empty() || have_pins_changed(now.network, due_before(now.state.step, now.settings.step))) {
+    SpringNetwork network = now.network;
+    tear(network, broken);
+    auto next = std::make_unique<Implementation>(std::move(network), now.settings, now.external, now);
     next->warnings = now.warnings;  // with those of the start
     implementation_ = std::move(next);
   }

@@ -33,7 +33,9 @@ class Simulator {
   /// substeps until there are none: a long step can miss an admissible position near a pin or before a fast obstacle. Repetitions
   /// without effect become rarer (see step_retry.h). Throws StepError if the network diverged; the state is then not usable.
   /// Once the simulation sleeps (see RestDetector), a step changes the time alone. If pins begin or end, which is at the step
-  /// nearest to their time, it first rebuilds what follows from them, as changes do (below).
+  /// nearest to their time, or springs break, because they are longer than their break length, it first rebuilds what follows from
+  /// them, as changes do (below): network() then lacks these springs and the faces that tore (Surface::torn). Last, springs that
+  /// yield get new rest lengths in network().
   StepReport step();
 
   /// Lets step() call `stops` before each substep and throw StoppedError if it returns true; the state is then not usable. A step
@@ -46,7 +48,8 @@ class Simulator {
   // References to network() and settings() become invalid.
 
   /// Continues with another network and other settings. Requires a network that NetworkBuilder made with the same bodies and the
-  /// same particles. The step and the start of contact cannot change, nor what collides (Body::contact) or how (response).
+  /// same particles. The step and the start of contact cannot change, nor what collides (Body::contact) or how (response), and
+  /// springs that broke cannot come back. Springs that yielded keep their rest lengths.
   void continue_with(SpringNetwork network, SimulatorSettings settings);
 
   void set_gravity(const Vector3& acceleration);   ///< [m/s^2]

@@ -2,6 +2,7 @@
 #include "base/format.h"
 #include "base/problem_list.h"
 #include "network/model/pin_schedule.h"
+#include "network/model/spring_failure.h"
 #include "simulation/simulator_implementation.h"
 
 #include <algorithm>
@@ -32,6 +33,9 @@ void check_change(const SpringNetwork& network, const SimulatorSettings& setting
     problems.add("bodies", "", "must have the same names and particles as before, as the run goes on", restart);
   } else if (!collide_alike(network, network_before)) {
     problems.add("contact", "", "must be asked for between the same bodies as before, as the run goes on", restart);
+  }
+  if (network.broken_springs != network_before.broken_springs) {
+    problems.add("springs", "", "broke in this run, and would be whole", restart);
   }
   if (settings.step != settings_before.step) {
     problems.add("step", format_number(settings.step, 6),
@@ -132,6 +136,7 @@ void Simulator::Implementation::take_state(const Implementation& before) {
 void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings) {
   const Implementation& now = *implementation_;
   check_change(network, settings, now.network, now.settings);
+  take_rest_lengths(now.network, network);
   implementation_ = std::make_unique<Implementation>(std::move(network), std::move(settings), now.external, now);
 }
 

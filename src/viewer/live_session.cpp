@@ -38,6 +38,7 @@ struct LiveSession::Shown {
   LiveRun run;
   std::uint32_t generation = 0;
   bool told_divergence = false;
+  Index broken_springs = 0;  ///< in the topology that the pages have
   double frame_ms = 0.0;
   // The factor to real time is measured since then.
   Clock::time_point measured_from{};
@@ -331,6 +332,7 @@ void LiveSession::begin_run(std::uint32_t number, bool live) {
   shown.generation = next_generation_++;
   shown.told_divergence = false;
   shown.measured_from = {};
+  shown.broken_springs = shown.run.simulator().network().broken_springs;
   due_ = Clock::now();
   shown.run.stop_when([this] { return is_ending(); });
   const MessageHeader header{
@@ -352,6 +354,9 @@ void LiveSession::advance(Shown& shown, int steps) {
   }
   for (int k = 0; k < steps; ++k) shown.run.step();
   shown.frame_ms = 1e3 * seconds_between(begin, Clock::now());
+  if (!shown.run.failure() && shown.run.simulator().network().broken_springs != shown.broken_springs) {
+    return begin_run(shown.number, true);  // with the topology that is left
+  }
   publish_frame(shown);
 }
 

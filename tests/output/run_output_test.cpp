@@ -9,11 +9,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -115,6 +120,68 @@ TEST_F(RunOutputFiles, LinesKeepTheirCountsAndOrderInEachFrame) {
       EXPECT_NE(frame.positions, first.positions);
     }
   }
+}
+
+/// A strip of four quads along x in the x-y plane, written from its file, and a cloth of the same size: both are pulled apart.
+Simulator torn_world() {
+  SpringMaterial material{.value = 10.0, .break_strain = 0.2};
+  PolygonMesh mesh;
+  mesh.vertices.resize(3, 10);
+  for (Index i = 0; i < 10; ++i) mesh.vertices.col(i) = Vector3(i % 5, i / 5, 0.0);
+  for (Index i = 0; i < 4; ++i) {
+    mesh.faces.vertex.insert(mesh.faces.vertex.end(), {i, i + 1, i + 6, i + 5});
+    mesh.faces.corner_begin.push_back(4 * (i + 1));
+  }
+  mesh.lines.resize(2, 0);
+  NetworkBuilder builder;
+  for (const auto& [name, made] :
+       {std::pair("strip", make_mesh_body(mesh, {.structural = material})),
+        std::pair("cloth", make_cloth({.size = {4.0, 1.0}, .resolution = {5, 2}}, {.structural = material}))}) {
+    BodyShape shape = made;
+    set_total_mass(shape, 1.0);
+    for (std::size_t i = 0; i < shape.positions.size(); ++i) {
+      if (shape.positions[i].x() == shape.positions[4].x()) shape.velocities[i] = {10.0, 0.0, 0.0};
+    }
+    builder.add_body(name, shape, {}, {.others = false});
+  }
+  SimulatorSettings settings;
+  settings.step = 0.01;
+  settings.gravity.setZero();
+  return Simulator(builder.build(), settings);
+}
+
+TEST(TornBodies, LoseFacesAndKeepVertices) {
+  ScratchFolder scratch;
+  Simulator simulator = torn_world();
+  const std::string text =
+      "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 4 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 3 1 0\nv 4 1 0\n"
+      "f 1 2 7 6\nf 2 3 8 7\nf 3 4 9 8\nf 4 5 10 9\n";
+  const ObjSources sources{{"strip", std::make_shared<ObjSource>(
+                                         ObjSource{.file = ObjTemplate(text, ObjTemplate::Normals::as_given), .particle_of = {}})}};
+  constexpr int kFrames = 12;
+  RunOutput output(OutputFolder(scratch / "out", false), {.frames = kFrames, .steps_per_frame = 1, .sources = sources}, simulator);
+  FrameRunner runner(simulator, 1);
+  std::map<std::string, std::vector<Index>> torn;
+  nlohmann::json expected = nlohmann::json::array();
+  for (int frame = 1; frame <= kFrames; ++frame) {
+    output.write_frame(simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
+    for (const Body& body : simulator.network().bodies) {
+      char name[32];
+      std::snprintf(name, sizeof name, "%04d.obj", frame);
+      const PolygonMesh written = read_obj(scratch / ("out/" + body.name + "/" + body.name + "." + name));
+      EXPECT_EQ(written.vertices, simulator.positions().middleCols(body.first_particle, 10)) << body.name << frame;
+      EXPECT_EQ(written.faces.vertex, without_faces(body.surface.faces, body.surface.torn).vertex) << body.name << frame;
+      const std::vector<Index> now = body.surface.torn;
+      std::vector<Index> faces;
+      std::ranges::set_difference(now, torn[body.name], std::back_inserter(faces));
+      torn[body.name] = now;
+      if (!faces.empty()) expected.push_back({{"body", body.name}, {"frame", frame}, {"faces", faces}});
+    }
+  }
+  output.finish("done");
+  EXPECT_THAT(torn["strip"], ElementsAre(3)) << "the last quad of four";
+  EXPECT_THAT(torn["cloth"], ElementsAre(6, 7)) << "the last triangles of eight";
+  EXPECT_EQ(nlohmann::json::parse(read_text(scratch / "out/run.json"))["torn_faces"], expected);
 }
 
 /// A tetrahedron whose tip goes from 1 m to 3 m in a quarter of a second, and which is driven along x.

@@ -41,6 +41,10 @@ class FrameJudge {
 
   void look(int frame, ScenarioReport& report) {
     const auto begin = Clock::now();
+    if (broken_springs_ != simulator_.network().broken_springs) {
+      broken_springs_ = simulator_.network().broken_springs;
+      elements_ = judged_elements(simulator_.network());
+    }
     Index inside = 0;
     Index crossings = 0;
     for (std::size_t k = 0; k < judges_.size(); ++k) {
@@ -64,6 +68,7 @@ class FrameJudge {
  private:
   const Simulator& simulator_;
   std::vector<JudgedElement> elements_;
+  Index broken_springs_ = 0;  ///< when the elements were listed
   std::vector<std::unique_ptr<const ObstacleJudge>> judges_;
   bool self_;
 };

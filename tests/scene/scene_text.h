@@ -128,6 +128,9 @@ inline constexpr const char* kFullScene = R"({
     "jelly": { "shape": { "type": "solid", "size": [1, 2, 3], "resolution": [4, 5, 6] }, "density": 1000,
                "pins": [ { "at": "corner", "which": ["max_min_max"] } ] },
     "shirt": { "shape": { "type": "mesh", "file": "shirt.obj", "weld": 1e-6 }, "mass": 0.3, "normals": true,
+               "springs": { "structural": { "stiffness": 100, "yield": 0.1, "groups": {
+                 "sleeve": { "modulus": 300, "damping": 0.1, "tension_only": true }, "hem": { "stiffness": 10, "damping_time": 0.01, "yield": 0.2, "break": 0.5 } } },
+                 "bend": { "stiffness": 1, "tension_only": true, "break": 0.5, "groups": { "collar": { "stiffness": 2 } } } },
                "pins": [ { "group": "collar", "from": 1 } ], "point_masses": [ { "group": "hem", "mass": 0.01 } ] },
     "scarf": { "shape": { "type": "cloth", "size": [1, 2], "resolution": [3, 5] }, "material": "wool", "mass": 0.3,
                "springs": { "structural": { "stiffness": 400 }, "bend": { "damping_time": 0.002 } } },

@@ -32,7 +32,8 @@ void add_run(const SpringPlan::Run& run, const Springs& springs, const Kinematic
                   .count = run.count},
                  {.rest_length = constant_of(springs.rest_length, run.spring, run.same_rest_length, rest_length),
                   .stiffness = constant_of(springs.stiffness, run.spring, run.same_stiffness, stiffness),
-                  .damping = constant_of(springs.damping, run.spring, run.same_damping, damping)});
+                  .damping = constant_of(springs.damping, run.spring, run.same_damping, damping),
+                  .tension_only = run.tension_only});
 }
 
 /// Springs gathered one by one. The forces of padding entries are not used.
@@ -63,15 +64,19 @@ struct GatheredBatch {
   }
 };
 
-void add_singles(const SpringPlan::Block& block, const Springs& springs, const Kinematics& at, Points& forces) {
+void add_singles(const std::vector<SpringPlan::Single>& all, bool tension_only, const Springs& springs, const Kinematics& at,
+                 Points& forces) {
   GatheredBatch batch;
-  for (std::size_t begin = 0; begin < block.singles.size(); begin += kSpringBatch) {
-    const std::size_t count = std::min<std::size_t>(kSpringBatch, block.singles.size() - begin);
-    const std::span<const SpringPlan::Single> singles(&block.singles[begin], count);
+  for (std::size_t begin = 0; begin < all.size(); begin += kSpringBatch) {
+    const std::size_t count = std::min<std::size_t>(kSpringBatch, all.size() - begin);
+    const std::span<const SpringPlan::Single> singles(&all[begin], count);
     batch.gather(singles, springs, at);
     const auto lanes = static_cast<Index>((count + kSimdWidth - 1) / kSimdWidth * kSimdWidth);
     differences_to_forces(batch.difference.data(), batch.velocity.data(), lanes,
-                          {{batch.rest_length.data(), false}, {batch.stiffness.data(), false}, {batch.damping.data(), false}});
+                          {.rest_length = {batch.rest_length.data(), false},
+                           .stiffness = {batch.stiffness.data(), false},
+                           .damping = {batch.damping.data(), false},
+                           .tension_only = tension_only});
     batch.scatter(singles, forces);
   }
 }
@@ -95,7 +100,8 @@ void SpringForce::add(const Kinematics& at, Points& forces) const {
   parallel_chunks(static_cast<Index>(plan_->blocks.size()), 1, [&](Index begin, Index end) {
     for (Index b = begin; b < end; ++b) {
       for (const SpringPlan::Run& run : plan_->blocks[b].runs) add_run(run, network_.springs, at, forces);
-      add_singles(plan_->blocks[b], network_.springs, at, forces);
+      add_singles(plan_->blocks[b].singles, false, network_.springs, at, forces);
+      add_singles(plan_->blocks[b].tension_only_singles, true, network_.springs, at, forces);
     }
   });
 }
@@ -112,6 +118,7 @@ void SpringForce::add_derivatives(const Kinematics& at, ForceDerivatives& deriva
     const Index b = springs.second[s];
     const Vector3 difference = at.x.col(a) - at.x.col(b);
     const double length = difference.norm();
+    if (springs.law(static_cast<Index>(s)).tension_only && !(length > springs.rest_length[s])) continue;
     const Vector3 e = length > 0.0 ? Vector3(difference / length) : Vector3(Vector3::Zero());
     const Matrix3 along = e * e.transpose();
     const Matrix3 across = transverse_ratio(length, springs.rest_length[s]) * (Matrix3::Identity() - along);
@@ -141,6 +148,7 @@ double SpringForce::energy(const Points& positions) const {
   double energy = 0.0;
   for (Index s = 0; s < springs.count(); ++s) {
     const double stretch = (positions.col(springs.first[s]) - positions.col(springs.second[s])).norm() - springs.rest_length[s];
+    if (stretch <= 0.0 && springs.law(s).tension_only) continue;
     energy += 0.5 * springs.stiffness[s] * stretch * stretch;
   }
   return energy;

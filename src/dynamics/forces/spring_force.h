@@ -3,7 +3,8 @@
 // With s = p1 - p2, e = s / |s|, v1e = e . v1, v2e = e . v2, particle 1 feels
 //     F = ( -k_s (|s| - d) - k_d (v1e - v2e) ) e
 // and particle 2 feels -F. Erratum: the manual prints the elastic part as -k_s (d - |s|) along e (eq. 7, 10, 11), which would push
-// a stretched spring further apart; its own code applies the sign used here. |s| = 0 gives no force.
+// a stretched spring further apart; its own code applies the sign used here. |s| = 0 gives no force, nor does |s| <= d if the
+// spring is tension_only.
 #pragma once
 
 #include "dynamics/forces/force.h"
@@ -17,7 +18,7 @@ struct SpringPlan;
 
 class SpringForce final : public Force {
  public:
-  /// Keeps a reference to the network.
+  /// Keeps a reference to the network. Rest lengths of springs that yield may change later.
   explicit SpringForce(const SpringNetwork& network);
   ~SpringForce() override;
 
@@ -36,7 +37,7 @@ class SpringForce final : public Force {
   /// A pair for each spring: no spring that is not compressed is stiffer in any direction.
   void append_elements(std::vector<LinearElement>& elements) const override;
 
-  /// sum 1/2 k_s (|s| - d)^2 [J]
+  /// sum 1/2 k_s (|s| - d)^2 [J], without springs that are slack
   [[nodiscard]] double energy(const Points& positions) const override;
 
   /// sum 1/2 k_s d^2 [J], of springs at twice their rest length

@@ -20,6 +20,7 @@ struct SpringConstants {
   SpringConstant rest_length;
   SpringConstant stiffness;
   SpringConstant damping;
+  bool tension_only = false;  ///< springs that are not longer than at rest have no force
 };
 
 /// Springs between consecutive particles: spring i joins particle i of `x_a` and particle i of `x_b`, 3 numbers a particle as in

@@ -37,9 +37,11 @@ bool pulls(const Springs& springs, Index spring) { return springs.stiffness[spri
 Line line_from(const Springs& springs, Index spring) {
   const Index a = springs.first[spring];
   const Index b = springs.second[spring];
+  const bool tension_only = springs.law(spring).tension_only;
   Index count = 1;
   while (spring + count < springs.count() && springs.first[spring + count] == a + count &&
-         springs.second[spring + count] == b + count && pulls(springs, spring + count)) {
+         springs.second[spring + count] == b + count && pulls(springs, spring + count) &&
+         springs.law(spring + count).tension_only == tension_only) {
     ++count;
   }
   return {a, b, spring, 0, count};
@@ -65,9 +67,11 @@ class Planner {
 
  private:
   void add_section(SpringPlan::Block& block, const Line& section, bool writes_first, bool writes_second) const {
+    const bool tension_only = springs_.law(section.spring).tension_only;
     if (section.end - section.begin < kShortestRun) {
+      auto& singles = tension_only ? block.tension_only_singles : block.singles;
       for (Index i = section.begin; i < section.end; ++i) {
-        block.singles.push_back({section.first + i, section.second + i, section.spring + i, writes_first, writes_second});
+        singles.push_back({section.first + i, section.second + i, section.spring + i, writes_first, writes_second});
       }
       return;
     }
@@ -75,8 +79,8 @@ class Planner {
       const Index count = batch_size(section.end - i);
       const Index spring = section.spring + i;
       block.runs.push_back({section.first + i, section.second + i, spring, count, writes_first, writes_second,
-                            all_same(springs_.rest_length, spring, count), all_same(springs_.stiffness, spring, count),
-                            all_same(springs_.damping, spring, count)});
+                            all_same(springs_.rest_length, spring, count) && !any_yields(spring, count),
+                            all_same(springs_.stiffness, spring, count), all_same(springs_.damping, spring, count), tension_only});
       i += count;
     }
   }
@@ -90,6 +94,12 @@ class Planner {
   static bool all_same(const std::vector<double>& values, Index begin, Index count) {
     const auto first = values.begin() + begin;
     return std::all_of(first, first + count, [&](double value) { return value == *first; });
+  }
+
+  [[nodiscard]] bool any_yields(Index begin, Index count) const {
+    if (springs_.laws.empty()) return false;
+    const auto first = springs_.laws.begin() + begin;
+    return std::any_of(first, first + count, [](const SpringLaw& law) { return law.yields(); });
   }
 
   const Springs& springs_;
@@ -112,12 +122,14 @@ SpringPlan::SpringPlan(const SpringNetwork& network) {
     planner.add(line);
     s += line.end;
   }
-  std::erase_if(blocks, [](const Block& block) { return block.runs.empty() && block.singles.empty(); });
+  std::erase_if(
+      blocks, [](const Block& block) { return block.runs.empty() && block.singles.empty() && block.tension_only_singles.empty(); });
   // Springs of all kinds that begin at the same particles follow each other, so that the particles are in the first-level cache
   // for all of them.
   for (Block& block : blocks) {
     std::ranges::stable_sort(block.runs, {}, &Run::first);
     std::ranges::stable_sort(block.singles, {}, &Single::first);
+    std::ranges::stable_sort(block.tension_only_singles, {}, &Single::first);
   }
 }
 

@@ -19,9 +19,10 @@ struct SpringPlan {
     Index count;
     bool writes_first;
     bool writes_second;
-    bool same_rest_length;  ///< all springs of the run have this in common; the constant is then read once
+    bool same_rest_length;  ///< all springs of the run have this in common for ever; the constant is then read once
     bool same_stiffness;
     bool same_damping;
+    bool tension_only;  ///< all springs of the run are, or none
   };
 
   /// A spring outside of all runs.
@@ -36,6 +37,7 @@ struct SpringPlan {
   struct Block {
     std::vector<Run> runs;
     std::vector<Single> singles;
+    std::vector<Single> tension_only_singles;
   };
 
   /// Springs without stiffness and damping are left out.

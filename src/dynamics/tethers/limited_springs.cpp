@@ -8,8 +8,9 @@ namespace {
 
 bool is_measurable(const SpringNetwork& network, const std::vector<SpringKind>& kinds, Index spring) {
   const Springs& springs = network.springs;
-  return springs.rest_length[spring] > 0.0 && std::ranges::find(kinds, springs.kind[spring]) != kinds.end() &&
-         network.body_of(springs.first[spring]).stretch_limited;
+  const SpringLaw law = springs.law(spring);
+  return springs.rest_length[spring] > 0.0 && !law.yields() && !law.breaks() &&
+         std::ranges::find(kinds, springs.kind[spring]) != kinds.end() && network.body_of(springs.first[spring]).stretch_limited;
 }
 
 }  // namespace

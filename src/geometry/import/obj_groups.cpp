@@ -25,9 +25,10 @@ class GroupReader {
 
   ObjGroups finish() {
     for (auto& named : found_) {
-      std::vector<Index>& vertices = named.second;
-      std::ranges::sort(vertices);
-      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      for (std::vector<Index>* numbers : {&named.second.vertices, &named.second.faces, &named.second.lines}) {
+        std::ranges::sort(*numbers);
+        numbers->erase(std::unique(numbers->begin(), numbers->end()), numbers->end());
+      }
     }
     return std::move(found_);
   }
@@ -49,15 +50,21 @@ class GroupReader {
       const Index written = parse_number<Index>(words_[word].substr(0, words_[word].find('/'))).value_or(0);
       if (written != 0) vertices_.push_back(written > 0 ? written - 1 : vertices_so_far_ + written);
     }
-    for (const std::string& group : groups_) append(group);
-    append(object_);
-    append(material_);
+    const auto segments = words_[0] == "l" ? static_cast<Index>(vertices_.size()) - 1 : 0;
+    for (const std::string& group : groups_) append(group, segments);
+    append(object_, segments);
+    append(material_, segments);
+    if (words_[0] == "f") ++faces_so_far_;
+    lines_so_far_ += segments;
   }
 
-  void append(const std::string& name) {
+  /// A line of n vertices is n - 1 lines of the mesh.
+  void append(const std::string& name, Index segments) {
     if (name.empty()) return;
-    std::vector<Index>& all = found_[name];
-    all.insert(all.end(), vertices_.begin(), vertices_.end());
+    ObjGroup& group = found_[name];
+    group.vertices.insert(group.vertices.end(), vertices_.begin(), vertices_.end());
+    if (words_[0] == "f") group.faces.push_back(faces_so_far_);
+    for (Index k = 0; k < segments; ++k) group.lines.push_back(lines_so_far_ + k);
   }
 
   ObjGroups found_;
@@ -65,6 +72,8 @@ class GroupReader {
   std::string object_;
   std::string material_;
   Index vertices_so_far_ = 0;
+  Index faces_so_far_ = 0;
+  Index lines_so_far_ = 0;
   std::vector<std::string_view> words_;
   std::vector<Index> vertices_;  // of the present element
 };

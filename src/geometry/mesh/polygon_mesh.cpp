@@ -2,6 +2,7 @@
 
 #include "base/format.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -58,6 +59,24 @@ Triangles triangulate(const PolygonFaces& faces) {
     }
   }
   return triangles;
+}
+
+PolygonFaces without_faces(const PolygonFaces& faces, const std::vector<Index>& removed) {
+  PolygonFaces kept;
+  kept.texcoords = faces.texcoords;
+  kept.groups = faces.groups;
+  for (Index face = 0; face < faces.face_count(); ++face) {
+    if (std::ranges::binary_search(removed, face)) continue;
+    for (Index corner = faces.corner_begin[face]; corner < faces.corner_begin[face + 1]; ++corner) {
+      kept.vertex.push_back(faces.vertex[corner]);
+      if (!faces.texcoord.empty()) kept.texcoord.push_back(faces.texcoord[corner]);
+    }
+    kept.corner_begin.push_back(static_cast<Index>(kept.vertex.size()));
+  }
+  for (const Index begin : faces.group_begin) {
+    kept.group_begin.push_back(begin - static_cast<Index>(std::ranges::lower_bound(removed, begin) - removed.begin()));
+  }
+  return kept;
 }
 
 PolygonFaces to_polygons(const Triangles& triangles) {

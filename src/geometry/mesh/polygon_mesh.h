@@ -26,6 +26,9 @@ struct PolygonFaces {
 /// Cuts each polygon into a fan of triangles around its first corner.
 [[nodiscard]] Triangles triangulate(const PolygonFaces& faces);
 
+/// The faces without those of these numbers, which ascend. The others keep their attributes.
+[[nodiscard]] PolygonFaces without_faces(const PolygonFaces& faces, const std::vector<Index>& removed);
+
 /// One face per triangle, without attributes.
 [[nodiscard]] PolygonFaces to_polygons(const Triangles& triangles);
 

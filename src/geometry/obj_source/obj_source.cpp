@@ -5,11 +5,14 @@
 
 namespace sprung {
 
-std::string ObjSource::text(const Points& particles, const Triangles& triangles) const {
+std::string ObjSource::text(const Points& particles, const Triangles& triangles, const std::vector<Index>& removed) const {
   const auto of_file = [&](const Points& points) -> Points {
     return particle_of.empty() ? points : points(Eigen::all, particle_of);
   };
-  return file.text(of_file(particles), file.writes_normals() ? of_file(vertex_normals(particles, triangles)) : Points(3, 0));
+  const auto text_of = [&](const ObjTemplate& present) {
+    return present.text(of_file(particles), file.writes_normals() ? of_file(vertex_normals(particles, triangles)) : Points(3, 0));
+  };
+  return removed.empty() ? text_of(file) : text_of(file.without_faces(removed));
 }
 
 ObjSource read_obj_source(const std::filesystem::path& file, ObjTemplate::Normals normals) {

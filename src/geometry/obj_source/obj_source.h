@@ -17,8 +17,9 @@ struct ObjSource {
   std::vector<Index> particle_of;  ///< the particle of the body that each vertex of the file became; empty: i became i
   MaterialFiles materials{};
 
-  /// The file with the body's particles at these positions [m], 3 x n. `triangles` are those of its particles.
-  [[nodiscard]] std::string text(const Points& particles, const Triangles& triangles) const;
+  /// The file with the body's particles at these positions [m], 3 x n, without the faces of the numbers `removed`, which ascend.
+  /// `triangles` are those of its particles.
+  [[nodiscard]] std::string text(const Points& particles, const Triangles& triangles, const std::vector<Index>& removed = {}) const;
 };
 
 /// The files of bodies, by the names of the bodies.

@@ -40,6 +40,7 @@ ObjTemplate::ObjTemplate(std::string_view text, Normals normals) {
     read_obj_line(text, at, line);
     const std::string_view kind = line.word(text, 0);
     std::size_t copied = line.whole.begin;
+    const std::size_t line_at = text_.size();
     const auto copy_until = [&](std::size_t end) {
       text_ += text.substr(copied, end - copied);
       copied = end;
@@ -59,6 +60,7 @@ ObjTemplate::ObjTemplate(std::string_view text, Normals normals) {
       }
     }
     copy_until(line.whole.end);
+    if (kind == "f") faces_.emplace_back(line_at, text_.size());
     if (kind == "v" && per_vertex) {
       const std::string_view end = text.substr(line.line_end, line.whole.end - line.line_end);
       if (end.empty()) text_ += '\n';
@@ -66,6 +68,37 @@ ObjTemplate::ObjTemplate(std::string_view text, Normals normals) {
       text_ += end.empty() ? "\n" : end;
     }
   }
+}
+
+ObjTemplate ObjTemplate::without_faces(const std::vector<Index>& removed) const {
+  ObjTemplate left = *this;
+  left.text_.clear();
+  left.faces_.clear();
+  std::size_t copied = 0;
+  std::size_t position = 0;
+  std::size_t normal = 0;
+  auto next = removed.begin();
+  const auto copy_until = [&](std::size_t end) {
+    const std::size_t gone = copied - left.text_.size();
+    for (; position < position_at_.size() && position_at_[position] <= end; ++position) left.position_at_[position] -= gone;
+    for (; normal < normal_at_.size() && normal_at_[normal] <= end; ++normal) left.normal_at_[normal] -= gone;
+    left.text_.append(text_, copied, end - copied);
+  };
+  for (std::size_t face = 0; face < faces_.size(); ++face) {
+    const auto& [begin, end] = faces_[face];
+    copy_until(begin);
+    copied = begin;
+    if (next != removed.end() && *next == static_cast<Index>(face)) {
+      ++next;
+    } else {
+      const std::size_t at = left.text_.size();
+      copy_until(end);
+      left.faces_.emplace_back(at, left.text_.size());
+    }
+    copied = end;
+  }
+  copy_until(text_.size());
+  return left;
 }
 
 std::string ObjTemplate::text(const Points& positions, const Points& normals) const {

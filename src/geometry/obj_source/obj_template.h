@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace sprung {
@@ -23,6 +24,9 @@ class ObjTemplate {
 
   [[nodiscard]] Index vertex_count() const { return static_cast<Index>(position_at_.size()); }
   [[nodiscard]] bool writes_normals() const { return !normal_at_.empty(); }
+  /// The file without the faces of these numbers, which ascend; a face is an `f` line.
+  [[nodiscard]] ObjTemplate without_faces(const std::vector<Index>& removed) const;
+
   /// Whether the file has `vn` lines.
   [[nodiscard]] bool has_given_normals() const { return has_given_normals_; }
 
@@ -34,9 +38,10 @@ class ObjTemplate {
  private:
   void append(std::string& out, Index begin, Index end, const Points& positions, const Points& normals) const;
 
-  std::string text_;                      ///< the file without the numbers that change
-  std::vector<std::size_t> position_at_;  ///< where the numbers of each vertex belong
-  std::vector<std::size_t> normal_at_;    ///< where the `vn` line of each vertex belongs, without its end
+  std::string text_;                                        ///< the file without the numbers that change
+  std::vector<std::size_t> position_at_;                    ///< where the numbers of each vertex belong
+  std::vector<std::size_t> normal_at_;                      ///< where the `vn` line of each vertex belongs, without its end
+  std::vector<std::pair<std::size_t, std::size_t>> faces_;  ///< begin and end of each `f` line
   bool has_given_normals_ = false;
 };
 

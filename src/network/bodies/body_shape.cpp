@@ -5,6 +5,7 @@
 #include "network/bodies/shape_parts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace sprung {
@@ -33,6 +34,16 @@ double stiffness_of(const SpringMaterial& material, double cross_section, double
 }
 
 double damping_of(const SpringMaterial& material, double stiffness) { return material.damping + material.damping_time * stiffness; }
+
+void append_spring(Springs& springs, Index first, Index second, double rest_length, const SpringMaterial& material,
+                   double cross_section, SpringKind kind) {
+  const double stiffness = stiffness_of(material, cross_section, rest_length);
+  const bool breaks = rest_length > 0.0 && std::isfinite(material.break_strain);
+  springs.append(first, second, rest_length, stiffness, damping_of(material, stiffness), kind,
+                 {.tension_only = material.tension_only,
+                  .yield = material.yield,
+                  .break_length = breaks ? rest_length * (1.0 + material.break_strain) : SpringLaw().break_length});
+}
 
 void set_surface(BodyShape& shape, const Triangles& triangles) {
   shape.surface.faces = to_polygons(triangles);

@@ -4,6 +4,7 @@
 #include "network/model/spring_network.h"
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -55,6 +56,10 @@ struct SpringMaterial {
   /// Alternative to `damping` [s], >= 0: k_d = damping_time k. Motion of the frequency omega decays with the ratio damping_time
   /// omega / 2, at any resolution (Kelvin-Voigt).
   double damping_time = 0.0;
+  bool tension_only = false;                               ///< see SpringLaw
+  double yield = std::numeric_limits<double>::infinity();  ///< see SpringLaw
+  double break_strain =
+      std::numeric_limits<double>::infinity();  ///< of the length at rest at time 0, from which on a spring breaks
 };
 
 /// The springs of a body. A kind without a material has no springs.
@@ -123,11 +128,20 @@ struct LatticeShape {
 [[nodiscard]] BodyShape make_cloth(const ClothShape& cloth, const SpringMaterials& materials);
 [[nodiscard]] BodyShape make_solid(const SolidShape& solid, const SpringMaterials& materials);
 
+/// Faces and lines of a mesh whose springs have other materials. A spring belongs to the part if these faces and lines alone have
+/// it.
+struct MeshPart {
+  std::vector<Index> faces{};
+  std::vector<Index> lines{};
+  SpringMaterials materials{};  ///< of the kinds that differ; without damping_ratio
+};
+
 /// One particle per vertex, in the same order; faces, groups and UVs as given. Structural springs lie along edges and lines, and
 /// shear springs along the diagonals of polygons that skip one corner. Bend springs cross the edges between two faces and join the
 /// corners beyond them (of two triangles, the opposite corners). No two particles are joined twice: structural precedes shear,
-/// shear precedes bend. Rest lengths are the distances in the mesh.
-[[nodiscard]] BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materials);
+/// shear precedes bend. Rest lengths are the distances in the mesh. A spring of several `parts` has the material of the last one.
+[[nodiscard]] BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materials,
+                                       const std::vector<MeshPart>& parts = {});
 
 /// The particles of the surface come first, in the order of its vertices, then the corners of the cells. Half of the mass of each
 /// corner that carries vertices belongs to these vertices.

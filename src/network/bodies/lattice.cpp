@@ -42,8 +42,7 @@ void add_family(const Lattice& lattice, const Direction& direction, Index stride
         if (on_border(1, j)) cross_section /= 2.0;
         if (on_border(2, k)) cross_section /= 2.0;
         const Index particle = lattice.number({i, j, k});
-        const double stiffness = stiffness_of(material, cross_section, rest_length);
-        springs.append(particle, particle + offset, rest_length, stiffness, damping_of(material, stiffness), kind);
+        append_spring(springs, particle, particle + offset, rest_length, material, cross_section, kind);
       }
     }
   }

@@ -75,8 +75,7 @@ void add_springs(const Links& links, const SpringMaterials& materials, BodyShape
     const auto& material = link.kind == SpringKind::structural ? materials.structural : materials.shear;
     if (!material) continue;
     const double length = (shape.positions[ends.second] - shape.positions[ends.first]).norm();
-    const double stiffness = stiffness_of(*material, link.cross_section, length);
-    shape.springs.append(ends.first, ends.second, length, stiffness, damping_of(*material, stiffness), link.kind);
+    append_spring(shape.springs, ends.first, ends.second, length, *material, link.cross_section, link.kind);
   }
 }
 

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 namespace sprung {
 namespace {
@@ -82,18 +84,51 @@ void check(const PolygonMesh& mesh, const SpringMaterials& materials) {
   problems.throw_if_any();
 }
 
+const std::optional<SpringMaterial>& of_kind(const SpringMaterials& materials, SpringKind kind) {
+  if (kind == SpringKind::structural) return materials.structural;
+  return kind == SpringKind::shear ? materials.shear : materials.bend;
+}
+
+/// The faces and lines of the part alone.
+PolygonMesh cut_out(const PolygonMesh& mesh, const MeshPart& part) {
+  PolygonMesh alone{.vertices = mesh.vertices, .faces = {}, .lines = Edges(2, static_cast<Index>(part.lines.size()))};
+  for (const Index face : part.faces) {
+    const Corners corners = corners_of_face(mesh, static_cast<std::size_t>(face));
+    alone.faces.vertex.insert(alone.faces.vertex.end(), corners.begin(), corners.end());
+    alone.faces.corner_begin.push_back(static_cast<Index>(alone.faces.vertex.size()));
+  }
+  for (Index line = 0; line < alone.lines.cols(); ++line) alone.lines.col(line) = mesh.lines.col(part.lines[line]);
+  return alone;
+}
+
+/// The materials of the springs of parts, by ends and kind.
+using MaterialsOfPairs = std::map<std::tuple<Index, Index, SpringKind>, const SpringMaterial*>;
+
+MaterialsOfPairs materials_of_parts(const PolygonMesh& mesh, const std::vector<MeshPart>& parts) {
+  MaterialsOfPairs materials;
+  for (const MeshPart& part : parts) {
+    for (const Joint& joint : mesh_joints(cut_out(mesh, part))) {
+      const std::optional<SpringMaterial>& material = of_kind(part.materials, joint.kind);
+      if (material) materials[{joint.first, joint.second, joint.kind}] = &*material;
+    }
+  }
+  return materials;
+}
+
 // Without faces the mesh is a rope of lines, whose cross-section is 1.
-void add_springs(const std::vector<Joint>& joints, SpringKind kind, const SpringMaterial& material, const std::string& key,
-                 bool has_faces, BodyShape& shape, ProblemList& problems) {
+void add_springs(const std::vector<Joint>& joints, SpringKind kind, const SpringMaterial& material,
+                 const MaterialsOfPairs& of_parts, const std::string& key, bool has_faces, BodyShape& shape,
+                 ProblemList& problems) {
   std::vector<Joint> unusable;
   for (const Joint& joint : joints) {
     if (joint.kind != kind) continue;
     const double length = (shape.positions[joint.second] - shape.positions[joint.first]).norm();
-    if (material.measure == SpringMaterial::Measure::modulus && !(length > 0.0 && (joint.area > 0.0 || !has_faces))) {
+    const auto other = of_parts.find({joint.first, joint.second, kind});
+    const SpringMaterial& own = other != of_parts.end() ? *other->second : material;
+    if (own.measure == SpringMaterial::Measure::modulus && !(length > 0.0 && (joint.area > 0.0 || !has_faces))) {
       unusable.push_back(joint);
     } else {
-      const double stiffness = stiffness_of(material, has_faces ? joint.area / length : 1.0, length);
-      shape.springs.append(joint.first, joint.second, length, stiffness, damping_of(material, stiffness), kind);
+      append_spring(shape.springs, joint.first, joint.second, length, own, has_faces ? joint.area / length : 1.0, kind);
     }
   }
   if (unusable.empty()) return;
@@ -145,13 +180,14 @@ void set_mesh_surface(BodyShape& shape, const PolygonMesh& mesh) {
 
 }  // namespace
 
-BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materials) {
+BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materials, const std::vector<MeshPart>& parts) {
   check(mesh, materials);
   BodyShape shape = shape_of_particles({mesh.vertices.colwise().begin(), mesh.vertices.colwise().end()}, materials);
   const std::vector<Joint> joints = mesh_joints(mesh);
+  const MaterialsOfPairs of_parts = materials_of_parts(mesh, parts);
   ProblemList problems;
   const auto add = [&](const std::optional<SpringMaterial>& material, SpringKind kind, const std::string& key) {
-    if (material) add_springs(joints, kind, *material, key, mesh.faces.face_count() > 0, shape, problems);
+    if (material) add_springs(joints, kind, *material, of_parts, key, mesh.faces.face_count() > 0, shape, problems);
   };
   add(materials.structural, SpringKind::structural, "springs.structural.modulus");
   add(materials.shear, SpringKind::shear, "springs.shear.modulus");

@@ -82,9 +82,7 @@ std::vector<Vector3> resample(const std::vector<Vector3>& points, const std::vec
 
 void add_springs(Springs& springs, const std::vector<double>& rest_lengths, const SpringMaterials& materials) {
   const auto add = [&](Index first, Index second, double rest, const std::optional<SpringMaterial>& material, SpringKind kind) {
-    if (!material) return;
-    const double stiffness = stiffness_of(*material, 1.0, rest);
-    springs.append(first, second, rest, stiffness, damping_of(*material, stiffness), kind);
+    if (material) append_spring(springs, first, second, rest, *material, 1.0, kind);
   };
   const Index count = static_cast<Index>(rest_lengths.size());
   for (Index i = 0; i < count; ++i) add(i, i + 1, rest_lengths[i], materials.structural, SpringKind::structural);

@@ -19,6 +19,10 @@ void add_segment_measures(const Edges& segments, const std::vector<double>& leng
 /// k_d [N s/m] of a spring of this stiffness, without regard to `damping_ratio`.
 [[nodiscard]] double damping_of(const SpringMaterial& material, double stiffness);
 
+/// Adds a spring that represents a `cross_section` of the body.
+void append_spring(Springs& springs, Index first, Index second, double rest_length, const SpringMaterial& material,
+                   double cross_section, SpringKind kind);
+
 /// Sets the surface and the exported faces of a body, and gives each particle a third of the area of its triangles as drag area.
 void set_surface(BodyShape& shape, const Triangles& triangles);
 

@@ -42,8 +42,7 @@ void check(const TetrahedraMesh& mesh, const SpringMaterials& materials) {
 void add_springs(const TetrahedraMesh& mesh, const SpringMaterial& material, BodyShape& shape) {
   for (const TetrahedraEdge& edge : tetrahedra_edges(mesh.vertices, mesh.tetrahedra)) {
     const double length = (mesh.vertices.col(edge.second) - mesh.vertices.col(edge.first)).norm();
-    const double stiffness = stiffness_of(material, 6.0 * edge.volume / length, length);
-    shape.springs.append(edge.first, edge.second, length, stiffness, damping_of(material, stiffness), SpringKind::structural);
+    append_spring(shape.springs, edge.first, edge.second, length, material, 6.0 * edge.volume / length, SpringKind::structural);
   }
 }
 

@@ -4,7 +4,9 @@
 
 namespace sprung {
 
-void Springs::append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind) {
+void Springs::append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind, const SpringLaw& law) {
+  if (laws.empty() && law != SpringLaw()) laws.resize(first.size());
+  if (!laws.empty() || law != SpringLaw()) laws.push_back(law);
   first.push_back(std::min(a, b));
   second.push_back(std::max(a, b));
   rest_length.push_back(rest);

@@ -17,6 +17,20 @@ namespace sprung {
 enum class SpringKind : std::uint8_t { structural, shear, bend };
 inline constexpr std::array<const char*, 3> kSpringKindNames{"structural", "shear", "bend"};  ///< in the order of the kinds
 
+/// What a spring does besides to pull and push in proportion to its strain, (length - rest length) / rest length. By default
+/// nothing.
+struct SpringLaw {
+  bool tension_only = false;  ///< a spring that is not longer than at rest has no force, neither elastic nor of its damper
+  /// Perfect plasticity: after each step, a spring with a larger strain, stretched or compressed, gets the rest length at which
+  /// the strain is this one. > 0
+  double yield = std::numeric_limits<double>::infinity();
+  double break_length = std::numeric_limits<double>::infinity();  ///< longer springs break [m], > 0
+
+  [[nodiscard]] bool yields() const { return yield < std::numeric_limits<double>::infinity(); }
+  [[nodiscard]] bool breaks() const { return break_length < std::numeric_limits<double>::infinity(); }
+  [[nodiscard]] bool operator==(const SpringLaw&) const = default;
+};
+
 /// Springs as arrays; entry s of each array belongs to spring s. Within a body they are sorted by (second - first, first), so that
 /// neighbours in a lattice make contiguous runs.
 struct Springs {
@@ -26,10 +40,12 @@ struct Springs {
   std::vector<double> stiffness;    ///< k_s [N/m], >= 0
   std::vector<double> damping;      ///< k_d [N s/m], >= 0
   std::vector<SpringKind> kind;
+  std::vector<SpringLaw> laws{};  ///< empty if all are the default
 
   [[nodiscard]] Index count() const { return static_cast<Index>(first.size()); }
+  [[nodiscard]] SpringLaw law(Index spring) const { return laws.empty() ? SpringLaw() : laws[spring]; }
   /// Adds a spring; sorts its two ends.
-  void append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind);
+  void append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind, const SpringLaw& law = {});
 };
 
 /// Elements that keep three particles in line, as arrays; entry a of each array belongs to element a. The bond middle - after
@@ -51,9 +67,10 @@ struct AngleBends {
 
 /// The surface of a body, for collision and export. Vertex i is particle i of the body; particles that follow are inside.
 struct Surface {
-  PolygonFaces faces;   ///< as exported
-  Triangles triangles;  ///< of the triangulated faces
-  Edges segments;       ///< of ropes: the edges without a triangle
+  PolygonFaces faces;         ///< as exported, with those that are torn
+  Triangles triangles;        ///< of the triangulated faces without those that are torn
+  Edges segments;             ///< of ropes: the edges without a triangle; and threads that hold after their faces tore
+  std::vector<Index> torn{};  ///< faces that are gone because a spring broke, ascending
 };
 
 /// The bodies with which a body collides.
@@ -119,6 +136,7 @@ struct SpringNetwork {
   std::vector<Pin> pins;                 ///< that hold their particles
   std::vector<Pin> later_pins;           ///< that have not begun
   std::vector<std::string> pin_names{};  ///< of all pins, in the order in which they were added, also of those that have ended
+  Index broken_springs = 0;     ///< number of springs that broke and are gone, with those that went with them
 
   [[nodiscard]] Index particle_count() const { return static_cast<Index>(masses.size()); }
   [[nodiscard]] bool is_pinned(Index particle) const { return inverse_masses[particle] == 0.0; }

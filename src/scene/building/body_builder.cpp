@@ -15,6 +15,7 @@
 #include "scene/materials/materials.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sprung {
@@ -22,7 +23,8 @@ namespace {
 
 bool names_groups(const BodyScene& body) {
   const auto names_group = [](const auto& entry) { return std::holds_alternative<GroupSelector>(entry.where); };
-  return std::ranges::any_of(body.pins, names_group) || std::ranges::any_of(body.point_masses, names_group);
+  return !body.spring_groups.empty() || std::ranges::any_of(body.pins, names_group) ||
+         std::ranges::any_of(body.point_masses, names_group);
 }
 
 class ShapeMaker {
@@ -87,8 +89,8 @@ class ShapeMaker {
       polygons = std::move(welded.mesh);
       source.particle_of = std::move(welded.vertex_of);
     }
-    BuiltBody body{make_mesh_body(polygons, body_.springs), std::move(source),
-                   names_groups(body_) ? read_obj_groups(*file) : ObjGroups{}};
+    ObjGroups groups = names_groups(body_) ? read_obj_groups(*file) : ObjGroups{};
+    BuiltBody body{make_mesh_body(polygons, body_.springs, parts_of(groups)), std::move(source), std::move(groups)};
     fill(body.shape);
     return body;
   }
@@ -115,6 +117,25 @@ class ShapeMaker {
 
   [[nodiscard]] ObjTemplate::Normals normals() const {
     return body_.normals ? ObjTemplate::Normals::per_vertex : ObjTemplate::Normals::as_given;
+  }
+
+  /// The parts of the mesh whose springs have values of their own.
+  std::vector<MeshPart> parts_of(const ObjGroups& groups) {
+    std::vector<MeshPart> parts;
+    for (const SpringGroupScene& group : body_.spring_groups) {
+      const auto found = groups.find(group.name);
+      if (found == groups.end()) {
+        Problem problem = unknown_group(group.name, groups);
+        problem.file = scene_.file.string();
+        problem.key = join_path(join_path(key_, "springs"), kSpringKindNames[static_cast<std::size_t>(group.kind)]) + ".groups";
+        problems_.push_back(std::move(problem));
+        continue;
+      }
+      MeshPart& part = parts.emplace_back(MeshPart{.faces = found->second.faces, .lines = found->second.lines});
+      const std::array kinds{&part.materials.structural, &part.materials.shear, &part.materials.bend};
+      *kinds.at(static_cast<std::size_t>(group.kind)) = group.material;
+    }
+    return parts;
   }
 
   /// Fills a closed mesh with a gas or a liquid.

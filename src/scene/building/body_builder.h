@@ -16,7 +16,7 @@ namespace sprung {
 struct BuiltBody {
   BodyShape shape;                    ///< particles and springs at time 0, with their masses
   std::optional<ObjSource> source{};  ///< of a mesh
-  ObjGroups groups{};                 ///< of a mesh, if a selector names one; with the vertices of the file
+  ObjGroups groups{};                 ///< of a mesh, if a selector or springs name one; with the vertices of the file
 };
 
 /// Adds all problems; none if there are any.

@@ -98,15 +98,11 @@ class ParticleFinder {
   std::vector<Index> at(const GroupSelector& group) {
     const auto found = placed_.groups.find(group.name);
     if (found == placed_.groups.end()) {
-      std::vector<std::string> names;
-      for (const auto& named : placed_.groups) names.push_back(named.first);
-      report(".group", "\"" + group.name + "\"",
-             names.empty() ? "the mesh has no group, object or material with faces or lines"
-                           : "must be a group, object or material of the mesh: " + joined(names),
-             did_you_mean(group.name, names));
+      const Problem problem = unknown_group(group.name, placed_.groups);
+      report(".group", problem.value, problem.rule, problem.remedy);
       return {};
     }
-    std::vector<Index> particles = found->second;
+    std::vector<Index> particles = found->second.vertices;
     if (is_welded()) {
       for (Index& vertex : particles) vertex = placed_.source->particle_of[vertex];
     }
@@ -142,6 +138,15 @@ class ParticleFinder {
 };
 
 }  // namespace
+
+Problem unknown_group(const std::string& name, const ObjGroups& groups) {
+  std::vector<std::string> names;
+  for (const auto& named : groups) names.push_back(named.first);
+  return {.value = "\"" + name + "\"",
+          .rule = names.empty() ? "the mesh has no group, object or material with faces or lines"
+                                : "must be a group, object or material of the mesh: " + joined(names),
+          .remedy = did_you_mean(name, names)};
+}
 
 std::vector<Index> select_particles(const Selector& selector, const BodyScene& body, const BuiltBody& placed,
                                     const SelectorPlace& place, std::vector<Problem>& problems) {

@@ -14,6 +14,9 @@ struct SelectorPlace {
   std::string key;  ///< of the object that has it
 };
 
+/// The problem of a group that a mesh does not have, without its place.
+[[nodiscard]] Problem unknown_group(const std::string& name, const ObjGroups& groups);
+
 /// Ascending, each once; counted from 0 within the body. Adds a problem if the selector names a particle or a group that does not
 /// exist, or if there is none in its box or sphere.
 [[nodiscard]] std::vector<Index> select_particles(const Selector& selector, const BodyScene& body, const BuiltBody& placed,

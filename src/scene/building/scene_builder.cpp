@@ -27,7 +27,10 @@ std::vector<BodyScene> valid_bodies(const Scene& scene, const TextProblems& know
   for (BodyScene body : scene.bodies) {
     const std::string key = join_path("bodies", body.name);
     if (known.affect(key + ".shape")) continue;
-    if (known.affect(key + ".springs")) body.springs = {};
+    if (known.affect(key + ".springs")) {
+      body.springs = {};
+      body.spring_groups.clear();
+    }
     if (body.mass.value == 0.0) body.mass = {.kind = MassScene::Kind::body, .value = 1.0};
     if (known.affect(key + ".place")) {
       body.pins.clear();

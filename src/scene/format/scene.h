@@ -90,6 +90,13 @@ struct PointMassScene {
   double mass = 0.0;
 };
 
+/// The material of the springs of one kind in a group, object or material of a mesh.
+struct SpringGroupScene {
+  SpringKind kind = SpringKind::structural;
+  std::string name;
+  SpringMaterial material;
+};
+
 /// Exactly one of mass [kg] of the body, of each particle, or per length, area or volume.
 struct MassScene {
   enum class Kind : std::uint8_t { body, particle, density } kind = Kind::body;
@@ -103,6 +110,7 @@ struct BodyScene {
   bool preset_limits_stretch = false;  ///< whether a stretch limit stands in for the stiffness of the material
   MassScene mass;
   SpringMaterials springs;
+  std::vector<SpringGroupScene> spring_groups;  ///< in the order of the file
   Placement place;
   std::vector<PinScene> pins;
   std::vector<PointMassScene> point_masses;

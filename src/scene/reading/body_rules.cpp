@@ -3,6 +3,8 @@
 #include "scene/reading/scene_rules.h"
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace sprung {
 namespace {
@@ -114,23 +116,93 @@ MassScene read_mass(Fields& fields) {
   return {};
 }
 
-SpringMaterial read_spring(Fields& fields) {
-  SpringMaterial material;
+/// The springs of a body as the file gives them.
+struct SpringsScene {
+  SpringMaterials materials;
+  std::vector<SpringGroupScene> groups;
+};
+
+/// Whether the springs have stiffness; true if that is invalid.
+bool read_stiffness(Fields& fields, bool required, SpringMaterial& material) {
   const auto stiffness = fields.optional("stiffness", number(kNotNegative));
   const auto modulus = fields.optional("modulus", number(kNotNegative));
-  std::optional<double> value;
-  if (const auto key = fields.one_of({"stiffness", "modulus"})) {
-    const bool by_modulus = *key == "modulus";
-    material.measure = by_modulus ? SpringMaterial::Measure::modulus : SpringMaterial::Measure::stiffness;
-    value = by_modulus ? modulus : stiffness;
-    material.value = value.value_or(0.0);
+  const auto key = fields.one_of({"stiffness", "modulus"}, !required);
+  if (!key) return required || material.value > 0.0;
+  const bool by_modulus = *key == "modulus";
+  material.measure = by_modulus ? SpringMaterial::Measure::modulus : SpringMaterial::Measure::stiffness;
+  const std::optional<double> value = by_modulus ? modulus : stiffness;
+  material.value = value.value_or(0.0);
+  return value != 0.0;
+}
+
+bool has_cells(const BodyShapeScene& shape) {
+  return std::holds_alternative<SolidShape>(shape) || std::holds_alternative<LatticeFile>(shape) ||
+         std::holds_alternative<TetrahedraFile>(shape);
+}
+
+/// tension_only, yield and break.
+void read_law(Fields& fields, bool has_stiffness, const std::optional<BodyShapeScene>& shape, SpringMaterial& material) {
+  const auto report = [&](const char* key, const std::string& rule, const std::string& remedy) {
+    fields.location().at(key).report(fields.json()[key], rule, remedy);
+  };
+  const auto read_strain = [&](const char* key, double& strain) {
+    const auto given = fields.optional(key, number(kPositive));
+    strain = given.value_or(strain);
+    if (given && !has_stiffness) {
+      report(key, "needs springs with stiffness",
+             "give stiffness or modulus: a stretch limit does not hold springs that yield or break");
+    }
+    return given.has_value();
+  };
+  material.tension_only = fields.optional("tension_only", boolean()).value_or(material.tension_only);
+  read_strain("yield", material.yield);
+  if (read_strain("break", material.break_strain) && shape && has_cells(*shape)) {
+    report("break", "needs a rope, a cloth or a mesh: a torn solid would need new faces inside", "remove it");
   }
+}
+
+SpringMaterial read_group(Fields& fields, const SpringMaterial& of_kind, const std::optional<BodyShapeScene>& shape) {
+  SpringMaterial material = of_kind;
+  fields.set_remedy({"damping_ratio"}, "it is one for all springs of the kind: give damping_time to the group");
+  const bool has_stiffness = read_stiffness(fields, false, material);
+  const auto damping = fields.optional("damping", number(kNotNegative));
+  const auto damping_time = fields.optional("damping_time", number(kNotNegative));
+  if (const auto key = fields.one_of({"damping", "damping_time"}, true)) {
+    material.damping = damping.value_or(0.0);
+    material.damping_time = damping_time.value_or(0.0);
+    if (of_kind.damping_ratio) {
+      fields.location().at(*key).report(fields.json()[*key], "is set by damping_ratio of the kind",
+                                        "remove it, or give the kind damping_time");
+    }
+  }
+  read_law(fields, has_stiffness, shape, material);
+  return material;
+}
+
+void read_groups(Fields& fields, SpringKind kind, const SpringMaterial& material, const std::optional<BodyShapeScene>& shape,
+                 SpringsScene& springs) {
+  const auto group = object_of<SpringMaterial>([&](Fields& keys) { return read_group(keys, material, shape); });
+  const Rule<bool> groups = [&](Json& json, const JsonLocation& location) -> std::optional<bool> {
+    if (!check_object(json, location)) return std::nullopt;
+    for (const auto& item : json.items()) {
+      const auto read = group(item.value(), location.at(item.key()));
+      if (read) springs.groups.push_back({.kind = kind, .name = item.key(), .material = *read});
+    }
+    return true;
+  };
+  if (!fields.optional("groups", groups) || !shape || std::holds_alternative<MeshFile>(*shape)) return;
+  fields.location().at("groups").report_key("needs a mesh: other shapes have no groups", "remove it");
+}
+
+SpringMaterial read_spring(Fields& fields, SpringKind kind, const std::optional<BodyShapeScene>& shape, SpringsScene& springs) {
+  SpringMaterial material;
+  const bool has_stiffness = read_stiffness(fields, true, material);
   if (fields.has("damping_ratio")) {
     (void)fields.optional("damping", number(kNotNegative));
     (void)fields.optional("damping_time", number(kNotNegative));
     fields.one_of({"damping", "damping_ratio", "damping_time"});
     material.damping_ratio = fields.optional("damping_ratio", number(kNotNegative));
-    if (value == 0.0) {
+    if (!has_stiffness) {
       fields.location()
           .at("damping_ratio")
           .report(fields.json()["damping_ratio"], "needs springs with stiffness", "give damping instead");
@@ -142,6 +214,8 @@ SpringMaterial read_spring(Fields& fields) {
   } else {
     material.damping = fields.value("damping", number(kNotNegative), 0.0).value_or(0.0);
   }
+  read_law(fields, has_stiffness, shape, material);
+  read_groups(fields, kind, material, shape, springs);
   return material;
 }
 
@@ -159,19 +233,32 @@ void refuse_other_springs(Fields& fields, const std::optional<BodyShapeScene>& s
   }
 }
 
-SpringMaterials read_springs(Fields& fields, const std::optional<BodyShapeScene>& shape) {
-  const auto spring = object_of<SpringMaterial>(read_spring);
-  SpringMaterials materials;
-  materials.structural = fields.optional("structural", spring);
-  materials.shear = fields.optional("shear", spring);
+/// Angle bends are no springs.
+void refuse_laws_of_angles(const Fields& fields) {
+  for (const char* key : {"tension_only", "yield", "break", "groups"}) {
+    if (fields.json().contains(key))
+      fields.location().at(key).report_key("needs the model spring: an angle has no length", "remove it");
+  }
+}
+
+SpringsScene read_springs(Fields& fields, const std::optional<BodyShapeScene>& shape) {
+  SpringsScene springs;
+  const auto spring = [&](SpringKind kind) {
+    return object_of<SpringMaterial>([&springs, &shape, kind](Fields& keys) { return read_spring(keys, kind, shape, springs); });
+  };
+  SpringMaterials& materials = springs.materials;
+  materials.structural = fields.optional("structural", spring(SpringKind::structural));
+  materials.shear = fields.optional("shear", spring(SpringKind::shear));
   const auto bend = object_of<SpringMaterial>([&](Fields& keys) {
     const auto model = keys.value("model", word_of({"spring", "angle"}), "spring");
     materials.bend_model = model == 1 ? SpringMaterials::BendModel::angle : SpringMaterials::BendModel::spring;
-    return read_spring(keys);
+    const SpringMaterial material = read_spring(keys, SpringKind::bend, shape, springs);
+    if (model == 1) refuse_laws_of_angles(keys);
+    return material;
   });
   materials.bend = fields.optional("bend", bend);
   refuse_other_springs(fields, shape);
-  return materials;
+  return springs;
 }
 
 BodyContact read_body_contact(Fields& fields) {
@@ -197,11 +284,6 @@ struct VolumeScene {
   bool preserve = false;
   double factor = 0.0;
 };
-
-bool has_cells(const BodyShapeScene& shape) {
-  return std::holds_alternative<SolidShape>(shape) || std::holds_alternative<LatticeFile>(shape) ||
-         std::holds_alternative<TetrahedraFile>(shape);
-}
 
 VolumeScene read_volume(Fields& fields, const std::optional<BodyShapeScene>& shape) {
   VolumeScene volume;
@@ -230,14 +312,35 @@ double read_pressure(Fields& fields, const std::optional<BodyShapeScene>& shape)
   return pressure.value_or(0.0);
 }
 
+/// A torn mesh encloses no volume.
+void refuse_break_of_closed(const Fields& fields) {
+  const auto refuse = [](const Json& springs, const JsonLocation& location) {
+    if (!springs.is_object() || !springs.contains("break")) return;
+    location.at("break").report(springs["break"],
+                                "needs a mesh without pressure and volume.factor, as a torn one encloses no volume",
+                                "remove one of them");
+  };
+  const Json springs = fields.json().value("springs", Json::object());
+  for (const char* name : kSpringKindNames) {
+    if (!springs.is_object() || !springs.contains(name)) continue;
+    const JsonLocation location = fields.location().at("springs").at(name);
+    const Json& kind = springs[name];
+    refuse(kind, location);
+    if (!kind.is_object() || !kind.contains("groups") || !kind["groups"].is_object()) continue;
+    for (const auto& group : kind["groups"].items()) refuse(group.value(), location.at("groups").at(group.key()));
+  }
+}
+
 BodyScene read_body(Fields& fields) {
   BodyScene body;
   const auto shape = fields.required("shape", object_of<BodyShapeScene>(read_shape));
   body.shape = shape.value_or(BodyShapeScene{});
   read_preset(fields, shape, body);
   body.mass = read_mass(fields);
-  const auto springs = object_of<SpringMaterials>([&](Fields& keys) { return read_springs(keys, shape); });
-  body.springs = fields.value("springs", springs, Json::object()).value_or(SpringMaterials{});
+  const auto springs_rule = object_of<SpringsScene>([&](Fields& keys) { return read_springs(keys, shape); });
+  SpringsScene springs = fields.value("springs", springs_rule, Json::object()).value_or(SpringsScene{});
+  body.springs = springs.materials;
+  body.spring_groups = std::move(springs.groups);
   body.place = fields.value("place", placement_rule(), Json::object()).value_or(Placement{});
   const NamedParts parts = named_parts(shape);
   const auto pins = fields.value("pins", list_of(pin_rule(parts), 0), Json::array());
@@ -250,6 +353,7 @@ BodyScene read_body(Fields& fields) {
   body.preserve_volume = volume.preserve;
   body.volume_factor = volume.factor;
   body.pressure = read_pressure(fields, shape);
+  if (body.pressure != 0.0 || body.volume_factor != 0.0) refuse_break_of_closed(fields);
   body.material = read_material(fields);
   body.contact = read_body_contact(fields);
   body.normals = read_normals(fields, shape);

@@ -46,6 +46,7 @@ class Finder {
                           (absent.size() < limit.kinds.size() ? " of the kinds " + names_of(absent) : "") +
                           ": the network has only springs of the kinds " + names_of(present));
     }
+    check_laws(limit);
     const double largest = std::pow(1.0 + limit.max_stretch, 3);
     for (const Body& body : network_.bodies) {
       if (!body.stretch_limited || body.volume_factor <= largest) continue;
@@ -58,6 +59,32 @@ class Finder {
       warnings_.emplace_back(
           "stretch_limit.tethers has no effect without pins: tethers hold particles to pins. Remove it, or add pins.");
     }
+  }
+
+  void check_laws(const StretchLimitSettings& limit) {
+    const Springs& springs = network_.springs;
+    GroupedWarnings of_bodies("body", "bodies");
+    for (const Body& body : network_.bodies) {
+      bool fails = false;
+      bool pushes = false;
+      for (Index s = body.first_spring; body.stretch_limited && s < body.first_spring + body.spring_count; ++s) {
+        if (std::ranges::find(limit.kinds, springs.kind[s]) == limit.kinds.end()) continue;
+        const SpringLaw law = springs.law(s);
+        fails = fails || law.yields() || law.breaks();
+        pushes = pushes || (law.tension_only && limit.max_compression < 1.0);
+      }
+      if (fails) {
+        of_bodies.add(body.name,
+                      "the stretch limit does not hold its springs that yield or break, as their load decides when they do so. "
+                      "Leave the body or the kind of springs out of the stretch limit.");
+      }
+      if (pushes) {
+        of_bodies.add(body.name,
+                      "stretch_limit.max_compression pushes its tension_only springs, which then cannot get slack. "
+                      "Remove one of them.");
+      }
+    }
+    add(of_bodies);
   }
 
   void check_penalty() {

@@ -108,6 +108,18 @@ TEST(ForceDerivatives, OfCompressedSpringsAreThoseAlongThem) {
   expect_near(spring.derivatives().by_position, differences);
 }
 
+TEST(ForceDerivatives, OfTensionOnlySpringsAreTheDifferencesOfTheirForces) {
+  for (const double rest_fraction : {0.7, 1.4}) {
+    SpringNetwork network = random_springs(rest_fraction, 1.0);
+    network.velocities.setZero();
+    network.springs.laws.assign(static_cast<std::size_t>(network.springs.count()), {.tension_only = true});
+    const Case springs(network, std::in_place_type<SpringForce>);
+    expect_near(springs.derivatives().by_position, springs.differences_by_position());
+    expect_near(springs.derivatives().by_velocity, springs.differences_by_velocity());
+    EXPECT_EQ(dense(springs.derivatives().by_position).isZero(0.0), rest_fraction > 1.0) << "slack ones have none";
+  }
+}
+
 TEST(ForceDerivatives, OfSpringsAreNeverDestabilising) {
   for (const double rest_fraction : {0.0, 0.7, 1.0, 1.4}) {
     const SpringNetwork network = random_springs(rest_fraction, 1.0);

@@ -122,6 +122,63 @@ TEST(SpringForce, ASpringWithoutLengthGivesNoForce) {
   EXPECT_EQ(forces_at(cloth, cloth.positions, cloth.velocities), Points::Zero(3, 144));
 }
 
+/// Some of the springs, so that there are runs of both laws and single springs of both.
+void let_some_only_pull(SpringNetwork& network) {
+  network.springs.laws.resize(static_cast<std::size_t>(network.springs.count()));
+  for (Index s = 0; s < network.springs.count(); ++s) network.springs.laws[s].tension_only = s % 70 >= 30;
+}
+
+TEST(SpringForce, ATensionOnlySpringHasNoForceUnlessItIsLongerThanAtRest) {
+  SpringNetwork network = make_pair(1.0, 10.0, 1.0, 0.5);
+  network.springs.laws = {{.tension_only = true}};
+  network.velocities.col(1) = Vector3(-3.0, 0.0, 0.0);
+  for (const double distance : {0.0, 0.5, 1.0}) {
+    network.positions(0, 1) = distance;
+    EXPECT_EQ(forces_at(network, network.positions, network.velocities), Points::Zero(3, 2)) << distance;
+    EXPECT_EQ(SpringForce(network).energy(network.positions), 0.0);
+  }
+  network.positions(0, 1) = 1.5;
+  const Points forces = forces_at(network, network.positions, network.velocities);
+  network.springs.laws.clear();
+  EXPECT_EQ(forces, forces_at(network, network.positions, network.velocities)) << "stretched it is like any other";
+  EXPECT_NE(forces(0, 0), 0.0);
+}
+
+TEST(SpringForce, TensionOnlySpringsAmongOthersActAsTheManualsWhileTheyAreStretched) {
+  for (SpringNetwork network : {make_test_cloth(40, 100.0, 1.0), make_random_network(300, 600)}) {
+    disturb(network);
+    let_some_only_pull(network);
+    SpringNetwork taut = network;  // the springs that have a force
+    Springs& springs = taut.springs;
+    Index slack = 0;
+    for (Index s = 0; s < springs.count(); ++s) {
+      const double length = (network.positions.col(springs.first[s]) - network.positions.col(springs.second[s])).norm();
+      if (!springs.laws[s].tension_only || length > springs.rest_length[s]) continue;
+      springs.stiffness[s] = springs.damping[s] = 0.0;
+      ++slack;
+    }
+    EXPECT_GT(slack, springs.count() / 10);
+    const Points forces = forces_at(network, network.positions, network.velocities);
+    const Points expected = forces_by_the_manual(taut, network.positions, network.velocities);
+    // Each force is rounded a dozen times.
+    EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(),
+              16 * kEpsilon * force_scale(network, network.positions, network.velocities));
+    EXPECT_NEAR(SpringForce(network).energy(network.positions), SpringForce(taut).energy(network.positions),
+                1e3 * kEpsilon * SpringForce(taut).energy(network.positions));
+  }
+}
+
+TEST(SpringForce, FollowsRestLengthsThatChangeLater) {
+  SpringNetwork network = make_test_cloth(40, 100.0, 1.0);
+  disturb(network);
+  network.springs.laws.assign(static_cast<std::size_t>(network.springs.count()), {.yield = 0.1});
+  const SpringForce force(network);
+  for (Index s = 0; s < network.springs.count(); ++s) network.springs.rest_length[s] *= 1.0 + 1e-3 * (s % 7);
+  Points forces = Points::Zero(3, network.particle_count());
+  force.add({.x = network.positions, .v = network.velocities}, forces);
+  EXPECT_EQ(forces, forces_at(network, network.positions, network.velocities));
+}
+
 TEST(SpringForce, IsTheNegativeGradientOfItsEnergy) {
   SpringNetwork network = make_test_cloth(10, 100.0, 0.0);
   disturb(network);

@@ -176,5 +176,22 @@ TEST(ToPolygons, IsUndoneByTriangulate) {
   EXPECT_THAT(to_polygons(triangles).groups, IsEmpty());
 }
 
+TEST(WithoutFaces, KeepsTheOthersWithTheirAttributes) {
+  PolygonFaces faces;
+  faces.corner_begin = {0, 3, 7, 10, 13};
+  faces.vertex = {0, 1, 2, 0, 2, 3, 4, 4, 5, 6, 6, 7, 8};
+  faces.texcoord = {10, 11, 12, 10, 12, 13, 14, 14, 15, 16, 16, 17, 18};
+  faces.texcoords.resize(19);
+  faces.groups = {"a", "b", "c"};
+  faces.group_begin = {0, 1, 3};
+  const PolygonFaces kept = without_faces(faces, {1, 2});
+  EXPECT_THAT(kept.corner_begin, ElementsAre(0, 3, 6));
+  EXPECT_THAT(kept.vertex, ElementsAre(0, 1, 2, 6, 7, 8));
+  EXPECT_THAT(kept.texcoord, ElementsAre(10, 11, 12, 16, 17, 18));
+  EXPECT_THAT(kept.group_begin, ElementsAre(0, 1, 1)) << "b is empty";
+  EXPECT_EQ(kept.texcoords, faces.texcoords);
+  EXPECT_EQ(without_faces(faces, {}).vertex, faces.vertex);
+}
+
 }  // namespace
 }  // namespace sprung

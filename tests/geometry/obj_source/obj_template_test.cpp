@@ -37,6 +37,23 @@ TEST(ObjTemplate, NormalsFollowTheirVerticesAndCornersNameThem) {
             "v 2 2 2\nvn 0 0 -1\n");
 }
 
+TEST(ObjTemplate, FacesThatAreRemovedLeaveNoTrace) {
+  const std::string text = "v 0 0 0\r\nf 1 1 1\r\nv 1 0 0 # b\nf 1 2 3 # one\nv 0 1 0\nf 1/2 2 \\\n 3\n# end\nv 2 2 2\nf 2 3 4";
+  const Points positions = test::make_points({{0, 0, 9}, {1, 0, 9}, {0, 1, 9}, {2, 2, 9}});
+  const Points normals = test::make_points({{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}});
+  for (const Normals kind : {Normals::as_given, Normals::per_vertex}) {
+    const ObjTemplate whole(text, kind);
+    EXPECT_EQ(whole.without_faces({}).text(positions, normals), whole.text(positions, normals));
+    // The same as without their lines in the text.
+    const ObjTemplate second("v 0 0 0\r\nf 1 1 1\r\nv 1 0 0 # b\nv 0 1 0\nf 1/2 2 \\\n 3\n# end\nv 2 2 2\nf 2 3 4", kind);
+    EXPECT_EQ(whole.without_faces({1}).text(positions, normals), second.text(positions, normals));
+    const ObjTemplate none("v 0 0 0\r\nv 1 0 0 # b\nv 0 1 0\n# end\nv 2 2 2\n", kind);
+    EXPECT_EQ(whole.without_faces({0, 1, 2, 3}).text(positions, normals), none.text(positions, normals));
+    EXPECT_EQ(whole.without_faces({1}).without_faces({0, 1, 2}).text(positions, normals), none.text(positions, normals))
+        << "what is left is numbered anew";
+  }
+}
+
 TEST(ObjTemplate, ManyVerticesAreWrittenInOrder) {
   std::string text;
   std::string expected;

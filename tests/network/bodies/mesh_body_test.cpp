@@ -51,7 +51,51 @@ std::vector<Spring> sorted_springs(const BodyShape& shape) {
   return result;
 }
 
+double stiffness_between(const BodyShape& shape, Index a, Index b) {
+  for (Index s = 0; s < shape.springs.count(); ++s) {
+    if (shape.springs.first[s] == a && shape.springs.second[s] == b) return shape.springs.stiffness[s];
+  }
+  return -1.0;
+}
+
 constexpr SpringKind kKinds[] = {SpringKind::structural, SpringKind::shear, SpringKind::bend};
+
+// Numbers of the vertices:
+//   5 6 7 8 9
+//   0 1 2 3 4   and a line from 4 to 10
+TEST(MeshBody, ASpringBelongsToAPartIfItsFacesAndLinesAloneHaveIt) {
+  PolygonMesh mesh = quad_grid({{4.0, 1.0}, {5, 2}});
+  mesh.vertices.conservativeResize(3, 11);
+  mesh.vertices.col(10) = Vector3(3.0, -0.5, 0.0);
+  mesh.lines = (Edges(2, 1) << 4, 10).finished();
+  const auto part = [](std::vector<Index> faces, std::vector<Index> lines, double stiffness) {
+    return MeshPart{.faces = std::move(faces), .lines = std::move(lines), .materials = every_kind(stiff(stiffness))};
+  };
+  const BodyShape body = make_mesh_body(mesh, every_kind(stiff(1.0)), {part({0, 1}, {}, 2.0), part({2}, {0}, 3.0)});
+  EXPECT_EQ(stiffness_between(body, 0, 1), 2.0);
+  EXPECT_EQ(stiffness_between(body, 1, 5), 2.0) << "a diagonal";
+  EXPECT_EQ(stiffness_between(body, 0, 2), 2.0) << "a bend spring in the part";
+  EXPECT_EQ(stiffness_between(body, 2, 7), 3.0) << "on the border of both: the last part";
+  EXPECT_EQ(stiffness_between(body, 3, 8), 3.0);
+  EXPECT_EQ(stiffness_between(body, 1, 3), 1.0) << "a bend spring over the border of the parts";
+  EXPECT_EQ(stiffness_between(body, 3, 4), 1.0);
+  EXPECT_EQ(stiffness_between(body, 4, 10), 3.0) << "a line";
+
+  mesh.lines.resize(2, 0);
+  MeshPart shear_alone{.faces = {0}, .materials = {.shear = modular(7.0)}};
+  const BodyShape other = make_mesh_body(mesh, every_kind(modular(1.0)), {shear_alone});
+  const BodyShape plain = make_mesh_body(mesh, every_kind(modular(1.0)));
+  EXPECT_EQ(stiffness_between(other, 0, 1), stiffness_between(plain, 0, 1));
+  EXPECT_DOUBLE_EQ(stiffness_between(other, 0, 6), 7.0 * stiffness_between(plain, 0, 6)) << "the modulus of the part";
+}
+
+// Stripes: the faces 0 and 2 of a part have the ends of the edges between them too.
+TEST(MeshBody, ASpringBetweenTwoStripesOfAPartIsNotOfThePart) {
+  const BodyShape body = make_mesh_body(quad_grid({{3.0, 1.0}, {4, 2}}), every_kind(stiff(1.0)),
+                                        {{.faces = {0, 2}, .materials = every_kind(stiff(2.0))}});
+  EXPECT_EQ(stiffness_between(body, 1, 2), 1.0);
+  EXPECT_EQ(stiffness_between(body, 1, 5), 2.0);
+}
 
 TEST(MeshBody, AGridOfQuadsHasTheSpringsOfACloth) {
   const ClothShape shape{{1.0, 1.8}, {6, 5}};

@@ -143,7 +143,8 @@ const std::map<std::string, std::vector<std::string>>& rules_beyond_the_schema()
        {"must be later than the keyframe before it", "must be later than from", "must begin with the smaller coordinates"}},
       {"a value that another one bounds", {"must be at least friction", "needs springs with stiffness"}},
       {"a value that another object forbids",
-       {"needs contact.response", "needs a rope, a cloth or a solid", "needs a mesh", "needs cells", "needs a closed mesh"}},
+       {"needs contact.response", "needs a rope, a cloth or a solid", "needs a mesh", "needs cells", "needs a closed mesh",
+        "needs a rope, a cloth or a mesh", "needs the model spring", "is set by damping_ratio of the kind"}},
       {"a name of another object", {"must be the name of a body", "must be the name of an obstacle"}},
       {"a vector without a direction", {"must not be zero"}},
   };

@@ -29,6 +29,20 @@ SimulatorSettings penalty() {
 
 ContactMaterial rough(double friction) { return {.thickness = 0.01, .friction = friction, .static_friction = friction}; }
 
+TEST(UnusedSettings, AStretchLimitLeavesOutSpringsThatFail) {
+  const auto warnings = [](const SpringLaw& law, const StretchLimitSettings& limit) {
+    NetworkBuilder builder;
+    builder.begin_body("string");
+    for (const double x : {0.0, 1.0}) builder.add_particle({x, 0.0, 0.0}, 0.1);
+    builder.add_spring(0, 1, 100.0, 1.0, 0.0, SpringKind::structural, law);
+    return unused_settings({.stretch_limit = limit}, builder.build(), {});
+  };
+  EXPECT_THAT(warnings({.yield = 0.1}, {}), ElementsAre(HasSubstr("body \"string\": the stretch limit does not hold")));
+  EXPECT_THAT(warnings({.break_length = 2.0}, {}), ElementsAre(HasSubstr("the stretch limit does not hold")));
+  EXPECT_THAT(warnings({.tension_only = true}, {.max_compression = 0.5}), ElementsAre(HasSubstr("max_compression pushes")));
+  EXPECT_THAT(warnings({.tension_only = true}, {}), IsEmpty());
+}
+
 TEST(UnusedSettings, APenaltyNeedsAThickness) {
   const std::vector<Obstacle> hard{ground()};
   EXPECT_THAT(

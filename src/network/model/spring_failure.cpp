@@ -1,0 +1,292 @@
+#include "network/model/spring_failure.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <set>
+#include <span>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+using Pair = std::pair<Index, Index>;
+using Pairs = std::set<Pair>;
+
+Pair pair_of(Index a, Index b) { return std::minmax(a, b); }
+Pair ends_of(const Springs& springs, Index s) { return {springs.first[s], springs.second[s]}; }
+
+double length_of(const Springs& springs, Index s, const Points& positions) {
+  return (positions.col(springs.first[s]) - positions.col(springs.second[s])).norm();
+}
+
+/// The particles that structural springs join to an end of a broken structural spring.
+std::map<Index, std::vector<Index>> neighbours(const Springs& springs, const std::vector<Index>& broken) {
+  std::map<Index, std::vector<Index>> result;
+  for (const Index s : broken) {
+    if (springs.kind[s] != SpringKind::structural) continue;
+    result[springs.first[s]];
+    result[springs.second[s]];
+  }
+  for (Index s = 0; s < springs.count(); ++s) {
+    if (springs.kind[s] != SpringKind::structural) continue;
+    const auto [a, b] = ends_of(springs, s);
+    if (const auto at = result.find(a); at != result.end()) at->second.push_back(b);
+    if (const auto at = result.find(b); at != result.end()) at->second.push_back(a);
+  }
+  return result;
+}
+
+/// The pairs of particles that shear and bend springs join over broken structural springs.
+Pairs spanned(const Springs& springs, const std::vector<Index>& broken) {
+  const auto near = neighbours(springs, broken);
+  Pairs pairs;
+  for (const Index s : broken) {
+    if (springs.kind[s] != SpringKind::structural) continue;
+    const auto [a, b] = ends_of(springs, s);
+    const std::vector<Index>& near_a = near.at(a);
+    const std::vector<Index>& near_b = near.at(b);
+    for (const Index i : near_b) pairs.insert(pair_of(a, i));
+    for (const Index i : near_a) pairs.insert(pair_of(b, i));
+    std::vector<Index> apexes;
+    std::ranges::copy_if(near_a, std::back_inserter(apexes), [&](Index i) { return std::ranges::find(near_b, i) != near_b.end(); });
+    for (const Index i : apexes) {
+      for (const Index j : apexes) pairs.insert(pair_of(i, j));
+    }
+  }
+  return pairs;
+}
+
+/// Whether each spring goes.
+std::vector<char> find_gone(const Springs& springs, const std::vector<Index>& broken) {
+  std::vector<char> gone(static_cast<std::size_t>(springs.count()), 0);
+  for (const Index s : broken) gone[s] = 1;
+  const Pairs pairs = spanned(springs, broken);
+  for (Index s = 0; s < springs.count(); ++s) {
+    if (springs.kind[s] != SpringKind::structural && pairs.contains(ends_of(springs, s))) gone[s] = 1;
+  }
+  return gone;
+}
+
+template <class T>
+void erase_gone(std::vector<T>& values, const std::vector<char>& gone) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (gone[i] == 0) values[kept++] = values[i];
+  }
+  values.resize(kept);
+}
+
+/// Moves the range [first, first + count) to where its entries are once those that are gone are erased.
+void shift_range(const std::vector<char>& gone, Index& first, Index& count) {
+  const auto begin = gone.begin() + first;
+  const auto lost = static_cast<Index>(std::count(begin, begin + count, char{1}));
+  first -= static_cast<Index>(std::count(gone.begin(), begin, char{1}));
+  count -= lost;
+}
+
+void remove_springs(SpringNetwork& network, const std::vector<char>& gone) {
+  for (Body& body : network.bodies) {
+    const Index before = body.spring_count;
+    shift_range(gone, body.first_spring, body.spring_count);
+    if (body.spring_count < before) body.resolution = {};  // it is no whole grid any more
+  }
+  Springs& springs = network.springs;
+  erase_gone(springs.first, gone);
+  erase_gone(springs.second, gone);
+  erase_gone(springs.rest_length, gone);
+  erase_gone(springs.stiffness, gone);
+  erase_gone(springs.damping, gone);
+  erase_gone(springs.kind, gone);
+  erase_gone(springs.laws, gone);
+  network.broken_springs += static_cast<Index>(std::ranges::count(gone, char{1}));
+}
+
+void remove_angle_bends(SpringNetwork& network, const Pairs& gone_pairs) {
+  AngleBends& bends = network.angle_bends;
+  std::vector<char> gone(static_cast<std::size_t>(bends.count()), 0);
+  for (Index a = 0; a < bends.count(); ++a) {
+    const Index middle = bends.middle[a];
+    gone[a] = gone_pairs.contains(pair_of(bends.before[a], middle)) || gone_pairs.contains(pair_of(middle, bends.after[a])) ? 1 : 0;
+  }
+  for (Body& body : network.bodies) shift_range(gone, body.first_angle_bend, body.angle_bend_count);
+  erase_gone(bends.before, gone);
+  erase_gone(bends.middle, gone);
+  erase_gone(bends.after, gone);
+  erase_gone(bends.length_before, gone);
+  erase_gone(bends.length_after, gone);
+  erase_gone(bends.stiffness, gone);
+  erase_gone(bends.damping, gone);
+}
+
+template <class Elements>
+void keep_columns(Elements& elements, const std::vector<Index>& kept) {
+  elements = Elements(elements(Eigen::all, kept));
+}
+
+/// Tears one body's surface, in the numbering of the body.
+class SurfaceTearing {
+ public:
+  /// `gone` are the pairs of particles whose structural or shear spring is gone, `structural` those that a structural one joins.
+  SurfaceTearing(Surface& surface, const Pairs& gone, const Pairs& structural)
+      : surface_(surface), gone_(gone), structural_(structural) {}
+
+  void tear() {
+    remove_segments();
+    const std::vector<Index> torn = find_torn();
+    if (torn.empty()) return;
+    remove_triangles(torn);
+    add_threads(torn);
+    surface_.torn.insert(surface_.torn.end(), torn.begin(), torn.end());
+    std::ranges::sort(surface_.torn);
+  }
+
+ private:
+  [[nodiscard]] std::span<const Index> corners(Index face) const {
+    const PolygonFaces& faces = surface_.faces;
+    return std::span(faces.vertex)
+        .subspan(static_cast<std::size_t>(faces.corner_begin[face]),
+                 static_cast<std::size_t>(faces.corner_begin[face + 1] - faces.corner_begin[face]));
+  }
+
+  [[nodiscard]] bool is_torn_already(Index face) const { return std::ranges::binary_search(surface_.torn, face); }
+
+  [[nodiscard]] bool has_gone_pair(std::span<const Index> corners) const {
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (gone_.contains(pair_of(corners[i], corners[j]))) return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::vector<Index> find_torn() const {
+    std::vector<Index> torn;
+    for (Index face = 0; face < surface_.faces.face_count(); ++face) {
+      if (!is_torn_already(face) && has_gone_pair(corners(face))) torn.push_back(face);
+    }
+    return torn;
+  }
+
+  void remove_segments() {
+    std::vector<Index> kept;
+    for (Index s = 0; s < surface_.segments.cols(); ++s) {
+      if (!gone_.contains(pair_of(surface_.segments(0, s), surface_.segments(1, s)))) kept.push_back(s);
+    }
+    if (static_cast<Index>(kept.size()) < surface_.segments.cols()) keep_columns(surface_.segments, kept);
+  }
+
+  /// The triangles are the fans of the faces that were not torn before.
+  void remove_triangles(const std::vector<Index>& torn) {
+    std::vector<Index> kept;
+    Index triangle = 0;
+    for (Index face = 0; face < surface_.faces.face_count(); ++face) {
+      if (is_torn_already(face)) continue;
+      const bool goes = std::ranges::binary_search(torn, face);
+      for (std::size_t fan = 2; fan < corners(face).size(); ++fan, ++triangle) {
+        if (!goes) kept.push_back(triangle);
+      }
+    }
+    keep_columns(surface_.triangles, kept);
+  }
+
+  void add_threads(const std::vector<Index>& torn) {
+    Pairs threads;
+    for (const Index face : torn) {
+      const std::span<const Index> around = corners(face);
+      for (std::size_t i = 0; i < around.size(); ++i) {
+        const Pair side = pair_of(around[i], around[(i + 1) % around.size()]);
+        if (structural_.contains(side)) threads.insert(side);
+      }
+    }
+    for (const auto& triangle : surface_.triangles.colwise()) {
+      for (Index k = 0; k < 3; ++k) threads.erase(pair_of(triangle[k], triangle[(k + 1) % 3]));
+    }
+    for (const auto& segment : surface_.segments.colwise()) threads.erase(pair_of(segment[0], segment[1]));
+    Index next = static_cast<Index>(surface_.segments.cols());
+    surface_.segments.conservativeResize(2, next + static_cast<Index>(threads.size()));
+    for (const auto& [a, b] : threads) surface_.segments.col(next++) << a, b;
+  }
+
+  Surface& surface_;
+  const Pairs& gone_;
+  const Pairs& structural_;
+};
+
+}  // namespace
+
+void let_yield(Springs& springs, const Points& positions) {
+  if (springs.laws.empty()) return;
+  for (Index s = 0; s < springs.count(); ++s) {
+    const SpringLaw& law = springs.laws[s];
+    double& rest = springs.rest_length[s];
+    if (!law.yields() || rest == 0.0) continue;
+    const double length = length_of(springs, s, positions);
+    const double strain = (length - rest) / rest;
+    if (strain > law.yield) {
+      rest = length / (1.0 + law.yield);
+    } else if (strain < -law.yield && !law.tension_only && length > 0.0) {
+      rest = length / (1.0 - law.yield);
+    }
+  }
+}
+
+std::vector<Index> breaking_springs(const SpringNetwork& network, const Points& positions) {
+  const Springs& springs = network.springs;
+  if (springs.laws.empty()) return {};
+  struct Most {
+    double ratio = 0.0;
+    Index spring = kNone;
+  };
+  std::map<Index, Most> most;  // by particle
+  std::vector<Index> overstrained;
+  for (Index s = 0; s < springs.count(); ++s) {
+    if (!springs.laws[s].breaks()) continue;
+    const double ratio = length_of(springs, s, positions) / springs.laws[s].break_length;
+    if (!(ratio > 1.0)) continue;
+    overstrained.push_back(s);
+    for (const Index end : {springs.first[s], springs.second[s]}) {
+      Most& at_end = most[end];
+      if (ratio > at_end.ratio) at_end = {ratio, s};
+    }
+  }
+  std::erase_if(overstrained, [&](Index s) { return most[springs.first[s]].spring != s || most[springs.second[s]].spring != s; });
+  return overstrained;
+}
+
+void tear(SpringNetwork& network, const std::vector<Index>& broken) {
+  if (broken.empty()) return;
+  const Springs& springs = network.springs;
+  const std::vector<char> gone = find_gone(springs, broken);
+  Pairs gone_structural;
+  for (const Index s : broken) {
+    if (springs.kind[s] == SpringKind::structural) gone_structural.insert(ends_of(springs, s));
+  }
+  for (Body& body : network.bodies) {
+    Pairs gone_pairs;
+    for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+      if (gone[s] == 0 || springs.kind[s] == SpringKind::bend) continue;
+      gone_pairs.insert({springs.first[s] - body.first_particle, springs.second[s] - body.first_particle});
+    }
+    if (gone_pairs.empty()) continue;
+    Pairs structural;
+    for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+      if (gone[s] != 0 || springs.kind[s] != SpringKind::structural) continue;
+      structural.insert({springs.first[s] - body.first_particle, springs.second[s] - body.first_particle});
+    }
+    SurfaceTearing(body.surface, gone_pairs, structural).tear();
+  }
+  remove_angle_bends(network, gone_structural);
+  remove_springs(network, gone);
+}
+
+void take_rest_lengths(const SpringNetwork& from, SpringNetwork& network) {
+  const Springs& springs = from.springs;
+  for (Index s = 0; s < std::min(springs.count(), network.springs.count()); ++s) {
+    if (springs.law(s).yields() && network.springs.law(s).yields() && ends_of(springs, s) == ends_of(network.springs, s)) {
+      network.springs.rest_length[s] = springs.rest_length[s];
+    }
+  }
+}
+
+}  // namespace sprung

@@ -1,0 +1,31 @@
+// Springs that yield and springs that break.
+#pragma once
+
+#include "network/model/spring_network.h"
+
+#include <vector>
+
+namespace sprung {
+
+/// Lets springs yield: those that are strained beyond their yield strain at these positions [m] get the rest length at which the
+/// strain is the yield strain (perfect plasticity). Their elastic energy falls. To repeat it changes nothing. A spring without a
+/// length, now or at rest, has no strain.
+void let_yield(Springs& springs, const Points& positions);
+
+/// The springs that break next at these positions [m], ascending. Of the springs of a particle that are longer than their break
+/// length, the one with the largest length relative to it goes first; it may relieve the others.
+[[nodiscard]] std::vector<Index> breaking_springs(const SpringNetwork& network, const Points& positions);
+
+/// Removes springs that broke, and what would hold or cover the gap:
+/// - the shear and bend springs that a broken structural spring spans with another one, or that cross it between the third corners
+///   of two triangles;
+/// - the angle bends over these springs, and the segments along them;
+/// - the faces with a structural or shear spring that is gone as a side or diagonal: `Surface::torn` names them.
+/// Structural springs that keep no face become segments.
+void tear(SpringNetwork& network, const std::vector<Index>& broken);
+
+/// Takes the rest lengths of springs that yield from another network, where both have a spring of this number between the same
+/// particles.
+void take_rest_lengths(const SpringNetwork& from, SpringNetwork& network);
+
+}  // namespace sprung
