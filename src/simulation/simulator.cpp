@@ -33,9 +33,11 @@ constexpr Index kStepsPerEnergy = 64;
 // Largest rotation of an obstacle or a pin in a substep [degrees].
 constexpr double kMaxTurn = 45.0;
 
-/// The time from which on no pin begins, ends or moves, and no obstacle moves [s]; infinity if one moves or deforms for ever.
-double end_of_motions(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step) {
-  double end = 0.0;
+/// The time from which on no pin begins, ends or moves, no obstacle moves and the wind does not change [s]; infinity if there is
+/// none.
+double end_of_motions(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
+  const double step = settings.step;
+  double end = settings.has_air() ? settings.wind.end() : 0.0;
   for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
     for (const Pin& pin : *pins) {
       if (pin.particles.empty()) continue;
@@ -62,13 +64,13 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       warnings(check_step(settings, bounds)),
       forces(network_forces(network, settings)),
       integrator(make_integrator(settings.integrator, network)),
-      constraints(network, settings, settings.gravity.norm() + bounds.drag * settings.wind.norm(), environment, *integrator),
+      constraints(network, settings, steady_acceleration(network, settings), environment, *integrator),
       pin_paths(network, environment.obstacles(), settings.step),
       waits_for_turn(constraints.limit() != nullptr && constraints.limit()->may_follow_turn()),
       divergence(network),
       energy_watch(network, settings, environment.obstacles(), forces),
       rest(network, settings.gravity.norm()),
-      driven_until(end_of_motions(network, environment.obstacles(), settings.step)),
+      driven_until(end_of_motions(network, settings, environment.obstacles())),
       state(initial_state(network)),
       begin{state, energy_watch, {}} {
   const StretchLimit* limit = constraints.limit();
@@ -77,6 +79,12 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
     if (waits_for_turn || (limit->follows_turn() && anything_moves())) state.substeps = settings.max_substeps;
   }
   if (settings.perturb) symmetry.emplace(network, settings.seed);
+  if (acts_on_faces(network, settings)) {
+    auto force =
+        std::make_unique<SurfaceAirForce>(network, settings.air_surface, settings.wind, settings.gravity.norm(), air_step());
+    surface_air = force.get();
+    forces.push_back(std::move(force));
+  }
   if (settings.contact.response == ContactSettings::Response::penalty && !environment.obstacles().empty()) {
     auto force = std::make_unique<PenaltyContact>(network, environment, settings.contact.stiffness, settings.contact.damping, dt());
     penalty = force.get();
@@ -240,7 +248,7 @@ void Simulator::Implementation::set_substeps(int substeps) {
 
 void Simulator::Implementation::substep_changed(double dt_before) {
   if (dt() == dt_before) return;
-  if (penalty != nullptr) penalty->set_step(dt());
+  step_length_changed();
   move_pins(time());
   if (steps_done(state) == 0.0) {
     integrator->start(state, forces, dt());
@@ -262,6 +270,17 @@ void Simulator::Implementation::move_pins(double time) {
 void Simulator::Implementation::record_gain(Index particle, const Vector3& velocity_before) {
   state.impulses.on_pinned.col(particle) -= network.masses[particle] * (state.v.col(particle) - velocity_before);
 }
+/// Tells the forces that depend on the step.
+void Simulator::Implementation::step_length_changed() {
+  if (penalty != nullptr) penalty->set_step(dt());
+  if (surface_air != nullptr) surface_air->set_step(air_step());
+}
+
+/// The step as SurfaceAirForce takes it.
+double Simulator::Implementation::air_step() const {
+  return std::holds_alternative<ImplicitEulerSettings>(settings.integrator) ? 0.0 : dt();
+}
+
 
 std::vector<ContactNormal> Simulator::Implementation::contact_normals() const {
   return penalty != nullptr ? penalty->normals(state.x) : constraints.contacts().normals();

@@ -52,8 +52,8 @@ class Simulator {
   /// springs that broke cannot come back. Springs that yielded keep their rest lengths.
   void continue_with(SpringNetwork network, SimulatorSettings settings);
 
-  void set_gravity(const Vector3& acceleration);   ///< [m/s^2]
-  void set_air(double drag, const Vector3& wind);  ///< see SimulatorSettings
+  void set_gravity(const Vector3& acceleration);  ///< [m/s^2]
+  void set_air(double drag, const Wind& wind);    ///< see SimulatorSettings
 
   /// Springs that exceed the new limit are shortened at once, as far as obstacles and bodies permit; velocities stay as they are.
   void set_stretch_limit(const std::optional<StretchLimitSettings>& limit);

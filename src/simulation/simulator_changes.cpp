@@ -128,7 +128,7 @@ void Simulator::Implementation::take_state(const Implementation& before) {
     integrator->start(state, forces, before.dt());
   }
   set_substeps(pins_changed ? max_substeps : std::min(state.substeps, max_substeps));
-  if (penalty != nullptr) penalty->set_step(dt());
+  step_length_changed();
   energy_watch.note(0, energies());
   begin = {state, energy_watch, constraints.permitted_crossings()};
 }
@@ -146,7 +146,7 @@ void Simulator::set_gravity(const Vector3& acceleration) {
   continue_with(implementation_->network, std::move(settings));
 }
 
-void Simulator::set_air(double drag, const Vector3& wind) {
+void Simulator::set_air(double drag, const Wind& wind) {
   SimulatorSettings settings = implementation_->settings;
   settings.air_drag = drag;
   settings.wind = wind;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dynamics/contact/penalty_contact.h"
+#include "dynamics/forces/surface_air_force.h"
 #include "simulation/monitoring/divergence.h"
 #include "simulation/monitoring/energy_watch.h"
 #include "simulation/simulator.h"
@@ -66,6 +67,8 @@ struct Simulator::Implementation {
   void choose_substeps(const StepReport& report);
   void set_substeps(int substeps);
   void substep_changed(double dt_before);
+  void step_length_changed();
+  [[nodiscard]] double air_step() const;
   void move_pins(double time);
   void record_gain(Index particle, const Vector3& velocity_before);
   void begin_recording();
@@ -88,7 +91,8 @@ struct Simulator::Implementation {
   SpectralBounds bounds;
   std::vector<std::string> warnings;
   Forces forces;
-  PenaltyContact* penalty = nullptr;  ///< null unless contact is by penalty
+  SurfaceAirForce* surface_air = nullptr;  ///< null unless the air acts on faces
+  PenaltyContact* penalty = nullptr;       ///< null unless contact is by penalty
   std::unique_ptr<Integrator> integrator;
   StepConstraints constraints;
   PinPaths pin_paths;
@@ -99,7 +103,7 @@ struct Simulator::Implementation {
   DivergenceCheck divergence;
   EnergyWatch energy_watch;
   RestDetector rest;
-  double driven_until;  ///< the time from which on no pin begins, ends or moves, and no obstacle moves [s]
+  double driven_until;  ///< see end_of_motions() in simulator.cpp [s]
   SimulationState state;
   StepBegin begin;
   ReactionRecord reactions;                         ///< by pins that have ended or changed in the present interval

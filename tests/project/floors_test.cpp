@@ -47,7 +47,8 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"collision/truncation", {"core", "surface", "obstacles", "obstacle_regions", "impact_zones"}},
 
     {"dynamics/numerics", {}},
-    {"dynamics/forces", {"numerics"}},
+    {"dynamics/air", {}},
+    {"dynamics/forces", {"numerics", "air"}},
     {"dynamics/integrators", {"numerics", "forces"}},
     {"dynamics/constraints", {}},
     {"dynamics/contact", {"forces", "integrators"}},

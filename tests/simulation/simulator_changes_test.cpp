@@ -86,7 +86,7 @@ TEST(SimulatorChanges, WindMovesAParticleAtItsOwnSpeed) {
   Simulator simulator(one_particle({0.0, 0.0, 0.0}), {.step = kStep, .gravity = Vector3::Zero()});
   run(simulator, 0.1);
   EXPECT_EQ(Vector3(simulator.positions()), Vector3::Zero());
-  simulator.set_air(10.0, {3.0, 0.0, 0.0});
+  simulator.set_air(10.0, Vector3(3.0, 0.0, 0.0));
   run(simulator, 1.0);  // 100 times the time constant m / c
   EXPECT_NEAR(simulator.state().v(0, 0), 3.0, 1e-9);
 }

@@ -2,6 +2,8 @@
 
 #include "base/parallel.h"
 
+#include <utility>
+
 namespace sprung {
 namespace {
 
@@ -23,11 +25,15 @@ double Gravity::energy(const Points& positions) const {
   return energy;
 }
 
-AirDrag::AirDrag(const SpringNetwork& network, double drag, const Vector3& wind) : network_(network), drag_(drag), wind_(wind) {}
+AirDrag::AirDrag(const SpringNetwork& network, double drag, Wind wind) : network_(network), drag_(drag), wind_(std::move(wind)) {}
 
 void AirDrag::add(const Kinematics& at, Points& forces) const {
+  const bool gusty = wind_.gusts().has_value();
+  const Points air = gusty ? wind_.velocities(at.x, at.time) : Points(wind_.mean(at.time));
   parallel_chunks(network_.particle_count(), kParticleChunk, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) forces.col(i) -= drag_ * network_.drag_areas[i] * (at.v.col(i) - wind_);
+    for (Index i = begin; i < end; ++i) {
+      forces.col(i) -= drag_ * network_.drag_areas[i] * (at.v.col(i) - air.col(gusty ? i : 0));
+    }
   });
 }
 

@@ -1,6 +1,7 @@
 // Gravity and air drag.
 #pragma once
 
+#include "dynamics/air/wind.h"
 #include "dynamics/forces/force.h"
 #include "network/model/spring_network.h"
 
@@ -24,7 +25,7 @@ class Gravity final : public Force {
 /// surfaces, and by particle [kg/s] for bodies that have neither.
 class AirDrag final : public Force {
  public:
-  AirDrag(const SpringNetwork& network, double drag, const Vector3& wind);  ///< drag >= 0, wind [m/s]
+  AirDrag(const SpringNetwork& network, double drag, Wind wind);  ///< drag >= 0
   [[nodiscard]] std::string name() const override { return "air drag"; }
   void add(const Kinematics& at, Points& forces) const override;
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
@@ -33,7 +34,7 @@ class AirDrag final : public Force {
  private:
   const SpringNetwork& network_;
   double drag_;
-  Vector3 wind_;
+  Wind wind_;
 };
 
 }  // namespace sprung

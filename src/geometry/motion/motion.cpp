@@ -1,5 +1,7 @@
 #include "geometry/motion/motion.h"
 
+#include "geometry/motion/keyframe_span.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -47,12 +49,10 @@ auto next_after(const std::vector<Keyframe>& keys, double time) {
 Keyframe keyframe_at(const Motion& motion, double time) {
   const std::vector<Keyframe>& keys = motion.keyframes;
   if (keys.empty()) return {};
-  const auto next = next_after(keys, time);
-  if (next == keys.begin()) return keys.front();
-  if (next == keys.end()) return keys.back();
-  const Keyframe& a = *(next - 1);
-  const Keyframe& b = *next;
-  const double s = (time - a.time) / (b.time - a.time);
+  const auto [before, after, s] = span_at(keys, time);
+  const Keyframe& a = keys[before];
+  const Keyframe& b = keys[after];
+  if (before == after) return a;
   const double w = motion.interpolation == Interpolation::smooth ? s * s * (3.0 - 2.0 * s) : s;
   return {time, (1.0 - w) * a.position + w * b.position, (1.0 - w) * a.rotation + w * b.rotation};
 }

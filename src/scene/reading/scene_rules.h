@@ -10,6 +10,9 @@ namespace sprung {
 [[nodiscard]] Rule<Placement> placement_rule();
 [[nodiscard]] Rule<Motion> motion_rule();
 
+/// Reports each time of keyframes that is not later than the one before it. `location` is that of the object with the keyframes.
+void require_increasing_times(const std::vector<double>& times, const JsonLocation& location);
+
 /// thickness, friction, static_friction, restitution.
 [[nodiscard]] ContactMaterial read_material(Fields& fields);
 
@@ -29,6 +32,9 @@ struct NamedParts {
 /// A body or an obstacle, without its name. `frame_rate` is the default of sequences.
 [[nodiscard]] Rule<BodyScene> body_rule();
 [[nodiscard]] Rule<ObstacleScene> obstacle_rule(double frame_rate);
+
+/// drag, surface, wind, gusts.
+void read_air(Fields& fields, SimulatorSettings& settings);
 
 /// gravity, air, integrator, stretch_limit, contact, stability, output and others. Without a `stretch_limit`, the bodies that need
 /// one for their materials get it. Requires the scene's bodies.

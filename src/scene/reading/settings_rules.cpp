@@ -6,16 +6,6 @@
 namespace sprung {
 namespace {
 
-struct Air {
-  double drag = 0.0;
-  Vector3 wind = Vector3::Zero();
-};
-
-Air read_air(Fields& fields) {
-  return {.drag = fields.value("drag", number(kNotNegative), 0.0).value_or(0.0),
-          .wind = fields.value("wind", vector3(), {0, 0, 0}).value_or(Vector3::Zero())};
-}
-
 VerletSettings read_verlet(Fields& fields) {
   VerletSettings verlet;
   fields.one_of({"damping", "damping_rate"}, true);
@@ -113,9 +103,11 @@ bool read_output(Fields& fields) { return fields.value("forces", boolean(), fals
 void read_settings(Fields& fields, Scene& scene) {
   SimulatorSettings& settings = scene.settings;
   settings.gravity = fields.value("gravity", vector3(), {0, -9.81, 0}).value_or(Vector3::Zero());
-  const Air air = fields.value("air", object_of<Air>(read_air), Json::object()).value_or(Air{});
-  settings.air_drag = air.drag;
-  settings.wind = air.wind;
+  const auto read_air_keys = [&](Fields& keys) {
+    read_air(keys, settings);
+    return true;
+  };
+  (void)fields.value("air", object_of<bool>(read_air_keys), Json::object());
   const auto integrator = fields.value("integrator", object_of<IntegratorSettings>(read_integrator), {{"type", "verlet"}});
   settings.integrator = integrator.value_or(IntegratorSettings{});
   const Json bodies = fields.json().value("bodies", Json());

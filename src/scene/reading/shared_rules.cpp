@@ -11,21 +11,13 @@ Keyframe read_keyframe(Fields& fields) {
   return keyframe;
 }
 
-void require_increasing_times(const std::vector<Keyframe>& keyframes, const JsonLocation& location) {
-  for (std::size_t k = 1; k < keyframes.size(); ++k) {
-    if (keyframes[k].time > keyframes[k - 1].time) continue;
-    location.at("keyframes")
-        .at(k)
-        .at("time")
-        .report(Json(keyframes[k].time), "must be later than the keyframe before it", "sort the keyframes by time");
-  }
-}
-
 Motion read_motion(Fields& fields) {
   Motion motion;
   if (const auto keyframes = fields.optional("keyframes", list_of(object_of<Keyframe>(read_keyframe), 1))) {
     motion.keyframes = *keyframes;
-    require_increasing_times(*keyframes, fields.location());
+    std::vector<double> times;
+    for (const Keyframe& keyframe : *keyframes) times.push_back(keyframe.time);
+    require_increasing_times(times, fields.location());
   }
   const auto interpolation = fields.value("interpolation", word_of({"linear", "smooth"}), "linear");
   motion.interpolation = interpolation == 1 ? Interpolation::smooth : Interpolation::linear;
@@ -42,6 +34,16 @@ Placement read_placement(Fields& fields) {
 }
 
 }  // namespace
+
+void require_increasing_times(const std::vector<double>& times, const JsonLocation& location) {
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    if (times[k] > times[k - 1]) continue;
+    location.at("keyframes")
+        .at(k)
+        .at("time")
+        .report(Json(times[k]), "must be later than the keyframe before it", "sort the keyframes by time");
+  }
+}
 
 Rule<Placement> placement_rule() { return object_of<Placement>(read_placement); }
 

@@ -41,7 +41,7 @@ double rounding_speed(const Points& positions, double step) {
 }
 
 bool is_undriven(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
-  const bool wind = settings.air_drag > 0.0 && !settings.wind.isZero(0.0);
+  const bool wind = settings.has_air() && !settings.wind.is_calm();
   return !wind && !std::holds_alternative<ExplicitEulerSettings>(settings.integrator) &&
          std::ranges::none_of(network.pins, &Pin::moves) && std::ranges::none_of(network.later_pins, &Pin::moves) &&
          std::ranges::none_of(obstacles, [](const Obstacle& obstacle) { return obstacle.changes(); });
@@ -57,7 +57,7 @@ EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& 
       bounce_height_(bounce_height_of(network, settings)),
       undriven_(is_undriven(network, settings, obstacles)),
       bounce_gain_(bounce_gain(network, obstacles)),
-      fastest_drive_(settings.air_drag > 0.0 ? settings.wind.norm() : 0.0) {
+      fastest_drive_(settings.has_air() ? settings.wind.max_speed() : 0.0) {
   const double rounding = rounding_speed(network.positions, step_);
   capacity_ = mass_ * gravity_ * bounce_height_ + 0.5 * mass_ * rounding * rounding;
   for (const auto& force : forces) capacity_ += force->capacity();

@@ -30,6 +30,20 @@ class Rules {
     problems_.push_back({.key = key, .rule = "must have three finite components"});
   }
 
+  void require_wind(const Wind& wind) {
+    const std::vector<WindKeyframe>& keys = wind.keyframes();
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      const std::string key = keys.size() == 1 ? "wind" : "wind.keyframes[" + std::to_string(k) + "]";
+      require_finite(key, keys[k].velocity);
+      if (k == 0 || keys[k].time > keys[k - 1].time) continue;
+      problems_.push_back(
+          {.key = key + ".time", .value = format_number(keys[k].time), .rule = "must be later than the keyframe before it"});
+    }
+    if (!wind.gusts()) return;
+    require_between("wind.gusts.speed", wind.gusts()->speed, 0.0, kInfinity);
+    require_between("wind.gusts.length", wind.gusts()->length, std::numeric_limits<double>::min(), kInfinity);
+  }
+
   void throw_if_broken() {
     if (!problems_.empty()) throw InputError(std::move(problems_));
   }
@@ -44,7 +58,9 @@ SimulatorSettings checked_settings(SimulatorSettings settings) {
   Rules rules;
   rules.require_finite("gravity", settings.gravity);
   rules.require_between("air_drag", settings.air_drag, 0.0, kInfinity);
-  rules.require_finite("wind", settings.wind);
+  rules.require_between("air_surface.normal", settings.air_surface.normal, 0.0, kInfinity);
+  rules.require_between("air_surface.tangential", settings.air_surface.tangential, 0.0, kInfinity);
+  rules.require_wind(settings.wind);
   if (const auto* verlet = std::get_if<VerletSettings>(&settings.integrator)) {
     rules.require_between("integrator.damping", verlet->damping, 0.0, 1.0);
     rules.require_between("integrator.damping_rate", verlet->damping_rate, 0.0, kInfinity);

@@ -1,6 +1,8 @@
 // Settings of a simulation.
 #pragma once
 
+#include "dynamics/air/wind.h"
+#include "dynamics/forces/surface_air_force.h"
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
 
@@ -34,7 +36,8 @@ struct SimulatorSettings {
   double step = 1.0e-3;              ///< dt [s]
   Vector3 gravity{0.0, -9.81, 0.0};  ///< [m/s^2]
   double air_drag = 0.0;             ///< by length of ropes [kg/(m s)], by area of surfaces [kg/(m^2 s)]
-  Vector3 wind = Vector3::Zero();    ///< [m/s]
+  SurfaceDrag air_surface{};         ///< of the faces of bodies, in addition
+  Wind wind{};
   IntegratorSettings integrator = VerletSettings{};
   std::optional<StretchLimitSettings> stretch_limit{};
   ContactSettings contact{};
@@ -49,6 +52,9 @@ struct SimulatorSettings {
   std::uint64_t seed = 0;  ///< of the directions of such pushes
   /// Whether steps record the impulses of pins and springs, for Simulator::reactions and spring_tensions. Changes no other result.
   bool record_forces = false;
+
+  /// Whether the air acts on bodies.
+  [[nodiscard]] bool has_air() const { return air_drag > 0.0 || !air_surface.is_zero(); }
 };
 
 }  // namespace sprung

@@ -25,9 +25,7 @@ class Finder {
 
   std::vector<std::string> find() {
     if (settings_.stretch_limit) check_limit(*settings_.stretch_limit);
-    if (settings_.air_drag == 0.0 && !settings_.wind.isZero(0.0)) {
-      warnings_.emplace_back("air.wind has no effect without air.drag. Add air.drag.");
-    }
+    check_air();
     if (settings_.contact.response == ContactSettings::Response::penalty) check_penalty();
     check_friction();
     return std::move(warnings_);
@@ -85,6 +83,24 @@ class Finder {
       }
     }
     add(of_bodies);
+  }
+
+  void check_air() {
+    const SurfaceDrag& surface = settings_.air_surface;
+    if (surface.is_zero() && surface.quadratic) {
+      warnings_.emplace_back("air.surface has no effect: its coefficients are 0. Give normal or tangential, or remove quadratic.");
+    }
+    if (!surface.is_zero() && !has_triangles(network_)) {
+      warnings_.emplace_back("air.surface has no effect: it acts on faces, and no body has any. Use air.drag.");
+    }
+    if (settings_.has_air()) return;
+    const std::vector<WindKeyframe>& mean = settings_.wind.keyframes();
+    if (std::ranges::any_of(mean, [](const WindKeyframe& key) { return !key.velocity.isZero(0.0); })) {
+      warnings_.emplace_back("air.wind has no effect without air.drag or air.surface. Add one of them.");
+    }
+    if (settings_.wind.gusts()) {
+      warnings_.emplace_back("air.gusts has no effect without air.drag or air.surface. Add one of them.");
+    }
   }
 
   void check_penalty() {

@@ -2,6 +2,7 @@
 
 #include "base/format.h"
 #include "dynamics/contact/penalty_contact.h"
+#include "dynamics/forces/surface_air_force.h"
 #include "network/model/pin_schedule.h"
 #include "simulation/step/network_forces.h"
 
@@ -23,6 +24,11 @@ double step_for_penalty(const IntegratorSettings& settings, const SpectralBounds
 
 bool grows_transversally(const IntegratorSettings& integrator, const SpectralBounds& bounds) {
   return std::holds_alternative<ExplicitEulerSettings>(integrator) && bounds.elastic > 0.0 && bounds.least_drag == 0.0;
+}
+
+/// With steps of any length.
+SurfaceAirForce surface_air(const SpringNetwork& network, const SimulatorSettings& settings) {
+  return {network, settings.air_surface, settings.wind, settings.gravity.norm(), 0.0};
 }
 
 /// The elements of all forces, and the force that alone would permit the smallest step.
@@ -63,6 +69,7 @@ SpectralBounds bounds_of(const SpringNetwork& network, const SimulatorSettings& 
                          const std::vector<std::shared_ptr<Force>>& external) {
   StepElements elements(network, settings.integrator);
   for (const auto& force : network_forces(network, settings)) elements.add(*force);
+  if (acts_on_faces(network, settings)) elements.add(surface_air(network, settings));
   const bool penalty = has_obstacles && settings.contact.response == ContactSettings::Response::penalty;
   if (penalty) {
     std::vector<LinearElement> anchors;
@@ -81,6 +88,19 @@ SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSe
                                  const std::vector<std::shared_ptr<Force>>& external) {
   const bool change = !network.later_pins.empty() || !std::ranges::all_of(network.pins, &Pin::holds_always);
   return bounds_of(change ? freest(network) : network, settings, has_obstacles, external);
+}
+
+bool acts_on_faces(const SpringNetwork& network, const SimulatorSettings& settings) {
+  return !settings.air_surface.is_zero() && has_triangles(network);
+}
+
+double steady_acceleration(const SpringNetwork& network, const SimulatorSettings& settings) {
+  double drag = 0.0;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    drag = std::max(drag, settings.air_drag * network.drag_areas[i] * network.inverse_masses[i]);
+  }
+  const double of_surfaces = acts_on_faces(network, settings) ? surface_air(network, settings).largest_acceleration() : 0.0;
+  return settings.gravity.norm() + drag * settings.wind.max_speed() + of_surfaces;
 }
 
 LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {

@@ -17,6 +17,12 @@ namespace sprung {
 [[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles,
                                                const std::vector<std::shared_ptr<Force>>& external = {});
 
+/// Whether the air acts on faces.
+[[nodiscard]] bool acts_on_faces(const SpringNetwork& network, const SimulatorSettings& settings);
+
+/// An upper bound of the acceleration [m/s^2] that gravity and wind give to particles at rest.
+[[nodiscard]] double steady_acceleration(const SpringNetwork& network, const SimulatorSettings& settings);
+
 /// Properties of the simulation that the stretch limit depends on.
 [[nodiscard]] LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
 

@@ -138,7 +138,12 @@ export class VectorField extends BaseField {
 
   protected refresh(scene: SceneJson): void {
     const value = valueAt(scene, this.path);
-    this.inputs.forEach((input, d) => (input.value = Array.isArray(value) ? numberText(value[d]) : ''));
+    const isKeyframed = value !== null && typeof value === 'object' && !Array.isArray(value);
+    this.inputs.forEach((input, d) => {
+      input.value = Array.isArray(value) ? numberText(value[d]) : '';
+      input.placeholder = isKeyframed ? 'keyframes' : '';
+      input.disabled = isKeyframed;
+    });
   }
 }
 

@@ -4,6 +4,7 @@
 #include "dynamics/forces/bending_angle_force.h"
 #include "dynamics/forces/gravity_and_drag.h"
 #include "dynamics/forces/spring_force.h"
+#include "dynamics/forces/surface_air_force.h"
 #include "dynamics/integrators/stable_step.h"
 #include "dynamics/network_bounds.h"
 #include "dynamics/networks.h"
@@ -149,6 +150,44 @@ TEST(ForceDerivatives, OfAirAndGravityAreTheDifferencesOfTheirForces) {
   const Case gravity(network, std::in_place_type<Gravity>, Vector3(0.0, -9.81, 0.0));
   expect_near(gravity.derivatives().by_velocity, gravity.differences_by_velocity());
   expect_near(gravity.derivatives().by_position, gravity.differences_by_position());
+}
+
+/// A cloth of random shape and velocities. Faces are nearly 1 / 8 m^2, speeds some m/s.
+SpringNetwork rumpled_cloth() {
+  SpringNetwork network = make_test_cloth(3, 10.0, 0.0);
+  const SpringNetwork random = make_random_network(network.particle_count(), 0);
+  network.positions += 0.2 * random.positions;
+  network.velocities = 3.0 * random.velocities;
+  return network;
+}
+
+// A step of 1 ms leaves the force quadratic at these speeds; one of 1 s continues it linearly beyond the expected speed, that of
+// the wind, 0.5 m/s.
+TEST(ForceDerivatives, OfAirOnFacesAreTheDifferencesOfItsForceByVelocity) {
+  const SpringNetwork network = rumpled_cloth();
+  for (const SurfaceDrag& drag :
+       {SurfaceDrag{.normal = 0.8, .tangential = 0.1}, SurfaceDrag{.normal = 0.8, .tangential = 0.3, .quadratic = true},
+        SurfaceDrag{.normal = 0.1, .tangential = 0.3, .quadratic = true}}) {
+    for (const double step : {0.0, 1e-3, 1.0}) {
+      const Case air(network, std::in_place_type<SurfaceAirForce>, drag, Wind(Vector3(0.0, 0.3, 0.4)), 0.0, step);
+      const ForceDerivatives derivatives = air.derivatives();
+      expect_near(derivatives.by_velocity, air.differences_by_velocity());
+      EXPECT_TRUE(dense(derivatives.by_position).isZero(0.0));
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(derivatives.by_velocity), Eigen::EigenvaluesOnly);
+      EXPECT_LE(solver.eigenvalues().maxCoeff(), 1e-13) << "the entries are below 1";
+      EXPECT_LT(solver.eigenvalues().minCoeff(), -0.01);
+    }
+  }
+}
+
+// Faces that do not move in the air have no direction along which it flows.
+TEST(ForceDerivatives, OfStillAirOnFacesAreFinite) {
+  const SpringNetwork network = make_test_cloth(3, 10.0, 0.0);
+  const Case linear(network, std::in_place_type<SurfaceAirForce>, SurfaceDrag{.normal = 0.8, .tangential = 0.1}, Wind(), 0.0, 0.0);
+  expect_near(linear.derivatives().by_velocity, linear.differences_by_velocity());
+  const Case quadratic(network, std::in_place_type<SurfaceAirForce>, SurfaceDrag{.normal = 0.8, .quadratic = true}, Wind(), 0.0,
+                       0.0);
+  EXPECT_TRUE(dense(quadratic.derivatives().by_velocity).isZero(0.0));
 }
 
 /// A particle that penetrates the gap of a tilted floor by a tenth.

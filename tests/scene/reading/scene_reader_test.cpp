@@ -41,7 +41,15 @@ TEST(SceneReader, TimeAndSettingsArrive) {
   EXPECT_EQ(scene.step, 0.0003333333333333333);
   EXPECT_EQ(scene.settings.gravity, Vector3(0, -9.81, 0.5));
   EXPECT_EQ(scene.settings.air_drag, 0.25);
-  EXPECT_EQ(scene.settings.wind, Vector3(1, 0, -2));
+  EXPECT_EQ(scene.settings.air_surface.normal, 1.25);
+  EXPECT_EQ(scene.settings.air_surface.tangential, 0.02);
+  EXPECT_TRUE(scene.settings.air_surface.quadratic);
+  EXPECT_EQ(scene.settings.wind.mean(0.0), Vector3(1, 0, -2));
+  EXPECT_EQ(scene.settings.wind.mean(1.0), Vector3(3, 0, -1));
+  ASSERT_TRUE(scene.settings.wind.gusts());
+  EXPECT_EQ(scene.settings.wind.gusts()->speed, 3.0);
+  EXPECT_EQ(scene.settings.wind.gusts()->length, 2.5);
+  EXPECT_EQ(scene.settings.wind.gusts()->seed, 11U);
   const auto& verlet = std::get<VerletSettings>(scene.settings.integrator);
   EXPECT_EQ(verlet.damping, 0.001);
   EXPECT_EQ(verlet.damping_rate, 0.0);
@@ -286,7 +294,7 @@ TEST(SceneReader, OverridesReplaceAddAppendAndRemove) {
   EXPECT_THAT(std::get<CornersSelector>(scene.bodies[0].pins[0].where).which, ElementsAre("max_max"));
   EXPECT_EQ(scene.settings.stability, StabilityCheck::warn);
   EXPECT_EQ(std::get<NearestSelector>(scene.bodies[0].pins[1].where).point, Vector3(0, 1, 0));
-  EXPECT_EQ(scene.settings.wind, Vector3(1, 0, 0));
+  EXPECT_EQ(scene.settings.wind.velocity(Vector3(2, 3, 4), 5.0), Vector3(1, 0, 0));
   EXPECT_EQ(scene.bodies[0].mass.kind, MassScene::Kind::density);
   EXPECT_EQ(scene.bodies[0].place.position, Vector3(0, 1e-3, 0));
 }

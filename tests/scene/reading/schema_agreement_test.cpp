@@ -68,7 +68,9 @@ void collect(const Json& instance, const Json& unresolved, const std::string& po
   Json object = node;
   Keys any;
   if (!node.contains("properties") && node.contains("oneOf")) {
-    for (const Json& branch : node["oneOf"]) {
+    for (const Json& unresolved_branch : node["oneOf"]) {
+      const Json branch = resolved(unresolved_branch);
+      if (!branch.contains("properties")) continue;
       any.merge(keys_of(branch));
       if (matches_branch(branch, instance)) object = branch;
     }

@@ -71,6 +71,29 @@ TEST(UnusedSettings, APenaltyHasNoRestitutionAndOneFriction) {
   EXPECT_THAT(unused_settings({}, particles({bouncing}), {ground(bouncing)}), IsEmpty());
 }
 
+TEST(UnusedSettings, DragOfFacesNeedsFaces) {
+  const SimulatorSettings settings{.air_surface = {.normal = 1.0}};
+  EXPECT_THAT(unused_settings(settings, particles({{}}), {}),
+              ElementsAre(HasSubstr("air.surface has no effect: it acts on faces")));
+  EXPECT_THAT(unused_settings(settings, testing::cloth(2, 0.0), {}), IsEmpty());
+}
+
+TEST(UnusedSettings, QuadraticDragNeedsCoefficients) {
+  EXPECT_THAT(unused_settings({.air_surface = {.quadratic = true}}, testing::cloth(2, 0.0), {}),
+              ElementsAre(HasSubstr("air.surface has no effect: its coefficients are 0")));
+  EXPECT_THAT(unused_settings({.air_surface = {.tangential = 0.1, .quadratic = true}}, testing::cloth(2, 0.0), {}), IsEmpty());
+}
+
+TEST(UnusedSettings, WindAndGustsNeedDrag) {
+  const Wind wind({{0.0, Vector3::UnitX()}}, Gusts{.speed = 1.0});
+  EXPECT_THAT(unused_settings({.wind = wind}, testing::cloth(2, 0.0), {}),
+              ElementsAre(HasSubstr("air.wind has no effect"), HasSubstr("air.gusts has no effect")));
+  EXPECT_THAT(unused_settings({.wind = Wind({}, Gusts{.speed = 1.0})}, testing::cloth(2, 0.0), {}),
+              ElementsAre(HasSubstr("air.gusts has no effect without air.drag or air.surface")));
+  EXPECT_THAT(unused_settings({.air_drag = 0.1, .wind = wind}, testing::cloth(2, 0.0), {}), IsEmpty());
+  EXPECT_THAT(unused_settings({.air_surface = {.normal = 1.0}, .wind = wind}, testing::cloth(2, 0.0), {}), IsEmpty());
+}
+
 TEST(UnusedSettings, FrictionNeedsBothSides) {
   EXPECT_THAT(unused_settings({}, particles({rough(0.5)}), {ground()}),
               ElementsAre(HasSubstr("body \"a\": friction has no effect")));
