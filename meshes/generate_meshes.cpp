@@ -18,6 +18,10 @@ using namespace sprung::meshes;
 
 std::string obj_of(const PolygonMesh& mesh) { return "# metres, Y up\n" + obj_text(mesh.vertices, mesh.faces, mesh.lines); }
 
+PolygonMesh polygons_of(const TriangleMesh& mesh) {
+  return {.vertices = mesh.vertices, .faces = to_polygons(mesh.triangles), .lines = Edges(2, 0)};
+}
+
 // The terrain lies in the unit square; its nodes stretch it to 4 m x 4 m, turn it by a quarter and centre it.
 std::string terrain_text() {
   const Place outer{"[1, 1, 1]", "[0, 0, 0, 1]", "[-2, 0, 2]"};
@@ -27,8 +31,9 @@ std::string terrain_text() {
 
 std::vector<std::pair<std::string, std::string>> all_files() {
   std::vector<std::pair<std::string, std::string>> files{
-      {"stairs.obj", obj_of(stairs())}, {"funnel.stl", stl_bytes(funnel())}, {"torus.ply", ply_bytes(torus())},
-      {"terrain.gltf", terrain_text()}, {"spike.off", off_text(spike())},    {"thin_sheet.obj", obj_of(thin_sheet())}};
+      {"stairs.obj", obj_of(stairs())},         {"funnel.stl", stl_bytes(funnel())}, {"torus.ply", ply_bytes(torus())},
+      {"terrain.gltf", terrain_text()},         {"spike.off", off_text(spike())},    {"thin_sheet.obj", obj_of(thin_sheet())},
+      {"ball.obj", obj_of(polygons_of(ball()))}};
   constexpr int kWaveFrames = 8;
   for (int frame = 0; frame < kWaveFrames; ++frame) {
     files.emplace_back("waves/waves." + std::to_string(frame + 1) + ".obj",

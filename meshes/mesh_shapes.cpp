@@ -76,6 +76,18 @@ TriangleMesh revolve(const std::vector<ProfilePoint>& profile, Index segments) {
   return {to_points(positions), to_triangles(triangles)};
 }
 
+TriangleMesh ball() {
+  constexpr double kRadius = 0.1;
+  constexpr Index kRows = 16;
+  std::vector<ProfilePoint> arc;
+  for (Index i = 0; i <= kRows; ++i) {
+    const double angle = std::numbers::pi * (static_cast<double>(i) / kRows - 0.5);
+    const bool pole = i == 0 || i == kRows;
+    arc.push_back({pole ? 0.0 : kRadius * std::cos(angle), kRadius * std::sin(angle)});
+  }
+  return revolve(arc, 24);
+}
+
 TriangleMesh torus() {
   constexpr double kRing = 0.5;
   constexpr double kTube = 0.15;

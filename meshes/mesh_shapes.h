@@ -18,6 +18,9 @@ struct ProfilePoint {
 /// up.
 [[nodiscard]] TriangleMesh revolve(const std::vector<ProfilePoint>& profile, Index segments);
 
+/// A sphere.
+[[nodiscard]] TriangleMesh ball();
+
 /// A closed ring of tube.
 [[nodiscard]] TriangleMesh torus();
 

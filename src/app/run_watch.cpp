@@ -54,13 +54,14 @@ RunWatch::RunWatch(const Simulator& simulator, RunOutput& output, bool quiet)
     : simulator_(simulator),
       output_(output),
       quiet_(quiet),
-      energy_(simulator.network(), simulator.settings(), simulator.environment().obstacles()) {}
+      energy_(simulator.network(), simulator.settings(), simulator.environment().obstacles(), {}) {}
 
 void RunWatch::note_frame(const FrameDiagnostics& frame) {
   note_infeasible(frame);
   note_inverted(frame);
   note_stretch(frame);
   note_handovers();
+  note_broken(frame);
   note_truncated(frame);
   energy_.note_frame(frame.frame, {.kinetic = frame.kinetic_energy,
                                    .elastic = frame.elastic_energy,
@@ -127,6 +128,21 @@ void RunWatch::note_handovers() {
   if (back.empty()) return;
   print_message(
       fmt::format("newton holds the stretch limit of {} no better; gauss_seidel goes on", names_text("body", "bodies", back)));
+}
+
+// What breaks is asked for, so it is no warning.
+void RunWatch::note_broken(const FrameDiagnostics& frame) {
+  std::map<std::string, std::size_t> counts;  // of links that broke since the frame before, by attachment
+  std::int64_t last = last_break_;
+  for (const BrokenLink& link : simulator_.broken_links()) {
+    if (link.step <= last_break_) continue;
+    ++counts[link.attachment];
+    last = std::max(last, link.step);
+  }
+  last_break_ = last;
+  if (quiet_) return;
+  for (const auto& [name, count] : counts)
+    print_message(fmt::format("frame {}: {} broke ({})", frame.frame, name, counted(count, "link")));
 }
 
 void RunWatch::note_truncated(const FrameDiagnostics& frame) {

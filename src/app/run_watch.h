@@ -15,8 +15,8 @@ class RunWatch {
   /// A quiet run prints warnings, but no messages. Keeps references to the simulator and the output.
   RunWatch(const Simulator& simulator, RunOutput& output, bool quiet);
 
-  /// Call it after each frame. Reports the first infeasible vertices, and each body whose stretch limit is handed over to another
-  /// solver. Throws FileError.
+  /// Call it after each frame. Reports attachments that broke, the first infeasible vertices, and each body whose stretch limit is
+  /// handed over to another solver. Throws FileError.
   void note_frame(const FrameDiagnostics& frame);
 
   /// Call it after the last frame. Warns if the stretch limit was missed, if a thickness is too small for the step, and if the
@@ -29,6 +29,7 @@ class RunWatch {
   void note_inverted(const FrameDiagnostics& frame);
   void note_stretch(const FrameDiagnostics& frame);
   void note_handovers();
+  void note_broken(const FrameDiagnostics& frame);
   void note_truncated(const FrameDiagnostics& frame);
   void warn_of_missed_limit();
   void warn_of_thin_bodies();
@@ -49,6 +50,7 @@ class RunWatch {
   int frames_ = 0;
   int truncated_frames_ = 0;       ///< frames in which truncation stopped many particles
   std::vector<bool> handed_over_;  ///< by body
+  std::int64_t last_break_ = 0;    ///< number of the step after which a rod or spring broke last
 };
 
 }  // namespace sprung

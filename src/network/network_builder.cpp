@@ -105,6 +105,8 @@ void NetworkBuilder::pin(std::vector<Index> particles, const Motion& motion, con
 
 void NetworkBuilder::add_pin(Pin pin) { pins_.push_back(std::move(pin)); }
 
+void NetworkBuilder::add_attachment(Attachment attachment) { attachments_.push_back(std::move(attachment)); }
+
 NetworkBuilder::Draft& NetworkBuilder::open_draft() {
   if (drafts_.empty() || drafts_.back().whole) begin_body("network");
   return drafts_.back();
@@ -156,11 +158,14 @@ SpringNetwork NetworkBuilder::build() const {
   if (particle_count_ == 0) problems.add("particles", "0", "must be at least 1", "add a particle or a body");
   const std::vector<Draft> drafts = complete_drafts(problems);
   std::map<std::string, int> names;
+  std::vector<Index> begins;
   for (const Draft& draft : drafts) {
+    begins.push_back(draft.first_particle);
     require_unique("bodies." + draft.name, draft.name, names, problems);
     check_body("bodies." + draft.name, draft.shape, draft.material, problems);
   }
   check_pins(pins_, particle_count_, problems);
+  check_attachments(attachments_, particle_count_, begins, problems);
   problems.throw_if_any();
 
   SpringNetwork network = network_of_size(particle_count_);
@@ -187,6 +192,7 @@ SpringNetwork NetworkBuilder::build() const {
   for (const Pin& pin : network.pins) {
     for (const Index particle : pin.particles) network.velocities.col(particle).setZero();
   }
+  network.attachments = attachments_;
   for (std::size_t b = 0; b < drafts.size(); ++b) damp_by_ratio(drafts[b].shape.damping_ratios, network.bodies[b], network);
   return network;
 }

@@ -39,10 +39,14 @@ class NetworkBuilder {
   /// Adds a pin that follows an obstacle, that begins or ends after time 0, or that has a name.
   void add_pin(Pin pin);
 
+  /// Adds rods or springs between bodies, or between a body and an obstacle.
+  void add_attachment(Attachment attachment);
+
   /// The network. Throws InputError that names every problem: a network or body without particles, bodies of one name, masses that
   /// are not positive, springs and angle bends that join a particle to itself, to another body or to none, negative or non-finite
   /// quantities, contact materials out of range, pins of particles that do not exist, particles
-  /// pinned twice at one time, and pins that end before they begin.
+  /// pinned twice at one time, pins and attachments that end before they begin, and attachments without ends, of a particle to
+  /// itself, or with quantities out of range.
   [[nodiscard]] SpringNetwork build() const;
 
  private:
@@ -65,6 +69,7 @@ class NetworkBuilder {
   Springs springs_;         ///< those added one by one, in the network's numbering
   AngleBends angle_bends_;  ///< likewise, without lengths
   std::vector<Pin> pins_;
+  std::vector<Attachment> attachments_;
   Index particle_count_ = 0;
 };
 

@@ -134,13 +134,76 @@ bool same_sizes(const BodyShape& shape) {
          (springs.laws.empty() || springs.laws.size() == count) && same_sizes(shape.angle_bends);
 }
 
-void check_times(const std::string& key, const Pin& pin, ProblemList& problems) {
-  if (!std::isfinite(pin.from) || pin.from < 0.0)
-    problems.add(key + ".from", format_number(pin.from), "must be finite and not negative", "give a time in s");
-  if (!(pin.until > pin.from))
-    problems.add(key + ".until", format_number(pin.until), "must be later than from, " + format_number(pin.from) + " s",
-                 "from is when the pin begins, until when it ends");
+/// Of a pin or an attachment.
+void check_times(const std::string& key, double from, double until, ProblemList& problems) {
+  if (!std::isfinite(from) || from < 0.0)
+    problems.add(key + ".from", format_number(from), "must be finite and not negative", "give a time in s");
+  if (!(until > from))
+    problems.add(key + ".until", format_number(until), "must be later than from, " + format_number(from) + " s",
+                 "from is when it begins, until when it ends");
 }
+
+/// The rules of the ends of one attachment.
+class EndCheck {
+ public:
+  EndCheck(std::string key, const Attachment& attachment, Index particle_count, const std::vector<Index>& body_begins,
+           ProblemList& problems)
+      : key_(std::move(key)),
+        attachment_(attachment),
+        particle_count_(particle_count),
+        body_begins_(body_begins),
+        problems_(problems) {}
+
+  void check() {
+    check_particles(attachment_.particles, ".first");
+    std::visit([&](const auto& second) { check_second(second); }, attachment_.second);
+  }
+
+ private:
+  void check_particles(const std::vector<Index>& particles, const char* end) {
+    if (particles.empty())
+      problems_.add(key_ + end, "", "must contain at least one particle", "name a particle or leave the attachment out");
+    for (const Index particle : particles) {
+      if (particle >= 0 && particle < particle_count_) continue;
+      problems_.add(key_ + end, "particle " + std::to_string(particle),
+                    "must be a particle of the network, which has " + std::to_string(particle_count_),
+                    "use a number that add_particle or add_body returned");
+    }
+  }
+
+  void check_second(const ParticleEnds& ends) {
+    check_particles(ends.particles, ".second");
+    for (const Index particle : attachment_.particles) {
+      if (std::ranges::find(ends.particles, particle) == ends.particles.end()) continue;
+      problems_.add(key_, "particle " + std::to_string(particle), "must have two different ends",
+                    "leave the particle out of one of them");
+      return;
+    }
+  }
+
+  void check_second(const SurfaceEnd& end) {
+    const std::size_t bodies = body_begins_.size();
+    if (end.body < 0 || static_cast<std::size_t>(end.body) >= bodies) {
+      problems_.add(key_ + ".second.body", std::to_string(end.body),
+                    "must be the number of a body; there are " + std::to_string(bodies), "count bodies from 0");
+      return;
+    }
+    const auto next = body_begins_.begin() + end.body + 1;
+    const Index last = next != body_begins_.end() ? *next : particle_count_;
+    const auto is_own = [&](Index particle) { return particle >= *(next - 1) && particle < last; };
+    if (std::ranges::any_of(attachment_.particles, is_own))
+      problems_.add(key_ + ".second.body", std::to_string(end.body), "must be another body than that of the first ends",
+                    "name the particles at the second end");
+  }
+
+  void check_second(const ObstacleEnd& /*end*/) {}  // the network does not know the obstacles
+
+  std::string key_;
+  const Attachment& attachment_;
+  Index particle_count_;
+  const std::vector<Index>& body_begins_;
+  ProblemList& problems_;
+};
 
 }  // namespace
 
@@ -173,7 +236,7 @@ void check_pins(const std::vector<Pin>& pins, Index particle_count, ProblemList&
     if (pin.particles.empty()) problems.add(key, "", "must contain at least one particle", "name a particle or leave the pin out");
     if (!pin.origin.allFinite()) problems.add(key + ".origin", vector_text(pin.origin), "must be finite", "give a point in m");
     check_motion(key + ".motion", pin.motion, problems);
-    check_times(key, pin, problems);
+    check_times(key, pin.from, pin.until, problems);
     for (const Index particle : pin.particles) {
       if (particle < 0 || particle >= particle_count) {
         problems.add(key, "particle " + std::to_string(particle),
@@ -186,6 +249,21 @@ void check_pins(const std::vector<Pin>& pins, Index particle_count, ProblemList&
         problems.add(key, "particle " + std::to_string(particle), "must be pinned only once", "leave it out of one of its pins");
       others.push_back(&pin);
     }
+  }
+}
+
+void check_attachments(const std::vector<Attachment>& attachments, Index particle_count, const std::vector<Index>& body_begins,
+                       ProblemList& problems) {
+  for (std::size_t a = 0; a < attachments.size(); ++a) {
+    const Attachment& attachment = attachments[a];
+    const std::string key = entry_key("attachments", a);
+    EndCheck(key, attachment, particle_count, body_begins, problems).check();
+    if (attachment.stiffness) problems.require_not_negative(key + ".stiffness", *attachment.stiffness, "give k_s in N/m");
+    problems.require_not_negative(key + ".damping", attachment.damping, "give k_d in N s/m");
+    if (attachment.rest_length) problems.require_not_negative(key + ".rest_length", *attachment.rest_length, "give a length in m");
+    if (!(attachment.break_force > 0.0))
+      problems.add(key + ".break_force", format_number(attachment.break_force), "must be greater than 0", "give a force in N");
+    check_times(key, attachment.from, attachment.until, problems);
   }
 }
 

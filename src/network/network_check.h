@@ -1,4 +1,4 @@
-// The rules for bodies, springs and pins of a network. Internal to network/.
+// The rules for bodies, springs, pins and attachments of a network. Internal to network/.
 #pragma once
 
 #include "base/problem_list.h"
@@ -16,5 +16,9 @@ void check_body(const std::string& key, const BodyShape& shape, const ContactMat
 
 /// Adds the problems of the pins of a network with this number of particles.
 void check_pins(const std::vector<Pin>& pins, Index particle_count, ProblemList& problems);
+
+/// Adds the problems of the attachments of a network with this number of particles, whose bodies begin at `body_begins`.
+void check_attachments(const std::vector<Attachment>& attachments, Index particle_count, const std::vector<Index>& body_begins,
+                       ProblemList& problems);
 
 }  // namespace sprung

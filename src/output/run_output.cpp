@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <optional>
 #include <iterator>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -63,6 +63,15 @@ void list_torn(const Simulator& simulator, int frame, std::vector<TornFaces>& to
   }
 }
 
+std::vector<BrokenAttachment> broken_attachments(const Simulator& simulator) {
+  std::vector<BrokenAttachment> all;
+  for (const BrokenLink& link : simulator.broken_links()) {
+    const Body& body = simulator.network().body_of(link.particle);
+    all.push_back({.name = link.attachment, .body = body.name, .particle = link.particle - body.first_particle, .step = link.step});
+  }
+  return all;
+}
+
 }  // namespace
 
 RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator)
@@ -91,6 +100,7 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
   progress_.limit_solves += diagnostics.limit_solves;
   progress_.newton_from = handed_over(simulator);
   list_torn(simulator, progress_.frames_written, progress_.torn_faces);
+  progress_.broken_attachments = broken_attachments(simulator);
   try {
     for (const ObjSequence& sequence : sequences_) {
       if (before.frames_written > 0 && !sequence.changes()) continue;

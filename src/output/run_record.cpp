@@ -22,6 +22,10 @@ bool is_run_record(const Json& json) {
 
 }  // namespace
 
+std::int64_t frame_of_step(std::int64_t step, std::int64_t steps_per_frame) {
+  return 1 + (step + steps_per_frame - 1) / steps_per_frame;
+}
+
 struct RunRecord::Document {
   Json json;
 };
@@ -46,6 +50,7 @@ RunRecord::RunRecord(const RunFacts& facts, double step, const std::vector<std::
                      {"newton_from", Json::array()},
                      {"limit_solves", 0},
                      {"torn_faces", Json::array()},
+                     {"broken_attachments", Json::array()},
                      {"warnings", facts.warnings},
                      {"files", files},
                      {"scene", facts.scene.empty() ? Json() : Json::parse(facts.scene)}};
@@ -71,6 +76,14 @@ std::string RunRecord::text(const RunProgress& progress) const {
   json["torn_faces"] = Json::array();
   for (const TornFaces& torn : progress.torn_faces) {
     json["torn_faces"].push_back({{"body", torn.body}, {"frame", torn.frame}, {"faces", torn.faces}});
+  }
+  json["broken_attachments"] = Json::array();
+  for (const BrokenAttachment& broken : progress.broken_attachments) {
+    json["broken_attachments"].push_back({{"name", broken.name},
+                                          {"body", broken.body},
+                                          {"particle", broken.particle},
+                                          {"step", broken.step},
+                                          {"frame", frame_of_step(broken.step, json["steps_per_frame"].get<std::int64_t>())}});
   }
   json["wall_seconds"] = progress.wall_seconds;
   // A warning may quote a file name that is not UTF-8.

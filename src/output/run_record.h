@@ -1,6 +1,7 @@
 // run.json: scene, settings, progress and outcome of a run.
 #pragma once
 
+#include "base/types.h"
 #include "geometry/obj_source/obj_source.h"
 
 #include <cstdint>
@@ -43,6 +44,17 @@ struct TornFaces {
   std::vector<Index> faces;  ///< counted from 0 in the first frame, ascending
 };
 
+/// A rod or spring of an attachment that broke.
+struct BrokenAttachment {
+  std::string name;        ///< of the attachment
+  std::string body;        ///< at its first end
+  Index particle = kNone;  ///< of the body
+  std::int64_t step = 0;   ///< after which it broke
+};
+
+/// The frame that shows a state first, which a step of this number reached. Frame 1 is the state at time 0.
+[[nodiscard]] std::int64_t frame_of_step(std::int64_t step, std::int64_t steps_per_frame);
+
 /// Progress of a run.
 struct RunProgress {
   std::string outcome = "running";  ///< `running`, `done`, `interrupted`, `diverged: ...`
@@ -53,6 +65,7 @@ struct RunProgress {
   std::int64_t limit_solves = 0;  ///< linear systems solved for the stretch limit
   std::vector<NewtonFrom> newton_from{};
   std::vector<TornFaces> torn_faces{};
+  std::vector<BrokenAttachment> broken_attachments{};
   double wall_seconds = 0.0;  ///< since the output was opened [s], including writing
 };
 

@@ -48,7 +48,7 @@ double end_of_motions(const SpringNetwork& network, const SimulatorSettings& set
   for (const Obstacle& obstacle : obstacles) {
     end = std::max(end, obstacle.deforms() ? std::numeric_limits<double>::infinity() : obstacle.motion.end());
   }
-  return end;
+  return std::max(end, end_of_changes(network.attachments, step));
 }
 
 }  // namespace
@@ -97,6 +97,12 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   if (std::ranges::any_of(network.bodies, [](const Body& body) { return body.volume_factor != 0.0; })) {
     constraints.add(std::make_unique<EnclosedVolume>(network));
   }
+  if (!network.attachments.empty()) {
+    const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
+    attachments.emplace(network, environment, settings.step, implicit);
+    forces.push_back(std::make_unique<SharedForce>(attachments->springs()));
+    constraints.add(attachments->rods());
+  }
   for (const std::shared_ptr<Force>& force : external.forces) forces.push_back(std::make_unique<SharedForce>(force));
   for (const std::shared_ptr<Constraint>& constraint : external.constraints) constraints.add(constraint);
   for (const auto& more : {unused_settings(settings, network, environment.obstacles()), weak_springs(settings, network)}) {
@@ -113,8 +119,10 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   state.x = std::move(start.positions);
   warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
   if (constraints.violation(state.x) > 1.0) constraints.correct_positions(state, dt());
+  if (attachments) attachments->update(state);
   integrator->start(state, forces, dt());
   energy_watch.note(0, energies());
+  if (attachments) energy_watch.note_pin(attachments->winch_speed(state));
   begin_recording();
 }
 
@@ -139,6 +147,7 @@ StepReport Simulator::Implementation::step() {
     }
     return {.stretch_excess = constraints.limit() != nullptr ? constraints.limit()->excess(state.x) : 0.0};
   }
+  update_attachments();
   state.impulses_asleep = state.impulses;
   if (symmetry && constraints.contacts().can_collide() && symmetry->may_push(state.x)) {
     symmetry->push(contact_normals(), dt(), *integrator, state);
@@ -156,8 +165,17 @@ StepReport Simulator::Implementation::step() {
   let_yield(network.springs, state.x);
   if (refinement) choose_substeps(report);
   if (const StretchLimit* limit = constraints.limit()) note_missed(network, *limit, report.stretch_excess, state);
+  if (attachments && attachments->break_overloaded(state)) integrator->resume(state, forces, dt());
   if (report.infeasible == 0 && may_sleep() && rest.rests(time(), state)) fall_asleep();
   return report;
+}
+
+/// An implicit scheme finds the pattern of its matrix anew. Springs that engage at another length than theirs bring energy.
+void Simulator::Implementation::update_attachments() {
+  if (!attachments || !attachments->update(state)) return;
+  integrator->resume(state, forces, dt());
+  energy_watch.note(0, energies());
+  energy_watch.note_pin(attachments->winch_speed(state));
 }
 
 /// External forces may change at any time. Bodies sink into a penalty for long, and are not at rest while they do.
@@ -218,6 +236,7 @@ StepReport Simulator::Implementation::make_substep() {
 
   StepReport report{.substeps = 1};
   constraints.apply(state, forces, dt(), t_end, report);
+  if (attachments) attachments->note_substep(dt(), t_end, state);
   if (++state.substep == state.substeps) {
     ++state.step;
     state.substep = 0;
@@ -280,7 +299,6 @@ void Simulator::Implementation::step_length_changed() {
 double Simulator::Implementation::air_step() const {
   return std::holds_alternative<ImplicitEulerSettings>(settings.integrator) ? 0.0 : dt();
 }
-
 
 std::vector<ContactNormal> Simulator::Implementation::contact_normals() const {
   return penalty != nullptr ? penalty->normals(state.x) : constraints.contacts().normals();
@@ -386,6 +404,14 @@ void Simulator::reset_forces() {
 std::string Simulator::stretch_solver() const {
   const StretchLimit* limit = implementation_->constraints.limit();
   return limit != nullptr ? limit->chosen_solver() : std::string();
+}
+
+std::vector<BrokenLink> Simulator::broken_links() const {
+  std::vector<BrokenLink> broken;
+  for (const Link& link : state().links) {
+    if (link.broken) broken.push_back({network().attachments[link.attachment].name, link.first, *link.broken});
+  }
+  return broken;
 }
 
 std::vector<Index> Simulator::contact_particles() const { return implementation_->contacts(); }

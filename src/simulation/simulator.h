@@ -18,6 +18,13 @@
 
 namespace sprung {
 
+/// A rod or spring that broke.
+struct BrokenLink {
+  std::string attachment;  ///< its name
+  Index particle = kNone;  ///< at its first end
+  std::int64_t step = 0;   ///< number of the step after which it broke
+};
+
 class Simulator {
  public:
   /// Throws InputError if a setting is out of its bounds, if the step is not positive or beyond the largest stable one (with
@@ -106,12 +113,15 @@ class Simulator {
   /// These particles, ascending.
   [[nodiscard]] std::vector<Index> contact_particles() const;
 
+  /// The rods and springs of attachments that broke so far, in the order of the attachments.
+  [[nodiscard]] std::vector<BrokenLink> broken_links() const;
+
   /// Throws StepError if a spring is overstretched or the energy exploded. step() checks large networks only every few steps.
   void check() const;
 
-  /// Elastic energy [J]: sum of 1/2 k_s (|s| - d)^2, the energy of angle bends, -p V of bodies with a pressure, and the energies of
-  /// added forces. Potential energy of gravity [J]: sum of -m g . x. Energy of contact [J]: that of penalty springs; 0 with
-  /// projection.
+  /// Elastic energy [J]: sum of 1/2 k_s (|s| - d)^2 of springs and attachments, the energy of angle bends, -p V of bodies with a
+  /// pressure, and the energies of added forces. Potential energy of gravity [J]: sum of -m g . x. Energy of contact [J]: that of
+  /// penalty springs; 0 with projection.
   [[nodiscard]] double elastic_energy() const;
   [[nodiscard]] double gravity_energy() const;
   [[nodiscard]] double contact_energy() const;

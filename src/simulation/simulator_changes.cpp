@@ -1,6 +1,7 @@
 #include "base/error.h"
 #include "base/format.h"
 #include "base/problem_list.h"
+#include "dynamics/attachments/engagement.h"
 #include "network/model/pin_schedule.h"
 #include "network/model/spring_failure.h"
 #include "simulation/simulator_implementation.h"
@@ -118,6 +119,8 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   }
   constraints.roll_back(before.constraints.permitted_crossings());
   environment.set_interval(time(), time());
+  drop_unknown_links(network, state);
+  if (attachments) attachments->take(state, time());
   if (excess_of(constraints, state.x) > excess_of(before.constraints, state.x) ||
       constraints.violation(state.x) > std::max(1.0, before.constraints.violation(state.x))) {
     constraints.correct_positions(state, before.dt());

@@ -1,6 +1,7 @@
 // The members of the simulator. Internal to simulation/.
 #pragma once
 
+#include "dynamics/attachments/attachments.h"
 #include "dynamics/contact/penalty_contact.h"
 #include "dynamics/forces/surface_air_force.h"
 #include "simulation/monitoring/divergence.h"
@@ -73,6 +74,7 @@ struct Simulator::Implementation {
   void record_gain(Index particle, const Vector3& velocity_before);
   void begin_recording();
   bool take_pins(const Implementation& before);
+  void update_attachments();
   [[nodiscard]] double energy(EnergyKind kind) const { return energy_of(forces, kind, state.x); }
   [[nodiscard]] Energies energies() const;
   [[nodiscard]] std::vector<ContactNormal> contact_normals() const;
@@ -93,6 +95,7 @@ struct Simulator::Implementation {
   Forces forces;
   SurfaceAirForce* surface_air = nullptr;  ///< null unless the air acts on faces
   PenaltyContact* penalty = nullptr;       ///< null unless contact is by penalty
+  std::optional<Attachments> attachments;  ///< none without attachments in the network
   std::unique_ptr<Integrator> integrator;
   StepConstraints constraints;
   PinPaths pin_paths;

@@ -51,6 +51,7 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"dynamics/forces", {"numerics", "air"}},
     {"dynamics/integrators", {"numerics", "forces"}},
     {"dynamics/constraints", {}},
+    {"dynamics/attachments", {"forces", "constraints"}},
     {"dynamics/contact", {"forces", "integrators"}},
     {"dynamics/tethers", {"numerics"}},
     {"dynamics/stretch_newton", {"numerics", "tethers"}},

@@ -159,7 +159,18 @@ inline constexpr const char* kFullScene = R"({
     "egg": { "shape": { "type": "ellipsoid", "radii": [1, 2, 3] } },
     "heart": { "shape": { "type": "sequence", "files": ["b.obj", "a.obj"], "frame_rate": 24, "start": -0.5, "loop": true } },
     "lung": { "shape": { "type": "sequence", "files": "breath/lung.*.obj" } }
-  }
+  },
+  "attachments": [
+    { "first": { "body": "zebra", "at": "corner", "which": ["min_max"] }, "second": { "body": "rope", "nearest": [0, 2, 0] },
+      "stiffness": 500, "damping": 0.5, "rest_length": 0, "break_force": 40, "from": 0.5, "until": 3 },
+    { "first": { "body": "rope", "indices": [2, 3] }, "second": { "body": "jelly" } },
+    { "first": { "body": "shirt", "group": "cuff" }, "second": { "obstacle": "heart" }, "rest_length": 0.1 },
+    { "first": { "body": "jelly", "box": [[0, 0, 0], [1, 1, 1]] }, "second": { "body": "shirt", "group": "hem" } },
+    { "first": { "body": "rope", "nearest": [0, 0, 0] }, "second": { "body": "rope", "sphere": [[1, 0, 0], 0.1] } },
+    { "first": { "body": "cow", "sphere": [[1, 0, 0], 0.1] }, "second": { "body": "rope", "at": "corner", "which": ["to"] } },
+    { "first": { "body": "rope", "indices": [0] }, "second": { "body": "zebra", "indices": [3] } },
+    { "first": { "body": "rope", "indices": [0] }, "second": { "body": "zebra", "box": [[0, 0, 0], [1, 1, 1]] } }
+  ]
 })";
 
 }  // namespace sprung

@@ -24,6 +24,8 @@ void Force::add_derivatives(const Kinematics&, ForceDerivatives&) const {}
 
 void Force::append_elements(std::vector<LinearElement>&) const {}
 
+void Force::note_solution(const Points&) {}
+
 double Force::energy(const Points&) const { return 0.0; }
 
 EnergyKind Force::energy_kind() const { return EnergyKind::elastic; }

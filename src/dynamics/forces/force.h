@@ -69,6 +69,10 @@ class Force {
   /// Default: none, for a force that bounds no step.
   virtual void append_elements(std::vector<LinearElement>& elements) const;
 
+  /// Implicit schemes call it with the positions [m], 3 x n, that solve the linear system of the last `add_derivatives`: the force
+  /// in the step was that at those derivatives plus the derivatives times the displacements since. Default: does nothing.
+  virtual void note_solution(const Points& positions);
+
   /// Potential energy [J]. Default: 0, for a force without a potential.
   [[nodiscard]] virtual double energy(const Points& positions) const;
 

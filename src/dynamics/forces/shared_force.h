@@ -23,6 +23,7 @@ class SharedForce final : public Force {
     force_->add_derivatives(at, derivatives);
   }
   void append_elements(std::vector<LinearElement>& elements) const override { force_->append_elements(elements); }
+  void note_solution(const Points& positions) override { force_->note_solution(positions); }
   [[nodiscard]] double energy(const Points& positions) const override { return force_->energy(positions); }
   [[nodiscard]] EnergyKind energy_kind() const override { return force_->energy_kind(); }
   [[nodiscard]] double capacity() const override { return force_->capacity(); }

@@ -52,6 +52,11 @@ class ImplicitEuler final : public Integrator {
       state.v.col(i) += gained_.col(i);
       state.x.col(i) += dt * state.v.col(i);
     });
+    solved_ = state.x;
+    for (Index i = 0; i < network().particle_count(); ++i) {
+      if (network().is_pinned(i)) solved_.col(i) += dt * state.v.col(i);
+    }
+    for (const auto& force : forces) force->note_solution(solved_);
   }
 
   [[nodiscard]] bool responds_to_contact() const override { return true; }
@@ -82,6 +87,7 @@ class ImplicitEuler final : public Integrator {
     linear.system.solve(gained_);
     record_solution(linear.derivatives, motion.dt, state);
     for_free_particles(network(), [&](Index i) { state.x.col(i) += motion.dt * gained_.col(i); });
+    for (const auto& force : forces) force->note_solution(state.x);
     const bool changed = update_friction(motion, constrained, state);
     return update_element_friction(motion, constrained.element_contacts(), state) || changed;
   }
@@ -237,6 +243,7 @@ class ImplicitEuler final : public Integrator {
   std::optional<Linearization> alone_;    // of the forces
   std::optional<Linearization> coupled_;  // of the forces and of the last contacts between elements
   Points gained_;                         // momentum, then velocity
+  Points solved_;                         // positions that solve the linear system, pins moved along
   Points pushed_;                         // impulses of the displacements by contact in this step [N s]
   Points impulses_;                       // of contact, apart from its constraints [N s]
   std::vector<Matrix3> added_;            // to the matrix by contact

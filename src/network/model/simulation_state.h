@@ -52,6 +52,7 @@ struct SimulationState {
   bool asleep = false;          ///< steps change nothing but the time
   std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
   std::vector<PinAnchor> anchors{};    ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle
+  std::vector<Link> links{};           ///< of attachments that have engaged and not ended, by attachment; broken ones too
   RecordedImpulses impulses{};         ///< empty unless the settings ask for forces
   RecordedImpulses impulses_asleep{};  ///< that each step adds to these while asleep
 };

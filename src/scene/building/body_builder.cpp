@@ -21,10 +21,15 @@
 namespace sprung {
 namespace {
 
-bool names_groups(const BodyScene& body) {
+bool names_groups(const Scene& scene, const BodyScene& body) {
   const auto names_group = [](const auto& entry) { return std::holds_alternative<GroupSelector>(entry.where); };
+  const auto is_group_of_body = [&](const AttachmentEndScene& end) {
+    return end.body == body.name && end.where && std::holds_alternative<GroupSelector>(*end.where);
+  };
   return !body.spring_groups.empty() || std::ranges::any_of(body.pins, names_group) ||
-         std::ranges::any_of(body.point_masses, names_group);
+         std::ranges::any_of(body.point_masses, names_group) ||
+         std::ranges::any_of(scene.attachments, is_group_of_body, &AttachmentScene::first) ||
+         std::ranges::any_of(scene.attachments, is_group_of_body, &AttachmentScene::second);
 }
 
 class ShapeMaker {
@@ -89,7 +94,7 @@ class ShapeMaker {
       polygons = std::move(welded.mesh);
       source.particle_of = std::move(welded.vertex_of);
     }
-    ObjGroups groups = names_groups(body_) ? read_obj_groups(*file) : ObjGroups{};
+    ObjGroups groups = names_groups(scene_, body_) ? read_obj_groups(*file) : ObjGroups{};
     BuiltBody body{make_mesh_body(polygons, body_.springs, parts_of(groups)), std::move(source), std::move(groups)};
     fill(body.shape);
     return body;

@@ -5,6 +5,7 @@
 #include "base/machine_memory.h"
 #include "network/network_builder.h"
 #include "network/spring_pieces.h"
+#include "scene/building/attachment_resolver.h"
 #include "scene/building/body_builder.h"
 #include "scene/building/memory_check.h"
 #include "scene/building/obstacle_builder.h"
@@ -41,14 +42,15 @@ std::vector<BodyScene> valid_bodies(const Scene& scene, const TextProblems& know
   return bodies;
 }
 
-void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder, NetworkBuilder& network, ObjSources& sources,
-              std::vector<Problem>& problems) {
+void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder, NetworkBuilder& network,
+              AttachmentResolver& attachments, ObjSources& sources, std::vector<Problem>& problems) {
   auto built = build_body(scene, body, finder, problems);
   if (!built) return;
   const auto& limited = scene.limited_bodies;
   built->shape.stretch_limited = limited.empty() || std::ranges::find(limited, body.name) != limited.end();
   std::vector<Pin> pins = resolve_pins(scene, body, *built, problems);
   const Index first = network.add_body(body.name, built->shape, body.material, body.contact);
+  attachments.note_body(body, *built, first);
   if (built->source) sources[body.name] = std::make_shared<const ObjSource>(std::move(*built->source));
   for (Pin& pin : pins) {
     for (Index& particle : pin.particles) particle += first;
@@ -63,7 +65,9 @@ std::optional<SpringNetwork> build_network(const Scene& scene, const MeshFinder&
   check_memory(bodies, machine_memory(), problems);
   if (!problems.empty()) return std::nullopt;
   NetworkBuilder network;
-  for (const BodyScene& body : bodies) add_body(scene, body, finder, network, sources, problems);
+  AttachmentResolver attachments(scene, known, problems);
+  for (const BodyScene& body : bodies) add_body(scene, body, finder, network, attachments, sources, problems);
+  attachments.add_to(network);
   if (!problems.empty() || !known.only_unknown_keys) return std::nullopt;
   try {
     return network.build();

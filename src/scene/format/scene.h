@@ -131,6 +131,24 @@ struct ObstacleScene {
   ContactMaterial material;
 };
 
+/// One end of an attachment.
+struct AttachmentEndScene {
+  std::string body{};               ///< name; empty: an obstacle
+  std::optional<Selector> where{};  ///< particles of the body; none: the nearest point of its surface
+  std::string obstacle{};           ///< name of the one whose nearest point it is
+};
+
+struct AttachmentScene {
+  AttachmentEndScene first;
+  AttachmentEndScene second;
+  std::optional<double> stiffness;                               ///< [N/m]; none: rigid
+  double damping = 0.0;                                          ///< [N s/m]
+  std::optional<double> rest_length;                             ///< [m]; none: the distance at which it engages
+  double break_force = std::numeric_limits<double>::infinity();  ///< [N]
+  double from = 0.0;                                             ///< [s]
+  double until = std::numeric_limits<double>::infinity();        ///< [s]
+};
+
 struct Scene {
   std::filesystem::path file;
   double duration = 0.0;                    ///< [s]
@@ -140,7 +158,8 @@ struct Scene {
   std::vector<std::string> limited_bodies;  ///< to which the stretch limit applies; empty: to all
   std::vector<BodyScene> bodies;            ///< in the order of the file
   std::vector<ObstacleScene> obstacles;     ///< in the order of the file
-  std::string resolved;                     ///< the whole scene as JSON text, overrides applied and defaults filled in
+  std::vector<AttachmentScene> attachments;
+  std::string resolved;  ///< the whole scene as JSON text, overrides applied and defaults filled in
 };
 
 }  // namespace sprung

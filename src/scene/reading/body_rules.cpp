@@ -86,25 +86,6 @@ std::optional<BodyShapeScene> read_shape(Fields& fields) {
   }
 }
 
-/// What selectors may name in the shape; in any shape if it is invalid.
-NamedParts named_parts(const std::optional<BodyShapeScene>& shape) {
-  if (!shape) {
-    NamedParts all{.corners = {}, .groups = true};
-    for (const auto& some : {corner_names(RopeShape{}), corner_names(ClothShape{}), corner_names(SolidShape{})})
-      all.corners.insert(all.corners.end(), some.begin(), some.end());
-    return all;
-  }
-  struct Parts {
-    NamedParts operator()(const MeshFile& /*mesh*/) const { return {.corners = {}, .groups = true}; }
-    NamedParts operator()(const LatticeFile& /*lattice*/) const { return {}; }
-    NamedParts operator()(const TetrahedraFile& /*tetrahedra*/) const { return {}; }
-    NamedParts operator()(const RopeShape& rope) const { return {.corners = corner_names(rope)}; }
-    NamedParts operator()(const ClothShape& cloth) const { return {.corners = corner_names(cloth)}; }
-    NamedParts operator()(const SolidShape& solid) const { return {.corners = corner_names(solid)}; }
-  };
-  return std::visit(Parts{}, *shape);
-}
-
 MassScene read_mass(Fields& fields) {
   const auto of_body = fields.optional("mass", number(kPositive));
   const auto of_particles = fields.optional("particle_mass", number(kPositive));
@@ -361,6 +342,24 @@ BodyScene read_body(Fields& fields) {
 }
 
 }  // namespace
+
+NamedParts named_parts(const std::optional<BodyShapeScene>& shape) {
+  if (!shape) {
+    NamedParts all{.corners = {}, .groups = true};
+    for (const auto& some : {corner_names(RopeShape{}), corner_names(ClothShape{}), corner_names(SolidShape{})})
+      all.corners.insert(all.corners.end(), some.begin(), some.end());
+    return all;
+  }
+  struct Parts {
+    NamedParts operator()(const MeshFile& /*mesh*/) const { return {.corners = {}, .groups = true}; }
+    NamedParts operator()(const LatticeFile& /*lattice*/) const { return {}; }
+    NamedParts operator()(const TetrahedraFile& /*tetrahedra*/) const { return {}; }
+    NamedParts operator()(const RopeShape& rope) const { return {.corners = corner_names(rope)}; }
+    NamedParts operator()(const ClothShape& cloth) const { return {.corners = corner_names(cloth)}; }
+    NamedParts operator()(const SolidShape& solid) const { return {.corners = corner_names(solid)}; }
+  };
+  return std::visit(Parts{}, *shape);
+}
 
 Rule<BodyScene> body_rule() { return object_of<BodyScene>(read_body); }
 

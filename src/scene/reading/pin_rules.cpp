@@ -1,19 +1,7 @@
-#include "base/format.h"
 #include "scene/reading/scene_rules.h"
 
 namespace sprung {
 namespace {
-
-void read_times(Fields& fields, PinScene& pin) {
-  const auto from = fields.value("from", number(kNotNegative), 0.0);
-  const auto until = fields.optional("until", number(kNotNegative));
-  pin.from = from.value_or(pin.from);
-  pin.until = until.value_or(pin.until);
-  if (from && until && !(*until > *from)) {
-    fields.location().at("until").report(Json(*until), "must be later than from, " + format_number(*from) + " s",
-                                         "from is when the pin begins, until when it ends");
-  }
-}
 
 PinScene read_pin(Fields& fields, const NamedParts& parts) {
   PinScene pin;
@@ -26,7 +14,7 @@ PinScene read_pin(Fields& fields, const NamedParts& parts) {
     (void)fields.optional("motion", motion_rule());
     fields.one_of({"follow", "motion"});
   }
-  read_times(fields, pin);
+  read_times(fields, pin.from, pin.until);
   return pin;
 }
 

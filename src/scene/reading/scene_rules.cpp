@@ -131,6 +131,8 @@ Scene read_scene_fields(Fields& fields) {
   const auto obstacles = fields.value("obstacles", named(obstacle_rule(scene.frame_rate), true), Json::object());
   scene.obstacles = obstacles.value_or(std::vector<ObstacleScene>{});
   check_followed(scene, fields.json()["obstacles"], fields.location());
+  const auto attachment = attachment_rule(scene, fields.json()["bodies"], fields.json()["obstacles"]);
+  scene.attachments = fields.value("attachments", list_of(attachment, 0), Json::array()).value_or(std::vector<AttachmentScene>{});
   return scene;
 }
 

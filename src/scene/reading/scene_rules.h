@@ -22,8 +22,21 @@ struct NamedParts {
   bool groups = false;  ///< whether it is a mesh
 };
 
+/// What selectors may name in a body of this shape; in any shape if it is invalid.
+[[nodiscard]] NamedParts named_parts(const std::optional<BodyShapeScene>& shape);
+
 /// The one selector of an object; none if there is none or it is invalid.
 [[nodiscard]] std::optional<Selector> read_selector(Fields& fields, const NamedParts& parts);
+
+/// Whether an object has a selector.
+[[nodiscard]] bool has_selector(Fields& fields);
+
+/// The times from and until [s] of a pin or an attachment.
+void read_times(Fields& fields, double& from, double& until);
+
+/// The name of an entry of `entries`, which is "a body" or "an obstacle". Accepts any name if `entries` is no object, which is
+/// reported elsewhere.
+[[nodiscard]] Rule<std::string> name_of(const Json& entries, const std::string& entry);
 
 /// Pins and point masses of a body.
 [[nodiscard]] Rule<PinScene> pin_rule(const NamedParts& parts);
@@ -39,6 +52,9 @@ void read_air(Fields& fields, SimulatorSettings& settings);
 /// gravity, air, integrator, stretch_limit, contact, stability, output and others. Without a `stretch_limit`, the bodies that need
 /// one for their materials get it. Requires the scene's bodies.
 void read_settings(Fields& fields, Scene& scene);
+
+/// Requires the bodies of the scene, and the texts of bodies and obstacles.
+[[nodiscard]] Rule<AttachmentScene> attachment_rule(const Scene& scene, const Json& bodies, const Json& obstacles);
 
 /// The whole document.
 [[nodiscard]] Rule<Scene> scene_rule();

@@ -56,6 +56,12 @@ std::optional<Selector> read_group(Fields& fields, bool has_groups) {
 
 }  // namespace
 
+bool has_selector(Fields& fields) {
+  bool any = false;
+  for (const char* key : {"at", "indices", "nearest", "box", "sphere", "group"}) any = fields.has(key) || any;
+  return any;
+}
+
 std::optional<Selector> read_selector(Fields& fields, const NamedParts& parts) {
   std::optional<Selector> corners;
   if (fields.has("at")) corners = read_corners(fields, parts);

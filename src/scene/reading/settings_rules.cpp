@@ -1,4 +1,3 @@
-#include "scene/json/nearest_name.h"
 #include "scene/reading/scene_rules.h"
 
 #include <limits>
@@ -43,18 +42,6 @@ std::vector<SpringKind> read_kinds(Fields& fields) {
   return result;
 }
 
-/// The name of an entry of `bodies`. Any name is accepted if `bodies` is no object, which is reported elsewhere.
-Rule<std::string> name_of(const Json& bodies) {
-  return [=](Json& json, const JsonLocation& location) -> std::optional<std::string> {
-    const auto name = text()(json, location);
-    if (!name || !bodies.is_object() || bodies.contains(*name)) return name;
-    std::vector<std::string> names;
-    for (const auto& body : bodies.items()) names.push_back(body.key());
-    location.report(json, "must be the name of a body", suggestion(*name, names));
-    return std::nullopt;
-  };
-}
-
 std::vector<std::string> bodies_limited_by_materials(const Scene& scene) {
   std::vector<std::string> names;
   for (const BodyScene& body : scene.bodies) {
@@ -80,7 +67,7 @@ StretchLimitScene read_stretch_limit(Fields& fields, const Json& bodies) {
   limit.solver = static_cast<StretchLimitSettings::Solver>(solver.value_or(0));
   limit.tolerance = fields.value("tolerance", number(kNotNegative), default_tolerance(limit.max_stretch)).value_or(0.0);
   limit.tethers = fields.value("tethers", boolean(), limit.tethers).value_or(false);
-  read.bodies = fields.optional("bodies", list_of(name_of(bodies), 1)).value_or(std::vector<std::string>{});
+  read.bodies = fields.optional("bodies", list_of(name_of(bodies, "a body"), 1)).value_or(std::vector<std::string>{});
   return read;
 }
 

@@ -1,4 +1,8 @@
+#include "base/format.h"
+#include "scene/json/nearest_name.h"
 #include "scene/reading/scene_rules.h"
+
+#include <algorithm>
 
 namespace sprung {
 namespace {
@@ -61,6 +65,29 @@ ContactMaterial read_material(Fields& fields) {
   material.static_friction = static_friction.value_or(0.0);
   material.restitution = fields.value("restitution", number(kFraction), 0.0).value_or(0.0);
   return material;
+}
+
+void read_times(Fields& fields, double& from, double& until) {
+  const auto begin = fields.value("from", number(kNotNegative), 0.0);
+  const auto end = fields.optional("until", number(kNotNegative));
+  from = begin.value_or(from);
+  until = end.value_or(until);
+  if (begin && end && !(*end > *begin)) {
+    fields.location().at("until").report(Json(*end), "must be later than from, " + format_number(*begin) + " s",
+                                         "from is when it begins, until when it ends");
+  }
+}
+
+Rule<std::string> name_of(const Json& entries, const std::string& entry) {
+  std::vector<std::string> names;
+  if (!entries.is_object()) return text();
+  for (const auto& named : entries.items()) names.push_back(named.key());
+  return [=](Json& json, const JsonLocation& location) -> std::optional<std::string> {
+    const auto name = text()(json, location);
+    if (!name || std::ranges::find(names, *name) != names.end()) return name;
+    location.report(json, "must be the name of " + entry, names.empty() ? "the scene has none" : suggestion(*name, names));
+    return std::nullopt;
+  };
 }
 
 }  // namespace sprung

@@ -28,6 +28,7 @@ class Finder {
     check_air();
     if (settings_.contact.response == ContactSettings::Response::penalty) check_penalty();
     check_friction();
+    check_attachments();
     return std::move(warnings_);
   }
 
@@ -159,6 +160,39 @@ class Finder {
       if (has_friction(obstacle.material) && !bodies_rub) of_obstacles.add(obstacle.name, kFrictionOfOneSide);
     }
     add(of_obstacles);
+  }
+
+  // Contact wins over attachments.
+  void check_attachments() {
+    if (!acts_between_bodies()) return;
+    for (const Attachment& attachment : network_.attachments) {
+      if (!attachment.rest_length) continue;
+      const Body& body = network_.body_of(attachment.particles.front());
+      std::string other;
+      double gap = 0.0;
+      if (const auto* end = std::get_if<ObstacleEnd>(&attachment.second)) {
+        if (end->obstacle < 0 || static_cast<std::size_t>(end->obstacle) >= obstacles_.size()) continue;
+        const Obstacle& obstacle = obstacles_[static_cast<std::size_t>(end->obstacle)];
+        other = "obstacle \"" + obstacle.name + "\"";
+        gap = combine(body.material, obstacle.material).thickness;
+      } else {
+        const Body& second = second_body(attachment);
+        if (!may_meet(body, second)) continue;
+        other = "body \"" + second.name + "\"";
+        gap = 0.5 * (body.material.thickness + second.material.thickness);
+      }
+      if (*attachment.rest_length >= gap) continue;
+      warnings_.push_back(attachment.name + ": rest_length = " + format_number(*attachment.rest_length, 6) +
+                          " is below the gap of " + format_number(gap, 6) + " m that contact keeps between body \"" + body.name +
+                          "\" and " + other + ", so that they work against each other. Use at least " + format_number(gap, 6) +
+                          ", leave it out, or reduce the thickness.");
+    }
+  }
+
+  /// Requires a second end that is no obstacle.
+  [[nodiscard]] const Body& second_body(const Attachment& attachment) const {
+    if (const auto* end = std::get_if<SurfaceEnd>(&attachment.second)) return network_.bodies[static_cast<std::size_t>(end->body)];
+    return network_.body_of(std::get<ParticleEnds>(attachment.second).particles.front());
   }
 
   static constexpr const char* kFrictionOfOneSide =

@@ -1,6 +1,7 @@
 #include "simulation/step/step_check.h"
 
 #include "base/format.h"
+#include "dynamics/attachments/attachment_springs.h"
 #include "dynamics/contact/penalty_contact.h"
 #include "dynamics/forces/surface_air_force.h"
 #include "network/model/pin_schedule.h"
@@ -76,6 +77,8 @@ SpectralBounds bounds_of(const SpringNetwork& network, const SimulatorSettings& 
     append_penalty_elements(network, settings.contact.stiffness, settings.contact.damping, anchors);
     elements.add("penalty contact", anchors);
   }
+  const std::vector<Obstacle> none;  // which bound no step
+  if (!network.attachments.empty()) elements.add(AttachmentSprings(network, none, settings.step, false));
   for (const auto& force : external) elements.add(*force);
   SpectralBounds bounds = elements.bounds();
   if (penalty) bounds.penalty = settings.contact.stiffness * network.inverse_masses.maxCoeff();

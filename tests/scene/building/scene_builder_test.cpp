@@ -247,6 +247,45 @@ TEST(SceneBuilder, PinsKnowTheirTimesAndTheNumberOfTheObstacleThatTheyFollow) {
   EXPECT_EQ(built.network.later_pins[1].name, "banner.pins[1]");
 }
 
+constexpr const char* kLine =
+    R"(bodies.line={"shape":{"type":"rope","from":[3,0,0],"to":[4,0,0],"particles":3},"mass":1,"springs":{"structural":{"stiffness":100}}})";
+
+TEST(SceneBuilder, AttachmentsKnowTheirEnds) {
+  const SceneFolder folder;
+  const BuiltScene built = build(folder, {kLine,
+                                          R"(attachments=[
+      {"first":{"body":"line","at":"corner","which":["from","to"]},"second":{"body":"banner","box":[[-1,-1,-1],[1,0,1]]},"stiffness":50,
+       "damping":2,"rest_length":0.5,"break_force":7,"from":0.25,"until":0.5},
+      {"first":{"body":"line","indices":[1]},"second":{"body":"banner"}},
+      {"first":{"body":"banner","nearest":[9,9,0]},"second":{"obstacle":"floor"}}])"});
+  const std::vector<Attachment>& attachments = built.network.attachments;
+  ASSERT_EQ(attachments.size(), 3U);
+  EXPECT_EQ(attachments[0].name, "attachments[0]");
+  EXPECT_THAT(attachments[0].particles, ElementsAre(9, 11));
+  EXPECT_THAT(std::get<ParticleEnds>(attachments[0].second).particles, ElementsAre(0, 1, 2, 3, 4, 5));
+  EXPECT_EQ(attachments[0].stiffness, 50.0);
+  EXPECT_EQ(attachments[0].damping, 2.0);
+  EXPECT_EQ(attachments[0].rest_length, 0.5);
+  EXPECT_EQ(attachments[0].break_force, 7.0);
+  EXPECT_EQ(attachments[0].from, 0.25);
+  EXPECT_EQ(attachments[0].until, 0.5);
+  EXPECT_THAT(attachments[1].particles, ElementsAre(10));
+  EXPECT_EQ(std::get<SurfaceEnd>(attachments[1].second).body, 0);
+  EXPECT_TRUE(attachments[1].is_rigid());
+  EXPECT_THAT(attachments[2].particles, ElementsAre(8));
+  EXPECT_EQ(std::get<ObstacleEnd>(attachments[2].second).obstacle, 0);
+}
+
+TEST(SceneBuilder, AttachmentsWithoutParticlesOrWithOneAtBothEndsAreProblems) {
+  EXPECT_THAT(build_problems({R"(attachments=[
+      {"first":{"body":"banner","box":[[7,7,7],[8,8,8]]},"second":{"obstacle":"floor"}},
+      {"first":{"body":"banner","indices":[0]},"second":{"body":"banner","indices":[9]}},
+      {"first":{"body":"banner","indices":[0,4]},"second":{"body":"banner","indices":[4,5]}}])"}),
+              ElementsAre(problem("attachments[0].first.box", "contains no particle of the body"),
+                          problem("attachments[1].second.indices[0]", "the body has 9 particles"),
+                          problem("attachments[2]", "has the same particle at both ends")));
+}
+
 TEST(SceneBuilder, PinsOfLaterBodiesCountFromTheirOwnFirstParticle) {
   const SceneFolder folder;
   const BuiltScene built = build(folder, {R"(bodies.rope={"shape":{"type":"rope","from":[0,5,0],"to":[1,5,0],"particles":4},

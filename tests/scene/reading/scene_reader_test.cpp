@@ -145,6 +145,31 @@ TEST(SceneReader, PinsArrive) {
   EXPECT_EQ(std::get<GroupSelector>(scene.bodies[4].pins[0].where).name, "collar");
 }
 
+TEST(SceneReader, AttachmentsArrive) {
+  const std::vector<AttachmentScene> attachments = SceneFolder().read(kFullScene).attachments;
+  ASSERT_EQ(attachments.size(), 8U);
+  EXPECT_EQ(attachments[0].first.body, "zebra");
+  EXPECT_THAT(std::get<CornersSelector>(*attachments[0].first.where).which, ElementsAre("min_max"));
+  EXPECT_EQ(attachments[0].second.body, "rope");
+  EXPECT_EQ(std::get<NearestSelector>(*attachments[0].second.where).point, Vector3(0, 2, 0));
+  EXPECT_EQ(attachments[0].stiffness, 500.0);
+  EXPECT_EQ(attachments[0].damping, 0.5);
+  EXPECT_EQ(attachments[0].rest_length, 0.0);
+  EXPECT_EQ(attachments[0].break_force, 40.0);
+  EXPECT_EQ(attachments[0].from, 0.5);
+  EXPECT_EQ(attachments[0].until, 3.0);
+  EXPECT_EQ(attachments[1].second.body, "jelly");
+  EXPECT_FALSE(attachments[1].second.where);
+  EXPECT_FALSE(attachments[1].stiffness);
+  EXPECT_FALSE(attachments[1].rest_length);
+  EXPECT_EQ(attachments[1].break_force, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(attachments[1].from, 0.0);
+  EXPECT_EQ(attachments[1].until, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(attachments[2].second.body, "");
+  EXPECT_EQ(attachments[2].second.obstacle, "heart");
+  EXPECT_EQ(std::get<GroupSelector>(*attachments[2].first.where).name, "cuff");
+}
+
 TEST(SceneReader, PointMassesArrive) {
   const Scene scene = SceneFolder().read(kFullScene);
   const std::vector<PointMassScene>& masses = scene.bodies[0].point_masses;

@@ -149,6 +149,7 @@ const std::map<std::string, std::vector<std::string>>& rules_beyond_the_schema()
         "needs a rope, a cloth or a mesh", "needs the model spring", "is set by damping_ratio of the kind"}},
       {"a name of another object", {"must be the name of a body", "must be the name of an obstacle"}},
       {"a vector without a direction", {"must not be zero"}},
+      {"one body at both ends", {"must select particles"}},
   };
   return kRules;
 }

@@ -1,0 +1,96 @@
+#include "dynamics/attachments/attachments.h"
+
+#include "base/problem_list.h"
+#include "dynamics/attachments/engagement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace sprung {
+namespace {
+
+void check_obstacles(const std::vector<Attachment>& attachments, std::size_t count) {
+  ProblemList problems;
+  for (std::size_t a = 0; a < attachments.size(); ++a) {
+    const auto* end = std::get_if<ObstacleEnd>(&attachments[a].second);
+    if (end == nullptr || (end->obstacle >= 0 && static_cast<std::size_t>(end->obstacle) < count)) continue;
+    problems.add(entry_key("attachments", a) + ".second.obstacle", std::to_string(end->obstacle),
+                 "must be the number of an obstacle; there are " + std::to_string(count), "count obstacles from 0");
+  }
+  problems.throw_if_any();
+}
+
+}  // namespace
+
+Attachments::Attachments(const SpringNetwork& network, const Environment& environment, double step_length, bool implicit)
+    : network_(network), environment_(environment), step_length_(step_length) {
+  const std::vector<Obstacle>& obstacles = environment.obstacles();
+  check_obstacles(network.attachments, obstacles.size());
+  rods_ = std::make_shared<Rods>(network, obstacles, step_length);
+  springs_ = std::make_shared<AttachmentSprings>(network, obstacles, step_length, implicit);
+}
+
+bool Attachments::update(SimulationState& state) {
+  if (!update_links(network_, environment_, step_length_, state)) return false;
+  take(state, static_cast<double>(state.step) * step_length_);
+  return true;
+}
+
+void Attachments::take(const SimulationState& state, double time) {
+  rods_->take(state.links, time);
+  springs_->take(state.links);
+  springs_->set_time(time);
+}
+
+void Attachments::note_substep(double dt, double time, SimulationState& state) {
+  if (state.substep == 0) {
+    for (Link& link : state.links) link.impulse.setZero();
+  }
+  rods_->add_impulses(dt, state.links);
+  springs_->add_impulses(dt, state.links);
+  springs_->set_time(time);
+}
+
+bool Attachments::break_overloaded(SimulationState& state) {
+  bool any = false;
+  for (Link& link : state.links) {
+    if (link.broken || !(force_of(link, state).norm() > network_.attachments[link.attachment].break_force)) continue;
+    link.broken = state.step;
+    any = true;
+  }
+  if (any) take(state, static_cast<double>(state.step) * step_length_);
+  return any;
+}
+
+Vector3 Attachments::force_of(const Link& link, const SimulationState& state) const {
+  if (link.broken) return Vector3::Zero();
+  if (network_.attachments[link.attachment].is_rigid()) return link.impulse / step_length_;
+  return springs_->force_of(link, {.x = state.x, .v = state.v, .time = static_cast<double>(state.step) * step_length_});
+}
+
+double Attachments::winch_speed(const SimulationState& state) const {
+  constexpr double kSteepest = 1.5;  // slope of the smooth step from 0 to 1
+  double fastest = 0.0;
+  for (const Link& link : state.links) {
+    if (link.broken || !network_.attachments[link.attachment].is_rigid()) continue;
+    fastest = std::max(fastest, kSteepest / kWinchTime * std::abs(link.distance - link.length));
+  }
+  return fastest;
+}
+
+double end_of_changes(const std::vector<Attachment>& attachments, double step_length) {
+  double end = 0.0;
+  for (const Attachment& attachment : attachments) {
+    const double pulls = attachment.is_rigid() && attachment.rest_length ? kWinchTime : 0.0;
+    if (attachment.from > 0.0 || pulls > 0.0) end = std::max(end, attachment.from + step_length + pulls);
+    if (std::isfinite(attachment.until)) end = std::max(end, attachment.until + step_length);
+  }
+  return end;
+}
+
+bool do_work(const std::vector<Attachment>& attachments) {
+  return std::ranges::any_of(attachments, [](const Attachment& attachment) { return attachment.rest_length.has_value(); });
+}
+
+}  // namespace sprung

@@ -1,0 +1,133 @@
+#include "dynamics/attachments/engagement.h"
+
+#include "collision/obstacles/obstacle_set.h"
+#include "collision/shapes/obstacle_shape.h"
+#include "collision/shapes/surface_anchor.h"
+#include "dynamics/attachments/link_ends.h"
+#include "geometry/queries/closest_pair.h"
+#include "network/model/pin_schedule.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace sprung {
+namespace {
+
+// Ends that are nearer than this fraction of the mean spring length coincide: the direction between them is rounding.
+constexpr double kCoincident = 1.0e-6;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Finds the point of a body that is nearest to the first end of a link.
+class NearestEnd {
+ public:
+  NearestEnd(const SpringNetwork& network, const Points& positions, Link& link)
+      : network_(network), positions_(positions), point_(positions.col(link.first)), link_(link) {}
+
+  void operator()(const ObstacleEnd& /*end*/) {}
+
+  void operator()(const ParticleEnds& ends) {
+    for (const Index particle : ends.particles) take(particle);
+  }
+
+  void operator()(const SurfaceEnd& end) {
+    const Body& body = network_.bodies[static_cast<std::size_t>(end.body)];
+    const Index begin = body.first_particle;
+    for (const auto& corners : body.surface.triangles.colwise()) {
+      const std::array<Index, 3> particles{begin + corners[0], begin + corners[1], begin + corners[2]};
+      const Vector3 a = positions_.col(particles[0]);
+      const Vector3 b = positions_.col(particles[1]);
+      const Vector3 c = positions_.col(particles[2]);
+      const ClosestPoint closest = closest_point_on_triangle(point_, a, b, c);
+      if (closest.squared_distance < nearest_) take(particles, barycentric(closest, a, b, c), closest.point);
+    }
+    for (const auto& ends : body.surface.segments.colwise()) {
+      const Vector3 a = positions_.col(begin + ends[0]);
+      const Vector3 b = positions_.col(begin + ends[1]);
+      const double t = closest_points_of_segments(point_, point_, a, b).t;
+      take({begin + ends[0], begin + ends[1], kNone}, {1.0 - t, t, 0.0}, a + t * (b - a));
+    }
+    if (body.surface.triangles.cols() > 0 || body.surface.segments.cols() > 0) return;
+    for (Index i = begin; i < begin + body.vertex_count(); ++i) take(i);
+  }
+
+ private:
+  void take(Index particle) { take({particle, kNone, kNone}, Vector3::UnitX(), positions_.col(particle)); }
+
+  void take(const std::array<Index, 3>& particles, const Vector3& weights, const Vector3& end) {
+    const double squared_distance = (end - point_).squaredNorm();
+    if (!(squared_distance < nearest_)) return;
+    nearest_ = squared_distance;
+    link_.second = particles;
+    link_.weights = weights;
+  }
+
+  const SpringNetwork& network_;
+  const Points& positions_;
+  Vector3 point_;
+  Link& link_;
+  double nearest_ = kInfinity;  ///< squared distance so far [m^2]
+};
+
+/// Sets the second end of a link to the point of an obstacle that is nearest to `point` [m] at a time [s].
+void put_on(const Environment& environment, const ObstacleEnd& end, const Vector3& point, double time, Link& link) {
+  const Obstacle& obstacle = environment.obstacles()[static_cast<std::size_t>(end.obstacle)];
+  const Vector3 local = obstacle.motion.pose(obstacle.rest_pose, time).inverse() * point;
+  if (obstacle.deforms()) {
+    const MeshSequence& sequence = *std::get<SequenceGeometry>(obstacle.geometry).sequence;
+    link.triangle = nearest_triangles(sequence, time, {local}).front();
+    link.weights = anchored(sequence, link.triangle, time, local).weights;
+  } else {
+    const auto nearest = environment.set().shape(end.obstacle).nearest(local, kInfinity);
+    link.anchor = nearest ? nearest->point : local;
+  }
+}
+
+}  // namespace
+
+Link link_to_body(const SpringNetwork& network, const Points& positions, std::size_t attachment, Index particle) {
+  Link link{.attachment = attachment, .first = particle};
+  std::visit(NearestEnd(network, positions, link), network.attachments[attachment].second);
+  return link;
+}
+
+bool update_links(const SpringNetwork& network, const Environment& environment, double step_length, SimulationState& state) {
+  const double due = due_before(state.step, step_length);
+  const double now = static_cast<double>(state.step) * step_length;
+  const bool ended = std::erase_if(state.links, [&](const Link& link) {
+                       return !link.broken && !network.attachments[link.attachment].holds_at(due);
+                     }) > 0;
+  const std::vector<Link> before = std::exchange(state.links, {});
+  for (std::size_t a = 0; a < network.attachments.size(); ++a) {
+    const Attachment& attachment = network.attachments[a];
+    const auto known = std::ranges::equal_range(before, a, {}, &Link::attachment);
+    state.links.insert(state.links.end(), known.begin(), known.end());
+    if (!known.empty() || !attachment.holds_at(due)) continue;
+    for (const Index particle : attachment.particles) {
+      Link link = link_to_body(network, state.x, a, particle);
+      link.step = state.step;
+      if (const auto* end = std::get_if<ObstacleEnd>(&attachment.second)) {
+        put_on(environment, *end, state.x.col(particle), now, link);
+      }
+      const LinkEnds ends(network, environment.obstacles(), link);
+      link.distance = (ends.sum(state.x) - ends.anchor(now)).norm();
+      if (link.distance < kCoincident * mean_spring_length(network)) link.distance = 0.0;
+      link.length = attachment.rest_length.value_or(link.distance);
+      state.links.push_back(link);
+    }
+  }
+  return ended || state.links.size() != before.size();
+}
+
+void drop_unknown_links(const SpringNetwork& network, SimulationState& state) {
+  std::erase_if(state.links, [&](const Link& link) {
+    if (link.attachment >= network.attachments.size()) return true;
+    const Attachment& attachment = network.attachments[link.attachment];
+    const bool on_obstacle = std::holds_alternative<ObstacleEnd>(attachment.second);
+    return std::ranges::find(attachment.particles, link.first) == attachment.particles.end() ||
+           on_obstacle != (link.second[0] == kNone);
+  });
+}
+
+}  // namespace sprung

@@ -1,0 +1,21 @@
+// When attachments engage, and at which points.
+#pragma once
+
+#include "collision/obstacles/environment.h"
+#include "network/model/simulation_state.h"
+
+namespace sprung {
+
+/// Ends and engages attachments that are due at the state's step: removes the links of those that end, and adds those of others
+/// that begin, from each particle to the nearest second end at the positions of the state. Broken links stay, so that they do not
+/// come back. Returns whether anything changed. Requires obstacles that exist.
+bool update_links(const SpringNetwork& network, const Environment& environment, double step_length, SimulationState& state);
+
+/// The link of an attachment to a body from one of its particles: to the nearest second end at these positions [m], 3 x n. Without
+/// its step and lengths.
+[[nodiscard]] Link link_to_body(const SpringNetwork& network, const Points& positions, std::size_t attachment, Index particle);
+
+/// Removes links that the network's attachments do not have, after the network changed.
+void drop_unknown_links(const SpringNetwork& network, SimulationState& state);
+
+}  // namespace sprung
