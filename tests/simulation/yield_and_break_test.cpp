@@ -101,35 +101,35 @@ TEST(Yield, AThrownMassStopsWhereItsEnergyIsSpent) {
   }
 }
 
-/// A ball that rises against a rod with pinned ends: no number of substeps makes the step feasible, so that it is repeated.
+// A ball cannot pass a rod that is pinned at both ends: no number of substeps makes the step feasible, so that it is repeated.
 TEST(Yield, RepeatedStepsFlowOnce) {
   NetworkBuilder builder;
-  builder.begin_body("rod");
-  for (const Vector3& at : {Vector3(-0.1, 0.0, 0.0), Vector3(0.0, 0.0, 0.0), Vector3(0.1, 0.0, 0.0)})
-    builder.add_particle(at, 0.01);
-  for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 2)}) {
-    builder.add_spring(a, b, 50.0, 0.1, 0.0, SpringKind::structural, {.yield = 0.05});
-  }
-  SpringNetwork network = builder.build();
-  network.bodies[0].surface.segments = (Edges(2, 2) << 0, 1, 1, 2).finished();
-  for (const Index i : {0, 2}) network.inverse_masses[i] = 0.0;
-  network.pins.push_back({{0, 2}, Vector3::Zero(), {}});
-  Obstacle ball{.name = "ball", .geometry = SphereGeometry{0.05}};
-  ball.rest_pose.translation() = Vector3(-0.1, -0.06, 0.0);
-  ball.motion.keyframes = {{.time = 0.0}, {.time = 0.2, .position = {0.1, 0.4, 0.0}}};
-  Simulator simulator(network, {.step = 1e-2}, {ball});
-  int repeated = 0;
+  BodyShape rod = make_rope({.points = {{0.0, 0.0, 0.0}, {0.3, 0.0, 0.0}}, .particles = 2, .length = {}},
+                            {.structural = SpringMaterial{.value = 0.0}});
+  set_total_mass(rod, 0.02);
+  builder.add_body("rod", rod, {.thickness = 0.002});
+  builder.pin({0, 1});
+  builder.begin_body("bar");
+  const Index left = builder.add_particle({9.0, 0.0, 0.0}, 0.1, {-3.0, 0.0, 0.0});
+  const Index right = builder.add_particle({10.0, 0.0, 0.0}, 0.1, {3.0, 0.0, 0.0});
+  builder.add_spring(left, right, 100.0, 1.0, 0.0, SpringKind::structural, {.yield = 0.05});
+  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.01}};
+  ball.rest_pose.translation() = Vector3(0.03, -0.05, 0.0);
+  ball.motion.keyframes = {{.time = 0.0}, {.time = 0.1, .position = {0.0, 0.1, 0.0}}};
+  Simulator simulator(builder.build(), {.step = 1e-2}, {ball});
   int made = 0;
   simulator.stop_when([&] { return ++made < 0; });
+  int repeated_and_flowed = 0;
   for (int step = 0; step < 20; ++step) {
     made = 0;
-    Springs expected = simulator.network().springs;
+    const Springs before = simulator.network().springs;
     const StepReport report = simulator.step();
+    Springs expected = before;
     let_yield(expected, simulator.positions());
     EXPECT_EQ(simulator.network().springs.rest_length, expected.rest_length) << step;
-    repeated += made > report.substeps ? 1 : 0;
+    repeated_and_flowed += made > report.substeps && expected.rest_length != before.rest_length ? 1 : 0;
   }
-  EXPECT_GT(repeated, 0) << "the scene must repeat steps";
+  EXPECT_GT(repeated_and_flowed, 0) << "the scene must repeat steps in which the bar flows";
 }
 
 TEST(Yield, ChangesKeepTheRestLengths) {
@@ -172,6 +172,8 @@ TEST(Break, ARopeBreaksWhereItsTensionIsLargestAndItsPartsFallFreely) {
        {IntegratorSettings{VerletSettings{}}, {VelocityVerletSettings{}}, {RungeKutta4Settings{}}}) {
     Simulator simulator(hanging_rope(0.5 * (strain_of(0) + strain_of(1))), {.step = 1e-3, .integrator = integrator});
     const SpringNetwork whole = simulator.network();
+    // Verlet starts with the force of the whole rope, and its velocity is that of half a step ago.
+    const double late = integrator.index() == IntegratorSettings(VerletSettings{}).index() ? 1e-3 : 0.0;
     const auto height = [&](const Points& x) {
       return whole.masses.tail(7).dot(x.row(1).tail(7).transpose()) / whole.masses.tail(7).sum();
     };
@@ -180,7 +182,8 @@ TEST(Break, ARopeBreaksWhereItsTensionIsLargestAndItsPartsFallFreely) {
       ASSERT_EQ(simulator.network().broken_springs, 1) << step;
       const double t = simulator.time();
       // 300 steps, each with a few roundings of coordinates up to 2.
-      ASSERT_NEAR(height(simulator.positions()), height(whole.positions) - 0.5 * kGravity * t * t, 1e-10) << integrator.index();
+      ASSERT_NEAR(height(simulator.positions()), height(whole.positions) - 0.5 * kGravity * t * (t + late), 1e-10)
+          << integrator.index();
     }
     EXPECT_EQ(simulator.network().springs.first.front(), 1) << "the spring at the hook is gone";
     EXPECT_EQ(simulator.network().springs.count(), whole.springs.count() - 1);
@@ -216,7 +219,7 @@ constexpr Index kRows = 11;
 
 /// A cloth of 15 x 11 particles in the x-y plane, 1 m apart, whose lowest row is pinned and whose highest is pulled up.
 SpringNetwork pulled_cloth(double speed) {
-  SpringMaterial material{.value = 100.0, .damping = 2.0, .break_strain = 0.2};
+  SpringMaterial material{.value = 100.0, .damping = 0.1, .break_strain = 0.2};
   BodyShape shape = make_cloth({.size = {kColumns - 1.0, kRows - 1.0}, .resolution = {kColumns, kRows}},
                                {.structural = material, .shear = material});
   set_total_mass(shape, 1.0);

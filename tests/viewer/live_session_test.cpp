@@ -117,6 +117,21 @@ TEST_F(LiveViewer, FramesHaveThePositionsOfTheSimulator) {
   }
 }
 
+// The rope falls from its horizontal start and breaks at its hook.
+TEST_F(LiveViewer, APageIsToldTheTopologyThatABreakLeaves) {
+  std::string text = kScene;
+  const std::string damping = "\"damping\": 0.1";
+  text.insert(text.find(damping), "\"break\": 0.01, ");
+  serve(text);
+  PausedPage page(server_->port());
+  for (int frame = 0; frame < 50; ++frame) page.send({{"do", "frame"}});
+  Received topology = page.binary();
+  while (topology.kind() != 1u || topology.at<std::uint32_t>(40) == 10u) topology = page.binary();
+  EXPECT_LT(topology.at<std::uint32_t>(36), 10u) << "segments";
+  EXPECT_EQ(topology.at<std::uint32_t>(36), topology.at<std::uint32_t>(40)) << "a segment for each spring";
+  EXPECT_EQ(page.frame([&](const Received& frame) { return frame.generation() == topology.generation(); }).particles(), 11u);
+}
+
 TEST_F(LiveViewer, ResetGivesTheBitsOfTheFirstFrame) {
   serve();
   PausedPage page(server_->port());
