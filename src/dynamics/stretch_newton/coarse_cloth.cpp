@@ -198,7 +198,7 @@ class Coarsener {
       if (point_[q] == kNone) add_point(q);
     }
     const Index first = std::min(point_[a], point_[b]);
-    of_first[first].push_back({first, std::max(point_[a], point_[b]), length});
+    of_first[first].push_back({first, std::max(point_[a], point_[b]), length, kNone});
   }
 
   [[nodiscard]] double length_right_of(Index q) const {

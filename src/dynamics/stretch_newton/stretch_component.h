@@ -14,7 +14,7 @@ struct StretchComponent {
     Index first;   ///< a free point
     Index second;  ///< a point of higher number, free or pinned
     double rest_length;
-    Index spring;  ///< of the network
+    Index spring;  ///< of the network; kNone between points of a coarse cloth
   };
 
   std::vector<Index> points;    ///< their particles
