@@ -41,10 +41,10 @@ class Rods final : public Constraint {
     std::size_t number;  ///< of the link
     LinkEnds ends;
     Link link;
-    double inverse_mass;     ///< [1/kg]
-    double length = 0.0;     ///< now [m]
-    Vector3 anchor{};        ///< now [m]
-    double tolerance = 0.0;  ///< [m]
+    double inverse_mass;               ///< [1/kg]
+    double length = 0.0;               ///< now [m]
+    Vector3 anchor = Vector3::Zero();  ///< now [m]
+    double tolerance = 0.0;            ///< [m]
   };
   double project(std::size_t number, const Points& before, Points& positions) const;
   [[nodiscard]] static double violation(const Rod& rod, const Vector3& difference);
