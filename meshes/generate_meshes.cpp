@@ -1,5 +1,6 @@
 // Writes the environments of this folder: generate_meshes FOLDER, or compares them with what it would write: generate_meshes
 // --check FOLDER.
+#include "dress_shapes.h"
 #include "mesh_shapes.h"
 #include "mesh_writers.h"
 
@@ -31,9 +32,11 @@ std::string terrain_text() {
 
 std::vector<std::pair<std::string, std::string>> all_files() {
   std::vector<std::pair<std::string, std::string>> files{
-      {"stairs.obj", obj_of(stairs())},         {"funnel.stl", stl_bytes(funnel())}, {"torus.ply", ply_bytes(torus())},
-      {"terrain.gltf", terrain_text()},         {"spike.off", off_text(spike())},    {"thin_sheet.obj", obj_of(thin_sheet())},
-      {"ball.obj", obj_of(polygons_of(ball()))}};
+      {"stairs.obj", obj_of(stairs())},          {"funnel.stl", stl_bytes(funnel())},
+      {"torus.ply", ply_bytes(torus())},         {"terrain.gltf", terrain_text()},
+      {"spike.off", off_text(spike())},          {"thin_sheet.obj", obj_of(thin_sheet())},
+      {"ball.obj", obj_of(polygons_of(ball()))}, {"balloon.obj", obj_of(polygons_of(balloon()))},
+      {"figure.ply", ply_bytes(figure())},       {"dress.obj", obj_of(dress())}};
   constexpr int kWaveFrames = 8;
   for (int frame = 0; frame < kWaveFrames; ++frame) {
     files.emplace_back("waves/waves." + std::to_string(frame + 1) + ".obj",

@@ -1,19 +1,18 @@
 #include "mesh_shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 namespace sprung::meshes {
 namespace {
 
-// To the micrometre, so that every machine's sines write the same files.
-double rounded(double metres) { return std::round(metres * 1e6) / 1e6 + 0.0; }
-
 Points to_points(const std::vector<Vector3>& positions) {
   Points points(3, std::ssize(positions));
-  for (Index i = 0; i < points.cols(); ++i) points.col(i) = positions[i].unaryExpr(&rounded);
+  for (Index i = 0; i < points.cols(); ++i) points.col(i) = positions[i].unaryExpr(&to_micrometre);
   return points;
 }
 
@@ -52,7 +51,27 @@ class LatticeQuads {
   std::map<std::array<int, 3>, Index> numbers_;
 };
 
+using IndexTriples = std::vector<std::array<Index, 3>>;
+
+/// Divides each triangle on the unit sphere into four.
+void subdivide(std::vector<Vector3>& directions, IndexTriples& triangles) {
+  std::map<std::pair<Index, Index>, Index> middles;
+  const auto middle = [&](Index a, Index b) {
+    const auto [found, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<Index>(directions.size()));
+    if (is_new) directions.push_back((directions[a] + directions[b]).normalized());
+    return found->second;
+  };
+  IndexTriples finer;
+  for (const auto& [a, b, c] : triangles) {
+    const std::array<Index, 3> m{middle(a, b), middle(b, c), middle(c, a)};
+    finer.insert(finer.end(), {{a, m[0], m[2]}, {b, m[1], m[0]}, {c, m[2], m[1]}, m});
+  }
+  triangles = std::move(finer);
+}
+
 }  // namespace
+
+double to_micrometre(double metres) { return std::round(metres * 1e6) / 1e6 + 0.0; }
 
 TriangleMesh revolve(const std::vector<ProfilePoint>& profile, Index segments) {
   std::vector<Vector3> positions;
@@ -120,6 +139,42 @@ TriangleMesh spike() {
   return revolve({{0.0, 0.0}, {0.5, 0.0}, {0.5, 0.05}, {0.25, 0.05}, {0.05, 0.05}, {0.03, 0.25}, {0.015, 0.4}, {0.0, 0.55}}, 48);
 }
 
+TriangleMesh sphere(int divisions) {
+  const double golden = 0.5 * (1.0 + std::sqrt(5.0));
+  std::vector<Vector3> directions;
+  for (const double side : {-1.0, 1.0}) {
+    for (const double end : {-golden, golden}) {
+      directions.insert(directions.end(), {Vector3(side, end, 0.0), Vector3(0.0, side, end), Vector3(end, 0.0, side)});
+    }
+  }
+  for (Vector3& direction : directions) direction.normalize();
+  // Neighbours of an icosahedron are 63 degrees apart, all others at least 116.
+  const auto neighbours = [&](Index a, Index b) { return directions[a].dot(directions[b]) > 0.0; };
+  IndexTriples triangles;
+  for (Index a = 0; a < 12; ++a) {
+    for (Index b = a + 1; b < 12; ++b) {
+      for (Index c = b + 1; c < 12; ++c) {
+        if (!neighbours(a, b) || !neighbours(b, c) || !neighbours(c, a)) continue;
+        const bool outward = directions[a].cross(directions[b]).dot(directions[c]) > 0.0;
+        triangles.push_back(outward ? std::array{a, b, c} : std::array{a, c, b});
+      }
+    }
+  }
+  for (int division = 0; division < divisions; ++division) subdivide(directions, triangles);
+  return {to_points(directions), to_triangles(triangles)};
+}
+
+TriangleMesh balloon() {
+  constexpr double kRadius = 0.2;
+  TriangleMesh mesh = sphere(4);
+  for (auto&& p : mesh.vertices.colwise()) {
+    const double narrow = p.y() < 0.0 ? 1.0 - 0.25 * p.y() * p.y() : 1.0;
+    const double longer = p.y() < 0.0 ? 1.25 : 1.0;
+    p = Vector3(kRadius * Vector3(narrow * p.x(), longer * p.y(), narrow * p.z())).unaryExpr(&to_micrometre);
+  }
+  return mesh;
+}
+
 TriangleMesh hills() {
   constexpr Index kCells = 40;
   std::vector<Vector3> positions;
@@ -178,7 +233,7 @@ PolygonMesh waves(double part) {
   PolygonMesh mesh = quads.take();
   for (auto&& vertex : mesh.vertices.colwise()) {
     if (vertex.y() < 0.0) continue;
-    vertex.y() = rounded(kHeight * std::sin(2.0 * std::numbers::pi * (vertex.x() / kLength - part)));
+    vertex.y() = to_micrometre(kHeight * std::sin(2.0 * std::numbers::pi * (vertex.x() / kLength - part)));
   }
   return mesh;
 }

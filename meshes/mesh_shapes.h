@@ -8,6 +8,9 @@
 
 namespace sprung::meshes {
 
+/// Rounds to the micrometre, so that the sines of every machine give the same files.
+[[nodiscard]] double to_micrometre(double metres);
+
 /// A point of a profile that turns about the Y axis.
 struct ProfilePoint {
   double radius = 0.0;
@@ -29,6 +32,12 @@ struct ProfilePoint {
 
 /// A closed disc with a needle in its middle.
 [[nodiscard]] TriangleMesh spike();
+
+/// A closed sphere of radius 1 m: an icosahedron, each triangle of which is divided into four so many times.
+[[nodiscard]] TriangleMesh sphere(int divisions);
+
+/// A closed balloon of 40 cm that narrows downwards, in triangles of about 2 cm.
+[[nodiscard]] TriangleMesh balloon();
 
 /// Hills over the unit square in x and z, heights in [-1, 1]: an open sheet.
 [[nodiscard]] TriangleMesh hills();
