@@ -1,4 +1,4 @@
-// examples/torn_cloth.json: a spike rises through a cloth in a frame and tears it.
+// examples/torn_cloth.json: a spike rises through a cloth in a frame, tears it, and goes back.
 #include "base/parallel.h"
 #include "scenarios/scenario.h"
 
@@ -66,7 +66,6 @@ TEST(TornCloth, TheSpikeStandsInAHoleOfItsSize) {
   BuiltScene scene = torn_cloth();
   const SpringNetwork whole = scene.network;
   const Index faces = whole.bodies[0].surface.faces.face_count();
-  const int frames = scene.frames;
   double stretch_of_whole = 0.0;
   std::size_t torn = 0;
   SpringNetwork end;
@@ -79,7 +78,7 @@ TEST(TornCloth, TheSpikeStandsInAHoleOfItsSize) {
     ASSERT_EQ(surface.triangles.cols() + static_cast<Index>(torn), faces);
     ASSERT_EQ(simulator.network().particle_count(), whole.particle_count());
     if (torn == 0) stretch_of_whole = frame.max_stretch;
-    if (frame.frame < frames) return;
+    if (std::abs(frame.time - 1.3) > 1e-6) return;  // when the spike is up
     const Obstacle& spike = simulator.environment().obstacles()[0];
     tip = spike.motion.pose(spike.rest_pose, frame.time) * Vector3(0.0, 0.25, 0.0);
     end = simulator.network();
@@ -88,6 +87,7 @@ TEST(TornCloth, TheSpikeStandsInAHoleOfItsSize) {
   const ScenarioReport report = run_scenario(std::move(scene), watch, Judge::obstacles_and_self);
   EXPECT_TRUE(report.is_free()) << report;
   EXPECT_EQ(report.infeasible, 0);
+  EXPECT_EQ(torn, end.bodies[0].surface.torn.size()) << "the way back tears nothing";
   EXPECT_GT(stretch_of_whole, 0.5 * kBreak) << "it was pulled before it tore";
   EXPECT_LT(stretch_of_whole, kBreak) << "nothing breaks below its break strain";
 
@@ -120,7 +120,7 @@ TEST(TornCloth, AnyNumberOfThreadsTearsAlike) {
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
     BuiltScene scene = torn_cloth();
-    scene.frames = 75;
+    scene.frames = 60;
     Points last;
     std::size_t torn = 0;
     run_scenario(
