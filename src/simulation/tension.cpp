@@ -12,7 +12,7 @@ Scalars spring_tensions(const Simulator& simulator) {
   for (Index s = 0; s < springs.count(); ++s) {
     const Vector3 between = x.col(springs.second[s]) - x.col(springs.first[s]);
     const double length = between.norm();
-    if (length == 0.0) continue;
+    if (length == 0.0 || (springs.law(s).tension_only && length <= springs.rest_length[s])) continue;
     const double rate = between.dot(v.col(springs.second[s]) - v.col(springs.first[s])) / length;
     tensions[s] += springs.stiffness[s] * (length - springs.rest_length[s]) + springs.damping[s] * rate;
   }
