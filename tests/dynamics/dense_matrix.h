@@ -27,7 +27,7 @@ inline Eigen::MatrixXd dense(const StretchComponent& component, const StretchSys
     matrix.block<3, 3>(3 * i, 3 * i) += component.masses[i] * Matrix3::Identity();
   }
   for (std::size_t s = 0; s < component.links.size(); ++s) {
-    const auto& [a, b, rest_length] = component.links[s];
+    const auto& [a, b, rest_length, spring] = component.links[s];
     const Matrix3 block = system.blocks[s].matrix();
     matrix.block<3, 3>(3 * a, 3 * a) += block;
     if (!component.is_free(b)) continue;
