@@ -101,7 +101,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"WindKeyframeWithoutTime", {"air.wind={\"keyframes\":[{\"velocity\":[1,0,0]}]}"}, "air.wind.keyframes[0].time", "is missing"},
       {"WindKeyframeWithoutVelocity", {"air.wind={\"keyframes\":[{\"time\":1}]}"}, "air.wind.keyframes[0].velocity", "is missing"},
       {"WindKeyframeWithPosition", {"air.wind={\"keyframes\":[{\"time\":1,\"velocity\":[1,0,0],\"position\":[1,0,0]}]}"}, "air.wind.keyframes[0].position", "is not a known key"},
-      {"WindKeyframesInDisorder", {"air.wind={\"keyframes\":[{\"time\":1,\"velocity\":[1,0,0]},{\"time\":1,\"velocity\":[2,0,0]}]}"}, "air.wind.keyframes[1].time", "must be later than the keyframe before it"},
+      {"WindKeyframesInDisorder", {"air.wind={\"keyframes\":[{\"time\":1,\"velocity\":[1,0,0]},{\"time\":1,\"velocity\":[2,0,0]}]}"}, "air.wind.keyframes[1].time", "must be later than the keyframe before it", false},
       {"GustsWithoutSpeed", {"air.gusts={\"length\":2}"}, "air.gusts.speed", "is missing"},
       {"GustsWithoutLength", {"air.gusts={\"speed\":2}"}, "air.gusts.length", "is missing"},
       {"GustsOfNegativeSpeed", {"air.gusts={\"speed\":-2,\"length\":2}"}, "air.gusts.speed", "must be at least 0"},

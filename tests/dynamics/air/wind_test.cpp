@@ -146,7 +146,8 @@ TEST(Gusts, HaveNoDivergence) {
   double largest_gradient = 0.0;
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Wind wind = gusts(seed, {{0.0, Vector3(5, 0, 1)}});
-    for (const auto& point : random_points(1000, 3).colwise()) {
+    const Points points = random_points(1000, 3);
+    for (const auto& point : points.colwise()) {
       double divergence = 0.0;
       for (int axis = 0; axis < 3; ++axis) {
         const Vector3 offset = h * Vector3::Unit(axis);

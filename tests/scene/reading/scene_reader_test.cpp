@@ -79,7 +79,8 @@ TEST(SceneReader, SchemaForEditorsIsAKnownKey) {
 
 TEST(SceneReader, BodiesArriveInTheOrderOfTheFile) {
   const Scene scene = SceneFolder().read(kFullScene);
-  EXPECT_THAT(names_of(scene.bodies), ElementsAre("zebra", "rope", "line", "jelly", "shirt", "scarf", "cable", "sponge", "ham"));
+  EXPECT_THAT(names_of(scene.bodies),
+              ElementsAre("zebra", "rope", "line", "jelly", "shirt", "scarf", "cable", "sponge", "ham", "horse", "cow", "balloon"));
   EXPECT_THAT(names_of(scene.obstacles),
               ElementsAre("bunny", "floor", "ball", "crate", "pill", "can", "hat", "egg", "heart", "lung"));
 }
