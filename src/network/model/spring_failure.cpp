@@ -1,6 +1,9 @@
 #include "network/model/spring_failure.h"
 
+#include "geometry/mesh/union_find.h"
+
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <set>
@@ -233,25 +236,23 @@ void let_yield(Springs& springs, const Points& positions) {
 
 std::vector<Index> breaking_springs(const SpringNetwork& network, const Points& positions) {
   const Springs& springs = network.springs;
-  if (springs.laws.empty()) return {};
-  struct Most {
-    double ratio = 0.0;
-    Index spring = kNone;
-  };
-  std::map<Index, Most> most;  // by particle
-  std::vector<Index> overstrained;
-  for (Index s = 0; s < springs.count(); ++s) {
+  std::vector<std::pair<double, Index>> overstrained;  // by how much, and its number
+  for (Index s = 0; s < static_cast<Index>(springs.laws.size()); ++s) {
     if (!springs.laws[s].breaks()) continue;
     const double ratio = length_of(springs, s, positions) / springs.laws[s].break_length;
-    if (!(ratio > 1.0)) continue;
-    overstrained.push_back(s);
-    for (const Index end : {springs.first[s], springs.second[s]}) {
-      Most& at_end = most[end];
-      if (ratio > at_end.ratio) at_end = {ratio, s};
-    }
+    if (ratio > 1.0) overstrained.emplace_back(ratio, s);
   }
-  std::erase_if(overstrained, [&](Index s) { return most[springs.first[s]].spring != s || most[springs.second[s]].spring != s; });
-  return overstrained;
+  if (overstrained.empty()) return {};
+  UnionFind joined(network.particle_count());
+  for (const auto& entry : overstrained) joined.join(springs.first[entry.second], springs.second[entry.second]);
+  std::ranges::stable_sort(overstrained, std::greater<>(), &std::pair<double, Index>::first);
+  std::set<Index> relieved;
+  std::vector<Index> breaking;
+  for (const auto& entry : overstrained) {
+    if (relieved.insert(joined.root(springs.first[entry.second])).second) breaking.push_back(entry.second);
+  }
+  std::ranges::sort(breaking);
+  return breaking;
 }
 
 void tear(SpringNetwork& network, const std::vector<Index>& broken) {

@@ -12,8 +12,9 @@ namespace sprung {
 /// length, now or at rest, has no strain.
 void let_yield(Springs& springs, const Points& positions);
 
-/// The springs that break next at these positions [m], ascending. Of the springs of a particle that are longer than their break
-/// length, the one with the largest length relative to it goes first; it may relieve the others.
+/// The springs that break next at these positions [m], ascending. Of springs that are longer than their break length and hang
+/// together, the one with the largest length relative to it goes first: it may relieve the others. In a stable step waves pass
+/// less than a spring, so that this does not hold up a crack.
 [[nodiscard]] std::vector<Index> breaking_springs(const SpringNetwork& network, const Points& positions);
 
 /// Removes springs that broke, and what would hold or cover the gap:
