@@ -193,6 +193,9 @@ SpringNetwork NetworkBuilder::build() const {
     for (const Index particle : pin.particles) network.velocities.col(particle).setZero();
   }
   network.attachments = attachments_;
+  for (std::size_t a = 0; a < attachments_.size(); ++a) {
+    if (attachments_[a].name.empty()) network.attachments[a].name = entry_key("attachments", a);
+  }
   for (std::size_t b = 0; b < drafts.size(); ++b) damp_by_ratio(drafts[b].shape.damping_ratios, network.bodies[b], network);
   return network;
 }

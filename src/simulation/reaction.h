@@ -1,4 +1,4 @@
-// The force of a pin.
+// The force of a pin or an attachment.
 #pragma once
 
 #include "base/types.h"
@@ -7,9 +7,9 @@
 
 namespace sprung {
 
-/// The mean force [N] with which a pin acts on its body.
+/// The mean force [N] with which a pin acts on its body, or an attachment on its first ends.
 struct Reaction {
-  std::string name;  ///< of the pin
+  std::string name;  ///< of the pin or attachment
   Vector3 force = Vector3::Zero();
 };
 

@@ -145,6 +145,7 @@ StepReport Simulator::Implementation::step() {
       state.impulses.on_pinned += state.impulses_asleep.on_pinned;
       state.impulses.of_springs += state.impulses_asleep.of_springs;
     }
+    record_attachments();
     return {.stretch_excess = constraints.limit() != nullptr ? constraints.limit()->excess(state.x) : 0.0};
   }
   update_attachments();
@@ -165,6 +166,7 @@ StepReport Simulator::Implementation::step() {
   let_yield(network.springs, state.x);
   if (refinement) choose_substeps(report);
   if (const StretchLimit* limit = constraints.limit()) note_missed(network, *limit, report.stretch_excess, state);
+  record_attachments();
   if (attachments && attachments->break_overloaded(state)) integrator->resume(state, forces, dt());
   if (report.infeasible == 0 && may_sleep() && rest.rests(time(), state)) fall_asleep();
   return report;
@@ -176,6 +178,14 @@ void Simulator::Implementation::update_attachments() {
   integrator->resume(state, forces, dt());
   energy_watch.note(0, energies());
   energy_watch.note_pin(attachments->winch_speed(state));
+}
+
+/// After each step.
+void Simulator::Implementation::record_attachments() {
+  if (!attachments || !state.impulses.on()) return;
+  for (const Link& link : state.links) {
+    reactions.add(network.attachments[link.attachment].name, settings.step * attachments->force_of(link, state));
+  }
 }
 
 /// External forces may change at any time. Bodies sink into a penalty for long, and are not at rest while they do.

@@ -128,8 +128,8 @@ class Simulator {
 
   // With SimulatorSettings::record_forces; otherwise there is nothing to read.
 
-  /// The mean force of each pin on its body [N] since reset_forces() was called last, or since time 0: its impulse divided by that
-  /// time. In the order in which the pins were added; a pin that did not hold then has no force. Empty without the setting.
+  /// The mean force [N] of each pin on its body, then of each attachment on its first ends, since reset_forces() or time 0: impulse
+  /// by time. In the order in which they were added; none of what did not hold then. Empty without the setting.
   [[nodiscard]] std::vector<Reaction> reactions() const;
 
   /// The mean force with which the stretch limit pulled each spring's ends together since then [N]; negative: it pushed.

@@ -75,6 +75,7 @@ struct Simulator::Implementation {
   void begin_recording();
   bool take_pins(const Implementation& before);
   void update_attachments();
+  void record_attachments();
   [[nodiscard]] double energy(EnergyKind kind) const { return energy_of(forces, kind, state.x); }
   [[nodiscard]] Energies energies() const;
   [[nodiscard]] std::vector<ContactNormal> contact_normals() const;
@@ -109,8 +110,8 @@ struct Simulator::Implementation {
   double driven_until;  ///< see end_of_motions() in simulator.cpp [s]
   SimulationState state;
   StepBegin begin;
-  ReactionRecord reactions;                         ///< by pins that have ended or changed in the present interval
-  double forces_since = 0.0;                        ///< begin of that interval [s]
+  ReactionRecord reactions;   ///< by attachments, and by pins that have ended or changed in the present interval
+  double forces_since = 0.0;  ///< begin of that interval [s]
   std::optional<std::vector<Index>> kept_contacts;  ///< of the last step, if a later attempt changed the constraints
 };
 

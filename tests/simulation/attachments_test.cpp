@@ -194,9 +194,16 @@ TEST_P(Attached, ARopeOnAnObstacleCarriesItsWeight) {
     NetworkBuilder builder = rope_with_weight();
     builder.add_attachment(
         {.name = "hook", .particles = {0}, .second = ObstacleEnd{0}, .stiffness = stiffness, .damping = stiffness ? 4.0 : 0.0});
-    Simulator simulator(builder.build(), settings(), {beam()});
+    SimulatorSettings recorded = settings();
+    recorded.record_forces = true;
+    Simulator simulator(builder.build(), recorded, {beam()});
     run(simulator, 4.0);
     const double weight = 0.2 * kGravity;
+    simulator.reset_forces();
+    run(simulator, 0.1);
+    ASSERT_EQ(simulator.reactions().size(), 1U);
+    EXPECT_EQ(simulator.reactions()[0].name, "hook");
+    EXPECT_LE((simulator.reactions()[0].force - Vector3(0.0, weight, 0.0)).norm(), 1e-3 * weight);
     if (stiffness) {
       EXPECT_NEAR(simulator.positions()(1, 0), 1.85 - weight / *stiffness, 1e-3 * weight / *stiffness);
     } else {

@@ -16,8 +16,10 @@ std::vector<Reaction> ReactionRecord::reactions(const SpringNetwork& network, co
   ReactionRecord all = *this;
   RecordedImpulses latest = impulses;
   all.collect(network.pins, latest);
+  std::vector<std::string> names = network.pin_names;
+  for (const Attachment& attachment : network.attachments) names.push_back(attachment.name);
   std::vector<Reaction> reactions;
-  for (const std::string& name : network.pin_names) {
+  for (const std::string& name : names) {
     const auto found = all.by_name_.find(name);
     const bool acted = found != all.by_name_.end() && duration > 0.0;
     reactions.push_back({name, acted ? Vector3(found->second / duration) : Vector3(Vector3::Zero())});

@@ -1,4 +1,4 @@
-// The impulses of pins since the last reading.
+// The impulses of pins and attachments since the last reading.
 #pragma once
 
 #include "network/model/recorded_impulses.h"
@@ -19,15 +19,20 @@ class ReactionRecord {
   /// Adds the recorded impulses on particles to their pins, and sets these to zero.
   void collect(const std::vector<Pin>& pins, RecordedImpulses& impulses);
 
-  /// The mean forces over `duration` [s] of all pins of the network, in the order in which they were added, from what was collected
-  /// and what the present pins have on top. Zero if the duration is zero.
+  /// Adds the impulse [N s] of an attachment in a step on its first ends.
+  void add(const std::string& attachment, const Vector3& impulse) {
+    by_name_.try_emplace(attachment, Vector3::Zero()).first->second += impulse;
+  }
+
+  /// The mean forces over `duration` [s] of all pins of the network and then of its attachments, each in the order in which they
+  /// were added, from what was collected and what the present pins have on top. Zero if the duration is zero.
   [[nodiscard]] std::vector<Reaction> reactions(const SpringNetwork& network, const RecordedImpulses& impulses,
                                                 double duration) const;
 
   void reset() { by_name_.clear(); }
 
  private:
-  std::map<std::string, Vector3> by_name_;  ///< impulses of pins on their bodies [N s]
+  std::map<std::string, Vector3> by_name_;  ///< impulses on the bodies [N s]
 };
 
 }  // namespace sprung
