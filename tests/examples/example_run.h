@@ -20,7 +20,7 @@ class ExampleRun {
  public:
   /// Runs examples/<name>.json, with more arguments of the command line if need be.
   explicit ExampleRun(const std::string& name, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"run", std::string(SPRUNG_SOURCE_DIR) + "/examples/" + name + ".json", "--quiet", "--out",
+    std::vector<std::string> arguments{"run", SPRUNG_SOURCE_DIR "/examples/" + name + ".json", "--quiet", "--out",
                                        output().string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     ending_ = Program(arguments).wait();

@@ -17,7 +17,7 @@ namespace {
 constexpr double kBreak = 0.25;
 constexpr double kSpacing = 0.8 / 28;  // of the particles [m]
 
-BuiltScene torn_cloth() { return load_scenario(std::string(SPRUNG_SOURCE_DIR) + "/examples/torn_cloth"); }
+BuiltScene torn_cloth() { return load_scenario(SPRUNG_SOURCE_DIR "/examples/torn_cloth"); }
 
 using Side = std::pair<Index, Index>;
 

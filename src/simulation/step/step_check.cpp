@@ -125,8 +125,7 @@ bool is_unstable(double step, double largest_stable) {
 Problem unstable_step(double step, double largest_stable, const SpectralBounds& bounds, const std::string& advice) {
   return {.key = "step",
           .value = format_number(step),
-          .rule = "is beyond the largest stable step, " + format_upper_bound(largest_stable) + " s, which " + bounds.strictest +
-                  " need",
+          .rule = "is beyond the largest stable step, " + format_upper_bound(largest_stable) + " s, bounded by " + bounds.strictest,
           .remedy = advice + "; \"stability\": \"warn\" runs it nevertheless"};
 }
 
