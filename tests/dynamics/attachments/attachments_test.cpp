@@ -21,20 +21,20 @@ class RandomLinks : public test::SeededTest {
     return {unit(random_), unit(random_), unit(random_)};
   }
 
-  /// Two bodies of `count` particles each, the second with triangles of three neighbours.
+  /// Two bodies of `count` particles each, more than a metre apart, the second with triangles of three neighbours.
   NetworkBuilder bodies(Index count) {
     NetworkBuilder builder;
-    for (const char* name : {"first", "second"}) {
+    for (const double x : {0.0, 3.0}) {
       BodyShape shape;
       for (Index i = 0; i < count; ++i) {
-        shape.positions.emplace_back(random_vector());
+        shape.positions.emplace_back(random_vector() + Vector3(x, 0.0, 0.0));
         shape.velocities.emplace_back(random_vector());
         shape.masses.push_back(0.1 + std::abs(random_vector().x()));
         shape.drag_areas.push_back(0.0);
       }
       shape.surface.triangles.resize(3, count - 2);
       for (Index t = 0; t < count - 2; ++t) shape.surface.triangles.col(t) << t, t + 1, t + 2;
-      builder.add_body(name, shape, {}, {.self = false, .others = false});
+      builder.add_body(x == 0.0 ? "first" : "second", shape, {}, {.self = false, .others = false});
     }
     return builder;
   }
