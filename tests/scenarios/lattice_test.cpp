@@ -1,6 +1,7 @@
 // Surfaces that cells carry: the surface is judged, not the cells.
 #include "scenarios/scenario.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace sprung::testing {
@@ -29,7 +30,7 @@ TEST(LatticeAtRest, ItsSurfaceLiesOnTheGroundAndItsCellsDoNotCollide) {
        {R"(contact={"response": "projection"})", R"(contact={"response": "penalty", "stiffness": 500, "damping": 1})"}) {
     const BuiltScene scene = load_scenario("lattice_on_spike", {ground, low, contact});
     Simulator simulator(scene.network, scene.settings, scene.obstacles);
-    EXPECT_TRUE(simulator.warnings().empty()) << simulator.warnings().front();
+    EXPECT_THAT(simulator.warnings(), ::testing::Each(::testing::HasSubstr("static_friction has no effect with penalty contact")));
     const Body& ball = simulator.network().bodies[0];
     while (simulator.time() < 1.0) simulator.step();
     const auto vertices = simulator.positions().leftCols(ball.vertex_count());

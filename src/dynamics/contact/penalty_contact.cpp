@@ -6,6 +6,12 @@
 #include <limits>
 
 namespace sprung {
+namespace {
+
+// The thickness of particles that carry a surface, which do not collide. The environment finds those that are inside an obstacle.
+constexpr double kNoContact = -std::numeric_limits<double>::infinity();
+
+}  // namespace
 
 PenaltyContact::PenaltyContact(const SpringNetwork& network, Environment& environment, double stiffness, double damping, double dt)
     : network_(network),
@@ -14,10 +20,16 @@ PenaltyContact::PenaltyContact(const SpringNetwork& network, Environment& enviro
       damping_(damping),
       dt_(dt),
       thickness_(particle_thickness(network)) {
-  for (const Body& body : network.bodies) {  // what carries a surface does not collide
+  for (const Body& body : network.bodies) {
     const Index inside = body.particle_count - body.vertex_count();
-    thickness_.segment(body.first_particle + body.vertex_count(), inside).setConstant(-std::numeric_limits<double>::infinity());
+    thickness_.segment(body.first_particle + body.vertex_count(), inside).setConstant(kNoContact);
   }
+}
+
+std::vector<Contact> PenaltyContact::contacts(const Points& positions) const {
+  std::vector<Contact> found = environment_.contacts({positions, positions, thickness_});
+  std::erase_if(found, [&](const Contact& contact) { return thickness_[contact.particles[0]] == kNoContact; });
+  return found;
 }
 
 void PenaltyContact::prepare(double time) {
@@ -55,7 +67,7 @@ PenaltyContact::Touch PenaltyContact::touch(const Contact& contact, const Kinema
 }
 
 void PenaltyContact::add(const Kinematics& at, Points& forces) const {
-  for (const Contact& contact : environment_.contacts({at.x, at.x, thickness_})) {
+  for (const Contact& contact : contacts(at.x)) {
     const Touch touched = touch(contact, at);
     forces.col(contact.particles[0]) += touched.push * contact.normal;
     forces.col(contact.particles[0]) -= touched.rub * touched.along;
@@ -63,7 +75,7 @@ void PenaltyContact::add(const Kinematics& at, Points& forces) const {
 }
 
 void PenaltyContact::add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const {
-  for (const Contact& contact : environment_.contacts({at.x, at.x, thickness_})) {
+  for (const Contact& contact : contacts(at.x)) {
     const Touch touched = touch(contact, at);
     if (touched.push == 0.0) continue;
     const Index i = contact.particles[0];
@@ -81,7 +93,7 @@ void PenaltyContact::append_elements(std::vector<LinearElement>& elements) const
 
 double PenaltyContact::energy(const Points& positions) const {
   double energy = 0.0;
-  for (const Contact& contact : environment_.contacts({positions, positions, thickness_})) {
+  for (const Contact& contact : contacts(positions)) {
     const double depth = pair_of(contact).thickness - contact.distance;
     if (depth > 0.0) energy += 0.5 * stiffness_ * depth * depth;
   }
@@ -90,7 +102,7 @@ double PenaltyContact::energy(const Points& positions) const {
 
 std::vector<Index> PenaltyContact::touching(const Points& positions) const {
   std::vector<Index> particles;  // contacts are sorted by particle
-  for (const Contact& contact : environment_.contacts({positions, positions, thickness_})) {
+  for (const Contact& contact : contacts(positions)) {
     if (particles.empty() || contact.particles[0] != particles.back()) particles.push_back(contact.particles[0]);
   }
   return particles;
@@ -98,7 +110,7 @@ std::vector<Index> PenaltyContact::touching(const Points& positions) const {
 
 std::vector<ContactNormal> PenaltyContact::normals(const Points& positions) const {
   std::vector<ContactNormal> normals;
-  for (const Contact& contact : environment_.contacts({positions, positions, thickness_})) {
+  for (const Contact& contact : contacts(positions)) {
     normals.push_back({contact.particles[0], contact.normal});
   }
   return normals;

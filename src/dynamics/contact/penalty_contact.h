@@ -42,6 +42,8 @@ class PenaltyContact final : public Force {
 
  private:
   struct Touch;
+  /// Of vertices of surfaces that are nearer to an obstacle than their gap, by particle.
+  [[nodiscard]] std::vector<Contact> contacts(const Points& positions) const;
   [[nodiscard]] ContactMaterial pair_of(const Contact& contact) const;
   [[nodiscard]] Touch touch(const Contact& contact, const Kinematics& at) const;
 

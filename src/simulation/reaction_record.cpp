@@ -1,4 +1,4 @@
-#include "simulation/step/reaction_record.h"
+#include "simulation/reaction_record.h"
 
 namespace sprung {
 
