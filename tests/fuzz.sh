@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-readonly targets="${TARGETS:-obj stl ply off gltf glb 3ds scene}"
+readonly targets="${TARGETS:-obj stl ply off gltf glb 3ds msh vtk node ele scene}"
 if [[ "${1:-}" == --list ]]; then
   tr ' ' '\n' <<<"$targets"
   exit

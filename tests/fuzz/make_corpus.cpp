@@ -1,6 +1,8 @@
 // Writes the files that the fuzz programs start from, a folder each: make_corpus FOLDER EXAMPLES. They are small, as damage to a
 // small file is more often damage to its structure.
 #include "geometry/mesh/polygon_mesh.h"
+#include "geometry/tetrahedra/box_meshes.h"
+#include "geometry/tetrahedra/tetrahedra_texts.h"
 #include "mesh_writers.h"
 
 #include <cstdio>
@@ -56,6 +58,13 @@ std::vector<std::pair<std::string, std::string>> mesh_files() {
     files.emplace_back("glb/" + number, glb_of(mesh));
     files.emplace_back("3ds/" + number, three_ds_bytes(mesh));
   }
+  const TetrahedraMesh cube = test::make_box({1, 1, 1}, 1.0, test::Cut::five);
+  files.emplace_back("msh/version_2", test::gmsh2(cube));
+  files.emplace_back("msh/version_4", test::gmsh4(cube));
+  files.emplace_back("vtk/version_3", test::vtk4(cube));
+  files.emplace_back("vtk/version_5", test::vtk5(cube));
+  files.emplace_back("node/cube", test::node_text(cube, 1));
+  files.emplace_back("ele/cube", test::ele_text(cube, 1));
   files.emplace_back("obj/names",
                      "mtllib a.mtl\no one\ng left\nusemtl red\nv 0 0 0\nv 1 0 0 1\nv .5 1 0 1 0 0\nvt 0.5\nvt 0 1\nvn 0 0 1\ns 1\n"
                      "f 1/1/1 2/2/1 3//1\ng right\nf -1 -2 \\\n -3 # turned\nl 1/1 2/2 3\n");

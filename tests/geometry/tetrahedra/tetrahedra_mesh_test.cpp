@@ -4,16 +4,23 @@
 #include "geometry/fixtures.h"
 #include "geometry/mesh/topology.h"
 #include "geometry/tetrahedra/box_meshes.h"
+#include "geometry/tetrahedra/tetrahedra_texts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sstream>
+#include <algorithm>
 #include <string>
 
 namespace sprung {
 namespace {
 
+using test::ele_text;
+using test::gmsh2;
+using test::gmsh4;
+using test::node_text;
+using test::vtk4;
+using test::vtk5;
 using ::testing::AllOf;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -22,97 +29,6 @@ TetrahedraMesh box() {
   TetrahedraMesh mesh = test::make_box({2, 1, 3}, 0.1, test::Cut::five);
   test::jitter(mesh, 0.02, 3);
   return mesh;
-}
-
-/// Text of a mesh in a format. `first` is the number of the first node, where the format leaves it free.
-using Numbers = std::ostringstream;
-
-Numbers numbers() {
-  Numbers text;
-  text.precision(17);
-  return text;
-}
-
-std::string gmsh2(const TetrahedraMesh& mesh) {
-  Numbers text = numbers();
-  text << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 7 \"all of it\"\n$EndPhysicalNames\n$Nodes\n"
-       << mesh.vertices.cols() << '\n';
-  for (Index i = 0; i < mesh.vertices.cols(); ++i) text << 10 + 3 * i << ' ' << mesh.vertices.col(i).transpose() << '\n';
-  text << "$EndNodes\n$Elements\n" << mesh.tetrahedra.size() + 2 << "\n1 15 2 0 1 10\n2 2 2 0 1 10 13 16\n";
-  for (const auto& t : mesh.tetrahedra) {
-    text << "9 4 3 7 1 0";
-    for (const Index corner : t) text << ' ' << 10 + 3 * corner;
-    text << '\n';
-  }
-  text << "$EndElements\n";
-  return text.str();
-}
-
-// The nodes in two blocks, the second one of a surface with parameters.
-std::string gmsh4(const TetrahedraMesh& mesh) {
-  Numbers text = numbers();
-  const Index n = static_cast<Index>(mesh.vertices.cols());
-  text << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 0 0\n$EndEntities\n";
-  text << "$Nodes\n2 " << n << " 1 " << n << '\n';
-  for (const auto& [begin, end] : {std::pair<Index, Index>{0, n / 2}, {n / 2, n}}) {
-    text << (begin == 0 ? "3 1 0 " : "2 1 1 ") << end - begin << '\n';
-    for (Index i = begin; i < end; ++i) text << n - i << '\n';
-    for (Index i = begin; i < end; ++i) text << mesh.vertices.col(i).transpose() << (begin == 0 ? "\n" : " 0.5 0.5\n");
-  }
-  text << "$EndNodes\n$Elements\n2 " << mesh.tetrahedra.size() + 1 << " 1 100\n2 1 2 1\n1 1 2 3\n3 1 4 " << mesh.tetrahedra.size()
-       << '\n';
-  for (const auto& t : mesh.tetrahedra) {
-    text << 5;
-    for (const Index corner : t) text << ' ' << n - corner;
-    text << '\n';
-  }
-  text << "$EndElements\n";
-  return text.str();
-}
-
-std::string node_text(const TetrahedraMesh& mesh, Index first) {
-  Numbers text = numbers();
-  text << "# nodes\n" << mesh.vertices.cols() << "  3  1  1\n";
-  for (Index i = 0; i < mesh.vertices.cols(); ++i) {
-    text << i + first << "  " << mesh.vertices.col(i).transpose() << "  0.5  1  # on the border\n";
-  }
-  return text.str();
-}
-
-std::string ele_text(const TetrahedraMesh& mesh, Index first) {
-  Numbers text = numbers();
-  text << mesh.tetrahedra.size() << "  4  1\n";
-  for (const auto& t : mesh.tetrahedra)
-    text << "1 " << t[0] + first << ' ' << t[1] + first << ' ' << t[2] + first << ' ' << t[3] + first << " 7\n";
-  return text.str() + "# by TetGen\n";
-}
-
-// Three numbers a line, as ParaView writes them, and a triangle before the tetrahedra.
-std::string vtk4(const TetrahedraMesh& mesh) {
-  Numbers text = numbers();
-  const std::size_t n = mesh.tetrahedra.size();
-  text << "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " << mesh.vertices.cols() << " double\n";
-  for (Index i = 0; i < mesh.vertices.size(); ++i) text << mesh.vertices.data()[i] << (i % 4 == 3 ? '\n' : ' ');
-  text << "\nMETADATA\nINFORMATION 0\n\nCELLS " << n + 1 << ' ' << 5 * n + 4 << "\n3 0 1 2\n";
-  for (const auto& t : mesh.tetrahedra) text << "4 " << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << t[3] << '\n';
-  text << "CELL_TYPES " << n + 1 << "\n5\n";
-  for (std::size_t t = 0; t < n; ++t) text << "10 ";
-  text << "\nCELL_DATA " << n + 1 << "\nSCALARS CELLS int 1\nLOOKUP_TABLE default\n7 7\n";
-  return text.str();
-}
-
-std::string vtk5(const TetrahedraMesh& mesh) {
-  Numbers text = numbers();
-  const std::size_t n = mesh.tetrahedra.size();
-  text << "# vtk DataFile Version 5.1\na box\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " << mesh.vertices.cols() << " double\n";
-  for (Index i = 0; i < mesh.vertices.cols(); ++i) text << mesh.vertices.col(i).transpose() << '\n';
-  text << "CELLS " << n + 1 << ' ' << 4 * n << "\nOFFSETS vtktypeint64\n";
-  for (std::size_t t = 0; t <= n; ++t) text << 4 * t << (t % 9 == 8 ? '\n' : ' ');
-  text << "\nCONNECTIVITY vtktypeint64\n";
-  for (const auto& t : mesh.tetrahedra) text << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << t[3] << ' ';
-  text << "\nCELL_TYPES " << n << '\n';
-  for (std::size_t t = 0; t < n; ++t) text << "10\n";
-  return text.str();
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -136,6 +52,12 @@ class TetrahedraFile : public test::FileTest {
       return all;
     }
     return "accepted";
+  }
+
+  /// The problems of `good` with a piece replaced, as a function of the piece and its replacement.
+  [[nodiscard]] auto damaged(const std::string& name, const std::string& good) const {
+    return
+        [this, name, good](const std::string& from, const std::string& to) { return problems_of(name, replaced(good, from, to)); };
   }
 
   void expect_same(const TetrahedraMesh& expected, const std::filesystem::path& file) const {
@@ -190,9 +112,7 @@ TEST_F(TetrahedraFile, UnusedNodesAreLeftOut) {
 
 TEST_F(TetrahedraFile, DamagedGmshFilesAreRefusedByLine) {
   const std::string good = gmsh2(box());
-  const auto problems = [&](const std::string& from, const std::string& to) {
-    return problems_of("a.msh", replaced(good, from, to));
-  };
+  const auto problems = damaged("a.msh", good);
   EXPECT_EQ(problems("\n2.2 0 8\n", "\n2.2 1 8\n"),
             "line 2 = : is a binary file, of which only text is read; save it as text with `gmsh -save -format msh22 -setnumber "
             "Mesh.Binary 0 FILE`\n");
@@ -212,10 +132,7 @@ TEST_F(TetrahedraFile, DamagedGmshFilesAreRefusedByLine) {
 }
 
 TEST_F(TetrahedraFile, DamagedGmsh4BlocksAreRefused) {
-  const std::string good = gmsh4(box());
-  const auto problems = [&](const std::string& from, const std::string& to) {
-    return problems_of("a.msh", replaced(good, from, to));
-  };
+  const auto problems = damaged("a.msh", gmsh4(box()));
   EXPECT_THAT(problems("$Nodes\n2 24 ", "$Nodes\n2 25 "), HasSubstr("24 nodes: must be 25, as the section declares"));
   EXPECT_THAT(problems("$Nodes\n2 24 ", "$Nodes\n1 24 "), HasSubstr("must be $EndNodes"));
   EXPECT_THAT(problems("3 1 4 30", "3 1 11 30"), HasSubstr("a cell of type 11 (and 29 more): must be 4"));
@@ -234,14 +151,10 @@ TEST_F(TetrahedraFile, AllProblemsAreNamedInOneGo) {
 
 TEST_F(TetrahedraFile, DamagedTetgenFilesAreRefused) {
   const TetrahedraMesh mesh = box();
-  const auto of_nodes = [&](const std::string& from, const std::string& to) {
-    (void)write("a.ele", ele_text(mesh, 1));
-    return problems_of("a.node", replaced(node_text(mesh, 1), from, to));
-  };
-  const auto of_elements = [&](const std::string& from, const std::string& to) {
-    (void)write("a.node", node_text(mesh, 1));
-    return problems_of("a.ele", replaced(ele_text(mesh, 1), from, to));
-  };
+  (void)write("nodes.ele", ele_text(mesh, 1));
+  (void)write("elements.node", node_text(mesh, 1));
+  const auto of_nodes = damaged("nodes.node", node_text(mesh, 1));
+  const auto of_elements = damaged("elements.ele", ele_text(mesh, 1));
   EXPECT_THAT(problems_of("alone.ele", ele_text(mesh, 1)), HasSubstr("does not exist, but belongs to alone.ele"));
   EXPECT_THAT(of_nodes("24  3", "25  3"), HasSubstr("is truncated: it declares 25 nodes but contains 24"));
   EXPECT_THAT(of_nodes("24  3", "23  3"), HasSubstr("line 26 = 24: must not follow: the file declares 23 nodes"));
@@ -254,9 +167,7 @@ TEST_F(TetrahedraFile, DamagedTetgenFilesAreRefused) {
 
 TEST_F(TetrahedraFile, DamagedVtkFilesAreRefused) {
   const std::string good = vtk4(box());
-  const auto problems = [&](const std::string& from, const std::string& to) {
-    return problems_of("a.vtk", replaced(good, from, to));
-  };
+  const auto problems = damaged("a.vtk", good);
   EXPECT_THAT(problems("ASCII", "BINARY"),
               HasSubstr("line 3 = : is a binary file, of which only text is read; save it with the file type ASCII"));
   EXPECT_THAT(problems("UNSTRUCTURED_GRID", "POLYDATA"), HasSubstr("line 4 = POLYDATA: must be DATASET UNSTRUCTURED_GRID"));
