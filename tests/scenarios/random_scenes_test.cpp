@@ -3,9 +3,12 @@
 #include "base/test_seed.h"
 #include "collision/sample_meshes.h"
 #include "collision/shapes/obstacle_shape.h"
+#include "geometry/tetrahedra/box_meshes.h"
 #include "mesh_shapes.h"
+#include "network/bodies/tetrahedra_body.h"
 #include "network/network_builder.h"
 #include "scenarios/scenario.h"
+#include "scene/building/lattice_filling.h"
 
 #include <gtest/gtest.h>
 
@@ -45,9 +48,40 @@ BodyShape random_shape(Random& random) {
   }
 }
 
+enum class Filled : std::uint8_t { lattice, tetrahedra, balloon };
+
+/// A closed surface that cells carry, tetrahedra, or a skin around a gas or a liquid.
+BodyShape random_filled_shape(Filled kind, Random& random) {
+  const SpringMaterial limp{.value = 0.0};
+  const SpringMaterial soft{.value = 1.0, .damping = 0.01};
+  TriangleMesh surface = random.below(2) == 0 ? meshes::sphere(2) : meshes::torus();
+  surface.vertices *= 0.2;
+  PolygonMesh skin{surface.vertices, to_polygons(surface.triangles), Edges(2, 0)};
+  BodyShape shape;
+  switch (kind) {
+    case Filled::lattice:
+      shape = make_lattice_body(fill_with_cells(std::move(skin), random.between(0.05, 0.15)), {soft, soft, {}});
+      shape.preserve_volume = random.below(2) == 0;
+      break;
+    case Filled::tetrahedra: {
+      TetrahedraMesh box = test::make_box({1 + random.below(3), 1 + random.below(3), 1 + random.below(3)}, 0.1,
+                                          random.below(2) == 0 ? test::Cut::five : test::Cut::mirrored);
+      test::jitter(box, 0.02, static_cast<unsigned>(random.below(1000)));
+      shape = make_tetrahedra_body(box, {soft, {}, {}});
+      shape.preserve_volume = random.below(2) == 0;
+      break;
+    }
+    case Filled::balloon:
+      shape = make_mesh_body(skin, {limp, {}, {}});
+      (random.below(2) == 0 ? shape.pressure : shape.volume_factor) = random.between(0.5, 1.5);
+      break;
+  }
+  return shape;
+}
+
 /// Adds a body that flies towards the origin.
-void add_random_body(NetworkBuilder& builder, const std::string& name, Random& random, const BodyContact& contact) {
-  BodyShape shape = random_shape(random);
+void add_flying_body(NetworkBuilder& builder, const std::string& name, BodyShape shape, Random& random,
+                     const BodyContact& contact) {
   set_total_mass(shape, 1.0);
   const Vector3 direction = random.direction();
   RigidTransform pose = RigidTransform::Identity();
@@ -61,6 +95,10 @@ void add_random_body(NetworkBuilder& builder, const std::string& name, Random& r
                     .static_friction = friction,
                     .restitution = one_of(random, {0.0, 0.5})},
                    contact);
+}
+
+void add_random_body(NetworkBuilder& builder, const std::string& name, Random& random, const BodyContact& contact) {
+  add_flying_body(builder, name, random_shape(random), random, contact);
 }
 
 MeshGeometry random_mesh(Random& random) {
@@ -265,6 +303,21 @@ BuiltScene scene_above_floor(Random& random) {
   return random_scene(random, builder, swing_above_floor(random));
 }
 
+BuiltScene scene_of_filled(Filled kind, Random& random) {
+  NetworkBuilder builder;
+  add_flying_body(builder, "body", random_filled_shape(kind, random), random, {.self = false});
+  return random_scene(random, builder, {random_obstacle(random)});
+}
+
+/// A lattice, tetrahedra and a balloon that meet at an obstacle above a floor.
+BuiltScene scene_of_three_filled(Random& random) {
+  NetworkBuilder builder;
+  add_flying_body(builder, "lattice", random_filled_shape(Filled::lattice, random), random, {.self = true});
+  add_flying_body(builder, "tetrahedra", random_filled_shape(Filled::tetrahedra, random), random, {.self = true});
+  add_flying_body(builder, "balloon", random_filled_shape(Filled::balloon, random), random, {.self = true});
+  return random_scene(random, builder, swing_above_floor(random));
+}
+
 class RandomScenes : public test::SeededTest {};
 
 TEST_F(RandomScenes, NothingCrossesAnyObstacleInAnyStep) {
@@ -320,6 +373,25 @@ TEST_F(RandomScenes, NothingCrossesItselfOrAnotherOrADeformingSurface) {
   const Reports reports = run_scenes(200, Judge::obstacles_and_self, scene_of_three, deforms);
   for (const auto& [number, report] : reports) EXPECT_TRUE(report.is_free()) << "scene " << number << ": " << report;
   EXPECT_GT(reports.size(), 10);
+}
+
+TEST_F(RandomScenes, NoLatticeTetrahedraOrBalloonCrossesAnObstacleInAnyStep) {
+  for (const Filled kind : {Filled::lattice, Filled::tetrahedra, Filled::balloon}) {
+    const auto make = [&](Random& random) { return scene_of_filled(kind, random); };
+    const Reports reports = run_scenes(40, Judge::obstacles, make, [](const BuiltScene&) { return true; });
+    for (const auto& [number, report] : reports) {
+      EXPECT_TRUE(report.is_free()) << "kind " << static_cast<int>(kind) << ", scene " << number << ": " << report;
+    }
+    EXPECT_GT(reports.size(), 10) << "of kind " << static_cast<int>(kind);
+  }
+}
+
+TEST_F(RandomScenes, LatticesTetrahedraAndBalloonsDoNotCrossEachOtherOrThemselves) {
+  const Reports reports = run_scenes(40, Judge::obstacles_and_self, scene_of_three_filled, [](const BuiltScene&) { return true; });
+  for (const auto& [number, report] : reports) {
+    EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
+  }
+  EXPECT_GT(reports.size(), 8);
 }
 
 }  // namespace
