@@ -378,20 +378,20 @@ TEST_F(RandomScenes, NothingCrossesItselfOrAnotherOrADeformingSurface) {
 TEST_F(RandomScenes, NoLatticeTetrahedraOrBalloonCrossesAnObstacleInAnyStep) {
   for (const Filled kind : {Filled::lattice, Filled::tetrahedra, Filled::balloon}) {
     const auto make = [&](Random& random) { return scene_of_filled(kind, random); };
-    const Reports reports = run_scenes(40, Judge::obstacles, make, [](const BuiltScene&) { return true; });
+    const Reports reports = run_scenes(12, Judge::obstacles, make, [](const BuiltScene&) { return true; });
     for (const auto& [number, report] : reports) {
       EXPECT_TRUE(report.is_free()) << "kind " << static_cast<int>(kind) << ", scene " << number << ": " << report;
     }
-    EXPECT_GT(reports.size(), 10) << "of kind " << static_cast<int>(kind);
+    EXPECT_GT(reports.size(), 3) << "of kind " << static_cast<int>(kind);
   }
 }
 
 TEST_F(RandomScenes, LatticesTetrahedraAndBalloonsDoNotCrossEachOtherOrThemselves) {
-  const Reports reports = run_scenes(40, Judge::obstacles_and_self, scene_of_three_filled, [](const BuiltScene&) { return true; });
+  const Reports reports = run_scenes(4, Judge::obstacles_and_self, scene_of_three_filled, [](const BuiltScene&) { return true; });
   for (const auto& [number, report] : reports) {
     EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
   }
-  EXPECT_GT(reports.size(), 8);
+  EXPECT_GT(reports.size(), 0);
 }
 
 }  // namespace
