@@ -71,13 +71,17 @@ std::vector<char> find_gone(const Springs& springs, const std::vector<Index>& br
   return gone;
 }
 
-template <class T>
-void erase_gone(std::vector<T>& values, const std::vector<char>& gone) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (gone[i] == 0) values[kept++] = values[i];
-  }
-  values.resize(kept);
+/// Erases the same entries of several arrays.
+template <class... Arrays>
+void erase_gone(const std::vector<char>& gone, Arrays&... arrays) {
+  const auto erase = [&](auto& values) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (gone[i] == 0) values[kept++] = values[i];
+    }
+    values.resize(kept);
+  };
+  (erase(arrays), ...);
 }
 
 /// Moves the range [first, first + count) to where its entries are once those that are gone are erased.
@@ -95,13 +99,8 @@ void remove_springs(SpringNetwork& network, const std::vector<char>& gone) {
     if (body.spring_count < before) body.resolution = {};  // it is no whole grid any more
   }
   Springs& springs = network.springs;
-  erase_gone(springs.first, gone);
-  erase_gone(springs.second, gone);
-  erase_gone(springs.rest_length, gone);
-  erase_gone(springs.stiffness, gone);
-  erase_gone(springs.damping, gone);
-  erase_gone(springs.kind, gone);
-  erase_gone(springs.laws, gone);
+  erase_gone(gone, springs.first, springs.second, springs.rest_length, springs.stiffness, springs.damping, springs.kind,
+             springs.laws);
   network.broken_springs += static_cast<Index>(std::ranges::count(gone, char{1}));
 }
 
@@ -113,13 +112,8 @@ void remove_angle_bends(SpringNetwork& network, const Pairs& gone_pairs) {
     gone[a] = gone_pairs.contains(pair_of(bends.before[a], middle)) || gone_pairs.contains(pair_of(middle, bends.after[a])) ? 1 : 0;
   }
   for (Body& body : network.bodies) shift_range(gone, body.first_angle_bend, body.angle_bend_count);
-  erase_gone(bends.before, gone);
-  erase_gone(bends.middle, gone);
-  erase_gone(bends.after, gone);
-  erase_gone(bends.length_before, gone);
-  erase_gone(bends.length_after, gone);
-  erase_gone(bends.stiffness, gone);
-  erase_gone(bends.damping, gone);
+  erase_gone(gone, bends.before, bends.middle, bends.after, bends.length_before, bends.length_after, bends.stiffness,
+             bends.damping);
 }
 
 template <class Elements>
