@@ -101,7 +101,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
     const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
     attachments.emplace(network, environment, settings.step, implicit);
     forces.push_back(std::make_unique<SharedForce>(attachments->springs()));
-    constraints.add(attachments->rods());
+    if (std::ranges::any_of(network.attachments, &Attachment::is_rigid)) constraints.add(attachments->rods());
   }
   for (const std::shared_ptr<Force>& force : external.forces) forces.push_back(std::make_unique<SharedForce>(force));
   for (const std::shared_ptr<Constraint>& constraint : external.constraints) constraints.add(constraint);
@@ -129,6 +129,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
 /// Before this, pins take the speed with which they begin, which is no impulse.
 void Simulator::Implementation::begin_recording() {
   if (!settings.record_forces) return;
+  reactions.reset();
   forces_since = time();
   state.impulses = {.on_pinned = Points::Zero(3, network.particle_count()), .of_springs = Scalars::Zero(network.springs.count())};
 }
@@ -299,6 +300,7 @@ void Simulator::Implementation::move_pins(double time) {
 void Simulator::Implementation::record_gain(Index particle, const Vector3& velocity_before) {
   state.impulses.on_pinned.col(particle) -= network.masses[particle] * (state.v.col(particle) - velocity_before);
 }
+
 /// Tells the forces that depend on the step.
 void Simulator::Implementation::step_length_changed() {
   if (penalty != nullptr) penalty->set_step(dt());
@@ -376,8 +378,12 @@ StepReport Simulator::step() {
   const std::vector<Index> broken = breaking_springs(now.network, now.state.x);
   if (!broken.empty() || have_pins_changed(now.network, due_before(now.state.step, now.settings.step))) {
     SpringNetwork network = now.network;
-    tear(network, broken);
-    auto next = std::make_unique<Implementation>(std::move(network), now.settings, now.external, now);
+    const std::vector<Index> left = tear(network, broken);
+    SimulatorSettings settings = now.settings;
+    settings.stability = StabilityCheck::warn;  // the step was accepted; its bound is an estimate, which varies with the network
+    auto next = std::make_unique<Implementation>(std::move(network), std::move(settings), now.external, now);
+    next->settings.stability = now.settings.stability;
+    if (now.state.impulses.on()) next->state.impulses.of_springs = now.state.impulses.of_springs(left);
     next->warnings = now.warnings;  // with those of the start
     implementation_ = std::move(next);
   }
@@ -406,10 +412,7 @@ Scalars Simulator::limit_tensions() const {
   return state().impulses.of_springs / duration;
 }
 
-void Simulator::reset_forces() {
-  implementation_->reactions.reset();
-  implementation_->begin_recording();
-}
+void Simulator::reset_forces() { implementation_->begin_recording(); }
 
 std::string Simulator::stretch_solver() const {
   const StretchLimit* limit = implementation_->constraints.limit();

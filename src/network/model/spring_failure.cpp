@@ -116,11 +116,6 @@ void remove_angle_bends(SpringNetwork& network, const Pairs& gone_pairs) {
              bends.damping);
 }
 
-template <class Elements>
-void keep_columns(Elements& elements, const std::vector<Index>& kept) {
-  elements = Elements(elements(Eigen::all, kept));
-}
-
 /// Tears one body's surface, in the numbering of the body.
 class SurfaceTearing {
  public:
@@ -132,10 +127,10 @@ class SurfaceTearing {
     remove_segments();
     const std::vector<Index> torn = find_torn();
     if (torn.empty()) return;
-    remove_triangles(torn);
-    add_threads(torn);
     surface_.torn.insert(surface_.torn.end(), torn.begin(), torn.end());
     std::ranges::sort(surface_.torn);
+    surface_.triangles = triangulate(without_faces(surface_.faces, surface_.torn));
+    add_threads(torn);
   }
 
  private:
@@ -170,21 +165,7 @@ class SurfaceTearing {
     for (Index s = 0; s < surface_.segments.cols(); ++s) {
       if (!gone_.contains(pair_of(surface_.segments(0, s), surface_.segments(1, s)))) kept.push_back(s);
     }
-    if (static_cast<Index>(kept.size()) < surface_.segments.cols()) keep_columns(surface_.segments, kept);
-  }
-
-  /// The triangles are the fans of the faces that were not torn before.
-  void remove_triangles(const std::vector<Index>& torn) {
-    std::vector<Index> kept;
-    Index triangle = 0;
-    for (Index face = 0; face < surface_.faces.face_count(); ++face) {
-      if (is_torn_already(face)) continue;
-      const bool goes = std::ranges::binary_search(torn, face);
-      for (std::size_t fan = 2; fan < corners(face).size(); ++fan, ++triangle) {
-        if (!goes) kept.push_back(triangle);
-      }
-    }
-    keep_columns(surface_.triangles, kept);
+    if (static_cast<Index>(kept.size()) < surface_.segments.cols()) surface_.segments = Edges(surface_.segments(Eigen::all, kept));
   }
 
   void add_threads(const std::vector<Index>& torn) {
@@ -249,10 +230,14 @@ std::vector<Index> breaking_springs(const SpringNetwork& network, const Points& 
   return breaking;
 }
 
-void tear(SpringNetwork& network, const std::vector<Index>& broken) {
-  if (broken.empty()) return;
+std::vector<Index> tear(SpringNetwork& network, const std::vector<Index>& broken) {
   const Springs& springs = network.springs;
   const std::vector<char> gone = find_gone(springs, broken);
+  std::vector<Index> left;
+  for (Index s = 0; s < springs.count(); ++s) {
+    if (gone[s] == 0) left.push_back(s);
+  }
+  if (broken.empty()) return left;
   Pairs gone_structural;
   for (const Index s : broken) {
     if (springs.kind[s] == SpringKind::structural) gone_structural.insert(ends_of(springs, s));
@@ -273,6 +258,7 @@ void tear(SpringNetwork& network, const std::vector<Index>& broken) {
   }
   remove_angle_bends(network, gone_structural);
   remove_springs(network, gone);
+  return left;
 }
 
 void take_rest_lengths(const SpringNetwork& from, SpringNetwork& network) {

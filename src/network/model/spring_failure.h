@@ -13,8 +13,8 @@ namespace sprung {
 void let_yield(Springs& springs, const Points& positions);
 
 /// The springs that break next at these positions [m], ascending. Of springs that are longer than their break length and hang
-/// together, the one with the largest length relative to it goes first: it may relieve the others. In a stable step waves pass
-/// less than a spring, so that this does not hold up a crack.
+/// together, the one with the largest length relative to it goes first: it may relieve the others. In a stable step a
+/// wave does not travel farther than a spring, so one break per step does not slow a crack down.
 [[nodiscard]] std::vector<Index> breaking_springs(const SpringNetwork& network, const Points& positions);
 
 /// Removes springs that broke, and what would hold or cover the gap:
@@ -22,8 +22,9 @@ void let_yield(Springs& springs, const Points& positions);
 ///   of two triangles;
 /// - the angle bends over these springs, and the segments along them;
 /// - the faces with a structural or shear spring that is gone as a side or diagonal: `Surface::torn` names them.
-/// Structural springs that keep no face become segments.
-void tear(SpringNetwork& network, const std::vector<Index>& broken);
+/// Structural springs that keep no face become segments. Requires that the triangles of surfaces are those of `triangulate`.
+/// Returns the former numbers of the springs that are left, ascending.
+std::vector<Index> tear(SpringNetwork& network, const std::vector<Index>& broken);
 
 /// Takes the rest lengths of springs that yield from another network, where both have a spring of this number between the same
 /// particles.
