@@ -119,7 +119,7 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   }
   constraints.roll_back(before.constraints.permitted_crossings());
   environment.set_interval(time(), time());
-  drop_unknown_links(network, state);
+  drop_unknown_links(before.network, network, state);
   if (attachments) attachments->take(state, time());
   if (excess_of(constraints, state.x) > excess_of(before.constraints, state.x) ||
       constraints.violation(state.x) > std::max(1.0, before.constraints.violation(state.x))) {

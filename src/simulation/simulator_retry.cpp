@@ -51,6 +51,7 @@ void Simulator::Implementation::take(Attempt&& best) {
   constraints.roll_back(best.crossings);
   state = std::move(best.state);
   environment.set_interval(time(), time());
+  if (attachments) attachments->take(state, time());  // a later attempt may have left them within the step
   energy_watch = best.watch;
   kept_contacts = std::move(best.contacts);
 }

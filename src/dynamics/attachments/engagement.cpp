@@ -84,6 +84,12 @@ void put_on(const Environment& environment, const ObstacleEnd& end, const Vector
   }
 }
 
+/// kNone for an attachment to a body.
+Index obstacle_of(const Attachment& attachment) {
+  const auto* end = std::get_if<ObstacleEnd>(&attachment.second);
+  return end != nullptr ? end->obstacle : kNone;
+}
+
 }  // namespace
 
 Link link_to_body(const SpringNetwork& network, const Points& positions, std::size_t attachment, Index particle) {
@@ -104,6 +110,7 @@ bool update_links(const SpringNetwork& network, const Environment& environment, 
     const auto known = std::ranges::equal_range(before, a, {}, &Link::attachment);
     state.links.insert(state.links.end(), known.begin(), known.end());
     if (!known.empty() || !attachment.holds_at(due)) continue;
+    const double coincident = kCoincident * mean_spring_length(network);
     for (const Index particle : attachment.particles) {
       Link link = link_to_body(network, state.x, a, particle);
       link.step = state.step;
@@ -112,7 +119,7 @@ bool update_links(const SpringNetwork& network, const Environment& environment, 
       }
       const LinkEnds ends(network, environment.obstacles(), link);
       link.distance = (ends.sum(state.x) - ends.anchor(now)).norm();
-      if (link.distance < kCoincident * mean_spring_length(network)) link.distance = 0.0;
+      if (link.distance < coincident) link.distance = 0.0;
       link.length = attachment.rest_length.value_or(link.distance);
       state.links.push_back(link);
     }
@@ -120,13 +127,12 @@ bool update_links(const SpringNetwork& network, const Environment& environment, 
   return ended || state.links.size() != before.size();
 }
 
-void drop_unknown_links(const SpringNetwork& network, SimulationState& state) {
+void drop_unknown_links(const SpringNetwork& before, const SpringNetwork& network, SimulationState& state) {
   std::erase_if(state.links, [&](const Link& link) {
     if (link.attachment >= network.attachments.size()) return true;
     const Attachment& attachment = network.attachments[link.attachment];
-    const bool on_obstacle = std::holds_alternative<ObstacleEnd>(attachment.second);
     return std::ranges::find(attachment.particles, link.first) == attachment.particles.end() ||
-           on_obstacle != (link.second[0] == kNone);
+           obstacle_of(attachment) != obstacle_of(before.attachments[link.attachment]);
   });
 }
 

@@ -15,7 +15,7 @@ bool update_links(const SpringNetwork& network, const Environment& environment, 
 /// its step and lengths.
 [[nodiscard]] Link link_to_body(const SpringNetwork& network, const Points& positions, std::size_t attachment, Index particle);
 
-/// Removes links that the network's attachments do not have, after the network changed.
-void drop_unknown_links(const SpringNetwork& network, SimulationState& state);
+/// Removes links that the attachments of `network` do not have, which replaces `before`.
+void drop_unknown_links(const SpringNetwork& before, const SpringNetwork& network, SimulationState& state);
 
 }  // namespace sprung

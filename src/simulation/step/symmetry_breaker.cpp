@@ -161,6 +161,7 @@ void SymmetryBreaker::push(const Piece& piece, const Flat& flat, double dt, cons
   for (const Index s : piece.springs) {
     const Index a = springs.first[s];
     const Index b = springs.second[s];
+    if (springs.law(s).tension_only) continue;  // it is slack, not compressed
     if ((state.x.col(a) - state.x.col(b)).norm() >= (1.0 - kCompression) * springs.rest_length[s]) continue;
     ends.insert(ends.end(), {a, b});
   }
