@@ -1,4 +1,4 @@
-// forces.csv: a row per frame and pin.
+// forces.csv: a row per frame and pin or attachment.
 #pragma once
 
 #include "simulation/reaction.h"
@@ -8,7 +8,8 @@
 
 namespace sprung {
 
-/// The line of column names: frame, time [s], name of the pin, and the force [N] on its body, a mean since the frame before.
+/// The line of column names: frame, time [s], name of the pin or attachment, and the force [N] on its (first) body, a mean
+/// since the frame before.
 [[nodiscard]] std::string forces_csv_head();
 
 /// The lines of a frame at `time` [s], in the given order.

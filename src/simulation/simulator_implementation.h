@@ -110,7 +110,7 @@ struct Simulator::Implementation {
   double driven_until;  ///< see end_of_motions() in simulator.cpp [s]
   SimulationState state;
   StepBegin begin;
-  ReactionRecord reactions;   ///< by attachments, and by pins that have ended or changed in the present interval
+  ReactionRecord reactions;   ///< of attachments, and of pins before the last change of the simulator, in the present interval
   double forces_since = 0.0;  ///< begin of that interval [s]
   std::optional<std::vector<Index>> kept_contacts;  ///< of the last step, if a later attempt changed the constraints
 };

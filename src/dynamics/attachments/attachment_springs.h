@@ -12,9 +12,9 @@ namespace sprung {
 /// The force of a spring-damper (eq. 5-12) between the ends of each link with a stiffness. The velocity of an obstacle's point is
 /// its mean velocity over the next step.
 ///
-/// An implicit scheme solves for the forces of all springs at once. A rod that passes alone keep would pull there at nothing but
-/// the mass of the particles at its ends: bodies would come off. In such a scheme a rod is a spring too, so stiff that it yields by
-/// a thousandth at most, and passes correct the rest.
+/// An implicit scheme solves for the forces of all springs at once. If passes alone kept a rod, they would move just the particles
+/// at its ends, and the rest of the bodies would not follow. In such a scheme a rod is therefore a spring too, so stiff that its
+/// length changes by a thousandth at most. Passes correct the rest.
 class AttachmentSprings final : public Force {
  public:
   /// Keeps references to both. `implicit`: whether rods are springs too.

@@ -26,6 +26,7 @@ struct Energies {
 /// the run. gain(): did the energy of an undriven scene rise between two frames? It looks at frames and gives a warning.
 class EnergyWatch {
  public:
+  /// Only explosion() needs the `forces`.
   EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles,
               const Forces& forces);
 
@@ -46,7 +47,7 @@ class EnergyWatch {
 
   /// Describes the explosion if the energies of motion and springs exceed 1,000 times the energy that can have been supplied. That
   /// is the sum of: the energy at the start; the potential energy released since; the energy supplied slowly (see note()); the
-  /// kinetic energy of all particles at the speed of the fastest pin, wind or obstacle; the capacity of all
+  /// kinetic energy of all particles at the speed of the fastest pin, wind or obstacle; the capacity of the
   /// forces (see Force::capacity); with a stretch limit, the energy to lift all particles by one spring length; and rounding.
   [[nodiscard]] std::optional<std::string> explosion(const Energies& energies) const;
 
