@@ -25,7 +25,7 @@ class Wind {
   template <class Derived>
   Wind(const Eigen::MatrixBase<Derived>& velocity) : keyframes_{{0.0, velocity}} {}  // NOLINT(google-explicit-constructor)
 
-  /// Requires what check_wind() checks.
+  /// Requires finite velocities, times that increase strictly, and gusts in the bounds of Gusts.
   explicit Wind(std::vector<WindKeyframe> keyframes, const std::optional<Gusts>& gusts = std::nullopt);
 
   [[nodiscard]] const std::vector<WindKeyframe>& keyframes() const { return keyframes_; }
