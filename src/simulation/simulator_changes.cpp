@@ -36,7 +36,7 @@ void check_change(const SpringNetwork& network, const SimulatorSettings& setting
     problems.add("contact", "", "must be asked for between the same bodies as before, as the run goes on", restart);
   }
   if (network.broken_springs != network_before.broken_springs) {
-    problems.add("springs", "", "broke in this run, and would be whole", restart);
+    problems.add("springs", "", "must lack the springs that broke in this run", restart);
   }
   if (settings.step != settings_before.step) {
     problems.add("step", format_number(settings.step, 6),
