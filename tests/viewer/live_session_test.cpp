@@ -129,7 +129,8 @@ TEST_F(LiveViewer, APageIsToldTheTopologyThatABreakLeaves) {
   while (topology.kind() != 1u || topology.at<std::uint32_t>(40) == 10u) topology = page.binary();
   EXPECT_LT(topology.at<std::uint32_t>(36), 10u) << "segments";
   EXPECT_EQ(topology.at<std::uint32_t>(36), topology.at<std::uint32_t>(40)) << "a segment for each spring";
-  EXPECT_EQ(page.frame([&](const Received& frame) { return frame.generation() == topology.generation(); }).particles(), 11u);
+  // If the rope has broken again meanwhile, only frames of a later generation come.
+  EXPECT_EQ(page.frame([&](const Received& frame) { return frame.generation() >= topology.generation(); }).particles(), 11u);
 }
 
 TEST_F(LiveViewer, ResetGivesTheBitsOfTheFirstFrame) {
