@@ -17,6 +17,7 @@ constexpr double kInverted = 1.0;  // residual of an inverted part, as a relativ
 constexpr double kWatched = 4.0;
 
 constexpr Index kRegionsPerChunk = 128;
+constexpr Index kGroupsPerChunk = 16;
 
 // A region has at most as many particles as a byte can number; its gradients lie on the stack.
 constexpr std::size_t kMaxParticles = 256;
@@ -64,15 +65,47 @@ void change_volume(double change, std::span<const Index> particles, std::span<co
   }
 }
 
+/// The largest relative change of volume in a group, none of whose parts may turn inside out.
+double largest_change(const HexahedronGroup& group, const HexahedraVolumes& found) {
+  double largest = std::ranges::min(found.least) <= 0.0 ? kInverted : 0.0;
+  for (std::size_t lane = 0; lane < kHexahedraPerGroup; ++lane) {
+    largest = std::max(largest, std::abs(found.total[lane] / group.volume[lane] - 1.0));
+  }
+  return largest;
+}
+
 }  // namespace
 
 CellVolume::CellVolume(const SpringNetwork& network) : network_(network) {
   for (const Body& body : network.bodies) {
-    if (!body.preserve_volume) continue;
-    add_hexahedra(body);
-    add_stars(body);
+    if (body.preserve_volume) add_hexahedra(body);
   }
-  colouring_ = colour_groups(volumes_.size(), network.particle_count(), [&](std::size_t r) { return region(r).particles; });
+  const std::size_t hexahedra = volumes_.size();
+  for (const Body& body : network.bodies) {
+    if (body.preserve_volume) add_stars(body);
+  }
+  make_groups(colour_groups(volumes_.size(), network.particle_count(), [&](std::size_t r) { return region(r).particles; }),
+              hexahedra);
+}
+
+/// The first regions are hexahedra.
+void CellVolume::make_groups(const Colouring& colouring, std::size_t hexahedra) {
+  for (std::size_t c = 0; c + 1 < colouring.colour_begin.size(); ++c) {
+    std::vector<std::size_t> waiting;
+    for (std::size_t k = colouring.colour_begin[c]; k < colouring.colour_begin[c + 1]; ++k) {
+      const std::size_t number = colouring.order[k];
+      const bool grouped = number < hexahedra && std::ranges::none_of(region(number).parts, [](const Part& part) {
+                             return std::isfinite(part.least) && part.least <= 0.0;
+                           });
+      (grouped ? waiting : singles_).push_back(number);
+      if (waiting.size() < kHexahedraPerGroup) continue;
+      groups_.push_back(group_of(waiting));
+      waiting.clear();
+    }
+    singles_.insert(singles_.end(), waiting.begin(), waiting.end());
+    groups_begin_.push_back(groups_.size());
+    singles_begin_.push_back(singles_.size());
+  }
 }
 
 void CellVolume::add_hexahedra(const Body& body) {
@@ -122,6 +155,20 @@ void CellVolume::add(const std::vector<Index>& particles, const std::vector<Corn
   volumes_.push_back(volume);
 }
 
+HexahedronGroup CellVolume::group_of(const std::vector<std::size_t>& hexahedra) const {
+  HexahedronGroup group;
+  for (std::size_t lane = 0; lane < kHexahedraPerGroup; ++lane) {
+    const Region of_lane = region(hexahedra[lane]);
+    for (std::size_t c = 0; c < kCornersOfHexahedron; ++c) {
+      group.particles[c][lane] = of_lane.particles[c];
+      group.watched[c][lane] = kWatched * of_lane.parts[c].least;
+    }
+    group.volume[lane] = of_lane.volume;
+    group.number[lane] = hexahedra[lane];
+  }
+  return group;
+}
+
 CellVolume::Region CellVolume::region(std::size_t number) const {
   return {
       .particles = std::span(particles_).subspan(particles_begin_[number], particles_begin_[number + 1] - particles_begin_[number]),
@@ -130,28 +177,74 @@ CellVolume::Region CellVolume::region(std::size_t number) const {
 }
 
 double CellVolume::project(const Points& /*before*/, Points& positions) const {
-  std::vector<double> changes(colouring_.order.size());
-  for (std::size_t c = 0; c + 1 < colouring_.colour_begin.size(); ++c) {
-    const std::size_t first = colouring_.colour_begin[c];
-    parallel_chunks(static_cast<Index>(colouring_.colour_begin[c + 1] - first), kRegionsPerChunk, [&](Index begin, Index end) {
-      for (std::size_t k = first + begin; k < first + end; ++k) changes[k] = project(region(colouring_.order[k]), positions);
+  std::vector<double> changes(groups_.size() + singles_.size());
+  for (std::size_t c = 0; c + 1 < groups_begin_.size(); ++c) {
+    const std::size_t first_group = groups_begin_[c];
+    parallel_chunks(static_cast<Index>(groups_begin_[c + 1] - first_group), kGroupsPerChunk,
+                    [&](Index begin, Index end) { project_groups(first_group + begin, first_group + end, positions, changes); });
+    const std::size_t first = singles_begin_[c];
+    parallel_chunks(static_cast<Index>(singles_begin_[c + 1] - first), kRegionsPerChunk, [&](Index begin, Index end) {
+      for (std::size_t k = first + begin; k < first + end; ++k) {
+        changes[groups_.size() + k] = project(region(singles_[k]), positions);
+      }
     });
   }
   return changes.empty() ? 0.0 : std::ranges::max(changes) / kTolerance;
 }
 
-double CellVolume::residual(const Points& positions) const {
-  double largest = 0.0;
-  for (std::size_t r = 0; r < volumes_.size(); ++r) {
-    double volume = 0.0;
-    for (const Part& part : region(r).parts) {
-      const double of_part = part_volume(region(r).particles, part.corners, positions).volume;
-      if (is_inverted(part, of_part)) largest = std::max(largest, kInverted);
-      volume += of_part;
+/// Writes the largest relative change of volume in each group. A chunk with pinned particles whose impulses are recorded is
+/// projected cell by cell, which gives the same bits.
+void CellVolume::project_groups(std::size_t begin, std::size_t end, Points& positions, std::vector<double>& changes) const {
+  std::array<HexahedraFound, kGroupsPerChunk> found;
+  const auto groups = std::span(groups_).subspan(begin, end - begin);
+  if (recorder().on() && std::ranges::any_of(groups, [&](const HexahedronGroup& group) { return has_pinned(group); })) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      changes[begin + g] = 0.0;
+      for (const std::size_t number : groups[g].number) {
+        changes[begin + g] = std::max(changes[begin + g], project(region(number), positions));
+      }
     }
-    largest = std::max(largest, std::abs(volume / volumes_[r] - 1.0));
+    return;
   }
-  return largest / kTolerance;
+  project_hexahedra(groups, network_.inverse_masses.data(), positions.data(), found.data());
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    changes[begin + g] = largest_change(groups[g], found[g].volumes);
+    for (std::size_t lane = 0; lane < kHexahedraPerGroup; ++lane) {
+      if (found[g].slack[lane] < 0.0) project_parts(region(groups[g].number[lane]), positions);
+    }
+  }
+}
+
+bool CellVolume::has_pinned(const HexahedronGroup& group) const {
+  return std::ranges::any_of(group.particles, [&](const auto& corners) {
+    return std::ranges::any_of(corners, [&](Index particle) { return network_.inverse_masses[particle] == 0.0; });
+  });
+}
+
+double CellVolume::residual(const Points& positions) const {
+  std::vector<double> changes(groups_.size() + singles_.size());
+  parallel_chunks(static_cast<Index>(groups_.size()), kGroupsPerChunk, [&](Index begin, Index end) {
+    std::array<HexahedraVolumes, kGroupsPerChunk> found;
+    const auto groups = std::span(groups_).subspan(begin, end - begin);
+    measure_hexahedra(groups, positions.data(), found.data());
+    for (std::size_t g = 0; g < groups.size(); ++g) changes[begin + g] = largest_change(groups[g], found[g]);
+  });
+  parallel_chunks(static_cast<Index>(singles_.size()), kRegionsPerChunk, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) changes[groups_.size() + k] = change(region(singles_[k]), positions);
+  });
+  return changes.empty() ? 0.0 : std::ranges::max(changes) / kTolerance;
+}
+
+/// Returns the relative change of volume.
+double CellVolume::change(const Region& region, const Points& positions) {
+  double volume = 0.0;
+  bool inverted = false;
+  for (const Part& part : region.parts) {
+    const double of_part = part_volume(region.particles, part.corners, positions).volume;
+    inverted = inverted || is_inverted(part, of_part);
+    volume += of_part;
+  }
+  return std::max(std::abs(volume / region.volume - 1.0), inverted ? kInverted : 0.0);
 }
 
 bool CellVolume::is_inverted(const Part& part, double volume) { return volume <= 0.0 && part.least > 0.0; }

@@ -3,6 +3,7 @@
 
 #include "dynamics/constraints/colouring.h"
 #include "dynamics/constraints/constraint.h"
+#include "dynamics/constraints/hexahedron_kernel.h"
 #include "network/model/spring_network.h"
 
 #include <array>
@@ -48,7 +49,12 @@ class CellVolume final : public Constraint {
   void add(const std::vector<Index>& particles, const std::vector<Corners>& parts, std::size_t upright);
   [[nodiscard]] Region region(std::size_t number) const;
   [[nodiscard]] static bool is_inverted(const Part& part, double volume);
+  void make_groups(const Colouring& colouring, std::size_t hexahedra);
+  [[nodiscard]] HexahedronGroup group_of(const std::vector<std::size_t>& hexahedra) const;
+  void project_groups(std::size_t begin, std::size_t end, Points& positions, std::vector<double>& changes) const;
+  [[nodiscard]] bool has_pinned(const HexahedronGroup& group) const;
   double project(const Region& region, Points& positions) const;
+  [[nodiscard]] static double change(const Region& region, const Points& positions);
   void project_parts(const Region& region, Points& positions) const;
 
   const SpringNetwork& network_;
@@ -60,7 +66,11 @@ class CellVolume final : public Constraint {
   std::vector<Part> parts_;
   std::vector<double> volumes_;
 
-  Colouring colouring_;
+  // Of each colour: groups of hexahedra, and the regions that are in none, which are projected one by one.
+  std::vector<HexahedronGroup> groups_;
+  std::vector<std::size_t> groups_begin_{0};
+  std::vector<std::size_t> singles_;
+  std::vector<std::size_t> singles_begin_{0};
 };
 
 }  // namespace sprung

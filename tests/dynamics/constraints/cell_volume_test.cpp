@@ -103,6 +103,21 @@ TEST_P(CellVolumeOf, PinnedParticlesStay) {
   EXPECT_NE(positions.rightCols(9), start.rightCols(9));
 }
 
+// Eight cells at a time, and cell by cell while pins record.
+TEST_P(CellVolumeOf, RecordingImpulsesChangesNoBits) {
+  SpringNetwork network = cube(9, GetParam());
+  for (Index i = 0; i < network.particle_count(); i += 40) network.inverse_masses[i] = 0.0;
+  CellVolume volume(network);
+  Points positions = shaken(network, 0.02);
+  Points recorded = positions;
+  volume.project(network.positions, positions);
+  RecordedImpulses impulses{.on_pinned = Points::Zero(3, network.particle_count()), .of_springs = {}};
+  volume.record(ImpulseRecorder(impulses, 0.01));
+  volume.project(network.positions, recorded);
+  EXPECT_EQ(recorded, positions);
+  EXPECT_FALSE(impulses.on_pinned.isZero(0.0));
+}
+
 // More tetrahedra around an edge than a region holds.
 TEST(CellVolume, AFanOfManyTetrahedraIsKept) {
   constexpr Index kBlades = 300;
