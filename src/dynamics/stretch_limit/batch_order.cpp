@@ -131,6 +131,28 @@ class Order {
   std::vector<Index> stage_begin_{0};
 };
 
+/// Stores springs in the order of their batches, so that a pass reads memory in order.
+void store_in_order(SpringBatches& batches) {
+  std::vector<Index> springs;
+  springs.reserve(batches.first.size());
+  for (SpringBatches::Batch& of : batches.batch) {
+    const auto begin = static_cast<Index>(springs.size());
+    for (Index s = of.begin; s < of.end; ++s) springs.push_back(s);
+    of.begin = begin;
+    of.end = static_cast<Index>(springs.size());
+  }
+  const auto reorder = [&](auto& values) {
+    const auto before = values;
+    std::ranges::transform(springs, values.begin(), [&](Index s) { return before[s]; });
+  };
+  reorder(batches.spring);
+  reorder(batches.first);
+  reorder(batches.second);
+  reorder(batches.rest_length);
+  reorder(batches.per_length);
+  reorder(batches.first_share);
+}
+
 }  // namespace
 
 void order_by_colour(const std::vector<Index>& colour_begin, SpringBatches& batches) {
@@ -151,6 +173,7 @@ void order_by_locality(const std::vector<Index>& colour_begin, Index band, Index
   for (const Index offset : {0, chunk / 2, 0}) order.add_chunks(chunk, offset);
   order.add_rest();
   order.write(batches);
+  store_in_order(batches);
 }
 
 }  // namespace sprung

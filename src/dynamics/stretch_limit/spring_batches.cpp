@@ -24,7 +24,7 @@ constexpr Index kNarrow = 32;
 // rows are ready.
 constexpr Index kSpan = 4;
 
-/// Springs [begin, begin + count) of the network: a single one, or a run that fills the kernel's registers.
+/// Springs [begin, begin + count) of the network: a single one, or a run of at least kSimdWidth.
 struct Piece {
   Index begin;
   Index count;
@@ -45,8 +45,9 @@ Index run_length(const Springs& springs, const std::vector<Index>& limited, std:
 std::vector<Piece> pieces(const Springs& springs, const std::vector<Index>& limited) {
   std::vector<Piece> found;
   for (std::size_t i = 0; i < limited.size();) {
-    const Index whole = run_length(springs, limited, i) / kSimdWidth * kSimdWidth;
-    found.push_back({limited[i], std::max(whole, Index{1})});
+    const Index length = run_length(springs, limited, i);
+    const Index whole = length % kSimdWidth == 1 ? length - 1 : length;
+    found.push_back({limited[i], length < kSimdWidth ? 1 : whole});
     i += static_cast<std::size_t>(found.back().count);
   }
   return found;
@@ -111,11 +112,43 @@ class Filler {
   }
 
  private:
+  /// Cuts runs into what fills wide registers, what fills narrow ones, and the rest.
   void add_runs(std::span<const Piece> runs) {
-    for (const Piece& run : runs) {
+    std::vector<Piece> eights;
+    std::vector<Piece> fours;
+    std::vector<Piece> threes;
+    std::vector<Piece> twos;
+    for (Piece run : runs) {
+      const auto cut = [&](Index count, std::vector<Piece>& pieces) {
+        if (count == 0) return;
+        pieces.push_back({run.begin, count});
+        run.begin += count;
+        run.count -= count;
+      };
+      cut(run.count / kWideSimdWidth * kWideSimdWidth, eights);
+      cut(run.count / kSimdWidth * kSimdWidth, fours);
+      cut(run.count, run.count == 3 ? threes : twos);
+    }
+    add_batches(eights, SpringBatches::Layout::runs_of_eight);
+    add_batches(fours, SpringBatches::Layout::runs_of_four);
+    add_batches(threes, SpringBatches::Layout::runs_of_three);
+    add_batches(twos, SpringBatches::Layout::runs_of_two);
+  }
+
+  /// A batch holds whole runs.
+  void add_batches(std::span<const Piece> runs, SpringBatches::Layout layout) {
+    for (std::size_t begin = 0; begin < runs.size();) {
       const Index from = batches_.count();
-      for (Index s = run.begin; s < run.begin + run.count; ++s) append(s);
-      end_batch(from, SpringBatches::Layout::run);
+      const auto first = [&](std::size_t i) { return network_.springs.first[runs[i].begin]; };
+      std::size_t end = begin;
+      do {
+        const Piece& run = runs[end++];
+        for (Index s = run.begin; s < run.begin + run.count; ++s) append(s);
+        while (batches_.count() % kSimdWidth != 0) append(run.begin + run.count - 1);
+      } while (end < runs.size() && batches_.count() + runs[end].count <= from + SpringBatches::kBatchSprings &&
+               first(end) - first(begin) <= span_);
+      end_batch(from, layout);
+      begin = end;
     }
   }
 

@@ -166,8 +166,17 @@ template <class Widest, class Body>
   for (Index p = batch_range.begin; p < batch_range.end; ++p) {
     const Batch& batch = batches.batch[p];
     switch (batch.layout) {
-      case Layout::run:
+      case Layout::runs_of_eight:
         body.template operator()<RunGroup<Widest>, RunGroup<PackedVectors4>>(batch);
+        break;
+      case Layout::runs_of_four:
+        body.template operator()<RunGroup<PackedVectors4>, RunGroup<PackedVectors4>>(batch);
+        break;
+      case Layout::runs_of_three:
+        body.template operator()<RunGroup<PackedVectors4, 3>, RunGroup<PackedVectors4, 3>>(batch);
+        break;
+      case Layout::runs_of_two:
+        body.template operator()<RunGroup<PackedVectors4, 2>, RunGroup<PackedVectors4, 2>>(batch);
         break;
       case Layout::pairs:
         body.template operator()<PairGroup<Widest>, PairGroup<PackedVectors4>>(batch);

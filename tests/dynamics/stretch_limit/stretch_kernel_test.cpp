@@ -71,7 +71,7 @@ constexpr std::array<LengthRange, 4> kRanges{{{0.0, 1.02}, {1.0, 1.0}, {0.8, 1.1
 
 TEST(StretchKernel, AgreesWithPlainCode) {
   std::mt19937 random(11);
-  std::array<Index, 3> layouts{};
+  std::array<Index, 6> layouts{};
   for (Index row = 2; row < 80; ++row) {
     const SpringNetwork network = springs_of_all_layouts(row, row % 2 == 0, random);
     const SpringBatches batches(network, kStructural);
