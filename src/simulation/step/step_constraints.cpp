@@ -16,10 +16,10 @@ constexpr double kRelaxation = 1.8;
 // Minimum number of passes if there are constraints: a rate [1/s] and a number per substep. Errors that remain are small in small
 // steps, and the next step corrects them.
 constexpr double kConstraintPassRate = 1200.0;
-constexpr double kMinConstraintPasses = 8.0;
+constexpr double kMinConstraintPasses = 4.0;
 
-// While a constraint is violated by more than this multiple of its tolerance, as by an impact, it gets up to so many times the
-// passes.
+// While a constraint is violated by more than this multiple of its tolerance after the last pass, as by an impact, it gets up to so
+// many times the passes. Before the last pass it is violated by the over-relaxation of the limit.
 constexpr double kGrossViolation = 10.0;
 constexpr int kPassesOfGrossViolation = 4;
 
@@ -133,7 +133,7 @@ void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
       excess = solves && pass == 0 ? limit_->excess(state.x)
                                    : limit_->project(positions_before(state), state.x, between ? kRelaxation : 1.0, recorder_);
     }
-    if (pass + 1 >= passes && violation <= kGrossViolation) return true;
+    if (pass + 1 >= passes && (violation <= kGrossViolation || this->violation(state.x) <= kGrossViolation)) return true;
     return (!limit_ || excess <= limit_->settings().tolerance) && violation <= 1.0 && push <= kContactTolerance;
   });
 }
@@ -188,10 +188,13 @@ int StepConstraints::constraint_passes() const {
 }
 
 // Truncation stopped particles at surfaces for which no contact was found; find_again() finds these. Excess from before truncation
-// is not relaxed here, unless it exceeds max_stretch: then further passes are needed in any case.
+// is not relaxed here, unless it exceeds max_stretch: then further passes are needed in any case. With constraints they are not:
+// springs and cells hold each other, and the excess that passes leave is the same in each step.
 bool StepConstraints::relax(Points& positions, double excess_before, double violation_before) {
-  const bool stretched = limit_ && limit_->excess(positions) > std::max(limit_->settings().tolerance,
-                                                                        std::min(excess_before, limit_->settings().max_stretch));
+  const auto permitted = [&](const StretchLimitSettings& settings) {
+    return std::max(settings.tolerance, constraints_.empty() ? std::min(excess_before, settings.max_stretch) : excess_before);
+  };
+  const bool stretched = limit_ && limit_->excess(positions) > permitted(limit_->settings());
   if (!stretched && violation(positions) <= std::max(1.0, violation_before)) return false;
   if (projects_contacts()) contacts_.find_again(motion(), positions);
   for (int pass = 0; pass < kRelaxPasses; ++pass) {
