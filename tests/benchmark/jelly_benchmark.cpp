@@ -111,7 +111,7 @@ void jelly_growth(benchmark::State& state) {
     const Measured small = run_sprung(jelly_network(20));
     const Measured large = run_sprung(jelly_network(40));
     state.SetIterationTime(large.seconds);
-    state.counters["of_20^3"] = large.seconds / small.seconds;
+    state.counters["times_20^3"] = large.seconds / small.seconds;
     state.counters["passes"] = large.passes;
     state.counters["volume_error_%"] = 100.0 * large.volume_error;
   }
