@@ -119,6 +119,15 @@ TEST(Yield, AThrownMassStopsWhereItsEnergyIsSpent) {
   }
 }
 
+TEST(Yield, ABarThatFlowsFarHasNotDiverged) {
+  NetworkBuilder builder = chain(2, {.yield = 0.1});
+  builder.pin(1, along_x({{0.0, 0.0}, {1.0, 2000.0}}));
+  builder.add_particle({0.0, 1.0, 0.0}, 1.0);  // something that is free
+  Simulator simulator(builder.build(), {.step = 1e-3, .gravity = Vector3::Zero()});
+  EXPECT_NO_THROW(run(simulator, 1.0));
+  EXPECT_GT(simulator.network().springs.rest_length[0], 1800.0);
+}
+
 // A ball cannot pass a rod that is pinned at both ends: no number of substeps makes the step feasible, so that it is repeated.
 TEST(Yield, RepeatedStepsFlowOnce) {
   NetworkBuilder builder;

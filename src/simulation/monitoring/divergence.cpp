@@ -67,8 +67,7 @@ std::optional<StepFailure> DivergenceCheck::overstretched(const Points& position
   Index worst = kNone;
   double most = 1.0;
   for (const Index s : bounded_) {
-    const auto i = static_cast<std::size_t>(s);
-    const double ratio = (positions.col(springs.first[i]) - positions.col(springs.second[i])).squaredNorm() / longest_squared_[i];
+    const double ratio = squared_ratio(s, positions);
     if (ratio <= most) continue;
     most = ratio;
     worst = s;
@@ -83,6 +82,13 @@ StepFailure DivergenceCheck::fastest(const SimulationState& state) const {
   Index particle = 0;
   state.v.colwise().squaredNorm().maxCoeff(&particle);
   return blame(particle, worst_spring_at(particle, state.x), state.x);
+}
+
+double DivergenceCheck::squared_ratio(Index spring, const Points& positions) const {
+  const Springs& springs = network_.springs;
+  const double yielded = kOverstretched * springs.rest_length[spring];
+  return (positions.col(springs.first[spring]) - positions.col(springs.second[spring])).squaredNorm() /
+         std::max(longest_squared_[spring], yielded * yielded);
 }
 
 StepFailure DivergenceCheck::blame(Index particle, Index spring, const Points& positions) const {
@@ -107,7 +113,7 @@ Index DivergenceCheck::worst_spring_at(Index particle, const Points& positions) 
   for (Index s = 0; s < springs.count(); ++s) {
     const auto i = static_cast<std::size_t>(s);
     if (springs.first[i] != particle && springs.second[i] != particle) continue;
-    const double ratio = (positions.col(springs.first[i]) - positions.col(springs.second[i])).squaredNorm() / longest_squared_[i];
+    const double ratio = squared_ratio(s, positions);
     if (worst != kNone && !(ratio > most)) continue;
     most = ratio;
     worst = s;

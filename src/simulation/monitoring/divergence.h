@@ -19,7 +19,8 @@ class DivergenceCheck {
   /// the previous step. The caller sets step, time and remedy of the failure.
   [[nodiscard]] std::optional<StepFailure> not_finite(const SimulationState& state, const Points& before) const;
 
-  /// The most stretched spring, if it has stiffness and is over 1,000 times longer than its rest length and its length at time 0.
+  /// The most stretched spring, if it has stiffness and is over 1,000 times longer than its rest length, now and at first, and
+  /// its length at time 0.
   /// No material stretches so far; a step that is too large causes it.
   [[nodiscard]] std::optional<StepFailure> overstretched(const Points& positions) const;
 
@@ -29,9 +30,11 @@ class DivergenceCheck {
  private:
   [[nodiscard]] StepFailure blame(Index particle, Index spring, const Points& positions) const;
   [[nodiscard]] Index worst_spring_at(Index particle, const Points& positions) const;
+  /// Square of the spring's length relative to its bound.
+  [[nodiscard]] double squared_ratio(Index spring, const Points& positions) const;
 
   const SpringNetwork& network_;
-  std::vector<double> longest_squared_;  ///< per spring [m^2]
+  std::vector<double> longest_squared_;  ///< per spring, before it yields [m^2]
   std::vector<Index> bounded_;           ///< springs with a finite bound
 };
 
