@@ -37,9 +37,12 @@ double area_of(const Points& positions, const Eigen::Array3i& corners) {
   return 0.5 * area_normal(positions.col(corners[0]), positions.col(corners[1]), positions.col(corners[2])).norm();
 }
 
+/// At rest, with the faces that are torn: what is expected of a whole body bounds the step of a torn one too.
 double total_area(const SpringNetwork& network, const Body& body) {
+  const Surface& surface = body.surface;
+  const Triangles triangles = surface.torn.empty() ? surface.triangles : triangulate(surface.faces);
   double area = 0.0;
-  for (const auto& triangle : body.surface.triangles.colwise()) {
+  for (const auto& triangle : triangles.colwise()) {
     area += area_of(network.positions, triangle.array() + body.first_particle);
   }
   return area;

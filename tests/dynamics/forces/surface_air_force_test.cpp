@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "dynamics/integrators/spectral_bounds.h"
 #include "dynamics/networks.h"
+#include "network/model/spring_failure.h"
 
 #include <gtest/gtest.h>
 
@@ -81,6 +82,26 @@ TEST(SurfaceAirForce, CountsItsRateAtTheExpectedSpeed) {
   EXPECT_GE(bound_of(linear, network) / (0.5 / 0.2), 1.0 - 1e-12);
   EXPECT_LE(bound_of(linear, network) / (0.5 / 0.2), 1.0151);
   EXPECT_NEAR(linear.largest_acceleration(), 0.5 / 0.2 * wind.max_speed(), 1e-12 * linear.largest_acceleration());
+}
+
+// The step was chosen for the whole cloth. All of its faces have the same area.
+TEST(SurfaceAirForce, FacesThatAreLeftOfATornClothBoundTheStepAsBefore) {
+  SpringNetwork network = moving_cloth(5, Vector3::Zero());
+  const auto elements_of = [&] {
+    std::vector<LinearElement> elements;
+    SurfaceAirForce(network, {.normal = 0.5, .quadratic = true}, Wind(), 9.81, 1e-3).append_elements(elements);
+    return elements;
+  };
+  const std::vector<LinearElement> whole = elements_of();
+  std::vector<Index> structural;
+  for (Index s = 0; s < network.springs.count(); ++s) {
+    if (network.springs.kind[s] == SpringKind::structural && network.springs.second[s] > 10) structural.push_back(s);
+  }
+  tear(network, structural);
+  const std::vector<LinearElement> torn = elements_of();
+  EXPECT_LT(torn.size(), whole.size());
+  ASSERT_FALSE(torn.empty());
+  for (const LinearElement& element : torn) EXPECT_NEAR(element.damping, whole[0].damping, 1e-12 * whole[0].damping);
 }
 
 // Whatever its speed, a step takes at most a quarter of the velocity, as the derivative is at most 1 / (4 dt). Without that bound
