@@ -66,6 +66,19 @@ void check_springs(const std::string& key, const BodyShape& shape, ProblemList& 
       EntryRule{key + ".springs.break", "must be greater than 0", "leave it out for springs that do not break"});
 }
 
+/// Tearing makes no new faces inside a solid, and a torn mesh encloses no volume.
+void check_breaks(const std::string& key, const BodyShape& shape, ProblemList& problems) {
+  if (std::ranges::none_of(shape.springs.laws, &SpringLaw::breaks)) return;
+  if (!shape.cells.empty()) {
+    problems.add(key + ".springs.break", "", "needs a body without cells: a torn solid would need new faces inside",
+                 "leave it out, or use a rope, a cloth or a mesh");
+  }
+  if (shape.volume_factor != 0.0 || shape.pressure != 0.0) {
+    problems.add(key + ".springs.break", "", "needs a body without pressure and volume_factor, as a torn one encloses no volume",
+                 "leave one of them out");
+  }
+}
+
 void check_angle_bends(const std::string& key, const BodyShape& shape, ProblemList& problems) {
   const AngleBends& bends = shape.angle_bends;
   const auto ends = [&](std::size_t a) { return std::array<Index, 3>{bends.before[a], bends.middle[a], bends.after[a]}; };
@@ -219,6 +232,7 @@ void check_body(const std::string& key, const BodyShape& shape, const ContactMat
   }
   check_particles(key, shape, problems);
   check_springs(key, shape, problems);
+  check_breaks(key, shape, problems);
   check_angle_bends(key, shape, problems);
   check_surface(key, shape, problems);
   Points positions(3, static_cast<Index>(shape.positions.size()));

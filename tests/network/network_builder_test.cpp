@@ -223,6 +223,23 @@ TEST(NetworkBuilder, RejectsBodiesOfOneName) {
   EXPECT_THAT(keys(unnamed), ElementsAre("bodies."));
 }
 
+TEST(NetworkBuilder, RejectsSpringsThatBreakInClosedBodies) {
+  SpringMaterial material = stiff(1.0);
+  material.break_strain = 0.5;
+  const BodyShape solid = weighed(make_solid({.size = {1, 1, 1}, .resolution = {2, 2, 2}}, {.structural = material}));
+  const BodyShape open = weighed(make_cloth({.size = {1, 1}, .resolution = {2, 2}}, {.structural = material}));
+  BodyShape filled = open;
+  filled.pressure = 1.0;
+  BodyShape kept = open;
+  kept.volume_factor = 1.0;
+  NetworkBuilder builder;
+  builder.add_body("solid", solid);
+  builder.add_body("open", open);
+  builder.add_body("filled", filled);
+  builder.add_body("kept", kept);
+  EXPECT_THAT(keys(builder), ElementsAre("bodies.solid.springs.break", "bodies.filled.springs.break", "bodies.kept.springs.break"));
+}
+
 TEST(NetworkBuilder, RejectsContactMaterialsOutOfRange) {
   NetworkBuilder builder;
   builder.begin_body("ball", {-0.1, 0.5, 0.4, 1.5});
