@@ -64,6 +64,15 @@ void require_unique(const std::string& key, const std::string& name, std::map<st
                "give each body its own name; particles added after a whole body begin a new body, which begin_body names");
 }
 
+/// Gives a name to entries without one.
+template <class T>
+std::vector<T> named(std::vector<T> entries, const std::string& key) {
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    if (entries[k].name.empty()) entries[k].name = entry_key(key, k);
+  }
+  return entries;
+}
+
 }  // namespace
 
 Index NetworkBuilder::add_particle(const Vector3& position, double mass, const Vector3& velocity) {
@@ -166,6 +175,9 @@ SpringNetwork NetworkBuilder::build() const {
   }
   check_pins(pins_, particle_count_, problems);
   check_attachments(attachments_, particle_count_, begins, problems);
+  std::vector<Pin> pins = named(pins_, "pins");
+  std::vector<Attachment> attachments = named(attachments_, "attachments");
+  check_names(pins, attachments, problems);
   problems.throw_if_any();
 
   SpringNetwork network = network_of_size(particle_count_);
@@ -182,20 +194,13 @@ SpringNetwork NetworkBuilder::build() const {
                               draft.shape.preserve_volume, draft.shape.volume_factor, draft.shape.pressure});
   }
   network.inverse_masses = network.masses.cwiseInverse();
-  network.later_pins = pins_;
-  for (std::size_t p = 0; p < pins_.size(); ++p) {
-    std::string& name = network.later_pins[p].name;
-    if (name.empty()) name = entry_key("pins", p);
-    network.pin_names.push_back(name);
-  }
+  for (const Pin& pin : pins) network.pin_names.push_back(pin.name);
+  network.later_pins = std::move(pins);
   change_pins(network, std::numeric_limits<double>::min());  // those that begin at time 0
   for (const Pin& pin : network.pins) {
     for (const Index particle : pin.particles) network.velocities.col(particle).setZero();
   }
-  network.attachments = attachments_;
-  for (std::size_t a = 0; a < attachments_.size(); ++a) {
-    if (attachments_[a].name.empty()) network.attachments[a].name = entry_key("attachments", a);
-  }
+  network.attachments = std::move(attachments);
   for (std::size_t b = 0; b < drafts.size(); ++b) damp_by_ratio(drafts[b].shape.damping_ratios, network.bodies[b], network);
   return network;
 }

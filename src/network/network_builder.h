@@ -45,8 +45,8 @@ class NetworkBuilder {
   /// The network. Throws InputError that names every problem: a network or body without particles, bodies of one name, masses that
   /// are not positive, springs and angle bends that join a particle to itself, to another body or to none, negative or non-finite
   /// quantities, springs that break in a body with cells, a volume factor or a pressure, contact materials out of range, pins of
-  /// particles that do not exist, particles pinned twice at one time, pins and attachments that end before they begin, and
-  /// attachments without ends, of a particle to itself, or with quantities out of range.
+  /// particles that do not exist, particles pinned twice at one time, pins and attachments that end before they begin or share a
+  /// name, and attachments without ends, of a particle to itself, or with quantities out of range.
   [[nodiscard]] SpringNetwork build() const;
 
  private:

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace sprung {
 namespace {
@@ -279,6 +280,17 @@ void check_attachments(const std::vector<Attachment>& attachments, Index particl
       problems.add(key + ".break_force", format_number(attachment.break_force), "must be greater than 0", "give a force in N");
     check_times(key, attachment.from, attachment.until, problems);
   }
+}
+
+void check_names(const std::vector<Pin>& pins, const std::vector<Attachment>& attachments, ProblemList& problems) {
+  std::set<std::string> seen;
+  const auto check = [&](const std::string& key, const std::string& name) {
+    if (seen.insert(name).second) return;
+    problems.add(key + ".name", name, "must be the only pin or attachment of this name, under which its force is reported",
+                 "give each of them its own name");
+  };
+  for (std::size_t p = 0; p < pins.size(); ++p) check(entry_key("pins", p), pins[p].name);
+  for (std::size_t a = 0; a < attachments.size(); ++a) check(entry_key("attachments", a), attachments[a].name);
 }
 
 }  // namespace sprung

@@ -21,4 +21,7 @@ void check_pins(const std::vector<Pin>& pins, Index particle_count, ProblemList&
 void check_attachments(const std::vector<Attachment>& attachments, Index particle_count, const std::vector<Index>& body_begins,
                        ProblemList& problems);
 
+/// Adds the problem of pins and attachments that share a name. Requires that all have one.
+void check_names(const std::vector<Pin>& pins, const std::vector<Attachment>& attachments, ProblemList& problems);
+
 }  // namespace sprung

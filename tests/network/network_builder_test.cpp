@@ -263,6 +263,18 @@ TEST(NetworkBuilder, RejectsEmptyPinsAndParticlesPinnedTwice) {
   EXPECT_THAT(keys(builder), ElementsAre("pins[1]", "pins[2]", "pins[2]", "pins[3]"));
 }
 
+// Their forces are reported by name.
+TEST(NetworkBuilder, RejectsPinsAndAttachmentsOfOneName) {
+  NetworkBuilder builder;
+  for (int i = 0; i < 4; ++i) builder.add_particle(Vector3(i, 0, 0), 1.0);
+  builder.add_pin({.particles = {0}, .motion = {}, .name = "hook"});
+  builder.add_pin({.particles = {1}, .motion = {}, .name = "hook"});
+  builder.pin(2);
+  builder.add_attachment({.name = "pins[2]", .particles = {2}, .second = ParticleEnds{{3}}});
+  builder.add_attachment({.name = "hook", .particles = {0}, .second = ParticleEnds{{3}}});
+  EXPECT_THAT(keys(builder), ElementsAre("pins[1].name", "attachments[0].name", "attachments[1].name"));
+}
+
 TEST(NetworkBuilder, PinsHoldAParticleOneAfterTheOther) {
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 2.0, Vector3(1, 2, 3));
