@@ -389,6 +389,34 @@ TEST_P(Attached, AChangeOfTheSimulatorDoesNotDisturbAttachments) {
   }
 }
 
+// Links that hold or broke stay as they are.
+TEST(Attachments, WhatAChangeAddsEngagesAtTheNextStep) {
+  NetworkBuilder builder = two_tetrahedra();
+  builder.add_attachment({.name = "rods", .particles = {0}, .second = SurfaceEnd{1}});
+  builder.add_attachment({.name = "thread", .particles = {1}, .second = ParticleEnds{{6}}, .break_force = 1e-6});
+  Simulator simulator(builder.build());
+  run(simulator, 0.1);
+  const std::vector<Link> before = simulator.state().links;
+  ASSERT_TRUE(before.at(1).broken.has_value());
+
+  SpringNetwork network = simulator.network();
+  network.attachments[0].particles = {0, 2};
+  network.attachments.push_back({.name = "new", .particles = {3}, .second = ParticleEnds{{7}}});
+  simulator.continue_with(network, simulator.settings());
+  const double distance_before = distance(simulator, 3, 7);
+  const std::int64_t step = simulator.state().step;
+  run(simulator, 0.1);
+  const std::vector<Link>& links = simulator.state().links;
+  ASSERT_EQ(links.size(), 4U);
+  EXPECT_EQ(links[0].first, 0);
+  EXPECT_EQ(links[0].step, 0);
+  EXPECT_EQ(links[1].first, 2);
+  EXPECT_EQ(links[1].step, step);
+  EXPECT_EQ(links[2].broken, before[1].broken);
+  EXPECT_EQ(links[3].step, step);
+  EXPECT_NEAR(distance(simulator, 3, 7), distance_before, kRodLength * distance_before);
+}
+
 // Two particles of masses m and M on a spring: omega^2 = k (1 / m + 1 / M).
 TEST(Attachments, TheirSpringsBoundTheStep) {
   const double largest = 2.0 / std::sqrt(1000.0 * (1.0 / 0.1 + 1.0 / 0.3));

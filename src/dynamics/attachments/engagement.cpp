@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace sprung {
 namespace {
@@ -104,15 +103,15 @@ bool update_links(const SpringNetwork& network, const Environment& environment, 
   const bool ended = std::erase_if(state.links, [&](const Link& link) {
                        return !link.broken && !network.attachments[link.attachment].holds_at(due);
                      }) > 0;
-  const std::vector<Link> before = std::exchange(state.links, {});
+  std::vector<Link> added;
   for (std::size_t a = 0; a < network.attachments.size(); ++a) {
     const Attachment& attachment = network.attachments[a];
-    const auto known = std::ranges::equal_range(before, a, {}, &Link::attachment);
-    state.links.insert(state.links.end(), known.begin(), known.end());
-    if (!known.empty() || !attachment.holds_at(due)) continue;
+    const auto known = std::ranges::equal_range(state.links, a, {}, &Link::attachment);
+    if (known.size() == attachment.particles.size() || !attachment.holds_at(due)) continue;
     const double coincident = kCoincident * mean_spring_length(network);
     for (const Index particle : attachment.particles) {
-      Link link = link_to_body(network, state.x, a, particle);
+      if (std::ranges::find(known, particle, &Link::first) != known.end()) continue;
+      Link& link = added.emplace_back(link_to_body(network, state.x, a, particle));
       link.step = state.step;
       if (const auto* end = std::get_if<ObstacleEnd>(&attachment.second)) {
         put_on(environment, *end, state.x.col(particle), now, link);
@@ -121,10 +120,12 @@ bool update_links(const SpringNetwork& network, const Environment& environment, 
       link.distance = (ends.sum(state.x) - ends.anchor(now)).norm();
       if (link.distance < coincident) link.distance = 0.0;
       link.length = attachment.rest_length.value_or(link.distance);
-      state.links.push_back(link);
     }
   }
-  return ended || state.links.size() != before.size();
+  if (added.empty()) return ended;
+  state.links.insert(state.links.end(), added.begin(), added.end());
+  std::ranges::stable_sort(state.links, {}, &Link::attachment);
+  return true;
 }
 
 void drop_unknown_links(const SpringNetwork& before, const SpringNetwork& network, SimulationState& state) {

@@ -6,9 +6,9 @@
 
 namespace sprung {
 
-/// Ends and engages attachments that are due at the state's step: removes the links of those that end, and adds those of others
-/// that begin, from each particle to the nearest second end at the positions of the state. Broken links stay, so that they do not
-/// come back. Returns whether anything changed. Requires obstacles that exist.
+/// Ends and engages attachments that are due at the state's step: removes the links of those that end, and adds those that others
+/// lack, from each particle to the nearest second end at the positions of the state. Broken links stay, so that they do not come
+/// back. Returns whether anything changed. Requires obstacles that exist.
 bool update_links(const SpringNetwork& network, const Environment& environment, double step_length, SimulationState& state);
 
 /// The link of an attachment to a body from one of its particles: to the nearest second end at these positions [m], 3 x n. Without
