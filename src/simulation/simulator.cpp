@@ -120,6 +120,8 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
   if (constraints.violation(state.x) > 1.0) constraints.correct_positions(state, dt());
   if (attachments) attachments->update(state);
+  const std::vector<std::string> of_links = unlikely_lengths(network, state.links);
+  warnings.insert(warnings.end(), of_links.begin(), of_links.end());
   integrator->start(state, forces, dt());
   energy_watch.note(0, energies());
   if (attachments) energy_watch.note_pin(attachments->winch_speed(state));

@@ -465,5 +465,17 @@ TEST(Attachments, ALengthBelowTheGapOfContactIsWarnedOf) {
                                                "between body \"left\" and body \"right\"")));
 }
 
+TEST(Attachments, ALengthFarBeyondTheDistanceIsWarnedOf) {
+  const auto warnings = [](std::optional<double> rest_length) {
+    NetworkBuilder builder = two_tetrahedra();
+    builder.add_attachment({.name = "rods", .particles = {0, 1, 2}, .second = SurfaceEnd{1}, .rest_length = rest_length});
+    return Simulator(builder.build(), {.gravity = Vector3::Zero()}).warnings();
+  };
+  for (const std::optional<double> usual : {std::optional<double>{}, {0.0}, {1e-4}, {2.0}}) {
+    EXPECT_THAT(warnings(usual), ::testing::IsEmpty());
+  }
+  EXPECT_THAT(warnings(1e6), ::testing::ElementsAre(HasSubstr("rods: rest_length = 1e+06 is more than 100 times the distance")));
+}
+
 }  // namespace
 }  // namespace sprung

@@ -108,4 +108,18 @@ std::vector<std::string> weak_springs(const SimulatorSettings& settings, const S
   return warnings.lines();
 }
 
+std::vector<std::string> unlikely_lengths(const SpringNetwork& network, const std::vector<Link>& links) {
+  constexpr double kLikely = 100.0;
+  std::vector<std::string> warnings;
+  std::size_t next = 0;  // attachment, of which one line is enough
+  for (const Link& link : links) {
+    if (link.attachment < next || link.length <= kLikely * link.distance) continue;
+    next = link.attachment + 1;
+    warnings.push_back(network.attachments[link.attachment].name + ": rest_length = " + format_number(link.length, 6) +
+                       " is more than 100 times the distance of " + format_number(link.distance, 6) +
+                       " m at which its ends are now. Give it in metres, or leave it out to keep the distance.");
+  }
+  return warnings;
+}
+
 }  // namespace sprung

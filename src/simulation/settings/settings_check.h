@@ -17,4 +17,8 @@ namespace sprung {
 /// length d [m]; it may shorten the spring by half at most: k_s d^2 >= pi k.
 [[nodiscard]] std::vector<std::string> weak_springs(const SimulatorSettings& settings, const SpringNetwork& network);
 
+/// Warnings about attachments that engaged at less than a hundredth of their rest length: its unit is probably not the metre. That
+/// they engage far beyond it is usual, as they pull their ends together.
+[[nodiscard]] std::vector<std::string> unlikely_lengths(const SpringNetwork& network, const std::vector<Link>& links);
+
 }  // namespace sprung
