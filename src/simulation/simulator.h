@@ -55,8 +55,8 @@ class Simulator {
   // References to network() and settings() become invalid.
 
   /// Continues with another network and other settings. Requires a network that NetworkBuilder made with the same bodies and the
-  /// same particles. The step and the start of contact cannot change, nor what collides (Body::contact) or how (response), and
-  /// springs that broke cannot come back. Springs that yielded keep their rest lengths.
+  /// same particles. The step and the start of contact cannot change, nor what collides (Body::contact) or how (response).
+  /// Springs that broke stay broken, and springs that yielded keep their rest lengths.
   void continue_with(SpringNetwork network, SimulatorSettings settings);
 
   void set_gravity(const Vector3& acceleration);  ///< [m/s^2]

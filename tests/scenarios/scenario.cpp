@@ -41,8 +41,8 @@ class FrameJudge {
 
   void look(int frame, ScenarioReport& report) {
     const auto begin = Clock::now();
-    if (broken_springs_ != simulator_.network().broken_springs) {
-      broken_springs_ = simulator_.network().broken_springs;
+    if (broken_springs_ != simulator_.network().broken.count()) {
+      broken_springs_ = simulator_.network().broken.count();
       elements_ = judged_elements(simulator_.network());
     }
     Index inside = 0;

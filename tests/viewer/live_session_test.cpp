@@ -36,6 +36,12 @@ constexpr const char* kDivergingScene = R"({"version": 1, "duration": 10, "frame
   "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 11}, "mass": 0.1,
                       "springs": {"structural": {"stiffness": 10000}}, "pins": [{"indices": [0]}]}}})";
 
+/// The rope falls from its horizontal start and breaks at its hook.
+std::string breaking_scene() {
+  std::string text = kScene;
+  return text.insert(text.find("\"damping\": 0.1"), "\"break\": 0.01, ");
+}
+
 class LiveViewer : public ::testing::Test {
  protected:
   void serve(const std::string& text = kScene) {
@@ -117,12 +123,8 @@ TEST_F(LiveViewer, FramesHaveThePositionsOfTheSimulator) {
   }
 }
 
-// The rope falls from its horizontal start and breaks at its hook.
 TEST_F(LiveViewer, APageIsToldTheTopologyThatABreakLeaves) {
-  std::string text = kScene;
-  const std::string damping = "\"damping\": 0.1";
-  text.insert(text.find(damping), "\"break\": 0.01, ");
-  serve(text);
+  serve(breaking_scene());
   PausedPage page(server_->port());
   for (int frame = 0; frame < 50; ++frame) page.send({{"do", "frame"}});
   Received topology = page.binary();
@@ -131,6 +133,23 @@ TEST_F(LiveViewer, APageIsToldTheTopologyThatABreakLeaves) {
   EXPECT_EQ(topology.at<std::uint32_t>(36), topology.at<std::uint32_t>(40)) << "a segment for each spring";
   // If the rope has broken again meanwhile, only frames of a later generation come.
   EXPECT_EQ(page.frame([&](const Received& frame) { return frame.generation() >= topology.generation(); }).particles(), 11u);
+}
+
+TEST_F(LiveViewer, ChangesAfterABreakLetTheRunGoOn) {
+  serve(breaking_scene());
+  PausedPage page(server_->port());
+  for (int frame = 0; frame < 50; ++frame) page.send({{"do", "frame"}});
+  Received topology = page.binary();
+  while (topology.kind() != 1u || topology.at<std::uint32_t>(40) == 10u) topology = page.binary();
+  const Received last = page.frame([](const Received& frame) { return frame.frame() == 51; });
+  page.send({{"do", "set"}, {"run", 0}, {"key", "gravity"}, {"value", {0, 5, 0}}});
+  Json scene = page.text("scene");
+  while (scene["scene"]["gravity"] != Json({0, 5, 0})) scene = page.text("scene");
+  EXPECT_TRUE(scene["live"]);
+  topology = page.binary();
+  while (topology.kind() != 1u || topology.generation() != scene["generation"]) topology = page.binary();
+  EXPECT_LT(topology.at<std::uint32_t>(40), 10u) << "springs";
+  EXPECT_EQ(page.frame().positions(), last.positions());
 }
 
 TEST_F(LiveViewer, ResetGivesTheBitsOfTheFirstFrame) {

@@ -71,6 +71,15 @@ std::vector<char> find_gone(const Springs& springs, const std::vector<Index>& br
   return gone;
 }
 
+/// The pairs of particles that broken structural springs joined.
+Pairs structural_pairs(const Springs& springs, const std::vector<Index>& broken) {
+  Pairs pairs;
+  for (const Index s : broken) {
+    if (springs.kind[s] == SpringKind::structural) pairs.insert(ends_of(springs, s));
+  }
+  return pairs;
+}
+
 /// Erases the same entries of several arrays.
 template <class... Arrays>
 void erase_gone(const std::vector<char>& gone, Arrays&... arrays) {
@@ -99,9 +108,13 @@ void remove_springs(SpringNetwork& network, const std::vector<char>& gone) {
     if (body.spring_count < before) body.resolution = {};  // it is no whole grid any more
   }
   Springs& springs = network.springs;
+  for (Index s = 0; s < springs.count(); ++s) {
+    if (gone[s] == 0) continue;
+    network.broken.append(springs.first[s], springs.second[s], springs.rest_length[s], springs.stiffness[s], springs.damping[s],
+                          springs.kind[s], springs.law(s));
+  }
   erase_gone(gone, springs.first, springs.second, springs.rest_length, springs.stiffness, springs.damping, springs.kind,
              springs.laws);
-  network.broken_springs += static_cast<Index>(std::ranges::count(gone, char{1}));
 }
 
 void remove_angle_bends(SpringNetwork& network, const Pairs& gone_pairs) {
@@ -238,10 +251,7 @@ std::vector<Index> tear(SpringNetwork& network, const std::vector<Index>& broken
     if (gone[s] == 0) left.push_back(s);
   }
   if (broken.empty()) return left;
-  Pairs gone_structural;
-  for (const Index s : broken) {
-    if (springs.kind[s] == SpringKind::structural) gone_structural.insert(ends_of(springs, s));
-  }
+  const Pairs gone_structural = structural_pairs(springs, broken);
   for (Body& body : network.bodies) {
     Pairs gone_pairs;
     for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
@@ -259,6 +269,23 @@ std::vector<Index> tear(SpringNetwork& network, const std::vector<Index>& broken
   remove_angle_bends(network, gone_structural);
   remove_springs(network, gone);
   return left;
+}
+
+void tear_as(const SpringNetwork& torn, SpringNetwork& network) {
+  const Springs& springs = network.springs;
+  const auto key_of = [](const Springs& of, Index s) { return std::pair(ends_of(of, s), of.kind[s]); };
+  std::map<std::pair<Pair, SpringKind>, Index> missing;  // numbers of springs
+  for (Index s = 0; s < torn.broken.count(); ++s) ++missing[key_of(torn.broken, s)];
+  std::vector<Index> broken;
+  for (Index s = 0; s < springs.count(); ++s) {
+    const auto found = missing.find(key_of(springs, s));
+    if (found != missing.end() && found->second-- > 0) broken.push_back(s);
+  }
+  const std::vector<char> gone = find_gone(springs, broken);
+  remove_angle_bends(network, structural_pairs(springs, broken));
+  remove_springs(network, gone);
+  network.broken = torn.broken;
+  for (std::size_t b = 0; b < network.bodies.size(); ++b) network.bodies[b].surface = torn.bodies[b].surface;
 }
 
 void take_rest_lengths(const SpringNetwork& from, SpringNetwork& network) {

@@ -26,6 +26,11 @@ void let_yield(Springs& springs, const Points& positions);
 /// Returns the former numbers of the springs that are left, ascending.
 std::vector<Index> tear(SpringNetwork& network, const std::vector<Index>& broken);
 
+/// Removes from a network of the same bodies the springs that broke in another one, with all that went with them. Surfaces become
+/// those of `torn`, where threads have the order in which faces tore. Springs that only `network` has go if they span a gap.
+/// Requires that no spring of `network` broke that holds in `torn`.
+void tear_as(const SpringNetwork& torn, SpringNetwork& network);
+
 /// Takes the rest lengths of springs that yield from another network, where both have a spring of this number between the same
 /// particles.
 void take_rest_lengths(const SpringNetwork& from, SpringNetwork& network);

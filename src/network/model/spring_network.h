@@ -138,7 +138,7 @@ struct SpringNetwork {
   std::vector<Pin> later_pins;           ///< that have not begun
   std::vector<std::string> pin_names{};  ///< of all pins, in the order in which they were added, also of those that have ended
   std::vector<Attachment> attachments{};
-  Index broken_springs = 0;  ///< number of springs that broke and are gone, with those that went with them
+  Springs broken{};  ///< that broke and are gone, with those that went with them
 
   [[nodiscard]] Index particle_count() const { return static_cast<Index>(masses.size()); }
   [[nodiscard]] bool is_pinned(Index particle) const { return inverse_masses[particle] == 0.0; }

@@ -6,8 +6,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
 #include <set>
 
 namespace sprung {
@@ -122,7 +125,7 @@ TEST(Tear, AnEdgeInsideAClothTakesTheCellsOnBothSides) {
   EXPECT_THAT(lost(SpringKind::structural), ElementsAre(Pair(5, 6)));
   EXPECT_THAT(lost(SpringKind::shear), ElementsAre(Pair(1, 6), Pair(2, 5), Pair(5, 10), Pair(6, 9)));
   EXPECT_THAT(lost(SpringKind::bend), ElementsAre(Pair(4, 6), Pair(5, 7)));
-  EXPECT_EQ(network.broken_springs, 7);
+  EXPECT_EQ(network.broken.count(), 7);
   EXPECT_EQ(network.springs.count() + 7, whole.springs.count());
 
   // Cells are numbered along x, two triangles each: those below and above the edge are cells 1 and 4.
@@ -156,7 +159,7 @@ TEST(Tear, ATornThreadIsGone) {
 TEST(Tear, BendSpringsAloneTakeNoFace) {
   SpringNetwork network = two_cloths();
   tear(network, {spring_between(network, 4, 6, SpringKind::bend)});
-  EXPECT_EQ(network.broken_springs, 1);
+  EXPECT_EQ(network.broken.count(), 1);
   EXPECT_THAT(network.bodies[0].surface.torn, IsEmpty());
 }
 
@@ -192,6 +195,74 @@ TEST(Tear, ARopeLosesTheSegmentAndTheAnglesOverIt) {
   EXPECT_EQ(network.bodies[1].angle_bend_count, 3);
   EXPECT_EQ(network.bodies[0].surface.segments, (Edges(2, 3) << 0, 2, 3, 1, 3, 4).finished());
   EXPECT_EQ(network.bodies[1].surface.segments.cols(), 4);
+}
+
+void expect_equal(const SpringNetwork& a, const SpringNetwork& b) {
+  EXPECT_EQ(a.springs.first, b.springs.first);
+  EXPECT_EQ(a.springs.second, b.springs.second);
+  EXPECT_EQ(a.springs.kind, b.springs.kind);
+  EXPECT_EQ(a.springs.laws, b.springs.laws);
+  EXPECT_EQ(a.broken.first, b.broken.first);
+  EXPECT_EQ(a.angle_bends.middle, b.angle_bends.middle);
+  for (std::size_t k = 0; k < a.bodies.size(); ++k) {
+    EXPECT_EQ(a.bodies[k].first_spring, b.bodies[k].first_spring);
+    EXPECT_EQ(a.bodies[k].spring_count, b.bodies[k].spring_count);
+    EXPECT_EQ(a.bodies[k].angle_bend_count, b.bodies[k].angle_bend_count);
+    EXPECT_EQ(a.bodies[k].resolution, b.bodies[k].resolution);
+    EXPECT_EQ(a.bodies[k].surface.triangles, b.bodies[k].surface.triangles);
+    EXPECT_EQ(a.bodies[k].surface.segments, b.bodies[k].surface.segments);
+    EXPECT_EQ(a.bodies[k].surface.torn, b.bodies[k].surface.torn);
+  }
+}
+
+TEST(TearAs, AWholeNetworkBecomesTheTornOne) {
+  const SpringNetwork whole = two_cloths();
+  SpringNetwork torn = whole;
+  for (const Pair& pair : {Pair(5, 6), {21, 25}, {1, 2}, {13, 14}, {4, 5}}) {
+    const SpringNetwork before = torn;
+    tear(torn, {spring_between(torn, pair.first, pair.second)});
+    for (SpringNetwork network : {whole, before, torn}) {
+      tear_as(torn, network);
+      expect_equal(network, torn);
+    }
+  }
+  tear(torn, {spring_between(torn, 8, 10, SpringKind::bend), spring_between(torn, 24, 29, SpringKind::shear)});
+  SpringNetwork network = whole;
+  tear_as(torn, network);
+  expect_equal(network, torn);
+}
+
+TEST(TearAs, OfSpringsBetweenTheSameParticlesAsManyGoAsBroke) {
+  NetworkBuilder builder;
+  for (int i = 0; i < 3; ++i) builder.add_particle({1.0 * i, 0.0, 0.0}, 1.0);
+  for (int k = 0; k < 2; ++k) builder.add_spring(0, 1, 100.0, 1.0);
+  builder.add_angle_bend(0, 1, 2, 1.0);
+  SpringNetwork network = builder.build();
+  SpringNetwork torn = network;
+  tear(torn, {0});
+  tear_as(torn, network);
+  expect_equal(network, torn);
+  EXPECT_EQ(network.springs.count(), 1);
+}
+
+TEST(TearAs, SpringsOfAnotherKindGoWhereTheySpanAGap) {
+  const auto cloth = [](const std::optional<SpringMaterial>& shear) {
+    BodyShape shape = make_cloth({.size = {3.0, 3.0}, .resolution = {4, 4}}, {.structural = stiff(10.0), .shear = shear});
+    set_total_mass(shape, 1.0);
+    NetworkBuilder builder;
+    builder.add_body("cloth", shape);
+    return builder.build();
+  };
+  SpringNetwork torn = cloth({});
+  tear(torn, {spring_between(torn, 5, 6)});
+  SpringNetwork network = cloth(stiff(5.0));
+  const std::set<Pair> before = pairs_of(network, SpringKind::shear);
+  tear_as(torn, network);
+  EXPECT_EQ(pairs_of(network, SpringKind::structural), pairs_of(torn, SpringKind::structural));
+  const std::set<Pair> after = pairs_of(network, SpringKind::shear);
+  std::vector<Pair> lost;
+  std::ranges::set_difference(before, after, std::back_inserter(lost));
+  EXPECT_THAT(lost, ElementsAre(Pair(1, 6), Pair(2, 5), Pair(5, 10), Pair(6, 9)));
 }
 
 TEST(TakeRestLengths, TakesThoseOfSpringsThatYield) {
