@@ -1,4 +1,4 @@
-// The network: masses, springs, bodies and pins. Constant once built; what a step changes is in `simulation_state.h`.
+// The network: masses, springs, bodies and pins. Most of what a step changes is in `simulation_state.h`.
 #pragma once
 
 #include "base/contact_material.h"
@@ -123,7 +123,8 @@ struct Pin {
   [[nodiscard]] bool holds_always() const { return from == 0.0 && until == std::numeric_limits<double>::infinity(); }
 };
 
-/// The model of a network, constant once built by NetworkBuilder.
+/// The model of a network, from NetworkBuilder. A step of a simulator changes in its own one the rest lengths of springs that
+/// yield, springs that break with what goes with them, and pins that begin or end.
 struct SpringNetwork {
   Points positions;        ///< at time 0 [m], 3 x n
   Points velocities;       ///< at time 0 [m/s], 3 x n; 0 of pinned particles
