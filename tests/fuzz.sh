@@ -19,7 +19,8 @@ readonly crashes=build/fuzz/crashes
 
 examples/install_packages.sh run fuzz
 cmake --preset fuzz
-cmake --build --preset fuzz
+read -ra names <<<"$targets"
+cmake --build build/fuzz --target fuzz_corpus "${names[@]/#/fuzz_}"
 
 if [[ -n "$seconds" ]]; then
   seed="${SEED:-$(od -An -N4 -tu4 /dev/urandom | tr -d ' ')}"

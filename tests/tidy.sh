@@ -3,13 +3,13 @@
 # one below as long as there is none. Needs what tests/run.sh configures (build/release).
 #
 # A file counts as changed when more than its name, comments and includes differ; a changed header is checked through the sources of
-# its own name, or else through the first source that includes it. To stay within five minutes on two cores, at most kMostFiles are
+# its own name, or else through the first source that includes it. To stay within three minutes on two cores, at most kMostFiles are
 # checked: those of src/ first, in an order that their text alone decides.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 kFirstCommit=31d74f0
-kMostFiles=40 # some 10 s each on one core
+kMostFiles=24 # some 10 s each on one core
 build=build/release
 
 if [[ ! -e $build/compile_commands.json ]]; then
