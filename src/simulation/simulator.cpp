@@ -6,6 +6,7 @@
 #include "dynamics/constraints/enclosed_volume.h"
 #include "dynamics/forces/shared_force.h"
 #include "network/model/pin_schedule.h"
+#include "network/model/sleeping_bodies.h"
 #include "network/model/spring_failure.h"
 #include "simulation/settings/settings_check.h"
 #include "simulation/settings/unused_settings.h"
@@ -33,24 +34,6 @@ constexpr Index kStepsPerEnergy = 64;
 // Largest rotation of an obstacle or a pin in a substep [degrees].
 constexpr double kMaxTurn = 45.0;
 
-/// The time from which on no pin begins, ends or moves, no obstacle moves and the wind does not change [s]; infinity if there is
-/// none.
-double end_of_motions(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
-  const double step = settings.step;
-  double end = settings.has_air() ? settings.wind.end() : 0.0;
-  for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
-    for (const Pin& pin : *pins) {
-      if (pin.particles.empty()) continue;
-      const double until = std::isfinite(pin.until) ? pin.until + step : 0.0;  // rounded to a step
-      end = std::max({end, pin.from > 0.0 ? pin.from + step : 0.0, until, std::min(pin.motion.end(), pin.until)});
-    }
-  }
-  for (const Obstacle& obstacle : obstacles) {
-    end = std::max(end, obstacle.deforms() ? std::numeric_limits<double>::infinity() : obstacle.motion.end());
-  }
-  return std::max(end, end_of_changes(network.attachments, step));
-}
-
 }  // namespace
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared,
@@ -70,7 +53,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       divergence(network),
       energy_watch(network, settings, environment.obstacles(), forces),
       rest(network, settings.gravity.norm()),
-      driven_until(end_of_motions(network, settings, environment.obstacles())),
+      islands(network, environment, settings.step, settings.gravity.norm()),
       state(initial_state(network)),
       begin{state, energy_watch, {}} {
   const StretchLimit* limit = constraints.limit();
@@ -134,6 +117,7 @@ void Simulator::Implementation::begin_recording() {
   reactions.reset();
   forces_since = time();
   state.impulses = {.on_pinned = Points::Zero(3, network.particle_count()), .of_springs = Scalars::Zero(network.springs.count())};
+  if (!state.last_impulses.on()) state.last_impulses = state.impulses;
 }
 
 /// Whether anything moves at the start, when the rotation in a step is not known yet.
@@ -142,17 +126,15 @@ bool Simulator::Implementation::anything_moves() const {
 }
 
 StepReport Simulator::Implementation::step() {
-  if (state.asleep) {
+  const RecordedImpulses impulses_before = state.impulses;
+  if (all_sleep()) {
     ++state.step;
-    if (state.impulses.on()) {
-      state.impulses.on_pinned += state.impulses_asleep.on_pinned;
-      state.impulses.of_springs += state.impulses_asleep.of_springs;
-    }
+    if (environment.set().moves()) environment.set_interval(time(), time());
+    repeat_impulses(impulses_before);
     record_attachments();
-    return {.stretch_excess = constraints.limit() != nullptr ? constraints.limit()->excess(state.x) : 0.0};
+    return {};
   }
   update_attachments();
-  state.impulses_asleep = state.impulses;
   if (symmetry && constraints.contacts().can_collide() && symmetry->may_push(state.x)) {
     symmetry->push(contact_normals(), dt(), *integrator, state);
   }
@@ -171,7 +153,8 @@ StepReport Simulator::Implementation::step() {
   if (const StretchLimit* limit = constraints.limit()) note_missed(network, *limit, report.stretch_excess, state);
   record_attachments();
   if (attachments && attachments->break_overloaded(state)) integrator->resume(state, forces, dt());
-  if (report.infeasible == 0 && may_sleep() && rest.rests(time(), state)) fall_asleep();
+  rest.note(time(), state);
+  repeat_impulses(impulses_before);
   return report;
 }
 
@@ -189,23 +172,6 @@ void Simulator::Implementation::record_attachments() {
   for (const Link& link : state.links) {
     reactions.add(network.attachments[link.attachment].name, settings.step * attachments->force_of(link, state));
   }
-}
-
-/// External forces may change at any time. Bodies sink into a penalty for long, and are not at rest while they do.
-bool Simulator::Implementation::may_sleep() const {
-  return settings.sleep && penalty == nullptr && constraints.contacts().can_collide() && external.empty() && time() >= driven_until;
-}
-
-void Simulator::Implementation::fall_asleep() {
-  const std::vector<ContactNormal> normals = contact_normals();
-  if (!rest.all_touch(normals) || (symmetry && symmetry->has_standing(normals, state.x))) return;
-  state.asleep = true;
-  if (state.impulses.on()) {
-    state.impulses_asleep = {.on_pinned = state.impulses.on_pinned - state.impulses_asleep.on_pinned,
-                             .of_springs = state.impulses.of_springs - state.impulses_asleep.of_springs};
-  }
-  state.v.setZero();
-  for (Index i = 0; i < network.particle_count(); ++i) integrator->velocity_changed(state, i, dt());
 }
 
 /// In the frame of a rotating obstacle, particles are assumed to move straight in a substep: after half a turn, through its center.
@@ -318,9 +284,15 @@ std::vector<ContactNormal> Simulator::Implementation::contact_normals() const {
   return penalty != nullptr ? penalty->normals(state.x) : constraints.contacts().normals();
 }
 
-std::vector<Index> Simulator::Implementation::contacts() const {
+std::vector<Index> Simulator::Implementation::contacts_awake() const {
   if (penalty != nullptr) return penalty->touching(state.x);
   return kept_contacts ? *kept_contacts : constraints.contacts().pushed();
+}
+
+std::vector<Index> Simulator::Implementation::contacts() const {
+  std::vector<Index> all;
+  std::ranges::merge(contacts_awake(), contacts_asleep, std::back_inserter(all));
+  return all;
 }
 
 void Simulator::Implementation::check_state() {
@@ -378,16 +350,13 @@ Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 StepReport Simulator::step() {
   const Implementation& now = *implementation_;
   const std::vector<Index> broken = breaking_springs(now.network, now.state.x);
-  if (!broken.empty() || have_pins_changed(now.network, due_before(now.state.step, now.settings.step))) {
+  const std::vector<char> sleepers = now.sleepers();
+  if (!broken.empty() || sleepers != asleep(now.network) ||
+      have_pins_changed(now.network, due_before(now.state.step, now.settings.step))) {
     SpringNetwork network = now.network;
+    set_asleep(sleepers, network);
     const std::vector<Index> left = tear(network, broken);
-    SimulatorSettings settings = now.settings;
-    settings.stability = StabilityCheck::warn;  // the step was accepted; its bound is an estimate, which varies with the network
-    auto next = std::make_unique<Implementation>(std::move(network), std::move(settings), now.external, now);
-    next->settings.stability = now.settings.stability;
-    if (now.state.impulses.on()) next->state.impulses.of_springs = now.state.impulses.of_springs(left);
-    next->warnings = now.warnings;  // with those of the start
-    implementation_ = std::move(next);
+    rebuild(std::move(network), left);
   }
   return implementation_->step();
 }

@@ -3,11 +3,13 @@
 #include "base/problem_list.h"
 #include "dynamics/attachments/engagement.h"
 #include "network/model/pin_schedule.h"
+#include "network/model/sleeping_bodies.h"
 #include "network/model/spring_failure.h"
 #include "simulation/simulator_implementation.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sprung {
 namespace {
@@ -78,13 +80,17 @@ bool Simulator::Implementation::take_pins(const Implementation& before) {
   Points last_velocities = state.v;
   before.pin_paths.set_last_velocities(time(), before.dt(), last_velocities);
   bool changed = pin_paths.take(state);
-  for (Index i = 0; i < network.particle_count(); ++i) {
-    if (network.is_pinned(i) == before.network.is_pinned(i)) continue;
-    changed = true;
-    if (network.is_pinned(i)) continue;
-    state.v.col(i) = last_velocities.col(i);
-    if (state.impulses.on()) record_gain(i, v_before.col(i));
-    integrator->velocity_changed(state, i, before.dt());
+  for (std::size_t b = 0; b < network.bodies.size(); ++b) {
+    const Body& body = network.bodies[b];
+    if (body.asleep != before.network.bodies[b].asleep) continue;
+    for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+      if (network.is_pinned(i) == before.network.is_pinned(i)) continue;
+      changed = true;
+      if (network.is_pinned(i)) continue;
+      state.v.col(i) = last_velocities.col(i);
+      if (state.impulses.on()) record_gain(i, v_before.col(i));
+      integrator->velocity_changed(state, i, before.dt());
+    }
   }
   reactions.collect(before.network.pins, state.impulses);
   for (const Pin& pin : network.pins) {
@@ -107,24 +113,26 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   forces_since = before.forces_since;
   if (settings.record_forces != state.impulses.on()) {
     state.impulses = {};
+    state.last_impulses = {};
     begin_recording();
-  } else if (state.impulses.of_springs.size() != network.springs.count()) {
-    if (state.impulses.on()) state.impulses.of_springs.setZero(network.springs.count());
+  } else if (state.impulses.on() && state.impulses.of_springs.size() != network.springs.count()) {
+    state.impulses.of_springs.setZero(network.springs.count());
+    state.last_impulses.of_springs.setZero(network.springs.count());
   }
-  state.asleep = false;
-  state.x_at_rest.resize(3, 0);
+  take_sleep(before);
   const bool pins_changed = take_pins(before);
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
+    if (network.bodies[b].asleep) continue;
     if (constraints.limit() == nullptr || !constraints.limit()->may_be_handed_over(b)) state.stretch_handovers[b] = {};
   }
   constraints.roll_back(before.constraints.permitted_crossings());
   environment.set_interval(time(), time());
   drop_unknown_links(before.network, network, state);
   if (attachments) attachments->take(state, time());
-  if (excess_of(constraints, state.x) > excess_of(before.constraints, state.x) ||
-      constraints.violation(state.x) > std::max(1.0, before.constraints.violation(state.x))) {
-    constraints.correct_positions(state, before.dt());
-  }
+  const bool limits_more = asleep(network) == asleep(before.network) &&
+                           (excess_of(constraints, state.x) > excess_of(before.constraints, state.x) ||
+                            constraints.violation(state.x) > std::max(1.0, before.constraints.violation(state.x)));
+  if (limits_more) constraints.correct_positions(state, before.dt());
   if (before.settings.integrator.index() == settings.integrator.index()) {
     integrator->resume(state, forces, before.dt());
   } else {
@@ -136,12 +144,38 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   begin = {state, energy_watch, constraints.permitted_crossings()};
 }
 
+/// Goes on with a network that lost springs, and with other pins and bodies that sleep. `springs_left` are the springs of the
+/// present network that it has.
+void Simulator::rebuild(SpringNetwork network, const std::vector<Index>& springs_left) {
+  const Implementation& now = *implementation_;
+  SimulatorSettings settings = now.settings;
+  settings.stability = StabilityCheck::warn;  // the step was accepted; its bound is an estimate, which varies with the network
+  auto next = std::make_unique<Implementation>(std::move(network), std::move(settings), now.external, now);
+  next->settings.stability = now.settings.stability;
+  if (now.state.impulses.on()) {
+    next->state.impulses.of_springs = now.state.impulses.of_springs(springs_left);
+    next->state.last_impulses.of_springs = now.state.last_impulses.of_springs(springs_left);
+  }
+  next->warnings = now.warnings;  // with those of the start
+  implementation_ = std::move(next);
+}
+
+void Simulator::wake() {
+  implementation_->state.x_at_rest.resize(3, 0);
+  implementation_->state.rests.clear();
+  if (std::ranges::none_of(network().bodies, &Body::asleep)) return;
+  std::vector<Index> all_springs(static_cast<std::size_t>(network().springs.count()));
+  std::iota(all_springs.begin(), all_springs.end(), 0);
+  rebuild(awake(network()), all_springs);
+}
+
 void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings) {
+  wake();
   const Implementation& now = *implementation_;
   check_change(network, settings, now.network, now.settings);
   if (network.broken.count() < now.network.broken.count()) tear_as(now.network, network);
   take_rest_lengths(now.network, network);
-  implementation_ = std::make_unique<Implementation>(std::move(network), std::move(settings), now.external, now);
+  implementation_ = std::make_unique<Implementation>(awake(std::move(network)), std::move(settings), now.external, now);
 }
 
 void Simulator::set_gravity(const Vector3& acceleration) {
@@ -200,6 +234,7 @@ void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMateria
 }
 
 void Simulator::pin(Index particle) {
+  wake();
   SpringNetwork network = implementation_->network;
   if (network.is_pinned(particle)) return;
   const Body& body = network.body_of(particle);
@@ -213,6 +248,7 @@ void Simulator::pin(Index particle) {
 }
 
 void Simulator::release(Index particle) {
+  wake();
   SpringNetwork network = implementation_->network;
   if (!network.is_pinned(particle)) return;
   for (Pin& pin : network.pins) std::erase(pin.particles, particle);
@@ -246,6 +282,7 @@ void Simulator::remove_constraint(const Constraint& constraint) {
 }
 
 void Simulator::continue_with_external(External external) {
+  wake();
   const Implementation& now = *implementation_;
   implementation_ = std::make_unique<Implementation>(now.network, now.settings, std::move(external), now);
 }

@@ -8,8 +8,9 @@
 #include "simulation/monitoring/energy_watch.h"
 #include "simulation/reaction_record.h"
 #include "simulation/simulator.h"
+#include "simulation/sleep/islands.h"
+#include "simulation/sleep/rest_detector.h"
 #include "simulation/step/pin_paths.h"
-#include "simulation/step/rest_detector.h"
 #include "simulation/step/step_constraints.h"
 #include "simulation/step/step_refinement.h"
 #include "simulation/step/symmetry_breaker.h"
@@ -35,7 +36,7 @@ struct Attempt {
   EnergyWatch watch;
   PermittedCrossings crossings;
   StepReport report;
-  std::vector<Index> contacts;
+  std::vector<Index> contacts;  ///< of bodies that are awake
 };
 
 struct Simulator::External {
@@ -55,8 +56,11 @@ struct Simulator::Implementation {
   void take_state(const Implementation& before);
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
-  [[nodiscard]] bool may_sleep() const;
-  void fall_asleep();
+  [[nodiscard]] std::vector<char> sleepers() const;
+  [[nodiscard]] bool all_sleep() const;
+  [[nodiscard]] bool is_still(const Body& body, const std::vector<ContactNormal>& normals) const;
+  void repeat_impulses(const RecordedImpulses& before);
+  void take_sleep(const Implementation& before);
   [[nodiscard]] int factor_for_rotation() const;
   StepReport make_step(int factor, Index max_infeasible);
   [[nodiscard]] Attempt attempt_of(const StepReport& report) const;
@@ -80,6 +84,7 @@ struct Simulator::Implementation {
   [[nodiscard]] Energies energies() const;
   [[nodiscard]] std::vector<ContactNormal> contact_normals() const;
   [[nodiscard]] std::vector<Index> contacts() const;
+  [[nodiscard]] std::vector<Index> contacts_awake() const;
   void check_state();
   void check_energy(const Energies& now) const;
   void fail(StepFailure failure) const;
@@ -107,11 +112,12 @@ struct Simulator::Implementation {
   DivergenceCheck divergence;
   EnergyWatch energy_watch;
   RestDetector rest;
-  double driven_until;  ///< see end_of_motions() in simulator.cpp [s]
+  Islands islands;
   SimulationState state;
   StepBegin begin;
   ReactionRecord reactions;   ///< of attachments, and of pins before the last change of the simulator, in the present interval
   double forces_since = 0.0;  ///< begin of that interval [s]
+  std::vector<Index> contacts_asleep;  ///< particles of bodies that sleep, ascending
   std::optional<std::vector<Index>> kept_contacts;  ///< of the last step, if a later attempt changed the constraints
 };
 

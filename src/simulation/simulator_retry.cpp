@@ -57,7 +57,7 @@ void Simulator::Implementation::take(Attempt&& best) {
 }
 
 Attempt Simulator::Implementation::attempt_of(const StepReport& report) const {
-  return {state, energy_watch, constraints.permitted_crossings(), report, contacts()};
+  return {state, energy_watch, constraints.permitted_crossings(), report, contacts_awake()};
 }
 
 /// Nothing if the step diverges, or has at least `max_infeasible` infeasible particles.

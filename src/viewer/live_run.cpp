@@ -165,6 +165,7 @@ bool LiveRun::may_change(Index particle) const {
 }
 
 void LiveRun::grab(Index particle) {
+  loaded_.simulator.wake();
   if (!may_change(particle) || simulator().network().is_pinned(particle)) return;
   drop(false);
   Simulator& simulator = loaded_.simulator;
@@ -188,6 +189,7 @@ void LiveRun::drop(bool pin) {
 }
 
 void LiveRun::release(Index particle) {
+  loaded_.simulator.wake();
   if (!may_change(particle) || !simulator().network().is_pinned(particle)) return;
   loaded_.simulator.release(particle);
   released_.insert(particle);
@@ -227,8 +229,8 @@ FrameState LiveRun::state() const {
   state.positions = simulator.positions();
   state.speeds = simulator.state().v.colwise().norm().transpose();
   state.states.assign(static_cast<std::size_t>(network.particle_count()), 0);
-  for (Index i = 0; i < network.particle_count(); ++i) {
-    if (network.is_pinned(i)) state.states[static_cast<std::size_t>(i)] |= kPinned;
+  for (const Pin& pin : network.pins) {
+    for (const Index i : pin.particles) state.states[static_cast<std::size_t>(i)] |= kPinned;
   }
   for (const Index i : simulator.contact_particles()) state.states[static_cast<std::size_t>(i)] |= kInContact;
   for (const Obstacle& obstacle : simulator.environment().obstacles()) {

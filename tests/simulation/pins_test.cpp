@@ -185,10 +185,10 @@ TEST(PinTimes, ARunSleepsOnlyOnceNoPinWillBeginOrEnd) {
   builder.add_pin(pin_of({0}, 2.0, 3.0, up));
   Simulator simulator(builder.build(), {.step = kStep}, {ground({.friction = 0.5, .static_friction = 0.5})});
   run(simulator, 2.9);
-  EXPECT_FALSE(simulator.state().asleep);
+  EXPECT_FALSE(simulator.network().bodies.front().asleep);
   EXPECT_NEAR(simulator.positions()(1, 0), 0.51, 1e-6);
   run(simulator, 3.0);
-  EXPECT_TRUE(simulator.state().asleep);
+  EXPECT_TRUE(simulator.network().bodies.front().asleep);
   EXPECT_NEAR(simulator.positions()(1, 0), 0.01, 1e-6);
 }
 

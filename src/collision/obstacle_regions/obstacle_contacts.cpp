@@ -55,7 +55,7 @@ void ObstacleSafeRegions::find_contacts_of(const std::vector<Index>& patches, co
       const Index p = patches[at(k)];
       Patch& patch = patches_[at(p)];
       patch.contacts.clear();
-      if (patch.regions.empty()) continue;
+      if (patch.regions.empty() || patch.rests) continue;
       const double motion = by_obstacles + largest_motion(paths, particles_of(p));
       for (PatchSafeRegions& regions : patch.regions) {
         const RegionDemand demanded = demand(patch, regions.obstacle(), paths);

@@ -36,6 +36,7 @@ ObstacleSafeRegions::ObstacleSafeRegions(const ObstacleSet& set, const Collision
     for (std::size_t slot = 0; slot < elements.particles.size(); ++slot) {
       const Index i = elements.particles[slot];
       patch.thickness = std::max(patch.thickness, surface.thickness[i]);
+      patch.pinned = patch.pinned && surface.pinned[at(i)] != 0;
       patch.own.push_back(at(slots_of(i).front().patch) == p ? 1 : 0);
     }
     patches_.push_back(std::move(patch));
@@ -47,9 +48,11 @@ void ObstacleSafeRegions::update(const StepPaths& paths) {
   const double max_displacement = paths.obstacles_rest ? 0.0 : set_.max_displacement(paths.from);
   parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
     for (Index p = begin; p < end; ++p) {
-      find_near(p, paths, max_displacement);
       Patch& patch = patches_[at(p)];
       patch.leaving.clear();
+      patch.rests = stands_still(p, paths);
+      if (patch.rests) continue;
+      find_near(p, paths, max_displacement);
       for (PatchSafeRegions& regions : patch.regions) {
         const ObstacleShape& shape = set_.shape(regions.obstacle());
         if (!regions.find_leaving(shape, {paths.to, particles_of(p), set_.into_after(regions.obstacle())})) continue;
@@ -58,6 +61,15 @@ void ObstacleSafeRegions::update(const StepPaths& paths) {
       }
     }
   });
+}
+
+bool ObstacleSafeRegions::stands_still(Index p, const StepPaths& paths) const {
+  return !set_.moves() && patches_[at(p)].pinned &&
+         std::ranges::all_of(particles_of(p), [&](Index i) { return paths.from.col(i) == paths.to.col(i); });
+}
+
+bool ObstacleSafeRegions::rests(Index particle) const {
+  return std::ranges::all_of(slots_of(particle), [&](const PatchSlot& entry) { return patches_[at(entry.patch)].rests; });
 }
 
 void ObstacleSafeRegions::find_near(Index p, const StepPaths& paths, double max_displacement) {

@@ -52,6 +52,9 @@ class ObstacleSafeRegions {
 
   /// Whether the regions of all elements around the particle contain the position at the end of the interval.
   [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
+  /// Whether the particle and its neighbours are pinned and rested in the last update(), and so did all obstacles: nothing is to be
+  /// tested.
+  [[nodiscard]] bool rests(Index particle) const;
   /// Whether the planes of these regions allow the position, whatever the boxes are. If so, no known obstacle is between the
   /// particle and the position.
   [[nodiscard]] bool planes_allow(Index particle, const Vector3& position) const;
@@ -77,6 +80,8 @@ class ObstacleSafeRegions {
     Box3 known{};                             ///< all obstacles that intersect this box are in `regions`
     double size = 0.0;                        ///< of its elements [m]
     double thickness = 0.0;                   ///< largest of its particles [m]
+    bool pinned = true;                       ///< whether all its particles are
+    bool rests = false;                       ///< whether it is pinned and nothing moved in the last update()
   };
 
   void set_permitted(PermittedCrossings crossings);
@@ -85,6 +90,7 @@ class ObstacleSafeRegions {
   [[nodiscard]] bool is_permitted(Index k, Index particle) const {
     return permitted_[static_cast<std::size_t>(k)][static_cast<std::size_t>(particle)] != 0;
   }
+  [[nodiscard]] bool stands_still(Index patch, const StepPaths& paths) const;
   void find_near(Index patch, const StepPaths& paths, double max_displacement);
   void append_leaving(Index patch, const PatchSafeRegions& regions);
   [[nodiscard]] PatchPaths patch_paths(Index patch, Index obstacle, const StepPaths& paths) const;

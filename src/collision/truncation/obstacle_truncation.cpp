@@ -151,7 +151,7 @@ void ObstacleTruncation::record_crossed() {
 std::vector<Index> ObstacleTruncation::leaving_pins(const Points& positions) const {
   std::vector<Index> leaving;
   for (const Index i : pinned_) {
-    if (positions.col(i).allFinite() && !regions_.allow(i, positions.col(i))) leaving.push_back(i);
+    if (!regions_.rests(i) && positions.col(i).allFinite() && !regions_.allow(i, positions.col(i))) leaving.push_back(i);
   }
   return leaving;
 }

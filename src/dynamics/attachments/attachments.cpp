@@ -79,14 +79,10 @@ double Attachments::winch_speed(const SimulationState& state) const {
   return fastest;
 }
 
-double end_of_changes(const std::vector<Attachment>& attachments, double step_length) {
-  double end = 0.0;
-  for (const Attachment& attachment : attachments) {
-    const double pulls = attachment.is_rigid() && attachment.rest_length ? kWinchTime : 0.0;
-    if (attachment.from > 0.0 || pulls > 0.0) end = std::max(end, attachment.from + step_length + pulls);
-    if (std::isfinite(attachment.until)) end = std::max(end, attachment.until + step_length);
-  }
-  return end;
+double end_of_changes(const Attachment& attachment, double step_length) {
+  const double pulls = attachment.is_rigid() && attachment.rest_length ? kWinchTime : 0.0;
+  const double begun = attachment.from > 0.0 || pulls > 0.0 ? attachment.from + step_length + pulls : 0.0;
+  return std::isfinite(attachment.until) ? std::max(begun, attachment.until + step_length) : begun;
 }
 
 bool do_work(const std::vector<Attachment>& attachments) {

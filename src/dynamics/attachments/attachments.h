@@ -49,8 +49,8 @@ class Attachments {
   std::shared_ptr<AttachmentSprings> springs_;
 };
 
-/// The time from which on no attachment engages, ends or pulls its ends together [s], with times rounded to steps.
-[[nodiscard]] double end_of_changes(const std::vector<Attachment>& attachments, double step_length);
+/// The time from which on the attachment does not engage, end or pull its ends together [s], with times rounded to steps.
+[[nodiscard]] double end_of_changes(const Attachment& attachment, double step_length);
 
 /// Whether attachments may do work on the bodies: they pull them to a length of their own.
 [[nodiscard]] bool do_work(const std::vector<Attachment>& attachments);

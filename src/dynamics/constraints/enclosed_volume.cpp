@@ -15,7 +15,7 @@ constexpr double kTolerance = 1.0e-3;
 EnclosedVolume::EnclosedVolume(const SpringNetwork& network) : network_(network) {
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
     const Body& body = network.bodies[b];
-    if (body.volume_factor == 0.0) continue;
+    if (body.volume_factor == 0.0 || body.asleep) continue;
     const auto at_rest = network.positions.middleCols(body.first_particle, body.particle_count);
     kept_.push_back({b, body.volume_factor * signed_volume(at_rest, body.surface.triangles)});
   }

@@ -30,17 +30,25 @@ struct Line {
   Index end;
 };
 
-/// Springs of a stretch limit alone have no stiffness and no damping, hence no force.
-bool pulls(const Springs& springs, Index spring) { return springs.stiffness[spring] > 0.0 || springs.damping[spring] > 0.0; }
+/// Whether each spring moves a particle. Springs of a stretch limit alone have no stiffness and no damping, hence no force.
+std::vector<char> springs_that_pull(const SpringNetwork& network) {
+  const Springs& springs = network.springs;
+  std::vector<char> pulls;
+  for (Index s = 0; s < springs.count(); ++s) pulls.push_back(springs.stiffness[s] > 0.0 || springs.damping[s] > 0.0 ? 1 : 0);
+  for (const Body& body : network.bodies) {
+    if (body.asleep) std::fill_n(pulls.begin() + body.first_spring, body.spring_count, char{0});
+  }
+  return pulls;
+}
 
 /// The longest line of springs that begins with `spring`.
-Line line_from(const Springs& springs, Index spring) {
+Line line_from(const Springs& springs, const std::vector<char>& pulls, Index spring) {
   const Index a = springs.first[spring];
   const Index b = springs.second[spring];
   const bool tension_only = springs.law(spring).tension_only;
   Index count = 1;
   while (spring + count < springs.count() && springs.first[spring + count] == a + count &&
-         springs.second[spring + count] == b + count && pulls(springs, spring + count) &&
+         springs.second[spring + count] == b + count && pulls[spring + count] != 0 &&
          springs.law(spring + count).tension_only == tension_only) {
     ++count;
   }
@@ -113,12 +121,13 @@ SpringPlan::SpringPlan(const SpringNetwork& network) {
   const Index size = block_size(network.particle_count());
   blocks.resize(network.particle_count() / size + 1);
   Planner planner(network.springs, size, blocks);
+  const std::vector<char> pulls = springs_that_pull(network);
   for (Index s = 0; s < network.springs.count();) {
-    if (!pulls(network.springs, s)) {
+    if (pulls[s] == 0) {
       ++s;
       continue;
     }
-    const Line line = line_from(network.springs, s);
+    const Line line = line_from(network.springs, pulls, s);
     planner.add(line);
     s += line.end;
   }

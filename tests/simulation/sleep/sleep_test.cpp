@@ -4,7 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace sprung::testing {
@@ -29,7 +30,7 @@ Simulator lying_cloth(const SimulatorSettings& settings, const Motion& of_ground
   return Simulator(cloth(4, kGap, kRough), settings, {floor});
 }
 
-bool sleeps(const Simulator& simulator) { return simulator.state().asleep; }
+bool sleeps(const Simulator& simulator) { return std::ranges::all_of(simulator.network().bodies, &Body::asleep); }
 
 TEST(RestDetector, AClothThatLiesStillSleepsAfterHalfASecondWithEachScheme) {
   for (const IntegratorSettings& integrator : all_integrators()) {
@@ -69,7 +70,10 @@ TEST(RestDetector, WithoutContactASlowSwingGoesOn) {
   EXPECT_FALSE(sleeps(simulator));
 }
 
-TEST(RestDetector, ABodyThatTouchesNothingKeepsAllAwake) {
+bool sleeps(const Simulator& simulator, std::size_t body) { return simulator.network().bodies[body].asleep; }
+
+/// A particle that lies at its gap, and a mass that hangs from a spring at rest, a metre away.
+SpringNetwork lying_and_hanging() {
   NetworkBuilder builder;
   builder.begin_body("lies", kRough);
   builder.add_particle({0.0, kGap, 0.0}, 0.1);
@@ -78,15 +82,84 @@ TEST(RestDetector, ABodyThatTouchesNothingKeepsAllAwake) {
   builder.add_particle({1.0, 1.0, 0.0}, 0.1);
   builder.add_spring(1, 2, 1000.0, 1.0 - 0.1 * kGravity / 1000.0, 0.0);
   builder.pin(1);
-  SpringNetwork network = builder.build();
-  Simulator awake(network, settings_of(), {ground(kRough)});
-  run(awake, 1.5);
-  EXPECT_FALSE(sleeps(awake));
+  return builder.build();
+}
+
+TEST(RestDetector, ABodyThatTouchesNothingStaysAwakeAndLetsOthersSleep) {
+  SpringNetwork network = lying_and_hanging();
+  Simulator simulator(network, settings_of(), {ground(kRough)});
+  run(simulator, 1.5);
+  EXPECT_TRUE(sleeps(simulator, 0));
+  EXPECT_FALSE(sleeps(simulator, 1));
   network.inverse_masses[2] = 0.0;  // a body of pins alone need not touch anything
   network.pins.front().particles.push_back(2);
   Simulator asleep(network, settings_of(), {ground(kRough)});
   run(asleep, 1.5);
-  EXPECT_TRUE(sleeps(asleep));
+  EXPECT_TRUE(sleeps(asleep, 0));
+  EXPECT_EQ(asleep.step().substeps, 0);
+}
+
+TEST(RestDetector, WhatAnAttachmentJoinsToABodyThatIsAwakeStaysAwake) {
+  SpringNetwork network = lying_and_hanging();
+  network.attachments = {{.name = "string", .particles = {0}, .second = ParticleEnds{.particles = {2}}, .stiffness = 1.0e-6}};
+  Simulator simulator(std::move(network), settings_of(), {ground(kRough)});
+  run(simulator, 1.5);
+  EXPECT_FALSE(sleeps(simulator, 0));
+}
+
+/// A cloth of 1 m that lies on the ground, and a mass that falls on its middle from 3 m, in 0.78 s.
+Simulator cloth_under_a_falling_mass(bool may_sleep) {
+  BodyShape shape =
+      make_cloth({.size = {1.0, 1.0}, .resolution = {4, 4}},
+                 {.structural = SpringMaterial{.value = 200.0, .damping = 0.01}, .shear = SpringMaterial{.value = 100.0}});
+  set_total_mass(shape, 0.2);
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = rotation_from_degrees({-90.0, 0.0, 0.0});
+  pose.translation() = Vector3(0.0, kGap, 0.0);
+  place(shape, pose, Vector3::Zero());
+  NetworkBuilder builder;
+  builder.add_body("cloth", shape, kRough);
+  builder.begin_body("falls", kRough);
+  builder.add_particle({0.05, 3.0, 0.02}, 0.5);
+  SimulatorSettings settings = settings_of();
+  settings.sleep = may_sleep;
+  return Simulator(builder.build(), settings, {ground(kRough)});
+}
+
+// At rest the cloth moves by less than a slow motion in half a second, 5 mm. The mass arrives with 7.7 m/s and stretches the cloth;
+// whoever slept then takes part in it as if it never had.
+TEST(RestDetector, ABodyThatWillBeHitWakesBefore) {
+  Simulator sleeping = cloth_under_a_falling_mass(true);
+  Simulator awake = cloth_under_a_falling_mass(false);
+  run(sleeping, 0.7);
+  run(awake, 0.7);
+  EXPECT_TRUE(sleeps(sleeping, 0));
+  EXPECT_FALSE(sleeps(sleeping, 1)) << "it falls";
+  const Points before = sleeping.positions();
+  run(sleeping, 0.05);
+  EXPECT_EQ(sleeping.positions().leftCols(16), before.leftCols(16));
+  EXPECT_NE(sleeping.positions().rightCols(1), before.rightCols(1));
+  run(awake, 0.05);
+  run(sleeping, 0.1);
+  run(awake, 0.1);
+  EXPECT_FALSE(sleeps(sleeping, 0));
+  EXPECT_LT((sleeping.positions() - awake.positions()).cwiseAbs().maxCoeff(), 1.0e-6);
+}
+
+// The box passes over the sleeping particle at 1 m/s; until it is near, the particle sleeps.
+TEST(RestDetector, AnObstacleThatComesWakesWhatItReaches) {
+  const Obstacle box{.name = "box",
+                     .geometry = BoxGeometry{.size = {0.2, 0.2, 0.2}},
+                     .rest_pose = RigidTransform(Eigen::Translation3d(-2.0, 0.1, 0.0)),
+                     .motion = {.keyframes = {{.time = 0.0}, {.time = 3.0, .position = {3.0, 0.0, 0.0}}}},
+                     .material = kRough};
+  Simulator simulator(one_particle({0.0, kGap, 0.0}, kRough), settings_of(), {ground(kRough), box});
+  run(simulator, 1.5);
+  EXPECT_TRUE(sleeps(simulator));
+  run(simulator, 1.0);
+  EXPECT_GT(simulator.positions()(0, 0), 0.55) << "pushed by the box, whose front is at 0.6 m";
+  run(simulator, 2.5);
+  EXPECT_TRUE(sleeps(simulator)) << "the motion has ended";
 }
 
 // The ground waits for two seconds and then throws the cloth up.
