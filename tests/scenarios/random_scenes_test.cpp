@@ -16,6 +16,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <memory>
+#include <string>
 #include <utility>
 
 namespace sprung::testing {
@@ -318,6 +319,45 @@ BuiltScene scene_of_three_filled(Random& random) {
   return random_scene(random, builder, swing_above_floor(random));
 }
 
+/// A rod or spring between particles of two bodies, a body's surface, or an obstacle. It may begin late, end early and break.
+Attachment random_attachment(const SpringNetwork& network, Index obstacles, Random& random) {
+  const auto particle_of = [&](const Body& body) { return body.first_particle + random.below(body.particle_count); };
+  const Index bodies = static_cast<Index>(network.bodies.size());
+  const Index first = random.below(bodies);
+  const Index second = (first + 1 + random.below(bodies - 1)) % bodies;
+  Attachment attachment;
+  attachment.particles = {particle_of(network.bodies[static_cast<std::size_t>(first)])};
+  switch (random.below(3)) {
+    case 0:
+      attachment.second = ParticleEnds{.particles = {particle_of(network.bodies[static_cast<std::size_t>(second)])}};
+      break;
+    case 1:
+      attachment.second = SurfaceEnd{.body = second};
+      break;
+    default:
+      attachment.second = ObstacleEnd{.obstacle = random.below(obstacles)};
+  }
+  if (random.below(2) == 0) attachment.stiffness = one_of(random, {1.0, 100.0});
+  if (random.below(2) == 0) attachment.rest_length = random.between(0.0, 0.3);
+  if (random.below(4) == 0) attachment.break_force = one_of(random, {1.0, 100.0});
+  attachment.from = one_of(random, {0.0, 0.05});
+  if (random.below(4) == 0) attachment.until = 0.15;
+  return attachment;
+}
+
+/// Three bodies that attachments join to each other and to an obstacle that swings above a floor.
+BuiltScene scene_of_attached(Random& random) {
+  NetworkBuilder builder = three_bodies(random);
+  std::vector<Obstacle> obstacles = swing_above_floor(random);
+  const SpringNetwork network = builder.build();
+  for (int k = 0; k < 4; ++k) {
+    Attachment attachment = random_attachment(network, static_cast<Index>(obstacles.size()), random);
+    attachment.name = "attachment " + std::to_string(k);
+    builder.add_attachment(std::move(attachment));
+  }
+  return random_scene(random, builder, std::move(obstacles));
+}
+
 class RandomScenes : public test::SeededTest {};
 
 TEST_F(RandomScenes, NothingCrossesAnyObstacleInAnyStep) {
@@ -373,6 +413,15 @@ TEST_F(RandomScenes, NothingCrossesItselfOrAnotherOrADeformingSurface) {
   const Reports reports = run_scenes(200, Judge::obstacles_and_self, scene_of_three, deforms);
   for (const auto& [number, report] : reports) EXPECT_TRUE(report.is_free()) << "scene " << number << ": " << report;
   EXPECT_GT(reports.size(), 10);
+}
+
+// Rods give way to contact.
+TEST_F(RandomScenes, NothingCrossesWhateverIsAttached) {
+  const Reports reports = run_scenes(100, Judge::obstacles_and_self, scene_of_attached, [](const BuiltScene&) { return true; });
+  for (const auto& [number, report] : reports) {
+    EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
+  }
+  EXPECT_GT(reports.size(), 20);
 }
 
 TEST_F(RandomScenes, NoLatticeTetrahedraOrBalloonCrossesAnObstacleInAnyStep) {
