@@ -3,10 +3,10 @@
 #include "base/error.h"
 #include "output/file_pattern.h"
 #include "output/obj_sequence.h"
-#include "output/run_record.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -107,6 +107,21 @@ void RecordedRun::read_record() {
   if (!(frame_rate_ > 0.0) || !(step_ > 0.0) || steps_per_frame_ < 1)
     fail(file, "frame_rate", "and the steps must be greater than 0");
   read_meshes(*patterns);
+  if (record.contains("torn_faces")) read_torn_faces(record["torn_faces"].dump());
+}
+
+/// Faces of other bodies, and of numbers that a body does not have, are left out.
+void RecordedRun::read_torn_faces(const std::string& record) {
+  const std::filesystem::path file = folder_ / kRunRecordFile;
+  for (const Json& entry : Json::parse(record)) {
+    TornFaces torn{.body = read<std::string>(entry, "body", file),
+                   .frame = read_count(entry, "frame", file),
+                   .faces = read<std::vector<Index>>(entry, "faces", file)};
+    const auto body = std::ranges::find(bodies_, torn.body, &RecordedMesh::name);
+    if (body == bodies_.end()) continue;
+    std::erase_if(torn.faces, [&](Index face) { return face < 0 || face >= body->first.faces.face_count(); });
+    torn_faces_.push_back(std::move(torn));
+  }
 }
 
 void RecordedRun::read_meshes(const std::vector<std::string>& patterns) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/mesh/polygon_mesh.h"
+#include "output/run_record.h"
 
 #include <filesystem>
 #include <string>
@@ -41,6 +42,7 @@ class RecordedRun {
   [[nodiscard]] const std::vector<RecordedMesh>& bodies() const { return bodies_; }
   [[nodiscard]] const std::vector<RecordedMesh>& obstacles() const { return obstacles_; }
   [[nodiscard]] const RecordedDiagnostics& diagnostics() const { return diagnostics_; }
+  [[nodiscard]] const std::vector<TornFaces>& torn_faces() const { return torn_faces_; }
 
   /// Positions of a mesh in a frame, counted from 1 [m], 3 x n. Throws InputError if the file cannot be read or has another number
   /// of vertices than the first one.
@@ -50,6 +52,7 @@ class RecordedRun {
   void read_record();
   void read_meshes(const std::vector<std::string>& patterns);
   void read_diagnostics();
+  void read_torn_faces(const std::string& record);
 
   std::filesystem::path folder_;
   std::string scene_;
@@ -61,6 +64,7 @@ class RecordedRun {
   std::vector<RecordedMesh> bodies_;
   std::vector<RecordedMesh> obstacles_;
   RecordedDiagnostics diagnostics_;
+  std::vector<TornFaces> torn_faces_;
 };
 
 }  // namespace sprung

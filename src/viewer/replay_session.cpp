@@ -70,6 +70,26 @@ Json table_of(const RecordedDiagnostics& diagnostics) {
   return {{"columns", diagnostics.columns}, {"rows", rows}};
 }
 
+/// The triangles of the topology that are gone from a frame on.
+Json torn_triangles(const RecordedRun& run) {
+  Json all = Json::array();
+  Index first = 0;  // triangle of the body
+  for (const RecordedMesh& body : run.bodies()) {
+    const std::vector<Index>& corner_begin = body.first.faces.corner_begin;
+    const auto triangles_before = [&](Index face) { return corner_begin[face] - 2 * face; };
+    for (const TornFaces& torn : run.torn_faces()) {
+      if (torn.body != body.name) continue;
+      Json triangles = Json::array();
+      for (const Index face : torn.faces) {
+        for (Index t = triangles_before(face); t < triangles_before(face + 1); ++t) triangles.push_back(first + t);
+      }
+      all.push_back({{"frame", torn.frame}, {"triangles", triangles}});
+    }
+    first += triangles_before(body.first.faces.face_count());
+  }
+  return all;
+}
+
 }  // namespace
 
 Replay::Replay(const std::filesystem::path& folder, const std::vector<std::string>& mesh_paths)
@@ -106,6 +126,7 @@ std::string Replay::scene_text() const {
                      {"warnings", run_.warnings()},
                      {"bodies", bodies},
                      {"obstacles", obstacles},
+                     {"torn", torn_triangles(run_)},
                      {"diagnostics", table_of(run_.diagnostics())}};
   return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

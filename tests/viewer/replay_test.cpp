@@ -11,6 +11,7 @@
 #include <zlib.h>
 
 #include <fstream>
+#include <set>
 
 namespace sprung {
 namespace {
@@ -88,6 +89,43 @@ TEST(Replay, ShowsTheOtherBodiesOfALatticeAndPinsWhileTheyHold) {
   std::vector<int> holds;
   for (int frame = 1; frame <= kFrames; ++frame) holds.push_back(replay.state(frame).states[4] == kPinned ? 1 : 0);
   EXPECT_THAT(holds, ::testing::ElementsAre(1, 1, 0, 1, 1));
+}
+
+// The cloth hangs by its first row and falls into it until structural springs break; the quad beside it does not.
+TEST(Replay, TellsWhichTrianglesAreGoneFromAFrameOn) {
+  const SceneFolder folder;
+  folder.write("quad.obj", "v 5 0 0\nv 6 0 0\nv 6 1 0\nv 5 1 0\nf 1 2 3 4\n");
+  const std::string mesh = (folder.path() / "quad.obj").string();
+  const std::string scene = R"({"version": 1, "duration": 1, "frame_rate": 25, "step": 0.001, "bodies": {
+      "a quad": {"shape": {"type": "mesh", "file": ")" +
+                            mesh + R"("}, "mass": 1, "springs": {"structural": {"stiffness": 10}}},
+      "cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [5, 5]}, "mass": 1, "place": {"rotation": [-90, 0, 0]},
+                "springs": {"structural": {"stiffness": 200, "damping": 0.1, "break": 0.05}},
+                "pins": [{"indices": [0, 1, 2, 3, 4]}]}}})";
+  LoadedScene loaded = load_scene({.file = folder.write("scene.json", scene).string()});
+  constexpr int kShown = 20;
+  RunOutput output(
+      OutputFolder((folder.path() / "run").string(), false),
+      {.scene = loaded.scene.resolved, .frame_rate = 25.0, .frames = kShown, .steps_per_frame = loaded.steps_per_frame},
+      loaded.simulator);
+  FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
+  std::vector<Eigen::Index> left;  // triangles of the cloth
+  for (int frame = 1; frame <= kShown; ++frame) {
+    output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
+    left.push_back(loaded.simulator.network().bodies[1].surface.triangles.cols());
+  }
+  output.finish("done");
+  ASSERT_LT(left.back(), left.front());
+  const Replay replay(folder.path() / "run", {});
+  const Json torn = Json::parse(replay.scene_text())["torn"];
+  for (int frame = 1; frame <= kShown; ++frame) {
+    std::set<int> gone;
+    for (const Json& tear : torn) {
+      if (tear["frame"] <= frame) gone.insert(tear["triangles"].begin(), tear["triangles"].end());
+    }
+    EXPECT_EQ(static_cast<Eigen::Index>(gone.size()), left.front() - left[static_cast<std::size_t>(frame - 1)]) << frame;
+    EXPECT_TRUE(gone.empty() || (*gone.begin() >= 2 && *gone.rbegin() < replay.topology().triangles.cols())) << "not the quad's";
+  }
 }
 
 /// A cloth that falls on a ball that moves, recorded.

@@ -28,6 +28,7 @@ export interface SceneMessage {
   bodies: BodyRange[];
   obstacles: { name: string; motion: Motion }[];
   diagnostics?: Diagnostics;
+  torn?: { frame: number; triangles: number[] }[];
 }
 export interface ProblemsMessage { type: 'problems'; run: number | null; key: string; problems: Problem[] }
 export interface StateMessage { type: 'state'; playing: boolean; every: number; speed: number }

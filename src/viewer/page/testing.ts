@@ -49,6 +49,9 @@ export function publish(shown: Shown, view: SceneView | null): void {
     get problems() {
       return shown.problems;
     },
+    get triangles() {
+      return view?.runs[0]?.bodies.triangleCount ?? 0;
+    },
     get bodies() {
       return shown.models[0]?.bodies ?? {};
     },

@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
@@ -78,6 +78,33 @@ test('an exported page shows the positions within its error, without a server', 
   }
   assert.ok((await harness.colourCount(page)) >= 5);
   assert.deepEqual(requests.filter((url) => !url.startsWith('blob:') && !url.startsWith('data:')), []);
+  await harness.closePage(page);
+});
+
+test('an exported page shows no face that is torn', async () => {
+  const folder = harness.scratchFolder();
+  const cloth = {
+    shape: { type: 'cloth', size: [1, 1], resolution: [5, 5] },
+    mass: 1,
+    place: { rotation: [-90, 0, 0] },
+    springs: { structural: { stiffness: 200, damping: 0.1, break: 0.05 } },
+    pins: [{ indices: [0, 1, 2, 3, 4] }],
+  };
+  writeFileSync(join(folder, 'scene.json'), JSON.stringify({ version: 1, duration: 1, step: 0.001, frame_rate: 25, bodies: { cloth } }));
+  const torn = join(folder, 'run');
+  harness.sprung('run', join(folder, 'scene.json'), '--out', torn, '--frames', '20');
+  harness.sprung('export', torn, '--format', 'html', '--out', join(folder, 'torn.html'));
+  const page = await harness.openPage(pathToFileURL(join(folder, 'torn.html')).href);
+  await harness.firstFrame(page);
+  await harness.pause(page);
+  for (const frame of [20, 1]) {
+    await show(page, frame);
+    const file = join(torn, 'cloth', `cloth.${String(frame).padStart(4, '0')}.obj`);
+    const faces = readFileSync(file, 'utf8').split('\n').filter((line) => line.startsWith('f '));
+    const triangles = faces.map((face) => face.trim().split(/\s+/).length - 3).reduce((a, b) => a + b, 0);
+    await harness.until(page, (count) => window.sprung.triangles === count, triangles);
+    assert.ok(frame === 1 ? triangles === 32 : triangles < 32);
+  }
   await harness.closePage(page);
 });
 
