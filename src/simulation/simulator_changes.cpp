@@ -170,9 +170,9 @@ void Simulator::wake() {
 }
 
 void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings) {
+  check_change(network, settings, implementation_->network, implementation_->settings);
   wake();
   const Implementation& now = *implementation_;
-  check_change(network, settings, now.network, now.settings);
   if (network.broken.count() < now.network.broken.count()) tear_as(now.network, network);
   take_rest_lengths(now.network, network);
   implementation_ = std::make_unique<Implementation>(awake(std::move(network)), std::move(settings), now.external, now);

@@ -165,8 +165,9 @@ bool LiveRun::may_change(Index particle) const {
 }
 
 void LiveRun::grab(Index particle) {
-  loaded_.simulator.wake();
-  if (!may_change(particle) || simulator().network().is_pinned(particle)) return;
+  if (!may_change(particle)) return;
+  loaded_.simulator.wake();  // a particle of a body that sleeps counts as pinned
+  if (simulator().network().is_pinned(particle)) return;
   drop(false);
   Simulator& simulator = loaded_.simulator;
   pull_ = std::make_shared<PullForce>(simulator.network(), simulator.positions(), particle, simulator.settings().step);
@@ -189,8 +190,9 @@ void LiveRun::drop(bool pin) {
 }
 
 void LiveRun::release(Index particle) {
+  if (!may_change(particle)) return;
   loaded_.simulator.wake();
-  if (!may_change(particle) || !simulator().network().is_pinned(particle)) return;
+  if (!simulator().network().is_pinned(particle)) return;
   loaded_.simulator.release(particle);
   released_.insert(particle);
   pinned_.erase(particle);
