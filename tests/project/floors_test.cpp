@@ -59,6 +59,7 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
 
     {"simulation/settings", {}},
     {"simulation/monitoring", {"settings"}},
+    {"simulation/sleep", {}},
     {"simulation/start", {"settings"}},
     {"simulation/step", {"settings"}},
 
