@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 
@@ -319,38 +320,44 @@ TEST(SpringTensions, AreTheWeightBelow) {
   }
 }
 
-// The rope lies on the ground, a little above which the pin holds its end; the reading of frames asleep is that of the last step
-// awake, whether all sleep or a mass beside it swings on.
+// The rope lies on the ground, a little above which a pin and a rod hold its ends; the reading of frames asleep is that of the last
+// step awake, whether all sleep or a mass beside it swings on.
 TEST(Reactions, StayWhenABodySleeps) {
   const Holding springs{"springs", {}};
   BodyShape shape = make_rope({.points = {{0.0, 0.0101, 0.0}, {1.0, 0.0101, 0.0}}, .particles = 11, .length = {}},
                               {.structural = SpringMaterial{.value = 400.0, .damping = 1.0}});
   set_total_mass(shape, 0.1);
+  const Obstacle hook{
+      .name = "hook", .geometry = SphereGeometry{.radius = 0.1}, .rest_pose = RigidTransform(Eigen::Translation3d(1.0, 1.0, 0.0))};
   for (const bool beside_a_pendulum : {false, true}) {
     NetworkBuilder builder;
     builder.add_body("rope", shape, {.thickness = 0.01, .friction = 0.5, .static_friction = 0.5});
     builder.pin(0);
+    builder.add_attachment({.particles = {10}, .second = ObstacleEnd{1}});
     if (beside_a_pendulum) {
       builder.begin_body("pendulum");
-      const Index hook = builder.add_particle({0.0, 3.0, 5.0}, 0.1);
-      builder.add_spring(hook, builder.add_particle({0.5, 3.0, 5.0}, 0.1), 400.0, 0.5, 0.0);
-      builder.pin(hook);
+      const Index pivot = builder.add_particle({0.0, 3.0, 5.0}, 0.1);
+      builder.add_spring(pivot, builder.add_particle({0.5, 3.0, 5.0}, 0.1), 400.0, 0.5, 0.0);
+      builder.pin(pivot);
     }
     Simulator simulator(builder.build(), settings_of(springs, VerletSettings{.damping = 0.01}),
-                        {ground({.friction = 0.5, .static_friction = 0.5})});
+                        {ground({.friction = 0.5, .static_friction = 0.5}), hook});
     const auto sleeps = [&] { return simulator.network().bodies.front().asleep; };
-    Vector3 awake = Vector3::Zero();
+    const auto ends = [&] { return std::array{simulator.reactions().front().force, simulator.reactions().back().force}; };
+    std::array<Vector3, 2> awake;
     for (int frame = 0; frame < 300 && !sleeps(); ++frame) {
       simulator.reset_forces();
       run(simulator, 0.02);
-      if (!sleeps()) awake = simulator.reactions().at(0).force;
+      if (!sleeps()) awake = ends();
     }
     ASSERT_TRUE(sleeps());
-    EXPECT_GT(awake.y(), 0.999 * 0.1 * kGravity / 11.0);  // its own particle's weight at least
     for (int frame = 0; frame < 2; ++frame) {
       simulator.reset_forces();
       run(simulator, 0.02);
-      EXPECT_LT((simulator.reactions().at(0).force - awake).norm(), 0.02 * awake.norm());
+      for (std::size_t end = 0; end < 2; ++end) {
+        EXPECT_GT(awake[end].y(), 0.999 * 0.1 * kGravity / 11.0);  // its own particle's weight at least
+        EXPECT_LT((ends()[end] - awake[end]).norm(), 0.02 * awake[end].norm());
+      }
     }
   }
 }

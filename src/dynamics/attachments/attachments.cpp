@@ -21,6 +21,11 @@ void check_obstacles(const std::vector<Attachment>& attachments, std::size_t cou
   problems.throw_if_any();
 }
 
+bool joins_sleeping_body(const SpringNetwork& network, const Link& link) {
+  const auto sleeps = [&](Index particle) { return particle != kNone && network.body_of(particle).asleep; };
+  return sleeps(link.first) || std::ranges::any_of(link.second, sleeps);
+}
+
 }  // namespace
 
 Attachments::Attachments(const SpringNetwork& network, const Environment& environment, double step_length, bool implicit)
@@ -45,7 +50,9 @@ void Attachments::take(const SimulationState& state, double time) {
 
 void Attachments::note_substep(double dt, double time, SimulationState& state) {
   if (state.substep == 0) {
-    for (Link& link : state.links) link.impulse.setZero();
+    for (Link& link : state.links) {
+      if (!joins_sleeping_body(network_, link)) link.impulse.setZero();
+    }
   }
   rods_->add_impulses(dt, state.links);
   springs_->add_impulses(dt, state.links);
