@@ -67,7 +67,8 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"scene/json", {}},
     {"scene/materials", {}},
     {"scene/reading", {"format", "json", "materials"}},
-    {"scene/building", {"format", "json", "materials"}},
+    {"scene/step_choice", {"format"}},
+    {"scene/building", {"format", "json", "materials", "step_choice"}},
 };
 
 struct Library {

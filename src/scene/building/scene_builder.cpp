@@ -9,10 +9,10 @@
 #include "scene/building/body_builder.h"
 #include "scene/building/memory_check.h"
 #include "scene/building/obstacle_builder.h"
-#include "scene/building/step_choice.h"
 #include "scene/building/unlikely_settings.h"
 #include "scene/format/frame_steps.h"
 #include "scene/json/json_text.h"
+#include "scene/step_choice/step_choice.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "network/model/spring_network.h"
-#include "scene/building/step_choice.h"
 #include "scene/format/scene.h"
+#include "scene/step_choice/step_choice.h"
 
 #include <optional>
 #include <string>

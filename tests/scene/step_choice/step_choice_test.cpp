@@ -1,4 +1,4 @@
-#include "scene/building/step_choice.h"
+#include "scene/step_choice/step_choice.h"
 #include "scene/building/scene_builder.h"
 #include "scene/scene_text.h"
 

@@ -1,4 +1,4 @@
-#include "scene/building/many_steps.h"
+#include "scene/step_choice/many_steps.h"
 
 #include "base/format.h"
 

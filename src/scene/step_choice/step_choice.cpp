@@ -1,9 +1,9 @@
-#include "scene/building/step_choice.h"
+#include "scene/step_choice/step_choice.h"
 
 #include "base/format.h"
 #include "network/model/pin_schedule.h"
-#include "scene/building/many_steps.h"
 #include "scene/format/frame_steps.h"
+#include "scene/step_choice/many_steps.h"
 #include "simulation/step/step_check.h"
 
 #include <algorithm>
