@@ -144,8 +144,8 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   begin = {state, energy_watch, constraints.permitted_crossings()};
 }
 
-/// Goes on with a network that lost springs, and with other pins and bodies that sleep. `springs_left` are the springs of the
-/// present network that it has.
+/// Continues with a network that lost springs, and with other pins and sleeping bodies. `springs_left` are the springs of the
+/// present network that remain in it, ascending.
 void Simulator::rebuild(SpringNetwork network, const std::vector<Index>& springs_left) {
   const Implementation& now = *implementation_;
   SimulatorSettings settings = now.settings;
@@ -234,8 +234,7 @@ void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMateria
 }
 
 void Simulator::pin(Index particle) {
-  wake();
-  SpringNetwork network = implementation_->network;
+  SpringNetwork network = awake(implementation_->network);
   if (network.is_pinned(particle)) return;
   const Body& body = network.body_of(particle);
   const std::string name = body.name + ".particles[" + std::to_string(particle - body.first_particle) + "]";
@@ -248,8 +247,7 @@ void Simulator::pin(Index particle) {
 }
 
 void Simulator::release(Index particle) {
-  wake();
-  SpringNetwork network = implementation_->network;
+  SpringNetwork network = awake(implementation_->network);
   if (!network.is_pinned(particle)) return;
   for (Pin& pin : network.pins) std::erase(pin.particles, particle);
   std::erase_if(network.pins, [](const Pin& pin) { return pin.particles.empty(); });

@@ -190,6 +190,26 @@ TEST(RestDetector, AChangeOfGravityWakesIt) {
   EXPECT_NEAR(simulator.positions().row(0).mean() - before, 0.5 * 0.6 * kGravity, 0.01 * 0.5 * 0.6 * kGravity);
 }
 
+TEST(RestDetector, PinsAndReleasesWakeItOnlyIfTheyChangeSomething) {
+  SpringNetwork network = cloth(4, kGap, kRough);
+  network.inverse_masses[0] = 0.0;
+  network.pins = {Pin{.particles = {0}, .motion = {}, .name = "corner"}};
+  Simulator simulator(std::move(network), settings_of(), {ground(kRough)});
+  run(simulator, 1.0);
+  ASSERT_TRUE(sleeps(simulator));
+  simulator.pin(0);
+  simulator.release(5);
+  EXPECT_TRUE(sleeps(simulator)) << "one is pinned already, the other is free";
+  simulator.release(0);
+  EXPECT_FALSE(sleeps(simulator));
+  EXPECT_FALSE(simulator.network().is_pinned(0));
+  run(simulator, 1.0);
+  ASSERT_TRUE(sleeps(simulator));
+  simulator.pin(5);
+  EXPECT_FALSE(sleeps(simulator));
+  EXPECT_TRUE(simulator.network().is_pinned(5));
+}
+
 TEST(RestDetector, AnExternalForceWakesItAndKeepsItAwake) {
   Simulator simulator = lying_cloth(settings_of());
   run(simulator, 1.0);
