@@ -62,6 +62,19 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
     if (waits_for_turn || (limit->follows_turn() && anything_moves())) state.substeps = settings.max_substeps;
   }
   if (settings.perturb) symmetry.emplace(network, settings.seed);
+  if (!network.attachments.empty()) {
+    const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
+    attachments.emplace(network, environment, settings.step, implicit);
+  }
+  add_forces();
+  add_constraints();
+  for (const auto& more : {unused_settings(settings, network, environment.obstacles()), weak_springs(settings, network)}) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  }
+}
+
+/// Those that network_forces() does not make.
+void Simulator::Implementation::add_forces() {
   if (acts_on_faces(network, settings)) {
     auto force =
         std::make_unique<SurfaceAirForce>(network, settings.air_surface, settings.wind, settings.gravity.norm(), air_step());
@@ -73,6 +86,11 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
     penalty = force.get();
     forces.push_back(std::move(force));
   }
+  if (attachments) forces.push_back(std::make_unique<SharedForce>(attachments->springs()));
+  for (const std::shared_ptr<Force>& force : external.forces) forces.push_back(std::make_unique<SharedForce>(force));
+}
+
+void Simulator::Implementation::add_constraints() {
   if (std::ranges::any_of(network.bodies, [](const Body& body) { return !body.carried.empty(); })) {
     constraints.add(std::make_unique<CarriedSurface>(network));
   }
@@ -80,17 +98,8 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   if (std::ranges::any_of(network.bodies, [](const Body& body) { return body.volume_factor != 0.0; })) {
     constraints.add(std::make_unique<EnclosedVolume>(network));
   }
-  if (!network.attachments.empty()) {
-    const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
-    attachments.emplace(network, environment, settings.step, implicit);
-    forces.push_back(std::make_unique<SharedForce>(attachments->springs()));
-    if (std::ranges::any_of(network.attachments, &Attachment::is_rigid)) constraints.add(attachments->rods());
-  }
-  for (const std::shared_ptr<Force>& force : external.forces) forces.push_back(std::make_unique<SharedForce>(force));
+  if (attachments && std::ranges::any_of(network.attachments, &Attachment::is_rigid)) constraints.add(attachments->rods());
   for (const std::shared_ptr<Constraint>& constraint : external.constraints) constraints.add(constraint);
-  for (const auto& more : {unused_settings(settings, network, environment.obstacles()), weak_springs(settings, network)}) {
-    warnings.insert(warnings.end(), more.begin(), more.end());
-  }
 }
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles)

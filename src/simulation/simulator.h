@@ -39,11 +39,14 @@ class Simulator {
   /// rotates by more than 45 degrees in a substep. A step with infeasible particles is repeated with 4, 16 and 64 times the
   /// substeps until there are none: a long step can miss an admissible position near a pin or before a fast obstacle. Repetitions
   /// without effect become rarer (see step_retry.h). Throws StepError if the network diverged; the state is then not usable.
-  /// If pins begin or end, which is at the step nearest to their time, or springs break, because they are longer than their break
-  /// length, it first rebuilds what follows from them, as changes do (below): network() then lacks these springs and the faces that
-  /// tore (Surface::torn). So it does when bodies fall asleep or wake (see RestDetector and Islands): those that sleep have no inverse
-  /// masses (Body::asleep). Once all sleep, a step changes the time alone. Last, springs that yield get new rest lengths in
-  /// network().
+  ///
+  /// A step first rebuilds what follows from the network, as changes do (below),
+  /// - if pins begin or end, which is at the step nearest to their time;
+  /// - if springs break, as they are longer than their break length: network() then lacks them and the faces that tore
+  ///   (Surface::torn);
+  /// - if bodies fall asleep or wake (see RestDetector and Islands): those that sleep have no inverse masses (Body::asleep). Once
+  ///   all sleep, a step changes the time alone.
+  /// Last, springs that yield get new rest lengths in network().
   StepReport step();
 
   /// Lets step() call `stops` before each substep and throw StoppedError if it returns true; the state is then not usable. A step
@@ -51,16 +54,16 @@ class Simulator {
   void stop_when(std::function<bool()> stops);
 
   // Changes between two steps. Each of them rebuilds what follows from network and settings (forces, batches, factors, cached safe
-  // regions), which takes about as long as the constructor without its obstacles. The state goes on: positions, velocities, time,
-  // and bodies that a global solve took over. All bodies wake. Each throws InputError that names every problem, and then changes nothing.
-  // References to network() and settings() become invalid.
+  // regions), which takes about as long as the constructor without its obstacles. The state remains: positions, velocities, time,
+  // and bodies that a global solve took over. All bodies wake. References to network() and settings() become invalid. Each throws
+  // InputError that names every problem; the simulation then continues as before.
 
   /// Continues with another network and other settings. Requires a network that NetworkBuilder made with the same bodies and the
   /// same particles. The step and the start of contact cannot change, nor what collides (Body::contact) or how (response).
   /// Springs that broke stay broken, and springs that yielded keep their rest lengths.
   void continue_with(SpringNetwork network, SimulatorSettings settings);
 
-  /// Wakes all bodies, as all other changes do.
+  /// Wakes all bodies.
   void wake();
 
   void set_gravity(const Vector3& acceleration);  ///< [m/s^2]

@@ -53,6 +53,8 @@ struct Simulator::Implementation {
   /// Without a state.
   Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared, External added);
 
+  void add_forces();
+  void add_constraints();
   void take_state(const Implementation& before);
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
@@ -117,7 +119,7 @@ struct Simulator::Implementation {
   StepBegin begin;
   ReactionRecord reactions;   ///< of attachments, and of pins before the last change of the simulator, in the present interval
   double forces_since = 0.0;  ///< begin of that interval [s]
-  std::vector<Index> contacts_asleep;  ///< particles of bodies that sleep, ascending
+  std::vector<Index> contacts_asleep;               ///< particles of bodies that sleep, ascending
   std::optional<std::vector<Index>> kept_contacts;  ///< of the last step, if a later attempt changed the constraints
 };
 

@@ -46,7 +46,7 @@ StepReport Simulator::Implementation::compare_solvers(std::size_t body, const St
   return report;
 }
 
-/// Goes on from an attempt.
+/// Continues from an attempt.
 void Simulator::Implementation::take(Attempt&& best) {
   constraints.roll_back(best.crossings);
   state = std::move(best.state);

@@ -11,8 +11,8 @@ bool is_free(const Body& body, const SpringNetwork& network) {
 
 }  // namespace
 
-/// Whether each body sleeps in the next step. External forces may change at any time, and so may wind. Bodies sink into a penalty
-/// for long, and are not at rest while they do.
+/// Whether each body sleeps in the next step. External forces and wind may change at any time. With penalty contact, bodies sink
+/// for long, so they are not at rest.
 std::vector<char> Simulator::Implementation::sleepers() const {
   const std::vector<char> none(network.bodies.size(), 0);
   const bool may_sleep = settings.sleep && penalty == nullptr && constraints.contacts().can_collide() && external.empty() &&

@@ -3,7 +3,6 @@
 #include "collision/core/block_bounds.h"
 #include "collision/obstacles/obstacle_set.h"
 #include "dynamics/attachments/attachments.h"
-#include "geometry/mesh/union_find.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,33 +25,40 @@ double displacement(const RigidTransform& motion, const Box3& box) {
 
 Islands::Islands(const SpringNetwork& network, const Environment& environment, double step, double gravity)
     : network_(network), environment_(environment), step_(step), gravity_(gravity), ends_(network.bodies.size(), 0.0) {
-  const auto body_of = [&](Index particle) { return static_cast<std::size_t>(&network.body_of(particle) - network.bodies.data()); };
   for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
-    for (const Pin& pin : *pins) {
-      const double until = std::isfinite(pin.until) ? pin.until + step : 0.0;  // rounded to a step
-      const double motion = pin.obstacle != kNone ? end_of_obstacle(pin.obstacle) : pin.motion.end();
-      const double end = std::max({pin.from > 0.0 ? pin.from + step : 0.0, until, std::min(motion, pin.until)});
-      for (const Index particle : pin.particles) ends_[body_of(particle)] = std::max(ends_[body_of(particle)], end);
-    }
+    for (const Pin& pin : *pins) note(pin);
   }
-  for (const Attachment& attachment : network.attachments) {
-    double end = end_of_changes(attachment, step);
-    std::vector<std::size_t> bodies;
-    for (const Index particle : attachment.particles) bodies.push_back(body_of(particle));
-    if (const auto* ends = std::get_if<ParticleEnds>(&attachment.second)) {
-      for (const Index particle : ends->particles) bodies.push_back(body_of(particle));
-    } else if (const auto* surface = std::get_if<SurfaceEnd>(&attachment.second)) {
-      bodies.push_back(static_cast<std::size_t>(surface->body));
-    } else {
-      end = std::max(end, end_of_obstacle(std::get<ObstacleEnd>(attachment.second).obstacle));
-    }
-    for (const std::size_t body : bodies) {
-      ends_[body] = std::max(ends_[body], end);
-      joined_.emplace_back(bodies.front(), body);
-    }
-  }
+  for (const Attachment& attachment : network.attachments) note(attachment);
   std::ranges::sort(joined_);
   joined_.erase(std::unique(joined_.begin(), joined_.end()), joined_.end());
+}
+
+void Islands::note(const Pin& pin) {
+  const double until = std::isfinite(pin.until) ? pin.until + step_ : 0.0;  // rounded to a step
+  const double motion = pin.obstacle != kNone ? end_of_obstacle(pin.obstacle) : pin.motion.end();
+  const double end = std::max({pin.from > 0.0 ? pin.from + step_ : 0.0, until, std::min(motion, pin.until)});
+  for (const Index particle : pin.particles) ends_[body_of(particle)] = std::max(ends_[body_of(particle)], end);
+}
+
+void Islands::note(const Attachment& attachment) {
+  double end = end_of_changes(attachment, step_);
+  std::vector<std::size_t> bodies;
+  for (const Index particle : attachment.particles) bodies.push_back(body_of(particle));
+  if (const auto* ends = std::get_if<ParticleEnds>(&attachment.second)) {
+    for (const Index particle : ends->particles) bodies.push_back(body_of(particle));
+  } else if (const auto* surface = std::get_if<SurfaceEnd>(&attachment.second)) {
+    bodies.push_back(static_cast<std::size_t>(surface->body));
+  } else {
+    end = std::max(end, end_of_obstacle(std::get<ObstacleEnd>(attachment.second).obstacle));
+  }
+  for (const std::size_t body : bodies) {
+    ends_[body] = std::max(ends_[body], end);
+    joined_.emplace_back(bodies.front(), body);
+  }
+}
+
+std::size_t Islands::body_of(Index particle) const {
+  return static_cast<std::size_t>(&network_.body_of(particle) - network_.bodies.data());
 }
 
 double Islands::end_of_obstacle(Index obstacle) const {
@@ -61,9 +67,20 @@ double Islands::end_of_obstacle(Index obstacle) const {
 }
 
 std::vector<char> Islands::that_sleep(std::vector<char> calm, double time, const SimulationState& state) const {
-  const std::vector<Body>& bodies = network_.bodies;
   std::vector<Box3> boxes;
-  for (const Body& body : bodies) boxes.push_back(box_in_step(body, state));
+  for (const Body& body : network_.bodies) boxes.push_back(box_in_step(body, state));
+  UnionFind islands = joined_by(boxes);
+  std::vector<char> is_calm(boxes.size(), 1);  // by the body that represents the island
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    if (calm[b] == 0 || is_reached(boxes[b], time)) is_calm[islands.root(static_cast<Index>(b))] = 0;
+  }
+  for (std::size_t b = 0; b < boxes.size(); ++b) calm[b] = is_calm[islands.root(static_cast<Index>(b))];
+  return calm;
+}
+
+/// Bodies of one island have the same root.
+UnionFind Islands::joined_by(const std::vector<Box3>& boxes) const {
+  const std::vector<Body>& bodies = network_.bodies;
   UnionFind islands(static_cast<Index>(bodies.size()));
   for (const auto& [a, b] : joined_) islands.join(static_cast<Index>(a), static_cast<Index>(b));
   std::vector<std::size_t> by_x(bodies.size());
@@ -76,22 +93,17 @@ std::vector<char> Islands::that_sleep(std::vector<char> calm, double time, const
       islands.join(static_cast<Index>(by_x[i]), static_cast<Index>(by_x[j]));
     }
   }
-  std::vector<char> is_calm(bodies.size(), 1);  // by the body that represents the island
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (calm[b] == 0 || is_reached(boxes[b], time)) is_calm[islands.root(static_cast<Index>(b))] = 0;
-  }
-  for (std::size_t b = 0; b < bodies.size(); ++b) calm[b] = is_calm[islands.root(static_cast<Index>(b))];
-  return calm;
+  return islands;
 }
 
 Box3 Islands::box_in_step(const Body& body, const SimulationState& state) const {
   const auto speeds = state.v.middleCols(body.first_particle, body.particle_count).colwise().norm();
-  const double way = body.asleep || body.particle_count == 0 ? 0.0 : step_ * (speeds.maxCoeff() + step_ * gravity_);
+  const double farthest = body.asleep || body.particle_count == 0 ? 0.0 : step_ * (speeds.maxCoeff() + step_ * gravity_);
   return grown(finite_bounds(state.x, body.first_particle, body.first_particle + body.particle_count),
-               body.material.thickness + way);
+               body.material.thickness + farthest);
 }
 
-/// Half-spaces reach everything on their side.
+/// A box that a half-space contains is in its reach too.
 bool Islands::is_reached(const Box3& box, double time) const {
   std::vector<Index> found;
   for (std::size_t k = 0; k < environment_.obstacles().size(); ++k) {

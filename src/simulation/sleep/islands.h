@@ -2,9 +2,11 @@
 #pragma once
 
 #include "collision/obstacles/environment.h"
+#include "geometry/mesh/union_find.h"
 #include "network/model/simulation_state.h"
 #include "network/model/spring_network.h"
 
+#include <utility>
 #include <vector>
 
 namespace sprung {
@@ -14,16 +16,20 @@ class Islands {
   /// Keeps references to the network and the environment. `step` in s, `gravity` in m/s^2.
   Islands(const SpringNetwork& network, const Environment& environment, double step, double gravity);
 
-  /// Whether each body may sleep in the step after `time` [s]. `calm[b]` says whether body b is at rest by itself. All bodies of
-  /// its island must be calm: those that an attachment joins, and those whose boxes meet, grown by the way that speeds and gravity
-  /// take them in the step. None of its boxes may be in reach of an obstacle that moves at that time or later.
+  /// Whether each body may sleep in the step after `time` [s]. `calm[b]` says whether body b is at rest by itself. An island is
+  /// made of bodies that an attachment joins, and of bodies whose boxes overlap, grown by their displacement in the step by speed
+  /// and gravity. Its bodies sleep if all of them are calm and no moving obstacle reaches one of their boxes in the step.
   [[nodiscard]] std::vector<char> that_sleep(std::vector<char> calm, double time, const SimulationState& state) const;
 
   /// The time from which on no pin of the body begins, ends or moves, and no attachment of it changes [s]; infinity if there is
-  /// none. What follows an obstacle moves as long as the obstacle does.
+  /// no such time. A pin or attachment that follows an obstacle moves as long as the obstacle does.
   [[nodiscard]] double end_of_motions(std::size_t body) const { return ends_[body]; }
 
  private:
+  void note(const Pin& pin);
+  void note(const Attachment& attachment);
+  [[nodiscard]] std::size_t body_of(Index particle) const;
+  [[nodiscard]] UnionFind joined_by(const std::vector<Box3>& boxes) const;
   [[nodiscard]] Box3 box_in_step(const Body& body, const SimulationState& state) const;
   [[nodiscard]] bool is_reached(const Box3& box, double time) const;
   [[nodiscard]] double end_of_obstacle(Index obstacle) const;
