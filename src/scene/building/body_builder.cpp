@@ -207,8 +207,9 @@ void add_point_masses(const Scene& scene, const BodyScene& body, BuiltBody& buil
   const std::string key = join_path(join_path("bodies", body.name), "point_masses");
   for (std::size_t p = 0; p < body.point_masses.size(); ++p) {
     const PointMassScene& point_mass = body.point_masses[p];
-    const SelectorPlace place{scene.file.string(), join_path(key, p)};
-    for (const Index i : select_particles(point_mass.where, body, built, place, problems)) built.shape.masses[i] += point_mass.mass;
+    const SelectorLocation location{scene.file.string(), join_path(key, p)};
+    for (const Index i : select_particles(point_mass.where, body, built, location, problems))
+      built.shape.masses[i] += point_mass.mass;
   }
 }
 

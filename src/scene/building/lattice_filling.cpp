@@ -24,7 +24,7 @@ constexpr int kSamples = 3;              // along each side of a cell
 constexpr double kBytesOfCell = 4000.0;  // springs, corners and volume of a cell, measured with a million
 constexpr double kGigabyte = 1.0e9;
 
-/// What is inside and what is outside of a surface. Vertices at the same place, as along the seams of UVs, count as one.
+/// The inside of a closed surface. Vertices at the same position, as along the seams of UVs, count as one.
 class Inside {
  public:
   explicit Inside(const PolygonMesh& surface) : Inside(clean_mesh({surface.vertices, triangulate(surface.faces)})) {}

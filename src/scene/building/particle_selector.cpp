@@ -15,8 +15,8 @@ namespace {
 /// Finds the particles of one selector.
 class ParticleFinder {
  public:
-  ParticleFinder(const BodyScene& body, const BuiltBody& placed, const SelectorPlace& place, std::vector<Problem>& problems)
-      : body_(body), placed_(placed), positions_(placed.shape.positions), place_(place), problems_(problems) {}
+  ParticleFinder(const BodyScene& body, const BuiltBody& placed, const SelectorLocation& location, std::vector<Problem>& problems)
+      : body_(body), placed_(placed), positions_(placed.shape.positions), location_(location), problems_(problems) {}
 
   std::vector<Index> find(const Selector& selector) {
     std::vector<Index> particles = std::visit([&](const auto& where) { return at(where); }, selector);
@@ -127,13 +127,13 @@ class ParticleFinder {
   }
 
   void report(const std::string& suffix, const std::string& value, const std::string& rule, const std::string& remedy) {
-    problems_.push_back({place_.file, place_.key + suffix, value, rule, remedy});
+    problems_.push_back({location_.file, location_.key + suffix, value, rule, remedy});
   }
 
   const BodyScene& body_;
   const BuiltBody& placed_;
   const std::vector<Vector3>& positions_;
-  const SelectorPlace& place_;
+  const SelectorLocation& location_;
   std::vector<Problem>& problems_;
 };
 
@@ -149,8 +149,8 @@ Problem unknown_group(const std::string& name, const ObjGroups& groups) {
 }
 
 std::vector<Index> select_particles(const Selector& selector, const BodyScene& body, const BuiltBody& placed,
-                                    const SelectorPlace& place, std::vector<Problem>& problems) {
-  return ParticleFinder(body, placed, place, problems).find(selector);
+                                    const SelectorLocation& location, std::vector<Problem>& problems) {
+  return ParticleFinder(body, placed, location, problems).find(selector);
 }
 
 }  // namespace sprung

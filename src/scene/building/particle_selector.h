@@ -9,17 +9,18 @@
 namespace sprung {
 
 /// Where a selector is written, for the report of its problems.
-struct SelectorPlace {
+struct SelectorLocation {
   std::string file;
   std::string key;  ///< of the object that has it
 };
 
-/// The problem of a group that a mesh does not have, without its place.
+/// The problem of a group that a mesh does not have, without its file and key.
 [[nodiscard]] Problem unknown_group(const std::string& name, const ObjGroups& groups);
 
-/// Ascending, each once; counted from 0 within the body. Adds a problem if the selector names a particle or a group that does not
-/// exist, or if there is none in its box or sphere.
+/// The selected particles, ascending, each once; counted from 0 within the body. Indices of a selector count the vertices of a
+/// mesh's file. Adds a problem if the selector names a particle or a group that does not exist, or if there is none in its box or
+/// sphere.
 [[nodiscard]] std::vector<Index> select_particles(const Selector& selector, const BodyScene& body, const BuiltBody& placed,
-                                                  const SelectorPlace& place, std::vector<Problem>& problems);
+                                                  const SelectorLocation& location, std::vector<Problem>& problems);
 
 }  // namespace sprung

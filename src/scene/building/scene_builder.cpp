@@ -9,6 +9,7 @@
 #include "scene/building/body_builder.h"
 #include "scene/building/memory_check.h"
 #include "scene/building/obstacle_builder.h"
+#include "scene/building/pin_resolver.h"
 #include "scene/building/unlikely_settings.h"
 #include "scene/format/frame_steps.h"
 #include "scene/json/json_text.h"
