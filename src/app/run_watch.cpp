@@ -127,7 +127,7 @@ void RunWatch::note_handovers() {
   }
   if (back.empty()) return;
   print_message(
-      fmt::format("newton holds the stretch limit of {} no better; gauss_seidel goes on", names_text("body", "bodies", back)));
+      fmt::format("newton keeps the stretch limit of {} no better; gauss_seidel continues", names_text("body", "bodies", back)));
 }
 
 // What breaks is asked for, so it is no warning.

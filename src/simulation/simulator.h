@@ -133,13 +133,14 @@ class Simulator {
   [[nodiscard]] double gravity_energy() const;
   [[nodiscard]] double contact_energy() const;
 
-  // With SimulatorSettings::record_forces; otherwise there is nothing to read.
+  // With SimulatorSettings::record_forces.
 
   /// The mean force [N] of each pin on its body, then of each attachment on its first ends, since reset_forces() or time 0: impulse
-  /// by time. In the order in which they were added; none of what did not hold then. Empty without the setting.
+  /// by time, in the order in which they were added; 0 of those that did not act then. Empty without the setting.
   [[nodiscard]] std::vector<Reaction> reactions() const;
 
-  /// The mean force with which the stretch limit pulled each spring's ends together since then [N]; negative: it pushed.
+  /// The mean force with which the stretch limit pulled each spring's ends together since then [N]; negative: it pushed. Zero
+  /// without the setting.
   [[nodiscard]] Scalars limit_tensions() const;
 
   /// Begins a new interval for both.

@@ -35,7 +35,7 @@ bool is_one_of(std::string_view name, std::initializer_list<std::string_view> al
   return std::ranges::find(all, name) != all.end();
 }
 
-/// Whether a run may go on with a change of this key.
+/// Whether a run may continue with a change of this key.
 bool is_live(std::string_view key) {
   const std::vector<std::string_view> names = names_of(key);
   if (is_one_of(names[0], {"gravity", "air", "stretch_limit"})) return true;

@@ -154,7 +154,7 @@ Topology Replay::topology() const {
   return topology;
 }
 
-/// Springs of particles that frames do not hold, such as those of cells that carry a surface, are left out.
+/// Leaves out springs of particles that frames lack, such as those of cells that carry a surface.
 void Replay::show_springs_of_vertices(Topology& topology) const {
   std::vector<Index> vertex_of(live_->simulator().network().particle_count(), kNone);  // one of those of a particle
   for (std::size_t i = 0; i < particle_of_.size(); ++i) vertex_of[particle_of_[i]] = static_cast<Index>(i);

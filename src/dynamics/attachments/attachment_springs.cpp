@@ -8,8 +8,8 @@
 namespace sprung {
 namespace {
 
-// The stiffness of a rod in an implicit scheme relative to what it joins. Passes correct what it yields; a stiffer one would cost
-// the sum of momenta its last digits.
+// The stiffness of a rod in an implicit scheme relative to what it joins. Passes correct the rest of its length; with a stiffer
+// rod, rounding would change the sum of the momenta.
 constexpr double kRodStiffness = 1 << 12;
 
 Matrix3 along(const Vector3& difference) {

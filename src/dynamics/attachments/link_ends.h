@@ -28,7 +28,7 @@ class LinkEnds {
   /// Where the obstacle has the second end at a time [m]; 0 without an obstacle, where `sum` includes the second end.
   [[nodiscard]] Vector3 anchor(double time) const;
 
-  /// That by which the difference of the ends moves per unit of impulse [1/kg]; 0 if nothing can move.
+  /// The velocity between the ends that a unit of impulse at them gives [1/kg]; 0 if neither end can move.
   [[nodiscard]] double inverse_mass(const Scalars& inverse_masses) const;
 
  private:
@@ -40,7 +40,7 @@ class LinkEnds {
   Vector3 local_;          ///< on a rigid one
 };
 
-/// A length of the size of the network's springs [m], to tell what is short: their mean rest length; 1 without springs.
+/// The mean rest length of the network's springs [m], a scale for what is short; 1 without springs.
 [[nodiscard]] double mean_spring_length(const SpringNetwork& network);
 
 }  // namespace sprung

@@ -19,7 +19,7 @@ namespace sprung {
 /// Whether both pins hold particles at some time.
 [[nodiscard]] bool hold_together(const Pin& a, const Pin& b);
 
-/// Whether a pin begins or ends before `time` [s] and `change_pins` has not yet taken notice.
+/// Whether a pin begins or ends before `time` [s] that `change_pins` has not yet changed.
 [[nodiscard]] bool have_pins_changed(const SpringNetwork& network, double time);
 
 /// Ends the pins that end before `time` [s], which makes their particles free. Then moves the pins of `later_pins` that begin
@@ -29,8 +29,8 @@ void change_pins(SpringNetwork& network, double time);
 /// The times after 0 at which pins begin and end, ascending, each once [s].
 [[nodiscard]] std::vector<double> pin_changes(const SpringNetwork& network);
 
-/// The network with all particles free that are free at some time. No set of pins that hold together allows a smaller stable step
-/// than these: to pin a particle restricts the motion, which does not raise the largest eigenvalue (Cauchy interlacing).
+/// The network with all particles free that are free at some time. Its largest stable step is stable at all times: pinning a
+/// particle restricts the motion, which does not raise the largest eigenvalue (Cauchy interlacing).
 [[nodiscard]] SpringNetwork freest(SpringNetwork network);
 
 }  // namespace sprung

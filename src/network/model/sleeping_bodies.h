@@ -10,7 +10,8 @@ namespace sprung {
 /// Whether each body sleeps.
 [[nodiscard]] std::vector<char> asleep(const SpringNetwork& network);
 
-/// Lets the bodies b with `asleep[b]` sleep, and wakes all others. A body that sleeps has no inverse masses, as if it were pinned.
+/// Lets the bodies b with `asleep[b]` sleep, and wakes all others. The inverse masses of a body that sleeps are 0, as if it were
+/// pinned.
 void set_asleep(const std::vector<char>& asleep, SpringNetwork& network);
 
 /// The network with all bodies awake.

@@ -131,7 +131,7 @@ void read_law(Fields& fields, bool has_stiffness, const std::optional<BodyShapeS
     strain = given.value_or(strain);
     if (given && !has_stiffness) {
       report(key, "needs springs with stiffness",
-             "give stiffness or modulus: a stretch limit does not hold springs that yield or break");
+             "give stiffness or modulus: a stretch limit leaves out springs that yield or break");
     }
     return given.has_value();
   };

@@ -74,7 +74,7 @@ class Finder {
       }
       if (fails) {
         of_bodies.add(body.name,
-                      "the stretch limit does not hold its springs that yield or break, as their load decides when they do so. "
+                      "the stretch limit leaves out its springs that yield or break, as their load decides when they do so. "
                       "Leave the body or the kind of springs out of the stretch limit.");
       }
       if (pushes) {

@@ -37,8 +37,8 @@ TEST(UnusedSettings, AStretchLimitLeavesOutSpringsThatFail) {
     builder.add_spring(0, 1, 100.0, 1.0, 0.0, SpringKind::structural, law);
     return unused_settings({.stretch_limit = limit}, builder.build(), {});
   };
-  EXPECT_THAT(warnings({.yield = 0.1}, {}), ElementsAre(HasSubstr("body \"string\": the stretch limit does not hold")));
-  EXPECT_THAT(warnings({.break_length = 2.0}, {}), ElementsAre(HasSubstr("the stretch limit does not hold")));
+  EXPECT_THAT(warnings({.yield = 0.1}, {}), ElementsAre(HasSubstr("body \"string\": the stretch limit leaves out")));
+  EXPECT_THAT(warnings({.break_length = 2.0}, {}), ElementsAre(HasSubstr("the stretch limit leaves out")));
   EXPECT_THAT(warnings({.tension_only = true}, {.max_compression = 0.5}), ElementsAre(HasSubstr("max_compression pushes")));
   EXPECT_THAT(warnings({.tension_only = true}, {}), IsEmpty());
 }
