@@ -54,6 +54,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       energy_watch(network, settings, environment.obstacles(), forces),
       rest(network, settings.gravity.norm()),
       islands(network, environment, settings.step, settings.gravity.norm()),
+      sleepers(asleep(network)),
       state(initial_state(network)),
       begin{state, energy_watch, {}} {
   const StretchLimit* limit = constraints.limit();
@@ -141,6 +142,7 @@ StepReport Simulator::Implementation::step() {
     if (environment.set().moves()) environment.set_interval(time(), time());
     repeat_impulses(impulses_before);
     record_attachments();
+    if (environment.set().moves()) choose_sleepers();
     return {};
   }
   update_attachments();
@@ -161,9 +163,12 @@ StepReport Simulator::Implementation::step() {
   if (refinement) choose_substeps(report);
   if (const StretchLimit* limit = constraints.limit()) note_missed(network, *limit, report.stretch_excess, state);
   record_attachments();
-  if (attachments && attachments->break_overloaded(state)) integrator->resume(state, forces, dt());
-  rest.note(time(), state);
+  if (attachments && attachments->break_overloaded(state)) {
+    integrator->resume(state, forces, dt());
+    forget_rest();
+  }
   repeat_impulses(impulses_before);
+  choose_sleepers();
   return report;
 }
 
@@ -359,13 +364,13 @@ Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 StepReport Simulator::step() {
   const Implementation& now = *implementation_;
   const std::vector<Index> broken = breaking_springs(now.network, now.state.x);
-  const std::vector<char> sleepers = now.sleepers();
-  if (!broken.empty() || sleepers != asleep(now.network) ||
+  if (!broken.empty() || now.sleepers != asleep(now.network) ||
       have_pins_changed(now.network, due_before(now.state.step, now.settings.step))) {
     SpringNetwork network = now.network;
-    set_asleep(sleepers, network);
+    set_asleep(now.sleepers, network);
     const std::vector<Index> left = tear(network, broken);
     rebuild(std::move(network), left);
+    if (!broken.empty()) implementation_->forget_rest();
   }
   return implementation_->step();
 }

@@ -161,8 +161,7 @@ void Simulator::rebuild(SpringNetwork network, const std::vector<Index>& springs
 }
 
 void Simulator::wake() {
-  implementation_->state.x_at_rest.resize(3, 0);
-  implementation_->state.rests.clear();
+  implementation_->forget_rest();
   if (std::ranges::none_of(network().bodies, &Body::asleep)) return;
   std::vector<Index> all_springs(static_cast<std::size_t>(network().springs.count()));
   std::iota(all_springs.begin(), all_springs.end(), 0);

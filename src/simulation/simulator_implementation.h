@@ -58,7 +58,8 @@ struct Simulator::Implementation {
   void take_state(const Implementation& before);
   [[nodiscard]] bool anything_moves() const;
   StepReport step();
-  [[nodiscard]] std::vector<char> sleepers() const;
+  void choose_sleepers();
+  void forget_rest();
   [[nodiscard]] bool all_sleep() const;
   [[nodiscard]] bool is_still(const Body& body, const std::vector<ContactNormal>& normals) const;
   void repeat_impulses(const RecordedImpulses& before);
@@ -115,6 +116,7 @@ struct Simulator::Implementation {
   EnergyWatch energy_watch;
   RestDetector rest;
   Islands islands;
+  std::vector<char> sleepers;  ///< whether each body sleeps in the next step
   SimulationState state;
   StepBegin begin;
   ReactionRecord reactions;   ///< of attachments, and of pins before the last change of the simulator, in the present interval

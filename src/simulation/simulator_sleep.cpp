@@ -11,28 +11,35 @@ bool is_free(const Body& body, const SpringNetwork& network) {
 
 }  // namespace
 
-/// Whether each body sleeps in the next step. External forces and wind may change at any time. With penalty contact, bodies sink
-/// for long, so they are not at rest.
-std::vector<char> Simulator::Implementation::sleepers() const {
-  const std::vector<char> none(network.bodies.size(), 0);
+/// External forces may change at any time, and so may wind. Bodies sink into a penalty for long, and are not at rest while they do.
+void Simulator::Implementation::choose_sleepers() {
+  std::ranges::fill(sleepers, 0);
   const bool may_sleep = settings.sleep && penalty == nullptr && constraints.contacts().can_collide() && external.empty() &&
                          state.feasible_steps > 0 && (!settings.has_air() || time() >= settings.wind.end());
-  if (!may_sleep || state.rests.empty()) return none;
-  std::vector<char> may = none;
-  std::vector<char> calm = none;
+  if (!may_sleep) {
+    forget_rest();
+    return;
+  }
+  const Islands::Found found = islands.find(state);
+  std::vector<char> restless = islands.driven(found, time());
+  rest.note(time(), restless, found.islands, state);
   std::optional<std::vector<ContactNormal>> normals;
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
     const Body& body = network.bodies[b];
-    may[b] = body.asleep || state.rests[b].rests ? 1 : 0;
-    calm[b] = time() >= islands.end_of_motions(b) && (may[b] != 0 || !is_free(body, network)) ? 1 : 0;
-    if (calm[b] == 0 || may[b] == 0 || body.asleep) continue;
-    if (!normals) normals = contact_normals();
-    calm[b] = is_still(body, *normals) ? 1 : 0;
+    sleepers[b] = body.asleep || state.rests[b].rests ? 1 : 0;
+    if (body.asleep || restless[b] != 0 || !is_free(body, network)) continue;
+    if (sleepers[b] != 0 && !normals) normals = contact_normals();
+    if (sleepers[b] == 0 || !is_still(body, *normals)) restless[b] = 1;
   }
-  if (std::ranges::none_of(may, [](char sleeps) { return sleeps != 0; })) return none;
-  calm = islands.that_sleep(std::move(calm), time(), state);
-  for (std::size_t b = 0; b < calm.size(); ++b) calm[b] = calm[b] != 0 && may[b] != 0 ? 1 : 0;
-  return calm;
+  restless = with_islands(restless, found.islands);
+  for (std::size_t b = 0; b < restless.size(); ++b) {
+    if (restless[b] != 0 || (!network.bodies[b].asleep && !is_free(network.bodies[b], network))) sleepers[b] = 0;
+  }
+}
+
+void Simulator::Implementation::forget_rest() {
+  state.x_at_rest.resize(3, 0);
+  state.rests.clear();
 }
 
 /// Whether a body touches something and does not stand on its edge. Without contact nothing sleeps: a pendulum is slow at the end

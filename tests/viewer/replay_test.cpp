@@ -97,7 +97,7 @@ TEST(Replay, TellsWhichTrianglesAreGoneFromAFrameOn) {
   folder.write("quad.obj", "v 5 0 0\nv 6 0 0\nv 6 1 0\nv 5 1 0\nf 1 2 3 4\n");
   const std::string mesh = (folder.path() / "quad.obj").string();
   const std::string scene = R"({"version": 1, "duration": 1, "frame_rate": 25, "step": 0.001, "bodies": {
-      "a quad": {"shape": {"type": "mesh", "file": ")" +
+      "a_quad": {"shape": {"type": "mesh", "file": ")" +
                             mesh + R"("}, "mass": 1, "springs": {"structural": {"stiffness": 10}}},
       "cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [5, 5]}, "mass": 1, "place": {"rotation": [-90, 0, 0]},
                 "springs": {"structural": {"stiffness": 200, "damping": 0.1, "break": 0.05}},

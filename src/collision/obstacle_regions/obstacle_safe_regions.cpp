@@ -64,7 +64,8 @@ void ObstacleSafeRegions::update(const StepPaths& paths) {
 }
 
 bool ObstacleSafeRegions::stands_still(Index p, const StepPaths& paths) const {
-  return !set_.moves() && patches_[at(p)].pinned &&
+  const Patch& patch = patches_[at(p)];
+  return !set_.moves() && patch.pinned && !patch.known.isEmpty() &&
          std::ranges::all_of(particles_of(p), [&](Index i) { return paths.from.col(i) == paths.to.col(i); });
 }
 

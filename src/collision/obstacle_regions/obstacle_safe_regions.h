@@ -81,7 +81,7 @@ class ObstacleSafeRegions {
     double size = 0.0;                        ///< of its elements [m]
     double thickness = 0.0;                   ///< largest of its particles [m]
     bool pinned = true;                       ///< whether all its particles are
-    bool rests = false;                       ///< whether it is pinned and nothing moved in the last update()
+    bool rests = false;                       ///< whether it is pinned and known, and nothing moved in the last update()
   };
 
   void set_permitted(PermittedCrossings crossings);

@@ -24,7 +24,29 @@ constexpr int kSamples = 3;              // along each side of a cell
 constexpr double kBytesOfCell = 4000.0;  // springs, corners and volume of a cell, measured with a million
 constexpr double kGigabyte = 1.0e9;
 
-/// The inside of a closed surface. Vertices at the same position, as along the seams of UVs, count as one.
+/// The mesh. Throws InputError if it is not closed.
+const TriangleMesh& closed(const ImportedMesh& mesh) {
+  const MeshReport& report = mesh.report;
+  if (report.closed) return mesh.mesh;
+  Problem problem{.key = "file", .value = "", .rule = "must be a closed mesh, so that it has an inside", .remedy = ""};
+  if (mesh.mesh.triangles.cols() == 0) {
+    problem.value = "a mesh without faces that have an area";
+    problem.remedy = "use a mesh with a closed surface";
+  } else if (report.non_manifold_edges > 0) {
+    problem.value =
+        "a mesh with " + counted(static_cast<std::size_t>(report.non_manifold_edges), "edge") + " of more than two faces";
+    problem.remedy = "remove the faces inside; `sprung info` describes the mesh";
+  } else if (report.border_edges > 0) {
+    problem.value = "an open mesh, with " + counted(static_cast<std::size_t>(report.border_edges), "border edge");
+    problem.remedy = "fill its holes; `sprung info` describes them";
+  } else {
+    problem.value = "a mesh whose faces do not agree on what is inside";
+    problem.remedy = "make them face outward; `sprung info` describes the mesh";
+  }
+  throw InputError(std::move(problem));
+}
+
+/// What is inside and what is outside of a surface. Vertices at the same place, as along the seams of UVs, count as one.
 class Inside {
  public:
   explicit Inside(const PolygonMesh& surface) : Inside(clean_mesh({surface.vertices, triangulate(surface.faces)})) {}
@@ -43,13 +65,7 @@ class Inside {
   }
 
  private:
-  explicit Inside(const ImportedMesh& mesh) : tree_(mesh.mesh) {
-    if (mesh.report.closed) return;
-    throw InputError({.key = "file",
-                      .value = "an open mesh, with " + std::to_string(mesh.report.border_edges) + " border edges",
-                      .rule = "must be a closed mesh, so that it has an inside",
-                      .remedy = "fill its holes; `sprung info` describes them"});
-  }
+  explicit Inside(const ImportedMesh& mesh) : tree_(closed(mesh)) {}
 
   MeshBvh tree_;
   mutable std::vector<Index> near_;

@@ -3,6 +3,7 @@
 #include "collision/core/block_bounds.h"
 #include "collision/obstacles/obstacle_set.h"
 #include "dynamics/attachments/attachments.h"
+#include "geometry/mesh/union_find.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,23 +67,13 @@ double Islands::end_of_obstacle(Index obstacle) const {
   return followed.deforms() ? std::numeric_limits<double>::infinity() : followed.motion.end();
 }
 
-std::vector<char> Islands::that_sleep(std::vector<char> calm, double time, const SimulationState& state) const {
-  std::vector<Box3> boxes;
-  for (const Body& body : network_.bodies) boxes.push_back(box_in_step(body, state));
-  UnionFind islands = joined_by(boxes);
-  std::vector<char> is_calm(boxes.size(), 1);  // by the body that represents the island
-  for (std::size_t b = 0; b < boxes.size(); ++b) {
-    if (calm[b] == 0 || is_reached(boxes[b], time)) is_calm[islands.root(static_cast<Index>(b))] = 0;
-  }
-  for (std::size_t b = 0; b < boxes.size(); ++b) calm[b] = is_calm[islands.root(static_cast<Index>(b))];
-  return calm;
-}
-
-/// Bodies of one island have the same root.
-UnionFind Islands::joined_by(const std::vector<Box3>& boxes) const {
+Islands::Found Islands::find(const SimulationState& state) const {
   const std::vector<Body>& bodies = network_.bodies;
-  UnionFind islands(static_cast<Index>(bodies.size()));
-  for (const auto& [a, b] : joined_) islands.join(static_cast<Index>(a), static_cast<Index>(b));
+  Found found;
+  for (const Body& body : bodies) found.boxes.push_back(box_in_step(body, state));
+  const auto& boxes = found.boxes;
+  UnionFind sets(static_cast<Index>(bodies.size()));
+  for (const auto& [a, b] : joined_) sets.join(static_cast<Index>(a), static_cast<Index>(b));
   std::vector<std::size_t> by_x(bodies.size());
   std::iota(by_x.begin(), by_x.end(), std::size_t{0});
   std::ranges::sort(by_x, {}, [&](std::size_t b) { return std::pair(boxes[b].min().x(), b); });
@@ -90,10 +81,27 @@ UnionFind Islands::joined_by(const std::vector<Box3>& boxes) const {
     const Box3& box = boxes[by_x[i]];
     for (std::size_t j = i + 1; j < by_x.size() && boxes[by_x[j]].min().x() <= box.max().x(); ++j) {
       if (!bodies[by_x[i]].contact.others || !bodies[by_x[j]].contact.others || !box.intersects(boxes[by_x[j]])) continue;
-      islands.join(static_cast<Index>(by_x[i]), static_cast<Index>(by_x[j]));
+      sets.join(static_cast<Index>(by_x[i]), static_cast<Index>(by_x[j]));
     }
   }
-  return islands;
+  for (Index b = 0; b < static_cast<Index>(bodies.size()); ++b) found.islands.push_back(sets.root(b));
+  return found;
+}
+
+std::vector<char> Islands::driven(const Found& found, double time) const {
+  std::vector<char> driven;
+  for (std::size_t b = 0; b < ends_.size(); ++b) driven.push_back(time < ends_[b] || is_reached(found.boxes[b], time) ? 1 : 0);
+  return driven;
+}
+
+std::vector<char> with_islands(const std::vector<char>& marked, const std::vector<Index>& islands) {
+  std::vector<char> has_marked(marked.size(), 0);  // by island
+  for (std::size_t b = 0; b < marked.size(); ++b) {
+    if (marked[b] != 0) has_marked[islands[b]] = 1;
+  }
+  std::vector<char> result;
+  for (const Index island : islands) result.push_back(has_marked[island]);
+  return result;
 }
 
 Box3 Islands::box_in_step(const Body& body, const SimulationState& state) const {

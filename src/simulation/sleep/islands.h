@@ -2,7 +2,6 @@
 #pragma once
 
 #include "collision/obstacles/environment.h"
-#include "geometry/mesh/union_find.h"
 #include "network/model/simulation_state.h"
 #include "network/model/spring_network.h"
 
@@ -16,10 +15,16 @@ class Islands {
   /// Keeps references to the network and the environment. `step` in s, `gravity` in m/s^2.
   Islands(const SpringNetwork& network, const Environment& environment, double step, double gravity);
 
-  /// Whether each body may sleep in the step after `time` [s]. `calm[b]` says whether body b is at rest by itself. An island is
-  /// made of bodies that an attachment joins, and of bodies whose boxes overlap, grown by their displacement in the step by speed
-  /// and gravity. Its bodies sleep if all of them are calm and no moving obstacle reaches one of their boxes in the step.
-  [[nodiscard]] std::vector<char> that_sleep(std::vector<char> calm, double time, const SimulationState& state) const;
+  struct Found {
+    std::vector<Box3> boxes;     ///< of each body, grown by the way that speeds and gravity take it in the next step
+    std::vector<Index> islands;  ///< of each body; two of one number are in one island
+  };
+  /// Bodies are in one island if an attachment joins them, or if their boxes meet.
+  [[nodiscard]] Found find(const SimulationState& state) const;
+
+  /// Whether something drives each body in the step after `time` [s]: a pin or an attachment that changes then or later, or an
+  /// obstacle in reach that moves then or later.
+  [[nodiscard]] std::vector<char> driven(const Found& found, double time) const;
 
   /// The time from which on no pin of the body begins, ends or moves, and no attachment of it changes [s]; infinity if there is
   /// no such time. A pin or attachment that follows an obstacle moves as long as the obstacle does.
@@ -29,7 +34,6 @@ class Islands {
   void note(const Pin& pin);
   void note(const Attachment& attachment);
   [[nodiscard]] std::size_t body_of(Index particle) const;
-  [[nodiscard]] UnionFind joined_by(const std::vector<Box3>& boxes) const;
   [[nodiscard]] Box3 box_in_step(const Body& body, const SimulationState& state) const;
   [[nodiscard]] bool is_reached(const Box3& box, double time) const;
   [[nodiscard]] double end_of_obstacle(Index obstacle) const;
@@ -41,5 +45,8 @@ class Islands {
   std::vector<double> ends_;                                 ///< of the motions of each body
   std::vector<std::pair<std::size_t, std::size_t>> joined_;  ///< bodies that attachments join
 };
+
+/// Whether each body is in an island that contains a marked body.
+[[nodiscard]] std::vector<char> with_islands(const std::vector<char>& marked, const std::vector<Index>& islands);
 
 }  // namespace sprung

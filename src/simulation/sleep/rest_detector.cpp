@@ -1,5 +1,7 @@
 #include "simulation/sleep/rest_detector.h"
 
+#include "simulation/sleep/islands.h"
+
 #include <algorithm>
 
 namespace sprung {
@@ -24,7 +26,7 @@ template <class Vector>
 double mean_square(const std::vector<Index>& particles, const Vector& vector) {
   double sum = 0.0;
   for (const Index i : particles) sum += vector(i).squaredNorm();
-  return sum / static_cast<double>(particles.size());
+  return particles.empty() ? 0.0 : sum / static_cast<double>(particles.size());
 }
 
 }  // namespace
@@ -42,30 +44,46 @@ RestDetector::RestDetector(const SpringNetwork& network, double gravity) : slow_
   }
 }
 
-void RestDetector::note(double time, SimulationState& state) const {
+void RestDetector::note(double time, const std::vector<char>& driven, const std::vector<Index>& islands,
+                        SimulationState& state) const {
   if (state.x_at_rest.cols() == 0) {
     state.x_at_rest = state.x;
     state.rests.assign(bodies_.size(), {});
   }
+  std::vector<char> restless = driven;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (!bodies_[b].free.empty()) note(bodies_[b], time, state, state.rests[b]);
+    if (!state.rests[b].since || has_moved(bodies_[b], state)) restless[b] = 1;
+  }
+  restless = with_islands(restless, islands);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    BodyRest& rest = state.rests[b];
+    if (restless[b] != 0) {
+      rest.rests = false;
+      begin_window(bodies_[b], time, state, rest);
+    } else if (time - *rest.since >= kRest) {
+      end_window(bodies_[b], time, state, rest);
+    }
   }
 }
 
-void RestDetector::note(const Watched& body, double time, SimulationState& state, BodyRest& rest) const {
-  const auto displacement = [&](Index i) { return state.x.col(i) - state.x_at_rest.col(i); };
-  const double longest2 = body.longest * body.longest;
-  const bool first = !rest.since.has_value();
-  const bool moved =
-      !first && std::ranges::any_of(body.free, [&](Index i) { return !(displacement(i).squaredNorm() <= longest2); });
-  if (!first && !moved && time - *rest.since < kRest) return;
-  const double drift = mean_square(body.free, displacement);
-  const double speed2 = mean_square(body.free, [&](Index i) { return state.v.col(i); });
-  rest.rests = !first && !moved && drift <= kDrift * kDrift * longest2 && speed2 <= slow_ * slow_ &&
-               speed2 <= std::max(rest.speed2, kNoise * kNoise * slow_ * slow_);
+bool RestDetector::has_moved(const Watched& body, const SimulationState& state) {
+  return std::ranges::any_of(body.free, [&](Index i) {
+    return !((state.x.col(i) - state.x_at_rest.col(i)).squaredNorm() <= body.longest * body.longest);
+  });
+}
+
+void RestDetector::begin_window(const Watched& body, double time, SimulationState& state, BodyRest& rest) const {
   rest.since = time;
-  rest.speed2 = speed2;
+  rest.speed2 = mean_square(body.free, [&](Index i) { return state.v.col(i); });
   for (const Index i : body.free) state.x_at_rest.col(i) = state.x.col(i);
+}
+
+void RestDetector::end_window(const Watched& body, double time, SimulationState& state, BodyRest& rest) const {
+  const double drift = mean_square(body.free, [&](Index i) { return state.x.col(i) - state.x_at_rest.col(i); });
+  const double speed2_before = rest.speed2;
+  begin_window(body, time, state, rest);
+  rest.rests = drift <= kDrift * kDrift * body.longest * body.longest && rest.speed2 <= slow_ * slow_ &&
+               rest.speed2 <= std::max(speed2_before, kNoise * kNoise * slow_ * slow_);
 }
 
 }  // namespace sprung

@@ -63,6 +63,18 @@ TEST(LatticeFilling, RefusesAnOpenMeshWithItsBorder) {
   EXPECT_THAT(refusal(open, 0.25), HasSubstr("an open mesh, with 3 border edges"));
 }
 
+TEST(LatticeFilling, RefusesAMeshThatHasNoInside) {
+  PolygonMesh fin = surface_of(BoxGeometry{.size = {1.0, 1.0, 1.0}});
+  Triangles triangles = triangulate(fin.faces);
+  fin.vertices.conservativeResize(3, fin.vertices.cols() + 1);
+  fin.vertices.rightCols(1) << 5.0, 5.0, 5.0;
+  triangles.conservativeResize(3, triangles.cols() + 1);
+  triangles.rightCols(1) << triangles(0, 0), triangles(1, 0), static_cast<Index>(fin.vertices.cols()) - 1;
+  fin.faces = to_polygons(triangles);
+  EXPECT_THAT(refusal(fin, 0.25), HasSubstr("a mesh with 1 edge of more than two faces"));
+  EXPECT_THAT(refusal({fin.vertices, to_polygons(Triangles(3, 0)), Edges(2, 0)}, 0.25), HasSubstr("a mesh without faces"));
+}
+
 TEST(LatticeFilling, RefusesMoreCellsThanFit) {
   const PolygonMesh box = surface_of(BoxGeometry{.size = {1.0, 1.0, 1.0}});
   EXPECT_THAT(refusal(box, 1.0e-6), HasSubstr("at most 1024"));

@@ -162,6 +162,40 @@ TEST(RestDetector, AnObstacleThatComesWakesWhatItReaches) {
   EXPECT_TRUE(sleeps(simulator)) << "the motion has ended";
 }
 
+/// A rod of two particles with one end on the ground, and the other held above it.
+NetworkBuilder leaning_rod() {
+  NetworkBuilder builder;
+  builder.begin_body("rod", kRough);
+  builder.add_particle({-0.3, kGap, 0.0}, 0.05);
+  builder.add_particle({0.3, 0.3, 0.0}, 0.05);
+  builder.add_spring(0, 1, 2000.0, std::hypot(0.6, 0.3 - kGap), 2.0);
+  return builder;
+}
+
+// It is at rest for two seconds, and touches the ground all the time.
+TEST(RestDetector, WhatLosesItsHoldFalls) {
+  NetworkBuilder pinned = leaning_rod();
+  pinned.add_pin({.particles = {1}, .motion = {}, .until = 2.0});
+  NetworkBuilder tied = leaning_rod();
+  tied.begin_body("nail", kRough);
+  tied.pin(tied.add_particle({0.3, 1.0, 0.0}, 0.1));
+  tied.add_attachment({.name = "string", .particles = {1}, .second = ParticleEnds{.particles = {2}}, .until = 2.0});
+  const Obstacle table{.name = "table",
+                       .geometry = BoxGeometry{.size = {0.2, 0.3 - kGap, 0.2}},
+                       .rest_pose = RigidTransform(Eigen::Translation3d(0.3, 0.5 * (0.3 - kGap), 0.0)),
+                       .motion = {.keyframes = {{.time = 2.0}, {.time = 2.05, .position = {0.0, 0.0, 5.0}}}}};
+  std::vector<Simulator> simulators;
+  simulators.emplace_back(pinned.build(), settings_of(), std::vector<Obstacle>{ground(kRough)});
+  simulators.emplace_back(tied.build(), settings_of(), std::vector<Obstacle>{ground(kRough)});
+  simulators.emplace_back(leaning_rod().build(), settings_of(), std::vector<Obstacle>{ground(kRough), table});
+  for (std::size_t k = 0; k < simulators.size(); ++k) {
+    run(simulators[k], 1.9);
+    EXPECT_GT(simulators[k].positions()(1, 1), 0.28) << "hold " << k;
+    run(simulators[k], 1.1);
+    EXPECT_LT(simulators[k].positions()(1, 1), 2.0 * kGap) << "hold " << k;
+  }
+}
+
 // The ground waits for two seconds and then throws the cloth up.
 TEST(RestDetector, AMotionThatIsStillToComeKeepsItAwake) {
   Simulator simulator = lying_cloth(settings_of(), {.keyframes = {{.time = 2.0}, {.time = 2.1, .position = {0.0, 0.5, 0.0}}}});
