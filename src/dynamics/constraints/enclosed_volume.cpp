@@ -10,6 +10,10 @@ namespace {
 
 constexpr double kTolerance = 1.0e-3;
 
+// Of the change of volume that the present gradients give: less, and the body has turned too far in the step for those at its
+// begin.
+constexpr double kLeastAlong = 0.5;
+
 }  // namespace
 
 EnclosedVolume::EnclosedVolume(const SpringNetwork& network) : network_(network) {
@@ -21,24 +25,37 @@ EnclosedVolume::EnclosedVolume(const SpringNetwork& network) : network_(network)
   }
 }
 
-double EnclosedVolume::project(const Points& /*before*/, Points& positions) const {
+double EnclosedVolume::project(const Points& before, Points& positions) const {
   double largest = 0.0;
   for (const Kept& kept : kept_) {
     const Body& body = network_.bodies[kept.body];
-    auto particles = positions.middleCols(body.first_particle, body.particle_count);
-    const auto inverse_masses = network_.inverse_masses.segment(body.first_particle, body.particle_count).transpose();
     const double missing = change(kept, positions);
-    Points gradients = Points::Zero(3, body.particle_count);
-    add_volume_gradients(particles, body.surface.triangles, 1.0, gradients);
-    const double sum = gradients.colwise().squaredNorm().dot(inverse_masses);
-    if (sum > 0.0) particles += (missing / sum) * (gradients.array().rowwise() * inverse_masses.array()).matrix();
-    for (Index i = 0; sum > 0.0 && recorder().on() && i < body.particle_count; ++i) {
-      const Index particle = body.first_particle + i;
-      if (network_.is_pinned(particle)) recorder().add_to_pinned(particle, missing / sum * gradients.col(i));
-    }
     largest = std::max(largest, std::abs(missing / kept.volume));
+    const auto inverse_masses = network_.inverse_masses.segment(body.first_particle, body.particle_count).transpose();
+    const Points gradients = gradients_of(body, positions);
+    const double sum = gradients.colwise().squaredNorm().dot(inverse_masses);
+    if (!(sum > 0.0)) continue;
+    Points directions = gradients_of(body, before);
+    double along = directions.cwiseProduct(gradients).colwise().sum().dot(inverse_masses);
+    if (!(along >= kLeastAlong * sum)) {
+      directions = gradients;
+      along = sum;
+    }
+    positions.middleCols(body.first_particle, body.particle_count) +=
+        (missing / along) * (directions.array().rowwise() * inverse_masses.array()).matrix();
+    for (Index i = 0; recorder().on() && i < body.particle_count; ++i) {
+      const Index particle = body.first_particle + i;
+      if (network_.is_pinned(particle)) recorder().add_to_pinned(particle, missing / along * directions.col(i));
+    }
   }
   return largest / kTolerance;
+}
+
+/// Of the enclosed volume by the positions of the body's particles [m^2].
+Points EnclosedVolume::gradients_of(const Body& body, const Points& positions) {
+  Points gradients = Points::Zero(3, body.particle_count);
+  add_volume_gradients(positions.middleCols(body.first_particle, body.particle_count), body.surface.triangles, 1.0, gradients);
+  return gradients;
 }
 
 double EnclosedVolume::residual(const Points& positions) const {

@@ -9,7 +9,8 @@
 namespace sprung {
 
 /// Keeps the volume within the surface of each body with a volume factor at that factor times its volume at rest (Mueller et al.
-/// 2007, balloons), as of a bag full of water.
+/// 2007, balloons), as of a bag full of water. Particles move along the gradients of the volume at the begin of the step, as in
+/// SHAKE (Ryckaert et al. 1977): along those at its end, springs that the factor stretches would gain energy.
 class EnclosedVolume final : public Constraint {
  public:
   /// Of all bodies with a factor (Body::volume_factor), which are at rest at the positions of the network. Keeps a reference to the
@@ -26,6 +27,7 @@ class EnclosedVolume final : public Constraint {
     std::size_t body;
     double volume;  ///< [m^3]
   };
+  [[nodiscard]] static Points gradients_of(const Body& body, const Points& positions);
   [[nodiscard]] double change(const Kept& kept, const Points& positions) const;
 
   const SpringNetwork& network_;
