@@ -12,6 +12,7 @@
 namespace sprung {
 namespace {
 
+using testing::deforming_sheet;
 using ::testing::HasSubstr;
 using testing::kGravity;
 using testing::run;
@@ -347,14 +348,6 @@ TEST_P(Attached, ARodFollowsThePointOfARigidObstacle) {
       ASSERT_NEAR((simulator.positions().col(0) - pose() * anchor).norm(), length, kRodLength * length) << simulator.time();
     }
   }
-}
-
-/// A square of 2 x 2 m at height 0 that a linear map deforms in one second.
-Obstacle deforming_sheet(const Matrix3& map) {
-  MeshSequence sequence{.triangles = (Triangles(3, 2) << 0, 0, 2, 3, 1, 2).finished(), .frames = {}, .frame_rate = 1.0};
-  const Points corners = (Points(3, 4) << -1, 1, 1, -1, 0, 0, 0, 0, -1, -1, 1, 1).finished();
-  sequence.frames = {corners, map * corners};
-  return {.name = "sheet", .geometry = SequenceGeometry{std::make_shared<const MeshSequence>(sequence), false}};
 }
 
 // Vertices move on straight lines, so at time t the sheet is that of the map (1 - t) I + t M.

@@ -12,6 +12,7 @@
 namespace sprung {
 namespace {
 
+using testing::deforming_sheet;
 using testing::ground;
 using ::testing::HasSubstr;
 using testing::kGravity;
@@ -129,14 +130,6 @@ TEST_P(Pins, ParticlesKeepTheirPlaceOnARigidObstacleThatTheyFollow) {
     }
     EXPECT_GT((simulator.positions().col(0) - positions[0]).norm(), 0.5);
   }
-}
-
-/// A square of 2 x 2 m at height 0 that a linear map deforms in one second.
-Obstacle deforming_sheet(const Matrix3& map) {
-  MeshSequence sequence{.triangles = (Triangles(3, 2) << 0, 0, 2, 3, 1, 2).finished(), .frames = {}, .frame_rate = 1.0};
-  const Points corners = (Points(3, 4) << -1, 1, 1, -1, 0, 0, 0, 0, -1, -1, 1, 1).finished();
-  sequence.frames = {corners, map * corners};
-  return {.name = "sheet", .geometry = SequenceGeometry{std::make_shared<const MeshSequence>(sequence), false}};
 }
 
 // Vertices move on straight lines, so at time t the sheet is that of the map (1 - t) I + t M.

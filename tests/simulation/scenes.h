@@ -38,6 +38,14 @@ inline Obstacle sheet(double half, const ContactMaterial& material = {}) {
   return {.name = "sheet", .geometry = MeshGeometry{.mesh = std::make_shared<TriangleMesh>(mesh)}, .material = material};
 }
 
+/// A square of 2 x 2 m at height 0 that a linear map deforms in one second.
+inline Obstacle deforming_sheet(const Matrix3& map) {
+  MeshSequence sequence{.triangles = (Triangles(3, 2) << 0, 0, 2, 3, 1, 2).finished(), .frames = {}, .frame_rate = 1.0};
+  const Points corners = (Points(3, 4) << -1, 1, 1, -1, 0, 0, 0, 0, -1, -1, 1, 1).finished();
+  sequence.frames = {corners, map * corners};
+  return {.name = "sheet", .geometry = SequenceGeometry{std::make_shared<const MeshSequence>(sequence), false}};
+}
+
 /// A cloth of 1 m and n x n particles, horizontal at `height` [m].
 inline SpringNetwork cloth(Index n, double height, const ContactMaterial& material = {}) {
   BodyShape shape =

@@ -73,7 +73,7 @@ struct GroupSelector {
   std::string name;
 };  ///< vertices of the faces and lines of a group, object or material of a mesh
 
-/// Particles of a body, by their places at time 0.
+/// Particles of a body, by their positions at time 0.
 using Selector = std::variant<CornersSelector, IndicesSelector, NearestSelector, BoxSelector, SphereSelector, GroupSelector>;
 
 struct PinScene {

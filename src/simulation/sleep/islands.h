@@ -16,14 +16,14 @@ class Islands {
   Islands(const SpringNetwork& network, const Environment& environment, double step, double gravity);
 
   struct Found {
-    std::vector<Box3> boxes;     ///< of each body, grown by the way that speeds and gravity take it in the next step
+    std::vector<Box3> boxes;     ///< of each body, grown by its displacement in the next step, by speed and gravity
     std::vector<Index> islands;  ///< of each body; two of one number are in one island
   };
-  /// Bodies are in one island if an attachment joins them, or if their boxes meet.
+  /// Bodies are in one island if an attachment joins them, or if their boxes overlap.
   [[nodiscard]] Found find(const SimulationState& state) const;
 
   /// Whether something drives each body in the step after `time` [s]: a pin or an attachment that changes then or later, or an
-  /// obstacle in reach that moves then or later.
+  /// obstacle in reach that moves then or later. Deforming obstacles reach all boxes.
   [[nodiscard]] std::vector<char> driven(const Found& found, double time) const;
 
   /// The time from which on no pin of the body begins, ends or moves, and no attachment of it changes [s]; infinity if there is
