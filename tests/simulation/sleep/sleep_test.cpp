@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 namespace sprung::testing {
@@ -105,6 +106,48 @@ TEST(RestDetector, WhatAnAttachmentJoinsToABodyThatIsAwakeStaysAwake) {
   Simulator simulator(std::move(network), settings_of(), {ground(kRough)});
   run(simulator, 1.5);
   EXPECT_FALSE(sleeps(simulator, 0));
+}
+
+TEST(Islands, AnAttachmentKeepsItsBodiesAwakeUntilItsLastChange) {
+  SpringNetwork network = lying_and_hanging();
+  network.inverse_masses[2] = 0.0;
+  network.pins.front().particles.push_back(2);
+  const auto sleeps_after = [&](double seconds, double from, double until) {
+    network.attachments = {
+        {.name = "string", .particles = {0}, .second = SurfaceEnd{.body = 1}, .stiffness = 1.0e-6, .from = from, .until = until}};
+    Simulator simulator(network, settings_of(), {ground(kRough)});
+    run(simulator, seconds);
+    return sleeps(simulator, 0);
+  };
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(sleeps_after(1.5, 0.0, kNever));
+  EXPECT_FALSE(sleeps_after(1.5, 2.0, kNever));
+  EXPECT_TRUE(sleeps_after(3.0, 2.0, kNever));
+  EXPECT_FALSE(sleeps_after(1.5, 0.0, 2.0));
+  EXPECT_TRUE(sleeps_after(3.0, 0.0, 2.0));
+}
+
+TEST(Islands, ADeformingObstacleKeepsAllAwake) {
+  Obstacle far_away = deforming_sheet(2.0 * Matrix3::Identity());
+  far_away.rest_pose = RigidTransform(Eigen::Translation3d(100.0, 0.0, 0.0));
+  Simulator simulator(one_particle({0.0, kGap, 0.0}, kRough), settings_of(), {ground(kRough), far_away});
+  run(simulator, 1.5);
+  EXPECT_FALSE(sleeps(simulator));
+}
+
+// One glides past the other at 2 mm/s, which is no rest, and stays within the sum of their thicknesses.
+TEST(Islands, BodiesKeepEachOtherAwakeOnlyIfTheyCollide) {
+  for (const bool collide : {true, false}) {
+    NetworkBuilder builder;
+    builder.begin_body("lies", kRough, {.others = collide});
+    builder.add_particle({0.0, kGap, 0.0}, 0.1);
+    builder.begin_body("glides", {.thickness = 0.5 * kGap});
+    builder.add_particle({0.0, kGap, 0.7 * kGap}, 0.1, {0.002, 0.0, 0.0});
+    Simulator simulator(builder.build(), settings_of(), {ground(kRough)});
+    run(simulator, 1.5);
+    EXPECT_EQ(sleeps(simulator, 0), !collide);
+    EXPECT_FALSE(sleeps(simulator, 1));
+  }
 }
 
 /// A cloth of 1 m that lies on the ground, and a mass that falls on its middle from 3 m, in 0.78 s.
