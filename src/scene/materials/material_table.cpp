@@ -60,6 +60,7 @@ struct Block {
   Sourced young;         // [Pa]
   Sourced damping_time;  // [s]
   Friction friction;
+  bool preserves_volume = false;
 };
 
 std::string number(double value) { return format_number(value, 4); }
@@ -138,6 +139,7 @@ Material solid(const Block& block) {
   values.push_back({"springs.shear.damping_time", block.damping_time.value, "s", block.damping_time.source});
   values.push_back({"thickness", 2e-3, "m", "chosen: a gap that a fall of a second crosses in several steps"});
   add_friction(block.friction, values);
+  material.preserves_volume = block.preserves_volume;
   return material;
 }
 
@@ -314,6 +316,7 @@ std::vector<Material> make_materials() {
                           isotropic)},
       {3e-3, chosen("a cube of 0.3 m wobbles for about a second")},
       {0.25, 0.30, rubbing("wet gels slip")},
+      true,
   }));
   all.push_back(solid({
       "firm_jelly",
@@ -324,6 +327,7 @@ std::vector<Material> make_materials() {
                           isotropic)},
       {1e-3, chosen("a cube of 0.3 m wobbles for about a second")},
       {0.25, 0.30, rubbing("wet gels slip")},
+      true,
   }));
   all.push_back(solid({
       "foam",

@@ -108,6 +108,9 @@ std::string material_description(const Material& material) {
     if (value.power > 1) text += ", in proportion to the diameter to the power of " + std::to_string(value.power);
     text += "\n    " + value.source + "\n";
   }
+  if (material.preserves_volume) {
+    text += "volume.preserve = true\n    chosen: gels are water, which keeps its volume\n";
+  }
   if (std::ranges::any_of(material.values, is_replaced)) text += stretch_limit_rule();
   return text;
 }

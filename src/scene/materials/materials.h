@@ -30,6 +30,7 @@ struct Material {
   std::vector<MaterialValue> values;  ///< of a rope, the first one is `diameter` [m]
   /// Whether a stretch limit stands in for a stiffness that would need steps beyond reason.
   bool stretch_limited = false;
+  bool preserves_volume = false;  ///< the default of `volume.preserve`
 
   /// The entry of a key; null if there is none.
   [[nodiscard]] const MaterialValue* find(std::string_view key) const;

@@ -111,6 +111,11 @@ void fill_value(const std::string& key, double value, bool has_angles, Json& bod
   }
 }
 
+void preserve_volume(Json& body) {
+  if (!body.contains("volume")) body["volume"] = Json::object();
+  if (body["volume"].is_object()) fill(body["volume"], {"preserve"}, "preserve", true);
+}
+
 /// Springs for which the user gave some keys, but neither a stiffness nor the preset has one.
 void complete_springs(Json& body) {
   for (const char* kind : kSpringKindNames) {
@@ -164,6 +169,7 @@ void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, Bod
         tetrahedra && value.key == "springs.structural.modulus" ? kYoungByStructural : std::pow(scale, value.power);
     fill_value(value.key, value.value * factor, has_angles, json);
   }
+  if (preset->preserves_volume) preserve_volume(json);
   const bool lattice = shape && std::holds_alternative<LatticeFile>(*shape);
   if (!tetrahedra && !lattice) check_bend_springs(*preset, fields.location(), json);
   complete_springs(json);

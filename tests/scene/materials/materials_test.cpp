@@ -54,6 +54,22 @@ TEST(Materials, EachKindHasOneSetOfKeysAndUnits) {
   EXPECT_EQ(find_material("foam")->find("springs.shear.modulus")->unit, "Pa");
 }
 
+TEST(Materials, JelliesPreserveTheirVolumeUnlessTheBodySaysOtherwise) {
+  const auto preserves = [](const std::string& keys) {
+    const SceneFolder folder;
+    const Scene scene = folder.read(
+        R"({"duration": 1, "bodies": {"block": {"shape": {"type": "solid", "size": [1, 1, 1], "resolution": [3, 3, 3]}, )" + keys +
+        "}}}");
+    return scene.bodies.front().preserve_volume;
+  };
+  EXPECT_TRUE(preserves(R"("material": "soft_jelly")"));
+  EXPECT_TRUE(preserves(R"("material": "firm_jelly", "volume": {})"));
+  EXPECT_FALSE(preserves(R"("material": "firm_jelly", "volume": {"preserve": false})"));
+  EXPECT_FALSE(preserves(R"("material": "foam")"));
+  EXPECT_FALSE(preserves(R"("material": "rubber_block")"));
+  EXPECT_THAT(material_description(*find_material("soft_jelly")), HasSubstr("volume.preserve = true"));
+}
+
 TEST(Materials, EachValueIsPositiveAndHasASourceThatSaysWhereOrWhy) {
   for (const Material& material : materials()) {
     EXPECT_FALSE(material.what.empty()) << material.name;
