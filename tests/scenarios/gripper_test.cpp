@@ -37,7 +37,8 @@ TEST(Gripper, ItClosesLiftsAndLetsGo) {
   EXPECT_GT(lowest_when_lifted, 1.6 - 0.56);
   // A fall from there takes 0.6 s. A heap on the floor is lower than half the towel's width.
   EXPECT_LT(last.row(1).maxCoeff(), 0.2);
-  EXPECT_GT(last.row(0).mean(), 0.2);
+  // The fingers carried it aside by 0.3 m, and it falls on that side.
+  EXPECT_GT(last.row(0).mean(), 0.15);
 }
 
 }  // namespace
