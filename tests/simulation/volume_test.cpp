@@ -193,8 +193,8 @@ TEST(Volume, ABagStartsFilledAndAtRest) {
   EXPECT_LT(simulator.state().v.cwiseAbs().maxCoeff(), 0.1 * 0.009 / simulator.settings().step);
 }
 
-// A box of eight vertices, filled to twice its volume and turning. Nothing does work on it. The energy of a symplectic scheme swings
-// by a fraction of (omega dt / 2)^2, at most a quarter at the advised step. Measured: 2 %.
+// A box of eight vertices, filled to twice its volume and turning. Nothing does work on it. The energy of a symplectic scheme
+// swings by a fraction of (omega dt / 2)^2, at most a quarter at the advised step. Measured: 2 %.
 TEST(Volume, ATautBagGainsNoEnergy) {
   const TriangleMesh box = obstacle_mesh(BoxGeometry{.size = {0.3, 0.3, 0.3}}, 0.0);
   ASSERT_EQ(box.vertices.cols(), 8);
