@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 namespace sprung {
 namespace {
@@ -106,7 +107,8 @@ bool update_links(const SpringNetwork& network, const Environment& environment, 
   std::vector<Link> added;
   for (std::size_t a = 0; a < network.attachments.size(); ++a) {
     const Attachment& attachment = network.attachments[a];
-    const auto known = std::ranges::equal_range(state.links, a, {}, &Link::attachment);
+    const std::span<const Link> known(std::ranges::lower_bound(state.links, a, {}, &Link::attachment),
+                                      std::ranges::upper_bound(state.links, a, {}, &Link::attachment));
     if (known.size() == attachment.particles.size() || !attachment.holds_at(due)) continue;
     const double coincident = kCoincident * mean_spring_length(network);
     for (const Index particle : attachment.particles) {
