@@ -430,6 +430,7 @@ TEST_F(RandomScenes, NoLatticeTetrahedraOrBalloonCrossesAnObstacleInAnyStep) {
     const Reports reports = run_scenes(12, Judge::obstacles, make, [](const BuiltScene&) { return true; });
     for (const auto& [number, report] : reports) {
       EXPECT_TRUE(report.is_free()) << "kind " << static_cast<int>(kind) << ", scene " << number << ": " << report;
+      EXPECT_EQ(report.inverted, 0) << "kind " << static_cast<int>(kind) << ", scene " << number << ": " << report;
     }
     EXPECT_GT(reports.size(), 3) << "of kind " << static_cast<int>(kind);
   }
@@ -438,7 +439,7 @@ TEST_F(RandomScenes, NoLatticeTetrahedraOrBalloonCrossesAnObstacleInAnyStep) {
 TEST_F(RandomScenes, LatticesTetrahedraAndBalloonsDoNotCrossEachOtherOrThemselves) {
   const Reports reports = run_scenes(4, Judge::obstacles_and_self, scene_of_three_filled, [](const BuiltScene&) { return true; });
   for (const auto& [number, report] : reports) {
-    EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
+    EXPECT_TRUE(report.is_free() && report.infeasible == 0 && report.inverted == 0) << "scene " << number << ": " << report;
   }
   EXPECT_GT(reports.size(), 0);
 }

@@ -130,8 +130,8 @@ std::ostream& operator<<(std::ostream& stream, const ScenarioReport& report) {
                 << " inside, " << report.crossings << " crossings, " << report.self_crossings << " self-crossings, in frames "
                 << report.first_wrong_frame << " to " << report.last_wrong_frame << "; stretch "
                 << format_number(report.max_stretch, 3) << ", " << report.truncated << " truncated, " << report.infeasible
-                << " infeasible; simulated in " << format_number(report.simulation_seconds, 3) << " s, judged in "
-                << format_number(report.judge_seconds, 3) << " s";
+                << " infeasible, " << report.inverted << " inverted; simulated in " << format_number(report.simulation_seconds, 3)
+                << " s, judged in " << format_number(report.judge_seconds, 3) << " s";
 }
 
 ScenarioReport run_scenario(BuiltScene scene, const Watch& watch, Judge judge) {
@@ -150,6 +150,10 @@ ScenarioReport run_scenario(BuiltScene scene, const Watch& watch, Judge judge) {
     report.simulation_seconds += 1e-3 * frame.frame_ms;
     frame_judge.look(number, report);
     if (watch) watch(simulator, frame);
+  }
+  for (const Body& body : simulator.network().bodies) {
+    if (!body.preserve_volume) continue;
+    report.inverted += count_inverted(body.cells, simulator.positions().middleCols(body.first_particle, body.particle_count));
   }
   return report;
 }

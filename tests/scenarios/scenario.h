@@ -33,6 +33,7 @@ struct ScenarioReport {
   double max_stretch = 0.0;
   Index truncated = 0;
   Index infeasible = 0;
+  Index inverted = 0;  ///< cells that end inside out in bodies that preserve their volume
   double simulation_seconds = 0.0;
   double judge_seconds = 0.0;
 

@@ -73,6 +73,15 @@ template <class Lanes>
   smallest = value < smallest ? value : smallest;
 }
 
+/// From the first corner of a part to the others.
+template <class Lanes>
+[[gnu::always_inline]] inline void find_edges(const std::array<int, 4>& part, const LaneVector<Lanes>* corners,
+                                              LaneVector<Lanes>& a, LaneVector<Lanes>& b, LaneVector<Lanes>& c) {
+  subtract(corners[part[1]], corners[part[0]], a);
+  subtract(corners[part[2]], corners[part[0]], b);
+  subtract(corners[part[3]], corners[part[0]], c);
+}
+
 /// Adds the volume of a part and its gradients.
 template <class Lanes>
 [[gnu::always_inline]] inline void add_part(const std::array<int, 4>& part, const LaneVector<Lanes>* corners, Lanes& volume,
@@ -80,9 +89,7 @@ template <class Lanes>
   LaneVector<Lanes> a;
   LaneVector<Lanes> b;
   LaneVector<Lanes> c;
-  subtract(corners[part[1]], corners[part[0]], a);
-  subtract(corners[part[2]], corners[part[0]], b);
-  subtract(corners[part[3]], corners[part[0]], c);
+  find_edges(part, corners, a, b, c);
   LaneVector<Lanes> of_a;
   LaneVector<Lanes> of_b;
   LaneVector<Lanes> of_c;
@@ -112,9 +119,7 @@ template <class Lanes>
   LaneVector<Lanes> a;
   LaneVector<Lanes> b;
   LaneVector<Lanes> c;
-  subtract(corners[part[1]], corners[part[0]], a);
-  subtract(corners[part[2]], corners[part[0]], b);
-  subtract(corners[part[3]], corners[part[0]], c);
+  find_edges(part, corners, a, b, c);
   LaneVector<Lanes> of_a;
   cross(b, c, of_a);
   dot(a, of_a, volume);
