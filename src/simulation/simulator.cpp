@@ -6,7 +6,7 @@
 #include "dynamics/constraints/enclosed_volume.h"
 #include "dynamics/forces/shared_force.h"
 #include "network/model/pin_schedule.h"
-#include "network/model/sleeping_bodies.h"
+#include "network/model/sleeping_particles.h"
 #include "network/model/spring_failure.h"
 #include "simulation/settings/settings_check.h"
 #include "simulation/settings/unused_settings.h"
@@ -52,9 +52,10 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       waits_for_turn(constraints.limit() != nullptr && constraints.limit()->may_follow_turn()),
       divergence(network),
       energy_watch(network, settings, environment.obstacles(), forces),
-      rest(network, settings.gravity.norm()),
-      islands(network, environment, settings.step, settings.gravity.norm()),
-      sleepers(asleep(network)),
+      patches(network),
+      rest(network, patches, constraints.limit(), settings.gravity.norm()),
+      surroundings(network, environment, patches, settings.step, settings.gravity.norm()),
+      sleepers(sleeping_patches()),
       state(initial_state(network)),
       begin{state, energy_watch, {}} {
   const StretchLimit* limit = constraints.limit();
@@ -135,7 +136,7 @@ bool Simulator::Implementation::anything_moves() const {
   return !network.velocities.isZero(0.0) || std::ranges::any_of(network.pins, &Pin::moves);
 }
 
-StepReport Simulator::Implementation::step() {
+std::optional<StepReport> Simulator::Implementation::step() {
   const RecordedImpulses impulses_before = state.impulses;
   if (all_sleep()) {
     ++state.step;
@@ -143,7 +144,7 @@ StepReport Simulator::Implementation::step() {
     repeat_impulses(impulses_before);
     record_attachments();
     if (environment.set().moves()) choose_sleepers();
-    return {};
+    return StepReport{};
   }
   update_attachments();
   if (symmetry && constraints.contacts().can_collide() && symmetry->may_push(state.x)) {
@@ -154,10 +155,15 @@ StepReport Simulator::Implementation::step() {
     begin = {state, energy_watch, constraints.permitted_crossings()};
   }
   kept_contacts.reset();
+  const std::vector<PatchPair> pairs = network.asleep.empty() ? std::vector<PatchPair>() : surroundings.find(state).pairs;
   const int factor = factor_for_rotation();
   StepReport report = make_step(factor, std::numeric_limits<Index>::max());
   if (may_retry(report.max_infeasible, begin.state)) report = repeat_step(report, factor);
   if (compared) report = compare_solvers(*compared, report, factor);
+  if (!network.asleep.empty() && disturbs_sleepers(pairs)) {
+    return_to_begin();
+    return std::nullopt;
+  }
   note_step(report.infeasible, state);
   let_yield(network.springs, state.x);
   if (refinement) choose_substeps(report);
@@ -165,7 +171,7 @@ StepReport Simulator::Implementation::step() {
   record_attachments();
   if (attachments && attachments->break_overloaded(state)) {
     integrator->resume(state, forces, dt());
-    forget_rest();
+    RestDetector::forget(state);
   }
   repeat_impulses(impulses_before);
   choose_sleepers();
@@ -364,15 +370,20 @@ Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 StepReport Simulator::step() {
   const Implementation& now = *implementation_;
   const std::vector<Index> broken = breaking_springs(now.network, now.state.x);
-  if (!broken.empty() || now.sleepers != asleep(now.network) ||
+  if (!broken.empty() || now.sleepers != now.sleeping_patches() ||
       have_pins_changed(now.network, due_before(now.state.step, now.settings.step))) {
     SpringNetwork network = now.network;
-    set_asleep(now.sleepers, network);
+    set_asleep(now.particles_to_sleep(), network);
     const std::vector<Index> left = tear(network, broken);
     rebuild(std::move(network), left);
-    if (!broken.empty()) implementation_->forget_rest();
+    if (!broken.empty()) RestDetector::forget(implementation_->state);
   }
-  return implementation_->step();
+  std::optional<StepReport> report = implementation_->step();
+  while (!report) {
+    rebuild(implementation_->particles_to_sleep());
+    report = implementation_->step();
+  }
+  return *report;
 }
 
 void Simulator::stop_when(std::function<bool()> stops) { implementation_->stops = std::move(stops); }

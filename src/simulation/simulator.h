@@ -44,8 +44,9 @@ class Simulator {
   /// - if pins begin or end, which is at the step nearest to their time;
   /// - if springs break, as they are longer than their break length: network() then lacks them and the faces that tore
   ///   (Surface::torn);
-  /// - if bodies fall asleep or wake (see RestDetector and Islands): those that sleep have no inverse masses (Body::asleep). Once
-  ///   all sleep, a step changes the time alone.
+  /// - if patches of bodies fall asleep or wake (see RestDetector and Surroundings): particles that sleep have no inverse masses
+  ///   (SpringNetwork::asleep). Once all sleep, a step changes the time alone. A step that moves what is beside a sleeper is made
+  ///   again without that sleep.
   /// Last, springs that yield get new rest lengths in network().
   StepReport step();
 
@@ -151,6 +152,7 @@ class Simulator {
   struct External;  ///< the forces and constraints that were added
   void continue_with_external(External external);
   void rebuild(SpringNetwork network, const std::vector<Index>& springs_left);
+  void rebuild(std::vector<char> asleep);
 
   std::unique_ptr<Implementation> implementation_;
 };

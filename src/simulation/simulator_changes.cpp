@@ -3,7 +3,7 @@
 #include "base/problem_list.h"
 #include "dynamics/attachments/engagement.h"
 #include "network/model/pin_schedule.h"
-#include "network/model/sleeping_bodies.h"
+#include "network/model/sleeping_particles.h"
 #include "network/model/spring_failure.h"
 #include "simulation/simulator_implementation.h"
 
@@ -80,17 +80,14 @@ bool Simulator::Implementation::take_pins(const Implementation& before) {
   Points last_velocities = state.v;
   before.pin_paths.set_last_velocities(time(), before.dt(), last_velocities);
   bool changed = pin_paths.take(state);
-  for (std::size_t b = 0; b < network.bodies.size(); ++b) {
-    const Body& body = network.bodies[b];
-    if (body.asleep != before.network.bodies[b].asleep) continue;
-    for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
-      if (network.is_pinned(i) == before.network.is_pinned(i)) continue;
-      changed = true;
-      if (network.is_pinned(i)) continue;
-      state.v.col(i) = last_velocities.col(i);
-      if (state.impulses.on()) record_gain(i, v_before.col(i));
-      integrator->velocity_changed(state, i, before.dt());
-    }
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (network.is_asleep(i) != before.network.is_asleep(i)) continue;
+    if (network.is_pinned(i) == before.network.is_pinned(i)) continue;
+    changed = true;
+    if (network.is_pinned(i)) continue;
+    state.v.col(i) = last_velocities.col(i);
+    if (state.impulses.on()) record_gain(i, v_before.col(i));
+    integrator->velocity_changed(state, i, before.dt());
   }
   reactions.collect(before.network.pins, state.impulses);
   for (const Pin& pin : network.pins) {
@@ -122,14 +119,14 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   take_sleep(before);
   const bool pins_changed = take_pins(before);
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
-    if (network.bodies[b].asleep) continue;
+    if (sprung::is_asleep(network, network.bodies[b])) continue;
     if (constraints.limit() == nullptr || !constraints.limit()->may_be_handed_over(b)) state.stretch_handovers[b] = {};
   }
   constraints.roll_back(before.constraints.permitted_crossings());
   environment.set_interval(time(), time());
   drop_unknown_links(before.network, network, state);
   if (attachments) attachments->take(state, time());
-  const bool limits_more = asleep(network) == asleep(before.network) &&
+  const bool limits_more = network.asleep == before.network.asleep &&
                            (excess_of(constraints, state.x) > excess_of(before.constraints, state.x) ||
                             constraints.violation(state.x) > std::max(1.0, before.constraints.violation(state.x)));
   if (limits_more) constraints.correct_positions(state, before.dt());
@@ -144,7 +141,7 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   begin = {state, energy_watch, constraints.permitted_crossings()};
 }
 
-/// Continues with a network that lost springs, and with other pins and sleeping bodies. `springs_left` are the springs of the
+/// Continues with a network that lost springs, and with other pins and sleepers. `springs_left` are the springs of the
 /// present network that remain in it, ascending.
 void Simulator::rebuild(SpringNetwork network, const std::vector<Index>& springs_left) {
   const Implementation& now = *implementation_;
@@ -160,12 +157,18 @@ void Simulator::rebuild(SpringNetwork network, const std::vector<Index>& springs
   implementation_ = std::move(next);
 }
 
-void Simulator::wake() {
-  implementation_->forget_rest();
-  if (std::ranges::none_of(network().bodies, &Body::asleep)) return;
-  std::vector<Index> all_springs(static_cast<std::size_t>(network().springs.count()));
+/// Continues with other sleepers, by particle; empty: none.
+void Simulator::rebuild(std::vector<char> asleep) {
+  SpringNetwork network = implementation_->network;
+  set_asleep(std::move(asleep), network);
+  std::vector<Index> all_springs(static_cast<std::size_t>(network.springs.count()));
   std::iota(all_springs.begin(), all_springs.end(), 0);
-  rebuild(awake(network()), all_springs);
+  rebuild(std::move(network), all_springs);
+}
+
+void Simulator::wake() {
+  RestDetector::forget(implementation_->state);
+  if (!network().asleep.empty()) rebuild(std::vector<char>());
 }
 
 void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings) {

@@ -8,8 +8,9 @@
 #include "simulation/monitoring/energy_watch.h"
 #include "simulation/reaction_record.h"
 #include "simulation/simulator.h"
-#include "simulation/sleep/islands.h"
 #include "simulation/sleep/rest_detector.h"
+#include "simulation/sleep/sleep_patch.h"
+#include "simulation/sleep/surroundings.h"
 #include "simulation/step/pin_paths.h"
 #include "simulation/step/step_constraints.h"
 #include "simulation/step/step_refinement.h"
@@ -36,7 +37,7 @@ struct Attempt {
   EnergyWatch watch;
   PermittedCrossings crossings;
   StepReport report;
-  std::vector<Index> contacts;  ///< of bodies that are awake
+  std::vector<Index> contacts;  ///< of particles that are awake
 };
 
 struct Simulator::External {
@@ -57,11 +58,19 @@ struct Simulator::Implementation {
   void add_constraints();
   void take_state(const Implementation& before);
   [[nodiscard]] bool anything_moves() const;
-  StepReport step();
+  /// None if the step must be made again without the sleep of some patches. The state is then that of its begin.
+  std::optional<StepReport> step();
+  [[nodiscard]] bool may_sleep() const;
+  [[nodiscard]] bool is_asleep(Index patch) const;
+  [[nodiscard]] bool is_free(Index patch) const;
+  [[nodiscard]] std::vector<char> sleeping_patches() const;
+  [[nodiscard]] std::vector<char> particles_to_sleep() const;
   void choose_sleepers();
-  void forget_rest();
+  void add_sleepers(const std::vector<PatchPair>& pairs, const std::vector<char>& disturbed);
+  [[nodiscard]] std::vector<ContactNormal> steady_contacts() const;
+  [[nodiscard]] bool disturbs_sleepers(const std::vector<PatchPair>& pairs);
+  void return_to_begin();
   [[nodiscard]] bool all_sleep() const;
-  [[nodiscard]] bool is_still(const Body& body, const std::vector<ContactNormal>& normals) const;
   void repeat_impulses(const RecordedImpulses& before);
   void take_sleep(const Implementation& before);
   [[nodiscard]] int factor_for_rotation() const;
@@ -114,14 +123,15 @@ struct Simulator::Implementation {
   bool waits_for_turn;                       ///< see StretchLimit::may_follow_turn
   DivergenceCheck divergence;
   EnergyWatch energy_watch;
+  SleepPatches patches;
   RestDetector rest;
-  Islands islands;
-  std::vector<char> sleepers;  ///< whether each body sleeps in the next step
+  Surroundings surroundings;
+  std::vector<char> sleepers;  ///< whether each patch sleeps in the next step
   SimulationState state;
   StepBegin begin;
   ReactionRecord reactions;   ///< of attachments, and of pins before the last change of the simulator, in the present interval
   double forces_since = 0.0;  ///< begin of that interval [s]
-  std::vector<Index> contacts_asleep;               ///< particles of bodies that sleep, ascending
+  std::vector<Index> contacts_asleep;               ///< particles that sleep, ascending
   std::optional<std::vector<Index>> kept_contacts;  ///< of the last step, if a later attempt changed the constraints
 };
 

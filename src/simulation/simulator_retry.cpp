@@ -60,12 +60,16 @@ Attempt Simulator::Implementation::attempt_of(const StepReport& report) const {
   return {state, energy_watch, constraints.permitted_crossings(), report, contacts_awake()};
 }
 
-/// Nothing if the step diverges, or has at least `max_infeasible` infeasible particles.
-std::optional<StepReport> Simulator::Implementation::attempt(int factor, Index max_infeasible) {
+void Simulator::Implementation::return_to_begin() {
   state = begin.state;
   energy_watch = begin.watch;
   constraints.roll_back(begin.crossings);
   environment.set_interval(time(), time());
+}
+
+/// Nothing if the step diverges, or has at least `max_infeasible` infeasible particles.
+std::optional<StepReport> Simulator::Implementation::attempt(int factor, Index max_infeasible) {
+  return_to_begin();
   try {
     const StepReport report = make_step(factor, max_infeasible);
     return report.max_infeasible < max_infeasible ? std::optional(report) : std::nullopt;

@@ -267,7 +267,7 @@ TEST(SurfaceAir, NothingSleepsWhileTheWindChanges) {
   const auto asleep_after = [&](const Wind& wind, double seconds) {
     Simulator simulator(cloth(4, 0.01, rough), {.step = 5e-4, .air_surface = {.normal = 0.1}, .wind = wind}, {ground(rough)});
     run(simulator, seconds);
-    return simulator.network().bodies.front().asleep;
+    return sleeps(simulator, 0);
   };
   EXPECT_TRUE(asleep_after(Wind(), 1.2));
   const Wind rising({{0.0, Vector3::Zero()}, {1.5, Vector3(0.01, 0, 0)}});

@@ -178,10 +178,10 @@ TEST(PinTimes, ARunSleepsOnlyOnceNoPinWillBeginOrEnd) {
   builder.add_pin(pin_of({0}, 2.0, 3.0, up));
   Simulator simulator(builder.build(), {.step = kStep}, {ground({.friction = 0.5, .static_friction = 0.5})});
   run(simulator, 2.9);
-  EXPECT_FALSE(simulator.network().bodies.front().asleep);
+  EXPECT_FALSE(testing::sleeps(simulator, 0));
   EXPECT_NEAR(simulator.positions()(1, 0), 0.51, 1e-6);
   run(simulator, 3.0);
-  EXPECT_TRUE(simulator.network().bodies.front().asleep);
+  EXPECT_TRUE(testing::sleeps(simulator, 0));
   EXPECT_NEAR(simulator.positions()(1, 0), 0.01, 1e-6);
 }
 

@@ -342,15 +342,14 @@ TEST(Reactions, StayWhenABodySleeps) {
     }
     Simulator simulator(builder.build(), settings_of(springs, VerletSettings{.damping = 0.01}),
                         {ground({.friction = 0.5, .static_friction = 0.5}), hook});
-    const auto sleeps = [&] { return simulator.network().bodies.front().asleep; };
     const auto ends = [&] { return std::array{simulator.reactions().front().force, simulator.reactions().back().force}; };
     std::array<Vector3, 2> awake;
-    for (int frame = 0; frame < 300 && !sleeps(); ++frame) {
+    for (int frame = 0; frame < 300 && !testing::sleeps(simulator, 0); ++frame) {
       simulator.reset_forces();
       run(simulator, 0.02);
-      if (!sleeps()) awake = ends();
+      if (!testing::sleeps(simulator, 0)) awake = ends();
     }
-    ASSERT_TRUE(sleeps());
+    ASSERT_TRUE(testing::sleeps(simulator, 0));
     for (int frame = 0; frame < 2; ++frame) {
       simulator.reset_forces();
       run(simulator, 0.02);

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "dynamics/all_integrators.h"
+#include "network/model/sleeping_particles.h"
 #include "network/network_builder.h"
 #include "simulation/simulator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -13,6 +15,14 @@
 namespace sprung::testing {
 
 inline constexpr double kGravity = 9.81;  // [m/s^2]
+
+inline bool sleeps(const Simulator& simulator, std::size_t body) {
+  return is_asleep(simulator.network(), simulator.network().bodies[body]);
+}
+/// Whether all bodies sleep.
+inline bool sleeps(const Simulator& simulator) {
+  return std::ranges::all_of(simulator.network().bodies, [&](const Body& body) { return is_asleep(simulator.network(), body); });
+}
 
 /// A particle of 0.1 kg on its own.
 inline SpringNetwork one_particle(const Vector3& position, const ContactMaterial& material = {},

@@ -21,8 +21,8 @@ void check_obstacles(const std::vector<Attachment>& attachments, std::size_t cou
   problems.throw_if_any();
 }
 
-bool joins_sleeping_body(const SpringNetwork& network, const Link& link) {
-  const auto sleeps = [&](Index particle) { return particle != kNone && network.body_of(particle).asleep; };
+bool joins_sleeping_particle(const SpringNetwork& network, const Link& link) {
+  const auto sleeps = [&](Index particle) { return particle != kNone && network.is_asleep(particle); };
   return sleeps(link.first) || std::ranges::any_of(link.second, sleeps);
 }
 
@@ -51,7 +51,7 @@ void Attachments::take(const SimulationState& state, double time) {
 void Attachments::note_substep(double dt, double time, SimulationState& state) {
   if (state.substep == 0) {
     for (Link& link : state.links) {
-      if (!joins_sleeping_body(network_, link)) link.impulse.setZero();
+      if (!joins_sleeping_particle(network_, link)) link.impulse.setZero();
     }
   }
   rods_->add_impulses(dt, state.links);

@@ -1,6 +1,7 @@
 #include "dynamics/constraints/carried_surface.h"
 
 #include "base/parallel.h"
+#include "network/model/sleeping_particles.h"
 
 #include <algorithm>
 
@@ -20,7 +21,7 @@ Vector3 carried_position(const CellPoint& point, const Points& positions) {
 
 CarriedSurface::CarriedSurface(const SpringNetwork& network) : network_(network) {
   for (const Body& body : network.bodies) {
-    if (body.asleep) continue;
+    if (is_asleep(network, body)) continue;
     for (std::size_t v = 0; v < body.carried.size(); ++v) {
       CellPoint point = body.carried[v];
       for (Index& corner : point.corners) corner += body.first_particle;

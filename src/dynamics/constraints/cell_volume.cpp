@@ -1,6 +1,7 @@
 #include "dynamics/constraints/cell_volume.h"
 
 #include "base/parallel.h"
+#include "network/model/sleeping_particles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,11 +79,11 @@ double largest_change(const HexahedronGroup& group, const HexahedraVolumes& foun
 
 CellVolume::CellVolume(const SpringNetwork& network) : network_(network) {
   for (const Body& body : network.bodies) {
-    if (body.preserve_volume && !body.asleep) add_hexahedra(body);
+    if (body.preserve_volume && !is_asleep(network, body)) add_hexahedra(body);
   }
   const std::size_t hexahedra = volumes_.size();
   for (const Body& body : network.bodies) {
-    if (body.preserve_volume && !body.asleep) add_stars(body);
+    if (body.preserve_volume && !is_asleep(network, body)) add_stars(body);
   }
   make_groups(colour_groups(volumes_.size(), network.particle_count(), [&](std::size_t r) { return region(r).particles; }),
               hexahedra);

@@ -1,6 +1,7 @@
 #include "dynamics/constraints/enclosed_volume.h"
 
 #include "geometry/mesh/triangle_mesh.h"
+#include "network/model/sleeping_particles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,7 @@ constexpr double kLeastAlong = 0.5;
 EnclosedVolume::EnclosedVolume(const SpringNetwork& network) : network_(network) {
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
     const Body& body = network.bodies[b];
-    if (body.volume_factor == 0.0 || body.asleep) continue;
+    if (body.volume_factor == 0.0 || is_asleep(network, body)) continue;
     const auto at_rest = network.positions.middleCols(body.first_particle, body.particle_count);
     kept_.push_back({b, body.volume_factor * signed_volume(at_rest, body.surface.triangles)});
   }

@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -97,7 +98,9 @@ BendingAngleForce::BendingAngleForce(const SpringNetwork& network)
     : network_(network), blocks_(network.particle_count() / kParticleBlock + 1) {
   const AngleBends& bends = network.angle_bends;
   for (Index element = 0; element < bends.count(); ++element) {
-    for (const Index particle : particles_of(bends, element)) {
+    const std::array<Index, 3> particles = particles_of(bends, element);
+    if (std::ranges::all_of(particles, [&](Index i) { return network.is_asleep(i); })) continue;
+    for (const Index particle : particles) {
       std::vector<Index>& block = blocks_[particle / kParticleBlock];
       if (block.empty() || block.back() != element) block.push_back(element);
     }

@@ -34,9 +34,9 @@ struct Line {
 std::vector<char> springs_that_pull(const SpringNetwork& network) {
   const Springs& springs = network.springs;
   std::vector<char> pulls;
-  for (Index s = 0; s < springs.count(); ++s) pulls.push_back(springs.stiffness[s] > 0.0 || springs.damping[s] > 0.0 ? 1 : 0);
-  for (const Body& body : network.bodies) {
-    if (body.asleep) std::fill_n(pulls.begin() + body.first_spring, body.spring_count, char{0});
+  for (Index s = 0; s < springs.count(); ++s) {
+    const bool sleeps = network.is_asleep(springs.first[s]) && network.is_asleep(springs.second[s]);
+    pulls.push_back(!sleeps && (springs.stiffness[s] > 0.0 || springs.damping[s] > 0.0) ? 1 : 0);
   }
   return pulls;
 }

@@ -104,6 +104,7 @@ SurfaceAirForce::SurfaceAirForce(const SpringNetwork& network, const SurfaceDrag
       const double area = area_of(network.positions, corners);
       if (area == 0.0) continue;
       for (const Index i : corners) areas[i] += area;
+      if (std::ranges::all_of(corners, [&](Index i) { return network.is_asleep(i); })) continue;
       faces_.push_back({.corners = corners, .rest_area = area, .expected = expected});
     }
   }

@@ -19,11 +19,12 @@ struct StretchHandover {
   std::optional<std::int64_t> solved_since;  ///< the step after which the global solve took over; none: passes enforce the limit
 };
 
-/// The rest of one body, see RestDetector.
-struct BodyRest {
-  std::optional<double> since;  ///< when the present window began [s]; none at first
-  double speed2 = 0.0;          ///< mean square of the speeds then [m^2/s^2]
-  bool rests = false;           ///< whether the body was at rest in the window before
+/// The rest of one patch, see RestDetector.
+struct PatchRest {
+  double speed2 = 0.0;        ///< mean square of the speeds at the begin of the present window [m^2/s^2]
+  double crept = 0.0;         ///< largest displacements in former windows beside a patch that sleeps, in total [m]
+  bool is_unsettled = false;  ///< whether the patch moved or was driven in the present window, or woke
+  bool rests = false;         ///< whether the patch was at rest in the window before
 };
 
 /// What friction with obstacles remembers of each particle.
@@ -41,25 +42,26 @@ struct PinAnchor {
 };
 
 struct SimulationState {
-  std::int64_t step = 0;          ///< number of completed steps
-  int substeps = 1;               ///< number of equal substeps of the current step
-  int substep = 0;                ///< number of completed substeps of the current step
-  int calm_steps = 0;             ///< consecutive steps that did not need their substeps
-  int feasible_steps = 0;         ///< consecutive steps without infeasible particles
-  std::int64_t retry_from = 0;    ///< steps before this one are not repeated because of infeasible particles
-  int retry_wait = 0;             ///< number of steps to wait after a repetition without effect
-  Index retry_infeasible = 0;     ///< exception: steps with more infeasible particles than this are repeated despite the wait
-  Points x;                       ///< positions [m], 3 x n
-  Points v;                       ///< velocities [m/s], 3 x n
-  Points x_previous;              ///< Verlet's positions one step ago [m], 3 x n
-  Slip slip;                      ///< since particles stuck to obstacles
-  Points x_at_rest{};             ///< positions when the present rest of their bodies began [m], 3 x n; empty at first
-  std::vector<BodyRest> rests{};  ///< one entry per body; empty at first
+  std::int64_t step = 0;               ///< number of completed steps
+  int substeps = 1;                    ///< number of equal substeps of the current step
+  int substep = 0;                     ///< number of completed substeps of the current step
+  int calm_steps = 0;                  ///< consecutive steps that did not need their substeps
+  int feasible_steps = 0;              ///< consecutive steps without infeasible particles
+  std::int64_t retry_from = 0;         ///< steps before this one are not repeated because of infeasible particles
+  int retry_wait = 0;                  ///< number of steps to wait after a repetition without effect
+  Index retry_infeasible = 0;          ///< exception: steps with more infeasible particles than this are repeated despite the wait
+  Points x;                            ///< positions [m], 3 x n
+  Points v;                            ///< velocities [m/s], 3 x n
+  Points x_previous;                   ///< Verlet's positions one step ago [m], 3 x n
+  Slip slip;                           ///< since particles stuck to obstacles
+  std::optional<double> rest_since{};  ///< when the present window of RestDetector began [s]; none at first
+  Points x_at_rest{};                  ///< positions then [m], 3 x n
+  std::vector<PatchRest> rests{};      ///< one entry per patch
   std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
   std::vector<PinAnchor> anchors{};  ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle
   std::vector<Link> links{};         ///< of attachments that have engaged and not ended, by attachment; broken ones too
   RecordedImpulses impulses{};       ///< empty unless the settings ask for forces
-  RecordedImpulses last_impulses{};  ///< of the last step; a body that sleeps repeats them
+  RecordedImpulses last_impulses{};  ///< of the last step; particles that sleep repeat them
 };
 
 /// Number of completed steps, plus the completed fraction of the current step. The time is this number times the step length. After

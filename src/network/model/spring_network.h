@@ -102,7 +102,6 @@ struct Body {
   bool preserve_volume = false;  ///< whether passes keep the volume of the cells
   double volume_factor = 0.0;    ///< of a closed surface: the multiple of its volume at rest that passes keep; 0: none
   double pressure = 0.0;         ///< in a closed surface, along the normals of its triangles [Pa]
-  bool asleep = false;           ///< whether a simulator holds it at rest, see set_asleep()
 
   /// The number of particles, the first ones, that are vertices of the surface.
   [[nodiscard]] Index vertex_count() const { return carried.empty() ? particle_count : static_cast<Index>(carried.size()); }
@@ -130,7 +129,7 @@ struct SpringNetwork {
   Points positions;        ///< at time 0 [m], 3 x n
   Points velocities;       ///< at time 0 [m/s], 3 x n; 0 of pinned particles
   Scalars masses;          ///< [kg], > 0
-  Scalars inverse_masses;  ///< [1/kg]; 0 for pinned particles and those of bodies that sleep
+  Scalars inverse_masses;  ///< [1/kg]; 0 for pinned particles and those that sleep
   Scalars drag_areas;      ///< factor of the air drag: the particle's share in the area [m^2] of its body's faces, plus that
                            ///< in the length [m] of its segments; 1 in a body without either
   Springs springs;
@@ -140,11 +139,13 @@ struct SpringNetwork {
   std::vector<Pin> later_pins;           ///< that have not begun
   std::vector<std::string> pin_names{};  ///< of all pins, in the order in which they were added, also of those that have ended
   std::vector<Attachment> attachments{};
-  Springs broken{};  ///< that broke and are gone, with those that went with them
+  Springs broken{};            ///< that broke and are gone, with those that went with them
+  std::vector<char> asleep{};  ///< by particle, whether a simulator holds it at rest, see set_asleep(); empty: none sleeps
 
   [[nodiscard]] Index particle_count() const { return static_cast<Index>(masses.size()); }
-  /// Whether a pin holds the particle, or the sleep of its body.
+  /// Whether a pin holds the particle, or its sleep.
   [[nodiscard]] bool is_pinned(Index particle) const { return inverse_masses[particle] == 0.0; }
+  [[nodiscard]] bool is_asleep(Index particle) const { return !asleep.empty() && asleep[particle] != 0; }
   /// The body of a particle. Requires a particle of the network.
   [[nodiscard]] const Body& body_of(Index particle) const;
 };

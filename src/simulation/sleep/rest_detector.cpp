@@ -1,8 +1,9 @@
 #include "simulation/sleep/rest_detector.h"
 
-#include "simulation/sleep/islands.h"
+#include "dynamics/tethers/limited_springs.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sprung {
 namespace {
@@ -13,11 +14,19 @@ constexpr double kRest = 0.5;
 // Gravity gives the fastest slow speed in this time [s].
 constexpr double kFall = 1.0e-3;
 
-// Displacement at rest, as a fraction of the shortest spring.
-constexpr double kOfSpring = 0.25;
+// Largest displacement at rest, as a fraction of that of the fastest slow speed in a window, and of the shortest spring.
+constexpr double kOfSlow = 0.4;
+constexpr double kOfSpring = 0.1;
 
-// Root mean square of the displacements at rest, as a fraction of the largest: a body that glides moves as a whole.
-constexpr double kDrift = 0.1;
+// Root mean square of the displacements at rest, as a fraction of the largest: what glides moves as a whole.
+constexpr double kDrift = 0.25;
+
+// Growth of the square of the speed from a window to the next that is noise. What begins to slide is twice as fast after the
+// second window.
+constexpr double kGrowth = 2.0;
+
+// Smallest tolerance of the stretch limit: without one it is never reached exactly.
+constexpr double kLeastTolerance = 1.0e-3;
 
 // Speed that is noise, as a fraction of a slow speed.
 constexpr double kNoise = 1.0e-3;
@@ -31,59 +40,91 @@ double mean_square(const std::vector<Index>& particles, const Vector& vector) {
 
 }  // namespace
 
-RestDetector::RestDetector(const SpringNetwork& network, double gravity) : slow_(kFall * gravity) {
+RestDetector::RestDetector(const SpringNetwork& network, const SleepPatches& patches, const StretchLimit* limit, double gravity)
+    : slow_(kFall * gravity) {
+  std::vector<double> longest;  // by body
   for (const Body& body : network.bodies) {
-    Watched& watched = bodies_.emplace_back(Watched{.free = {}, .longest = kRest * slow_});
-    for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
-      if (!network.is_pinned(i)) watched.free.push_back(i);
-    }
+    longest.push_back(kOfSlow * kRest * slow_);
     for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
       const double length = network.springs.rest_length[s];
-      if (length > 0.0) watched.longest = std::min(watched.longest, kOfSpring * length);
+      if (length > 0.0) longest.back() = std::min(longest.back(), kOfSpring * length);
     }
+  }
+  for (const SleepPatch& patch : patches.patches) {
+    Watched& watched = patches_.emplace_back(Watched{.body = patch.body, .free = {}, .longest = longest[patch.body]});
+    std::ranges::copy_if(patch.particles, std::back_inserter(watched.free), [&](Index i) { return !network.is_pinned(i); });
+  }
+  if (limit == nullptr) return;
+  const StretchLimitSettings& settings = limit->settings();
+  const double longest_per_rest = 1.0 + settings.max_stretch + std::max(settings.tolerance, kLeastTolerance);
+  for (const Index s : limited_springs(network, settings.kinds)) {
+    const std::array<Index, 2> ends{network.springs.first[s], network.springs.second[s]};
+    limited_.push_back({.ends = ends,
+                        .body = patches.patches[patches.patch_of[ends[0]]].body,
+                        .longest = longest_per_rest * network.springs.rest_length[s]});
   }
 }
 
-void RestDetector::note(double time, const std::vector<char>& driven, const std::vector<Index>& islands,
+std::vector<char> RestDetector::restless(const SimulationState& state) const {
+  std::vector<char> restless(patches_.size(), 0);
+  if (!state.rest_since) return restless;
+  std::vector<char> misses_limit(patches_.empty() ? 0 : patches_.back().body + 1, 0);  // by body
+  for (const Limited& spring : limited_) {
+    const double squared = (state.x.col(spring.ends[0]) - state.x.col(spring.ends[1])).squaredNorm();
+    if (squared > spring.longest * spring.longest) misses_limit[spring.body] = 1;
+  }
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const double allowed = patches_[p].longest - state.rests[p].crept;
+    restless[p] = misses_limit[patches_[p].body] != 0 || displacement(patches_[p], state) > allowed ? 1 : 0;
+  }
+  return restless;
+}
+
+bool RestDetector::note(double time, const std::vector<char>& restless, const std::vector<char>& beside,
                         SimulationState& state) const {
-  if (state.x_at_rest.cols() == 0) {
-    state.x_at_rest = state.x;
-    state.rests.assign(bodies_.size(), {});
+  if (!state.rest_since) {
+    state.rests.assign(patches_.size(), {});
+    begin_window(time, state);
+    return false;
   }
-  std::vector<char> restless = driven;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (!state.rests[b].since || has_moved(bodies_[b], state)) restless[b] = 1;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    PatchRest& rest = state.rests[p];
+    rest.is_unsettled = rest.is_unsettled || restless[p] != 0;
+    rest.rests = rest.rests && restless[p] == 0;
   }
-  restless = with_islands(restless, islands);
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    BodyRest& rest = state.rests[b];
-    if (restless[b] != 0) {
-      rest.rests = false;
-      begin_window(bodies_[b], time, state, rest);
-    } else if (time - *rest.since >= kRest) {
-      end_window(bodies_[b], time, state, rest);
-    }
+  if (time - *state.rest_since < kRest) return false;
+  for (std::size_t p = 0; p < patches_.size(); ++p) end_window(patches_[p], beside[p] != 0, state, state.rests[p]);
+  begin_window(time, state);
+  return true;
+}
+
+void RestDetector::forget(SimulationState& state) {
+  state.rest_since.reset();
+  state.x_at_rest.resize(3, 0);
+  state.rests.clear();
+}
+
+double RestDetector::displacement(const Watched& patch, const SimulationState& state) {
+  double largest = 0.0;
+  for (const Index i : patch.free) largest = std::max(largest, (state.x.col(i) - state.x_at_rest.col(i)).squaredNorm());
+  return std::sqrt(largest);
+}
+
+void RestDetector::begin_window(double time, SimulationState& state) const {
+  state.rest_since = time;
+  state.x_at_rest = state.x;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    state.rests[p].speed2 = mean_square(patches_[p].free, [&](Index i) { return state.v.col(i); });
+    state.rests[p].is_unsettled = false;
   }
 }
 
-bool RestDetector::has_moved(const Watched& body, const SimulationState& state) {
-  return std::ranges::any_of(body.free, [&](Index i) {
-    return !((state.x.col(i) - state.x_at_rest.col(i)).squaredNorm() <= body.longest * body.longest);
-  });
-}
-
-void RestDetector::begin_window(const Watched& body, double time, SimulationState& state, BodyRest& rest) const {
-  rest.since = time;
-  rest.speed2 = mean_square(body.free, [&](Index i) { return state.v.col(i); });
-  for (const Index i : body.free) state.x_at_rest.col(i) = state.x.col(i);
-}
-
-void RestDetector::end_window(const Watched& body, double time, SimulationState& state, BodyRest& rest) const {
-  const double drift = mean_square(body.free, [&](Index i) { return state.x.col(i) - state.x_at_rest.col(i); });
-  const double speed2_before = rest.speed2;
-  begin_window(body, time, state, rest);
-  rest.rests = drift <= kDrift * kDrift * body.longest * body.longest && rest.speed2 <= slow_ * slow_ &&
-               rest.speed2 <= std::max(speed2_before, kNoise * kNoise * slow_ * slow_);
+void RestDetector::end_window(const Watched& patch, bool beside, const SimulationState& state, PatchRest& rest) const {
+  const double drift = mean_square(patch.free, [&](Index i) { return state.x.col(i) - state.x_at_rest.col(i); });
+  const double speed2 = mean_square(patch.free, [&](Index i) { return state.v.col(i); });
+  rest.crept = beside ? rest.crept + displacement(patch, state) : 0.0;
+  rest.rests = !rest.is_unsettled && drift <= kDrift * kDrift * patch.longest * patch.longest && speed2 <= slow_ * slow_ &&
+               speed2 <= std::max(kGrowth * rest.speed2, kNoise * kNoise * slow_ * slow_);
 }
 
 }  // namespace sprung

@@ -1,0 +1,91 @@
+#include "simulation/sleep/sleep_patch.h"
+
+#include "collision/core/spatial_partition.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace sprung {
+namespace {
+
+// 8 x 8 particles of a cloth. Smaller patches fall asleep and wake more often, which costs as much as ten steps each time.
+constexpr std::size_t kMostParticles = 64;
+
+void sort_unique(auto& items) {
+  std::ranges::sort(items);
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
+}  // namespace
+
+SleepPatches::SleepPatches(const SpringNetwork& network) : patch_of(static_cast<std::size_t>(network.particle_count()), kNone) {
+  divide(network);
+  find_adjacent(network);
+}
+
+void SleepPatches::divide(const SpringNetwork& network) {
+  std::vector<Index> order(patch_of.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  for (std::size_t b = 0; b < network.bodies.size(); ++b) {
+    const Body& body = network.bodies[b];
+    const auto begin = static_cast<std::size_t>(body.first_particle);
+    const auto particles = static_cast<std::size_t>(body.particle_count);
+    if (particles == 0) continue;
+    const bool whole = !body.cells.empty() || body.volume_factor != 0.0;
+    std::vector<std::size_t> starts;
+    bisect(network.positions, whole ? particles : kMostParticles, order, begin, begin + particles, starts);
+    starts.push_back(begin + particles);
+    for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
+      SleepPatch& patch = patches.emplace_back();
+      patch.body = b;
+      for (std::size_t i = starts[k]; i < starts[k + 1]; ++i) {
+        patch.particles.push_back(order[i]);
+        patch_of[order[i]] = count() - 1;
+      }
+      patch.reached = patch.particles;
+    }
+  }
+}
+
+void SleepPatches::find_adjacent(const SpringNetwork& network) {
+  const Springs& springs = network.springs;
+  for (Index s = 0; s < springs.count(); ++s) join(springs.first[s], springs.second[s]);
+  const AngleBends& bends = network.angle_bends;
+  for (Index e = 0; e < bends.count(); ++e) {
+    join(bends.before[e], bends.middle[e]);
+    join(bends.middle[e], bends.after[e]);
+    join(bends.before[e], bends.after[e]);
+  }
+  for (const Body& body : network.bodies) {
+    const Index first = body.first_particle;
+    for (const auto& corners : body.surface.triangles.colwise()) {
+      for (int k = 0; k < 3; ++k) reach(first + corners[k], first + corners[(k + 1) % 3]);
+    }
+    for (const auto& ends : body.surface.segments.colwise()) reach(first + ends[0], first + ends[1]);
+  }
+  sort_unique(adjacent);
+  for (SleepPatch& patch : patches) sort_unique(patch.reached);
+}
+
+void SleepPatches::reach(Index particle, Index other) {
+  if (patch_of[particle] == patch_of[other]) return;
+  patches[patch_of[particle]].reached.push_back(other);
+  patches[patch_of[other]].reached.push_back(particle);
+  join(particle, other);
+}
+
+void SleepPatches::join(Index particle, Index other) {
+  const auto [first, second] = std::minmax(patch_of[particle], patch_of[other]);
+  if (first != second) adjacent.emplace_back(first, second);
+}
+
+std::vector<char> with_neighbours(const std::vector<char>& marked, const std::vector<PatchPair>& pairs) {
+  std::vector<char> result = marked;
+  for (const auto& [a, b] : pairs) {
+    if (marked[a] != 0) result[b] = 1;
+    if (marked[b] != 0) result[a] = 1;
+  }
+  return result;
+}
+
+}  // namespace sprung

@@ -1,0 +1,41 @@
+// Patches: groups of neighbouring particles that fall asleep and wake together.
+#pragma once
+
+#include "network/model/spring_network.h"
+
+#include <utility>
+#include <vector>
+
+namespace sprung {
+
+struct SleepPatch {
+  std::size_t body = 0;
+  std::vector<Index> particles;  ///< ascending
+  std::vector<Index> reached;    ///< these, and those that share a face or segment with one of them
+};
+
+/// Two patches, the first of lower number.
+using PatchPair = std::pair<Index, Index>;
+
+struct SleepPatches {
+  std::vector<SleepPatch> patches;
+  std::vector<Index> patch_of;      ///< by particle
+  std::vector<PatchPair> adjacent;  ///< of the same body, that springs, bends, faces or segments join; ascending
+
+  /// The patches of bodies are divided by their positions at time 0, so that they stay the same when springs break. A body with
+  /// cells, or with a volume that passes keep, is one patch.
+  explicit SleepPatches(const SpringNetwork& network);
+
+  [[nodiscard]] Index count() const { return static_cast<Index>(patches.size()); }
+
+ private:
+  void divide(const SpringNetwork& network);
+  void find_adjacent(const SpringNetwork& network);
+  void reach(Index particle, Index other);
+  void join(Index particle, Index other);
+};
+
+/// Whether each patch is marked, or in a pair with a marked one.
+[[nodiscard]] std::vector<char> with_neighbours(const std::vector<char>& marked, const std::vector<PatchPair>& pairs);
+
+}  // namespace sprung

@@ -1,0 +1,145 @@
+#include "simulation/sleep/surroundings.h"
+
+#include "collision/core/block_bounds.h"
+#include "collision/obstacles/obstacle_set.h"
+#include "dynamics/attachments/attachments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace sprung {
+namespace {
+
+// An obstacle that turns farther in a step may reach anything near it [degrees].
+constexpr double kMaxTurn = 45.0;
+
+/// An upper bound of the displacement [m] of any point of the box by a motion.
+double displacement(const RigidTransform& motion, const Box3& box) {
+  const double of_centre = (motion * box.center() - box.center()).norm();
+  return of_centre + (motion.linear() - Matrix3::Identity()).norm() * 0.5 * box.diagonal().norm();
+}
+
+}  // namespace
+
+Surroundings::Surroundings(const SpringNetwork& network, const Environment& environment, const SleepPatches& patches, double step,
+                           double gravity)
+    : network_(network),
+      environment_(environment),
+      patches_(patches),
+      step_(step),
+      gravity_(gravity),
+      ends_(patches.patches.size(), 0.0),
+      joined_(patches.adjacent) {
+  for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
+    for (const Pin& pin : *pins) note(pin);
+  }
+  for (const Attachment& attachment : network.attachments) note(attachment);
+  std::ranges::sort(joined_);
+  joined_.erase(std::unique(joined_.begin(), joined_.end()), joined_.end());
+}
+
+void Surroundings::note(const Pin& pin) {
+  const double until = std::isfinite(pin.until) ? pin.until + step_ : 0.0;  // rounded to a step
+  const double motion = pin.obstacle != kNone ? end_of_obstacle(pin.obstacle) : pin.motion.end();
+  const double end = std::max({pin.from > 0.0 ? pin.from + step_ : 0.0, until, std::min(motion, pin.until)});
+  for (const Index p : patches_of(pin.particles)) ends_[p] = std::max(ends_[p], end);
+}
+
+void Surroundings::note(const Attachment& attachment) {
+  double end = end_of_changes(attachment, step_);
+  const std::vector<Index> firsts = patches_of(attachment.particles);
+  std::vector<Index> seconds;
+  if (const auto* ends = std::get_if<ParticleEnds>(&attachment.second)) {
+    seconds = patches_of(ends->particles);
+  } else if (const auto* surface = std::get_if<SurfaceEnd>(&attachment.second)) {
+    seconds = patches_of_body(static_cast<std::size_t>(surface->body));
+  } else {
+    end = std::max(end, end_of_obstacle(std::get<ObstacleEnd>(attachment.second).obstacle));
+  }
+  for (const Index a : firsts) ends_[a] = std::max(ends_[a], end);
+  for (const Index b : seconds) {
+    ends_[b] = std::max(ends_[b], end);
+    for (const Index a : firsts) {
+      if (a != b) joined_.emplace_back(std::min(a, b), std::max(a, b));
+    }
+  }
+}
+
+/// Ascending, each once.
+std::vector<Index> Surroundings::patches_of(const std::vector<Index>& particles) const {
+  std::vector<Index> found;
+  for (const Index particle : particles) found.push_back(patches_.patch_of[particle]);
+  std::ranges::sort(found);
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+std::vector<Index> Surroundings::patches_of_body(std::size_t body) const {
+  std::vector<Index> found;
+  for (Index p = 0; p < patches_.count(); ++p) {
+    if (patches_.patches[p].body == body) found.push_back(p);
+  }
+  return found;
+}
+
+double Surroundings::end_of_obstacle(Index obstacle) const {
+  const Obstacle& followed = environment_.obstacles()[static_cast<std::size_t>(obstacle)];
+  return followed.deforms() ? std::numeric_limits<double>::infinity() : followed.motion.end();
+}
+
+Surroundings::Found Surroundings::find(const SimulationState& state) const {
+  Found found{.boxes = {}, .pairs = joined_};
+  for (const SleepPatch& patch : patches_.patches) found.boxes.push_back(box_in_step(patch, state));
+  const auto& boxes = found.boxes;
+  std::vector<Index> by_x(boxes.size());
+  std::iota(by_x.begin(), by_x.end(), Index{0});
+  std::ranges::sort(by_x, {}, [&](Index p) { return std::pair(boxes[p].min().x(), p); });
+  for (std::size_t i = 0; i < by_x.size(); ++i) {
+    const Index a = by_x[i];
+    for (std::size_t j = i + 1; j < by_x.size() && boxes[by_x[j]].min().x() <= boxes[a].max().x(); ++j) {
+      const Index b = by_x[j];
+      if (!may_collide(patches_.patches[a], patches_.patches[b]) || !boxes[a].intersects(boxes[b])) continue;
+      found.pairs.emplace_back(std::min(a, b), std::max(a, b));
+    }
+  }
+  return found;
+}
+
+bool Surroundings::may_collide(const SleepPatch& a, const SleepPatch& b) const {
+  const BodyContact& first = network_.bodies[a.body].contact;
+  return a.body == b.body ? first.self : first.others && network_.bodies[b.body].contact.others;
+}
+
+std::vector<char> Surroundings::driven(const Found& found, double time) const {
+  std::vector<char> driven;
+  for (std::size_t p = 0; p < ends_.size(); ++p) driven.push_back(time < ends_[p] || is_reached(found.boxes[p], time) ? 1 : 0);
+  return driven;
+}
+
+/// What sleeps moves only with the corners of its faces that are awake.
+Box3 Surroundings::box_in_step(const SleepPatch& patch, const SimulationState& state) const {
+  double farthest = 0.0;
+  for (const Index i : patch.reached) {
+    if (!network_.is_asleep(i)) farthest = std::max(farthest, step_ * (state.v.col(i).norm() + step_ * gravity_));
+  }
+  return grown(finite_bounds(state.x, patch.reached), network_.bodies[patch.body].material.thickness + farthest);
+}
+
+/// A box that a half-space contains is in its reach too.
+bool Surroundings::is_reached(const Box3& box, double time) const {
+  std::vector<Index> found;
+  for (std::size_t k = 0; k < environment_.obstacles().size(); ++k) {
+    const Obstacle& obstacle = environment_.obstacles()[k];
+    if (end_of_obstacle(static_cast<Index>(k)) <= time) continue;
+    if (obstacle.deforms() || obstacle.motion.turn(time, time + step_) > kMaxTurn) return true;
+    const RigidTransform now = obstacle.motion.pose(obstacle.rest_pose, time);
+    const RigidTransform then = obstacle.motion.pose(obstacle.rest_pose, time + step_);
+    environment_.set().find_near(grown(box, obstacle.material.thickness + displacement(now * then.inverse(), box)), found);
+    if (std::ranges::binary_search(found, static_cast<Index>(k))) return true;
+  }
+  return false;
+}
+
+}  // namespace sprung

@@ -1,0 +1,156 @@
+// Patches divide the particles of ropes and cloths, and those that sleep change nothing but the time.
+#include "simulation/sleep/sleep_patch.h"
+
+#include "base/parallel.h"
+#include "simulation/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace sprung::testing {
+namespace {
+
+constexpr double kGap = 0.01;      // of a body and the ground [m]
+constexpr double kSpacing = 0.01;  // of the particles of ropes [m]
+constexpr Index kParticles = 401;
+
+const ContactMaterial kRough{.thickness = 0.5 * kGap, .friction = 0.4, .static_friction = 0.4};
+
+TEST(SleepPatches, EachParticleIsInOnePatchAndSpringsJoinOnlyAdjacentOnes) {
+  const SpringNetwork network = cloth(20, 0.0);
+  const SleepPatches patches(network);
+  EXPECT_EQ(patches.count(), 7) << "the fewest of at most 64 particles";
+  std::vector<Index> found;
+  for (const SleepPatch& patch : patches.patches) {
+    EXPECT_LE(patch.particles.size(), 64U);
+    EXPECT_TRUE(std::ranges::includes(patch.reached, patch.particles));
+    found.insert(found.end(), patch.particles.begin(), patch.particles.end());
+  }
+  std::ranges::sort(found);
+  std::vector<Index> all(static_cast<std::size_t>(network.particle_count()));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Index>(i);
+  EXPECT_EQ(found, all);
+  const std::set<PatchPair> adjacent(patches.adjacent.begin(), patches.adjacent.end());
+  for (Index s = 0; s < network.springs.count(); ++s) {
+    const auto [a, b] = std::minmax(patches.patch_of[network.springs.first[s]], patches.patch_of[network.springs.second[s]]);
+    EXPECT_TRUE(a == b || adjacent.contains({a, b}));
+  }
+  for (const auto& triangle : network.bodies.front().surface.triangles.colwise()) {
+    for (const Index corner : triangle) {
+      const std::vector<Index>& reached = patches.patches[patches.patch_of[corner]].reached;
+      EXPECT_TRUE(std::ranges::all_of(triangle, [&](Index i) { return std::ranges::binary_search(reached, i); }));
+    }
+  }
+}
+
+TEST(SleepPatches, ASolidIsOnePatch) {
+  BodyShape shape = make_solid({.size = {1.0, 1.0, 1.0}, .resolution = {5, 5, 5}}, {.structural = SpringMaterial{.value = 100.0}});
+  set_total_mass(shape, 1.0);
+  NetworkBuilder builder;
+  builder.add_body("solid", shape);
+  builder.add_body("another", shape);
+  EXPECT_EQ(SleepPatches(builder.build()).count(), 2);
+}
+
+const SimulatorSettings kWithLimit{.step = 1.0e-3, .stretch_limit = StretchLimitSettings{.max_stretch = 0.0, .tolerance = 1.0e-3}};
+
+const SimulatorSettings kImplicit{.step = 1.0e-3, .integrator = ImplicitEulerSettings{}};
+
+/// A rope of 4 m that lies on the ground along x, with a pin at its begin. Its bonds are as long as at rest.
+Simulator lying_rope(const Motion& of_pin, bool may_sleep = true, SimulatorSettings settings = kWithLimit,
+                     double stiffness = 100.0) {
+  BodyShape rope =
+      make_rope({.points = {{0.0, kGap, 0.0}, {kSpacing * (kParticles - 1), kGap, 0.0}}, .particles = kParticles, .length = {}},
+                {.structural = SpringMaterial{.value = stiffness, .damping = 0.05}});
+  set_total_mass(rope, 0.4);
+  NetworkBuilder builder;
+  builder.add_body("rope", rope, kRough);
+  builder.pin(std::vector<Index>{0}, of_pin);
+  settings.sleep = may_sleep;
+  return Simulator(builder.build(), settings, {ground(kRough)});
+}
+
+Index sleeping(const Simulator& simulator) {
+  const std::vector<char>& asleep = simulator.network().asleep;
+  return static_cast<Index>(std::ranges::count(asleep, 1));
+}
+
+/// The largest strain of a bond.
+double strain(const Simulator& simulator) {
+  const Points& x = simulator.positions();
+  const auto bonds = x.rightCols(kParticles - 1) - x.leftCols(kParticles - 1);
+  return bonds.colwise().norm().maxCoeff() / kSpacing - 1.0;
+}
+
+// The begin of the rope is lifted by 5 cm and put down again, for 4 s.
+TEST(SleepPatches, TheEndOfARopeSleepsWhileItsBeginMoves) {
+  Motion up_and_down;
+  for (int k = 0; k < 9; ++k) {
+    up_and_down.keyframes.push_back({.time = 0.5 * k, .position = {0.02 * (k % 2), 0.05 * (k % 2), 0.0}});
+  }
+  const auto positions = [&](int threads, bool may_sleep) {
+    const ThreadLimit limit(threads);
+    Simulator simulator = lying_rope(up_and_down, may_sleep);
+    run(simulator, 3.9);
+    EXPECT_EQ(sleeping(simulator) > kParticles / 2, may_sleep);
+    EXPECT_FALSE(simulator.network().is_asleep(10));
+    EXPECT_EQ(simulator.network().is_asleep(kParticles - 1), may_sleep);
+    return simulator.positions();
+  };
+  const Points asleep = positions(1, true);
+  EXPECT_EQ(asleep, positions(2, true));
+  const Points awake = positions(1, false);
+  // What sleeps may be as far from where it would be as what is at rest may move.
+  EXPECT_LT((asleep - awake).colwise().norm().maxCoeff(), 2.0e-3);
+}
+
+// The pin takes off with 3 m/s. If patches woke one by one, those awake would be stretched by 3 mm in each step. With the limit and
+// with implicit Euler, all of the rope feels the pull in one step.
+TEST(SleepPatches, APullWakesARopeBeforeItStretches) {
+  const Motion pull{.keyframes = {{.time = 2.0}, {.time = 2.5, .position = {-1.5, 0.0, 0.0}}}};
+  for (const bool limited : {true, false}) {
+    Simulator simulator = limited ? lying_rope(pull) : lying_rope(pull, true, kImplicit, 1.0e5);
+    Simulator awake = limited ? lying_rope(pull, false) : lying_rope(pull, false, kImplicit, 1.0e5);
+    run(simulator, 1.999);
+    run(awake, 1.999);
+    EXPECT_GT(sleeping(simulator), kParticles / 2);
+    double worst = 0.0;
+    double worst_awake = 0.0;
+    for (int step = 0; step < 100; ++step) {
+      simulator.step();
+      awake.step();
+      worst = std::max(worst, strain(simulator));
+      worst_awake = std::max(worst_awake, strain(awake));
+    }
+    EXPECT_EQ(sleeping(simulator), 0);
+    EXPECT_LT(worst, worst_awake + 1.0e-3);
+    EXPECT_LT((simulator.positions() - awake.positions()).colwise().norm().maxCoeff(), 2.0e-3);
+  }
+}
+
+// The pin pulls with 0.8 mm/s, which moves no particle by the millimetre that wakes its neighbours in half a second. If the rest of
+// the rope stayed asleep, the two patches that are awake would be stretched by all of the centimetre, 0.9 %. Without a limit, the
+// friction of 1.6 N stretches bonds of 100 kN/m by 0.16 %.
+TEST(SleepPatches, ASlowPullAddsUp) {
+  const Motion pull{.keyframes = {{.time = 1.0}, {.time = 13.5, .position = {-0.01, 0.0, 0.0}}}};
+  for (const bool limited : {true, false}) {
+    Simulator simulator = limited ? lying_rope(pull) : lying_rope(pull, true, kImplicit, 1.0e5);
+    const Points before = simulator.positions();
+    double worst = 0.0;
+    Index most = 0;
+    for (int step = 0; step < 13'500; ++step) {
+      simulator.step();
+      worst = std::max(worst, strain(simulator));
+      most = std::max(most, sleeping(simulator));
+    }
+    EXPECT_GT(most, kParticles / 2);
+    EXPECT_LT(worst, limited ? 1.1e-3 : 0.5 * 0.01 / (2.0 * 57.0 * kSpacing));
+    EXPECT_LT((simulator.positions() - before)(0, kParticles - 1), -0.002);
+  }
+}
+
+}  // namespace
+}  // namespace sprung::testing
