@@ -158,23 +158,22 @@ std::optional<StepReport> Simulator::Implementation::step() {
   const std::vector<PatchPair> pairs = network.asleep.empty() ? std::vector<PatchPair>() : surroundings.find(state).pairs;
   const int factor = factor_for_rotation();
   StepReport report = make_step(factor, std::numeric_limits<Index>::max());
-  if (may_retry(report.max_infeasible, begin.state)) report = repeat_step(report, factor);
-  if (compared) report = compare_solvers(*compared, report, factor);
-  if (!network.asleep.empty() && disturbs_sleepers(pairs)) {
+  if (wake_disturbed(pairs)) {
     return_to_begin();
     return std::nullopt;
   }
+  if (may_retry(report.max_infeasible, begin.state)) report = repeat_step(report, factor);
+  if (compared) report = compare_solvers(*compared, report, factor);
   note_step(report.infeasible, state);
   let_yield(network.springs, state.x);
   if (refinement) choose_substeps(report);
   if (const StretchLimit* limit = constraints.limit()) note_missed(network, *limit, report.stretch_excess, state);
   record_attachments();
-  if (attachments && attachments->break_overloaded(state)) {
-    integrator->resume(state, forces, dt());
-    RestDetector::forget(state);
-  }
+  const bool breaks = attachments && attachments->break_overloaded(state);
+  if (breaks) integrator->resume(state, forces, dt());
   repeat_impulses(impulses_before);
   choose_sleepers();
+  if (breaks) wake_all();
   return report;
 }
 
@@ -373,10 +372,10 @@ StepReport Simulator::step() {
   if (!broken.empty() || now.sleepers != now.sleeping_patches() ||
       have_pins_changed(now.network, due_before(now.state.step, now.settings.step))) {
     SpringNetwork network = now.network;
-    set_asleep(now.particles_to_sleep(), network);
+    set_asleep(broken.empty() ? now.particles_to_sleep() : std::vector<char>(), network);
     const std::vector<Index> left = tear(network, broken);
     rebuild(std::move(network), left);
-    if (!broken.empty()) RestDetector::forget(implementation_->state);
+    if (!broken.empty()) implementation_->wake_all();
   }
   std::optional<StepReport> report = implementation_->step();
   while (!report) {

@@ -44,9 +44,9 @@ class Simulator {
   /// - if pins begin or end, which is at the step nearest to their time;
   /// - if springs break, as they are longer than their break length: network() then lacks them and the faces that tore
   ///   (Surface::torn);
-  /// - if patches of bodies fall asleep or wake (see RestDetector and Surroundings): particles that sleep have no inverse masses
-  ///   (SpringNetwork::asleep). Once all sleep, a step changes the time alone. A step that moves what is beside a sleeper is made
-  ///   again without that sleep.
+  /// - if patches fall asleep or wake (see RestDetector and Surroundings): their particles then have no inverse masses
+  ///   (SpringNetwork::asleep). If all sleep, a step changes the time alone. If a step makes the neighbour of a patch that sleeps
+  ///   restless, it is made again with the patch awake.
   /// Last, springs that yield get new rest lengths in network().
   StepReport step();
 
@@ -56,15 +56,15 @@ class Simulator {
 
   // Changes between two steps. Each of them rebuilds what follows from network and settings (forces, batches, factors, cached safe
   // regions), which takes about as long as the constructor without its obstacles. The state remains: positions, velocities, time,
-  // and bodies that a global solve took over. All bodies wake. References to network() and settings() become invalid. Each throws
-  // InputError that names every problem; the simulation then continues as before.
+  // and bodies that a global solve took over. All particles wake. References to network() and settings() become invalid. Each
+  // throws InputError that names every problem; the simulation then continues as before.
 
   /// Continues with another network and other settings. Requires a network that NetworkBuilder made with the same bodies and the
   /// same particles. The step and the start of contact cannot change, nor what collides (Body::contact) or how (response).
   /// Springs that broke stay broken, and springs that yielded keep their rest lengths.
   void continue_with(SpringNetwork network, SimulatorSettings settings);
 
-  /// Wakes all bodies.
+  /// Wakes all particles.
   void wake();
 
   void set_gravity(const Vector3& acceleration);  ///< [m/s^2]

@@ -21,6 +21,10 @@ bool have_same_bodies(const SpringNetwork& a, const SpringNetwork& b) {
   });
 }
 
+bool is_held(const SpringNetwork& network, const Body& body) {
+  return network.inverse_masses.segment(body.first_particle, body.particle_count).isZero(0.0);
+}
+
 bool collide_alike(const SpringNetwork& a, const SpringNetwork& b) {
   return std::ranges::equal(a.bodies, b.bodies, [](const Body& first, const Body& second) {
     return first.contact.self == second.contact.self && first.contact.others == second.contact.others;
@@ -119,7 +123,7 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   take_sleep(before);
   const bool pins_changed = take_pins(before);
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
-    if (sprung::is_asleep(network, network.bodies[b])) continue;
+    if (is_held(network, network.bodies[b])) continue;
     if (constraints.limit() == nullptr || !constraints.limit()->may_be_handed_over(b)) state.stretch_handovers[b] = {};
   }
   constraints.roll_back(before.constraints.permitted_crossings());
@@ -167,7 +171,7 @@ void Simulator::rebuild(std::vector<char> asleep) {
 }
 
 void Simulator::wake() {
-  RestDetector::forget(implementation_->state);
+  implementation_->wake_all();
   if (!network().asleep.empty()) rebuild(std::vector<char>());
 }
 

@@ -61,14 +61,16 @@ struct Simulator::Implementation {
   /// None if the step must be made again without the sleep of some patches. The state is then that of its begin.
   std::optional<StepReport> step();
   [[nodiscard]] bool may_sleep() const;
-  [[nodiscard]] bool is_asleep(Index patch) const;
+  [[nodiscard]] bool sleeps(Index patch) const;
   [[nodiscard]] bool is_free(Index patch) const;
   [[nodiscard]] std::vector<char> sleeping_patches() const;
   [[nodiscard]] std::vector<char> particles_to_sleep() const;
   void choose_sleepers();
+  void wake_all();
   void add_sleepers(const std::vector<PatchPair>& pairs, const std::vector<char>& disturbed);
-  [[nodiscard]] std::vector<ContactNormal> steady_contacts() const;
-  [[nodiscard]] bool disturbs_sleepers(const std::vector<PatchPair>& pairs);
+  [[nodiscard]] std::vector<Index> steady_patches(const std::vector<char>& bodies) const;
+  void wake_with_bodies(const std::vector<char>& asleep);
+  bool wake_disturbed(const std::vector<PatchPair>& pairs);
   void return_to_begin();
   [[nodiscard]] bool all_sleep() const;
   void repeat_impulses(const RecordedImpulses& before);

@@ -32,9 +32,11 @@ StepReport Simulator::Implementation::compare_solvers(std::size_t body, const St
   const auto excess = [&] { return constraints.limit()->excess(state.x, network.bodies[body]); };
   const double excess_of_first = excess();
   Attempt present = attempt_of(first);
-  const bool to_newton = !begin.state.stretch_handovers[body].solved_since;
+  const StretchHandover at_begin = begin.state.stretch_handovers[body];
+  const bool to_newton = !at_begin.solved_since;
   change_solver(body, begin.state);
   const auto other = attempt(factor, first.max_infeasible + 1);
+  begin.state.stretch_handovers[body] = at_begin;
   const bool changes = other && is_worth_changing(to_newton, excess_of_first, excess());
   const StepReport report = changes ? *other : present.report;
   if (changes) {

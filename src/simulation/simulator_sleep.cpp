@@ -1,20 +1,20 @@
 #include "geometry/mesh/union_find.h"
-#include "network/model/sleeping_particles.h"
 #include "simulation/simulator_implementation.h"
 
 #include <algorithm>
 
 namespace sprung {
 
-bool Simulator::Implementation::is_asleep(Index patch) const { return network.is_asleep(patches.patches[patch].particles.front()); }
+bool Simulator::Implementation::sleeps(Index patch) const { return network.is_asleep(patches.patches[patch].particles.front()); }
 
+/// Whether it has particles that are not pinned, though they may sleep.
 bool Simulator::Implementation::is_free(Index patch) const {
-  return std::ranges::any_of(patches.patches[patch].particles, [&](Index i) { return !network.is_pinned(i); });
+  return sleeps(patch) || std::ranges::any_of(patches.patches[patch].particles, [&](Index i) { return !network.is_pinned(i); });
 }
 
 std::vector<char> Simulator::Implementation::sleeping_patches() const {
   std::vector<char> asleep;
-  for (Index p = 0; p < patches.count(); ++p) asleep.push_back(is_asleep(p) ? 1 : 0);
+  for (Index p = 0; p < patches.count(); ++p) asleep.push_back(sleeps(p) ? 1 : 0);
   return asleep;
 }
 
@@ -31,83 +31,113 @@ bool Simulator::Implementation::may_sleep() const {
          state.feasible_steps > 0 && (!settings.has_air() || time() >= settings.wind.end());
 }
 
-/// After each step. What sleeps goes on while no neighbour is restless. Patches fall asleep at the end of a window.
+/// After each step. A restless patch wakes its neighbours. Patches fall asleep at the end of a window.
 void Simulator::Implementation::choose_sleepers() {
   if (!may_sleep()) {
-    std::ranges::fill(sleepers, 0);
-    RestDetector::forget(state);
+    wake_all();
     return;
   }
+  const bool window_ends = RestDetector::window_ends(time(), state);
+  if (network.asleep.empty() && !window_ends) return;
   const Surroundings::Found found = surroundings.find(state);
   const std::vector<char> asleep = sleeping_patches();
-  std::vector<char> restless = surroundings.driven(found, time());
-  const std::vector<char> undriven = rest.restless(state);
-  for (std::size_t p = 0; p < restless.size(); ++p) restless[p] = restless[p] != 0 || undriven[p] != 0 ? 1 : 0;
-  const bool window_ended = rest.note(time(), restless, with_neighbours(asleep, found.pairs), state);
+  std::vector<char> restless = rest.restless(state);
+  const std::vector<char> driven = surroundings.driven(found, time());
+  for (std::size_t p = 0; p < restless.size(); ++p) restless[p] = restless[p] != 0 || driven[p] != 0 ? 1 : 0;
   const std::vector<char> disturbed = with_neighbours(restless, found.pairs);
-  for (Index p = 0; p < patches.count(); ++p) sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;
-  if (window_ended) add_sleepers(found.pairs, disturbed);
+  for (std::size_t p = 0; p < sleepers.size(); ++p) sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;
+  if (window_ends) {
+    rest.end_window(time(), restless, with_neighbours(asleep, found.pairs), state);
+    add_sleepers(found.pairs, disturbed);
+  }
+  wake_with_bodies(asleep);
 }
 
-/// A patch at rest falls asleep if its neighbours are at rest too, and if it or a patch of its body with which it is joined through
-/// others that sleep touches something. Without contact nothing sleeps: a pendulum is slow at the end of each swing.
+void Simulator::Implementation::wake_all() {
+  std::ranges::fill(sleepers, 0);
+  RestDetector::forget(state);
+}
+
+/// A patch at rest falls asleep if its neighbours are at rest too, and if it touches something, or a patch does that is joined to
+/// it through others that sleep. Without contact nothing sleeps: a pendulum is slow at the end of each swing.
 void Simulator::Implementation::add_sleepers(const std::vector<PatchPair>& pairs, const std::vector<char>& disturbed) {
   std::vector<char> awake;
-  for (Index p = 0; p < patches.count(); ++p) awake.push_back(!is_asleep(p) && is_free(p) && !state.rests[p].rests ? 1 : 0);
+  for (Index p = 0; p < patches.count(); ++p) awake.push_back(!sleeps(p) && is_free(p) && !state.rests[p].rests ? 1 : 0);
   const std::vector<char> beside_awake = with_neighbours(awake, pairs);
-  std::vector<char> supported = sleepers;
-  std::vector<char> may_sleep = sleepers;
-  bool any = false;
+  std::vector<char> candidates = sleepers;
+  std::vector<char> bodies(network.bodies.size(), 0);  // of new candidates
   for (Index p = 0; p < patches.count(); ++p) {
-    if (sleepers[p] != 0 || !is_free(p) || disturbed[p] != 0 || beside_awake[p] != 0) continue;
-    may_sleep[p] = 1;
-    any = true;
+    if (sleeps(p) || !is_free(p) || disturbed[p] != 0 || beside_awake[p] != 0) continue;
+    candidates[p] = 1;
+    bodies[patches.patches[p].body] = 1;
   }
-  if (!any) return;
-  for (const ContactNormal& contact : steady_contacts()) supported[patches.patch_of[contact.particle]] = 1;
   UnionFind joined(patches.count());
   for (const auto& [a, b] : patches.adjacent) {
-    if (may_sleep[a] != 0 && may_sleep[b] != 0) joined.join(a, b);
+    if (candidates[a] != 0 && candidates[b] != 0) joined.join(a, b);
   }
-  std::vector<char> rests_on_something(supported.size(), 0);  // by root
+  std::vector<char> supported(candidates.size(), 0);  // by root
+  for (Index p = 0; p < patches.count(); ++p) supported[joined.root(p)] |= sleepers[p];
+  for (const Index p : steady_patches(bodies)) supported[joined.root(p)] = 1;
   for (Index p = 0; p < patches.count(); ++p) {
-    if (may_sleep[p] != 0 && supported[p] != 0) rests_on_something[joined.root(p)] = 1;
-  }
-  for (Index p = 0; p < patches.count(); ++p) {
-    if (may_sleep[p] != 0 && rests_on_something[joined.root(p)] != 0) sleepers[p] = 1;
+    if (candidates[p] != 0) sleepers[p] = supported[joined.root(p)];
   }
 }
 
-/// Without those of bodies that stand on their edge.
-std::vector<ContactNormal> Simulator::Implementation::steady_contacts() const {
-  std::vector<ContactNormal> steady;
-  const std::vector<ContactNormal> all = contact_normals();
-  for (const Body& body : network.bodies) {
-    std::vector<ContactNormal> own;
-    std::ranges::copy_if(all, std::back_inserter(own), [&](const ContactNormal& contact) {
-      return contact.particle >= body.first_particle && contact.particle < body.first_particle + body.particle_count;
-    });
-    if (!symmetry || !symmetry->has_standing(own, state.x)) steady.insert(steady.end(), own.begin(), own.end());
+/// The patches of these bodies that touch something, without bodies that stand on their edge.
+std::vector<Index> Simulator::Implementation::steady_patches(const std::vector<char>& bodies) const {
+  std::vector<std::vector<ContactNormal>> contacts(network.bodies.size());
+  for (const ContactNormal& contact : contact_normals()) {
+    const std::size_t body = patches.patches[patches.patch_of[contact.particle]].body;
+    if (bodies[body] != 0) contacts[body].push_back(contact);
+  }
+  std::vector<Index> steady;
+  for (const std::vector<ContactNormal>& of_body : contacts) {
+    if (symmetry && symmetry->has_standing(of_body, state.x)) continue;
+    for (const ContactNormal& contact : of_body) steady.push_back(patches.patch_of[contact.particle]);
   }
   return steady;
 }
 
-/// Whether a neighbour of a patch that sleeps is restless after the step: then it has to be made again without that sleep.
-bool Simulator::Implementation::disturbs_sleepers(const std::vector<PatchPair>& pairs) {
-  const std::vector<char> disturbed = with_neighbours(rest.restless(state), pairs);
-  bool any = false;
-  for (Index p = 0; p < patches.count(); ++p) {
-    any = any || (sleepers[p] != 0 && disturbed[p] != 0);
-    if (disturbed[p] != 0) sleepers[p] = 0;
+/// If a patch wakes that was `asleep`, all of its body wakes: it may have lost its support. What an attachment joins to a free
+/// patch sleeps only if that does.
+void Simulator::Implementation::wake_with_bodies(const std::vector<char>& asleep) {
+  std::vector<char> woken(network.bodies.size(), 0);
+  bool changes = true;
+  while (changes) {
+    changes = false;
+    for (Index p = 0; p < patches.count(); ++p) {
+      if (asleep[p] != 0 && sleepers[p] == 0) woken[patches.patches[p].body] = 1;
+    }
+    const auto wake = [&](Index p) {
+      changes = changes || sleepers[p] != 0;
+      sleepers[p] = 0;
+    };
+    for (Index p = 0; p < patches.count(); ++p) {
+      if (woken[patches.patches[p].body] != 0) wake(p);
+    }
+    for (const auto& [a, b] : surroundings.attached()) {
+      if (sleepers[a] == 0 && is_free(a)) wake(b);
+      if (sleepers[b] == 0 && is_free(b)) wake(a);
+    }
   }
-  return any;
+}
+
+/// Wakes what is beside a patch that the step made restless. Returns whether there is any: the step has to be made again without
+/// that sleep.
+bool Simulator::Implementation::wake_disturbed(const std::vector<PatchPair>& pairs) {
+  if (network.asleep.empty()) return false;
+  const std::vector<char> asleep = sleeping_patches();
+  const std::vector<char> disturbed = with_neighbours(rest.restless(state), pairs);
+  for (std::size_t p = 0; p < sleepers.size(); ++p) sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;
+  wake_with_bodies(asleep);
+  return sleepers != asleep;
 }
 
 /// Whether a step changes nothing but the time: some patches sleep, and pins hold all others at rest.
 bool Simulator::Implementation::all_sleep() const {
   bool any = false;
   for (Index p = 0; p < patches.count(); ++p) {
-    const bool asleep = is_asleep(p);
+    const bool asleep = sleeps(p);
     any = any || asleep;
     if (!asleep && (is_free(p) || time() < surroundings.end_of_motions(p))) return false;
   }
@@ -136,11 +166,11 @@ void Simulator::Implementation::repeat_impulses(const RecordedImpulses& before) 
   }
 }
 
-/// What falls asleep or wakes has no speed. What wakes does not rest in the present window.
+/// Particles that fall asleep or wake have no speed.
 void Simulator::Implementation::take_sleep(const Implementation& before) {
   for (Index i = 0; i < network.particle_count(); ++i) {
     if (network.is_asleep(i) == before.network.is_asleep(i)) continue;
-    if (!state.rests.empty() && !network.is_asleep(i)) state.rests[patches.patch_of[i]] = {.is_unsettled = true};
+    if (!state.rests.empty() && !network.is_asleep(i)) state.rests[patches.patch_of[i]] = {.woke = true};
     state.v.col(i).setZero();
     if (!network.is_pinned(i)) integrator->velocity_changed(state, i, before.dt());
   }

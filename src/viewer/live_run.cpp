@@ -166,7 +166,7 @@ bool LiveRun::may_change(Index particle) const {
 
 void LiveRun::grab(Index particle) {
   if (!may_change(particle)) return;
-  loaded_.simulator.wake();  // a particle of a body that sleeps counts as pinned
+  loaded_.simulator.wake();  // a particle that sleeps counts as pinned
   if (simulator().network().is_pinned(particle)) return;
   drop(false);
   Simulator& simulator = loaded_.simulator;

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
+#include <vector>
 
 namespace sprung {
 namespace {
@@ -21,9 +23,12 @@ void check_obstacles(const std::vector<Attachment>& attachments, std::size_t cou
   problems.throw_if_any();
 }
 
-bool joins_sleeping_particle(const SpringNetwork& network, const Link& link) {
-  const auto sleeps = [&](Index particle) { return particle != kNone && network.is_asleep(particle); };
-  return sleeps(link.first) || std::ranges::any_of(link.second, sleeps);
+/// Whether particles of the link sleep, and none of it is free.
+bool sleeps(const SpringNetwork& network, const Link& link) {
+  std::vector<Index> ends{link.first};
+  std::ranges::copy_if(link.second, std::back_inserter(ends), [](Index particle) { return particle != kNone; });
+  return std::ranges::any_of(ends, [&](Index i) { return network.is_asleep(i); }) &&
+         std::ranges::all_of(ends, [&](Index i) { return network.is_pinned(i); });
 }
 
 }  // namespace
@@ -51,7 +56,7 @@ void Attachments::take(const SimulationState& state, double time) {
 void Attachments::note_substep(double dt, double time, SimulationState& state) {
   if (state.substep == 0) {
     for (Link& link : state.links) {
-      if (!joins_sleeping_particle(network_, link)) link.impulse.setZero();
+      if (!sleeps(network_, link)) link.impulse.setZero();
     }
   }
   rods_->add_impulses(dt, state.links);

@@ -28,8 +28,8 @@ class Attachments {
   /// Makes rods and springs those of the state, at `time` [s].
   void take(const SimulationState& state, double time);
 
-  /// Records the impulses of rods in a substep of `dt` [s] that ends at `time` [s]. A rod of a body that sleeps keeps its last
-  /// one. Call it before the substep is counted.
+  /// Records the impulses of rods in a substep of `dt` [s] that ends at `time` [s]. A rod between particles that sleep keeps
+  /// its last one. Call it before the substep is counted.
   void note_substep(double dt, double time, SimulationState& state);
 
   /// Breaks the links whose force is beyond the break force, after a step. Returns whether any broke: rods and springs then are

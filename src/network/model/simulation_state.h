@@ -21,10 +21,10 @@ struct StretchHandover {
 
 /// The rest of one patch, see RestDetector.
 struct PatchRest {
-  double speed2 = 0.0;        ///< mean square of the speeds at the begin of the present window [m^2/s^2]
-  double crept = 0.0;         ///< largest displacements in former windows beside a patch that sleeps, in total [m]
-  bool is_unsettled = false;  ///< whether the patch moved or was driven in the present window, or woke
-  bool rests = false;         ///< whether the patch was at rest in the window before
+  double displacement = 0.0;  ///< root mean square of the particles' displacements in the window before [m]
+  bool woke = false;          ///< in the present window
+  bool was_quiet = false;     ///< whether the window before was quiet
+  bool rests = false;         ///< whether the patch was at rest in the two windows before
 };
 
 /// What friction with obstacles remembers of each particle.
@@ -56,6 +56,7 @@ struct SimulationState {
   Slip slip;                           ///< since particles stuck to obstacles
   std::optional<double> rest_since{};  ///< when the present window of RestDetector began [s]; none at first
   Points x_at_rest{};                  ///< positions then [m], 3 x n
+  Points x_beside_sleep{};             ///< positions then or, while a neighbour sleeps, when it fell asleep [m], 3 x n
   std::vector<PatchRest> rests{};      ///< one entry per patch
   std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
   std::vector<PinAnchor> anchors{};  ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle

@@ -7,8 +7,8 @@
 
 namespace sprung {
 
-/// Lets the particles i with `asleep[i]` sleep, and wakes all others; empty: all. The inverse mass of a particle that sleeps is 0,
-/// as if it were pinned.
+/// Particle i sleeps if asleep[i] is not 0. An empty vector wakes all. The inverse mass of a particle that sleeps is 0, as if it
+/// were pinned.
 void set_asleep(std::vector<char> asleep, SpringNetwork& network);
 
 /// The network with all particles awake.

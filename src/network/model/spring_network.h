@@ -140,10 +140,10 @@ struct SpringNetwork {
   std::vector<std::string> pin_names{};  ///< of all pins, in the order in which they were added, also of those that have ended
   std::vector<Attachment> attachments{};
   Springs broken{};            ///< that broke and are gone, with those that went with them
-  std::vector<char> asleep{};  ///< by particle, whether a simulator holds it at rest, see set_asleep(); empty: none sleeps
+  std::vector<char> asleep{};  ///< by particle, see set_asleep(); empty: none sleeps
 
   [[nodiscard]] Index particle_count() const { return static_cast<Index>(masses.size()); }
-  /// Whether a pin holds the particle, or its sleep.
+  /// Whether the particle is pinned or sleeps.
   [[nodiscard]] bool is_pinned(Index particle) const { return inverse_masses[particle] == 0.0; }
   [[nodiscard]] bool is_asleep(Index particle) const { return !asleep.empty() && asleep[particle] != 0; }
   /// The body of a particle. Requires a particle of the network.

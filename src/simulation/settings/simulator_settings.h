@@ -45,7 +45,7 @@ struct SimulatorSettings {
   /// Maximum number of substeps in a step, in [1, kMaxSubsteps]; see StepRefinement. All of them are made while Gauss-Seidel passes
   /// solve a limit that may be handed over to a global solve.
   int max_substeps = 1;
-  /// Whether steps cost nothing once all bodies rest in contact and nothing moves pins or obstacles any more; see RestDetector.
+  /// Whether particles at rest sleep; see RestDetector and Surroundings.
   bool sleep = true;
   /// Whether bodies that stand compressed, exactly in a line or plane, get a tiny push off it; see SymmetryBreaker.
   bool perturb = true;

@@ -2,7 +2,7 @@
 //
 // The rule is that of rigid bodies in games (Catto, Box2D; Rouwe, Jolt): what was slow for half a second is at rest. A speed is
 // slow up to the one that gravity gives in a millisecond, 1 cm/s on earth. All patches are compared at the same times, the ends of
-// windows of half a second.
+// windows of a quarter of a second.
 #pragma once
 
 #include "dynamics/stretch_limit/stretch_limit.h"
@@ -21,18 +21,20 @@ class RestDetector {
 
   /// Whether each patch is restless:
   /// - a free particle is farther than 2 mm (on earth) or a tenth of the body's shortest spring from where it was when the present
-  ///   window began. While a neighbour sleeps, displacements of former windows count too, so that slow ones add up: they stretch a
-  ///   patch that is 8 springs wide by 1.3 % at most;
-  /// - or any spring of its body misses the stretch limit by more than the tolerance: all of the body may have to give way.
+  ///   window began or, while a neighbour sleeps, when that fell asleep: slow displacements add up;
+  /// - or any spring of its body misses the stretch limit by more than wanted_excess(): all of the body may have to give way.
   [[nodiscard]] std::vector<char> restless(const SimulationState& state) const;
 
-  /// After each step, at `time` [s]. `restless` patches, with those that are driven, begin anew. At the end of a window,
-  /// PatchRest::rests is set of patches that were not restless if the root mean square of the displacements is at most a quarter of
-  /// the largest at rest, and that of the speeds is slow and hardly grew: what begins to slide or to fall over is slow at first.
-  /// `beside` are the neighbours of patches that sleep. Returns whether a window ended.
-  bool note(double time, const std::vector<char>& restless, const std::vector<char>& beside, SimulationState& state) const;
+  /// Whether a window ends at `time` [s], or the first one begins.
+  [[nodiscard]] static bool window_ends(double time, const SimulationState& state);
 
-  /// Before the first window, and after something that begins all rest anew.
+  /// At the end of a window, sets PatchRest::rests and begins the next one. A window is quiet for a patch that is not in `restless`
+  /// if the root mean square of its displacements is at most an eighth of the largest at rest, and that of its speeds is slow. A
+  /// patch rests after two quiet windows, unless it moved farther in the second: what begins to slide or to fall over is slow at
+  /// first. `beside` are the patches that sleep, and their neighbours.
+  void end_window(double time, const std::vector<char>& restless, const std::vector<char>& beside, SimulationState& state) const;
+
+  /// Begins all rest anew.
   static void forget(SimulationState& state);
 
  private:
@@ -47,9 +49,8 @@ class RestDetector {
     std::size_t body = 0;
     double longest = 0.0;  ///< [m]
   };
-  [[nodiscard]] static double displacement(const Watched& patch, const SimulationState& state);
-  void begin_window(double time, SimulationState& state) const;
-  void end_window(const Watched& patch, bool beside, const SimulationState& state, PatchRest& rest) const;
+  [[nodiscard]] static bool has_moved(const Watched& patch, const SimulationState& state);
+  void judge(const Watched& patch, bool is_restless, const SimulationState& state, PatchRest& rest) const;
 
   double slow_;                   ///< [m/s]
   std::vector<Watched> patches_;  ///< without free particles: patches that sleep or that pins hold as a whole

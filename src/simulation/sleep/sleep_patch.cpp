@@ -11,11 +11,6 @@ namespace {
 // 8 x 8 particles of a cloth. Smaller patches fall asleep and wake more often, which costs as much as ten steps each time.
 constexpr std::size_t kMostParticles = 64;
 
-void sort_unique(auto& items) {
-  std::ranges::sort(items);
-  items.erase(std::unique(items.begin(), items.end()), items.end());
-}
-
 }  // namespace
 
 SleepPatches::SleepPatches(const SpringNetwork& network) : patch_of(static_cast<std::size_t>(network.particle_count()), kNone) {

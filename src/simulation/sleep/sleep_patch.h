@@ -3,6 +3,7 @@
 
 #include "network/model/spring_network.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,12 @@ struct SleepPatches {
   void reach(Index particle, Index other);
   void join(Index particle, Index other);
 };
+
+/// Sorts ascending, each once.
+void sort_unique(auto& items) {
+  std::ranges::sort(items);
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
 
 /// Whether each patch is marked, or in a pair with a marked one.
 [[nodiscard]] std::vector<char> with_neighbours(const std::vector<char>& marked, const std::vector<PatchPair>& pairs);

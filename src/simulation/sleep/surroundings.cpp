@@ -30,14 +30,12 @@ Surroundings::Surroundings(const SpringNetwork& network, const Environment& envi
       patches_(patches),
       step_(step),
       gravity_(gravity),
-      ends_(patches.patches.size(), 0.0),
-      joined_(patches.adjacent) {
+      ends_(patches.patches.size(), 0.0) {
   for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
     for (const Pin& pin : *pins) note(pin);
   }
   for (const Attachment& attachment : network.attachments) note(attachment);
-  std::ranges::sort(joined_);
-  joined_.erase(std::unique(joined_.begin(), joined_.end()), joined_.end());
+  sort_unique(attached_);
 }
 
 void Surroundings::note(const Pin& pin) {
@@ -62,7 +60,7 @@ void Surroundings::note(const Attachment& attachment) {
   for (const Index b : seconds) {
     ends_[b] = std::max(ends_[b], end);
     for (const Index a : firsts) {
-      if (a != b) joined_.emplace_back(std::min(a, b), std::max(a, b));
+      if (a != b) attached_.emplace_back(std::min(a, b), std::max(a, b));
     }
   }
 }
@@ -71,8 +69,7 @@ void Surroundings::note(const Attachment& attachment) {
 std::vector<Index> Surroundings::patches_of(const std::vector<Index>& particles) const {
   std::vector<Index> found;
   for (const Index particle : particles) found.push_back(patches_.patch_of[particle]);
-  std::ranges::sort(found);
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+  sort_unique(found);
   return found;
 }
 
@@ -90,16 +87,23 @@ double Surroundings::end_of_obstacle(Index obstacle) const {
 }
 
 Surroundings::Found Surroundings::find(const SimulationState& state) const {
-  Found found{.boxes = {}, .pairs = joined_};
-  for (const SleepPatch& patch : patches_.patches) found.boxes.push_back(box_in_step(patch, state));
+  Found found{.boxes = {}, .pairs = patches_.adjacent};
+  found.pairs.insert(found.pairs.end(), attached_.begin(), attached_.end());
+  Box3 all;
+  for (const SleepPatch& patch : patches_.patches) {
+    found.boxes.push_back(box_in_step(patch, state));
+    all.extend(found.boxes.back());
+  }
   const auto& boxes = found.boxes;
-  std::vector<Index> by_x(boxes.size());
-  std::iota(by_x.begin(), by_x.end(), Index{0});
-  std::ranges::sort(by_x, {}, [&](Index p) { return std::pair(boxes[p].min().x(), p); });
-  for (std::size_t i = 0; i < by_x.size(); ++i) {
-    const Index a = by_x[i];
-    for (std::size_t j = i + 1; j < by_x.size() && boxes[by_x[j]].min().x() <= boxes[a].max().x(); ++j) {
-      const Index b = by_x[j];
+  Index axis = 0;  // along which the boxes are swept
+  if (!all.isEmpty()) all.sizes().maxCoeff(&axis);
+  std::vector<Index> order(boxes.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::ranges::sort(order, {}, [&](Index p) { return std::pair(boxes[p].min()[axis], p); });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Index a = order[i];
+    for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].min()[axis] <= boxes[a].max()[axis]; ++j) {
+      const Index b = order[j];
       if (!may_collide(patches_.patches[a], patches_.patches[b]) || !boxes[a].intersects(boxes[b])) continue;
       found.pairs.emplace_back(std::min(a, b), std::max(a, b));
     }

@@ -30,6 +30,9 @@ class Surroundings {
   /// no such time. A pin or attachment that follows an obstacle moves as long as the obstacle does.
   [[nodiscard]] double end_of_motions(Index patch) const { return ends_[patch]; }
 
+  /// Patches that attachments join, ascending.
+  [[nodiscard]] const std::vector<PatchPair>& attached() const { return attached_; }
+
  private:
   void note(const Pin& pin);
   void note(const Attachment& attachment);
@@ -45,8 +48,8 @@ class Surroundings {
   const SleepPatches& patches_;
   double step_;
   double gravity_;
-  std::vector<double> ends_;       ///< of the motions of each patch
-  std::vector<PatchPair> joined_;  ///< adjacent patches, and those that attachments join
+  std::vector<double> ends_;  ///< of the motions of each patch
+  std::vector<PatchPair> attached_;
 };
 
 }  // namespace sprung

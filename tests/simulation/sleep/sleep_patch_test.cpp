@@ -91,20 +91,29 @@ TEST(SleepPatches, TheEndOfARopeSleepsWhileItsBeginMoves) {
   for (int k = 0; k < 9; ++k) {
     up_and_down.keyframes.push_back({.time = 0.5 * k, .position = {0.02 * (k % 2), 0.05 * (k % 2), 0.0}});
   }
-  const auto positions = [&](int threads, bool may_sleep) {
+  struct Result {
+    Points positions;
+    Vector3 force;
+  };
+  const auto result = [&](int threads, bool may_sleep) {
     const ThreadLimit limit(threads);
-    Simulator simulator = lying_rope(up_and_down, may_sleep);
+    SimulatorSettings settings = kWithLimit;
+    settings.record_forces = true;
+    Simulator simulator = lying_rope(up_and_down, may_sleep, settings);
     run(simulator, 3.9);
     EXPECT_EQ(sleeping(simulator) > kParticles / 2, may_sleep);
     EXPECT_FALSE(simulator.network().is_asleep(10));
     EXPECT_EQ(simulator.network().is_asleep(kParticles - 1), may_sleep);
-    return simulator.positions();
+    return Result{simulator.positions(), simulator.reactions().front().force};
   };
-  const Points asleep = positions(1, true);
-  EXPECT_EQ(asleep, positions(2, true));
-  const Points awake = positions(1, false);
+  const Result asleep = result(1, true);
+  const Result again = result(2, true);
+  EXPECT_EQ(asleep.positions, again.positions);
+  EXPECT_EQ(asleep.force, again.force);
+  const Result awake = result(1, false);
   // What sleeps may be as far from where it would be as what is at rest may move.
-  EXPECT_LT((asleep - awake).colwise().norm().maxCoeff(), 2.0e-3);
+  EXPECT_LT((asleep.positions - awake.positions).colwise().norm().maxCoeff(), 2.0e-3);
+  EXPECT_LT((asleep.force - awake.force).norm(), 0.02 * awake.force.norm());
 }
 
 // The pin takes off with 3 m/s. If patches woke one by one, those awake would be stretched by 3 mm in each step. With the limit and
@@ -131,7 +140,7 @@ TEST(SleepPatches, APullWakesARopeBeforeItStretches) {
   }
 }
 
-// The pin pulls with 0.8 mm/s, which moves no particle by the millimetre that wakes its neighbours in half a second. If the rest of
+// The pin pulls with 0.8 mm/s, which moves no particle by the millimetre that wakes its neighbours in a window. If the rest of
 // the rope stayed asleep, the two patches that are awake would be stretched by all of the centimetre, 0.9 %. Without a limit, the
 // friction of 1.6 N stretches bonds of 100 kN/m by 0.16 %.
 TEST(SleepPatches, ASlowPullAddsUp) {
