@@ -151,7 +151,7 @@ TEST(RestOfADrape, ALimpClothStaysWhereItStuckToABunny) {
 TEST(RestOfADrape, ALimpClothAtRestOnABunnyCostsNothing) {
   std::int64_t substeps = 1;
   run_scenario(
-      load_scenario("drape", {"duration=12", "bodies.cloth.shape.resolution=[32,32]", "bodies.cloth.self_contact=false",
+      load_scenario("drape", {"duration=14", "bodies.cloth.shape.resolution=[32,32]", "bodies.cloth.self_contact=false",
                               "stretch_limit={\"max_stretch\": 0.02}", "sleep=true"}),
       [&](const Simulator&, const FrameDiagnostics& frame) { substeps = frame.substeps; }, Judge::nothing);
   EXPECT_EQ(substeps, 0);

@@ -19,12 +19,12 @@ struct StretchHandover {
   std::optional<std::int64_t> solved_since;  ///< the step after which the global solve took over; none: passes enforce the limit
 };
 
-/// The rest of one patch, see RestDetector.
+/// The rest of a patch or a body, see RestDetector.
 struct PatchRest {
   double displacement = 0.0;  ///< root mean square of the particles' displacements in the window before [m]
   bool woke = false;          ///< in the present window
   bool was_quiet = false;     ///< whether the window before was quiet
-  bool rests = false;         ///< whether the patch was at rest in the two windows before
+  bool rests = false;         ///< whether it was at rest in the two windows before
 };
 
 /// What friction with obstacles remembers of each particle.
@@ -57,7 +57,7 @@ struct SimulationState {
   std::optional<double> rest_since{};  ///< when the present window of RestDetector began [s]; none at first
   Points x_at_rest{};                  ///< positions then [m], 3 x n
   Points x_beside_sleep{};             ///< positions then or, while a neighbour sleeps, when it fell asleep [m], 3 x n
-  std::vector<PatchRest> rests{};      ///< one entry per patch
+  std::vector<PatchRest> rests{};      ///< of each patch, then of each body
   std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
   std::vector<PinAnchor> anchors{};  ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle
   std::vector<Link> links{};         ///< of attachments that have engaged and not ended, by attachment; broken ones too

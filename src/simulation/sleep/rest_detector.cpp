@@ -14,8 +14,7 @@ constexpr double kWindow = 0.25;
 // Gravity gives the fastest slow speed in this time [s].
 constexpr double kFall = 1.0e-3;
 
-// Largest displacement at rest, as a fraction of that of the fastest slow speed in a window, and of the shortest spring.
-constexpr double kOfSlow = 0.8;
+// Largest displacement at rest in a window, as a fraction of the shortest spring; it is also that of the fastest slow speed.
 constexpr double kOfSpring = 0.1;
 
 // Root mean square of the displacements in a quiet window, as a fraction of the largest: what glides moves as a whole.
@@ -34,7 +33,7 @@ RestDetector::RestDetector(const SpringNetwork& network, const SleepPatches& pat
     : slow_(kFall * gravity) {
   std::vector<double> longest;  // by body
   for (const Body& body : network.bodies) {
-    longest.push_back(kOfSlow * kWindow * slow_);
+    longest.push_back(kWindow * slow_);
     for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
       const double length = network.springs.rest_length[s];
       if (length > 0.0) longest.back() = std::min(longest.back(), kOfSpring * length);
@@ -43,6 +42,13 @@ RestDetector::RestDetector(const SpringNetwork& network, const SleepPatches& pat
   for (const SleepPatch& patch : patches.patches) {
     Watched& watched = patches_.emplace_back(Watched{.body = patch.body, .free = {}, .longest = longest[patch.body]});
     std::ranges::copy_if(patch.particles, std::back_inserter(watched.free), [&](Index i) { return !network.is_pinned(i); });
+  }
+  for (std::size_t b = 0; b < network.bodies.size(); ++b) {
+    bodies_.push_back({.body = b, .free = {}, .longest = longest[b]});
+  }
+  for (const Watched& patch : patches_) {
+    std::vector<Index>& free = bodies_[patch.body].free;
+    free.insert(free.end(), patch.free.begin(), patch.free.end());
   }
   if (limit == nullptr) return;
   const StretchLimitSettings& settings = limit->settings();
@@ -58,7 +64,7 @@ RestDetector::RestDetector(const SpringNetwork& network, const SleepPatches& pat
 std::vector<char> RestDetector::restless(const SimulationState& state) const {
   std::vector<char> restless(patches_.size(), 0);
   if (!state.rest_since) return restless;
-  std::vector<char> misses_limit(patches_.empty() ? 0 : patches_.back().body + 1, 0);  // by body
+  std::vector<char> misses_limit(bodies_.size(), 0);
   for (const Limited& spring : limited_) {
     const double squared = (state.x.col(spring.ends[0]) - state.x.col(spring.ends[1])).squaredNorm();
     if (squared > spring.longest * spring.longest) misses_limit[spring.body] = 1;
@@ -76,10 +82,10 @@ bool RestDetector::window_ends(double time, const SimulationState& state) {
 void RestDetector::end_window(double time, const std::vector<char>& restless, const std::vector<char>& beside,
                               SimulationState& state) const {
   if (!state.rest_since) {
-    state.rests.assign(patches_.size(), {});
+    state.rests.assign(patches_.size() + bodies_.size(), {});
     state.x_beside_sleep = state.x;
   } else {
-    for (std::size_t p = 0; p < patches_.size(); ++p) judge(patches_[p], restless[p] != 0, state, state.rests[p]);
+    judge_all(restless, state);
   }
   state.rest_since = time;
   state.x_at_rest = state.x;
@@ -100,6 +106,21 @@ bool RestDetector::has_moved(const Watched& patch, const SimulationState& state)
   return std::ranges::any_of(patch.free, [&](Index i) {
     return (state.x.col(i) - state.x_beside_sleep.col(i)).squaredNorm() > patch.longest * patch.longest;
   });
+}
+
+void RestDetector::judge_all(const std::vector<char>& restless, SimulationState& state) const {
+  std::vector<char> of_bodies(bodies_.size(), 0);
+  const auto rest_of_body = [&](std::size_t body) -> PatchRest& { return state.rests[patches_.size() + body]; };
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const std::size_t body = patches_[p].body;
+    of_bodies[body] = of_bodies[body] != 0 || restless[p] != 0 ? 1 : 0;
+    rest_of_body(body).woke = rest_of_body(body).woke || state.rests[p].woke;
+    judge(patches_[p], restless[p] != 0, state, state.rests[p]);
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) judge(bodies_[b], of_bodies[b] != 0, state, rest_of_body(b));
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    state.rests[p].rests = state.rests[p].rests || rest_of_body(patches_[p].body).rests;
+  }
 }
 
 void RestDetector::judge(const Watched& patch, bool is_restless, const SimulationState& state, PatchRest& rest) const {

@@ -20,7 +20,8 @@ class RestDetector {
   RestDetector(const SpringNetwork& network, const SleepPatches& patches, const StretchLimit* limit, double gravity);
 
   /// Whether each patch is restless:
-  /// - a free particle is farther than 2 mm (on earth) or a tenth of the body's shortest spring from where it was when the present
+  /// - a free particle is farther than 2.5 mm (on earth) or a tenth of the body's shortest spring from where it was when the
+  /// present
   ///   window began or, while a neighbour sleeps, when that fell asleep: slow displacements add up;
   /// - or any spring of its body misses the stretch limit by more than wanted_excess(): all of the body may have to give way.
   [[nodiscard]] std::vector<char> restless(const SimulationState& state) const;
@@ -31,7 +32,8 @@ class RestDetector {
   /// At the end of a window, sets PatchRest::rests and begins the next one. A window is quiet for a patch that is not in `restless`
   /// if the root mean square of its displacements is at most an eighth of the largest at rest, and that of its speeds is slow. A
   /// patch rests after two quiet windows, unless it moved farther in the second: what begins to slide or to fall over is slow at
-  /// first. `beside` are the patches that sleep, and their neighbours.
+  /// first. All patches of a body rest too if the same is true of the body as a whole, of which a few particles may move more.
+  /// `beside` are the patches that sleep, and their neighbours.
   void end_window(double time, const std::vector<char>& restless, const std::vector<char>& beside, SimulationState& state) const;
 
   /// Begins all rest anew.
@@ -52,8 +54,11 @@ class RestDetector {
   [[nodiscard]] static bool has_moved(const Watched& patch, const SimulationState& state);
   void judge(const Watched& patch, bool is_restless, const SimulationState& state, PatchRest& rest) const;
 
+  void judge_all(const std::vector<char>& restless, SimulationState& state) const;
+
   double slow_;                   ///< [m/s]
   std::vector<Watched> patches_;  ///< without free particles: patches that sleep or that pins hold as a whole
+  std::vector<Watched> bodies_;
   std::vector<Limited> limited_;
 };
 
