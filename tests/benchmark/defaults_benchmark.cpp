@@ -16,10 +16,16 @@
 namespace sprung::benchmarks {
 namespace {
 
-constexpr int kFrames = 60;
+struct Frames {
+  int first;
+  int last;
+};
 
-// From this frame on cloths lie on the bunny and swinging bodies are fast.
-constexpr int kFirstMeasured = 20;
+// Cloths lie on the bunny, and swinging bodies are fast.
+constexpr Frames kMeasured{20, 60};
+
+// What lies at rest sleeps.
+constexpr Frames kMeasuredAtRest{80, 120};
 
 /// Stretch of the structural springs in ascending order, as fractions of their rest length.
 std::vector<double> stretches(const SpringNetwork& network, const Points& x) {
@@ -33,9 +39,9 @@ std::vector<double> stretches(const SpringNetwork& network, const Points& x) {
   return all;
 }
 
-/// Runs tests/benchmark/scenes/<name>.json with changed values, with one thread. The reported time is that of a frame from
-/// kFirstMeasured on.
-void run(benchmark::State& state, const std::string& name, const std::vector<std::string>& changes) {
+/// Runs tests/benchmark/scenes/<name>.json with changed values, with one thread. The reported time is the mean of
+/// the measured frames.
+void run(benchmark::State& state, const std::string& name, const std::vector<std::string>& changes, const Frames& measured) {
   const ThreadLimit one_thread(1);
   const Scene scene = read_scene(SPRUNG_SOURCE_DIR "/tests/benchmark/scenes/" + name + ".json", changes);
   for ([[maybe_unused]] auto _ : state) {
@@ -45,13 +51,13 @@ void run(benchmark::State& state, const std::string& name, const std::vector<std
     double first = 0.0;
     double percentile_99 = 0.0;
     double worst = 0.0;
-    for (int frame = 1; frame <= kFrames; ++frame) {
+    for (int frame = 1; frame <= measured.last; ++frame) {
       const double begin = processor_time();
       for (int step = 0; step < built.steps_per_frame; ++step) simulator.step();
       const double taken = processor_time() - begin;
       if (frame == 1) first = taken;
-      if (frame < kFirstMeasured) continue;
-      seconds += taken / (kFrames - kFirstMeasured + 1);
+      if (frame < measured.first) continue;
+      seconds += taken / (measured.last - measured.first + 1);
       const std::vector<double> sorted = stretches(simulator.network(), simulator.positions());
       percentile_99 = std::max(percentile_99, sorted[sorted.size() * 99 / 100]);
       worst = std::max(worst, sorted.back());
@@ -69,8 +75,9 @@ std::string resolution(const std::string& body, int side) {
   return "bodies." + body + ".shape.resolution=[" + n + "," + n + "]";
 }
 
-void add(const std::string& title, const std::string& scene, const std::vector<std::string>& changes = {}) {
-  benchmark::RegisterBenchmark(title.c_str(), [=](benchmark::State& state) { run(state, scene, changes); })
+void add(const std::string& title, const std::string& scene, const std::vector<std::string>& changes = {},
+         const Frames& measured = kMeasured) {
+  benchmark::RegisterBenchmark(title.c_str(), [=](benchmark::State& state) { run(state, scene, changes, measured); })
       ->Iterations(1)
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond);
@@ -91,6 +98,8 @@ void add(const std::string& title, const std::string& scene, const std::vector<s
   }
   add("flag_with_self_contact", "flag");
   add("jelly", "jelly");
+  add("carpet_with_a_lifted_corner", "carpet", {}, kMeasuredAtRest);
+  add("carpet_with_a_lifted_corner_awake", "carpet", {"sleep=false"}, kMeasuredAtRest);
   return true;
 }();
 

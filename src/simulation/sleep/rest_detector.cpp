@@ -17,6 +17,9 @@ constexpr double kFall = 1.0e-3;
 // Largest displacement at rest in a window, as a fraction of the shortest spring; it is also that of the fastest slow speed.
 constexpr double kOfSpring = 0.1;
 
+// Change of the forces on a patch that sleeps, as a fraction of its weight.
+constexpr double kOfWeight = 0.1;
+
 // Root mean square of the displacements in a quiet window, as a fraction of the largest: what glides moves as a whole.
 constexpr double kQuiet = 0.125;
 
@@ -30,7 +33,16 @@ constexpr double kNoise = 0.08;
 }  // namespace
 
 RestDetector::RestDetector(const SpringNetwork& network, const SleepPatches& patches, const StretchLimit* limit, double gravity)
-    : slow_(kFall * gravity) {
+    : slow_(kFall * gravity), patch_of_(patches.patch_of), may_pull_(patches.patches.size(), 0.0) {
+  for (Index i = 0; i < network.particle_count(); ++i) may_pull_[patch_of_[i]] += kOfWeight * gravity * network.masses[i];
+  const Springs& springs = network.springs;
+  for (Index s = 0; s < springs.count(); ++s) {
+    const bool first_sleeps = network.is_asleep(springs.first[s]);
+    if (first_sleeps == network.is_asleep(springs.second[s]) || springs.stiffness[s] == 0.0) continue;
+    pulling_.push_back({.awake = first_sleeps ? springs.second[s] : springs.first[s],
+                        .asleep = first_sleeps ? springs.first[s] : springs.second[s],
+                        .stiffness = springs.stiffness[s]});
+  }
   std::vector<double> longest;  // by body
   for (const Body& body : network.bodies) {
     longest.push_back(kWindow * slow_);
@@ -72,7 +84,24 @@ std::vector<char> RestDetector::restless(const SimulationState& state) const {
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     restless[p] = misses_limit[patches_[p].body] != 0 || has_moved(patches_[p], state) ? 1 : 0;
   }
+  const std::vector<Vector3> pulls = changes_of_pull(state);
+  for (const Pulling& spring : pulling_) {
+    const Index sleeper = patch_of_[spring.asleep];
+    if (pulls[sleeper].norm() > may_pull_[sleeper]) restless[patch_of_[spring.awake]] = 1;
+  }
   return restless;
+}
+
+/// On each patch that sleeps, since it fell asleep [N].
+std::vector<Vector3> RestDetector::changes_of_pull(const SimulationState& state) const {
+  std::vector<Vector3> changes(patches_.size(), Vector3::Zero());
+  for (const Pulling& spring : pulling_) {
+    const Vector3 now = state.x.col(spring.awake) - state.x.col(spring.asleep);
+    const Vector3 then = state.x_beside_sleep.col(spring.awake) - state.x.col(spring.asleep);
+    if (now.norm() == 0.0) continue;
+    changes[patch_of_[spring.asleep]] += spring.stiffness * (now.norm() - then.norm()) * now.normalized();
+  }
+  return changes;
 }
 
 bool RestDetector::window_ends(double time, const SimulationState& state) {

@@ -23,6 +23,8 @@ class RestDetector {
   /// - a free particle is farther than 2.5 mm (on earth) or a tenth of the body's shortest spring from where it was when the
   /// present
   ///   window began or, while a neighbour sleeps, when that fell asleep: slow displacements add up;
+  /// - or its springs pull a neighbour that sleeps with other forces than when that fell asleep, by more than a tenth of the
+  ///   neighbour's weight: friction may not hold that;
   /// - or any spring of its body misses the stretch limit by more than wanted_excess(): all of the body may have to give way.
   [[nodiscard]] std::vector<char> restless(const SimulationState& state) const;
 
@@ -51,6 +53,13 @@ class RestDetector {
     std::size_t body = 0;
     double longest = 0.0;  ///< [m]
   };
+  /// A spring from a particle that is awake to one that sleeps.
+  struct Pulling {
+    Index awake = kNone;
+    Index asleep = kNone;
+    double stiffness = 0.0;  ///< [N/m]
+  };
+  [[nodiscard]] std::vector<Vector3> changes_of_pull(const SimulationState& state) const;
   [[nodiscard]] static bool has_moved(const Watched& patch, const SimulationState& state);
   void judge(const Watched& patch, bool is_restless, const SimulationState& state, PatchRest& rest) const;
 
@@ -60,6 +69,9 @@ class RestDetector {
   std::vector<Watched> patches_;  ///< without free particles: patches that sleep or that pins hold as a whole
   std::vector<Watched> bodies_;
   std::vector<Limited> limited_;
+  std::vector<Pulling> pulling_;
+  std::vector<Index> patch_of_;   ///< by particle
+  std::vector<double> may_pull_;  ///< change of the forces on each patch that is no reason to wake [N]
 };
 
 }  // namespace sprung
