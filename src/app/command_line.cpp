@@ -20,7 +20,7 @@ constexpr const char* kExamples = R"(Examples:
   sprung run scene.json --out frames --overwrite --frames 30 --set 'bodies.banner.shape.resolution=[128,128]'
   sprung validate scene.json --mesh-path ~/meshes
   sprung info bunny.obj
-  sprung view examples/cloth_on_bunny.json
+  sprung view examples/hanging_cloth.json
   sprung view frames
   sprung export frames --format html
   sprung materials cotton

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 
 namespace sprung {
@@ -22,7 +21,6 @@ using testing::run;
 using Solver = StretchLimitSettings::Solver;
 
 constexpr double kStep = 1.0e-3;  // [s]
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// A way to hold a body together; the limits act on springs without stiffness.
 struct Holding {
