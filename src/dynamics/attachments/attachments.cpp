@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <string>
-#include <vector>
 
 namespace sprung {
 namespace {
@@ -23,12 +21,18 @@ void check_obstacles(const std::vector<Attachment>& attachments, std::size_t cou
   problems.throw_if_any();
 }
 
-/// Whether particles of the link sleep, and none of it is free.
+/// Whether an end of the link sleeps and no end is free.
 bool sleeps(const SpringNetwork& network, const Link& link) {
-  std::vector<Index> ends{link.first};
-  std::ranges::copy_if(link.second, std::back_inserter(ends), [](Index particle) { return particle != kNone; });
-  return std::ranges::any_of(ends, [&](Index i) { return network.is_asleep(i); }) &&
-         std::ranges::all_of(ends, [&](Index i) { return network.is_pinned(i); });
+  bool any_asleep = false;
+  bool any_free = false;
+  const auto look_at = [&](Index particle) {
+    if (particle == kNone) return;
+    any_asleep = any_asleep || network.is_asleep(particle);
+    any_free = any_free || !network.is_pinned(particle);
+  };
+  look_at(link.first);
+  for (const Index particle : link.second) look_at(particle);
+  return any_asleep && !any_free;
 }
 
 }  // namespace

@@ -4,20 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace sprung {
 namespace {
 
-// [s]
+// Time between two comparisons [s].
 constexpr double kWindow = 0.25;
 
 // Gravity gives the fastest slow speed in this time [s].
 constexpr double kFall = 1.0e-3;
 
-// Largest displacement at rest in a window, as a fraction of the shortest spring; it is also that of the fastest slow speed.
+// Largest displacement at rest, as a fraction of the shortest spring. A slow speed gives another bound.
 constexpr double kOfSpring = 0.1;
 
-// Change of the forces on a patch that sleeps, as a fraction of its weight.
+// Change of the springs' force on a patch that does not wake it, as a fraction of its weight.
 constexpr double kOfWeight = 0.1;
 
 // Root mean square of the displacements in a quiet window, as a fraction of the largest: what glides moves as a whole.
@@ -33,43 +35,55 @@ constexpr double kNoise = 0.08;
 }  // namespace
 
 RestDetector::RestDetector(const SpringNetwork& network, const SleepPatches& patches, const StretchLimit* limit, double gravity)
-    : slow_(kFall * gravity), patch_of_(patches.patch_of), may_pull_(patches.patches.size(), 0.0) {
-  for (Index i = 0; i < network.particle_count(); ++i) may_pull_[patch_of_[i]] += kOfWeight * gravity * network.masses[i];
-  const Springs& springs = network.springs;
-  for (Index s = 0; s < springs.count(); ++s) {
-    const bool first_sleeps = network.is_asleep(springs.first[s]);
-    if (first_sleeps == network.is_asleep(springs.second[s]) || springs.stiffness[s] == 0.0) continue;
-    pulling_.push_back({.awake = first_sleeps ? springs.second[s] : springs.first[s],
-                        .asleep = first_sleeps ? springs.first[s] : springs.second[s],
-                        .stiffness = springs.stiffness[s]});
+    : slow_(kFall * gravity), may_pull_(patches.patches.size(), 0.0) {
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    may_pull_[patches.patch_of[i]] += kOfWeight * gravity * network.masses[i];
   }
-  std::vector<double> longest;  // by body
-  for (const Body& body : network.bodies) {
-    longest.push_back(kWindow * slow_);
+  watch(network, patches);
+  find_pulling(network, patches.patch_of);
+  if (limit != nullptr) find_limited(network, limit->settings());
+}
+
+void RestDetector::watch(const SpringNetwork& network, const SleepPatches& patches) {
+  for (std::size_t b = 0; b < network.bodies.size(); ++b) {
+    const Body& body = network.bodies[b];
+    double longest = kWindow * slow_;
     for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
       const double length = network.springs.rest_length[s];
-      if (length > 0.0) longest.back() = std::min(longest.back(), kOfSpring * length);
+      if (length > 0.0) longest = std::min(longest, kOfSpring * length);
     }
+    bodies_.push_back({.body = b, .free = {}, .longest = longest});
   }
   for (const SleepPatch& patch : patches.patches) {
-    Watched& watched = patches_.emplace_back(Watched{.body = patch.body, .free = {}, .longest = longest[patch.body]});
+    Watched& body = bodies_[patch.body];
+    Watched& watched = patches_.emplace_back(Watched{.body = patch.body, .free = {}, .longest = body.longest});
     std::ranges::copy_if(patch.particles, std::back_inserter(watched.free), [&](Index i) { return !network.is_pinned(i); });
+    body.free.insert(body.free.end(), watched.free.begin(), watched.free.end());
   }
-  for (std::size_t b = 0; b < network.bodies.size(); ++b) {
-    bodies_.push_back({.body = b, .free = {}, .longest = longest[b]});
+}
+
+void RestDetector::find_pulling(const SpringNetwork& network, const std::vector<Index>& patch_of) {
+  const Springs& springs = network.springs;
+  for (Index s = 0; s < springs.count(); ++s) {
+    Index awake = springs.first[s];
+    Index asleep = springs.second[s];
+    if (network.is_asleep(awake)) std::swap(awake, asleep);
+    if (network.is_asleep(awake) || !network.is_asleep(asleep) || springs.stiffness[s] == 0.0) continue;
+    pulling_.push_back({.awake = awake,
+                        .asleep = asleep,
+                        .awake_patch = patch_of[awake],
+                        .asleep_patch = patch_of[asleep],
+                        .stiffness = springs.stiffness[s]});
   }
-  for (const Watched& patch : patches_) {
-    std::vector<Index>& free = bodies_[patch.body].free;
-    free.insert(free.end(), patch.free.begin(), patch.free.end());
-  }
-  if (limit == nullptr) return;
-  const StretchLimitSettings& settings = limit->settings();
-  const double longest_per_rest = 1.0 + settings.max_stretch + wanted_excess(settings);
+}
+
+void RestDetector::find_limited(const SpringNetwork& network, const StretchLimitSettings& settings) {
+  const double longest = 1.0 + settings.max_stretch + wanted_excess(settings);  // relative to the rest length
   for (const Index s : limited_springs(network, settings.kinds)) {
-    const std::array<Index, 2> ends{network.springs.first[s], network.springs.second[s]};
-    limited_.push_back({.ends = ends,
-                        .body = patches.patches[patches.patch_of[ends[0]]].body,
-                        .longest = longest_per_rest * network.springs.rest_length[s]});
+    const Index first = network.springs.first[s];
+    const auto body = static_cast<std::size_t>(&network.body_of(first) - network.bodies.data());
+    limited_.push_back(
+        {.ends = {first, network.springs.second[s]}, .body = body, .longest = longest * network.springs.rest_length[s]});
   }
 }
 
@@ -86,20 +100,19 @@ std::vector<char> RestDetector::restless(const SimulationState& state) const {
   }
   const std::vector<Vector3> pulls = changes_of_pull(state);
   for (const Pulling& spring : pulling_) {
-    const Index sleeper = patch_of_[spring.asleep];
-    if (pulls[sleeper].norm() > may_pull_[sleeper]) restless[patch_of_[spring.awake]] = 1;
+    if (pulls[spring.asleep_patch].norm() > may_pull_[spring.asleep_patch]) restless[spring.awake_patch] = 1;
   }
   return restless;
 }
 
-/// On each patch that sleeps, since it fell asleep [N].
+/// The change of the springs' force on each patch that sleeps, since it fell asleep [N].
 std::vector<Vector3> RestDetector::changes_of_pull(const SimulationState& state) const {
   std::vector<Vector3> changes(patches_.size(), Vector3::Zero());
   for (const Pulling& spring : pulling_) {
     const Vector3 now = state.x.col(spring.awake) - state.x.col(spring.asleep);
     const Vector3 then = state.x_beside_sleep.col(spring.awake) - state.x.col(spring.asleep);
     if (now.norm() == 0.0) continue;
-    changes[patch_of_[spring.asleep]] += spring.stiffness * (now.norm() - then.norm()) * now.normalized();
+    changes[spring.asleep_patch] += spring.stiffness * (now.norm() - then.norm()) * now.normalized();
   }
   return changes;
 }

@@ -19,13 +19,13 @@ class RestDetector {
   /// `limit` is the stretch limit, if there is one; `gravity` in m/s^2.
   RestDetector(const SpringNetwork& network, const SleepPatches& patches, const StretchLimit* limit, double gravity);
 
-  /// Whether each patch is restless:
-  /// - a free particle is farther than 2.5 mm (on earth) or a tenth of the body's shortest spring from where it was when the
-  /// present
-  ///   window began or, while a neighbour sleeps, when that fell asleep: slow displacements add up;
-  /// - or its springs pull a neighbour that sleeps with other forces than when that fell asleep, by more than a tenth of the
-  ///   neighbour's weight: friction may not hold that;
-  /// - or any spring of its body misses the stretch limit by more than wanted_excess(): all of the body may have to give way.
+  /// Whether each patch is restless. One of three is true:
+  /// - A free particle has moved by more than 2.5 mm (on earth) or a tenth of the body's shortest spring. The displacement counts
+  ///   from the begin of the window. While a neighbour sleeps, it counts from when the neighbour fell asleep.
+  /// - Its springs pull a neighbour that sleeps, and their force on the neighbour has changed by more than a tenth of the weight of
+  ///   the neighbour since that fell asleep. Friction may not hold such a change.
+  /// - A spring of the body misses the stretch limit by more than wanted_excess(). The limit may then need to move any patch of the
+  ///   body.
   [[nodiscard]] std::vector<char> restless(const SimulationState& state) const;
 
   /// Whether a window ends at `time` [s], or the first one begins.
@@ -57,21 +57,24 @@ class RestDetector {
   struct Pulling {
     Index awake = kNone;
     Index asleep = kNone;
+    Index awake_patch = kNone;
+    Index asleep_patch = kNone;
     double stiffness = 0.0;  ///< [N/m]
   };
+  void watch(const SpringNetwork& network, const SleepPatches& patches);
+  void find_pulling(const SpringNetwork& network, const std::vector<Index>& patch_of);
+  void find_limited(const SpringNetwork& network, const StretchLimitSettings& settings);
   [[nodiscard]] std::vector<Vector3> changes_of_pull(const SimulationState& state) const;
   [[nodiscard]] static bool has_moved(const Watched& patch, const SimulationState& state);
-  void judge(const Watched& patch, bool is_restless, const SimulationState& state, PatchRest& rest) const;
-
   void judge_all(const std::vector<char>& restless, SimulationState& state) const;
+  void judge(const Watched& patch, bool is_restless, const SimulationState& state, PatchRest& rest) const;
 
   double slow_;                   ///< [m/s]
   std::vector<Watched> patches_;  ///< without free particles: patches that sleep or that pins hold as a whole
   std::vector<Watched> bodies_;
   std::vector<Limited> limited_;
   std::vector<Pulling> pulling_;
-  std::vector<Index> patch_of_;   ///< by particle
-  std::vector<double> may_pull_;  ///< change of the forces on each patch that is no reason to wake [N]
+  std::vector<double> may_pull_;  ///< largest change of the force on each patch that does not wake it [N]
 };
 
 }  // namespace sprung
