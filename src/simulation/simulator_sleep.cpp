@@ -166,11 +166,15 @@ void Simulator::Implementation::repeat_impulses(const RecordedImpulses& before) 
   }
 }
 
-/// Particles that fall asleep or wake have no speed.
+/// Particles that fall asleep or wake have no speed. What wakes has to come to rest anew.
 void Simulator::Implementation::take_sleep(const Implementation& before) {
   for (Index i = 0; i < network.particle_count(); ++i) {
     if (network.is_asleep(i) == before.network.is_asleep(i)) continue;
-    if (!state.rests.empty() && !network.is_asleep(i)) state.rests[patches.patch_of[i]] = {.woke = true};
+    if (!state.rests.empty() && !network.is_asleep(i)) {
+      const Index patch = patches.patch_of[i];
+      state.rests[patch] = {};
+      state.rests[patches.patches.size() + patches.patches[patch].body] = {};
+    }
     state.v.col(i).setZero();
     if (!network.is_pinned(i)) integrator->velocity_changed(state, i, before.dt());
   }

@@ -22,7 +22,6 @@ struct StretchHandover {
 /// The rest of a patch or a body, see RestDetector.
 struct PatchRest {
   double displacement = 0.0;  ///< root mean square of the particles' displacements in the window before [m]
-  bool woke = false;          ///< in the present window
   bool was_quiet = false;     ///< whether the window before was quiet
   bool rests = false;         ///< whether it was at rest in the two windows before
 };

@@ -156,7 +156,6 @@ void RestDetector::judge_all(const std::vector<char>& restless, SimulationState&
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const std::size_t body = patches_[p].body;
     of_bodies[body] = of_bodies[body] != 0 || restless[p] != 0 ? 1 : 0;
-    rest_of_body(body).woke = rest_of_body(body).woke || state.rests[p].woke;
     judge(patches_[p], restless[p] != 0, state, state.rests[p]);
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) judge(bodies_[b], of_bodies[b] != 0, state, rest_of_body(b));
@@ -174,7 +173,7 @@ void RestDetector::judge(const Watched& patch, bool is_restless, const Simulatio
   const double speed = root_mean_square([&](Index i) { return state.v.col(i); });
   const double displacement = root_mean_square([&](Index i) { return state.x.col(i) - state.x_at_rest.col(i); });
   const double largest = kQuiet * patch.longest;
-  const bool is_quiet = !rest.woke && !is_restless && speed <= slow_ && displacement <= largest;
+  const bool is_quiet = !is_restless && speed <= slow_ && displacement <= largest;
   const bool grows = displacement > kGrowth * std::max(rest.displacement, kNoise * largest);
   rest = {.displacement = displacement, .was_quiet = is_quiet, .rests = is_quiet && rest.was_quiet && !grows};
 }

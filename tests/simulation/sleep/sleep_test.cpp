@@ -71,16 +71,20 @@ TEST(RestDetector, WithoutContactASlowSwingGoesOn) {
   EXPECT_FALSE(sleeps(simulator));
 }
 
+void add_hanging(NetworkBuilder& builder) {
+  const Index pinned = builder.add_particle({1.0, 2.0, 0.0}, 0.1);
+  const Index mass = builder.add_particle({1.0, 1.0, 0.0}, 0.1);
+  builder.add_spring(pinned, mass, 1000.0, 1.0 - 0.1 * kGravity / 1000.0, 0.0);
+  builder.pin(pinned);
+}
+
 /// A particle that lies at its gap, and a mass that hangs from a spring at rest, a metre away.
 SpringNetwork lying_and_hanging() {
   NetworkBuilder builder;
   builder.begin_body("lies", kRough);
   builder.add_particle({0.0, kGap, 0.0}, 0.1);
   builder.begin_body("hangs", kRough);
-  builder.add_particle({1.0, 2.0, 0.0}, 0.1);
-  builder.add_particle({1.0, 1.0, 0.0}, 0.1);
-  builder.add_spring(1, 2, 1000.0, 1.0 - 0.1 * kGravity / 1000.0, 0.0);
-  builder.pin(1);
+  add_hanging(builder);
   return builder.build();
 }
 
@@ -99,11 +103,21 @@ TEST(RestDetector, ABodyThatTouchesNothingStaysAwakeAndLetsOthersSleep) {
 }
 
 TEST(RestDetector, WhatAnAttachmentJoinsToABodyThatIsAwakeStaysAwake) {
-  SpringNetwork network = lying_and_hanging();
-  network.attachments = {{.name = "string", .particles = {0}, .second = ParticleEnds{.particles = {2}}, .stiffness = 1.0e-6}};
-  Simulator simulator(std::move(network), settings_of(), {ground(kRough)});
-  run(simulator, 1.5);
-  EXPECT_FALSE(sleeps(simulator, 0));
+  NetworkBuilder hanging_first;
+  hanging_first.begin_body("hangs", kRough);
+  add_hanging(hanging_first);
+  hanging_first.begin_body("lies", kRough);
+  hanging_first.add_particle({0.0, kGap, 0.0}, 0.1);
+  for (SpringNetwork network : {lying_and_hanging(), hanging_first.build()}) {
+    const bool lies_first = network.bodies.front().name == "lies";
+    const auto string = [](Index first, Index second) {
+      return Attachment{.name = "string", .particles = {first}, .second = ParticleEnds{.particles = {second}}, .stiffness = 1.0e-6};
+    };
+    network.attachments = {lies_first ? string(0, 2) : string(2, 1)};
+    Simulator simulator(std::move(network), settings_of(), {ground(kRough)});
+    run(simulator, 1.5);
+    EXPECT_FALSE(sleeps(simulator, lies_first ? 0 : 1));
+  }
 }
 
 TEST(Surroundings, AnAttachmentKeepsItsBodiesAwakeUntilItsLastChange) {
@@ -302,6 +316,39 @@ TEST(RestDetector, ABreakBeginsAllRestAnew) {
     EXPECT_FALSE(sleeps(simulator, 0)) << (rod ? "rod" : "spring");
     run(simulator, 0.6);
     EXPECT_TRUE(sleeps(simulator, 0)) << (rod ? "rod" : "spring");
+  }
+}
+
+// A pin pulls a spring or an attachment away from another pin, at 1 m/s from 1 s on, until it breaks at twice its length. Something
+// lies beside it, and could have lost its support.
+TEST(RestDetector, ABreakWakesWhatSleeps) {
+  for (const bool attached : {true, false}) {
+    NetworkBuilder builder;
+    builder.begin_body("lies", kRough);
+    builder.add_particle({0.0, kGap, 0.0}, 0.1);
+    builder.begin_body("pulled", kRough);
+    const Index nail = builder.add_particle({5.0, 5.0, 0.0}, 0.1);
+    const Index hook = builder.add_particle({5.5, 5.0, 0.0}, 0.1);
+    builder.pin(nail);
+    builder.pin(hook, {.keyframes = {{.time = 1.0}, {.time = 2.0, .position = {1.0, 0.0, 0.0}}}});
+    if (attached) {
+      builder.add_attachment({.name = "string",
+                              .particles = {nail},
+                              .second = ParticleEnds{.particles = {hook}},
+                              .stiffness = 10.0,
+                              .break_force = 10.0 * 0.5});
+    } else {
+      builder.add_spring(nail, hook, 10.0, 0.5, 0.0);
+    }
+    SpringNetwork network = builder.build();
+    if (!attached) network.springs.laws = {SpringLaw{.break_length = 1.0}};
+    Simulator simulator(std::move(network), settings_of(), {ground(kRough)});
+    run(simulator, 1.49);
+    EXPECT_TRUE(sleeps(simulator, 0)) << (attached ? "attachment" : "spring");
+    run(simulator, 0.02);
+    EXPECT_FALSE(sleeps(simulator, 0)) << (attached ? "attachment" : "spring");
+    run(simulator, 1.0);
+    EXPECT_TRUE(sleeps(simulator, 0)) << (attached ? "attachment" : "spring");
   }
 }
 
