@@ -21,18 +21,10 @@ void check_obstacles(const std::vector<Attachment>& attachments, std::size_t cou
   problems.throw_if_any();
 }
 
-/// Whether an end of the link sleeps and no end is free.
-bool sleeps(const SpringNetwork& network, const Link& link) {
-  bool any_asleep = false;
-  bool any_free = false;
-  const auto look_at = [&](Index particle) {
-    if (particle == kNone) return;
-    any_asleep = any_asleep || network.is_asleep(particle);
-    any_free = any_free || !network.is_pinned(particle);
-  };
-  look_at(link.first);
-  for (const Index particle : link.second) look_at(particle);
-  return any_asleep && !any_free;
+/// A simulator lets both ends sleep, or none but pinned ones.
+bool joins_sleeping_particle(const SpringNetwork& network, const Link& link) {
+  const auto sleeps = [&](Index particle) { return particle != kNone && network.is_asleep(particle); };
+  return sleeps(link.first) || std::ranges::any_of(link.second, sleeps);
 }
 
 }  // namespace
@@ -60,7 +52,7 @@ void Attachments::take(const SimulationState& state, double time) {
 void Attachments::note_substep(double dt, double time, SimulationState& state) {
   if (state.substep == 0) {
     for (Link& link : state.links) {
-      if (!sleeps(network_, link)) link.impulse.setZero();
+      if (!joins_sleeping_particle(network_, link)) link.impulse.setZero();
     }
   }
   rods_->add_impulses(dt, state.links);
