@@ -73,6 +73,9 @@ class Parser {
     CLI::App* run = app_.add_subcommand("run", "Simulates a scene and writes it as OBJ sequences");
     add_scene(run, run_.scene);
     run->add_option("--out", run_.out, "Folder for the frames; must be empty or not exist")->required()->type_name("DIR");
+    run->add_option("--format", run_.format, "obj: OBJ sequences, the default; none: record.bin and diagnostics alone")
+        ->check(CLI::IsMember({"obj", "none"}))
+        ->type_name("FORMAT");
     run->add_option("--frames", run_.frames, "Number of frames, instead of the scene's duration")
         ->check(CLI::Range(1, kMostFrames))
         ->type_name("N");
@@ -119,7 +122,6 @@ class Parser {
         ->check(CLI::IsMember(export_formats()))
         ->type_name("FORMAT");
     command->add_option("--out", export_.out, "File to write; DIR/animation.html by default")->type_name("PATH");
-    add_mesh_path(command, export_.mesh_paths);
     command->add_flag("--overwrite", export_.overwrite, "Replace the file if it exists");
   }
 

@@ -14,6 +14,7 @@ namespace sprung {
 struct RunOptions {
   SceneSource scene;
   std::string out;
+  std::string format = "obj";  ///< of the frames: obj, or none
   std::optional<int> frames;
   std::optional<int> threads;
   bool quiet = false;
@@ -40,8 +41,7 @@ struct ViewOptions {
 struct ExportOptions {
   std::string folder;  ///< of a run
   std::vector<std::string> formats;
-  std::string out;                      ///< empty: animation.html in the folder
-  std::vector<std::string> mesh_paths;  ///< folders
+  std::string out;  ///< empty: animation.html in the folder
   bool overwrite = false;
 };
 

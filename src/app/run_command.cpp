@@ -16,6 +16,7 @@
 #include <exception>
 #include <optional>
 #include <thread>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -24,8 +25,12 @@ int thread_count(const RunOptions& options) {
   return options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
 }
 
-RunFacts facts_of(const LoadedScene& loaded, int threads) {
+RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int threads) {
   const SimulatorSettings& settings = loaded.simulator.settings();
+  BodyMaterials materials;
+  for (const BodyScene& body : loaded.scene.bodies) {
+    if (!body.preset.empty()) materials[body.name] = body.preset;
+  }
   return {.scene = loaded.scene.resolved,
           .frame_rate = loaded.scene.frame_rate,
           .frames = loaded.frames,
@@ -34,7 +39,11 @@ RunFacts facts_of(const LoadedScene& loaded, int threads) {
           .stretch_solver = loaded.simulator.stretch_solver(),
           .seed = settings.perturb ? std::optional(settings.seed) : std::nullopt,
           .warnings = loaded.warnings,
-          .sources = loaded.sources};
+          .sources = loaded.sources,
+          .scene_file = loaded.scene.file.filename().string(),
+          .materials = std::move(materials),
+          .write_obj = options.format == "obj",
+          .record = loaded.scene.record};
 }
 
 void announce(const LoadedScene& loaded) {
@@ -112,7 +121,7 @@ ExitCode run(const RunOptions& options) {
   loaded.frames = options.frames.value_or(loaded.frames);
   if (interrupted()) return ExitCode::interrupted;
 
-  RunOutput output(OutputFolder(options.out, options.overwrite), facts_of(loaded, threads), loaded.simulator);
+  RunOutput output(OutputFolder(options.out, options.overwrite), facts_of(loaded, options, threads), loaded.simulator);
   if (!options.quiet) announce(loaded);
   const auto start = std::chrono::steady_clock::now();
   const int written = write_run(loaded, output, options);

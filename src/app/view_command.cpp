@@ -5,7 +5,7 @@
 #include "base/format.h"
 #include "base/parallel.h"
 #include "output/file_writer.h"
-#include "output/run_record.h"
+#include "output/run_summary.h"
 #include "viewer/html_export.h"
 #include "viewer/live_session.h"
 #include "viewer/page.h"
@@ -46,7 +46,11 @@ void print_problems(const std::vector<Problem>& problems) {
 
 std::unique_ptr<ViewSession> session_of(const SceneSource& scene) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(scene.file, ignored)) return std::make_unique<ReplaySession>(scene.file, scene.mesh_paths);
+  if (std::filesystem::is_directory(scene.file, ignored)) {
+    auto replay = std::make_unique<ReplaySession>(scene.file);
+    if (!replay->run().missing().empty()) print_warning(replay->run().missing());
+    return replay;
+  }
   return std::make_unique<LiveSession>(scene, scenes_beside(scene.file), print_problems);
 }
 
@@ -80,7 +84,9 @@ ExitCode export_run(const ExportOptions& options) {
   if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
     throw FileError("write", file.string(), "it is a folder, a pipe or a device; give the name of a file by --out");
   }
-  const HtmlAnimation animation = html_animation(Replay(options.folder, options.mesh_paths), viewer_page());
+  const Replay replay(options.folder);
+  if (!replay.run().missing().empty()) print_warning(replay.run().missing());
+  const HtmlAnimation animation = html_animation(replay, viewer_page());
   write_file(file, animation.text);
   print_message(fmt::format("{}: positions within {} m of the run's", file.string(), format_number(animation.error, 2)));
   return ExitCode::done;

@@ -53,20 +53,6 @@ void check_names(const char* key, const std::vector<std::string>& names, std::ve
   }
 }
 
-void check_names(const Simulator& simulator) {
-  std::vector<std::string> bodies;
-  std::vector<std::string> obstacles;
-  for (const Body& body : simulator.network().bodies) bodies.push_back(body.name);
-  for (const Obstacle& obstacle : simulator.environment().obstacles()) obstacles.push_back(obstacle.name);
-  std::vector<Problem> problems;
-  check_names("body", bodies, problems);
-  check_names("obstacle", obstacles, problems);
-  if (std::find(bodies.begin(), bodies.end(), kObstacleFolder) != bodies.end()) {
-    problems.push_back({"", "body", '"' + kObstacleFolder + '"', "is reserved for the folder of the obstacles", "rename it"});
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
-}
-
 std::string surface_text(const Simulator& simulator, const Body& body, const std::string& elements) {
   return vertex_lines(simulator.positions().middleCols(body.first_particle, body.vertex_count())) + elements;
 }
@@ -89,11 +75,6 @@ ObjSequence body_sequence(const Simulator& simulator, std::size_t number, const 
             const Body& now = present.network().bodies[number];
             return surface_text(present, now, present.network().broken.count() == 0 ? elements : element_lines(now));
           }};
-}
-
-TriangleMesh surface_mesh(const Obstacle& obstacle, const Box3& scene) {
-  const bool endless = std::holds_alternative<HalfSpaceGeometry>(obstacle.geometry);
-  return obstacle_mesh(obstacle.geometry, endless ? half_space_extent(scene, obstacle) : 0.0);
 }
 
 ObjSequence obstacle_sequence(const Obstacle& obstacle, Index number, const Box3& scene, int frames) {
@@ -156,8 +137,21 @@ std::string body_obj_text(const Simulator& simulator, const Body& body, const Ob
                       body.surface.torn);
 }
 
+void check_output_names(const Simulator& simulator) {
+  std::vector<std::string> bodies;
+  std::vector<std::string> obstacles;
+  for (const Body& body : simulator.network().bodies) bodies.push_back(body.name);
+  for (const Obstacle& obstacle : simulator.environment().obstacles()) obstacles.push_back(obstacle.name);
+  std::vector<Problem> problems;
+  check_names("body", bodies, problems);
+  check_names("obstacle", obstacles, problems);
+  if (std::find(bodies.begin(), bodies.end(), kObstacleFolder) != bodies.end()) {
+    problems.push_back({"", "body", '"' + kObstacleFolder + '"', "is reserved for the folder of the obstacles", "rename it"});
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
 std::vector<ObjSequence> obj_sequences(const Simulator& simulator, const ObjSources& sources, int frames) {
-  check_names(simulator);
   std::vector<ObjSequence> sequences;
   for (std::size_t i = 0; i < simulator.network().bodies.size(); ++i) {
     sequences.push_back(body_sequence(simulator, i, sources, frames));

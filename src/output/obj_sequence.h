@@ -46,8 +46,11 @@ struct CopiedFile {
 /// The body's OBJ text at the simulator's present time: its source with new `v` lines. Without a source (null), its surface.
 [[nodiscard]] std::string body_obj_text(const Simulator& simulator, const Body& body, const ObjSource* source);
 
-/// The sequences of all bodies, then of all obstacles. Throws InputError for names that are not valid folder names: a name with
-/// characters other than letters, digits, `_` and `-`, a name that is used twice, or a body with the name `obstacles`.
+/// Throws InputError for names of bodies and obstacles that are not valid folder names: a name with characters other than letters,
+/// digits, `_` and `-`, a name that is used twice, or a body with the name `obstacles`.
+void check_output_names(const Simulator& simulator);
+
+/// The sequences of all bodies, then of all obstacles. Requires names that check_output_names() accepts.
 [[nodiscard]] std::vector<ObjSequence> obj_sequences(const Simulator& simulator, const ObjSources& sources, int frames);
 
 /// The materials of all bodies, in the folders of their frames.

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "output/file_pattern.h"
 #include "output/file_writer.h"
-#include "output/run_record.h"
+#include "output/run_summary.h"
 
 #include <algorithm>
 #include <optional>
@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // The only file of a run that was killed during its first write. Its name identifies it.
-void remove_unfinished_record(const fs::path& folder) { fs::remove(temporary_path(folder / kRunRecordFile)); }
+void remove_unfinished_summary(const fs::path& folder) { fs::remove(temporary_path(folder / kRunSummaryFile)); }
 
 void remove_files_of_run(const fs::path& folder, const std::vector<std::string>& patterns) {
   for (const std::string& pattern : patterns) {
@@ -32,19 +32,19 @@ void remove_files_of_run(const fs::path& folder, const std::vector<std::string>&
 }
 
 void remove_earlier_run(const fs::path& folder) {
-  std::optional<std::vector<std::string>> patterns = files_of_run(folder / kRunRecordFile);
+  std::optional<std::vector<std::string>> patterns = files_of_run(folder / kRunSummaryFile);
   if (!patterns) {
     throw FileError("overwrite the folder", folder.string(),
                     "it has files but no run of sprung; choose another folder, or empty this one yourself");
   }
-  std::erase(*patterns, kRunRecordFile);
+  std::erase(*patterns, kRunSummaryFile);
   remove_files_of_run(folder, *patterns);
-  fs::remove(folder / kRunRecordFile);
+  fs::remove(folder / kRunSummaryFile);
 }
 
 void prepare(const fs::path& folder, bool overwrite) {
   make_folder(folder);
-  remove_unfinished_record(folder);
+  remove_unfinished_summary(folder);
   if (fs::is_empty(folder)) return;
   if (!overwrite) {
     throw FileError("write into the folder", folder.string(),

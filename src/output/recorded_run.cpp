@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "output/file_pattern.h"
 #include "output/obj_sequence.h"
+#include "output/record/array_block.h"
+#include "output/record/record_format.h"
 
 #include <nlohmann/json.hpp>
 
@@ -11,6 +13,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -31,12 +34,12 @@ constexpr const char* kFrameRemedy = "restore this frame, or run the scene again
   throw InputError({file.string(), key, "", rule, remedy});
 }
 
-/// Requires that the record has the key with a value of this type.
+/// Requires that the summary has the key with a value of this type.
 template <class Value>
-Value read(const Json& record, const char* key, const std::filesystem::path& file) {
-  const auto found = record.find(key);
+Value read(const Json& summary, const char* key, const std::filesystem::path& file) {
+  const auto found = summary.find(key);
   try {
-    if (found != record.end()) return found->get<Value>();
+    if (found != summary.end()) return found->get<Value>();
   } catch (const Json::exception&) {
     fail(file, key, "has a value of the wrong type");
   }
@@ -44,8 +47,8 @@ Value read(const Json& record, const char* key, const std::filesystem::path& fil
 }
 
 /// Requires a whole number.
-int read_count(const Json& record, const char* key, const std::filesystem::path& file) {
-  const auto number = read<double>(record, key, file);
+int read_count(const Json& summary, const char* key, const std::filesystem::path& file) {
+  const auto number = read<double>(summary, key, file);
   if (!(number >= 0.0 && number <= std::numeric_limits<int>::max()) || number != std::floor(number)) {
     fail(file, key, "must be a whole number");
   }
@@ -75,20 +78,34 @@ std::string name_of(const std::string& pattern) {
   return file.substr(0, file.find('.'));
 }
 
+bool has_a_file_per_frame(const std::string& pattern) { return pattern.find('#') != std::string::npos; }
+
+/// A mesh as a body whose vertices are particles from `first` on.
+RecordedBody body_of(const std::string& name, PolygonMesh mesh, Index first) {
+  RecordedBody body{.name = name,
+                    .first_particle = first,
+                    .particle_count = static_cast<Index>(mesh.vertices.cols()),
+                    .particle_of = std::vector<Index>(static_cast<std::size_t>(mesh.vertices.cols())),
+                    .faces = std::move(mesh.faces),
+                    .lines = std::move(mesh.lines)};
+  std::iota(body.particle_of.begin(), body.particle_of.end(), first);
+  return body;
+}
+
 }  // namespace
 
 RecordedRun::RecordedRun(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder_, ignored)) fail(folder_, "", "is no folder");
-  read_record();
+  read_summary();
   read_diagnostics();
 }
 
-void RecordedRun::read_record() {
-  const std::filesystem::path file = folder_ / kRunRecordFile;
+void RecordedRun::read_summary() {
+  const std::filesystem::path file = folder_ / kRunSummaryFile;
   std::ifstream stream(file);
   if (!stream) fail(file, "", "is missing, so this is not the folder of a run");
-  const Json record = Json::parse(
+  const Json summary = Json::parse(
       stream,
       [&](int level, Json::parse_event_t, const Json&) {
         if (level > kMostLevels) fail(file, "", "is nested too deeply");
@@ -96,46 +113,77 @@ void RecordedRun::read_record() {
       },
       false);
   const auto patterns = files_of_run(file);
-  if (!patterns) fail(file, "", "is not the record of a run");
-  frames_ = read_count(record, "frames_written", file);
-  frame_rate_ = read<double>(record, "frame_rate", file);
-  step_ = read<double>(record, "step", file);
-  steps_per_frame_ = read_count(record, "steps_per_frame", file);
-  warnings_ = read<std::vector<std::string>>(record, "warnings", file);
-  if (record.contains("scene") && record["scene"].is_object()) scene_ = record["scene"].dump();
+  if (!patterns) fail(file, "", "is not the summary of a run");
+  frames_ = read_count(summary, "frames_written", file);
+  frame_rate_ = read<double>(summary, "frame_rate", file);
+  step_ = read<double>(summary, "step", file);
+  steps_per_frame_ = read_count(summary, "steps_per_frame", file);
+  warnings_ = read<std::vector<std::string>>(summary, "warnings", file);
+  if (summary.contains("scene") && summary["scene"].is_object()) scene_ = summary["scene"].dump();
+  if (summary.contains("scene_file")) title_ = read<std::string>(summary, "scene_file", file);
+  if (title_.empty()) title_ = std::filesystem::weakly_canonical(folder_).filename().string();
   if (frames_ < 1) fail(file, "frames_written", "is 0: the run has no frame to show");
   if (!(frame_rate_ > 0.0) || !(step_ > 0.0) || steps_per_frame_ < 1)
     fail(file, "frame_rate", "and the steps must be greater than 0");
-  read_meshes(*patterns);
-  if (record.contains("torn_faces")) read_torn_faces(record["torn_faces"].dump());
+  if (std::filesystem::exists(folder_ / kRecordFile)) {
+    read_record(frames_);
+  } else {
+    read_obj_model(*patterns);
+  }
+  if (summary.contains("torn_faces")) read_torn_faces(summary["torn_faces"].dump());
+}
+
+void RecordedRun::read_record(int frames_written) {
+  record_.emplace(folder_ / kRecordFile);
+  frames_ = std::min(frames_written, record_->frames());
+  if (frames_ < 1) fail(folder_ / kRecordFile, "", "has no whole frame", kDamagedRecordRemedy);
+  if (frames_ < frames_written) {
+    missing_ = (folder_ / kRecordFile).string() + " ends after frame " + std::to_string(frames_) + " of " +
+               std::to_string(frames_written) + ": later frames are missing; copy the file again, or run the scene again";
+  }
 }
 
 /// Faces of other bodies, and of numbers that a body does not have, are left out.
-void RecordedRun::read_torn_faces(const std::string& record) {
-  const std::filesystem::path file = folder_ / kRunRecordFile;
-  for (const Json& entry : Json::parse(record)) {
-    TornFaces torn{.body = read<std::string>(entry, "body", file),
-                   .frame = read_count(entry, "frame", file),
-                   .faces = read<std::vector<Index>>(entry, "faces", file)};
-    const auto body = std::ranges::find(bodies_, torn.body, &RecordedMesh::name);
-    if (body == bodies_.end()) continue;
-    std::erase_if(torn.faces, [&](Index face) { return face < 0 || face >= body->first.faces.face_count(); });
+void RecordedRun::read_torn_faces(const std::string& summary) {
+  const std::filesystem::path file = folder_ / kRunSummaryFile;
+  for (const Json& entry : Json::parse(summary)) {
+    TornFaces torn;  // filled member by member, see record_reader.cpp
+    torn.body = read<std::string>(entry, "body", file);
+    torn.frame = read_count(entry, "frame", file);
+    torn.faces = read<std::vector<Index>>(entry, "faces", file);
+    const auto body = std::ranges::find(model().bodies, torn.body, &RecordedBody::name);
+    if (body == model().bodies.end()) continue;
+    std::erase_if(torn.faces, [&](Index face) { return face < 0 || face >= body->faces.face_count(); });
     torn_faces_.push_back(std::move(torn));
   }
 }
 
-void RecordedRun::read_meshes(const std::vector<std::string>& patterns) {
+void RecordedRun::read_obj_model(const std::vector<std::string>& patterns) {
+  RecordedModel& model = model_of_obj_;
   for (const std::string& pattern : patterns) {
     if (!pattern.ends_with(".obj")) continue;
-    if (!stays_inside(pattern)) fail(folder_ / kRunRecordFile, "files", "lead out of the folder: " + pattern);
-    if (!pattern.starts_with(kObstacles) && fill_pattern(pattern, 1) == pattern) {
-      fail(folder_ / kRunRecordFile, "files", "name no file of each frame: " + pattern);
+    const bool is_obstacle = pattern.starts_with(kObstacles);
+    const bool changes = has_a_file_per_frame(pattern);
+    if (!stays_inside(pattern)) fail(folder_ / kRunSummaryFile, "files", "lead out of the folder: " + pattern);
+    if (!is_obstacle && !changes) fail(folder_ / kRunSummaryFile, "files", "name no file of each frame: " + pattern);
+    PolygonMesh mesh = read_obj(folder_ / fill_pattern(pattern, 1));
+    if (is_obstacle) {
+      model.obstacles.push_back({.name = name_of(pattern),
+                                 .motion = changes ? ObstacleMotion::deforming : ObstacleMotion::fixed,
+                                 .mesh = {mesh.vertices, triangulate(mesh.faces)}});
+      obstacle_patterns_.push_back(pattern);
+    } else {
+      model.bodies.push_back(body_of(name_of(pattern), std::move(mesh), model.particle_count));
+      model.particle_count += model.bodies.back().particle_count;
+      body_patterns_.push_back(pattern);
     }
-    RecordedMesh mesh{.name = name_of(pattern), .pattern = pattern, .first = {}};
-    mesh.first = read_obj(folder_ / (mesh.changes() ? fill_pattern(pattern, 1) : pattern));
-    (pattern.starts_with(kObstacles) ? obstacles_ : bodies_).push_back(std::move(mesh));
   }
-  if (bodies_.empty()) fail(folder_ / kRunRecordFile, "files", "name no body");
+  if (model.bodies.empty()) {
+    fail(folder_, "", std::string("has neither ") + kRecordFile + " nor OBJ files, so there is nothing to show",
+         "run the scene again without \"record\": false");
+  }
+  missing_ = folder_.string() + " has no " + kRecordFile +
+             ": springs, pins, velocities and contact are missing; run the scene again to have them";
 }
 
 /// A run without diagnostics is shown without plots.
@@ -152,9 +200,45 @@ void RecordedRun::read_diagnostics() {
   }
 }
 
-Points RecordedRun::positions(const RecordedMesh& mesh, int frame) const {
-  if (!mesh.changes()) return mesh.first.vertices;
-  const std::filesystem::path file = folder_ / fill_pattern(mesh.pattern, frame);
+RecordedFrame RecordedRun::frame(int number) const { return record_ ? record_->frame(number) : frame_of_obj(number); }
+
+std::vector<BrokenSprings> RecordedRun::broken_springs() const {
+  std::vector<BrokenSprings> all;
+  std::vector<char> before(static_cast<std::size_t>(model().springs.ends.cols()));
+  for (int frame = 1; record_ && frame <= frames_; ++frame) {
+    const std::vector<char> now = record_->broken(frame);
+    if (now.empty()) break;  // none can break
+    BrokenSprings broken{.frame = frame, .springs = {}};
+    for (std::size_t s = 0; s < now.size(); ++s) {
+      if (now[s] != 0 && before[s] == 0) broken.springs.push_back(static_cast<Index>(s));
+    }
+    if (!broken.springs.empty()) all.push_back(std::move(broken));
+    before = now;
+  }
+  return all;
+}
+
+RecordedFrame RecordedRun::frame_of_obj(int number) const {
+  const RecordedModel& model = model_of_obj_;
+  RecordedFrame frame{.time = (number - 1) / frame_rate_,
+                      .positions = Points(3, model.particle_count),
+                      .states = std::vector<std::uint8_t>(static_cast<std::size_t>(model.particle_count)),
+                      .poses = std::vector<RigidTransform>(model.obstacles.size(), RigidTransform::Identity())};
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const RecordedBody& body = model.bodies[b];
+    frame.positions.middleCols(body.first_particle, body.particle_count) =
+        obj_positions(body_patterns_[b], number, body.particle_count);
+  }
+  for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
+    if (model.obstacles[k].motion == ObstacleMotion::fixed) continue;
+    frame.deformed.push_back(obj_positions(obstacle_patterns_[k], number, model.obstacles[k].mesh.vertices.cols()));
+  }
+  return frame;
+}
+
+/// The positions of the file of a frame [m], 3 x `count`.
+Points RecordedRun::obj_positions(const std::string& pattern, int frame, Eigen::Index count) const {
+  const std::filesystem::path file = folder_ / fill_pattern(pattern, frame);
   std::error_code ignored;
   if (std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored)) {
     fail(file, "", "is not a regular file", kFrameRemedy);
@@ -164,9 +248,8 @@ Points RecordedRun::positions(const RecordedMesh& mesh, int frame) const {
   std::ostringstream text;
   text << stream.rdbuf();
   Points positions = read_vertex_lines(text.str());
-  if (positions.cols() != mesh.first.vertices.cols()) {
-    fail(file, "",
-         "has " + std::to_string(positions.cols()) + " vertices, the first frame has " + std::to_string(mesh.first.vertices.cols()),
+  if (positions.cols() != count) {
+    fail(file, "", "has " + std::to_string(positions.cols()) + " vertices, the first frame has " + std::to_string(count),
          kFrameRemedy);
   }
   if (!positions.allFinite()) fail(file, "", "has a position that is not finite", kFrameRemedy);

@@ -4,6 +4,8 @@
 #include "output/diagnostics_csv.h"
 #include "output/file_pattern.h"
 #include "output/forces_csv.h"
+#include "output/record/record_encoding.h"
+#include "output/record/record_format.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -19,15 +21,6 @@ namespace {
 
 constexpr const char* kDiagnosticsFile = "diagnostics.csv";
 constexpr const char* kForcesFile = "forces.csv";
-
-std::vector<std::string> patterns_of(const std::vector<ObjSequence>& sequences, const std::vector<CopiedFile>& copies,
-                                     bool has_forces) {
-  std::vector<std::string> patterns{kRunRecordFile, kDiagnosticsFile, kAnimationFile};
-  if (has_forces) patterns.emplace_back(kForcesFile);
-  for (const ObjSequence& sequence : sequences) patterns.push_back(sequence.pattern());
-  for (const CopiedFile& copy : copies) patterns.push_back(copy.path);
-  return patterns;
-}
 
 std::string content_of(const MaterialFile& file) {
   if (file.text) return *file.text;
@@ -72,24 +65,51 @@ std::vector<BrokenAttachment> broken_attachments(const Simulator& simulator) {
   return all;
 }
 
+std::vector<ObjSequence> sequences_of(const Simulator& simulator, const RunFacts& facts) {
+  check_output_names(simulator);
+  return facts.write_obj ? obj_sequences(simulator, facts.sources, facts.frames) : std::vector<ObjSequence>();
+}
+
+std::optional<RunRecorder> recorder_of(const Simulator& simulator, const RunFacts& facts) {
+  if (!facts.record) return std::nullopt;
+  return RunRecorder(simulator, facts.sources, facts.materials);
+}
+
 }  // namespace
 
 RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator)
     : folder_(std::move(folder)),
-      sequences_(obj_sequences(simulator, facts.sources, facts.frames)),
-      copies_(copied_files(facts.sources)),
+      sequences_(sequences_of(simulator, facts)),
+      copies_(facts.write_obj ? copied_files(facts.sources) : std::vector<CopiedFile>()),
       has_forces_(simulator.settings().record_forces),
-      record_(facts, simulator.settings().step, patterns_of(sequences_, copies_, has_forces_)) {
-  folder_.expect_free(patterns_of(sequences_, copies_, has_forces_));
-  write_record();
-  folder_.write(kDiagnosticsFile, csv_head());
-  if (has_forces_) folder_.write(kForcesFile, forces_csv_head());
+      recorder_(recorder_of(simulator, facts)),
+      summary_(facts, simulator.settings().step, patterns()) {
+  folder_.expect_free(patterns());
+  try {
+    write_summary();
+    if (recorder_) folder_.write(kRecordFile, encode_head(recorder_->model(), recorder_->frame(simulator)));
+    folder_.write(kDiagnosticsFile, csv_head());
+    if (has_forces_) folder_.write(kForcesFile, forces_csv_head());
+  } catch (...) {
+    for (const char* file : {kForcesFile, kDiagnosticsFile, kRecordFile, kRunSummaryFile}) folder_.remove(file);
+    throw;
+  }
+}
+
+std::vector<std::string> RunOutput::patterns() const {
+  std::vector<std::string> patterns{kRunSummaryFile, kDiagnosticsFile, kAnimationFile};
+  if (recorder_) patterns.emplace_back(kRecordFile);
+  if (has_forces_) patterns.emplace_back(kForcesFile);
+  for (const ObjSequence& sequence : sequences_) patterns.push_back(sequence.pattern());
+  for (const CopiedFile& copy : copies_) patterns.push_back(copy.path);
+  return patterns;
 }
 
 void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics) {
   const RunProgress before = progress_;
   std::vector<std::string> written;
-  std::optional<std::uintmax_t> forces_before;
+  std::optional<std::uintmax_t> forces_before;  // size [bytes]
+  std::optional<std::uintmax_t> record_before;
   ++progress_.frames_written;
   progress_.steps = simulator.state().step;
   progress_.substeps += diagnostics.substeps;
@@ -114,13 +134,16 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
         written.push_back(copy.path);
       }
     }
-    write_record();
+    // run.json never counts a frame that the record lacks, even if the program is killed.
+    if (recorder_) record_before = folder_.append(kRecordFile, encode_frame(recorder_->frame(simulator)));
+    write_summary();
     if (has_forces_) {
       forces_before = folder_.append(kForcesFile, forces_csv_rows(diagnostics.frame, diagnostics.time, simulator.reactions()));
     }
     folder_.append(kDiagnosticsFile, csv_row(diagnostics));
   } catch (...) {
     if (forces_before) folder_.shorten(kForcesFile, *forces_before);
+    if (record_before) folder_.shorten(kRecordFile, *record_before);
     for (const std::string& file : written) folder_.remove(file);
     progress_ = before;
     throw;
@@ -129,12 +152,12 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
 
 void RunOutput::finish(const std::string& outcome) {
   progress_.outcome = outcome;
-  write_record();
+  write_summary();
 }
 
-void RunOutput::write_record() {
+void RunOutput::write_summary() {
   progress_.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  folder_.write(kRunRecordFile, record_.text(progress_));
+  folder_.write(kRunSummaryFile, summary_.text(progress_));
 }
 
 }  // namespace sprung

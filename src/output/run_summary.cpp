@@ -1,4 +1,4 @@
-#include "output/run_record.h"
+#include "output/run_summary.h"
 
 #include <algorithm>
 #include <fstream>
@@ -14,7 +14,7 @@ const std::string kProgram = "sprung";
 // Frame 1 is the state at time 0.
 constexpr std::int64_t kFirstComputedFrame = 2;
 
-bool is_run_record(const Json& json) {
+bool is_run_summary(const Json& json) {
   if (!json.is_object() || json.value("program", Json()) != kProgram || !json.contains("files")) return false;
   const Json& files = json["files"];
   return files.is_array() && std::all_of(files.begin(), files.end(), [](const Json& file) { return file.is_string(); });
@@ -26,14 +26,15 @@ std::int64_t frame_of_step(std::int64_t step, std::int64_t steps_per_frame) {
   return 1 + (step + steps_per_frame - 1) / steps_per_frame;
 }
 
-struct RunRecord::Document {
+struct RunSummary::Document {
   Json json;
 };
 
-RunRecord::RunRecord(const RunFacts& facts, double step, const std::vector<std::string>& files)
+RunSummary::RunSummary(const RunFacts& facts, double step, const std::vector<std::string>& files)
     : document_(std::make_unique<Document>()) {
   document_->json = {{"program", kProgram},
                      {"version", SPRUNG_VERSION},
+                     {"scene_file", facts.scene_file},
                      {"outcome", ""},
                      {"frames", facts.frames},
                      {"frames_written", 0},
@@ -56,11 +57,11 @@ RunRecord::RunRecord(const RunFacts& facts, double step, const std::vector<std::
                      {"scene", facts.scene.empty() ? Json() : Json::parse(facts.scene)}};
 }
 
-RunRecord::~RunRecord() = default;
+RunSummary::~RunSummary() = default;
 
-void RunRecord::add_warning(const std::string& warning) { document_->json["warnings"].push_back(warning); }
+void RunSummary::add_warning(const std::string& warning) { document_->json["warnings"].push_back(warning); }
 
-std::string RunRecord::text(const RunProgress& progress) const {
+std::string RunSummary::text(const RunProgress& progress) const {
   Json& json = document_->json;
   json["outcome"] = progress.outcome;
   json["frames_written"] = progress.frames_written;
@@ -90,10 +91,10 @@ std::string RunRecord::text(const RunProgress& progress) const {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::optional<std::vector<std::string>> files_of_run(const std::filesystem::path& run_record) {
-  std::ifstream stream(run_record);
+std::optional<std::vector<std::string>> files_of_run(const std::filesystem::path& run_summary) {
+  std::ifstream stream(run_summary);
   const Json json = Json::parse(stream, nullptr, false);
-  if (!is_run_record(json)) return std::nullopt;
+  if (!is_run_summary(json)) return std::nullopt;
   return json["files"].get<std::vector<std::string>>();
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/types.h"
 #include "geometry/obj_source/obj_source.h"
+#include "output/run_recorder.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -13,7 +14,7 @@
 
 namespace sprung {
 
-inline constexpr const char* kRunRecordFile = "run.json";
+inline constexpr const char* kRunSummaryFile = "run.json";
 
 /// What an export of the run as HTML writes into its folder. It is listed among the run's files, so that it goes with them.
 inline constexpr const char* kAnimationFile = "animation.html";
@@ -28,7 +29,11 @@ struct RunFacts {
   std::string stretch_solver{};         ///< of the stretch limit; empty without one
   std::optional<std::uint64_t> seed{};  ///< of random pushes; none without them
   std::vector<std::string> warnings{};
-  ObjSources sources{};  ///< of bodies that are written as their files are
+  ObjSources sources{};       ///< of bodies that are written as their files are
+  std::string scene_file{};   ///< name of the scene's file, without its folders; empty if there is none
+  BodyMaterials materials{};  ///< of bodies that have one
+  bool write_obj = true;      ///< whether frames are written as OBJ files
+  bool record = true;         ///< whether record.bin is written
 };
 
 /// A body whose stretch limit was handed over from Gauss-Seidel passes to Newton.
@@ -70,11 +75,11 @@ struct RunProgress {
 };
 
 /// The text of run.json.
-class RunRecord {
+class RunSummary {
  public:
   /// `step` [s]; `files` are the patterns of all files of the run. Requires that the scene is JSON text or empty.
-  RunRecord(const RunFacts& facts, double step, const std::vector<std::string>& files);
-  ~RunRecord();
+  RunSummary(const RunFacts& facts, double step, const std::vector<std::string>& files);
+  ~RunSummary();
 
   /// Adds to the warnings of the facts.
   void add_warning(const std::string& warning);
@@ -87,6 +92,6 @@ class RunRecord {
 };
 
 /// The patterns of a run's files from its run.json; nothing if the file cannot be read or is not a run.json of Sprung.
-[[nodiscard]] std::optional<std::vector<std::string>> files_of_run(const std::filesystem::path& run_record);
+[[nodiscard]] std::optional<std::vector<std::string>> files_of_run(const std::filesystem::path& run_summary);
 
 }  // namespace sprung

@@ -8,6 +8,15 @@ namespace {
 constexpr double kRoomToMove = 2.0;
 constexpr double kExtentOfNothing = 1.0;
 
+/// Half the side [m] of the square.
+double half_space_extent(const Box3& scene, const Obstacle& half_space) {
+  if (scene.isEmpty()) return kExtentOfNothing;
+  const auto& geometry = std::get<HalfSpaceGeometry>(half_space.geometry);
+  const Vector3 middle = half_space.rest_pose * Vector3(geometry.offset * geometry.normal);
+  const double reach = (scene.center() - middle).norm() + 0.5 * scene.diagonal().norm();
+  return reach > 0.0 ? kRoomToMove * reach : kExtentOfNothing;
+}
+
 }  // namespace
 
 Box3 scene_bounds(const Simulator& simulator) {
@@ -20,12 +29,9 @@ Box3 scene_bounds(const Simulator& simulator) {
   return box;
 }
 
-double half_space_extent(const Box3& scene, const Obstacle& half_space) {
-  if (scene.isEmpty()) return kExtentOfNothing;
-  const auto& geometry = std::get<HalfSpaceGeometry>(half_space.geometry);
-  const Vector3 middle = half_space.rest_pose * Vector3(geometry.offset * geometry.normal);
-  const double reach = (scene.center() - middle).norm() + 0.5 * scene.diagonal().norm();
-  return reach > 0.0 ? kRoomToMove * reach : kExtentOfNothing;
+TriangleMesh surface_mesh(const Obstacle& obstacle, const Box3& scene) {
+  const bool endless = std::holds_alternative<HalfSpaceGeometry>(obstacle.geometry);
+  return obstacle_mesh(obstacle.geometry, endless ? half_space_extent(scene, obstacle) : 0.0);
 }
 
 }  // namespace sprung

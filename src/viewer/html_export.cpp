@@ -99,6 +99,53 @@ std::string escaped(std::string text) {
   return text;
 }
 
+/// The states of a frame as differences to those of the frame before, modulo 256.
+void append_states(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& states, Bytes& bytes) {
+  for (std::size_t k = 0; k < states.size(); ++k) bytes.push_back(static_cast<std::uint8_t>(states[k] - before[k]));
+}
+
+/// Rotation by rows, then position, of each rigid obstacle.
+Json poses_of(const FrameState& state) {
+  Json poses = Json::array();
+  for (const RigidTransform& pose : state.poses) {
+    Json numbers = Json::array();
+    for (int k = 0; k < 9; ++k) numbers.push_back(pose.linear()(k / 3, k % 3));
+    for (int k = 0; k < 3; ++k) numbers.push_back(pose.translation()[k]);
+    poses.push_back(numbers);
+  }
+  return poses;
+}
+
+bool begins_path(std::string_view text) {
+  return text.starts_with('/') || text.starts_with("~/") || text.starts_with("./") || text.starts_with("../");
+}
+
+/// The text with the last name of each path alone: a page that is sent tells nothing of the machine that made it.
+std::string without_folders(const std::string& text) {
+  constexpr std::string_view kAround = " \t\n\"'(),;:=";
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(kAround, at), text.size());
+    const std::string_view word = std::string_view(text).substr(at, end - at);
+    result += begins_path(word) ? word.substr(word.rfind('/') + 1) : word;
+    if (end < text.size()) result += text[end];
+    at = end + 1;
+  }
+  return result;
+}
+
+/// Of all texts in the JSON value. The value of the key `file` is a path as a whole, which may have blanks.
+void remove_folders(Json& json, const std::string& key = "") {
+  if (json.is_object()) {
+    for (auto& [name, value] : json.items()) remove_folders(value, name);
+  } else if (json.is_array()) {
+    for (Json& value : json) remove_folders(value, key);
+  } else if (json.is_string()) {
+    const std::string text = json.get<std::string>();
+    json = key == "file" || key == "files" ? text.substr(text.rfind('/') + 1) : without_folders(text);
+  }
+}
+
 }  // namespace
 
 HtmlAnimation html_animation(const Replay& replay, const std::string& page) {
@@ -115,21 +162,30 @@ HtmlAnimation html_animation(const Replay& replay, const std::string& page) {
   Quantiser quantiser(box);
   Bytes bytes = topology_message({.run = 0, .generation = 1}, replay.topology());
   const std::size_t topology_bytes = bytes.size();
+  Bytes state_bytes;
   Json times = Json::array();
+  Json poses = Json::array();
   std::vector<std::uint16_t> before;
+  std::vector<std::uint8_t> states_before;
   for (int frame = 1; frame <= count; ++frame) {
-    std::vector<std::uint16_t> levels = levels_of(replay.state(frame), quantiser);
+    const FrameState state = replay.state(frame);
+    std::vector<std::uint16_t> levels = levels_of(state, quantiser);
     before.resize(levels.size());  // zeros before the first frame
+    states_before.resize(state.states.size());
     append_differences(before, levels, bytes);
+    append_states(states_before, state.states, state_bytes);
     before = std::move(levels);
+    states_before = state.states;
     times.push_back(replay.time(frame));
+    poses.push_back(poses_of(state));
   }
-  const Json data{{"scene", Json::parse(replay.scene_text())},
-                  {"bounds", quantiser.bounds()},
-                  {"error", quantiser.error()},
-                  {"times", std::move(times)},
-                  {"topology_bytes", topology_bytes},
-                  {"data", base64(compressed(bytes))}};
+  const std::size_t level_bytes = bytes.size() - topology_bytes;
+  bytes.insert(bytes.end(), state_bytes.begin(), state_bytes.end());
+  Json scene = Json::parse(replay.scene_text());
+  remove_folders(scene);
+  const Json data{{"scene", std::move(scene)},  {"bounds", quantiser.bounds()},     {"error", quantiser.error()},
+                  {"times", std::move(times)},  {"poses", std::move(poses)},        {"topology_bytes", topology_bytes},
+                  {"level_bytes", level_bytes}, {"data", base64(compressed(bytes))}};
   const std::string element = "<script type=\"application/json\" id=\"sprung-run\">" + escaped(data.dump()) + "</script>";
   return {.text = page.substr(0, place) + element + page.substr(place), .error = quantiser.error()};
 }

@@ -216,8 +216,7 @@ Topology LiveRun::topology() const {
   }
   const Box3 scene = scene_bounds(simulator);
   for (const Obstacle& obstacle : simulator.environment().obstacles()) {
-    const bool endless = std::holds_alternative<HalfSpaceGeometry>(obstacle.geometry);
-    TriangleMesh mesh = obstacle_mesh(obstacle.geometry, endless ? half_space_extent(scene, obstacle) : 0.0);
+    TriangleMesh mesh = surface_mesh(obstacle, scene);
     if (!obstacle.changes()) mesh.vertices = obstacle.rest_pose * mesh.vertices;
     topology.obstacles.push_back(std::move(mesh));
   }

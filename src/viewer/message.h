@@ -1,6 +1,7 @@
 // The binary messages to the page; PROTOCOL.md describes them byte by byte.
 #pragma once
 
+#include "output/record/recorded_model.h"
 #include "simulation/simulator.h"
 
 #include <cstdint>
@@ -53,15 +54,11 @@ struct FrameNumbers {
   double contact_energy = 0.0;
 };
 
-/// Bits of a particle's state.
-inline constexpr std::uint8_t kInContact = 1;
-inline constexpr std::uint8_t kPinned = 2;
-
 /// The state of a run.
 struct FrameState {
   Points positions{3, 0};               ///< [m]
   Scalars speeds{};                     ///< [m/s]
-  std::vector<std::uint8_t> states;     ///< of particles, bits as above
+  std::vector<std::uint8_t> states;     ///< of particles: kInContact, kPinned
   std::vector<RigidTransform> poses{};  ///< of rigid obstacles that move
   std::vector<Points> deformed{};       ///< vertices of deforming obstacles [m]
 };

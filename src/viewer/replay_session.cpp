@@ -1,9 +1,6 @@
 #include "viewer/replay_session.h"
 
 #include "base/error.h"
-#include "network/model/pin_schedule.h"
-#include "output/run_record.h"
-#include "viewer/live_run.h"
 #include "viewer/page_command.h"
 #include "viewer/text_messages.h"
 
@@ -12,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace sprung {
 namespace {
@@ -21,36 +17,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t kGeneration = 1;
 
-/// The particle of each vertex of a body's frames, counted within the body.
-std::vector<Index> particles_of(const LoadedScene& scene, const Body& body) {
-  const auto source = scene.sources.find(body.name);
-  if (source != scene.sources.end() && !source->second->particle_of.empty()) return source->second->particle_of;
-  std::vector<Index> particles(static_cast<std::size_t>(body.vertex_count()));
-  std::iota(particles.begin(), particles.end(), 0);
-  return particles;
-}
-
-std::vector<Index> particles_of_frames(const LiveRun* live) {
+std::vector<Index> particles_of_vertices(const RecordedModel& model) {
   std::vector<Index> particles;
-  if (live == nullptr) return particles;
-  for (const Body& body : live->simulator().network().bodies) {
-    for (const Index particle : particles_of(live->loaded(), body)) particles.push_back(body.first_particle + particle);
-  }
+  for (const RecordedBody& body : model.bodies) particles.insert(particles.end(), body.particle_of.begin(), body.particle_of.end());
   return particles;
-}
-
-/// The simulator of the run's scene, if it has the run's particles.
-std::unique_ptr<const LiveRun> scene_of(const RecordedRun& run, const std::vector<std::string>& mesh_paths) try {
-  if (run.scene().empty()) return nullptr;
-  auto live = std::make_unique<const LiveRun>(SceneSource{
-      .file = (run.folder() / kRunRecordFile).string(), .overrides = {}, .mesh_paths = mesh_paths, .text = run.scene()});
-  const std::vector<Body>& bodies = live->simulator().network().bodies;
-  const bool same = std::ranges::equal(bodies, run.bodies(), [&](const Body& body, const RecordedMesh& mesh) {
-    return body.name == mesh.name && std::ssize(particles_of(live->loaded(), body)) == mesh.first.vertices.cols();
-  });
-  return same ? std::move(live) : nullptr;
-} catch (const std::runtime_error&) {
-  return nullptr;  // its meshes may be gone, or it is of an older version
 }
 
 double column(const RecordedDiagnostics& table, const std::string& name, std::size_t row) {
@@ -74,8 +44,8 @@ Json table_of(const RecordedDiagnostics& diagnostics) {
 Json torn_triangles(const RecordedRun& run) {
   Json all = Json::array();
   Index first = 0;  // triangle of the body
-  for (const RecordedMesh& body : run.bodies()) {
-    const std::vector<Index>& corner_begin = body.first.faces.corner_begin;
+  for (const RecordedBody& body : run.model().bodies) {
+    const std::vector<Index>& corner_begin = body.faces.corner_begin;
     const auto triangles_before = [&](Index face) { return corner_begin[face] - 2 * face; };
     for (const TornFaces& torn : run.torn_faces()) {
       if (torn.body != body.name) continue;
@@ -85,34 +55,62 @@ Json torn_triangles(const RecordedRun& run) {
       }
       all.push_back({{"frame", torn.frame}, {"triangles", triangles}});
     }
-    first += triangles_before(body.first.faces.face_count());
+    first += triangles_before(body.faces.face_count());
+  }
+  return all;
+}
+
+/// The springs of the topology that are gone from a frame on.
+Json broken_springs(const RecordedRun& run, const std::vector<Index>& spring_of) {
+  Json all = Json::array();
+  for (const BrokenSprings& broken : run.broken_springs()) {
+    Json springs = Json::array();
+    for (const Index spring : broken.springs) {
+      const auto shown = std::ranges::lower_bound(spring_of, spring);
+      if (shown != spring_of.end() && *shown == spring) springs.push_back(shown - spring_of.begin());
+    }
+    all.push_back({{"frame", broken.frame}, {"springs", springs}});
   }
   return all;
 }
 
 }  // namespace
 
-Replay::Replay(const std::filesystem::path& folder, const std::vector<std::string>& mesh_paths)
-    : run_(folder), live_(scene_of(run_, mesh_paths)), particle_of_(particles_of_frames(live_.get())) {}
-Replay::~Replay() = default;
+/// Frames lack particles such as those of cells that carry a surface.
+Replay::Replay(const std::filesystem::path& folder) : run_(folder), particle_of_(particles_of_vertices(run_.model())) {
+  std::vector<Index> vertex_of(static_cast<std::size_t>(run_.model().particle_count), kNone);  // one of those of a particle
+  for (std::size_t i = 0; i < particle_of_.size(); ++i) vertex_of[particle_of_[i]] = static_cast<Index>(i);
+  const Edges& ends = run_.model().springs.ends;
+  springs_.resize(Eigen::NoChange, ends.cols());
+  for (Index s = 0; s < ends.cols(); ++s) {
+    const Index first = vertex_of[ends(0, s)];
+    const Index second = vertex_of[ends(1, s)];
+    if (first == kNone || second == kNone) continue;
+    springs_.col(std::ssize(spring_of_)) << first, second;
+    spring_of_.push_back(s);
+  }
+  springs_.conservativeResize(Eigen::NoChange, std::ssize(spring_of_));
+}
 
 std::string Replay::scene_text() const {
   const Json scene = run_.scene().empty() ? Json::object() : Json::parse(run_.scene());
   Json bodies = Json::array();
-  Eigen::Index first = 0;
-  for (const RecordedMesh& body : run_.bodies()) {
-    bodies.push_back({{"name", body.name}, {"first", first}, {"count", body.first.vertices.cols()}});
-    first += body.first.vertices.cols();
+  std::size_t first = 0;
+  for (const RecordedBody& body : run_.model().bodies) {
+    bodies.push_back({{"name", body.name}, {"first", first}, {"count", body.particle_of.size()}});
+    first += body.particle_of.size();
   }
   Json obstacles = Json::array();
-  for (const RecordedMesh& obstacle : run_.obstacles()) {
-    obstacles.push_back({{"name", obstacle.name}, {"motion", obstacle.changes() ? "deforming" : "fixed"}});
+  for (const RecordedObstacle& obstacle : run_.model().obstacles) {
+    obstacles.push_back({{"name", obstacle.name}, {"motion", kObstacleMotionNames[static_cast<std::size_t>(obstacle.motion)]}});
   }
+  std::vector<std::string> warnings = run_.warnings();
+  if (!run_.missing().empty()) warnings.push_back(run_.missing());
   const Json integrator = scene.contains("integrator") ? scene["integrator"] : Json();
   const Json message{{"type", "scene"},
                      {"run", 0},
                      {"generation", kGeneration},
-                     {"title", run_.folder().string()},
+                     {"title", run_.title()},
                      {"integrator", integrator.is_object() ? integrator.value("type", Json("verlet")) : Json("verlet")},
                      {"step", run_.step()},
                      {"steps_per_frame", run_.steps_per_frame()},
@@ -120,89 +118,52 @@ std::string Replay::scene_text() const {
                      {"frames", run_.frames()},
                      {"largest_stable_step", Json()},
                      {"live", false},
-                     {"complete", live_ != nullptr},
+                     {"complete", run_.is_complete()},
                      {"scene", scene},
                      {"changed", scene},
-                     {"warnings", run_.warnings()},
+                     {"warnings", warnings},
                      {"bodies", bodies},
                      {"obstacles", obstacles},
                      {"torn", torn_triangles(run_)},
+                     {"broken", broken_springs(run_, spring_of_)},
                      {"diagnostics", table_of(run_.diagnostics())}};
   return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 Topology Replay::topology() const {
+  const RecordedModel& model = run_.model();
   Topology topology;
-  if (live_) topology = live_->topology();
-  topology.triangles.resize(3, 0);
-  topology.segments.resize(2, 0);
-  topology.obstacles.clear();
   Index first = 0;
-  for (const RecordedMesh& body : run_.bodies()) {
-    append_columns(triangulate(body.first.faces), first, topology.triangles);
-    append_columns(body.first.lines, first, topology.segments);
-    first += static_cast<Index>(body.first.vertices.cols());
+  for (const RecordedBody& body : model.bodies) {
+    append_columns(triangulate(body.faces), first, topology.triangles);
+    append_columns(body.lines, first, topology.segments);
+    first += static_cast<Index>(body.particle_of.size());
   }
   topology.particles = first;
-  if (live_) show_springs_of_vertices(topology);
-  for (const RecordedMesh& obstacle : run_.obstacles()) {
-    TriangleMesh mesh;
-    mesh.vertices = obstacle.first.vertices;
-    mesh.triangles = triangulate(obstacle.first.faces);
-    topology.obstacles.push_back(std::move(mesh));
+  topology.springs = springs_;
+  for (const Index s : spring_of_) {
+    topology.rest_lengths.push_back(static_cast<float>(model.springs.rest_lengths[s]));
+    topology.kinds.push_back(static_cast<std::uint32_t>(model.springs.kinds[s]));
   }
+  for (const RecordedObstacle& obstacle : model.obstacles) topology.obstacles.push_back(obstacle.mesh);
   return topology;
 }
 
-/// Leaves out springs of particles that frames lack, such as those of cells that carry a surface.
-void Replay::show_springs_of_vertices(Topology& topology) const {
-  std::vector<Index> vertex_of(live_->simulator().network().particle_count(), kNone);  // one of those of a particle
-  for (std::size_t i = 0; i < particle_of_.size(); ++i) vertex_of[particle_of_[i]] = static_cast<Index>(i);
-  Index kept = 0;
-  for (Index s = 0; s < topology.springs.cols(); ++s) {
-    const Index first = vertex_of[topology.springs(0, s)];
-    const Index second = vertex_of[topology.springs(1, s)];
-    if (first == kNone || second == kNone) continue;
-    topology.springs.col(kept) << first, second;
-    topology.rest_lengths[kept] = topology.rest_lengths[s];
-    topology.kinds[kept++] = topology.kinds[s];
-  }
-  topology.springs.conservativeResize(2, kept);
-  topology.rest_lengths.resize(kept);
-  topology.kinds.resize(kept);
-}
-
-/// Whether pins hold each particle of the network in a frame.
-std::vector<char> Replay::pinned(int frame) const {
-  const SpringNetwork& network = live_->simulator().network();
-  std::vector<char> pinned(network.particle_count(), 0);
-  const double time = due_before(static_cast<std::int64_t>(frame - 1) * run_.steps_per_frame(), run_.step());
-  for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
-    for (const Pin& pin : *pins) {
-      if (!holds_at(pin, time)) continue;
-      for (const Index particle : pin.particles) pinned[particle] = 1;
-    }
-  }
-  return pinned;
-}
-
 FrameState Replay::state(int frame) const {
+  const RecordedFrame recorded = run_.frame(frame);
+  const std::vector<RecordedObstacle>& obstacles = run_.model().obstacles;
   FrameState state;
-  for (const RecordedMesh& body : run_.bodies()) {
-    const Points positions = run_.positions(body, frame);
-    const Eigen::Index first = state.positions.cols();
-    state.positions.conservativeResize(3, first + positions.cols());
-    state.positions.rightCols(positions.cols()) = positions;
-  }
-  for (const RecordedMesh& obstacle : run_.obstacles()) {
-    if (obstacle.changes()) state.deformed.push_back(run_.positions(obstacle, frame));
-  }
-  state.states.assign(static_cast<std::size_t>(state.positions.cols()), 0);
-  const std::vector<char> is_pinned = live_ ? pinned(frame) : std::vector<char>();
-  for (std::size_t i = 0; live_ && i < state.states.size(); ++i) {
-    if (is_pinned[particle_of_[i]] != 0) state.states[i] = kPinned;
-  }
+  state.positions = recorded.positions(Eigen::all, particle_of_);
   state.speeds = Scalars::Zero(state.positions.cols());
+  if (recorded.velocities.cols() > 0) {
+    state.speeds = recorded.velocities.colwise().norm().transpose()(particle_of_);
+  }
+  for (const Index particle : particle_of_) state.states.push_back(recorded.states[particle]);
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    if (obstacles[k].motion == ObstacleMotion::rigid) state.poses.push_back(recorded.poses[k]);
+    if (obstacles[k].motion != ObstacleMotion::deforming) continue;
+    state.deformed.push_back(recorded.poses[k] * recorded.deformed[state.deformed.size()]);
+  }
   return state;
 }
 
@@ -221,8 +182,7 @@ FrameNumbers Replay::numbers(int frame) const {
           .contact_energy = value("contact_energy")};
 }
 
-ReplaySession::ReplaySession(const std::filesystem::path& folder, const std::vector<std::string>& mesh_paths)
-    : replay_(folder, mesh_paths) {}
+ReplaySession::ReplaySession(const std::filesystem::path& folder) : replay_(folder) {}
 
 ReplaySession::~ReplaySession() { stop(); }
 
@@ -235,7 +195,7 @@ void ReplaySession::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-std::string ReplaySession::hello() const { return hello_text("replay", replay_.run().folder().string(), {}); }
+std::string ReplaySession::hello() const { return hello_text("replay", replay_.run().title(), {}); }
 
 void ReplaySession::start(Publisher& publisher) {
   publisher_ = &publisher;

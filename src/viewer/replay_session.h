@@ -2,7 +2,6 @@
 #pragma once
 
 #include "output/recorded_run.h"
-#include "scene/load_scene.h"
 #include "viewer/session.h"
 
 #include <condition_variable>
@@ -17,40 +16,35 @@
 
 namespace sprung {
 
-class LiveRun;
-
-/// The bodies' surfaces and all obstacles of a recorded run. Springs and pins come from its scene, if that still builds a network
-/// of the same particles.
+/// A recorded run as the page shows it: the vertices of its frames, the springs and pins between them, and its obstacles.
 class Replay {
  public:
-  /// `mesh_paths` are the folders where the scene's meshes are looked for. Throws as RecordedRun().
-  Replay(const std::filesystem::path& folder, const std::vector<std::string>& mesh_paths);
-  ~Replay();
+  /// Throws as RecordedRun().
+  explicit Replay(const std::filesystem::path& folder);
 
   [[nodiscard]] const RecordedRun& run() const { return run_; }
   [[nodiscard]] std::string scene_text() const;
   [[nodiscard]] Topology topology() const;
 
-  /// The positions of a frame, counted from 1, those of obstacles too. Obstacles with a file for each frame count as deforming.
-  /// Throws as RecordedRun::positions().
+  /// A frame, counted from 1. Throws as RecordedRun::frame().
   [[nodiscard]] FrameState state(int frame) const;
   [[nodiscard]] FrameNumbers numbers(int frame) const;
   [[nodiscard]] double time(int frame) const { return (frame - 1) / run_.frame_rate(); }
 
  private:
-  void show_springs_of_vertices(Topology& topology) const;
-  [[nodiscard]] std::vector<char> pinned(int frame) const;
-
   RecordedRun run_;
-  std::unique_ptr<const LiveRun> live_;  ///< of the scene, at time 0; null if it does not build
-  std::vector<Index> particle_of_;       ///< of each vertex of the bodies' frames; a weld gives several the same one
+  std::vector<Index> particle_of_;  ///< of each vertex of the bodies' frames; a weld gives several the same one
+  Edges springs_;                   ///< those between vertices
+  std::vector<Index> spring_of_;    ///< the number of each of these in the model, ascending
 };
 
 class ReplaySession final : public ViewSession {
  public:
   /// Throws as Replay().
-  ReplaySession(const std::filesystem::path& folder, const std::vector<std::string>& mesh_paths);
+  explicit ReplaySession(const std::filesystem::path& folder);
   ~ReplaySession() override;
+
+  [[nodiscard]] const RecordedRun& run() const { return replay_.run(); }
 
   [[nodiscard]] std::string hello() const override;
   void start(Publisher& publisher) override;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/format.h"
+#include "output/run_recorder.h"
 
 #include <nlohmann/json.hpp>
 
@@ -17,11 +18,6 @@ std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 
 Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-const char* motion_of(const Obstacle& obstacle) {
-  if (obstacle.deforms()) return "deforming";
-  return obstacle.changes() ? "rigid" : "fixed";
-}
-
 Json bodies_of(const SpringNetwork& network) {
   Json bodies = Json::array();
   for (const Body& body : network.bodies) {
@@ -33,7 +29,7 @@ Json bodies_of(const SpringNetwork& network) {
 Json obstacles_of(const Simulator& simulator) {
   Json obstacles = Json::array();
   for (const Obstacle& obstacle : simulator.environment().obstacles()) {
-    obstacles.push_back({{"name", obstacle.name}, {"motion", motion_of(obstacle)}});
+    obstacles.push_back({{"name", obstacle.name}, {"motion", kObstacleMotionNames[static_cast<std::size_t>(motion_of(obstacle))]}});
   }
   return obstacles;
 }

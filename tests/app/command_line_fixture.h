@@ -66,7 +66,7 @@ class CommandLine : public ::testing::Test {
     return (scratch_ / name).string();
   }
   [[nodiscard]] std::string out(const std::string& name = "out") const { return (scratch_ / name).string(); }
-  [[nodiscard]] json record() const { return json::parse(read_text(scratch_ / "out/run.json")); }
+  [[nodiscard]] json summary() const { return json::parse(read_text(scratch_ / "out/run.json")); }
   [[nodiscard]] bool wrote_something() const { return std::filesystem::exists(out()); }
 
   static Ending run(const std::vector<std::string>& arguments) { return Program(arguments).wait(); }

@@ -33,19 +33,28 @@ TEST_F(CommandLine, RunWritesTheFramesAndSaysSoOnStandardErrorOnly) {
   EXPECT_EQ(ending.out, "");
   EXPECT_THAT(ending.err, HasSubstr("7 frames"));
   EXPECT_THAT(ending.err, HasSubstr("frame 7/7"));
-  EXPECT_THAT(listing(out()),
-              ElementsAre("diagnostics.csv", "rope/", "rope/rope.0001.obj", "rope/rope.0002.obj", "rope/rope.0003.obj",
-                          "rope/rope.0004.obj", "rope/rope.0005.obj", "rope/rope.0006.obj", "rope/rope.0007.obj", "run.json"));
-  EXPECT_EQ(record()["outcome"], "done");
-  EXPECT_EQ(record()["frames_written"], 7);
-  EXPECT_EQ(record()["scene"]["bodies"]["rope"]["mass"], 0.1);
+  EXPECT_THAT(listing(out()), ElementsAre("diagnostics.csv", "record.bin", "rope/", "rope/rope.0001.obj", "rope/rope.0002.obj",
+                                          "rope/rope.0003.obj", "rope/rope.0004.obj", "rope/rope.0005.obj", "rope/rope.0006.obj",
+                                          "rope/rope.0007.obj", "run.json"));
+  EXPECT_EQ(summary()["outcome"], "done");
+  EXPECT_EQ(summary()["frames_written"], 7);
+  EXPECT_EQ(summary()["scene"]["bodies"]["rope"]["mass"], 0.1);
+}
+
+TEST_F(CommandLine, RunWithoutFormatWritesTheRecordAlone) {
+  EXPECT_EQ(run({"run", save(rope_scene()), "--out", out(), "--format", "none"}).code, 0);
+  EXPECT_THAT(listing(out()), ElementsAre("diagnostics.csv", "record.bin", "run.json"));
+  EXPECT_THAT(summary()["files"].get<std::vector<std::string>>(), ::testing::Contains("record.bin"));
+  const Ending unknown = run({"run", save(rope_scene()), "--out", out(), "--overwrite", "--format", "fbx"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("--format"));
 }
 
 TEST_F(CommandLine, RunRecordsTheSeedOfPushes) {
   EXPECT_EQ(run({"run", save(rope_scene()), "--set", "seed=7", "--out", out()}).code, 0);
-  EXPECT_EQ(record()["seed"], 7);
+  EXPECT_EQ(summary()["seed"], 7);
   EXPECT_EQ(run({"run", save(rope_scene()), "--set", "perturb=false", "--out", out(), "--overwrite"}).code, 0);
-  EXPECT_TRUE(record()["seed"].is_null());
+  EXPECT_TRUE(summary()["seed"].is_null());
 }
 
 // A row for each of 7 frames and 2 pins; from the first frame on the pins hold the rope together.
@@ -57,11 +66,11 @@ TEST_F(CommandLine, RunWritesTheForcesOfPinsOnRequest) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 7 * 2);
   EXPECT_THAT(text, StartsWith("frame,time,name,force_x,force_y,force_z\n1,0,rope.pins[0],0,0,0\n1,0,rope.pins[1],0,0,0\n2,"));
   EXPECT_THAT(text, EndsWith(",rope.pins[1],0,0,0\n"));
-  EXPECT_THAT(record()["files"], Contains("forces.csv"));
-  EXPECT_EQ(record()["scene"]["output"]["forces"], true);
+  EXPECT_THAT(summary()["files"], Contains("forces.csv"));
+  EXPECT_EQ(summary()["scene"]["output"]["forces"], true);
   EXPECT_EQ(run({"run", save(scene), "--out", out(), "--overwrite"}).code, 0);
   EXPECT_FALSE(std::filesystem::exists(scratch_ / "out/forces.csv"));
-  EXPECT_EQ(record()["scene"]["output"]["forces"], false);
+  EXPECT_EQ(summary()["scene"]["output"]["forces"], false);
 }
 
 TEST_F(CommandLine, QuietSaysNothing) {
@@ -97,8 +106,8 @@ TEST_F(CommandLine, SetReplacesValuesAndFramesTheDuration) {
   const Ending ending = run({"run", "--set", "bodies.rope.mass=0.25", "--set", "bodies.rope.shape.particles=9", save(rope_scene()),
                              "--frames", "2", "--out", out()});
   EXPECT_EQ(ending.code, 0) << ending.err;
-  EXPECT_EQ(record()["frames"], 2);
-  EXPECT_EQ(record()["scene"]["bodies"]["rope"]["mass"], 0.25);
+  EXPECT_EQ(summary()["frames"], 2);
+  EXPECT_EQ(summary()["scene"]["bodies"]["rope"]["mass"], 0.25);
   EXPECT_THAT(read_text(scratch_ / "out/rope/rope.0002.obj"), HasSubstr("l 1 2 3 4 5 6 7 8 9"));
 }
 
@@ -135,8 +144,8 @@ TEST_F(CommandLine, RunWarnsOnceOfInfeasibleVerticesBetweenObstacles) {
   const Ending ending = run({"run", save(scene), "--out", out()});
   EXPECT_EQ(ending.code, 0) << ending.err;
   EXPECT_THAT(ending.err, AllOf(HasSubstr("had no admissible position"), HasSubstr("Increase the clearance")));
-  ASSERT_EQ(record()["warnings"].size(), 1U);
-  EXPECT_THAT(record()["warnings"][0].get<std::string>(), StartsWith("frame "));
+  ASSERT_EQ(summary()["warnings"].size(), 1U);
+  EXPECT_THAT(summary()["warnings"][0].get<std::string>(), StartsWith("frame "));
 }
 
 // Each of the 100 particles is infeasible in each step, which the column sums.
@@ -187,7 +196,7 @@ TEST_F(CommandLine, RunReportsUnexplainedEnergy) {
   Ending ending = run({"run", save(scene), "--out", out()});
   EXPECT_EQ(ending.code, 0) << ending.err;
   EXPECT_THAT(ending.err, AllOf(HasSubstr("nothing drives the scene"), HasSubstr("more damping")));
-  EXPECT_THAT(record()["warnings"], Contains(StartsWith("the total energy rose from")));
+  EXPECT_THAT(summary()["warnings"], Contains(StartsWith("the total energy rose from")));
 
   scene["bodies"]["rope"]["springs"]["structural"]["damping"] = 0.05;
   EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("warning")));
@@ -226,7 +235,7 @@ TEST_F(CommandLine, RunReportsBodiesTooThinToRestOnEachOther) {
   Ending ending = run({"run", save(scene), "--out", out()});
   EXPECT_EQ(ending.code, 0) << ending.err;
   EXPECT_THAT(ending.err, HasSubstr("thickness 0 m is too small for the step"));
-  EXPECT_THAT(record()["warnings"], Contains(StartsWith("thickness 0 m is too small")));
+  EXPECT_THAT(summary()["warnings"], Contains(StartsWith("thickness 0 m is too small")));
 
   for (json& body : scene["bodies"]) body["thickness"] = 0.005;
   ending = run({"run", save(scene), "--out", out(), "--overwrite"});
@@ -276,8 +285,8 @@ TEST_F(CommandLine, ReportsTheSolverOfTheStretchLimitAndItsHandover) {
   const Ending ending = run({"run", save(scene), "--out", out()});
   EXPECT_EQ(ending.code, 0) << ending.err;
   EXPECT_THAT(ending.err, HasSubstr("gauss_seidel kept missing the stretch limit of body \"cloth\"; newton solves it after step " +
-                                    record()["newton_from"][0]["step"].dump()));
-  EXPECT_GT(record()["limit_solves"], 0);
+                                    summary()["newton_from"][0]["step"].dump()));
+  EXPECT_GT(summary()["limit_solves"], 0);
 }
 
 TEST_F(CommandLine, ValidatePrintsDerivedMaterials) {

@@ -105,8 +105,8 @@ TEST_F(CommandLine, DivergenceEndsWithFourAndKeepsTheGoodFrames) {
   EXPECT_THAT(ending.err, AllOf(HasSubstr("warning"), HasSubstr("diverged at step"), HasSubstr("time"), HasSubstr("body \"rope\""),
                                 HasSubstr("particle"), HasSubstr("spring"), HasSubstr(" %, pulling with "),
                                 HasSubstr("use a step of"), HasSubstr("the last frame is "), HasSubstr(" are in " + out())));
-  EXPECT_THAT(record()["outcome"].get<std::string>(), StartsWith("diverged: "));
-  const int frames = record()["frames_written"];
+  EXPECT_THAT(summary()["outcome"].get<std::string>(), StartsWith("diverged: "));
+  const int frames = summary()["frames_written"];
   EXPECT_GE(frames, 1);
   const std::string rows = read_text(scratch_ / "out/diagnostics.csv");
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), frames + 1);
@@ -134,12 +134,18 @@ TEST_F(CommandLine, OutputThatCannotBeWrittenEndsWithFive) {
 
 TEST_F(CommandLine, FullDiskEndsWithFiveAndLeavesNoHalfFrame) {
   // run.json takes about 2 kB and fits, a frame of 70 x 70 particles does not.
-  const Ending ending = Program({"run", save(cloth_scene()), "--out", out()}, {.file_size = 20'000}).wait();
+  const std::string scene = save(cloth_scene());
+  const Ending without_record =
+      Program({"run", scene, "--out", out("other")}, {.file_size = 20'000}).wait();  // nor does the begin of the record
+  EXPECT_EQ(without_record.code, 5) << without_record.err;
+  EXPECT_THAT(without_record.err, HasSubstr("/record.bin: cannot write"));
+  EXPECT_THAT(listing(out("other")), ElementsAre());
+  const Ending ending = Program({"run", scene, "--out", out(), "--set", "output.record=false"}, {.file_size = 20'000}).wait();
   EXPECT_EQ(ending.code, 5) << ending.err;
   EXPECT_THAT(ending.err, HasSubstr("/cloth.0001.obj: cannot write"));
   EXPECT_THAT(listing(out()), ElementsAre("diagnostics.csv", "run.json"));
-  EXPECT_EQ(record()["frames_written"], 0);
-  EXPECT_THAT(record()["outcome"].get<std::string>(), StartsWith("failed: "));
+  EXPECT_EQ(summary()["frames_written"], 0);
+  EXPECT_THAT(summary()["outcome"].get<std::string>(), StartsWith("failed: "));
 }
 
 TEST_F(CommandLine, ResultThatCannotBePrintedEndsWithFive) {
@@ -180,7 +186,8 @@ TEST_F(CommandLine, FolderThatIsNotEmptyIsOverwrittenOnlyWhenAsked) {
   EXPECT_EQ(listing(out()), before);
 
   EXPECT_EQ(run({"run", scene, "--out", out(), "--overwrite", "--frames", "1"}).code, 0);
-  EXPECT_THAT(listing(out()), ElementsAre("diagnostics.csv", "rope/", "rope/notes.txt", "rope/rope.0001.obj", "run.json"));
+  EXPECT_THAT(listing(out()),
+              ElementsAre("diagnostics.csv", "record.bin", "rope/", "rope/notes.txt", "rope/rope.0001.obj", "run.json"));
 }
 
 TEST_F(CommandLine, InvalidSceneDoesNotOverwrite) {
@@ -199,8 +206,8 @@ TEST_P(Interrupted, RunLeavesOffAndKeepsAllWholeFrames) {
   const Ending ending = program.wait();
   EXPECT_EQ(ending.code, 130) << ending.err;
   EXPECT_THAT(ending.err, HasSubstr("interrupted"));
-  EXPECT_EQ(record()["outcome"], "interrupted");
-  const std::size_t frames = record()["frames_written"];
+  EXPECT_EQ(summary()["outcome"], "interrupted");
+  const std::size_t frames = summary()["frames_written"];
   EXPECT_GE(frames, 20U);
   EXPECT_EQ(listing(scratch_ / "out/rope").size(), frames);
   const std::string rows = read_text(scratch_ / "out/diagnostics.csv");
@@ -216,7 +223,7 @@ TEST_P(Interrupted, RunDoesNotWaitForItsFrame) {
   program.send(GetParam());
   const Ending ending = program.wait();
   EXPECT_EQ(ending.code, 130) << ending.err;
-  EXPECT_EQ(record()["frames_written"], 1);
+  EXPECT_EQ(summary()["frames_written"], 1);
   EXPECT_EQ(listing(scratch_ / "out/rope").size(), 1U);
 }
 
@@ -230,10 +237,10 @@ TEST_F(CommandLine, KilledRunCanBeOverwritten) {
     program.send(SIGKILL);
     EXPECT_EQ(program.wait().signal, SIGKILL);
   }
-  EXPECT_EQ(record()["outcome"], "running");
+  EXPECT_EQ(summary()["outcome"], "running");
   EXPECT_EQ(run({"run", scene, "--out", out(), "--overwrite"}).code, 0);
   EXPECT_EQ(listing(scratch_ / "out/rope").size(), 7U);
-  EXPECT_EQ(listing(out()).size(), 7U + 3U);
+  EXPECT_EQ(listing(out()).size(), 7U + 4U);
 }
 
 }  // namespace

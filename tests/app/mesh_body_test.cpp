@@ -121,7 +121,7 @@ TEST_P(TenMeshes, ComeOutAsTheyWentInButForPositions) {
         EXPECT_LT(positions[i], placed);
       }
     }
-    const Points read_again = recorded.positions(recorded.bodies().at(0), number);
+    const Points read_again = vertices_of(recorded.model().bodies.at(0), recorded.frame(number));
     EXPECT_EQ(std::vector<double>(read_again.data(), read_again.data() + read_again.size()), positions);
   }
 }
@@ -162,7 +162,7 @@ TEST_F(MeshBodyFiles, StaleNormalsAreToldOnce) {
   const Ending ending = run_mesh(kSquare + "vn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1 4//2\n");
   EXPECT_EQ(ending.code, 0);
   EXPECT_THAT(ending.err, HasSubstr("\"normals\": true"));
-  EXPECT_EQ(record()["warnings"].size(), 1U);
+  EXPECT_EQ(summary()["warnings"].size(), 1U);
 }
 
 // Two squares that share an edge, each with vertices of its own there, as a seam of a garment.
@@ -177,8 +177,8 @@ TEST_F(MeshBodyFiles, WeldStitchesASeamAndKeepsTheFile) {
   ASSERT_EQ(run_mesh(kSeam, scene).code, 0);
   EXPECT_EQ(split_positions(frame(2)).first, split_positions(kSeam).first);
   const RecordedRun recorded(scratch_ / "out");
-  const Points first = recorded.positions(recorded.bodies().at(0), 1);
-  const Points second = recorded.positions(recorded.bodies().at(0), 2);
+  const Points first = vertices_of(recorded.model().bodies.at(0), recorded.frame(1));
+  const Points second = vertices_of(recorded.model().bodies.at(0), recorded.frame(2));
   ASSERT_EQ(second.cols(), 8);
   EXPECT_EQ(second.col(1), second.col(4));
   EXPECT_EQ(second.col(2), second.col(7));
@@ -233,10 +233,10 @@ TEST_F(MeshBodyFiles, MaterialsAreCopiedBesideTheFramesAndNeverOutside) {
             "newmtl red\nmap_Kd -s 2 2 tex/red cloth.png\nmap_Bump up.png\nbump -bm 0.5 gone.png\n");
   EXPECT_EQ(read_text(scratch_ / "out/shirt/b.mtl"), "newmtl blue\nmap_Kd up.png\n");
   EXPECT_EQ(read_text(scratch_ / "out/shirt/look/tex/red cloth.png"), std::string("red\0png", 7));
-  EXPECT_EQ(record()["warnings"].size(), 2U);
+  EXPECT_EQ(summary()["warnings"].size(), 2U);
   EXPECT_THAT(ending.err, HasSubstr("\"gone.png\" and \"missing.mtl\""));
   EXPECT_THAT(ending.err, HasSubstr("\"../b.mtl\""));
-  EXPECT_EQ(RecordedRun(scratch_ / "out").bodies().size(), 1U);
+  EXPECT_EQ(RecordedRun(scratch_ / "out").model().bodies.size(), 1U);
 
   // What a run wrote goes with it, and nothing else.
   write_text(scratch_ / "out/shirt/look/mine.png", "mine");

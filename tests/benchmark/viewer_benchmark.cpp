@@ -82,7 +82,7 @@ void replay_view(benchmark::State& state) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "sprung_viewer_benchmark";
   record(folder);
   for ([[maybe_unused]] auto _ : state) {
-    ReplaySession session(folder, {SPRUNG_TEST_MESHES});
+    ReplaySession session(folder);
     const testing::ServingServer server(session);
     testing::TestPage page(server.port());
     page.frame();

@@ -1,7 +1,7 @@
 #include "output/output_folder.h"
 
 #include "base/error.h"
-#include "output/run_record.h"
+#include "output/run_summary.h"
 #include "output/scratch_folder.h"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ const std::vector<std::string> kPatterns{"run.json", "diagnostics.csv", "rope/ro
                                          "obstacles/fan/fan.####.obj"};
 
 void leave_a_run(const std::filesystem::path& folder, const std::vector<std::string>& patterns = kPatterns) {
-  write_text(folder / "run.json", RunRecord(RunFacts{}, 0.01, patterns).text({}));
+  write_text(folder / "run.json", RunSummary(RunFacts{}, 0.01, patterns).text({}));
   for (const char* name : {"diagnostics.csv", "rope/rope.0001.obj", "rope/rope.0002.obj", "obstacles/floor.obj",
                            "obstacles/fan/fan.0001.obj", "obstacles/fan/fan.0002.obj"}) {
     write_text(folder / name, "");
@@ -121,7 +121,7 @@ TEST(OutputFolder, RecordThatNamesFilesElsewhereRemovesNoneOfThem) {
 TEST(OutputFolder, DoesNotWriteOverAFileThatIsNotItsOwn) {
   const ScratchFolder scratch;
   write_text(scratch / "rope/rope.0007.obj", "");
-  write_text(scratch / "run.json", RunRecord(RunFacts{}, 0.01, {"run.json"}).text({}));
+  write_text(scratch / "run.json", RunSummary(RunFacts{}, 0.01, {"run.json"}).text({}));
   const OutputFolder folder(scratch.path(), true);
   EXPECT_THROW(folder.expect_free(kPatterns), FileError);
   EXPECT_NO_THROW(folder.expect_free({"run.json", "cloth/cloth.####.obj"}));

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "output/file_size_limit.h"
+#include "output/recorded_run.h"
 #include "output/scratch_folder.h"
 #include "output/small_world.h"
 
@@ -17,6 +18,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -77,7 +79,7 @@ class RunOutputFiles : public ::testing::Test {
     output.finish("done");
   }
   [[nodiscard]] std::filesystem::path file(const std::string& name) const { return scratch_ / ("out/" + name); }
-  [[nodiscard]] nlohmann::json record() const { return nlohmann::json::parse(read_text(file("run.json"))); }
+  [[nodiscard]] nlohmann::json summary() const { return nlohmann::json::parse(read_text(file("run.json"))); }
 
   ScratchFolder scratch_;
   Simulator simulator_ = small_world();
@@ -88,7 +90,7 @@ TEST_F(RunOutputFiles, AreThoseOfTheContract) {
   EXPECT_THAT(listing(scratch_ / "out"),
               ElementsAre("cloth/", "cloth/cloth.0001.obj", "cloth/cloth.0002.obj", "diagnostics.csv", "house/",
                           "house/house.0001.obj", "house/house.0002.obj", "obstacles/", "obstacles/ball.obj", "obstacles/floor.obj",
-                          "obstacles/lift/", "obstacles/lift/lift.0001.obj", "obstacles/lift/lift.0002.obj", "rope/",
+                          "obstacles/lift/", "obstacles/lift/lift.0001.obj", "obstacles/lift/lift.0002.obj", "record.bin", "rope/",
                           "rope/rope.0001.obj", "rope/rope.0002.obj", "run.json"));
 }
 
@@ -182,6 +184,19 @@ TEST(TornBodies, LoseFacesAndKeepVertices) {
   EXPECT_THAT(torn["strip"], ElementsAre(3)) << "the last quad of four";
   EXPECT_THAT(torn["cloth"], ElementsAre(6, 7)) << "the last triangles of eight";
   EXPECT_EQ(nlohmann::json::parse(read_text(scratch / "out/run.json"))["torn_faces"], expected);
+
+  const RecordedRun recorded(scratch / "out");
+  std::set<std::pair<Index, Index>> broken;
+  const RecordedSprings& springs = recorded.model().springs;
+  for (const BrokenSprings& now : recorded.broken_springs()) {
+    for (const Index s : now.springs) broken.insert({springs.ends(0, s), springs.ends(1, s)});
+  }
+  std::set<std::pair<Index, Index>> gone;
+  const Springs& of_network = simulator.network().broken;
+  for (Index s = 0; s < of_network.count(); ++s) gone.insert({of_network.first[s], of_network.second[s]});
+  ASSERT_FALSE(gone.empty());
+  EXPECT_EQ(broken, gone);
+  EXPECT_EQ(springs.ends.cols(), simulator.network().springs.count() + of_network.count()) << "the record has all that there were";
 }
 
 /// A tetrahedron whose tip goes from 1 m to 3 m in a quarter of a second, and which is driven along x.
@@ -278,21 +293,21 @@ TEST_F(RunOutputFiles, DiagnosticsHaveARowAFrame) {
 
 TEST_F(RunOutputFiles, RecordTellsTheSeedIfThereIsOne) {
   run(1);
-  EXPECT_TRUE(record()["seed"].is_null());
+  EXPECT_TRUE(summary()["seed"].is_null());
   const RunOutput output(OutputFolder(scratch_ / "out", true), {.seed = 7}, simulator_);
-  EXPECT_EQ(record()["seed"], 7);
+  EXPECT_EQ(summary()["seed"], 7);
 }
 
 TEST_F(RunOutputFiles, RecordReportsTheProgressOfTheRun) {
   RunOutput output = open(3, R"({"duration": 0.1, "bodies": {}})");
-  EXPECT_EQ(record()["outcome"], "running");
-  EXPECT_EQ(record()["frames_written"], 0);
+  EXPECT_EQ(summary()["outcome"], "running");
+  EXPECT_EQ(summary()["frames_written"], 0);
   FrameRunner runner(simulator_, 2);
   output.write_frame(simulator_, runner.first_frame());
   output.write_frame(simulator_, runner.next_frame());
-  EXPECT_EQ(record()["outcome"], "running");
+  EXPECT_EQ(summary()["outcome"], "running");
   output.finish("interrupted");
-  const nlohmann::json json = record();
+  const nlohmann::json json = summary();
   EXPECT_EQ(json["outcome"], "interrupted");
   EXPECT_EQ(json["frames"], 3);
   EXPECT_EQ(json["frames_written"], 2);
@@ -323,14 +338,14 @@ TEST_F(RunOutputFiles, RecordReportsTheHandoverToNewton) {
                    {.frames = 9, .steps_per_frame = 4, .stretch_solver = simulator_.stretch_solver()}, simulator_);
   FrameRunner runner(simulator_, 4);
   output.write_frame(simulator_, runner.first_frame());
-  EXPECT_EQ(record()["stretch_solver"], "gauss_seidel, then newton for what keeps missing the limit");
-  EXPECT_THAT(record()["newton_from"], IsEmpty());
+  EXPECT_EQ(summary()["stretch_solver"], "gauss_seidel, then newton for what keeps missing the limit");
+  EXPECT_THAT(summary()["newton_from"], IsEmpty());
   std::int64_t solves = 0;
   for (int frame = 2; frame <= 9; ++frame) {
     const FrameDiagnostics next = runner.next_frame();
     output.write_frame(simulator_, next);
     if (solves == 0 && next.limit_solves > 0) {
-      EXPECT_EQ(record()["newton_from"],
+      EXPECT_EQ(summary()["newton_from"],
                 nlohmann::json::parse(R"([{"body": "cloth", "step": )" +
                                       std::to_string(*simulator_.state().stretch_handovers[0].solved_since) + R"(, "frame": )" +
                                       std::to_string(frame) + "}]"));
@@ -338,7 +353,7 @@ TEST_F(RunOutputFiles, RecordReportsTheHandoverToNewton) {
     solves += next.limit_solves;
   }
   EXPECT_GT(solves, 0);
-  EXPECT_EQ(record()["newton_from"].size(), 1U);
+  EXPECT_EQ(summary()["newton_from"].size(), 1U);
 }
 
 TEST_F(RunOutputFiles, ThatFitNoMoreTakeTheirWholeFrameBack) {
@@ -356,7 +371,7 @@ TEST_F(RunOutputFiles, ThatFitNoMoreTakeTheirWholeFrameBack) {
   EXPECT_EQ(listing(scratch_ / "out"), before);
   EXPECT_EQ(read_text(file("diagnostics.csv")), rows);
   output.finish("no space");
-  EXPECT_EQ(record()["frames_written"], 1);
+  EXPECT_EQ(summary()["frames_written"], 1);
 }
 
 TEST_F(RunOutputFiles, FrameWhoseRowFitsNoMoreIsTakenBack) {
@@ -365,6 +380,7 @@ TEST_F(RunOutputFiles, FrameWhoseRowFitsNoMoreIsTakenBack) {
   output.write_frame(simulator_, runner.first_frame());
   const std::vector<std::string> before = listing(scratch_ / "out");
   const std::uintmax_t room = std::filesystem::file_size(file("diagnostics.csv"));
+  const std::string record = read_text(file("record.bin"));
   std::filesystem::resize_file(file("diagnostics.csv"), 100'000);
   {
     const FileSizeLimit limit(100'010);
@@ -372,9 +388,10 @@ TEST_F(RunOutputFiles, FrameWhoseRowFitsNoMoreIsTakenBack) {
   }
   EXPECT_EQ(std::filesystem::file_size(file("diagnostics.csv")), 100'000U);
   EXPECT_EQ(listing(scratch_ / "out"), before);
+  EXPECT_EQ(read_text(file("record.bin")), record);
   std::filesystem::resize_file(file("diagnostics.csv"), room);
   output.write_frame(simulator_, runner.next_frame());
-  EXPECT_EQ(record()["frames_written"], 2);
+  EXPECT_EQ(summary()["frames_written"], 2);
 }
 
 /// A particle that hangs at a pin, with a record of its force.
@@ -391,11 +408,11 @@ TEST_F(RunOutputFiles, ForcesAreWrittenOnRequestAndReplacedWithTheRun) {
   // 0.5 kg at 8 m/s^2; the steps of 0.01 s are summed, not the time.
   EXPECT_EQ(read_text(file("forces.csv")),
             "frame,time,name,force_x,force_y,force_z\n1,0,hook,0,0,0\n2,0.02,hook,0,4,0\n3,0.04,hook,0,4,0\n");
-  EXPECT_THAT(record()["files"].get<std::vector<std::string>>(), Contains("forces.csv"));
+  EXPECT_THAT(summary()["files"].get<std::vector<std::string>>(), Contains("forces.csv"));
   simulator_ = small_world();
   const RunOutput output(OutputFolder(scratch_ / "out", true), {.frames = 1}, simulator_);
   EXPECT_THAT(listing(scratch_ / "out"), Not(Contains("forces.csv")));
-  EXPECT_THAT(record()["files"].get<std::vector<std::string>>(), Not(Contains("forces.csv")));
+  EXPECT_THAT(summary()["files"].get<std::vector<std::string>>(), Not(Contains("forces.csv")));
 }
 
 TEST_F(RunOutputFiles, ForcesOfAFrameWhoseRowFitsNoMoreAreTakenBack) {

@@ -63,6 +63,8 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"simulation/start", {"settings"}},
     {"simulation/step", {"settings"}},
 
+    {"output/record", {}},
+
     {"scene/format", {}},
     {"scene/json", {}},
     {"scene/materials", {}},

@@ -1,6 +1,7 @@
 // Replays and HTML files show what a run wrote.
 #include "base/error.h"
 #include "output/run_output.h"
+#include "scene/load_scene.h"
 #include "scene/scene_text.h"
 #include "viewer/html_export.h"
 #include "viewer/test_client.h"
@@ -40,7 +41,7 @@ TEST(Replay, SpringsAndPinsOfAWeldedMeshAreAtItsVertices) {
                    {.scene = loaded.scene.resolved, .steps_per_frame = loaded.steps_per_frame, .sources = loaded.sources},
                    loaded.simulator);
   output.write_frame(loaded.simulator, FrameRunner(loaded.simulator, loaded.steps_per_frame).first_frame());
-  const Replay replay(folder.path() / "run", {});
+  const Replay replay(folder.path() / "run");
   EXPECT_THAT(replay.scene_text(), HasSubstr("\"complete\":true"));
   const Topology topology = replay.topology();
   const FrameState state = replay.state(1);
@@ -79,7 +80,7 @@ TEST(Replay, ShowsTheOtherBodiesOfALatticeAndPinsWhileTheyHold) {
     output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
   }
   output.finish("done");
-  const Replay replay(folder.path() / "run", {});
+  const Replay replay(folder.path() / "run");
   EXPECT_THAT(replay.scene_text(), HasSubstr("\"complete\":true"));
   const Topology topology = replay.topology();
   EXPECT_EQ(topology.particles, 4 + 2);
@@ -116,7 +117,7 @@ TEST(Replay, TellsWhichTrianglesAreGoneFromAFrameOn) {
   }
   output.finish("done");
   ASSERT_LT(left.back(), left.front());
-  const Replay replay(folder.path() / "run", {});
+  const Replay replay(folder.path() / "run");
   const Json torn = Json::parse(replay.scene_text())["torn"];
   for (int frame = 1; frame <= kShown; ++frame) {
     std::set<int> gone;
@@ -158,7 +159,7 @@ class RecordedCloth : public ::testing::Test {
 };
 
 TEST_F(RecordedCloth, APageGetsThePositionsOfTheFiles) {
-  ReplaySession session(run_folder(), {});
+  ReplaySession session(run_folder());
   const ServingServer server(session);
   TestPage page(server.port());
   EXPECT_EQ(page.text("hello")["mode"], "replay");
@@ -166,7 +167,7 @@ TEST_F(RecordedCloth, APageGetsThePositionsOfTheFiles) {
   EXPECT_TRUE(scene["complete"]);
   EXPECT_EQ(scene["frames"], kFrames);
   EXPECT_EQ(scene["diagnostics"]["rows"].size(), static_cast<std::size_t>(kFrames));
-  EXPECT_EQ(scene["obstacles"][0]["motion"], "deforming");
+  EXPECT_EQ(scene["obstacles"][0]["motion"], "rigid");
   for (const int frame : {3, 1, kFrames}) {
     page.send({{"do", "seek"}, {"frame", frame}});
     const Received shown =
@@ -181,23 +182,45 @@ TEST_F(RecordedCloth, APageGetsThePositionsOfTheFiles) {
   EXPECT_THAT(page.text("error")["text"].get<std::string>(), HasSubstr("play"));
 }
 
-TEST_F(RecordedCloth, ShowsSurfacesWithoutItsScene) {
-  const std::filesystem::path record = run_folder() / "run.json";
-  std::ifstream stream(record);
-  Json json = Json::parse(stream);
-  json["scene"]["bodies"]["cloth"]["shape"]["resolution"] = {9, 9};
-  std::ofstream(record) << json.dump();
-  const Replay replay(run_folder(), {});
-  EXPECT_FALSE(Json::parse(replay.scene_text())["complete"]);
+TEST_F(RecordedCloth, ShowsSurfacesOfARunWithoutARecord) {
+  std::filesystem::remove(run_folder() / "record.bin");
+  const Replay replay(run_folder());
+  const Json scene = Json::parse(replay.scene_text());
+  EXPECT_FALSE(scene["complete"]);
+  EXPECT_THAT(scene["warnings"].back().get<std::string>(), HasSubstr("record.bin"));
   EXPECT_EQ(replay.topology().springs.cols(), 0);
   EXPECT_EQ(replay.topology().triangles.cols(), 2 * 7 * 7);
   EXPECT_EQ(replay.state(2).positions, positions_[1]);
 }
 
+TEST_F(RecordedCloth, ShowsEverythingInAnotherPlaceWithoutItsScene) {
+  const std::filesystem::path moved = folder_.path() / "moved";
+  std::filesystem::rename(run_folder(), moved);
+  std::filesystem::remove(folder_.path() / "scene.json");
+  const Replay replay(moved);
+  EXPECT_TRUE(Json::parse(replay.scene_text())["complete"]);
+  EXPECT_EQ(replay.topology().springs.cols(), 2 * 7 * 8);
+  EXPECT_EQ(replay.state(2).states[0], kPinned);
+  EXPECT_GT(replay.state(2).speeds[1], 0.0);
+}
+
+TEST_F(RecordedCloth, APageOrFileTellsNoFolderOfTheMachine) {
+  Json summary = Json::parse(std::ifstream(run_folder() / "run.json"));
+  summary["warnings"] = {"\"/home/ada/my.obj\" has 2 pieces (0.5 m/s), see ../secret/notes.txt"};
+  summary["scene"]["obstacles"]["ball"]["shape"]["file"] = "/home/ada/two words/ball.obj";
+  folder_.write("frames/run.json", summary.dump());
+  const std::string text = html_animation(Replay(run_folder()), testing::kPage).text;
+  EXPECT_THAT(text, HasSubstr("\\\"my.obj\\\" has 2 pieces (0.5 m/s), see notes.txt"));
+  EXPECT_THAT(text, HasSubstr("\"ball.obj\""));
+  for (const std::string& secret : {std::string("ada"), std::string("secret"), folder_.path().string()}) {
+    EXPECT_EQ(text.find(secret), std::string::npos) << secret;
+  }
+}
+
 TEST_F(RecordedCloth, ABrokenFolderSaysWhatIsMissing) {
   const auto refusal = [&](const std::filesystem::path& folder) -> std::string {
     try {
-      const Replay replay(folder, {});
+      const Replay replay(folder);
       (void)replay.state(kFrames);
     } catch (const InputError& error) {
       return error.what();
@@ -207,6 +230,10 @@ TEST_F(RecordedCloth, ABrokenFolderSaysWhatIsMissing) {
   EXPECT_THAT(refusal(folder_.path()), HasSubstr("run.json"));
   EXPECT_THAT(refusal(folder_.path() / "nowhere"), HasSubstr("nowhere"));
   EXPECT_EQ(refusal(run_folder()), "");
+  folder_.write("frames/record.bin", "damaged");
+  EXPECT_THAT(refusal(run_folder()), HasSubstr("record.bin"));
+  std::filesystem::remove(run_folder() / "record.bin");
+  EXPECT_EQ(refusal(run_folder()), "");
   std::filesystem::remove(run_folder() / "cloth" / "cloth.0005.obj");
   EXPECT_THAT(refusal(run_folder()), HasSubstr("cloth.0005.obj"));
   folder_.write("frames/cloth/cloth.0005.obj", "v 0 0 0\n");
@@ -214,21 +241,22 @@ TEST_F(RecordedCloth, ABrokenFolderSaysWhatIsMissing) {
   Json record = Json::parse(std::ifstream(run_folder() / "run.json"));
   record["frames_written"] = 2000000000;
   folder_.write("frames/run.json", record.dump());
-  EXPECT_THROW((void)Replay(run_folder(), {}).state(20000), InputError) << "more digits than the names of the files have";
+  EXPECT_THROW((void)Replay(run_folder()).state(20000), InputError) << "more digits than the names of the files have";
   folder_.write("frames/run.json", R"({"scene": )" + std::string(100000, '[') + std::string(100000, ']') + "}");
   EXPECT_THAT(refusal(run_folder()), HasSubstr("nested too deeply"));
   folder_.write("frames/run.json", "{}");
   EXPECT_THAT(refusal(run_folder()), HasSubstr("run.json"));
 }
 
-TEST_F(RecordedCloth, AFrameOrARecordThatNoRunWritesIsRefused) {
+TEST_F(RecordedCloth, AFrameOrASummaryThatNoRunWritesIsRefused) {
+  std::filesystem::remove(run_folder() / "record.bin");
   const Json record = Json::parse(std::ifstream(run_folder() / "run.json"));
   const auto refusal = [&](const char* key, const Json& value) -> std::string {
     Json changed = record;
     changed[key] = value;
     folder_.write("frames/run.json", changed.dump());
     try {
-      (void)Replay(run_folder(), {}).state(2);
+      (void)Replay(run_folder()).state(2);
     } catch (const InputError& error) {
       return error.what();
     }
@@ -263,7 +291,7 @@ std::vector<std::uint8_t> bytes_of_base64(const std::string& text) {
 }
 
 TEST_F(RecordedCloth, AnHtmlFileHasThePositionsWithinTheErrorThatItTells) {
-  const HtmlAnimation animation = html_animation(Replay(run_folder(), {}), testing::kPage);
+  const HtmlAnimation animation = html_animation(Replay(run_folder()), testing::kPage);
   const std::string begin = "id=\"sprung-run\">";
   const std::size_t from = animation.text.find(begin) + begin.size();
   const Json data = Json::parse(animation.text.substr(from, animation.text.find("</script>", from) - from));
@@ -273,9 +301,11 @@ TEST_F(RecordedCloth, AnHtmlFileHasThePositionsWithinTheErrorThatItTells) {
   ASSERT_EQ(data["times"].size(), static_cast<std::size_t>(kFrames));
   const std::vector<std::uint8_t> packed = bytes_of_base64(data["data"]);
   const auto topology_bytes = data["topology_bytes"].get<std::size_t>();
-  const Replay replay(run_folder(), {});
-  const std::size_t values = 3 * (64 + static_cast<std::size_t>(replay.state(1).deformed.at(0).cols()));
-  std::vector<std::uint8_t> bytes(topology_bytes + 2 * values * kFrames);
+  const auto level_bytes = data["level_bytes"].get<std::size_t>();
+  const Replay replay(run_folder());
+  const std::size_t values = 3 * 64;
+  ASSERT_EQ(level_bytes, 2 * values * kFrames);
+  std::vector<std::uint8_t> bytes(topology_bytes + level_bytes + std::size_t{64} * kFrames);
   uLongf size = bytes.size();
   ASSERT_EQ(uncompress(bytes.data(), &size, packed.data(), packed.size()), Z_OK);
   ASSERT_EQ(size, bytes.size());
@@ -283,16 +313,23 @@ TEST_F(RecordedCloth, AnHtmlFileHasThePositionsWithinTheErrorThatItTells) {
   EXPECT_TRUE(
       std::equal(topology.begin(), topology.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(topology_bytes)));
   std::vector<std::uint16_t> levels(values);
+  std::vector<std::uint8_t> states(64);
   for (std::size_t frame = 0; frame < kFrames; ++frame) {
     const std::uint8_t* low = bytes.data() + topology_bytes + 2 * values * frame;
-    const Points ball = replay.state(static_cast<int>(frame) + 1).deformed[0];
+    const FrameState shown = replay.state(static_cast<int>(frame) + 1);
     for (std::size_t k = 0; k < values; ++k) {
       levels[k] = static_cast<std::uint16_t>(levels[k] + low[k] + 256U * low[values + k]);
       const double value =
           data["bounds"]["min"][k % 3].get<double>() + data["bounds"]["size"][k % 3].get<double>() * levels[k] / 65535.0;
-      const double exact = k < 192 ? positions_[frame].data()[k] : ball.data()[k - 192];
-      EXPECT_LE(std::abs(value - exact), animation.error * (1.0 + 1e-12));
+      EXPECT_LE(std::abs(value - positions_[frame].data()[k]), animation.error * (1.0 + 1e-12));
     }
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      states[i] = static_cast<std::uint8_t>(states[i] + bytes[topology_bytes + level_bytes + states.size() * frame + i]);
+    }
+    EXPECT_EQ(states, shown.states);
+    const Vector3 ball = shown.poses.at(0).translation();
+    EXPECT_EQ(data["poses"][frame][0][9], ball.x());
+    EXPECT_NEAR(ball.x(), static_cast<double>(frame) / 25.0, 1e-12) << "a metre a second";
   }
 }
 

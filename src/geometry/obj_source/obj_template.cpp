@@ -46,6 +46,10 @@ ObjTemplate::ObjTemplate(std::string_view text, Normals normals) {
       copied = end;
     };
     if (kind == "vn") has_given_normals_ = true;
+    if (kind == "usemtl" && line.words.size() > 1) {
+      const std::size_t begin = line.words[1].begin;  // a name may have blanks
+      face_materials_.emplace_back(text.substr(begin, line.words.back().end - begin), static_cast<Index>(faces_.size()));
+    }
     if (kind == "vn" && per_vertex) continue;
     if (kind == "v" && line.words.size() > 3) {
       copy_until(line.words[0].end);

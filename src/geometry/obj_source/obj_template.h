@@ -27,6 +27,9 @@ class ObjTemplate {
   /// The file without the faces of these numbers, which ascend; a face is an `f` line.
   [[nodiscard]] ObjTemplate without_faces(const std::vector<Index>& removed) const;
 
+  /// The names of `usemtl` lines, each with the number of the first face after it.
+  [[nodiscard]] const std::vector<std::pair<std::string, Index>>& face_materials() const { return face_materials_; }
+
   /// Whether the file has `vn` lines.
   [[nodiscard]] bool has_given_normals() const { return has_given_normals_; }
 
@@ -42,6 +45,7 @@ class ObjTemplate {
   std::vector<std::size_t> position_at_;                    ///< where the numbers of each vertex belong
   std::vector<std::size_t> normal_at_;                      ///< where the `vn` line of each vertex belongs, without its end
   std::vector<std::pair<std::size_t, std::size_t>> faces_;  ///< begin and end of each `f` line
+  std::vector<std::pair<std::string, Index>> face_materials_;
   bool has_given_normals_ = false;
 };
 

@@ -88,7 +88,7 @@ class ShapeMaker {
     PolygonMesh polygons = read_obj(*file);
     polygons.vertices *= body_.place.scale;
     check_preset(polygons);
-    ObjSource source = read_obj_source(*file, normals());
+    ObjSource source = source_of(*file, polygons);
     if (mesh.weld) {
       WeldedMesh welded = weld(std::move(polygons), *mesh.weld);
       polygons = std::move(welded.mesh);
@@ -107,7 +107,7 @@ class ShapeMaker {
     std::optional<ObjSource> source;
     if (lower_case_extension(*file) == ".obj") {
       surface = read_obj(*file);
-      source = read_obj_source(*file, normals());
+      source = source_of(*file, surface);
     } else {
       const TriangleMesh mesh = import_mesh(*file).mesh;
       surface = {.vertices = mesh.vertices, .faces = to_polygons(mesh.triangles), .lines = Edges(2, 0)};
@@ -120,8 +120,12 @@ class ShapeMaker {
     return body;
   }
 
-  [[nodiscard]] ObjTemplate::Normals normals() const {
-    return body_.normals ? ObjTemplate::Normals::per_vertex : ObjTemplate::Normals::as_given;
+  /// What frames need of the file of `mesh`.
+  [[nodiscard]] ObjSource source_of(const std::filesystem::path& file, const PolygonMesh& mesh) const {
+    ObjSource source = read_obj_source(file, body_.normals ? ObjTemplate::Normals::per_vertex : ObjTemplate::Normals::as_given);
+    source.faces = mesh.faces;
+    source.lines = mesh.lines;
+    return source;
   }
 
   /// The parts of the mesh whose springs have values of their own.

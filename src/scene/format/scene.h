@@ -159,6 +159,7 @@ struct Scene {
   std::vector<BodyScene> bodies;            ///< in the order of the file
   std::vector<ObstacleScene> obstacles;     ///< in the order of the file
   std::vector<AttachmentScene> attachments;
+  bool record = true;    ///< whether a run writes record.bin
   std::string resolved;  ///< the whole scene as JSON text, overrides applied and defaults filled in
 };
 

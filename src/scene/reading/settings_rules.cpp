@@ -83,7 +83,11 @@ ContactSettings read_contact(Fields& fields) {
   return contact;
 }
 
-bool read_output(Fields& fields) { return fields.value("forces", boolean(), false).value_or(false); }
+bool read_output(Fields& fields, Scene& scene) {
+  scene.settings.record_forces = fields.value("forces", boolean(), false).value_or(false);
+  scene.record = fields.value("record", boolean(), true).value_or(true);
+  return true;
+}
 
 }  // namespace
 
@@ -113,7 +117,7 @@ void read_settings(Fields& fields, Scene& scene) {
   settings.sleep = fields.value("sleep", boolean(), settings.sleep).value_or(settings.sleep);
   settings.perturb = fields.value("perturb", boolean(), settings.perturb).value_or(settings.perturb);
   settings.seed = static_cast<std::uint64_t>(fields.value("seed", integer(0, std::numeric_limits<Index>::max()), 0).value_or(0));
-  settings.record_forces = fields.value("output", object_of<bool>(read_output), Json::object()).value_or(false);
+  (void)fields.value("output", object_of<bool>([&](Fields& keys) { return read_output(keys, scene); }), Json::object());
 }
 
 }  // namespace sprung

@@ -26,8 +26,7 @@ export class BodyView {
   private readonly normals: BufferAttribute;
   private readonly colors: BufferAttribute;
   private readonly surface: Mesh<BufferGeometry, MeshLambertMaterial>;
-  private readonly triangles: BufferAttribute;
-  private tears = 0;
+  private removals = 0;
   private readonly rope: RopeView | null;
   private readonly springs: LineSegments<BufferGeometry, LineBasicMaterial>;
   private markedSprings: RopeView | null = null;
@@ -47,14 +46,13 @@ export class BodyView {
     this.normals = new BufferAttribute(new Float32Array(model.positions.length), 3).setUsage(DynamicDrawUsage);
     this.particleColors = new ParticleColors(model);
     this.colors = new BufferAttribute(this.particleColors.colors, 3).setUsage(DynamicDrawUsage);
-    const surface = this.geometry(topology.triangles.slice());
-    this.triangles = surface.getIndex()!;
+    const surface = this.geometry(model.triangles);
     surface.setAttribute('normal', this.normals);
     surface.setAttribute('color', this.colors);
     this.surface = new Mesh(surface, new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }));
     this.tubeRadius = ropeRadius(model, size);
     this.rope = topology.segments.length > 0 ? new RopeView(topology.segments, this.tubeRadius) : null;
-    const springs = this.geometry(topology.springs);
+    const springs = this.geometry(model.springs);
     springs.setAttribute('color', this.colors);
     this.springs = new LineSegments(springs, new LineBasicMaterial());
     this.particles = new Dots(this.positions, 4);
@@ -76,9 +74,12 @@ export class BodyView {
     this.pins.points.visible = options.pins;
     this.contacts.points.visible = options.contacts;
     this.positions.needsUpdate = true;
+    if (this.removals !== model.removals) {
+      this.removals = model.removals;
+      for (const { geometry } of [this.surface, this.springs]) geometry.getIndex()!.needsUpdate = true;
+    }
     if (this.surface.visible) {
-      this.tear();
-      vertexNormals(model.positions, this.triangles.array as Uint32Array, this.normals.array as Float32Array);
+      vertexNormals(model.positions, model.triangles, this.normals.array as Float32Array);
       this.normals.needsUpdate = true;
     }
     const repainted = this.particleColors.update(options.color, theme, scaleOf(model, options));
@@ -96,7 +97,7 @@ export class BodyView {
 
   /** The number of triangles that are not torn in the frame shown last. */
   get triangleCount(): number {
-    const shown = this.triangles.array;
+    const shown = this.model.triangles;
     let count = 0;
     for (let k = 0; k < shown.length; k += 3) if (shown[k] !== shown[k + 1]) ++count;
     return count;
@@ -110,18 +111,6 @@ export class BodyView {
     this.rope?.dispose();
     this.markedSprings?.dispose();
     for (const dots of [this.particles, this.pins, this.contacts, this.mark]) dots.dispose();
-  }
-
-  /** Triangles that are gone in the frame shrink to a point. */
-  private tear(): void {
-    const { frame, scene, topology } = this.model;
-    const torn = (scene.torn ?? []).filter((tear) => tear.frame <= frame);
-    if (torn.length === this.tears) return;
-    this.tears = torn.length;
-    const shown = this.triangles.array as Uint32Array;
-    shown.set(topology.triangles);
-    for (const t of torn.flatMap((tear) => tear.triangles)) shown.fill(shown[3 * t], 3 * t, 3 * t + 3);
-    this.triangles.needsUpdate = true;
   }
 
   private geometry(index: Uint32Array): BufferGeometry {

@@ -96,7 +96,7 @@ export class ParticleColors {
 
 /** The largest stretch of the springs at each particle [1]. */
 function stretches(model: RunModel, values: Float32Array): void {
-  const { springs, restLengths } = model.topology;
+  const { springs, topology: { restLengths } } = model;
   const p = model.positions;
   values.fill(0);
   for (let s = 0; s < restLengths.length; ++s) {

@@ -8,7 +8,9 @@ interface Embedded {
   bounds: { min: number[]; size: number[] };
   error: number;
   times: number[];
+  poses: number[][][];
   topology_bytes: number;
+  level_bytes: number;
   data: string;
 }
 
@@ -38,14 +40,27 @@ function levelsOf(bytes: Uint8Array, frames: number): Uint16Array[] {
   return levels;
 }
 
+/** States of the vertices in all frames, from their differences. */
+function statesOf(bytes: Uint8Array, frames: number): Uint8Array[] {
+  const count = bytes.length / frames;
+  const states: Uint8Array[] = [];
+  for (let frame = 0; frame < frames; ++frame) {
+    const before = states.at(-1) ?? new Uint8Array(count);
+    states.push(before.map((state, k) => state + bytes[count * frame + k]));
+  }
+  return states;
+}
+
 /** The run inside the page, or null. Throws where the browser cannot decompress it. */
 export async function embeddedRun(): Promise<EmbeddedRun | null> {
   const text = document.getElementById('sprung-run')?.textContent;
   if (!text) return null;
   const data = JSON.parse(text) as Embedded;
   const bytes = await decompressed(bytesOf(data.data));
-  const levels = levelsOf(new Uint8Array(bytes, data.topology_bytes), data.times.length);
-  return new EmbeddedRun(data, decodeTopology(bytes.slice(0, data.topology_bytes)), levels);
+  const frames = data.times.length;
+  const levels = levelsOf(new Uint8Array(bytes, data.topology_bytes, data.level_bytes), frames);
+  const states = statesOf(new Uint8Array(bytes, data.topology_bytes + data.level_bytes), frames);
+  return new EmbeddedRun(data, decodeTopology(bytes.slice(0, data.topology_bytes)), levels, states);
 }
 
 /** A run that `sprung export --format html` wrote into the page. Answers `seek` as the server does. */
@@ -56,6 +71,7 @@ export class EmbeddedRun implements Source {
     private readonly data: Embedded,
     private readonly topology: Topology,
     private readonly levels: Uint16Array[],
+    private readonly states: Uint8Array[],
   ) {}
 
   /** What rounding has changed. */
@@ -85,8 +101,8 @@ export class EmbeddedRun implements Source {
       numbers: this.numbers(number),
       positions: positions.subarray(0, 3 * count),
       speeds: new Float32Array(count),
-      states: new Uint8Array(count),
-      poses: [],
+      states: this.states[number - 1],
+      poses: this.data.poses[number - 1].map((pose) => Float32Array.from(pose)),
       deformed: this.deformed(positions.subarray(3 * count)),
     };
     this.listener?.frame(this.header(FRAME, number), decoded);

@@ -179,9 +179,10 @@ export class Page implements SourceListener {
 
   private offer(message: SceneMessage): void {
     const { complete } = message;
-    const stated = complete && !(this.source instanceof EmbeddedRun);
     const live = !this.recorded;
-    this.panel.offer({ springs: complete, pins: stated, contacts: stated }, { stretch: complete, speed: live, contact: stated });
+    // A file leaves out the speeds.
+    const speed = complete && !(this.source instanceof EmbeddedRun);
+    this.panel.offer({ springs: complete, pins: complete, contacts: complete }, { stretch: complete, speed, contact: complete });
     const save = (name: string) => () => {
       if (live) this.send({ do: 'obj', run: 0, body: name });
       else if (this.shown.models[0]) downloadText(`${name}.obj`, objText(this.shown.models[0], name));

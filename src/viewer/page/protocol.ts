@@ -29,6 +29,7 @@ export interface SceneMessage {
   obstacles: { name: string; motion: Motion }[];
   diagnostics?: Diagnostics;
   torn?: { frame: number; triangles: number[] }[];
+  broken?: { frame: number; springs: number[] }[];
 }
 export interface ProblemsMessage { type: 'problems'; run: number | null; key: string; problems: Problem[] }
 export interface StateMessage { type: 'state'; playing: boolean; every: number; speed: number }

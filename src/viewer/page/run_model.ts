@@ -8,6 +8,11 @@ export class RunModel {
   readonly positions: Float32Array;
   readonly speeds: Float32Array;
   readonly states: Uint8Array;
+  /** Those that are gone in the frame have the same corner three times, or the same end twice. */
+  readonly triangles: Uint32Array;
+  readonly springs: Uint32Array;
+  /** Grows or shrinks when triangles or springs change. */
+  removals = 0;
   /** By name: views of `positions`. */
   readonly bodies: Record<string, BodyState> = {};
   poses: Float32Array[] = [];
@@ -26,6 +31,8 @@ export class RunModel {
     this.positions = new Float32Array(3 * count);
     this.speeds = new Float32Array(count);
     this.states = new Uint8Array(count);
+    this.triangles = topology.triangles.slice();
+    this.springs = topology.springs.slice();
     for (const { name, first, count: size } of scene.bodies) {
       this.bodies[name] = { positions: this.positions.subarray(3 * first, 3 * (first + size)) };
     }
@@ -40,5 +47,18 @@ export class RunModel {
     this.numbers = frame.numbers;
     this.frame = header.frame;
     this.time = header.time;
+    this.remove();
+  }
+
+  /** Removes what tore or broke until the frame. */
+  private remove(): void {
+    const torn = (this.scene.torn ?? []).filter((tear) => tear.frame <= this.frame);
+    const broken = (this.scene.broken ?? []).filter((breaking) => breaking.frame <= this.frame);
+    if (torn.length + broken.length === this.removals) return;
+    this.removals = torn.length + broken.length;
+    this.triangles.set(this.topology.triangles);
+    this.springs.set(this.topology.springs);
+    for (const t of torn.flatMap(({ triangles }) => triangles)) this.triangles.fill(this.triangles[3 * t], 3 * t, 3 * t + 3);
+    for (const s of broken.flatMap(({ springs }) => springs)) this.springs[2 * s + 1] = this.springs[2 * s];
   }
 }

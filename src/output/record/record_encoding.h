@@ -1,0 +1,16 @@
+// Writes the bytes of record.bin; RECORD.md describes them.
+#pragma once
+
+#include "output/record/recorded_model.h"
+
+#include <string>
+
+namespace sprung {
+
+/// The frame as bytes. All frames of a run have the same number of them: `broken` is empty in all frames, or in none.
+[[nodiscard]] std::string encode_frame(const RecordedFrame& frame);
+
+/// The begin of a record: all that precedes the frames. `like` is a frame of the run.
+[[nodiscard]] std::string encode_head(const RecordedModel& model, const RecordedFrame& like);
+
+}  // namespace sprung

@@ -1,0 +1,38 @@
+// Reads record.bin.
+#pragma once
+
+#include "output/record/recorded_model.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sprung {
+
+/// Reads a record. Whole frames count; a part of one at the end is ignored.
+class RecordReader {
+ public:
+  /// Throws InputError that says what is wrong with the file.
+  explicit RecordReader(std::filesystem::path file);
+  ~RecordReader();
+  RecordReader(RecordReader&&) noexcept;
+  RecordReader& operator=(RecordReader&&) noexcept;
+
+  [[nodiscard]] const RecordedModel& model() const;
+
+  /// The number of whole frames.
+  [[nodiscard]] int frames() const;
+
+  /// A frame, counted from 1, at most frames(). Throws InputError if it cannot be read or does not fit the model. Thread-safe.
+  [[nodiscard]] RecordedFrame frame(int number) const;
+
+  /// By spring, whether it has broken in a frame; empty if none can break. As frame() otherwise, but reads that alone.
+  [[nodiscard]] std::vector<char> broken(int number) const;
+
+ private:
+  struct Contents;
+  std::unique_ptr<const Contents> contents_;
+};
+
+}  // namespace sprung

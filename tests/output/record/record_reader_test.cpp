@@ -1,0 +1,184 @@
+// record.bin holds exactly what was put in, and no damage to it does more than an error.
+#include "output/record/record_reader.h"
+
+#include "base/error.h"
+#include "output/record/record_encoding.h"
+#include "output/scratch_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace sprung {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::read_text;
+using testing::ScratchFolder;
+using testing::write_text;
+
+/// A quad with UVs whose last two vertices are one particle, a rope that a spring and a rod hold, and an obstacle of each motion.
+RecordedModel model_with_one_of_each() {
+  RecordedModel model{.particle_count = 6, .bodies = {}, .springs = {}, .pins = {}, .attachments = {}, .obstacles = {}};
+  RecordedBody quad{.name = "quad",
+                    .material = "silk",
+                    .first_particle = 0,
+                    .particle_count = 3,
+                    .particle_of = {0, 1, 2, 2},
+                    .faces = {},
+                    .face_materials = {"red paint", "blue"},
+                    .face_material_begin = {0, 1}};
+  quad.faces.corner_begin = {0, 3, 6};
+  quad.faces.vertex = {0, 1, 2, 1, 3, 2};
+  quad.faces.texcoord = {0, 1, kNone, kNone, 1, 0};
+  quad.faces.texcoords = {{0.1, 0.2}, {1.0 / 3.0, -4.0}};
+  quad.faces.groups = {"left", "right"};
+  quad.faces.group_begin = {0, 1};
+  RecordedBody rope{.name = "rope", .first_particle = 3, .particle_count = 3, .particle_of = {3, 4, 5}, .faces = {}};
+  rope.lines.resize(2, 2);
+  rope.lines << 0, 1, 1, 2;
+  model.bodies = {quad, rope};
+  model.springs.ends.resize(2, 3);
+  model.springs.ends << 0, 3, 4, 1, 4, 5;
+  model.springs.rest_lengths = {1.0 / 3.0, 0.1, 0.0};
+  model.springs.kinds = {SpringKind::structural, SpringKind::shear, SpringKind::bend};
+  model.pins = {{.name = "quad.pins[0]", .particles = {0, 2}},
+                {.name = "hook", .particles = {5}, .obstacle = 1, .from = 0.5, .until = 2.0}};
+  model.attachments = {{.name = "attachments[0]", .particles = {3}, .second = ParticleEnds{{0, 1}}, .stiffness = 12.5},
+                       {.name = "rod", .particles = {4, 5}, .second = ObstacleEnd{2}, .break_force = 9.0, .until = 1.0},
+                       {.name = "sewn", .particles = {3}, .second = SurfaceEnd{0}, .rest_length = 0.25}};
+  TriangleMesh triangle{Points(3, 3), Triangles(3, 1)};
+  triangle.vertices << 0, 1, 0, 0, 0, 1, 0.1, 0.2, 0.3;
+  triangle.triangles << 0, 1, 2;
+  model.obstacles = {{.name = "floor", .motion = ObstacleMotion::fixed, .mesh = triangle},
+                     {.name = "arm", .motion = ObstacleMotion::rigid, .mesh = triangle},
+                     {.name = "heart", .motion = ObstacleMotion::deforming, .mesh = triangle}};
+  return model;
+}
+
+RecordedFrame frame_of(const RecordedModel& model, int number) {
+  RecordedFrame frame{.time = number / 3.0,
+                      .positions = Points::Random(3, model.particle_count),
+                      .velocities = Points::Random(3, model.particle_count),
+                      .states = {0, kPinned, kInContact, kInContact | kPinned, 0, 0},
+                      .broken = {0, static_cast<char>(number > 1), 0},
+                      .poses = std::vector<RigidTransform>(3, RigidTransform::Identity()),
+                      .deformed = {Points::Random(3, 3)}};
+  frame.poses[1].translation() << 0.1, 0.2, number;
+  frame.poses[1].linear() = Eigen::AngleAxisd(0.3, Vector3::UnitY()).toRotationMatrix();
+  return frame;
+}
+
+class Record : public ::testing::Test {
+ protected:
+  Record() {
+    for (int number = 1; number <= 3; ++number) frames_.push_back(frame_of(model_, number));
+    bytes_ = encode_head(model_, frames_[0]);
+    for (const RecordedFrame& frame : frames_) bytes_ += encode_frame(frame);
+  }
+  [[nodiscard]] RecordReader read(const std::string& bytes) const {
+    write_text(file(), bytes);
+    return RecordReader(file());
+  }
+  [[nodiscard]] std::string refusal(const std::string& bytes) const {
+    try {
+      const RecordReader reader = read(bytes);
+      for (int number = 1; number <= reader.frames(); ++number) (void)reader.frame(number);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  [[nodiscard]] std::filesystem::path file() const { return scratch_ / "record.bin"; }
+
+  ScratchFolder scratch_;
+  RecordedModel model_ = model_with_one_of_each();
+  std::vector<RecordedFrame> frames_;
+  std::string bytes_;
+};
+
+TEST_F(Record, HoldsTheModelBitForBit) {
+  const RecordReader reader = read(bytes_);
+  const RecordedModel& model = reader.model();
+  EXPECT_EQ(encode_head(model, reader.frame(1)), encode_head(model_, frames_[0]));
+  ASSERT_EQ(model.bodies.size(), 2U);
+  EXPECT_EQ(model.bodies[0].particle_of, model_.bodies[0].particle_of);
+  EXPECT_EQ(model.bodies[0].faces.texcoords, model_.bodies[0].faces.texcoords);
+  EXPECT_THAT(model.bodies[0].face_materials, ElementsAre("red paint", "blue"));
+  EXPECT_EQ(model.bodies[1].lines, model_.bodies[1].lines);
+  EXPECT_EQ(model.springs.ends, model_.springs.ends);
+  EXPECT_EQ(model.springs.rest_lengths, model_.springs.rest_lengths);
+  EXPECT_EQ(model.springs.kinds, model_.springs.kinds);
+  EXPECT_EQ(model.pins[0].until, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(model.pins[1].obstacle, 1);
+  EXPECT_EQ(model.attachments[0].stiffness, 12.5);
+  EXPECT_TRUE(model.attachments[1].is_rigid());
+  EXPECT_EQ(std::get<ObstacleEnd>(model.attachments[1].second).obstacle, 2);
+  EXPECT_EQ(model.attachments[2].rest_length, 0.25);
+  EXPECT_EQ(model.obstacles[2].motion, ObstacleMotion::deforming);
+  EXPECT_EQ(model.obstacles[0].mesh.vertices, model_.obstacles[0].mesh.vertices);
+}
+
+TEST_F(Record, HoldsFramesBitForBitInAnyOrder) {
+  const RecordReader reader = read(bytes_);
+  ASSERT_EQ(reader.frames(), 3);
+  for (const int number : {3, 1, 2}) {
+    const RecordedFrame frame = reader.frame(number);
+    const RecordedFrame& written = frames_[static_cast<std::size_t>(number - 1)];
+    EXPECT_EQ(encode_frame(frame), encode_frame(written)) << number;
+    EXPECT_EQ(frame.velocities, written.velocities);
+    EXPECT_EQ(frame.poses[1].matrix(), written.poses[1].matrix());
+    EXPECT_EQ(reader.broken(number), written.broken);
+  }
+}
+
+TEST_F(Record, APartOfAFrameAtTheEndDoesNotCount) {
+  const std::size_t frame_bytes = encode_frame(frames_[0]).size();
+  EXPECT_EQ(read(bytes_.substr(0, bytes_.size() - 1)).frames(), 2);
+  EXPECT_EQ(read(bytes_.substr(0, bytes_.size() - frame_bytes)).frames(), 2);
+  EXPECT_EQ(read(bytes_.substr(0, bytes_.size() - 3 * frame_bytes)).frames(), 0);
+}
+
+TEST_F(Record, ThatEndsEarlierIsRefusedAtAnyLength) {
+  const std::size_t head = encode_head(model_, frames_[0]).size();
+  for (std::size_t size = 0; size < head; size += 13) EXPECT_NE(refusal(bytes_.substr(0, size)), "") << size;
+}
+
+TEST_F(Record, OfAnotherVersionOrKindSaysWhatToDo) {
+  std::string newer = bytes_;
+  newer[8] = 2;
+  EXPECT_THAT(refusal(newer), HasSubstr("version 2"));
+  EXPECT_THAT(refusal("solid cube with more than 24 letters"), HasSubstr("no record of Sprung"));
+}
+
+// Any byte of the head and of a frame may be wrong: the reader refuses the file or returns arrays that fit each other.
+TEST_F(Record, DamageIsRefusedOrHarmless) {
+  std::mt19937 random(5);
+  int refused = 0;
+  constexpr int kTrials = 2000;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::string damaged = bytes_;
+    for (int k = 0; k < 1 + trial % 3; ++k) damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
+    write_text(file(), damaged);
+    try {
+      const RecordReader reader(file());
+      const RecordedModel& model = reader.model();
+      for (int number = 1; number <= std::min(reader.frames(), 3); ++number) {
+        const RecordedFrame frame = reader.frame(number);
+        ASSERT_EQ(frame.positions.cols(), model.particle_count);
+        for (const RecordedBody& body : model.bodies) {
+          ASSERT_EQ(vertices_of(body, frame).cols(), std::ssize(body.particle_of));
+          ASSERT_LE(triangulate(body.faces).size() == 0 ? 0 : triangulate(body.faces).maxCoeff() + 1, std::ssize(body.particle_of));
+        }
+      }
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, kTrials / 4) << "most bytes are those of the head";
+}
+
+}  // namespace
+}  // namespace sprung
