@@ -1,7 +1,7 @@
 // Starts the program and a real browser for the tests of the page.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -12,8 +12,11 @@ export const sourceFolder = process.env.SPRUNG_SOURCE_DIR;
 const meshes = process.env.SPRUNG_TEST_MESHES;
 const { chromium } = createRequire(join(process.env.SPRUNG_PAGE_TEST_MODULES, 'any.js'))('playwright-core');
 
-/** Waiting for the page ends with an error after so many milliseconds: software rendering on a busy machine is slow. */
-export const patience = 60_000;
+/**
+ * Tests wait for frames and states of the page, however long these take on a busy machine. This limit [ms] only ends a test of a page
+ * or program that hangs.
+ */
+export const patience = 600_000;
 
 let browser;
 const servers = new Set();
@@ -61,6 +64,7 @@ export async function view(target, ...options) {
   const server = {
     address,
     port: new URL(address).port,
+    pid: child.pid,
     /** Interrupts the program as Ctrl-C does, and returns its exit code. */
     async stop() {
       servers.delete(server);
@@ -125,6 +129,42 @@ export async function play(page) {
 export async function pause(page) {
   if (await page.evaluate(() => window.sprung.playing)) await control(page, 'play').click();
   await until(page, () => !window.sprung.playing);
+}
+
+/** Advances a run by so many frames, one after the other, and pauses it. */
+export async function advance(page, count) {
+  await page.evaluate(async (count) => {
+    await new Promise(requestAnimationFrame); // in which the page sends where the pointer is
+    for (let k = 0; k < count; ++k) {
+      const { frame } = window.sprung;
+      document.body.dispatchEvent(new KeyboardEvent('keydown', { key: '.', bubbles: true }));
+      while (window.sprung.frame === frame) await new Promise(requestAnimationFrame);
+    }
+  }, count);
+}
+
+/** Waits until the page, which plays, has shown so many more frames. Of a run that is faster than the page, it misses some. */
+export async function shown(page, count) {
+  await page.evaluate(async (count) => {
+    for (let k = 0; k < count; ++k) {
+      const { frame } = window.sprung;
+      while (window.sprung.frame === frame) await new Promise(requestAnimationFrame);
+    }
+  }, count);
+}
+
+/** Waits until the page has drawn what it knows now. */
+export async function drawn(page) {
+  await page.evaluate(async () => {
+    for (let k = 0; k < 2; ++k) await new Promise(requestAnimationFrame);
+  });
+}
+
+/** Waits until no thread of the program computes: in twenty looks in a row, all of them wait. */
+export async function idle(server) {
+  const tasks = `/proc/${server.pid}/task`;
+  const waits = () => readdirSync(tasks).every((task) => /^\d+ \(.*\) S/s.test(readFileSync(`${tasks}/${task}/stat`, 'utf8')));
+  for (let looks = 0; looks < 20; looks = waits() ? looks + 1 : 0) await new Promise((resolve) => setTimeout(resolve, 10));
 }
 
 export function largestDifference(a, b) {
