@@ -102,6 +102,24 @@ TEST_F(CommandLine, TerminalShowsABarWithTimeLeft) {
                            HasSubstr("[##############################] frame 7/7")));
 }
 
+// Pairs of which one name with the number of a frame could be taken for the other.
+TEST_F(CommandLine, NamesMayEndInADigit) {
+  json scene = rope_scene();
+  for (const char* name : {"rope1", "rope10", "1"}) scene["bodies"][name] = scene["bodies"]["rope"];
+  for (json& body : scene["bodies"]) body["body_contact"] = false;
+  scene["obstacles"]["ball2"] = {{"shape", {{"type", "sphere"}, {"radius", 0.1}}}, {"motion", {{"spin", {0, 90, 0}}}}};
+  scene["obstacles"]["2"] = {{"shape", {{"type", "sphere"}, {"radius", 0.1}}}};
+  const std::string file = save(scene);
+  const std::vector<std::string> words{"run", file, "--out", out(), "--frames", "2", "--set", "bodies.rope1.mass=0.25"};
+  ASSERT_EQ(run(words).code, 0);
+  const std::vector<std::string> before = listing(out());
+  EXPECT_THAT(before, ::testing::IsSupersetOf({"1/1.0002.obj", "rope/rope.0002.obj", "rope1/rope1.0002.obj",
+                                               "rope10/rope10.0002.obj", "obstacles/2.obj", "obstacles/ball2/ball2.0002.obj"}));
+  EXPECT_EQ(record()["scene"]["bodies"]["rope1"]["mass"], 0.25);
+  EXPECT_EQ(run({"run", file, "--out", out(), "--frames", "2", "--overwrite"}).code, 0);
+  EXPECT_EQ(listing(out()), before);
+}
+
 TEST_F(CommandLine, SetReplacesValuesAndFramesTheDuration) {
   const Ending ending = run({"run", "--set", "bodies.rope.mass=0.25", "--set", "bodies.rope.shape.particles=9", save(rope_scene()),
                              "--frames", "2", "--out", out()});

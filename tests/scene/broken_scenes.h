@@ -242,7 +242,6 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"SequenceFrameRateOfZero", {"obstacles.floor.shape={\"type\":\"sequence\",\"files\":\"*.obj\",\"frame_rate\":0}"}, "obstacles.floor.shape.frame_rate", "must be greater than 0"},
       {"SequenceStartIsText", {"obstacles.floor.shape={\"type\":\"sequence\",\"files\":\"*.obj\",\"start\":\"now\"}"}, "obstacles.floor.shape.start", "must be a number"},
       {"SequenceLoopIsANumber", {"obstacles.floor.shape={\"type\":\"sequence\",\"files\":\"*.obj\",\"loop\":1}"}, "obstacles.floor.shape.loop", "must be true or false"},
-      {"NameEndsInADigit", {"obstacles.floor2.shape={\"type\":\"sphere\",\"radius\":1}"}, "obstacles.floor2", "must not end in a digit"},
       {"NameWithASlash", {"bodies.a/b.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}", "bodies.a/b.mass=1"}, "bodies.a/b", "letters, digits, _ and -"},
       {"NameIsTooLong", {"obstacles." + std::string(201, 'x') + ".shape={\"type\":\"sphere\",\"radius\":1}"}, "obstacles." + std::string(201, 'x'), "at most 200 letters"},
       {"NameIsReserved", {"bodies.obstacles.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}", "bodies.obstacles.mass=1"}, "bodies.obstacles", "the name is reserved"},

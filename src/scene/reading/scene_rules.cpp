@@ -18,15 +18,13 @@ bool is_name(const std::string& name) {
   const auto allowed = [](unsigned char letter) {
     return (letter < 128 && std::isalnum(letter)) || letter == '_' || letter == '-';
   };
-  return !name.empty() && name.size() <= kLongestName && std::all_of(name.begin(), name.end(), allowed) &&
-         !std::isdigit(static_cast<unsigned char>(name.back()));
+  return !name.empty() && name.size() <= kLongestName && std::all_of(name.begin(), name.end(), allowed);
 }
 
 void check_name(const std::string& name, const JsonLocation& location) {
   if (name == "obstacles") location.report_key("the name is reserved for the folder of the obstacles", "choose another name");
   if (is_name(name)) return;
-  location.report_key("a name becomes a folder: it may have at most 200 letters, digits, _ and -, and must not end in a digit",
-                      "choose another name");
+  location.report_key("a name becomes a folder: it may have at most 200 letters, digits, _ and -", "choose another name");
 }
 
 /// An object keyed by name: reads each entry by `rule`, and checks and sets its name.
