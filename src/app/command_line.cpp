@@ -43,9 +43,12 @@ class Parser {
     add_view();
     add_export();
     add_materials();
+    add_help();
   }
 
   [[nodiscard]] Command parse(int argc, const char* const* argv) {
+    const std::string help_of_all = app_.help();  // once a command is parsed, this is the command's
+    if (argc < 2) return PrintOptions{.text = help_of_all, .is_usage_error = true};
     try {
       app_.parse(argc, argv);
     } catch (const CLI::CallForVersion& version) {
@@ -65,6 +68,7 @@ class Parser {
       return export_;
     }
     if (app_.got_subcommand("materials")) return materials_;
+    if (app_.got_subcommand("help")) return help_of_.empty() ? PrintOptions{help_of_all} : help_of_command();
     return info_;
   }
 
@@ -131,6 +135,18 @@ class Parser {
         ->type_name("");
   }
 
+  void add_help() {
+    CLI::App* command = app_.add_subcommand("help", "Prints this help, or that of a command");
+    command->add_option("COMMAND", help_of_, "Command; all by default")->type_name("");
+  }
+
+  [[nodiscard]] PrintOptions help_of_command() const {
+    for (const CLI::App* command : app_.get_subcommands({})) {
+      if (command->get_name() == help_of_) return PrintOptions{command->help(app_.get_name())};
+    }
+    throw UsageError(unexpected(help_of_, app_) + "see sprung --help");
+  }
+
   static std::vector<std::string> export_formats() { return {"html"}; }
 
   static std::string is_token(const std::string& token) {
@@ -161,17 +177,17 @@ class Parser {
   [[nodiscard]] std::string explain(const CLI::ParseError& error) const {
     const std::vector<CLI::App*> chosen = app_.get_subcommands();
     const CLI::App& command = chosen.empty() ? app_ : *chosen.front();
-    const std::vector<std::string> names = known_names(command);
     std::string help = "see sprung ";
     if (!chosen.empty()) help += command.get_name() + " ";
     help += "--help";
     std::string text;
-    for (const std::string& word : app_.remaining(true)) {
-      const auto name = nearest_name(word, names);
-      const std::string hint = name ? fmt::format("did you mean {}? ", *name) : "";
-      text += fmt::format("unexpected argument {}; {}{}\n", word, hint, help);
-    }
+    for (const std::string& word : app_.remaining(true)) text += unexpected(word, command) + help + "\n";
     return text.empty() ? std::string(error.what()) + "; " + help : text;
+  }
+
+  [[nodiscard]] static std::string unexpected(const std::string& word, const CLI::App& command) {
+    const auto name = nearest_name(word, known_names(command));
+    return fmt::format("unexpected argument {}; {}", word, name ? fmt::format("did you mean {}? ", *name) : "");
   }
 
   [[nodiscard]] static std::vector<std::string> known_names(const CLI::App& command) {
@@ -190,6 +206,7 @@ class Parser {
   ViewOptions view_;
   ExportOptions export_;
   MaterialsOptions materials_;
+  std::string help_of_;
 };
 
 }  // namespace

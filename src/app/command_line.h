@@ -52,6 +52,7 @@ struct MaterialsOptions {
 /// The text of --help or --version, to print.
 struct PrintOptions {
   std::string text;
+  bool is_usage_error = false;  ///< there was no command: the text goes to standard error
 };
 
 using Command = std::variant<RunOptions, ValidateOptions, InfoOptions, ViewOptions, ExportOptions, MaterialsOptions, PrintOptions>;

@@ -30,6 +30,8 @@ void print_result(const std::string& text) {
   }
 }
 
+void print_to_standard_error(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
 void print_message(const std::string& line) { print_lines("sprung: ", line); }
 
 void print_warning(const std::string& text) { print_lines("sprung: warning: ", text); }

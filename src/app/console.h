@@ -10,6 +10,9 @@ namespace sprung {
 /// Prints to standard output. Throws FileError if it cannot be written.
 void print_result(const std::string& text);
 
+/// Prints a text as it is.
+void print_to_standard_error(const std::string& text);
+
 /// Prints `sprung: ` and a line.
 void print_message(const std::string& line);
 

@@ -8,6 +8,10 @@ namespace sprung {
 namespace {
 
 ExitCode print(const PrintOptions& options) {
+  if (options.is_usage_error) {
+    print_to_standard_error(options.text);
+    return ExitCode::usage;
+  }
   print_result(options.text);
   return ExitCode::done;
 }

@@ -421,14 +421,16 @@ TEST_F(CommandLine, MoreFramesThanASceneMayHaveAreRefused) {
 
 TEST_F(CommandLine, HelpAndVersionGoToStandardOutput) {
   for (const std::vector<std::string>& words :
-       std::vector<std::vector<std::string>>{{"--help"}, {"run", "--help"}, {"--version"}}) {
+       std::vector<std::vector<std::string>>{{"--help"}, {"help"}, {"run", "--help"}, {"help", "run"}, {"--version"}}) {
     const Ending ending = run(words);
     EXPECT_EQ(ending.code, 0);
     EXPECT_EQ(ending.err, "");
     EXPECT_NE(ending.out, "");
   }
   EXPECT_THAT(run({"--help"}).out, AllOf(HasSubstr("Examples:"), HasSubstr("sprung run "), HasSubstr("Exit codes:")));
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
   EXPECT_THAT(run({"run", "--help"}).out, HasSubstr("--overwrite"));
+  EXPECT_EQ(run({"help", "run"}).out, run({"run", "--help"}).out);
   EXPECT_THAT(run({"--version"}).out, ::testing::MatchesRegex("sprung [0-9]+\\.[0-9]+\\.[0-9]+\n"));
 }
 

@@ -37,7 +37,9 @@ TEST_F(CommandLine, WrongUsageEndsWithTwoAndSuggests) {
     EXPECT_THAT(ending.err, AllOf(StartsWith("sprung: error: "), HasSubstr(text), HasSubstr("--help")));
     EXPECT_FALSE(wrote_something());
   };
-  refused({}, "subcommand");
+  refused({"--quiet"}, "--quiet");
+  refused({"help", "rum"}, "did you mean run?");
+  refused({"help", "run", "validate"}, "validate");
   refused({"rum", scene}, "did you mean run?");
   refused({"run", scene}, "--out");
   refused({"run", "--out", out()}, "SCENE");
@@ -48,6 +50,13 @@ TEST_F(CommandLine, WrongUsageEndsWithTwoAndSuggests) {
   refused({"run", scene, "--out", out(), "--threads", "-1"}, "--threads");
   refused({"export", out()}, "--format is required: choose from html");
   refused({"export", out(), "--format", "obj"}, "html");
+}
+
+TEST_F(CommandLine, NoCommandEndsWithTwoAndTheHelpOnStandardError) {
+  const Ending ending = run({});
+  EXPECT_EQ(ending.code, 2);
+  EXPECT_EQ(ending.out, "");
+  EXPECT_EQ(ending.err, run({"help"}).out);
 }
 
 TEST_F(CommandLine, InvalidSceneEndsWithThreeNamesEveryProblemAndWritesNothing) {
