@@ -21,6 +21,10 @@ inline std::ostream& operator<<(std::ostream& stream, const BrokenScene& scene) 
 inline const std::vector<BrokenScene>& broken_scenes() {
   static const std::vector<BrokenScene> kScenes{
       {"UnknownKeyOfTheScene", {"duraton=1"}, "duraton", "is not a known key; did you mean \"duration\"?"},
+      {"KeyOfTheAirInTheScene", {"wind=[1,0,0]"}, "wind", "it belongs to air: write \"air\": { \"wind\": ... }"},
+      {"KeyOfAnotherProgram", {"fps=30"}, "fps", "did you mean \"frame_rate\"?"},
+      {"KeyOfThePlaceInABody", {"bodies.banner.position=[1,0,0]"}, "bodies.banner.position", "it belongs to place: write \"place\": { \"position\": ... }"},
+      {"KeyOfTheMotionInAnObstacle", {"obstacles.floor.spin=[1,0,0]"}, "obstacles.floor.spin", "it belongs to motion"},
       {"UnknownKeyOfASpring", {"bodies.banner.springs.structural.stifness=1"}, "bodies.banner.springs.structural.stifness", "did you mean \"stiffness\"?"},
       {"SpringDampedTwice", {"bodies.banner.springs.shear={\"stiffness\":1,\"damping\":0.1,\"damping_ratio\":0.1}"}, "bodies.banner.springs.shear", "may have only one of damping, damping_ratio"},
       {"SpringDampedByTimeToo", {"bodies.banner.springs.shear={\"stiffness\":1,\"damping\":0.1,\"damping_time\":0.1}"}, "bodies.banner.springs.shear", "may have only one of damping, damping_time"},
@@ -232,6 +236,10 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"NormalOfZero", {"obstacles.floor.shape.normal=[0,0,0]"}, "obstacles.floor.shape.normal", "must not be zero", false},
       {"RadiusOfZero", {"obstacles.floor.shape={\"type\":\"sphere\",\"radius\":0}"}, "obstacles.floor.shape.radius", "must be greater than 0"},
       {"RadiusOfABox", {"obstacles.floor.shape={\"type\":\"box\",\"radius\":1}"}, "obstacles.floor.shape.size", "is missing"},
+      {"ShapeOfABody", {"obstacles.floor.shape={\"type\":\"cloth\"}"}, "obstacles.floor.shape.type", "only a body may be one: move it to bodies"},
+      {"ShapeOfAnotherProgram", {"obstacles.floor.shape={\"type\":\"plane\"}"}, "obstacles.floor.shape.type", "did you mean \"half_space\"? A plate is a \"box\""},
+      {"BodyWithTheShapeOfAnObstacle", {"bodies.banner.shape={\"type\":\"sphere\",\"radius\":1}", "bodies.banner.pins=[]"}, "bodies.banner.shape.type", "use a \"lattice\" of a closed mesh"},
+      {"BodyThatIsABox", {"bodies.banner.shape={\"type\":\"box\",\"size\":[1,1,1]}", "bodies.banner.pins=[]"}, "bodies.banner.shape.type", "an elastic box is a \"solid\""},
       {"SequenceWithoutFiles", {"obstacles.floor.shape={\"type\":\"sequence\"}"}, "obstacles.floor.shape.files", "is missing"},
       {"SequenceOfOneFile", {"obstacles.floor.shape={\"type\":\"sequence\",\"files\":[\"a.obj\"]}"}, "obstacles.floor.shape.files", "must have at least 2 entries"},
       {"SequenceFileIsANumber", {"obstacles.floor.shape={\"type\":\"sequence\",\"files\":[\"a.obj\",3]}"}, "obstacles.floor.shape.files[1]", "must be a string"},

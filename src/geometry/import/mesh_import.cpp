@@ -19,7 +19,7 @@ CheckedFile read_checked(const std::filesystem::path& file) {
   throw InputError(Problem{.file = file.string(),
                            .value = file.extension().string(),
                            .rule = "must be a mesh in one of the formats .obj, .stl, .ply, .off, .gltf, .glb, .3ds",
-                           .remedy = "convert it to OBJ, for instance with Blender"});
+                           .remedy = "convert its surface to OBJ, for instance with Blender"});
 }
 
 }  // namespace

@@ -230,6 +230,11 @@ TetrahedraMesh assemble(const TetrahedraLines& lines, FileProblems& of_nodes, Fi
   return mesh;
 }
 
+bool is_tetrahedra_file(const std::filesystem::path& file) {
+  const std::string extension = lower_case_extension(file);
+  return extension == ".msh" || extension == ".node" || extension == ".ele" || extension == ".vtk";
+}
+
 TetrahedraMesh read_tetrahedra(const std::filesystem::path& file) {
   const std::string extension = lower_case_extension(file);
   if (extension == ".msh") return read_gmsh(file);
@@ -237,7 +242,7 @@ TetrahedraMesh read_tetrahedra(const std::filesystem::path& file) {
   if (extension == ".vtk") return read_vtk(file);
   throw InputError(Problem{.file = file.string(),
                            .rule = "tetrahedra are read from .msh (Gmsh), .node and .ele (TetGen) and .vtk files",
-                           .remedy = "save the mesh in one of these formats"});
+                           .remedy = "save the mesh in one of these formats; a surface is a body of type \"mesh\" or \"lattice\""});
 }
 
 }  // namespace sprung

@@ -30,6 +30,9 @@ struct TetrahedronSide {
 /// The sides that belong to one tetrahedron alone, in the order of the tetrahedra.
 [[nodiscard]] Triangles boundary_triangles(const std::vector<std::array<Index, 4>>& tetrahedra);
 
+/// Whether read_tetrahedra() reads files with this extension.
+[[nodiscard]] bool is_tetrahedra_file(const std::filesystem::path& file);
+
 /// Reads the tetrahedra of a file: Gmsh `.msh` 2.2 and 4.1 and VTK legacy `.vtk`, both as text, and TetGen's `.node` and `.ele`,
 /// of which either may be named; the other lies beside it.
 ///

@@ -7,6 +7,7 @@
 #include "geometry/mesh/topology.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "geometry/mesh/weld.h"
+#include "geometry/tetrahedra/tetrahedra_mesh.h"
 #include "network/bodies/tetrahedra_body.h"
 #include "scene/building/lattice_filling.h"
 #include "scene/building/particle_selector.h"
@@ -76,8 +77,18 @@ class ShapeMaker {
     return body;
   }
 
+  /// Whether a file for a surface is one of tetrahedra, which is reported.
+  [[nodiscard]] bool is_tetrahedra(const std::string& file) const {
+    if (!is_tetrahedra_file(file)) return false;
+    problems_.push_back({scene_.file.string(), key_ + ".shape.file", "\"" + file + "\"",
+                         "has the format of tetrahedra, not of a surface",
+                         "use \"type\": \"tetrahedra\", which has only the key file beside it"});
+    return true;
+  }
+
   std::optional<BuiltBody> from(const MeshFile& mesh) {
     const std::string key = key_ + ".shape.file";
+    if (is_tetrahedra(mesh.file)) return std::nullopt;
     if (lower_case_extension(mesh.file) != ".obj") {
       problems_.push_back({scene_.file.string(), key, "\"" + mesh.file + "\"", "a simulated body is read from an .obj file",
                            "export it as OBJ: other formats lose the order of its vertices"});
@@ -101,6 +112,7 @@ class ShapeMaker {
   }
 
   std::optional<BuiltBody> from(const LatticeFile& lattice) {
+    if (is_tetrahedra(lattice.file)) return std::nullopt;
     const auto file = finder_.find(lattice.file, key_ + ".shape.file", problems_);
     if (!file) return std::nullopt;
     PolygonMesh surface;

@@ -1,6 +1,7 @@
 #include "scene/building/mesh_finder.h"
 
 #include "scene/format/file_wildcard.h"
+#include "scene/json/near_file.h"
 #include "scene/json/nearest_name.h"
 
 #include <algorithm>
@@ -15,15 +16,6 @@ namespace {
 bool is_file(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored);
-}
-
-void add_files_beside(const std::filesystem::path& missing, std::vector<std::string>& names) {
-  const std::filesystem::path folder = missing.has_parent_path() ? missing.parent_path() : ".";
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    if (entry.is_regular_file(ignored)) names.push_back(entry.path().filename().string());
-  }
-  std::ranges::sort(names);  // folders have no order
 }
 
 }  // namespace
@@ -61,17 +53,14 @@ std::vector<std::filesystem::path> MeshFinder::find_all(const std::string& patte
 void MeshFinder::report_missing(const std::string& file, const std::string& key, const std::string& rule,
                                 std::vector<Problem>& problems) const {
   std::vector<std::string> looked;
-  std::vector<std::string> beside;
   for (const std::filesystem::path& folder : folders_) {
     const std::filesystem::path candidate = folder / file;
     if (!looked.empty() && looked.back() == candidate.string()) continue;
     looked.push_back(candidate.string());
-    add_files_beside(candidate, beside);
   }
-  const std::filesystem::path named(file);
-  const auto near = nearest_name(named.filename().string(), beside);
+  const auto near = near_file(folders_, file);
   problems.push_back({scene_file_.string(), key, "\"" + file + "\"", rule + ": looked for " + joined(looked),
-                      (near ? "did you mean \"" + (named.parent_path() / *near).string() + "\"? Otherwise " : std::string()) +
+                      (near ? "did you mean \"" + *near + "\"? Otherwise " : std::string()) +
                           (scene_file_.empty() ? "" : "put it beside the scene, or ") +
                           "name its folder with --mesh-path or SPRUNG_MESH_PATH"});
 }

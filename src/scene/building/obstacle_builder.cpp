@@ -1,5 +1,6 @@
 #include "scene/building/obstacle_builder.h"
 
+#include "geometry/tetrahedra/tetrahedra_mesh.h"
 #include "scene/building/body_builder.h"
 #include "scene/format/file_wildcard.h"
 #include "scene/json/json_text.h"
@@ -39,7 +40,14 @@ std::optional<Obstacle> ObstacleBuilder::build(const ObstacleScene& obstacle) {
 }
 
 std::optional<ObstacleGeometry> ObstacleBuilder::geometry_of(const ObstacleScene& obstacle, const MeshFile& mesh) {
-  const auto file = finder_.find(mesh.file, join_path("obstacles", obstacle.name) + ".shape.file", problems_);
+  const std::string key = join_path("obstacles", obstacle.name) + ".shape.file";
+  if (is_tetrahedra_file(mesh.file)) {
+    problems_.push_back({scene_.file.string(), key, "\"" + mesh.file + "\"",
+                         "has the format of tetrahedra, which only a body may be",
+                         "save its surface as STL or OBJ, or make it a body of type \"tetrahedra\""});
+    return std::nullopt;
+  }
+  const auto file = finder_.find(mesh.file, key, problems_);
   if (!file) return std::nullopt;
   const std::optional<Import>& imported = import(*file);
   if (!imported) return std::nullopt;

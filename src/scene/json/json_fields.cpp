@@ -25,8 +25,9 @@ std::optional<std::string> Fields::one_of(const std::vector<std::string>& keys, 
   return std::nullopt;
 }
 
-std::optional<std::size_t> Fields::kind(const std::string& key, const std::vector<std::string>& kinds) {
-  const auto kind = required(key, word_of(kinds));
+std::optional<std::size_t> Fields::kind(const std::string& key, const std::vector<std::string>& kinds,
+                                        const WordRemedies& remedies) {
+  const auto kind = required(key, word_of(kinds, remedies));
   kind_is_known_ = kind.has_value();
   return kind;
 }
@@ -48,6 +49,12 @@ void Fields::accept(const std::string& key) {
 
 void Fields::set_remedy(const std::vector<std::string>& keys, const std::string& remedy) {
   for (const std::string& key : keys) remedies_[key] = remedy;
+}
+
+void Fields::set_owner(const std::vector<std::string>& keys, const std::string& owner) {
+  for (const std::string& key : keys) {
+    set_remedy({key}, "it belongs to " + owner + ": write \"" + owner + "\": { \"" + key + "\": ... }");
+  }
 }
 
 bool Fields::has(const std::string& key) {

@@ -45,7 +45,7 @@ class Fields {
   std::optional<std::string> one_of(const std::vector<std::string>& keys, bool or_nothing = false);
 
   /// The required key that selects the kind of object, as an index into `kinds`. If it is invalid, no key counts as unknown.
-  std::optional<std::size_t> kind(const std::string& key, const std::vector<std::string>& kinds);
+  std::optional<std::size_t> kind(const std::string& key, const std::vector<std::string>& kinds, const WordRemedies& remedies = {});
   /// Likewise, for an optional key.
   std::optional<std::size_t> kind(const std::string& key, const std::vector<std::string>& kinds, const std::string& fallback);
 
@@ -57,6 +57,9 @@ class Fields {
 
   /// The remedy for keys that are unknown here but known elsewhere.
   void set_remedy(const std::vector<std::string>& keys, const std::string& remedy);
+
+  /// The remedy for keys that belong to the object under `owner`.
+  void set_owner(const std::vector<std::string>& keys, const std::string& owner);
 
   [[nodiscard]] bool has(const std::string& key);
   [[nodiscard]] const Json& json() const { return json_; }

@@ -30,6 +30,14 @@ bool is_non_finite_literal(std::string_view rest) {
   return false;
 }
 
+/// Whether the text begins with a word and a colon.
+bool is_bare_key(std::string_view rest) {
+  const auto is_in_words = [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '_'; };
+  const auto* const word_end = std::find_if_not(rest.begin(), rest.end(), is_in_words);
+  const std::string_view after = rest.substr(static_cast<std::size_t>(word_end - rest.begin()));
+  return word_end != rest.begin() && after.find_first_not_of(" \t") == after.find(':') && after.find(':') != std::string_view::npos;
+}
+
 /// The most likely mistake at `offset`, the first character that does not fit, and its remedy.
 std::pair<std::string, std::string> explain_syntax(std::string_view text, std::size_t offset) {
   if (trimmed_right(text).empty()) return {"is empty", "write a scene, beginning with {"};
@@ -41,7 +49,11 @@ std::pair<std::string, std::string> explain_syntax(std::string_view text, std::s
   if (before.ends_with(',') && (rest.front() == '}' || rest.front() == ']')) {
     return {"nothing follows the comma", "remove the comma before it"};
   }
+  for (const auto& [python, json] : {std::pair("True", "true"), {"False", "false"}, {"None", "null"}}) {
+    if (rest.starts_with(python)) return {"is not JSON", std::string("write ") + json};
+  }
   if (rest.front() == '\'') return {"is not JSON", "put strings and keys in double quotes"};
+  if (is_bare_key(rest)) return {"is not JSON", "put keys in double quotes"};
   return {"is not JSON", "check for a missing comma, quote or bracket just before it"};
 }
 

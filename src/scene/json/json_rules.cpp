@@ -79,8 +79,9 @@ Rule<std::string> text() {
   };
 }
 
-Rule<std::size_t> word_of(std::vector<std::string> words) {
-  return [words = std::move(words)](Json& json, const JsonLocation& location) -> std::optional<std::size_t> {
+Rule<std::size_t> word_of(std::vector<std::string> words, WordRemedies remedies) {
+  return [words = std::move(words), remedies = std::move(remedies)](Json& json,
+                                                                    const JsonLocation& location) -> std::optional<std::size_t> {
     const std::string rule = words.size() == 1 ? "must be \"" + words.front() + "\"" : "must be one of " + joined(words);
     if (!json.is_string()) {
       location.report(json, rule);
@@ -89,7 +90,8 @@ Rule<std::size_t> word_of(std::vector<std::string> words) {
     const auto& word = json.get_ref<const std::string&>();
     const auto found = std::find(words.begin(), words.end(), word);
     if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
-    location.report(json, rule, did_you_mean(word, words));
+    const auto remedy = remedies.find(word);
+    location.report(json, rule, remedy != remedies.end() ? remedy->second : did_you_mean(word, words));
     return std::nullopt;
   };
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -50,8 +51,10 @@ inline constexpr Range kFraction{0.0, 1.0};
 [[nodiscard]] Rule<bool> boolean();
 /// A string that is not empty.
 [[nodiscard]] Rule<std::string> text();
+/// Remedies for words that are not allowed but likely, by word.
+using WordRemedies = std::map<std::string, std::string>;
 /// One of the words, as its index in the list.
-[[nodiscard]] Rule<std::size_t> word_of(std::vector<std::string> words);
+[[nodiscard]] Rule<std::size_t> word_of(std::vector<std::string> words, WordRemedies remedies = {});
 [[nodiscard]] Rule<Vector3> vector3(Range range = {});
 
 namespace detail {

@@ -63,11 +63,26 @@ LatticeFile read_lattice(Fields& fields) {
   return lattice;
 }
 
+/// Shapes that other programs have, and those of obstacles.
+WordRemedies remedies_of_other_shapes() {
+  WordRemedies remedies{{"half_space", "only an obstacle may be one: move it to obstacles"},
+                        {"plane", "a sheet is a cloth; an unbounded floor is an obstacle of type \"half_space\""},
+                        {"sequence", "only an obstacle may be one: move it to obstacles"}};
+  for (const char* box : {"box", "cube"})
+    remedies[box] = "an elastic box is a \"solid\"; a rigid one is an obstacle of type \"box\"";
+  for (const char* round : {"sphere", "ball", "capsule", "cylinder", "cone", "ellipsoid"}) {
+    remedies[round] =
+        "use a \"lattice\" of a closed mesh for an elastic body, a \"mesh\" with pressure for a balloon, "
+        "both of a file such as meshes/ball.obj; a rigid one is an obstacle";
+  }
+  return remedies;
+}
+
 std::optional<BodyShapeScene> read_shape(Fields& fields) {
-  const auto kind = fields.kind("type", {"rope", "cloth", "solid", "mesh", "lattice", "tetrahedra"});
+  const auto kind = fields.kind("type", {"rope", "cloth", "solid", "mesh", "lattice", "tetrahedra"}, remedies_of_other_shapes());
   if (!kind) {
-    fields.accept_keys_of_all_kinds(
-        {"from", "to", "points", "particles", "length", "size", "resolution", "file", "weld", "cells", "cell_size"});
+    fields.accept_keys_of_all_kinds({"from", "to", "points", "particles", "length", "size", "resolution", "file", "weld", "cells",
+                                     "cell_size", "radius", "radii", "height", "normal", "offset"});
     return std::nullopt;
   }
   switch (*kind) {
@@ -314,6 +329,8 @@ void refuse_break_of_closed(const Fields& fields) {
 
 BodyScene read_body(Fields& fields) {
   BodyScene body;
+  fields.set_owner({"position", "rotation", "scale"}, "place");
+  fields.set_owner({"type", "file", "size", "resolution", "particles"}, "shape");
   const auto shape = fields.required("shape", object_of<BodyShapeScene>(read_shape));
   body.shape = shape.value_or(BodyShapeScene{});
   read_preset(fields, shape, body);

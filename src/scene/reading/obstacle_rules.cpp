@@ -41,9 +41,20 @@ MeshFiles read_sequence(Fields& fields, double frame_rate) {
   return sequence;
 }
 
+/// Shapes that other programs have, and those of bodies.
+WordRemedies remedies_of_other_shapes() {
+  WordRemedies remedies{{"ball", "did you mean \"sphere\"?"}, {"cube", "did you mean \"box\"?"}};
+  for (const char* floor : {"plane", "floor", "ground"}) remedies[floor] = "did you mean \"half_space\"? A plate is a \"box\"";
+  for (const char* body : {"rope", "cloth", "solid", "lattice", "tetrahedra"}) {
+    remedies[body] = "only a body may be one: move it to bodies. A rigid mesh is a \"mesh\" of a file with its surface";
+  }
+  return remedies;
+}
+
 ObstacleShapeScene read_shape(Fields& fields, double frame_rate) {
   const auto kind =
-      fields.kind("type", {"mesh", "sequence", "sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "half_space"});
+      fields.kind("type", {"mesh", "sequence", "sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "half_space"},
+                  remedies_of_other_shapes());
   if (!kind) return {};
   switch (*kind) {
     case 0:
@@ -69,6 +80,9 @@ ObstacleShapeScene read_shape(Fields& fields, double frame_rate) {
 
 ObstacleScene read_obstacle(Fields& fields, double frame_rate) {
   ObstacleScene obstacle;
+  fields.set_owner({"position", "rotation", "scale"}, "place");
+  fields.set_owner({"type", "file", "size", "radius"}, "shape");
+  fields.set_owner({"keyframes", "spin"}, "motion");
   const auto shape = object_of<ObstacleShapeScene>([=](Fields& of_shape) { return read_shape(of_shape, frame_rate); });
   obstacle.shape = fields.required("shape", shape).value_or(ObstacleShapeScene{});
   obstacle.place = fields.value("place", placement_rule(), Json::object()).value_or(Placement{});

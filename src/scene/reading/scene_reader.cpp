@@ -1,6 +1,7 @@
 #include "scene/reading/scene_reader.h"
 
 #include "base/text_encoding.h"
+#include "scene/json/near_file.h"
 #include "scene/json/overrides.h"
 #include "scene/reading/scene_rules.h"
 
@@ -34,17 +35,30 @@ void mark_overridden(const std::vector<std::string>& overrides, std::vector<Prob
   }
 }
 
-}  // namespace
+[[noreturn]] void fail_to_read(const std::filesystem::path& file, int error) {
+  std::string reason = std::generic_category().message(error);
+  const auto near = error == ENOENT ? near_file({""}, file, ".json") : std::nullopt;
+  if (near) reason += "; did you mean \"" + *near + "\"?";
+  throw FileError("read", file.string(), reason);
+}
 
-std::string read_scene_file(const std::filesystem::path& file) {
-  const auto fail = [&](int error) { throw FileError("read", file.string(), std::generic_category().message(error)); };
+std::ifstream open_scene_file(const std::filesystem::path& file) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) fail(EISDIR);
+  if (std::filesystem::is_directory(file, ignored)) fail_to_read(file, EISDIR);
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(errno != 0 ? errno : EIO);
+  if (!stream) fail_to_read(file, errno != 0 ? errno : EIO);
+  return stream;
+}
+
+}  // namespace
+
+void check_scene_file(const std::filesystem::path& file) { (void)open_scene_file(file); }
+
+std::string read_scene_file(const std::filesystem::path& file) {
+  std::ifstream stream = open_scene_file(file);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (stream.bad()) fail(EIO);
+  if (stream.bad()) fail_to_read(file, EIO);
   return utf8_text(std::move(text));
 }
 

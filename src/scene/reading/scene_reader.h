@@ -15,7 +15,11 @@ namespace sprung {
 /// with every problem (file, key, value, rule, remedy) if it is invalid.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// The text of a scene file. Throws FileError if it cannot be read.
+/// Throws FileError, as read_scene_file(), unless the file can be opened.
+void check_scene_file(const std::filesystem::path& file);
+
+/// The text of a scene file. Throws FileError if it cannot be read; of a file that does not exist, it names the one that was
+/// probably meant.
 [[nodiscard]] std::string read_scene_file(const std::filesystem::path& file);
 
 /// Reads the text of a scene; problems name `file`. Adds problems to `problems` and returns a scene with defaults in their

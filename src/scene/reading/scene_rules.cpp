@@ -120,6 +120,9 @@ void check_followed(const Scene& scene, const Json& obstacles, const JsonLocatio
 
 Scene read_scene_fields(Fields& fields) {
   Scene scene;
+  fields.set_owner({"drag", "gusts", "surface", "wind"}, "air");
+  fields.set_remedy({"dt", "time_step", "timestep"}, "did you mean \"step\"?");
+  fields.set_remedy({"fps"}, "did you mean \"frame_rate\"?");
   fields.optional("$schema", text());
   fields.value("version", integer(1, 1), 1);
   read_time(fields, scene);

@@ -321,7 +321,7 @@ TEST_F(ImportMesh, RefusesOtherFormatsAndListsTheReadableOnes) {
     EXPECT_THAT(
         error_of("cube" + extension, "slab\n1 0 0 0 0 0\n"),
         testing::AllOf(HasSubstr(extension + ": must be a mesh in one of the formats .obj, .stl, .ply, .off, .gltf, .glb, .3ds"),
-                       HasSubstr("convert it to OBJ")));
+                       HasSubstr("convert its surface to OBJ")));
   }
 }
 

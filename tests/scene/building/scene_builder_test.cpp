@@ -337,6 +337,19 @@ TEST(SceneBuilder, AMissingMeshIsReportedWithTheNearestName) {
   EXPECT_THAT(problems[0].remedy, HasSubstr("did you mean \"meshes/bunny.obj\"?"));
 }
 
+// In the folder of the scene, and in its folder meshes: the folder left out, misspelt, and right.
+TEST(SceneBuilder, AMissingMeshIsLookedForInTheFoldersBelowToo) {
+  const SceneFolder folder;
+  folder.write("meshes/torus.ply", "");
+  folder.write("old/torus.ply", "");
+  for (const char* file : {"meshes/tours.ply", "mehses/torus.ply", "mehses/tours.ply", "tours.ply"}) {
+    const auto problems =
+        problems_of([&] { (void)build(folder, {std::string(R"(obstacles.floor.shape={"type":"mesh","file":")") + file + "\"}"}); });
+    ASSERT_EQ(problems.size(), 1U);
+    EXPECT_THAT(problems[0].remedy, HasSubstr("did you mean \"meshes/torus.ply\"?")) << file;
+  }
+}
+
 TEST(SceneBuilder, ObstacleMeshesAreSharedUnlessScaled) {
   const SceneFolder folder;
   folder.write("mesh.obj", kTetrahedron);
@@ -522,6 +535,17 @@ TEST(SceneBuilder, ProblemsOfTetrahedraNameTheirFile) {
 TEST(SceneBuilder, BodyMeshesOfOtherFormatsAreRefused) {
   EXPECT_THAT(build_problems({R"(bodies.banner.shape={"type":"mesh","file":"body.stl"})", "bodies.banner.pins=[]"}),
               ElementsAre(problem("bodies.banner.shape.file", "read from an .obj file")));
+}
+
+TEST(SceneBuilder, FilesOfTetrahedraNameTheShapeThatReadsThem) {
+  for (const char* shape : {R"({"type":"mesh","file":"ham.msh"})", R"({"type":"lattice","file":"ham.vtk","cells":8})"}) {
+    EXPECT_THAT(build_problems({std::string("bodies.banner.shape=") + shape, "bodies.banner.pins=[]"}),
+                ElementsAre(AllOf(problem("bodies.banner.shape.file", "has the format of tetrahedra"),
+                                  Field(&Problem::remedy, HasSubstr("use \"type\": \"tetrahedra\"")))));
+  }
+  EXPECT_THAT(build_problems({R"(obstacles.floor.shape={"type":"mesh","file":"ham.ele"})"}),
+              ElementsAre(AllOf(problem("obstacles.floor.shape.file", "has the format of tetrahedra"),
+                                Field(&Problem::remedy, HasSubstr("or make it a body of type \"tetrahedra\"")))));
 }
 
 TEST(SceneBuilder, ProblemsOfAllBodiesObstaclesAndTheStepAreReportedTogether) {

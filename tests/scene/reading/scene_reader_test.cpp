@@ -299,6 +299,10 @@ TEST(SceneReader, AMissingFileOrAFolderIsAFileError) {
   const SceneFolder folder;
   EXPECT_THAT([&] { (void)read_scene(folder.path() / "none.json"); },
               testing::ThrowsMessage<FileError>(testing::AllOf(HasSubstr("none.json"), HasSubstr("No such file"))));
+  folder.write("nine.json", kPlainScene);
+  folder.write("nine.obj", "");
+  EXPECT_THAT([&] { (void)read_scene(folder.path() / "nin.json"); },
+              testing::ThrowsMessage<FileError>(HasSubstr("did you mean \"" + (folder.path() / "nine.json").string() + "\"?")));
   EXPECT_THAT([&] { (void)read_scene(folder.path()); }, testing::ThrowsMessage<FileError>(HasSubstr("Is a directory")));
 }
 
