@@ -96,8 +96,9 @@ class Parser {
   }
 
   void add_info() {
-    CLI::App* info = app_.add_subcommand("info", "Describes a mesh: size, closed or open, repairs by the import");
-    info->add_option("MESH", info_.meshes, "Mesh file; several files are checked as the frames of a sequence")
+    CLI::App* info = app_.add_subcommand("info", "Describes a mesh: size, closed or open, repairs by the import; or tetrahedra");
+    info->add_option("MESH", info_.meshes,
+                     "File of a mesh or of tetrahedra; several meshes are checked as the frames of a sequence")
         ->required()
         ->type_name("");
     add_mesh_path(info, info_.mesh_paths);

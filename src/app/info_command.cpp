@@ -6,13 +6,17 @@
 #include "geometry/import/mesh_file.h"
 #include "geometry/mesh/mesh_sequence.h"
 #include "geometry/mesh/polygon_mesh.h"
+#include "geometry/tetrahedra/tetrahedra_mesh.h"
 #include "scene/building/mesh_finder.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace sprung {
@@ -25,11 +29,14 @@ std::string point_text(const Vector3& point) {
                      format_number(point.z(), kDigits));
 }
 
+std::string size_text(const Box3& box) {
+  return describe_size(box) + ", from " + point_text(box.min()) + " to " + point_text(box.max());
+}
+
 std::string volume_text(double volume) { return format_number(volume, kDigits) + " m^3"; }
 
 std::string surface_text(const Points& vertices, const Triangles& triangles, const MeshReport& report, const std::string& volume) {
-  std::string text = text_row("size", describe_size(report.bounds) + ", from " + point_text(report.bounds.min()) + " to " +
-                                          point_text(report.bounds.max()));
+  std::string text = text_row("size", size_text(report.bounds));
   text += text_row("vertices", fmt::format("{} ({} before welding)", vertices.cols(), report.vertices_read));
   text += text_row("triangles", fmt::format("{} ({} before repairs)", triangles.cols(), report.faces_read));
   text += text_row("surface", describe_closedness(report));
@@ -98,7 +105,48 @@ std::optional<std::string> body_text_of(const std::filesystem::path& file) {
   }
 }
 
+/// Shortest and longest edge of tetrahedra [m], and the number of edges.
+struct EdgeLengths {
+  double shortest = std::numeric_limits<double>::infinity();
+  double longest = 0.0;
+  std::size_t count = 0;
+};
+
+EdgeLengths edge_lengths(const TetrahedraMesh& mesh) {
+  std::set<std::pair<Index, Index>> edges;
+  for (const std::array<Index, 4>& corners : mesh.tetrahedra) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = a + 1; b < 4; ++b) edges.insert(std::minmax(corners[a], corners[b]));
+    }
+  }
+  EdgeLengths lengths{.count = edges.size()};
+  for (const auto& [a, b] : edges) {
+    const double length = (mesh.vertices.col(a) - mesh.vertices.col(b)).norm();
+    lengths.shortest = std::min(lengths.shortest, length);
+    lengths.longest = std::max(lengths.longest, length);
+  }
+  return lengths;
+}
+
+std::string tetrahedra_text(const TetrahedraMesh& mesh) {
+  double volume = 0.0;
+  for (const std::array<Index, 4>& corners : mesh.tetrahedra) volume += tetrahedron_volume(mesh.vertices, corners);
+  const EdgeLengths edges = edge_lengths(mesh);
+  const Box3 box = bounds(mesh.vertices);
+  std::string text = "as a body of type \"tetrahedra\" (vertices and their order kept)\n";
+  text += text_row("particles", std::to_string(mesh.vertices.cols()));
+  text += text_row("size", size_text(box));
+  text += text_row("tetrahedra", std::to_string(mesh.tetrahedra.size()));
+  text += text_row("volume", volume_text(volume));
+  text += text_row("edges", fmt::format("{}, {} to {} m long", edges.count, format_number(edges.shortest, kDigits),
+                                        format_number(edges.longest, kDigits)));
+  text += text_row("surface", fmt::format("{} triangles", boundary_triangles(mesh.tetrahedra).cols()));
+  if (const auto note = unit_note(box)) text += text_row("note", *note);
+  return text;
+}
+
 std::string mesh_text(const std::filesystem::path& file) {
+  if (is_tetrahedra_file(file)) return tetrahedra_text(read_tetrahedra(file));
   const std::optional<std::string> body = body_text_of(file);
   try {
     return obstacle_text(import_mesh(file)) + (body ? "\n" + *body : "");

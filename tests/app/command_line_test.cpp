@@ -102,7 +102,7 @@ TEST_F(CommandLine, TerminalShowsABarWithTimeLeft) {
                            HasSubstr("[##############################] frame 7/7")));
 }
 
-// Pairs of which one name with the number of a frame could be taken for the other.
+// No name with the number of a frame is taken for another name.
 TEST_F(CommandLine, NamesMayEndInADigit) {
   json scene = rope_scene();
   for (const char* name : {"rope1", "rope10", "1"}) scene["bodies"][name] = scene["bodies"]["rope"];
@@ -366,6 +366,20 @@ TEST_F(CommandLine, InfoDescribesAMeshAsObstacleAndAsBody) {
   EXPECT_EQ(ending.code, 0) << ending.err;
   EXPECT_EQ(ending.err, "");
   EXPECT_THAT(ending.out, AllOf(HasSubstr("closed"), HasSubstr("components  1"), HasSubstr("as a body"), HasSubstr("size")));
+}
+
+// The corner of a cube of side 2: its edges are 2 and 2 sqrt(2) m long, and it has a sixth of the cube's volume.
+TEST_F(CommandLine, InfoDescribesTetrahedra) {
+  write_text(scratch_ / "corner.node", "4 3 0 0\n1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n");
+  write_text(scratch_ / "corner.ele", "1 4 0\n1 1 2 3 4\n");
+  for (const char* name : {"corner.node", "corner.ele"}) {
+    const Ending ending = run({"info", (scratch_ / name).string()});
+    EXPECT_EQ(ending.code, 0) << ending.err;
+    EXPECT_THAT(ending.out, AllOf(StartsWith("as a body of type \"tetrahedra\""), HasSubstr("particles   4\n"),
+                                  HasSubstr("size        2 x 2 x 2 m, from (0, 0, 0) to (2, 2, 2)\n"), HasSubstr("tetrahedra  1\n"),
+                                  HasSubstr("volume      1.333 m^3\n"), HasSubstr("edges       6, 2 to 2.828 m long\n"),
+                                  HasSubstr("surface     4 triangles\n")));
+  }
 }
 
 TEST_F(CommandLine, InfoFindsMeshesAsScenesDo) {
