@@ -108,7 +108,9 @@ class Parser {
     CLI::App* view = app_.add_subcommand("view", "Shows a scene live in the browser, or replays a run");
     view->add_option("SCENE|DIR", view_.scene.file, "Scene file, or the folder of a run")->required()->type_name("");
     add_scene_options(view, view_.scene);
-    view->add_option("--port", view_.port, "Port to listen on; a free one by default")->check(CLI::Range(1, 65535))->type_name("N");
+    view->add_option("--port", view_.port, "Port to listen on; 0, the default, takes a free one")
+        ->check(CLI::Range(0, 65535))
+        ->type_name("N");
     view->add_option("--token", view_.token, "Secret in the address: letters, digits, - and _; random by default")
         ->check(is_token)
         ->type_name("T");

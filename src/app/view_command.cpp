@@ -1,3 +1,4 @@
+#include "app/browser.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/interrupt.h"
@@ -6,6 +7,8 @@
 #include "base/parallel.h"
 #include "output/file_writer.h"
 #include "output/run_summary.h"
+#include "scene/json/near_file.h"
+#include "scene/json/nearest_name.h"
 #include "viewer/html_export.h"
 #include "viewer/live_session.h"
 #include "viewer/page.h"
@@ -16,10 +19,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
 namespace sprung {
 
@@ -44,20 +49,43 @@ void print_problems(const std::vector<Problem>& problems) {
   for (const Problem& problem : problems) print_error(to_string(problem));
 }
 
+/// The run's folder that was probably meant by a name that does not exist.
+std::optional<std::string> near_run(const std::filesystem::path& missing) {
+  const std::filesystem::path named = missing.has_filename() ? missing : missing.parent_path();  // of "frames/"
+  std::vector<std::string> runs;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(named.has_parent_path() ? named.parent_path() : ".", ignored)) {
+    if (std::filesystem::exists(entry.path() / kRunSummaryFile, ignored)) runs.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(runs);
+  const auto name = nearest_name(named.filename().string(), runs);
+  if (!name) return std::nullopt;
+  return (named.parent_path() / *name).string();
+}
+
+void check_exists(const std::string& target) {
+  std::error_code ignored;
+  if (std::filesystem::exists(target, ignored)) return;
+  const auto run = near_run(target);
+  const auto near = run ? run : near_file({""}, target, ".json");
+  const std::string remedy =
+      near ? fmt::format("did you mean \"{}\"?", *near) : "give a scene file, or the folder of a run as sprung run --out writes it";
+  throw FileError("read", target, "there is no such file or folder; " + remedy);
+}
+
+void warn_of_missing(const RecordedRun& run) {
+  if (!run.missing().empty()) print_warning(run.missing());
+}
+
 std::unique_ptr<ViewSession> session_of(const SceneSource& scene) {
   std::error_code ignored;
+  check_exists(scene.file);
   if (std::filesystem::is_directory(scene.file, ignored)) {
     auto replay = std::make_unique<ReplaySession>(scene.file);
-    if (!replay->run().missing().empty()) print_warning(replay->run().missing());
+    warn_of_missing(replay->run());
     return replay;
   }
   return std::make_unique<LiveSession>(scene, scenes_beside(scene.file), print_problems);
-}
-
-void open_in_browser(const std::string& address) {
-  if (std::system(("xdg-open '" + address + "' > /dev/null 2>&1 &").c_str()) != 0) {
-    print_message("no browser could be opened; open the address yourself");
-  }
 }
 
 }  // namespace
@@ -70,8 +98,12 @@ ExitCode view(const ViewOptions& options) {
                      .page = viewer_page()},
                     *session);
   print_result(server.address() + "\n");
-  if (options.open) open_in_browser(server.address());
-  server.serve(interrupted);
+  std::optional<Browser> browser;
+  if (options.open) browser.emplace(server.address());
+  server.serve([&browser] {
+    if (browser) browser->check();
+    return interrupted();
+  });
   return ExitCode::done;
 }
 
@@ -85,7 +117,7 @@ ExitCode export_run(const ExportOptions& options) {
     throw FileError("write", file.string(), "it is a folder, a pipe or a device; give the name of a file by --out");
   }
   const Replay replay(options.folder);
-  if (!replay.run().missing().empty()) print_warning(replay.run().missing());
+  warn_of_missing(replay.run());
   const HtmlAnimation animation = html_animation(replay, viewer_page());
   write_file(file, animation.text);
   print_message(fmt::format("{}: positions within {} m of the run's", file.string(), format_number(animation.error, 2)));

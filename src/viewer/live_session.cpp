@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "output/obj_sequence.h"
+#include "scene/reading/scene_reader.h"
 
 #include <nlohmann/json.hpp>
 
@@ -47,7 +48,9 @@ struct LiveSession::Shown {
 };
 
 LiveSession::LiveSession(SceneSource source, std::vector<ExampleScene> examples, TellProblems tell_problems)
-    : first_source_(std::move(source)), examples_(std::move(examples)), tell_problems_(std::move(tell_problems)) {}
+    : first_source_(std::move(source)), examples_(std::move(examples)), tell_problems_(std::move(tell_problems)) {
+  if (!first_source_.text) check_scene_file(first_source_.file);
+}
 
 LiveSession::~LiveSession() { stop(); }
 

@@ -161,8 +161,6 @@ TEST_F(CommandLine, ResultThatCannotBePrintedEndsWithFive) {
   EXPECT_EQ(Program({"--help"}, {.output = "/dev/full"}).wait().code, 5);
 }
 
-bool is_without_viewer(const Ending& ending) { return ending.err.find("built without the viewer") != std::string::npos; }
-
 TEST_F(CommandLine, AnExportNeverReplacesAPipeOrADevice) {
   ASSERT_EQ(run({"run", save(rope_scene()), "--out", out()}).code, 0);
   const std::filesystem::path pipe = std::filesystem::path(out()) / "pipe.html";

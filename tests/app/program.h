@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sprung::testing {
@@ -27,10 +28,11 @@ struct Ending {
 class Program {
  public:
   struct Limits {
-    std::optional<rlim_t> file_size{};      ///< no file may grow beyond it [bytes]
-    std::optional<std::string> output{};    ///< standard output goes here
-    std::optional<int> error_descriptor{};  ///< standard error goes here
-    std::string mesh_path{};                ///< SPRUNG_MESH_PATH
+    std::optional<rlim_t> file_size{};                               ///< no file may grow beyond it [bytes]
+    std::optional<std::string> output{};                             ///< standard output goes here
+    std::optional<int> error_descriptor{};                           ///< standard error goes here
+    std::string mesh_path{};                                         ///< SPRUNG_MESH_PATH
+    std::vector<std::pair<std::string, std::string>> environment{};  ///< more variables
   };
 
   explicit Program(const std::vector<std::string>& arguments) : Program(arguments, Limits{}) {}
@@ -49,6 +51,10 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
+  /// Standard output and standard error so far.
+  [[nodiscard]] std::string out() const { return read_text(files_ / "out"); }
+  [[nodiscard]] std::string err() const { return read_text(files_ / "err"); }
+
   void send(int signal) const { ::kill(child_, signal); }
 
   Ending wait() {
@@ -58,8 +64,8 @@ class Program {
     Ending ending;
     if (WIFEXITED(status)) ending.code = WEXITSTATUS(status);
     if (WIFSIGNALED(status)) ending.signal = WTERMSIG(status);
-    ending.out = read_text(files_ / "out");
-    ending.err = read_text(files_ / "err");
+    ending.out = out();
+    ending.err = err();
     return ending;
   }
 
@@ -77,6 +83,7 @@ class Program {
       redirect((files_ / "err").string(), STDERR_FILENO);
     }
     ::setenv("SPRUNG_MESH_PATH", limits.mesh_path.c_str(), 1);
+    for (const auto& [name, value] : limits.environment) ::setenv(name.c_str(), value.c_str(), 1);
     if (limits.file_size) {
       const rlimit limit{*limits.file_size, *limits.file_size};
       ::setrlimit(RLIMIT_FSIZE, &limit);
