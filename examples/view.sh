@@ -3,15 +3,17 @@
 # SCENE is the name of an example, a scene file, or the folder of a run. Default: cloth_on_bunny. Options go to `sprung view`.
 set -euo pipefail
 
+case "${1:-}" in
+  -h | --help)
+    sed -n '2,3s/^# //p' "${BASH_SOURCE[0]}"
+    exit 0
+    ;;
+esac
+
 scene="${1:-cloth_on_bunny}"
 shift $(($# > 0))
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
-[[ -e "$scene" || ! -f "$here/$scene.json" ]] || scene="$here/$scene.json"
-if [[ ! -e "$scene" ]]; then
-  echo "There is no scene or run '$scene'. The examples are:" >&2
-  (cd "$here" && printf '  %s\n' *.json) >&2
-  exit 2
-fi
+[[ -e "$scene" ]] || scene="$("$here/scene_file.sh" "$scene")"
 
 "$here/install_packages.sh" run view
 cd "$here/.."
