@@ -115,7 +115,7 @@ TEST_F(CommandLine, NamesMayEndInADigit) {
   const std::vector<std::string> before = listing(out());
   EXPECT_THAT(before, ::testing::IsSupersetOf({"1/1.0002.obj", "rope/rope.0002.obj", "rope1/rope1.0002.obj",
                                                "rope10/rope10.0002.obj", "obstacles/2.obj", "obstacles/ball2/ball2.0002.obj"}));
-  EXPECT_EQ(record()["scene"]["bodies"]["rope1"]["mass"], 0.25);
+  EXPECT_EQ(summary()["scene"]["bodies"]["rope1"]["mass"], 0.25);
   EXPECT_EQ(run({"run", file, "--out", out(), "--frames", "2", "--overwrite"}).code, 0);
   EXPECT_EQ(listing(out()), before);
 }
