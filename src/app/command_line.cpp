@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <thread>
 
 namespace sprung {
 namespace {
@@ -93,6 +94,9 @@ class Parser {
   void add_validate() {
     CLI::App* validate = app_.add_subcommand("validate", "Checks a scene: prints every problem, or a summary of the scene");
     add_scene(validate, validate_.scene);
+    validate->add_option("--threads", validate_.threads, "Maximum number of threads while the cost of a frame is measured")
+        ->check(CLI::Range(1, kMaxThreads))
+        ->type_name("N");
   }
 
   void add_info() {
@@ -213,6 +217,10 @@ class Parser {
 };
 
 }  // namespace
+
+int thread_count(const std::optional<int>& given) {
+  return given.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+}
 
 Command parse_command_line(int argc, const char* const* argv) { return Parser().parse(argc, argv); }
 

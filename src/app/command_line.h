@@ -23,6 +23,7 @@ struct RunOptions {
 
 struct ValidateOptions {
   SceneSource scene;
+  std::optional<int> threads;  ///< of the steps that are measured
 };
 
 struct InfoOptions {
@@ -62,6 +63,9 @@ class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// As given, or one for each core.
+[[nodiscard]] int thread_count(const std::optional<int>& given);
 
 /// Throws UsageError.
 [[nodiscard]] Command parse_command_line(int argc, const char* const* argv);

@@ -11,19 +11,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <optional>
-#include <thread>
 #include <utility>
 
 namespace sprung {
 namespace {
-
-int thread_count(const RunOptions& options) {
-  return options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
-}
 
 RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int threads) {
   const SimulatorSettings& settings = loaded.simulator.settings();
@@ -115,7 +109,7 @@ int write_run(LoadedScene& loaded, RunOutput& output, const RunOptions& options)
 }  // namespace
 
 ExitCode run(const RunOptions& options) {
-  const int threads = thread_count(options);
+  const int threads = thread_count(options.threads);
   const ThreadLimit limit(threads);
   LoadedScene loaded = load_scene(options.scene);
   loaded.frames = options.frames.value_or(loaded.frames);

@@ -4,6 +4,8 @@
 #include "app/mesh_text.h"
 #include "app/step_text.h"
 #include "base/format.h"
+#include "base/parallel.h"
+#include "simulation/frame_cost.h"
 
 #include <fmt/format.h>
 
@@ -25,17 +27,25 @@ std::string time_text(const LoadedScene& loaded) {
          text_row("per frame", describe_steps(loaded) + "; " + stable);
 }
 
-/// How long a frame takes on one thread, from what cloths of 64 x 64 took on the machine of README's tables. Newton's method takes
-/// longer.
-std::string cost_row(const LoadedScene& loaded) {
-  constexpr double kFree = 0.1e-3;      // [ms] per particle and step
-  constexpr double kContact = 0.55e-3;  // in contact with a mesh
-  const auto milliseconds = [](double time) { return format_number(time < 10.0 ? time : std::round(time), time < 10.0 ? 2 : 6); };
-  const double moved = static_cast<double>(loaded.steps_per_frame) * loaded.simulator.network().particle_count();
-  const std::string contact = loaded.simulator.environment().obstacles().empty()
-                                  ? ""
-                                  : fmt::format(", {} ms with all particles in contact", milliseconds(moved * kContact));
-  return text_row("cost", fmt::format("estimated, one thread: {} ms a frame{}", milliseconds(moved * kFree), contact));
+/// A shorter frame costs what surrounds its steps as well.
+std::string milliseconds(double seconds) {
+  constexpr double kShortest = 0.1;
+  const double time = 1e3 * seconds;
+  if (time < kShortest) return "below " + format_number(kShortest, 1) + " ms";
+  return format_number(time < 10.0 ? time : std::round(time), time < 10.0 ? 2 : kDigits) + " ms";
+}
+
+std::string cost_row(const FrameCost& cost, int threads) {
+  if (cost.failure) return text_row("cost", "unknown: the simulation diverges in its first steps");
+  const std::string free = cost.steps > 0
+                               ? fmt::format("{} a frame ({} measured)", milliseconds(cost.free), counted(cost.steps, "step"))
+                               : fmt::format("more than {} a frame (a step takes over a second)", milliseconds(cost.free));
+  const std::string full =
+      cost.full > cost.free
+          ? fmt::format(", {} {} (estimated)", cost.can_touch ? "in full contact" : "with the stretch limit at work",
+                        milliseconds(cost.full))
+          : "";
+  return text_row("cost", fmt::format("free {}{}, {}", free, full, counted(threads, "thread")));
 }
 
 std::string material_of(const Scene& scene, const Body& body) {
@@ -78,22 +88,37 @@ std::string obstacle_row(const Obstacle& obstacle) {
   return text_row("obstacle", fmt::format("{}: {}, {}", obstacle.name, shape_text(obstacle.geometry), change_text(obstacle)));
 }
 
-}  // namespace
-
-ExitCode validate(const ValidateOptions& options) {
-  const LoadedScene loaded = load_scene(options.scene);
+std::string contents(const LoadedScene& loaded) {
   const SpringNetwork& network = loaded.simulator.network();
-  std::string text = text_row("scene", loaded.scene.file.string()) + time_text(loaded) + cost_row(loaded);
+  std::string text;
   if (const std::string solver = loaded.simulator.stretch_solver(); !solver.empty())
     text += text_row("stretch", "solved by " + solver);
   for (const Body& body : network.bodies)
     text += body_rows(network, body, material_of(loaded.scene, body)) + stiffness_rows(loaded.simulator, body);
   for (const Obstacle& obstacle : loaded.simulator.environment().obstacles()) text += obstacle_row(obstacle);
   for (const NamedReport& mesh : loaded.meshes) text += mesh_row(mesh);
-  for (const std::string& warning : loaded.warnings) text += text_row("warning", warning);
-  const std::size_t warnings = loaded.warnings.size();
-  print_result(text + (warnings == 0 ? text_row("valid", "the scene has no errors")
-                                     : fmt::format("valid, with {}\n", counted(warnings, "warning"))));
+  return text;
+}
+
+std::string verdict(const std::vector<std::string>& warnings) {
+  std::string text;
+  for (const std::string& warning : warnings) text += text_row("warning", warning);
+  return text + (warnings.empty() ? text_row("valid", "the scene has no errors")
+                                  : fmt::format("valid, with {}\n", counted(warnings.size(), "warning")));
+}
+
+}  // namespace
+
+ExitCode validate(const ValidateOptions& options) {
+  const int threads = thread_count(options.threads);
+  const ThreadLimit limit(threads);
+  LoadedScene loaded = load_scene(options.scene);
+  const std::string head = text_row("scene", loaded.scene.file.string()) + time_text(loaded);
+  const std::string what = contents(loaded);
+  const FrameCost cost = measure_frame_cost(loaded.simulator, loaded.steps_per_frame, threads);
+  if (cost.failure) loaded.warnings.push_back(*cost.failure);
+
+  print_result(head + cost_row(cost, threads) + what + verdict(loaded.warnings));
   return ExitCode::done;
 }
 

@@ -23,7 +23,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace sprung {
@@ -91,7 +90,7 @@ std::unique_ptr<ViewSession> session_of(const SceneSource& scene) {
 }  // namespace
 
 ExitCode view(const ViewOptions& options) {
-  const ThreadLimit limit(options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency()))));
+  const ThreadLimit limit(thread_count(options.threads));
   const std::unique_ptr<ViewSession> session = session_of(options.scene);
   ViewServer server({.port = static_cast<std::uint16_t>(options.port),
                      .token = options.token.empty() ? random_token() : options.token,
