@@ -27,23 +27,24 @@ std::string time_text(const LoadedScene& loaded) {
          text_row("per frame", describe_steps(loaded) + "; " + stable);
 }
 
-/// A shorter frame costs what surrounds its steps as well.
-std::string milliseconds(double seconds) {
-  constexpr double kShortest = 0.1;
-  const double time = 1e3 * seconds;
-  if (time < kShortest) return "below " + format_number(kShortest, 1) + " ms";
-  return format_number(time < 10.0 ? time : std::round(time), time < 10.0 ? 2 : kDigits) + " ms";
+/// Two digits in ms, or in s from 10 s on. Below 0.1 ms, what surrounds the steps of a frame takes longer than they do.
+std::string time_of_frame(double seconds) {
+  constexpr double kShortest = 0.1e-3;
+  if (seconds < kShortest) return "below 0.1 ms";
+  const double digit = std::pow(10.0, std::floor(std::log10(seconds)) - 1.0);
+  const double rounded = digit * std::round(seconds / digit);
+  return rounded < 10.0 ? format_number(1e3 * rounded, kDigits) + " ms" : format_number(rounded, kDigits) + " s";
 }
 
 std::string cost_row(const FrameCost& cost, int threads) {
   if (cost.failure) return text_row("cost", "unknown: the simulation diverges in its first steps");
   const std::string free = cost.steps > 0
-                               ? fmt::format("{} a frame ({} measured)", milliseconds(cost.free), counted(cost.steps, "step"))
-                               : fmt::format("more than {} a frame (a step takes over a second)", milliseconds(cost.free));
+                               ? fmt::format("{} a frame ({} measured)", time_of_frame(cost.free), counted(cost.steps, "step"))
+                               : fmt::format("more than {} a frame (a step takes over a second)", time_of_frame(cost.free));
   const std::string full =
       cost.full > cost.free
           ? fmt::format(", {} {} (estimated)", cost.can_touch ? "in full contact" : "with the stretch limit at work",
-                        milliseconds(cost.full))
+                        time_of_frame(cost.full))
           : "";
   return text_row("cost", fmt::format("free {}{}, {}", free, full, counted(threads, "thread")));
 }

@@ -20,9 +20,9 @@ constexpr double kNeighbour = 0.15e-6;       // per vertex within the thickness 
 constexpr double kPass = 3e-9;               // per limited spring and pass of the stretch limit
 constexpr double kLongStep = 2e-3;           // a step of this length [s] doubles the first two
 
-// The times of solves are as the network's factors fill in, so that they are multiples of what was measured. Contact makes implicit
-// Euler solve again, with a matrix that it factors anew. Newton's method solves more often the faster a body moves.
-constexpr double kImplicitContact = 15.0;
+// The fill-in of a network's factor decides how long a solve takes, so that solves are multiples of the measured time. Contact
+// makes implicit Euler solve again, with a matrix that it factors anew. Newton's method solves more often the faster a body moves.
+constexpr double kImplicitContact = 20.0;
 constexpr double kNewtonMotion = 3.0;
 
 // The share of a step's time in contact that does not become shorter with more threads.
