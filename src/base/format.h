@@ -24,4 +24,7 @@ void append_number(std::string& text, double value);
 /// "1 spring", "2 springs".
 [[nodiscard]] std::string counted(std::size_t count, const std::string& what);
 
+/// "1 vertex", "2 vertices".
+[[nodiscard]] std::string counted(std::size_t count, const std::string& one, const std::string& several);
+
 }  // namespace sprung

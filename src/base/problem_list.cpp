@@ -39,6 +39,16 @@ std::string vector_text(const Vector3& vector) {
   return text;
 }
 
+std::string vector_text(const Vector3& vector, int digits) {
+  std::string text;
+  for (const double coordinate : vector) {
+    text += text.empty() ? "[" : ", ";
+    text += format_number(coordinate, digits);
+  }
+  text += ']';
+  return text;
+}
+
 std::string counts_text(std::span<const Index> counts) {
   std::string text = "[";
   for (std::size_t i = 0; i < counts.size(); ++i) {

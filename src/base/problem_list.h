@@ -53,6 +53,9 @@ class ProblemList {
 /// `[1, nan, 0]`
 [[nodiscard]] std::string vector_text(const Vector3& vector);
 
+/// Rounded to this number of significant digits, for display.
+[[nodiscard]] std::string vector_text(const Vector3& vector, int digits);
+
 /// `[64, 64]`
 [[nodiscard]] std::string counts_text(std::span<const Index> counts);
 

@@ -1,6 +1,8 @@
 #include "simulation/start/start_check.h"
 
 #include "base/format.h"
+#include "base/problem_list.h"
+#include "collision/obstacles/obstacle_intersections.h"
 
 #include <algorithm>
 #include <map>
@@ -13,14 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxNamed = 3;
 
-std::string point_text(const Vector3& p) {
-  std::string text;
-  for (const double coordinate : p) {
-    text += text.empty() ? "[" : ", ";
-    text += format_number(coordinate, 4);
-  }
-  return text + "]";
-}
+std::string point_text(const Vector3& p) { return vector_text(p, 4); }
 
 std::string first_of(const std::vector<std::string>& texts) {
   std::string text;
@@ -90,6 +85,18 @@ std::map<NumberPair, InObstacle> by_body_and_obstacle(const Intersections& found
   return result;
 }
 
+/// For each body and obstacle that intersect: the first pinned particle of the body that is inside the obstacle.
+std::map<NumberPair, Index> pins_inside(const Environment& environment, const SpringNetwork& network, CollisionSurface surface,
+                                        const Points& positions) {
+  std::ranges::fill(surface.pinned, char{0});
+  std::map<NumberPair, Index> pins;
+  for (const auto& [particle, obstacle, depth] : find_intersections(environment.set(), surface, positions).inside) {
+    const auto body = static_cast<Index>(&network.body_of(particle) - network.bodies.data());
+    if (network.is_pinned(particle)) pins.try_emplace({body, obstacle}, particle);
+  }
+  return pins;
+}
+
 Problem problem_of(const InObstacle& found, const std::string& body, const std::string& obstacle, const std::string& remedy) {
   std::string value;
   if (!found.particles.empty()) value = counted(found.particles.size(), "particle") + " inside";
@@ -122,9 +129,16 @@ std::vector<Problem> start_problems(const StartIntersections& found, const Sprin
   const ElementText text(network, positions);
   const auto body_name = [&](Index number) { return network.bodies[static_cast<std::size_t>(number)].name; };
   std::vector<Problem> problems;
-  for (const auto& [numbers, entry] : by_body_and_obstacle(found.with_obstacles, network, surface, text)) {
+  const auto with_obstacles = by_body_and_obstacle(found.with_obstacles, network, surface, text);
+  const auto pins = with_obstacles.empty() ? std::map<NumberPair, Index>{} : pins_inside(environment, network, surface, positions);
+  for (const auto& [numbers, entry] : with_obstacles) {
     const std::string& obstacle = environment.obstacles()[static_cast<std::size_t>(numbers.second)].name;
-    problems.push_back(problem_of(entry, body_name(numbers.first), obstacle, remedy));
+    const auto pin = pins.find(numbers);
+    const std::string own_remedy =
+        pin == pins.end() ? remedy
+                          : "a pin holds " + text.of(pin->second) +
+                                " inside, where \"push_out\" leaves it: move it or the obstacle, or pin all particles inside";
+    problems.push_back(problem_of(entry, body_name(numbers.first), obstacle, own_remedy));
   }
 
   std::map<NumberPair, std::vector<std::string>> crossing_bodies;

@@ -29,7 +29,7 @@ struct StartIntersections {
                                                           const Points& positions);
 
 /// One problem for each body and obstacle and each pair of bodies: number of intersections, depth [m], positions and remedy.
-/// `remedy` applies to all except self-intersections, which have their own.
+/// `remedy` applies to all except self-intersections and bodies that a pin holds in an obstacle, which have their own.
 [[nodiscard]] std::vector<Problem> start_problems(const StartIntersections& found, const SpringNetwork& network,
                                                   const Environment& environment, const CollisionSurface& surface,
                                                   const Points& positions, const std::string& remedy);

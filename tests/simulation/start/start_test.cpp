@@ -53,6 +53,28 @@ TEST(Start, ABodyInAnObstacleIsReportedWithCountDepthAndPositions) {
                     HasSubstr("particle 11 at [-0.25, 0, 0], particle 12 at [0, 0, 0] and 2 more"), HasSubstr("move one of them")));
 }
 
+// A wall is 0.2 m thick and ends at x = 0. The pin holds particle 0 nearer to its other side.
+TEST(Start, PinInsideAnObstacleHasItsOwnRemedy) {
+  const auto rope = [](double first, const std::vector<Index>& pinned) {
+    NetworkBuilder builder;
+    BodyShape shape = make_rope({.points = {Vector3(first, 0, 0), Vector3(1, 0, 0)}, .particles = 21, .length = {}}, {});
+    set_total_mass(shape, 1.0);
+    builder.add_body("rope", shape, {}, {});
+    builder.pin(pinned);
+    return builder.build();
+  };
+  Obstacle wall{.name = "wall", .geometry = BoxGeometry{Vector3(0.2, 4.0, 4.0)}};
+  wall.rest_pose.translation() = Vector3(-0.1, 0.0, 0.0);
+  for (const auto start : {ContactSettings::Start::refuse, ContactSettings::Start::push_out}) {
+    const SimulatorSettings settings{.contact = {.start = start}};
+    const auto lines = refusal(rope(-0.12, {0}), settings, {wall});
+    ASSERT_EQ(lines.size(), 1U);
+    EXPECT_THAT(lines[0], AllOf(HasSubstr("2 particles inside"), HasSubstr("a pin holds particle 0 at [-0.12, 0, 0] inside")));
+    EXPECT_THAT(refusal(rope(0.01, {0}), settings, {wall}), IsEmpty()) << "the pin moved";
+    EXPECT_THAT(refusal(rope(-0.12, {0, 1, 2}), settings, {wall}), IsEmpty()) << "all particles inside are pinned";
+  }
+}
+
 TEST(Start, AnObstacleBetweenParticlesIsFound) {
   const auto lines = refusal(cloth(2, 0.0), {}, {ball(0.1, Vector3(0.1, 0.05, 0.2))});
   ASSERT_EQ(lines.size(), 1U);
