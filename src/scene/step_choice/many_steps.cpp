@@ -1,6 +1,7 @@
 #include "scene/step_choice/many_steps.h"
 
 #include "base/format.h"
+#include "base/problem_list.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +18,17 @@ constexpr int kManySteps = 1000;
 // the step.
 constexpr double kLeastResponse = 0.05;
 
+// A spring this much shorter than the mean of its body is an accident of the mesh.
+constexpr double kShort = 0.1;
+
 constexpr int kDigits = 3;
+constexpr int kPositionDigits = 5;
 
 /// A cause of small steps. The response rate of particles is [1/s]: the square root of stiffness over mass, or damping over mass.
 struct Demand {
   double rate = 0.0;
-  Index particle = 0;  ///< the lightest of the particles
+  Index particle = 0;    ///< the lightest of the particles
+  Index spring = kNone;  ///< none: angle bends
   double constant = 0.0;
   std::string source{};
   const char* unit = "";
@@ -44,6 +50,7 @@ Demand demand_of_springs(const SpringNetwork& network, const std::vector<double>
     found.rate = rate;
     found.particle = lightest(network, {springs.first[s], springs.second[s]});
     found.constant = constants[s];
+    found.spring = s;
     found.source = std::string(kSpringKindNames[static_cast<std::size_t>(springs.kind[s])]) + " springs";
   }
   return found;
@@ -69,15 +76,57 @@ Demand demand_of_bends(const SpringNetwork& network, const std::vector<double>& 
   return found;
 }
 
-std::string reason(const SpringNetwork& network, double step) {
+double mean_length(const SpringNetwork& network, const Body& body, SpringKind kind) {
+  double sum = 0.0;
+  int count = 0;
+  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+    if (network.springs.kind[s] != kind) continue;
+    sum += network.springs.rest_length[s];
+    ++count;
+  }
+  return sum / count;
+}
+
+/// Implicit Euler solves a system a step, and many where surfaces touch. Measured, that is slower than thousands of small steps in
+/// contact, and in any solid.
+bool is_implicit_faster(const Scene& scene, const SpringNetwork& network) {
+  const auto has_cells = [](const Body& body) { return !body.cells.empty(); };
+  return scene.obstacles.empty() && !bodies_may_collide(network) && std::ranges::none_of(network.bodies, has_cells);
+}
+
+/// What the user can change: the mesh of a material, and the numbers that they gave themselves.
+std::string remedy_for(const Demand& demand, const Scene& scene, const SpringNetwork& network, const Body& body) {
+  const Springs& springs = network.springs;
+  if (demand.spring != kNone &&
+      springs.rest_length[demand.spring] < kShort * mean_length(network, body, springs.kind[demand.spring])) {
+    return "Merge its ends: it is far shorter than the other ones";
+  }
+  const auto found = std::ranges::find(scene.bodies, body.name, &BodyScene::name);
+  std::string remedy = found != scene.bodies.end() && !found->preset.empty()
+                           ? "Use a coarser mesh or resolution"
+                           : std::string("Use less ") + demand.remedy + ", more mass";
+  const bool implicit = is_implicit_faster(scene, network);
+  if (implicit) remedy += remedy.ends_with("mass") ? " or \"implicit_euler\"" : ", or \"implicit_euler\"";
+  return remedy;
+}
+
+std::string reason(const Scene& scene, const SpringNetwork& network, double step) {
   const Demand largest = std::max(
       {demand_of_springs(network, network.springs.stiffness, false), demand_of_springs(network, network.springs.damping, true),
        demand_of_bends(network, network.angle_bends.stiffness, false), demand_of_bends(network, network.angle_bends.damping, true)},
       [](const Demand& a, const Demand& b) { return a.rate < b.rate; });
-  if (largest.rate * step < kLeastResponse) return "penalty contact or air drag requires that; less of it";
-  return "body \"" + network.body_of(largest.particle).name + "\" has " + largest.source + " of " +
-         format_number(largest.constant, kDigits) + largest.unit + " at particles of " +
-         format_number(network.masses[largest.particle], kDigits) + " kg; less " + largest.remedy + ", more mass";
+  if (largest.rate * step < kLeastResponse) return "penalty contact or air drag requires that. Use less of it";
+  const Body& body = network.body_of(largest.particle);
+  std::string text = "body \"" + body.name + "\" has " + largest.source + " of " + format_number(largest.constant, kDigits) +
+                     largest.unit + " at particles of " + format_number(network.masses[largest.particle], kDigits) + " kg";
+  if (largest.spring != kNone) {
+    const Index first = network.springs.first[largest.spring];
+    const Index second = network.springs.second[largest.spring];
+    text += ", the one that needs the smallest step from " + vector_text(network.positions.col(first), kPositionDigits) + " to " +
+            vector_text(network.positions.col(second), kPositionDigits) + ", " +
+            format_number(network.springs.rest_length[largest.spring], kDigits) + " m long";
+  }
+  return text + ". " + remedy_for(largest, scene, network, body);
 }
 
 }  // namespace
@@ -95,7 +144,7 @@ std::optional<std::string> many_steps_warning(const Scene& scene, const SpringNe
   if (std::holds_alternative<ExplicitEulerSettings>(scene.settings.integrator)) {
     return steps + "explicit Euler gains energy in larger steps; \"symplectic_euler\" does not";
   }
-  return steps + reason(network, choice.step) + " or \"implicit_euler\" needs fewer steps";
+  return steps + reason(scene, network, choice.step) + ".";
 }
 
 }  // namespace sprung

@@ -14,6 +14,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
+using testing::Not;
 
 // Two particles of 1 kg, 1 m apart, one pinned: the free one oscillates with omega^2 = k / m, so symplectic Euler is stable up to
 // 2 / sqrt(k).
@@ -61,12 +62,44 @@ TEST(StepChoice, AutoUsesTheFewestStepsWithinNineTenthsOfTheStableStep) {
   }
 }
 
+// Who chose a material has no stiffness to lower. The grid of cotton has shear dampers of 7e-6 s.
+TEST(StepChoice, AutoAdvisesACoarserMeshOfAMaterial) {
+  const auto warnings = [](int resolution) {
+    const SceneFolder folder;
+    const std::string n = std::to_string(resolution);
+    const std::string text =
+        R"({"duration": 1, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [0.1, 0.1], "resolution": [)" + n + ", " + n +
+        R"(]}, "material": "cotton"}}})";
+    return build_scene(folder.read(text)).warnings;
+  };
+  EXPECT_THAT(warnings(41), ElementsAre(HasSubstr("Use a coarser mesh or resolution, or \"implicit_euler\".")));
+  EXPECT_THAT(warnings(15), testing::IsEmpty());
+}
+
+// Vertex 5 is 0.1 mm from vertex 3.
+TEST(StepChoice, AutoNamesTheShortEdgeOfAMesh) {
+  const auto warnings = [](const std::string& mesh) {
+    const SceneFolder folder;
+    folder.write("mesh.obj", mesh);
+    return build_scene(folder.read(R"({"duration": 1, "bodies": {"sheet": {"shape": {"type": "mesh", "file": "mesh.obj"},
+                                      "material": "silk"}}})"))
+        .warnings;
+  };
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.9999 1 0\n";
+  EXPECT_THAT(warnings(square + "f 1 2 3 5\nf 1 5 4\n"),
+              ElementsAre(AllOf(HasSubstr("from [1, 1, 0] to [0.9999, 1, 0], 0.0001 m long"), HasSubstr("Merge its ends"))));
+  EXPECT_THAT(warnings("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"), testing::IsEmpty());
+}
+
 // Up to a thousand steps per frame cause no warning. The warning of more steps names the cause and a remedy.
 TEST(StepChoice, AutoWarnsOfTheCauseOfVeryManySteps) {
   EXPECT_THAT(build(1.0e8).warnings, testing::IsEmpty());
   EXPECT_THAT(build(1.0e10).warnings,
               ElementsAre(AllOf(HasSubstr("body \"pair\""), HasSubstr("structural"), HasSubstr("1e+10 N/m"), HasSubstr("1 kg"),
                                 HasSubstr("less stiffness"), HasSubstr("implicit_euler"))));
+  EXPECT_THAT(build(1.0e10, {R"(obstacles={"floor": {"shape": {"type": "half_space", "offset": -5}}})"}).warnings,
+              ElementsAre(AllOf(HasSubstr("less stiffness, more mass."), Not(HasSubstr("implicit_euler")))))
+      << "which is slow in contact";
   EXPECT_THAT(build(1.0, {"bodies.pair.springs.structural.damping=1e6"}).warnings,
               ElementsAre(AllOf(HasSubstr("body \"pair\""), HasSubstr("1e+06 N s/m"), HasSubstr("less damping"))));
   const auto with_bends = [](const std::string& bends) {
