@@ -32,7 +32,7 @@ void describe_surface(const TriangleMesh& mesh, MeshReport& report) {
                          " edge(s) have more than two faces: the mesh has no inside and is treated as a sheet");
 }
 
-std::optional<std::string> unit_note(const Box3& bounds, double scale, double others) {
+std::optional<std::string> unit_note(const Box3& bounds, double scale, double others, SizeSource source) {
   if (bounds.isEmpty()) return std::nullopt;
   const double extent = scale * bounds.sizes().maxCoeff();
   const bool outgrows = others > 0.0 && extent > kLargestInRoom && extent > kLargestRatio * others;
@@ -40,6 +40,7 @@ std::optional<std::string> unit_note(const Box3& bounds, double scale, double ot
   std::string size = "its largest extent is " + format_number(extent, kDigits) + " m";
   if (scale != 1.0) size += " with \"scale\" " + format_number(scale, kDigits);
   if (outgrows) size += ", " + format_number(extent / others, 3) + " times that of anything else in the scene";
+  if (source == SizeSource::shape) return size + ". Sizes are in metres: change the shape, or its \"scale\".";
   if (scale != 1.0) return size + ": is that intended?";
   if (extent < kSmallestUsual) return size + ": if the file is not in metres, place it with a larger \"scale\"";
   return size + ": if the file is in millimetres, place it with \"scale\": 0.001";

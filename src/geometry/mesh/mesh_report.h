@@ -29,9 +29,13 @@ struct MeshReport {
 /// Sets the members from `non_manifold_edges` to `bounds` from the mesh as it is now, and adds notes.
 void describe_surface(const TriangleMesh& mesh, MeshReport& report);
 
-/// A question to the user about the units of a mesh with these bounds and this scale: if its largest extent is below a millimetre,
+/// Where the size of a thing comes from: a file, whose unit may be another one, or numbers that a user typed.
+enum class SizeSource : std::uint8_t { file, shape };
+
+/// A question to the user about the units of a thing with these bounds and this scale: if its largest extent is below a millimetre,
 /// above 100 m, or above 10 m and more than 100 times that of anything else in the scene (`others` [m]; 0 if there is nothing
 /// else). Empty bounds get no question.
-[[nodiscard]] std::optional<std::string> unit_note(const Box3& bounds, double scale = 1.0, double others = 0.0);
+[[nodiscard]] std::optional<std::string> unit_note(const Box3& bounds, double scale = 1.0, double others = 0.0,
+                                                   SizeSource source = SizeSource::file);
 
 }  // namespace sprung

@@ -466,8 +466,10 @@ TEST(SceneBuilder, WarnsOfMeshesFarLargerThanTheRestOnceWithTheirNames) {
   EXPECT_THAT(build(folder, {cup, "bodies.banner.shape.size=[0.5,0.5]"}).warnings,
               ElementsAre(HasSubstr("obstacle \"cup\": its largest extent is 80 m, 160 times that of anything else in the scene")));
   folder.write("body.obj", "v 0 0 0\nv 632 0 0\nv 0 632 0\nf 1 2 3\n");
-  EXPECT_THAT(build(folder, {R"(bodies.banner.shape={"type":"mesh","file":"body.obj"})", "bodies.banner.pins=[]"}).warnings,
-              ElementsAre(HasSubstr("body \"banner\": its largest extent is 632 m: if")));
+  EXPECT_THAT(
+      build(folder, {R"(bodies.banner.shape={"type":"mesh","file":"body.obj"})", "bodies.banner.pins=[]", "bodies.banner.mass=4e4"})
+          .warnings,
+      ElementsAre(HasSubstr("body \"banner\": its largest extent is 632 m: if")));
 }
 
 TEST(SceneBuilder, WarnsOfSpringsThatAShapeDoesNotHave) {
@@ -483,7 +485,7 @@ TEST(SceneBuilder, WarnsOfSpringsThatAShapeDoesNotHave) {
 TEST(SceneBuilder, SpringsOfAMaterialThatAMeshDoesNotHaveCauseNoWarning) {
   const SceneFolder folder;
   folder.write("body.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_THAT(build(folder, {R"(bodies.banner={"shape":{"type":"mesh","file":"body.obj"},"material":"cotton"})"}).warnings,
+  EXPECT_THAT(build(folder, {R"(bodies.banner={"shape":{"type":"mesh","file":"body.obj"},"material":"silk"})"}).warnings,
               IsEmpty());
 }
 
