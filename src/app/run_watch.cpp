@@ -4,14 +4,15 @@
 #include "base/format.h"
 #include "base/grouped_warnings.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
+#include "simulation/monitoring/self_crossings.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace sprung {
@@ -42,10 +43,10 @@ double thinnest_gap(const std::vector<Body>& bodies, const std::vector<Obstacle>
   return gap;
 }
 
-std::string_view remedy_for_stretch(const StretchLimitSettings& limit) {
-  const bool can_be_solved = limit.solver == StretchLimitSettings::Solver::gauss_seidel && limit.max_compression == 1.0;
-  return can_be_solved ? "Use more iterations, a smaller step or, for ropes and cloths, \"solver\": \"auto\"."
-                       : "Use more iterations or a smaller step.";
+bool moves_anything(const Simulator& simulator) {
+  const SpringNetwork& network = simulator.network();
+  return std::ranges::any_of(network.pins, &Pin::moves) || std::ranges::any_of(network.later_pins, &Pin::moves) ||
+         std::ranges::any_of(simulator.environment().obstacles(), [](const Obstacle& obstacle) { return obstacle.motion.moves(); });
 }
 
 }  // namespace
@@ -73,6 +74,7 @@ void RunWatch::finish() {
   warn_of_thin_bodies();
   if (const auto gain = energy_.gain(simulator_.positions())) warn(*gain);
   warn_of_missed_limit();
+  warn_of_self_crossings();
 }
 
 void RunWatch::warn(const std::string& warning) {
@@ -107,6 +109,7 @@ void RunWatch::note_stretch(const FrameDiagnostics& frame) {
   if (frame.stretch_excess <= missed_.largest) return;
   missed_.largest = frame.stretch_excess;
   missed_.worst_frame = frame.frame;
+  missed_.pins = largest_pin_stretch(find_tethers(simulator_.network(), limit->kinds), simulator_.positions());
 }
 
 void RunWatch::note_handovers() {
@@ -160,7 +163,43 @@ void RunWatch::warn_of_missed_limit() {
                   "stretch_excess in "
                   "diagnostics.csv). {}",
                   format_number(100.0 * wanted_excess(limit), 2), counted(missed_.frames, "frame"),
-                  format_number(100.0 * missed_.largest, 2), missed_.worst_frame, remedy_for_stretch(limit)));
+                  format_number(100.0 * missed_.largest, 2), missed_.worst_frame, remedy_for_stretch()));
+}
+
+std::string RunWatch::remedy_for_stretch() const {
+  const StretchLimitSettings& limit = *simulator_.settings().stretch_limit;
+  if (const PinStretch& pins = missed_.pins; pins.stretch > limit.max_stretch) {
+    constexpr double kRounding = 1e-6;
+    const double bearable = std::ceil(100.0 * pins.stretch - kRounding) / 100.0;
+    return fmt::format(
+        "Pins hold body \"{}\" {} m apart in that frame, along springs of {} m, which no solver can keep. Move these pins closer "
+        "to "
+        "each other, or allow a \"max_stretch\" of {}.",
+        simulator_.network().body_of(pins.first).name, format_number((1.0 + pins.stretch) * pins.length, 3),
+        format_number(pins.length, 3), format_number(bearable, 6));
+  }
+  const bool passes = limit.solver == StretchLimitSettings::Solver::gauss_seidel;
+  const bool can_be_solved = passes && limit.max_compression == 1.0;
+  if (can_be_solved) return "Use more iterations, a smaller step or, for ropes and cloths, \"solver\": \"auto\".";
+  if (simulator_.stretch_solver() != "newton") return "Use more iterations or a smaller step.";
+  // Newton's method solves at any number of iterations. Measured on ropes at a jerk of their pins, what it misses is in proportion
+  // to the step.
+  const double times = std::ceil(missed_.largest / wanted_excess(limit));
+  return fmt::format("Use a step {} times smaller{}.", format_number(times, 2),
+                     moves_anything(simulator_) ? ", or let pins and obstacles move more slowly" : "");
+}
+
+void RunWatch::warn_of_self_crossings() {
+  const bool has_pairs = simulator_.settings().contact.response == ContactSettings::Response::projection;
+  for (const SelfCrossing& crossing : find_self_crossings(simulator_.network(), simulator_.positions())) {
+    const Body& body = simulator_.network().bodies[static_cast<std::size_t>(crossing.body)];
+    warn(
+        fmt::format("body \"{}\" passes through itself: {} of its surface cross others of it in the last frame. Set its "
+                    "\"self_contact\" to true{}{}.",
+                    body.name, counted(static_cast<std::size_t>(crossing.elements), "element"),
+                    body.material.thickness > 0.0 ? "" : " and give it a \"thickness\"",
+                    has_pairs ? "" : ", with contact.response \"projection\""));
+  }
 }
 
 void RunWatch::warn_of_thin_bodies() {

@@ -1,10 +1,12 @@
 // Warnings about a run, while it proceeds and at its end.
 #pragma once
 
+#include "dynamics/tethers/lra_paths.h"
 #include "output/run_output.h"
 #include "simulation/diagnostics.h"
 #include "simulation/monitoring/energy_watch.h"
 
+#include <string>
 #include <vector>
 
 namespace sprung {
@@ -19,8 +21,8 @@ class RunWatch {
   /// handed over to another solver. Throws FileError.
   void note_frame(const FrameDiagnostics& frame);
 
-  /// Call it after the last frame. Warns if the stretch limit was missed, if a thickness is too small for the step, and if the
-  /// energy of an undriven scene rose. Throws FileError.
+  /// Call it after the last frame. Warns if the stretch limit was missed, if a thickness is too small for the step, if the energy
+  /// of an undriven scene rose, and if a body without self-contact crosses itself now. Throws FileError.
   void finish();
 
  private:
@@ -33,11 +35,14 @@ class RunWatch {
   void note_truncated(const FrameDiagnostics& frame);
   void warn_of_missed_limit();
   void warn_of_thin_bodies();
+  void warn_of_self_crossings();
+  [[nodiscard]] std::string remedy_for_stretch() const;
 
   struct Missed {
     int frames = 0;
     double largest = 0.0;  ///< fraction of a rest length
     int worst_frame = 0;
+    PinStretch pins;  ///< in that frame
   };
 
   const Simulator& simulator_;

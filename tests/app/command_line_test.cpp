@@ -205,6 +205,59 @@ TEST_F(CommandLine, RunReportsAMissedStretchLimitAndTheRemedy) {
   EXPECT_THAT(ending.err, AllOf(HasSubstr("more iterations or a smaller step"), Not(HasSubstr("solver"))));
 }
 
+// A strip that falls nearly upright folds onto itself.
+TEST_F(CommandLine, RunReportsABodyThatPassesThroughItself) {
+  json scene = {{"duration", 0.5}};
+  scene["obstacles"]["floor"] = {{"shape", {{"type", "half_space"}}}, {"friction", 0.4}};
+  scene["bodies"]["strip"] = {{"shape", {{"type", "cloth"}, {"size", {0.6, 0.1}}, {"resolution", {13, 3}}}},
+                              {"material", "silk"},
+                              {"place", {{"position", {0, 0.35, 0}}, {"rotation", {0, 20, 85}}}}};
+  EXPECT_THAT(run({"run", save(scene), "--out", out()}).err, HasSubstr("body \"strip\" passes through itself"));
+  EXPECT_THAT(record()["warnings"], Contains(HasSubstr("Set its \"self_contact\" to true")));
+  scene["bodies"]["strip"]["self_contact"] = true;
+  EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("warning")));
+}
+
+// One pin of a rope of 1 m moves to 1.3 m from the other.
+TEST_F(CommandLine, RunReportsPinsThatAreFartherApartThanTheLimitAllows) {
+  json scene = rope_scene();
+  scene["duration"] = 1;
+  scene["stretch_limit"] = json::object();
+  json& rope = scene["bodies"]["rope"];
+  rope["springs"]["structural"]["stiffness"] = 0;
+  rope["pins"] = json::parse(R"([{"indices": [0]}, {"indices": [4], "motion": {"keyframes": [
+      {"time": 0}, {"time": 0.5, "position": [0.3, 0, 0]}]}}])");
+  const Ending ending = run({"run", save(scene), "--out", out()});
+  EXPECT_THAT(ending.err, AllOf(HasSubstr("Pins hold body \"rope\" 1.3 m apart in that frame, along springs of 1 m"),
+                                HasSubstr("a \"max_stretch\" of 0.3."), Not(HasSubstr("iterations"))));
+  scene["stretch_limit"]["max_stretch"] = 0.3;
+  EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("warning")));
+  scene["stretch_limit"] = json::object();
+  rope["pins"][1]["motion"]["keyframes"][1]["position"] = {-0.3, 0, 0};
+  EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("warning")));
+}
+
+// Two hairs that touch at a jerk of their pins. Newton's method solves with any number of iterations; what it misses is in
+// proportion to the step.
+TEST_F(CommandLine, RunAdvisesASmallerStepWhereNewtonMissesTheLimit) {
+  json scene = {{"duration", 0.4}};
+  for (const char* name : {"a", "b"}) {
+    const double x = name[0] == 'a' ? 0.0 : 0.01;
+    scene["bodies"][name] = {{"shape", {{"type", "rope"}, {"from", {x, 1, 0}}, {"to", {x, 0.7, 0}}, {"particles", 31}}},
+                             {"material", "hair"},
+                             {"pins", json::parse(R"([{"indices": [0], "motion": {"keyframes": [
+                                 {"time": 0.2}, {"time": 0.25, "position": [0.3, 0, 0]}, {"time": 0.3, "position": [0, 0, 0.2]}]}}])")}};
+  }
+  const std::string missed = run({"run", save(scene), "--out", out()}).err;
+  const std::string times = " times smaller, or let pins and obstacles move more slowly.";
+  const std::size_t end = missed.find(times);
+  ASSERT_NE(end, std::string::npos) << missed;
+  const int factor = std::stoi(missed.substr(missed.rfind(' ', end - 1)));
+  const int steps_per_frame = record()["steps_per_frame"];
+  scene["step"] = 1.0 / (30.0 * steps_per_frame * factor);
+  EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("warning")));
+}
+
 // Undamped, and passing through itself, a soft rope gains from each spring that comes to no length.
 TEST_F(CommandLine, RunReportsUnexplainedEnergy) {
   json scene = {{"version", 1}, {"duration", 40}, {"frame_rate", 10}, {"integrator", {{"type", "symplectic_euler"}}}};

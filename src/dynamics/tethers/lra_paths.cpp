@@ -119,4 +119,17 @@ bool are_pins_taut(const SpringNetwork& network, const Body& body, const std::ve
   return !shortest.empty() && std::ranges::all_of(shortest, is_taut);
 }
 
+PinStretch largest_pin_stretch(const std::vector<Tether>& tethers, const Points& positions) {
+  PinStretch largest;
+  for (std::size_t a = 0; a < tethers.size(); ++a) {
+    for (std::size_t b = a + 1; b < tethers.size() && tethers[b].particle == tethers[a].particle; ++b) {
+      const double length = tethers[a].length + tethers[b].length;
+      const double distance = (positions.col(tethers[a].pin) - positions.col(tethers[b].pin)).norm();
+      const double stretch = distance / length - 1.0;
+      if (largest.first == kNone || stretch > largest.stretch) largest = {tethers[a].pin, tethers[b].pin, length, stretch};
+    }
+  }
+  return largest;
+}
+
 }  // namespace sprung

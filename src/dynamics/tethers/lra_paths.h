@@ -29,4 +29,15 @@ inline constexpr int kMostTethers = 4;
 [[nodiscard]] bool are_pins_taut(const SpringNetwork& network, const Body& body, const std::vector<Tether>& tethers,
                                  double max_stretch);
 
+/// The pair of pins that is farthest apart in proportion to the springs between them.
+struct PinStretch {
+  Index first = kNone;  ///< pinned particles; kNone: no two groups of pins share a tethered particle
+  Index second = kNone;
+  double length = 0.0;   ///< sum of rest lengths between them [m]
+  double stretch = 0.0;  ///< (distance - length) / length [1], by which these springs are too long at least; may be negative
+};
+
+/// At these positions [m]. Requires tethers as `find_tethers` orders them.
+[[nodiscard]] PinStretch largest_pin_stretch(const std::vector<Tether>& tethers, const Points& positions);
+
 }  // namespace sprung

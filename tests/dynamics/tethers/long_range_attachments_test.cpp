@@ -5,6 +5,7 @@
 #include "dynamics/networks.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "dynamics/tethers/lra_paths.h"
+#include "network/network_builder.h"
 
 #include <gmock/gmock.h>
 
@@ -49,6 +50,26 @@ SpringNetwork pinned_tangle() {
   for (const Index pin : {0, 100, 200}) network.inverse_masses[pin] = 0.0;
   network.pins.push_back({.particles = {0, 100, 200}, .origin = Vector3::Zero(), .motion = {}});
   return network;
+}
+
+// A rope of 10 springs of 0.1 m, pinned at both ends and at particle 4. Its last pin is 0.9 m from the one before, 0.6 m along
+// springs: 50 % too far. The first two are 0.3 m apart along 0.4 m.
+TEST(TetherPaths, TellWhichPinsAreFarthestApartForTheirSprings) {
+  NetworkBuilder builder;
+  for (int i = 0; i <= 10; ++i) builder.add_particle(Vector3(0.1 * i, 0, 0), 1.0);
+  for (int i = 0; i < 10; ++i) builder.add_spring(i, i + 1, 0.0, 0.1);
+  builder.pin({0, 4, 10});
+  const SpringNetwork network = builder.build();
+  Points x = network.positions;
+  x(0, 4) = 0.3;
+  x(0, 10) = 1.2;
+  const PinStretch found = largest_pin_stretch(find_tethers(network, kStructural), x);
+  EXPECT_EQ(found.first, 4);
+  EXPECT_EQ(found.second, 10);
+  // The tolerances are for sums of ten lengths.
+  EXPECT_NEAR(found.length, 0.6, 10 * kEpsilon);
+  EXPECT_NEAR(found.stretch, 0.5, 30 * kEpsilon);
+  EXPECT_EQ(largest_pin_stretch({}, x).first, kNone);
 }
 
 TEST(TetherPaths, AreTheShortestToEachPin) {
