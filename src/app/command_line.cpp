@@ -1,7 +1,7 @@
 #include "app/command_line.h"
 
-#include "scene/format/frame_steps.h"
 #include "scene/json/nearest_name.h"
+#include "simulation/step/frame_steps.h"
 
 #include <fmt/format.h>
 

@@ -3,6 +3,7 @@
 
 #include "base/types.h"
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -51,6 +52,8 @@ struct StepFailure {
   Index spring = kNone;
   std::string cause;   ///< the observation: `a position is not finite`
   std::string remedy;  ///< what to change
+  /// A smaller step [s] that the remedy names; none if it names no step, or no step alone.
+  std::optional<double> smaller_step;
 };
 
 /// The simulation diverged. Its state must not be used any more.

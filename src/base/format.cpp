@@ -5,6 +5,13 @@
 #include <cmath>
 
 namespace sprung {
+namespace {
+
+constexpr double kRounding = 1.0e-12;
+
+double unit_of_last_digit(double value, int digits) { return std::pow(10.0, std::floor(std::log10(value)) - (digits - 1)); }
+
+}  // namespace
 
 void append_number(std::string& text, double value) {
   std::array<char, 32> buffer{};  // the longest shortest double has 24 characters
@@ -24,12 +31,16 @@ std::string format_number(double value, int digits) {
   return {buffer.data(), end.ptr};
 }
 
-std::string format_upper_bound(double bound) {
-  constexpr int kDigits = 6;
+std::string format_upper_bound(double bound, int digits) {
   if (!std::isfinite(bound)) return format_number(bound);
-  const double unit = std::pow(10.0, std::floor(std::log10(bound)) - (kDigits - 1));
-  constexpr double kRounding = 1.0 + 1.0e-12;
-  return format_number(std::floor(bound / unit * kRounding) * unit, kDigits);
+  const double unit = unit_of_last_digit(bound, digits);
+  return format_number(std::floor(bound / unit * (1.0 + kRounding)) * unit, digits);
+}
+
+std::string format_lower_bound(double bound, int digits) {
+  if (!std::isfinite(bound)) return format_number(bound);
+  const double unit = unit_of_last_digit(bound, digits);
+  return format_number(std::ceil(bound / unit * (1.0 - kRounding)) * unit, digits);
 }
 
 std::string lower_case(std::string text) {

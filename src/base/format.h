@@ -14,9 +14,12 @@ void append_number(std::string& text, double value);
 /// Rounded to this number of significant digits, for display. Requires 1 <= digits <= 17.
 [[nodiscard]] std::string format_number(double value, int digits);
 
-/// An upper bound for users to type: rounded down to six significant digits, so that it exceeds `bound` by rounding error at most.
-/// Requires bound > 0.
-[[nodiscard]] std::string format_upper_bound(double bound);
+/// An upper bound for users to type: rounded down to this number of significant digits, so that it exceeds `bound` by rounding
+/// error at most. Requires bound > 0 and 1 <= digits <= 17.
+[[nodiscard]] std::string format_upper_bound(double bound, int digits = 6);
+
+/// The same for a lower bound: rounded up.
+[[nodiscard]] std::string format_lower_bound(double bound, int digits = 6);
 
 /// With small letters for the capital ones of ASCII.
 [[nodiscard]] std::string lower_case(std::string text);

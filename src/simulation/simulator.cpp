@@ -345,7 +345,7 @@ Energies Simulator::Implementation::energies() const {
 void Simulator::Implementation::fail(StepFailure failure) const {
   failure.step = state.step;
   failure.time = time();
-  failure.remedy = divergence_remedy(settings, bounds);
+  set_divergence_remedy(settings, bounds, failure);
   throw StepError(std::move(failure));
 }
 

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "network/model/pin_schedule.h"
 #include "output/scene_extent.h"
-#include "scene/format/frame_steps.h"
 #include "scene/json/overrides.h"
 #include "simulation/diagnostics.h"
 
@@ -83,11 +82,6 @@ std::string LiveRun::changed_scene() const {
   std::vector<Problem> problems;
   for (const std::string& change : source_.overrides) apply_override(change, json.document, problems);
   return json_text(json.document);
-}
-
-std::optional<double> LiveRun::stable_step() const {
-  const auto step = largest_step_of_frame(loaded_.scene.frame_rate, loaded_.largest_stable_step);
-  return step && *step < simulator().settings().step ? step : std::nullopt;
 }
 
 bool LiveRun::change(const std::vector<std::string>& overrides) {

@@ -24,10 +24,6 @@ class LiveRun {
   [[nodiscard]] const Simulator& simulator() const { return loaded_.simulator; }
   [[nodiscard]] const std::optional<StepFailure>& failure() const { return failure_; }
 
-  /// The largest step that is stable and divides a frame, as the scene's checks advise it [s]; none unless it is smaller than the
-  /// present step.
-  [[nodiscard]] std::optional<double> stable_step() const;
-
   /// The scene as its author wrote it, with the changes, as JSON text.
   [[nodiscard]] std::string changed_scene() const;
 

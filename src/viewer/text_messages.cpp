@@ -1,7 +1,6 @@
 #include "viewer/text_messages.h"
 
 #include "base/error.h"
-#include "base/format.h"
 #include "output/run_recorder.h"
 
 #include <nlohmann/json.hpp>
@@ -92,13 +91,10 @@ std::string problems_text(std::optional<std::uint32_t> run, const std::string& k
 }
 
 std::string diverged_text(std::uint32_t number, std::uint32_t generation, const LiveRun& run) {
-  StepFailure failure = *run.failure();
-  const auto step = run.stable_step();
-  // The post-mortem names the step that the page offers.
-  if (step) failure.remedy = "use a step of at most " + format_number(*step) + " s, or \"auto\"";
+  const StepFailure& failure = *run.failure();
   Json message{{"type", "diverged"}, {"run", number}, {"generation", generation}, {"text", StepError(failure).what()}};
   add_location(failure, run.simulator().network(), message);
-  message["stable_step"] = step ? Json(*step) : Json();
+  message["stable_step"] = failure.smaller_step ? Json(*failure.smaller_step) : Json();
   return text_of(message);
 }
 

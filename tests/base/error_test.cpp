@@ -37,14 +37,14 @@ TEST(FileError, ReportsPathActionAndReason) {
 }
 
 TEST(StepError, ReportsStepTimeLocationAndRemedy) {
-  const StepError error({12, 0.5, "rope", 3, 4, "a position is not finite", "use a step of at most 0.001 s"});
+  const StepError error({12, 0.5, "rope", 3, 4, "a position is not finite", "use a step of at most 0.001 s", 0.001});
   for (const char* text : {"step 12", "0.5 s", "rope", "particle 3", "spring 4", "not finite", "at most 0.001 s"}) {
     EXPECT_THAT(error.what(), HasSubstr(text));
   }
 }
 
 TEST(StepError, LeavesOutTheSpringIfThereIsNone) {
-  EXPECT_THAT(StepError({1, 0.0, "rope", 3, kNone, "a position is not finite", ""}).what(), Not(HasSubstr("spring")));
+  EXPECT_THAT(StepError({1, 0.0, "rope", 3, kNone, "a position is not finite", "", {}}).what(), Not(HasSubstr("spring")));
 }
 
 }  // namespace

@@ -50,6 +50,13 @@ TEST(FormatUpperBound, IsNeverAboveTheBoundByMoreThanRounding) {
   EXPECT_EQ(format_upper_bound(0.019999999999999997), "0.02");
   EXPECT_EQ(format_upper_bound(0.0123456789), "0.0123456");
   EXPECT_EQ(format_upper_bound(1234567.9), "1.23456e+06");
+  EXPECT_EQ(format_upper_bound(1.0 / 30.0, 3), "0.0333");
+}
+
+TEST(FormatLowerBound, IsNeverBelowTheBoundByMoreThanRounding) {
+  EXPECT_EQ(format_lower_bound(0.020000000000000004), "0.02");
+  EXPECT_EQ(format_lower_bound(50.21, 3), "50.3");
+  EXPECT_EQ(format_lower_bound(0.0996, 2), "0.1");
 }
 
 TEST(AppendNumber, KeepsTheExistingText) {

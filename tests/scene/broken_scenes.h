@@ -86,7 +86,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"NegativeStep", {"step=-0.001"}, "step", "must be greater than 0"},
       {"StepOfZero", {"step=0"}, "step", "must be greater than 0"},
       {"StepIsAWord", {"step=automatic"}, "step", "must be a number of seconds, or \"auto\""},
-      {"StepDoesNotDivideTheFrame", {"frame_rate=25", "step=0.003"}, "step", "not a whole number; use 0.003076923077 or 0.002857142857, or \"auto\"", false},
+      {"StepDoesNotDivideTheFrame", {"frame_rate=25", "step=0.003"}, "step", "not a whole number; use 0.00307 or 0.00285, or \"auto\"", false},
       {"StepLongerThanAFrame", {"frame_rate=50", "step=0.03"}, "step", "not a whole number; use 0.02, or \"auto\"", false},
       {"StepTooShort", {"step=1e-29"}, "step", "use a larger step", false},
       {"GravityIsANumber", {"gravity=-9.81"}, "gravity", "must be a list of 3 entries, written in [ ]"},

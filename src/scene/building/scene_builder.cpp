@@ -11,9 +11,9 @@
 #include "scene/building/obstacle_builder.h"
 #include "scene/building/pin_resolver.h"
 #include "scene/building/unlikely_settings.h"
-#include "scene/format/frame_steps.h"
 #include "scene/json/json_text.h"
 #include "scene/step_choice/step_choice.h"
+#include "simulation/step/frame_steps.h"
 
 #include <algorithm>
 #include <cmath>

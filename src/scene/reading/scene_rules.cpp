@@ -1,8 +1,8 @@
 #include "scene/reading/scene_rules.h"
 
 #include "base/format.h"
-#include "scene/format/frame_steps.h"
 #include "scene/json/nearest_name.h"
+#include "simulation/step/frame_steps.h"
 
 #include <algorithm>
 #include <cctype>
@@ -80,6 +80,7 @@ void read_time(Fields& fields, Scene& scene) {
   const auto step = fields.value<StepScene>("step", read_step, "auto");
   scene.duration = duration.value_or(0.0);
   scene.frame_rate = frame_rate.value_or(scene.frame_rate);
+  scene.settings.frame_rate = scene.frame_rate;  // so that messages advise steps that divide a frame
   if (step) scene.step = step->step;
   if (duration && frame_rate && *duration * *frame_rate > kMostFrames) {
     fields.location()

@@ -2,8 +2,8 @@
 
 #include "base/format.h"
 #include "network/model/pin_schedule.h"
-#include "scene/format/frame_steps.h"
 #include "scene/step_choice/many_steps.h"
+#include "simulation/step/frame_steps.h"
 #include "simulation/step/step_check.h"
 
 #include <algorithm>
@@ -55,13 +55,6 @@ int substeps_for_passes(const Scene& scene, const std::optional<StretchLimit>& l
   return substeps;
 }
 
-std::string advice_for_unstable(const Scene& scene, double largest_stable) {
-  if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest_stable)) {
-    return "use at most " + step_text(scene.frame_rate, *steps) + " or \"auto\"";
-  }
-  return "use \"auto\"";
-}
-
 std::string advice_for_too_many_steps(const Scene& scene) {
   const bool gains_energy = std::holds_alternative<ExplicitEulerSettings>(scene.settings.integrator);
   return std::string(gains_energy ? "use \"symplectic_euler\", which does not gain energy at any step, " : "use ") +
@@ -99,11 +92,13 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
   StepChoice choice;
   choice.largest_stable = largest_stable_step(scene.settings.integrator, bounds);
   if (scene.step) {
-    choice.step = *scene.step;
-    choice.steps_per_frame = steps_per_frame(scene.frame_rate, choice.step).value_or(1);
+    choice.steps_per_frame = steps_per_frame(scene.frame_rate, *scene.step).value_or(1);
+    choice.step = step_meant(scene.frame_rate, *scene.step, choice.steps_per_frame);
     if (is_unstable(choice.step, choice.largest_stable) && scene.settings.stability == StabilityCheck::refuse) {
-      problems.push_back(
-          unstable_step(choice.step, choice.largest_stable, bounds, advice_for_unstable(scene, choice.largest_stable)));
+      SimulatorSettings settings = scene.settings;
+      settings.step = choice.step;
+      problems.push_back(unstable_step(settings, bounds));
+      problems.back().value = format_number(*scene.step);  // as the user wrote it
       problems.back().file = scene.file.string();
     }
     return choice;

@@ -75,7 +75,11 @@ std::optional<StepFailure> DivergenceCheck::overstretched(const Points& position
   if (worst == kNone) return std::nullopt;
   const Index a = springs.first[static_cast<std::size_t>(worst)];
   const Index b = springs.second[static_cast<std::size_t>(worst)];
-  return blame(network_.is_pinned(a) ? b : a, worst, positions);
+  StepFailure failure = blame(network_.is_pinned(a) ? b : a, worst, positions);
+  const auto moves = [](const std::vector<Pin>& pins) { return std::ranges::any_of(pins, &Pin::moves); };
+  const bool pulled = moves(network_.pins) || moves(network_.later_pins);
+  failure.remedy = pulled ? "use more stiffness, a \"stretch_limit\" or slower pins" : "use more stiffness or a \"stretch_limit\"";
+  return failure;
 }
 
 StepFailure DivergenceCheck::fastest(const SimulationState& state) const {

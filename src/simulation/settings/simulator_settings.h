@@ -34,6 +34,7 @@ inline constexpr int kMaxSubsteps = 1 << 16;
 
 struct SimulatorSettings {
   double step = 1.0e-3;              ///< dt [s]
+  double frame_rate = 0.0;           ///< [1/s]; messages advise steps that divide a frame; 0: any step
   Vector3 gravity{0.0, -9.81, 0.0};  ///< [m/s^2]
   double air_drag = 0.0;             ///< by length of ropes [kg/(m s)], by area of surfaces [kg/(m^2 s)]
   SurfaceDrag air_surface{};         ///< of the faces of bodies, in addition

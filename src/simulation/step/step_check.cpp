@@ -5,6 +5,7 @@
 #include "dynamics/contact/penalty_contact.h"
 #include "dynamics/forces/surface_air_force.h"
 #include "network/model/pin_schedule.h"
+#include "simulation/step/frame_steps.h"
 #include "simulation/step/network_forces.h"
 
 #include <algorithm>
@@ -25,6 +26,37 @@ double step_for_penalty(const IntegratorSettings& settings, const SpectralBounds
 
 bool grows_transversally(const IntegratorSettings& integrator, const SpectralBounds& bounds) {
   return std::holds_alternative<ExplicitEulerSettings>(integrator) && bounds.elastic > 0.0 && bounds.least_drag == 0.0;
+}
+
+/// Whether fast modes, or motions across taut springs, grow with every step.
+bool gains_energy(const IntegratorSettings& integrator, const SpectralBounds& bounds, double step) {
+  return std::isfinite(growth_time(integrator, bounds, step)) || grows_transversally(integrator, bounds);
+}
+
+/// What to use instead of the step.
+struct StepAdvice {
+  std::string text;              ///< completes "use"
+  std::optional<double> step{};  ///< [s]
+};
+
+StepAdvice advise_at_most(const SimulatorSettings& settings, double largest) {
+  const auto step = settings.frame_rate > 0.0 ? step_to_type(settings.frame_rate, largest) : step_to_type(largest);
+  if (!step) return {"less stiffness, more mass, or a higher frame_rate"};
+  return {"a step of at most " + format_number(*step) + " s", step};
+}
+
+// A smaller step of a scheme that gains energy still gains it.
+StepAdvice advise_step(const SimulatorSettings& settings, const SpectralBounds& bounds) {
+  const double largest = advised_step(settings.integrator, bounds);
+  if (!gains_energy(settings.integrator, bounds, std::min(settings.step, largest))) {
+    StepAdvice advice = advise_at_most(settings, largest);
+    if (advice.step) advice.text += ", or \"auto\"";
+    return advice;
+  }
+  const double largest_symplectic = advised_step(SymplecticEulerSettings{}, bounds);
+  if (settings.step <= largest_symplectic) return {"\"symplectic_euler\""};
+  StepAdvice advice = advise_at_most(settings, largest_symplectic);
+  return {"\"symplectic_euler\" with " + advice.text + (advice.step ? " or \"auto\"" : "")};
 }
 
 /// With steps of any length.
@@ -122,11 +154,12 @@ bool is_unstable(double step, double largest_stable) {
   return step > kRounding * largest_stable;
 }
 
-Problem unstable_step(double step, double largest_stable, const SpectralBounds& bounds, const std::string& advice) {
+Problem unstable_step(const SimulatorSettings& settings, const SpectralBounds& bounds) {
   return {.key = "step",
-          .value = format_number(step),
-          .rule = "is beyond the largest stable step, " + format_upper_bound(largest_stable) + " s, bounded by " + bounds.strictest,
-          .remedy = advice + "; \"stability\": \"warn\" runs it nevertheless"};
+          .value = format_number(settings.step),
+          .rule = "is beyond the largest stable step, " + format_upper_bound(largest_stable_step(settings.integrator, bounds)) +
+                  " s, bounded by " + bounds.strictest,
+          .remedy = "use " + advise_step(settings, bounds).text + "; \"stability\": \"warn\" runs it nevertheless"};
 }
 
 std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds) {
@@ -134,31 +167,31 @@ std::vector<std::string> check_step(const SimulatorSettings& settings, const Spe
   if (!(step > 0.0) || !std::isfinite(step)) {
     throw InputError({.key = "step", .value = format_number(step), .rule = "must be a positive number of seconds"});
   }
-  const double largest = largest_stable_step(settings.integrator, bounds);
-  if (is_unstable(step, largest)) {
-    const Problem problem = unstable_step(step, largest, bounds, "use at most that, or \"auto\"");
+  const std::string remedy = " Use " + advise_step(settings, bounds).text + ".";
+  if (is_unstable(step, largest_stable_step(settings.integrator, bounds))) {
+    const Problem problem = unstable_step(settings, bounds);
     if (settings.stability == StabilityCheck::refuse) throw InputError(problem);
-    return {"step = " + problem.value + " " + problem.rule + ": the simulation is likely to diverge. Use a smaller step."};
+    return {"step = " + problem.value + " " + problem.rule + ": the simulation is likely to diverge." + remedy};
   }
   const double growth = growth_time(settings.integrator, bounds, step);
   if (std::isfinite(growth)) {
     return {"explicit Euler gains energy at any step: the fastest mode of the springs grows by a factor of e every " +
-            format_number(growth, 2) + " s. Use \"symplectic_euler\"."};
+            format_number(growth, 2) + " s." + remedy};
   }
   if (!grows_transversally(settings.integrator, bounds)) return {};
   return {
-      "explicit Euler gains energy at any step: dampers compensate it along the springs, but not perpendicular to taut springs. "
-      "Use \"symplectic_euler\"."};
+      "explicit Euler gains energy at any step: dampers compensate it along the springs, but not perpendicular to taut springs." +
+      remedy};
 }
 
-std::string divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds) {
-  const double advised = advised_step(settings.integrator, bounds);
-  if (settings.step > advised) return "use a step of at most " + format_number(advised, 2) + " s, or \"auto\"";
-  if (std::isfinite(growth_time(settings.integrator, bounds, settings.step))) {
-    return "explicit Euler gains energy at any step; use \"symplectic_euler\" or a step below " +
-           format_number(0.1 * settings.step, 2) + " s";
-  }
-  return "use a step below " + format_number(0.5 * settings.step, 2) + " s, less stiffness, or slower motion";
+void set_divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds, StepFailure& failure) {
+  const bool gains = gains_energy(settings.integrator, bounds, settings.step);
+  const bool too_large = settings.step > advised_step(settings.integrator, bounds);
+  if (!gains && !too_large && !failure.remedy.empty()) return;
+  const StepAdvice advice = gains || too_large ? advise_step(settings, bounds) : advise_at_most(settings, 0.5 * settings.step);
+  failure.smaller_step = advice.step;
+  failure.remedy = (gains ? "explicit Euler gains energy at any step; use " : "use ") + advice.text;
+  if (!gains && !too_large) failure.remedy += ", less stiffness, or slower motion";
 }
 
 }  // namespace sprung

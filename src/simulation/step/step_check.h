@@ -1,4 +1,4 @@
-// Checks of the step before a simulation starts, and the remedy if it diverges nevertheless.
+// Checks of the step before a simulation starts, and the remedy if it diverges nevertheless. All name the same step to use instead.
 #pragma once
 
 #include "base/error.h"
@@ -33,15 +33,16 @@ namespace sprung {
 /// Whether a step exceeds the largest stable one by more than rounding [s].
 [[nodiscard]] bool is_unstable(double step, double largest_stable);
 
-/// The problem of a step beyond the largest stable one. It names the force that bounds the step most. `advice` names what to use
-/// instead.
-[[nodiscard]] Problem unstable_step(double step, double largest_stable, const SpectralBounds& bounds, const std::string& advice);
+/// The problem of settings.step, which is beyond the largest stable step. It names the force that bounds the step most, and a step
+/// to use instead.
+[[nodiscard]] Problem unstable_step(const SimulatorSettings& settings, const SpectralBounds& bounds);
 
 /// Returns warnings about the step. Throws InputError if the step is not positive, or if it is beyond the largest stable one and
 /// `settings.stability` is not warn.
 std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds);
 
-/// Describes what to change after a simulation with these settings diverged.
-[[nodiscard]] std::string divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds);
+/// Sets the remedy of a divergence with these settings: what `unstable_step` advises, if the step is to blame. If not, the
+/// failure's own remedy stays, or, if there is none, it is half of the step.
+void set_divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds, StepFailure& failure);
 
 }  // namespace sprung

@@ -1,4 +1,6 @@
-#include "scene/format/frame_steps.h"
+#include "simulation/step/frame_steps.h"
+
+#include "base/format.h"
 
 #include <gtest/gtest.h>
 
@@ -23,10 +25,30 @@ TEST(FrameSteps, RoundingOfTheDurationLosesNoFrame) {
   }
 }
 
-TEST(FrameSteps, TheLargestStepOfAFrameDividesIt) {
-  EXPECT_EQ(largest_step_of_frame(50.0, 0.0063), 0.005);
-  EXPECT_EQ(largest_step_of_frame(50.0, std::numeric_limits<double>::infinity()), 0.02);
-  EXPECT_EQ(largest_step_of_frame(50.0, 1e-12), std::nullopt) << "too many steps";
+TEST(FrameSteps, AStepToTypeHasThreeDigitsIsAcceptedAndMeansNoMoreThanTheBound) {
+  for (const double frame_rate : {1.0, 24.0, 25.0, 29.97, 30.0, 60.0, 99.9, 1000.0}) {
+    for (double largest = 2.0; largest > 1e-6; largest *= 0.731) {
+      const double step = step_to_type(frame_rate, largest).value();
+      EXPECT_EQ(std::stod(format_number(step, 3)), step);
+      const int steps = steps_per_frame(frame_rate, step).value();
+      EXPECT_LE(step_meant(frame_rate, step, steps), largest);
+      // Three digits lose 1 % at most, and as much again where the last one is 0, which is refused.
+      EXPECT_LE(steps, 1.02 * fewest_steps_per_frame(frame_rate, largest).value() + 2) << frame_rate << " " << largest;
+    }
+  }
+  EXPECT_EQ(step_to_type(50.0, 0.0063), 0.005);
+  EXPECT_EQ(step_to_type(30.0, 0.02), 0.0166);
+  EXPECT_EQ(step_to_type(50.0, std::numeric_limits<double>::infinity()), 0.02);
+  EXPECT_EQ(step_to_type(50.0, 1e-12), std::nullopt) << "too many steps";
+}
+
+TEST(FrameSteps, AStepRoundedDownToThreeDigitsIsTheExactOne) {
+  EXPECT_EQ(steps_per_frame(30.0, 0.0333), 1);
+  EXPECT_EQ(step_meant(30.0, 0.0333, 1), 1.0 / 30.0);
+  EXPECT_EQ(steps_per_frame(24.0, 0.00833), 5);
+  EXPECT_EQ(step_meant(25.0, 0.001, 40), 0.001);
+  for (const double other : {0.033, 0.03333, 0.0334, 0.0332, 0.0167})
+    EXPECT_EQ(steps_per_frame(30.0, other), std::nullopt) << other;
 }
 
 TEST(FrameSteps, StepsThatDivideAFrameAreWhole) {
