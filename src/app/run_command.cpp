@@ -46,6 +46,7 @@ void announce(const LoadedScene& loaded) {
   print_message(fmt::format("{}: {} of {}, {}, {}, {}", loaded.scene.file.string(), counted(loaded.frames, "frame"),
                             describe_steps(loaded), counted(network.particle_count(), "particle"),
                             counted(network.springs.count(), "spring"), counted(obstacles, "obstacle")));
+  for (const std::string& note : loaded.simulator.notes()) print_message(note);
   for (const std::string& warning : loaded.warnings) print_warning(warning);
 }
 

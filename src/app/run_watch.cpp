@@ -5,6 +5,7 @@
 #include "base/grouped_warnings.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "simulation/monitoring/self_crossings.h"
+#include "simulation/step/frame_steps.h"
 
 #include <fmt/format.h>
 
@@ -208,11 +209,14 @@ void RunWatch::warn_of_thin_bodies() {
   const double least = kFallsWithinGap * settings.gravity.norm() * settings.step * settings.step;
   const double gap = thinnest_gap(simulator_.network().bodies, simulator_.environment().obstacles());
   if (gap >= least) return;
+  // No step is small enough for a gap of 0.
+  const auto step = gap > 0.0 ? step_to_type(settings.frame_rate, settings.step * std::sqrt(gap / least)) : std::nullopt;
   warn(fmt::format(
       "thickness {} m is too small for the step: resting bodies fall through it in a few steps. Contact stopped more than {} % of "
       "the "
-      "particles in {}, which is slow and overstretches them. Use a thickness of at least {} m, or a smaller step.",
-      format_number(gap, 3), format_number(100.0 * kManyParticles), counted(truncated_frames_, "frame"), format_number(least, 2)));
+      "particles in {}, which is slow and overstretches them. Use a thickness of at least {} m{}.",
+      format_number(gap, 3), format_number(100.0 * kManyParticles), counted(truncated_frames_, "frame"),
+      format_lower_bound(least, 2), step ? fmt::format(", or a step of at most {} s", format_number(*step)) : ""));
 }
 
 }  // namespace sprung

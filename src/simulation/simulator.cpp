@@ -112,6 +112,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   Start start = find_start(network, environment, settings.contact, state.x);
   state.x = std::move(start.positions);
   warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
+  notes = std::move(start.notes);
   if (constraints.violation(state.x) > 1.0) constraints.correct_positions(state, dt());
   if (attachments) attachments->update(state);
   const std::vector<std::string> of_links = unlikely_lengths(network, state.links);
@@ -391,6 +392,8 @@ const SimulatorSettings& Simulator::settings() const { return implementation_->s
 const SimulationState& Simulator::state() const { return implementation_->state; }
 const Environment& Simulator::environment() const { return implementation_->environment; }
 const std::vector<std::string>& Simulator::warnings() const { return implementation_->warnings; }
+
+const std::vector<std::string>& Simulator::notes() const { return implementation_->notes; }
 double Simulator::time() const { return implementation_->time(); }
 double Simulator::gravity_energy() const { return implementation_->energy(EnergyKind::gravity); }
 double Simulator::elastic_energy() const { return implementation_->energy(EnergyKind::elastic); }

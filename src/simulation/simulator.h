@@ -28,7 +28,7 @@ struct BrokenLink {
 class Simulator {
  public:
   /// Throws InputError if a setting is out of its bounds, if the step is not positive or beyond the largest stable one (with
-  /// `stability` warn, `warnings` reports the latter), or if intersections remain at the start. `warnings` reports bodies that
+  /// `stability` warn, `warnings` reports the latter), or if intersections remain at the start. `notes` reports bodies that
   /// were moved out of intersections.
   explicit Simulator(SpringNetwork network, SimulatorSettings settings = {}, std::vector<Obstacle> obstacles = {});
   ~Simulator();
@@ -105,6 +105,8 @@ class Simulator {
   [[nodiscard]] const SimulationState& state() const;
   [[nodiscard]] const Environment& environment() const;
   [[nodiscard]] const std::vector<std::string>& warnings() const;
+  /// What the simulator changed because the settings ask for it.
+  [[nodiscard]] const std::vector<std::string>& notes() const;
 
   /// state().step * settings().step [s], between steps
   [[nodiscard]] double time() const;

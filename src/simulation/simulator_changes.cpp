@@ -158,6 +158,7 @@ void Simulator::rebuild(SpringNetwork network, const std::vector<Index>& springs
     next->state.last_impulses.of_springs = now.state.last_impulses.of_springs(springs_left);
   }
   next->warnings = now.warnings;  // with those of the start
+  next->notes = now.notes;
   implementation_ = std::move(next);
 }
 

@@ -112,6 +112,7 @@ struct Simulator::Implementation {
   External external;
   SpectralBounds bounds;
   std::vector<std::string> warnings;
+  std::vector<std::string> notes;
   Forces forces;
   SurfaceAirForce* surface_air = nullptr;  ///< null unless the air acts on faces
   PenaltyContact* penalty = nullptr;       ///< null unless contact is by penalty

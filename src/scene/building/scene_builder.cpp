@@ -101,7 +101,7 @@ std::string join_remedy(const Body& body, const SpringPieces& pieces, bool is_me
 
 std::vector<std::string> pieces_warnings(const Body& body, const SpringPieces& pieces, bool is_mesh) {
   if (body.particle_count < 2) return {};
-  if (pieces.count == 0) return {"no springs, so the particles move independently"};
+  if (pieces.count == 0) return {"no springs, so the particles move independently. Give it \"springs\" or a \"material\"."};
   std::vector<std::string> warnings;
   if (pieces.alone > 0) {
     warnings.push_back(counted(pieces.alone, "particle") +
@@ -121,13 +121,17 @@ std::vector<std::string> source_warnings(const ObjSource& source) {
     if (!names.empty()) warnings.push_back("the mesh names the material " + names_text("file", "files", names) + text);
   };
   const MaterialFiles& materials = source.materials;
-  warn(materials.missing, ", which Sprung does not find and does not copy beside the frames.");
-  warn(materials.unusual, ", which Sprung does not copy: another file has the name there, or the name has a # or ends in .obj.");
-  warn(materials.outside, ", outside of its folder. The copies are beside the frames, which still name the place outside.");
+  warn(materials.missing,
+       ", which Sprung does not find and does not copy beside the frames. Put it there, or remove the line mtllib.");
+  warn(materials.unusual,
+       ", which Sprung does not copy: another file has the name there, or the name has a # or ends in .obj. Rename it.");
+  warn(materials.outside,
+       ", outside of its folder. The copies are beside the frames, which still name the place outside. Move "
+       "it beside the mesh, and change the line mtllib.");
   if (source.file.has_given_normals() && !source.file.writes_normals()) {
     warnings.push_back(
         "the normals (vn) of the mesh are written as they are, though they go stale as the body deforms. Write them "
-        "anew with \"normals\": true, or remove them from the mesh.");
+        "anew with \"normals\": true of the body, or remove them from the mesh.");
   }
   return warnings;
 }

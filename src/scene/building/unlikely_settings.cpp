@@ -152,7 +152,8 @@ void note_unused_springs(const Scene& scene, const SpringNetwork& network, Group
       const auto index = static_cast<std::size_t>(kind);
       if (!*materials[index] || has_springs(network, built, kind)) continue;
       if (kind == SpringKind::bend && built.angle_bend_count > 0) continue;
-      bodies.add(body.name, std::string("springs.") + kSpringKindNames[index] + " has no effect: its shape has no such springs");
+      bodies.add(body.name,
+                 std::string("springs.") + kSpringKindNames[index] + " has no effect: its shape has no such springs. Remove it.");
     }
   }
 }

@@ -103,7 +103,7 @@ std::vector<std::string> weak_springs(const SimulatorSettings& settings, const S
         body,
         "the springs are too weak for the angle bends. A bend shortens them, and its force grows as they shorten, so the body "
         "is likely to gain energy. Use a structural stiffness of at least " +
-            format_number(least, 3) + " N/m, less bend stiffness, or \"stretch_limit\": {\"max_compression\": 0}.");
+            format_lower_bound(least, 3) + " N/m, less bend stiffness, or \"stretch_limit\": {\"max_compression\": 0}.");
   }
   return warnings.lines();
 }

@@ -43,14 +43,14 @@ class Finder {
     if (!present.empty() && !absent.empty()) {
       warnings_.push_back("stretch_limit.kinds = " + names_of(limit.kinds) + " limits no spring" +
                           (absent.size() < limit.kinds.size() ? " of the kinds " + names_of(absent) : "") +
-                          ": the network has only springs of the kinds " + names_of(present));
+                          ": the network has only springs of the kinds " + names_of(present) + ". Name kinds of these only.");
     }
     check_laws(limit);
     const double largest = std::pow(1.0 + limit.max_stretch, 3);
     for (const Body& body : network_.bodies) {
       if (!body.stretch_limited || body.volume_factor <= largest) continue;
       warnings_.push_back("body \"" + body.name + "\": volume.factor = " + format_number(body.volume_factor, 4) +
-                          " needs springs that stretch by " + format_number(100.0 * (std::cbrt(body.volume_factor) - 1.0), 3) +
+                          " needs springs that stretch by " + format_lower_bound(100.0 * (std::cbrt(body.volume_factor) - 1.0), 3) +
                           " %, but stretch_limit.max_stretch is " + format_number(100.0 * limit.max_stretch, 3) +
                           " %. Use a smaller factor, or a larger max_stretch.");
     }
@@ -75,7 +75,7 @@ class Finder {
       if (fails) {
         of_bodies.add(body.name,
                       "the stretch limit leaves out its springs that yield or break, as their load decides when they do so. "
-                      "Leave the body or the kind of springs out of the stretch limit.");
+                      "Leave the body or the kind of springs out of the stretch limit, or remove the limit.");
       }
       if (pushes) {
         of_bodies.add(body.name,
@@ -184,7 +184,7 @@ class Finder {
       if (*attachment.rest_length >= gap) continue;
       warnings_.push_back(attachment.name + ": rest_length = " + format_number(*attachment.rest_length, 6) +
                           " is below the gap of " + format_number(gap, 6) + " m that contact keeps between body \"" + body.name +
-                          "\" and " + other + ", so that they work against each other. Use at least " + format_number(gap, 6) +
+                          "\" and " + other + ", so that they work against each other. Use at least " + format_lower_bound(gap) +
                           ", leave it out, or reduce the thickness.");
     }
   }

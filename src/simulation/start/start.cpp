@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -128,7 +127,7 @@ std::vector<std::string> describe_too_near(const SpringNetwork& network, const E
 Start find_start(const SpringNetwork& network, Environment& environment, const ContactSettings& contact, const Points& positions) {
   const CollisionSurface surface = contact_surface(network);
   const StartIntersections wanted = find_all(environment, surface, contact, positions);
-  if (wanted.empty()) return {positions, describe_too_near(network, environment, positions)};
+  if (wanted.empty()) return {positions, describe_too_near(network, environment, positions), {}};
   if (contact.start == ContactSettings::Start::push_out) {
     const Points start =
         push_out(network, environment, surface, positions, contact.response == ContactSettings::Response::projection);
@@ -137,9 +136,8 @@ Start find_start(const SpringNetwork& network, Environment& environment, const C
       const std::string remedy = "\"push_out\" found no free position: move one of them by \"place\"";
       throw InputError(start_problems(left, network, environment, surface, start, remedy));
     }
-    std::vector<std::string> warnings = describe_moved(network, positions, start);
-    std::ranges::move(describe_lengthened(network, environment, surface, wanted, positions, start), std::back_inserter(warnings));
-    return {start, warnings};
+    return {start, describe_lengthened(network, environment, surface, wanted, positions, start),
+            describe_moved(network, positions, start)};
   }
   const std::string remedy = "move one of them by \"place\", or set contact.start to \"push_out\"";
   throw InputError(start_problems(wanted, network, environment, surface, positions, remedy));

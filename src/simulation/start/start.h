@@ -10,10 +10,11 @@
 
 namespace sprung {
 
-/// Positions at time 0 [m], and warnings about them.
+/// Positions at time 0 [m], and warnings about them. Notes tell what "push_out" moved, as the settings ask.
 struct Start {
   Points positions;
   std::vector<std::string> warnings{};
+  std::vector<std::string> notes{};
 };
 
 /// Returns `positions` [m] if nothing intersects at the end of the environment's interval. With `contact.start` push_out, bodies

@@ -475,7 +475,7 @@ TEST(SceneBuilder, WarnsOfMeshesFarLargerThanTheRestOnceWithTheirNames) {
 TEST(SceneBuilder, WarnsOfSpringsThatAShapeDoesNotHave) {
   const SceneFolder folder;
   EXPECT_THAT(build(folder, {"bodies.banner.shape.resolution=[2,2]", "bodies.banner.springs.bend.stiffness=1"}).warnings,
-              ElementsAre("body \"banner\": springs.bend has no effect: its shape has no such springs"));
+              ElementsAre("body \"banner\": springs.bend has no effect: its shape has no such springs. Remove it."));
   EXPECT_THAT(build(folder, {"bodies.banner.springs.bend={\"stiffness\":1,\"model\":\"angle\"}",
                              "bodies.banner.springs.structural.stiffness=1e4"})
                   .warnings,

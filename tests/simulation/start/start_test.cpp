@@ -143,8 +143,9 @@ TEST(Start, APushedParticleEndsAtItsGapFromTheNearestSurface) {
   const Simulator simulator(one_particle({0.1, 0.0, 0.0}, thick), pushing_out(), {ball(0.3, Vector3::Zero())});
   // Contact passes leave a thousandth of the gap.
   EXPECT_LT((simulator.positions().col(0) - Vector3(0.31, 0.0, 0.0)).norm(), 1e-5);
-  ASSERT_EQ(simulator.warnings().size(), 1U);
-  EXPECT_EQ(simulator.warnings()[0],
+  EXPECT_THAT(simulator.warnings(), IsEmpty()) << "the settings ask for it";
+  ASSERT_EQ(simulator.notes().size(), 1U);
+  EXPECT_EQ(simulator.notes()[0],
             "body \"ball\": intersected an obstacle or a body at the start and moved out: 1 particle by 0.21 m");
 }
 
@@ -291,7 +292,7 @@ TEST(Start, PushingOutWarnsOfABodyThatItStretches) {
   EXPECT_THAT(warnings(0.0),
               Contains(AllOf(HasSubstr("body \"cloth\": \"push_out\" moved it off obstacle \"ball\" and made an edge"),
                              HasSubstr(" % longer"), HasSubstr("Start it elsewhere"))));
-  EXPECT_THAT(warnings(0.249), ElementsAre(HasSubstr("moved out")));
+  EXPECT_THAT(warnings(0.249), IsEmpty());
 }
 
 TEST(Start, BodiesThatDoNotCollideAreNotPushedApart) { EXPECT_THAT(moved(needle_and_patch({.others = false})), IsEmpty()); }
