@@ -46,7 +46,8 @@ TEST(SelfCrossings, BodyWithSelfContactIsNotLookedAt) {
 }
 
 TEST(SelfCrossings, RopeInAPlaneMayCrossItself) {
-  BodyShape shape = make_rope({.points = {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(1, 1, 0), Vector3(0.5, -1, 0)}}, {});
+  BodyShape shape = make_rope(
+      {.points = {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(1, 1, 0), Vector3(0.5, -1, 0)}, .particles = {}, .length = {}}, {});
   set_total_mass(shape, 1.0);
   NetworkBuilder builder;
   builder.add_body("rope", shape, {}, {});
