@@ -28,8 +28,8 @@ using testing::read_text;
 using testing::write_text;
 
 const json& table() {
-  static const json read = json::parse(read_text(SPRUNG_SOURCE_DIR "/tests/app/remedies.json"));
-  return read;
+  static const json kTable = json::parse(read_text(SPRUNG_SOURCE_DIR "/tests/app/remedies.json"));
+  return kTable;
 }
 
 std::vector<std::string> names() {
