@@ -33,26 +33,26 @@ std::string find_program(const char* name) {
   return "";
 }
 
-/// In the child: its texts go nowhere. Between fork and exec of a program with threads, only calls that are safe in a signal
+/// Runs in the child; discards its output. Between fork and exec of a program with threads, only calls that are safe in a signal
 /// handler are allowed.
-[[noreturn]] void become(const char* program, char* const* words) {
-  const int nowhere = ::open("/dev/null", O_RDWR);
-  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, descriptor);
+[[noreturn]] void execute(const char* program, char* const* arguments) {
+  const int null_device = ::open("/dev/null", O_RDWR);
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(null_device, descriptor);
   ::close_range(STDERR_FILENO + 1, ~0U, 0);  // a browser that outlives the server must not hold its port
   ::setpgid(0, 0);                           // Ctrl-C ends the server, not the browser
-  ::execv(program, words);
+  ::execv(program, arguments);
   ::_exit(127);
 }
 
 }  // namespace
 
 Browser::Browser(std::string address) : address_(std::move(address)) {
-  const bool has_screen = std::ranges::any_of(std::array{"DISPLAY", "WAYLAND_DISPLAY", "BROWSER"},
-                                              [](const char* name) { return !environment(name).empty(); });
+  const bool can_open = std::ranges::any_of(std::array{"DISPLAY", "WAYLAND_DISPLAY", "BROWSER"},
+                                            [](const char* name) { return !environment(name).empty(); });
   std::string program = find_program(kOpener);
   if (program.empty()) {
     explain("no browser was opened: xdg-open is not installed");
-  } else if (!has_screen) {
+  } else if (!can_open) {
     explain("no browser was opened: there is no screen, as DISPLAY is not set");
   } else {
     start(program);
@@ -60,9 +60,9 @@ Browser::Browser(std::string address) : address_(std::move(address)) {
 }
 
 void Browser::start(std::string& program) {
-  char* const words[] = {program.data(), address_.data(), nullptr};
+  char* const arguments[] = {program.data(), address_.data(), nullptr};
   child_ = ::fork();
-  if (child_ == 0) become(program.c_str(), words);
+  if (child_ == 0) execute(program.c_str(), arguments);
   if (child_ < 0) explain("no browser was opened: xdg-open cannot be started");
 }
 

@@ -7,6 +7,7 @@
 
 namespace sprung {
 
+/// Opens an address in the user's browser, or prints how to open it.
 class Browser {
  public:
   /// Starts `xdg-open` with the address and does not wait for it. Prints why and what to do instead if there is no such program,

@@ -37,7 +37,7 @@ RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int thre
           .scene_file = loaded.scene.file.filename().string(),
           .materials = std::move(materials),
           .write_obj = options.format == "obj",
-          .record = loaded.scene.record};
+          .write_record = loaded.scene.write_record};
 }
 
 void announce(const LoadedScene& loaded) {
@@ -114,6 +114,9 @@ ExitCode run(const RunOptions& options) {
   const ThreadLimit limit(threads);
   LoadedScene loaded = load_scene(options.scene);
   loaded.frames = options.frames.value_or(loaded.frames);
+  if (options.format == "none" && !loaded.scene.write_record) {
+    throw UsageError("--format none with \"record\": false writes no frames; leave out one of them");
+  }
   if (interrupted()) return ExitCode::interrupted;
 
   RunOutput output(OutputFolder(options.out, options.overwrite), facts_of(loaded, options, threads), loaded.simulator);

@@ -4,6 +4,7 @@
 #include "base/format.h"
 #include "base/grouped_warnings.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
+#include "network/model/pin_schedule.h"
 #include "simulation/monitoring/self_crossings.h"
 #include "simulation/step/frame_steps.h"
 
@@ -45,8 +46,7 @@ double thinnest_gap(const std::vector<Body>& bodies, const std::vector<Obstacle>
 }
 
 bool moves_anything(const Simulator& simulator) {
-  const SpringNetwork& network = simulator.network();
-  return std::ranges::any_of(network.pins, &Pin::moves) || std::ranges::any_of(network.later_pins, &Pin::moves) ||
+  return has_moving_pin(simulator.network()) ||
          std::ranges::any_of(simulator.environment().obstacles(), [](const Obstacle& obstacle) { return obstacle.motion.moves(); });
 }
 
@@ -161,8 +161,7 @@ void RunWatch::warn_of_missed_limit() {
   const StretchLimitSettings& limit = *simulator_.settings().stretch_limit;
   warn(
       fmt::format("the stretch limit was missed by more than {} % of a rest length in {}, at most by {} % in frame {} (column "
-                  "stretch_excess in "
-                  "diagnostics.csv). {}",
+                  "stretch_excess in diagnostics.csv). {}",
                   format_number(100.0 * wanted_excess(limit), 2), counted(missed_.frames, "frame"),
                   format_number(100.0 * missed_.largest, 2), missed_.worst_frame, remedy_for_stretch()));
 }
@@ -171,35 +170,33 @@ std::string RunWatch::remedy_for_stretch() const {
   const StretchLimitSettings& limit = *simulator_.settings().stretch_limit;
   if (const PinStretch& pins = missed_.pins; pins.stretch > limit.max_stretch) {
     constexpr double kRounding = 1e-6;
-    const double bearable = std::ceil(100.0 * pins.stretch - kRounding) / 100.0;
+    const double needed_stretch = std::ceil(100.0 * pins.stretch - kRounding) / 100.0;
     return fmt::format(
-        "Pins hold body \"{}\" {} m apart in that frame, along springs of {} m, which no solver can keep. Move these pins closer "
-        "to "
-        "each other, or allow a \"max_stretch\" of {}.",
+        "Two pins of body \"{}\" are {} m apart in that frame, but the springs between them are {} m long, so no solver can keep "
+        "the limit. Move the pins closer together, or use a \"max_stretch\" of {}.",
         simulator_.network().body_of(pins.first).name, format_number((1.0 + pins.stretch) * pins.length, 3),
-        format_number(pins.length, 3), format_number(bearable, 6));
+        format_number(pins.length, 3), format_number(needed_stretch, 6));
   }
-  const bool passes = limit.solver == StretchLimitSettings::Solver::gauss_seidel;
-  const bool can_be_solved = passes && limit.max_compression == 1.0;
+  const bool is_gauss_seidel = limit.solver == StretchLimitSettings::Solver::gauss_seidel;
+  const bool can_be_solved = is_gauss_seidel && limit.max_compression == 1.0;
   if (can_be_solved) return "Use more iterations, a smaller step or, for ropes and cloths, \"solver\": \"auto\".";
   if (simulator_.stretch_solver() != "newton") return "Use more iterations or a smaller step.";
-  // Newton's method solves at any number of iterations. Measured on ropes at a jerk of their pins, what it misses is in proportion
-  // to the step.
+  // The excess that Newton's method leaves is proportional to the step; more iterations do not help.
   const double times = std::ceil(missed_.largest / wanted_excess(limit));
   return fmt::format("Use a step {} times smaller{}.", format_number(times, 2),
                      moves_anything(simulator_) ? ", or let pins and obstacles move more slowly" : "");
 }
 
 void RunWatch::warn_of_self_crossings() {
-  const bool has_pairs = simulator_.settings().contact.response == ContactSettings::Response::projection;
+  const bool uses_projection = simulator_.settings().contact.response == ContactSettings::Response::projection;
   for (const SelfCrossing& crossing : find_self_crossings(simulator_.network(), simulator_.positions())) {
     const Body& body = simulator_.network().bodies[static_cast<std::size_t>(crossing.body)];
     warn(
-        fmt::format("body \"{}\" passes through itself: {} of its surface cross others of it in the last frame. Set its "
+        fmt::format("body \"{}\" crosses itself: {} intersect others of the same body in the last frame. Set its "
                     "\"self_contact\" to true{}{}.",
                     body.name, counted(static_cast<std::size_t>(crossing.elements), "element"),
                     body.material.thickness > 0.0 ? "" : " and give it a \"thickness\"",
-                    has_pairs ? "" : ", with contact.response \"projection\""));
+                    uses_projection ? "" : ", with contact.response \"projection\""));
   }
 }
 
@@ -213,8 +210,7 @@ void RunWatch::warn_of_thin_bodies() {
   const auto step = gap > 0.0 ? step_to_type(settings.frame_rate, settings.step * std::sqrt(gap / least)) : std::nullopt;
   warn(fmt::format(
       "thickness {} m is too small for the step: resting bodies fall through it in a few steps. Contact stopped more than {} % of "
-      "the "
-      "particles in {}, which is slow and overstretches them. Use a thickness of at least {} m{}.",
+      "the particles in {}, which is slow and overstretches them. Use a thickness of at least {} m{}.",
       format_number(gap, 3), format_number(100.0 * kManyParticles), counted(truncated_frames_, "frame"),
       format_lower_bound(least, 2), step ? fmt::format(", or a step of at most {} s", format_number(*step)) : ""));
 }

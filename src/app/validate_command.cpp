@@ -27,7 +27,7 @@ std::string time_text(const LoadedScene& loaded) {
          text_row("per frame", describe_steps(loaded) + "; " + stable);
 }
 
-/// Two digits in ms, or in s from 10 s on. Below 0.1 ms, what surrounds the steps of a frame takes longer than they do.
+/// Two digits in ms, or in s from 10 s on. Below 0.1 ms, the rest of a frame takes longer than its steps.
 std::string time_of_frame(double seconds) {
   constexpr double kShortest = 0.1e-3;
   if (seconds < kShortest) return "below 0.1 ms";
@@ -116,11 +116,12 @@ ExitCode validate(const ValidateOptions& options) {
   const ThreadLimit limit(threads);
   LoadedScene loaded = load_scene(options.scene);
   const std::string head = text_row("scene", loaded.scene.file.string()) + time_text(loaded);
-  const std::string what = contents(loaded);
+  // Before the measurement, which advances the simulator.
+  const std::string rows = contents(loaded);
   const FrameCost cost = measure_frame_cost(loaded.simulator, loaded.steps_per_frame, threads);
   if (cost.failure) loaded.warnings.push_back(*cost.failure);
 
-  print_result(head + cost_row(cost, threads) + what + verdict(loaded.warnings));
+  print_result(head + cost_row(cost, threads) + rows + verdict(loaded.warnings));
   return ExitCode::done;
 }
 

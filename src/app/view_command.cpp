@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/format.h"
 #include "base/parallel.h"
+#include "output/file_pattern.h"
 #include "output/file_writer.h"
 #include "output/run_summary.h"
 #include "scene/json/near_file.h"
@@ -72,6 +73,20 @@ void check_exists(const std::string& target) {
   throw FileError("read", target, "there is no such file or folder; " + remedy);
 }
 
+/// An export may replace an earlier export in the folder of a run, and no other file of the run.
+void check_replaces_no_file_of_run(const std::filesystem::path& file, const std::filesystem::path& run) {
+  std::error_code ignored;
+  const std::filesystem::path inside =
+      std::filesystem::weakly_canonical(file, ignored).lexically_relative(std::filesystem::weakly_canonical(run, ignored));
+  if (inside.empty() || inside.begin()->string() == ".." || inside == kAnimationFile) return;
+  for (const std::string& pattern : files_of_run(run / kRunSummaryFile).value_or(std::vector<std::string>())) {
+    const std::vector<std::filesystem::path> taken = matching_files(run, pattern);
+    if (std::ranges::any_of(taken, [&](const auto& name) { return std::filesystem::equivalent(name, file, ignored); })) {
+      throw FileError("write", file.string(), "it is a file of the run; give another file by --out");
+    }
+  }
+}
+
 void warn_of_missing(const RecordedRun& run) {
   if (!run.missing().empty()) print_warning(run.missing());
 }
@@ -115,6 +130,8 @@ ExitCode export_run(const ExportOptions& options) {
   if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
     throw FileError("write", file.string(), "it is a folder, a pipe or a device; give the name of a file by --out");
   }
+  check_exists(options.folder);
+  check_replaces_no_file_of_run(file, options.folder);
   const Replay replay(options.folder);
   warn_of_missing(replay.run());
   const HtmlAnimation animation = html_animation(replay, viewer_page());

@@ -29,21 +29,13 @@ std::string entry_key(const std::string& key, std::size_t entry) {
   return text;
 }
 
-std::string vector_text(const Vector3& vector) {
-  std::string text = "[";
-  for (int axis = 0; axis < 3; ++axis) {
-    if (axis > 0) text += ", ";
-    append_number(text, vector[axis]);
-  }
-  text += ']';
-  return text;
-}
+std::string vector_text(const Vector3& vector) { return vector_text(vector, 0); }
 
 std::string vector_text(const Vector3& vector, int digits) {
   std::string text;
   for (const double coordinate : vector) {
     text += text.empty() ? "[" : ", ";
-    text += format_number(coordinate, digits);
+    text += digits == 0 ? format_number(coordinate) : format_number(coordinate, digits);
   }
   text += ']';
   return text;

@@ -18,6 +18,15 @@ namespace fs = std::filesystem;
 // The only file of a run that was killed during its first write. Its name identifies it.
 void remove_unfinished_summary(const fs::path& folder) { fs::remove(temporary_path(folder / kRunSummaryFile)); }
 
+/// Folders in the place of a run's files are the user's.
+void expect_no_folders(const fs::path& folder, const std::vector<std::string>& patterns) {
+  for (const std::string& pattern : patterns) {
+    if (stays_inside(pattern) && fs::is_directory(fs::symlink_status(folder / pattern))) {
+      throw FileError("overwrite", (folder / pattern).string(), "it is a folder; move it away");
+    }
+  }
+}
+
 void remove_files_of_run(const fs::path& folder, const std::vector<std::string>& patterns) {
   for (const std::string& pattern : patterns) {
     if (!stays_inside(pattern)) continue;
@@ -37,6 +46,7 @@ void remove_earlier_run(const fs::path& folder) {
     throw FileError("overwrite the folder", folder.string(),
                     "it has files but no run of sprung; choose another folder, or empty this one yourself");
   }
+  expect_no_folders(folder, *patterns);
   std::erase(*patterns, kRunSummaryFile);
   remove_files_of_run(folder, *patterns);
   fs::remove(folder / kRunSummaryFile);
@@ -83,7 +93,7 @@ void OutputFolder::shorten(const fs::path& file, std::uintmax_t size) const noex
 
 void OutputFolder::remove(const fs::path& file) const noexcept {
   std::error_code ignored;
-  fs::remove(folder_ / file, ignored);
+  if (!fs::is_directory(fs::symlink_status(folder_ / file, ignored))) fs::remove(folder_ / file, ignored);
 }
 
 }  // namespace sprung

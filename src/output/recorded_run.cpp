@@ -9,8 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <numeric>
@@ -103,8 +105,14 @@ RecordedRun::RecordedRun(std::filesystem::path folder) : folder_(std::move(folde
 
 void RecordedRun::read_summary() {
   const std::filesystem::path file = folder_ / kRunSummaryFile;
+  std::error_code error;
+  const auto kind = std::filesystem::status(file, error).type();
+  if (kind == std::filesystem::file_type::not_found) fail(file, "", "is missing, so this is not the folder of a run");
+  if (error) fail(file, "", "cannot be read: " + error.message());
+  if (kind != std::filesystem::file_type::regular) fail(file, "", "is not a regular file");
+  errno = 0;
   std::ifstream stream(file);
-  if (!stream) fail(file, "", "is missing, so this is not the folder of a run");
+  if (!stream) fail(file, "", std::string("cannot be read: ") + std::strerror(errno));
   const Json summary = Json::parse(
       stream,
       [&](int level, Json::parse_event_t, const Json&) {
@@ -125,16 +133,20 @@ void RecordedRun::read_summary() {
   if (frames_ < 1) fail(file, "frames_written", "is 0: the run has no frame to show");
   if (!(frame_rate_ > 0.0) || !(step_ > 0.0) || steps_per_frame_ < 1)
     fail(file, "frame_rate", "and the steps must be greater than 0");
-  if (std::filesystem::exists(folder_ / kRecordFile)) {
-    read_record(frames_);
+  if (std::filesystem::symlink_status(folder_ / kRecordFile, error).type() != std::filesystem::file_type::not_found) {
+    const bool names_record = summary.contains("record") && summary["record"].is_string();
+    read_record(frames_, names_record ? summary["record"].get<std::string>() : "");
   } else {
     read_obj_model(*patterns);
   }
   if (summary.contains("torn_faces")) read_torn_faces(summary["torn_faces"].dump());
 }
 
-void RecordedRun::read_record(int frames_written) {
+void RecordedRun::read_record(int frames_written, const std::string& fingerprint) {
   record_.emplace(folder_ / kRecordFile);
+  if (!fingerprint.empty() && fingerprint != record_->fingerprint()) {
+    fail(folder_ / kRecordFile, "", "is the record of another run", kDamagedRecordRemedy);
+  }
   frames_ = std::min(frames_written, record_->frames());
   if (frames_ < 1) fail(folder_ / kRecordFile, "", "has no whole frame", kDamagedRecordRemedy);
   if (frames_ < frames_written) {
@@ -143,10 +155,10 @@ void RecordedRun::read_record(int frames_written) {
   }
 }
 
-/// Faces of other bodies, and of numbers that a body does not have, are left out.
-void RecordedRun::read_torn_faces(const std::string& summary) {
+/// Leaves out bodies and faces that the model does not have.
+void RecordedRun::read_torn_faces(const std::string& torn_faces) {
   const std::filesystem::path file = folder_ / kRunSummaryFile;
-  for (const Json& entry : Json::parse(summary)) {
+  for (const Json& entry : Json::parse(torn_faces)) {
     TornFaces torn;  // filled member by member, see record_reader.cpp
     torn.body = read<std::string>(entry, "body", file);
     torn.frame = read_count(entry, "frame", file);
@@ -180,7 +192,7 @@ void RecordedRun::read_obj_model(const std::vector<std::string>& patterns) {
   }
   if (model.bodies.empty()) {
     fail(folder_, "", std::string("has neither ") + kRecordFile + " nor OBJ files, so there is nothing to show",
-         "run the scene again without \"record\": false");
+         "run the scene again; \"output\": { \"record\": false } leaves out record.bin");
   }
   missing_ = folder_.string() + " has no " + kRecordFile +
              ": springs, pins, velocities and contact are missing; run the scene again to have them";

@@ -59,10 +59,10 @@ class RecordedRun {
 
  private:
   void read_summary();
-  void read_record(int frames_written);
+  void read_record(int frames_written, const std::string& fingerprint);
   void read_obj_model(const std::vector<std::string>& patterns);
   void read_diagnostics();
-  void read_torn_faces(const std::string& summary);
+  void read_torn_faces(const std::string& torn_faces);
   [[nodiscard]] RecordedFrame frame_of_obj(int number) const;
   [[nodiscard]] Points obj_positions(const std::string& pattern, int frame, Eigen::Index count) const;
 

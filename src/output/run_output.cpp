@@ -71,7 +71,7 @@ std::vector<ObjSequence> sequences_of(const Simulator& simulator, const RunFacts
 }
 
 std::optional<RunRecorder> recorder_of(const Simulator& simulator, const RunFacts& facts) {
-  if (!facts.record) return std::nullopt;
+  if (!facts.write_record) return std::nullopt;
   return RunRecorder(simulator, facts.sources, facts.materials);
 }
 
@@ -85,9 +85,11 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
       recorder_(recorder_of(simulator, facts)),
       summary_(facts, simulator.settings().step, patterns()) {
   folder_.expect_free(patterns());
+  const std::string head = recorder_ ? encode_head(recorder_->model(), recorder_->frame(simulator)) : "";
+  if (recorder_) summary_.set_record(fingerprint(head));
   try {
     write_summary();
-    if (recorder_) folder_.write(kRecordFile, encode_head(recorder_->model(), recorder_->frame(simulator)));
+    if (recorder_) folder_.write(kRecordFile, head);
     folder_.write(kDiagnosticsFile, csv_head());
     if (has_forces_) folder_.write(kForcesFile, forces_csv_head());
   } catch (...) {

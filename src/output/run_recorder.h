@@ -12,9 +12,7 @@
 
 namespace sprung {
 
-/// Names of the materials of bodies, by the names of the bodies.
-using BodyMaterials = std::map<std::string, std::string>;
-
+/// How the record describes the obstacle's motion.
 [[nodiscard]] ObstacleMotion motion_of(const Obstacle& obstacle);
 
 class RunRecorder {
@@ -24,7 +22,7 @@ class RunRecorder {
 
   [[nodiscard]] const RecordedModel& model() const { return model_; }
 
-  /// The present state. Requires the simulator of the constructor, with all frames before in their order.
+  /// The present state. Requires the simulator of the constructor; call it once per frame, in order.
   [[nodiscard]] RecordedFrame frame(const Simulator& simulator);
 
  private:

@@ -53,11 +53,14 @@ RunSummary::RunSummary(const RunFacts& facts, double step, const std::vector<std
                      {"torn_faces", Json::array()},
                      {"broken_attachments", Json::array()},
                      {"warnings", facts.warnings},
+                     {"record", Json()},
                      {"files", files},
                      {"scene", facts.scene.empty() ? Json() : Json::parse(facts.scene)}};
 }
 
 RunSummary::~RunSummary() = default;
+
+void RunSummary::set_record(const std::string& fingerprint) { document_->json["record"] = fingerprint; }
 
 void RunSummary::add_warning(const std::string& warning) { document_->json["warnings"].push_back(warning); }
 

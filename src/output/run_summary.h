@@ -3,7 +3,7 @@
 
 #include "base/types.h"
 #include "geometry/obj_source/obj_source.h"
-#include "output/run_recorder.h"
+#include "output/record/recorded_model.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -33,7 +33,7 @@ struct RunFacts {
   std::string scene_file{};   ///< name of the scene's file, without its folders; empty if there is none
   BodyMaterials materials{};  ///< of bodies that have one
   bool write_obj = true;      ///< whether frames are written as OBJ files
-  bool record = true;         ///< whether record.bin is written
+  bool write_record = true;   ///< whether record.bin is written
 };
 
 /// A body whose stretch limit was handed over from Gauss-Seidel passes to Newton.
@@ -80,6 +80,9 @@ class RunSummary {
   /// `step` [s]; `files` are the patterns of all files of the run. Requires that the scene is JSON text or empty.
   RunSummary(const RunFacts& facts, double step, const std::vector<std::string>& files);
   ~RunSummary();
+
+  /// Says which record.bin belongs to the run (see fingerprint()).
+  void set_record(const std::string& fingerprint);
 
   /// Adds to the warnings of the facts.
   void add_warning(const std::string& warning);

@@ -66,7 +66,7 @@ double median(std::vector<double> values) {
 }
 
 /// Number of the vertices of a surface that have an element.
-double vertices_of(const Surface& surface) {
+double vertex_count(const Surface& surface) {
   std::vector<char> used;
   const auto note = [&used](Index vertex) {
     if (static_cast<std::size_t>(vertex) >= used.size()) used.resize(static_cast<std::size_t>(vertex) + 1, 0);
@@ -78,7 +78,7 @@ double vertices_of(const Surface& surface) {
 }
 
 /// Number of vertices within the thickness of a vertex in a flat sheet or straight rope of the body's mean edge.
-double neighbours(const SpringNetwork& network, const Body& body, double vertices) {
+double neighbour_count(const SpringNetwork& network, const Body& body, double vertices) {
   const Springs& springs = network.springs;
   double length = 0.0;
   double count = 0.0;
@@ -101,10 +101,10 @@ double contact_time(const Simulator& simulator, double dt) {
   const double long_step = 1.0 + dt / kLongStep;
   double time = 0.0;
   for (const Body& body : network.bodies) {
-    const double vertices = vertices_of(body.surface);
+    const double vertices = vertex_count(body.surface);
     if (obstacles) time += kObstacleContact * long_step * vertices;
     if (body.contact.self || (several && body.contact.others)) {
-      time += (kBodyContact * long_step + kNeighbour * neighbours(network, body, vertices)) * vertices;
+      time += (kBodyContact * long_step + kNeighbour * neighbour_count(network, body, vertices)) * vertices;
     }
   }
   return time;
@@ -134,7 +134,7 @@ FrameCost measure_frame_cost(Simulator& simulator, int steps_per_frame, int thre
   const double passes = newton ? 0.0 : pass_time(simulator);
   const bool touches = contact_time(simulator, step) > 0.0;
   const Measured measured = measure_steps(simulator, now);
-  // None if all sleep.
+  // A step in which all particles sleep has no substep.
   const double substeps = std::max(1.0, static_cast<double>(measured.substeps) / std::max(1, measured.complete));
   const double solves = (touches && implicit ? kImplicitContact : 1.0) * (newton ? kNewtonMotion : 1.0);
   const double added = substeps * (contact_time(simulator, step / substeps) + passes);

@@ -25,8 +25,9 @@ struct FrameCost {
 /// Wall time [s] since a fixed moment.
 using Clock = std::function<double()>;
 
-/// Makes up to kMostMeasuredSteps steps. A free frame costs the median of their times, times `steps_per_frame`; a full one what the
-/// constants of frame_cost.cpp make of it for `threads` threads. The simulator should be at its start; afterwards it is not usable.
+/// Makes up to kMostMeasuredSteps steps. A free frame costs the median of their times, times `steps_per_frame`; `full` adds
+/// the estimated cost of contact and of the stretch limit with `threads` threads. Requires a simulator at time 0. Advances it by
+/// the measured steps; do not use it afterwards.
 [[nodiscard]] FrameCost measure_frame_cost(Simulator& simulator, int steps_per_frame, int threads, const Clock& now);
 
 /// With the steady clock of the system.

@@ -105,7 +105,7 @@ class Simulator {
   [[nodiscard]] const SimulationState& state() const;
   [[nodiscard]] const Environment& environment() const;
   [[nodiscard]] const std::vector<std::string>& warnings() const;
-  /// What the simulator changed because the settings ask for it.
+  /// Changes that the settings asked for, such as bodies that `push_out` moved; a sentence each.
   [[nodiscard]] const std::vector<std::string>& notes() const;
 
   /// state().step * settings().step [s], between steps

@@ -120,7 +120,7 @@ bool begins_path(std::string_view text) {
   return text.starts_with('/') || text.starts_with("~/") || text.starts_with("./") || text.starts_with("../");
 }
 
-/// The text with the last name of each path alone: a page that is sent tells nothing of the machine that made it.
+/// Cuts each path to its file name, so that the page does not reveal folders of the machine.
 std::string without_folders(const std::string& text) {
   constexpr std::string_view kAround = " \t\n\"'(),;:=";
   std::string result;
@@ -134,7 +134,7 @@ std::string without_folders(const std::string& text) {
   return result;
 }
 
-/// Of all texts in the JSON value. The value of the key `file` is a path as a whole, which may have blanks.
+/// Applies without_folders() to all texts. A value of `file` or `files` is one path, which may contain blanks.
 void remove_folders(Json& json, const std::string& key = "") {
   if (json.is_object()) {
     for (auto& [name, value] : json.items()) remove_folders(value, name);

@@ -43,7 +43,7 @@ TEST_F(CommandLine, RunWritesTheFramesAndSaysSoOnStandardErrorOnly) {
   EXPECT_EQ(summary()["scene"]["bodies"]["rope"]["mass"], 0.1);
 }
 
-TEST_F(CommandLine, RunWithoutFormatWritesTheRecordAlone) {
+TEST_F(CommandLine, RunWithFormatNoneWritesNoObjFiles) {
   EXPECT_EQ(run({"run", save(rope_scene()), "--out", out(), "--format", "none"}).code, 0);
   EXPECT_THAT(listing(out()), ElementsAre("diagnostics.csv", "record.bin", "run.json"));
   EXPECT_THAT(summary()["files"].get<std::vector<std::string>>(), ::testing::Contains("record.bin"));
@@ -212,8 +212,8 @@ TEST_F(CommandLine, RunReportsABodyThatPassesThroughItself) {
   scene["bodies"]["strip"] = {{"shape", {{"type", "cloth"}, {"size", {0.6, 0.1}}, {"resolution", {13, 3}}}},
                               {"material", "silk"},
                               {"place", {{"position", {0, 0.35, 0}}, {"rotation", {0, 20, 85}}}}};
-  EXPECT_THAT(run({"run", save(scene), "--out", out()}).err, HasSubstr("body \"strip\" passes through itself"));
-  EXPECT_THAT(record()["warnings"], Contains(HasSubstr("Set its \"self_contact\" to true")));
+  EXPECT_THAT(run({"run", save(scene), "--out", out()}).err, HasSubstr("body \"strip\" crosses itself"));
+  EXPECT_THAT(summary()["warnings"], Contains(HasSubstr("Set its \"self_contact\" to true")));
   scene["bodies"]["strip"]["self_contact"] = true;
   EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("warning")));
 }
@@ -228,8 +228,9 @@ TEST_F(CommandLine, RunReportsPinsThatAreFartherApartThanTheLimitAllows) {
   rope["pins"] = json::parse(R"([{"indices": [0]}, {"indices": [4], "motion": {"keyframes": [
       {"time": 0}, {"time": 0.5, "position": [0.3, 0, 0]}]}}])");
   const Ending ending = run({"run", save(scene), "--out", out()});
-  EXPECT_THAT(ending.err, AllOf(HasSubstr("Pins hold body \"rope\" 1.3 m apart in that frame, along springs of 1 m"),
-                                HasSubstr("a \"max_stretch\" of 0.3."), Not(HasSubstr("iterations"))));
+  EXPECT_THAT(ending.err,
+              AllOf(HasSubstr("Two pins of body \"rope\" are 1.3 m apart in that frame, but the springs between them are 1 m long"),
+                    HasSubstr("a \"max_stretch\" of 0.3."), Not(HasSubstr("iterations"))));
   scene["stretch_limit"]["max_stretch"] = 0.3;
   EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("warning")));
   scene["stretch_limit"] = json::object();
@@ -253,7 +254,7 @@ TEST_F(CommandLine, RunAdvisesASmallerStepWhereNewtonMissesTheLimit) {
   const std::size_t end = missed.find(times);
   ASSERT_NE(end, std::string::npos) << missed;
   const int factor = std::stoi(missed.substr(missed.rfind(' ', end - 1)));
-  const int steps_per_frame = record()["steps_per_frame"];
+  const int steps_per_frame = summary()["steps_per_frame"];
   scene["step"] = 1.0 / (30.0 * steps_per_frame * factor);
   EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("warning")));
 }

@@ -142,12 +142,11 @@ TEST_F(CommandLine, OutputThatCannotBeWrittenEndsWithFive) {
 }
 
 TEST_F(CommandLine, FullDiskEndsWithFiveAndLeavesNoHalfFrame) {
-  // run.json takes about 2 kB and fits, a frame of 70 x 70 particles does not.
+  // run.json takes about 2 kB and fits. The start of the record and a frame of 70 x 70 particles do not.
   const std::string scene = save(cloth_scene());
-  const Ending without_record =
-      Program({"run", scene, "--out", out("other")}, {.file_size = 20'000}).wait();  // nor does the begin of the record
-  EXPECT_EQ(without_record.code, 5) << without_record.err;
-  EXPECT_THAT(without_record.err, HasSubstr("/record.bin: cannot write"));
+  const Ending with_record = Program({"run", scene, "--out", out("other")}, {.file_size = 20'000}).wait();
+  EXPECT_EQ(with_record.code, 5) << with_record.err;
+  EXPECT_THAT(with_record.err, HasSubstr("/record.bin: cannot write"));
   EXPECT_THAT(listing(out("other")), ElementsAre());
   const Ending ending = Program({"run", scene, "--out", out(), "--set", "output.record=false"}, {.file_size = 20'000}).wait();
   EXPECT_EQ(ending.code, 5) << ending.err;
@@ -155,6 +154,13 @@ TEST_F(CommandLine, FullDiskEndsWithFiveAndLeavesNoHalfFrame) {
   EXPECT_THAT(listing(out()), ElementsAre("diagnostics.csv", "run.json"));
   EXPECT_EQ(summary()["frames_written"], 0);
   EXPECT_THAT(summary()["outcome"].get<std::string>(), StartsWith("failed: "));
+}
+
+TEST_F(CommandLine, RunThatWouldWriteNoFramesIsRefused) {
+  const Ending ending = run({"run", save(rope_scene()), "--out", out(), "--format", "none", "--set", "output.record=false"});
+  EXPECT_EQ(ending.code, 2);
+  EXPECT_THAT(ending.err, HasSubstr("writes no frames"));
+  EXPECT_FALSE(wrote_something());
 }
 
 TEST_F(CommandLine, ResultThatCannotBePrintedEndsWithFive) {
@@ -176,6 +182,11 @@ TEST_F(CommandLine, AnExportReplacesAFileOnlyWhenAsked) {
   const Ending exported = run(once);
   if (is_without_viewer(exported)) GTEST_SKIP() << exported.err;
   ASSERT_EQ(exported.code, 0) << exported.err;
+  const std::string record = read_text(scratch_ / "out/record.bin");
+  const Ending onto_record = run({"export", out(), "--format", "html", "--out", out() + "/record.bin", "--overwrite"});
+  EXPECT_EQ(onto_record.code, 5);
+  EXPECT_THAT(onto_record.err, HasSubstr("is a file of the run"));
+  EXPECT_EQ(read_text(scratch_ / "out/record.bin"), record);
   const Ending refused = run(once);
   EXPECT_EQ(refused.code, 5);
   EXPECT_THAT(refused.err, HasSubstr("it exists; replace it with --overwrite"));

@@ -110,7 +110,7 @@ TEST(OutputFolder, WithoutARunIsNotOverwritten) {
   }
 }
 
-TEST(OutputFolder, RecordThatNamesFilesElsewhereRemovesNoneOfThem) {
+TEST(OutputFolder, SummaryThatNamesFilesElsewhereRemovesNoneOfThem) {
   const ScratchFolder scratch;
   write_text(scratch / "precious.obj", "");
   leave_a_run(scratch / "out", {"run.json", "../precious.obj", (scratch / "precious.obj").string(), "rope/../../precious.obj"});

@@ -65,7 +65,7 @@ TEST_F(RecordedWorld, HasTheStatesOfTheSimulatorWithAndWithoutObjFiles) {
 }
 
 TEST_F(RecordedWorld, WithoutItsRecordShowsTheObjFilesAndSaysWhatIsMissing) {
-  run({.record = false});
+  run({.write_record = false});
   EXPECT_THAT(listing(folder()), Not(Contains("record.bin")));
   const RecordedRun recorded(folder());
   EXPECT_FALSE(recorded.is_complete());
@@ -85,8 +85,23 @@ TEST_F(RecordedWorld, HasTheWholeFramesOfARecordThatEndsEarly) {
   EXPECT_EQ(recorded.frame(2).positions, states_[1].x);
 }
 
+TEST_F(RecordedWorld, DoesNotTakeTheRecordOfAnotherRun) {
+  run({});
+  const std::filesystem::path other = scratch_ / "other.bin";
+  std::filesystem::rename(folder() / "record.bin", other);
+  states_.clear();
+  run({.materials = {{"cloth", "silk"}}});
+  std::filesystem::rename(other, folder() / "record.bin");
+  try {
+    const RecordedRun recorded(folder());
+    FAIL() << "shows " << recorded.frames();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is the record of another run"));
+  }
+}
+
 TEST_F(RecordedWorld, WithNothingToShowIsRefused) {
-  run({.write_obj = false, .record = false});
+  run({.write_obj = false, .write_record = false});
   try {
     const RecordedRun recorded(folder());
     FAIL() << "shows " << recorded.frames();

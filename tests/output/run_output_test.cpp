@@ -291,14 +291,14 @@ TEST_F(RunOutputFiles, DiagnosticsHaveARowAFrame) {
   EXPECT_THAT(starts, ElementsAre("frame,time", "1,0", "2,0.02", "3,0.04", "4,0.06"));
 }
 
-TEST_F(RunOutputFiles, RecordTellsTheSeedIfThereIsOne) {
+TEST_F(RunOutputFiles, SummaryTellsTheSeedIfThereIsOne) {
   run(1);
   EXPECT_TRUE(summary()["seed"].is_null());
   const RunOutput output(OutputFolder(scratch_ / "out", true), {.seed = 7}, simulator_);
   EXPECT_EQ(summary()["seed"], 7);
 }
 
-TEST_F(RunOutputFiles, RecordReportsTheProgressOfTheRun) {
+TEST_F(RunOutputFiles, SummaryReportsTheProgressOfTheRun) {
   RunOutput output = open(3, R"({"duration": 0.1, "bodies": {}})");
   EXPECT_EQ(summary()["outcome"], "running");
   EXPECT_EQ(summary()["frames_written"], 0);
@@ -332,7 +332,7 @@ Simulator hanging_cloth() {
                    {still("ball", SphereGeometry{.radius = 1.0}, {0.0, -9.0, 0.0})});
 }
 
-TEST_F(RunOutputFiles, RecordReportsTheHandoverToNewton) {
+TEST_F(RunOutputFiles, SummaryReportsTheHandoverToNewton) {
   simulator_ = hanging_cloth();
   RunOutput output(OutputFolder(scratch_ / "out", false),
                    {.frames = 9, .steps_per_frame = 4, .stretch_solver = simulator_.stretch_solver()}, simulator_);
@@ -427,6 +427,15 @@ TEST_F(RunOutputFiles, ForcesOfAFrameWhoseRowFitsNoMoreAreTakenBack) {
     EXPECT_THROW(output.write_frame(simulator_, runner.next_frame()), FileError);
   }
   EXPECT_EQ(read_text(file("forces.csv")), forces);
+}
+
+TEST_F(RunOutputFiles, AreNotRemovedIfAFolderStandsInThePlaceOfOne) {
+  run(2);
+  std::filesystem::remove(file("record.bin"));
+  std::filesystem::create_directory(file("record.bin"));
+  const std::vector<std::string> before = listing(scratch_ / "out");
+  EXPECT_THROW(OutputFolder(scratch_ / "out", true), FileError);
+  EXPECT_EQ(listing(scratch_ / "out"), before);
 }
 
 TEST_F(RunOutputFiles, RunWithTheSameNamesReplacesThemWhenAsked) {

@@ -75,12 +75,12 @@ class FrameJudge {
 
 /// Appends one line to the file that SPRUNG_SCENARIO_HASHES names, when the run ends or throws: the hash of the positions of all
 /// frames, the number of frames, and the test. tests/compare_scenarios.sh compares two such files.
-class RunSummary {
+class HashRecord {
  public:
-  RunSummary() : file_(std::getenv("SPRUNG_SCENARIO_HASHES")) {}
-  RunSummary(const RunSummary&) = delete;
-  RunSummary& operator=(const RunSummary&) = delete;
-  ~RunSummary() {
+  HashRecord() : file_(std::getenv("SPRUNG_SCENARIO_HASHES")) {}
+  HashRecord(const HashRecord&) = delete;
+  HashRecord& operator=(const HashRecord&) = delete;
+  ~HashRecord() {
     if (file_ == nullptr) return;
     const ::testing::TestInfo& test = *::testing::UnitTest::GetInstance()->current_test_info();
     std::ostringstream line;
@@ -138,7 +138,7 @@ ScenarioReport run_scenario(BuiltScene scene, const Watch& watch, Judge judge) {
   Simulator simulator(std::move(scene.network), scene.settings, std::move(scene.obstacles));
   FrameRunner runner(simulator, scene.steps_per_frame);
   FrameJudge frame_judge(simulator, judge);
-  RunSummary record;
+  HashRecord record;
   ScenarioReport report{.step = scene.settings.step};
   for (int number = 1; number <= scene.frames; ++number) {
     const FrameDiagnostics frame = number == 1 ? runner.first_frame() : runner.next_frame();

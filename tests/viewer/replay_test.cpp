@@ -238,9 +238,9 @@ TEST_F(RecordedCloth, ABrokenFolderSaysWhatIsMissing) {
   EXPECT_THAT(refusal(run_folder()), HasSubstr("cloth.0005.obj"));
   folder_.write("frames/cloth/cloth.0005.obj", "v 0 0 0\n");
   EXPECT_THAT(refusal(run_folder()), HasSubstr("1 vertices"));
-  Json record = Json::parse(std::ifstream(run_folder() / "run.json"));
-  record["frames_written"] = 2000000000;
-  folder_.write("frames/run.json", record.dump());
+  Json summary = Json::parse(std::ifstream(run_folder() / "run.json"));
+  summary["frames_written"] = 2000000000;
+  folder_.write("frames/run.json", summary.dump());
   EXPECT_THROW((void)Replay(run_folder()).state(20000), InputError) << "more digits than the names of the files have";
   folder_.write("frames/run.json", R"({"scene": )" + std::string(100000, '[') + std::string(100000, ']') + "}");
   EXPECT_THAT(refusal(run_folder()), HasSubstr("nested too deeply"));
@@ -250,9 +250,9 @@ TEST_F(RecordedCloth, ABrokenFolderSaysWhatIsMissing) {
 
 TEST_F(RecordedCloth, AFrameOrASummaryThatNoRunWritesIsRefused) {
   std::filesystem::remove(run_folder() / "record.bin");
-  const Json record = Json::parse(std::ifstream(run_folder() / "run.json"));
+  const Json summary = Json::parse(std::ifstream(run_folder() / "run.json"));
   const auto refusal = [&](const char* key, const Json& value) -> std::string {
-    Json changed = record;
+    Json changed = summary;
     changed[key] = value;
     folder_.write("frames/run.json", changed.dump());
     try {

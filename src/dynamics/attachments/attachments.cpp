@@ -21,7 +21,7 @@ void check_obstacles(const std::vector<Attachment>& attachments, std::size_t cou
   problems.throw_if_any();
 }
 
-/// A simulator lets both ends sleep, or none but pinned ones.
+/// Whether an end sleeps. The simulator ensures that the other end then sleeps or is pinned.
 bool joins_sleeping_particle(const SpringNetwork& network, const Link& link) {
   const auto sleeps = [&](Index particle) { return particle != kNone && network.is_asleep(particle); };
   return sleeps(link.first) || std::ranges::any_of(link.second, sleeps);

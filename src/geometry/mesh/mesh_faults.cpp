@@ -39,13 +39,13 @@ bool is_on_edge(const Vector3& point, const Vector3& begin, const Vector3& end, 
 
 }  // namespace
 
-Index count_repeated_faces(const PolygonFaces& faces, const std::vector<Index>& place_of) {
+Index count_repeated_faces(const PolygonFaces& faces, const std::vector<Index>& group_of) {
   std::set<std::vector<Index>> seen;
   Index repeated = 0;
   for (Index face = 0; face < faces.face_count(); ++face) {
     std::vector<Index> places;
     for (Index corner = faces.corner_begin[face]; corner < faces.corner_begin[face + 1]; ++corner) {
-      places.push_back(place_of[faces.vertex[corner]]);
+      places.push_back(group_of[faces.vertex[corner]]);
     }
     std::ranges::sort(places);
     if (!seen.insert(std::move(places)).second) ++repeated;
@@ -53,7 +53,7 @@ Index count_repeated_faces(const PolygonFaces& faces, const std::vector<Index>& 
   return repeated;
 }
 
-// Sorted along a direction that no regular mesh is aligned with, few vertices are near an edge without being its neighbours.
+// Sweep along one direction. No regular mesh is aligned with it, so few vertices lie within the interval of an edge.
 std::vector<Index> vertices_on_border_edges(const Points& vertices, const PolygonFaces& faces, double distance) {
   const std::vector<Side> border = border_sides(faces);
   std::vector<Index> candidates;

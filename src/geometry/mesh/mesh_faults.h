@@ -8,8 +8,8 @@
 namespace sprung {
 
 /// The number of faces whose corners are those of an earlier face, in any order: they lie on it, on the same side or back to back.
-/// `place_of` is the same number for vertices at the same place (see coincident_groups).
-[[nodiscard]] Index count_repeated_faces(const PolygonFaces& faces, const std::vector<Index>& place_of);
+/// `group_of`: the group of each vertex by coincident_groups().
+[[nodiscard]] Index count_repeated_faces(const PolygonFaces& faces, const std::vector<Index>& group_of);
 
 /// The vertices on a border that are within `distance` [m] of the inner part of another border edge: T-vertices. No vertex of that
 /// edge is there to weld them to, so a seam stays open. Ascending. Requires distance >= 0.

@@ -32,9 +32,9 @@ void describe_surface(const TriangleMesh& mesh, MeshReport& report);
 /// Where the size of a thing comes from: a file, whose unit may be another one, or numbers that a user typed.
 enum class SizeSource : std::uint8_t { file, shape };
 
-/// A question to the user about the units of a thing with these bounds and this scale: if its largest extent is below a millimetre,
-/// above 100 m, or above 10 m and more than 100 times that of anything else in the scene (`others` [m]; 0 if there is nothing
-/// else). Empty bounds get no question.
+/// A question about the unit of a file, or advice about the size of a shape, with these bounds and this scale: if its largest
+/// extent is below a millimetre, above 100 m, or above 10 m and more than 100 times that of anything else in the scene (`others`
+/// [m]; 0 if there is nothing else). Empty bounds get no question.
 [[nodiscard]] std::optional<std::string> unit_note(const Box3& bounds, double scale = 1.0, double others = 0.0,
                                                    SizeSource source = SizeSource::file);
 

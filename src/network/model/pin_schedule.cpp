@@ -14,6 +14,10 @@ void free_particle(SpringNetwork& network, Index particle) { network.inverse_mas
 
 bool holds_at(const Pin& pin, double time) { return pin.from < time && !(pin.until < time); }
 
+bool has_moving_pin(const SpringNetwork& network) {
+  return std::ranges::any_of(network.pins, &Pin::moves) || std::ranges::any_of(network.later_pins, &Pin::moves);
+}
+
 bool hold_together(const Pin& a, const Pin& b) { return a.from < b.until && b.from < a.until; }
 
 bool have_pins_changed(const SpringNetwork& network, double time) {

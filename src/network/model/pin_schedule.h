@@ -16,6 +16,9 @@ namespace sprung {
 /// Whether a pin has begun and not ended before `time` [s].
 [[nodiscard]] bool holds_at(const Pin& pin, double time);
 
+/// Whether a pin moves, now or later.
+[[nodiscard]] bool has_moving_pin(const SpringNetwork& network);
+
 /// Whether both pins hold particles at some time.
 [[nodiscard]] bool hold_together(const Pin& a, const Pin& b);
 

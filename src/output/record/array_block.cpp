@@ -1,6 +1,7 @@
 #include "output/record/array_block.h"
 
 #include "base/error.h"
+#include "output/record/record_format.h"
 
 #include <bit>
 #include <cstring>
@@ -27,19 +28,21 @@ std::uint64_t size_of(NumberType type) {
 }
 
 /// Whether the array lies within a block of so many bytes. No product overflows.
-bool lies_within(const ArrayPlace& place, std::uint64_t size) {
-  if (place.offset > size) return false;
-  const std::uint64_t most = (size - place.offset) / size_of(place.type);
-  return place.columns == 0 || place.rows <= most / place.columns;
+bool lies_within(const ArrayEntry& entry, std::uint64_t size) {
+  if (entry.offset > size) return false;
+  const std::uint64_t most = (size - entry.offset) / size_of(entry.type);
+  return entry.columns == 0 || entry.rows <= most / entry.columns;
 }
 
 }  // namespace
 
+std::size_t aligned(std::size_t size) { return (size + kAlignment - 1) / kAlignment * kAlignment; }
+
 void ArrayBlock::append(const std::string& name, NumberType type, Eigen::Index rows, Eigen::Index columns, const void* numbers) {
-  const ArrayPlace place{type, static_cast<std::uint64_t>(rows), static_cast<std::uint64_t>(columns), bytes_.size()};
-  table_[name] = place;
-  bytes_.append(static_cast<const char*>(numbers), place.rows * place.columns * size_of(type));
-  bytes_.resize((bytes_.size() + kAlignment - 1) / kAlignment * kAlignment, '\0');
+  const ArrayEntry entry{type, static_cast<std::uint64_t>(rows), static_cast<std::uint64_t>(columns), bytes_.size()};
+  table_[name] = entry;
+  bytes_.append(static_cast<const char*>(numbers), entry.rows * entry.columns * size_of(type));
+  bytes_.resize(aligned(bytes_.size()), '\0');
 }
 
 void ArrayBlock::add(const std::string& name, const std::vector<std::uint8_t>& numbers) {
@@ -73,7 +76,7 @@ void ArrayBlockReader::fail(const std::string& name, const std::string& rule) co
   throw InputError({file_.string(), name, "", rule, kDamagedRecordRemedy});
 }
 
-const ArrayPlace& ArrayBlockReader::find(const std::string& name, NumberType type) const {
+const ArrayEntry& ArrayBlockReader::find(const std::string& name, NumberType type) const {
   const auto found = table_.find(name);
   if (found == table_.end()) fail(name, "is missing");
   if (found->second.type != type) fail(name, "has numbers of the wrong type");
@@ -83,20 +86,20 @@ const ArrayPlace& ArrayBlockReader::find(const std::string& name, NumberType typ
 
 template <class Array>
 Array ArrayBlockReader::matrix(const std::string& name, NumberType type) const {
-  const ArrayPlace& place = find(name, type);
+  const ArrayEntry& entry = find(name, type);
   Array array(Array::RowsAtCompileTime, 0);
-  if (static_cast<Eigen::Index>(place.rows) != Array::RowsAtCompileTime) fail(name, "has the wrong number of rows");
-  array.resize(Eigen::NoChange, static_cast<Eigen::Index>(place.columns));
-  if (array.size() > 0) std::memcpy(array.data(), bytes_.data() + place.offset, place.rows * place.columns * size_of(type));
+  if (static_cast<Eigen::Index>(entry.rows) != Array::RowsAtCompileTime) fail(name, "has the wrong number of rows");
+  array.resize(Eigen::NoChange, static_cast<Eigen::Index>(entry.columns));
+  if (array.size() > 0) std::memcpy(array.data(), bytes_.data() + entry.offset, entry.rows * entry.columns * size_of(type));
   return array;
 }
 
 template <class Number>
 std::vector<Number> ArrayBlockReader::list(const std::string& name, NumberType type) const {
-  const ArrayPlace& place = find(name, type);
-  if (place.rows != 1) fail(name, "has the wrong number of rows");
-  std::vector<Number> numbers(place.columns);
-  if (!numbers.empty()) std::memcpy(numbers.data(), bytes_.data() + place.offset, numbers.size() * sizeof(Number));
+  const ArrayEntry& entry = find(name, type);
+  if (entry.rows != 1) fail(name, "has the wrong number of rows");
+  std::vector<Number> numbers(entry.columns);
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes_.data() + entry.offset, numbers.size() * sizeof(Number));
   return numbers;
 }
 

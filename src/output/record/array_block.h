@@ -3,6 +3,7 @@
 
 #include "base/types.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -15,17 +16,17 @@ namespace sprung {
 enum class NumberType : std::uint8_t { u8, i32, f64 };
 
 /// A matrix, stored column after column. It begins at a multiple of 8 bytes.
-struct ArrayPlace {
+struct ArrayEntry {
   NumberType type = NumberType::u8;
   std::uint64_t rows = 0;
   std::uint64_t columns = 0;
   std::uint64_t offset = 0;  ///< from the begin of the block [bytes]
 };
 
-using ArrayTable = std::map<std::string, ArrayPlace>;
+using ArrayTable = std::map<std::string, ArrayEntry>;
 
-/// What to do about a record that cannot be read.
-inline constexpr const char* kDamagedRecordRemedy = "restore the file, or remove it to see the OBJ files alone";
+/// Rounded up to a multiple of 8 bytes.
+[[nodiscard]] std::size_t aligned(std::size_t size);
 
 /// Collects arrays.
 class ArrayBlock {
@@ -71,7 +72,7 @@ class ArrayBlockReader {
   [[nodiscard]] Array matrix(const std::string& name, NumberType type) const;
   template <class Number>
   [[nodiscard]] std::vector<Number> list(const std::string& name, NumberType type) const;
-  [[nodiscard]] const ArrayPlace& find(const std::string& name, NumberType type) const;
+  [[nodiscard]] const ArrayEntry& find(const std::string& name, NumberType type) const;
 
   std::string bytes_;
   ArrayTable table_;

@@ -13,14 +13,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kAlignment = 8;
-
 Json table_of(const ArrayTable& table) {
   Json json = Json::object();
-  for (const auto& [name, place] : table) {
-    json[name] = {{"type", kNumberTypeNames[static_cast<std::size_t>(place.type)]},
-                  {"shape", {place.rows, place.columns}},
-                  {"offset", place.offset}};
+  for (const auto& [name, entry] : table) {
+    json[name] = {{"type", kNumberTypeNames[static_cast<std::size_t>(entry.type)]},
+                  {"shape", {entry.rows, entry.columns}},
+                  {"offset", entry.offset}};
   }
   return json;
 }
@@ -139,11 +137,18 @@ void append_u64(std::string& bytes, std::uint64_t number) {
   bytes.append(raw.data(), raw.size());
 }
 
-std::size_t aligned(std::size_t size) { return (size + kAlignment - 1) / kAlignment * kAlignment; }
-
 }  // namespace
 
 std::string encode_frame(const RecordedFrame& frame) { return arrays_of(frame).bytes(); }
+
+std::string fingerprint(std::string_view head) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char byte : head) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string digits;
+  for (int shift = 60; shift >= 0; shift -= 4) digits += kDigits[(hash >> static_cast<unsigned>(shift)) & 15U];
+  return digits;
+}
 
 std::string encode_head(const RecordedModel& model, const RecordedFrame& like) {
   const ArrayBlock arrays = arrays_of(model);

@@ -2,11 +2,13 @@
 
 #include "base/error.h"
 #include "output/record/array_block.h"
+#include "output/record/record_encoding.h"
 #include "output/record/record_format.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -34,7 +36,9 @@ constexpr std::size_t kPrefixBytes = 24;  // magic, version, size of the JSON te
 }
 
 std::string read_bytes(const std::filesystem::path& file, std::uint64_t offset, std::uint64_t size) {
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail(file, "", std::string("cannot be read: ") + std::strerror(errno));
   std::string bytes(size, '\0');
   stream.seekg(static_cast<std::streamoff>(offset));
   if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) fail(file, "", "cannot be read");
@@ -176,7 +180,8 @@ void read_springs(const ArrayBlockReader& arrays, Index particles, RecordedSprin
   springs.rest_lengths = arrays.numbers("springs/rest_lengths");
   const std::vector<std::uint8_t> kinds = arrays.bytes("springs/kinds");
   const auto count = static_cast<std::size_t>(springs.ends.cols());
-  if (springs.rest_lengths.size() != count) arrays.fail("springs/rest_lengths", "does not fit the springs");
+  const bool finite = std::ranges::all_of(springs.rest_lengths, [](double length) { return std::isfinite(length); });
+  if (springs.rest_lengths.size() != count || !finite) arrays.fail("springs/rest_lengths", "does not fit the springs");
   const bool known = std::ranges::all_of(kinds, [](std::uint8_t kind) { return kind < kSpringKindNames.size(); });
   if (kinds.size() != count || !known) arrays.fail("springs/kinds", "does not fit the springs");
   for (const std::uint8_t kind : kinds) springs.kinds.push_back(static_cast<SpringKind>(kind));
@@ -211,6 +216,7 @@ bool is_consistent(const RecordedModel& model) {
 struct RecordReader::Contents {
   std::filesystem::path file;
   RecordedModel model;
+  std::string fingerprint;
   ArrayTable frame_table;
   std::uint64_t frames_begin = 0;  // [bytes]
   std::uint64_t frame_bytes = 0;
@@ -228,7 +234,9 @@ struct RecordReader::Contents {
     if (!prefix.starts_with(kRecordMagic)) fail(file, "", "is no record of Sprung");
     const std::uint64_t version = u64_at(prefix, kRecordMagic.size());
     if (version != kRecordVersion) {
-      fail(file, "", "has version " + std::to_string(version) + " of the format, and this Sprung reads version 1",
+      fail(file, "",
+           "has version " + std::to_string(version) + " of the format, and this Sprung reads version " +
+               std::to_string(kRecordVersion),
            "use the Sprung that wrote it, or run the scene again");
     }
     const std::uint64_t text_bytes = u64_at(prefix, kRecordMagic.size() + sizeof(std::uint64_t));
@@ -250,6 +258,7 @@ struct RecordReader::Contents {
     const auto array_bytes = json.at("array_bytes").get<std::uint64_t>();
     if (array_bytes > size - arrays_begin) fail(file, "", "ends within its head");
     frames_begin = arrays_begin + array_bytes;
+    fingerprint = sprung::fingerprint(read_bytes(file, 0, frames_begin));
     frame_bytes = json.at("frame_bytes").get<std::uint64_t>();
     if (frame_bytes == 0) fail(file, "frame_bytes", "must be greater than 0");
     frames = static_cast<int>(std::min<std::uint64_t>((size - frames_begin) / frame_bytes, std::numeric_limits<int>::max()));
@@ -267,6 +276,7 @@ struct RecordReader::Contents {
       TriangleMesh& mesh = model.obstacles[k].mesh;
       mesh.vertices = arrays.points(name + "vertices");
       mesh.triangles = arrays.triangles(name + "triangles");
+      if (!mesh.vertices.allFinite()) arrays.fail(name + "vertices", "has a number that is not finite");
       if (!are_below(mesh.triangles, static_cast<Index>(mesh.vertices.cols()))) {
         arrays.fail(name + "triangles", "names vertices that do not exist");
       }
@@ -293,19 +303,21 @@ RecordReader& RecordReader::operator=(RecordReader&&) noexcept = default;
 
 const RecordedModel& RecordReader::model() const { return contents_->model; }
 
+const std::string& RecordReader::fingerprint() const { return contents_->fingerprint; }
+
 int RecordReader::frames() const { return contents_->frames; }
 
 std::vector<char> RecordReader::broken(int number) const {
   const auto found = contents_->frame_table.find("broken");
   if (found == contents_->frame_table.end()) return {};
-  const ArrayPlace& place = found->second;
+  const ArrayEntry& entry = found->second;
   const Eigen::Index springs = model().springs.ends.cols();
   const auto bytes = static_cast<std::uint64_t>((springs + 7) / 8);
-  if (place.type != NumberType::u8 || place.rows != 1 || place.columns != bytes || place.offset > contents_->frame_bytes ||
-      bytes > contents_->frame_bytes - place.offset) {
+  if (entry.type != NumberType::u8 || entry.rows != 1 || entry.columns != bytes || entry.offset > contents_->frame_bytes ||
+      bytes > contents_->frame_bytes - entry.offset) {
     fail(contents_->file, "broken", "does not fit the springs");
   }
-  const std::string bits = read_bytes(contents_->file, contents_->begin_of(number) + place.offset, bytes);
+  const std::string bits = read_bytes(contents_->file, contents_->begin_of(number) + entry.offset, bytes);
   return unpacked({bits.begin(), bits.end()}, springs);
 }
 
@@ -327,10 +339,17 @@ RecordedFrame RecordReader::frame(int number) const {
   require(frame.positions.cols() == particles, "positions", "does not fit the particles");
   require(frame.velocities.cols() == particles, "velocities", "does not fit the particles");
   require(std::ssize(frame.states) == particles, "states", "does not fit the particles");
-  require(frame.positions.allFinite() && frame.velocities.allFinite(), "positions", "has a number that is not finite");
-  frame.broken = broken(number);
+  constexpr const char* kNotFinite = "has a number that is not finite";
+  require(frame.positions.allFinite(), "positions", kNotFinite);
+  require(frame.velocities.allFinite(), "velocities", kNotFinite);
+  if (arrays.has("broken")) {
+    const std::vector<std::uint8_t> bits = arrays.bytes("broken");
+    require(std::ssize(bits) == (model.springs.ends.cols() + 7) / 8, "broken", "does not fit the springs");
+    frame.broken = unpacked(bits, model.springs.ends.cols());
+  }
   const std::vector<double> poses = arrays.numbers("poses");
   require(poses.size() == kPoseNumbers * model.obstacles.size(), "poses", "does not fit the obstacles");
+  require(std::ranges::all_of(poses, [](double entry) { return std::isfinite(entry); }), "poses", kNotFinite);
   for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
     RigidTransform pose = RigidTransform::Identity();
     for (int i = 0; i < kPoseNumbers; ++i) pose.matrix()(i / 4, i % 4) = poses[kPoseNumbers * k + i];
@@ -339,6 +358,7 @@ RecordedFrame RecordReader::frame(int number) const {
     const std::string name = deformed_array(frame.deformed.size());
     frame.deformed.push_back(arrays.points(name));
     require(frame.deformed.back().cols() == model.obstacles[k].mesh.vertices.cols(), name, "does not fit the obstacle");
+    require(frame.deformed.back().allFinite(), name, kNotFinite);
   }
   return frame;
 }

@@ -21,13 +21,16 @@ class RecordReader {
 
   [[nodiscard]] const RecordedModel& model() const;
 
+  /// fingerprint() of the head.
+  [[nodiscard]] const std::string& fingerprint() const;
+
   /// The number of whole frames.
   [[nodiscard]] int frames() const;
 
   /// A frame, counted from 1, at most frames(). Throws InputError if it cannot be read or does not fit the model. Thread-safe.
   [[nodiscard]] RecordedFrame frame(int number) const;
 
-  /// By spring, whether it has broken in a frame; empty if none can break. As frame() otherwise, but reads that alone.
+  /// Reads only the broken springs of a frame: 1 for each that has broken. Empty if none can break. Throws as frame().
   [[nodiscard]] std::vector<char> broken(int number) const;
 
  private:

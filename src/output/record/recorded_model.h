@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,9 @@ struct RecordedModel {
   std::vector<RecordedObstacle> obstacles;
 };
 
+/// Names of the materials of bodies, by the names of the bodies.
+using BodyMaterials = std::map<std::string, std::string>;
+
 /// Bits of the state of a particle.
 inline constexpr std::uint8_t kInContact = 1;  ///< contact pushed it in the last step
 inline constexpr std::uint8_t kPinned = 2;
@@ -70,7 +74,7 @@ struct RecordedFrame {
   Points velocities{3, 0};              ///< of the particles [m/s]; 3 x 0 if they are not known
   std::vector<std::uint8_t> states{};   ///< of the particles, bits as above
   std::vector<char> broken{};           ///< by spring, whether it has broken; empty: none has
-  std::vector<RigidTransform> poses{};  ///< of the frames of all meshes of obstacles [m]
+  std::vector<RigidTransform> poses{};  ///< of each obstacle's mesh in the world [m]; the identity if it is fixed
   std::vector<Points> deformed{};       ///< vertices of the obstacles that deform, in their frame [m]
 };
 

@@ -77,18 +77,18 @@ class ShapeMaker {
     return body;
   }
 
-  /// Whether a file for a surface is one of tetrahedra, which is reported.
-  [[nodiscard]] bool is_tetrahedra(const std::string& file) const {
+  /// Reports a file of tetrahedra that is given as a surface, and returns whether it is one.
+  [[nodiscard]] bool refuse_tetrahedra(const std::string& file) {
     if (!is_tetrahedra_file(file)) return false;
     problems_.push_back({scene_.file.string(), key_ + ".shape.file", "\"" + file + "\"",
                          "has the format of tetrahedra, not of a surface",
-                         "use \"type\": \"tetrahedra\", which has only the key file beside it"});
+                         "use \"shape\": { \"type\": \"tetrahedra\", \"file\": ... }, without other keys"});
     return true;
   }
 
   std::optional<BuiltBody> from(const MeshFile& mesh) {
     const std::string key = key_ + ".shape.file";
-    if (is_tetrahedra(mesh.file)) return std::nullopt;
+    if (refuse_tetrahedra(mesh.file)) return std::nullopt;
     if (lower_case_extension(mesh.file) != ".obj") {
       problems_.push_back({scene_.file.string(), key, "\"" + mesh.file + "\"", "a simulated body is read from an .obj file",
                            "export it as OBJ: other formats lose the order of its vertices"});
@@ -112,7 +112,7 @@ class ShapeMaker {
   }
 
   std::optional<BuiltBody> from(const LatticeFile& lattice) {
-    if (is_tetrahedra(lattice.file)) return std::nullopt;
+    if (refuse_tetrahedra(lattice.file)) return std::nullopt;
     const auto file = finder_.find(lattice.file, key_ + ".shape.file", problems_);
     if (!file) return std::nullopt;
     PolygonMesh surface;

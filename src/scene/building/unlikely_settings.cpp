@@ -49,10 +49,8 @@ Thing thing_of(const BodyScene& body, const SpringNetwork& network, GroupedWarni
 Thing thing_of(const ObstacleScene& obstacle, const Obstacle& built, GroupedWarnings& warnings) {
   const bool is_mesh = std::holds_alternative<MeshFile>(obstacle.shape) || std::holds_alternative<MeshFiles>(obstacle.shape);
   const double half_space_extent = 0.0;
-  Box3 box = bounds(obstacle_mesh(built.geometry, half_space_extent).vertices);
-  // A floor or a wall may well be wide, so that the least side of a shape counts.
-  if (!is_mesh && !box.isEmpty()) box.max() = box.min() + Vector3::Constant(box.sizes().minCoeff());
-  return {obstacle.name, box, obstacle.place.scale, is_mesh, &warnings};
+  return {obstacle.name, bounds(obstacle_mesh(built.geometry, half_space_extent).vertices), obstacle.place.scale, is_mesh,
+          &warnings};
 }
 
 /// The densities of all materials for bodies with this dimension [kg/m^dimension].
@@ -136,9 +134,15 @@ void note_unusual_sizes(const Scene& scene, const BuiltScene& built, GroupedWarn
       if (&other != &thing) others = std::max(others, extent_of(other.bounds));
     }
     const Box3 as_in_file(thing.bounds.min() / thing.scale, thing.bounds.max() / thing.scale);
-    const auto note = unit_note(as_in_file, thing.scale, others, thing.is_mesh ? SizeSource::file : SizeSource::shape);
-    const bool is_flat = !thing.is_mesh && extent_of(as_in_file) == 0.0;  // a half-space, for example
-    if (note && !is_flat) thing.warnings->add(thing.name, *note);
+    const SizeSource source = thing.is_mesh ? SizeSource::file : SizeSource::shape;
+    auto note = unit_note(as_in_file, thing.scale, others, source);
+    if (!thing.is_mesh && !as_in_file.isEmpty()) {
+      if (extent_of(as_in_file) == 0.0) note.reset();  // a half-space, for example
+      // A floor or a wall may well be wide: an obstacle is too large only if its least side is.
+      const Box3 least(Vector3::Zero(), Vector3::Constant(as_in_file.sizes().minCoeff()));
+      if (thing.warnings == &obstacles && !unit_note(least, thing.scale, others, source)) note.reset();
+    }
+    if (note) thing.warnings->add(thing.name, *note);
   }
 }
 
@@ -165,7 +169,7 @@ void note_unusual_densities(const Scene& scene, const SpringNetwork& network, Gr
   for (const BodyScene& body : scene.bodies) {
     const Body& built = built_body(network, body);
     if (built.dimension == 0 || built.measure == 0.0) continue;
-    // Who gives the mass of each particle of a rope thinks of masses on springs.
+    // A rope with a mass per particle models masses on springs; it has no density.
     if (built.dimension == 1 && body.mass.kind == MassScene::Kind::particle) continue;
     const double density = own_mass(body.mass, built) / built.measure;
     const auto [least, largest] = range_of_densities(built.dimension);
@@ -184,12 +188,12 @@ void note_mesh_faults(const Scene& scene, const SpringNetwork& network, GroupedW
     if (mesh == nullptr) continue;
     const Body& built = built_body(network, body);
     const Points positions = positions_of(network, built);
-    const std::vector<Index> place_of = coincident_groups(positions, kSamePlace * extent_of(bounds(positions)));
-    if (const Index repeated = count_repeated_faces(built.surface.faces, place_of); repeated > 0) {
+    const std::vector<Index> group_of = coincident_groups(positions, kSamePlace * extent_of(bounds(positions)));
+    if (const Index repeated = count_repeated_faces(built.surface.faces, group_of); repeated > 0) {
       bodies.add(body.name,
                  counted(static_cast<std::size_t>(repeated), "face") + (repeated == 1 ? " lies" : " lie") +
                      " twice in its mesh, back to back or on the same side, so that it is heavier and stiffer there. "
-                     "Delete the second ones in the modelling program (Blender: Merge, By Distance), and export it again.");
+                     "Delete the duplicates in the modelling program (Blender: Merge, By Distance), and export it again.");
     }
     if (!mesh->weld) continue;
     const std::vector<Index> open = vertices_on_border_edges(positions, built.surface.faces, *mesh->weld);
@@ -210,7 +214,7 @@ void note_missing_bends(const Scene& scene, const SpringNetwork& network, Groupe
     const Material* const material = find_material(body.preset);
     if (material == nullptr || material->kind != MaterialKind::cloth || !std::holds_alternative<MeshFile>(body.shape)) continue;
     if (has_springs(network, built_body(network, body), SpringKind::bend)) continue;
-    if (body.pressure != 0.0 || body.volume_factor != 0.0) continue;  // what fills a skin holds its shape
+    if (body.pressure != 0.0 || body.volume_factor != 0.0) continue;  // pressure or volume holds the shape
     const double rigidity = material->find("springs.bend.modulus")->value;
     if (std::cbrt(rigidity / (material->find("density")->value * kGravity)) < kLimp) continue;
     const std::string stiffness = format_number(material->find("springs.structural.modulus")->value, kDigits);
@@ -241,9 +245,10 @@ void note_wind_along_sheets(const Scene& scene, const SpringNetwork& network, Gr
     if (!normal || has_moving_pin(network, body) || is_across(settings.gravity, *normal)) continue;
     const auto pushes = [&](const WindKeyframe& key) { return is_across(key.velocity, *normal); };
     if (std::ranges::any_of(settings.wind.keyframes(), pushes)) continue;
-    bodies.add(body.name,
-               "the wind blows exactly along its plane and has no gusts, so that it pushes the body to neither side: a flag never "
-               "flutters so. Turn the body or the wind by a degree, or add \"gusts\" to \"air\".");
+    bodies.add(
+        body.name,
+        "the wind blows exactly along its plane and has no gusts, so that it pushes the body to neither side and the body does not "
+        "flutter. Turn the body or the wind by a degree, or add \"gusts\" to \"air\".");
   }
 }
 

@@ -159,8 +159,8 @@ struct Scene {
   std::vector<BodyScene> bodies;            ///< in the order of the file
   std::vector<ObstacleScene> obstacles;     ///< in the order of the file
   std::vector<AttachmentScene> attachments;
-  bool record = true;    ///< whether a run writes record.bin
-  std::string resolved;  ///< the whole scene as JSON text, overrides applied and defaults filled in
+  bool write_record = true;  ///< whether a run writes record.bin
+  std::string resolved;      ///< the whole scene as JSON text, overrides applied and defaults filled in
 };
 
 }  // namespace sprung

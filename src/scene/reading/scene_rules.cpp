@@ -132,8 +132,10 @@ Scene read_scene_fields(Fields& fields) {
   check_self_contact(scene, fields.location());
   const auto obstacles = fields.value("obstacles", named(obstacle_rule(scene.frame_rate), true), Json::object());
   scene.obstacles = obstacles.value_or(std::vector<ObstacleScene>{});
-  check_followed(scene, fields.json()["obstacles"], fields.location());
-  const auto attachment = attachment_rule(scene, fields.json()["bodies"], fields.json()["obstacles"]);
+  const Json named_bodies = fields.json().value("bodies", Json());
+  const Json named_obstacles = fields.json().value("obstacles", Json());
+  check_followed(scene, named_obstacles, fields.location());
+  const auto attachment = attachment_rule(scene, named_bodies, named_obstacles);
   scene.attachments = fields.value("attachments", list_of(attachment, 0), Json::array()).value_or(std::vector<AttachmentScene>{});
   return scene;
 }

@@ -83,10 +83,14 @@ ContactSettings read_contact(Fields& fields) {
   return contact;
 }
 
-bool read_output(Fields& fields, Scene& scene) {
-  scene.settings.record_forces = fields.value("forces", boolean(), false).value_or(false);
-  scene.record = fields.value("record", boolean(), true).value_or(true);
-  return true;
+struct OutputKeys {
+  bool forces = false;
+  bool record = true;
+};
+
+OutputKeys read_output(Fields& fields) {
+  return {.forces = fields.value("forces", boolean(), false).value_or(false),
+          .record = fields.value("record", boolean(), true).value_or(true)};
 }
 
 }  // namespace
@@ -117,7 +121,9 @@ void read_settings(Fields& fields, Scene& scene) {
   settings.sleep = fields.value("sleep", boolean(), settings.sleep).value_or(settings.sleep);
   settings.perturb = fields.value("perturb", boolean(), settings.perturb).value_or(settings.perturb);
   settings.seed = static_cast<std::uint64_t>(fields.value("seed", integer(0, std::numeric_limits<Index>::max()), 0).value_or(0));
-  (void)fields.value("output", object_of<bool>([&](Fields& keys) { return read_output(keys, scene); }), Json::object());
+  const auto output = fields.value("output", object_of<OutputKeys>(read_output), Json::object()).value_or(OutputKeys{});
+  settings.record_forces = output.forces;
+  scene.write_record = output.record;
 }
 
 }  // namespace sprung

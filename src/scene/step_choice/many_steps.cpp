@@ -99,7 +99,7 @@ std::string remedy_for(const Demand& demand, const Scene& scene, const SpringNet
   const Springs& springs = network.springs;
   if (demand.spring != kNone &&
       springs.rest_length[demand.spring] < kShort * mean_length(network, body, springs.kind[demand.spring])) {
-    return "Merge its ends: it is far shorter than the other ones";
+    return "Merge the two vertices: this spring is far shorter than the others of the body";
   }
   const auto found = std::ranges::find(scene.bodies, body.name, &BodyScene::name);
   std::string remedy = found != scene.bodies.end() && !found->preset.empty()

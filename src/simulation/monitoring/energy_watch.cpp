@@ -2,6 +2,7 @@
 
 #include "base/format.h"
 #include "dynamics/attachments/attachments.h"
+#include "network/model/pin_schedule.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +45,7 @@ double rounding_speed(const Points& positions, double step) {
 bool is_undriven(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
   const bool wind = settings.has_air() && !settings.wind.is_calm();
   return !wind && !do_work(network.attachments) && !std::holds_alternative<ExplicitEulerSettings>(settings.integrator) &&
-         std::ranges::none_of(network.pins, &Pin::moves) && std::ranges::none_of(network.later_pins, &Pin::moves) &&
-         std::ranges::none_of(obstacles, [](const Obstacle& obstacle) { return obstacle.changes(); });
+         !has_moving_pin(network) && std::ranges::none_of(obstacles, [](const Obstacle& obstacle) { return obstacle.changes(); });
 }
 
 }  // namespace

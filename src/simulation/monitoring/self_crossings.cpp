@@ -9,7 +9,7 @@
 namespace sprung {
 namespace {
 
-/// The elements of each body that cross faces of it, or as faces are crossed.
+/// By body: the elements that cross a face of the body, and the faces crossed.
 std::vector<std::set<Index>> crossing_elements(const CollisionSurface& surface, const Points& positions, std::size_t bodies) {
   std::vector<std::set<Index>> found(bodies);
   for (const auto& [first, second] : find_self_intersections(surface, positions)) {
@@ -24,6 +24,7 @@ std::vector<std::set<Index>> crossing_elements(const CollisionSurface& surface, 
 
 std::vector<SelfCrossing> find_self_crossings(const SpringNetwork& network, const Points& positions) {
   CollisionSurface surface = contact_surface(network);
+  // Search the bodies that contact does not search.
   for (char& self : surface.self) self = self == 0 ? 1 : 0;
   std::ranges::fill(surface.others, char{0});
   const std::vector<std::set<Index>> now = crossing_elements(surface, positions, network.bodies.size());

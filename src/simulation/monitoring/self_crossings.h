@@ -1,4 +1,4 @@
-// Bodies that pass through themselves because self_contact is off.
+// Bodies that cross themselves because self_contact is off.
 #pragma once
 
 #include "network/model/spring_network.h"
@@ -12,9 +12,9 @@ struct SelfCrossing {
   Index elements = 0;  ///< number of its faces and segments that cross others of it
 };
 
-/// The bodies without self-contact whose faces are crossed by others of their faces or segments at `positions` [m], 3 x n, which
-/// must be finite. Without those whose shape crosses itself at the network's positions, those of time 0: self-contact would refuse
-/// it. Decided exactly. Two segments are lines that pass each other, as those of a rope that swings in a plane.
+/// Bodies without self-contact that cross themselves at `positions` [m], 3 x n, finite. Counts crossings in which one element at
+/// least is a face; two crossing segments are ignored, as in a rope that swings in a plane. A body that crosses itself at the
+/// network's positions (time 0) is left out, because self-contact would refuse it. Exact.
 [[nodiscard]] std::vector<SelfCrossing> find_self_crossings(const SpringNetwork& network, const Points& positions);
 
 }  // namespace sprung

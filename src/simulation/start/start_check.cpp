@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxNamed = 3;
 
-std::string point_text(const Vector3& p) { return vector_text(p, 4); }
+constexpr int kDigits = 4;
 
 std::string first_of(const std::vector<std::string>& texts) {
   std::string text;
@@ -34,7 +34,7 @@ class ElementText {
   ElementText(const SpringNetwork& network, const Points& positions) : network_(network), positions_(positions) {}
 
   [[nodiscard]] std::string of(Index particle) const {
-    return "particle " + number_of(particle) + " at " + point_text(positions_.col(particle));
+    return "particle " + number_of(particle) + " at " + vector_text(positions_.col(particle), kDigits);
   }
 
   [[nodiscard]] std::string of(const Element& element) const {
@@ -45,7 +45,7 @@ class ElementText {
       text += (i == element.particles[0] ? "" : ", ") + number_of(i);
       middle += positions_.col(i) / element.corners;
     }
-    return text + " at " + point_text(middle);
+    return text + " at " + vector_text(middle, kDigits);
   }
 
  private:
@@ -135,9 +135,10 @@ std::vector<Problem> start_problems(const StartIntersections& found, const Sprin
     const std::string& obstacle = environment.obstacles()[static_cast<std::size_t>(numbers.second)].name;
     const auto pin = pins.find(numbers);
     const std::string own_remedy =
-        pin == pins.end() ? remedy
-                          : "a pin holds " + text.of(pin->second) +
-                                " inside, where \"push_out\" leaves it: move it or the obstacle, or pin all particles inside";
+        pin == pins.end()
+            ? remedy
+            : "a pin holds " + text.of(pin->second) +
+                  " inside, and \"push_out\" does not move pins: move the pin or the obstacle, or pin all particles inside";
     problems.push_back(problem_of(entry, body_name(numbers.first), obstacle, own_remedy));
   }
 

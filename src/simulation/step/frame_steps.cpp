@@ -62,6 +62,7 @@ std::optional<int> fewest_steps_per_frame(double frame_rate, double largest) {
 }
 
 std::optional<double> step_to_type(double frame_rate, double largest) {
+  if (frame_rate == 0.0) return rounded_down(largest);
   const auto fewest = fewest_steps_per_frame(frame_rate, largest);
   if (!fewest) return std::nullopt;
   for (double steps = *fewest; steps <= kMostStepsPerFrame; ++steps) {
@@ -70,7 +71,5 @@ std::optional<double> step_to_type(double frame_rate, double largest) {
   }
   return std::nullopt;
 }
-
-std::optional<double> step_to_type(double largest) { return rounded_down(largest); }
 
 }  // namespace sprung

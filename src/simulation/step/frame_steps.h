@@ -29,11 +29,8 @@ inline constexpr double kMostStepsPerFrame = 1e8;
 /// The smallest number of steps per frame for which the step is at most `largest` [s] > 0; none if it exceeds kMostStepsPerFrame.
 [[nodiscard]] std::optional<int> fewest_steps_per_frame(double frame_rate, double largest);
 
-/// A step [s] for users to type: at most `largest` [s] > 0, in at most three significant digits, and accepted by
-/// steps_per_frame(). The first that is, by the number of steps per frame; none if that exceeds kMostStepsPerFrame.
+/// A step [s] for users to type: the largest of at most three significant digits that is at most `largest` [s] > 0 and that
+/// steps_per_frame() accepts; any number of steps if frame_rate is 0. None beyond kMostStepsPerFrame.
 [[nodiscard]] std::optional<double> step_to_type(double frame_rate, double largest);
-
-/// The same without frames: `largest` rounded down.
-[[nodiscard]] std::optional<double> step_to_type(double largest);
 
 }  // namespace sprung

@@ -40,7 +40,7 @@ struct StepAdvice {
 };
 
 StepAdvice advise_at_most(const SimulatorSettings& settings, double largest) {
-  const auto step = settings.frame_rate > 0.0 ? step_to_type(settings.frame_rate, largest) : step_to_type(largest);
+  const auto step = step_to_type(settings.frame_rate, largest);
   if (!step) return {"less stiffness, more mass, or a higher frame_rate"};
   return {"a step of at most " + format_number(*step) + " s", step};
 }

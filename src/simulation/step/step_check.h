@@ -41,8 +41,8 @@ namespace sprung {
 /// `settings.stability` is not warn.
 std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds);
 
-/// Sets the remedy of a divergence with these settings: what `unstable_step` advises, if the step is to blame. If not, the
-/// failure's own remedy stays, or, if there is none, it is half of the step.
+/// Sets remedy and `smaller_step` of a divergence. The first rule that applies wins: (1) the scheme gains energy or the step
+/// exceeds advised_step(): the advice of unstable_step(); (2) the failure has a remedy: it stays; (3) half of the step.
 void set_divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds, StepFailure& failure);
 
 }  // namespace sprung

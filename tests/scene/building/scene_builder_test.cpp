@@ -543,7 +543,7 @@ TEST(SceneBuilder, FilesOfTetrahedraNameTheShapeThatReadsThem) {
   for (const char* shape : {R"({"type":"mesh","file":"ham.msh"})", R"({"type":"lattice","file":"ham.vtk","cells":8})"}) {
     EXPECT_THAT(build_problems({std::string("bodies.banner.shape=") + shape, "bodies.banner.pins=[]"}),
                 ElementsAre(AllOf(problem("bodies.banner.shape.file", "has the format of tetrahedra"),
-                                  Field(&Problem::remedy, HasSubstr("use \"type\": \"tetrahedra\"")))));
+                                  Field(&Problem::remedy, HasSubstr("\"type\": \"tetrahedra\"")))));
   }
   EXPECT_THAT(build_problems({R"(obstacles.floor.shape={"type":"mesh","file":"ham.ele"})"}),
               ElementsAre(AllOf(problem("obstacles.floor.shape.file", "has the format of tetrahedra"),

@@ -87,6 +87,10 @@ TEST_F(UnlikelySettings, SizesOfShapesAreInMetres) {
   const std::string floor =
       R"(obstacles={"floor": {"shape": {"type": "box", "size": [500, 1, 500]}, "place": {"position": [0, -9, 0]}}})";
   EXPECT_THAT(warnings(kCloth, {floor}), IsEmpty()) << "a floor may be wide";
+  EXPECT_THAT(warnings(kCloth, {floor, "obstacles.floor.shape.size=[1, 0.0005, 1]"}), IsEmpty()) << "a plate may be thin";
+  EXPECT_THAT(
+      warnings(kCloth, {floor, "obstacles.floor.shape.size=[500, 200, 150]", "obstacles.floor.place.position=[0, -200, 0]"}),
+      ElementsAre(HasSubstr("obstacle \"floor\": its largest extent is 500 m")));
 }
 
 TEST_F(UnlikelySettings, FlagNeverFluttersInASteadyWindAlongIt) {

@@ -86,8 +86,9 @@ TEST(StepChoice, AutoNamesTheShortEdgeOfAMesh) {
         .warnings;
   };
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.9999 1 0\n";
-  EXPECT_THAT(warnings(square + "f 1 2 3 5\nf 1 5 4\n"),
-              ElementsAre(AllOf(HasSubstr("from [1, 1, 0] to [0.9999, 1, 0], 0.0001 m long"), HasSubstr("Merge its ends"))));
+  EXPECT_THAT(
+      warnings(square + "f 1 2 3 5\nf 1 5 4\n"),
+      ElementsAre(AllOf(HasSubstr("from [1, 1, 0] to [0.9999, 1, 0], 0.0001 m long"), HasSubstr("Merge the two vertices"))));
   EXPECT_THAT(warnings("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"), testing::IsEmpty());
 }
 
@@ -277,17 +278,17 @@ TEST(StepChoice, AutoOfImplicitEulerIsAFrameOrTheStepOfTheStretchLimit) {
 
 TEST(StepChoice, StepBeyondTheStableOneIsRefusedNamingTheLargestPossibleOne) {
   const auto problems = problems_of([] { (void)build(1000.0, {"step=0.1"}); });
-  // 2 / sqrt(1000) = 0.0632: the largest that divides a frame of 0.1 s is 0.05.
+  // 2 / sqrt(1000) = 0.0632: the step that "auto" takes is the largest below half of that which divides a frame of 0.1 s, 0.025.
   EXPECT_THAT(problems, ElementsAre(AllOf(Field(&Problem::key, "step"), Field(&Problem::value, "0.1"),
                                           Field(&Problem::rule, HasSubstr("is beyond the largest stable step, 0.06")),
-                                          Field(&Problem::remedy, AllOf(HasSubstr("use at most 0.05 or \"auto\""),
+                                          Field(&Problem::remedy, AllOf(HasSubstr("use a step of at most 0.025 s, or \"auto\""),
                                                                         HasSubstr("\"stability\": \"warn\""))))));
   EXPECT_EQ(build(1000.0, {"step=0.05"}).steps_per_frame, 2);
-  // 2 / sqrt(8200) = 0.0221: 1 / 60 is the largest that divides a frame, told with as many digits as are needed.
+  // 2 / sqrt(8200) = 0.0221: 1 / 120 likewise, told in three digits.
   EXPECT_THAT(problems_of([] {
                 (void)build(8200.0, {"frame_rate=30", "step=0.03333333333333333"});
               }),
-              ElementsAre(Field(&Problem::remedy, HasSubstr("use at most 0.01666666667 or"))));
+              ElementsAre(Field(&Problem::remedy, HasSubstr("use a step of at most 0.00833 s, or"))));
 }
 
 TEST(StepChoice, StepBeyondTheStableOneRunsWithAWarning) {
