@@ -133,6 +133,7 @@ class Parser {
         ->check(CLI::IsMember(export_formats()))
         ->type_name("FORMAT");
     command->add_option("--out", export_.out, "File to write; DIR/animation.html by default")->type_name("PATH");
+    command->add_option("--mesh-path", unused_mesh_paths_)->group("");  // hidden: an export needed meshes once
     command->add_flag("--overwrite", export_.overwrite, "Replace the file if it exists");
   }
 
@@ -212,6 +213,7 @@ class Parser {
   InfoOptions info_;
   ViewOptions view_;
   ExportOptions export_;
+  std::vector<std::string> unused_mesh_paths_;
   MaterialsOptions materials_;
   std::string help_of_;
 };

@@ -179,8 +179,9 @@ std::string RunWatch::remedy_for_stretch() const {
   }
   const bool is_gauss_seidel = limit.solver == StretchLimitSettings::Solver::gauss_seidel;
   const bool can_be_solved = is_gauss_seidel && limit.max_compression == 1.0;
-  if (can_be_solved) return "Use more iterations, a smaller step or, for ropes and cloths, \"solver\": \"auto\".";
-  if (simulator_.stretch_solver() != "newton") return "Use more iterations or a smaller step.";
+  if (can_be_solved)
+    return "Raise \"iterations\" of \"stretch_limit\", use a smaller \"step\" or, for ropes and cloths, \"solver\": \"auto\".";
+  if (simulator_.stretch_solver() != "newton") return "Raise \"iterations\" of \"stretch_limit\", or use a smaller \"step\".";
   // The excess that Newton's method leaves is proportional to the step; more iterations do not help.
   const double times = std::ceil(missed_.largest / wanted_excess(limit));
   return fmt::format("Use a step {} times smaller{}.", format_number(times, 2),

@@ -202,7 +202,8 @@ TEST_F(CommandLine, RunReportsAMissedStretchLimitAndTheRemedy) {
 
   scene["stretch_limit"]["max_compression"] = 0.5;  // which passes alone hold
   ending = run({"run", save(scene), "--out", out(), "--overwrite"});
-  EXPECT_THAT(ending.err, AllOf(HasSubstr("more iterations or a smaller step"), Not(HasSubstr("solver"))));
+  EXPECT_THAT(ending.err,
+              AllOf(HasSubstr("Raise \"iterations\" of \"stretch_limit\", or use a smaller \"step\""), Not(HasSubstr("solver"))));
 }
 
 // A strip that falls nearly upright folds onto itself.

@@ -30,6 +30,12 @@ std::optional<std::filesystem::path> MeshFinder::find(const std::string& file, c
   for (const std::filesystem::path& folder : folders_) {
     const std::filesystem::path candidate = folder / file;  // an absolute path replaces the folder
     if (is_file(candidate)) return candidate;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(candidate, ignored)) {
+      problems.push_back({scene_file_.string(), key, "\"" + file + "\"", "is a folder: " + candidate.string(),
+                          "name a file in it; a sequence of meshes has a pattern such as " + file + "/*.obj"});
+      return std::nullopt;
+    }
   }
   report_missing(file, key, "no such file", problems);
   return std::nullopt;

@@ -534,6 +534,11 @@ TEST(SceneBuilder, ProblemsOfTetrahedraNameTheirFile) {
   EXPECT_THAT(to_string(problems[0]), HasSubstr("corner.ele: line 2 = 5: must be the number of one of the 4 nodes"));
 }
 
+TEST(SceneBuilder, AFolderIsNoMesh) {
+  EXPECT_THAT(build_problems({R"(obstacles.floor.shape={"type":"mesh","file":"."})"}),
+              ElementsAre(problem("obstacles.floor.shape.file", "is a folder")));
+}
+
 TEST(SceneBuilder, BodyMeshesOfOtherFormatsAreRefused) {
   EXPECT_THAT(build_problems({R"(bodies.banner.shape={"type":"mesh","file":"body.stl"})", "bodies.banner.pins=[]"}),
               ElementsAre(problem("bodies.banner.shape.file", "read from an .obj file")));
