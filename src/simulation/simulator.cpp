@@ -100,7 +100,7 @@ void Simulator::Implementation::add_constraints() {
   if (std::ranges::any_of(network.bodies, [](const Body& body) { return body.volume_factor != 0.0; })) {
     constraints.add(std::make_unique<EnclosedVolume>(network));
   }
-  if (attachments && std::ranges::any_of(network.attachments, &Attachment::is_rigid)) constraints.add(attachments->rods());
+  if (attachments && std::ranges::any_of(network.attachments, &Attachment::is_rigid)) constraints.add_rods(attachments->rods());
   for (const std::shared_ptr<Constraint>& constraint : external.constraints) constraints.add(constraint);
 }
 

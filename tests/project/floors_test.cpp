@@ -54,8 +54,8 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"dynamics/attachments", {"forces", "constraints"}},
     {"dynamics/contact", {"forces", "integrators"}},
     {"dynamics/tethers", {"numerics"}},
-    {"dynamics/stretch_newton", {"numerics", "tethers"}},
-    {"dynamics/stretch_limit", {"numerics", "tethers", "stretch_newton"}},
+    {"dynamics/stretch_newton", {"numerics", "constraints", "tethers"}},
+    {"dynamics/stretch_limit", {"numerics", "constraints", "tethers", "stretch_newton"}},
 
     {"simulation/settings", {}},
     {"simulation/monitoring", {"settings"}},

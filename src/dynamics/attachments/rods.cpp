@@ -49,20 +49,30 @@ Rods::Rods(const SpringNetwork& network, const std::vector<Obstacle>& obstacles,
 
 void Rods::take(const std::vector<Link>& links, double time) {
   rods_.clear();
+  rows_.clear();
   for (std::size_t k = 0; k < links.size(); ++k) {
     if (links[k].broken || !network_.attachments[links[k].attachment].is_rigid()) continue;
     const LinkEnds ends(network_, obstacles_, links[k]);
     rods_.push_back({.number = k, .ends = ends, .link = links[k], .inverse_mass = ends.inverse_mass(network_.inverse_masses)});
+    RodRow& row = rows_.emplace_back();
+    for (const Index particle : ends.particles()) {
+      row.weights[row.count] = ends.weight(row.count);
+      row.particles[row.count++] = particle;
+    }
   }
   colouring_ = colour_groups(rods_.size(), network_.particle_count(), [&](std::size_t r) { return rods_[r].ends.particles(); });
   prepare(time);
 }
 
 void Rods::prepare(double time) {
-  for (Rod& rod : rods_) {
+  for (std::size_t r = 0; r < rods_.size(); ++r) {
+    Rod& rod = rods_[r];
     rod.anchor = rod.ends.anchor(time);
     rod.length = length_at(rod.link, time, step_length_);
     rod.tolerance = rod.length > 0.0 ? kTolerance * rod.length : joint_tolerance_;
+    rows_[r].anchor = rod.anchor;
+    rows_[r].length = rod.length;
+    rows_[r].tolerance = rod.tolerance;
   }
   pushes_.assign(rods_.size(), Vector3::Zero());
 }
@@ -103,6 +113,10 @@ double Rods::residual(const Points& positions) const {
     if (rod.inverse_mass > 0.0) largest = std::max(largest, violation(rod, rod.ends.sum(positions) - rod.anchor));
   }
   return largest;
+}
+
+void Rods::add_pushes(const std::vector<Vector3>& pushes) {
+  for (std::size_t r = 0; r < pushes.size(); ++r) pushes_[r] += pushes[r];
 }
 
 void Rods::add_impulses(double dt, std::vector<Link>& links) const {

@@ -4,6 +4,7 @@
 #include "dynamics/attachments/link_ends.h"
 #include "dynamics/constraints/colouring.h"
 #include "dynamics/constraints/constraint.h"
+#include "dynamics/constraints/rod_row.h"
 
 #include <vector>
 
@@ -33,6 +34,12 @@ class Rods final : public Constraint {
   /// A length may be off by 0.05 %; that of a rod of length 0 by 0.05 % of the mean spring length.
   [[nodiscard]] double residual(const Points& positions) const override;
 
+  /// The rods of the step that `prepare` began.
+  [[nodiscard]] const std::vector<RodRow>& rows() const { return rows_; }
+
+  /// Adds what a solver outside of the passes pushed on the first ends of the rods, as masses times displacements [kg m].
+  void add_pushes(const std::vector<Vector3>& pushes);
+
   /// Adds the impulses of all passes since `prepare`, which began a step of `dt` [s], to the links that `take` took.
   void add_impulses(double dt, std::vector<Link>& links) const;
 
@@ -54,6 +61,7 @@ class Rods final : public Constraint {
   double step_length_;
   double joint_tolerance_;  ///< of rods of length 0 [m]
   std::vector<Rod> rods_;
+  std::vector<RodRow> rows_;
   Colouring colouring_;
   mutable std::vector<Vector3> pushes_;  ///< of the passes since `prepare`, as masses times displacements [kg m]
 };

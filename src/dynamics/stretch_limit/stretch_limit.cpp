@@ -100,6 +100,12 @@ std::optional<int> StretchLimit::solve(const Points& before, Points& positions, 
   return newton_ ? newton_->solve(before, positions, fall, handovers, recorder) : std::nullopt;
 }
 
+std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double fall,
+                                       const std::vector<StretchHandover>& handovers, std::span<const RodRow> rods,
+                                       std::vector<Vector3>& pushes, const ImpulseRecorder& recorder) const {
+  return newton_ ? newton_->solve(before, positions, fall, handovers, rods, pushes, recorder) : std::nullopt;
+}
+
 double StretchLimit::excess(const Points& positions) const {
   const auto lengths_of = [&](const BatchRange& batch_range) { return measure_springs(*batches_, batch_range, positions.data()); };
   return extremes(*batches_, 0, batches_->stage_begin.back(), lengths_of).excess(length_range(settings_));

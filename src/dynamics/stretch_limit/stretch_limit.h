@@ -1,12 +1,14 @@
 // Projection-based limits on how far springs stretch or shrink (Provot 1995; Jakobsen 2001; Mueller et al. 2007).
 #pragma once
 
+#include "dynamics/constraints/rod_row.h"
 #include "dynamics/tethers/stretch_limit_settings.h"
 #include "network/model/simulation_state.h"
 #include "network/model/spring_network.h"
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +50,10 @@ class StretchLimit {
   /// linear systems of a component; none if nothing was too long. A recorder gets the impulses of springs.
   std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers = {},
                            const ImpulseRecorder& recorder = {}) const;
+
+  /// The same with rods that join bodies; see StretchNewton. Adds what it pushed on the first ends of rods to `pushes` [kg m].
+  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers,
+                           std::span<const RodRow> rods, std::vector<Vector3>& pushes, const ImpulseRecorder& recorder) const;
 
   /// The largest relative excess over the limits.
   [[nodiscard]] double excess(const Points& positions) const;

@@ -32,6 +32,9 @@ constexpr double kForecastOfChains = 1.0e-4;
 constexpr double kForecastOfCloths = 0.1;
 constexpr double kForecastOfElasticCloths = 1.0e-3;
 
+// Heavy bodies hang on light ones: most of the energy is that of the heavy ones.
+constexpr double kForecastWithRods = 1.0e-6;
+
 // A corrected step sometimes matches its forecast by chance.
 constexpr double kCorrectedFraction = 0.3;
 
@@ -55,6 +58,7 @@ Index count_ties(const StretchComponent& component) {
 }
 
 double close_enough(const StretchComponent& component) {
+  if (!component.rods.empty()) return kForecastWithRods;
   if (component.is_tree) return kForecastOfChains;
   return component.is_elastic ? kForecastOfElasticCloths : kForecastOfCloths;
 }
@@ -81,6 +85,7 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
   const double beyond = energy_.value(target_, target_);
   if (beyond == 0.0) {
     balanced_energy_ = kUnknown;
+    x_ = target_;
     return std::nullopt;
   }
   const double load = link_load(fall);
@@ -94,6 +99,31 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
   if (clips_) clip();
   write_to(positions);
   return iterations;
+}
+
+void ComponentNewton::set_rods(std::span<const RodRow> rows) {
+  rows_ = rows;
+  energy_.set_rods(rows);
+}
+
+void ComponentNewton::record(const ImpulseRecorder& recorder, std::vector<Vector3>& pushes) const {
+  for (const StretchComponent::Rod& rod : component_.rods) {
+    const Vector3 push = energy_.push(rod, x_);
+    pushes[rod.number] += push;
+    for (std::size_t k = 0; recorder.on() && k < rod.count; ++k) {
+      if (component_.is_free(rod.points[k])) continue;
+      recorder.add_to_pinned(component_.points[rod.points[k]], rows_[rod.number].weights[k] * push);
+    }
+  }
+  if (!recorder.on()) return;
+  const std::vector<double> pulls = energy_.pulls(x_);
+  for (std::size_t s = 0; s < pulls.size(); ++s) {
+    const StretchComponent::Link& link = component_.links[s];
+    if (pulls[s] == 0.0) continue;
+    recorder.add_to_spring(link.spring, pulls[s]);
+    if (component_.is_free(link.second)) continue;
+    recorder.add_to_pinned(component_.points[link.second], pulls[s] * (x_.col(link.first) - x_.col(link.second)).normalized());
+  }
 }
 
 void ComponentNewton::write_to(Points& positions) const {
@@ -126,7 +156,7 @@ Vector3 ComponentNewton::common_move() const {
 // a swing than it stores: with a stiffness as large as the masses it stops the swing within a step.
 double ComponentNewton::link_load(double fall) const {
   const double inwards = extent_ > 0.0 ? farthest_squared_ / extent_ : 0.0;
-  return mass_ / std::max(component_.pin_count(), Index{1}) *
+  return std::max(mass_, component_.carried_mass) / std::max(component_.pin_count(), Index{1}) *
          std::max({fall, inwards, energy_.give(), fall + inwards > 0.0 ? 0.0 : most_beyond()});
 }
 
@@ -144,7 +174,8 @@ double ComponentNewton::most_beyond() const {
 int ComponentNewton::minimise(double energy_at_target) {
   double energy = start(energy_at_target);
   const double at_first = inertia();
-  const double negligible = kBalanced * at_first;
+  // With rods, what a heavy body may neglect would stop a light one.
+  const double negligible = component_.rods.empty() ? kBalanced * at_first : 0.0;
   // Masses alone overestimate the imbalance along links; an iteration may show that it is smaller.
   if (imbalance() <= negligible) {
     note_balance(energy);

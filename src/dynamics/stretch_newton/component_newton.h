@@ -4,6 +4,7 @@
 #include "dynamics/stretch_newton/component_solver.h"
 #include "dynamics/stretch_newton/stretch_energy.h"
 #include "dynamics/stretch_newton/stretch_system.h"
+#include "network/model/recorded_impulses.h"
 
 #include <limits>
 #include <memory>
@@ -22,6 +23,12 @@ class ComponentNewton final : public ComponentSolver {
   /// Solves to the minimum. Links are stiff enough to carry the component against `fall` and its own motion. In a chain or tree
   /// that hangs on one link, no link exceeds the tolerance afterwards.
   std::optional<int> solve(const Points& before, Points& positions, double fall) override;
+
+  /// Sets the rods of the next solve, by number. Keeps a reference to them. Required if the component has rods.
+  void set_rods(std::span<const RodRow> rows);
+
+  /// Records the impulses of the last solve, which gave positions, and adds those of rods to `pushes`, by number [kg m].
+  void record(const ImpulseRecorder& recorder, std::vector<Vector3>& pushes) const;
 
   [[nodiscard]] double turn() const override;
 
@@ -55,6 +62,7 @@ class ComponentNewton final : public ComponentSolver {
   StretchComponent component_;
   StretchLimitSettings settings_;
   StretchEnergy energy_;
+  std::span<const RodRow> rows_;
   std::unique_ptr<StretchSystemSolver> solver_;  ///< made by the first solve
   bool clips_;
   int last_iterations_ = std::numeric_limits<int>::max();             ///< of the previous solve, if any

@@ -32,6 +32,13 @@ BlockMatrix pattern_of(const StretchComponent& component) {
   for (const auto& link : component.links) {
     if (component.is_free(link.second)) pairs.push_back({.first = link.first, .second = link.second});
   }
+  for (const auto& rod : component.rods) {
+    for (std::size_t k = 1; k < rod.count; ++k) {
+      for (std::size_t j = 0; j < k; ++j) {
+        if (component.is_free(rod.points[j]) && component.is_free(rod.points[k])) pairs.push_back({rod.points[j], rod.points[k]});
+      }
+    }
+  }
   return {component.free_count, pairs};
 }
 
@@ -46,6 +53,10 @@ PcgSolver::PcgSolver(const StretchComponent& component)
 
 double PcgSolver::solve(const StretchSystem& system, Points& step) {
   assemble(system);
+  if (!component_.rods.empty()) {  // rods are far stiffer than links: single precision rarely suffices
+    solve_exactly(system.residual, step);
+    return 0.0;
+  }
   if (system.is_like_last) {
     if (const auto left = solve_as_last(system, step)) return *left;
   }
@@ -66,7 +77,7 @@ void PcgSolver::solve_again(const StretchSystem& system, Points& step) {
     return;
   }
   solve_with_kept(system.residual, step);
-  if (component_.pin_count() == 0) keep_momentum(system.residual, step);
+  if (component_.pin_count() == 0 && component_.rods.empty()) keep_momentum(system.residual, step);
 }
 
 std::optional<double> PcgSolver::solve_as_last(const StretchSystem& system, Points& step) {
@@ -166,6 +177,17 @@ void PcgSolver::assemble(const StretchSystem& system) {
       matrix_.add_difference(link.first, link.second, block);
     } else {
       matrix_.add(link.first, link.first, block);
+    }
+  }
+  for (std::size_t r = 0; r < component_.rods.size(); ++r) {
+    const StretchComponent::Rod& rod = component_.rods[r];
+    const RodRow& row = system.rows[rod.number];
+    const Matrix3 block = system.of_rods[r].matrix();
+    for (std::size_t k = 0; k < rod.count; ++k) {
+      for (std::size_t j = 0; j <= k; ++j) {
+        if (!component_.is_free(rod.points[j]) || !component_.is_free(rod.points[k])) continue;
+        matrix_.add(rod.points[j], rod.points[k], row.weights[j] * row.weights[k] * block);
+      }
     }
   }
 }

@@ -4,18 +4,24 @@
 #include "dynamics/tethers/spring_graph.h"
 
 #include <algorithm>
+#include <set>
 
 namespace sprung {
 namespace {
 
 class Finder {
  public:
-  Finder(const SpringNetwork& network, const std::vector<Index>& limited)
+  Finder(const SpringNetwork& network, const std::vector<Index>& limited, std::span<const RodRow> rods)
       : network_(network),
         graph_(network, limited),
+        rods_(rods),
+        rods_at_(rods.empty() ? 0 : network.particle_count()),
         seen_(network.particle_count(), false),
         elastic_(seen_),
         point_(seen_.size(), kNone) {
+    for (std::size_t r = 0; r < rods.size(); ++r) {
+      for (const Index i : rods[r].ends()) rods_at_[i].push_back(r);
+    }
     const Springs& springs = network.springs;
     for (Index s = 0; s < springs.count(); ++s) {
       if (springs.stiffness[s] == 0.0) continue;
@@ -33,7 +39,8 @@ class Finder {
     for (Index i = 0; i < network_.particle_count(); ++i) {
       if (seen_[i] || network_.is_pinned(i)) continue;
       const std::vector<Index> particles = outward_from(i);
-      if (particles.size() > 1 || hangs_on_pin(i)) found.push_back(component(particles));
+      if (std::ranges::none_of(particles, [&](Index p) { return !graph_.at(p).empty(); })) continue;
+      found.push_back(component(particles));
     }
     return found;
   }
@@ -43,14 +50,20 @@ class Finder {
   std::vector<Index> outward_from(Index start) {
     std::vector<Index> queue{start};
     seen_[start] = true;
+    const auto add = [&](Index particle) {
+      if (seen_[particle] || network_.is_pinned(particle)) return;
+      seen_[particle] = true;
+      queue.push_back(particle);
+    };
     for (std::size_t head = 0; head < queue.size(); ++head) {
-      for (const SpringGraph::Edge& edge : graph_.at(queue[head])) {
-        if (seen_[edge.to] || network_.is_pinned(edge.to)) continue;
-        seen_[edge.to] = true;
-        queue.push_back(edge.to);
-      }
+      for (const SpringGraph::Edge& edge : graph_.at(queue[head])) add(edge.to);
+      for (const std::size_t r : rods_at(queue[head])) std::ranges::for_each(rods_[r].ends(), add);
     }
     return queue;
+  }
+
+  [[nodiscard]] std::span<const std::size_t> rods_at(Index particle) const {
+    return rods_.empty() ? std::span<const std::size_t>() : rods_at_[particle];
   }
 
   [[nodiscard]] bool hangs_on_pin(Index particle) const {
@@ -77,6 +90,7 @@ class Finder {
     found.is_elastic = std::ranges::any_of(particles, [&](Index i) { return elastic_[i]; });
     found.is_tree = true;
     for (Index i = 0; i < found.free_count; ++i) add_links(found, i);
+    add_rods(found);
     // A pin may belong to several components.
     for (const Index particle : found.points) point_[particle] = kNone;
     return found;
@@ -85,11 +99,7 @@ class Finder {
   void add_links(StretchComponent& component, Index i) {
     Index parent = kNone;
     for (const auto& [spring, other] : graph_.at(component.points[i])) {
-      if (point_[other] == kNone) {
-        point_[other] = static_cast<Index>(component.points.size());
-        component.points.push_back(other);
-      }
-      const Index second = point_[other];
+      const Index second = point_of(other, component);
       if (second < i) continue;
       component.links.push_back({i, second, network_.springs.rest_length[spring], spring});
       if (!component.is_free(second)) continue;
@@ -99,8 +109,37 @@ class Finder {
     component.begin.push_back(static_cast<Index>(component.links.size()));
   }
 
+  void add_rods(StretchComponent& component) {
+    std::set<std::size_t> numbers;
+    for (Index i = 0; i < component.free_count; ++i) {
+      const std::span<const std::size_t> at = rods_at(component.points[i]);
+      numbers.insert(at.begin(), at.end());
+    }
+    if (numbers.empty()) return;
+    component.is_tree = false;
+    for (const std::size_t r : numbers) {
+      StretchComponent::Rod rod{.number = r, .points = {}, .count = rods_[r].count};
+      for (std::size_t k = 0; k < rod.count; ++k) rod.points[k] = point_of(rods_[r].particles[k], component);
+      component.rods.push_back(rod);
+    }
+    std::set<const Body*> bodies;
+    for (Index i = 0; i < component.free_count; ++i) bodies.insert(&network_.body_of(component.points[i]));
+    for (const Body* body : bodies)
+      component.carried_mass += network_.masses.segment(body->first_particle, body->particle_count).sum();
+  }
+
+  Index point_of(Index particle, StretchComponent& component) {
+    if (point_[particle] == kNone) {
+      point_[particle] = static_cast<Index>(component.points.size());
+      component.points.push_back(particle);
+    }
+    return point_[particle];
+  }
+
   const SpringNetwork& network_;
   SpringGraph graph_;
+  std::span<const RodRow> rods_;
+  std::vector<std::vector<std::size_t>> rods_at_;  ///< by particle; empty without rods
   std::vector<bool> seen_;
   std::vector<bool> elastic_;
   std::vector<Index> point_;
@@ -109,7 +148,12 @@ class Finder {
 }  // namespace
 
 std::vector<StretchComponent> stretch_components(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
-  return Finder(network, limited_springs(network, kinds)).all();
+  return stretch_components(network, limited_springs(network, kinds), {});
+}
+
+std::vector<StretchComponent> stretch_components(const SpringNetwork& network, const std::vector<Index>& springs,
+                                                 std::span<const RodRow> rods) {
+  return Finder(network, springs, rods).all();
 }
 
 }  // namespace sprung

@@ -11,6 +11,9 @@ namespace {
 constexpr double kFractionForChains = 0.25;
 constexpr double kFractionForCloths = 0.1;
 
+// A rod that carries the load is off by this fraction of its tolerance.
+constexpr double kFractionForRods = 0.1;
+
 // Links are near their limit from this fraction of it.
 constexpr double kNear = 0.9;
 
@@ -56,7 +59,58 @@ double StretchEnergy::value(const Points& x, const Points& y) const {
     const double excess = std::sqrt(squared) - limits_[s].length;
     elastic += limits_[s].stiffness * excess * excess;
   }
-  return 0.5 * (inertia + load_ * elastic);
+  double of_rods = 0.0;
+  for (const StretchComponent::Rod& rod : component_.rods) {
+    const RodState state = state_of(rod, x);
+    of_rods += state.stiffness * state.excess * state.excess;
+  }
+  return 0.5 * (inertia + load_ * elastic + of_rods);
+}
+
+StretchEnergy::RodState StretchEnergy::state_of(const StretchComponent::Rod& rod, const Points& x) const {
+  const RodRow& row = rows_[rod.number];
+  const Vector3 difference = row.difference(x, [&](std::size_t k) { return rod.points[k]; });
+  const double distance = difference.norm();
+  RodState state{.distance = distance, .excess = distance - row.length, .stiffness = load_ / (kFractionForRods * row.tolerance)};
+  if (distance > 0.0) state.direction = difference / distance;
+  return state;
+}
+
+Vector3 StretchEnergy::push(const StretchComponent::Rod& rod, const Points& x) const {
+  const RodState state = state_of(rod, x);
+  return -state.stiffness * state.excess * state.direction;
+}
+
+void StretchEnergy::add_push(const StretchComponent::Rod& rod, const Vector3& push, StretchSystem& system) const {
+  for (std::size_t k = 0; k < rod.count; ++k) {
+    if (component_.is_free(rod.points[k])) system.residual.col(rod.points[k]) += rows_[rod.number].weights[k] * push;
+  }
+}
+
+/// Returns twice their energy. A rod of length 0 is as stiff across as along it.
+double StretchEnergy::linearise_rods(const Points& x, StretchSystem& system) const {
+  system.rows = rows_;
+  system.of_rods.clear();
+  double elastic = 0.0;
+  for (const StretchComponent::Rod& rod : component_.rods) {
+    const RodState state = state_of(rod, x);
+    const bool is_joint = rows_[rod.number].length == 0.0;
+    const double across = is_joint ? state.stiffness : state.stiffness * std::max(0.0, state.excess / state.distance);
+    system.of_rods.push_back(SymmetricMatrix3::along(across, state.stiffness - across, state.direction));
+    add_push(rod, -state.stiffness * state.excess * state.direction, system);
+    elastic += state.stiffness * state.excess * state.excess;
+  }
+  return elastic;
+}
+
+std::vector<double> StretchEnergy::pulls(const Points& x) const {
+  std::vector<double> pulls;
+  for (std::size_t s = 0; s < limits_.size(); ++s) {
+    const StretchComponent::Link& link = component_.links[s];
+    const double length = (x.col(link.second) - x.col(link.first)).norm();
+    pulls.push_back(load_ * limits_[s].stiffness * std::max(0.0, length - limits_[s].length));
+  }
+  return pulls;
 }
 
 void StretchEnergy::note_overshot(const Points& x) {
@@ -102,6 +156,7 @@ double StretchEnergy::linearise(const Points& x, const Points& y, NearLimit near
     if (component_.is_free(link.second)) system.residual.col(link.second) -= pull;
     elastic += stiffness * excess * excess;
   }
+  elastic += linearise_rods(x, system);
   return 0.5 * (inertia + elastic);
 }
 
@@ -130,6 +185,12 @@ void StretchEnergy::take_turning(const Points& x, const Points& tried, StretchSy
     const Vector3 pull = load_ * limits_[s].stiffness * std::min(turned, excess) * direction;
     system.residual.col(link.first) += pull;
     if (component_.is_free(link.second)) system.residual.col(link.second) -= pull;
+  }
+  for (const StretchComponent::Rod& rod : component_.rods) {
+    const RodState at_x = state_of(rod, x);
+    const RodState at_tried = state_of(rod, tried);
+    const double turned = at_tried.distance * (1.0 - at_x.direction.dot(at_tried.direction));
+    add_push(rod, -at_tried.stiffness * std::clamp(at_tried.excess, 0.0, turned) * at_x.direction, system);
   }
 }
 

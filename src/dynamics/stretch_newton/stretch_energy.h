@@ -19,11 +19,15 @@ enum class NearLimit : std::uint8_t {
 
 /// E(x) = 1/2 sum m |x - y|^2 + 1/2 sum k max(0, |d| - L)^2 over the free points and links of a component. y is the target of the
 /// forces and L the largest length of a link. k = W / (e d) with the load W [kg m], the rest length d, and the relative excess e
-/// of a link that carries all of W. Multiplied by 1 / dt^2 these are joules.
+/// of a link that carries all of W. Multiplied by 1 / dt^2 these are joules. A rod adds 1/2 k (|d| - L)^2, also when it is shorter
+/// than its length L, with a stiffness at which it carries W within a tenth of its tolerance.
 class StretchEnergy {
  public:
   /// Keeps a reference to the component.
   StretchEnergy(const StretchComponent& component, const StretchLimitSettings& settings);
+
+  /// Sets the rods of the step, by number. Keeps a reference to them.
+  void set_rods(std::span<const RodRow> rows) { rows_ = rows; }
 
   /// Sets the load W [kg m] > 0.
   void set_load(double load) { load_ = load; }
@@ -47,6 +51,10 @@ class StretchEnergy {
   /// indefinite. The returned energy includes links near the limit that push.
   double linearise(const Points& x, const Points& y, NearLimit near, StretchSystem& system) const;
 
+  /// The pull of each link at `x`, k max(0, |d| - L) [kg m], and the push of each rod on its first end [kg m].
+  [[nodiscard]] std::vector<double> pulls(const Points& x) const;
+  [[nodiscard]] Vector3 push(const StretchComponent::Rod& rod, const Points& x) const;
+
   /// For each link k max(0, 1 - L / |d|) at `x`: its contribution to the second derivatives across its direction [kg].
   [[nodiscard]] std::vector<double> stiffness_across(const Points& x) const;
 
@@ -56,12 +64,24 @@ class StretchEnergy {
   void take_turning(const Points& x, const Points& tried, StretchSystem& system) const;
 
  private:
+  /// A rod at some positions.
+  struct RodState {
+    Vector3 direction = Vector3::Zero();  ///< of the difference of its ends
+    double distance;                      ///< between them [m]
+    double excess;                        ///< of the distance over the length [m]
+    double stiffness;                     ///< k [kg]
+  };
+  [[nodiscard]] RodState state_of(const StretchComponent::Rod& rod, const Points& x) const;
+  void add_push(const StretchComponent::Rod& rod, const Vector3& push, StretchSystem& system) const;
+  [[nodiscard]] double linearise_rods(const Points& x, StretchSystem& system) const;
+
   struct Limit {
     double length;     ///< L [m]
     double stiffness;  ///< k for a load of 1 kg m [1/m]
   };
 
   const StretchComponent& component_;
+  std::span<const RodRow> rows_;
   std::vector<Limit> limits_;   ///< of links
   std::vector<char> overshot_;  ///< a flag per link; empty while none is marked
   double load_ = 0.0;

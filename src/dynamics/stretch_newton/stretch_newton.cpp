@@ -2,7 +2,9 @@
 
 #include "base/parallel.h"
 #include "dynamics/stretch_newton/component_impulses.h"
+#include "dynamics/stretch_newton/component_newton.h"
 #include "dynamics/stretch_newton/two_level_newton.h"
+#include "dynamics/tethers/limited_springs.h"
 
 #include <algorithm>
 #include <utility>
@@ -15,11 +17,12 @@ enum class Taken : std::uint8_t { from_start, when_handed_over, never };
 // Solids are left to passes, as their factors fill: a hanging solid of 8 particles a side took 50 times as long as with passes, of
 // 16 a side 450 times. Particles added one by one have unknown structure. Bodies that may not shrink, and bodies whose springs
 // need small steps anyway, keep passes: at such steps solves took 30 to 200 times as long.
+bool fills(const Body& body) { return body.dimension != 1 && body.dimension != 2; }
+
 Taken taken_by_itself(const StretchComponent& component, const Body& body, const StretchLimitSettings& settings,
                       const LimitUse& use) {
-  if (component.is_tree) return Taken::from_start;
-  const bool fills = body.dimension != 1 && body.dimension != 2;
-  if (fills || settings.max_compression < 1.0) return Taken::never;
+  if (component.is_tree || !component.rods.empty()) return Taken::from_start;
+  if (fills(body) || settings.max_compression < 1.0) return Taken::never;
   const bool begins_with_passes = use.may_collide || (use.takes_small_steps && component.is_elastic);
   return begins_with_passes ? Taken::when_handed_over : Taken::from_start;
 }
@@ -27,25 +30,68 @@ Taken taken_by_itself(const StretchComponent& component, const Body& body, const
 }  // namespace
 
 StretchNewton::StretchNewton(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use)
-    : network_(network), settings_(settings) {
-  const bool chooses = settings.solver == StretchLimitSettings::Solver::automatic;
-  std::size_t number = 0;
-  for (StretchComponent& component : stretch_components(network, settings.kinds)) {
-    const std::size_t of_component = number++;
-    const Body& body = network.body_of(component.points.front());
-    const Taken taken = chooses ? taken_by_itself(component, body, settings, use) : Taken::from_start;
-    if (taken != Taken::from_start) {
-      left_.insert(left_.end(), component.points.begin(), component.points.begin() + component.free_count);
-    }
-    if (taken == Taken::never) continue;
-    components_.push_back({.solver = make_component_solver(network, std::move(component), settings, use),
-                           .body = static_cast<std::size_t>(&body - network.bodies.data()),
-                           .from_start = taken == Taken::from_start,
-                           .number = of_component});
-  }
+    : network_(network), settings_(settings), use_(use) {
+  make_components({});
   std::ranges::sort(left_);
 }
 StretchNewton::~StretchNewton() = default;
+
+/// With rods, springs of bodies that are left to passes are not part of a component.
+void StretchNewton::make_components(std::span<const RodRow> rods) {
+  const bool chooses = settings_.solver == StretchLimitSettings::Solver::automatic;
+  std::size_t number = 0;
+  for (StretchComponent& component : all_components(rods)) {
+    const std::size_t of_component = number++;
+    const Body& body = network_.body_of(component.points[component.links.front().first]);
+    const Taken taken = chooses ? taken_by_itself(component, body, settings_, use_) : Taken::from_start;
+    if (taken != Taken::from_start && rods.empty()) {
+      left_.insert(left_.end(), component.points.begin(), component.points.begin() + component.free_count);
+    }
+    if (taken == Taken::never) continue;
+    std::unique_ptr<ComponentNewton> with_rods;
+    if (!component.rods.empty()) with_rods = std::make_unique<ComponentNewton>(std::move(component), settings_);
+    ComponentNewton* const rods_solver = with_rods.get();
+    components_.push_back({.solver = with_rods ? std::unique_ptr<ComponentSolver>(std::move(with_rods))
+                                               : make_component_solver(network_, std::move(component), settings_, use_),
+                           .with_rods = rods_solver,
+                           .body = static_cast<std::size_t>(&body - network_.bodies.data()),
+                           .from_start = taken == Taken::from_start,
+                           .number = of_component});
+  }
+}
+
+std::vector<StretchComponent> StretchNewton::all_components(std::span<const RodRow> rods) const {
+  std::vector<Index> springs = limited_springs(network_, settings_.kinds);
+  const bool leaves_solids = !rods.empty() && settings_.solver == StretchLimitSettings::Solver::automatic;
+  if (leaves_solids) std::erase_if(springs, [&](Index s) { return fills(network_.body_of(network_.springs.first[s])); });
+  return stretch_components(network_, springs, rods);
+}
+
+/// Makes the components anew if other rods join them than before.
+void StretchNewton::join(std::span<const RodRow> rods) {
+  const auto alike = [](const RodRow& a, const RodRow& b) {
+    return a.count == b.count && a.particles == b.particles && a.weights == b.weights;
+  };
+  if (std::ranges::equal(rods, joined_, alike)) return;
+  joined_.assign(rods.begin(), rods.end());
+  components_.clear();
+  impulses_.clear();
+  make_components(rods);
+}
+
+std::optional<int> StretchNewton::solve(const Points& before, Points& positions, double fall,
+                                        const std::vector<StretchHandover>& handovers, std::span<const RodRow> rods,
+                                        std::vector<Vector3>& pushes, const ImpulseRecorder& recorder) {
+  join(settings_.max_compression < 1.0 ? std::span<const RodRow>() : rods);
+  for (const SolvedComponent& component : components_) {
+    if (component.with_rods != nullptr) component.with_rods->set_rods(rods);
+  }
+  const auto solves = solve(before, positions, fall, handovers, recorder);
+  for (const SolvedComponent& component : components_) {
+    if (component.with_rods != nullptr) component.with_rods->record(recorder, pushes);
+  }
+  return solves;
+}
 
 std::optional<int> StretchNewton::solve(const Points& before, Points& positions, double fall,
                                         const std::vector<StretchHandover>& handovers, const ImpulseRecorder& recorder) {
@@ -65,13 +111,14 @@ std::optional<int> StretchNewton::solve(const Points& before, Points& positions,
 void StretchNewton::record(const Points& target, const Points& positions, const std::vector<StretchHandover>& handovers,
                            const ImpulseRecorder& recorder) {
   if (impulses_.empty()) {
-    std::vector<StretchComponent> all = stretch_components(network_, settings_.kinds);
+    std::vector<StretchComponent> all = all_components(joined_);
     for (const SolvedComponent& component : components_) {
       impulses_.push_back(std::make_unique<ComponentImpulses>(std::move(all[component.number]), settings_));
     }
   }
   for (std::size_t p = 0; p < components_.size(); ++p) {
-    if (components_[p].is_solved(handovers)) impulses_[p]->record(target, positions, recorder);
+    if (components_[p].is_solved(handovers) && components_[p].with_rods == nullptr)
+      impulses_[p]->record(target, positions, recorder);
   }
 }
 

@@ -1,16 +1,19 @@
 // The stretch limit by global solves.
 #pragma once
 
+#include "dynamics/constraints/rod_row.h"
 #include "dynamics/tethers/stretch_limit_settings.h"
 #include "network/model/simulation_state.h"
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace sprung {
 
 class ComponentImpulses;
+class ComponentNewton;
 class ComponentSolver;
 struct StretchComponent;
 
@@ -34,6 +37,12 @@ class StretchNewton {
   std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers = {},
                            const ImpulseRecorder& recorder = {});
 
+  /// The same with rods, which join components: a body that hangs on a rope is part of its load. Such components are solved for
+  /// from the start, unless springs may not shrink freely. Bodies that are left to passes take part with the particles of rods
+  /// alone. Adds what the solve pushed on the first ends of rods to `pushes`, one per rod [kg m].
+  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers,
+                           std::span<const RodRow> rods, std::vector<Vector3>& pushes, const ImpulseRecorder& recorder);
+
   /// Whether all limited springs of a body are solved for from the start.
   [[nodiscard]] bool solves(const Body& body) const;
   /// Whether any component is or may be solved for.
@@ -52,6 +61,7 @@ class StretchNewton {
   /// A component that is or may be solved for.
   struct SolvedComponent {
     std::unique_ptr<ComponentSolver> solver;
+    ComponentNewton* with_rods;  ///< the same, if the component has rods
     std::size_t body;
     bool from_start;
     std::size_t number;  ///< of the component among all of the network
@@ -61,14 +71,19 @@ class StretchNewton {
     }
   };
 
+  void make_components(std::span<const RodRow> rods);
+  [[nodiscard]] std::vector<StretchComponent> all_components(std::span<const RodRow> rods) const;
+  void join(std::span<const RodRow> rods);
   void record(const Points& target, const Points& positions, const std::vector<StretchHandover>& handovers,
               const ImpulseRecorder& recorder);
 
   const SpringNetwork& network_;
   StretchLimitSettings settings_;
+  LimitUse use_;
 
   std::vector<SolvedComponent> components_;
   std::vector<std::unique_ptr<ComponentImpulses>> impulses_;  ///< of the components; empty until something is recorded
+  std::vector<RodRow> joined_;                                ///< the rods that join the present components
   std::vector<Index> left_;                                   ///< particles that are not solved for from the start, ascending
 };
 

@@ -5,6 +5,7 @@
 #include "dynamics/stretch_newton/stretch_component.h"
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace sprung {
@@ -12,10 +13,12 @@ namespace sprung {
 /// (M + K) dx = residual. M holds the masses of free points. K holds the block of each link, added at its ends and subtracted
 /// between them. Pinned points do not move.
 struct StretchSystem {
-  std::vector<SymmetricMatrix3> blocks;  ///< of links, positive semidefinite [kg]
-  Points residual;                       ///< imbalance at free points [kg m], 3 x free
-  bool is_like_last = false;             ///< the previous system was similar: its factor may be reused,
-  double may_be_left = 0.0;              ///< and a solution may leave this much unused energy [kg m^2]
+  std::vector<SymmetricMatrix3> blocks;   ///< of links, positive semidefinite [kg]
+  std::vector<SymmetricMatrix3> of_rods;  ///< of rods: w_j w_k times the block couples the points j and k of weights w [kg]
+  std::span<const RodRow> rows;           ///< by number of a rod
+  Points residual;                        ///< imbalance at free points [kg m], 3 x free
+  bool is_like_last = false;              ///< the previous system was similar: its factor may be reused,
+  double may_be_left = 0.0;               ///< and a solution may leave this much unused energy [kg m^2]
 };
 
 class StretchSystemSolver {

@@ -110,15 +110,22 @@ void StepConstraints::project(SimulationState& state, const Forces& forces, Step
   make_passes(state, report);
 }
 
+std::optional<int> StepConstraints::solve_limit(SimulationState& state) {
+  const double fall = steady_acceleration_ * dt_ * dt_;
+  if (!rods_) return limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers, recorder_);
+  std::vector<Vector3> pushes(rods_->rows().size(), Vector3::Zero());
+  const std::optional<int> solves =
+      limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers, rods_->rows(), pushes, recorder_);
+  rods_->add_pushes(pushes);
+  return solves;
+}
+
 // Contact comes before the limit in each pass. Where they disagree, the last one is satisfied and the other is violated by the
 // motion of one pass. The limit's motion is within the gap, of which truncation leaves half. In the reverse order, a cloth that
 // hangs over a tip would stretch by the same amount, which in few passes is a fifth of its length and more.
 void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
   const bool projects = projects_contacts();
-  const double fall = steady_acceleration_ * dt_ * dt_;
-  const std::optional<int> solves = limit_ && !repeats_
-                                        ? limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers, recorder_)
-                                        : std::nullopt;
+  const std::optional<int> solves = limit_ && !repeats_ ? solve_limit(state) : std::nullopt;
   report.limit_solves = solves.value_or(0);
   const int limit_passes = limit_ ? limit_->settings().iterations + (solves ? 1 : 0) : 0;  // the first after a solve only measures
   const int passes = std::max(limit_passes, constraint_passes());

@@ -1,6 +1,7 @@
 // The constraints of a step after forces have advanced the state: contact, the stretch limit, other constraints, and truncation.
 #pragma once
 
+#include "dynamics/attachments/rods.h"
 #include "dynamics/constraints/constraint.h"
 #include "dynamics/contact/contact_projection.h"
 #include "dynamics/integrators/integrator.h"
@@ -35,6 +36,12 @@ class StepConstraints {
   /// Adds a constraint that passes restore in each step.
   void add(std::shared_ptr<Constraint> constraint) { constraints_.push_back(std::move(constraint)); }
 
+  /// Adds rods, for which the global solve of the stretch limit solves too.
+  void add_rods(std::shared_ptr<Rods> rods) {
+    constraints_.push_back(rods);
+    rods_ = std::move(rods);
+  }
+
   /// Projects the advanced state onto contact, constraints and the stretch limit, truncates it, and recovers the velocities at the
   /// end of the step of `dt` [s], which ends at `time` [s]. Adds counts and the remaining stretch to the report. Requires begin(),
   /// and that the environment's interval is the step's.
@@ -58,6 +65,7 @@ class StepConstraints {
 
  private:
   void project(SimulationState& state, const Forces& forces, StepReport& report);
+  [[nodiscard]] std::optional<int> solve_limit(SimulationState& state);
   void make_passes(SimulationState& state, StepReport& report);
   void respond_to_contact(SimulationState& state, const Forces& forces);
   void truncate(SimulationState& state, const Forces& forces, StepReport& report);
@@ -76,6 +84,7 @@ class StepConstraints {
   std::optional<StretchLimit> limit_;
   ContactProjection contacts_;
   Constraints constraints_;
+  std::shared_ptr<Rods> rods_;  ///< one of them; none without attachments
 
   // State of the present step.
   Points before_;                      ///< positions at the beginning; for contact, or if the integrator does not keep them
