@@ -73,7 +73,7 @@ if build_preset $total release; then
     seed=$(od -An -N4 -tu4 /dev/urandom | tr -d ' ')
     log=$logs/seed_$seed.txt
     SPRUNG_TEST_SEED=$seed until_second $total ctest --preset release --parallel "$(nproc)" \
-      --tests-regex '^(RandomScenes|PairSeparation)\.' > "$log" 2>&1
+      --tests-regex '^(RandomScenes|RandomLoads|PairSeparation)\.' > "$log" 2>&1
     code=$?
     if [[ $code -eq 0 ]]; then rm "$log"; fi
     if [[ $code -ne 124 && $code -ne 125 ]]; then seeds=$((seeds + 1)); fi

@@ -32,8 +32,13 @@ constexpr double kForecastOfChains = 1.0e-4;
 constexpr double kForecastOfCloths = 0.1;
 constexpr double kForecastOfElasticCloths = 1.0e-3;
 
-// Heavy bodies hang on light ones: most of the energy is that of the heavy ones.
-constexpr double kForecastWithRods = 1.0e-6;
+// A heavy body that falls into a slack rope brings several times its weight, on few links. With a tenth of this, five crates
+// stretched a rope by 5 % beyond its limit and bounced.
+constexpr double kLoadWithRods = 10.0;
+
+// Heavy bodies hang on light ones, and the inertia term of a moving body is larger than that of its weight by the square of its
+// speed over that which it gains in a step. With 1e-6 the recorded forces of a swinging hammock missed its weight by 2 %.
+constexpr double kForecastWithRods = 1.0e-8;
 
 // A corrected step sometimes matches its forecast by chance.
 constexpr double kCorrectedFraction = 0.3;
@@ -156,8 +161,9 @@ Vector3 ComponentNewton::common_move() const {
 // a swing than it stores: with a stiffness as large as the masses it stops the swing within a step.
 double ComponentNewton::link_load(double fall) const {
   const double inwards = extent_ > 0.0 ? farthest_squared_ / extent_ : 0.0;
-  return std::max(mass_, component_.carried_mass) / std::max(component_.pin_count(), Index{1}) *
-         std::max({fall, inwards, energy_.give(), fall + inwards > 0.0 ? 0.0 : most_beyond()});
+  const double displacement = std::max({fall, inwards, energy_.give(), fall + inwards > 0.0 ? 0.0 : most_beyond()});
+  if (!component_.rods.empty()) return kLoadWithRods * component_.carried_mass * displacement;
+  return mass_ / std::max(component_.pin_count(), Index{1}) * displacement;
 }
 
 double ComponentNewton::turn() const { return extent_ > 0.0 ? std::sqrt(farthest_squared_) / extent_ : 0.0; }
@@ -185,8 +191,9 @@ int ComponentNewton::minimise(double energy_at_target) {
   if (target_shift() <= negligible && std::abs(energy - balanced_energy_) <= negligible) return 0;
   const bool is_calm = last_iterations_ <= 1 && turn() <= kCalmTurn;
   const double close = close_enough(component_);
-  // Links near their limit will mostly reach it. If they were slack at first, each iteration would add only a few of them.
-  double modelled = energy_.linearise(x_, target_, NearLimit::pushing, system_);
+  // Links near their limit will mostly reach it. If they were slack at first, each iteration would add only a few of them. With
+  // rods most links that carry a load are beyond their limit at the beginning of the step, and others would only be in the way.
+  double modelled = energy_.linearise(x_, target_, component_.rods.empty() ? NearLimit::pushing : NearLimit::slack, system_);
   bool is_too_stiff = false;
   energy_.forget_overshot();
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
