@@ -32,6 +32,7 @@ RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int thre
           .threads = threads,
           .stretch_solver = loaded.simulator.stretch_solver(),
           .seed = settings.perturb ? std::optional(settings.seed) : std::nullopt,
+          .adjustments = loaded.adjustments,
           .warnings = loaded.warnings,
           .sources = loaded.sources,
           .scene_file = loaded.scene.file.filename().string(),
@@ -46,6 +47,7 @@ void announce(const LoadedScene& loaded) {
   print_message(fmt::format("{}: {} of {}, {}, {}, {}", loaded.scene.file.string(), counted(loaded.frames, "frame"),
                             describe_steps(loaded), counted(network.particle_count(), "particle"),
                             counted(network.springs.count(), "spring"), counted(obstacles, "obstacle")));
+  for (const StepAdjustment& adjustment : loaded.adjustments) print_message(describe(adjustment));
   for (const std::string& note : loaded.simulator.notes()) print_message(note);
   for (const std::string& warning : loaded.warnings) print_warning(warning);
 }

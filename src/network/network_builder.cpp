@@ -187,11 +187,26 @@ SpringNetwork NetworkBuilder::build() const {
     append_sorted(network.springs, draft.shape.springs, draft.first_particle);
     const Index first_bend = network.angle_bends.count();
     append_angle_bends(network.angle_bends, draft.shape.angle_bends, draft.first_particle);
-    network.bodies.push_back({draft.name, draft.first_particle, static_cast<Index>(draft.shape.positions.size()), first_spring,
-                              network.springs.count() - first_spring, first_bend, network.angle_bends.count() - first_bend,
-                              draft.shape.dimension, draft.shape.measure, draft.shape.resolution, draft.shape.surface,
-                              draft.material, draft.contact, draft.shape.stretch_limited, draft.shape.cells, draft.shape.carried,
-                              draft.shape.preserve_volume, draft.shape.volume_factor, draft.shape.pressure});
+    network.bodies.push_back({draft.name,
+                              draft.first_particle,
+                              static_cast<Index>(draft.shape.positions.size()),
+                              first_spring,
+                              network.springs.count() - first_spring,
+                              first_bend,
+                              network.angle_bends.count() - first_bend,
+                              draft.shape.dimension,
+                              draft.shape.measure,
+                              draft.shape.resolution,
+                              draft.shape.surface,
+                              draft.material,
+                              draft.contact,
+                              draft.shape.stretch_limited,
+                              draft.shape.cells,
+                              draft.shape.carried,
+                              draft.shape.preserve_volume,
+                              draft.shape.volume_factor,
+                              draft.shape.pressure,
+                              draft.shape.has_material_dampers});
   }
   network.inverse_masses = network.masses.cwiseInverse();
   for (const Pin& pin : pins) network.pin_names.push_back(pin.name);

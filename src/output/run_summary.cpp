@@ -14,6 +14,17 @@ const std::string kProgram = "sprung";
 // Frame 1 is the state at time 0.
 constexpr std::int64_t kFirstComputedFrame = 2;
 
+Json json_of(const StepAdjustment& adjustment) {
+  const auto coordinates = [](const Vector3& point) { return Json::array({point.x(), point.y(), point.z()}); };
+  return {{"body", adjustment.body},
+          {"softened_springs", adjustment.softened},
+          {"least_stiffness", adjustment.least_factor},
+          {"heavier_particles", adjustment.heavier},
+          {"added_mass", adjustment.added_mass},
+          {"worst_edge", {coordinates(adjustment.from), coordinates(adjustment.to)}},
+          {"length", adjustment.length}};
+}
+
 bool is_run_summary(const Json& json) {
   if (!json.is_object() || json.value("program", Json()) != kProgram || !json.contains("files")) return false;
   const Json& files = json["files"];
@@ -52,10 +63,12 @@ RunSummary::RunSummary(const RunFacts& facts, double step, const std::vector<std
                      {"limit_solves", 0},
                      {"torn_faces", Json::array()},
                      {"broken_attachments", Json::array()},
+                     {"step_adjustments", Json::array()},
                      {"warnings", facts.warnings},
                      {"record", Json()},
                      {"files", files},
                      {"scene", facts.scene.empty() ? Json() : Json::parse(facts.scene)}};
+  for (const StepAdjustment& adjustment : facts.adjustments) document_->json["step_adjustments"].push_back(json_of(adjustment));
 }
 
 RunSummary::~RunSummary() = default;

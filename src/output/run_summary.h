@@ -3,6 +3,7 @@
 
 #include "base/types.h"
 #include "geometry/obj_source/obj_source.h"
+#include "network/step_adjustment.h"
 #include "output/record/recorded_model.h"
 
 #include <cstdint>
@@ -28,6 +29,7 @@ struct RunFacts {
   int threads = 1;
   std::string stretch_solver{};         ///< of the stretch limit; empty without one
   std::optional<std::uint64_t> seed{};  ///< of random pushes; none without them
+  std::vector<StepAdjustment> adjustments{};
   std::vector<std::string> warnings{};
   ObjSources sources{};       ///< of bodies that are written as their files are
   std::string scene_file{};   ///< name of the scene's file, without its folders; empty if there is none

@@ -47,6 +47,7 @@ LoadedScene load(const SceneSource& source) {
                      .largest_stable_step = built.largest_stable_step,
                      .meshes = std::move(built.meshes),
                      .sources = std::move(built.sources),
+                     .adjustments = std::move(built.adjustments),
                      .warnings = {}};
   add_new(loaded.warnings, built.warnings);
   add_new(loaded.warnings, loaded.simulator.warnings());

@@ -28,8 +28,9 @@ struct LoadedScene {
   int steps_per_frame = 1;
   double largest_stable_step = 0.0;  ///< [s]; infinity without a bound
   std::vector<NamedReport> meshes;
-  ObjSources sources;                 ///< the files of bodies
-  std::vector<std::string> warnings;  ///< without duplicates
+  ObjSources sources;                       ///< the files of bodies
+  std::vector<StepAdjustment> adjustments;  ///< of bodies that were adjusted for larger steps
+  std::vector<std::string> warnings;        ///< without duplicates
 };
 
 /// Throws FileError if the scene cannot be read, and InputError with every problem, each with its file.

@@ -4,6 +4,7 @@
 #include "dynamics/constraints/carried_surface.h"
 #include "dynamics/constraints/cell_volume.h"
 #include "dynamics/constraints/enclosed_volume.h"
+#include "dynamics/forces/material_dampers.h"
 #include "dynamics/forces/shared_force.h"
 #include "network/model/pin_schedule.h"
 #include "network/model/sleeping_particles.h"
@@ -45,7 +46,8 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       external(std::move(added)),
       bounds(simulation_bounds(network, settings, !environment.obstacles().empty(), external.forces)),
       warnings(check_step(settings, bounds)),
-      forces(network_forces(network, settings)),
+      forces(
+          network_forces(network, settings, splits_dampers(settings, bounds) ? MaterialDampers::apart : MaterialDampers::within)),
       integrator(make_integrator(settings.integrator, network)),
       constraints(network, settings, steady_acceleration(network, settings), environment, *integrator),
       pin_paths(network, environment.obstacles(), settings.step),
@@ -67,6 +69,10 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   if (!network.attachments.empty()) {
     const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
     attachments.emplace(network, environment, settings.step, implicit);
+  }
+  if (splits_dampers(settings, bounds)) {
+    const double most = most_damping_rate(settings.step);
+    integrator->set_dampers(material_dampers(network, most), std::min(most, bounds.material_damping));
   }
   add_forces();
   add_constraints();

@@ -88,6 +88,7 @@ inline constexpr const char* kFullScene = R"({
   "duration": 4.0,
   "frame_rate": 30,
   "step": 0.0003333333333333333,
+  "mass_scaling": 0.125,
   "gravity": [0, -9.81, 0.5],
   "air": { "drag": 0.25, "surface": { "normal": 1.25, "tangential": 0.02, "quadratic": true },
            "wind": { "keyframes": [ { "time": 0, "velocity": [1, 0, -2] }, { "time": 2, "velocity": [5, 0, 0] } ] },

@@ -1,6 +1,7 @@
 #include "dynamics/forces/bending_angle_force.h"
 
 #include "base/parallel.h"
+#include "dynamics/forces/material_dampers.h"
 
 #include <algorithm>
 #include <array>
@@ -32,18 +33,17 @@ struct Bend {
         b(x.col(bends.after[element]) - x.col(bends.middle[element])),
         normal(a.cross(b)),
         sine(normal.norm()),
-        angle(std::atan2(sine, a.dot(b))),
         full_a(fullness_of(a, bends.length_before[element])),
         full_b(fullness_of(b, bends.length_after[element])) {}
 
+  [[nodiscard]] double angle() const { return std::atan2(sine, a.dot(b)); }
   [[nodiscard]] double fullness() const { return full_a.value * full_b.value; }
-  [[nodiscard]] double energy(double stiffness) const { return 0.5 * stiffness * angle * angle * fullness(); }
+  [[nodiscard]] double energy(double stiffness) const { return 0.5 * stiffness * angle() * angle() * fullness(); }
 
   Vector3 a;
   Vector3 b;
   Vector3 normal;
   double sine;  ///< |a| |b| sin(angle)
-  double angle;
   Fullness full_a;
   Fullness full_b;
 };
@@ -59,20 +59,34 @@ std::array<Index, 3> particles_of(const AngleBends& bends, Index element) {
   return {bends.before[element], bends.middle[element], bends.after[element]};
 }
 
+struct BendConstants {
+  double stiffness;
+  double damping;
+  bool bounds_damping;
+};
+
+// The gradient of the angle grows with 1 / length.
+double shortness(const Vector3& bond, double rest_length) {
+  return std::min(1.0, bond.squaredNorm() / (rest_length * rest_length));
+}
+
 /// Forces on before and after; the force on the middle is minus their sum.
-std::array<Vector3, 2> bend_forces(const AngleBends& bends, Index element, const Kinematics& at) {
+std::array<Vector3, 2> bend_forces(const AngleBends& bends, Index element, const BendConstants& constants, const Kinematics& at) {
+  const auto [stiffness, damping, bounds_damping] = constants;
   const Bend bend(bends, element, at.x);
   if (!(bend.sine > 0.0)) return {Vector3::Zero(), Vector3::Zero()};
   const auto [turn_before, turn_middle, turn_after] = turns(bend);
-  const double stiffness = bends.stiffness[element];
-  const double damping = bends.damping[element];
-  double moment = stiffness * bend.angle;
+  const double angle = stiffness > 0.0 ? bend.angle() : 0.0;
+  double moment = stiffness * angle;
   if (damping > 0.0) {
     const Vector3 v = at.v.col(bends.middle[element]);
-    moment += damping * (turn_before.dot(at.v.col(bends.before[element]) - v) + turn_after.dot(at.v.col(bends.after[element]) - v));
+    const double share =
+        bounds_damping ? shortness(bend.a, bends.length_before[element]) * shortness(bend.b, bends.length_after[element]) : 1.0;
+    moment += share * damping *
+              (turn_before.dot(at.v.col(bends.before[element]) - v) + turn_after.dot(at.v.col(bends.after[element]) - v));
   }
   moment *= bend.fullness();
-  const double half = 0.5 * stiffness * bend.angle * bend.angle;
+  const double half = 0.5 * stiffness * angle * angle;
   return {half * bend.full_b.value * bend.full_a.slope * bend.a - moment * turn_before,
           -half * bend.full_a.value * bend.full_b.slope * bend.b - moment * turn_after};
 }
@@ -95,11 +109,25 @@ void add_products(const std::array<Index, 3>& particles, const std::array<Vector
 }  // namespace
 
 BendingAngleForce::BendingAngleForce(const SpringNetwork& network)
-    : network_(network), blocks_(network.particle_count() / kParticleBlock + 1) {
-  const AngleBends& bends = network.angle_bends;
+    : network_(network), stiffness_(network.angle_bends.stiffness), damping_(network.angle_bends.damping) {
+  assign_blocks();
+}
+
+BendingAngleForce::BendingAngleForce(const SpringNetwork& network, ElementConstants constants)
+    : network_(network),
+      own_(std::make_unique<ElementConstants>(std::move(constants))),
+      stiffness_(own_->stiffness),
+      damping_(own_->damping) {
+  assign_blocks();
+}
+
+void BendingAngleForce::assign_blocks() {
+  blocks_.resize(network_.particle_count() / kParticleBlock + 1);
+  const AngleBends& bends = network_.angle_bends;
   for (Index element = 0; element < bends.count(); ++element) {
     const std::array<Index, 3> particles = particles_of(bends, element);
-    if (std::ranges::all_of(particles, [&](Index i) { return network.is_asleep(i); })) continue;
+    if (std::ranges::all_of(particles, [&](Index i) { return network_.is_asleep(i); })) continue;
+    if (own_ != nullptr && stiffness_[element] == 0.0 && damping_[element] == 0.0) continue;
     for (const Index particle : particles) {
       std::vector<Index>& block = blocks_[particle / kParticleBlock];
       if (block.empty() || block.back() != element) block.push_back(element);
@@ -109,13 +137,15 @@ BendingAngleForce::BendingAngleForce(const SpringNetwork& network)
 
 void BendingAngleForce::add(const Kinematics& at, Points& forces) const {
   const AngleBends& bends = network_.angle_bends;
+  const bool bounds_damping = own_ != nullptr && own_->bounds_damping;
   parallel_chunks(static_cast<Index>(blocks_.size()), 1, [&](Index begin, Index end) {
     for (Index block = begin; block < end; ++block) {
       const auto add_to = [&](Index particle, const Vector3& force) {
         if (particle / kParticleBlock == block) forces.col(particle) += force;
       };
       for (const Index element : blocks_[block]) {
-        const auto [on_before, on_after] = bend_forces(bends, element, at);
+        const auto [on_before, on_after] =
+            bend_forces(bends, element, {stiffness_[element], damping_[element], bounds_damping}, at);
         add_to(bends.before[element], on_before);
         add_to(bends.middle[element], -(on_before + on_after));
         add_to(bends.after[element], on_after);
@@ -136,19 +166,19 @@ void BendingAngleForce::add_derivatives(const Kinematics& at, ForceDerivatives& 
   for (Index element = 0; element < bends.count(); ++element) {
     const Bend bend(bends, element, at.x);
     const std::array<Index, 3> particles = particles_of(bends, element);
-    const double stiffness = bends.stiffness[element] * bend.fullness();
-    if (!(stiffness > 0.0) && !(bends.damping[element] > 0.0)) continue;
+    const double stiffness = stiffness_[element] * bend.fullness();
+    if (!(stiffness > 0.0) && !(damping_[element] > 0.0)) continue;
     const double per_a = 1.0 / bend.a.norm();
     const double per_b = 1.0 / bend.b.norm();
     if (!std::isfinite(per_a) || !std::isfinite(per_b)) continue;
     const std::array<double, 3> across{per_a, -per_a - per_b, per_b};
     if (bend.sine > 0.0) {
       const Vector3 normal = bend.normal / bend.sine;
-      const double half = 0.5 * bend.angle;
+      const double half = 0.5 * bend.angle();
       add_products(particles, turns(bend), stiffness, derivatives.by_position);
       add_products(particles, across, (stiffness * half / std::tan(half)) * normal * normal.transpose(), derivatives.by_position);
-      add_products(particles, turns(bend), bends.damping[element] * bend.fullness(), derivatives.by_velocity);
-    } else if (bend.angle == 0.0) {
+      add_products(particles, turns(bend), damping_[element] * bend.fullness(), derivatives.by_velocity);
+    } else if (bend.angle() == 0.0) {
       const Vector3 along = per_a * bend.a;
       add_products(particles, across, stiffness * (Matrix3::Identity() - along * along.transpose()), derivatives.by_position);
     }
@@ -157,24 +187,25 @@ void BendingAngleForce::add_derivatives(const Kinematics& at, ForceDerivatives& 
 
 void BendingAngleForce::append_elements(std::vector<LinearElement>& elements) const {
   const AngleBends& bends = network_.angle_bends;
+  const std::size_t begin = elements.size();
   for (Index e = 0; e < bends.count(); ++e) {
     const double before = 1.0 / bends.length_before[e];
     const double after = 1.0 / bends.length_after[e];
-    elements.push_back({particles_of(bends, e), {before, -(before + after), after}, bends.stiffness[e], bends.damping[e]});
+    elements.push_back({particles_of(bends, e), {before, -(before + after), after}, stiffness_[e], damping_[e]});
   }
+  for_material_bends(network_, [&](Index e) { elements[begin + static_cast<std::size_t>(e)].of_material = true; });
 }
 
 double BendingAngleForce::capacity() const {
   double energy = 0.0;
-  for (const double k : network_.angle_bends.stiffness) energy += 0.5 * k * std::numbers::pi * std::numbers::pi;
+  for (const double k : stiffness_) energy += 0.5 * k * std::numbers::pi * std::numbers::pi;
   return energy;
 }
 
 double BendingAngleForce::energy(const Points& positions) const {
   const AngleBends& bends = network_.angle_bends;
   double energy = 0.0;
-  for (Index element = 0; element < bends.count(); ++element)
-    energy += Bend(bends, element, positions).energy(bends.stiffness[element]);
+  for (Index element = 0; element < bends.count(); ++element) energy += Bend(bends, element, positions).energy(stiffness_[element]);
   return energy;
 }
 

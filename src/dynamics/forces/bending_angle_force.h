@@ -9,9 +9,11 @@
 // that forces stay bounded where bonds collapse. Where n is 0, in line or folded back, no direction is preferred: no force.
 #pragma once
 
+#include "dynamics/forces/element_constants.h"
 #include "dynamics/forces/force.h"
 #include "network/model/spring_network.h"
 
+#include <memory>
 #include <vector>
 
 namespace sprung {
@@ -20,6 +22,8 @@ class BendingAngleForce final : public Force {
  public:
   /// Keeps a reference to the network.
   explicit BendingAngleForce(const SpringNetwork& network);
+  /// With these constants in place of those of the network's angle bends.
+  BendingAngleForce(const SpringNetwork& network, ElementConstants constants);
 
   [[nodiscard]] std::string name() const override { return "angle bends"; }
   void add(const Kinematics& at, Points& forces) const override;
@@ -40,7 +44,12 @@ class BendingAngleForce final : public Force {
   [[nodiscard]] double capacity() const override;
 
  private:
+  void assign_blocks();
+
   const SpringNetwork& network_;
+  std::unique_ptr<const ElementConstants> own_;  ///< null: those of the network
+  const std::vector<double>& stiffness_;         ///< k and damping of each element
+  const std::vector<double>& damping_;
   std::vector<std::vector<Index>> blocks_;  ///< elements that touch each block of particles
 };
 

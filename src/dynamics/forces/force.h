@@ -31,6 +31,8 @@ struct LinearElement {
   std::array<double, 3> weights{};
   double stiffness = 0.0;  ///< k [N/m] for weights without a unit
   double damping = 0.0;    ///< c [N s/m]
+  /// Whether the damper is that of a material: see Body::has_material_dampers.
+  bool of_material = false;
 
   /// On the position of one particle.
   [[nodiscard]] static LinearElement anchor(Index particle, double stiffness, double damping);

@@ -1,11 +1,13 @@
 #include "dynamics/forces/spring_force.h"
 
 #include "base/parallel.h"
+#include "dynamics/forces/material_dampers.h"
 #include "dynamics/forces/spring_plan.h"
 
 #include <algorithm>
 #include <array>
 #include <span>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -19,7 +21,14 @@ SpringConstant constant_of(const std::vector<double>& values, Index spring, bool
   return {repeated.data(), true};
 }
 
-void add_run(const SpringPlan::Run& run, const Springs& springs, const Kinematics& at, Points& forces) {
+/// The springs of a force, with its constants.
+struct ForceSprings {
+  const Springs& springs;
+  const std::vector<double>& stiffness;
+  const std::vector<double>& damping;
+};
+
+void add_run(const SpringPlan::Run& run, const ForceSprings& of, const Kinematics& at, Points& forces) {
   Repeated rest_length;
   Repeated stiffness;
   Repeated damping;
@@ -30,9 +39,9 @@ void add_run(const SpringPlan::Run& run, const Springs& springs, const Kinematic
                   .force_a = run.writes_first ? forces.col(run.first).data() : nullptr,
                   .force_b = run.writes_second ? forces.col(run.second).data() : nullptr,
                   .count = run.count},
-                 {.rest_length = constant_of(springs.rest_length, run.spring, run.same_rest_length, rest_length),
-                  .stiffness = constant_of(springs.stiffness, run.spring, run.same_stiffness, stiffness),
-                  .damping = constant_of(springs.damping, run.spring, run.same_damping, damping),
+                 {.rest_length = constant_of(of.springs.rest_length, run.spring, run.same_rest_length, rest_length),
+                  .stiffness = constant_of(of.stiffness, run.spring, run.same_stiffness, stiffness),
+                  .damping = constant_of(of.damping, run.spring, run.same_damping, damping),
                   .tension_only = run.tension_only});
 }
 
@@ -45,14 +54,14 @@ struct GatheredBatch {
   std::array<double, kSpringBatch> stiffness{};
   std::array<double, kSpringBatch> damping{};
 
-  void gather(std::span<const SpringPlan::Single> singles, const Springs& springs, const Kinematics& at) {
+  void gather(std::span<const SpringPlan::Single> singles, const ForceSprings& of, const Kinematics& at) {
     for (Index i = 0; i < static_cast<Index>(singles.size()); ++i) {
       const SpringPlan::Single& single = singles[i];
       difference.col(i) = at.x.col(single.first) - at.x.col(single.second);
       velocity.col(i) = at.v.col(single.first) - at.v.col(single.second);
-      rest_length[i] = springs.rest_length[single.spring];
-      stiffness[i] = springs.stiffness[single.spring];
-      damping[i] = springs.damping[single.spring];
+      rest_length[i] = of.springs.rest_length[single.spring];
+      stiffness[i] = of.stiffness[single.spring];
+      damping[i] = of.damping[single.spring];
     }
   }
 
@@ -64,13 +73,13 @@ struct GatheredBatch {
   }
 };
 
-void add_singles(const std::vector<SpringPlan::Single>& all, bool tension_only, const Springs& springs, const Kinematics& at,
+void add_singles(const std::vector<SpringPlan::Single>& all, bool tension_only, const ForceSprings& of, const Kinematics& at,
                  Points& forces) {
   GatheredBatch batch;
   for (std::size_t begin = 0; begin < all.size(); begin += kSpringBatch) {
     const std::size_t count = std::min<std::size_t>(kSpringBatch, all.size() - begin);
     const std::span<const SpringPlan::Single> singles(&all[begin], count);
-    batch.gather(singles, springs, at);
+    batch.gather(singles, of, at);
     const auto lanes = static_cast<Index>((count + kSimdWidth - 1) / kSimdWidth * kSimdWidth);
     differences_to_forces(batch.difference.data(), batch.velocity.data(), lanes,
                           {.rest_length = {batch.rest_length.data(), false},
@@ -90,18 +99,29 @@ double transverse_ratio(double length, double rest_length) {
 
 }  // namespace
 
-SpringForce::SpringForce(const SpringNetwork& network) : network_(network), plan_(std::make_unique<SpringPlan>(network)) {}
+SpringForce::SpringForce(const SpringNetwork& network)
+    : network_(network),
+      stiffness_(network.springs.stiffness),
+      damping_(network.springs.damping),
+      plan_(std::make_unique<SpringPlan>(network, stiffness_, damping_)) {}
+SpringForce::SpringForce(const SpringNetwork& network, ElementConstants constants)
+    : network_(network),
+      own_(std::make_unique<ElementConstants>(std::move(constants))),
+      stiffness_(own_->stiffness),
+      damping_(own_->damping),
+      plan_(std::make_unique<SpringPlan>(network, stiffness_, damping_)) {}
 SpringForce::~SpringForce() = default;
 
 // There are no springs with stiffness or damping.
 bool SpringForce::is_constant() const { return plan_->blocks.empty(); }
 
 void SpringForce::add(const Kinematics& at, Points& forces) const {
+  const ForceSprings springs{network_.springs, stiffness_, damping_};
   parallel_chunks(static_cast<Index>(plan_->blocks.size()), 1, [&](Index begin, Index end) {
     for (Index b = begin; b < end; ++b) {
-      for (const SpringPlan::Run& run : plan_->blocks[b].runs) add_run(run, network_.springs, at, forces);
-      add_singles(plan_->blocks[b].singles, false, network_.springs, at, forces);
-      add_singles(plan_->blocks[b].tension_only_singles, true, network_.springs, at, forces);
+      for (const SpringPlan::Run& run : plan_->blocks[b].runs) add_run(run, springs, at, forces);
+      add_singles(plan_->blocks[b].singles, false, springs, at, forces);
+      add_singles(plan_->blocks[b].tension_only_singles, true, springs, at, forces);
     }
   });
 }
@@ -122,23 +142,25 @@ void SpringForce::add_derivatives(const Kinematics& at, ForceDerivatives& deriva
     const Vector3 e = length > 0.0 ? Vector3(difference / length) : Vector3(Vector3::Zero());
     const Matrix3 along = e * e.transpose();
     const Matrix3 across = transverse_ratio(length, springs.rest_length[s]) * (Matrix3::Identity() - along);
-    derivatives.by_position.add_difference(a, b, -springs.stiffness[s] * (along + across));
-    if (springs.damping[s] > 0.0) derivatives.by_velocity.add_difference(a, b, -springs.damping[s] * along);
+    derivatives.by_position.add_difference(a, b, -stiffness_[s] * (along + across));
+    if (damping_[s] > 0.0) derivatives.by_velocity.add_difference(a, b, -damping_[s] * along);
   }
 }
 
 void SpringForce::append_elements(std::vector<LinearElement>& elements) const {
   const Springs& springs = network_.springs;
+  const std::size_t begin = elements.size();
   for (Index s = 0; s < springs.count(); ++s) {
-    elements.push_back(LinearElement::pair(springs.first[s], springs.second[s], springs.stiffness[s], springs.damping[s]));
+    elements.push_back(LinearElement::pair(springs.first[s], springs.second[s], stiffness_[s], damping_[s]));
   }
+  for_material_springs(network_, [&](Index s) { elements[begin + static_cast<std::size_t>(s)].of_material = true; });
 }
 
 double SpringForce::capacity() const {
   const Springs& springs = network_.springs;
   double energy = 0.0;
   for (Index s = 0; s < springs.count(); ++s) {
-    energy += 0.5 * springs.stiffness[s] * springs.rest_length[s] * springs.rest_length[s];
+    energy += 0.5 * stiffness_[s] * springs.rest_length[s] * springs.rest_length[s];
   }
   return energy;
 }
@@ -149,7 +171,7 @@ double SpringForce::energy(const Points& positions) const {
   for (Index s = 0; s < springs.count(); ++s) {
     const double stretch = (positions.col(springs.first[s]) - positions.col(springs.second[s])).norm() - springs.rest_length[s];
     if (stretch <= 0.0 && springs.law(s).tension_only) continue;
-    energy += 0.5 * springs.stiffness[s] * stretch * stretch;
+    energy += 0.5 * stiffness_[s] * stretch * stretch;
   }
   return energy;
 }

@@ -7,6 +7,7 @@
 // spring is tension_only.
 #pragma once
 
+#include "dynamics/forces/element_constants.h"
 #include "dynamics/forces/force.h"
 #include "network/model/spring_network.h"
 
@@ -20,6 +21,8 @@ class SpringForce final : public Force {
  public:
   /// Keeps a reference to the network. Rest lengths of springs that yield may change later.
   explicit SpringForce(const SpringNetwork& network);
+  /// With these constants in place of those of the network's springs.
+  SpringForce(const SpringNetwork& network, ElementConstants constants);
   ~SpringForce() override;
 
   [[nodiscard]] std::string name() const override { return "springs"; }
@@ -45,6 +48,9 @@ class SpringForce final : public Force {
 
  private:
   const SpringNetwork& network_;
+  std::unique_ptr<const ElementConstants> own_;  ///< null: those of the network
+  const std::vector<double>& stiffness_;         ///< k_s and k_d of each spring
+  const std::vector<double>& damping_;
   std::unique_ptr<const SpringPlan> plan_;
 };
 

@@ -31,12 +31,13 @@ struct Line {
 };
 
 /// Whether each spring moves a particle. Springs of a stretch limit alone have no stiffness and no damping, hence no force.
-std::vector<char> springs_that_pull(const SpringNetwork& network) {
+std::vector<char> springs_that_pull(const SpringNetwork& network, const std::vector<double>& stiffness,
+                                    const std::vector<double>& damping) {
   const Springs& springs = network.springs;
   std::vector<char> pulls;
   for (Index s = 0; s < springs.count(); ++s) {
     const bool sleeps = network.is_asleep(springs.first[s]) && network.is_asleep(springs.second[s]);
-    pulls.push_back(!sleeps && (springs.stiffness[s] > 0.0 || springs.damping[s] > 0.0) ? 1 : 0);
+    pulls.push_back(!sleeps && (stiffness[s] > 0.0 || damping[s] > 0.0) ? 1 : 0);
   }
   return pulls;
 }
@@ -57,8 +58,9 @@ Line line_from(const Springs& springs, const std::vector<char>& pulls, Index spr
 
 class Planner {
  public:
-  Planner(const Springs& springs, Index block_size, std::vector<SpringPlan::Block>& blocks)
-      : springs_(springs), size_(block_size), blocks_(blocks) {}
+  Planner(const Springs& springs, const std::vector<double>& stiffness, const std::vector<double>& damping, Index block_size,
+          std::vector<SpringPlan::Block>& blocks)
+      : springs_(springs), stiffness_(stiffness), damping_(damping), size_(block_size), blocks_(blocks) {}
 
   // Cuts a line where one of its ends enters another block. Each piece then concerns one pair of blocks.
   void add(const Line& line) {
@@ -88,7 +90,7 @@ class Planner {
       const Index spring = section.spring + i;
       block.runs.push_back({section.first + i, section.second + i, spring, count, writes_first, writes_second,
                             all_same(springs_.rest_length, spring, count) && !any_yields(spring, count),
-                            all_same(springs_.stiffness, spring, count), all_same(springs_.damping, spring, count), tension_only});
+                            all_same(stiffness_, spring, count), all_same(damping_, spring, count), tension_only});
       i += count;
     }
   }
@@ -111,17 +113,19 @@ class Planner {
   }
 
   const Springs& springs_;
+  const std::vector<double>& stiffness_;
+  const std::vector<double>& damping_;
   Index size_;
   std::vector<SpringPlan::Block>& blocks_;
 };
 
 }  // namespace
 
-SpringPlan::SpringPlan(const SpringNetwork& network) {
+SpringPlan::SpringPlan(const SpringNetwork& network, const std::vector<double>& stiffness, const std::vector<double>& damping) {
   const Index size = block_size(network.particle_count());
   blocks.resize(network.particle_count() / size + 1);
-  Planner planner(network.springs, size, blocks);
-  const std::vector<char> pulls = springs_that_pull(network);
+  Planner planner(network.springs, stiffness, damping, size, blocks);
+  const std::vector<char> pulls = springs_that_pull(network, stiffness, damping);
   for (Index s = 0; s < network.springs.count();) {
     if (pulls[s] == 0) {
       ++s;

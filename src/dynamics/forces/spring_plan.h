@@ -40,8 +40,8 @@ struct SpringPlan {
     std::vector<Single> tension_only_singles;
   };
 
-  /// Springs without stiffness and damping are left out.
-  explicit SpringPlan(const SpringNetwork& network);
+  /// Springs without stiffness and damping are left out. Both have an entry per spring.
+  SpringPlan(const SpringNetwork& network, const std::vector<double>& stiffness, const std::vector<double>& damping);
 
   std::vector<Block> blocks;  ///< blocks that a spring touches
 };

@@ -27,10 +27,9 @@ class SymplecticEuler final : public Integrator {
   void advance(SimulationState& state, const Forces& forces, double dt) override {
     evaluate(state, forces, dt, total_);
     record(total_, dt, state);
-    for_free_particles(network(), [&](Index i) {
-      state.v.col(i) += dt * network().inverse_masses[i] * total_.col(i);
-      state.x.col(i) += dt * state.v.col(i);
-    });
+    for_free_particles(network(), [&](Index i) { state.v.col(i) += dt * network().inverse_masses[i] * total_.col(i); });
+    dampers().apply(state.x, dt, state);
+    for_free_particles(network(), [&](Index i) { state.x.col(i) += dt * state.v.col(i); });
   }
 
  private:

@@ -5,10 +5,12 @@
 
 #include "dynamics/forces/force.h"
 #include "dynamics/integrators/constrained_directions.h"
+#include "dynamics/integrators/damper_passes.h"
 #include "dynamics/integrators/step_motion.h"
 #include "network/model/spring_network.h"
 
 #include <memory>
+#include <utility>
 #include <variant>
 
 namespace sprung {
@@ -49,8 +51,12 @@ using IntegratorSettings = std::variant<ExplicitEulerSettings, SymplecticEulerSe
 class Integrator {
  public:
   /// Keeps a reference to the network.
-  explicit Integrator(const SpringNetwork& network) : network_(network) {}
+  explicit Integrator(const SpringNetwork& network) : network_(network), dampers_(network) {}
   virtual ~Integrator() = default;
+
+  /// Lets these dampers act at the end of each step, in shorter steps of their own; `rate` as in DamperPasses. They are not among
+  /// the forces of `advance`. Requires a scheme that may_split_dampers().
+  void set_dampers(Forces dampers, double rate) { dampers_.set(std::move(dampers), rate); }
 
   /// Prepares the scheme for the forces of all steps to come. Leaves a state that an integrator of the same scheme advanced as it
   /// is. Default: does nothing.
@@ -99,11 +105,14 @@ class Integrator {
  protected:
   [[nodiscard]] const SpringNetwork& network() const { return network_; }
 
+  [[nodiscard]] DamperPasses& dampers() { return dampers_; }
+
   /// Adds `dt` [s] times the forces [N] on pinned particles to the impulses of the state, if it records them.
   void record(const Points& forces, double dt, SimulationState& state) const;
 
  private:
   const SpringNetwork& network_;
+  DamperPasses dampers_;
 };
 
 /// Keeps a reference to the network.

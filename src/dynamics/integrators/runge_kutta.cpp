@@ -33,6 +33,7 @@ class RungeKutta4 final : public Integrator {
       state.x.col(i) += dt * velocity_.col(i);
       state.v.col(i) += dt * acceleration_.col(i);
     });
+    dampers().apply(state.x, dt, state);
   }
 
  private:

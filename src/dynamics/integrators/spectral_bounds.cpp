@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <utility>
@@ -118,6 +119,13 @@ std::vector<const LinearElement*> hardly_damped(const std::vector<const LinearEl
   return hardly;
 }
 
+/// The elements whose dampers are those of materials, or all others.
+std::vector<const LinearElement*> with_dampers(const std::vector<const LinearElement*>& elements, bool of_material) {
+  std::vector<const LinearElement*> some;
+  std::ranges::copy_if(elements, std::back_inserter(some), [&](const LinearElement* e) { return e->of_material == of_material; });
+  return some;
+}
+
 /// The smallest damping / stiffness [s] of elements with stiffness; 0 if there is none.
 double least_damping_time(const std::vector<const LinearElement*>& elements) {
   double least = kInfinity;
@@ -146,8 +154,10 @@ SpectralBounds spectral_bounds(const std::vector<LinearElement>& all, const Scal
     return largest_eigenvalue(ElementMatrix(of, weight, inverse_masses));
   };
   SpectralBounds bounds{.elastic = largest(elements, &LinearElement::stiffness),
-                        .damping = largest(elements, &LinearElement::damping),
+                        .damping = largest(with_dampers(elements, false), &LinearElement::damping),
+                        .material_damping = largest(with_dampers(elements, true), &LinearElement::damping),
                         .damping_time = least_damping_time(elements)};
+  if (bounds.material_damping > 0.0) bounds.all_damping = largest(elements, &LinearElement::damping);
   const Scalars rates = drag_rates(elements, inverse_masses);
   bounds.least_drag = kInfinity;
   for (Index i = 0; i < inverse_masses.size(); ++i) {
@@ -163,8 +173,13 @@ SpectralBounds spectral_bounds(const std::vector<LinearElement>& all, const Scal
 SpectralBounds quick_bounds(const std::vector<LinearElement>& all, const Scalars& inverse_masses) {
   std::vector<const LinearElement*> elements;
   for (const LinearElement& element : all) elements.push_back(&element);
-  return {.elastic = ElementMatrix(elements, &LinearElement::stiffness, inverse_masses).row_sum_bound(),
-          .damping = ElementMatrix(elements, &LinearElement::damping, inverse_masses).row_sum_bound()};
+  const auto bound = [&](const std::vector<const LinearElement*>& of, Weight weight) {
+    return ElementMatrix(of, weight, inverse_masses).row_sum_bound();
+  };
+  return {.elastic = bound(elements, &LinearElement::stiffness),
+          .damping = bound(with_dampers(elements, false), &LinearElement::damping),
+          .material_damping = bound(with_dampers(elements, true), &LinearElement::damping),
+          .all_damping = bound(elements, &LinearElement::damping)};
 }
 
 }  // namespace sprung

@@ -69,7 +69,19 @@ struct LargestStep {
 }  // namespace
 
 double largest_stable_step(const IntegratorSettings& settings, const SpectralBounds& bounds) {
-  return std::visit(LargestStep{bounds.elastic, bounds.damping}, settings);
+  const double damping = may_split_dampers(settings) ? bounds.damping : with_all_dampers(bounds).damping;
+  return std::visit(LargestStep{bounds.elastic, damping}, settings);
+}
+
+bool may_split_dampers(const IntegratorSettings& settings) {
+  return !std::holds_alternative<ExplicitEulerSettings>(settings) && !std::holds_alternative<ImplicitEulerSettings>(settings);
+}
+
+SpectralBounds with_all_dampers(const SpectralBounds& bounds) {
+  SpectralBounds all = bounds;
+  all.damping = std::max(bounds.damping, bounds.all_damping);
+  all.material_damping = 0.0;
+  return all;
 }
 
 // A period of n steps has omega dt = 2 sin(pi / n).

@@ -10,7 +10,15 @@ namespace sprung {
 /// Velocity Verlet: dt^2 l_K + 2 dt l_D - dt^2 l_D^2 < 4 while dt l_D <= 1, then dt^2 l_K < 3 and dt l_D <
 /// 2. RK4: dt sqrt(l_K) <= 2.828 while dt l_D <= 1.7, then 2.615; and dt l_D <= 2.785. Explicit Euler: the smaller of 2 / omega
 /// and 2 / l_D; below it modes may still grow slowly, see growth_time. Infinity for implicit Euler, and without springs and drag.
+/// Here l_D leaves out the dampers of materials (DamperPasses), except for explicit Euler.
 [[nodiscard]] double largest_stable_step(const IntegratorSettings& settings, const SpectralBounds& bounds);
+
+/// Whether the scheme may integrate the dampers of materials apart from the other forces. Explicit Euler stays as printed, and
+/// implicit Euler is stable with them.
+[[nodiscard]] bool may_split_dampers(const IntegratorSettings& settings);
+
+/// The bounds of a simulation that takes the dampers of materials like all others.
+[[nodiscard]] SpectralBounds with_all_dampers(const SpectralBounds& bounds);
 
 /// The largest step without resonance [s]. Where forces are not linear, as in crumpled springs, leapfrog schemes (symplectic
 /// Euler, Verlet, velocity Verlet) feed energy into motions whose period is three to six steps, the more the fewer the steps. A

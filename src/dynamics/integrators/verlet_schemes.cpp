@@ -71,6 +71,9 @@ class Verlet final : public Integrator {
       advance_verlet(3 * count, step, gains_.col(begin).data(), total_.col(begin).data(), state.x.col(begin).data(),
                      state.x_previous.col(begin).data(), state.v.col(begin).data());
     });
+    if (dampers().empty()) return;
+    dampers().apply(state.x_previous, dt, state);
+    for_free_particles(network(), [&](Index i) { state.x.col(i) = state.x_previous.col(i) + dt * state.v.col(i); });
   }
 
   void recover_velocities(SimulationState& state, const Forces&, const Points& before, const Points&, double dt) override {
@@ -150,6 +153,7 @@ class VelocityVerlet final : public Integrator {
       state.x.col(i) = x_.col(i);
       state.v.col(i) = 0.5 * (state.v.col(i) + v_.col(i) + dt * network().inverse_masses[i] * total_.col(i));
     });
+    dampers().apply(state.x, dt, state);
   }
 
   // Springs must not pull with a stretch that constraints removed (RATTLE, Andersen 1983).

@@ -28,12 +28,13 @@ struct BodyShape {
   std::vector<double> measures;
   /// Per kind of spring, in the order of SpringKind: the damping ratio from which NetworkBuilder computes k_d.
   std::array<std::optional<double>, 3> damping_ratios{};
-  bool stretch_limited = true;     ///< whether the stretch limit applies to its springs
-  Cells cells;                     ///< of solids
-  std::vector<CellPoint> carried;  ///< see Body
-  bool preserve_volume = false;    ///< see Body
-  double volume_factor = 0.0;      ///< see Body
-  double pressure = 0.0;           ///< see Body
+  std::array<bool, 3> has_material_dampers{};  ///< see Body
+  bool stretch_limited = true;                 ///< whether the stretch limit applies to its springs
+  Cells cells;                                 ///< of solids
+  std::vector<CellPoint> carried;              ///< see Body
+  bool preserve_volume = false;                ///< see Body
+  double volume_factor = 0.0;                  ///< see Body
+  double pressure = 0.0;                       ///< see Body
 };
 
 /// Stiffness and damping of one kind of spring.

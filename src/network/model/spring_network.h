@@ -102,6 +102,9 @@ struct Body {
   bool preserve_volume = false;  ///< whether passes keep the volume of the cells
   double volume_factor = 0.0;    ///< of a closed surface: the multiple of its volume at rest that passes keep; 0: none
   double pressure = 0.0;         ///< in a closed surface, along the normals of its triangles [Pa]
+  /// Per kind of spring, in the order of SpringKind; angle bends count as `bend`. Whether the dampers are those of a material: no
+  /// explicit scheme but explicit Euler needs smaller steps because of them.
+  std::array<bool, 3> has_material_dampers{};
 
   /// The number of particles, the first ones, that are vertices of the surface.
   [[nodiscard]] Index vertex_count() const { return carried.empty() ? particle_count : static_cast<Index>(carried.size()); }

@@ -43,16 +43,27 @@ std::vector<BodyScene> valid_bodies(const Scene& scene, const TextProblems& know
   return bodies;
 }
 
+/// Adjusts a body that has a material, so that a few short edges do not bound an automatic step.
+void adjust(const Scene& scene, const BodyScene& body, BodyShape& shape, std::vector<StepAdjustment>& adjustments) {
+  if (scene.step || body.preset.empty() || std::holds_alternative<ImplicitEulerSettings>(scene.settings.integrator)) return;
+  auto adjustment = adjust_for_step(shape, body.preset_mass ? scene.mass_scaling : 0.0);
+  if (!adjustment) return;
+  adjustment->body = body.name;
+  adjustments.push_back(std::move(*adjustment));
+}
+
 void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finder, NetworkBuilder& network,
-              AttachmentResolver& attachments, ObjSources& sources, std::vector<Problem>& problems) {
+              AttachmentResolver& attachments, BuiltScene& into, std::vector<Problem>& problems) {
   auto built = build_body(scene, body, finder, problems);
   if (!built) return;
   const auto& limited = scene.limited_bodies;
+  built->shape.has_material_dampers = body.preset_damps;
+  adjust(scene, body, built->shape, into.adjustments);
   built->shape.stretch_limited = limited.empty() || std::ranges::find(limited, body.name) != limited.end();
   std::vector<Pin> pins = resolve_pins(scene, body, *built, problems);
   const Index first = network.add_body(body.name, built->shape, body.material, body.contact);
   attachments.note_body(body, *built, first);
-  if (built->source) sources[body.name] = std::make_shared<const ObjSource>(std::move(*built->source));
+  if (built->source) into.sources[body.name] = std::make_shared<const ObjSource>(std::move(*built->source));
   for (Pin& pin : pins) {
     for (Index& particle : pin.particles) particle += first;
     network.add_pin(std::move(pin));
@@ -61,13 +72,13 @@ void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finde
 
 /// The network; none if a body or the scene's text has problems.
 std::optional<SpringNetwork> build_network(const Scene& scene, const MeshFinder& finder, const TextProblems& known,
-                                           ObjSources& sources, std::vector<Problem>& problems) {
+                                           BuiltScene& into, std::vector<Problem>& problems) {
   const std::vector<BodyScene> bodies = valid_bodies(scene, known);
   check_memory(bodies, machine_memory(), problems);
   if (!problems.empty()) return std::nullopt;
   NetworkBuilder network;
   AttachmentResolver attachments(scene, known, problems);
-  for (const BodyScene& body : bodies) add_body(scene, body, finder, network, attachments, sources, problems);
+  for (const BodyScene& body : bodies) add_body(scene, body, finder, network, attachments, into, problems);
   attachments.add_to(network);
   if (!problems.empty() || !known.only_unknown_keys) return std::nullopt;
   try {
@@ -170,7 +181,7 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
   std::vector<Problem> problems;
   const MeshFinder finder(scene.file, mesh_paths);
   BuiltScene built;
-  auto network = build_network(scene, finder, known, built.sources, problems);
+  auto network = build_network(scene, finder, known, built, problems);
   name_file(scene.file.string(), problems);
 
   ObstacleBuilder obstacles(scene, finder, problems);

@@ -3,6 +3,7 @@
 
 #include "geometry/import/mesh_import.h"
 #include "geometry/obj_source/obj_source.h"
+#include "network/step_adjustment.h"
 #include "scene/format/scene.h"
 #include "scene/format/text_problems.h"
 
@@ -30,6 +31,7 @@ struct BuiltScene {
   std::vector<NamedReport> meshes;
   ObjSources sources;                                ///< the files of bodies
   std::map<std::string, std::string> weld_remedies;  ///< for bodies of a mesh whose pieces touch, by their names
+  std::vector<StepAdjustment> adjustments;           ///< of bodies that were adjusted for larger steps
   std::vector<std::string> warnings;
 };
 

@@ -108,6 +108,8 @@ struct BodyScene {
   BodyShapeScene shape;
   std::string preset;                  ///< name of its material; empty: none
   bool preset_limits_stretch = false;  ///< whether a stretch limit stands in for the stiffness of the material
+  bool preset_mass = false;            ///< whether the mass is that of the material
+  std::array<bool, 3> preset_damps{};  ///< whether all dampers of a kind of spring are the material's, in the order of SpringKind
   MassScene mass;
   SpringMaterials springs;
   std::vector<SpringGroupScene> spring_groups;  ///< in the order of the file
@@ -149,11 +151,15 @@ struct AttachmentScene {
   double until = std::numeric_limits<double>::infinity();        ///< [s]
 };
 
+/// Of a body's mass, which an automatic step may add by default.
+inline constexpr double kMassScaling = 0.01;
+
 struct Scene {
   std::filesystem::path file;
   double duration = 0.0;                    ///< [s]
   double frame_rate = 30.0;                 ///< [1/s]
   std::optional<double> step;               ///< [s]; none: "auto"
+  double mass_scaling = kMassScaling;       ///< share of a body's mass that may be added for larger steps
   SimulatorSettings settings;               ///< without the step
   std::vector<std::string> limited_bodies;  ///< to which the stretch limit applies; empty: to all
   std::vector<BodyScene> bodies;            ///< in the order of the file

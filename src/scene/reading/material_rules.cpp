@@ -80,8 +80,21 @@ Json* springs_of_kind(Json& body, const std::string& kind) {
   return springs[kind].is_object() ? &springs[kind] : nullptr;
 }
 
+/// Whether the object has this number: that of a preset, also where a resolved scene repeats it.
+bool is_value(const Json& object, const char* key, double value) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() && found->get<double>() == value;
+}
+
+/// Whether a group of the springs of a kind has its own damping.
+bool groups_give_damping(const Json& spring) {
+  const auto gives = [](const Json& group) { return group.is_object() && has_any(group, {"damping", "damping_time"}); };
+  const auto groups = spring.find("groups");
+  return groups != spring.end() && groups->is_object() && std::ranges::any_of(*groups, gives);
+}
+
 /// Fills `springs.KIND.KEY`. A material bends by angles, so the bend springs that a user asks for get no stiffness from it.
-void fill_spring(const std::string& key, double value, bool has_angles, Json& body) {
+void fill_spring(const std::string& key, double value, bool has_angles, Json& body, std::array<bool, 3>& preset_damps) {
   const std::size_t dot = key.find('.', std::string("springs.").size());
   const std::string kind = key.substr(std::string("springs.").size(), dot - std::string("springs.").size());
   const bool bends = kind == "bend";
@@ -91,14 +104,16 @@ void fill_spring(const std::string& key, double value, bool has_angles, Json& bo
   if (bends && has_angles) fill(*spring, {"model"}, "model", "angle");
   if (!key.ends_with(".modulus")) {
     fill(*spring, {"damping", "damping_ratio", "damping_time"}, "damping_time", value);
+    const auto number = std::ranges::find(kSpringKindNames, kind) - kSpringKindNames.begin();
+    preset_damps[static_cast<std::size_t>(number)] = is_value(*spring, "damping_time", value) && !groups_give_damping(*spring);
   } else if (!bends || (has_angles && (*spring)["model"] != "spring")) {
     fill(*spring, {"modulus", "stiffness"}, "modulus", value);
   }
 }
 
-void fill_value(const std::string& key, double value, bool has_angles, Json& body) {
+void fill_value(const std::string& key, double value, bool has_angles, Json& body, std::array<bool, 3>& preset_damps) {
   if (key.starts_with("springs.")) {
-    fill_spring(key, value, has_angles, body);
+    fill_spring(key, value, has_angles, body, preset_damps);
   } else if (key == "density") {
     fill(body, {"mass", "particle_mass", "density"}, "density", value);
   } else if (key == "static_friction") {
@@ -167,8 +182,10 @@ void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, Bod
     if (tetrahedra && value.key.starts_with("springs.shear")) continue;
     const double factor =
         tetrahedra && value.key == "springs.structural.modulus" ? kYoungByStructural : std::pow(scale, value.power);
-    fill_value(value.key, value.value * factor, has_angles, json);
+    fill_value(value.key, value.value * factor, has_angles, json, body.preset_damps);
   }
+  body.preset_mass = !has_any(json, {"mass", "particle_mass"}) &&
+                     is_value(json, "density", preset->find("density")->value * std::pow(scale, preset->find("density")->power));
   if (preset->preserves_volume) preserve_volume(json);
   const bool lattice = shape && std::holds_alternative<LatticeFile>(*shape);
   if (!tetrahedra && !lattice) check_bend_springs(*preset, fields.location(), json);

@@ -62,6 +62,13 @@ std::optional<StepScene> read_step(Json& json, const JsonLocation& location) {
   return StepScene{*step};
 }
 
+std::optional<double> read_mass_scaling(Json& json, const JsonLocation& location) {
+  if (json.is_boolean()) return json.get<bool>() ? kMassScaling : 0.0;
+  if (json.is_number()) return number(kFraction)(json, location);
+  location.report(json, "must be true, false or the largest share of a body's mass that may be added, from 0 to 1");
+  return std::nullopt;
+}
+
 void check_step_divides_frame(double step, double frame_rate, const JsonLocation& location) {
   if (steps_per_frame(frame_rate, step)) return;
   const double steps = 1.0 / (frame_rate * step);
@@ -78,6 +85,7 @@ void read_time(Fields& fields, Scene& scene) {
   const auto duration = fields.required("duration", number(kNotNegative));
   const auto frame_rate = fields.value("frame_rate", number(kPositive), scene.frame_rate);
   const auto step = fields.value<StepScene>("step", read_step, "auto");
+  scene.mass_scaling = fields.value<double>("mass_scaling", read_mass_scaling, true).value_or(scene.mass_scaling);
   scene.duration = duration.value_or(0.0);
   scene.frame_rate = frame_rate.value_or(scene.frame_rate);
   scene.settings.frame_rate = scene.frame_rate;  // so that messages advise steps that divide a frame

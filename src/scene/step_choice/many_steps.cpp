@@ -2,6 +2,7 @@
 
 #include "base/format.h"
 #include "base/problem_list.h"
+#include "dynamics/forces/material_dampers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -111,10 +112,13 @@ std::string remedy_for(const Demand& demand, const Scene& scene, const SpringNet
 }
 
 std::string reason(const Scene& scene, const SpringNetwork& network, double step) {
-  const Demand largest = std::max(
-      {demand_of_springs(network, network.springs.stiffness, false), demand_of_springs(network, network.springs.damping, true),
-       demand_of_bends(network, network.angle_bends.stiffness, false), demand_of_bends(network, network.angle_bends.damping, true)},
-      [](const Demand& a, const Demand& b) { return a.rate < b.rate; });
+  // The dampers of materials do not bound the step.
+  const ElementConstants springs = springs_without_material_dampers(network);
+  const ElementConstants bends = bends_without_material_dampers(network);
+  const Demand largest =
+      std::max({demand_of_springs(network, springs.stiffness, false), demand_of_springs(network, springs.damping, true),
+                demand_of_bends(network, bends.stiffness, false), demand_of_bends(network, bends.damping, true)},
+               [](const Demand& a, const Demand& b) { return a.rate < b.rate; });
   if (largest.rate * step < kLeastResponse) return "penalty contact or air drag requires that. Use less of it";
   const Body& body = network.body_of(largest.particle);
   std::string text = "body \"" + body.name + "\" has " + largest.source + " of " + format_number(largest.constant, kDigits) +

@@ -59,6 +59,19 @@ StepAdvice advise_step(const SimulatorSettings& settings, const SpectralBounds& 
   return {"\"symplectic_euler\" with " + advice.text + (advice.step ? " or \"auto\"" : "")};
 }
 
+constexpr double kStableFraction = 0.9;
+
+double advised_for(const IntegratorSettings& settings, const SpectralBounds& bounds) {
+  return std::min({kStableFraction * largest_stable_step(settings, bounds), resonant_step(settings, bounds),
+                   step_for_penalty(settings, bounds)});
+}
+
+/// Without the dampers of materials.
+double advised_for_springs(const IntegratorSettings& settings, SpectralBounds bounds) {
+  bounds.undamped = bounds.elastic;
+  return advised_for(settings, bounds);
+}
+
 /// With steps of any length.
 SurfaceAirForce surface_air(const SpringNetwork& network, const SimulatorSettings& settings) {
   return {network, settings.air_surface, settings.wind, settings.gravity.norm(), 0.0};
@@ -144,9 +157,14 @@ LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settin
 }
 
 double advised_step(const IntegratorSettings& settings, const SpectralBounds& bounds) {
-  constexpr double kStableFraction = 0.9;
-  return std::min({kStableFraction * largest_stable_step(settings, bounds), resonant_step(settings, bounds),
-                   step_for_penalty(settings, bounds)});
+  if (bounds.material_damping == 0.0 || !may_split_dampers(settings)) return advised_for(settings, bounds);
+  const double together = advised_for(settings, with_all_dampers(bounds));
+  return together >= advised_for_springs(settings, bounds) ? together : advised_for(settings, bounds);
+}
+
+bool splits_dampers(const SimulatorSettings& settings, const SpectralBounds& bounds) {
+  return bounds.material_damping > 0.0 && may_split_dampers(settings.integrator) &&
+         settings.step > kStableFraction * largest_stable_step(settings.integrator, with_all_dampers(bounds));
 }
 
 bool is_unstable(double step, double largest_stable) {

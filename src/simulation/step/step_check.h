@@ -27,8 +27,13 @@ namespace sprung {
 [[nodiscard]] LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
 
 /// The largest recommended step [s], which "auto" uses: at most 0.9 of the largest stable step, at most the resonant step, and
-/// small enough that a bounce by penalty contact takes three steps.
+/// small enough that a bounce by penalty contact takes three steps. Dampers of materials act with the springs if the springs alone
+/// would not permit a larger step, and apart from them otherwise.
 [[nodiscard]] double advised_step(const IntegratorSettings& settings, const SpectralBounds& bounds);
+
+/// Whether a simulation with this step integrates the dampers of materials apart from the other forces: the step is larger than
+/// they permit otherwise.
+[[nodiscard]] bool splits_dampers(const SimulatorSettings& settings, const SpectralBounds& bounds);
 
 /// Whether a step exceeds the largest stable one by more than rounding [s].
 [[nodiscard]] bool is_unstable(double step, double largest_stable);

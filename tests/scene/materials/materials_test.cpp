@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -195,6 +196,22 @@ TEST(Materials, KeysBesideTheMaterialWin) {
   EXPECT_EQ(partial.springs.structural->value, cotton.find("springs.structural.modulus")->value);
   EXPECT_EQ(body(R"(, "springs": {"bend": {"model": "spring", "modulus": 4}})").springs.bend_model,
             SpringMaterials::BendModel::spring);
+}
+
+// Dampers of the scene bound the step, those of a material do not: also where a resolved scene repeats them.
+TEST(Materials, DampersThatTheSceneGivesAreNotTheMaterials) {
+  using Damps = std::array<bool, 3>;
+  const SceneFolder folder;
+  const Material& cotton = *find_material("cotton");
+  const auto damps = [&](const std::string& keys) { return folder.read(scene_of(cotton, keys)).bodies.front().preset_damps; };
+  EXPECT_EQ(damps(""), (Damps{true, true, true}));
+  EXPECT_EQ(damps(R"(, "springs": {"shear": {"stiffness": 7}, "bend": {"damping": 0.5}})"), (Damps{true, true, false}));
+  EXPECT_EQ(damps(R"(, "springs": {"structural": {"damping_ratio": 0.5}, "shear": {"damping_time": 0.5}})"),
+            (Damps{false, false, true}));
+  const Scene again = folder.read(folder.read(scene_of(cotton)).resolved);
+  EXPECT_EQ(again.bodies.front().preset_damps, (Damps{true, true, true}));
+  EXPECT_TRUE(again.bodies.front().preset_mass);
+  EXPECT_FALSE(folder.read(scene_of(cotton, R"(, "density": 3)")).bodies.front().preset_mass);
 }
 
 // EI and D are constants of angles, with other units than EA: broken_scenes.h has the scenes that lack a stiffness of their own.

@@ -67,6 +67,7 @@ TEST(SceneReader, TimeAndSettingsArrive) {
   EXPECT_EQ(scene.settings.contact.damping, 0.5);
   EXPECT_EQ(scene.settings.contact.start, ContactSettings::Start::push_out);
   EXPECT_EQ(scene.settings.stability, StabilityCheck::warn);
+  EXPECT_EQ(scene.mass_scaling, 0.125);
   EXPECT_FALSE(scene.settings.sleep);
   EXPECT_FALSE(scene.settings.perturb);
   EXPECT_EQ(scene.settings.seed, 7U);
@@ -244,6 +245,7 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
       "shape": {"type": "rope", "points": [[0, 0, 0], [1, 0, 0]]}, "mass": 1}}})");
   EXPECT_EQ(scene.frame_rate, 30.0);
   EXPECT_EQ(scene.step, std::nullopt);
+  EXPECT_EQ(scene.mass_scaling, kMassScaling);
   EXPECT_EQ(scene.settings.gravity, Vector3(0, -9.81, 0));
   EXPECT_EQ(scene.settings.air_drag, 0.0);
   EXPECT_TRUE(std::holds_alternative<VerletSettings>(scene.settings.integrator));

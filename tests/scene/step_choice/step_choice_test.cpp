@@ -62,18 +62,71 @@ TEST(StepChoice, AutoUsesTheFewestStepsWithinNineTenthsOfTheStableStep) {
   }
 }
 
-// Who chose a material has no stiffness to lower. The grid of cotton has shear dampers of 7e-6 s.
+// Who chose a material has no stiffness to lower. A grid of 0.5 mm has angle bends that need steps of 2e-6 s.
 TEST(StepChoice, AutoAdvisesACoarserMeshOfAMaterial) {
   const auto warnings = [](int resolution) {
     const SceneFolder folder;
     const std::string n = std::to_string(resolution);
     const std::string text =
-        R"({"duration": 1, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [0.1, 0.1], "resolution": [)" + n + ", " + n +
+        R"({"duration": 1, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [0.02, 0.02], "resolution": [)" + n + ", " + n +
         R"(]}, "material": "cotton"}}})";
     return build_scene(folder.read(text)).warnings;
   };
   EXPECT_THAT(warnings(41), ElementsAre(HasSubstr("Use a coarser mesh or resolution, or \"implicit_euler\".")));
-  EXPECT_THAT(warnings(15), testing::IsEmpty());
+  EXPECT_THAT(warnings(9), testing::IsEmpty());
+}
+
+/// A cloth of cotton, 41 x 41, of this side [m].
+BuiltScene cotton(double side, const std::vector<std::string>& changes = {}) {
+  const SceneFolder folder;
+  const std::string size = std::to_string(side);
+  return build_scene(folder.read(R"({"duration": 1, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [)" + size + ", " +
+                                     size + R"(], "resolution": [41, 41]}, "material": "cotton"}}})",
+                                 changes));
+}
+
+// As many steps as its springs need without dampers: 1,089 by six steps a period; dampers make those unnecessary.
+TEST(StepChoice, DampersOfAMaterialNeedNoSmallerStepThanItsSprings) {
+  const std::vector<std::string> undamped{"bodies.cloth.springs.structural.damping=0", "bodies.cloth.springs.shear.damping=0",
+                                          "bodies.cloth.springs.bend.damping=0"};
+  for (const char* integrator : {"verlet", "symplectic_euler", "velocity_verlet", "rk4"}) {
+    const std::string change = std::string(R"(integrator={"type": ")") + integrator + "\"}";
+    std::vector<std::string> without = undamped;
+    without.push_back(change);
+    EXPECT_LE(cotton(0.1, {change}).steps_per_frame, cotton(0.1, without).steps_per_frame) << integrator;
+  }
+  EXPECT_LE(cotton(0.1).steps_per_frame, 1200);
+  EXPECT_GT(cotton(0.001).steps_per_frame, 1000) << "is not refused";
+}
+
+TEST(StepChoice, DampersThatTheSceneGivesBoundTheStep) {
+  const BuiltScene given = cotton(0.1, {"bodies.cloth.springs.bend.damping_time=0.00101"});
+  EXPECT_GT(given.steps_per_frame, 2000);
+}
+
+// A square of 15 x 15 vertices, one of which is 0.1 mm from its neighbour: without the adjustment about a thousand times the steps.
+TEST(StepChoice, OneShortEdgeOfAMaterialDoesNotSlowTheScene) {
+  std::string mesh;
+  for (int i = 0; i < 225; ++i) {
+    mesh += "v " + std::to_string(i == 113 ? 0.5001 : (i % 15) / 14.0) + " " + std::to_string((i / 15) / 14.0) + " 0\n";
+  }
+  for (int i = 0; i < 210; ++i) {
+    if (i % 15 == 14) continue;
+    const auto corner = [&](int offset) { return " " + std::to_string(i + 1 + offset); };
+    mesh += "f" + corner(0) + corner(1) + corner(16) + "\nf" + corner(0) + corner(16) + corner(15) + "\n";
+  }
+  const SceneFolder folder;
+  folder.write("mesh.obj", mesh);
+  const auto built = [&](const std::string& keys) {
+    return build_scene(folder.read(R"({"duration": 1, )" + keys +
+                                   R"("bodies": {"sheet": {"shape": {"type": "mesh", "file": "mesh.obj"}, "material": "silk"}}})"));
+  };
+  const BuiltScene adjusted = built("");
+  ASSERT_EQ(adjusted.adjustments.size(), 1);
+  EXPECT_EQ(adjusted.adjustments[0].body, "sheet");
+  EXPECT_NEAR(adjusted.adjustments[0].length, 0.0001, 1e-6);
+  EXPECT_LE(adjusted.steps_per_frame, 100);
+  EXPECT_TRUE(built(R"("frame_rate": 100, "step": 1e-5, "stability": "warn", )").adjustments.empty()) << "the scene sets the step";
 }
 
 // Vertex 5 is 0.1 mm from vertex 3.

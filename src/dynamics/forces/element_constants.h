@@ -1,0 +1,15 @@
+// Stiffness and damping of elements: those of the network, or the share of them that a force has.
+#pragma once
+
+#include <vector>
+
+namespace sprung {
+
+struct ElementConstants {
+  std::vector<double> stiffness;  ///< an entry per element; units as in Springs or AngleBends
+  std::vector<double> damping;
+  /// Whether dampers of angle bends become weaker as their bonds become shorter, so that they damp no motion faster than at rest.
+  bool bounds_damping = false;
+};
+
+}  // namespace sprung

@@ -1,0 +1,89 @@
+#include "dynamics/forces/material_dampers.h"
+
+#include "dynamics/forces/bending_angle_force.h"
+#include "dynamics/forces/spring_force.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace sprung {
+namespace {
+
+ElementConstants material_springs(const SpringNetwork& network) {
+  const auto count = static_cast<std::size_t>(network.springs.count());
+  ElementConstants constants{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
+  for_material_springs(network, [&](Index s) { constants.damping[s] = network.springs.damping[s]; });
+  return constants;
+}
+
+ElementConstants material_bends(const SpringNetwork& network) {
+  const auto count = static_cast<std::size_t>(network.angle_bends.count());
+  ElementConstants constants{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0), true};
+  for_material_bends(network, [&](Index a) { constants.damping[a] = network.angle_bends.damping[a]; });
+  return constants;
+}
+
+/// Row sums of M^-1 C [1/s]; no mode is damped faster than the largest of the particles that it moves. With the masses of pinned
+/// particles, which may become free.
+Scalars damping_rates(const SpringNetwork& network, const std::vector<LinearElement>& elements) {
+  Scalars rates = Scalars::Zero(network.particle_count());
+  for (const LinearElement& element : elements) {
+    double sum = 0.0;
+    for (const double weight : element.weights) sum += std::abs(weight);
+    for (std::size_t k = 0; k < 3; ++k) rates[element.particles[k]] += element.damping * std::abs(element.weights[k]) * sum;
+  }
+  return rates.cwiseQuotient(network.masses);
+}
+
+/// Each damper becomes weaker by the larger excess of its particles, so no row sum stays above `most`.
+void weaken(const Scalars& rates, double most, const std::vector<LinearElement>& elements, std::vector<double>& damping) {
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    double largest = most;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (elements[e].weights[k] != 0.0) largest = std::max(largest, rates[elements[e].particles[k]]);
+    }
+    damping[e] *= most / largest;
+  }
+}
+
+}  // namespace
+
+bool has_material_dampers(const SpringNetwork& network) {
+  return std::ranges::any_of(network.bodies, [](const Body& body) {
+    return std::ranges::any_of(body.has_material_dampers, [](bool has) { return has; });
+  });
+}
+
+ElementConstants springs_without_material_dampers(const SpringNetwork& network) {
+  ElementConstants constants{network.springs.stiffness, network.springs.damping};
+  for_material_springs(network, [&](Index s) { constants.damping[s] = 0.0; });
+  return constants;
+}
+
+ElementConstants bends_without_material_dampers(const SpringNetwork& network) {
+  ElementConstants constants{network.angle_bends.stiffness, network.angle_bends.damping};
+  for_material_bends(network, [&](Index a) { constants.damping[a] = 0.0; });
+  return constants;
+}
+
+Forces material_dampers(const SpringNetwork& network, double most) {
+  ElementConstants springs = material_springs(network);
+  ElementConstants bends = material_bends(network);
+  std::vector<LinearElement> of_springs;
+  std::vector<LinearElement> of_bends;
+  SpringForce(network, springs).append_elements(of_springs);
+  BendingAngleForce(network, bends).append_elements(of_bends);
+  const Scalars rates = damping_rates(network, of_springs) + damping_rates(network, of_bends);
+  weaken(rates, most, of_springs, springs.damping);
+  weaken(rates, most, of_bends, bends.damping);
+  const auto any = [](const std::vector<double>& values) { return std::ranges::any_of(values, [](double c) { return c > 0.0; }); };
+  Forces forces;
+  if (any(springs.damping)) forces.push_back(std::make_unique<SpringForce>(network, std::move(springs)));
+  if (any(bends.damping)) forces.push_back(std::make_unique<BendingAngleForce>(network, std::move(bends)));
+  return forces;
+}
+
+}  // namespace sprung
