@@ -1,6 +1,7 @@
 #include "dynamics/stretch_newton/stretch_component.h"
 
 #include "dynamics/networks.h"
+#include "dynamics/tethers/limited_springs.h"
 
 #include <gmock/gmock.h>
 
@@ -29,6 +30,20 @@ TEST(StretchComponents, PinsSeparateThem) {
   ASSERT_EQ(found.size(), 2u);
   EXPECT_THAT(found[0].points, ::testing::UnorderedElementsAre(0, 1, 2, 3));
   EXPECT_THAT(found[1].points, ElementsAre(6, 5, 4, 3));
+}
+
+TEST(StretchComponents, RodsJoinThemAndRodsAloneMakeNone) {
+  SpringNetwork network = make_test_rope(7, 0.0);
+  network.inverse_masses[3] = 0.0;
+  const RodRow rod{.particles = {1, 5}, .weights = {1.0, -1.0}, .count = 2, .length = 1.0, .tolerance = 1e-3};
+  const std::vector<RodRow> rods = {rod};
+  const auto found = stretch_components(network, limited_springs(network, {SpringKind::structural}), rods);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0].points, ::testing::UnorderedElementsAre(0, 1, 2, 3, 4, 5, 6));
+  EXPECT_FALSE(found[0].is_tree);
+  ASSERT_EQ(found[0].rods.size(), 1u);
+  EXPECT_EQ(found[0].points[found[0].rods[0].points[1]], 5);
+  EXPECT_TRUE(stretch_components(network, std::vector<Index>(), rods).empty());
 }
 
 TEST(StretchComponents, ARopeBetweenTwoPinsIsATree) {
