@@ -82,6 +82,11 @@ std::string head_row(const SpringNetwork& network, const Body& body, const std::
                                       kinds[0].count, kinds[1].count, kinds[2].count, describe_size(box)));
 }
 
+std::string contact_row(const Body& body) {
+  return text_row("contact", fmt::format("with {} that frames do not have, where edges of the mesh are longer than a cell",
+                                         counted(body.contact_only, "vertex", "vertices")));
+}
+
 std::string mass_row(const SpringNetwork& network, const Body& body) {
   const auto masses = network.masses.segment(body.first_particle, body.particle_count);
   std::string text = format_number(masses.sum(), kDigits) + " kg";
@@ -119,6 +124,7 @@ std::string body_rows(const SpringNetwork& network, const Body& body, const std:
     if (kinds[kind].count > 0) text += spring_row(kSpringKindNames[kind], kinds[kind]);
   }
   if (body.angle_bend_count > 0) text += angle_row(network.angle_bends, body);
+  if (body.contact_only > 0) text += contact_row(body);
   const SpringPieces pieces = spring_pieces(network, body);
   if (const Index count = pieces.count + pieces.alone; count > 1)
     text += text_row("pieces", std::to_string(count) + " that no spring joins");

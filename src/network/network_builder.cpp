@@ -203,6 +203,7 @@ SpringNetwork NetworkBuilder::build() const {
                               draft.shape.stretch_limited,
                               draft.shape.cells,
                               draft.shape.carried,
+                              draft.shape.contact_only,
                               draft.shape.preserve_volume,
                               draft.shape.volume_factor,
                               draft.shape.pressure,

@@ -53,8 +53,12 @@ void check_names(const char* key, const std::vector<std::string>& names, std::ve
   }
 }
 
+Points exported_positions(const Simulator& simulator, const Body& body) {
+  return simulator.positions().middleCols(body.first_particle, body.exported_vertex_count());
+}
+
 std::string surface_text(const Simulator& simulator, const Body& body, const std::string& elements) {
-  return vertex_lines(simulator.positions().middleCols(body.first_particle, body.vertex_count())) + elements;
+  return vertex_lines(exported_positions(simulator, body)) + elements;
 }
 
 std::string element_lines(const Body& body) {
@@ -133,8 +137,9 @@ Points read_vertex_lines(const std::string& text) {
 
 std::string body_obj_text(const Simulator& simulator, const Body& body, const ObjSource* source) {
   if (source == nullptr) return surface_text(simulator, body, element_lines(body));
-  return source->text(simulator.positions().middleCols(body.first_particle, body.vertex_count()), body.surface.triangles,
-                      body.surface.torn);
+  const Surface& surface = body.surface;
+  return source->text(exported_positions(simulator, body), body.contact_only == 0 ? surface.triangles : triangulate(surface.faces),
+                      surface.torn);
 }
 
 void check_output_names(const Simulator& simulator) {

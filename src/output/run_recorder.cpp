@@ -15,7 +15,7 @@ RecordedBody recorded(const Body& body, const ObjSources& sources, const BodyMat
                       .material = {},
                       .first_particle = body.first_particle,
                       .particle_count = body.particle_count,
-                      .particle_of = std::vector<Index>(static_cast<std::size_t>(body.vertex_count())),
+                      .particle_of = std::vector<Index>(static_cast<std::size_t>(body.exported_vertex_count())),
                       .faces = body.surface.faces,
                       .lines = body.surface.segments};
   std::iota(result.particle_of.begin(), result.particle_of.end(), 0);

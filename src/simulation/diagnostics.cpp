@@ -34,8 +34,8 @@ FrameDiagnostics measure(const Simulator& simulator, int frame) {
   diagnostics.max_stretch = max_stretch(simulator);
   diagnostics.contacts = simulator.contact_count();
   diagnostics.inverted_cells = inverted_cells(simulator);
-  diagnostics.min_distance =
-      simulator.environment().min_distance(vertex_positions(simulator.network(), simulator.positions()), distance_range(simulator));
+  diagnostics.min_distance = simulator.environment().min_distance(contact_positions(simulator.network(), simulator.positions()),
+                                                                  distance_range(simulator));
   return diagnostics;
 }
 

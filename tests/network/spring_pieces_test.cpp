@@ -88,6 +88,7 @@ TEST(SpringPieces, CellsHoldTheSurfaceThatTheyCarry) {
   lattice.surface.vertices = (Points(3, 3) << 0.1, 0.9, 0.1, 0.1, 0.1, 0.9, 0.5, 0.5, 0.5).finished();
   lattice.surface.faces = to_polygons((Triangles(3, 1) << 0, 1, 2).finished());
   lattice.surface.lines.resize(2, 0);
+  lattice.contact = {lattice.surface.vertices, triangulate(lattice.surface.faces)};
   lattice.cells.push_back({{0, 0, 0}, 1.0});
   SpringMaterials materials;
   materials.structural = SpringMaterial{.value = 1.0};

@@ -2,8 +2,11 @@
 #include "output/run_output.h"
 
 #include "base/error.h"
+#include "geometry/mesh/edge_division.h"
 #include "output/file_size_limit.h"
+#include "output/obj_sequence.h"
 #include "output/recorded_run.h"
+#include "output/run_recorder.h"
 #include "output/scratch_folder.h"
 #include "output/small_world.h"
 
@@ -122,6 +125,33 @@ TEST_F(RunOutputFiles, LinesKeepTheirCountsAndOrderInEachFrame) {
       EXPECT_NE(frame.positions, first.positions);
     }
   }
+}
+
+/// A tetrahedron of 1 m in a cell, with edges divided for contact.
+Simulator coarse_world(const PolygonMesh& tetrahedron) {
+  LatticeShape lattice{.surface = tetrahedron,
+                       .contact = divide_long_edges({tetrahedron.vertices, triangulate(tetrahedron.faces)}, 0.3),
+                       .cells = {{{0, 0, 0}, 1.0}}};
+  BodyShape shape = make_lattice_body(lattice, {});
+  set_total_mass(shape, 1.0);
+  NetworkBuilder builder;
+  builder.add_body("coarse", shape);
+  return Simulator(builder.build(), {.step = 0.01});
+}
+
+TEST(CoarseLattices, HaveTheVerticesFacesAndNormalsOfTheirMeshInFrames) {
+  const std::string text = "v 0.1 0.1 0.1\nv 0.9 0.1 0.1\nv 0.1 0.9 0.1\nv 0.1 0.1 0.9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "coarse.obj") << text;
+  const PolygonMesh mesh = read_obj(scratch / "coarse.obj");
+  const Simulator simulator = coarse_world(mesh);
+  const Body& body = simulator.network().bodies[0];
+  ASSERT_GT(body.contact_vertex_count(), 4);
+  EXPECT_EQ(body.exported_vertex_count(), 4);
+  EXPECT_EQ(body_obj_text(simulator, body, nullptr), text);
+  const ObjSource source{.file = ObjTemplate(text, ObjTemplate::Normals::per_vertex), .particle_of = {}};
+  EXPECT_EQ(body_obj_text(simulator, body, &source), source.text(mesh.vertices, triangulate(mesh.faces)));
+  EXPECT_EQ(RunRecorder(simulator, {}, {}).model().bodies[0].particle_of, (std::vector<Index>{0, 1, 2, 3}));
 }
 
 /// A strip of four quads along x in the x-y plane, written from its file, and a cloth of the same size: both are pulled apart.

@@ -1,8 +1,18 @@
 // Surfaces that cells carry: the surface is judged, not the cells.
+#include "geometry/mesh/polygon_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
+#include "output/scratch_folder.h"
 #include "scenarios/scenario.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace sprung::testing {
 namespace {
@@ -33,12 +43,12 @@ TEST(LatticeAtRest, ItsSurfaceLiesOnTheGroundAndItsCellsDoNotCollide) {
     EXPECT_THAT(simulator.warnings(), ::testing::Each(::testing::HasSubstr("static_friction has no effect with penalty contact")));
     const Body& ball = simulator.network().bodies[0];
     while (simulator.time() < 1.0) simulator.step();
-    const auto vertices = simulator.positions().leftCols(ball.vertex_count());
-    const auto corners = simulator.positions().rightCols(ball.particle_count - ball.vertex_count());
+    const auto vertices = simulator.positions().leftCols(ball.contact_vertex_count());
+    const auto corners = simulator.positions().rightCols(ball.particle_count - ball.contact_vertex_count());
     EXPECT_LT(vertices.row(1).minCoeff(), 1.1 * ball.material.thickness) << "on the ground, at the thickness or below it";
     EXPECT_LT(corners.row(1).minCoeff(), 0.0) << "a cell is 0.05 m wide";
     EXPECT_GT(simulator.contact_count(), 0);
-    EXPECT_LT(simulator.contact_particles().back(), ball.vertex_count());
+    EXPECT_LT(simulator.contact_particles().back(), ball.contact_vertex_count());
   }
 }
 
@@ -61,6 +71,87 @@ TEST_P(LatticeScenario, ASpikeIsShotAtABall) {
   const char* const shot = R"(obstacles.spike.motion={"keyframes": [{"time": 0}, {"time": 0.1, "position": [0, 1.5, 0]}]})";
   const ScenarioReport report = run_scenario(load_scenario("lattice_on_spike", {shot, "duration=0.3"}, 1.0 / GetParam()));
   EXPECT_TRUE(report.is_free()) << report;
+}
+
+/// A box, centred, with this number of quads along each side.
+PolygonMesh box_of_quads(const Vector3& size, const std::array<Index, 3>& quads) {
+  PolygonMesh box;
+  std::map<std::array<Index, 3>, Index> vertices;
+  const auto vertex = [&](const std::array<Index, 3>& at) {
+    return vertices.try_emplace(at, static_cast<Index>(vertices.size())).first->second;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    for (const bool far : {false, true}) {
+      for (Index k = 0; k < quads[u] * quads[v]; ++k) {
+        std::array<Index, 3> at{};
+        at[axis] = far ? quads[axis] : 0;
+        for (const Index corner : {0, 1, 3, 2}) {
+          at[far ? u : v] = k % quads[far ? u : v] + (corner & 1);
+          at[far ? v : u] = k / quads[far ? u : v] + (corner >> 1);
+          box.faces.vertex.push_back(vertex(at));
+        }
+        box.faces.corner_begin.push_back(static_cast<Index>(box.faces.vertex.size()));
+      }
+    }
+  }
+  box.vertices.resize(3, static_cast<Index>(vertices.size()));
+  for (const auto& [at, number] : vertices) {
+    for (int axis = 0; axis < 3; ++axis) box.vertices(axis, number) = size[axis] * (1.0 * at[axis] / quads[axis] - 0.5);
+  }
+  box.lines.resize(2, 0);
+  return box;
+}
+
+/// A box that has come to rest on a floor.
+struct RestingBox {
+  double sag = 0.0;     ///< of its height at the corners [m]
+  double volume = 0.0;  ///< of its volume at first
+  Index inverted = 0;   ///< cells
+};
+
+RestingBox rest_on_floor(const PolygonMesh& box, Index cells, const std::string& material) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "box.obj") << obj_text(box.vertices, box.faces, box.lines);
+  const double height_of_centre = box.vertices.row(1).maxCoeff() + 0.002;  // on its thickness
+  std::ofstream(folder / "box.json") << R"({"duration": 1, "integrator": {"type": "verlet", "damping_rate": 10},
+      "bodies": {"box": {"shape": {"type": "lattice", "file": "box.obj", "cells": )"
+                                     << cells << R"(}, "material": ")" << material << R"(", "place": {"position": [0, )"
+                                     << height_of_centre << R"(, 0]}}},
+      "obstacles": {"floor": {"shape": {"type": "half_space"}, "friction": 0.5}}})";
+  const BuiltScene scene = load_scenario((folder / "box").string());
+  Simulator simulator(scene.network, scene.settings, scene.obstacles);
+  while (simulator.time() < 1.0) simulator.step();
+  const Body& body = simulator.network().bodies[0];
+  const auto height = [&](const Points& vertices) {
+    const Vector3 corner = box.vertices.rowwise().maxCoeff();
+    double sum = 0.0;
+    for (Index v = 0; v < box.vertices.cols(); ++v) {
+      if (box.vertices.col(v).cwiseAbs() == corner) sum += std::copysign(0.25, box.vertices(1, v)) * vertices(1, v);
+    }
+    return sum;
+  };
+  const auto volume = [&](const Points& vertices) { return signed_volume(vertices, body.surface.triangles); };
+  const Points first = scene.network.positions.leftCols(body.contact_vertex_count());
+  const Points last = simulator.positions().leftCols(body.contact_vertex_count());
+  return {.sag = height(first) - height(last),
+          .volume = volume(last) / volume(first),
+          .inverted = count_inverted(body.cells, simulator.positions())};
+}
+
+// Friction at the floor makes a cube stiffer than rho g H^2 / (2 E) says, so that the finest mesh is the measure.
+TEST(CoarseLattice, ACubeSagsAndRestsLikeOneOfAFineMesh) {
+  constexpr double kSide = 0.2;
+  for (const char* material : {"soft_jelly", "firm_jelly"}) {
+    std::vector<RestingBox> cubes;
+    for (const Index quads : {8, 4, 2, 1}) {
+      cubes.push_back(rest_on_floor(box_of_quads(Vector3::Constant(kSide), {quads, quads, quads}), 8, material));
+      EXPECT_NEAR(cubes.back().sag, cubes.front().sag, 0.1 * cubes.front().sag) << material << " " << quads;
+      EXPECT_NEAR(cubes.back().volume, 1.0, 0.01) << material << " " << quads;
+      EXPECT_EQ(cubes.back().inverted, 0) << material << " " << quads;
+    }
+  }
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ BodyShape random_shape(Random& random) {
   }
 }
 
-enum class Filled : std::uint8_t { lattice, tetrahedra, balloon };
+enum class Filled : std::uint8_t { lattice, coarse_lattice, tetrahedra, balloon };
 
 /// A closed surface that cells carry, tetrahedra, or a skin around a gas or a liquid.
 BodyShape random_filled_shape(Filled kind, Random& random) {
@@ -64,6 +64,16 @@ BodyShape random_filled_shape(Filled kind, Random& random) {
       shape = make_lattice_body(fill_with_cells(std::move(skin), random.between(0.05, 0.15)), {soft, soft, {}});
       shape.preserve_volume = random.below(2) == 0;
       break;
+    case Filled::coarse_lattice: {
+      // Of 12 vertices, with edges of one to five cells.
+      const Vector3 radii = random.in_box({Vector3::Constant(0.12), Vector3::Constant(0.3)});
+      TriangleMesh icosahedron = meshes::sphere(0);
+      icosahedron.vertices = radii.asDiagonal() * icosahedron.vertices;
+      skin = {icosahedron.vertices, to_polygons(icosahedron.triangles), Edges(2, 0)};
+      shape = make_lattice_body(fill_with_cells(std::move(skin), random.between(0.06, 0.12)), {soft, soft, {}});
+      shape.preserve_volume = random.below(2) == 0;
+      break;
+    }
     case Filled::tetrahedra: {
       TetrahedraMesh box = test::make_box({1 + random.below(3), 1 + random.below(3), 1 + random.below(3)}, 0.1,
                                           random.below(2) == 0 ? test::Cut::five : test::Cut::mirrored);
@@ -425,7 +435,7 @@ TEST_F(RandomScenes, NothingCrossesWhateverIsAttached) {
 }
 
 TEST_F(RandomScenes, NoLatticeTetrahedraOrBalloonCrossesAnObstacleInAnyStep) {
-  for (const Filled kind : {Filled::lattice, Filled::tetrahedra, Filled::balloon}) {
+  for (const Filled kind : {Filled::lattice, Filled::coarse_lattice, Filled::tetrahedra, Filled::balloon}) {
     const auto make = [&](Random& random) { return scene_of_filled(kind, random); };
     const Reports reports = run_scenes(12, Judge::obstacles, make, [](const BuiltScene&) { return true; });
     for (const auto& [number, report] : reports) {

@@ -51,7 +51,7 @@ class FrameJudge {
       const Obstacle& obstacle = simulator_.environment().obstacles()[k];
       if (std::holds_alternative<SequenceGeometry>(obstacle.geometry)) judges_[k] = judge_of(obstacle.geometry, simulator_.time());
       const Points local = local_positions(obstacle, simulator_);
-      inside += judges_[k]->count_inside(vertex_positions(simulator_.network(), local));
+      inside += judges_[k]->count_inside(contact_positions(simulator_.network(), local));
       crossings += judges_[k]->count_crossings(elements_, local);
     }
     const Index self_crossings = self_ ? count_self_crossings(elements_, simulator_.positions()) : 0;

@@ -80,9 +80,11 @@ TEST(Replay, ShowsTheOtherBodiesOfALatticeAndPinsWhileTheyHold) {
     output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
   }
   output.finish("done");
+  EXPECT_GT(loaded.simulator.network().bodies[0].contact_only, 0) << "of edges that are longer than the cell";
   const Replay replay(folder.path() / "run");
   EXPECT_THAT(replay.scene_text(), HasSubstr("\"complete\":true"));
   const Topology topology = replay.topology();
+  EXPECT_EQ(topology.triangles.cols(), 4);
   EXPECT_EQ(topology.particles, 4 + 2);
   ASSERT_EQ(topology.springs.cols(), 1) << "of the rope; those of the cell have ends that frames do not hold";
   EXPECT_EQ(topology.springs.col(0), Eigen::Vector2i(4, 5));

@@ -49,7 +49,7 @@ class NearestEnd {
       take({begin + ends[0], begin + ends[1], kNone}, {1.0 - t, t, 0.0}, a + t * (b - a));
     }
     if (body.surface.triangles.cols() > 0 || body.surface.segments.cols() > 0) return;
-    for (Index i = begin; i < begin + body.vertex_count(); ++i) take(i);
+    for (Index i = begin; i < begin + body.contact_vertex_count(); ++i) take(i);
   }
 
  private:

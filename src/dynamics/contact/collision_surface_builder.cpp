@@ -29,7 +29,7 @@ CollisionSurface contact_surface(const SpringNetwork& network) {
   for (const Body& body : network.bodies) {
     const auto number = static_cast<Index>(self.size());
     append_elements(body, number, elements);
-    body_of.insert(body_of.end(), static_cast<std::size_t>(body.vertex_count()), number);
+    body_of.insert(body_of.end(), static_cast<std::size_t>(body.contact_vertex_count()), number);
     body_of.resize(static_cast<std::size_t>(body.first_particle + body.particle_count), kNone);
     self.push_back(body.contact.self ? 1 : 0);
     others.push_back(body.contact.others ? 1 : 0);

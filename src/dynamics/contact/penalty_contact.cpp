@@ -21,8 +21,8 @@ PenaltyContact::PenaltyContact(const SpringNetwork& network, Environment& enviro
       dt_(dt),
       thickness_(particle_thickness(network)) {
   for (const Body& body : network.bodies) {
-    const Index inside = body.particle_count - body.vertex_count();
-    thickness_.segment(body.first_particle + body.vertex_count(), inside).setConstant(kNoContact);
+    const Index inside = body.particle_count - body.contact_vertex_count();
+    thickness_.segment(body.first_particle + body.contact_vertex_count(), inside).setConstant(kNoContact);
   }
 }
 

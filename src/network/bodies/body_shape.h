@@ -1,6 +1,7 @@
 // Ropes, cloths, solids and meshes as particles and springs, in their own frame.
 #pragma once
 
+#include "geometry/mesh/triangle_mesh.h"
 #include "network/model/spring_network.h"
 
 #include <array>
@@ -32,6 +33,7 @@ struct BodyShape {
   bool stretch_limited = true;                 ///< whether the stretch limit applies to its springs
   Cells cells;                                 ///< of solids
   std::vector<CellPoint> carried;              ///< see Body
+  Index contact_only = 0;                      ///< see Body
   bool preserve_volume = false;                ///< see Body
   double volume_factor = 0.0;                  ///< see Body
   double pressure = 0.0;                       ///< see Body
@@ -117,7 +119,8 @@ struct LatticeShape {
   /// The cell at a point [m].
   [[nodiscard]] Numbers cell_at(const Vector3& point) const;
 
-  PolygonMesh surface;               ///< each vertex lies in a cell
+  PolygonMesh surface;               ///< as exported
+  TriangleMesh contact;              ///< its triangles, with long edges divided; each vertex lies in a cell
   Vector3 origin = Vector3::Zero();  ///< the lowest corner of cell (0, 0, 0) [m]
   double cell_size = 1.0;            ///< [m], > 0
   std::vector<Cell> cells;           ///< each once
@@ -144,8 +147,8 @@ struct MeshPart {
 [[nodiscard]] BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materials,
                                        const std::vector<MeshPart>& parts = {});
 
-/// The particles of the surface come first, in the order of its vertices, then the corners of the cells. Half of the mass of each
-/// corner that carries vertices belongs to these vertices.
+/// The particles of the contact surface come first, in the order of its vertices, of which the first are those of `surface`, then
+/// the corners of the cells. Half of the mass of each corner that carries vertices belongs to these vertices.
 [[nodiscard]] BodyShape make_lattice_body(const LatticeShape& lattice, const SpringMaterials& materials);
 
 /// Gives each particle the same share of `total` [kg]; of a carried surface and its cells, a share in proportion to its measure.

@@ -112,7 +112,8 @@ LatticeShape::Numbers LatticeShape::cell_at(const Vector3& point) const {
 
 BodyShape make_lattice_body(const LatticeShape& lattice, const SpringMaterials& materials) {
   check(materials);
-  const auto vertices = static_cast<Index>(lattice.surface.vertices.cols());
+  const Points& on_surface = lattice.contact.vertices;
+  const auto vertices = static_cast<Index>(on_surface.cols());
   Nodes nodes;
   std::map<Node, Hexahedron> corners_at;
   Links links;
@@ -129,7 +130,7 @@ BodyShape make_lattice_body(const LatticeShape& lattice, const SpringMaterials& 
     cells.hexahedra.push_back(corners);
     add_links(corners, lattice.cell_size, cell.fraction, links);
   }
-  std::vector<Vector3> positions(lattice.surface.vertices.colwise().begin(), lattice.surface.vertices.colwise().end());
+  std::vector<Vector3> positions(on_surface.colwise().begin(), on_surface.colwise().end());
   for (const Node& node : nodes.nodes()) {
     positions.push_back(lattice.origin + lattice.cell_size * Vector3(node[0], node[1], node[2]));
   }
@@ -137,12 +138,13 @@ BodyShape make_lattice_body(const LatticeShape& lattice, const SpringMaterials& 
   shape.cells = std::move(cells);
   add_springs(links, materials, shape);
   for (Index v = 0; v < vertices; ++v) {
-    const Node cell = lattice.cell_at(lattice.surface.vertices.col(v));
-    const Vector3 at = (lattice.surface.vertices.col(v) - lattice.origin) / lattice.cell_size;
+    const Node cell = lattice.cell_at(on_surface.col(v));
+    const Vector3 at = (on_surface.col(v) - lattice.origin) / lattice.cell_size;
     shape.carried.push_back(point_in_cell(corners_at.at(cell), at - Vector3(cell[0], cell[1], cell[2])));
   }
+  shape.contact_only = vertices - static_cast<Index>(lattice.surface.vertices.cols());
   shape.surface.faces = lattice.surface.faces;
-  shape.surface.triangles = triangulate(lattice.surface.faces);
+  shape.surface.triangles = lattice.contact.triangles;
   shape.drag_areas = vertex_areas(shape.positions, shape.surface.triangles);
   shape.dimension = 3;
   shape.measures.assign(vertices, 0.0);

@@ -31,12 +31,13 @@ const Body& SpringNetwork::body_of(Index particle) const {
   return *std::prev(after);
 }
 
-Points vertex_positions(const SpringNetwork& network, const Points& positions) {
+Points contact_positions(const SpringNetwork& network, const Points& positions) {
   Index count = 0;
   Points vertices(3, network.particle_count());
   for (const Body& body : network.bodies) {
-    vertices.middleCols(count, body.vertex_count()) = positions.middleCols(body.first_particle, body.vertex_count());
-    count += body.vertex_count();
+    vertices.middleCols(count, body.contact_vertex_count()) =
+        positions.middleCols(body.first_particle, body.contact_vertex_count());
+    count += body.contact_vertex_count();
   }
   vertices.conservativeResize(3, count);
   return vertices;

@@ -69,7 +69,7 @@ struct AngleBends {
 /// The surface of a body, for collision and export. Vertex i is particle i of the body; particles that follow are inside.
 struct Surface {
   PolygonFaces faces;         ///< as exported, with those that are torn
-  Triangles triangles;        ///< of the triangulated faces without those that are torn
+  Triangles triangles;        ///< for contact: of the triangulated faces without those that are torn; see Body::contact_only
   Edges segments;             ///< of ropes: the edges without a triangle; and threads that hold after their faces tore
   std::vector<Index> torn{};  ///< faces that are gone because a spring broke, ascending
 };
@@ -99,6 +99,8 @@ struct Body {
   Cells cells;                  ///< of solids; in the numbering of the body
   /// Where the first particles of the body lie in its cells: passes keep them there. Empty unless cells carry a surface.
   std::vector<CellPoint> carried;
+  /// How many of these, the last ones, contact alone has: they divide edges longer than a cell, which `faces` keep whole.
+  Index contact_only = 0;
   bool preserve_volume = false;  ///< whether passes keep the volume of the cells
   double volume_factor = 0.0;    ///< of a closed surface: the multiple of its volume at rest that passes keep; 0: none
   double pressure = 0.0;         ///< in a closed surface, along the normals of its triangles [Pa]
@@ -106,8 +108,10 @@ struct Body {
   /// explicit scheme but explicit Euler needs smaller steps because of them.
   std::array<bool, 3> has_material_dampers{};
 
-  /// The number of particles, the first ones, that are vertices of the surface.
-  [[nodiscard]] Index vertex_count() const { return carried.empty() ? particle_count : static_cast<Index>(carried.size()); }
+  /// The number of particles, the first ones, that are vertices of the surface for contact.
+  [[nodiscard]] Index contact_vertex_count() const { return carried.empty() ? particle_count : static_cast<Index>(carried.size()); }
+  /// The number of particles, the first ones, that are vertices of exported frames.
+  [[nodiscard]] Index exported_vertex_count() const { return contact_vertex_count() - contact_only; }
 };
 
 /// Particles that follow a prescribed motion or an obstacle. With the default motion they rest. A pin that begins after time 0
@@ -153,8 +157,8 @@ struct SpringNetwork {
   [[nodiscard]] const Body& body_of(Index particle) const;
 };
 
-/// The columns of the particles that are vertices of surfaces, without the cells that carry some of them, 3 x m.
-[[nodiscard]] Points vertex_positions(const SpringNetwork& network, const Points& positions);
+/// The columns of the particles that are vertices of surfaces for contact, without the cells that carry some of them, 3 x m.
+[[nodiscard]] Points contact_positions(const SpringNetwork& network, const Points& positions);
 
 /// Whether a body may collide with itself or with another body.
 [[nodiscard]] bool bodies_may_collide(const SpringNetwork& network);

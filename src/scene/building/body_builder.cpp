@@ -213,7 +213,7 @@ void set_mass(const MassScene& mass, BodyShape& shape) {
     case MassScene::Kind::body:
       return set_total_mass(shape, mass.value);
     case MassScene::Kind::particle:
-      return set_total_mass(shape, mass.value * static_cast<double>(shape.positions.size()));
+      return set_total_mass(shape, mass.value * static_cast<double>(std::ssize(shape.positions) - shape.contact_only));
     case MassScene::Kind::density:
       return set_density(shape, mass.value);
   }

@@ -5,6 +5,7 @@
 #include "base/machine_memory.h"
 #include "collision/mesh_bvh/winding_number.h"
 #include "geometry/import/mesh_import.h"
+#include "geometry/mesh/edge_division.h"
 
 #include <algorithm>
 #include <array>
@@ -102,9 +103,11 @@ LatticeShape fill_with_cells(PolygonMesh surface, double cell_size) {
   check_size(cells, cell_size);
   lattice.cell_size = (1.0 + 2.0 * kMargin) * cell_size;
   lattice.origin = 0.5 * (lower + upper) - 0.5 * lattice.cell_size * cells;
+  // Vertices alone pass what the surface feels on to cells: without one, a cell would give way.
+  lattice.contact = divide_long_edges({lattice.surface.vertices, triangulate(lattice.surface.faces)}, lattice.cell_size);
 
   std::set<LatticeShape::Numbers> with_vertex;
-  for (const auto& vertex : lattice.surface.vertices.colwise()) with_vertex.insert(lattice.cell_at(vertex));
+  for (const auto& vertex : lattice.contact.vertices.colwise()) with_vertex.insert(lattice.cell_at(vertex));
   const auto [nx, ny, nz] =
       std::array<Index, 3>{static_cast<Index>(cells[0]), static_cast<Index>(cells[1]), static_cast<Index>(cells[2])};
   for (Index k = 0; k < nz; ++k) {

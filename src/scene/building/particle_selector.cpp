@@ -12,16 +12,28 @@
 namespace sprung {
 namespace {
 
+/// The positions of the particles that a scene can name [m]: all but the vertices that contact alone has, so that a selector
+/// means the same for coarse meshes as for fine ones.
+std::vector<Vector3> named_positions(const BodyShape& shape) {
+  std::vector<Vector3> positions = shape.positions;
+  const auto end = positions.begin() + std::ssize(shape.carried);
+  positions.erase(end - shape.contact_only, end);
+  return positions;
+}
+
 /// Finds the particles of one selector.
 class ParticleFinder {
  public:
   ParticleFinder(const BodyScene& body, const BuiltBody& placed, const SelectorLocation& location, std::vector<Problem>& problems)
-      : body_(body), placed_(placed), positions_(placed.shape.positions), location_(location), problems_(problems) {}
+      : body_(body), placed_(placed), positions_(named_positions(placed.shape)), location_(location), problems_(problems) {}
 
   std::vector<Index> find(const Selector& selector) {
     std::vector<Index> particles = std::visit([&](const auto& where) { return at(where); }, selector);
     std::sort(particles.begin(), particles.end());
     particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
+    const BodyShape& shape = placed_.shape;
+    const auto exported = static_cast<Index>(shape.carried.size()) - shape.contact_only;
+    for (Index& particle : particles) particle += particle < exported ? 0 : shape.contact_only;
     return particles;
   }
 
@@ -132,7 +144,7 @@ class ParticleFinder {
 
   const BodyScene& body_;
   const BuiltBody& placed_;
-  const std::vector<Vector3>& positions_;
+  const std::vector<Vector3> positions_;
   const SelectorLocation& location_;
   std::vector<Problem>& problems_;
 };

@@ -71,7 +71,7 @@ double own_mass(const MassScene& mass, const Body& body) {
     case MassScene::Kind::body:
       return mass.value;
     case MassScene::Kind::particle:
-      return mass.value * static_cast<double>(body.particle_count);
+      return mass.value * static_cast<double>(body.particle_count - body.contact_only);
     case MassScene::Kind::density:
       return mass.value * body.measure;
   }

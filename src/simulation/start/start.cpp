@@ -104,7 +104,7 @@ std::vector<std::string> describe_too_near(const SpringNetwork& network, const E
     const double gap = body.material.thickness + obstacle_thickness;
     if (!std::isfinite(gap) || gap == 0.0) continue;
     std::vector<Index> free;
-    for (Index i = body.first_particle; i < body.first_particle + body.vertex_count(); ++i) {
+    for (Index i = body.first_particle; i < body.first_particle + body.contact_vertex_count(); ++i) {
       if (!network.is_pinned(i)) free.push_back(i);
     }
     const auto nearest = environment.min_distance(positions(Eigen::all, free), gap);

@@ -18,6 +18,7 @@ SpringNetwork cube(Index cells = 4, Index vertices = 200) {
   lattice.surface.vertices = Points(3, vertices).unaryExpr([&](double /*unused*/) { return coordinate(random); });
   lattice.surface.faces = to_polygons(Triangles(3, 0));
   lattice.surface.lines.resize(2, 0);
+  lattice.contact = {lattice.surface.vertices, Triangles(3, 0)};
   lattice.cell_size = 1.0 / cells;
   for (Index i = 0; i < cells * cells * cells; ++i) {
     lattice.cells.push_back({{i % cells, i / cells % cells, i / (cells * cells)}, 1.0});

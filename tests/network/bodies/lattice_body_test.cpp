@@ -17,6 +17,7 @@ LatticeShape bar(double fraction) {
   lattice.surface.vertices = (Points(3, 4) << 0.1, 1.9, 0.6, 1.5, 0.1, 0.2, 0.9, 0.75, 0.1, 0.3, 0.5, 0.75).finished();
   lattice.surface.faces = to_polygons((Triangles(3, 2) << 0, 1, 1, 3, 2, 2).finished());
   lattice.surface.lines.resize(2, 0);
+  lattice.contact = {lattice.surface.vertices, triangulate(lattice.surface.faces)};
   lattice.cell_size = kSide;
   for (Index i = 0; i < 16; ++i) lattice.cells.push_back({{i % 4, i / 4 % 2, i / 8}, fraction});
   return lattice;

@@ -11,9 +11,11 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
+using testing::Each;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::Field;
+using testing::Ge;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -305,6 +307,30 @@ TEST(SceneBuilder, InvalidPinsAreProblems) {
   EXPECT_THAT(build_problems({"bodies.banner.pins=[{\"sphere\":[[0,0,3],2.5]}]"}),
               ElementsAre(AllOf(problem("bodies.banner.pins[0].sphere", "contains no particle"),
                                 Field(&Problem::remedy, HasSubstr("the nearest particle is 3 m from its centre")))));
+}
+
+// A tetrahedron of 4 vertices, whose edges are four to six cells long.
+TEST(SceneBuilder, ScenesDoNotNameTheVerticesThatContactAloneHas) {
+  const SceneFolder folder;
+  folder.write("coarse.obj", kTetrahedron);
+  const auto build_with_pins = [&](const std::string& pins) {
+    return build(folder, {R"(bodies.banner={"shape":{"type":"lattice","file":"coarse.obj","cells":4},"particle_mass":0.5,
+                             "springs":{"structural":{"stiffness":10}},"pins":[)" +
+                          pins + "]}"});
+  };
+  const BuiltScene built = build_with_pins(R"({"indices":[3,4]})");
+  const Body& body = built.network.bodies[0];
+  EXPECT_EQ(body.exported_vertex_count(), 4);
+  EXPECT_GT(body.contact_only, 6 * 3) << "three or more on each edge";
+  const Index first_corner = body.contact_vertex_count();
+  EXPECT_THAT(pinned(built.network), ElementsAre(3, first_corner)) << "corners of cells follow the vertices of the file";
+  const Index named = body.particle_count - body.contact_only;
+  EXPECT_NEAR(built.network.masses.sum(), 0.5 * named, 1.0e-10);
+  EXPECT_THAT(problems_of([&] { (void)build_with_pins("{\"indices\":[" + std::to_string(named) + "]}"); }),
+              ElementsAre(problem("bodies.banner.pins[0].indices[0]", "the body has " + std::to_string(named) + " particles")));
+  const std::vector<Index> in_box = pinned(build_with_pins(R"({"box":[[-9,-9,-9],[9,9,9]]})").network);
+  EXPECT_EQ(std::ssize(in_box), named);
+  EXPECT_THAT(pinned(build_with_pins(R"({"nearest":[0.5,0,0]})").network), Each(Ge(first_corner))) << "not the middle of an edge";
 }
 
 TEST(SceneBuilder, MeshesAreFoundBesideTheSceneThenInTheMeshPathsInOrder) {
