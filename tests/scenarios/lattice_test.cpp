@@ -154,5 +154,22 @@ TEST(CoarseLattice, ACubeSagsAndRestsLikeOneOfAFineMesh) {
   }
 }
 
+// E as measured on gels and foams (material_table.cpp). A column of three cells across, twice as high as wide, leans on friction at
+// its foot and is softer at its corners, by a few percent each.
+TEST(CoarseLattice, AColumnSagsByItsWeightAndYoungsModulus) {
+  struct Solid {
+    const char* material;
+    double young;    // [Pa]
+    double density;  // [kg/m^3]
+  };
+  for (const auto& [material, young, density] : {Solid{"firm_jelly", 53.0e3, 1060.0}, Solid{"foam", 3.0e5, 30.0}}) {
+    constexpr double kHeight = 0.3;
+    const RestingBox column = rest_on_floor(box_of_quads({kHeight / 2.0, kHeight, kHeight / 2.0}, {1, 1, 1}), 6, material);
+    const double law = density * 9.81 * kHeight * kHeight / (2.0 * young);
+    EXPECT_NEAR(column.sag, law, 0.1 * law) << material;
+    EXPECT_EQ(column.inverted, 0) << material;
+  }
+}
+
 }  // namespace
 }  // namespace sprung::testing

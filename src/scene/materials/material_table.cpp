@@ -128,14 +128,19 @@ Material rope(const Rope& rope) {
 }
 
 // Springs along the edges of a cube with modulus 10/17 E, and along its face and space diagonals with 36/85 E, make an isotropic
-// body with Young's modulus E and Poisson's ratio 1/4, the only one that springs between pairs of particles can have (Cauchy).
+// body with Young's modulus E and Poisson's ratio 1/4, the only one that springs between pairs of particles can have (Cauchy). Its
+// shear modulus is 2/5 E. Kept volume leaves that as it is, and Young's modulus becomes three times as much, as of everything
+// incompressible: 6/5 E, so that the springs have 5/6.
+constexpr double kSpringsOfKeptVolume = 5.0 / 6.0;
+
 Material solid(const Block& block) {
   Material material{block.name, MaterialKind::solid, block.what, {}, false};
   std::vector<MaterialValue>& values = material.values;
   values.push_back({"density", block.density.value, "kg/m^3", block.density.source});
-  values.push_back({"springs.structural.modulus", rounded(block.young.value * 10.0 / 17.0), "Pa", block.young.source});
+  const double young = block.young.value * (block.preserves_volume ? kSpringsOfKeptVolume : 1.0);
+  values.push_back({"springs.structural.modulus", rounded(young * 10.0 / 17.0), "Pa", block.young.source});
   values.push_back({"springs.structural.damping_time", block.damping_time.value, "s", block.damping_time.source});
-  values.push_back({"springs.shear.modulus", rounded(block.young.value * 36.0 / 85.0), "Pa", block.young.source});
+  values.push_back({"springs.shear.modulus", rounded(young * 36.0 / 85.0), "Pa", block.young.source});
   values.push_back({"springs.shear.damping_time", block.damping_time.value, "s", block.damping_time.source});
   values.push_back({"thickness", 2e-3, "m", "chosen: a gap that a fall of a second crosses in several steps"});
   add_friction(block.friction, values);
@@ -307,13 +312,14 @@ std::vector<Material> make_materials() {
 
   const std::string isotropic =
       "; 10/17 E of structural and 36/85 E of shear springs make an isotropic solid of Poisson's ratio 1/4, the one of springs";
+  const std::string kept = isotropic + "; 5/6 of both, because kept volume stiffens it by 6/5";
   all.push_back(solid({
       "soft_jelly",
       "a gelatin gel, 1 part of powder in 10 of water",
       {1040.0, chosen("water and 10 % of gelatin")},
       {15200.0, published("E = 15.2 kPa, from the power law between 4.34 kPa at 20:1 and 277 kPa at 2:1, Bonavia 2025, arXiv "
                           "2512.20502" +
-                          isotropic)},
+                          kept)},
       {3e-3, chosen("a cube of 0.3 m wobbles for about a second")},
       {0.25, 0.30, rubbing("wet gels slip")},
       true,
@@ -324,7 +330,7 @@ std::vector<Material> make_materials() {
       {1060.0, chosen("water and 20 % of gelatin")},
       {53000.0, published("E = 53 kPa, from the power law between 4.34 kPa at 20:1 and 277 kPa at 2:1, Bonavia 2025, arXiv "
                           "2512.20502" +
-                          isotropic)},
+                          kept)},
       {1e-3, chosen("a cube of 0.3 m wobbles for about a second")},
       {0.25, 0.30, rubbing("wet gels slip")},
       true,
