@@ -32,8 +32,8 @@ constexpr double kForecastOfChains = 1.0e-4;
 constexpr double kForecastOfCloths = 0.1;
 constexpr double kForecastOfElasticCloths = 1.0e-3;
 
-// A heavy body that falls into a slack rope brings several times its weight, on few links. With a tenth of this, five crates
-// stretched a rope by 5 % beyond its limit and bounced.
+// A heavy body that falls into a slack rope brings several times its weight, on few links. With a tenth of this, five crates on a
+// rope exceeded its limit by 5.4 % instead of 4.3 %, and the pin's force still swung by 2.5 % instead of 1.5 % after 4 s.
 constexpr double kLoadWithRods = 10.0;
 
 // Heavy bodies hang on light ones, and the inertia term of a moving body is larger than that of its weight by the square of its

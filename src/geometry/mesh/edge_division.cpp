@@ -45,7 +45,7 @@ class EdgeDivision {
       return;
     }
     const std::array sides{opposite(0), opposite(1), opposite(2)};
-    std::ranges::rotate(corners, corners.begin() + (std::ranges::min_element(sides) - sides.begin()));
+    std::rotate(corners.begin(), corners.begin() + (std::ranges::min_element(sides) - sides.begin()), corners.end());
     const Row left = side(corners[0], corners[1]);
     const Row right = side(corners[0], corners[2]);
     const std::size_t rows = std::max(left.size(), right.size()) - 1;

@@ -103,7 +103,7 @@ LatticeShape fill_with_cells(PolygonMesh surface, double cell_size) {
   check_size(cells, cell_size);
   lattice.cell_size = (1.0 + 2.0 * kMargin) * cell_size;
   lattice.origin = 0.5 * (lower + upper) - 0.5 * lattice.cell_size * cells;
-  // Vertices alone pass what the surface feels on to cells: without one, a cell would give way.
+  // Only vertices transfer contact forces to cells, so each cell at the surface needs one.
   lattice.contact = divide_long_edges({lattice.surface.vertices, triangulate(lattice.surface.faces)}, lattice.cell_size);
 
   std::set<LatticeShape::Numbers> with_vertex;
