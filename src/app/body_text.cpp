@@ -73,6 +73,17 @@ std::string angle_row(const AngleBends& bends, const Body& body) {
                                       angles.stiffness.text("N m"), angles.damping.text("N m s"), angles.bond.text("m")));
 }
 
+std::string face_bend_row(const SpringNetwork& network, const Body& body) {
+  Extremes stiffness;
+  Extremes damping;
+  for (Index f = body.first_face_bend; f < body.first_face_bend + body.face_bend_count; ++f) {
+    stiffness.add(network.face_bends.stiffness[f]);
+    damping.add(network.face_bends.damping[f]);
+  }
+  return text_row("bend", fmt::format("{} by the angles to their neighbours, D {}, damping {}",
+                                      counted(body.face_bend_count, "triangle"), stiffness.text("N m"), damping.text("N m s")));
+}
+
 std::string head_row(const SpringNetwork& network, const Body& body, const std::array<SpringRanges, 3>& kinds) {
   Index pinned = 0;
   for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) pinned += network.is_pinned(i) ? 1 : 0;
@@ -124,6 +135,7 @@ std::string body_rows(const SpringNetwork& network, const Body& body, const std:
     if (kinds[kind].count > 0) text += spring_row(kSpringKindNames[kind], kinds[kind]);
   }
   if (body.angle_bend_count > 0) text += angle_row(network.angle_bends, body);
+  if (body.face_bend_count > 0) text += face_bend_row(network, body);
   if (body.contact_only > 0) text += contact_row(body);
   const SpringPieces pieces = spring_pieces(network, body);
   if (const Index count = pieces.count + pieces.alone; count > 1)

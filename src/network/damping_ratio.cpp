@@ -1,5 +1,7 @@
 #include "network/damping_ratio.h"
 
+#include "network/stiffness_estimate.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -51,13 +53,8 @@ double breathing_frequency(const SpringNetwork& network, const Body& body) {
 }
 
 double bending_frequency(const SpringNetwork& network, const Body& body) {
-  const AngleBends& bends = network.angle_bends;
-  double stiffness = 0.0;
-  for (Index a = body.first_angle_bend; a < body.first_angle_bend + body.angle_bend_count; ++a) {
-    const double length = (bends.length_before[a] + bends.length_after[a]) / 2.0;
-    stiffness += bends.stiffness[a] * length * length;
-  }
-  return frequency(stiffness, inertia(network, body, [](double squared) { return squared * squared / 4.0; }));
+  return frequency(bending_resistance(network, body),
+                   inertia(network, body, [](double squared) { return squared * squared / 4.0; }));
 }
 
 void damp_by_ratio(const std::array<std::optional<double>, 3>& ratios, const Body& body, SpringNetwork& network) {
@@ -74,6 +71,10 @@ void damp_by_ratio(const std::array<std::optional<double>, 3>& ratios, const Bod
   AngleBends& bends = network.angle_bends;
   for (Index a = body.first_angle_bend; a < body.first_angle_bend + body.angle_bend_count; ++a) {
     bends.damping[a] = damping_time(*ratio, bending) * bends.stiffness[a];
+  }
+  FaceBends& faces = network.face_bends;
+  for (Index f = body.first_face_bend; f < body.first_face_bend + body.face_bend_count; ++f) {
+    faces.damping[f] = damping_time(*ratio, bending) * faces.stiffness[f];
   }
 }
 

@@ -15,12 +15,12 @@ namespace sprung {
 /// without stiffness or extent.
 [[nodiscard]] double breathing_frequency(const SpringNetwork& network, const Body& body);
 
-/// The frequency omega [rad/s] of bending with uniform curvature c, where particles move transversally by c r^2 / 2: omega^2 = sum
-/// k l^2 / sum m (r^2 / 2)^2 over the body's angle bends with mean bond length l. 0 for a body without angle bends.
+/// The frequency omega [rad/s] of bending with uniform curvature c, where particles move transversally by c r^2 / 2: omega^2 =
+/// `bending_resistance` / sum m (r^2 / 2)^2. 0 for a body without bends.
 [[nodiscard]] double bending_frequency(const SpringNetwork& network, const Body& body);
 
-/// Sets k_d = 2 zeta k_s / omega for the kinds of springs with a damping ratio zeta, in the order of SpringKind. Angle bends use
-/// the ratio of `bend`.
+/// Sets k_d = 2 zeta k_s / omega for the kinds of springs with a damping ratio zeta, in the order of SpringKind. Angle bends and
+/// face bends use the ratio of `bend`.
 void damp_by_ratio(const std::array<std::optional<double>, 3>& ratios, const Body& body, SpringNetwork& network);
 
 }  // namespace sprung

@@ -38,6 +38,27 @@ void append_angle_bends(AngleBends& bends, const AngleBends& body, Index offset)
   }
 }
 
+void append_face_bends(SpringNetwork& network, const BodyShape& body, Index offset) {
+  const Index first_hinge = network.hinges.count();
+  for (std::size_t h = 0; h < body.hinges.particles.size(); ++h) {
+    std::array<Index, 4> particles = body.hinges.particles[h];
+    for (Index& particle : particles) particle += offset;
+    network.hinges.particles.push_back(particles);
+    network.hinges.rest_angle.push_back(body.hinges.rest_angle[h]);
+    network.hinges.rest_area.push_back(body.hinges.rest_area[h]);
+    network.hinges.weights.push_back(body.hinges.weights[h]);
+  }
+  const FaceBends& bends = body.face_bends;
+  for (std::size_t f = 0; f < bends.hinges.size(); ++f) {
+    std::array<Index, 3> hinges = bends.hinges[f];
+    for (Index& hinge : hinges) hinge = hinge == kNone ? kNone : hinge + first_hinge;
+    network.face_bends.hinges.push_back(hinges);
+    network.face_bends.curvature.push_back(bends.curvature[f]);
+    network.face_bends.stiffness.push_back(bends.stiffness[f]);
+    network.face_bends.damping.push_back(bends.damping[f]);
+  }
+}
+
 void copy_particles(const BodyShape& shape, Index begin, SpringNetwork& network) {
   for (std::size_t i = 0; i < shape.positions.size(); ++i) {
     const Eigen::Index particle = begin + static_cast<Eigen::Index>(i);
@@ -187,6 +208,8 @@ SpringNetwork NetworkBuilder::build() const {
     append_sorted(network.springs, draft.shape.springs, draft.first_particle);
     const Index first_bend = network.angle_bends.count();
     append_angle_bends(network.angle_bends, draft.shape.angle_bends, draft.first_particle);
+    const Index first_face_bend = network.face_bends.count();
+    append_face_bends(network, draft.shape, draft.first_particle);
     network.bodies.push_back({draft.name,
                               draft.first_particle,
                               static_cast<Index>(draft.shape.positions.size()),
@@ -194,6 +217,8 @@ SpringNetwork NetworkBuilder::build() const {
                               network.springs.count() - first_spring,
                               first_bend,
                               network.angle_bends.count() - first_bend,
+                              first_face_bend,
+                              network.face_bends.count() - first_face_bend,
                               draft.shape.dimension,
                               draft.shape.measure,
                               draft.shape.resolution,

@@ -80,6 +80,34 @@ void check_breaks(const std::string& key, const BodyShape& shape, ProblemList& p
   }
 }
 
+/// Written for shapes that a program filled itself; add_triangle_bends() keeps these rules.
+void check_face_bends(const std::string& key, const BodyShape& shape, ProblemList& problems) {
+  const Hinges& hinges = shape.hinges;
+  problems.require_each(
+      hinges.particles.size(),
+      [&](std::size_t h) {
+        return std::ranges::all_of(hinges.particles[h], [&](Index particle) {
+          return particle >= 0 && static_cast<std::size_t>(particle) < shape.positions.size();
+        });
+      },
+      [&](std::size_t h) { return counts_text(hinges.particles[h]); },
+      EntryRule{key + ".hinges", "must join particles of the body, which has " + std::to_string(shape.positions.size()),
+                "use the numbers of the body's particles, counted from 0"});
+  const FaceBends& bends = shape.face_bends;
+  problems.require_each(
+      bends.hinges.size(),
+      [&](std::size_t f) {
+        return std::ranges::all_of(bends.hinges[f],
+                                   [&](Index hinge) { return hinge == kNone || (hinge >= 0 && hinge < hinges.count()); });
+      },
+      [&](std::size_t f) { return counts_text(bends.hinges[f]); },
+      EntryRule{key + ".face_bends.hinges", "must name hinges of the body, which has " + std::to_string(hinges.count()),
+                "use the numbers of its hinges, counted from 0"});
+  const std::string rule = "must be a finite number not less than 0";
+  require_quantities(bends.stiffness, {key + ".face_bends.stiffness", rule, "give k in N m"}, problems);
+  require_quantities(bends.damping, {key + ".face_bends.damping", rule, "give a damping in N m s"}, problems);
+}
+
 void check_angle_bends(const std::string& key, const BodyShape& shape, ProblemList& problems) {
   const AngleBends& bends = shape.angle_bends;
   const auto ends = [&](std::size_t a) { return std::array<Index, 3>{bends.before[a], bends.middle[a], bends.after[a]}; };
@@ -138,6 +166,14 @@ bool same_sizes(const AngleBends& bends) {
          bends.length_after.size() == count && bends.stiffness.size() == count && bends.damping.size() == count;
 }
 
+bool same_sizes(const Hinges& hinges, const FaceBends& bends) {
+  const std::size_t hinge_count = hinges.particles.size();
+  const std::size_t count = bends.hinges.size();
+  return hinges.rest_angle.size() == hinge_count && hinges.rest_area.size() == hinge_count &&
+         hinges.weights.size() == hinge_count && bends.curvature.size() == count && bends.stiffness.size() == count &&
+         bends.damping.size() == count;
+}
+
 bool same_sizes(const BodyShape& shape) {
   const Springs& springs = shape.springs;
   const std::size_t particles = shape.positions.size();
@@ -145,7 +181,8 @@ bool same_sizes(const BodyShape& shape) {
   return shape.velocities.size() == particles && shape.masses.size() == particles && shape.drag_areas.size() == particles &&
          springs.second.size() == count && springs.rest_length.size() == count && springs.stiffness.size() == count &&
          springs.damping.size() == count && springs.kind.size() == count &&
-         (springs.laws.empty() || springs.laws.size() == count) && same_sizes(shape.angle_bends);
+         (springs.laws.empty() || springs.laws.size() == count) && same_sizes(shape.angle_bends) &&
+         same_sizes(shape.hinges, shape.face_bends);
 }
 
 /// Of a pin or an attachment.
@@ -235,6 +272,7 @@ void check_body(const std::string& key, const BodyShape& shape, const ContactMat
   check_springs(key, shape, problems);
   check_breaks(key, shape, problems);
   check_angle_bends(key, shape, problems);
+  check_face_bends(key, shape, problems);
   check_surface(key, shape, problems);
   Points positions(3, static_cast<Index>(shape.positions.size()));
   for (Index i = 0; i < positions.cols(); ++i) positions.col(i) = shape.positions[i];

@@ -22,6 +22,14 @@ UnionFind sets_of(const SpringNetwork& network, const Body& body) {
     join(bends.before[a], bends.middle[a]);
     join(bends.middle[a], bends.after[a]);
   }
+  const FaceBends& faces = network.face_bends;
+  for (Index f = body.first_face_bend; f < body.first_face_bend + body.face_bend_count; ++f) {
+    for (const Index hinge : faces.hinges[f]) {
+      if (hinge == kNone) continue;
+      const auto& [a, b, c, d] = network.hinges.particles[hinge];
+      for (const Index corner : {b, c, d}) join(a, corner);
+    }
+  }
   return sets;
 }
 

@@ -20,10 +20,11 @@ constexpr double kUsual = 0.99;
 constexpr int kDigits = 3;
 constexpr int kPositionDigits = 5;
 
-/// A spring or angle bend: an elastic energy 1/2 k (sum w u)^2 of displacements u across or along the element.
+/// A spring, angle bend or face bend: an elastic energy, the sum of 1/2 k (w . u)^2 over the rows w of `weights`, of displacements
+/// u across or along the element.
 struct Element {
-  std::array<Index, 3> particles{};
-  std::array<double, 3> weights{};
+  std::array<Index, 6> particles{};
+  std::array<std::array<double, 6>, 3> weights{};
   double* stiffness = nullptr;
   double* damping = nullptr;
   std::array<Index, 2> edge{};  ///< the spring's ends, or the ends of the bend's shorter bond
@@ -34,8 +35,8 @@ std::vector<Element> elements_of(BodyShape& shape) {
   std::vector<Element> elements;
   Springs& springs = shape.springs;
   for (Index s = 0; s < springs.count(); ++s) {
-    elements.push_back({{springs.first[s], springs.second[s], springs.first[s]},
-                        {1.0, -1.0, 0.0},
+    elements.push_back({{springs.first[s], springs.second[s]},
+                        {{{1.0, -1.0}}},
                         &springs.stiffness[s],
                         &springs.damping[s],
                         {springs.first[s], springs.second[s]},
@@ -47,20 +48,41 @@ std::vector<Element> elements_of(BodyShape& shape) {
     const double after = bends.length_after[a];
     const Index end = before < after ? bends.before[a] : bends.after[a];
     elements.push_back({{bends.before[a], bends.middle[a], bends.after[a]},
-                        {1.0 / before, -1.0 / before - 1.0 / after, 1.0 / after},
+                        {{{1.0 / before, -1.0 / before - 1.0 / after, 1.0 / after}}},
                         &bends.stiffness[a],
                         &bends.damping[a],
                         {bends.middle[a], end},
                         std::min(before, after)});
+  }
+  FaceBends& faces = shape.face_bends;
+  for (Index f = 0; f < faces.count(); ++f) {
+    Element element{.particles = stencil_of(faces, shape.hinges, f).particles,
+                    .weights = weights_of(faces, shape.hinges, f),
+                    .stiffness = &faces.stiffness[f],
+                    .damping = &faces.damping[f],
+                    .length = std::numeric_limits<double>::infinity()};
+    for (const Index hinge : faces.hinges[f]) {
+      if (hinge == kNone) continue;
+      const auto [a, b, c, d] = shape.hinges.particles[hinge];
+      const double length = (shape.positions[a] - shape.positions[b]).norm();
+      if (length >= element.length) continue;
+      element.edge = {a, b};
+      element.length = length;
+    }
+    elements.push_back(element);
   }
   return elements;
 }
 
 /// The square of the element's frequency on its own [1/s^2].
 double squared_frequency(const Element& element, const std::vector<double>& masses) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) sum += element.weights[k] * element.weights[k] / masses[element.particles[k]];
-  return *element.stiffness * sum;
+  double largest = 0.0;
+  for (const std::array<double, 6>& row : element.weights) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < row.size(); ++k) sum += row[k] * row[k] / masses[element.particles[k]];
+    largest = std::max(largest, sum);
+  }
+  return *element.stiffness * largest;
 }
 
 /// The value that 99 in 100 of those above zero do not exceed; infinity if there are none.
@@ -98,9 +120,11 @@ void soften(const BodyShape& shape, const std::vector<Element>& elements, StepAd
 std::vector<double> row_sums(const BodyShape& shape, const std::vector<Element>& elements) {
   std::vector<double> sums(shape.masses.size(), 0.0);
   for (const Element& element : elements) {
-    double weights = 0.0;
-    for (const double weight : element.weights) weights += std::abs(weight);
-    for (std::size_t k = 0; k < 3; ++k) sums[element.particles[k]] += *element.stiffness * std::abs(element.weights[k]) * weights;
+    for (const std::array<double, 6>& row : element.weights) {
+      double weights = 0.0;
+      for (const double weight : row) weights += std::abs(weight);
+      for (std::size_t k = 0; k < row.size(); ++k) sums[element.particles[k]] += *element.stiffness * std::abs(row[k]) * weights;
+    }
   }
   return sums;
 }

@@ -11,7 +11,7 @@ namespace sprung {
 /// What adjust_for_step() changed.
 struct StepAdjustment {
   std::string body{};              ///< its name
-  Index softened = 0;              ///< number of springs and angle bends that are softer
+  Index softened = 0;              ///< number of springs, angle bends and face bends that are softer
   double least_factor = 1.0;       ///< smallest factor of their stiffness and damping
   Index heavier = 0;               ///< number of particles that are heavier
   double added_mass = 0.0;         ///< in total [kg]
@@ -24,7 +24,7 @@ struct StepAdjustment {
 /// Bodies of fewer particles are left as they are.
 inline constexpr Index kLeastAdjusted = 200;
 
-/// Two measures, of a body with masses. First, springs and angle bends that alone would need a step below half of what 99 in 100
+/// Two measures, of a body with masses. First, springs and bends that alone would need a step below half of what 99 in 100
 /// need become softer, with their damping, until they need that. Second, particles on which all elements together act that fast, in
 /// the same sense, become heavier (selective mass scaling, Olovsson, Simonsson and Unosson 2005), by at most `mass_share` of the
 /// body's mass in total: less of each if that does not suffice. None if nothing changed.

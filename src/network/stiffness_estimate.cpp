@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace sprung {
 namespace {
@@ -29,17 +30,20 @@ double stretch_resistance(const SpringNetwork& network, const Body& body, const 
   return sum;
 }
 
-/// EI of a rope [N m^2], the mean rigidity of both directions of a cloth [N m].
-double bending_rigidity(const AngleBends& bends, const Body& body) {
-  double sum = 0.0;
+}  // namespace
+
+double bending_resistance(const SpringNetwork& network, const Body& body) {
+  const AngleBends& bends = network.angle_bends;
+  double resistance = 0.0;
   for (Index a = body.first_angle_bend; a < body.first_angle_bend + body.angle_bend_count; ++a) {
     const double length = (bends.length_before[a] + bends.length_after[a]) / 2.0;
-    sum += bends.stiffness[a] * length * length;
+    resistance += bends.stiffness[a] * length * length;
   }
-  return sum / (body.dimension * body.measure);
+  if (body.face_bend_count == 0) return resistance;
+  const auto first = network.face_bends.stiffness.begin() + body.first_face_bend;
+  const double mean = std::accumulate(first, first + body.face_bend_count, 0.0) / body.face_bend_count;
+  return resistance + mean * body.dimension * body.measure;
 }
-
-}  // namespace
 
 StiffnessEstimate estimate_stiffness(const SpringNetwork& network, const Body& body, double gravity) {
   const Points positions = network.positions.middleCols(body.first_particle, body.particle_count);
@@ -52,7 +56,8 @@ StiffnessEstimate estimate_stiffness(const SpringNetwork& network, const Body& b
   estimate.sag = density * gravity * estimate.length * estimate.length / (2.0 * modulus);
   estimate.stretch_period = 4.0 * estimate.length * std::sqrt(density / modulus);
   estimate.swing_period = 2.0 * std::numbers::pi * std::sqrt(2.0 * estimate.length / (3.0 * gravity));
-  estimate.overhang = 2.0 * std::cbrt(bending_rigidity(network.angle_bends, body) / (density * gravity));
+  const double rigidity = bending_resistance(network, body) / (body.dimension * body.measure);
+  estimate.overhang = 2.0 * std::cbrt(rigidity / (density * gravity));
   return estimate;
 }
 

@@ -2,6 +2,7 @@
 #include "geometry/mesh/polygon_mesh.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "output/scratch_folder.h"
+#include "scenarios/mesh_samples.h"
 #include "scenarios/scenario.h"
 
 #include <gmock/gmock.h>
@@ -10,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -71,37 +71,6 @@ TEST_P(LatticeScenario, ASpikeIsShotAtABall) {
   const char* const shot = R"(obstacles.spike.motion={"keyframes": [{"time": 0}, {"time": 0.1, "position": [0, 1.5, 0]}]})";
   const ScenarioReport report = run_scenario(load_scenario("lattice_on_spike", {shot, "duration=0.3"}, 1.0 / GetParam()));
   EXPECT_TRUE(report.is_free()) << report;
-}
-
-/// A box, centred, with this number of quads along each side.
-PolygonMesh box_of_quads(const Vector3& size, const std::array<Index, 3>& quads) {
-  PolygonMesh box;
-  std::map<std::array<Index, 3>, Index> vertices;
-  const auto vertex = [&](const std::array<Index, 3>& at) {
-    return vertices.try_emplace(at, static_cast<Index>(vertices.size())).first->second;
-  };
-  for (int axis = 0; axis < 3; ++axis) {
-    const int u = (axis + 1) % 3;
-    const int v = (axis + 2) % 3;
-    for (const bool far : {false, true}) {
-      for (Index k = 0; k < quads[u] * quads[v]; ++k) {
-        std::array<Index, 3> at{};
-        at[axis] = far ? quads[axis] : 0;
-        for (const Index corner : {0, 1, 3, 2}) {
-          at[far ? u : v] = k % quads[far ? u : v] + (corner & 1);
-          at[far ? v : u] = k / quads[far ? u : v] + (corner >> 1);
-          box.faces.vertex.push_back(vertex(at));
-        }
-        box.faces.corner_begin.push_back(static_cast<Index>(box.faces.vertex.size()));
-      }
-    }
-  }
-  box.vertices.resize(3, static_cast<Index>(vertices.size()));
-  for (const auto& [at, number] : vertices) {
-    for (int axis = 0; axis < 3; ++axis) box.vertices(axis, number) = size[axis] * (1.0 * at[axis] / quads[axis] - 0.5);
-  }
-  box.lines.resize(2, 0);
-  return box;
 }
 
 /// A box that has come to rest on a floor.

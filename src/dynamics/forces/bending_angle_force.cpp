@@ -1,11 +1,13 @@
 #include "dynamics/forces/bending_angle_force.h"
 
 #include "base/parallel.h"
+#include "dynamics/forces/hinge_angle.h"
 #include "dynamics/forces/material_dampers.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -14,6 +16,7 @@ namespace {
 
 // One thread computes all elements that touch a block of particles. Elements across two blocks are computed twice.
 constexpr Index kParticleBlock = 2048;
+constexpr Index kHingesAtOnce = 1024;
 
 /// f(bond) and its derivative: the gradient of f is `slope` times the bond.
 struct Fullness {
@@ -100,55 +103,143 @@ void add_products(const std::array<Index, 3>& particles, const std::array<double
 }
 
 /// Adds -factor g_i g_j^T for all pairs of the element's particles.
-void add_products(const std::array<Index, 3>& particles, const std::array<Vector3, 3>& g, double factor, BlockMatrix& to) {
-  for (std::size_t i = 0; i < 3; ++i) {
+template <std::size_t kCount>
+void add_products(const std::array<Index, kCount>& particles, const std::array<Vector3, kCount>& g, double factor,
+                  BlockMatrix& to) {
+  if (factor == 0.0) return;
+  for (std::size_t i = 0; i < kCount; ++i) {
     for (std::size_t j = 0; j <= i; ++j) to.add(particles[i], particles[j], -factor * g[i] * g[j].transpose());
   }
 }
 
 }  // namespace
 
-BendingAngleForce::BendingAngleForce(const SpringNetwork& network)
-    : network_(network), stiffness_(network.angle_bends.stiffness), damping_(network.angle_bends.damping) {
-  assign_blocks();
+ElementConstants constants_of_bends(const SpringNetwork& network) {
+  ElementConstants constants{network.angle_bends.stiffness, network.angle_bends.damping};
+  const FaceBends& faces = network.face_bends;
+  constants.stiffness.insert(constants.stiffness.end(), faces.stiffness.begin(), faces.stiffness.end());
+  constants.damping.insert(constants.damping.end(), faces.damping.begin(), faces.damping.end());
+  return constants;
 }
+
+BendingAngleForce::BendingAngleForce(const SpringNetwork& network) : BendingAngleForce(network, constants_of_bends(network)) {}
 
 BendingAngleForce::BendingAngleForce(const SpringNetwork& network, ElementConstants constants)
-    : network_(network),
-      own_(std::make_unique<ElementConstants>(std::move(constants))),
-      stiffness_(own_->stiffness),
-      damping_(own_->damping) {
-  assign_blocks();
-}
-
-void BendingAngleForce::assign_blocks() {
-  blocks_.resize(network_.particle_count() / kParticleBlock + 1);
+    : network_(network), constants_(std::move(constants)), first_face_(static_cast<std::size_t>(network.angle_bends.count())) {
+  const auto blocks = static_cast<std::size_t>(network_.particle_count() / kParticleBlock + 1);
+  bend_blocks_.resize(blocks);
+  hinge_blocks_.resize(blocks);
+  const auto assign = [&](Index element, const auto& particles, std::vector<std::vector<Index>>& to) {
+    if (std::ranges::all_of(particles, [&](Index i) { return network_.is_asleep(i); })) return;
+    for (const Index particle : particles) {
+      std::vector<Index>& block = to[particle / kParticleBlock];
+      if (block.empty() || block.back() != element) block.push_back(element);
+    }
+  };
   const AngleBends& bends = network_.angle_bends;
   for (Index element = 0; element < bends.count(); ++element) {
-    const std::array<Index, 3> particles = particles_of(bends, element);
-    if (std::ranges::all_of(particles, [&](Index i) { return network_.is_asleep(i); })) continue;
-    if (own_ != nullptr && stiffness_[element] == 0.0 && damping_[element] == 0.0) continue;
-    for (const Index particle : particles) {
-      std::vector<Index>& block = blocks_[particle / kParticleBlock];
-      if (block.empty() || block.back() != element) block.push_back(element);
+    if (acts(static_cast<std::size_t>(element))) assign(element, particles_of(bends, element), bend_blocks_);
+  }
+  assign_faces();
+  for (Index hinge = 0; hinge < network_.hinges.count(); ++hinge) {
+    if (!faces_of_hinge_[hinge].empty()) assign(hinge, network_.hinges.particles[hinge], hinge_blocks_);
+  }
+}
+
+bool BendingAngleForce::acts(std::size_t element) const {
+  return constants_.stiffness[element] > 0.0 || constants_.damping[element] > 0.0;
+}
+
+void BendingAngleForce::assign_faces() {
+  faces_of_hinge_.resize(static_cast<std::size_t>(network_.hinges.count()));
+  const FaceBends& faces = network_.face_bends;
+  for (Index face = 0; face < faces.count(); ++face) {
+    const BendStencil stencil = stencil_of(faces, network_.hinges, face);
+    if (std::ranges::all_of(stencil.particles, [&](Index i) { return network_.is_asleep(i); })) continue;
+    if (!acts(first_face_ + static_cast<std::size_t>(face))) continue;
+    for (std::size_t side = 0; side < 3; ++side) {
+      if (const Index hinge = faces.hinges[face][side]; hinge != kNone) faces_of_hinge_[hinge].push_back({face, side});
     }
   }
 }
 
 void BendingAngleForce::add(const Kinematics& at, Points& forces) const {
+  add_bends(at, forces);
+  if (network_.hinges.count() > 0) add_hinges(at, forces);
+}
+
+void BendingAngleForce::add_bends(const Kinematics& at, Points& forces) const {
   const AngleBends& bends = network_.angle_bends;
-  const bool bounds_damping = own_ != nullptr && own_->bounds_damping;
-  parallel_chunks(static_cast<Index>(blocks_.size()), 1, [&](Index begin, Index end) {
+  parallel_chunks(static_cast<Index>(bend_blocks_.size()), 1, [&](Index begin, Index end) {
     for (Index block = begin; block < end; ++block) {
       const auto add_to = [&](Index particle, const Vector3& force) {
         if (particle / kParticleBlock == block) forces.col(particle) += force;
       };
-      for (const Index element : blocks_[block]) {
-        const auto [on_before, on_after] =
-            bend_forces(bends, element, {stiffness_[element], damping_[element], bounds_damping}, at);
+      for (const Index element : bend_blocks_[block]) {
+        const auto [on_before, on_after] = bend_forces(
+            bends, element, {constants_.stiffness[element], constants_.damping[element], constants_.bounds_damping}, at);
         add_to(bends.before[element], on_before);
         add_to(bends.middle[element], -(on_before + on_after));
         add_to(bends.after[element], on_after);
+      }
+    }
+  });
+}
+
+void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
+  struct HingeMotion {
+    std::array<Vector3, 4> gradient{};
+    double deviation = 0.0;
+    double rate = 0.0;   ///< of the deviation [1/s], times `share`
+    double share = 1.0;  ///< of dampers
+  };
+  const Hinges& hinges = network_.hinges;
+  const FaceBends& faces = network_.face_bends;
+  const auto any = [&](const std::vector<double>& constants) {
+    const auto first = constants.begin() + static_cast<std::ptrdiff_t>(first_face_);
+    return std::any_of(first, constants.end(), [](double constant) { return constant > 0.0; });
+  };
+  const bool resists = any(constants_.stiffness);
+  const bool damps = any(constants_.damping);
+  const auto motions =
+      std::make_unique_for_overwrite<HingeMotion[]>(static_cast<std::size_t>(hinges.count()));  // NOLINT(*-c-arrays)
+  parallel_chunks(hinges.count(), kHingesAtOnce, [&](Index begin, Index end) {
+    for (Index hinge = begin; hinge < end; ++hinge) {
+      if (faces_of_hinge_[hinge].empty()) continue;
+      const HingeAngle angle(hinges, hinge, at.x);
+      HingeMotion& motion = motions[hinge];
+      motion = {.gradient = angle.gradient()};
+      if (resists) motion.deviation = angle.deviation();
+      if (!damps) continue;
+      if (constants_.bounds_damping) motion.share = angle.shortness();
+      for (std::size_t i = 0; i < 4; ++i) motion.rate += motion.gradient[i].dot(at.v.col(hinges.particles[hinge][i]));
+      motion.rate *= motion.share;
+    }
+  });
+  // The row of F^T F that belongs to a side, times the values of all hinges of the face.
+  const auto moment_of = [&](Index face, std::size_t side, double HingeMotion::*value) {
+    Vector3 values = Vector3::Zero();
+    for (std::size_t other = 0; other < 3; ++other) {
+      const Index hinge = faces.hinges[face][other];
+      if (hinge != kNone) values[static_cast<Index>(other)] = motions[hinge].*value;
+    }
+    const Matrix3& curvature = faces.curvature[face];
+    return curvature.col(static_cast<Index>(side)).dot(curvature * values);
+  };
+  parallel_chunks(static_cast<Index>(hinge_blocks_.size()), 1, [&](Index begin, Index end) {
+    for (Index block = begin; block < end; ++block) {
+      for (const Index hinge : hinge_blocks_[block]) {
+        const HingeMotion& motion = motions[hinge];
+        double moment = 0.0;
+        for (const auto& [face, side] : faces_of_hinge_[hinge]) {
+          const std::size_t element = first_face_ + static_cast<std::size_t>(face);
+          if (resists) moment += constants_.stiffness[element] * moment_of(face, side, &HingeMotion::deviation);
+          if (damps) moment += motion.share * constants_.damping[element] * moment_of(face, side, &HingeMotion::rate);
+        }
+        for (std::size_t i = 0; i < 4; ++i) {
+          const Index particle = hinges.particles[hinge][i];
+          if (particle / kParticleBlock == block) forces.col(particle) -= moment * motion.gradient[i];
+        }
       }
     }
   });
@@ -159,6 +250,14 @@ void BendingAngleForce::couple(std::vector<ParticlePair>& pairs) const {
     const auto [before, middle, after] = particles_of(network_.angle_bends, element);
     for (const ParticlePair& pair : {ParticlePair{before, middle}, {middle, after}, {before, after}}) pairs.push_back(pair);
   }
+  for (Index face = 0; face < network_.face_bends.count(); ++face) {
+    const BendStencil stencil = stencil_of(network_.face_bends, network_.hinges, face);
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (stencil.particles[i] != stencil.particles[j]) pairs.push_back({stencil.particles[j], stencil.particles[i]});
+      }
+    }
+  }
 }
 
 void BendingAngleForce::add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const {
@@ -166,8 +265,9 @@ void BendingAngleForce::add_derivatives(const Kinematics& at, ForceDerivatives& 
   for (Index element = 0; element < bends.count(); ++element) {
     const Bend bend(bends, element, at.x);
     const std::array<Index, 3> particles = particles_of(bends, element);
-    const double stiffness = stiffness_[element] * bend.fullness();
-    if (!(stiffness > 0.0) && !(damping_[element] > 0.0)) continue;
+    const double stiffness = constants_.stiffness[element] * bend.fullness();
+    const double damping = constants_.damping[element];
+    if (!(stiffness > 0.0) && !(damping > 0.0)) continue;
     const double per_a = 1.0 / bend.a.norm();
     const double per_b = 1.0 / bend.b.norm();
     if (!std::isfinite(per_a) || !std::isfinite(per_b)) continue;
@@ -177,35 +277,85 @@ void BendingAngleForce::add_derivatives(const Kinematics& at, ForceDerivatives& 
       const double half = 0.5 * bend.angle();
       add_products(particles, turns(bend), stiffness, derivatives.by_position);
       add_products(particles, across, (stiffness * half / std::tan(half)) * normal * normal.transpose(), derivatives.by_position);
-      add_products(particles, turns(bend), damping_[element] * bend.fullness(), derivatives.by_velocity);
+      add_products(particles, turns(bend), damping * bend.fullness(), derivatives.by_velocity);
     } else if (bend.angle() == 0.0) {
       const Vector3 along = per_a * bend.a;
       add_products(particles, across, stiffness * (Matrix3::Identity() - along * along.transpose()), derivatives.by_position);
     }
   }
+  for (Index face = 0; face < network_.face_bends.count(); ++face) add_face_derivatives(face, at.x, derivatives);
+}
+
+void BendingAngleForce::add_face_derivatives(Index face, const Points& x, ForceDerivatives& derivatives) const {
+  const std::size_t element = first_face_ + static_cast<std::size_t>(face);
+  if (!acts(element)) return;
+  const FaceBends& faces = network_.face_bends;
+  const BendStencil stencil = stencil_of(faces, network_.hinges, face);
+  std::array<std::array<Vector3, 6>, 3> gradients;  // of the rows of F phi
+  for (auto& row : gradients) row.fill(Vector3::Zero());
+  for (std::size_t side = 0; side < 3; ++side) {
+    const Index hinge = faces.hinges[face][side];
+    if (hinge == kNone) continue;
+    const std::array<Vector3, 4> gradient = HingeAngle(network_.hinges, hinge, x).gradient();
+    for (std::size_t row = 0; row < 3; ++row) {
+      const double factor = faces.curvature[face](static_cast<Index>(row), static_cast<Index>(side));
+      for (std::size_t i = 0; i < 4; ++i) gradients[row][stencil.of_hinges[side][i]] += factor * gradient[i];
+    }
+  }
+  for (const auto& row : gradients) {
+    add_products(stencil.particles, row, constants_.stiffness[element], derivatives.by_position);
+    add_products(stencil.particles, row, constants_.damping[element], derivatives.by_velocity);
+  }
 }
 
 void BendingAngleForce::append_elements(std::vector<LinearElement>& elements) const {
   const AngleBends& bends = network_.angle_bends;
-  const std::size_t begin = elements.size();
+  std::vector<bool> of_material(constants_.stiffness.size(), false);
+  for_material_bends(network_, [&](Index e) { of_material[e] = true; });
   for (Index e = 0; e < bends.count(); ++e) {
     const double before = 1.0 / bends.length_before[e];
     const double after = 1.0 / bends.length_after[e];
-    elements.push_back({particles_of(bends, e), {before, -(before + after), after}, stiffness_[e], damping_[e]});
+    const std::array<double, 3> weights{before, -(before + after), after};
+    elements.push_back(LinearElement::of(particles_of(bends, e), weights, constants_.stiffness[e], constants_.damping[e]));
+    elements.back().of_material = of_material[e];
   }
-  for_material_bends(network_, [&](Index e) { elements[begin + static_cast<std::size_t>(e)].of_material = true; });
+  for (Index face = 0; face < network_.face_bends.count(); ++face) {
+    const std::size_t e = first_face_ + static_cast<std::size_t>(face);
+    const BendStencil stencil = stencil_of(network_.face_bends, network_.hinges, face);
+    for (const std::array<double, 6>& weights : weights_of(network_.face_bends, network_.hinges, face)) {
+      elements.push_back(LinearElement::of(stencil.particles, weights, constants_.stiffness[e], constants_.damping[e]));
+      elements.back().of_material = of_material[e];
+    }
+  }
 }
 
 double BendingAngleForce::capacity() const {
+  constexpr double kHalfTurnSquared = std::numbers::pi * std::numbers::pi;
   double energy = 0.0;
-  for (const double k : stiffness_) energy += 0.5 * k * std::numbers::pi * std::numbers::pi;
+  for (std::size_t e = 0; e < first_face_; ++e) energy += 0.5 * constants_.stiffness[e] * kHalfTurnSquared;
+  for (Index face = 0; face < network_.face_bends.count(); ++face) {
+    const double stiffness = constants_.stiffness[first_face_ + static_cast<std::size_t>(face)];
+    energy += 0.5 * stiffness * network_.face_bends.curvature[face].squaredNorm() * kHalfTurnSquared;
+  }
   return energy;
 }
 
 double BendingAngleForce::energy(const Points& positions) const {
   const AngleBends& bends = network_.angle_bends;
   double energy = 0.0;
-  for (Index element = 0; element < bends.count(); ++element) energy += Bend(bends, element, positions).energy(stiffness_[element]);
+  for (Index element = 0; element < bends.count(); ++element) {
+    energy += Bend(bends, element, positions).energy(constants_.stiffness[element]);
+  }
+  const FaceBends& faces = network_.face_bends;
+  for (Index face = 0; face < faces.count(); ++face) {
+    Vector3 deviations = Vector3::Zero();
+    for (std::size_t side = 0; side < 3; ++side) {
+      const Index hinge = faces.hinges[face][side];
+      if (hinge != kNone) deviations[static_cast<Index>(side)] = HingeAngle(network_.hinges, hinge, positions).deviation();
+    }
+    const double stiffness = constants_.stiffness[first_face_ + static_cast<std::size_t>(face)];
+    energy += 0.5 * stiffness * (faces.curvature[face] * deviations).squaredNorm();
+  }
   return energy;
 }
 

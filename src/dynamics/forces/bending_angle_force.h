@@ -1,28 +1,33 @@
-// Resistance to bending by angles, of ropes and cloths.
+// Resistance to bending by angles, of ropes, cloths and meshes.
 //
-// With the bonds a = x_middle - x_before, b = x_after - x_middle and n = a x b, the angle is theta = atan2(|n|, a . b). Its
-// gradient turns each bond towards the other's line, at the end by 1 / length: d theta / d x_after = n x b / (|n| b^2), d theta / d
-// x_before = n x a / (|n| a^2), and the middle has minus their sum (Bergou et al. 2008, "Discrete elastic rods", whose hinges these
-// are).
+// Of three particles in line: with the bonds a = x_middle - x_before, b = x_after - x_middle and n = a x b, the angle is theta =
+// atan2(|n|, a . b). Its gradient turns each bond towards the other's line, at the end by 1 / length: d theta / d x_after = n x b /
+// (|n| b^2), d theta / d x_before = n x a / (|n| a^2), and the middle has minus their sum (Bergou et al. 2008, "Discrete elastic
+// rods", whose hinges these are).
 //
 // The energy is 1/2 k theta^2 f(a) f(b): f is 1 for bonds of at least half their rest length, and (2 |a| / rest length)^2 below, so
 // that forces stay bounded where bonds collapse. Where n is 0, in line or folded back, no direction is preferred: no force.
+//
+// Of triangles: see FaceBends and `hinge_angle.h`.
 #pragma once
 
 #include "dynamics/forces/element_constants.h"
 #include "dynamics/forces/force.h"
 #include "network/model/spring_network.h"
 
-#include <memory>
+#include <cstddef>
 #include <vector>
 
 namespace sprung {
+
+/// The constants of the angle bends of a network, then those of its face bends.
+[[nodiscard]] ElementConstants constants_of_bends(const SpringNetwork& network);
 
 class BendingAngleForce final : public Force {
  public:
   /// Keeps a reference to the network.
   explicit BendingAngleForce(const SpringNetwork& network);
-  /// With these constants in place of those of the network's angle bends.
+  /// With these constants in place of `constants_of_bends`.
   BendingAngleForce(const SpringNetwork& network, ElementConstants constants);
 
   [[nodiscard]] std::string name() const override { return "angle bends"; }
@@ -31,26 +36,37 @@ class BendingAngleForce final : public Force {
 
   /// Two terms. The first is k g g^T, where g is the gradient of the angle. The second acts across the plane of the bend: 1/2 k
   /// theta cot(theta / 2) w w^T with w = (1 / |a|, -1 / |a| - 1 / |b|, 1 / |b|). In the straight configuration the two are exact.
+  /// Face bends have the first term alone, in which theta is F phi: it is exact at rest.
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
-  /// Those of straight bends, with weights (1/a, -1/a - 1/b, 1/b) for bonds a and b at rest. No bent configuration with such bonds
-  /// has a faster mode: no weight grows, and the signs already alternate.
+  /// Those of flat triangles, and of straight bends, with weights (1/a, -1/a - 1/b, 1/b) for bonds a and b at rest. No bent
+  /// configuration with such bonds has a faster mode: no weight grows, and the signs already alternate.
   void append_elements(std::vector<LinearElement>& elements) const override;
 
-  /// sum 1/2 k theta^2 f(a) f(b) [J]
+  /// sum 1/2 k theta^2 f(a) f(b) + sum 1/2 k |F phi|^2 [J]
   [[nodiscard]] double energy(const Points& positions) const override;
 
-  /// sum 1/2 k pi^2 [J], of bends that are folded back
+  /// At least the energy of bends that are all folded back [J].
   [[nodiscard]] double capacity() const override;
 
  private:
-  void assign_blocks();
+  struct FaceSide {
+    Index face = 0;
+    std::size_t side = 0;
+  };
+
+  [[nodiscard]] bool acts(std::size_t element) const;
+  void assign_faces();
+  void add_bends(const Kinematics& at, Points& forces) const;
+  void add_hinges(const Kinematics& at, Points& forces) const;
+  void add_face_derivatives(Index face, const Points& x, ForceDerivatives& derivatives) const;
 
   const SpringNetwork& network_;
-  std::unique_ptr<const ElementConstants> own_;  ///< null: those of the network
-  const std::vector<double>& stiffness_;         ///< k and damping of each element
-  const std::vector<double>& damping_;
-  std::vector<std::vector<Index>> blocks_;  ///< elements that touch each block of particles
+  ElementConstants constants_;
+  std::size_t first_face_;                       ///< the number of angle bends
+  std::vector<std::vector<Index>> bend_blocks_;  ///< angle bends that touch each block of particles
+  std::vector<std::vector<Index>> hinge_blocks_;
+  std::vector<std::vector<FaceSide>> faces_of_hinge_;  ///< that act
 };
 
 }  // namespace sprung

@@ -4,12 +4,20 @@
 
 namespace sprung {
 
+LinearElement LinearElement::of(std::span<const Index> particles, std::span<const double> weights, double stiffness,
+                                double damping) {
+  LinearElement element{.count = particles.size(), .stiffness = stiffness, .damping = damping};
+  std::ranges::copy(particles, element.particles.begin());
+  std::ranges::copy(weights, element.weights.begin());
+  return element;
+}
+
 LinearElement LinearElement::anchor(Index particle, double stiffness, double damping) {
-  return {{particle, particle, particle}, {1.0, 0.0, 0.0}, stiffness, damping};
+  return {.particles = {particle}, .weights = {1.0}, .count = 1, .stiffness = stiffness, .damping = damping};
 }
 
 LinearElement LinearElement::pair(Index first, Index second, double stiffness, double damping) {
-  return {{first, second, first}, {1.0, -1.0, 0.0}, stiffness, damping};
+  return {.particles = {first, second}, .weights = {1.0, -1.0}, .count = 2, .stiffness = stiffness, .damping = damping};
 }
 
 std::string Force::name() const { return "added forces"; }

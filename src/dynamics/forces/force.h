@@ -6,6 +6,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,16 +25,20 @@ struct ForceDerivatives {
   BlockMatrix by_velocity;  ///< dF/dv [N s/m]
 };
 
-/// A spring and a damper on one weighted sum w_1 u_1 + w_2 u_2 + w_3 u_3 of displacements u [m]: stiffness k and damping c have the
-/// matrices k w w^T and c w w^T. Entries with weight 0 are unused.
+/// A spring and a damper on one weighted sum w_1 u_1 + w_2 u_2 + ... of displacements u [m]: stiffness k and damping c have the
+/// matrices k w w^T and c w w^T.
 struct LinearElement {
-  std::array<Index, 3> particles{};
-  std::array<double, 3> weights{};
+  std::array<Index, 6> particles{};
+  std::array<double, 6> weights{};
+  std::size_t count = 0;   ///< of particles
   double stiffness = 0.0;  ///< k [N/m] for weights without a unit
   double damping = 0.0;    ///< c [N s/m]
   /// Whether the damper is that of a material: see Body::has_material_dampers.
   bool of_material = false;
 
+  /// On at most six particles.
+  [[nodiscard]] static LinearElement of(std::span<const Index> particles, std::span<const double> weights, double stiffness,
+                                        double damping);
   /// On the position of one particle.
   [[nodiscard]] static LinearElement anchor(Index particle, double stiffness, double damping);
   /// On the difference of the positions of two particles.

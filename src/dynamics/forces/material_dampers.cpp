@@ -20,9 +20,10 @@ ElementConstants material_springs(const SpringNetwork& network) {
 }
 
 ElementConstants material_bends(const SpringNetwork& network) {
-  const auto count = static_cast<std::size_t>(network.angle_bends.count());
+  const ElementConstants all = constants_of_bends(network);
+  const std::size_t count = all.damping.size();
   ElementConstants constants{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0), true};
-  for_material_bends(network, [&](Index a) { constants.damping[a] = network.angle_bends.damping[a]; });
+  for_material_bends(network, [&](Index e) { constants.damping[e] = all.damping[e]; });
   return constants;
 }
 
@@ -33,20 +34,25 @@ Scalars damping_rates(const SpringNetwork& network, const std::vector<LinearElem
   for (const LinearElement& element : elements) {
     double sum = 0.0;
     for (const double weight : element.weights) sum += std::abs(weight);
-    for (std::size_t k = 0; k < 3; ++k) rates[element.particles[k]] += element.damping * std::abs(element.weights[k]) * sum;
+    for (std::size_t k = 0; k < element.count; ++k) {
+      rates[element.particles[k]] += element.damping * std::abs(element.weights[k]) * sum;
+    }
   }
   return rates.cwiseQuotient(network.masses);
 }
 
-/// Each damper becomes weaker by the larger excess of its particles, so no row sum stays above `most`.
-void weaken(const Scalars& rates, double most, const std::vector<LinearElement>& elements, std::vector<double>& damping) {
+/// Each damper becomes weaker by the larger excess of its particles, so no row sum stays above `most`. `damper_of` is by element.
+template <class DamperOf>
+void weaken(const Scalars& rates, double most, const std::vector<LinearElement>& elements, const DamperOf& damper_of,
+            std::vector<double>& damping) {
+  std::vector<double> largest(damping.size(), most);
   for (std::size_t e = 0; e < elements.size(); ++e) {
-    double largest = most;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (elements[e].weights[k] != 0.0) largest = std::max(largest, rates[elements[e].particles[k]]);
+    double& rate = largest[damper_of(e)];
+    for (std::size_t k = 0; k < elements[e].count; ++k) {
+      if (elements[e].weights[k] != 0.0) rate = std::max(rate, rates[elements[e].particles[k]]);
     }
-    damping[e] *= most / largest;
   }
+  for (std::size_t d = 0; d < damping.size(); ++d) damping[d] *= most / largest[d];
 }
 
 }  // namespace
@@ -64,8 +70,8 @@ ElementConstants springs_without_material_dampers(const SpringNetwork& network) 
 }
 
 ElementConstants bends_without_material_dampers(const SpringNetwork& network) {
-  ElementConstants constants{network.angle_bends.stiffness, network.angle_bends.damping};
-  for_material_bends(network, [&](Index a) { constants.damping[a] = 0.0; });
+  ElementConstants constants = constants_of_bends(network);
+  for_material_bends(network, [&](Index e) { constants.damping[e] = 0.0; });
   return constants;
 }
 
@@ -77,8 +83,11 @@ Forces material_dampers(const SpringNetwork& network, double most) {
   SpringForce(network, springs).append_elements(of_springs);
   BendingAngleForce(network, bends).append_elements(of_bends);
   const Scalars rates = damping_rates(network, of_springs) + damping_rates(network, of_bends);
-  weaken(rates, most, of_springs, springs.damping);
-  weaken(rates, most, of_bends, bends.damping);
+  weaken(
+      rates, most, of_springs, [](std::size_t e) { return e; }, springs.damping);
+  const auto lines = static_cast<std::size_t>(network.angle_bends.count());
+  weaken(
+      rates, most, of_bends, [&](std::size_t e) { return e < lines ? e : lines + (e - lines) / 3; }, bends.damping);
   const auto any = [](const std::vector<double>& values) { return std::ranges::any_of(values, [](double c) { return c > 0.0; }); };
   Forces forces;
   if (any(springs.damping)) forces.push_back(std::make_unique<SpringForce>(network, std::move(springs)));

@@ -20,16 +20,18 @@ void for_material_springs(const SpringNetwork& network, const Function& function
   }
 }
 
-/// Calls `function(a)` for each angle bend with a damper of a material.
+/// Calls `function(e)` for each angle bend and face bend with a damper of a material, numbered as in `constants_of_bends`.
 template <class Function>
 void for_material_bends(const SpringNetwork& network, const Function& function) {
   for (const Body& body : network.bodies) {
     if (!body.has_material_dampers[static_cast<std::size_t>(SpringKind::bend)]) continue;
     for (Index a = body.first_angle_bend; a < body.first_angle_bend + body.angle_bend_count; ++a) function(a);
+    const Index first = network.angle_bends.count() + body.first_face_bend;
+    for (Index e = first; e < first + body.face_bend_count; ++e) function(e);
   }
 }
 
-/// The constants of springs and angle bends without the dampers of materials.
+/// The constants of springs, and those of angle bends and face bends, without the dampers of materials.
 [[nodiscard]] ElementConstants springs_without_material_dampers(const SpringNetwork& network);
 [[nodiscard]] ElementConstants bends_without_material_dampers(const SpringNetwork& network);
 

@@ -187,6 +187,7 @@ void SurfaceAirForce::append_elements(std::vector<LinearElement>& elements) cons
   for (const Face& face : faces_) {
     elements.push_back({.particles = {face.corners[0], face.corners[1], face.corners[2]},
                         .weights = {kThird, kThird, kThird},
+                        .count = 3,
                         .damping = face.expected * face.rest_area});
   }
 }

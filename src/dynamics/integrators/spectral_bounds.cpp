@@ -34,14 +34,14 @@ class ElementMatrix {
   Scalars operator*(const Scalars& y) const {
     Scalars result = Scalars::Zero(y.size());
     for (const LinearElement* element : elements_) {
-      const auto& [a, b, c] = element->particles;
-      const double of_a = element->weights[0] * root_[a];
-      const double of_b = element->weights[1] * root_[b];
-      const double of_c = element->weights[2] * root_[c];
-      const double pull = element->*weight_ * (of_a * y[a] + of_b * y[b] + of_c * y[c]);
-      result[a] += of_a * pull;
-      result[b] += of_b * pull;
-      result[c] += of_c * pull;
+      double sum = 0.0;
+      for (std::size_t k = 0; k < element->count; ++k) {
+        sum += element->weights[k] * root_[element->particles[k]] * y[element->particles[k]];
+      }
+      const double pull = element->*weight_ * sum;
+      for (std::size_t k = 0; k < element->count; ++k) {
+        result[element->particles[k]] += element->weights[k] * root_[element->particles[k]] * pull;
+      }
     }
     return result;
   }
@@ -50,14 +50,16 @@ class ElementMatrix {
   [[nodiscard]] double row_sum_bound() const {
     Scalars sums = Scalars::Zero(root_.size());
     for (const LinearElement* element : elements_) {
-      for (int k = 0; k < 3; ++k) sums[element->particles[k]] += element->*weight_ * std::abs(element->weights[k]);
+      for (std::size_t k = 0; k < element->count; ++k) {
+        sums[element->particles[k]] += element->*weight_ * std::abs(element->weights[k]);
+      }
     }
     sums.array() *= root_.array().square();
     double bound = 0.0;
     for (const LinearElement* element : elements_) {
       if (element->*weight_ == 0.0) continue;
       double row = 0.0;
-      for (int k = 0; k < 3; ++k) row += std::abs(element->weights[k]) * sums[element->particles[k]];
+      for (std::size_t k = 0; k < element->count; ++k) row += std::abs(element->weights[k]) * sums[element->particles[k]];
       bound = std::max(bound, row);
     }
     return bound;
@@ -139,8 +141,7 @@ double least_damping_time(const std::vector<const LinearElement*>& elements) {
 Scalars drag_rates(const std::vector<const LinearElement*>& elements, const Scalars& inverse_masses) {
   Scalars rates = Scalars::Zero(inverse_masses.size());
   for (const LinearElement* element : elements) {
-    const bool is_anchor = element->weights[1] == 0.0 && element->weights[2] == 0.0;
-    if (is_anchor && element->stiffness == 0.0) rates[element->particles[0]] += element->damping;
+    if (element->count == 1 && element->stiffness == 0.0) rates[element->particles[0]] += element->damping;
   }
   return rates.cwiseProduct(inverse_masses);
 }

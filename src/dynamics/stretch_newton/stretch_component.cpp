@@ -32,6 +32,11 @@ class Finder {
       if (bends.stiffness[e] == 0.0) continue;
       for (const Index i : {bends.before[e], bends.middle[e], bends.after[e]}) elastic_[i] = true;
     }
+    const FaceBends& faces = network.face_bends;
+    for (Index f = 0; f < faces.count(); ++f) {
+      if (faces.stiffness[f] == 0.0) continue;
+      for (const Index i : stencil_of(faces, network.hinges, f).particles) elastic_[i] = true;
+    }
   }
 
   std::vector<StretchComponent> all() {

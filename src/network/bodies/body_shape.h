@@ -20,6 +20,8 @@ struct BodyShape {
   std::vector<double> drag_areas;   ///< see SpringNetwork
   Springs springs;                  ///< in any order
   AngleBends angle_bends;
+  Hinges hinges;
+  FaceBends face_bends;
   Surface surface;
   int dimension = 0;     ///< of the measure: 1 length, 2 area, 3 volume; 0: none
   double measure = 0.0;  ///< length [m], area [m^2] or volume [m^3]

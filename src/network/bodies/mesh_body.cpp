@@ -1,8 +1,10 @@
+#include "base/format.h"
 #include "geometry/mesh/topology.h"
 #include "network/bodies/body_rules.h"
 #include "network/bodies/body_shape.h"
 #include "network/bodies/mesh_springs.h"
 #include "network/bodies/shape_parts.h"
+#include "network/bodies/triangle_bends.h"
 
 #include <algorithm>
 #include <array>
@@ -67,7 +69,17 @@ void check_corners(const std::string& key, std::size_t count, const CornersOf& c
   problems.require_each(count, all_differ, text, EntryRule{key, "must not name a vertex twice", kExport});
 }
 
-void check(const PolygonMesh& mesh, const SpringMaterials& materials) {
+bool has_angles(const SpringMaterials& materials) {
+  return materials.bend && materials.bend_model == SpringMaterials::BendModel::angle;
+}
+
+void require_modulus(const std::optional<SpringMaterial>& bend, ProblemList& problems) {
+  if (!bend || bend->measure == SpringMaterial::Measure::modulus) return;
+  problems.add("springs.bend.stiffness", format_number(bend->value),
+               "is not for the angles of a mesh, whose stiffness follows from its triangles", "give modulus, D in N m");
+}
+
+void check(const PolygonMesh& mesh, const SpringMaterials& materials, const std::vector<MeshPart>& parts) {
   ProblemList problems;
   check_vertices(mesh, problems);
   const auto vertex_count = static_cast<Index>(mesh.vertices.cols());
@@ -79,7 +91,10 @@ void check(const PolygonMesh& mesh, const SpringMaterials& materials) {
   }
   const auto ends = [&](std::size_t line) { return ends_of_line(mesh, line); };
   check_corners("lines", static_cast<std::size_t>(mesh.lines.cols()), ends, 2, vertex_count, problems);
-  refuse_angle_bends(materials, "a mesh", problems);
+  if (has_angles(materials)) {
+    require_modulus(materials.bend, problems);
+    for (const MeshPart& part : parts) require_modulus(part.materials.bend, problems);
+  }
   require_materials(materials, problems);
   problems.throw_if_any();
 }
@@ -171,6 +186,22 @@ void set_mesh_measures(BodyShape& shape) {
   if (shape.dimension == 2) add_segment_measures(surface.segments, lengths_of(surface.segments, shape.positions), shape.drag_areas);
 }
 
+/// Of each triangle.
+std::vector<const SpringMaterial*> bend_materials(const PolygonMesh& mesh, const SpringMaterials& materials,
+                                                  const std::vector<MeshPart>& parts) {
+  std::vector<const SpringMaterial*> of_faces(static_cast<std::size_t>(mesh.faces.face_count()), &*materials.bend);
+  for (const MeshPart& part : parts) {
+    if (!part.materials.bend) continue;
+    for (const Index face : part.faces) of_faces[static_cast<std::size_t>(face)] = &*part.materials.bend;
+  }
+  std::vector<const SpringMaterial*> of_triangles;
+  for (std::size_t face = 0; face < of_faces.size(); ++face) {
+    const auto corners = static_cast<std::size_t>(mesh.faces.corner_begin[face + 1] - mesh.faces.corner_begin[face]);
+    of_triangles.insert(of_triangles.end(), corners - 2, of_faces[face]);
+  }
+  return of_triangles;
+}
+
 void set_mesh_surface(BodyShape& shape, const PolygonMesh& mesh) {
   Surface& surface = shape.surface;
   surface.faces = mesh.faces;
@@ -181,7 +212,7 @@ void set_mesh_surface(BodyShape& shape, const PolygonMesh& mesh) {
 }  // namespace
 
 BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materials, const std::vector<MeshPart>& parts) {
-  check(mesh, materials);
+  check(mesh, materials, parts);
   BodyShape shape = shape_of_particles({mesh.vertices.colwise().begin(), mesh.vertices.colwise().end()}, materials);
   const std::vector<Joint> joints = mesh_joints(mesh);
   const MaterialsOfPairs of_parts = materials_of_parts(mesh, parts);
@@ -191,9 +222,10 @@ BodyShape make_mesh_body(const PolygonMesh& mesh, const SpringMaterials& materia
   };
   add(materials.structural, SpringKind::structural, "springs.structural.modulus");
   add(materials.shear, SpringKind::shear, "springs.shear.modulus");
-  add(materials.bend, SpringKind::bend, "springs.bend.modulus");
+  if (!has_angles(materials)) add(materials.bend, SpringKind::bend, "springs.bend.modulus");
   problems.throw_if_any();
   set_mesh_surface(shape, mesh);
+  if (has_angles(materials)) add_triangle_bends(bend_materials(mesh, materials, parts), shape);
   set_mesh_measures(shape);
   return shape;
 }

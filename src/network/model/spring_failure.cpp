@@ -129,6 +129,34 @@ void remove_angle_bends(SpringNetwork& network, const Pairs& gone_pairs) {
              bends.damping);
 }
 
+std::array<Index, 3> sorted(std::array<Index, 3> corners) {
+  std::ranges::sort(corners);
+  return corners;
+}
+
+/// Removes the face bends with a hinge at a triangle that tore.
+void remove_face_bends(SpringNetwork& network) {
+  FaceBends& bends = network.face_bends;
+  std::vector<char> gone(static_cast<std::size_t>(bends.count()), 0);
+  for (const Body& body : network.bodies) {
+    if (body.face_bend_count == 0 || body.surface.torn.empty()) continue;
+    std::set<std::array<Index, 3>> left;
+    for (const auto& corners : body.surface.triangles.colwise()) left.insert(sorted({corners[0], corners[1], corners[2]}));
+    const auto is_torn = [&](Index a, Index b, Index c) {
+      return !left.contains(sorted({a - body.first_particle, b - body.first_particle, c - body.first_particle}));
+    };
+    for (Index f = body.first_face_bend; f < body.first_face_bend + body.face_bend_count; ++f) {
+      for (const Index hinge : bends.hinges[f]) {
+        if (hinge == kNone) continue;
+        const auto [a, b, c, d] = network.hinges.particles[hinge];
+        if (is_torn(a, b, c) || is_torn(a, b, d)) gone[f] = 1;
+      }
+    }
+  }
+  for (Body& body : network.bodies) shift_range(gone, body.first_face_bend, body.face_bend_count);
+  erase_gone(gone, bends.hinges, bends.curvature, bends.stiffness, bends.damping);
+}
+
 /// Tears one body's surface, in the numbering of the body.
 class SurfaceTearing {
  public:
@@ -267,6 +295,7 @@ std::vector<Index> tear(SpringNetwork& network, const std::vector<Index>& broken
     SurfaceTearing(body.surface, gone_pairs, structural).tear();
   }
   remove_angle_bends(network, gone_structural);
+  remove_face_bends(network);
   remove_springs(network, gone);
   return left;
 }
@@ -286,6 +315,7 @@ void tear_as(const SpringNetwork& torn, SpringNetwork& network) {
   remove_springs(network, gone);
   network.broken = torn.broken;
   for (std::size_t b = 0; b < network.bodies.size(); ++b) network.bodies[b].surface = torn.bodies[b].surface;
+  remove_face_bends(network);
 }
 
 void take_rest_lengths(const SpringNetwork& from, SpringNetwork& network) {

@@ -7,6 +7,7 @@
 #include "geometry/motion/motion.h"
 #include "network/model/attachment.h"
 #include "network/model/cells.h"
+#include "network/model/face_bends.h"
 
 #include <array>
 #include <limits>
@@ -80,7 +81,7 @@ struct BodyContact {
   bool others = true;  ///< with other bodies for which this is set too
 };
 
-/// A named range of particles, springs and angle bends.
+/// A named range of particles, springs, angle bends and face bends.
 struct Body {
   std::string name;
   Index first_particle = 0;
@@ -89,6 +90,8 @@ struct Body {
   Index spring_count = 0;
   Index first_angle_bend = 0;
   Index angle_bend_count = 0;
+  Index first_face_bend = 0;
+  Index face_bend_count = 0;
   int dimension = 0;                  ///< of its measure, see BodyShape
   double measure = 0.0;               ///< length [m], area [m^2] or volume [m^3]; 0 for particles added one by one
   std::array<Index, 2> resolution{};  ///< of a cloth, see BodyShape
@@ -104,8 +107,8 @@ struct Body {
   bool preserve_volume = false;  ///< whether passes keep the volume of the cells
   double volume_factor = 0.0;    ///< of a closed surface: the multiple of its volume at rest that passes keep; 0: none
   double pressure = 0.0;         ///< in a closed surface, along the normals of its triangles [Pa]
-  /// Per kind of spring, in the order of SpringKind; angle bends count as `bend`. Whether the dampers are those of a material: no
-  /// explicit scheme but explicit Euler needs smaller steps because of them.
+  /// Per kind of spring, in the order of SpringKind; angle bends and face bends count as `bend`. Whether the dampers are those of a
+  /// material: no explicit scheme but explicit Euler needs smaller steps because of them.
   std::array<bool, 3> has_material_dampers{};
 
   /// The number of particles, the first ones, that are vertices of the surface for contact.
@@ -141,6 +144,8 @@ struct SpringNetwork {
                            ///< in the length [m] of its segments; 1 in a body without either
   Springs springs;
   AngleBends angle_bends;
+  Hinges hinges;
+  FaceBends face_bends;
   std::vector<Body> bodies;
   std::vector<Pin> pins;                 ///< that hold their particles
   std::vector<Pin> later_pins;           ///< that have not begun

@@ -167,7 +167,6 @@ std::vector<std::string> warnings_of(const Scene& scene, BuiltScene& built) {
   note_unusual_densities(scene, built.network, bodies);
   note_unused_springs(scene, built.network, bodies);
   note_mesh_faults(scene, built.network, bodies);
-  note_missing_bends(scene, built.network, bodies);
   note_thick_bodies(built.network, bodies);
   note_wind_along_sheets(scene, built.network, bodies);
   std::vector<std::string> warnings = bodies.lines();

@@ -155,7 +155,7 @@ void note_unused_springs(const Scene& scene, const SpringNetwork& network, Group
     for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bend}) {
       const auto index = static_cast<std::size_t>(kind);
       if (!*materials[index] || has_springs(network, built, kind)) continue;
-      if (kind == SpringKind::bend && built.angle_bend_count > 0) continue;
+      if (kind == SpringKind::bend && built.angle_bend_count + built.face_bend_count > 0) continue;
       bodies.add(body.name,
                  std::string("springs.") + kSpringKindNames[index] + " has no effect: its shape has no such springs. Remove it.");
     }
@@ -203,25 +203,6 @@ void note_mesh_faults(const Scene& scene, const SpringNetwork& network, GroupedW
                    " on an edge of another face that has no vertex there to weld, so that the seam stays open, first at " +
                    vector_text(positions.col(open.front()), kDigits) +
                    ". Add vertices to these edges in the modelling program, or cut both sides of the seam alike.");
-  }
-}
-
-void note_missing_bends(const Scene& scene, const SpringNetwork& network, GroupedWarnings& bodies) {
-  // (B / (rho g))^(1/3), the bending length (Peirce 1930): cloths with less, silk and jersey, drape as if they had no stiffness.
-  constexpr double kLimp = 0.015;  // [m]
-  constexpr double kGravity = 9.81;
-  for (const BodyScene& body : scene.bodies) {
-    const Material* const material = find_material(body.preset);
-    if (material == nullptr || material->kind != MaterialKind::cloth || !std::holds_alternative<MeshFile>(body.shape)) continue;
-    if (has_springs(network, built_body(network, body), SpringKind::bend)) continue;
-    if (body.pressure != 0.0 || body.volume_factor != 0.0) continue;  // pressure or volume holds the shape
-    const double rigidity = material->find("springs.bend.modulus")->value;
-    if (std::cbrt(rigidity / (material->find("density")->value * kGravity)) < kLimp) continue;
-    const std::string stiffness = format_number(material->find("springs.structural.modulus")->value, kDigits);
-    bodies.add(body.name, "the bending stiffness of " + material->name +
-                              " has no effect: it is one of angles, which a mesh does not have. Give it bend springs, which resist "
-                              "folds but no slight bend, with \"springs\": { \"bend\": { \"modulus\": " +
-                              stiffness + " } }, or use the shape \"cloth\".");
   }
 }
 

@@ -20,9 +20,6 @@ void note_unusual_densities(const Scene& scene, const SpringNetwork& network, Gr
 /// Tells which bodies of a mesh have faces that lie on others, and vertices on edges of a seam that `weld` cannot close.
 void note_mesh_faults(const Scene& scene, const SpringNetwork& network, GroupedWarnings& bodies);
 
-/// Tells which bodies of a mesh lack the bending stiffness of their material.
-void note_missing_bends(const Scene& scene, const SpringNetwork& network, GroupedWarnings& bodies);
-
 /// Tells which bodies with self-contact are thicker than their edges are long.
 void note_thick_bodies(const SpringNetwork& network, GroupedWarnings& bodies);
 

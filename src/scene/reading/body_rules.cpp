@@ -231,7 +231,7 @@ void refuse_other_springs(Fields& fields, const std::optional<BodyShapeScene>& s
 
 /// Angle bends are no springs.
 void refuse_laws_of_angles(const Fields& fields) {
-  for (const char* key : {"tension_only", "yield", "break", "groups"}) {
+  for (const char* key : {"tension_only", "yield", "break"}) {
     if (fields.json().contains(key))
       fields.location().at(key).report_key("needs the model spring: an angle has no length", "remove it");
   }

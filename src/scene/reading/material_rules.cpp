@@ -94,26 +94,25 @@ bool groups_give_damping(const Json& spring) {
 }
 
 /// Fills `springs.KIND.KEY`. A material bends by angles, so the bend springs that a user asks for get no stiffness from it.
-void fill_spring(const std::string& key, double value, bool has_angles, Json& body, std::array<bool, 3>& preset_damps) {
+void fill_spring(const std::string& key, double value, Json& body, std::array<bool, 3>& preset_damps) {
   const std::size_t dot = key.find('.', std::string("springs.").size());
   const std::string kind = key.substr(std::string("springs.").size(), dot - std::string("springs.").size());
   const bool bends = kind == "bend";
-  if (bends && !has_angles && !gives_springs(body, kind)) return;
   Json* const spring = springs_of_kind(body, kind);
   if (spring == nullptr) return;
-  if (bends && has_angles) fill(*spring, {"model"}, "model", "angle");
+  if (bends) fill(*spring, {"model"}, "model", "angle");
   if (!key.ends_with(".modulus")) {
     fill(*spring, {"damping", "damping_ratio", "damping_time"}, "damping_time", value);
     const auto number = std::ranges::find(kSpringKindNames, kind) - kSpringKindNames.begin();
     preset_damps[static_cast<std::size_t>(number)] = is_value(*spring, "damping_time", value) && !groups_give_damping(*spring);
-  } else if (!bends || (has_angles && (*spring)["model"] != "spring")) {
+  } else if (!bends || (*spring)["model"] != "spring") {
     fill(*spring, {"modulus", "stiffness"}, "modulus", value);
   }
 }
 
-void fill_value(const std::string& key, double value, bool has_angles, Json& body, std::array<bool, 3>& preset_damps) {
+void fill_value(const std::string& key, double value, Json& body, std::array<bool, 3>& preset_damps) {
   if (key.starts_with("springs.")) {
-    fill_spring(key, value, has_angles, body, preset_damps);
+    fill_spring(key, value, body, preset_damps);
   } else if (key == "density") {
     fill(body, {"mass", "particle_mass", "density"}, "density", value);
   } else if (key == "static_friction") {
@@ -174,7 +173,6 @@ void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, Bod
         .report(json["diameter"], "needs a rope's material", preset->name + " has no diameter: remove it");
   }
   const double scale = is_rope && diameter ? *diameter / preset->find("diameter")->value : 1.0;
-  const bool has_angles = !shape || !std::holds_alternative<MeshFile>(*shape);
   const bool tetrahedra = shape && std::holds_alternative<TetrahedraFile>(*shape);
   if (preset->stretch_limited && !gives_stiffness(json)) body.preset_limits_stretch = true;
   body.preset = preset->name;
@@ -182,7 +180,7 @@ void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, Bod
     if (tetrahedra && value.key.starts_with("springs.shear")) continue;
     const double factor =
         tetrahedra && value.key == "springs.structural.modulus" ? kYoungByStructural : std::pow(scale, value.power);
-    fill_value(value.key, value.value * factor, has_angles, json, body.preset_damps);
+    fill_value(value.key, value.value * factor, json, body.preset_damps);
   }
   body.preset_mass = !has_any(json, {"mass", "particle_mass"}) &&
                      is_value(json, "density", preset->find("density")->value * std::pow(scale, preset->find("density")->power));

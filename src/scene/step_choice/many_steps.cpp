@@ -5,8 +5,9 @@
 #include "dynamics/forces/material_dampers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <initializer_list>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr int kManySteps = 1000;
 
-// If a spring or angle bend bounds the step, its response rate times the step is about 1. Below this value, something else bounds
+// If a spring or bend bounds the step, its response rate times the step is about 1. Below this value, something else bounds
 // the step.
 constexpr double kLeastResponse = 0.05;
 
@@ -29,7 +30,7 @@ constexpr int kPositionDigits = 5;
 struct Demand {
   double rate = 0.0;
   Index particle = 0;    ///< the lightest of the particles
-  Index spring = kNone;  ///< none: angle bends
+  Index spring = kNone;  ///< none: bends
   double constant = 0.0;
   std::string source{};
   const char* unit = "";
@@ -37,8 +38,8 @@ struct Demand {
 };
 
 /// The lightest particle that is not pinned.
-Index lightest(const SpringNetwork& network, std::initializer_list<Index> particles) {
-  return std::max(particles, [&](Index a, Index b) { return network.inverse_masses[a] < network.inverse_masses[b]; });
+Index lightest(const SpringNetwork& network, std::span<const Index> particles) {
+  return std::ranges::max(particles, {}, [&](Index i) { return network.inverse_masses[i]; });
 }
 
 Demand demand_of_springs(const SpringNetwork& network, const std::vector<double>& constants, bool damp) {
@@ -49,7 +50,7 @@ Demand demand_of_springs(const SpringNetwork& network, const std::vector<double>
     const double rate = damp ? per_mass : std::sqrt(per_mass);
     if (!(rate > found.rate)) continue;
     found.rate = rate;
-    found.particle = lightest(network, {springs.first[s], springs.second[s]});
+    found.particle = lightest(network, std::array{springs.first[s], springs.second[s]});
     found.constant = constants[s];
     found.spring = s;
     found.source = std::string(kSpringKindNames[static_cast<std::size_t>(springs.kind[s])]) + " springs";
@@ -57,22 +58,32 @@ Demand demand_of_springs(const SpringNetwork& network, const std::vector<double>
   return found;
 }
 
-// For bends in line: the angle changes by 1 / length times the displacement of an end, and by the sum of both times that of the
-// middle.
+/// Of all bends, with the constants of `constants_of_bends`. For bends in line, the angle changes by 1 / length times the
+/// displacement of an end, and by the sum of both times that of the middle.
 Demand demand_of_bends(const SpringNetwork& network, const std::vector<double>& constants, bool damp) {
-  const AngleBends& bends = network.angle_bends;
   Demand found{.source = "angle bends", .unit = damp ? " N m s damping" : " N m", .remedy = damp ? "damping" : "stiffness"};
+  const auto note = [&](std::span<const Index> particles, std::span<const double> weights, double constant) {
+    double per_mass = 0.0;
+    for (std::size_t k = 0; k < particles.size(); ++k) {
+      per_mass += constant * weights[k] * weights[k] * network.inverse_masses[particles[k]];
+    }
+    const double rate = damp ? per_mass : std::sqrt(per_mass);
+    if (!(rate > found.rate)) return;
+    found.rate = rate;
+    found.particle = lightest(network, particles);
+    found.constant = constant;
+  };
+  const AngleBends& bends = network.angle_bends;
   for (Index e = 0; e < bends.count(); ++e) {
     const double before = 1.0 / bends.length_before[e];
     const double after = 1.0 / bends.length_after[e];
-    const double per_mass = constants[e] * (before * before * network.inverse_masses[bends.before[e]] +
-                                            (before + after) * (before + after) * network.inverse_masses[bends.middle[e]] +
-                                            after * after * network.inverse_masses[bends.after[e]]);
-    const double rate = damp ? per_mass : std::sqrt(per_mass);
-    if (!(rate > found.rate)) continue;
-    found.rate = rate;
-    found.particle = lightest(network, {bends.before[e], bends.middle[e], bends.after[e]});
-    found.constant = constants[e];
+    note(std::array{bends.before[e], bends.middle[e], bends.after[e]}, std::array{before, -before - after, after}, constants[e]);
+  }
+  const FaceBends& faces = network.face_bends;
+  for (Index f = 0; f < faces.count(); ++f) {
+    const double constant = constants[static_cast<std::size_t>(bends.count() + f)];
+    const BendStencil stencil = stencil_of(faces, network.hinges, f);
+    for (const std::array<double, 6>& weights : weights_of(faces, network.hinges, f)) note(stencil.particles, weights, constant);
   }
   return found;
 }

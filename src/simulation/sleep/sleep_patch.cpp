@@ -51,6 +51,12 @@ void SleepPatches::find_adjacent(const SpringNetwork& network) {
     join(bends.middle[e], bends.after[e]);
     join(bends.before[e], bends.after[e]);
   }
+  for (Index f = 0; f < network.face_bends.count(); ++f) {
+    const BendStencil stencil = stencil_of(network.face_bends, network.hinges, f);
+    for (std::size_t i = 0; i < stencil.particles.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) join(stencil.particles[i], stencil.particles[j]);
+    }
+  }
   for (const Body& body : network.bodies) {
     const Index first = body.first_particle;
     for (const auto& corners : body.surface.triangles.colwise()) {

@@ -11,7 +11,7 @@ namespace sprung {
 Forces network_forces(const SpringNetwork& network, const SimulatorSettings& settings, MaterialDampers dampers) {
   Forces forces;
   forces.push_back(std::make_unique<Gravity>(network, settings.gravity));
-  const bool bends = network.angle_bends.count() > 0;
+  const bool bends = network.angle_bends.count() + network.face_bends.count() > 0;
   if (dampers == MaterialDampers::within) {
     forces.push_back(std::make_unique<SpringForce>(network));
     if (bends) forces.push_back(std::make_unique<BendingAngleForce>(network));

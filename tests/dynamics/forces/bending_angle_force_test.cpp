@@ -1,16 +1,20 @@
 #include "dynamics/forces/bending_angle_force.h"
 
 #include "base/parallel.h"
+#include "dynamics/forces/bending_helpers.h"
 #include "network/network_builder.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 namespace sprung {
 namespace {
+
+using testing::expect_balanced;
+using testing::forces_of;
+using testing::random_points;
 
 constexpr double kStiffness = 3.0;
 constexpr double kDamping = 0.7;
@@ -22,20 +26,6 @@ SpringNetwork hinge(double damping = 0.0) {
   builder.add_angle_bend(0, 1, 2, kStiffness, damping);
   return builder.build();
 }
-
-Points random_points(Index count, unsigned seed, double size) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> unit(-size, size);
-  return Points::NullaryExpr(3, count, [&]() { return unit(random); });
-}
-
-Points forces_of(const SpringNetwork& network, const Points& x, const Points& v) {
-  Points forces = Points::Zero(3, x.cols());
-  BendingAngleForce(network).add({.x = x, .v = v}, forces);
-  return forces;
-}
-
-Points forces_of(const SpringNetwork& network, const Points& x) { return forces_of(network, x, Points::Zero(3, x.cols())); }
 
 TEST(BendingAngleForce, RightAngleTurnsBondsByItsMoment) {
   // k pi / 2, divided by the bonds' lengths, towards the line.
@@ -71,12 +61,7 @@ TEST(BendingAngleForce, IsTheNegativeGradientOfItsEnergy) {
 TEST(BendingAngleForce, HasNoNetForceAndNoNetTorque) {
   for (unsigned trial = 0; trial < 20; ++trial) {
     const Points x = random_points(3, trial, trial % 2 == 0 ? 2.0 : 0.3);
-    const Points forces = forces_of(hinge(kDamping), x, random_points(3, 100 + trial, 1.0));
-    Vector3 torque = Vector3::Zero();
-    for (Index i = 0; i < 3; ++i) torque += Vector3(x.col(i)).cross(Vector3(forces.col(i)));
-    const double rounding = 1e-14 * (1.0 + forces.norm());
-    EXPECT_LT(forces.rowwise().sum().norm(), rounding);
-    EXPECT_LT(torque.norm(), 4.0 * rounding);
+    expect_balanced(x, forces_of(hinge(kDamping), x, random_points(3, 100 + trial, 1.0)));
   }
 }
 

@@ -98,13 +98,9 @@ TEST(AngleBends, InvalidOnesAreRefused) {
   EXPECT_THAT(refused({0, 1, 2}, 1.0, -1.0), ElementsAre("bodies.network.angle_bends.damping[0]"));
 }
 
-TEST(AngleBends, AreRefusedForSolidsMeshesAndCoincidingPoints) {
+TEST(AngleBends, AreRefusedForSolidsAndCoincidingPoints) {
   const SpringMaterials materials = angles(stiff(1.0));
   EXPECT_THAT(problem_keys([&] { return make_solid({}, materials); }), ElementsAre("springs.bend.model"));
-  PolygonMesh triangle;
-  triangle.vertices = (Points(3, 3) << 0, 1, 0, 0, 0, 1, 0, 0, 0).finished();
-  triangle.faces = to_polygons((Triangles(3, 1) << 0, 1, 2).finished());
-  EXPECT_THAT(problem_keys([&] { return make_mesh_body(triangle, materials); }), ElementsAre("springs.bend.model"));
   const RopeShape folded{{Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(1, 0, 0)}, std::nullopt, std::nullopt};
   EXPECT_THAT(problem_keys([&] { return make_rope(folded, materials); }), ElementsAre("points[2]"));
 }

@@ -197,6 +197,27 @@ TEST(Tear, ARopeLosesTheSegmentAndTheAnglesOverIt) {
   EXPECT_EQ(network.bodies[1].surface.segments.cols(), 4);
 }
 
+// Faces 0 and 1 share the side that breaks, faces 2 and 3 have a hinge at them, and faces 4 and 5 have none.
+TEST(Tear, AMeshLosesTheFaceBendsOfTornTrianglesAndTheirNeighbours) {
+  PolygonMesh mesh;
+  mesh.vertices = (Points(3, 8) << 0, 0, 1, 1, 2, 2, 3, 3, 0, 1, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0).finished();
+  mesh.faces = to_polygons((Triangles(3, 6) << 0, 1, 2, 3, 4, 5, 2, 2, 4, 4, 6, 6, 1, 3, 3, 5, 5, 7).finished());
+  BodyShape shape = make_mesh_body(
+      mesh, {.structural = stiff(1.0), .bend = testing::modular(1.0), .bend_model = SpringMaterials::BendModel::angle});
+  set_total_mass(shape, 1.0);
+  NetworkBuilder builder;
+  builder.add_body("torn", shape);
+  builder.add_body("whole", shape);
+  SpringNetwork network = builder.build();
+  ASSERT_EQ(network.bodies[0].face_bend_count, 6);
+  tear(network, {spring_between(network, 1, 2)});
+  EXPECT_THAT(network.bodies[0].surface.torn, ElementsAre(0, 1));
+  EXPECT_EQ(network.bodies[0].face_bend_count, 3);
+  EXPECT_EQ(network.bodies[1].first_face_bend, 3);
+  EXPECT_EQ(network.bodies[1].face_bend_count, 6);
+  EXPECT_EQ(network.face_bends.count(), 9);
+}
+
 void expect_equal(const SpringNetwork& a, const SpringNetwork& b) {
   EXPECT_EQ(a.springs.first, b.springs.first);
   EXPECT_EQ(a.springs.second, b.springs.second);
@@ -208,6 +229,7 @@ void expect_equal(const SpringNetwork& a, const SpringNetwork& b) {
     EXPECT_EQ(a.bodies[k].first_spring, b.bodies[k].first_spring);
     EXPECT_EQ(a.bodies[k].spring_count, b.bodies[k].spring_count);
     EXPECT_EQ(a.bodies[k].angle_bend_count, b.bodies[k].angle_bend_count);
+    EXPECT_EQ(a.bodies[k].face_bend_count, b.bodies[k].face_bend_count);
     EXPECT_EQ(a.bodies[k].resolution, b.bodies[k].resolution);
     EXPECT_EQ(a.bodies[k].surface.triangles, b.bodies[k].surface.triangles);
     EXPECT_EQ(a.bodies[k].surface.segments, b.bodies[k].surface.segments);

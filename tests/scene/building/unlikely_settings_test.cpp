@@ -46,18 +46,6 @@ TEST_F(UnlikelySettings, SeamWithVerticesOnOneSideAloneStaysOpen) {
   EXPECT_THAT(warnings(kMesh, weld, with_vertex + beside), IsEmpty());
 }
 
-TEST_F(UnlikelySettings, BendingStiffnessOfAMaterialIsMissedInAMesh) {
-  const std::string two_faces = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
-  for (const char* material : {"paper", "denim", "leather"}) {
-    const std::string name = std::string("bodies.body.material=") + material;
-    EXPECT_THAT(warnings(kMesh, {name}, two_faces),
-                ElementsAre(HasSubstr("the bending stiffness of " + std::string(material) + " has no effect")));
-    EXPECT_THAT(warnings(kMesh, {name, "bodies.body.springs.bend.modulus=50"}, two_faces), IsEmpty());
-    EXPECT_THAT(warnings(kCloth, {name}), IsEmpty());
-  }
-  EXPECT_THAT(warnings(kMesh, {}, two_faces), IsEmpty()) << "silk is limp";
-}
-
 // The mean edge of the triangles of a grid is (2 + sqrt(2)) / 3 = 1.138 times a side of a cell, here 0.25 m.
 TEST_F(UnlikelySettings, ThicknessBeyondTheEdgesNeedsNoSelfContact) {
   EXPECT_THAT(warnings(kCloth, {"bodies.body.self_contact=true", "bodies.body.thickness=0.285"}),

@@ -224,8 +224,10 @@ TEST(Materials, BendSpringsTakeTheDampingTimeOfAMaterialButNoStiffness) {
   EXPECT_EQ(cloth.springs.bend->damping_time, cotton.find("springs.bend.damping_time")->value);
   const std::string mesh =
       R"({"duration": 1, "bodies": {"thing": {"shape": {"type": "mesh", "file": "a.obj"}, "material": "cotton")";
-  EXPECT_FALSE(folder.read(mesh + "}}}").bodies.front().springs.bend);
-  const BodyScene sheet = folder.read(mesh + R"(, "springs": {"bend": {"stiffness": 4}}}}})").bodies.front();
+  const BodyScene plain = folder.read(mesh + "}}}").bodies.front();
+  EXPECT_EQ(plain.springs.bend->value, cotton.find("springs.bend.modulus")->value);
+  EXPECT_EQ(plain.springs.bend_model, SpringMaterials::BendModel::angle);
+  const BodyScene sheet = folder.read(mesh + R"(, "springs": {"bend": {"model": "spring", "stiffness": 4}}}}})").bodies.front();
   EXPECT_EQ(sheet.springs.bend->value, 4.0);
   EXPECT_EQ(sheet.springs.bend->damping_time, cotton.find("springs.bend.damping_time")->value);
   EXPECT_EQ(sheet.springs.bend_model, SpringMaterials::BendModel::spring);
