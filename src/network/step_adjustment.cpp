@@ -85,13 +85,22 @@ double squared_frequency(const Element& element, const std::vector<double>& mass
   return *element.stiffness * largest;
 }
 
-/// The value that 99 in 100 of those above zero do not exceed; infinity if there are none.
-double usual(std::vector<double> values) {
-  std::erase_if(values, [](double value) { return !(value > 0.0); });
-  if (values.empty()) return std::numeric_limits<double>::infinity();
-  const auto at = static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
+/// The value that 99 in 100, by weight, of those above zero do not exceed; infinity if there are none.
+double usual(const std::vector<double>& values, const std::vector<double>& weights) {
+  std::vector<std::size_t> order;
+  double total = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] > 0.0)) continue;
+    order.push_back(i);
+    total += weights[i];
+  }
+  std::ranges::sort(order, {}, [&](std::size_t i) { return values[i]; });
+  double sum = 0.0;
+  for (const std::size_t i : order) {
+    sum += weights[i];
+    if (sum >= kUsual * total) return values[i];
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 void note_place(const BodyShape& shape, const std::array<Index, 2>& edge, double length, StepAdjustment& adjustment) {
@@ -103,7 +112,7 @@ void note_place(const BodyShape& shape, const std::array<Index, 2>& edge, double
 void soften(const BodyShape& shape, const std::vector<Element>& elements, StepAdjustment& adjustment) {
   std::vector<double> frequencies;
   for (const Element& element : elements) frequencies.push_back(squared_frequency(element, shape.masses));
-  const double most = kMostExcess * usual(frequencies);
+  const double most = kMostExcess * usual(frequencies, std::vector<double>(frequencies.size(), 1.0));
   for (std::size_t e = 0; e < elements.size(); ++e) {
     if (!(frequencies[e] > most)) continue;
     const double factor = most / frequencies[e];
@@ -149,7 +158,8 @@ void add_mass(const std::vector<Element>& elements, double available, BodyShape&
   const std::vector<double> sums = row_sums(shape, elements);
   std::vector<double> rates;
   for (std::size_t i = 0; i < sums.size(); ++i) rates.push_back(sums[i] / shape.masses[i]);
-  double most = kMostExcess * usual(rates);
+  // By mass: in a mesh with slivers, more than one particle in 100 may be tiny, while all of them together weigh next to nothing.
+  double most = kMostExcess * usual(rates, shape.masses);
   const auto fastest = std::ranges::max_element(rates);
   if (available == 0.0 || !(*fastest > most)) return;
   if (lacking_mass(sums, shape.masses, most) > available) {

@@ -25,9 +25,10 @@ struct StepAdjustment {
 inline constexpr Index kLeastAdjusted = 200;
 
 /// Two measures, of a body with masses. First, springs and bends that alone would need a step below half of what 99 in 100
-/// need become softer, with their damping, until they need that. Second, particles on which all elements together act that fast, in
-/// the same sense, become heavier (selective mass scaling, Olovsson, Simonsson and Unosson 2005), by at most `mass_share` of the
-/// body's mass in total: less of each if that does not suffice. None if nothing changed.
+/// need become softer, with their damping, until they need that. Second, particles on which all elements together act so fast that
+/// they need a step below half of what particles of 99 % of the mass need become heavier (selective mass scaling, Olovsson,
+/// Simonsson and Unosson 2005), by at most `mass_share` of the body's mass in total: less of each if that does not suffice. None if
+/// nothing changed.
 [[nodiscard]] std::optional<StepAdjustment> adjust_for_step(BodyShape& shape, double mass_share);
 
 /// For users: what changed, and where.

@@ -91,6 +91,20 @@ TEST(StepAdjustment, AddsNoMoreThanItsShareAndNothingWithout) {
   EXPECT_FALSE(adjust_for_step(none, 0.0));
 }
 
+// The slivers of a mesh of tetrahedra: a tenth of all particles have 1e-9 kg and springs of 0.001 N/m. Their row sum is
+// 4 * 0.001 N/m, that of the others 4 * 100 N/m / 1 kg. Four times that is right for 2.5e-6 kg.
+TEST(StepAdjustment, AddsMassToManyParticlesThatWeighNextToNothing) {
+  BodyShape shape = make_chain(1000);
+  std::fill(shape.masses.begin() + 900, shape.masses.end(), 1e-9);
+  std::fill(shape.springs.stiffness.begin() + 899, shape.springs.stiffness.end(), 1e-3);
+  const auto adjustment = adjust_for_step(shape, 0.01);
+  ASSERT_TRUE(adjustment);
+  EXPECT_EQ(adjustment->softened, 0);
+  EXPECT_EQ(adjustment->heavier, 100);
+  EXPECT_NEAR(shape.masses[950], 2.5e-6, 1e-18);
+  EXPECT_EQ(shape.masses[899], 1.0);
+}
+
 TEST(StepAdjustment, SoftensAngleBendsOfShortBonds) {
   BodyShape shape = make_chain(300);
   for (Index i = 0; i + 2 < 300; ++i) shape.angle_bends.append({i, i + 1, i + 2}, {1.0, 1.0}, 10.0, 0.1);
