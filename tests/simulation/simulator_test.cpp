@@ -130,6 +130,24 @@ TEST(Simulator, ADivergingStepNamesParticleAndSpring) {
   }
 }
 
+// Two particles a micrometre apart, as of a sliver, part by 5 mm: that is much for a body of micrometres, and nothing where another
+// spring is 1 m long.
+TEST(Simulator, AShortSpringDivergesOnceItIsLongerThanTheLongestOfItsBody) {
+  for (const bool has_long_spring : {false, true}) {
+    NetworkBuilder builder;
+    const Index left = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+    const Index right = builder.add_particle({1e-6, 0.0, 0.0}, 1.0, {0.005, 0.0, 0.0});
+    builder.add_spring(left, right, 1e-6, 1e-6);
+    if (has_long_spring) builder.add_spring(left, builder.add_particle({-1.0, 0.0, 0.0}, 1.0), 1e-6, 1.0);
+    Simulator simulator(builder.build(), {.step = 0.01, .gravity = Vector3::Zero()});
+    if (has_long_spring) {
+      EXPECT_NO_THROW(run(simulator, 1.0));
+    } else {
+      EXPECT_THROW(run(simulator, 1.0), StepError);
+    }
+  }
+}
+
 // The springs have no stiffness, so a bob that no limit holds falls freely: Verlet is exact then.
 TEST(Simulator, AStretchLimitHoldsItsBodiesAlone) {
   using Solver = StretchLimitSettings::Solver;

@@ -25,6 +25,18 @@ bool is_finite(const SimulationState& state) {
   return finite;
 }
 
+/// The longest rest length [m] of the springs of its body, for each spring.
+std::vector<double> longest_of_bodies(const SpringNetwork& network) {
+  const std::vector<double>& rest = network.springs.rest_length;
+  std::vector<double> longest(rest.size(), 0.0);
+  for (const Body& body : network.bodies) {
+    if (body.spring_count == 0) continue;
+    const auto begin = rest.begin() + body.first_spring;
+    std::fill_n(longest.begin() + body.first_spring, body.spring_count, *std::max_element(begin, begin + body.spring_count));
+  }
+  return longest;
+}
+
 double length(const Points& positions, Index a, Index b) { return (positions.col(a) - positions.col(b)).norm(); }
 
 /// `3 m long, 1 m at rest: stretched by 200 %, pulling with 20 N`
@@ -44,10 +56,11 @@ DivergenceCheck::DivergenceCheck(const SpringNetwork& network) : network_(networ
   const Springs& springs = network.springs;
   double longest_rest = 0.0;  // reference length for springs of length 0
   for (const double rest : springs.rest_length) longest_rest = std::max(longest_rest, rest);
+  const std::vector<double> of_bodies = longest_of_bodies(network);
   longest_squared_.reserve(static_cast<std::size_t>(springs.count()));
   for (std::size_t s = 0; s < springs.first.size(); ++s) {
     const double start = std::max(springs.rest_length[s], length(network.positions, springs.first[s], springs.second[s]));
-    const double longest = kOverstretched * (start > 0.0 ? start : longest_rest);
+    const double longest = std::max(of_bodies[s], kOverstretched * (start > 0.0 ? start : longest_rest));
     const bool pulls = springs.stiffness[s] > 0.0;  // a spring without stiffness has no bound
     longest_squared_.push_back(pulls && longest > 0.0 ? longest * longest : HUGE_VAL);
     if (longest_squared_.back() < HUGE_VAL) bounded_.push_back(static_cast<Index>(s));

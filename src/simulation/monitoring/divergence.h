@@ -20,8 +20,8 @@ class DivergenceCheck {
   [[nodiscard]] std::optional<StepFailure> not_finite(const SimulationState& state, const Points& before) const;
 
   /// The most stretched spring, if it has stiffness and is over 1,000 times longer than its rest length, now and at first, and
-  /// its length at time 0.
-  /// No material stretches so far; a step that is too large causes it.
+  /// its length at time 0, and longer than the longest of its body: the micrometres between the vertices of a sliver grow to
+  /// millimetres where others bend. No material stretches so far; a step that is too large causes it.
   [[nodiscard]] std::optional<StepFailure> overstretched(const Points& positions) const;
 
   /// The fastest particle and its most stretched spring.
