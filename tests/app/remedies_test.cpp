@@ -8,8 +8,8 @@
 //
 // Without a row: "push_out" that finds no place for a body around an obstacle that fills all room; divergence at a stable step,
 // other than of overstretched springs, of which no scene is known (StepCheck tests its remedy); a mesh that is one-sided or flat,
-// for which no remedy is named; warnings of unlikely_settings_test and of very many steps (step_choice_test); self-crossings, pins
-// beyond the limit and Newton's step (command_line_test).
+// for which no remedy is named; warnings of unlikely_settings_test, and of many steps by slivers (step_choice_test); self-crossings,
+// pins beyond the limit and Newton's step (command_line_test).
 #include "app/command_line_fixture.h"
 
 #include <gmock/gmock.h>

@@ -3,6 +3,7 @@
 #include "base/format.h"
 #include "base/problem_list.h"
 #include "dynamics/forces/material_dampers.h"
+#include "network/step_adjustment.h"
 
 #include <algorithm>
 #include <array>
@@ -109,14 +110,16 @@ bool is_implicit_faster(const Scene& scene, const SpringNetwork& network) {
 /// What the user can change: the mesh of a material, and the numbers that they gave themselves.
 std::string remedy_for(const Demand& demand, const Scene& scene, const SpringNetwork& network, const Body& body) {
   const Springs& springs = network.springs;
+  const auto found = std::ranges::find(scene.bodies, body.name, &BodyScene::name);
+  const bool has_material = found != scene.bodies.end() && !found->preset.empty();
   if (demand.spring != kNone &&
       springs.rest_length[demand.spring] < kShort * mean_length(network, body, springs.kind[demand.spring])) {
-    return "Merge the two vertices: this spring is far shorter than the others of the body";
+    std::string remedy = "This spring is far shorter than the others of the body: merge the two vertices";
+    if (!has_material || body.particle_count < kLeastAdjusted) return remedy;
+    if (!found->preset_mass) return remedy + ", or leave the mass to the material, which permits \"mass_scaling\"";
+    return scene.mass_scaling < kMassScaling ? remedy + ", or leave out \"mass_scaling\"" : remedy;
   }
-  const auto found = std::ranges::find(scene.bodies, body.name, &BodyScene::name);
-  std::string remedy = found != scene.bodies.end() && !found->preset.empty()
-                           ? "Use a coarser mesh or resolution"
-                           : std::string("Use less ") + demand.remedy + ", more mass";
+  std::string remedy = has_material ? "Use a coarser mesh or resolution" : std::string("Use less ") + demand.remedy + ", more mass";
   const bool implicit = is_implicit_faster(scene, network);
   if (implicit) remedy += remedy.ends_with("mass") ? " or \"implicit_euler\"" : ", or \"implicit_euler\"";
   return remedy;

@@ -1,4 +1,5 @@
 #include "scene/step_choice/step_choice.h"
+#include "base/format.h"
 #include "scene/building/scene_builder.h"
 #include "scene/scene_text.h"
 
@@ -104,45 +105,62 @@ TEST(StepChoice, DampersThatTheSceneGivesBoundTheStep) {
   EXPECT_GT(given.steps_per_frame, 2000);
 }
 
-// A square of 15 x 15 vertices, one of which is 0.1 mm from its neighbour: without the adjustment about a thousand times the steps.
-TEST(StepChoice, OneShortEdgeOfAMaterialDoesNotSlowTheScene) {
+/// Lines of an OBJ file: a square of triangles with n x n vertices, which begins at x = `from` [m].
+std::string square_mesh(int n, double from, double side, int first_vertex = 1) {
   std::string mesh;
-  for (int i = 0; i < 225; ++i) {
-    mesh += "v " + std::to_string(i == 113 ? 0.5001 : (i % 15) / 14.0) + " " + std::to_string((i / 15) / 14.0) + " 0\n";
+  const auto coordinate = [&](int i) { return format_number(side * i / (n - 1)); };
+  for (int i = 0; i < n * n; ++i) mesh += "v " + format_number(from + side * (i % n) / (n - 1)) + " " + coordinate(i / n) + " 0\n";
+  for (int i = 0; i < n * (n - 1); ++i) {
+    if (i % n == n - 1) continue;
+    const auto corner = [&](int offset) { return " " + std::to_string(i + first_vertex + offset); };
+    mesh += "f" + corner(0) + corner(1) + corner(n + 1) + "\nf" + corner(0) + corner(n + 1) + corner(n) + "\n";
   }
-  for (int i = 0; i < 210; ++i) {
-    if (i % 15 == 14) continue;
-    const auto corner = [&](int offset) { return " " + std::to_string(i + 1 + offset); };
-    mesh += "f" + corner(0) + corner(1) + corner(16) + "\nf" + corner(0) + corner(16) + corner(15) + "\n";
-  }
+  return mesh;
+}
+
+/// A sheet of silk of this mesh.
+BuiltScene silk(const std::string& mesh, const std::string& keys = "", const std::string& of_body = "") {
   const SceneFolder folder;
   folder.write("mesh.obj", mesh);
-  const auto built = [&](const std::string& keys) {
-    return build_scene(folder.read(R"({"duration": 1, )" + keys +
-                                   R"("bodies": {"sheet": {"shape": {"type": "mesh", "file": "mesh.obj"}, "material": "silk"}}})"));
-  };
-  const BuiltScene adjusted = built("");
+  return build_scene(folder.read(R"({"duration": 1, )" + keys +
+                                 R"("bodies": {"sheet": {"shape": {"type": "mesh", "file": "mesh.obj"},
+                                    "material": "silk")" +
+                                 of_body + "}}}"));
+}
+
+// A square of 15 x 15 vertices, one of which is 0.1 mm from its neighbour: without the adjustment about a thousand times the steps.
+TEST(StepChoice, OneShortEdgeOfAMaterialDoesNotSlowTheScene) {
+  std::string mesh = square_mesh(15, 0.0, 1.0);
+  const std::string eighth = "v " + format_number(8.0 / 14.0) + " 0.5 0\n";
+  mesh.replace(mesh.find(eighth), eighth.size(), "v 0.5001 0.5 0\n");
+  const BuiltScene adjusted = silk(mesh);
   ASSERT_EQ(adjusted.adjustments.size(), 1);
   EXPECT_EQ(adjusted.adjustments[0].body, "sheet");
   EXPECT_NEAR(adjusted.adjustments[0].length, 0.0001, 1e-6);
   EXPECT_LE(adjusted.steps_per_frame, 100);
-  EXPECT_TRUE(built(R"("frame_rate": 100, "step": 1e-5, "stability": "warn", )").adjustments.empty()) << "the scene sets the step";
+  EXPECT_TRUE(silk(mesh, R"("frame_rate": 100, "step": 1e-5, "stability": "warn", )").adjustments.empty())
+      << "the scene sets the step";
+}
+
+// Beside it lies a square of 5 x 5 vertices 2.5 um apart: too many springs to become softer, but they weigh next to nothing.
+TEST(StepChoice, AutoNamesWhatPreventsMassScaling) {
+  const std::string mesh = square_mesh(15, 0.0, 1.0) + square_mesh(5, 1.1, 1e-5, 226);
+  EXPECT_THAT(silk(mesh, R"("mass_scaling": false, )").warnings,
+              ElementsAre(HasSubstr("merge the two vertices, or leave out \"mass_scaling\".")));
+  EXPECT_THAT(silk(mesh, "", R"(, "density": 0.1)").warnings,
+              ElementsAre(HasSubstr("merge the two vertices, or leave the mass to the material, which permits \"mass_scaling\".")));
+  const BuiltScene scaled = silk(mesh);
+  EXPECT_THAT(scaled.warnings, testing::IsEmpty());
+  EXPECT_LE(scaled.steps_per_frame, 100);
 }
 
 // Vertex 5 is 0.1 mm from vertex 3.
 TEST(StepChoice, AutoNamesTheShortEdgeOfAMesh) {
-  const auto warnings = [](const std::string& mesh) {
-    const SceneFolder folder;
-    folder.write("mesh.obj", mesh);
-    return build_scene(folder.read(R"({"duration": 1, "bodies": {"sheet": {"shape": {"type": "mesh", "file": "mesh.obj"},
-                                      "material": "silk"}}})"))
-        .warnings;
-  };
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.9999 1 0\n";
   EXPECT_THAT(
-      warnings(square + "f 1 2 3 5\nf 1 5 4\n"),
-      ElementsAre(AllOf(HasSubstr("from [1, 1, 0] to [0.9999, 1, 0], 0.0001 m long"), HasSubstr("Merge the two vertices"))));
-  EXPECT_THAT(warnings("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"), testing::IsEmpty());
+      silk(square + "f 1 2 3 5\nf 1 5 4\n").warnings,
+      ElementsAre(AllOf(HasSubstr("from [1, 1, 0] to [0.9999, 1, 0], 0.0001 m long"), HasSubstr("merge the two vertices."))));
+  EXPECT_THAT(silk("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n").warnings, testing::IsEmpty());
 }
 
 // Up to a thousand steps per frame cause no warning. The warning of more steps names the cause and a remedy.
