@@ -49,6 +49,16 @@ BodyShape random_shape(Random& random) {
   }
 }
 
+/// A rope or cloth whose angle bends straighten it.
+BodyShape random_bent_shape(Random& random) {
+  const SpringMaterial limp{.value = 0.0};
+  const SpringMaterial bend{.value = one_of(random, {0.0001, 0.001, 0.01}), .damping_time = 0.001};
+  const SpringMaterials materials{limp, {}, bend, SpringMaterials::BendModel::angle};
+  const Index n = 3 + random.below(8);
+  if (random.below(2) == 0) return make_cloth({.size = {0.8, 0.8}, .resolution = {n, n}}, materials);
+  return make_rope({.points = {{-0.5, 0, 0}, {0, 0.1, 0}, {0.5, 0, 0}}, .particles = 2 * n, .length = {}}, materials);
+}
+
 enum class Filled : std::uint8_t { lattice, coarse_lattice, tetrahedra, balloon };
 
 /// A closed surface that cells carry, tetrahedra, or a skin around a gas or a liquid.
@@ -355,17 +365,28 @@ Attachment random_attachment(const SpringNetwork& network, Index obstacles, Rand
   return attachment;
 }
 
-/// Three bodies that attachments join to each other and to an obstacle that swings above a floor.
-BuiltScene scene_of_attached(Random& random) {
-  NetworkBuilder builder = three_bodies(random);
+/// Attachments join the bodies to each other and to an obstacle that swings above a floor.
+BuiltScene attached(NetworkBuilder builder, bool rods_alone, Random& random) {
   std::vector<Obstacle> obstacles = swing_above_floor(random);
   const SpringNetwork network = builder.build();
   for (int k = 0; k < 4; ++k) {
     Attachment attachment = random_attachment(network, static_cast<Index>(obstacles.size()), random);
     attachment.name = "attachment " + std::to_string(k);
+    if (rods_alone) attachment.stiffness.reset();
     builder.add_attachment(std::move(attachment));
   }
   return random_scene(random, builder, std::move(obstacles));
+}
+
+BuiltScene scene_of_attached(Random& random) { return attached(three_bodies(random), false, random); }
+
+/// A lattice of a coarse mesh, and two ropes or cloths with angle bends.
+BuiltScene scene_of_rods(Random& random) {
+  NetworkBuilder builder;
+  add_flying_body(builder, "lattice", random_filled_shape(Filled::coarse_lattice, random), random, {.self = true});
+  add_flying_body(builder, "first", random_bent_shape(random), random, {.self = true});
+  add_flying_body(builder, "second", random_bent_shape(random), random, {.self = true});
+  return attached(std::move(builder), true, random);
 }
 
 class RandomScenes : public test::SeededTest {};
@@ -432,6 +453,14 @@ TEST_F(RandomScenes, NothingCrossesWhateverIsAttached) {
     EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
   }
   EXPECT_GT(reports.size(), 20);
+}
+
+TEST_F(RandomScenes, NothingCrossesWhereRodsJoinCoarseLatticesAndBends) {
+  const Reports reports = run_scenes(20, Judge::obstacles_and_self, scene_of_rods, [](const BuiltScene&) { return true; });
+  for (const auto& [number, report] : reports) {
+    EXPECT_TRUE(report.is_free() && report.infeasible == 0) << "scene " << number << ": " << report;
+  }
+  EXPECT_GT(reports.size(), 0);
 }
 
 TEST_F(RandomScenes, NoLatticeTetrahedraOrBalloonCrossesAnObstacleInAnyStep) {
