@@ -3,6 +3,9 @@
 #include "base/format.h"
 #include "base/grouped_warnings.h"
 #include "base/machine_memory.h"
+#include "base/problem_list.h"
+#include "geometry/mesh/mesh_faults.h"
+#include "geometry/mesh/weld.h"
 #include "network/network_builder.h"
 #include "network/spring_pieces.h"
 #include "scene/building/attachment_resolver.h"
@@ -96,21 +99,32 @@ void name_file(const std::string& file, std::vector<Problem>& problems) {
   }
 }
 
-/// What to do with pieces of a mesh that touch.
-std::string weld_remedy(const SpringPieces& pieces) {
-  if (pieces.touch_distance == 0.0) return "Merge vertices at the same place in the mesh.";
-  const std::string distance = "1e" + std::to_string(std::lround(std::log10(pieces.touch_distance)));
-  return "Weld vertices within " + distance + " m with \"weld\": " + distance + " in its shape, which leaves " +
-         counted(static_cast<std::size_t>(pieces.count_welded), "piece") + ".";
+/// The vertices that keep a seam open if the vertices of the body's mesh are welded within `distance` [m].
+std::vector<Index> open_after_weld(const Points& positions, PolygonFaces faces, double distance) {
+  const std::vector<Index> group_of = coincident_groups(positions, distance);
+  for (Index& vertex : faces.vertex) vertex = group_of[vertex];
+  return vertices_on_border_edges(positions, faces, distance);
 }
 
-std::string join_remedy(const Body& body, const SpringPieces& pieces, bool is_mesh) {
-  if (is_mesh) return weld_remedy(pieces);
+/// What to do with pieces of a mesh that touch. A weld alone would bring the warning of T-vertices where they keep the seam open.
+std::string weld_remedy(const SpringNetwork& network, const Body& body, const SpringPieces& pieces) {
+  if (pieces.touch_distance == 0.0) return "Merge vertices at the same place in the mesh.";
+  const std::string distance = "1e" + std::to_string(std::lround(std::log10(pieces.touch_distance)));
+  const std::string weld = "eld vertices within " + distance + " m with \"weld\": " + distance + " in its shape";
+  const Points positions = network.positions.middleCols(body.first_particle, body.particle_count);
+  const std::vector<Index> open = open_after_weld(positions, body.surface.faces, pieces.touch_distance);
+  if (open.empty()) return "W" + weld + ", which leaves " + counted(static_cast<std::size_t>(pieces.count_welded), "piece") + ".";
+  return "Add vertices in the modelling program to the edges of the seam that have none where the other side has one, at " +
+         counted(open.size(), "place") + ", first at " + vector_text(positions.col(open.front()), 3) + ", and w" + weld + ".";
+}
+
+std::string join_remedy(const SpringNetwork& network, const Body& body, const SpringPieces& pieces, bool is_mesh) {
+  if (is_mesh) return weld_remedy(network, body, pieces);
   if (!body.cells.tetrahedra.empty()) return "Merge nodes at the same place in the file (Gmsh: Coherence Mesh).";
   return "Join them by springs.";
 }
 
-std::vector<std::string> pieces_warnings(const Body& body, const SpringPieces& pieces, bool is_mesh) {
+std::vector<std::string> pieces_warnings(const SpringNetwork& network, const Body& body, const SpringPieces& pieces, bool is_mesh) {
   if (body.particle_count < 2) return {};
   if (pieces.count == 0) return {"no springs, so the particles move independently. Give it \"springs\" or a \"material\"."};
   std::vector<std::string> warnings;
@@ -121,7 +135,8 @@ std::vector<std::string> pieces_warnings(const Body& body, const SpringPieces& p
   }
   if (pieces.touch) {
     warnings.push_back(std::to_string(pieces.count + pieces.alone) +
-                       " pieces that no spring joins, though some touch: they fall apart. " + join_remedy(body, pieces, is_mesh));
+                       " pieces that no spring joins, though some touch: they fall apart. " +
+                       join_remedy(network, body, pieces, is_mesh));
   }
   return warnings;
 }
@@ -154,9 +169,9 @@ std::vector<std::string> warnings_of(const Scene& scene, BuiltScene& built) {
     const auto source = built.sources.find(body.name);
     const bool is_mesh = source != built.sources.end();
     const SpringPieces pieces = spring_pieces(built.network, body);
-    for (const std::string& text : pieces_warnings(body, pieces, is_mesh)) bodies.add(body.name, text);
+    for (const std::string& text : pieces_warnings(built.network, body, pieces, is_mesh)) bodies.add(body.name, text);
     if (!is_mesh) continue;
-    if (pieces.touch) built.weld_remedies[body.name] = weld_remedy(pieces);
+    if (pieces.touch) built.weld_remedies[body.name] = weld_remedy(built.network, body, pieces);
     for (const std::string& text : source_warnings(*source->second)) bodies.add(body.name, text);
   }
   GroupedWarnings obstacles("obstacle", "obstacles");
