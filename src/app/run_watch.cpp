@@ -169,13 +169,12 @@ void RunWatch::warn_of_missed_limit() {
 std::string RunWatch::remedy_for_stretch() const {
   const StretchLimitSettings& limit = *simulator_.settings().stretch_limit;
   if (const PinStretch& pins = missed_.pins; pins.stretch > limit.max_stretch) {
-    constexpr double kRounding = 1e-6;
-    const double needed_stretch = std::ceil(100.0 * pins.stretch - kRounding) / 100.0;
+    const double allowed = (1.0 + limit.max_stretch) * pins.length;
     return fmt::format(
-        "Two pins of body \"{}\" are {} m apart in that frame, but the springs between them are {} m long, so no solver can keep "
-        "the limit. Move the pins closer together, or use a \"max_stretch\" of {}.",
+        "Two pins of body \"{}\" are {} m apart in that frame, but the springs between them are {} m long and may be {} m, so no "
+        "solver can keep the limit. Keep these pins at most {} m apart.",
         simulator_.network().body_of(pins.first).name, format_number((1.0 + pins.stretch) * pins.length, 3),
-        format_number(pins.length, 3), format_number(needed_stretch, 6));
+        format_number(pins.length, 3), format_number(allowed, 3), format_upper_bound(allowed, 3));
   }
   const bool is_gauss_seidel = limit.solver == StretchLimitSettings::Solver::gauss_seidel;
   const bool can_be_solved = is_gauss_seidel && limit.max_compression == 1.0;

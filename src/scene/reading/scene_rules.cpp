@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 
 namespace sprung {
 namespace {
@@ -69,18 +68,6 @@ std::optional<double> read_mass_scaling(Json& json, const JsonLocation& location
   return std::nullopt;
 }
 
-void check_step_divides_frame(double step, double frame_rate, const JsonLocation& location) {
-  if (steps_per_frame(frame_rate, step)) return;
-  const double steps = 1.0 / (frame_rate * step);
-  std::string remedy = "use a larger step";
-  if (steps < kMostStepsPerFrame) {
-    remedy = "use " + step_text(frame_rate, static_cast<int>(std::max(steps, 1.0)));
-    if (steps > 1.0) remedy += " or " + step_text(frame_rate, static_cast<int>(std::ceil(steps)));
-  }
-  location.report(Json(step), "must divide a frame: 1 / (frame_rate * step) is " + format_number(steps) + ", not a whole number",
-                  remedy + ", or \"auto\"");
-}
-
 void read_time(Fields& fields, Scene& scene) {
   const auto duration = fields.required("duration", number(kNotNegative));
   const auto frame_rate = fields.value("frame_rate", number(kPositive), scene.frame_rate);
@@ -96,7 +83,6 @@ void read_time(Fields& fields, Scene& scene) {
         .report(Json(*duration), "makes more than " + format_number(kMostFrames) + " frames of 1 / frame_rate",
                 "lower one of them");
   }
-  if (frame_rate && scene.step) check_step_divides_frame(*scene.step, *frame_rate, fields.location().at("step"));
 }
 
 // Penalty contact acts only between bodies and obstacles.
@@ -127,9 +113,19 @@ void check_followed(const Scene& scene, const Json& obstacles, const JsonLocatio
   }
 }
 
+/// Remedies for keys of `air` at the top level. A wind that moved there alone would have no effect.
+void set_remedies_of_air(Fields& fields) {
+  fields.set_owner({"drag", "gusts", "surface", "wind"}, "air");
+  const Json air = fields.json().value("air", Json());
+  if (air.contains("drag") || air.contains("surface")) return;
+  for (const std::string key : {"gusts", "wind"}) {
+    fields.set_remedy({key}, "it belongs to air and acts by a drag: write \"air\": { \"" + key + "\": ..., \"drag\": ... }");
+  }
+}
+
 Scene read_scene_fields(Fields& fields) {
   Scene scene;
-  fields.set_owner({"drag", "gusts", "surface", "wind"}, "air");
+  set_remedies_of_air(fields);
   fields.set_remedy({"dt", "time_step", "timestep"}, "did you mean \"step\"?");
   fields.set_remedy({"fps"}, "did you mean \"frame_rate\"?");
   fields.optional("$schema", text());

@@ -61,6 +61,42 @@ std::string advice_for_too_many_steps(const Scene& scene) {
          "less stiffness, more mass, or a higher frame_rate";
 }
 
+/// A step that divides no frame. Names the divisors beside it, of which the larger one may be too large to be stable.
+Problem undivided_frame(const Scene& scene, double largest_stable) {
+  const double steps = 1.0 / (scene.frame_rate * *scene.step);
+  const bool refuses = scene.settings.stability == StabilityCheck::refuse;
+  std::string remedy;
+  for (const double whole : {std::floor(steps), std::ceil(steps)}) {
+    if (whole < 1.0 || whole > kMostStepsPerFrame) continue;
+    if (refuses && is_unstable(step_of(scene.frame_rate, whole), largest_stable)) continue;
+    remedy += (remedy.empty() ? "use " : " or ") + step_text(scene.frame_rate, static_cast<int>(whole));
+  }
+  return {.file = scene.file.string(),
+          .key = "step",
+          .value = format_number(*scene.step),
+          .rule = "must divide a frame: 1 / (frame_rate * step) is " + format_number(steps) + ", not a whole number",
+          .remedy = (remedy.empty() ? "use a larger step" : remedy) + ", or \"auto\""};
+}
+
+/// The given step.
+StepChoice given_step(const Scene& scene, const SpectralBounds& bounds, std::vector<Problem>& problems) {
+  StepChoice choice;
+  choice.largest_stable = largest_stable_step(scene.settings.integrator, bounds);
+  const auto steps = steps_per_frame(scene.frame_rate, *scene.step);
+  choice.steps_per_frame = steps.value_or(1);
+  choice.step = steps ? step_meant(scene.frame_rate, *scene.step, *steps) : *scene.step;
+  if (is_unstable(choice.step, choice.largest_stable) && scene.settings.stability == StabilityCheck::refuse) {
+    SimulatorSettings settings = scene.settings;
+    settings.step = choice.step;
+    problems.push_back(unstable_step(settings, bounds));
+    problems.back().value = format_number(*scene.step);  // as the user wrote it
+    problems.back().file = scene.file.string();
+  } else if (!steps) {
+    problems.push_back(undivided_frame(scene, choice.largest_stable));
+  }
+  return choice;
+}
+
 /// The automatic step for the pins that hold in the network. Adds a problem if there is none.
 StepChoice automatic_step(const Scene& scene, const SpringNetwork& network, const SpectralBounds& bounds,
                           std::vector<Problem>& problems) {
@@ -89,22 +125,9 @@ StepChoice automatic_step(const Scene& scene, const SpringNetwork& network, cons
 
 StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems) {
   const SpectralBounds bounds = simulation_bounds(network, scene.settings, !scene.obstacles.empty());
-  StepChoice choice;
-  choice.largest_stable = largest_stable_step(scene.settings.integrator, bounds);
-  if (scene.step) {
-    choice.steps_per_frame = steps_per_frame(scene.frame_rate, *scene.step).value_or(1);
-    choice.step = step_meant(scene.frame_rate, *scene.step, choice.steps_per_frame);
-    if (is_unstable(choice.step, choice.largest_stable) && scene.settings.stability == StabilityCheck::refuse) {
-      SimulatorSettings settings = scene.settings;
-      settings.step = choice.step;
-      problems.push_back(unstable_step(settings, bounds));
-      problems.back().value = format_number(*scene.step);  // as the user wrote it
-      problems.back().file = scene.file.string();
-    }
-    return choice;
-  }
+  if (scene.step) return given_step(scene, bounds, problems);
   StepChoice automatic = automatic_step(scene, network, bounds, problems);
-  automatic.largest_stable = choice.largest_stable;
+  automatic.largest_stable = largest_stable_step(scene.settings.integrator, bounds);
   const std::vector<double> changes = pin_changes(network);
   if (changes.empty()) return automatic;
   SpringNetwork later = network;
@@ -112,7 +135,7 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
     if (!problems.empty()) break;
     change_pins(later, std::nextafter(time, std::numeric_limits<double>::infinity()));
     StepChoice other = automatic_step(scene, later, bounds, problems);
-    other.largest_stable = choice.largest_stable;
+    other.largest_stable = automatic.largest_stable;
     other.max_substeps = automatic.max_substeps = std::max(automatic.max_substeps, other.max_substeps);
     if (other.steps_per_frame > automatic.steps_per_frame) automatic = std::move(other);
   }

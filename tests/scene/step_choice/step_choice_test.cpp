@@ -362,6 +362,22 @@ TEST(StepChoice, StepBeyondTheStableOneIsRefusedNamingTheLargestPossibleOne) {
               ElementsAre(Field(&Problem::remedy, HasSubstr("use a step of at most 0.00833 s, or"))));
 }
 
+// The largest stable step is 2 / sqrt(400) = 0.1, as long as two frames at a rate of 20. A frame at a rate of 9 is 0.111.
+TEST(StepChoice, AStepThatDividesNoFrameIsRefusedNamingStableOnes) {
+  const auto refused = [](const std::vector<std::string>& changes) { return problems_of([&] { (void)build(400.0, changes); }); };
+  const auto advice = [](const std::string& text) {
+    return ElementsAre(AllOf(Field(&Problem::key, "step"), Field(&Problem::rule, HasSubstr("must divide a frame")),
+                             Field(&Problem::remedy, text + ", or \"auto\"")));
+  };
+  EXPECT_THAT(refused({"frame_rate=25", "step=0.003"}), advice("use 0.00307 or 0.00285"));
+  EXPECT_THAT(refused({"frame_rate=20", "step=0.08"}), advice("use 0.05")) << "longer than a frame";
+  EXPECT_THAT(refused({"frame_rate=9", "step=0.08"}), advice("use 0.0555"));
+  EXPECT_THAT(refused({"step=1e-29"}), advice("use a larger step"));
+  EXPECT_THAT(refused({"frame_rate=9", "step=0.105"}),
+              ElementsAre(Field(&Problem::rule, HasSubstr("is beyond the largest stable"))));
+  EXPECT_THAT(refused({"frame_rate=9", "step=0.105", "stability=warn"}), advice("use 0.111 or 0.0555"));
+}
+
 TEST(StepChoice, StepBeyondTheStableOneRunsWithAWarning) {
   const BuiltScene built = build(1000.0, {"step=0.1", "stability=warn"});
   EXPECT_EQ(built.settings.step, 0.1);
