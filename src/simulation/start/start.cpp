@@ -57,17 +57,45 @@ std::string intersected_by(Index body, const StartIntersections& found, const Co
   return names.empty() ? "another body" : names_text("obstacle", "obstacles", names);
 }
 
-/// By which fraction the edge of the body that push_out lengthened most became longer.
-double lengthening(const SpringNetwork& network, const Body& body, const Points& from, const Points& to) {
+/// The lengths of a body's edges after push_out, as multiples of those before.
+struct LengthRatios {
+  double largest = 1.0;
+  double smallest = 1.0;
+};
+
+LengthRatios length_ratios(const SpringNetwork& network, const Body& body, const Points& from, const Points& to) {
   const Springs& springs = network.springs;
-  double most = 0.0;
+  LengthRatios ratios;
   for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
     if (springs.kind[s] != SpringKind::structural) continue;
     const double before = (from.col(springs.first[s]) - from.col(springs.second[s])).norm();
-    const double after = (to.col(springs.first[s]) - to.col(springs.second[s])).norm();
-    if (before > 0.0) most = std::max(most, after / before - 1.0);
+    if (before == 0.0) continue;
+    const double ratio = (to.col(springs.first[s]) - to.col(springs.second[s])).norm() / before;
+    ratios = {std::max(ratios.largest, ratio), std::min(ratios.smallest, ratio)};
   }
-  return most;
+  return ratios;
+}
+
+/// Whether push_out would be a remedy: bodies are no deeper in obstacles than their elements are large, and it deforms them little.
+/// What it wraps round an obstacle or flattens may turn cells inside out, cross itself or miss its stretch limit, which brings
+/// other messages.
+bool push_out_helps(const SpringNetwork& network, Environment& environment, const CollisionSurface& surface,
+                    const ContactSettings& contact, const Points& positions, const StartIntersections& wanted) {
+  constexpr double kLittle = 0.25;
+  constexpr Index kMostParticles = 10'000;  // to push bodies apart takes seconds with more
+  if (!wanted.with_each_other.empty() && network.particle_count() > kMostParticles) return false;
+  const auto is_deep = [&](const auto& inside) {
+    const auto body = static_cast<std::size_t>(&network.body_of(inside.particle) - network.bodies.data());
+    return surface.element_size[body] > 0.0 && inside.depth > surface.element_size[body];
+  };
+  if (std::ranges::any_of(wanted.with_obstacles.inside, is_deep)) return false;
+  const bool apart = contact.response == ContactSettings::Response::projection;
+  const Points moved = push_out(network, environment, surface, positions, apart);
+  if (!find_all(environment, surface, contact, moved).empty()) return false;
+  return std::ranges::all_of(network.bodies, [&](const Body& body) {
+    const LengthRatios ratios = length_ratios(network, body, positions, moved);
+    return ratios.largest <= 1.0 + kLittle && ratios.smallest >= 1.0 - kLittle;
+  });
 }
 
 /// Bodies that push_out stretched so much that their springs will throw them off: those that an obstacle pierces, for example.
@@ -78,7 +106,7 @@ std::vector<std::string> describe_lengthened(const SpringNetwork& network, const
   std::vector<std::string> lines;
   for (Index number = 0; number < static_cast<Index>(network.bodies.size()); ++number) {
     const Body& body = network.bodies[static_cast<std::size_t>(number)];
-    const double most = lengthening(network, body, from, to);
+    const double most = length_ratios(network, body, from, to).largest - 1.0;
     if (most <= kMuch) continue;
     lines.push_back("body \"" + body.name + "\": \"push_out\" moved it off " +
                     intersected_by(number, found, surface, network, environment) + " and made an edge " +
@@ -139,7 +167,8 @@ Start find_start(const SpringNetwork& network, Environment& environment, const C
     return {start, describe_lengthened(network, environment, surface, wanted, positions, start),
             describe_moved(network, positions, start)};
   }
-  const std::string remedy = "move one of them by \"place\", or set contact.start to \"push_out\"";
+  std::string remedy = "move one of them by \"place\"";
+  if (push_out_helps(network, environment, surface, contact, positions, wanted)) remedy += ", or set contact.start to \"push_out\"";
   throw InputError(start_problems(wanted, network, environment, surface, positions, remedy));
 }
 
