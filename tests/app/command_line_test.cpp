@@ -206,19 +206,6 @@ TEST_F(CommandLine, RunReportsAMissedStretchLimitAndTheRemedy) {
               AllOf(HasSubstr("Raise \"iterations\" of \"stretch_limit\", or use a smaller \"step\""), Not(HasSubstr("solver"))));
 }
 
-// A strip that falls nearly upright folds onto itself.
-TEST_F(CommandLine, RunReportsABodyThatPassesThroughItself) {
-  json scene = {{"duration", 0.5}};
-  scene["obstacles"]["floor"] = {{"shape", {{"type", "half_space"}}}, {"friction", 0.4}};
-  scene["bodies"]["strip"] = {{"shape", {{"type", "cloth"}, {"size", {0.6, 0.1}}, {"resolution", {13, 3}}}},
-                              {"material", "silk"},
-                              {"place", {{"position", {0, 0.35, 0}}, {"rotation", {0, 20, 85}}}}};
-  EXPECT_THAT(run({"run", save(scene), "--out", out()}).err, HasSubstr("body \"strip\" crosses itself"));
-  EXPECT_THAT(summary()["warnings"], Contains(HasSubstr("Set its \"self_contact\" to true")));
-  scene["bodies"]["strip"]["self_contact"] = true;
-  EXPECT_THAT(run({"run", save(scene), "--out", out(), "--overwrite"}).err, Not(HasSubstr("warning")));
-}
-
 // Two hairs that touch at a jerk of their pins. Newton's method solves with any number of iterations; what it misses is in
 // proportion to the step.
 TEST_F(CommandLine, RunAdvisesASmallerStepWhereNewtonMissesTheLimit) {

@@ -6,10 +6,9 @@
 // beside it, and `arguments` of the command line, in which FOLDER is the folder of files named `folder/...`. `"when": "run"` marks
 // what `validate` cannot know.
 //
-// Without a row: "push_out" that finds no place for a body around an obstacle that fills all room; divergence at a stable step,
-// other than of overstretched springs, of which no scene is known (StepCheck tests its remedy); a mesh that is one-sided or flat,
-// for which no remedy is named; warnings of unlikely_settings_test, and of many steps by slivers (step_choice_test); self-crossings,
-// pins beyond the limit and Newton's step (command_line_test).
+// `elsewhere` lists messages whose remedies other tests follow, or of which no scene is known: divergence at a stable step, other
+// than of overstretched springs (StepCheck tests its remedy). messages_test finds messages without a row. A mesh that is one-sided
+// or flat has none, as no remedy is named.
 #include "app/command_line_fixture.h"
 
 #include <gmock/gmock.h>

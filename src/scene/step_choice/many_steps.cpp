@@ -155,12 +155,10 @@ std::optional<std::string> many_steps_warning(const Scene& scene, const SpringNe
   const std::string steps = "\"step\": \"auto\" takes " + std::to_string(choice.steps_per_frame) + " steps of " +
                             format_number(choice.step, kDigits) + " s a frame: ";
   if (by_passes) {
-    return steps +
-           "passes of the stretch limit require that; more \"iterations\", \"tethers\": true or \"solver\": \"newton\" needs fewer "
-           "steps";
+    return steps + "passes of the stretch limit require that. Use more \"iterations\" or \"solver\": \"newton\".";
   }
   if (std::holds_alternative<ExplicitEulerSettings>(scene.settings.integrator)) {
-    return steps + "explicit Euler gains energy in larger steps; \"symplectic_euler\" does not";
+    return steps + "explicit Euler gains energy in larger steps. Use \"symplectic_euler\".";
   }
   return steps + reason(scene, network, choice.step) + ".";
 }
