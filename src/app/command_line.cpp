@@ -28,8 +28,8 @@ constexpr const char* kExamples = R"(Examples:
 
 Meshes are searched beside the scene file (by info: where you are), in each --mesh-path, then in the folders of SPRUNG_MESH_PATH.
 
-Exit codes: 0 done, 2 wrong usage, 3 invalid scene or mesh, 4 the simulation diverged, 5 the scene file cannot be
-read or the output cannot be written, 130 interrupted, 1 anything else.)";
+Exit codes: 0 done, 2 wrong usage, 3 invalid scene or mesh, 4 the simulation diverged, 5 the scene file or a run
+cannot be read or the output cannot be written, 130 interrupted, 1 anything else.)";
 
 /// The options of all commands, and the parser that fills them.
 class Parser {

@@ -7,9 +7,9 @@ enum class ExitCode : int {
   done = 0,
   unexpected = 1,     ///< out of memory, or a bug in Sprung
   usage = 2,          ///< the command line is wrong
-  invalid = 3,        ///< the scene or a mesh is invalid
+  invalid = 3,        ///< the scene, a mesh or the files of a run are invalid
   diverged = 4,       ///< the simulation diverged
-  file = 5,           ///< the scene file cannot be read, or the output cannot be written
+  file = 5,           ///< the scene file or a run cannot be read, or the output cannot be written
   interrupted = 130,  ///< by SIGINT or SIGTERM; the present frame is not written
 };
 

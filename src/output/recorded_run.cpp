@@ -36,6 +36,10 @@ constexpr const char* kFrameRemedy = "restore this frame, or run the scene again
   throw InputError({file.string(), key, "", rule, remedy});
 }
 
+[[noreturn]] void fail_to_read(const std::filesystem::path& file, const std::string& reason, const char* remedy = kRemedy) {
+  throw FileError("read", file.string(), reason + "; " + remedy);
+}
+
 /// Requires that the summary has the key with a value of this type.
 template <class Value>
 Value read(const Json& summary, const char* key, const std::filesystem::path& file) {
@@ -98,7 +102,7 @@ RecordedBody body_of(const std::string& name, PolygonMesh mesh, Index first) {
 
 RecordedRun::RecordedRun(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code ignored;
-  if (!std::filesystem::is_directory(folder_, ignored)) fail(folder_, "", "is no folder");
+  if (!std::filesystem::is_directory(folder_, ignored)) fail_to_read(folder_, "it is no folder");
   read_summary();
   read_diagnostics();
 }
@@ -107,12 +111,12 @@ void RecordedRun::read_summary() {
   const std::filesystem::path file = folder_ / kRunSummaryFile;
   std::error_code error;
   const auto kind = std::filesystem::status(file, error).type();
-  if (kind == std::filesystem::file_type::not_found) fail(file, "", "is missing, so this is not the folder of a run");
-  if (error) fail(file, "", "cannot be read: " + error.message());
-  if (kind != std::filesystem::file_type::regular) fail(file, "", "is not a regular file");
+  if (kind == std::filesystem::file_type::not_found) fail_to_read(file, "it is missing, so this is not the folder of a run");
+  if (error) fail_to_read(file, error.message());
+  if (kind != std::filesystem::file_type::regular) fail_to_read(file, "it is not a regular file");
   errno = 0;
   std::ifstream stream(file);
-  if (!stream) fail(file, "", std::string("cannot be read: ") + std::strerror(errno));
+  if (!stream) fail_to_read(file, std::strerror(errno));
   const Json summary = Json::parse(
       stream,
       [&](int level, Json::parse_event_t, const Json&) {
@@ -253,10 +257,10 @@ Points RecordedRun::obj_positions(const std::string& pattern, int frame, Eigen::
   const std::filesystem::path file = folder_ / fill_pattern(pattern, frame);
   std::error_code ignored;
   if (std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored)) {
-    fail(file, "", "is not a regular file", kFrameRemedy);
+    fail_to_read(file, "it is not a regular file", kFrameRemedy);
   }
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file, "", "is missing", kFrameRemedy);
+  if (!stream) fail_to_read(file, "it is missing", kFrameRemedy);
   std::ostringstream text;
   text << stream.rdbuf();
   Points positions = read_vertex_lines(text.str());

@@ -29,8 +29,8 @@ struct BrokenSprings {
 /// known.
 class RecordedRun {
  public:
-  /// Throws InputError that names what a folder lacks to be a run with at least one frame: run.json, its keys, or both record.bin
-  /// and the OBJ files of its first frame.
+  /// Throws InputError that names what a folder lacks to be a run with at least one frame: keys of run.json, or both record.bin
+  /// and the OBJ files of its first frame. Throws FileError if run.json or a file that it needs cannot be read.
   explicit RecordedRun(std::filesystem::path folder);
 
   /// File name of the scene, or name of the folder if the run has none.
@@ -54,7 +54,8 @@ class RecordedRun {
   /// What cannot be shown, and why, in one line; empty if nothing is missing.
   [[nodiscard]] const std::string& missing() const { return missing_; }
 
-  /// A frame, counted from 1, at most frames(). Throws InputError if a file cannot be read or does not fit the model. Thread-safe.
+  /// A frame, counted from 1, at most frames(). Throws FileError if a file cannot be read, InputError if it does not fit the
+  /// model. Thread-safe.
   [[nodiscard]] RecordedFrame frame(int number) const;
 
  private:

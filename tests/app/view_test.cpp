@@ -62,11 +62,16 @@ TEST_F(View, ThatFindsNoSceneAndNoRunEndsWithFive) {
   }
 }
 
-TEST_F(View, OfAFolderWithoutARunEndsWithThree) {
+TEST_F(View, OfAFolderWithoutAReadableRunEndsWithFive) {
   std::filesystem::create_directories(out());
   const Ending ending = run({"view", out()});
-  EXPECT_EQ(ending.code, 3);
-  EXPECT_THAT(ending.err, AllOf(HasSubstr("run.json: is missing"), HasSubstr("give the folder of a run")));
+  EXPECT_EQ(ending.code, 5);
+  EXPECT_THAT(ending.err, AllOf(HasSubstr("run.json: cannot read: it is missing"), HasSubstr("give the folder of a run")));
+  std::filesystem::create_directories(scratch_ / "out/run.json");
+  EXPECT_EQ(run({"view", out()}).code, 5);
+  ASSERT_EQ(run({"run", save(rope_scene()), "--out", out("frames")}).code, 0);
+  write_text(scratch_ / "frames/run.json", "{}");
+  EXPECT_EQ(run({"view", out("frames")}).code, 3) << "read, but invalid";
 }
 
 TEST_F(View, ServesASceneWithProblemsAndTellsThem) {

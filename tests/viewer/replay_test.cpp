@@ -224,7 +224,7 @@ TEST_F(RecordedCloth, ABrokenFolderSaysWhatIsMissing) {
     try {
       const Replay replay(folder);
       (void)replay.state(kFrames);
-    } catch (const InputError& error) {
+    } catch (const std::runtime_error& error) {
       return error.what();
     }
     return "";
@@ -259,7 +259,7 @@ TEST_F(RecordedCloth, AFrameOrASummaryThatNoRunWritesIsRefused) {
     folder_.write("frames/run.json", changed.dump());
     try {
       (void)Replay(run_folder()).state(2);
-    } catch (const InputError& error) {
+    } catch (const std::runtime_error& error) {
       return error.what();
     }
     return "";

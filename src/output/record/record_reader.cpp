@@ -35,13 +35,17 @@ constexpr std::size_t kPrefixBytes = 24;  // magic, version, size of the JSON te
   throw InputError({file.string(), key, "", rule, remedy});
 }
 
+[[noreturn]] void fail_to_read(const std::filesystem::path& file, const std::string& reason) {
+  throw FileError("read", file.string(), reason + "; " + kDamagedRecordRemedy);
+}
+
 std::string read_bytes(const std::filesystem::path& file, std::uint64_t offset, std::uint64_t size) {
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file, "", std::string("cannot be read: ") + std::strerror(errno));
+  if (!stream) fail_to_read(file, std::strerror(errno));
   std::string bytes(size, '\0');
   stream.seekg(static_cast<std::streamoff>(offset));
-  if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) fail(file, "", "cannot be read");
+  if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) fail_to_read(file, "it became shorter");
   return bytes;
 }
 
@@ -252,7 +256,7 @@ struct RecordReader::Contents {
   void read() {
     std::error_code error;
     const std::uint64_t size = std::filesystem::file_size(file, error);
-    if (error) fail(file, "", "cannot be read: " + error.message());
+    if (error) fail_to_read(file, error.message());
     std::uint64_t arrays_begin = 0;
     const Json json = read_head(size, arrays_begin);
     const auto array_bytes = json.at("array_bytes").get<std::uint64_t>();

@@ -13,7 +13,7 @@ namespace sprung {
 /// Reads a record. Whole frames count; a part of one at the end is ignored.
 class RecordReader {
  public:
-  /// Throws InputError that says what is wrong with the file.
+  /// Throws FileError if the file cannot be read, InputError that says what is wrong with it.
   explicit RecordReader(std::filesystem::path file);
   ~RecordReader();
   RecordReader(RecordReader&&) noexcept;
@@ -27,7 +27,8 @@ class RecordReader {
   /// The number of whole frames.
   [[nodiscard]] int frames() const;
 
-  /// A frame, counted from 1, at most frames(). Throws InputError if it cannot be read or does not fit the model. Thread-safe.
+  /// A frame, counted from 1, at most frames(). Throws FileError if it cannot be read, InputError if it does not fit the
+  /// model. Thread-safe.
   [[nodiscard]] RecordedFrame frame(int number) const;
 
   /// Reads only the broken springs of a frame: 1 for each that has broken. Empty if none can break. Throws as frame().
