@@ -243,7 +243,7 @@ TEST_F(RecordedCloth, ABrokenFolderSaysWhatIsMissing) {
   Json summary = Json::parse(std::ifstream(run_folder() / "run.json"));
   summary["frames_written"] = 2000000000;
   folder_.write("frames/run.json", summary.dump());
-  EXPECT_THROW((void)Replay(run_folder()).state(20000), InputError) << "more digits than the names of the files have";
+  EXPECT_THROW((void)Replay(run_folder()).state(20000), FileError) << "more digits than the names of the files have";
   folder_.write("frames/run.json", R"({"scene": )" + std::string(100000, '[') + std::string(100000, ']') + "}");
   EXPECT_THAT(refusal(run_folder()), HasSubstr("nested too deeply"));
   folder_.write("frames/run.json", "{}");

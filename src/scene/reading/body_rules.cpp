@@ -44,11 +44,13 @@ std::array<Index, n> read_resolution(Fields& fields) {
 }
 
 ClothShape read_cloth(Fields& fields) {
+  fields.set_remedy({"width", "height", "length"}, "did you mean \"size\": [X, Y]?");
   const auto size = fields.required("size", array_of<2>(number(kPositive)));
   return {.size = size.value_or(std::array<double, 2>{}), .resolution = read_resolution<2>(fields)};
 }
 
 SolidShape read_solid(Fields& fields) {
+  fields.set_remedy({"width", "height", "depth", "length"}, "did you mean \"size\": [X, Y, Z]?");
   const auto size = fields.required("size", vector3(kPositive));
   return {.size = size.value_or(Vector3::Zero()), .resolution = read_resolution<3>(fields)};
 }
@@ -329,7 +331,8 @@ void refuse_break_of_closed(const Fields& fields) {
 
 BodyScene read_body(Fields& fields) {
   BodyScene body;
-  fields.set_owner({"position", "rotation", "scale"}, "place");
+  set_remedies_of_place(fields);
+  fields.set_remedy({"initial_velocity", "speed"}, "did you mean \"velocity\"?");
   fields.set_owner({"type", "file", "size", "resolution", "particles"}, "shape");
   const auto shape = fields.required("shape", object_of<BodyShapeScene>(read_shape));
   body.shape = shape.value_or(BodyShapeScene{});

@@ -64,12 +64,16 @@ ObstacleShapeScene read_shape(Fields& fields, double frame_rate) {
     case 2:
       return SphereGeometry{length(fields, "radius")};
     case 3:
+      fields.set_remedy({"width", "height", "depth", "length"}, "did you mean \"size\": [X, Y, Z]?");
       return BoxGeometry{fields.required("size", vector3(kPositive)).value_or(Vector3::Zero())};
     case 4:
+      fields.set_remedy({"height"}, "did you mean \"length\"?");
       return CapsuleGeometry{length(fields, "radius"), length(fields, "length")};
     case 5:
+      fields.set_remedy({"length"}, "did you mean \"height\"?");
       return CylinderGeometry{length(fields, "radius"), length(fields, "height")};
     case 6:
+      fields.set_remedy({"length"}, "did you mean \"height\"?");
       return ConeGeometry{length(fields, "radius"), length(fields, "height")};
     case 7:
       return EllipsoidGeometry{fields.required("radii", vector3(kPositive)).value_or(Vector3::Zero())};
@@ -80,7 +84,7 @@ ObstacleShapeScene read_shape(Fields& fields, double frame_rate) {
 
 ObstacleScene read_obstacle(Fields& fields, double frame_rate) {
   ObstacleScene obstacle;
-  fields.set_owner({"position", "rotation", "scale"}, "place");
+  set_remedies_of_place(fields);
   fields.set_owner({"type", "file", "size", "radius"}, "shape");
   fields.set_owner({"keyframes", "spin"}, "motion");
   const auto shape = object_of<ObstacleShapeScene>([=](Fields& of_shape) { return read_shape(of_shape, frame_rate); });

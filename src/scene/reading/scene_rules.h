@@ -8,6 +8,10 @@
 namespace sprung {
 
 [[nodiscard]] Rule<Placement> placement_rule();
+
+/// The remedies for keys of `place`, under its names or those of other programs, beside it.
+void set_remedies_of_place(Fields& fields);
+
 [[nodiscard]] Rule<Motion> motion_rule();
 
 /// Reports each time of keyframes that is not later than the one before it. `location` is that of the object with the keyframes.

@@ -1,5 +1,7 @@
+#include "base/format.h"
 #include "scene/reading/scene_rules.h"
 
+#include <cmath>
 #include <limits>
 
 namespace sprung {
@@ -93,11 +95,20 @@ OutputKeys read_output(Fields& fields) {
           .record = fields.value("record", boolean(), true).value_or(true)};
 }
 
+Rule<Vector3> gravity_rule() {
+  return [](Json& json, const JsonLocation& location) -> std::optional<Vector3> {
+    if (!json.is_number()) return vector3()(json, location);
+    const std::string text = format_number(-std::abs(json.get<double>()));
+    location.report(json, "must be a list of 3 entries, written in [ ]", "Y is up: did you mean [0, " + text + ", 0]?");
+    return std::nullopt;
+  };
+}
+
 }  // namespace
 
 void read_settings(Fields& fields, Scene& scene) {
   SimulatorSettings& settings = scene.settings;
-  settings.gravity = fields.value("gravity", vector3(), {0, -9.81, 0}).value_or(Vector3::Zero());
+  settings.gravity = fields.value("gravity", gravity_rule(), {0, -9.81, 0}).value_or(Vector3::Zero());
   const auto read_air_keys = [&](Fields& keys) {
     read_air(keys, settings);
     return true;

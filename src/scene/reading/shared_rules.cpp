@@ -30,6 +30,7 @@ Motion read_motion(Fields& fields) {
 }
 
 Placement read_placement(Fields& fields) {
+  fields.set_remedy({"translate", "translation"}, "did you mean \"position\"?");
   Placement placement;
   placement.position = fields.value("position", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
   placement.rotation = fields.value("rotation", vector3(), {0, 0, 0}).value_or(Vector3::Zero());
@@ -47,6 +48,11 @@ void require_increasing_times(const std::vector<double>& times, const JsonLocati
         .at("time")
         .report(Json(times[k]), "must be later than the keyframe before it", "sort the keyframes by time");
   }
+}
+
+void set_remedies_of_place(Fields& fields) {
+  fields.set_owner({"position", "rotation", "scale"}, "place");
+  fields.set_remedy({"translate", "translation"}, "did you mean \"place\": { \"position\": ... }?");
 }
 
 Rule<Placement> placement_rule() { return object_of<Placement>(read_placement); }
