@@ -37,18 +37,41 @@ bool is_on_edge(const Vector3& point, const Vector3& begin, const Vector3& end, 
   return fraction > 0.0 && fraction < 1.0 && (begin + fraction * along - point).norm() <= distance;
 }
 
+std::vector<Index> sorted(std::vector<Index> corners) {
+  std::ranges::sort(corners);
+  return corners;
+}
+
+/// Whether a fan of triangles from one of the corners of a face with more than three is among the faces. Each division of a face
+/// with four or five corners is a fan.
+bool is_divided(const std::vector<Index>& corners, const std::set<std::vector<Index>>& faces) {
+  const std::size_t count = corners.size();
+  if (count < 4) return false;
+  for (std::size_t first = 0; first < count; ++first) {
+    bool all = true;
+    for (std::size_t k = 1; all && k + 1 < count; ++k) {
+      all = faces.contains(sorted({corners[first], corners[(first + k) % count], corners[(first + k + 1) % count]}));
+    }
+    if (all) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Index count_repeated_faces(const PolygonFaces& faces, const std::vector<Index>& group_of) {
   std::set<std::vector<Index>> seen;
   Index repeated = 0;
+  const auto corners_of = [&](Index face) {
+    std::vector<Index> corners;
+    for (Index c = faces.corner_begin[face]; c < faces.corner_begin[face + 1]; ++c) corners.push_back(group_of[faces.vertex[c]]);
+    return corners;
+  };
   for (Index face = 0; face < faces.face_count(); ++face) {
-    std::vector<Index> places;
-    for (Index corner = faces.corner_begin[face]; corner < faces.corner_begin[face + 1]; ++corner) {
-      places.push_back(group_of[faces.vertex[corner]]);
-    }
-    std::ranges::sort(places);
-    if (!seen.insert(std::move(places)).second) ++repeated;
+    if (!seen.insert(sorted(corners_of(face))).second) ++repeated;
+  }
+  for (Index face = 0; face < faces.face_count(); ++face) {
+    if (is_divided(corners_of(face), seen)) ++repeated;
   }
   return repeated;
 }

@@ -8,6 +8,7 @@
 namespace sprung {
 
 /// The number of faces whose corners are those of an earlier face, in any order: they lie on it, on the same side or back to back.
+/// So do faces with more than three corners that other faces, a fan of triangles, cover.
 /// `group_of`: the group of each vertex by coincident_groups().
 [[nodiscard]] Index count_repeated_faces(const PolygonFaces& faces, const std::vector<Index>& group_of);
 

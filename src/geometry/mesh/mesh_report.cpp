@@ -32,17 +32,19 @@ void describe_surface(const TriangleMesh& mesh, MeshReport& report) {
                          " edge(s) have more than two faces: the mesh has no inside and is treated as a sheet");
 }
 
-std::optional<std::string> unit_note(const Box3& bounds, double scale, double others, SizeSource source) {
+std::optional<std::string> unit_note(const Box3& bounds, double scale, const OtherSizes& others, SizeSource source) {
   if (bounds.isEmpty()) return std::nullopt;
   const double extent = scale * bounds.sizes().maxCoeff();
-  const bool outgrows = others > 0.0 && extent > kLargestInRoom && extent > kLargestRatio * others;
-  if (extent >= kSmallestUsual && extent <= kLargestUsual && !outgrows) return std::nullopt;
+  const bool outgrows = others.largest > 0.0 && extent > kLargestInRoom && extent > kLargestRatio * others.largest;
+  const bool is_tiny = extent > 0.0 && others.smallest > kLargestRatio * extent && others.smallest <= kLargestInRoom;
+  if (extent >= kSmallestUsual && extent <= kLargestUsual && !outgrows && !is_tiny) return std::nullopt;
   std::string size = "its largest extent is " + format_number(extent, kDigits) + " m";
   if (scale != 1.0) size += " with \"scale\" " + format_number(scale, kDigits);
-  if (outgrows) size += ", " + format_number(extent / others, 3) + " times that of anything else in the scene";
+  if (outgrows) size += ", " + format_number(extent / others.largest, 3) + " times that of anything else in the scene";
+  if (is_tiny) size += ", anything else in the scene is at least " + format_number(others.smallest / extent, 3) + " times as large";
   if (source == SizeSource::shape) return size + ". Sizes are in metres: change the shape, or its \"scale\".";
   if (scale != 1.0) return size + ": is that intended?";
-  if (extent < kSmallestUsual) return size + ": if the file is not in metres, place it with a larger \"scale\"";
+  if (is_tiny || extent < kSmallestUsual) return size + ": if the file is not in metres, place it with a larger \"scale\"";
   return size + ": if the file is in millimetres, place it with \"scale\": 0.001";
 }
 

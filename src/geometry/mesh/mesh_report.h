@@ -32,10 +32,16 @@ void describe_surface(const TriangleMesh& mesh, MeshReport& report);
 /// Where the size of a thing comes from: a file, whose unit may be another one, or numbers that a user typed.
 enum class SizeSource : std::uint8_t { file, shape };
 
+/// Extents [m] of the other things in a scene; 0 if there is nothing else.
+struct OtherSizes {
+  double smallest = 0.0;
+  double largest = 0.0;
+};
+
 /// A question about the unit of a file, or advice about the size of a shape, with these bounds and this scale: if its largest
-/// extent is below a millimetre, above 100 m, or above 10 m and more than 100 times that of anything else in the scene (`others`
-/// [m]; 0 if there is nothing else). Empty bounds get no question.
-[[nodiscard]] std::optional<std::string> unit_note(const Box3& bounds, double scale = 1.0, double others = 0.0,
+/// extent is below a millimetre, above 100 m, above 10 m and more than 100 times that of anything else in the scene, or more than
+/// 100 times below anything else, of which one is at most 10 m large. Empty bounds get no question.
+[[nodiscard]] std::optional<std::string> unit_note(const Box3& bounds, double scale = 1.0, const OtherSizes& others = {},
                                                    SizeSource source = SizeSource::file);
 
 }  // namespace sprung

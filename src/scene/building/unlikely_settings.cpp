@@ -35,6 +35,7 @@ struct Thing {
   Box3 bounds;  ///< before its placement rotates it [m], with its scale
   double scale = 1.0;
   bool is_mesh = false;
+  bool is_obstacle = false;
   GroupedWarnings* warnings = nullptr;
 };
 
@@ -43,14 +44,27 @@ Thing thing_of(const BodyScene& body, const SpringNetwork& network, GroupedWarni
   const Points placed = positions_of(network, built_body(network, body));
   const bool is_mesh = std::holds_alternative<MeshFile>(body.shape) || std::holds_alternative<LatticeFile>(body.shape) ||
                        std::holds_alternative<TetrahedraFile>(body.shape);
-  return {body.name, bounds(pose_of(body.place).inverse() * placed), body.place.scale, is_mesh, &warnings};
+  return {body.name, bounds(pose_of(body.place).inverse() * placed), body.place.scale, is_mesh, false, &warnings};
 }
 
 Thing thing_of(const ObstacleScene& obstacle, const Obstacle& built, GroupedWarnings& warnings) {
   const bool is_mesh = std::holds_alternative<MeshFile>(obstacle.shape) || std::holds_alternative<MeshFiles>(obstacle.shape);
   const double half_space_extent = 0.0;
-  return {obstacle.name, bounds(obstacle_mesh(built.geometry, half_space_extent).vertices), obstacle.place.scale, is_mesh,
+  return {obstacle.name, bounds(obstacle_mesh(built.geometry, half_space_extent).vertices), obstacle.place.scale, is_mesh, true,
           &warnings};
+}
+
+/// A floor, a wall or a landscape may be far wider than a body, so that the least side counts as the size of an obstacle.
+OtherSizes sizes_of_others(const std::vector<Thing>& things, const Thing& thing) {
+  OtherSizes sizes;
+  for (const Thing& other : things) {
+    const double extent = extent_of(other.bounds);
+    if (&other == &thing || extent == 0.0) continue;
+    const double size = other.is_obstacle ? other.bounds.sizes().minCoeff() : extent;
+    sizes.largest = std::max(sizes.largest, extent);
+    sizes.smallest = sizes.smallest == 0.0 ? size : std::min(sizes.smallest, size);
+  }
+  return sizes;
 }
 
 /// The densities of all materials for bodies with this dimension [kg/m^dimension].
@@ -129,10 +143,7 @@ void note_unusual_sizes(const Scene& scene, const BuiltScene& built, GroupedWarn
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k)
     things.push_back(thing_of(scene.obstacles[k], built.obstacles[k], obstacles));
   for (const Thing& thing : things) {
-    double others = 0.0;
-    for (const Thing& other : things) {
-      if (&other != &thing) others = std::max(others, extent_of(other.bounds));
-    }
+    const OtherSizes others = sizes_of_others(things, thing);
     const Box3 as_in_file(thing.bounds.min() / thing.scale, thing.bounds.max() / thing.scale);
     const SizeSource source = thing.is_mesh ? SizeSource::file : SizeSource::shape;
     auto note = unit_note(as_in_file, thing.scale, others, source);
@@ -140,7 +151,7 @@ void note_unusual_sizes(const Scene& scene, const BuiltScene& built, GroupedWarn
       if (extent_of(as_in_file) == 0.0) note.reset();  // a half-space, for example
       // A floor or a wall may well be wide: an obstacle is too large only if its least side is.
       const Box3 least(Vector3::Zero(), Vector3::Constant(as_in_file.sizes().minCoeff()));
-      if (thing.warnings == &obstacles && !unit_note(least, thing.scale, others, source)) note.reset();
+      if (thing.is_obstacle && !unit_note(least, thing.scale, others, source)) note.reset();
     }
     if (note) thing.warnings->add(thing.name, *note);
   }

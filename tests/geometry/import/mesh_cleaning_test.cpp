@@ -246,7 +246,7 @@ TEST(CleanMesh, CountsNonManifoldEdges) {
   EXPECT_DOUBLE_EQ(signed_volume(mesh), 2.0);
 }
 
-std::string unit_note_of_cube(double side, double scale = 1.0, double others = 0.0) {
+std::string unit_note_of_cube(double side, double scale = 1.0, const OtherSizes& others = {}) {
   return unit_note(bounds(test::make_cube(side).vertices), scale, others).value_or("");
 }
 
@@ -260,9 +260,17 @@ TEST(UnitNote, AsksAboutSizesBelowAMillimetreOrAbove100Metres) {
 
 // A cup of 8 cm in millimetres, and a cloth.
 TEST(UnitNote, AsksAboutSizesFarAboveThoseOfOtherThings) {
-  EXPECT_THAT(unit_note_of_cube(80.0, 1.0, 0.4), AllOf(HasSubstr("80 m, 200 times that of anything else"), HasSubstr("0.001")));
-  EXPECT_EQ(unit_note_of_cube(80.0, 1.0, 1.0), "");
-  EXPECT_EQ(unit_note_of_cube(10.0, 1.0, 0.01), "") << "a room for a small thing";
+  EXPECT_THAT(unit_note_of_cube(80.0, 1.0, {0.4, 0.4}),
+              AllOf(HasSubstr("80 m, 200 times that of anything else"), HasSubstr("0.001")));
+  EXPECT_EQ(unit_note_of_cube(80.0, 1.0, {1.0, 1.0}), "");
+  EXPECT_EQ(unit_note_of_cube(10.0, 1.0, {0.01, 0.01}), "") << "a room for a small thing";
+}
+
+TEST(UnitNote, AsksAboutSizesFarBelowThoseOfOtherThings) {
+  EXPECT_THAT(unit_note_of_cube(0.005, 1.0, {1.0, 2.0}), AllOf(HasSubstr("at least 200 times as large"), HasSubstr("a larger")));
+  EXPECT_EQ(unit_note_of_cube(0.01, 1.0, {1.0, 2.0}), "");
+  EXPECT_EQ(unit_note_of_cube(0.005, 1.0, {0.005, 2.0}), "") << "one of several small things";
+  EXPECT_EQ(unit_note_of_cube(0.5, 1.0, {80.0, 80.0}), "") << "the large one gets the question";
 }
 
 TEST(UnitNote, AppliesTheScaleOfThePlacement) {

@@ -29,8 +29,15 @@ std::vector<Index> numbers(Index count) {
 }
 
 TEST(MeshFaults, FaceIsRepeatedOnEitherSideAndFromAnyCorner) {
-  const PolygonFaces faces = faces_of({{0, 1, 2, 3}, {2, 3, 0, 1}, {3, 2, 1, 0}, {0, 1, 2}, {0, 1, 4}});
-  EXPECT_EQ(count_repeated_faces(faces, numbers(5)), 2);
+  const PolygonFaces faces = faces_of({{0, 1, 2, 3}, {2, 3, 0, 1}, {3, 2, 1, 0}, {0, 1, 4}, {0, 1, 5}});
+  EXPECT_EQ(count_repeated_faces(faces, numbers(6)), 2);
+}
+
+TEST(MeshFaults, FaceIsRepeatedByTrianglesThatCoverIt) {
+  EXPECT_EQ(count_repeated_faces(faces_of({{0, 1, 2, 3}, {0, 1, 2}, {2, 3, 0}}), numbers(4)), 1);
+  EXPECT_EQ(count_repeated_faces(faces_of({{1, 3, 2}, {1, 3, 0}, {0, 1, 2, 3}}), numbers(4)), 1) << "along the other diagonal";
+  EXPECT_EQ(count_repeated_faces(faces_of({{0, 1, 2, 3, 4}, {2, 3, 4}, {2, 4, 0}, {0, 1, 2}}), numbers(5)), 1);
+  EXPECT_EQ(count_repeated_faces(faces_of({{0, 1, 2, 3}, {0, 1, 2}, {0, 3, 4}}), numbers(5)), 0);
 }
 
 // The corners of the second triangle are other vertices at the same places.

@@ -81,6 +81,17 @@ TEST_F(UnlikelySettings, SizesOfShapesAreInMetres) {
       ElementsAre(HasSubstr("obstacle \"floor\": its largest extent is 500 m")));
 }
 
+TEST_F(UnlikelySettings, SizesFarBelowThoseOfOtherThingsAreAskedAbout) {
+  const std::string ball =
+      R"(obstacles={"ball": {"shape": {"type": "sphere", "radius": 0.0025}, "place": {"position": [0, -1, 0]}}})";
+  EXPECT_THAT(warnings(kCloth, {ball}), ElementsAre(AllOf(HasSubstr("obstacle \"ball\": its largest extent is 0.005 m"),
+                                                          HasSubstr("anything else in the scene is at least 200 times as large"))));
+  EXPECT_THAT(warnings(kCloth, {ball, "obstacles.ball.shape.radius=0.005"}), IsEmpty());
+  const std::string floor =
+      R"(obstacles={"floor": {"shape": {"type": "box", "size": [9, 0.1, 9]}, "place": {"position": [0, -9, 0]}}})";
+  EXPECT_THAT(warnings(kCloth, {floor, "bodies.body.shape.size=[0.02, 0.02]"}), IsEmpty()) << "a floor may be wide";
+}
+
 TEST_F(UnlikelySettings, FlagNeverFluttersInASteadyWindAlongIt) {
   const auto flag = [&](const std::vector<std::string>& changes) {
     std::vector<std::string> all{R"(air={"surface": {"normal": 0.6, "quadratic": true}, "wind": [4, 0, 0]})"};
