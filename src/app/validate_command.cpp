@@ -38,9 +38,9 @@ std::string time_of_frame(double seconds) {
 
 std::string cost_row(const FrameCost& cost, int threads) {
   if (cost.failure) return text_row("cost", "unknown: the simulation diverges in its first steps");
-  const std::string free = cost.steps > 0
-                               ? fmt::format("{} a frame ({} measured)", time_of_frame(cost.free), counted(cost.steps, "step"))
-                               : fmt::format("more than {} a frame (a step takes over a second)", time_of_frame(cost.free));
+  const std::string free =
+      cost.steps > 0 ? fmt::format("{} a frame in motion ({} measured)", time_of_frame(cost.free), counted(cost.steps, "step"))
+                     : fmt::format("more than {} a frame in motion (a step takes over a second)", time_of_frame(cost.free));
   const std::string full =
       cost.full > cost.free
           ? fmt::format(", {} {} (estimated)", cost.can_touch ? "in full contact" : "with the stretch limit at work",

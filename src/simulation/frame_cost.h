@@ -9,11 +9,13 @@
 
 namespace sprung {
 
-/// measure_frame_cost() ends after this number of steps, or before the first substep that begins after this time.
+/// measure_frame_cost() ends after this number of steps, before a step that would end after this time if it took as long as the one
+/// before it, or before the first substep that begins after this time.
 inline constexpr int kMostMeasuredSteps = 10;
 inline constexpr double kLongestMeasurement = 1.0;  ///< [s]
 
-/// Wall times of a frame. `full` is equal to `free` if nothing can touch and there is no stretch limit.
+/// Wall times of a frame in which all bodies move; what sleeps or rests costs less. `full` is equal to `free` if nothing can touch
+/// and there is no stretch limit.
 struct FrameCost {
   int steps = 0;           ///< number of measured steps; 0 if the first one took longer than the measurement may
   double free = 0.0;       ///< as the simulation begins [s]; without a measured step a lower bound

@@ -309,7 +309,8 @@ TEST_F(CommandLine, ValidateMeasuresWhatAFrameCostsAndWritesNothing) {
   const Ending ending = run(command);
   EXPECT_EQ(ending.code, 0) << ending.err;
   const std::string cost =
-      "\ncost        free (below )?[0-9.]+ m?s a frame \\([0-9]+ steps? measured\\), in full contact (below )?[0-9.]+ m?s "
+      "\ncost        free (below )?[0-9.]+ m?s a frame in motion \\([0-9]+ steps? measured\\), in full contact (below )?[0-9.]+ "
+      "m?s "
       "\\(estimated\\), 1 thread\n";
   EXPECT_THAT(ending.out, ContainsRegex(cost));
   EXPECT_EQ(listing(scratch_.path()), files);

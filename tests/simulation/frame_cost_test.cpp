@@ -57,6 +57,13 @@ TEST(FrameCost, MeasurementEndsAfterASecond) {
   EXPECT_LE(clock.looks * clock.tick, kLongestMeasurement + 4 * clock.tick);
 }
 
+// A look at the clock takes 0.2 s. The first step begins after two looks and takes two, so that a second one would end after 1.2 s.
+TEST(FrameCost, MeasurementBeginsNoStepThatWouldEndAfterASecond) {
+  Simulator simulator(one_particle({0.0, 1.0, 0.0}), {.step = 1e-2});
+  Ticking clock{.tick = 0.2};
+  EXPECT_EQ(measure_frame_cost(simulator, 3, 1, std::ref(clock)).steps, 1);
+}
+
 // A pin that turns by ten right angles a step needs 20 substeps, each of which would take a quarter of a second.
 TEST(FrameCost, OfAStepThatTakesLongerThanTheMeasurementIsALowerBound) {
   NetworkBuilder builder = pendulum();
