@@ -3,6 +3,7 @@
 #include "app/console.h"
 #include "app/mesh_text.h"
 #include "app/step_text.h"
+#include "app/symmetry_text.h"
 #include "base/format.h"
 #include "base/parallel.h"
 #include "simulation/frame_cost.h"
@@ -119,10 +120,12 @@ ExitCode validate(const ValidateOptions& options) {
   const std::string head = text_row("scene", loaded.scene.file.string()) + time_text(loaded);
   // Before the measurement, which advances the simulator.
   const std::string rows = contents(loaded);
+  const std::string symmetry = symmetry_row(loaded.simulator);
   const FrameCost cost = measure_frame_cost(loaded.simulator, loaded.steps_per_frame, threads);
   if (cost.failure) loaded.warnings.push_back(*cost.failure);
 
-  print_result(head + cost_row(cost, threads) + rows + verdict(loaded.warnings));
+  const bool loses_symmetry = cost.can_touch || loaded.simulator.settings().stretch_limit;
+  print_result(head + cost_row(cost, threads) + rows + (loses_symmetry ? symmetry : "") + verdict(loaded.warnings));
   return ExitCode::done;
 }
 

@@ -319,6 +319,14 @@ TEST_F(CommandLine, ValidateMeasuresWhatAFrameCostsAndWritesNothing) {
   EXPECT_EQ(run({"validate", save(scene), "--threads", "0"}).code, 2);
 }
 
+TEST_F(CommandLine, ValidateTellsThatMirrorSymmetryIsLost) {
+  json scene = cloth_scene();
+  const auto symmetry = HasSubstr("symmetry    the bodies begin in mirror symmetry across x = 0 m");
+  EXPECT_THAT(run({"validate", save(scene)}).out, symmetry);
+  scene["bodies"]["cloth"]["pins"] = json::parse(R"([{"at": "corner", "which": ["min_min"]}])");
+  EXPECT_THAT(run({"validate", save(scene)}).out, Not(HasSubstr("symmetry")));
+}
+
 TEST_F(CommandLine, ValidateTellsThatTheFirstStepsDiverge) {
   json scene = rope_scene();
   scene["step"] = 1.0 / 30.0;
