@@ -80,7 +80,7 @@ void check_breaks(const std::string& key, const BodyShape& shape, ProblemList& p
   }
 }
 
-/// Written for shapes that a program filled itself; add_triangle_bends() keeps these rules.
+/// A program may have filled the shape itself.
 void check_face_bends(const std::string& key, const BodyShape& shape, ProblemList& problems) {
   const Hinges& hinges = shape.hinges;
   problems.require_each(
@@ -93,7 +93,25 @@ void check_face_bends(const std::string& key, const BodyShape& shape, ProblemLis
       [&](std::size_t h) { return counts_text(hinges.particles[h]); },
       EntryRule{key + ".hinges", "must join particles of the body, which has " + std::to_string(shape.positions.size()),
                 "use the numbers of the body's particles, counted from 0"});
+  problems.require_each(
+      hinges.particles.size(),
+      [&](std::size_t h) {
+        std::array<Index, 4> particles = hinges.particles[h];
+        std::ranges::sort(particles);
+        return std::ranges::adjacent_find(particles) == particles.end();
+      },
+      [&](std::size_t h) { return counts_text(hinges.particles[h]); },
+      EntryRule{key + ".hinges", "must join four different particles", "leave the hinge out"});
+  problems.require_each(
+      hinges.rest_area.size(), [&](std::size_t h) { return std::ranges::min(hinges.rest_area[h]) > 0.0; },
+      [&](std::size_t h) { return format_number(std::ranges::min(hinges.rest_area[h])); },
+      EntryRule{key + ".hinges.rest_area", "must be greater than 0", "leave out hinges of triangles without an area"});
   const FaceBends& bends = shape.face_bends;
+  problems.require_each(
+      bends.hinges.size(),
+      [&](std::size_t f) { return std::ranges::any_of(bends.hinges[f], [](Index hinge) { return hinge != kNone; }); },
+      [&](std::size_t f) { return counts_text(bends.hinges[f]); },
+      EntryRule{key + ".face_bends.hinges", "must name at least one hinge", "leave the element out"});
   problems.require_each(
       bends.hinges.size(),
       [&](std::size_t f) {

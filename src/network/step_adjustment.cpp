@@ -158,7 +158,7 @@ void add_mass(const std::vector<Element>& elements, double available, BodyShape&
   const std::vector<double> sums = row_sums(shape, elements);
   std::vector<double> rates;
   for (std::size_t i = 0; i < sums.size(); ++i) rates.push_back(sums[i] / shape.masses[i]);
-  // By mass: in a mesh with slivers, more than one particle in 100 may be tiny, while all of them together weigh next to nothing.
+  // By mass: in a mesh with slivers, more than one particle in 100 may be tiny, although their total mass is negligible.
   double most = kMostExcess * usual(rates, shape.masses);
   const auto fastest = std::ranges::max_element(rates);
   if (available == 0.0 || !(*fastest > most)) return;

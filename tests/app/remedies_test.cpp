@@ -6,9 +6,9 @@
 // beside it, and `arguments` of the command line, in which FOLDER is the folder of files named `folder/...`. `"when": "run"` marks
 // what `validate` cannot know.
 //
-// `elsewhere` lists messages whose remedies other tests follow, or of which no scene is known: divergence at a stable step, other
-// than of overstretched springs (StepCheck tests its remedy). messages_test finds messages without a row. A mesh that is one-sided
-// or flat has none, as no remedy is named.
+// `elsewhere` names the test of each message that has no row, for example because no scene causes it: divergence at a stable step,
+// other than of overstretched springs (StepCheck tests its remedy). messages_test finds messages without a row. A mesh that is
+// one-sided or flat has none, as no remedy is named.
 #include "app/command_line_fixture.h"
 
 #include <gmock/gmock.h>

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <random>
@@ -22,7 +24,8 @@ inline std::string name_of(Pattern pattern) { return kPatternNames.at(static_cas
 inline constexpr std::array kPatterns{Pattern::parallel, Pattern::alternating, Pattern::crossing, Pattern::irregular};
 
 /// A rectangle from the origin to `size` [m] in the x-z plane, of squares with diagonals. Only triangles whose corners satisfy
-/// `contains` are kept. Irregular: vertices off the border are moved by up to a quarter of a square, diagonals are drawn by lot.
+/// `contains` are kept. Irregular: vertices off the border and off the second column,
+/// where strips are clamped, move by up to a quarter of a square; diagonals are random.
 inline PolygonMesh sheet(Pattern pattern, const std::array<Index, 2>& squares, double side,
                          const std::function<bool(const Vector3&)>& contains) {
   std::mt19937 random(7);

@@ -130,8 +130,8 @@ TEST(Simulator, ADivergingStepNamesParticleAndSpring) {
   }
 }
 
-// Two particles a micrometre apart, as of a sliver, part by 5 mm: that is much for a body of micrometres, and nothing where another
-// spring is 1 m long.
+// Two particles a micrometre apart, as in a sliver, part by 5 mm. The first bound is 1,000 times 1e-6 m, which 5 mm exceeds; the
+// second is the other spring's length of 1 m.
 TEST(Simulator, AShortSpringDivergesOnceItIsLongerThanTheLongestOfItsBody) {
   for (const bool has_long_spring : {false, true}) {
     NetworkBuilder builder;

@@ -112,6 +112,17 @@ void add_products(const std::array<Index, kCount>& particles, const std::array<V
   }
 }
 
+/// The length of a gradient at rest, whose entries are the weights, over its present one; at most 1.
+double share_of(const std::array<Vector3, 4>& gradient, const std::array<double, 4>& weights) {
+  double present = 0.0;
+  double at_rest = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    present += gradient[i].squaredNorm();
+    at_rest += weights[i] * weights[i];
+  }
+  return present > at_rest ? std::sqrt(at_rest / present) : 1.0;
+}
+
 }  // namespace
 
 ElementConstants constants_of_bends(const SpringNetwork& network) {
@@ -153,6 +164,12 @@ bool BendingAngleForce::acts(std::size_t element) const {
 void BendingAngleForce::assign_faces() {
   faces_of_hinge_.resize(static_cast<std::size_t>(network_.hinges.count()));
   const FaceBends& faces = network_.face_bends;
+  const auto any = [&](const std::vector<double>& constants) {
+    const auto first = constants.begin() + static_cast<std::ptrdiff_t>(first_face_);
+    return std::any_of(first, constants.end(), [](double constant) { return constant > 0.0; });
+  };
+  faces_resist_ = any(constants_.stiffness);
+  faces_damp_ = any(constants_.damping);
   for (Index face = 0; face < faces.count(); ++face) {
     const BendStencil stencil = stencil_of(faces, network_.hinges, face);
     if (std::ranges::all_of(stencil.particles, [&](Index i) { return network_.is_asleep(i); })) continue;
@@ -188,19 +205,13 @@ void BendingAngleForce::add_bends(const Kinematics& at, Points& forces) const {
 
 void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
   struct HingeMotion {
-    std::array<Vector3, 4> gradient{};
-    double deviation = 0.0;
-    double rate = 0.0;   ///< of the deviation [1/s], times `share`
-    double share = 1.0;  ///< of dampers
+    std::array<Vector3, 4> gradient;
+    double deviation;  ///< [rad]
+    double rate;       ///< of the deviation [1/s], times `share`
+    double share;      ///< of dampers, at most 1: no gradient times it is longer than at rest
   };
   const Hinges& hinges = network_.hinges;
   const FaceBends& faces = network_.face_bends;
-  const auto any = [&](const std::vector<double>& constants) {
-    const auto first = constants.begin() + static_cast<std::ptrdiff_t>(first_face_);
-    return std::any_of(first, constants.end(), [](double constant) { return constant > 0.0; });
-  };
-  const bool resists = any(constants_.stiffness);
-  const bool damps = any(constants_.damping);
   const auto motions =
       std::make_unique_for_overwrite<HingeMotion[]>(static_cast<std::size_t>(hinges.count()));  // NOLINT(*-c-arrays)
   parallel_chunks(hinges.count(), kHingesAtOnce, [&](Index begin, Index end) {
@@ -208,10 +219,9 @@ void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
       if (faces_of_hinge_[hinge].empty()) continue;
       const HingeAngle angle(hinges, hinge, at.x);
       HingeMotion& motion = motions[hinge];
-      motion = {.gradient = angle.gradient()};
-      if (resists) motion.deviation = angle.deviation();
-      if (!damps) continue;
-      if (constants_.bounds_damping) motion.share = angle.shortness();
+      motion = {.gradient = angle.gradient(), .deviation = faces_resist_ ? angle.deviation() : 0.0, .rate = 0.0, .share = 1.0};
+      if (!faces_damp_) continue;
+      if (constants_.bounds_damping) motion.share = share_of(motion.gradient, hinges.weights[hinge]);
       for (std::size_t i = 0; i < 4; ++i) motion.rate += motion.gradient[i].dot(at.v.col(hinges.particles[hinge][i]));
       motion.rate *= motion.share;
     }
@@ -233,8 +243,8 @@ void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
         double moment = 0.0;
         for (const auto& [face, side] : faces_of_hinge_[hinge]) {
           const std::size_t element = first_face_ + static_cast<std::size_t>(face);
-          if (resists) moment += constants_.stiffness[element] * moment_of(face, side, &HingeMotion::deviation);
-          if (damps) moment += motion.share * constants_.damping[element] * moment_of(face, side, &HingeMotion::rate);
+          if (faces_resist_) moment += constants_.stiffness[element] * moment_of(face, side, &HingeMotion::deviation);
+          if (faces_damp_) moment += motion.share * constants_.damping[element] * moment_of(face, side, &HingeMotion::rate);
         }
         for (std::size_t i = 0; i < 4; ++i) {
           const Index particle = hinges.particles[hinge][i];
@@ -335,7 +345,8 @@ double BendingAngleForce::capacity() const {
   for (std::size_t e = 0; e < first_face_; ++e) energy += 0.5 * constants_.stiffness[e] * kHalfTurnSquared;
   for (Index face = 0; face < network_.face_bends.count(); ++face) {
     const double stiffness = constants_.stiffness[first_face_ + static_cast<std::size_t>(face)];
-    energy += 0.5 * stiffness * network_.face_bends.curvature[face].squaredNorm() * kHalfTurnSquared;
+    // |F phi|^2 <= |F|^2 |phi|^2, and a triangle has three angles of at most pi.
+    energy += 0.5 * stiffness * 3.0 * network_.face_bends.curvature[face].squaredNorm() * kHalfTurnSquared;
   }
   return energy;
 }

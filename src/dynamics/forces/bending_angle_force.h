@@ -1,14 +1,15 @@
 // Resistance to bending by angles, of ropes, cloths and meshes.
 //
-// Of three particles in line: with the bonds a = x_middle - x_before, b = x_after - x_middle and n = a x b, the angle is theta =
-// atan2(|n|, a . b). Its gradient turns each bond towards the other's line, at the end by 1 / length: d theta / d x_after = n x b /
+// Angle bends join three particles in line. With the bonds a = x_middle - x_before, b = x_after - x_middle and n = a x b, the angle
+// is theta = atan2(|n|, a . b). Its gradient turns each bond towards the other's line, at the end by 1 / length: d theta / d
+// x_after = n x b /
 // (|n| b^2), d theta / d x_before = n x a / (|n| a^2), and the middle has minus their sum (Bergou et al. 2008, "Discrete elastic
 // rods", whose hinges these are).
 //
 // The energy is 1/2 k theta^2 f(a) f(b): f is 1 for bonds of at least half their rest length, and (2 |a| / rest length)^2 below, so
 // that forces stay bounded where bonds collapse. Where n is 0, in line or folded back, no direction is preferred: no force.
 //
-// Of triangles: see FaceBends and `hinge_angle.h`.
+// For face bends see FaceBends and `hinge_angle.h`.
 #pragma once
 
 #include "dynamics/forces/element_constants.h"
@@ -39,7 +40,7 @@ class BendingAngleForce final : public Force {
   /// Face bends have the first term alone, in which theta is F phi: it is exact at rest.
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 
-  /// Those of flat triangles, and of straight bends, with weights (1/a, -1/a - 1/b, 1/b) for bonds a and b at rest. No bent
+  /// Those of flat face bends, and of straight angle bends with weights (1/a, -1/a - 1/b, 1/b) for bonds a and b at rest. No bent
   /// configuration with such bonds has a faster mode: no weight grows, and the signs already alternate.
   void append_elements(std::vector<LinearElement>& elements) const override;
 
@@ -66,7 +67,9 @@ class BendingAngleForce final : public Force {
   std::size_t first_face_;                       ///< the number of angle bends
   std::vector<std::vector<Index>> bend_blocks_;  ///< angle bends that touch each block of particles
   std::vector<std::vector<Index>> hinge_blocks_;
-  std::vector<std::vector<FaceSide>> faces_of_hinge_;  ///< that act
+  std::vector<std::vector<FaceSide>> faces_of_hinge_;  ///< by hinge, those with stiffness or damping
+  bool faces_resist_ = false;                          ///< whether any has stiffness
+  bool faces_damp_ = false;
 };
 
 }  // namespace sprung

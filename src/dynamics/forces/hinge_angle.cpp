@@ -14,9 +14,9 @@ HingeAngle::HingeAngle(const Hinges& hinges, Index hinge, const Points& x) : res
   has_angle_ = left_.per_area > 0.0 && right_.per_area > 0.0 && edge_.squaredNorm() > 0.0;
 }
 
-double HingeAngle::deviation() const { return has_angle_ ? turned() * left_.factor * right_.factor : 0.0; }
+double HingeAngle::deviation() const { return has_angle_ ? angle_from_rest() * left_.factor * right_.factor : 0.0; }
 
-double HingeAngle::turned() const {
+double HingeAngle::angle_from_rest() const {
   const double sine = right_.normal.cross(left_.normal).dot(edge_.normalized());
   const double angle = std::atan2(sine, left_.normal.dot(right_.normal));
   return std::remainder(angle - rest_angle_, 2.0 * std::numbers::pi);
@@ -24,11 +24,10 @@ double HingeAngle::turned() const {
 
 HingeAngle::Triangle HingeAngle::triangle_of(const Vector3& doubled_area, double rest_area) {
   const double size = doubled_area.norm();
-  if (!(size > 0.0)) return {.factor = 0.0, .shortness = 0.0};
+  if (!(size > 0.0)) return {.factor = 0.0};
   Triangle triangle{.normal = doubled_area / size, .per_area = 1.0 / std::max(size, rest_area)};
   triangle.factor = triangle.per_area * size;
   if (size < rest_area) triangle.slope = triangle.per_area;
-  triangle.shortness = std::min(1.0, size / (2.0 * rest_area));
   return triangle;
 }
 
@@ -43,13 +42,13 @@ std::array<Vector3, 4> HingeAngle::gradient() const {
   const double foot_d = (d - a).dot(edge_) / square;
   std::array<Vector3, 4> gradient{(foot_c - 1.0) * at_c + (foot_d - 1.0) * at_d, -foot_c * at_c - foot_d * at_d, at_c, at_d};
   if (left_.slope > 0.0) {
-    const Vector3 normal = turned() * right_.factor * left_.slope * left_.normal;
+    const Vector3 normal = angle_from_rest() * right_.factor * left_.slope * left_.normal;
     gradient[0] += normal.cross(c - b);
     gradient[1] += normal.cross(a - c);
     gradient[2] += normal.cross(edge_);
   }
   if (right_.slope > 0.0) {
-    const Vector3 normal = turned() * left_.factor * right_.slope * right_.normal;
+    const Vector3 normal = angle_from_rest() * left_.factor * right_.slope * right_.normal;
     gradient[0] += normal.cross(b - d);
     gradient[1] += normal.cross(d - a);
     gradient[3] += normal.cross(-edge_);

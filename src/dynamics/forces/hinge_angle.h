@@ -11,9 +11,8 @@ namespace sprung {
 /// m = (d - a) x e of the other, the angle is theta = atan2((m x n) . e / |e|, n . m). Its gradient is |e| n / n^2 at c, |e| m /
 /// m^2 at d, and minus their shares at a and b (Bridson, Marino and Fedkiw 2003).
 ///
-/// phi, the angle by which it deviates from rest, counts less where triangles collapse, so that forces stay bounded: theta minus
-/// the angle at rest, wrapped to [-pi, pi], times f of both triangles. f is 1 for at least half of the area at rest, and falls to 0
-/// in proportion to the area below.
+/// phi is theta minus the angle at rest, wrapped to [-pi, pi], times a factor f of each triangle. f is 1 for at least half of the
+/// area at rest and falls to 0 in proportion to the area below. Forces therefore stay bounded where triangles collapse.
 class HingeAngle {
  public:
   HingeAngle(const Hinges& hinges, Index hinge, const Points& x);
@@ -23,20 +22,16 @@ class HingeAngle {
   /// d phi / d x [1/m] of the particles of the hinge. Zero where a triangle has no area.
   [[nodiscard]] std::array<Vector3, 4> gradient() const;
 
-  /// At most 1, and less for smaller triangles: no damper of the gradient times this factor acts faster than at rest.
-  [[nodiscard]] double shortness() const { return left_.shortness * right_.shortness; }
-
  private:
   struct Triangle {
     Vector3 normal = Vector3::Zero();
     double factor = 1.0;    ///< f
     double per_area = 0.0;  ///< f / the doubled area [1/m^2]
     double slope = 0.0;     ///< of f by the doubled area [1/m^2]
-    double shortness = 1.0;
   };
 
   static Triangle triangle_of(const Vector3& doubled_area, double rest_area);
-  [[nodiscard]] double turned() const;  ///< theta minus the angle at rest [rad]
+  [[nodiscard]] double angle_from_rest() const;  ///< theta minus the angle at rest [rad]
 
   std::array<Vector3, 4> x_;
   Vector3 edge_;

@@ -4,6 +4,7 @@
 #include "dynamics/forces/spring_force.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -56,6 +57,29 @@ void weaken(const Scalars& rates, double most, const std::vector<LinearElement>&
 }
 
 }  // namespace
+
+bool face_bends_damp_fast(const SpringNetwork& network, const Body& body) {
+  constexpr double kFast = 0.1;
+  if (body.face_bend_count == 0) return false;
+  double fastest = 0.0;  // the square of a spring's frequency [1/s^2]
+  const Springs& springs = network.springs;
+  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+    const double per_mass = 1.0 / network.masses[springs.first[s]] + 1.0 / network.masses[springs.second[s]];
+    fastest = std::max(fastest, springs.stiffness[s] * per_mass);
+  }
+  Scalars rates = Scalars::Zero(network.particle_count());  // row sums, times the mass
+  const FaceBends& bends = network.face_bends;
+  for (Index f = body.first_face_bend; f < body.first_face_bend + body.face_bend_count; ++f) {
+    const BendStencil stencil = stencil_of(bends, network.hinges, f);
+    for (const std::array<double, 6>& weights : weights_of(bends, network.hinges, f)) {
+      double sum = 0.0;
+      for (const double weight : weights) sum += std::abs(weight);
+      for (std::size_t k = 0; k < weights.size(); ++k) rates[stencil.particles[k]] += bends.damping[f] * std::abs(weights[k]) * sum;
+    }
+  }
+  const double longest_step = 2.0 / std::sqrt(fastest);
+  return !(rates.cwiseQuotient(network.masses).maxCoeff() * longest_step <= kFast);
+}
 
 bool has_material_dampers(const SpringNetwork& network) {
   return std::ranges::any_of(network.bodies, [](const Body& body) {

@@ -20,12 +20,18 @@ void for_material_springs(const SpringNetwork& network, const Function& function
   }
 }
 
-/// Calls `function(e)` for each angle bend and face bend with a damper of a material, numbered as in `constants_of_bends`.
+/// Whether dampers of the body's face bends may bound its step: whether, in the longest step that its springs allow, a damper takes
+/// more than a tenth of a velocity.
+[[nodiscard]] bool face_bends_damp_fast(const SpringNetwork& network, const Body& body);
+
+/// Calls `function(e)` for each angle bend and face bend with a damper of a material, numbered as in `constants_of_bends`. Face
+/// bends that do not damp fast count as without one: they cost most, and as part of the other forces they act once a step.
 template <class Function>
 void for_material_bends(const SpringNetwork& network, const Function& function) {
   for (const Body& body : network.bodies) {
     if (!body.has_material_dampers[static_cast<std::size_t>(SpringKind::bend)]) continue;
     for (Index a = body.first_angle_bend; a < body.first_angle_bend + body.angle_bend_count; ++a) function(a);
+    if (!face_bends_damp_fast(network, body)) continue;
     const Index first = network.angle_bends.count() + body.first_face_bend;
     for (Index e = first; e < first + body.face_bend_count; ++e) function(e);
   }

@@ -7,8 +7,8 @@
 
 namespace sprung {
 
-/// The number of faces whose corners are those of an earlier face, in any order: they lie on it, on the same side or back to back.
-/// So do faces with more than three corners that other faces, a fan of triangles, cover.
+/// The number of faces that lie on other faces, on the same side or back to back: (1) faces with the corners of an earlier face, in
+/// any order; (2) faces with more than three corners that a fan of triangles covers.
 /// `group_of`: the group of each vertex by coincident_groups().
 [[nodiscard]] Index count_repeated_faces(const PolygonFaces& faces, const std::vector<Index>& group_of);
 

@@ -38,9 +38,9 @@ struct OtherSizes {
   double largest = 0.0;
 };
 
-/// A question about the unit of a file, or advice about the size of a shape, with these bounds and this scale: if its largest
-/// extent is below a millimetre, above 100 m, above 10 m and more than 100 times that of anything else in the scene, or more than
-/// 100 times below anything else, of which one is at most 10 m large. Empty bounds get no question.
+/// A question about the unit of a file, or advice about the size of a shape, with these bounds and this scale. None for empty
+/// bounds. Asked if the largest extent is (1) below a millimetre, (2) above 100 m, (3) above 10 m and more than 100 times that of
+/// anything else, or (4) more than 100 times below anything else, where the smallest other thing is at most 10 m large.
 [[nodiscard]] std::optional<std::string> unit_note(const Box3& bounds, double scale = 1.0, const OtherSizes& others = {},
                                                    SizeSource source = SizeSource::file);
 

@@ -41,13 +41,13 @@ class BendBuilder {
   void add(const std::vector<const SpringMaterial*>& materials) {
     find_hinges();
     for (Index t = 0; t < triangles_.cols(); ++t) {
-      const SpringMaterial* const material = materials[static_cast<std::size_t>(t)];
-      if (material == nullptr || hinges_of_[t] == kNoHinges) continue;
+      if (hinges_of_[t] == kNoHinges) continue;
+      const SpringMaterial& material = *materials[static_cast<std::size_t>(t)];
       FaceBends& bends = shape_.face_bends;
       bends.hinges.push_back(hinges_of_[t]);
       bends.curvature.push_back(curvature_of(t));
-      bends.stiffness.push_back(material->value);
-      bends.damping.push_back(damping_of(*material, material->value));
+      bends.stiffness.push_back(material.value);
+      bends.damping.push_back(damping_of(material, material.value));
     }
   }
 
@@ -146,11 +146,13 @@ class BendBuilder {
   /// The angle of a hinge in the surface z = 1/2 x^T C x, as a product with C. `along` is the edge, `left` the direction of its
   /// left triangle in the plane.
   [[nodiscard]] Vector3 angle_of_curvature(Index hinge, const Eigen::Vector2d& along, const Eigen::Vector2d& left) const {
-    const auto [a, b, c, d] = shape_.hinges.particles[hinge];
+    const std::array<Index, 4>& particles = shape_.hinges.particles[hinge];
     const std::array<double, 4>& weights = shape_.hinges.weights[hinge];
-    const auto foot = [&](Index corner) { return (at(corner) - at(a)).dot(at(b) - at(a)) / along.squaredNorm(); };
-    return 0.5 * (weights[1] * square_of(along) + weights[2] * square_of(foot(c) * along + left / weights[2]) +
-                  weights[3] * square_of(foot(d) * along - left / weights[3]));
+    const Vector3 origin = at(particles[0]);
+    const Vector3 edge = at(particles[1]) - origin;
+    const auto foot = [&](Index corner) { return (at(corner) - origin).dot(edge) / edge.squaredNorm(); };
+    return 0.5 * (weights[1] * square_of(along) + weights[2] * square_of(foot(particles[2]) * along + left / weights[2]) +
+                  weights[3] * square_of(foot(particles[3]) * along - left / weights[3]));
   }
 
   BodyShape& shape_;

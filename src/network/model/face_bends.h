@@ -8,8 +8,8 @@
 
 namespace sprung {
 
-/// Edges between two triangles, as arrays; entry h of each array belongs to hinge h. Its angle theta is that between the normals of
-/// the triangles, 0 where they lie in one plane, positive where their far corners lie on the side of the normals.
+/// Edges between two triangles, as arrays; entry h of each array belongs to hinge h. The angle theta of a hinge is that between the
+/// normals of the triangles, 0 where they lie in one plane, positive where their far corners lie on the side of the normals.
 struct Hinges {
   std::vector<std::array<Index, 4>>
       particles;                   ///< both ends of the edge, the far corner of the triangle on its left, and the other
@@ -25,18 +25,18 @@ struct Hinges {
 /// Elements that keep the curvature of triangles, as arrays; entry f of each array belongs to element f. With the angles phi by
 /// which its hinges deviate from rest, the energy is 1/2 k |F phi|^2 [J].
 struct FaceBends {
-  std::vector<std::array<Index, 3>> hinges;  ///< of the network or body; kNone: an edge without a second triangle
+  std::vector<std::array<Index, 3>> hinges;  ///< of the network or body; kNone at an edge without a second triangle
   /// F [1]: F phi is the change of curvature, as xx, yy and sqrt(2) xy, times the square root of the triangle's area.
   std::vector<Matrix3> curvature;
   std::vector<double> stiffness;  ///< k, the flexural rigidity [N m], >= 0
-  std::vector<double> damping;    ///< of the rates of the angles, as k of the angles [N m s], >= 0
+  std::vector<double> damping;    ///< c [N m s], >= 0: moments as those of k, of the rates of phi
 
   [[nodiscard]] Index count() const { return static_cast<Index>(hinges.size()); }
 };
 
 /// The corners of an element's triangle and of its neighbours.
 struct BendStencil {
-  std::array<Index, 6> particles{};                       ///< the first one fills the places of those that lack
+  std::array<Index, 6> particles{};                       ///< entries that are not used repeat the first
   std::array<std::array<std::size_t, 4>, 3> of_hinges{};  ///< where the particles of each hinge are in `particles`
 };
 

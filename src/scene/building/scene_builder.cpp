@@ -106,16 +106,17 @@ std::vector<Index> open_after_weld(const Points& positions, PolygonFaces faces, 
   return vertices_on_border_edges(positions, faces, distance);
 }
 
-/// What to do with pieces of a mesh that touch. A weld alone would bring the warning of T-vertices where they keep the seam open.
+/// What to do with pieces of a mesh that touch. Where T-vertices keep the seam open, a weld alone would only cause
+/// their warning.
 std::string weld_remedy(const SpringNetwork& network, const Body& body, const SpringPieces& pieces) {
   if (pieces.touch_distance == 0.0) return "Merge vertices at the same place in the mesh.";
   const std::string distance = "1e" + std::to_string(std::lround(std::log10(pieces.touch_distance)));
-  const std::string weld = "eld vertices within " + distance + " m with \"weld\": " + distance + " in its shape";
+  const std::string weld = "Weld vertices within " + distance + " m with \"weld\": " + distance + " in its shape";
   const Points positions = network.positions.middleCols(body.first_particle, body.particle_count);
   const std::vector<Index> open = open_after_weld(positions, body.surface.faces, pieces.touch_distance);
-  if (open.empty()) return "W" + weld + ", which leaves " + counted(static_cast<std::size_t>(pieces.count_welded), "piece") + ".";
-  return "Add vertices in the modelling program to the edges of the seam that have none where the other side has one, at " +
-         counted(open.size(), "place") + ", first at " + vector_text(positions.col(open.front()), 3) + ", and w" + weld + ".";
+  if (open.empty()) return weld + ", which leaves " + counted(static_cast<std::size_t>(pieces.count_welded), "piece") + ".";
+  return "In the modelling program, add the missing vertices to the edges of the seam, at " + counted(open.size(), "place") +
+         ", first at " + vector_text(positions.col(open.front()), 3) + ". " + weld + ".";
 }
 
 std::string join_remedy(const SpringNetwork& network, const Body& body, const SpringPieces& pieces, bool is_mesh) {

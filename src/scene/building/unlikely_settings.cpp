@@ -62,7 +62,7 @@ OtherSizes sizes_of_others(const std::vector<Thing>& things, const Thing& thing)
     if (&other == &thing || extent == 0.0) continue;
     const double size = other.is_obstacle ? other.bounds.sizes().minCoeff() : extent;
     sizes.largest = std::max(sizes.largest, extent);
-    sizes.smallest = sizes.smallest == 0.0 ? size : std::min(sizes.smallest, size);
+    if (size > 0.0) sizes.smallest = sizes.smallest == 0.0 ? size : std::min(sizes.smallest, size);
   }
   return sizes;
 }

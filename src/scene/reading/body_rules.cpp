@@ -232,10 +232,14 @@ void refuse_other_springs(Fields& fields, const std::optional<BodyShapeScene>& s
 }
 
 /// Angle bends are no springs.
-void refuse_laws_of_angles(const Fields& fields) {
+void refuse_laws_of_angles(const Json& bend, const JsonLocation& location) {
   for (const char* key : {"tension_only", "yield", "break"}) {
-    if (fields.json().contains(key))
-      fields.location().at(key).report_key("needs the model spring: an angle has no length", "remove it");
+    if (bend.contains(key)) location.at(key).report_key("needs the model spring: an angle has no length", "remove it");
+  }
+  const auto groups = bend.find("groups");
+  if (groups == bend.end() || !groups->is_object()) return;
+  for (const auto& group : groups->items()) {
+    if (group.value().is_object()) refuse_laws_of_angles(group.value(), location.at("groups").at(group.key()));
   }
 }
 
@@ -251,7 +255,7 @@ SpringsScene read_springs(Fields& fields, const std::optional<BodyShapeScene>& s
     const auto model = keys.value("model", word_of({"spring", "angle"}), "spring");
     materials.bend_model = model == 1 ? SpringMaterials::BendModel::angle : SpringMaterials::BendModel::spring;
     const SpringMaterial material = read_spring(keys, SpringKind::bend, shape, springs);
-    if (model == 1) refuse_laws_of_angles(keys);
+    if (model == 1) refuse_laws_of_angles(keys.json(), keys.location());
     return material;
   });
   materials.bend = fields.optional("bend", bend);

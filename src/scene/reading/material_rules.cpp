@@ -93,7 +93,7 @@ bool groups_give_damping(const Json& spring) {
   return groups != spring.end() && groups->is_object() && std::ranges::any_of(*groups, gives);
 }
 
-/// Fills `springs.KIND.KEY`. A material bends by angles, so the bend springs that a user asks for get no stiffness from it.
+/// Fills `springs.KIND.KEY`. A material gives a stiffness to angles. Bend springs (model spring) get none from it.
 void fill_spring(const std::string& key, double value, Json& body, std::array<bool, 3>& preset_damps) {
   const std::size_t dot = key.find('.', std::string("springs.").size());
   const std::string kind = key.substr(std::string("springs.").size(), dot - std::string("springs.").size());

@@ -113,7 +113,7 @@ void check_followed(const Scene& scene, const Json& obstacles, const JsonLocatio
   }
 }
 
-/// Remedies for keys of `air` at the top level. A wind that moved there alone would have no effect.
+/// Remedies for keys of `air` at the top level. Wind has no effect without a drag, so that the remedy names both.
 void set_remedies_of_air(Fields& fields) {
   fields.set_owner({"drag", "gusts", "surface", "wind"}, "air");
   const Json air = fields.json().value("air", Json());

@@ -98,7 +98,8 @@ OutputKeys read_output(Fields& fields) {
 Rule<Vector3> gravity_rule() {
   return [](Json& json, const JsonLocation& location) -> std::optional<Vector3> {
     if (!json.is_number()) return vector3()(json, location);
-    const std::string text = format_number(-std::abs(json.get<double>()));
+    const double size = std::abs(json.get<double>());
+    const std::string text = format_number(size > 0.0 ? -size : 0.0);
     location.report(json, "must be a list of 3 entries, written in [ ]", "Y is up: did you mean [0, " + text + ", 0]?");
     return std::nullopt;
   };

@@ -75,7 +75,10 @@ Problem undivided_frame(const Scene& scene, double largest_stable) {
           .key = "step",
           .value = format_number(*scene.step),
           .rule = "must divide a frame: 1 / (frame_rate * step) is " + format_number(steps) + ", not a whole number",
-          .remedy = (remedy.empty() ? "use a larger step" : remedy) + ", or \"auto\""};
+          .remedy = (!remedy.empty()              ? remedy
+                     : steps > kMostStepsPerFrame ? "use a larger step"
+                                                  : "use a higher frame_rate") +
+                    ", or \"auto\""};
 }
 
 /// The given step.

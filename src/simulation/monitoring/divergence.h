@@ -19,9 +19,9 @@ class DivergenceCheck {
   /// the previous step. The caller sets step, time and remedy of the failure.
   [[nodiscard]] std::optional<StepFailure> not_finite(const SimulationState& state, const Points& before) const;
 
-  /// The most stretched spring, if it has stiffness and is over 1,000 times longer than its rest length, now and at first, and
-  /// its length at time 0, and longer than the longest of its body: the micrometres between the vertices of a sliver grow to
-  /// millimetres where others bend. No material stretches so far; a step that is too large causes it.
+  /// The most stretched spring that has stiffness and is (1) over 1,000 times longer than at rest, now and at first, and than at
+  /// time 0, and (2) longer than the longest spring of its body. No material stretches so far: the step is too large. Rule (2)
+  /// spares slivers, whose edges of micrometres grow to millimetres where the mesh bends.
   [[nodiscard]] std::optional<StepFailure> overstretched(const Points& positions) const;
 
   /// The fastest particle and its most stretched spring.

@@ -77,12 +77,11 @@ LengthRatios length_ratios(const SpringNetwork& network, const Body& body, const
 }
 
 /// Whether push_out would be a remedy: bodies are no deeper in obstacles than their elements are large, and it deforms them little.
-/// What it wraps round an obstacle or flattens may turn cells inside out, cross itself or miss its stretch limit, which brings
-/// other messages.
+/// A body that push_out wraps round an obstacle or flattens may have inverted cells, cross itself or miss its stretch limit.
 bool push_out_helps(const SpringNetwork& network, Environment& environment, const CollisionSurface& surface,
                     const ContactSettings& contact, const Points& positions, const StartIntersections& wanted) {
   constexpr double kLittle = 0.25;
-  constexpr Index kMostParticles = 10'000;  // to push bodies apart takes seconds with more
+  constexpr Index kMostParticles = 10'000;  // above this, push_out takes seconds where bodies intersect
   if (!wanted.with_each_other.empty() && network.particle_count() > kMostParticles) return false;
   const auto is_deep = [&](const auto& inside) {
     const auto body = static_cast<std::size_t>(&network.body_of(inside.particle) - network.bodies.data());

@@ -7,7 +7,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -61,6 +63,7 @@ TEST(Hinges, PullTowardsTheAngleAtRest) {
   EXPECT_LT(forces(2, 1), 0.0) << "down again";
   EXPECT_LT(forces(2, 3), 0.0) << "the other triangle follows";
   EXPECT_GT(forces(2, 0), 0.0);
+  // The angle is 0.014, and the sides differ in its square, 2e-4.
   EXPECT_NEAR(forces(2, 1), forces(2, 3), 1e-3 * std::abs(forces(2, 1))) << "at equal heights";
 }
 
@@ -125,8 +128,17 @@ TEST(Hinges, FoldedAndCollapsedTrianglesHaveFiniteForces) {
     states.push_back(network.positions);
     states.back().col(i) = states.back().col((i + 1) % 5);  // a side without length
   }
-  // A height of the mesh at rest is at least 0.4 m; each hinge turns by at most pi against at most 40 k, and as much again from f.
-  const double largest = 1e4 * kRigidity * std::numbers::pi;
+  // The gradient of phi is at most 1 / (half of a height at rest), twice for two triangles, and pi times as much again from f. Its
+  // product with v, of 2 m/s, is the rate. The largest weight is at least the inverse of the least height.
+  double steepest = 0.0;
+  for (const auto& weights : network.hinges.weights) {
+    for (const double weight : weights) steepest = std::max(steepest, 2.0 * std::abs(weight) * (1.0 + std::numbers::pi));
+  }
+  double largest = 0.0;
+  for (const Matrix3& curvature : network.face_bends.curvature) {
+    const double values = std::sqrt(3.0) * (std::numbers::pi + kDampingTime * steepest * 4.0 * 2.0);
+    largest += 3.0 * 4.0 * steepest * kRigidity * curvature.squaredNorm() * values;
+  }
   for (const Points& x : states) {
     const Points forces = forces_of(network, x, v);
     EXPECT_TRUE(forces.allFinite()) << x;
@@ -141,12 +153,16 @@ TEST(Hinges, AFoldThroughHalfATurnHasNoJumpOfEnergy) {
   const auto folded = [&](double angle) {
     Points x = network.positions;
     const Vector3 axis = (x.col(2) - x.col(1)).normalized();
-    for (const Index i : {Index{4}}) x.col(i) = x.col(1) + Eigen::AngleAxisd(angle, axis) * Vector3(x.col(i) - x.col(1));
+    x.col(4) = x.col(1) + Eigen::AngleAxisd(angle, axis) * Vector3(x.col(4) - x.col(1));
     return force.energy(x);
   };
+  // One angle turns. The slope of 1/2 k |F phi|^2 by it is at most k |F|^2 |phi|, with three angles of at most pi a triangle.
+  double slope = 0.0;
+  for (const Matrix3& curvature : network.face_bends.curvature) {
+    slope += kRigidity * curvature.squaredNorm() * std::sqrt(3.0) * std::numbers::pi;
+  }
   for (double angle = 0.0; angle < 2.0 * std::numbers::pi; angle += 1e-3) {
-    // The slope of the energy is at most k |F|^2 pi, with |F|^2 below 50 for these triangles.
-    EXPECT_NEAR(folded(angle), folded(angle + 1e-3), 1e-3 * 50.0 * kRigidity * std::numbers::pi);
+    EXPECT_NEAR(folded(angle), folded(angle + 1e-3), 1e-3 * slope);
   }
 }
 
@@ -168,6 +184,75 @@ TEST(Hinges, DerivativesAtRestAreTheDifferencesOfTheForces) {
     // Differences are off by h times the second derivative and by the rounding of forces of 1e2 by h.
     EXPECT_LT((dense(derivatives.by_position).col(k) - by_position.reshaped()).norm(), 1e-4);
     EXPECT_LT((dense(derivatives.by_velocity).col(k) - by_velocity.reshaped()).norm(), 1e-6);
+  }
+}
+
+TEST(Hinges, CapacityIsAtLeastAnyEnergy) {
+  const SpringNetwork network = network_of(tent());
+  const BendingAngleForce force(network);
+  for (unsigned trial = 0; trial < 100; ++trial) {
+    EXPECT_GE(force.capacity(), force.energy(random_points(network.particle_count(), trial, 1.0)));
+  }
+}
+
+// Displacements along the normal of a flat mesh: the weights of the elements are then those of the derivatives.
+TEST(Hinges, ElementsOfAFlatMeshAreItsDerivativesAlongTheNormal) {
+  const SpringNetwork network = network_of(mesh_of((Points(3, 5) << 0, 1, 0, 1.2, 2, 0, 0, 1, 0.9, 0.2, 0, 0, 0, 0, 0).finished(),
+                                                   (Triangles(3, 3) << 0, 1, 1, 1, 3, 4, 2, 2, 3).finished()),
+                                           kDampingTime);
+  Forces forces;
+  forces.push_back(std::make_unique<BendingAngleForce>(network));
+  ForceDerivatives derivatives = make_derivatives(forces, network.particle_count());
+  const Points still = Points::Zero(3, network.particle_count());
+  differentiate(forces, {.x = network.positions, .v = still}, derivatives);
+  std::vector<LinearElement> elements;
+  forces.front()->append_elements(elements);
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(5, 5);
+  Eigen::MatrixXd damping = stiffness;
+  for (const LinearElement& element : elements) {
+    for (std::size_t i = 0; i < element.count; ++i) {
+      for (std::size_t j = 0; j < element.count; ++j) {
+        const double product = element.weights[i] * element.weights[j];
+        stiffness(element.particles[i], element.particles[j]) += element.stiffness * product;
+        damping(element.particles[i], element.particles[j]) += element.damping * product;
+      }
+    }
+  }
+  const auto along_normal = [](const BlockMatrix& matrix) {
+    return Eigen::MatrixXd(dense(matrix)(Eigen::seqN(2, 5, 3), Eigen::seqN(2, 5, 3)));
+  };
+  const double rounding = 1e-12 * stiffness.norm();
+  EXPECT_GT(stiffness.norm(), 1.0);
+  EXPECT_LT((stiffness + along_normal(derivatives.by_position)).norm(), rounding);
+  EXPECT_LT((damping + along_normal(derivatives.by_velocity)).norm(), rounding);
+}
+
+// The power of dampers is c |F r|^2 for the rates r of the angles, which are at most the lengths of their gradients for unit
+// velocities: those at rest are the weights.
+TEST(Hinges, DampersOfAMaterialDampNoMotionFasterThanAtRest) {
+  const SpringNetwork network = network_of(tent(), kDampingTime);
+  ElementConstants constants = constants_of_bends(network);
+  std::ranges::fill(constants.stiffness, 0.0);
+  constants.bounds_damping = true;
+  const BendingAngleForce dampers(network, constants);
+  double most = 0.0;  // of the power of unit velocities
+  for (Index f = 0; f < network.face_bends.count(); ++f) {
+    double squares = 0.0;
+    for (const Index hinge : network.face_bends.hinges[f]) {
+      if (hinge == kNone) continue;
+      for (const double weight : network.hinges.weights[hinge]) squares += weight * weight;
+    }
+    most += network.face_bends.damping[f] * network.face_bends.curvature[f].squaredNorm() * squares;
+  }
+  for (unsigned trial = 0; trial < 100; ++trial) {
+    const Points x = random_points(network.particle_count(), trial, trial % 2 == 0 ? 2.0 : 0.2);
+    Points v = random_points(network.particle_count(), 200 + trial, 1.0);
+    v /= v.norm();
+    Points forces = Points::Zero(3, network.particle_count());
+    dampers.add({.x = x, .v = v}, forces);
+    const double power = -forces.cwiseProduct(v).sum();
+    EXPECT_GE(power, 0.0);
+    EXPECT_LE(power, most);
   }
 }
 
