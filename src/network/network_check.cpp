@@ -121,6 +121,16 @@ void check_face_bends(const std::string& key, const BodyShape& shape, ProblemLis
       [&](std::size_t f) { return counts_text(bends.hinges[f]); },
       EntryRule{key + ".face_bends.hinges", "must name hinges of the body, which has " + std::to_string(hinges.count()),
                 "use the numbers of its hinges, counted from 0"});
+  std::vector<int> elements_of(hinges.particles.size(), 0);
+  for (const std::array<Index, 3>& sides : bends.hinges) {
+    for (const Index hinge : sides) {
+      if (hinge >= 0 && hinge < hinges.count()) ++elements_of[hinge];
+    }
+  }
+  problems.require_each(
+      elements_of.size(), [&](std::size_t h) { return elements_of[h] <= 2; },
+      [&](std::size_t h) { return std::to_string(elements_of[h]) + " elements"; },
+      EntryRule{key + ".hinges", "must belong to at most two elements", "add a hinge for each pair of triangles"});
   const std::string rule = "must be a finite number not less than 0";
   require_quantities(bends.stiffness, {key + ".face_bends.stiffness", rule, "give k in N m"}, problems);
   require_quantities(bends.damping, {key + ".face_bends.damping", rule, "give a damping in N m s"}, problems);

@@ -153,7 +153,7 @@ BendingAngleForce::BendingAngleForce(const SpringNetwork& network, ElementConsta
   }
   assign_faces();
   for (Index hinge = 0; hinge < network_.hinges.count(); ++hinge) {
-    if (!faces_of_hinge_[hinge].empty()) assign(hinge, network_.hinges.particles[hinge], hinge_blocks_);
+    if (faces_of_hinge_[hinge][0].face != kNone) assign(hinge, network_.hinges.particles[hinge], hinge_blocks_);
   }
 }
 
@@ -170,12 +170,17 @@ void BendingAngleForce::assign_faces() {
   };
   faces_resist_ = any(constants_.stiffness);
   faces_damp_ = any(constants_.damping);
+  acting_faces_.assign(static_cast<std::size_t>(faces.count()), 0);
   for (Index face = 0; face < faces.count(); ++face) {
     const BendStencil stencil = stencil_of(faces, network_.hinges, face);
     if (std::ranges::all_of(stencil.particles, [&](Index i) { return network_.is_asleep(i); })) continue;
     if (!acts(first_face_ + static_cast<std::size_t>(face))) continue;
-    for (std::size_t side = 0; side < 3; ++side) {
-      if (const Index hinge = faces.hinges[face][side]; hinge != kNone) faces_of_hinge_[hinge].push_back({face, side});
+    acting_faces_[face] = 1;
+    for (Index side = 0; side < 3; ++side) {
+      const Index hinge = faces.hinges[face][static_cast<std::size_t>(side)];
+      if (hinge == kNone) continue;
+      std::array<FaceSide, 2>& of_hinge = faces_of_hinge_[hinge];
+      of_hinge.at(of_hinge[0].face == kNone ? 0 : 1) = {face, side};
     }
   }
 }
@@ -216,7 +221,7 @@ void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
       std::make_unique_for_overwrite<HingeMotion[]>(static_cast<std::size_t>(hinges.count()));  // NOLINT(*-c-arrays)
   parallel_chunks(hinges.count(), kHingesAtOnce, [&](Index begin, Index end) {
     for (Index hinge = begin; hinge < end; ++hinge) {
-      if (faces_of_hinge_[hinge].empty()) continue;
+      if (faces_of_hinge_[hinge][0].face == kNone) continue;
       const HingeAngle angle(hinges, hinge, at.x);
       HingeMotion& motion = motions[hinge];
       motion = {.gradient = angle.gradient(), .deviation = faces_resist_ ? angle.deviation() : 0.0, .rate = 0.0, .share = 1.0};
@@ -226,29 +231,40 @@ void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
       motion.rate *= motion.share;
     }
   });
-  // The row of F^T F that belongs to a side, times the values of all hinges of the face.
-  const auto moment_of = [&](Index face, std::size_t side, double HingeMotion::*value) {
-    Vector3 values = Vector3::Zero();
-    for (std::size_t other = 0; other < 3; ++other) {
-      const Index hinge = faces.hinges[face][other];
-      if (hinge != kNone) values[static_cast<Index>(other)] = motions[hinge].*value;
+  // Of the sides of each face.
+  std::vector<Vector3> moments(static_cast<std::size_t>(faces.count()), Vector3::Zero());
+  parallel_chunks(faces.count(), kHingesAtOnce, [&](Index begin, Index end) {
+    for (Index face = begin; face < end; ++face) {
+      if (acting_faces_[face] == 0) continue;
+      const std::size_t element = first_face_ + static_cast<std::size_t>(face);
+      const Matrix3& curvature = faces.curvature[face];
+      Vector3 deviations = Vector3::Zero();
+      Vector3 rates = Vector3::Zero();
+      Vector3 shares = Vector3::Zero();
+      for (Index side = 0; side < 3; ++side) {
+        const Index hinge = faces.hinges[face][static_cast<std::size_t>(side)];
+        if (hinge == kNone) continue;
+        deviations[side] = motions[hinge].deviation;
+        rates[side] = motions[hinge].rate;
+        shares[side] = motions[hinge].share;
+      }
+      Vector3& moment = moments[face];
+      if (faces_resist_) moment = constants_.stiffness[element] * (curvature.transpose() * (curvature * deviations));
+      if (!faces_damp_) continue;
+      moment += constants_.damping[element] * shares.cwiseProduct(curvature.transpose() * (curvature * rates));
     }
-    const Matrix3& curvature = faces.curvature[face];
-    return curvature.col(static_cast<Index>(side)).dot(curvature * values);
-  };
+  });
   parallel_chunks(static_cast<Index>(hinge_blocks_.size()), 1, [&](Index begin, Index end) {
     for (Index block = begin; block < end; ++block) {
       for (const Index hinge : hinge_blocks_[block]) {
-        const HingeMotion& motion = motions[hinge];
         double moment = 0.0;
         for (const auto& [face, side] : faces_of_hinge_[hinge]) {
-          const std::size_t element = first_face_ + static_cast<std::size_t>(face);
-          if (faces_resist_) moment += constants_.stiffness[element] * moment_of(face, side, &HingeMotion::deviation);
-          if (faces_damp_) moment += motion.share * constants_.damping[element] * moment_of(face, side, &HingeMotion::rate);
+          if (face != kNone) moment += moments[face][side];
         }
+        const std::array<Vector3, 4>& gradient = motions[hinge].gradient;
         for (std::size_t i = 0; i < 4; ++i) {
           const Index particle = hinges.particles[hinge][i];
-          if (particle / kParticleBlock == block) forces.col(particle) -= moment * motion.gradient[i];
+          if (particle / kParticleBlock == block) forces.col(particle) -= moment * gradient[i];
         }
       }
     }

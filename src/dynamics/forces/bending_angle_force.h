@@ -16,6 +16,7 @@
 #include "dynamics/forces/force.h"
 #include "network/model/spring_network.h"
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -52,8 +53,8 @@ class BendingAngleForce final : public Force {
 
  private:
   struct FaceSide {
-    Index face = 0;
-    std::size_t side = 0;
+    Index face = kNone;
+    Index side = 0;
   };
 
   [[nodiscard]] bool acts(std::size_t element) const;
@@ -67,8 +68,9 @@ class BendingAngleForce final : public Force {
   std::size_t first_face_;                       ///< the number of angle bends
   std::vector<std::vector<Index>> bend_blocks_;  ///< angle bends that touch each block of particles
   std::vector<std::vector<Index>> hinge_blocks_;
-  std::vector<std::vector<FaceSide>> faces_of_hinge_;  ///< by hinge, those with stiffness or damping
-  bool faces_resist_ = false;                          ///< whether any has stiffness
+  std::vector<char> acting_faces_;  ///< by face bend: whether it has stiffness or damping, and a particle that is awake
+  std::vector<std::array<FaceSide, 2>> faces_of_hinge_;  ///< by hinge, those that act
+  bool faces_resist_ = false;                            ///< whether any has stiffness
   bool faces_damp_ = false;
 };
 

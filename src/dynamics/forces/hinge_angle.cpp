@@ -9,15 +9,16 @@ namespace sprung {
 HingeAngle::HingeAngle(const Hinges& hinges, Index hinge, const Points& x) : rest_angle_(hinges.rest_angle[hinge]) {
   for (std::size_t i = 0; i < 4; ++i) x_[i] = x.col(hinges.particles[hinge][i]);
   edge_ = x_[1] - x_[0];
+  length_ = edge_.norm();
   left_ = triangle_of(edge_.cross(x_[2] - x_[0]), hinges.rest_area[hinge][0]);
   right_ = triangle_of((x_[3] - x_[0]).cross(edge_), hinges.rest_area[hinge][1]);
-  has_angle_ = left_.per_area > 0.0 && right_.per_area > 0.0 && edge_.squaredNorm() > 0.0;
+  has_angle_ = left_.per_area > 0.0 && right_.per_area > 0.0 && length_ > 0.0;
 }
 
 double HingeAngle::deviation() const { return has_angle_ ? angle_from_rest() * left_.factor * right_.factor : 0.0; }
 
 double HingeAngle::angle_from_rest() const {
-  const double sine = right_.normal.cross(left_.normal).dot(edge_.normalized());
+  const double sine = right_.normal.cross(left_.normal).dot(edge_) / length_;
   const double angle = std::atan2(sine, left_.normal.dot(right_.normal));
   return std::remainder(angle - rest_angle_, 2.0 * std::numbers::pi);
 }
@@ -34,12 +35,10 @@ HingeAngle::Triangle HingeAngle::triangle_of(const Vector3& doubled_area, double
 std::array<Vector3, 4> HingeAngle::gradient() const {
   const auto& [a, b, c, d] = x_;
   if (!has_angle_) return {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
-  const double square = edge_.squaredNorm();
-  const double length = std::sqrt(square);
-  const Vector3 at_c = length * left_.per_area * right_.factor * left_.normal;
-  const Vector3 at_d = length * right_.per_area * left_.factor * right_.normal;
-  const double foot_c = (c - a).dot(edge_) / square;
-  const double foot_d = (d - a).dot(edge_) / square;
+  const Vector3 at_c = length_ * left_.per_area * right_.factor * left_.normal;
+  const Vector3 at_d = length_ * right_.per_area * left_.factor * right_.normal;
+  const double foot_c = (c - a).dot(edge_) / length_ / length_;
+  const double foot_d = (d - a).dot(edge_) / length_ / length_;
   std::array<Vector3, 4> gradient{(foot_c - 1.0) * at_c + (foot_d - 1.0) * at_d, -foot_c * at_c - foot_d * at_d, at_c, at_d};
   if (left_.slope > 0.0) {
     const Vector3 normal = angle_from_rest() * right_.factor * left_.slope * left_.normal;

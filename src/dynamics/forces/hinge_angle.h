@@ -35,6 +35,7 @@ class HingeAngle {
 
   std::array<Vector3, 4> x_;
   Vector3 edge_;
+  double length_;  ///< of the edge [m]
   Triangle left_;
   Triangle right_;
   double rest_angle_;

@@ -58,7 +58,9 @@ class Inside {
     const int samples = near_.empty() ? 1 : kSamples;
     int inside = 0;
     for (int i = 0; i < samples * samples * samples; ++i) {
-      const Vector3 at(i % samples, i / samples % samples, i / (samples * samples));
+      const Index row = i / samples;
+      const Index layer = row / samples;
+      const Vector3 at(i % samples, row % samples, layer);
       const Vector3 point = box.min() + (at + Vector3::Constant(0.5)).cwiseProduct(box.sizes()) / samples;
       if (winding_number(tree_, point) != 0) ++inside;
     }

@@ -8,8 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sprung {
@@ -21,7 +24,7 @@ constexpr int kManySteps = 1000;
 // the step.
 constexpr double kLeastResponse = 0.05;
 
-// A spring this much shorter than the mean of its body is an accident of the mesh.
+// An edge this much shorter than the mean of its body is an accident of the mesh.
 constexpr double kShort = 0.1;
 
 constexpr int kDigits = 3;
@@ -30,8 +33,9 @@ constexpr int kPositionDigits = 5;
 /// A cause of small steps. The response rate of particles is [1/s]: the square root of stiffness over mass, or damping over mass.
 struct Demand {
   double rate = 0.0;
-  Index particle = 0;    ///< the lightest of the particles
-  Index spring = kNone;  ///< none: bends
+  Index particle = 0;           ///< the lightest of the particles
+  std::array<Index, 2> edge{};  ///< a spring's ends, or those of the shortest edge of a bend
+  double length = 0.0;          ///< of that edge at rest [m]
   double constant = 0.0;
   std::string source{};
   const char* unit = "";
@@ -53,7 +57,8 @@ Demand demand_of_springs(const SpringNetwork& network, const std::vector<double>
     found.rate = rate;
     found.particle = lightest(network, std::array{springs.first[s], springs.second[s]});
     found.constant = constants[s];
-    found.spring = s;
+    found.edge = {springs.first[s], springs.second[s]};
+    found.length = springs.rest_length[s];
     found.source = std::string(kSpringKindNames[static_cast<std::size_t>(springs.kind[s])]) + " springs";
   }
   return found;
@@ -63,7 +68,8 @@ Demand demand_of_springs(const SpringNetwork& network, const std::vector<double>
 /// displacement of an end, and by the sum of both times that of the middle.
 Demand demand_of_bends(const SpringNetwork& network, const std::vector<double>& constants, bool damp) {
   Demand found{.source = "angle bends", .unit = damp ? " N m s damping" : " N m", .remedy = damp ? "damping" : "stiffness"};
-  const auto note = [&](std::span<const Index> particles, std::span<const double> weights, double constant) {
+  using Edge = std::pair<double, std::array<Index, 2>>;  // length, ends
+  const auto note = [&](std::span<const Index> particles, std::span<const double> weights, double constant, const Edge& shortest) {
     double per_mass = 0.0;
     for (std::size_t k = 0; k < particles.size(); ++k) {
       per_mass += constant * weights[k] * weights[k] * network.inverse_masses[particles[k]];
@@ -73,31 +79,39 @@ Demand demand_of_bends(const SpringNetwork& network, const std::vector<double>& 
     found.rate = rate;
     found.particle = lightest(network, particles);
     found.constant = constant;
+    found.length = shortest.first;
+    found.edge = shortest.second;
   };
   const AngleBends& bends = network.angle_bends;
   for (Index e = 0; e < bends.count(); ++e) {
     const double before = 1.0 / bends.length_before[e];
     const double after = 1.0 / bends.length_after[e];
-    note(std::array{bends.before[e], bends.middle[e], bends.after[e]}, std::array{before, -before - after, after}, constants[e]);
+    const Edge shortest = std::min(Edge{bends.length_before[e], {bends.before[e], bends.middle[e]}},
+                                   Edge{bends.length_after[e], {bends.middle[e], bends.after[e]}});
+    note(std::array{bends.before[e], bends.middle[e], bends.after[e]}, std::array{before, -before - after, after}, constants[e],
+         shortest);
   }
   const FaceBends& faces = network.face_bends;
   for (Index f = 0; f < faces.count(); ++f) {
     const double constant = constants[static_cast<std::size_t>(bends.count() + f)];
     const BendStencil stencil = stencil_of(faces, network.hinges, f);
-    for (const std::array<double, 6>& weights : weights_of(faces, network.hinges, f)) note(stencil.particles, weights, constant);
+    Edge shortest{std::numeric_limits<double>::infinity(), {}};
+    for (const Index hinge : faces.hinges[f]) {
+      if (hinge == kNone) continue;
+      const auto [a, b, c, d] = network.hinges.particles[hinge];
+      shortest = std::min(shortest, Edge{(network.positions.col(a) - network.positions.col(b)).norm(), {a, b}});
+    }
+    for (const std::array<double, 6>& weights : weights_of(faces, network.hinges, f)) {
+      note(stencil.particles, weights, constant, shortest);
+    }
   }
   return found;
 }
 
-double mean_length(const SpringNetwork& network, const Body& body, SpringKind kind) {
-  double sum = 0.0;
-  int count = 0;
-  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
-    if (network.springs.kind[s] != kind) continue;
-    sum += network.springs.rest_length[s];
-    ++count;
-  }
-  return sum / count;
+/// Of the body's springs; NaN without any.
+double mean_length(const SpringNetwork& network, const Body& body) {
+  const auto first = network.springs.rest_length.begin() + body.first_spring;
+  return std::accumulate(first, first + body.spring_count, 0.0) / body.spring_count;
 }
 
 /// Implicit Euler solves a system a step, and many where surfaces touch. Measured, that is slower than thousands of small steps in
@@ -109,12 +123,10 @@ bool is_implicit_faster(const Scene& scene, const SpringNetwork& network) {
 
 /// What the user can change: the mesh of a material, and the numbers that they gave themselves.
 std::string remedy_for(const Demand& demand, const Scene& scene, const SpringNetwork& network, const Body& body) {
-  const Springs& springs = network.springs;
   const auto found = std::ranges::find(scene.bodies, body.name, &BodyScene::name);
   const bool has_material = found != scene.bodies.end() && !found->preset.empty();
-  if (demand.spring != kNone &&
-      springs.rest_length[demand.spring] < kShort * mean_length(network, body, springs.kind[demand.spring])) {
-    std::string remedy = "This spring is far shorter than the others of the body: merge the two vertices";
+  if (demand.length < kShort * mean_length(network, body)) {
+    std::string remedy = "This edge is far shorter than the others of the body: merge the two vertices";
     if (!has_material || body.particle_count < kLeastAdjusted) return remedy;
     if (!found->preset_mass) return remedy + ", or leave the mass to the material, which permits \"mass_scaling\"";
     return scene.mass_scaling < kMassScaling ? remedy + ", or leave out \"mass_scaling\"" : remedy;
@@ -135,16 +147,11 @@ std::string reason(const Scene& scene, const SpringNetwork& network, double step
                [](const Demand& a, const Demand& b) { return a.rate < b.rate; });
   if (largest.rate * step < kLeastResponse) return "penalty contact or air drag requires that. Use less of it";
   const Body& body = network.body_of(largest.particle);
-  std::string text = "body \"" + body.name + "\" has " + largest.source + " of " + format_number(largest.constant, kDigits) +
-                     largest.unit + " at particles of " + format_number(network.masses[largest.particle], kDigits) + " kg";
-  if (largest.spring != kNone) {
-    const Index first = network.springs.first[largest.spring];
-    const Index second = network.springs.second[largest.spring];
-    text += ", the one that needs the smallest step from " + vector_text(network.positions.col(first), kPositionDigits) + " to " +
-            vector_text(network.positions.col(second), kPositionDigits) + ", " +
-            format_number(network.springs.rest_length[largest.spring], kDigits) + " m long";
-  }
-  return text + ". " + remedy_for(largest, scene, network, body);
+  return "body \"" + body.name + "\" has " + largest.source + " of " + format_number(largest.constant, kDigits) + largest.unit +
+         " at particles of " + format_number(network.masses[largest.particle], kDigits) +
+         " kg, the one that needs the smallest step from " + vector_text(network.positions.col(largest.edge[0]), kPositionDigits) +
+         " to " + vector_text(network.positions.col(largest.edge[1]), kPositionDigits) + ", " +
+         format_number(largest.length, kDigits) + " m long. " + remedy_for(largest, scene, network, body);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "network/bodies/body_shape.h"
+#include "network/network_builder.h"
 #include "network/network_helpers.h"
 
 #include <gmock/gmock.h>
@@ -140,6 +141,33 @@ TEST(TriangleBends, NeedAModulus) {
   materials.bend->measure = SpringMaterial::Measure::stiffness;
   EXPECT_THAT(testing::problem_keys([&] { return make_mesh_body(grid(1), materials); }),
               ::testing::ElementsAre("springs.bend.stiffness"));
+}
+
+TEST(TriangleBends, AreCheckedInShapesThatAProgramChanged) {
+  const auto refused = [](const std::function<void(BodyShape&)>& change) {
+    BodyShape shape = make_mesh_body(grid(2), stiff(1.0));
+    set_total_mass(shape, 1.0);
+    change(shape);
+    NetworkBuilder builder;
+    builder.add_body("sheet", shape);
+    return testing::problem_keys([&] { return builder.build(); });
+  };
+  EXPECT_THAT(refused([](BodyShape&) {}), ::testing::IsEmpty());
+  EXPECT_THAT(refused([](BodyShape& shape) { shape.hinges.particles[3][2] = 99; }),
+              ::testing::ElementsAre("bodies.sheet.hinges[3]"));
+  EXPECT_THAT(refused([](BodyShape& shape) { shape.hinges.particles[3][0] = shape.hinges.particles[3][1]; }),
+              ::testing::ElementsAre("bodies.sheet.hinges[3]"));
+  EXPECT_THAT(refused([](BodyShape& shape) { shape.hinges.rest_area[1][0] = 0.0; }),
+              ::testing::ElementsAre("bodies.sheet.hinges.rest_area[1]"));
+  EXPECT_THAT(refused([](BodyShape& shape) { shape.face_bends.hinges[2].fill(kNone); }),
+              ::testing::ElementsAre("bodies.sheet.face_bends.hinges[2]"));
+  EXPECT_THAT(refused([](BodyShape& shape) { shape.face_bends.hinges[2][1] = 99; }),
+              ::testing::ElementsAre("bodies.sheet.face_bends.hinges[2]"));
+  EXPECT_THAT(refused([](BodyShape& shape) { shape.face_bends.hinges[0].fill(0); }),
+              ::testing::ElementsAre("bodies.sheet.hinges[0]"));
+  EXPECT_THAT(refused([](BodyShape& shape) { shape.face_bends.stiffness[0] = -1.0; }),
+              ::testing::ElementsAre("bodies.sheet.face_bends.stiffness[0]"));
+  EXPECT_THAT(refused([](BodyShape& shape) { shape.face_bends.damping.pop_back(); }), ::testing::ElementsAre("bodies.sheet"));
 }
 
 TEST(TriangleBends, AMeshOfLinesHasNone) {
