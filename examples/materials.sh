@@ -12,5 +12,5 @@ for material in "$@"; do
   output="build/frames/materials_$material"
   build/release/bin/sprung run examples/materials.json --out "$output" --overwrite --mesh-path /usr/share/glmark2/models \
     --set "bodies.cloth.material=$material"
-  HIDE=floor SIZE=360,340 examples/picture.sh "$output" "examples/pictures/materials_$material.png" 76
+  HIDE=floor SIZE=360,340 examples/picture.sh "$output" "examples/pictures/materials_$material.png" 31
 done
