@@ -8,7 +8,7 @@ cmake --build --preset release --target sprung
 
 declare -A frames=(
   [cloth_on_bunny]="1 12 121"
-  [jelly_on_stairs]="1 25 45 121"
+  [jelly_on_stairs]="1 25 36 45"
   [horse_on_stairs]="1 14 30 91"
   [dress]="1 19 38 47 60"
   [balloon_on_spike]="1 9 11 14 20 28"
