@@ -226,7 +226,7 @@ void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
       HingeMotion& motion = motions[hinge];
       motion = {.gradient = angle.gradient(), .deviation = faces_resist_ ? angle.deviation() : 0.0, .rate = 0.0, .share = 1.0};
       if (!faces_damp_) continue;
-      if (constants_.bounds_damping) motion.share = share_of(motion.gradient, hinges.weights[hinge]);
+      motion.share = share_of(motion.gradient, hinges.weights[hinge]);
       for (std::size_t i = 0; i < 4; ++i) motion.rate += motion.gradient[i].dot(at.v.col(hinges.particles[hinge][i]));
       motion.rate *= motion.share;
     }

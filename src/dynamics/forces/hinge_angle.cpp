@@ -26,9 +26,11 @@ double HingeAngle::angle_from_rest() const {
 HingeAngle::Triangle HingeAngle::triangle_of(const Vector3& doubled_area, double rest_area) {
   const double size = doubled_area.norm();
   if (!(size > 0.0)) return {.factor = 0.0};
-  Triangle triangle{.normal = doubled_area / size, .per_area = 1.0 / std::max(size, rest_area)};
-  triangle.factor = triangle.per_area * size;
-  if (size < rest_area) triangle.slope = triangle.per_area;
+  const double at_rest = 2.0 * rest_area;
+  const double part = std::min(1.0, size / at_rest);
+  Triangle triangle{.normal = doubled_area / size, .factor = part * part * (3.0 - 2.0 * part)};
+  triangle.per_area = triangle.factor / size;
+  triangle.slope = 6.0 * part * (1.0 - part) / at_rest;
   return triangle;
 }
 

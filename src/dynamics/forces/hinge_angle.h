@@ -11,8 +11,9 @@ namespace sprung {
 /// m = (d - a) x e of the other, the angle is theta = atan2((m x n) . e / |e|, n . m). Its gradient is |e| n / n^2 at c, |e| m /
 /// m^2 at d, and minus their shares at a and b (Bridson, Marino and Fedkiw 2003).
 ///
-/// phi is theta minus the angle at rest, wrapped to [-pi, pi], times a factor f of each triangle. f is 1 for at least half of the
-/// area at rest and falls to 0 in proportion to the area below. Forces therefore stay bounded where triangles collapse.
+/// phi is theta minus the angle at rest, wrapped to [-pi, pi], times a factor f of each triangle. f = r^2 (3 - 2 r) of the area
+/// divided by that at rest, r, and 1 for r > 1: with it, no triangle that shrinks as the mesh crumples makes the gradient of its
+/// height longer than 9/8 of that at rest, so that steps stay stable, and forces end where triangles collapse.
 class HingeAngle {
  public:
   HingeAngle(const Hinges& hinges, Index hinge, const Points& x);

@@ -203,7 +203,8 @@ void note_mesh_faults(const Scene& scene, const SpringNetwork& network, GroupedW
     if (const Index repeated = count_repeated_faces(built.surface.faces, group_of); repeated > 0) {
       bodies.add(body.name,
                  counted(static_cast<std::size_t>(repeated), "face") + (repeated == 1 ? " lies" : " lie") +
-                     " twice in its mesh, back to back or on the same side, so that it is heavier and stiffer there. "
+                     " twice in its mesh, back to back or on the same side, so that it is heavier there, stiffer in its plane, and "
+                     "without resistance to bending. "
                      "Delete the duplicates in the modelling program (Blender: Merge, By Distance), and export it again.");
     }
     if (!mesh->weld) continue;
