@@ -231,15 +231,19 @@ void refuse_other_springs(Fields& fields, const std::optional<BodyShapeScene>& s
   }
 }
 
-/// Angle bends are no springs.
-void refuse_laws_of_angles(const Json& bend, const JsonLocation& location) {
+/// Angles are no springs, and those of meshes have no stiffness of their own.
+void check_angles(const Json& bend, const JsonLocation& location, bool is_mesh) {
   for (const char* key : {"tension_only", "yield", "break"}) {
     if (bend.contains(key)) location.at(key).report_key("needs the model spring: an angle has no length", "remove it");
+  }
+  if (is_mesh && bend.contains("stiffness")) {
+    location.at("stiffness")
+        .report_key("is not for the angles of a mesh, whose stiffness follows from its triangles", "give modulus, D in N m");
   }
   const auto groups = bend.find("groups");
   if (groups == bend.end() || !groups->is_object()) return;
   for (const auto& group : groups->items()) {
-    if (group.value().is_object()) refuse_laws_of_angles(group.value(), location.at("groups").at(group.key()));
+    if (group.value().is_object()) check_angles(group.value(), location.at("groups").at(group.key()), is_mesh);
   }
 }
 
@@ -255,7 +259,7 @@ SpringsScene read_springs(Fields& fields, const std::optional<BodyShapeScene>& s
     const auto model = keys.value("model", word_of({"spring", "angle"}), "spring");
     materials.bend_model = model == 1 ? SpringMaterials::BendModel::angle : SpringMaterials::BendModel::spring;
     const SpringMaterial material = read_spring(keys, SpringKind::bend, shape, springs);
-    if (model == 1) refuse_laws_of_angles(keys.json(), keys.location());
+    if (model == 1) check_angles(keys.json(), keys.location(), shape && std::holds_alternative<MeshFile>(*shape));
     return material;
   });
   materials.bend = fields.optional("bend", bend);
