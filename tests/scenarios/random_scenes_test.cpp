@@ -7,6 +7,7 @@
 #include "mesh_shapes.h"
 #include "network/bodies/tetrahedra_body.h"
 #include "network/network_builder.h"
+#include "scenarios/mesh_samples.h"
 #include "scenarios/scenario.h"
 #include "scene/building/lattice_filling.h"
 
@@ -49,13 +50,20 @@ BodyShape random_shape(Random& random) {
   }
 }
 
-/// A rope or cloth whose angle bends straighten it.
+/// A rope, cloth or mesh that resists bending.
 BodyShape random_bent_shape(Random& random) {
   const SpringMaterial limp{.value = 0.0};
   const SpringMaterial bend{.value = one_of(random, {0.0001, 0.001, 0.01}), .damping_time = 0.001};
-  const SpringMaterials materials{limp, {}, bend, SpringMaterials::BendModel::angle};
+  SpringMaterials materials{limp, {}, bend, SpringMaterials::BendModel::angle};
   const Index n = 3 + random.below(8);
-  if (random.below(2) == 0) return make_cloth({.size = {0.8, 0.8}, .resolution = {n, n}}, materials);
+  const Index kind = random.below(3);
+  if (kind == 2) {
+    materials.bend->measure = SpringMaterial::Measure::modulus;
+    const Pattern pattern = kPatterns.at(static_cast<std::size_t>(random.below(static_cast<Index>(kPatterns.size()))));
+    const Index squares = n / 2 + 1;
+    return make_mesh_body(sheet(pattern, {squares, squares}, 0.8 / squares, [](const Vector3&) { return true; }), materials);
+  }
+  if (kind == 0) return make_cloth({.size = {0.8, 0.8}, .resolution = {n, n}}, materials);
   return make_rope({.points = {{-0.5, 0, 0}, {0, 0.1, 0}, {0.5, 0, 0}}, .particles = 2 * n, .length = {}}, materials);
 }
 
@@ -380,7 +388,7 @@ BuiltScene attached(NetworkBuilder builder, bool rods_alone, Random& random) {
 
 BuiltScene scene_of_attached(Random& random) { return attached(three_bodies(random), false, random); }
 
-/// A lattice of a coarse mesh, and two ropes or cloths with angle bends.
+/// A lattice of a coarse mesh, and two ropes, cloths or meshes that resist bending.
 BuiltScene scene_of_rods(Random& random) {
   NetworkBuilder builder;
   add_flying_body(builder, "lattice", random_filled_shape(Filled::coarse_lattice, random), random, {.self = true});
