@@ -14,8 +14,8 @@ namespace sprung {
 inline constexpr int kMostMeasuredSteps = 10;
 inline constexpr double kLongestMeasurement = 1.0;  ///< [s]
 
-/// Wall times of a frame in which all bodies move; what sleeps or rests costs less. `full` is equal to `free` if nothing can touch
-/// and there is no stretch limit.
+/// Wall times of a frame in which all bodies move. Bodies at rest or asleep cost less. `full` is equal to `free` if nothing can
+/// touch and there is no stretch limit.
 struct FrameCost {
   int steps = 0;           ///< number of measured steps; 0 if the first one took longer than the measurement may
   double free = 0.0;       ///< as the simulation begins [s]; without a measured step a lower bound

@@ -41,6 +41,19 @@ TEST(SpringPieces, AngleBendsJoinToo) {
   EXPECT_EQ(pieces_of(builder).alone, 1);
 }
 
+TEST(SpringPieces, BendsOfTrianglesJoinToo) {
+  PolygonMesh mesh;
+  mesh.vertices = (Points(3, 5) << 0, 1, 0, 1, 9, 0, 0, 1, 1, 9, 0, 0, 0, 0, 0).finished();
+  mesh.faces = to_polygons((Triangles(3, 2) << 0, 1, 1, 3, 2, 2).finished());
+  const SpringMaterial bend{.value = 1.0, .measure = SpringMaterial::Measure::modulus};
+  BodyShape shape = make_mesh_body(mesh, {.bend = bend, .bend_model = SpringMaterials::BendModel::angle}, {});
+  shape.masses.assign(5, 1.0);
+  NetworkBuilder builder;
+  builder.add_body("mesh", shape);
+  EXPECT_EQ(pieces_of(builder).count, 1);
+  EXPECT_EQ(pieces_of(builder).alone, 1);
+}
+
 TEST(SpringPieces, TouchOnlyWhereTheyAreDifferentPieces) {
   NetworkBuilder builder = four_particles();
   const Index same_place = builder.add_particle(Vector3(3, 0, 0), 1.0);

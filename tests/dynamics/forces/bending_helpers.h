@@ -23,6 +23,19 @@ inline Points forces_of(const SpringNetwork& network, const Points& x, const Poi
 
 inline Points forces_of(const SpringNetwork& network, const Points& x) { return forces_of(network, x, Points::Zero(3, x.cols())); }
 
+/// Compares forces with central differences over 2 h of the energy.
+inline void expect_gradient(const SpringNetwork& network, const Points& x, double h, double tolerance) {
+  const BendingAngleForce force(network);
+  const Points forces = forces_of(network, x);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    Points there = x;
+    Points back = x;
+    there(i) += h;
+    back(i) -= h;
+    EXPECT_NEAR(forces(i), -(force.energy(there) - force.energy(back)) / (2.0 * h), tolerance) << "coordinate " << i;
+  }
+}
+
 /// Forces without a sum and a torque, up to the rounding of some products.
 inline void expect_balanced(const Points& x, const Points& forces) {
   Vector3 torque = Vector3::Zero();
