@@ -56,7 +56,7 @@ RunWatch::RunWatch(const Simulator& simulator, RunOutput& output, bool quiet)
     : simulator_(simulator),
       output_(output),
       quiet_(quiet),
-      energy_(simulator.network(), simulator.settings(), simulator.environment().obstacles(), {}) {}
+      energy_(simulator.network(), simulator.settings(), simulator.environment().obstacles()) {}
 
 void RunWatch::note_frame(const FrameDiagnostics& frame) {
   note_infeasible(frame);

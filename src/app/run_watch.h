@@ -51,7 +51,7 @@ class RunWatch {
   bool infeasible_ = false;
   bool inverted_ = false;
   Missed missed_;
-  EnergyWatch energy_;
+  EnergyGain energy_;
   int frames_ = 0;
   int truncated_frames_ = 0;       ///< frames in which truncation stopped many particles
   std::vector<bool> handed_over_;  ///< by body

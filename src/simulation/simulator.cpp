@@ -57,9 +57,8 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       patches(network),
       rest(network, patches, constraints.limit(), settings.gravity.norm()),
       surroundings(network, environment, patches, settings.step, settings.gravity.norm()),
-      sleepers(sleeping_patches()),
-      state(initial_state(network)),
-      begin{state, energy_watch, {}} {
+      state(initial_state(network)) {
+  state.rest.sleepers = sleeping_patches();
   const StretchLimit* limit = constraints.limit();
   if (limit != nullptr && settings.max_substeps > 1) {
     refinement.emplace(limit->settings(), settings.max_substeps);
@@ -124,8 +123,8 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   const std::vector<std::string> of_links = unlikely_lengths(network, state.links);
   warnings.insert(warnings.end(), of_links.begin(), of_links.end());
   integrator->start(state, forces, dt());
-  energy_watch.note(0, energies());
-  if (attachments) energy_watch.note_pin(attachments->winch_speed(state));
+  note_change();
+  if (attachments) EnergyWatch::note_pin(attachments->winch_speed(state), state.energy);
   begin_recording();
 }
 
@@ -144,29 +143,34 @@ bool Simulator::Implementation::anything_moves() const {
 }
 
 std::optional<StepReport> Simulator::Implementation::step() {
-  const RecordedImpulses impulses_before = state.impulses;
   if (all_sleep()) {
+    const RecordedImpulses impulses_before = state.impulses;
     ++state.step;
     if (environment.set().moves()) environment.set_interval(time(), time());
-    repeat_impulses(impulses_before);
+    add_impulses_of_sleepers(impulses_before);
     record_attachments();
     if (environment.set().moves()) choose_sleepers();
     return StepReport{};
   }
-  update_attachments();
-  if (symmetry && constraints.contacts().can_collide() && symmetry->may_push(state.x)) {
-    symmetry->push(contact_normals(), dt(), *integrator, state);
+  begin.state = state;
+  begin.crossings = constraints.permitted_crossings();
+  try {
+    return step_from_begin();
+  } catch (...) {
+    return_to(begin.state, begin.crossings);
+    throw;
   }
+}
+
+std::optional<StepReport> Simulator::Implementation::step_from_begin() {
   const std::optional<std::size_t> compared = body_to_compare(state);
-  if (constraints.contacts().can_collide() || compared) {
-    begin = {state, energy_watch, constraints.permitted_crossings()};
-  }
-  kept_contacts.reset();
   const std::vector<PatchPair> pairs = network.asleep.empty() ? std::vector<PatchPair>() : surroundings.find(state).pairs;
   const int factor = factor_for_rotation();
   StepReport report = make_step(factor, std::numeric_limits<Index>::max());
-  if (wake_disturbed(pairs)) {
-    return_to_begin();
+  if (disturbs_sleep(pairs)) {
+    const std::vector<char> sleepers = state.rest.sleepers;
+    return_to(begin.state, begin.crossings);
+    state.rest.sleepers = sleepers;
     return std::nullopt;
   }
   if (may_retry(report.max_infeasible, begin.state)) report = repeat_step(report, factor);
@@ -178,18 +182,26 @@ std::optional<StepReport> Simulator::Implementation::step() {
   record_attachments();
   const bool breaks = attachments && attachments->break_overloaded(state);
   if (breaks) integrator->resume(state, forces, dt());
-  repeat_impulses(impulses_before);
+  add_impulses_of_sleepers(begin.state.impulses);
   choose_sleepers();
   if (breaks) wake_all();
   return report;
+}
+
+/// What changes between two steps, at the begin of each attempt.
+void Simulator::Implementation::prepare_step() {
+  update_attachments();
+  if (symmetry && constraints.contacts().can_collide() && symmetry->may_push(state.x)) {
+    symmetry->push(contact_normals(), dt(), *integrator, state);
+  }
 }
 
 /// An implicit scheme finds the pattern of its matrix anew. Springs that engage at another length than theirs bring energy.
 void Simulator::Implementation::update_attachments() {
   if (!attachments || !attachments->update(state)) return;
   integrator->resume(state, forces, dt());
-  energy_watch.note(0, energies());
-  energy_watch.note_pin(attachments->winch_speed(state));
+  note_change();
+  EnergyWatch::note_pin(attachments->winch_speed(state), state.energy);
 }
 
 /// After each step.
@@ -216,6 +228,7 @@ int Simulator::Implementation::factor_for_rotation() const {
 
 /// Makes the step with `factor` times the substeps. Ends early after a substep with at least `max_infeasible` infeasible particles.
 StepReport Simulator::Implementation::make_step(int factor, Index max_infeasible) {
+  prepare_step();
   const int substeps = state.substeps;
   integrator->set_fraction(1.0 / factor);
   set_substeps(factor * substeps);
@@ -225,6 +238,7 @@ StepReport Simulator::Implementation::make_step(int factor, Index max_infeasible
     report += make_substep();
   }
   if (const StretchLimit* limit = constraints.limit()) report.turn = factor * limit->turn();
+  note_contacts();
   integrator->set_fraction(1.0);
   set_substeps(substeps);
   return report;
@@ -237,7 +251,7 @@ StepReport Simulator::Implementation::make_substep() {
   integrator->advance(state, forces, dt());
   environment.set_interval(t, t_end);
   move_pins(t_end);
-  energy_watch.note_obstacle(environment.set().max_displacement(state.x) / dt());
+  energy_watch.note_obstacle(environment.set().max_displacement(state.x) / dt(), state.energy);
 
   StepReport report{.substeps = 1};
   constraints.apply(state, forces, dt(), t_end, report);
@@ -283,7 +297,7 @@ void Simulator::Implementation::substep_changed(double dt_before) {
 
 void Simulator::Implementation::move_pins(double time) {
   const Points v_before = state.impulses.on() ? state.v : Points();
-  energy_watch.note_pin(pin_paths.move(time, dt(), state));
+  EnergyWatch::note_pin(pin_paths.move(time, dt(), state), state.energy);
   if (!state.impulses.on()) return;
   for (Index i = 0; i < network.particle_count(); ++i) {
     if (network.is_pinned(i)) record_gain(i, v_before.col(i));
@@ -307,18 +321,21 @@ double Simulator::Implementation::air_step() const {
 }
 
 std::vector<ContactNormal> Simulator::Implementation::contact_normals() const {
-  return penalty != nullptr ? penalty->normals(state.x) : constraints.contacts().normals();
-}
-
-std::vector<Index> Simulator::Implementation::contacts_awake() const {
-  if (penalty != nullptr) return penalty->touching(state.x);
-  return kept_contacts ? *kept_contacts : constraints.contacts().pushed();
+  return penalty != nullptr ? penalty->normals(state.x) : state.contact.normals;
 }
 
 std::vector<Index> Simulator::Implementation::contacts() const {
-  std::vector<Index> all;
-  std::ranges::merge(contacts_awake(), contacts_asleep, std::back_inserter(all));
-  return all;
+  return penalty != nullptr ? penalty->touching(state.x) : state.contact.pushed;
+}
+
+/// At the end of a step.
+void Simulator::Implementation::note_contacts() {
+  if (penalty != nullptr || !constraints.contacts().can_collide()) return;
+  std::vector<Index> asleep;
+  std::ranges::copy_if(state.contact.pushed, std::back_inserter(asleep), [&](Index i) { return network.is_asleep(i); });
+  state.contact.pushed.clear();
+  std::ranges::merge(constraints.contacts().pushed(), asleep, std::back_inserter(state.contact.pushed));
+  state.contact.normals = constraints.contacts().normals();
 }
 
 void Simulator::Implementation::check_state() {
@@ -330,12 +347,12 @@ void Simulator::Implementation::check_state() {
   if (state.step > 1 && state.step % (kStepsPerEnergy * check_interval) != 0) return;
   if (!external.empty()) return;
   const Energies now = energies();
-  energy_watch.note(state.step, now);
+  EnergyWatch::note(state.step, now, state.energy);
   check_energy(now);
 }
 
 void Simulator::Implementation::check_energy(const Energies& now) const {
-  const auto explosion = energy_watch.explosion(now);
+  const auto explosion = energy_watch.explosion(now, state.energy);
   if (!explosion) return;
   StepFailure failure = divergence.fastest(state);
   failure.cause = *explosion + (failure.cause.empty() ? "" : "; " + failure.cause);
@@ -369,24 +386,37 @@ StepReport& StepReport::operator+=(const StepReport& substep) {
 
 Simulator::Simulator(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles)
     : implementation_(std::make_unique<Implementation>(std::move(network), std::move(settings), std::move(obstacles))) {}
+Simulator::Simulator(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 Simulator::~Simulator() = default;
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
 StepReport Simulator::step() {
+  std::unique_ptr<Implementation> before;
+  try {
+    return step_and_rebuild(before);
+  } catch (...) {
+    if (before) implementation_ = std::move(before);
+    throw;
+  }
+}
+
+/// A rebuilt simulator leaves the first one in `before`.
+StepReport Simulator::step_and_rebuild(std::unique_ptr<Implementation>& before) {
   const Implementation& now = *implementation_;
   const std::vector<Index> broken = breaking_springs(now.network, now.state.x);
-  if (!broken.empty() || now.sleepers != now.sleeping_patches() ||
+  if (!broken.empty() || now.state.rest.sleepers != now.sleeping_patches() ||
       have_pins_changed(now.network, due_before(now.state.step, now.settings.step))) {
     SpringNetwork network = now.network;
     set_asleep(broken.empty() ? now.particles_to_sleep() : std::vector<char>(), network);
     const std::vector<Index> left = tear(network, broken);
-    rebuild(std::move(network), left);
+    before = rebuild(std::move(network), left);
     if (!broken.empty()) implementation_->wake_all();
   }
   std::optional<StepReport> report = implementation_->step();
   while (!report) {
-    rebuild(implementation_->particles_to_sleep());
+    std::unique_ptr<Implementation> asleep = rebuild(implementation_->particles_to_sleep());
+    if (!before) before = std::move(asleep);
     report = implementation_->step();
   }
   return *report;

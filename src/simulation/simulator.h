@@ -31,6 +31,12 @@ class Simulator {
   /// `stability` warn, `warnings` reports the latter), or if intersections remain at the start. `notes` reports bodies that
   /// were moved out of intersections.
   explicit Simulator(SpringNetwork network, SimulatorSettings settings = {}, std::vector<Obstacle> obstacles = {});
+
+  /// Continues from a state: `network` and `state` are copies of network() and state() of a simulator with the same settings and
+  /// obstacles. Results may differ in their last digits from those of that simulator, which has caches of former steps. Throws
+  /// InputError as the constructor does, but for the stability of the step, which was accepted, and intersections.
+  [[nodiscard]] static Simulator resume(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles,
+                                        const SimulationState& state);
   ~Simulator();
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
@@ -38,7 +44,8 @@ class Simulator {
   /// Advances by one step. StepRefinement chooses the number of substeps; it is multiplied by up to 64 so that no obstacle or pin
   /// rotates by more than 45 degrees in a substep. A step with infeasible particles is repeated with 4, 16 and 64 times the
   /// substeps until there are none: a long step can miss an admissible position near a pin or before a fast obstacle. Repetitions
-  /// without effect become rarer (see step_retry.h). Throws StepError if the network diverged; the state is then not usable.
+  /// without effect become rarer (see step_retry.h). Throws StepError if the network diverged; the simulator then is as it was
+  /// before the call.
   ///
   /// A step first rebuilds what follows from the network, as changes do (below),
   /// - if pins begin or end, which is at the step nearest to their time;
@@ -50,8 +57,8 @@ class Simulator {
   /// Last, springs that yield get new rest lengths in network().
   StepReport step();
 
-  /// Lets step() call `stops` before each substep and throw StoppedError if it returns true; the state is then not usable. A step
-  /// with many infeasible particles can take minutes.
+  /// Lets step() call `stops` before each substep and throw StoppedError if it returns true; the simulator then is as it was before
+  /// the step. A step with many infeasible particles can take minutes.
   void stop_when(std::function<bool()> stops);
 
   // Changes between two steps. Each of them rebuilds what follows from network and settings (forces, batches, factors, cached safe
@@ -152,9 +159,11 @@ class Simulator {
  private:
   struct Implementation;
   struct External;  ///< the forces and constraints that were added
+  explicit Simulator(std::unique_ptr<Implementation> implementation);
   void continue_with_external(External external);
-  void rebuild(SpringNetwork network, const std::vector<Index>& springs_left);
-  void rebuild(std::vector<char> asleep);
+  StepReport step_and_rebuild(std::unique_ptr<Implementation>& before);
+  std::unique_ptr<Implementation> rebuild(SpringNetwork network, const std::vector<Index>& springs_left);
+  std::unique_ptr<Implementation> rebuild(std::vector<char> asleep);
 
   std::unique_ptr<Implementation> implementation_;
 };

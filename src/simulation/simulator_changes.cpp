@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -59,6 +60,12 @@ SpringNetwork with_pins_of(SpringNetwork network, std::int64_t step, double step
   return network;
 }
 
+/// Settings for a step that was accepted: its bound is an estimate, which varies with the network.
+SimulatorSettings accepted(SimulatorSettings settings) {
+  settings.stability = StabilityCheck::warn;
+  return settings;
+}
+
 double excess_of(const StepConstraints& constraints, const Points& positions) {
   return constraints.limit() != nullptr ? constraints.limit()->excess(positions) : 0.0;
 }
@@ -75,6 +82,14 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
     : Implementation(with_pins_of(std::move(model), before.state.step, before.settings.step), std::move(chosen),
                      before.shared_environment, std::move(added)) {
   take_state(before);
+}
+
+Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles,
+                                          const SimulationState& former)
+    : Implementation(std::move(model), accepted(std::move(chosen)), std::make_shared<Environment>(std::move(obstacles)), {}) {
+  return_to(former, {});
+  pin_paths.take(state);
+  integrator->resume(state, forces, dt());
 }
 
 /// Lets pins begin and end. A particle that becomes free gets its pin's mean velocity over the last `dt`. Returns whether a pin
@@ -121,6 +136,7 @@ void Simulator::Implementation::take_state(const Implementation& before) {
     state.last_impulses.of_springs.setZero(network.springs.count());
   }
   take_sleep(before);
+  state.rest.sleepers = sleeping_patches();
   const bool pins_changed = take_pins(before);
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
     if (is_held(network, network.bodies[b])) continue;
@@ -141,17 +157,13 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   }
   set_substeps(pins_changed ? max_substeps : std::min(state.substeps, max_substeps));
   step_length_changed();
-  energy_watch.note(0, energies());
-  begin = {state, energy_watch, constraints.permitted_crossings()};
 }
 
 /// Continues with a network that lost springs, and with other pins and sleepers. `springs_left` are the springs of the
-/// present network that remain in it, ascending.
-void Simulator::rebuild(SpringNetwork network, const std::vector<Index>& springs_left) {
+/// present network that remain in it, ascending. Returns the former simulator.
+std::unique_ptr<Simulator::Implementation> Simulator::rebuild(SpringNetwork network, const std::vector<Index>& springs_left) {
   const Implementation& now = *implementation_;
-  SimulatorSettings settings = now.settings;
-  settings.stability = StabilityCheck::warn;  // the step was accepted; its bound is an estimate, which varies with the network
-  auto next = std::make_unique<Implementation>(std::move(network), std::move(settings), now.external, now);
+  auto next = std::make_unique<Implementation>(std::move(network), accepted(now.settings), now.external, now);
   next->settings.stability = now.settings.stability;
   if (now.state.impulses.on()) {
     next->state.impulses.of_springs = now.state.impulses.of_springs(springs_left);
@@ -159,16 +171,24 @@ void Simulator::rebuild(SpringNetwork network, const std::vector<Index>& springs
   }
   next->warnings = now.warnings;  // with those of the start
   next->notes = now.notes;
-  implementation_ = std::move(next);
+  return std::exchange(implementation_, std::move(next));
 }
 
 /// Continues with other sleepers, by particle; empty: none.
-void Simulator::rebuild(std::vector<char> asleep) {
+std::unique_ptr<Simulator::Implementation> Simulator::rebuild(std::vector<char> asleep) {
   SpringNetwork network = implementation_->network;
   set_asleep(std::move(asleep), network);
   std::vector<Index> all_springs(static_cast<std::size_t>(network.springs.count()));
   std::iota(all_springs.begin(), all_springs.end(), 0);
-  rebuild(std::move(network), all_springs);
+  return rebuild(std::move(network), all_springs);
+}
+
+Simulator Simulator::resume(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles,
+                            const SimulationState& state) {
+  const StabilityCheck stability = settings.stability;
+  auto resumed = std::make_unique<Implementation>(std::move(network), std::move(settings), std::move(obstacles), state);
+  resumed->settings.stability = stability;
+  return Simulator(std::move(resumed));
 }
 
 void Simulator::wake() {
@@ -183,6 +203,7 @@ void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings)
   if (network.broken.count() < now.network.broken.count()) tear_as(now.network, network);
   take_rest_lengths(now.network, network);
   implementation_ = std::make_unique<Implementation>(awake(std::move(network)), std::move(settings), now.external, now);
+  implementation_->note_change();
 }
 
 void Simulator::set_gravity(const Vector3& acceleration) {
@@ -290,6 +311,7 @@ void Simulator::continue_with_external(External external) {
   wake();
   const Implementation& now = *implementation_;
   implementation_ = std::make_unique<Implementation>(now.network, now.settings, std::move(external), now);
+  implementation_->note_change();
 }
 
 }  // namespace sprung

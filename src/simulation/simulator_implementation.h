@@ -27,17 +27,14 @@ namespace sprung {
 /// The beginning of a step, for its repetition.
 struct StepBegin {
   SimulationState state;
-  EnergyWatch watch;
   PermittedCrossings crossings;
 };
 
 /// The end of a step after one attempt.
 struct Attempt {
   SimulationState state;
-  EnergyWatch watch;
   PermittedCrossings crossings;
   StepReport report;
-  std::vector<Index> contacts;  ///< of particles that are awake
 };
 
 struct Simulator::External {
@@ -51,6 +48,8 @@ struct Simulator::Implementation {
   Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles);
   /// In the state of another simulator of the same particles and obstacles.
   Implementation(SpringNetwork model, SimulatorSettings chosen, External added, const Implementation& before);
+  /// Continues from a state of the same network.
+  Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles, const SimulationState& former);
   /// Without a state.
   Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared, External added);
 
@@ -60,6 +59,8 @@ struct Simulator::Implementation {
   [[nodiscard]] bool anything_moves() const;
   /// None if the step must be made again without the sleep of some patches. The state is then that of its begin.
   std::optional<StepReport> step();
+  std::optional<StepReport> step_from_begin();
+  void return_to(const SimulationState& former, const PermittedCrossings& crossings);
   [[nodiscard]] bool may_sleep() const;
   [[nodiscard]] bool sleeps(Index patch) const;
   [[nodiscard]] bool is_free(Index patch) const;
@@ -70,18 +71,16 @@ struct Simulator::Implementation {
   void add_sleepers(const std::vector<PatchPair>& pairs, const std::vector<char>& disturbed);
   [[nodiscard]] std::vector<Index> steady_patches(const std::vector<char>& bodies) const;
   void wake_with_bodies(const std::vector<char>& asleep);
-  bool wake_disturbed(const std::vector<PatchPair>& pairs);
-  void return_to_begin();
+  [[nodiscard]] bool disturbs_sleep(const std::vector<PatchPair>& pairs);
   [[nodiscard]] bool all_sleep() const;
-  void repeat_impulses(const RecordedImpulses& before);
+  void add_impulses_of_sleepers(const RecordedImpulses& before);
   void take_sleep(const Implementation& before);
   [[nodiscard]] int factor_for_rotation() const;
   StepReport make_step(int factor, Index max_infeasible);
   [[nodiscard]] Attempt attempt_of(const StepReport& report) const;
   StepReport repeat_step(const StepReport& first, int factor_at_first);
   StepReport compare_solvers(std::size_t body, const StepReport& first, int factor);
-  void take(Attempt&& best);
-  std::optional<StepReport> attempt(int factor, Index max_infeasible);
+  std::optional<StepReport> attempt(int factor, Index max_infeasible, bool ahead);
   StepReport make_substep();
   void choose_substeps(const StepReport& report);
   void set_substeps(int substeps);
@@ -91,14 +90,16 @@ struct Simulator::Implementation {
   void move_pins(double time);
   void record_gain(Index particle, const Vector3& velocity_before);
   void begin_recording();
+  void note_change() { EnergyWatch::note_change(energies(), state.energy); }
   bool take_pins(const Implementation& before);
+  void prepare_step();
   void update_attachments();
   void record_attachments();
   [[nodiscard]] double energy(EnergyKind kind) const { return energy_of(forces, kind, state.x); }
   [[nodiscard]] Energies energies() const;
   [[nodiscard]] std::vector<ContactNormal> contact_normals() const;
   [[nodiscard]] std::vector<Index> contacts() const;
-  [[nodiscard]] std::vector<Index> contacts_awake() const;
+  void note_contacts();
   void check_state();
   void check_energy(const Energies& now) const;
   void fail(StepFailure failure) const;
@@ -129,13 +130,10 @@ struct Simulator::Implementation {
   SleepPatches patches;
   RestDetector rest;
   Surroundings surroundings;
-  std::vector<char> sleepers;  ///< whether each patch sleeps in the next step
   SimulationState state;
   StepBegin begin;
   ReactionRecord reactions;   ///< of attachments, and of pins before the last change of the simulator, in the present interval
   double forces_since = 0.0;  ///< begin of that interval [s]
-  std::vector<Index> contacts_asleep;               ///< particles that sleep, ascending
-  std::optional<std::vector<Index>> kept_contacts;  ///< of the last step, if a later attempt changed the constraints
 };
 
 }  // namespace sprung

@@ -3,8 +3,6 @@
 #include "simulation/step/limit_handover.h"
 #include "simulation/step/step_retry.h"
 
-#include <utility>
-
 namespace sprung {
 
 // A particle that moves far in a step, on a lever or between closing obstacles, may miss an admissible position that exists. With
@@ -13,16 +11,14 @@ namespace sprung {
 // could take hundreds of times longer.
 StepReport Simulator::Implementation::repeat_step(const StepReport& first, int factor_at_first) {
   Attempt best = attempt_of(first);
-  constraints.look_ahead(true);
   for (const int factor : kRetryFactors) {
     if (best.report.max_infeasible == 0 || begin.state.substeps > kMaxSubsteps / factor) break;
     if (factor <= factor_at_first) continue;
-    const auto report = attempt(factor, (best.report.max_infeasible + 1) / 2);
+    const auto report = attempt(factor, (best.report.max_infeasible + 1) / 2, true);
     if (report) best = attempt_of(*report);
   }
-  constraints.look_ahead(false);
   const StepReport report = best.report;
-  take(std::move(best));
+  return_to(best.state, best.crossings);
   note_retry(first.max_infeasible, report.max_infeasible, state);
   return report;
 }
@@ -31,53 +27,42 @@ StepReport Simulator::Implementation::repeat_step(const StepReport& first, int f
 StepReport Simulator::Implementation::compare_solvers(std::size_t body, const StepReport& first, int factor) {
   const auto excess = [&] { return constraints.limit()->excess(state.x, network.bodies[body]); };
   const double excess_of_first = excess();
-  Attempt present = attempt_of(first);
+  const Attempt present = attempt_of(first);
   const StretchHandover at_begin = begin.state.stretch_handovers[body];
   const bool to_newton = !at_begin.solved_since;
   change_solver(body, begin.state);
-  const auto other = attempt(factor, first.max_infeasible + 1);
+  const auto other = attempt(factor, first.max_infeasible + 1, false);
   begin.state.stretch_handovers[body] = at_begin;
   const bool changes = other && is_worth_changing(to_newton, excess_of_first, excess());
   const StepReport report = changes ? *other : present.report;
-  if (changes) {
-    kept_contacts.reset();
-  } else {
-    take(std::move(present));
-  }
+  if (!changes) return_to(present.state, present.crossings);
   note_comparison(body, changes, state);
   return report;
 }
 
-/// Continues from an attempt.
-void Simulator::Implementation::take(Attempt&& best) {
-  constraints.roll_back(best.crossings);
-  state = std::move(best.state);
+/// Continues from a former state of this step.
+void Simulator::Implementation::return_to(const SimulationState& former, const PermittedCrossings& crossings) {
+  state = former;
+  constraints.roll_back(crossings);
+  constraints.look_ahead(false);
+  integrator->set_fraction(1.0);
+  step_length_changed();
   environment.set_interval(time(), time());
-  if (attachments) attachments->take(state, time());  // a later attempt may have left them within the step
-  energy_watch = best.watch;
-  kept_contacts = std::move(best.contacts);
+  if (attachments) attachments->take(state, time());
 }
 
 Attempt Simulator::Implementation::attempt_of(const StepReport& report) const {
-  return {state, energy_watch, constraints.permitted_crossings(), report, contacts_awake()};
-}
-
-void Simulator::Implementation::return_to_begin() {
-  state = begin.state;
-  energy_watch = begin.watch;
-  constraints.roll_back(begin.crossings);
-  environment.set_interval(time(), time());
+  return {state, constraints.permitted_crossings(), report};
 }
 
 /// Nothing if the step diverges, or has at least `max_infeasible` infeasible particles.
-std::optional<StepReport> Simulator::Implementation::attempt(int factor, Index max_infeasible) {
-  return_to_begin();
+std::optional<StepReport> Simulator::Implementation::attempt(int factor, Index max_infeasible, bool ahead) {
+  return_to(begin.state, begin.crossings);
+  constraints.look_ahead(ahead);
   try {
     const StepReport report = make_step(factor, max_infeasible);
     return report.max_infeasible < max_infeasible ? std::optional(report) : std::nullopt;
   } catch (const StepError&) {
-    integrator->set_fraction(1.0);
-    set_substeps(begin.state.substeps);
     return std::nullopt;
   }
 }

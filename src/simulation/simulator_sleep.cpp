@@ -21,7 +21,7 @@ std::vector<char> Simulator::Implementation::sleeping_patches() const {
 /// Whether each particle sleeps in the next step.
 std::vector<char> Simulator::Implementation::particles_to_sleep() const {
   std::vector<char> asleep;
-  for (const Index p : patches.patch_of) asleep.push_back(sleepers[p]);
+  for (const Index p : patches.patch_of) asleep.push_back(state.rest.sleepers[p]);
   return asleep;
 }
 
@@ -45,7 +45,7 @@ void Simulator::Implementation::choose_sleepers() {
   const std::vector<char> driven = surroundings.driven(found, time());
   for (std::size_t p = 0; p < restless.size(); ++p) restless[p] = restless[p] != 0 || driven[p] != 0 ? 1 : 0;
   const std::vector<char> disturbed = with_neighbours(restless, found.pairs);
-  for (std::size_t p = 0; p < sleepers.size(); ++p) sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;
+  for (std::size_t p = 0; p < state.rest.sleepers.size(); ++p) state.rest.sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;
   if (window_ends) {
     rest.end_window(time(), restless, with_neighbours(asleep, found.pairs), state);
     add_sleepers(found.pairs, disturbed);
@@ -54,7 +54,7 @@ void Simulator::Implementation::choose_sleepers() {
 }
 
 void Simulator::Implementation::wake_all() {
-  std::ranges::fill(sleepers, 0);
+  std::ranges::fill(state.rest.sleepers, 0);
   RestDetector::forget(state);
 }
 
@@ -62,9 +62,10 @@ void Simulator::Implementation::wake_all() {
 /// it through others that sleep. Without contact nothing sleeps: a pendulum is slow at the end of each swing.
 void Simulator::Implementation::add_sleepers(const std::vector<PatchPair>& pairs, const std::vector<char>& disturbed) {
   std::vector<char> awake;
-  for (Index p = 0; p < patches.count(); ++p) awake.push_back(!sleeps(p) && is_free(p) && !state.rests[p].rests ? 1 : 0);
+  for (Index p = 0; p < patches.count(); ++p)
+    awake.push_back(!sleeps(p) && is_free(p) && !state.rest.histories[p].is_at_rest ? 1 : 0);
   const std::vector<char> beside_awake = with_neighbours(awake, pairs);
-  std::vector<char> candidates = sleepers;
+  std::vector<char> candidates = state.rest.sleepers;
   std::vector<char> bodies(network.bodies.size(), 0);  // of new candidates
   for (Index p = 0; p < patches.count(); ++p) {
     if (sleeps(p) || !is_free(p) || disturbed[p] != 0 || beside_awake[p] != 0) continue;
@@ -76,10 +77,10 @@ void Simulator::Implementation::add_sleepers(const std::vector<PatchPair>& pairs
     if (candidates[a] != 0 && candidates[b] != 0) joined.join(a, b);
   }
   std::vector<char> supported(candidates.size(), 0);  // by root
-  for (Index p = 0; p < patches.count(); ++p) supported[joined.root(p)] |= sleepers[p];
+  for (Index p = 0; p < patches.count(); ++p) supported[joined.root(p)] |= state.rest.sleepers[p];
   for (const Index p : steady_patches(bodies)) supported[joined.root(p)] = 1;
   for (Index p = 0; p < patches.count(); ++p) {
-    if (candidates[p] != 0) sleepers[p] = supported[joined.root(p)];
+    if (candidates[p] != 0) state.rest.sleepers[p] = supported[joined.root(p)];
   }
 }
 
@@ -106,31 +107,31 @@ void Simulator::Implementation::wake_with_bodies(const std::vector<char>& asleep
   while (changes) {
     changes = false;
     for (Index p = 0; p < patches.count(); ++p) {
-      if (asleep[p] != 0 && sleepers[p] == 0) woken[patches.patches[p].body] = 1;
+      if (asleep[p] != 0 && state.rest.sleepers[p] == 0) woken[patches.patches[p].body] = 1;
     }
     const auto wake = [&](Index p) {
-      changes = changes || sleepers[p] != 0;
-      sleepers[p] = 0;
+      changes = changes || state.rest.sleepers[p] != 0;
+      state.rest.sleepers[p] = 0;
     };
     for (Index p = 0; p < patches.count(); ++p) {
       if (woken[patches.patches[p].body] != 0) wake(p);
     }
     for (const auto& [a, b] : surroundings.attached()) {
-      if (sleepers[a] == 0 && is_free(a)) wake(b);
-      if (sleepers[b] == 0 && is_free(b)) wake(a);
+      if (state.rest.sleepers[a] == 0 && is_free(a)) wake(b);
+      if (state.rest.sleepers[b] == 0 && is_free(b)) wake(a);
     }
   }
 }
 
-/// Wakes what is beside a patch that the step made restless. Returns whether there is any: the step has to be made again without
-/// that sleep.
-bool Simulator::Implementation::wake_disturbed(const std::vector<PatchPair>& pairs) {
+/// Whether the step made a neighbour of a sleeping patch restless: the step has to be made again without the sleepers that this
+/// removes from the state.
+bool Simulator::Implementation::disturbs_sleep(const std::vector<PatchPair>& pairs) {
   if (network.asleep.empty()) return false;
   const std::vector<char> asleep = sleeping_patches();
   const std::vector<char> disturbed = with_neighbours(rest.restless(state), pairs);
-  for (std::size_t p = 0; p < sleepers.size(); ++p) sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;
+  for (std::size_t p = 0; p < state.rest.sleepers.size(); ++p) state.rest.sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;
   wake_with_bodies(asleep);
-  return sleepers != asleep;
+  return state.rest.sleepers != asleep;
 }
 
 /// Whether a step changes nothing but the time: some patches sleep, and pins hold all others at rest.
@@ -144,8 +145,8 @@ bool Simulator::Implementation::all_sleep() const {
   return any;
 }
 
-/// After each step: what sleeps repeats what its last step recorded.
-void Simulator::Implementation::repeat_impulses(const RecordedImpulses& before) {
+/// Adds the last recorded impulses of sleeping particles again.
+void Simulator::Implementation::add_impulses_of_sleepers(const RecordedImpulses& before) {
   if (!state.impulses.on()) return;
   RecordedImpulses& last = state.last_impulses;
   const bool all = all_sleep();
@@ -170,16 +171,14 @@ void Simulator::Implementation::repeat_impulses(const RecordedImpulses& before) 
 void Simulator::Implementation::take_sleep(const Implementation& before) {
   for (Index i = 0; i < network.particle_count(); ++i) {
     if (network.is_asleep(i) == before.network.is_asleep(i)) continue;
-    if (!state.rests.empty() && !network.is_asleep(i)) {
+    if (!state.rest.histories.empty() && !network.is_asleep(i)) {
       const Index patch = patches.patch_of[i];
-      state.rests[patch] = {};
-      state.rests[patches.patches.size() + patches.patches[patch].body] = {};
+      state.rest.histories[patch] = {};
+      state.rest.histories[patches.patches.size() + patches.patches[patch].body] = {};
     }
     state.v.col(i).setZero();
     if (!network.is_pinned(i)) integrator->velocity_changed(state, i, before.dt());
   }
-  std::ranges::copy_if(before.contacts(), std::back_inserter(contacts_asleep),
-                       [&](Index particle) { return network.is_asleep(particle); });
 }
 
 }  // namespace sprung

@@ -3,6 +3,7 @@
 #include "base/format.h"
 #include "scenarios/judge.h"
 #include "scenarios/position_hash.h"
+#include "scenarios/resume_check.h"
 #include "scene/reading/scene_reader.h"
 
 #include <gtest/gtest.h>
@@ -139,11 +140,13 @@ ScenarioReport run_scenario(BuiltScene scene, const Watch& watch, Judge judge) {
   FrameRunner runner(simulator, scene.steps_per_frame);
   FrameJudge frame_judge(simulator, judge);
   HashRecord record;
+  ResumeCheck resume(scene.frames, scene.steps_per_frame);
   ScenarioReport report{.step = scene.settings.step};
   for (int number = 1; number <= scene.frames; ++number) {
     const FrameDiagnostics frame = number == 1 ? runner.first_frame() : runner.next_frame();
     report.frames = number;
     record.add(simulator.positions());
+    resume.look(number, simulator);
     report.max_stretch = std::max(report.max_stretch, frame.max_stretch);
     report.truncated += frame.truncated;
     report.infeasible += frame.infeasible;
@@ -151,6 +154,7 @@ ScenarioReport run_scenario(BuiltScene scene, const Watch& watch, Judge judge) {
     frame_judge.look(number, report);
     if (watch) watch(simulator, frame);
   }
+  resume.judge();
   for (const Body& body : simulator.network().bodies) {
     if (!body.preserve_volume) continue;
     report.inverted += count_inverted(body.cells, simulator.positions().middleCols(body.first_particle, body.particle_count));

@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace sprung {
 namespace {
 
@@ -26,6 +28,18 @@ SpringNetwork two_masses(double stiffness, double damping = 0.0) {
   builder.add_spring(hook, bob, stiffness, 1.0, damping);
   builder.pin(hook);
   return builder.build();
+}
+
+/// By bits.
+void expect_equal(const SimulationState& a, const SimulationState& b) {
+  EXPECT_EQ(a.x, b.x);
+  EXPECT_EQ(a.v, b.v);
+  EXPECT_EQ(a.x_previous, b.x_previous);
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.substeps, b.substeps);
+  EXPECT_EQ(a.substep, b.substep);
+  EXPECT_EQ(a.anchors.size(), b.anchors.size());
+  EXPECT_EQ(a.impulses.on_pinned, b.impulses.on_pinned);
 }
 
 TEST(Simulator, AFreeParticleFallsByTheSumOfItsScheme) {
@@ -51,8 +65,61 @@ TEST(Simulator, StopsBetweenTheSubstepsOfAStep) {
   int asked = 0;
   simulator.stop_when([&] { return ++asked == 30; });
   EXPECT_EQ(simulator.step().substeps, 20);
+  const SimulationState begin = simulator.state();
   EXPECT_THROW(simulator.step(), StoppedError);
   EXPECT_EQ(asked, 30);
+  expect_equal(simulator.state(), begin);
+  simulator.stop_when({});
+  run(simulator, 3e-3);
+  Simulator whole(builder.build(), {.step = 1e-3});
+  run(whole, 4e-3);
+  expect_equal(simulator.state(), whole.state());
+}
+
+// A spring breaks and a pin begins before the step, which is stopped before its second substep.
+TEST(Simulator, AStepThatIsStoppedChangesNothing) {
+  NetworkBuilder builder;
+  const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+  const Index bob = builder.add_particle({0.0, -1.3, 0.0}, 1.0);
+  builder.add_spring(hook, bob, 100.0, 1.0, 0.5, SpringKind::structural, {.break_length = 1.2});
+  builder.pin(hook, {.spin = {0.0, 900.0e3, 0.0}});
+  const Index later = builder.add_particle({1.0, 0.0, 0.0}, 1.0);
+  Pin pin;
+  pin.particles = {later};
+  pin.from = 0.0005;
+  builder.add_pin(pin);
+  Simulator simulator(builder.build(), {.step = 1e-3, .record_forces = true});
+  const SimulationState begin = simulator.state();
+  int asked = 0;
+  simulator.stop_when([&] { return ++asked == 2; });
+  EXPECT_THROW(simulator.step(), StoppedError);
+  expect_equal(simulator.state(), begin);
+  EXPECT_EQ(simulator.network().springs.count(), 1);
+  EXPECT_FALSE(simulator.network().is_pinned(later));
+  simulator.step();
+  EXPECT_EQ(simulator.network().springs.count(), 0);
+}
+
+TEST(Simulator, AStepThatDivergesLeavesItsBegin) {
+  Simulator simulator(two_masses(1e4), {.step = 0.03, .stability = StabilityCheck::warn});
+  SimulationState begin = simulator.state();
+  std::string cause;
+  for (int step = 0; step < 100000 && cause.empty(); ++step) {
+    begin = simulator.state();
+    try {
+      simulator.step();
+    } catch (const StepError& error) {
+      cause = error.what();
+    }
+  }
+  ASSERT_FALSE(cause.empty());
+  expect_equal(simulator.state(), begin);
+  try {
+    simulator.step();
+    FAIL() << "the same step diverges again";
+  } catch (const StepError& error) {
+    EXPECT_EQ(error.what(), cause);
+  }
 }
 
 TEST(Simulator, PinsFollowTheirKeyframesExactly) {
@@ -212,6 +279,32 @@ TEST(Simulator, WarnsOfAngleBendsOnWeakSprings) {
   SimulatorSettings limited = settings;
   limited.stretch_limit = StretchLimitSettings{.max_compression = 0.0};
   EXPECT_THAT(Simulator(bent_rope(0.0), limited).warnings(), IsEmpty());
+}
+
+// Explicit Euler multiplies the energy of a bob by 1 + (omega dt)^2 = 1.28 a step: 1/2 k 0.05^2 = 0.125 J become about 1e6 J in the
+// 64 steps before energies are compared, 20,000 times the spring's capacity of 1/2 k 1^2. A bar breaks in almost each step; all
+// bars together bring less than a millijoule.
+TEST(Simulator, AnExplosionIsFoundWhileSpringsBreak) {
+  constexpr double kStep = 0.0533;
+  NetworkBuilder builder;
+  const Index hook = builder.add_particle({0.0, 0.0, 0.0}, 1.0);
+  builder.add_spring(hook, builder.add_particle({0.0, -1.05, 0.0}, 1.0), 100.0, 1.0);
+  builder.pin(hook);
+  for (int bar = 0; bar < 64; ++bar) {
+    const double speed = 0.05 / (kStep * (bar + 0.5));  // longer by a tenth after half a step more than `bar` steps
+    const Index left = builder.add_particle({10.0, 0.0, bar + 1.0}, 1.0e-6, {-speed, 0.0, 0.0});
+    const Index right = builder.add_particle({11.0, 0.0, bar + 1.0}, 1.0e-6, {speed, 0.0, 0.0});
+    builder.add_spring(left, right, 0.0, 1.0, 0.0, SpringKind::structural, {.break_length = 1.1});
+  }
+  Simulator simulator(builder.build(), {.step = kStep, .gravity = Vector3::Zero(), .integrator = ExplicitEulerSettings{}});
+  try {
+    run(simulator, 70.0 * kStep);
+    FAIL() << "did not explode";
+  } catch (const StepError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the energy exploded"));
+    EXPECT_EQ(error.failure().step, 64);
+  }
+  EXPECT_GT(simulator.network().broken.count(), 60);
 }
 
 TEST(Simulator, UnexplainedEnergyStopsTheRun) {

@@ -13,10 +13,10 @@
 #include "collision/obstacles/environment.h"
 #include "dynamics/contact/contact_constraint_set.h"
 #include "dynamics/contact/contact_materials.h"
-#include "dynamics/contact/contact_normal.h"
 #include "dynamics/integrators/constrained_directions.h"
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/integrators/step_motion.h"
+#include "network/model/simulation_state.h"
 #include "network/model/spring_network.h"
 
 #include <tuple>

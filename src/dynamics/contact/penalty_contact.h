@@ -2,8 +2,8 @@
 #pragma once
 
 #include "collision/obstacles/environment.h"
-#include "dynamics/contact/contact_normal.h"
 #include "dynamics/forces/force.h"
+#include "network/model/simulation_state.h"
 #include "network/model/spring_network.h"
 
 namespace sprung {

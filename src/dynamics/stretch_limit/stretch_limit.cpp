@@ -178,6 +178,10 @@ bool StretchLimit::may_follow_turn() const {
   return !follows_turn() && follows_turn(std::vector<StretchHandover>(network_.bodies.size(), {.solved_since = 0}));
 }
 
+void StretchLimit::forget_solves() const {
+  if (newton_) newton_->forget();
+}
+
 double StretchLimit::turn() const { return newton_ ? newton_->turn() : 0.0; }
 
 // Measured on a cloth of 32 particles a side that swings from its corners: without refinement it kept the energy of a run with a

@@ -55,6 +55,9 @@ class StretchLimit {
   std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers,
                            std::span<const RodRow> rods, std::vector<Vector3>& pushes, const ImpulseRecorder& recorder) const;
 
+  /// See StretchNewton::forget().
+  void forget_solves() const;
+
   /// The largest relative excess over the limits.
   [[nodiscard]] double excess(const Points& positions) const;
 

@@ -106,6 +106,13 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
   return iterations;
 }
 
+void ComponentNewton::forget() {
+  last_iterations_ = std::numeric_limits<int>::max();
+  balanced_energy_ = kUnknown;
+  farthest_squared_ = 0.0;
+  if (solver_) solver_->forget();
+}
+
 void ComponentNewton::set_rods(std::span<const RodRow> rows) {
   rows_ = rows;
   energy_.set_rods(rows);

@@ -24,6 +24,8 @@ class ComponentNewton final : public ComponentSolver {
   /// that hangs on one link, no link exceeds the tolerance afterwards.
   std::optional<int> solve(const Points& before, Points& positions, double fall) override;
 
+  void forget() override;
+
   /// Sets the rods of the next solve, by number. Keeps a reference to them. Required if the component has rods.
   void set_rods(std::span<const RodRow> rows);
 

@@ -24,6 +24,9 @@ class ComponentSolver {
   /// was too long.
   virtual std::optional<int> solve(const Points& before, Points& positions, double fall) = 0;
 
+  /// Discards what former solves left behind, such as a factor: the next solve is that of a new solver.
+  virtual void forget() = 0;
+
   /// Largest relative deformation in the last solve() [1]: the largest displacement of a point by forces minus the common
   /// displacement, divided by the component's extent. For a body that swings about its pins this is the angle of the step.
   [[nodiscard]] virtual double turn() const = 0;

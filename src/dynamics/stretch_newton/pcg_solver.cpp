@@ -82,6 +82,12 @@ void PcgSolver::solve_again(const StretchSystem& system, Points& step) {
   if (component_.pin_count() == 0 && component_.rods.empty()) keep_momentum(system.residual, step);
 }
 
+void PcgSolver::forget() {
+  kept_ = Kept::nothing;
+  last_factor_failed_ = false;
+  for (Attempt& attempt : attempts_) attempt.bearable = std::numeric_limits<double>::infinity();
+}
+
 std::optional<double> PcgSolver::solve_as_last(const StretchSystem& system, Points& step) {
   // A system that changes this fast mostly does so the next time too.
   if (std::exchange(last_factor_failed_, false)) return std::nullopt;

@@ -22,6 +22,7 @@ class PcgSolver final : public StretchSystemSolver {
   explicit PcgSolver(const StretchComponent& component);
   double solve(const StretchSystem& system, Points& step) override;
   void solve_again(const StretchSystem& system, Points& step) override;
+  void forget() override;
 
  private:
   enum class Kept : std::uint8_t { nothing, rough, exact };

@@ -122,6 +122,10 @@ void StretchNewton::record(const Points& target, const Points& positions, const 
   }
 }
 
+void StretchNewton::forget() {
+  for (const SolvedComponent& component : components_) component.solver->forget();
+}
+
 double StretchNewton::turn() const {
   double largest = 0.0;
   for (const SolvedComponent& component : components_) largest = std::max(largest, component.solver->turn());

@@ -43,6 +43,10 @@ class StretchNewton {
   std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers,
                            std::span<const RodRow> rods, std::vector<Vector3>& pushes, const ImpulseRecorder& recorder);
 
+  /// Discards what former solves left behind: the next solve depends on its arguments alone. Call it after the state was rolled
+  /// back.
+  void forget();
+
   /// Whether all limited springs of a body are solved for from the start.
   [[nodiscard]] bool solves(const Body& body) const;
   /// Whether any component is or may be solved for.

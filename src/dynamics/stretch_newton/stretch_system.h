@@ -32,6 +32,9 @@ class StretchSystemSolver {
 
   /// Solves with the blocks of the last system and another residual, by one application of their factor.
   virtual void solve_again(const StretchSystem& system, Points& step) = 0;
+
+  /// Discards factors of former systems. Default: does nothing, for a solver that keeps none.
+  virtual void forget() {}
 };
 
 /// TreeSolver for trees, otherwise PcgSolver. Keeps a reference to the component.

@@ -20,6 +20,7 @@ class TwoLevelNewton final : public ComponentSolver {
   TwoLevelNewton(const StretchComponent& component, CoarseCloth coarse, const StretchLimitSettings& settings);
 
   std::optional<int> solve(const Points& before, Points& positions, double fall) override;
+  void forget() override { newton_.forget(); }
   [[nodiscard]] double turn() const override { return newton_.turn(); }
 
  private:

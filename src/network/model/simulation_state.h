@@ -19,11 +19,41 @@ struct StretchHandover {
   std::optional<std::int64_t> solved_since;  ///< the step after which the global solve took over; none: passes enforce the limit
 };
 
-/// The rest of a patch or a body, see RestDetector.
-struct PatchRest {
+/// The motion of a sleep group or a body in the last windows, see RestDetector.
+struct MotionHistory {
   double displacement = 0.0;  ///< root mean square of the particles' displacements in the window before [m]
   bool was_quiet = false;     ///< whether the window before was quiet
-  bool rests = false;         ///< whether it was at rest in the two windows before
+  bool is_at_rest = false;    ///< whether it was at rest in the two windows before
+};
+
+/// Which groups are at rest, and which sleep in the next step.
+struct RestMemory {
+  std::optional<double> window_begin{};    ///< of the present window of RestDetector [s]; none at first
+  Points x_at_begin{};                     ///< positions then [m], 3 x n
+  Points x_beside_sleep{};                 ///< positions then or, while a neighbour sleeps, when it fell asleep [m], 3 x n
+  std::vector<MotionHistory> histories{};  ///< of each sleep group, then of each body
+  std::vector<char> sleepers{};            ///< whether each sleep group sleeps in the next step
+};
+
+/// A touching contact at a particle.
+struct ContactNormal {
+  Index particle = kNone;
+  Vector3 normal = Vector3::Zero();  ///< unit length
+};
+
+/// The contacts at the end of the last step, by projection.
+struct ContactMemory {
+  std::vector<Index> pushed{};           ///< particles that contact pushed, ascending; particles that sleep keep theirs
+  std::vector<ContactNormal> normals{};  ///< of touching contacts, for each particle that they can move
+};
+
+/// The energies and speeds so far that bound the energy that can have been supplied, see EnergyWatch.
+struct EnergyMemory {
+  double start = 0.0;            ///< of motion and springs, at the start [J]
+  double highest_gravity = 0.0;  ///< largest potential energy of gravity [J]
+  double stored = 0.0;           ///< energy of springs that was supplied slowly [J]
+  double max_kinetic = 0.0;      ///< [J]
+  double fastest_drive = 0.0;    ///< of pins and obstacles [m/s]
 };
 
 /// What friction with obstacles remembers of each particle.
@@ -41,27 +71,26 @@ struct PinAnchor {
 };
 
 struct SimulationState {
-  std::int64_t step = 0;               ///< number of completed steps
-  int substeps = 1;                    ///< number of equal substeps of the current step
-  int substep = 0;                     ///< number of completed substeps of the current step
-  int calm_steps = 0;                  ///< consecutive steps that did not need their substeps
-  int feasible_steps = 0;              ///< consecutive steps without infeasible particles
-  std::int64_t retry_from = 0;         ///< steps before this one are not repeated because of infeasible particles
-  int retry_wait = 0;                  ///< number of steps to wait after a repetition without effect
-  Index retry_infeasible = 0;          ///< exception: steps with more infeasible particles than this are repeated despite the wait
-  Points x;                            ///< positions [m], 3 x n
-  Points v;                            ///< velocities [m/s], 3 x n
-  Points x_previous;                   ///< Verlet's positions one step ago [m], 3 x n
-  Slip slip;                           ///< since particles stuck to obstacles
-  std::optional<double> rest_since{};  ///< when the present window of RestDetector began [s]; none at first
-  Points x_at_rest{};                  ///< positions then [m], 3 x n
-  Points x_beside_sleep{};             ///< positions then or, while a neighbour sleeps, when it fell asleep [m], 3 x n
-  std::vector<PatchRest> rests{};      ///< of each patch, then of each body
+  std::int64_t step = 0;        ///< number of completed steps
+  int substeps = 1;             ///< number of equal substeps of the current step
+  int substep = 0;              ///< number of completed substeps of the current step
+  int calm_steps = 0;           ///< consecutive steps that did not need their substeps
+  int feasible_steps = 0;       ///< consecutive steps without infeasible particles
+  std::int64_t retry_from = 0;  ///< steps before this one are not repeated because of infeasible particles
+  int retry_wait = 0;           ///< number of steps to wait after a repetition without effect
+  Index retry_infeasible = 0;   ///< exception: steps with more infeasible particles than this are repeated despite the wait
+  Points x;                     ///< positions [m], 3 x n
+  Points v;                     ///< velocities [m/s], 3 x n
+  Points x_previous;            ///< Verlet's positions one step ago [m], 3 x n
+  Slip slip;                    ///< since particles stuck to obstacles
+  ContactMemory contact{};
+  RestMemory rest{};
+  EnergyMemory energy{};
   std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
   std::vector<PinAnchor> anchors{};  ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle
   std::vector<Link> links{};         ///< of attachments that have engaged and not ended, by attachment; broken ones too
   RecordedImpulses impulses{};       ///< empty unless the settings ask for forces
-  RecordedImpulses last_impulses{};  ///< of the last step; particles that sleep repeat them
+  RecordedImpulses last_impulses{};  ///< of the last step; those of particles that sleep are added again in each step
 };
 
 /// Number of completed steps, plus the completed fraction of the current step. The time is this number times the step length. After

@@ -53,40 +53,49 @@ bool is_undriven(const SpringNetwork& network, const SimulatorSettings& settings
 EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles,
                          const Forces& forces)
     : mass_(network.masses.sum()),
-      step_(settings.step),
-      gravity_(settings.gravity.norm()),
-      bounce_height_(bounce_height_of(network, settings)),
-      undriven_(is_undriven(network, settings, obstacles)),
-      bounce_gain_(bounce_gain(network, obstacles)),
-      fastest_drive_(settings.has_air() ? settings.wind.max_speed() : 0.0) {
-  const double rounding = rounding_speed(network.positions, step_);
-  capacity_ = mass_ * gravity_ * bounce_height_ + 0.5 * mass_ * rounding * rounding;
+      wind_(settings.has_air() ? settings.wind.max_speed() : 0.0),
+      bounce_gain_(bounce_gain(network, obstacles)) {
+  const double rounding = rounding_speed(network.positions, settings.step);
+  capacity_ = mass_ * settings.gravity.norm() * bounce_height_of(network, settings) + 0.5 * mass_ * rounding * rounding;
   for (const auto& force : forces) capacity_ += force->capacity();
 }
 
-void EnergyWatch::note(std::int64_t step, const Energies& energies) {
-  if (step <= 1) start_ = std::max(start_, energies.kinetic + energies.of_springs());
-  highest_ = step == 0 ? energies.gravity : std::max(highest_, energies.gravity);
-  max_kinetic_ = std::max(max_kinetic_, energies.kinetic);
-  if (max_kinetic_ < kSlow * energies.of_springs()) stored_ = std::max(stored_, energies.of_springs());
+void EnergyWatch::note_change(const Energies& energies, EnergyMemory& memory) {
+  note(0, energies, memory);
+  memory.highest_gravity = energies.gravity;
 }
 
-std::optional<std::string> EnergyWatch::explosion(const Energies& energies) const {
+void EnergyWatch::note(std::int64_t step, const Energies& energies, EnergyMemory& memory) {
+  if (step <= 1) memory.start = std::max(memory.start, energies.kinetic + energies.of_springs());
+  memory.highest_gravity = std::max(memory.highest_gravity, energies.gravity);
+  memory.max_kinetic = std::max(memory.max_kinetic, energies.kinetic);
+  if (memory.max_kinetic < kSlow * energies.of_springs()) memory.stored = std::max(memory.stored, energies.of_springs());
+}
+
+std::optional<std::string> EnergyWatch::explosion(const Energies& energies, const EnergyMemory& memory) const {
   const double present = energies.kinetic + energies.of_springs();
-  if (present <= kExploded * supplied(energies)) return std::nullopt;
+  if (present <= kExploded * supplied(energies, memory)) return std::nullopt;
   return "the energy exploded: the energies of motion and springs are " + format_number(present, 3) + " J, but at most " +
-         format_number(supplied(energies), 3) + " J can have been supplied";
+         format_number(supplied(energies, memory), 3) + " J can have been supplied";
 }
 
-double EnergyWatch::supplied(const Energies& energies) const {
-  const double driven = 0.5 * mass_ * fastest_drive_ * fastest_drive_;
-  return start_ + std::max(0.0, highest_ - energies.gravity) + driven + stored_ + capacity_;
+double EnergyWatch::supplied(const Energies& energies, const EnergyMemory& memory) const {
+  const double drive = std::max(wind_, memory.fastest_drive);
+  const double released = std::max(0.0, memory.highest_gravity - energies.gravity);
+  return memory.start + released + 0.5 * mass_ * drive * drive + memory.stored + capacity_;
 }
 
-void EnergyWatch::note_frame(int frame, const Energies& energies) {
+EnergyGain::EnergyGain(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles)
+    : mass_(network.masses.sum()),
+      step_(settings.step),
+      gravity_(settings.gravity.norm()),
+      bounce_height_(bounce_height_of(network, settings)),
+      undriven_(is_undriven(network, settings, obstacles)) {}
+
+void EnergyGain::note_frame(int frame, const Energies& energies) {
   if (!undriven_ || frame == 1) return;
   const FrameEnergy now{frame, energies.kinetic + energies.of_springs() + energies.gravity};
-  max_frame_kinetic_ = std::max(max_frame_kinetic_, energies.kinetic);
+  max_kinetic_ = std::max(max_kinetic_, energies.kinetic);
   if (!lowest_ || now.energy < lowest_->energy) lowest_ = now;
   if (now.energy - lowest_->energy <= rise_end_.energy - rise_begin_.energy) return;
   rise_begin_ = *lowest_;
@@ -95,16 +104,16 @@ void EnergyWatch::note_frame(int frame, const Energies& energies) {
 
 /// A falling particle is up to half a step's displacement, g t dt / 2, from where its speed implies; a body on a stretch limit
 /// bounces by less than the length of a spring; a resting particle moves by rounding.
-double EnergyWatch::apparent_gain(const Points& positions) const {
-  const double speed = std::sqrt(2.0 * max_frame_kinetic_ / mass_);
+double EnergyGain::apparent_gain(const Points& positions) const {
+  const double speed = std::sqrt(2.0 * max_kinetic_ / mass_);
   const double height = speed * step_ + bounce_height_;
   const double rounding = rounding_speed(positions, step_);
   return mass_ * (gravity_ * height + 0.5 * rounding * rounding);
 }
 
-std::optional<std::string> EnergyWatch::gain(const Points& positions) const {
+std::optional<std::string> EnergyGain::gain(const Points& positions) const {
   const double gained = rise_end_.energy - rise_begin_.energy;
-  if (!(gained > kMaxGain * max_frame_kinetic_) || gained <= apparent_gain(positions)) return std::nullopt;
+  if (!(gained > kMaxGain * max_kinetic_) || gained <= apparent_gain(positions)) return std::nullopt;
   return "the total energy rose from " + format_number(rise_begin_.energy, 3) + " J in frame " + std::to_string(rise_begin_.frame) +
          " to " + format_number(rise_end_.energy, 3) + " J in frame " + std::to_string(rise_end_.frame) +
          ", although nothing drives the scene. Use a smaller step or more damping.";

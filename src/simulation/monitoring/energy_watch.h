@@ -3,6 +3,7 @@
 
 #include "collision/shapes/obstacle.h"
 #include "dynamics/forces/force.h"
+#include "network/model/simulation_state.h"
 #include "simulation/settings/simulator_settings.h"
 
 #include <algorithm>
@@ -22,34 +23,50 @@ struct Energies {
   [[nodiscard]] double of_springs() const { return elastic + contact; }
 };
 
-/// Answers two questions. explosion(): does the state have more energy than anything can have supplied? It looks at steps and ends
-/// the run. gain(): did the energy of an undriven scene rise between two frames? It looks at frames and gives a warning.
+/// Detects an explosion: more energy of motion and springs than anything can have supplied. What it saw in former steps is in the
+/// state.
 class EnergyWatch {
  public:
-  /// Only explosion() needs the `forces`.
+  /// Sums the capacity of the `forces`.
   EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles,
               const Forces& forces);
 
-  /// Records the energies after a step. Steps 0 and 1 both count as the start, as limits and contact may add energy in the first.
-  /// Energy of springs counts as supplied by pins or obstacles while the kinetic energy so far is below 1 % of it: an explosion
-  /// moves.
-  void note(std::int64_t step, const Energies& energies);
+  /// Records the energies at time 0, or after a change between two steps that may have brought energy, as that of a spring.
+  static void note_change(const Energies& energies, EnergyMemory& memory);
+
+  /// Records the energies after a step. Step 1 counts as the start too, as limits and contact may add energy in it. Energy of
+  /// springs counts as supplied by pins or obstacles while the kinetic energy so far is below 1 % of it: an explosion moves.
+  static void note(std::int64_t step, const Energies& energies, EnergyMemory& memory);
 
   /// Records the speed [m/s] of a pin.
-  void note_pin(double speed) { fastest_drive_ = std::max(fastest_drive_, speed); }
+  static void note_pin(double speed, EnergyMemory& memory) { memory.fastest_drive = std::max(memory.fastest_drive, speed); }
 
   /// Records the speed [m/s] at which an obstacle may hit a body. A body that bounces with restitution e between two obstacles that
   /// approach at speed v reaches v (1 + e) / (1 - e), as each bounce turns its speed u into e (u + v) + v. A closing wedge
   /// accelerates its content by 1 / tan(angle), taken as at most 32 (2 degrees).
-  void note_obstacle(double speed) {
-    if (speed > 0.0) fastest_drive_ = std::max(fastest_drive_, bounce_gain_ * speed);
+  void note_obstacle(double speed, EnergyMemory& memory) const {
+    if (speed > 0.0) memory.fastest_drive = std::max(memory.fastest_drive, bounce_gain_ * speed);
   }
 
   /// Describes the explosion if the energies of motion and springs exceed 1,000 times the energy that can have been supplied. That
   /// is the sum of: the energy at the start; the potential energy released since; the energy supplied slowly (see note()); the
   /// kinetic energy of all particles at the speed of the fastest pin, wind or obstacle; the capacity of the
   /// forces (see Force::capacity); with a stretch limit, the energy to lift all particles by one spring length; and rounding.
-  [[nodiscard]] std::optional<std::string> explosion(const Energies& energies) const;
+  [[nodiscard]] std::optional<std::string> explosion(const Energies& energies, const EnergyMemory& memory) const;
+
+ private:
+  [[nodiscard]] double supplied(const Energies& energies, const EnergyMemory& memory) const;
+
+  double mass_;         ///< [kg]
+  double wind_;         ///< largest speed [m/s]
+  double bounce_gain_;  ///< factor on the speed of obstacles
+  double capacity_;     ///< of forces and limits [J]
+};
+
+/// Answers at the end of a run: did the energy rise between two frames, although nothing drives the scene?
+class EnergyGain {
+ public:
+  EnergyGain(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles);
 
   /// Records the energies of a frame. Frame 1 is ignored, as limits and contact may add energy in the first steps.
   void note_frame(int frame, const Energies& energies);
@@ -65,7 +82,6 @@ class EnergyWatch {
     double energy = 0.0;  ///< [J]
   };
 
-  [[nodiscard]] double supplied(const Energies& energies) const;
   [[nodiscard]] double apparent_gain(const Points& positions) const;
 
   double mass_;                        ///< [kg]
@@ -73,14 +89,7 @@ class EnergyWatch {
   double gravity_;                     ///< [m/s^2]
   double bounce_height_;               ///< length of the longest spring, with a stretch limit [m]
   bool undriven_;                      ///< see gain()
-  double bounce_gain_;                 ///< factor on the speed of obstacles
-  double fastest_drive_;               ///< [m/s]
-  double capacity_;                    ///< of forces and limits [J]
-  double start_ = 0.0;                 ///< [J]
-  double highest_ = 0.0;               ///< largest potential energy of gravity [J]
-  double stored_ = 0.0;                ///< energy of springs supplied slowly [J]
-  double max_kinetic_ = 0.0;           ///< of steps [J]
-  double max_frame_kinetic_ = 0.0;     ///< of frames [J]
+  double max_kinetic_ = 0.0;           ///< of frames [J]
   std::optional<FrameEnergy> lowest_;  ///< frame of the smallest total energy
   FrameEnergy rise_begin_;             ///< of the largest rise
   FrameEnergy rise_end_;

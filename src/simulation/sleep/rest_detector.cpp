@@ -89,7 +89,7 @@ void RestDetector::find_limited(const SpringNetwork& network, const StretchLimit
 
 std::vector<char> RestDetector::restless(const SimulationState& state) const {
   std::vector<char> restless(patches_.size(), 0);
-  if (!state.rest_since) return restless;
+  if (!state.rest.window_begin) return restless;
   std::vector<char> misses_limit(bodies_.size(), 0);
   for (const Limited& spring : limited_) {
     const double squared = (state.x.col(spring.ends[0]) - state.x.col(spring.ends[1])).squaredNorm();
@@ -110,7 +110,7 @@ std::vector<Vector3> RestDetector::changes_of_pull(const SimulationState& state)
   std::vector<Vector3> changes(patches_.size(), Vector3::Zero());
   for (const Pulling& spring : pulling_) {
     const Vector3 now = state.x.col(spring.awake) - state.x.col(spring.asleep);
-    const Vector3 then = state.x_beside_sleep.col(spring.awake) - state.x.col(spring.asleep);
+    const Vector3 then = state.rest.x_beside_sleep.col(spring.awake) - state.x.col(spring.asleep);
     if (now.norm() == 0.0) continue;
     changes[spring.asleep_patch] += spring.stiffness * (now.norm() - then.norm()) * now.normalized();
   }
@@ -118,64 +118,64 @@ std::vector<Vector3> RestDetector::changes_of_pull(const SimulationState& state)
 }
 
 bool RestDetector::window_ends(double time, const SimulationState& state) {
-  return !state.rest_since || time - *state.rest_since >= kWindow;
+  return !state.rest.window_begin || time - *state.rest.window_begin >= kWindow;
 }
 
 void RestDetector::end_window(double time, const std::vector<char>& restless, const std::vector<char>& beside,
                               SimulationState& state) const {
-  if (!state.rest_since) {
-    state.rests.assign(patches_.size() + bodies_.size(), {});
-    state.x_beside_sleep = state.x;
+  if (!state.rest.window_begin) {
+    state.rest.histories.assign(patches_.size() + bodies_.size(), {});
+    state.rest.x_beside_sleep = state.x;
   } else {
     judge_all(restless, state);
   }
-  state.rest_since = time;
-  state.x_at_rest = state.x;
+  state.rest.window_begin = time;
+  state.rest.x_at_begin = state.x;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     if (beside[p] != 0) continue;
-    for (const Index i : patches_[p].free) state.x_beside_sleep.col(i) = state.x.col(i);
+    for (const Index i : patches_[p].free) state.rest.x_beside_sleep.col(i) = state.x.col(i);
   }
 }
 
 void RestDetector::forget(SimulationState& state) {
-  state.rest_since.reset();
-  state.x_at_rest.resize(3, 0);
-  state.x_beside_sleep.resize(3, 0);
-  state.rests.clear();
+  state.rest.window_begin.reset();
+  state.rest.x_at_begin.resize(3, 0);
+  state.rest.x_beside_sleep.resize(3, 0);
+  state.rest.histories.clear();
 }
 
 bool RestDetector::has_moved(const Watched& patch, const SimulationState& state) {
   return std::ranges::any_of(patch.free, [&](Index i) {
-    return (state.x.col(i) - state.x_beside_sleep.col(i)).squaredNorm() > patch.longest * patch.longest;
+    return (state.x.col(i) - state.rest.x_beside_sleep.col(i)).squaredNorm() > patch.longest * patch.longest;
   });
 }
 
 void RestDetector::judge_all(const std::vector<char>& restless, SimulationState& state) const {
   std::vector<char> of_bodies(bodies_.size(), 0);
-  const auto rest_of_body = [&](std::size_t body) -> PatchRest& { return state.rests[patches_.size() + body]; };
+  const auto rest_of_body = [&](std::size_t body) -> MotionHistory& { return state.rest.histories[patches_.size() + body]; };
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const std::size_t body = patches_[p].body;
     of_bodies[body] = of_bodies[body] != 0 || restless[p] != 0 ? 1 : 0;
-    judge(patches_[p], restless[p] != 0, state, state.rests[p]);
+    judge(patches_[p], restless[p] != 0, state, state.rest.histories[p]);
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) judge(bodies_[b], of_bodies[b] != 0, state, rest_of_body(b));
   for (std::size_t p = 0; p < patches_.size(); ++p) {
-    state.rests[p].rests = state.rests[p].rests || rest_of_body(patches_[p].body).rests;
+    state.rest.histories[p].is_at_rest = state.rest.histories[p].is_at_rest || rest_of_body(patches_[p].body).is_at_rest;
   }
 }
 
-void RestDetector::judge(const Watched& patch, bool is_restless, const SimulationState& state, PatchRest& rest) const {
+void RestDetector::judge(const Watched& patch, bool is_restless, const SimulationState& state, MotionHistory& rest) const {
   const auto root_mean_square = [&](const auto& vector) {
     double sum = 0.0;
     for (const Index i : patch.free) sum += vector(i).squaredNorm();
     return patch.free.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(patch.free.size()));
   };
   const double speed = root_mean_square([&](Index i) { return state.v.col(i); });
-  const double displacement = root_mean_square([&](Index i) { return state.x.col(i) - state.x_at_rest.col(i); });
+  const double displacement = root_mean_square([&](Index i) { return state.x.col(i) - state.rest.x_at_begin.col(i); });
   const double largest = kQuiet * patch.longest;
   const bool is_quiet = !is_restless && speed <= slow_ && displacement <= largest;
   const bool grows = displacement > kGrowth * std::max(rest.displacement, kNoise * largest);
-  rest = {.displacement = displacement, .was_quiet = is_quiet, .rests = is_quiet && rest.was_quiet && !grows};
+  rest = {.displacement = displacement, .was_quiet = is_quiet, .is_at_rest = is_quiet && rest.was_quiet && !grows};
 }
 
 }  // namespace sprung

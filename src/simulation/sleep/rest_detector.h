@@ -31,11 +31,11 @@ class RestDetector {
   /// Whether a window ends at `time` [s], or the first one begins.
   [[nodiscard]] static bool window_ends(double time, const SimulationState& state);
 
-  /// At the end of a window, sets PatchRest::rests and begins the next one. A window is quiet for a patch that is not in `restless`
-  /// if the root mean square of its displacements is at most an eighth of the largest at rest, and that of its speeds is slow. A
-  /// patch rests after two quiet windows, unless it moved farther in the second: what begins to slide or to fall over is slow at
-  /// first. All patches of a body rest too if the same is true of the body as a whole, of which a few particles may move more.
-  /// `beside` are the patches that sleep, and their neighbours.
+  /// At the end of a window, sets MotionHistory::rests and begins the next one. A window is quiet for a patch that is not in
+  /// `restless` if the root mean square of its displacements is at most an eighth of the largest at rest, and that of its speeds is
+  /// slow. A patch rests after two quiet windows, unless it moved farther in the second: what begins to slide or to fall over is
+  /// slow at first. All patches of a body rest too if the same is true of the body as a whole, of which a few particles may move
+  /// more. `beside` are the patches that sleep, and their neighbours.
   void end_window(double time, const std::vector<char>& restless, const std::vector<char>& beside, SimulationState& state) const;
 
   /// Begins all rest anew.
@@ -67,7 +67,7 @@ class RestDetector {
   [[nodiscard]] std::vector<Vector3> changes_of_pull(const SimulationState& state) const;
   [[nodiscard]] static bool has_moved(const Watched& patch, const SimulationState& state);
   void judge_all(const std::vector<char>& restless, SimulationState& state) const;
-  void judge(const Watched& patch, bool is_restless, const SimulationState& state, PatchRest& rest) const;
+  void judge(const Watched& patch, bool is_restless, const SimulationState& state, MotionHistory& rest) const;
 
   double slow_;                   ///< [m/s]
   std::vector<Watched> patches_;  ///< without free particles: patches that sleep or that pins hold as a whole

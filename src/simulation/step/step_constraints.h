@@ -25,7 +25,11 @@ class StepConstraints {
 
   /// See StepTruncation.
   [[nodiscard]] const PermittedCrossings& permitted_crossings() const { return contacts_.permitted_crossings(); }
-  void roll_back(const PermittedCrossings& permitted) { contacts_.roll_back(permitted); }
+  /// Restores the permitted crossings, and discards cached regions and factors. Call it after the state was rolled back.
+  void roll_back(const PermittedCrossings& permitted) {
+    contacts_.roll_back(permitted);
+    if (limit_) limit_->forget_solves();
+  }
   /// While a step with infeasible particles is repeated, contacts are found farther ahead, and passes alone enforce the limit: a
   /// global solve does not know contacts and moves particles far.
   void look_ahead(bool ahead) {

@@ -21,7 +21,7 @@ struct StepReport {
   StepReport& operator+=(const StepReport& substep);
 };
 
-/// A step was stopped by Simulator::stop_when. The state is then not usable.
+/// A step was stopped by Simulator::stop_when. The simulator is as it was before the step.
 class StoppedError : public std::runtime_error {
  public:
   StoppedError() : std::runtime_error("the step was stopped") {}

@@ -5,7 +5,6 @@
 // anything visible, and the instability makes it grow.
 #pragma once
 
-#include "dynamics/contact/contact_normal.h"
 #include "dynamics/integrators/integrator.h"
 #include "network/model/simulation_state.h"
 #include "network/model/spring_network.h"

@@ -24,13 +24,33 @@ SpringNetwork two_masses(double stiffness, double rest_length) {
   return builder.build();
 }
 
-EnergyWatch watch(const SpringNetwork& network) {
+/// A watch with the memory of one run.
+class WatchedRun {
+ public:
+  WatchedRun(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles,
+             const Forces& forces)
+      : watch_(network, settings, obstacles, forces) {}
+
+  /// Step 0 is the start.
+  void note(std::int64_t step, const Energies& energies) {
+    step == 0 ? EnergyWatch::note_change(energies, memory_) : EnergyWatch::note(step, energies, memory_);
+  }
+  void note_pin(double speed) { EnergyWatch::note_pin(speed, memory_); }
+  void note_obstacle(double speed) { watch_.note_obstacle(speed, memory_); }
+  [[nodiscard]] bool explosion(const Energies& energies) const { return watch_.explosion(energies, memory_).has_value(); }
+
+ private:
+  EnergyWatch watch_;
+  EnergyMemory memory_;
+};
+
+WatchedRun watch(const SpringNetwork& network) {
   const SimulatorSettings settings{.step = 0.01};
   return {network, settings, {}, network_forces(network, settings)};
 }
 
 TEST(EnergyWatch, AllowsAThousandTimesTheInitialKineticEnergy) {
-  EnergyWatch energy = watch(one_particle());
+  WatchedRun energy = watch(one_particle());
   energy.note(0, {.kinetic = 1.0});
   EXPECT_FALSE(energy.explosion({.kinetic = 999.0}));
   EXPECT_TRUE(energy.explosion({.kinetic = 1001.0}));
@@ -42,7 +62,7 @@ TEST(EnergyWatch, AllowsAThousandTimesTheInitialKineticEnergy) {
 }
 
 TEST(EnergyWatch, ALiftedBodyMayFall) {
-  EnergyWatch energy = watch(one_particle());
+  WatchedRun energy = watch(one_particle());
   energy.note(0, {.gravity = -3.0});
   energy.note(64, {.gravity = 1.0});
   energy.note(128, {.gravity = 0.5});
@@ -50,9 +70,18 @@ TEST(EnergyWatch, ALiftedBodyMayFall) {
   EXPECT_TRUE(energy.explosion({.kinetic = 4001.0, .gravity = -3.0}));
 }
 
+// A change of gravity moves the zero of the potential energy, so that what was released before does not count.
+TEST(EnergyWatch, AChangeMayBringEnergy) {
+  WatchedRun energy = watch(one_particle());
+  energy.note(0, {.gravity = 5.0});
+  energy.note(0, {.elastic = 2.0, .gravity = -5.0});
+  EXPECT_FALSE(energy.explosion({.kinetic = 1999.0, .gravity = -5.0}));
+  EXPECT_TRUE(energy.explosion({.kinetic = 4001.0, .gravity = -5.0}));
+}
+
 // 1/2 m v^2 = 9 J.
 TEST(EnergyWatch, EveryParticleMayMoveAsFastAsThePins) {
-  EnergyWatch energy = watch(one_particle());
+  WatchedRun energy = watch(one_particle());
   energy.note(0, {});
   energy.note_pin(3.0);
   energy.note_pin(2.0);
@@ -65,12 +94,12 @@ TEST(EnergyWatch, EveryParticleMayMoveAsFastAsThePins) {
 TEST(EnergyWatch, EveryParticleMayMoveAsFastAsObstaclesDriveIt) {
   const SpringNetwork network = one_particle();
   Obstacle obstacle{.name = "wall", .geometry = HalfSpaceGeometry{}};
-  EnergyWatch hard(network, {.step = 0.01}, {obstacle}, {});
+  WatchedRun hard(network, {.step = 0.01}, {obstacle}, {});
   obstacle.material.restitution = 0.5;
-  EnergyWatch bouncing(network, {.step = 0.01}, {obstacle}, {});
+  WatchedRun bouncing(network, {.step = 0.01}, {obstacle}, {});
   obstacle.material.restitution = 1.0;
-  EnergyWatch lossless(network, {.step = 0.01}, {obstacle}, {});
-  for (EnergyWatch* energy : {&hard, &bouncing, &lossless}) {
+  WatchedRun lossless(network, {.step = 0.01}, {obstacle}, {});
+  for (WatchedRun* energy : {&hard, &bouncing, &lossless}) {
     energy->note(0, {.kinetic = 1.0e-6});
     energy->note_obstacle(0.0);
     EXPECT_TRUE(energy->explosion({.kinetic = 1.0}));
@@ -89,7 +118,7 @@ TEST(EnergyWatch, EverySpringMayBeStretchedToTwiceItsLength) {
   builder.add_particle(Vector3::Zero(), 1.0);
   builder.add_particle(Vector3::UnitX(), 1.0);
   builder.add_spring(0, 1, 2.0, 2.0);
-  EnergyWatch energy = watch(builder.build());
+  WatchedRun energy = watch(builder.build());
   energy.note(0, {});
   EXPECT_FALSE(energy.explosion({.kinetic = 2000.0, .elastic = 1999.0}));
   EXPECT_TRUE(energy.explosion({.kinetic = 2000.0, .elastic = 2001.0}));
@@ -98,9 +127,9 @@ TEST(EnergyWatch, EverySpringMayBeStretchedToTwiceItsLength) {
 // The springs' capacity is 1/2 J, the stored energy 100 J.
 TEST(EnergyWatch, ASlowlyStretchedSpringMaySnap) {
   const SpringNetwork network = two_masses(1.0, 1.0);
-  EnergyWatch slow = watch(network);
-  EnergyWatch fast = watch(network);
-  for (EnergyWatch* energy : {&slow, &fast}) energy->note(0, {});
+  WatchedRun slow = watch(network);
+  WatchedRun fast = watch(network);
+  for (WatchedRun* energy : {&slow, &fast}) energy->note(0, {});
   slow.note(64, {.kinetic = 0.9, .elastic = 100.0});
   fast.note(64, {.kinetic = 1.1, .elastic = 100.0});
   EXPECT_FALSE(slow.explosion({.kinetic = 100499.0}));
@@ -113,7 +142,7 @@ TEST(EnergyWatch, ASlowlyStretchedSpringMaySnap) {
 TEST(EnergyWatch, RoundingIsNoExplosion) {
   NetworkBuilder builder;
   builder.add_particle(Vector3::UnitX(), 2.0);
-  EnergyWatch energy = watch(builder.build());
+  WatchedRun energy = watch(builder.build());
   energy.note(0, {});
   EXPECT_FALSE(energy.explosion({.kinetic = 2.2e-9}));
   EXPECT_TRUE(energy.explosion({.kinetic = 2.3e-9}));
@@ -123,7 +152,7 @@ TEST(EnergyWatch, RoundingIsNoExplosion) {
 TEST(EnergyWatch, AParticleAtItsStretchLimitMayBounceByTheLengthOfASpring) {
   const SpringNetwork network = two_masses(0.0, 2.0);
   const SimulatorSettings settings{.step = 0.01, .gravity = {0.0, -10.0, 0.0}, .stretch_limit = StretchLimitSettings{}};
-  EnergyWatch energy(network, settings, {}, network_forces(network, settings));
+  WatchedRun energy(network, settings, {}, network_forces(network, settings));
   energy.note(0, {});
   EXPECT_FALSE(energy.explosion({.kinetic = 39999.0}));
   EXPECT_TRUE(energy.explosion({.kinetic = 40001.0}));

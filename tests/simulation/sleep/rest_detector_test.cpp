@@ -32,7 +32,7 @@ class Rest : public ::testing::Test {
     detector_.end_window(time_, restless_, beside.empty() ? none_ : beside, state_);
   }
 
-  [[nodiscard]] bool rests(Index patch) const { return state_.rests[patch].rests; }
+  [[nodiscard]] bool rests(Index patch) const { return state_.rest.histories[patch].is_at_rest; }
 
   SpringNetwork network_ = cloth(20, 0.0);
   SleepPatches patches_{network_};

@@ -1,0 +1,31 @@
+// Whether a run that is resumed gives the same bits as one that goes on.
+#pragma once
+
+#include "simulation/simulator.h"
+
+#include <memory>
+
+namespace sprung::testing {
+
+/// Chooses a frame of a run at random, resumes a copy of the run there with new caches, and compares the positions and velocities
+/// of both in the frames that follow. Runs that are known to differ stand in known_resumes.txt: a test fails if another run
+/// differs, and if a run of the list does not, so that the list only shrinks.
+class ResumeCheck {
+ public:
+  /// The run has `frames` frames of `steps_per_frame` steps.
+  ResumeCheck(int frames, int steps_per_frame);
+
+  /// Call it after each frame, whose number counts from 1.
+  void look(int frame, const Simulator& simulator);
+
+  /// Call it at the end of a run that did not diverge.
+  void judge() const;
+
+ private:
+  int steps_per_frame_;
+  int begin_;  ///< frame after which the copy is made
+  std::unique_ptr<Simulator> resumed_;
+  int first_different_ = 0;  ///< frame; 0: none
+};
+
+}  // namespace sprung::testing
