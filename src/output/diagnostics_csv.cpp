@@ -14,7 +14,12 @@ struct Column {
 
 using Frame = FrameDiagnostics;
 
-const std::array<Column, 16> kColumns{{
+std::string name_of(PlanReason reason) {
+  constexpr std::array kNames{"first", "excess", "deformation", "rotation", "infeasible", "solver_trial", "wake"};
+  return kNames.at(static_cast<std::size_t>(reason));
+}
+
+const std::array<Column, 17> kColumns{{
     {"frame", [](const Frame& frame) { return std::to_string(frame.frame); }},
     {"time", [](const Frame& frame) { return format_number(frame.time); }},
     {"kinetic_energy", [](const Frame& frame) { return format_number(frame.kinetic_energy); }},
@@ -29,6 +34,7 @@ const std::array<Column, 16> kColumns{{
     {"infeasible", [](const Frame& frame) { return std::to_string(frame.infeasible); }},
     {"limit_solves", [](const Frame& frame) { return std::to_string(frame.limit_solves); }},
     {"substeps", [](const Frame& frame) { return std::to_string(frame.substeps); }},
+    {"reason", [](const Frame& frame) { return name_of(frame.reason); }},
     {"contact_energy", [](const Frame& frame) { return format_number(frame.contact_energy); }},
     {"inverted_cells", [](const Frame& frame) { return std::to_string(frame.inverted_cells); }},
 }};

@@ -90,7 +90,7 @@ RecordedFrame RunRecorder::frame(const Simulator& simulator) {
                       .states = std::vector<std::uint8_t>(static_cast<std::size_t>(network.particle_count())),
                       .broken = broken_};
   // Pins that are due begin and end at the begin of the next step, but count from their time on.
-  const double due = due_before(simulator.state().step, simulator.settings().step);
+  const double due = due_before(whole_steps(simulator.state()), simulator.settings().step);
   for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
     for (const Pin& pin : *pins) {
       if (!holds_at(pin, due)) continue;

@@ -66,8 +66,10 @@ FrameDiagnostics FrameRunner::next_frame() {
   simulator_.reset_forces();
   StepReport all;
   int max_substeps = 1;
+  PlanReason reason = PlanReason::first;
   for (int step = 0; step < steps_per_frame_; ++step) {
     const StepReport report = simulator_.step();
+    if (step == 0 || report.substeps > max_substeps) reason = report.reason;
     max_substeps = std::max(max_substeps, report.substeps);
     all += report;
   }
@@ -80,6 +82,7 @@ FrameDiagnostics FrameRunner::next_frame() {
   diagnostics.infeasible = all.infeasible;
   diagnostics.max_infeasible = all.max_infeasible;
   diagnostics.substeps = all.substeps;
+  diagnostics.reason = reason;
   diagnostics.smallest_step = all.substeps > 0 ? simulator_.settings().step / max_substeps : 0.0;
   diagnostics.limit_solves = all.limit_solves;
   diagnostics.frame_ms = elapsed.count();

@@ -41,11 +41,8 @@ class Simulator {
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
-  /// Advances by one step. StepRefinement chooses the number of substeps; it is multiplied by up to 64 so that no obstacle or pin
-  /// rotates by more than 45 degrees in a substep. A step with infeasible particles is repeated with 4, 16 and 64 times the
-  /// substeps until there are none: a long step can miss an admissible position near a pin or before a fast obstacle. Repetitions
-  /// without effect become rarer (see step_retry.h). Throws StepError if the network diverged; the simulator then is as it was
-  /// before the call.
+  /// Advances by one step. StepPlanner divides it into substeps, and may repeat it with others. Throws StepError if the network
+  /// diverged; the simulator then is as it was before the call.
   ///
   /// A step first rebuilds what follows from the network, as changes do (below),
   /// - if pins begin or end, which is at the step nearest to their time;
@@ -67,7 +64,8 @@ class Simulator {
   // throws InputError that names every problem; the simulation then continues as before.
 
   /// Continues with another network and other settings. Requires a network that NetworkBuilder made with the same bodies and the
-  /// same particles. The step and the start of contact cannot change, nor what collides (Body::contact) or how (response).
+  /// same particles. The start of contact cannot change, nor what collides (Body::contact) or how (response). The step may change with
+  /// steps_per_frame at the end of a frame.
   /// Springs that broke stay broken, and springs that yielded keep their rest lengths.
   void continue_with(SpringNetwork network, SimulatorSettings settings);
 

@@ -32,9 +32,25 @@ bool collide_alike(const SpringNetwork& a, const SpringNetwork& b) {
   });
 }
 
-// The cached contacts and permitted crossings of a run belong to its elements, and time is counted in steps.
+// Time is counted in frames, and within a frame in steps.
+void check_step_change(const SimulatorSettings& settings, const SimulatorSettings& before, const SimulationState& state,
+                       ProblemList& problems) {
+  if (settings.step == before.step && settings.steps_per_frame == before.steps_per_frame) return;
+  const double frame = before.step * before.steps_per_frame;
+  constexpr double kRounding = 1.0e-9;
+  if (std::abs(settings.step * settings.steps_per_frame - frame) > kRounding * frame) {
+    problems.add("step", format_number(settings.step, 6),
+                 "times steps_per_frame must stay a frame of " + format_number(frame, 6) + " s, as the run goes on",
+                 "change both, or begin a new run");
+  } else if (state.step_in_frame != 0) {
+    problems.add("step", format_number(settings.step, 6), "may change at the end of a frame alone, as the run goes on",
+                 "make the other steps of the frame first");
+  }
+}
+
+// The cached contacts and permitted crossings of a run belong to its elements.
 void check_change(const SpringNetwork& network, const SimulatorSettings& settings, const SpringNetwork& network_before,
-                  const SimulatorSettings& settings_before) {
+                  const SimulatorSettings& settings_before, const SimulationState& state) {
   const std::string restart = "begin a new run";
   ProblemList problems;
   if (!have_same_bodies(network, network_before)) {
@@ -45,10 +61,7 @@ void check_change(const SpringNetwork& network, const SimulatorSettings& setting
   if (network.broken.count() > network_before.broken.count()) {
     problems.add("springs", "", "must not lack springs that did not break in this run", restart);
   }
-  if (settings.step != settings_before.step) {
-    problems.add("step", format_number(settings.step, 6),
-                 "must stay " + format_number(settings_before.step, 6) + " s, as the run goes on", restart);
-  }
+  check_step_change(settings, settings_before, state, problems);
   if (settings.contact.response != settings_before.contact.response) {
     problems.add("contact.response", "", "must stay as it is, as the run goes on", restart);
   }
@@ -79,7 +92,7 @@ void check_number(const std::string& key, double number, ProblemList& problems) 
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, External added,
                                           const Implementation& before)
-    : Implementation(with_pins_of(std::move(model), before.state.step, before.settings.step), std::move(chosen),
+    : Implementation(with_pins_of(std::move(model), whole_steps(before.state), before.settings.step), std::move(chosen),
                      before.shared_environment, std::move(added)) {
   take_state(before);
 }
@@ -87,7 +100,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles,
                                           const SimulationState& former)
     : Implementation(std::move(model), accepted(std::move(chosen)), std::make_shared<Environment>(std::move(obstacles)), {}) {
-  return_to(former, {});
+  return_to({former, {}});
   pin_paths.take(state);
   integrator->resume(state, forces, dt());
 }
@@ -122,9 +135,9 @@ bool Simulator::Implementation::take_pins(const Implementation& before) {
 
 /// A body stays handed over to a global solve only if the limit may still hand it over.
 void Simulator::Implementation::take_state(const Implementation& before) {
-  const int max_substeps = refinement ? settings.max_substeps : 1;
   stops = before.stops;
   state = before.state;
+  state.steps_per_frame = settings.steps_per_frame;
   reactions = before.reactions;
   forces_since = before.forces_since;
   if (settings.record_forces != state.impulses.on()) {
@@ -136,7 +149,7 @@ void Simulator::Implementation::take_state(const Implementation& before) {
     state.last_impulses.of_springs.setZero(network.springs.count());
   }
   take_sleep(before);
-  state.rest.sleepers = sleeping_patches();
+  state.rest.sleepers = sleeping_groups();
   const bool pins_changed = take_pins(before);
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
     if (is_held(network, network.bodies[b])) continue;
@@ -155,7 +168,8 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   } else {
     integrator->start(state, forces, before.dt());
   }
-  set_substeps(pins_changed ? max_substeps : std::min(state.substeps, max_substeps));
+  planner.note_change(pins_changed, state);
+  substep_changed(before.dt());
   step_length_changed();
 }
 
@@ -197,7 +211,7 @@ void Simulator::wake() {
 }
 
 void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings) {
-  check_change(network, settings, implementation_->network, implementation_->settings);
+  check_change(network, settings, implementation_->network, implementation_->settings, implementation_->state);
   wake();
   const Implementation& now = *implementation_;
   if (network.broken.count() < now.network.broken.count()) tear_as(now.network, network);

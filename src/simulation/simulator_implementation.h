@@ -9,32 +9,26 @@
 #include "simulation/reaction_record.h"
 #include "simulation/simulator.h"
 #include "simulation/sleep/rest_detector.h"
-#include "simulation/sleep/sleep_patch.h"
+#include "simulation/sleep/sleep_group.h"
 #include "simulation/sleep/surroundings.h"
 #include "simulation/step/pin_paths.h"
 #include "simulation/step/step_constraints.h"
-#include "simulation/step/step_refinement.h"
+#include "simulation/step/step_planner.h"
 #include "simulation/step/symmetry_breaker.h"
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace sprung {
 
-/// The beginning of a step, for its repetition.
-struct StepBegin {
+/// A state of a step to which it can return.
+struct StepState {
   SimulationState state;
   PermittedCrossings crossings;
-};
-
-/// The end of a step after one attempt.
-struct Attempt {
-  SimulationState state;
-  PermittedCrossings crossings;
-  StepReport report;
 };
 
 struct Simulator::External {
@@ -57,42 +51,40 @@ struct Simulator::Implementation {
   void add_constraints();
   void take_state(const Implementation& before);
   [[nodiscard]] bool anything_moves() const;
-  /// None if the step must be made again without the sleep of some patches. The state is then that of its begin.
-  std::optional<StepReport> step();
-  std::optional<StepReport> step_from_begin();
-  void return_to(const SimulationState& former, const PermittedCrossings& crossings);
-  [[nodiscard]] bool may_sleep() const;
-  [[nodiscard]] bool sleeps(Index patch) const;
-  [[nodiscard]] bool is_free(Index patch) const;
-  [[nodiscard]] std::vector<char> sleeping_patches() const;
-  [[nodiscard]] std::vector<char> particles_to_sleep() const;
-  void choose_sleepers();
-  void wake_all();
-  void add_sleepers(const std::vector<PatchPair>& pairs, const std::vector<char>& disturbed);
-  [[nodiscard]] std::vector<Index> steady_patches(const std::vector<char>& bodies) const;
-  void wake_with_bodies(const std::vector<char>& asleep);
-  [[nodiscard]] bool disturbs_sleep(const std::vector<PatchPair>& pairs);
-  [[nodiscard]] bool all_sleep() const;
-  void add_impulses_of_sleepers(const RecordedImpulses& before);
-  void take_sleep(const Implementation& before);
-  [[nodiscard]] int factor_for_rotation() const;
-  StepReport make_step(int factor, Index max_infeasible);
-  [[nodiscard]] Attempt attempt_of(const StepReport& report) const;
-  StepReport repeat_step(const StepReport& first, int factor_at_first);
-  StepReport compare_solvers(std::size_t body, const StepReport& first, int factor);
-  std::optional<StepReport> attempt(int factor, Index max_infeasible, bool ahead);
+  /// None if the step must be made again without the sleep of some groups. The state is then that of its begin, without these among
+  /// the sleepers. If it throws, the state is that of its begin.
+  std::optional<StepReport> step(PlanReason reason);
+  std::optional<StepReport> step_from_begin(PlanReason reason);
+  StepTrial make_trial(const StepPlan& plan);
+  StepTrial repeat(const StepPlan& plan);
+  void finish_step(std::span<const StepTrial> tried);
+  void return_to(const StepState& former);
+  void prepare_step();
+  [[nodiscard]] double rotation_in_step() const;
   StepReport make_substep();
-  void choose_substeps(const StepReport& report);
   void set_substeps(int substeps);
   void substep_changed(double dt_before);
   void step_length_changed();
+  [[nodiscard]] bool may_sleep() const;
+  [[nodiscard]] bool sleeps(Index group) const;
+  [[nodiscard]] bool is_free(Index group) const;
+  [[nodiscard]] std::vector<char> sleeping_groups() const;
+  [[nodiscard]] std::vector<char> particles_to_sleep() const;
+  void choose_sleepers();
+  void wake_all();
+  void add_sleepers(const std::vector<GroupPair>& pairs, const std::vector<char>& disturbed);
+  [[nodiscard]] std::vector<Index> steady_groups(const std::vector<char>& bodies) const;
+  void wake_with_bodies(const std::vector<char>& asleep);
+  [[nodiscard]] bool disturbs_sleep(const std::vector<GroupPair>& pairs);
+  [[nodiscard]] bool all_sleep() const;
+  void add_impulses_of_sleepers(const RecordedImpulses& before);
+  void take_sleep(const Implementation& before);
   [[nodiscard]] double air_step() const;
   void move_pins(double time);
   void record_gain(Index particle, const Vector3& velocity_before);
   void begin_recording();
   void note_change() { EnergyWatch::note_change(energies(), state.energy); }
   bool take_pins(const Implementation& before);
-  void prepare_step();
   void update_attachments();
   void record_attachments();
   [[nodiscard]] double energy(EnergyKind kind) const { return energy_of(forces, kind, state.x); }
@@ -121,17 +113,17 @@ struct Simulator::Implementation {
   std::unique_ptr<Integrator> integrator;
   StepConstraints constraints;
   PinPaths pin_paths;
-  std::function<bool()> stops;               ///< see Simulator::stop_when
-  std::optional<StepRefinement> refinement;  ///< none if a step has one substep
-  std::optional<SymmetryBreaker> symmetry;   ///< none unless the settings ask for it
-  bool waits_for_turn;                       ///< see StretchLimit::may_follow_turn
+  std::function<bool()> stops;              ///< see Simulator::stop_when
+  std::optional<SymmetryBreaker> symmetry;  ///< none unless the settings ask for it
+  StepPlanner planner;
   DivergenceCheck divergence;
   EnergyWatch energy_watch;
-  SleepPatches patches;
+  SleepGroups groups;
   RestDetector rest;
   Surroundings surroundings;
   SimulationState state;
-  StepBegin begin;
+  StepState begin;            ///< of the step
+  StepState best;             ///< the end of its best attempt, while others are made
   ReactionRecord reactions;   ///< of attachments, and of pins before the last change of the simulator, in the present interval
   double forces_since = 0.0;  ///< begin of that interval [s]
 };

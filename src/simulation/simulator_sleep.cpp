@@ -5,33 +5,33 @@
 
 namespace sprung {
 
-bool Simulator::Implementation::sleeps(Index patch) const { return network.is_asleep(patches.patches[patch].particles.front()); }
+bool Simulator::Implementation::sleeps(Index group) const { return network.is_asleep(groups.groups[group].particles.front()); }
 
 /// Whether it has particles that are not pinned, though they may sleep.
-bool Simulator::Implementation::is_free(Index patch) const {
-  return sleeps(patch) || std::ranges::any_of(patches.patches[patch].particles, [&](Index i) { return !network.is_pinned(i); });
+bool Simulator::Implementation::is_free(Index group) const {
+  return sleeps(group) || std::ranges::any_of(groups.groups[group].particles, [&](Index i) { return !network.is_pinned(i); });
 }
 
-std::vector<char> Simulator::Implementation::sleeping_patches() const {
+std::vector<char> Simulator::Implementation::sleeping_groups() const {
   std::vector<char> asleep;
-  for (Index p = 0; p < patches.count(); ++p) asleep.push_back(sleeps(p) ? 1 : 0);
+  for (Index p = 0; p < groups.count(); ++p) asleep.push_back(sleeps(p) ? 1 : 0);
   return asleep;
 }
 
 /// Whether each particle sleeps in the next step.
 std::vector<char> Simulator::Implementation::particles_to_sleep() const {
   std::vector<char> asleep;
-  for (const Index p : patches.patch_of) asleep.push_back(state.rest.sleepers[p]);
+  for (const Index p : groups.group_of) asleep.push_back(state.rest.sleepers[p]);
   return asleep;
 }
 
 /// External forces may change at any time, and so may wind. Bodies sink into a penalty for long, and are not at rest while they do.
 bool Simulator::Implementation::may_sleep() const {
   return settings.sleep && penalty == nullptr && constraints.contacts().can_collide() && external.empty() &&
-         state.feasible_steps > 0 && (!settings.has_air() || time() >= settings.wind.end());
+         state.planner.feasible_steps > 0 && (!settings.has_air() || time() >= settings.wind.end());
 }
 
-/// After each step. A restless patch wakes its neighbours. Patches fall asleep at the end of a window.
+/// After each step. A restless group wakes its neighbours. Groups fall asleep at the end of a window.
 void Simulator::Implementation::choose_sleepers() {
   if (!may_sleep()) {
     wake_all();
@@ -40,7 +40,7 @@ void Simulator::Implementation::choose_sleepers() {
   const bool window_ends = RestDetector::window_ends(time(), state);
   if (network.asleep.empty() && !window_ends) return;
   const Surroundings::Found found = surroundings.find(state);
-  const std::vector<char> asleep = sleeping_patches();
+  const std::vector<char> asleep = sleeping_groups();
   std::vector<char> restless = rest.restless(state);
   const std::vector<char> driven = surroundings.driven(found, time());
   for (std::size_t p = 0; p < restless.size(); ++p) restless[p] = restless[p] != 0 || driven[p] != 0 ? 1 : 0;
@@ -58,63 +58,63 @@ void Simulator::Implementation::wake_all() {
   RestDetector::forget(state);
 }
 
-/// A patch at rest falls asleep if its neighbours are at rest too, and if it touches something, or a patch does that is joined to
+/// A group at rest falls asleep if its neighbours are at rest too, and if it touches something, or a group does that is joined to
 /// it through others that sleep. Without contact nothing sleeps: a pendulum is slow at the end of each swing.
-void Simulator::Implementation::add_sleepers(const std::vector<PatchPair>& pairs, const std::vector<char>& disturbed) {
+void Simulator::Implementation::add_sleepers(const std::vector<GroupPair>& pairs, const std::vector<char>& disturbed) {
   std::vector<char> awake;
-  for (Index p = 0; p < patches.count(); ++p)
+  for (Index p = 0; p < groups.count(); ++p)
     awake.push_back(!sleeps(p) && is_free(p) && !state.rest.histories[p].is_at_rest ? 1 : 0);
   const std::vector<char> beside_awake = with_neighbours(awake, pairs);
   std::vector<char> candidates = state.rest.sleepers;
   std::vector<char> bodies(network.bodies.size(), 0);  // of new candidates
-  for (Index p = 0; p < patches.count(); ++p) {
+  for (Index p = 0; p < groups.count(); ++p) {
     if (sleeps(p) || !is_free(p) || disturbed[p] != 0 || beside_awake[p] != 0) continue;
     candidates[p] = 1;
-    bodies[patches.patches[p].body] = 1;
+    bodies[groups.groups[p].body] = 1;
   }
-  UnionFind joined(patches.count());
-  for (const auto& [a, b] : patches.adjacent) {
+  UnionFind joined(groups.count());
+  for (const auto& [a, b] : groups.adjacent) {
     if (candidates[a] != 0 && candidates[b] != 0) joined.join(a, b);
   }
   std::vector<char> supported(candidates.size(), 0);  // by root
-  for (Index p = 0; p < patches.count(); ++p) supported[joined.root(p)] |= state.rest.sleepers[p];
-  for (const Index p : steady_patches(bodies)) supported[joined.root(p)] = 1;
-  for (Index p = 0; p < patches.count(); ++p) {
+  for (Index p = 0; p < groups.count(); ++p) supported[joined.root(p)] |= state.rest.sleepers[p];
+  for (const Index p : steady_groups(bodies)) supported[joined.root(p)] = 1;
+  for (Index p = 0; p < groups.count(); ++p) {
     if (candidates[p] != 0) state.rest.sleepers[p] = supported[joined.root(p)];
   }
 }
 
-/// The patches of these bodies that touch something, without bodies that stand on their edge.
-std::vector<Index> Simulator::Implementation::steady_patches(const std::vector<char>& bodies) const {
+/// The groups of these bodies that touch something, without bodies that stand on their edge.
+std::vector<Index> Simulator::Implementation::steady_groups(const std::vector<char>& bodies) const {
   std::vector<std::vector<ContactNormal>> contacts(network.bodies.size());
   for (const ContactNormal& contact : contact_normals()) {
-    const std::size_t body = patches.patches[patches.patch_of[contact.particle]].body;
+    const std::size_t body = groups.groups[groups.group_of[contact.particle]].body;
     if (bodies[body] != 0) contacts[body].push_back(contact);
   }
   std::vector<Index> steady;
   for (const std::vector<ContactNormal>& of_body : contacts) {
     if (symmetry && symmetry->has_standing(of_body, state.x)) continue;
-    for (const ContactNormal& contact : of_body) steady.push_back(patches.patch_of[contact.particle]);
+    for (const ContactNormal& contact : of_body) steady.push_back(groups.group_of[contact.particle]);
   }
   return steady;
 }
 
-/// If a patch wakes that was `asleep`, all of its body wakes: it may have lost its support. What an attachment joins to a free
-/// patch sleeps only if that does.
+/// If a group wakes that was `asleep`, all of its body wakes: it may have lost its support. What an attachment joins to a free
+/// group sleeps only if that does.
 void Simulator::Implementation::wake_with_bodies(const std::vector<char>& asleep) {
   std::vector<char> woken(network.bodies.size(), 0);
   bool changes = true;
   while (changes) {
     changes = false;
-    for (Index p = 0; p < patches.count(); ++p) {
-      if (asleep[p] != 0 && state.rest.sleepers[p] == 0) woken[patches.patches[p].body] = 1;
+    for (Index p = 0; p < groups.count(); ++p) {
+      if (asleep[p] != 0 && state.rest.sleepers[p] == 0) woken[groups.groups[p].body] = 1;
     }
     const auto wake = [&](Index p) {
       changes = changes || state.rest.sleepers[p] != 0;
       state.rest.sleepers[p] = 0;
     };
-    for (Index p = 0; p < patches.count(); ++p) {
-      if (woken[patches.patches[p].body] != 0) wake(p);
+    for (Index p = 0; p < groups.count(); ++p) {
+      if (woken[groups.groups[p].body] != 0) wake(p);
     }
     for (const auto& [a, b] : surroundings.attached()) {
       if (state.rest.sleepers[a] == 0 && is_free(a)) wake(b);
@@ -123,21 +123,21 @@ void Simulator::Implementation::wake_with_bodies(const std::vector<char>& asleep
   }
 }
 
-/// Whether the step made a neighbour of a sleeping patch restless: the step has to be made again without the sleepers that this
+/// Whether the step made a neighbour of a sleeping group restless: the step has to be made again without the sleepers that this
 /// removes from the state.
-bool Simulator::Implementation::disturbs_sleep(const std::vector<PatchPair>& pairs) {
+bool Simulator::Implementation::disturbs_sleep(const std::vector<GroupPair>& pairs) {
   if (network.asleep.empty()) return false;
-  const std::vector<char> asleep = sleeping_patches();
+  const std::vector<char> asleep = sleeping_groups();
   const std::vector<char> disturbed = with_neighbours(rest.restless(state), pairs);
   for (std::size_t p = 0; p < state.rest.sleepers.size(); ++p) state.rest.sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;
   wake_with_bodies(asleep);
   return state.rest.sleepers != asleep;
 }
 
-/// Whether a step changes nothing but the time: some patches sleep, and pins hold all others at rest.
+/// Whether a step changes nothing but the time: some groups sleep, and pins hold all others at rest.
 bool Simulator::Implementation::all_sleep() const {
   bool any = false;
-  for (Index p = 0; p < patches.count(); ++p) {
+  for (Index p = 0; p < groups.count(); ++p) {
     const bool asleep = sleeps(p);
     any = any || asleep;
     if (!asleep && (is_free(p) || time() < surroundings.end_of_motions(p))) return false;
@@ -172,9 +172,9 @@ void Simulator::Implementation::take_sleep(const Implementation& before) {
   for (Index i = 0; i < network.particle_count(); ++i) {
     if (network.is_asleep(i) == before.network.is_asleep(i)) continue;
     if (!state.rest.histories.empty() && !network.is_asleep(i)) {
-      const Index patch = patches.patch_of[i];
-      state.rest.histories[patch] = {};
-      state.rest.histories[patches.patches.size() + patches.patches[patch].body] = {};
+      const Index group = groups.group_of[i];
+      state.rest.histories[group] = {};
+      state.rest.histories[groups.groups.size() + groups.groups[group].body] = {};
     }
     state.v.col(i).setZero();
     if (!network.is_pinned(i)) integrator->velocity_changed(state, i, before.dt());

@@ -104,7 +104,7 @@ bool LiveRun::continue_with(LoadedScene& changed) try {
   Simulator& simulator = loaded_.simulator;
   const std::vector<Obstacle>& obstacles = changed.simulator.environment().obstacles();
   SpringNetwork network = changed.simulator.network();
-  change_pins(network, due_before(simulator.state().step, simulator.settings().step));  // before what the user did since
+  change_pins(network, due_before(whole_steps(simulator.state()), simulator.settings().step));  // before what the user did since
   set_pins(network);
   simulator.continue_with(std::move(network), with_step(simulator.settings().step, changed.simulator.settings()));
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
@@ -251,6 +251,6 @@ FrameNumbers LiveRun::numbers() const {
           .contact_energy = simulator.contact_energy()};
 }
 
-std::uint32_t LiveRun::frame() const { return 1 + static_cast<std::uint32_t>(simulator().state().step / loaded_.steps_per_frame); }
+std::uint32_t LiveRun::frame() const { return 1 + static_cast<std::uint32_t>(simulator().state().frame); }
 
 }  // namespace sprung

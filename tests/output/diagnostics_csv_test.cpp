@@ -8,7 +8,7 @@ namespace {
 TEST(DiagnosticsCsv, ColumnsAreThoseOfTheContract) {
   EXPECT_EQ(csv_head(),
             "frame,time,kinetic_energy,elastic_energy,gravity_energy,max_stretch,contacts,min_distance,frame_ms,"
-            "stretch_excess,truncated,infeasible,limit_solves,substeps,contact_energy,inverted_cells\n");
+            "stretch_excess,truncated,infeasible,limit_solves,substeps,reason,contact_energy,inverted_cells\n");
 }
 
 TEST(DiagnosticsCsv, RowHoldsTheShortestNumbersInTheColumnsOrder) {
@@ -26,15 +26,16 @@ TEST(DiagnosticsCsv, RowHoldsTheShortestNumbersInTheColumnsOrder) {
                                .infeasible = 7,
                                .inverted_cells = 11,
                                .substeps = 10,
+                               .reason = PlanReason::solver_trial,
                                .limit_solves = 9,
                                .frame_ms = 8.5};
-  EXPECT_EQ(csv_row(frame), "12,0.1,0.3333333333333333,2,-3.5,1e-20,4,0.005,8.5,0.25,6,7,9,10,0.125,11\n");
+  EXPECT_EQ(csv_row(frame), "12,0.1,0.3333333333333333,2,-3.5,1e-20,4,0.005,8.5,0.25,6,7,9,10,solver_trial,0.125,11\n");
 }
 
 TEST(DiagnosticsCsv, DistanceThatIsNotKnownIsEmpty) {
   FrameDiagnostics frame;
   frame.time = 0.5;
-  EXPECT_EQ(csv_row(frame), "1,0.5,0,0,0,0,0,,0,0,0,0,0,0,0,0\n");
+  EXPECT_EQ(csv_row(frame), "1,0.5,0,0,0,0,0,,0,0,0,0,0,0,first,0,0\n");
 }
 
 }  // namespace

@@ -315,7 +315,7 @@ TEST_F(RunOutputFiles, DiagnosticsHaveARowAFrame) {
   std::istringstream stream(read_text(file("diagnostics.csv")));
   std::vector<std::string> starts;
   for (std::string line; std::getline(stream, line);) {
-    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 15);
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 16);
     starts.push_back(line.substr(0, line.find(',', line.find(',') + 1)));
   }
   EXPECT_THAT(starts, ElementsAre("frame,time", "1,0", "2,0.02", "3,0.04", "4,0.06"));

@@ -397,16 +397,16 @@ TEST(Attachments, WhatAChangeAddsEngagesAtTheNextStep) {
   network.attachments.push_back({.name = "new", .particles = {3}, .second = ParticleEnds{{7}}});
   simulator.continue_with(network, simulator.settings());
   const double distance_before = distance(simulator, 3, 7);
-  const std::int64_t step = simulator.state().step;
+  const double time = simulator.time();
   run(simulator, 0.1);
   const std::vector<Link>& links = simulator.state().links;
   ASSERT_EQ(links.size(), 4U);
   EXPECT_EQ(links[0].first, 0);
-  EXPECT_EQ(links[0].step, 0);
+  EXPECT_EQ(links[0].time, 0.0);
   EXPECT_EQ(links[1].first, 2);
-  EXPECT_EQ(links[1].step, step);
+  EXPECT_EQ(links[1].time, time);
   EXPECT_EQ(links[2].broken, before[1].broken);
-  EXPECT_EQ(links[3].step, step);
+  EXPECT_EQ(links[3].time, time);
   EXPECT_NEAR(distance(simulator, 3, 7), distance_before, kRodLength * distance_before);
 }
 

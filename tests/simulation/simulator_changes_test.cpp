@@ -208,6 +208,69 @@ void expect_refused(const std::string& key, const Change& change) {
   EXPECT_EQ(simulator.positions(), untouched.positions()) << key;
 }
 
+// Verlet's positions lie on the parabola of free flight at any step. A pin that began before the change turns a quarter a second
+// about the origin, from where it took its particle.
+TEST(SimulatorChanges, TheStepChangesAtTheEndOfAFrame) {
+  NetworkBuilder builder;
+  const Vector3 velocity(1.0, 2.0, 0.0);
+  const Index ball = builder.add_particle(Vector3::Zero(), 0.1, velocity);
+  const Index turned = builder.add_particle(Vector3::UnitX(), 0.1);
+  Pin pin;
+  pin.particles = {turned};
+  pin.from = 0.05;
+  pin.motion.spin = Vector3(0.0, 0.0, 90.0);
+  builder.add_pin(pin);
+  constexpr double kFrame = 0.04;
+  SimulatorSettings settings{.step = kFrame / 4, .steps_per_frame = 4, .gravity = {0.0, -kGravity, 0.0}};
+  Simulator simulator(builder.build(), settings);
+  const auto change_steps = [&](int steps) {
+    settings.step = kFrame / steps;
+    settings.steps_per_frame = steps;
+    simulator.continue_with(simulator.network(), settings);
+  };
+  for (int step = 0; step < 8; ++step) simulator.step();
+  const Vector3 start = simulator.positions().col(turned);  // the pin began at 0.05 s, where the particle had fallen
+  ASSERT_EQ(simulator.state().frame, 2);
+  change_steps(7);
+  for (int step = 0; step < 7; ++step) simulator.step();
+  EXPECT_EQ(simulator.state().frame, 3);
+  EXPECT_EQ(simulator.state().step_in_frame, 0);
+  EXPECT_NEAR(simulator.time(), 3 * kFrame, 1e-15);
+  change_steps(2);
+  for (int step = 0; step < 3; ++step) simulator.step();
+  EXPECT_EQ(simulator.state().frame, 4);
+  EXPECT_EQ(simulator.state().step_in_frame, 1);
+  EXPECT_EQ(simulator.state().step, 18);
+  const double t = 4.5 * kFrame;
+  EXPECT_NEAR(simulator.time(), t, 1e-15);
+  const Vector3 gravity(0.0, -kGravity, 0.0);
+  // 18 steps with a few roundings each of differences that later steps add up.
+  EXPECT_LT((simulator.positions().col(ball) - (t * velocity + 0.5 * t * t * gravity)).norm(), 1e-13);
+  const RigidTransform turn = pin.motion.pose(RigidTransform::Identity(), t - 2 * kFrame);
+  EXPECT_LT((simulator.positions().col(turned) - turn * start).norm(), 1e-14);
+}
+
+TEST(SimulatorChanges, TheStepChangesNeitherWithinAFrameNorTheFrame) {
+  SimulatorSettings settings{.step = 0.01, .steps_per_frame = 4};
+  Simulator simulator(one_particle(Vector3::Zero()), settings);
+  simulator.step();
+  const auto refusal = [&](double step, int steps_per_frame) -> std::string {
+    settings.step = step;
+    settings.steps_per_frame = steps_per_frame;
+    try {
+      simulator.continue_with(simulator.network(), settings);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_THAT(refusal(0.02, 2), HasSubstr("may change at the end of a frame alone"));
+  EXPECT_THAT(refusal(0.02, 4), HasSubstr("must stay a frame of 0.04 s"));
+  EXPECT_THAT(refusal(0.01, 5), HasSubstr("must stay a frame of 0.04 s"));
+  for (int step = 0; step < 3; ++step) simulator.step();
+  EXPECT_EQ(refusal(0.02, 2), "");
+}
+
 TEST(SimulatorChanges, ARefusedChangeChangesNothing) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   expect_refused("step", [](Simulator& simulator) {

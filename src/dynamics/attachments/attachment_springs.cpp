@@ -74,7 +74,7 @@ Vector3 AttachmentSprings::difference_of(const Spring& spring, const Kinematics&
 }
 
 double AttachmentSprings::length_of(const Spring& spring, double time) const {
-  return spring.rigid ? length_at(spring.link, time, step_length_) : spring.link.length;
+  return spring.rigid ? length_at(spring.link, time) : spring.link.length;
 }
 
 /// On the first end.

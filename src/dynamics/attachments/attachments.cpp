@@ -39,7 +39,7 @@ Attachments::Attachments(const SpringNetwork& network, const Environment& enviro
 
 bool Attachments::update(SimulationState& state) {
   if (!update_links(network_, environment_, step_length_, state)) return false;
-  take(state, static_cast<double>(state.step) * step_length_);
+  take(state, steps_done(state) * step_length_);
   return true;
 }
 
@@ -67,14 +67,14 @@ bool Attachments::break_overloaded(SimulationState& state) {
     link.broken = state.step;
     any = true;
   }
-  if (any) take(state, static_cast<double>(state.step) * step_length_);
+  if (any) take(state, steps_done(state) * step_length_);
   return any;
 }
 
 Vector3 Attachments::force_of(const Link& link, const SimulationState& state) const {
   if (link.broken) return Vector3::Zero();
   if (network_.attachments[link.attachment].is_rigid()) return link.impulse / step_length_;
-  return springs_->force_of(link, {.x = state.x, .v = state.v, .time = static_cast<double>(state.step) * step_length_});
+  return springs_->force_of(link, {.x = state.x, .v = state.v, .time = steps_done(state) * step_length_});
 }
 
 double Attachments::winch_speed(const SimulationState& state) const {

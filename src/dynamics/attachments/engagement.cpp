@@ -99,8 +99,8 @@ Link link_to_body(const SpringNetwork& network, const Points& positions, std::si
 }
 
 bool update_links(const SpringNetwork& network, const Environment& environment, double step_length, SimulationState& state) {
-  const double due = due_before(state.step, step_length);
-  const double now = static_cast<double>(state.step) * step_length;
+  const double due = due_before(whole_steps(state), step_length);
+  const double now = steps_done(state) * step_length;
   const bool ended = std::erase_if(state.links, [&](const Link& link) {
                        return !link.broken && !network.attachments[link.attachment].holds_at(due);
                      }) > 0;
@@ -114,7 +114,7 @@ bool update_links(const SpringNetwork& network, const Environment& environment, 
     for (const Index particle : attachment.particles) {
       if (std::ranges::find(known, particle, &Link::first) != known.end()) continue;
       Link& link = added.emplace_back(link_to_body(network, state.x, a, particle));
-      link.step = state.step;
+      link.time = now;
       if (const auto* end = std::get_if<ObstacleEnd>(&attachment.second)) {
         put_on(environment, *end, state.x.col(particle), now, link);
       }

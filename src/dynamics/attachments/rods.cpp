@@ -35,9 +35,8 @@ Vector3 change_of(const Vector3& before, const Vector3& difference, double lengt
 
 }  // namespace
 
-double length_at(const Link& link, double time, double step_length) {
-  const double since = time - static_cast<double>(link.step) * step_length;
-  const double left = 1.0 - std::clamp(since / kWinchTime, 0.0, 1.0);
+double length_at(const Link& link, double time) {
+  const double left = 1.0 - std::clamp((time - link.time) / kWinchTime, 0.0, 1.0);
   return link.length + (link.distance - link.length) * (left * left * (3.0 - 2.0 * left));
 }
 
@@ -68,7 +67,7 @@ void Rods::prepare(double time) {
   for (std::size_t r = 0; r < rods_.size(); ++r) {
     Rod& rod = rods_[r];
     rod.anchor = rod.ends.anchor(time);
-    rod.length = length_at(rod.link, time, step_length_);
+    rod.length = length_at(rod.link, time);
     rod.tolerance = rod.length > 0.0 ? kTolerance * rod.length : joint_tolerance_;
     rows_[r].anchor = rod.anchor;
     rows_[r].length = rod.length;

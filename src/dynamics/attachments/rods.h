@@ -15,7 +15,7 @@ namespace sprung {
 inline constexpr double kWinchTime = 0.25;
 
 /// The length of a rod at a time [m]: from the distance at which it engaged to its length, smoothly within kWinchTime.
-[[nodiscard]] double length_at(const Link& link, double time, double step_length);
+[[nodiscard]] double length_at(const Link& link, double time);
 
 /// Keeps the distance between the ends of rigid links. Particles move along the line that joined the ends when the step began
 /// (SHAKE: Ryckaert, Ciccotti and Berendsen 1977), so that schemes keep the angular momentum, and Verlet the energy of a rod that

@@ -86,9 +86,6 @@ class Integrator {
   virtual void recover_velocities(SimulationState& state, const Forces& forces, const Points& before, const Points& advanced,
                                   double dt);
 
-  /// The steps that follow are this fraction, in (0, 1], of the step that a damping per step refers to. Default: does nothing.
-  virtual void set_fraction(double /*fraction*/) {}
-
   /// Called between two steps when the step length changes from `dt_before` to `dt` [s]. Verlet's velocity is that of half a step
   /// ago: it gains the acceleration times half the difference of the lengths.
   virtual void step_changed(SimulationState& state, const Forces& forces, double dt_before, double dt);

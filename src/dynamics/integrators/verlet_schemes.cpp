@@ -61,7 +61,7 @@ class Verlet final : public Integrator {
     record(total_, dt, state);
     set_gains(dt);
     for (const Index i : pinned_) state.x_previous.col(i) = state.x.col(i);
-    const VerletStep step{.kept = kept(dt), .per_dt = 1.0 / dt};
+    const VerletStep step{.kept = kept(dt, state.substeps), .per_dt = 1.0 / dt};
     for_free_runs([&](Index begin, Index count) {
       if (forces_are_constant_) {
         advance_verlet(3 * count, step, gained_.col(begin).data(), state.x.col(begin).data(), state.x_previous.col(begin).data(),
@@ -85,8 +85,6 @@ class Verlet final : public Integrator {
   [[nodiscard]] bool keeps_positions() const override { return true; }
   [[nodiscard]] bool needs_advanced() const override { return false; }
 
-  void set_fraction(double fraction) override { fraction_ = fraction; }
-
   void step_changed(SimulationState& state, const Forces& forces, double dt_before, double dt) override {
     if (!forces_are_constant_) evaluate(state, forces, dt, total_);
     for_free_particles(network(), [&](Index i) {
@@ -100,10 +98,10 @@ class Verlet final : public Integrator {
   }
 
  private:
-  /// The fraction of the movement that is kept.
-  [[nodiscard]] double kept(double dt) const {
-    const double of_step = 1.0 - damping_per_step(settings_, dt);
-    return fraction_ < 1.0 && settings_.damping_rate == 0.0 ? std::pow(of_step, fraction_) : of_step;
+  /// The fraction of the movement that is kept in one of `substeps` substeps of `dt` [s].
+  [[nodiscard]] double kept(double dt, int substeps) const {
+    const double kept = 1.0 - damping_per_step(settings_, dt);
+    return substeps > 1 && settings_.damping_rate == 0.0 ? std::pow(kept, 1.0 / substeps) : kept;
   }
 
   /// dt^2 / m for each coordinate, and its product with constant forces.
@@ -122,7 +120,6 @@ class Verlet final : public Integrator {
   }
 
   VerletSettings settings_;
-  double fraction_ = 1.0;  ///< see set_fraction
   std::vector<FreeRun> free_runs_;
   std::vector<Index> pinned_;
   Points total_;

@@ -165,7 +165,7 @@ double StretchLimit::suggested_step(double acceleration) const {
   return smallest;
 }
 
-bool StretchLimit::follows_turn(const std::vector<StretchHandover>& handovers) const {
+bool StretchLimit::follows_deformation(const std::vector<StretchHandover>& handovers) const {
   if (!newton_ || settings_.max_compression < 1.0) return false;
   for (std::size_t b = 0; b < network_.bodies.size(); ++b) {
     const bool handed_over = !handovers.empty() && handovers[b].solved_since && newton_->may_take_over(b);
@@ -174,15 +174,15 @@ bool StretchLimit::follows_turn(const std::vector<StretchHandover>& handovers) c
   return newton_->solves_any();
 }
 
-bool StretchLimit::may_follow_turn() const {
-  return !follows_turn() && follows_turn(std::vector<StretchHandover>(network_.bodies.size(), {.solved_since = 0}));
+bool StretchLimit::may_follow_deformation() const {
+  return !follows_deformation() && follows_deformation(std::vector<StretchHandover>(network_.bodies.size(), {.solved_since = 0}));
 }
 
 void StretchLimit::forget_solves() const {
   if (newton_) newton_->forget();
 }
 
-double StretchLimit::turn() const { return newton_ ? newton_->turn() : 0.0; }
+double StretchLimit::deformation() const { return newton_ ? newton_->deformation() : 0.0; }
 
 // Measured on a cloth of 32 particles a side that swings from its corners: without refinement it kept the energy of a run with a
 // tenth of the step within 10 %, and so with steps halved up to three times. With structural springs alone refinement doubled its

@@ -86,16 +86,16 @@ class StretchLimit {
   [[nodiscard]] bool bears_smaller_steps() const;
 
   /// Whether Newton's method solves for all springs, counting the bodies that were handed over. It keeps the limit at any step,
-  /// but removes more motion the larger the relative deformation in a step, so that steps are chosen by `turn`.
-  [[nodiscard]] bool follows_turn(const std::vector<StretchHandover>& handovers = {}) const;
+  /// but removes more motion the larger the relative deformation in a step, so that steps are chosen by `deformation`.
+  [[nodiscard]] bool follows_deformation(const std::vector<StretchHandover>& handovers = {}) const;
 
-  /// Whether follows_turn() will be true once all bodies that may be handed over are; the small steps of passes are then no longer
+  /// Whether follows_deformation() will be true once all bodies that may be handed over are; the small steps of passes are then no longer
   /// needed.
-  [[nodiscard]] bool may_follow_turn() const;
+  [[nodiscard]] bool may_follow_deformation() const;
 
   /// Largest relative deformation in the last solve() [1]: per component, the largest displacement minus the common displacement,
   /// divided by the component's extent.
-  [[nodiscard]] double turn() const;
+  [[nodiscard]] double deformation() const;
 
  private:
   const SpringNetwork& network_;

@@ -45,7 +45,7 @@ constexpr double kCorrectedFraction = 0.3;
 
 // A component with less relative deformation than this that took one iteration in the previous step hardly changes. For a moving
 // one, an old factor, made with other slack links, would remove too much of the motion.
-constexpr double kCalmTurn = 1.0 / 240.0;
+constexpr double kCalmDeformation = 1.0 / 240.0;
 
 // Clipped links keep this fraction of the tolerance, so that rounding does not put them beyond the limit; without a tolerance the
 // second constant applies.
@@ -173,7 +173,7 @@ double ComponentNewton::link_load(double fall) const {
   return mass_ / std::max(component_.pin_count(), Index{1}) * displacement;
 }
 
-double ComponentNewton::turn() const { return extent_ > 0.0 ? std::sqrt(farthest_squared_) / extent_ : 0.0; }
+double ComponentNewton::deformation() const { return extent_ > 0.0 ? std::sqrt(farthest_squared_) / extent_ : 0.0; }
 
 double ComponentNewton::most_beyond() const {
   double most = 0.0;
@@ -196,7 +196,7 @@ int ComponentNewton::minimise(double energy_at_target) {
   }
   // If contact moved a particle since, links store a different energy.
   if (target_shift() <= negligible && std::abs(energy - balanced_energy_) <= negligible) return 0;
-  const bool is_calm = last_iterations_ <= 1 && turn() <= kCalmTurn;
+  const bool is_calm = last_iterations_ <= 1 && deformation() <= kCalmDeformation;
   const double close = close_enough(component_);
   // Links near their limit will mostly reach it. If they were slack at first, each iteration would add only a few of them. With
   // rods most links that carry a load are beyond their limit at the beginning of the step, and others would only be in the way.

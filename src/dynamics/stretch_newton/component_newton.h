@@ -32,7 +32,7 @@ class ComponentNewton final : public ComponentSolver {
   /// Records the impulses of the last solve, which gave positions, and adds those of rods to `pushes`, by number [kg m].
   void record(const ImpulseRecorder& recorder, std::vector<Vector3>& pushes) const;
 
-  [[nodiscard]] double turn() const override;
+  [[nodiscard]] double deformation() const override;
 
   /// Each link's stiffness across its direction at the end of the last solve [kg]; 0 for slack links.
   [[nodiscard]] std::vector<double> stiffness_across() const { return energy_.stiffness_across(x_); }

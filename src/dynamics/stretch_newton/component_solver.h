@@ -29,7 +29,7 @@ class ComponentSolver {
 
   /// Largest relative deformation in the last solve() [1]: the largest displacement of a point by forces minus the common
   /// displacement, divided by the component's extent. For a body that swings about its pins this is the angle of the step.
-  [[nodiscard]] virtual double turn() const = 0;
+  [[nodiscard]] virtual double deformation() const = 0;
 };
 
 }  // namespace sprung

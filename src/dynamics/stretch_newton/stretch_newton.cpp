@@ -126,9 +126,9 @@ void StretchNewton::forget() {
   for (const SolvedComponent& component : components_) component.solver->forget();
 }
 
-double StretchNewton::turn() const {
+double StretchNewton::deformation() const {
   double largest = 0.0;
-  for (const SolvedComponent& component : components_) largest = std::max(largest, component.solver->turn());
+  for (const SolvedComponent& component : components_) largest = std::max(largest, component.solver->deformation());
   return largest;
 }
 

@@ -59,7 +59,7 @@ class StretchNewton {
   [[nodiscard]] bool may_take_over_any() const;
 
   /// The largest relative deformation of a component in the last solve, see ComponentSolver; 0 without components.
-  [[nodiscard]] double turn() const;
+  [[nodiscard]] double deformation() const;
 
  private:
   /// A component that is or may be solved for.

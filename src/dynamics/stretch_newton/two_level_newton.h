@@ -21,7 +21,7 @@ class TwoLevelNewton final : public ComponentSolver {
 
   std::optional<int> solve(const Points& before, Points& positions, double fall) override;
   void forget() override { newton_.forget(); }
-  [[nodiscard]] double turn() const override { return newton_.turn(); }
+  [[nodiscard]] double deformation() const override { return newton_.deformation(); }
 
  private:
   void gather(const Points& before, const Points& positions);

@@ -52,7 +52,7 @@ struct Link {
   Vector3 anchor = Vector3::Zero();                  ///< on a rigid obstacle, in its frame [m]
   double distance = 0.0;                             ///< at which it engaged [m]
   double length = 0.0;                               ///< at rest [m]
-  std::int64_t step = 0;                             ///< number of the step after which it engaged
+  double time = 0.0;                                 ///< at which it engaged [s]
   std::optional<std::int64_t> broken{};              ///< number of the step after which it broke
   Vector3 impulse = Vector3::Zero();                 ///< of a rod on the first end in the last step [N s]
 };

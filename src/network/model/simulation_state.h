@@ -1,4 +1,4 @@
-// All that a step changes. Time is counted in steps and substeps, never accumulated.
+// All that a step changes. Time is counted in frames, steps and substeps, never accumulated.
 #pragma once
 
 #include "network/model/recorded_impulses.h"
@@ -65,24 +65,44 @@ struct Slip {
 /// Where a pin took a particle.
 struct PinAnchor {
   Index particle = kNone;
-  std::int64_t step = 0;               ///< after which the pin took it
+  double time = 0.0;                   ///< [s]
   Vector3 position = Vector3::Zero();  ///< [m]
   Index triangle = kNone;              ///< nearest then, of a deforming obstacle that the pin follows
 };
 
+/// Why a step has the substeps that it has.
+enum class PlanReason : std::uint8_t {
+  first,         ///< it needs no more than one
+  excess,        ///< former steps missed the stretch limit
+  deformation,   ///< bodies that a global solve keeps within the limit deform or turn
+  rotation,      ///< an obstacle or pin rotates far
+  infeasible,    ///< with fewer, particles had no admissible position
+  solver_trial,  ///< another solver of the stretch limit was better
+  wake           ///< it was repeated with some sleepers awake
+};
+
+/// What StepPlanner has learnt from former steps.
+struct PlannerMemory {
+  PlanReason reason = PlanReason::first;  ///< of SimulationState::substeps
+  int calm_steps = 0;                     ///< consecutive steps that did not need their substeps
+  int feasible_steps = 0;                 ///< consecutive steps without infeasible particles
+  std::int64_t retry_from = 0;            ///< steps before this one are not repeated because of infeasible particles
+  int retry_wait = 0;                     ///< number of steps to wait after a repetition without effect
+  Index retry_infeasible = 0;  ///< exception: steps with more infeasible particles than this are repeated despite the wait
+};
+
 struct SimulationState {
-  std::int64_t step = 0;        ///< number of completed steps
-  int substeps = 1;             ///< number of equal substeps of the current step
-  int substep = 0;              ///< number of completed substeps of the current step
-  int calm_steps = 0;           ///< consecutive steps that did not need their substeps
-  int feasible_steps = 0;       ///< consecutive steps without infeasible particles
-  std::int64_t retry_from = 0;  ///< steps before this one are not repeated because of infeasible particles
-  int retry_wait = 0;           ///< number of steps to wait after a repetition without effect
-  Index retry_infeasible = 0;   ///< exception: steps with more infeasible particles than this are repeated despite the wait
-  Points x;                     ///< positions [m], 3 x n
-  Points v;                     ///< velocities [m/s], 3 x n
-  Points x_previous;            ///< Verlet's positions one step ago [m], 3 x n
-  Slip slip;                    ///< since particles stuck to obstacles
+  std::int64_t step = 0;    ///< number of completed steps
+  std::int64_t frame = 0;   ///< number of completed frames
+  int step_in_frame = 0;    ///< number of completed steps of the current frame
+  int steps_per_frame = 1;  ///< number of equal steps of a frame; it may change at the end of a frame
+  int substeps = 1;         ///< number of equal substeps of the current step
+  int substep = 0;          ///< number of completed substeps of the current step
+  PlannerMemory planner{};
+  Points x;           ///< positions [m], 3 x n
+  Points v;           ///< velocities [m/s], 3 x n
+  Points x_previous;  ///< Verlet's positions one step ago [m], 3 x n
+  Slip slip;          ///< since particles stuck to obstacles
   ContactMemory contact{};
   RestMemory rest{};
   EnergyMemory energy{};
@@ -93,10 +113,23 @@ struct SimulationState {
   RecordedImpulses last_impulses{};  ///< of the last step; those of particles that sleep are added again in each step
 };
 
-/// Number of completed steps, plus the completed fraction of the current step. The time is this number times the step length. After
-/// a whole step the number is exact.
+/// The number of steps of the present length from time 0 to the begin of the current step. Times are this number, or a fraction
+/// more, times the step length.
+[[nodiscard]] inline std::int64_t whole_steps(const SimulationState& state) {
+  return state.frame * state.steps_per_frame + state.step_in_frame;
+}
+
+/// The same, plus the completed fraction of the current step.
 [[nodiscard]] inline double steps_done(const SimulationState& state) {
-  return static_cast<double>(state.step) + static_cast<double>(state.substep) / state.substeps;
+  return static_cast<double>(whole_steps(state)) + static_cast<double>(state.substep) / state.substeps;
+}
+
+/// Counts a completed step.
+inline void count_step(SimulationState& state) {
+  ++state.step;
+  if (++state.step_in_frame < state.steps_per_frame) return;
+  ++state.frame;
+  state.step_in_frame = 0;
 }
 
 /// The state at time 0. The integrator, which knows the step, sets x_previous for Verlet.

@@ -213,6 +213,7 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
     StepChoice choice = choose_step(scene, *network, problems);
     built.settings.step = choice.step;
     built.settings.max_substeps = choice.max_substeps;
+    built.settings.steps_per_frame = choice.steps_per_frame;
     built.steps_per_frame = choice.steps_per_frame;
     built.largest_stable_step = choice.largest_stable;
     step_warning = std::move(choice.warning);

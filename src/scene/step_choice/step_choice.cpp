@@ -21,12 +21,12 @@ bool damps_steps(const IntegratorSettings& integrator) {
 }
 
 bool may_have_substeps(const Scene& scene, const std::optional<StretchLimit>& limit) {
-  return limit && (limit->bears_smaller_steps() || limit->follows_turn()) && !damps_steps(scene.settings.integrator);
+  return limit && (limit->bears_smaller_steps() || limit->follows_deformation()) && !damps_steps(scene.settings.integrator);
 }
 
 /// Whether a step may be as large as a frame: the turn of the last step determines its substeps, and no contact is possible.
 bool is_bound_by_turn(const Scene& scene, const LimitUse& use, const std::optional<StretchLimit>& limit) {
-  return may_have_substeps(scene, limit) && limit->follows_turn() && !use.may_collide;
+  return may_have_substeps(scene, limit) && limit->follows_deformation() && !use.may_collide;
 }
 
 /// The largest step without regard to the passes of the stretch limit.
@@ -48,7 +48,7 @@ int whole_steps(int needed, int substeps) { return 1 + (needed - 1) / substeps; 
 /// The number of substeps (a power of two) with which `without_passes` steps per frame come near the `needed` steps per frame,
 /// without exceeding them; fewer if whole steps would then need many more. 1 if substeps are not allowed.
 int substeps_for_passes(const Scene& scene, const std::optional<StretchLimit>& limit, int needed, int without_passes) {
-  if (!limit || !limit->may_follow_turn() || damps_steps(scene.settings.integrator)) return 1;
+  if (!limit || !limit->may_follow_deformation() || damps_steps(scene.settings.integrator)) return 1;
   constexpr double kMore = 1.0 / 8.0;
   int substeps = std::min(1 << std::ilogb(static_cast<double>(needed) / without_passes), kMaxSubsteps);
   while (whole_steps(needed, substeps) * substeps > (1.0 + kMore) * needed) substeps /= 2;

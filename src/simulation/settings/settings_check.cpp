@@ -71,6 +71,7 @@ SimulatorSettings checked_settings(SimulatorSettings settings) {
     rules.require_between("stretch_limit.iterations", limit->iterations, 1.0, kInfinity);
     rules.require_between("stretch_limit.tolerance", limit->tolerance, 0.0, kInfinity);
   }
+  rules.require_between("steps_per_frame", settings.steps_per_frame, 1.0, kInfinity);
   rules.require_between("max_substeps", settings.max_substeps, 1.0, kMaxSubsteps);
   rules.require_between("contact.stiffness", settings.contact.stiffness, 0.0, kInfinity);
   rules.require_between("contact.damping", settings.contact.damping, 0.0, kInfinity);

@@ -34,6 +34,7 @@ inline constexpr int kMaxSubsteps = 1 << 16;
 
 struct SimulatorSettings {
   double step = 1.0e-3;              ///< dt [s]
+  int steps_per_frame = 1;           ///< >= 1; see SimulationState
   double frame_rate = 0.0;           ///< [1/s]; messages advise steps that divide a frame; 0: any step
   Vector3 gravity{0.0, -9.81, 0.0};  ///< [m/s^2]
   double air_drag = 0.0;             ///< by length of ropes [kg/(m s)], by area of surfaces [kg/(m^2 s)]
@@ -43,7 +44,7 @@ struct SimulatorSettings {
   std::optional<StretchLimitSettings> stretch_limit{};
   ContactSettings contact{};
   StabilityCheck stability = StabilityCheck::refuse;
-  /// Maximum number of substeps in a step, in [1, kMaxSubsteps]; see StepRefinement. All of them are made while Gauss-Seidel passes
+  /// Maximum number of substeps in a step, in [1, kMaxSubsteps]; see StepPlanner. All of them are made while Gauss-Seidel passes
   /// solve a limit that may be handed over to a global solve.
   int max_substeps = 1;
   /// Whether particles at rest sleep; see RestDetector and Surroundings.

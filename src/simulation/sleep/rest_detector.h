@@ -1,13 +1,13 @@
-// Finds out which patches have come to rest, so that they can sleep.
+// Finds out which groups have come to rest, so that they can sleep.
 //
 // The rule is that of rigid bodies in games (Catto, Box2D; Rouwe, Jolt): what was slow for half a second is at rest. A speed is
-// slow up to the one that gravity gives in a millisecond, 1 cm/s on earth. All patches are compared at the same times, the ends of
+// slow up to the one that gravity gives in a millisecond, 1 cm/s on earth. All groups are compared at the same times, the ends of
 // windows of a quarter of a second.
 #pragma once
 
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "network/model/simulation_state.h"
-#include "simulation/sleep/sleep_patch.h"
+#include "simulation/sleep/sleep_group.h"
 
 #include <array>
 #include <vector>
@@ -17,25 +17,25 @@ namespace sprung {
 class RestDetector {
  public:
   /// `limit` is the stretch limit, if there is one; `gravity` in m/s^2.
-  RestDetector(const SpringNetwork& network, const SleepPatches& patches, const StretchLimit* limit, double gravity);
+  RestDetector(const SpringNetwork& network, const SleepGroups& groups, const StretchLimit* limit, double gravity);
 
-  /// Whether each patch is restless. One of three is true:
+  /// Whether each group is restless. One of three is true:
   /// - A free particle has moved by more than 2.5 mm (on earth) or a tenth of the body's shortest spring. The displacement counts
   ///   from the begin of the window. While a neighbour sleeps, it counts from when the neighbour fell asleep.
   /// - Its springs pull a neighbour that sleeps, and their force on the neighbour has changed by more than a tenth of the weight of
   ///   the neighbour since that fell asleep. Friction may not hold such a change.
-  /// - A spring of the body misses the stretch limit by more than wanted_excess(). The limit may then need to move any patch of the
+  /// - A spring of the body misses the stretch limit by more than wanted_excess(). The limit may then need to move any group of the
   ///   body.
   [[nodiscard]] std::vector<char> restless(const SimulationState& state) const;
 
   /// Whether a window ends at `time` [s], or the first one begins.
   [[nodiscard]] static bool window_ends(double time, const SimulationState& state);
 
-  /// At the end of a window, sets MotionHistory::rests and begins the next one. A window is quiet for a patch that is not in
+  /// At the end of a window, sets MotionHistory::rests and begins the next one. A window is quiet for a group that is not in
   /// `restless` if the root mean square of its displacements is at most an eighth of the largest at rest, and that of its speeds is
-  /// slow. A patch rests after two quiet windows, unless it moved farther in the second: what begins to slide or to fall over is
-  /// slow at first. All patches of a body rest too if the same is true of the body as a whole, of which a few particles may move
-  /// more. `beside` are the patches that sleep, and their neighbours.
+  /// slow. A group rests after two quiet windows, unless it moved farther in the second: what begins to slide or to fall over is
+  /// slow at first. All groups of a body rest too if the same is true of the body as a whole, of which a few particles may move
+  /// more. `beside` are the groups that sleep, and their neighbours.
   void end_window(double time, const std::vector<char>& restless, const std::vector<char>& beside, SimulationState& state) const;
 
   /// Begins all rest anew.
@@ -57,24 +57,24 @@ class RestDetector {
   struct Pulling {
     Index awake = kNone;
     Index asleep = kNone;
-    Index awake_patch = kNone;
-    Index asleep_patch = kNone;
+    Index awake_group = kNone;
+    Index asleep_group = kNone;
     double stiffness = 0.0;  ///< [N/m]
   };
-  void watch(const SpringNetwork& network, const SleepPatches& patches);
-  void find_pulling(const SpringNetwork& network, const std::vector<Index>& patch_of);
+  void watch(const SpringNetwork& network, const SleepGroups& groups);
+  void find_pulling(const SpringNetwork& network, const std::vector<Index>& group_of);
   void find_limited(const SpringNetwork& network, const StretchLimitSettings& settings);
   [[nodiscard]] std::vector<Vector3> changes_of_pull(const SimulationState& state) const;
-  [[nodiscard]] static bool has_moved(const Watched& patch, const SimulationState& state);
+  [[nodiscard]] static bool has_moved(const Watched& group, const SimulationState& state);
   void judge_all(const std::vector<char>& restless, SimulationState& state) const;
-  void judge(const Watched& patch, bool is_restless, const SimulationState& state, MotionHistory& rest) const;
+  void judge(const Watched& group, bool is_restless, const SimulationState& state, MotionHistory& rest) const;
 
-  double slow_;                   ///< [m/s]
-  std::vector<Watched> patches_;  ///< without free particles: patches that sleep or that pins hold as a whole
+  double slow_;                  ///< [m/s]
+  std::vector<Watched> groups_;  ///< without free particles: groups that sleep or that pins hold as a whole
   std::vector<Watched> bodies_;
   std::vector<Limited> limited_;
   std::vector<Pulling> pulling_;
-  std::vector<double> may_pull_;  ///< largest change of the force on each patch that does not wake it [N]
+  std::vector<double> may_pull_;  ///< largest change of the force on each group that does not wake it [N]
 };
 
 }  // namespace sprung

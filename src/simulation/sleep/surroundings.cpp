@@ -23,14 +23,14 @@ double displacement(const RigidTransform& motion, const Box3& box) {
 
 }  // namespace
 
-Surroundings::Surroundings(const SpringNetwork& network, const Environment& environment, const SleepPatches& patches, double step,
+Surroundings::Surroundings(const SpringNetwork& network, const Environment& environment, const SleepGroups& groups, double step,
                            double gravity)
     : network_(network),
       environment_(environment),
-      patches_(patches),
+      groups_(groups),
       step_(step),
       gravity_(gravity),
-      ends_(patches.patches.size(), 0.0) {
+      ends_(groups.groups.size(), 0.0) {
   for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
     for (const Pin& pin : *pins) note(pin);
   }
@@ -42,17 +42,17 @@ void Surroundings::note(const Pin& pin) {
   const double until = std::isfinite(pin.until) ? pin.until + step_ : 0.0;  // rounded to a step
   const double motion = pin.obstacle != kNone ? end_of_obstacle(pin.obstacle) : pin.motion.end();
   const double end = std::max({pin.from > 0.0 ? pin.from + step_ : 0.0, until, std::min(motion, pin.until)});
-  for (const Index p : patches_of(pin.particles)) ends_[p] = std::max(ends_[p], end);
+  for (const Index p : groups_of(pin.particles)) ends_[p] = std::max(ends_[p], end);
 }
 
 void Surroundings::note(const Attachment& attachment) {
   double end = end_of_changes(attachment, step_);
-  const std::vector<Index> firsts = patches_of(attachment.particles);
+  const std::vector<Index> firsts = groups_of(attachment.particles);
   std::vector<Index> seconds;
   if (const auto* ends = std::get_if<ParticleEnds>(&attachment.second)) {
-    seconds = patches_of(ends->particles);
+    seconds = groups_of(ends->particles);
   } else if (const auto* surface = std::get_if<SurfaceEnd>(&attachment.second)) {
-    seconds = patches_of_body(static_cast<std::size_t>(surface->body));
+    seconds = groups_of_body(static_cast<std::size_t>(surface->body));
   } else {
     end = std::max(end, end_of_obstacle(std::get<ObstacleEnd>(attachment.second).obstacle));
   }
@@ -66,17 +66,17 @@ void Surroundings::note(const Attachment& attachment) {
 }
 
 /// Ascending, each once.
-std::vector<Index> Surroundings::patches_of(const std::vector<Index>& particles) const {
+std::vector<Index> Surroundings::groups_of(const std::vector<Index>& particles) const {
   std::vector<Index> found;
-  for (const Index particle : particles) found.push_back(patches_.patch_of[particle]);
+  for (const Index particle : particles) found.push_back(groups_.group_of[particle]);
   sort_unique(found);
   return found;
 }
 
-std::vector<Index> Surroundings::patches_of_body(std::size_t body) const {
+std::vector<Index> Surroundings::groups_of_body(std::size_t body) const {
   std::vector<Index> found;
-  for (Index p = 0; p < patches_.count(); ++p) {
-    if (patches_.patches[p].body == body) found.push_back(p);
+  for (Index p = 0; p < groups_.count(); ++p) {
+    if (groups_.groups[p].body == body) found.push_back(p);
   }
   return found;
 }
@@ -87,11 +87,11 @@ double Surroundings::end_of_obstacle(Index obstacle) const {
 }
 
 Surroundings::Found Surroundings::find(const SimulationState& state) const {
-  Found found{.boxes = {}, .pairs = patches_.adjacent};
+  Found found{.boxes = {}, .pairs = groups_.adjacent};
   found.pairs.insert(found.pairs.end(), attached_.begin(), attached_.end());
   Box3 all;
-  for (const SleepPatch& patch : patches_.patches) {
-    found.boxes.push_back(box_in_step(patch, state));
+  for (const SleepGroup& group : groups_.groups) {
+    found.boxes.push_back(box_in_step(group, state));
     all.extend(found.boxes.back());
   }
   const auto& boxes = found.boxes;
@@ -104,14 +104,14 @@ Surroundings::Found Surroundings::find(const SimulationState& state) const {
     const Index a = order[i];
     for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].min()[axis] <= boxes[a].max()[axis]; ++j) {
       const Index b = order[j];
-      if (!may_collide(patches_.patches[a], patches_.patches[b]) || !boxes[a].intersects(boxes[b])) continue;
+      if (!may_collide(groups_.groups[a], groups_.groups[b]) || !boxes[a].intersects(boxes[b])) continue;
       found.pairs.emplace_back(std::min(a, b), std::max(a, b));
     }
   }
   return found;
 }
 
-bool Surroundings::may_collide(const SleepPatch& a, const SleepPatch& b) const {
+bool Surroundings::may_collide(const SleepGroup& a, const SleepGroup& b) const {
   const BodyContact& first = network_.bodies[a.body].contact;
   return a.body == b.body ? first.self : first.others && network_.bodies[b.body].contact.others;
 }
@@ -123,12 +123,12 @@ std::vector<char> Surroundings::driven(const Found& found, double time) const {
 }
 
 /// What sleeps moves only with the corners of its faces that are awake.
-Box3 Surroundings::box_in_step(const SleepPatch& patch, const SimulationState& state) const {
+Box3 Surroundings::box_in_step(const SleepGroup& group, const SimulationState& state) const {
   double farthest = 0.0;
-  for (const Index i : patch.reached) {
+  for (const Index i : group.reached) {
     if (!network_.is_asleep(i)) farthest = std::max(farthest, step_ * (state.v.col(i).norm() + step_ * gravity_));
   }
-  return grown(finite_bounds(state.x, patch.reached), network_.bodies[patch.body].material.thickness + farthest);
+  return grown(finite_bounds(state.x, group.reached), network_.bodies[group.body].material.thickness + farthest);
 }
 
 /// A box that a half-space contains is in its reach too.

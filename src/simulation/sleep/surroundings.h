@@ -1,9 +1,9 @@
-// Surroundings: which patches may act on each other in the next step, and what from outside drives them.
+// Surroundings: which groups may act on each other in the next step, and what from outside drives them.
 #pragma once
 
 #include "collision/obstacles/environment.h"
 #include "network/model/simulation_state.h"
-#include "simulation/sleep/sleep_patch.h"
+#include "simulation/sleep/sleep_group.h"
 
 #include <vector>
 
@@ -11,45 +11,45 @@ namespace sprung {
 
 class Surroundings {
  public:
-  /// Keeps references to the network, the environment and the patches. `step` in s, `gravity` in m/s^2.
-  Surroundings(const SpringNetwork& network, const Environment& environment, const SleepPatches& patches, double step,
+  /// Keeps references to the network, the environment and the groups. `step` in s, `gravity` in m/s^2.
+  Surroundings(const SpringNetwork& network, const Environment& environment, const SleepGroups& groups, double step,
                double gravity);
 
   struct Found {
-    std::vector<Box3> boxes;       ///< of each patch, grown by its displacement in the next step, by speed and gravity
-    std::vector<PatchPair> pairs;  ///< neighbours
+    std::vector<Box3> boxes;       ///< of each group, grown by its displacement in the next step, by speed and gravity
+    std::vector<GroupPair> pairs;  ///< neighbours
   };
-  /// Patches are neighbours if they are adjacent, if an attachment joins them, or if their boxes overlap and they may collide.
+  /// Groups are neighbours if they are adjacent, if an attachment joins them, or if their boxes overlap and they may collide.
   [[nodiscard]] Found find(const SimulationState& state) const;
 
-  /// Whether something drives each patch in the step after `time` [s]: a pin or an attachment that changes then or later, or an
+  /// Whether something drives each group in the step after `time` [s]: a pin or an attachment that changes then or later, or an
   /// obstacle in reach that moves then or later. Deforming obstacles reach all boxes.
   [[nodiscard]] std::vector<char> driven(const Found& found, double time) const;
 
-  /// The time from which on no pin of the patch begins, ends or moves, and no attachment of it changes [s]; infinity if there is
+  /// The time from which on no pin of the group begins, ends or moves, and no attachment of it changes [s]; infinity if there is
   /// no such time. A pin or attachment that follows an obstacle moves as long as the obstacle does.
-  [[nodiscard]] double end_of_motions(Index patch) const { return ends_[patch]; }
+  [[nodiscard]] double end_of_motions(Index group) const { return ends_[group]; }
 
-  /// Patches that attachments join, ascending.
-  [[nodiscard]] const std::vector<PatchPair>& attached() const { return attached_; }
+  /// Groups that attachments join, ascending.
+  [[nodiscard]] const std::vector<GroupPair>& attached() const { return attached_; }
 
  private:
   void note(const Pin& pin);
   void note(const Attachment& attachment);
-  [[nodiscard]] std::vector<Index> patches_of(const std::vector<Index>& particles) const;
-  [[nodiscard]] std::vector<Index> patches_of_body(std::size_t body) const;
-  [[nodiscard]] bool may_collide(const SleepPatch& a, const SleepPatch& b) const;
-  [[nodiscard]] Box3 box_in_step(const SleepPatch& patch, const SimulationState& state) const;
+  [[nodiscard]] std::vector<Index> groups_of(const std::vector<Index>& particles) const;
+  [[nodiscard]] std::vector<Index> groups_of_body(std::size_t body) const;
+  [[nodiscard]] bool may_collide(const SleepGroup& a, const SleepGroup& b) const;
+  [[nodiscard]] Box3 box_in_step(const SleepGroup& group, const SimulationState& state) const;
   [[nodiscard]] bool is_reached(const Box3& box, double time) const;
   [[nodiscard]] double end_of_obstacle(Index obstacle) const;
 
   const SpringNetwork& network_;
   const Environment& environment_;
-  const SleepPatches& patches_;
+  const SleepGroups& groups_;
   double step_;
   double gravity_;
-  std::vector<double> ends_;  ///< of the motions of each patch
-  std::vector<PatchPair> attached_;
+  std::vector<double> ends_;  ///< of the motions of each group
+  std::vector<GroupPair> attached_;
 };
 
 }  // namespace sprung

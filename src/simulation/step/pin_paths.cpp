@@ -44,26 +44,24 @@ RigidTransform PinPaths::Path::pose(double time) const {
 /// Where a path has its particles at one time.
 class PinPaths::Placing {
  public:
-  Placing(const PinPaths& paths, const Path& path, double time) : paths_(paths), path_(path), time_(time), pose_(path.pose(time)) {}
+  Placing(const Path& path, double time) : path_(path), time_(time), pose_(path.pose(time)) {}
 
   Vector3 operator()(const Held& held) {
-    const bool relative = held.step != kNone;
-    if (relative && time_ == paths_.time_of(held.step)) return held.start;  // without the rounding of poses
+    if (held.begin == time_) return held.start;  // without the rounding of poses
     if (path_.sequence != nullptr) return pose_ * anchored_position(*path_.sequence, held.surface, time_);
-    if (!motion_ || held.step != step_) {
-      step_ = held.step;
-      motion_ = pose_ * (relative ? path_.pose(paths_.time_of(step_)) : path_.origin()).inverse();
+    if (!motion_ || held.begin != begin_) {
+      begin_ = held.begin;
+      motion_ = pose_ * (begin_ ? path_.pose(*begin_) : path_.origin()).inverse();
     }
     return *motion_ * held.start;
   }
 
  private:
-  const PinPaths& paths_;
   const Path& path_;
   double time_;
   RigidTransform pose_;
-  std::int64_t step_ = kNone;
-  std::optional<RigidTransform> motion_;  ///< since step_
+  std::optional<double> begin_;
+  std::optional<RigidTransform> motion_;  ///< since begin_
 };
 
 PinPaths::PinPaths(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length)
@@ -86,14 +84,14 @@ bool PinPaths::take(SimulationState& state) {
   for (Path& path : paths_) {
     path.particles.clear();
     if (!path.needs_anchors()) {
-      const std::int64_t step = path.obstacle != nullptr ? 0 : kNone;
-      for (const Index i : path.pin->particles) path.particles.push_back({i, step, network_.positions.col(i), {}});
+      const std::optional<double> begin = path.obstacle != nullptr ? std::optional(0.0) : std::nullopt;
+      for (const Index i : path.pin->particles) path.particles.push_back({i, begin, network_.positions.col(i), {}});
       continue;
     }
     for (const PinAnchor& anchor : anchors_of(path, state, is_new)) {
-      Held held{anchor.particle, anchor.step, anchor.position, {}};
+      Held held{anchor.particle, anchor.time, anchor.position, {}};
       if (path.sequence != nullptr) {
-        const double time = time_of(anchor.step);
+        const double time = anchor.time;
         held.surface = anchored(*path.sequence, anchor.triangle, time, path.pose(time).inverse() * anchor.position);
       }
       path.particles.push_back(held);
@@ -114,20 +112,20 @@ std::vector<PinAnchor> PinPaths::anchors_of(const Path& path, const SimulationSt
   std::vector<Vector3> points;  // of those, in the obstacle's frame
   for (const Index i : path.pin->particles) {
     const PinAnchor* known = find(state.anchors, i);
-    if (known != nullptr && from < due_before(known->step, step_length_)) {
+    if (known != nullptr && from < known->time + 0.5 * step_length_) {
       anchors.push_back(*known);
       continue;
     }
-    const std::int64_t step = later ? state.step : 0;
+    const double time = later ? steps_done(state) * step_length_ : 0.0;
     const Vector3 position = later ? state.x.col(i) : network_.positions.col(i);
     added.push_back(anchors.size());
-    points.push_back(path.pose(time_of(step)).inverse() * position);
-    anchors.push_back({i, step, position, kNone});
+    points.push_back(path.pose(time).inverse() * position);
+    anchors.push_back({i, time, position, kNone});
   }
   if (added.empty()) return anchors;
   is_new = true;
   if (path.sequence == nullptr) return anchors;
-  const double time = time_of(anchors[added.front()].step);
+  const double time = anchors[added.front()].time;
   const std::vector<Index> triangles = nearest_triangles(*path.sequence, time, points);
   for (std::size_t k = 0; k < added.size(); ++k) anchors[added[k]].triangle = triangles[k];
   return anchors;
@@ -136,8 +134,8 @@ std::vector<PinAnchor> PinPaths::anchors_of(const Path& path, const SimulationSt
 double PinPaths::move(double time, double dt, SimulationState& state) const {
   double fastest = 0.0;
   for (const Path& path : paths_) {
-    Placing now(*this, path, time);
-    Placing next(*this, path, time + dt);
+    Placing now(path, time);
+    Placing next(path, time + dt);
     for (const Held& held : path.particles) {
       const Index i = held.particle;
       state.x.col(i) = now(held);
@@ -150,11 +148,10 @@ double PinPaths::move(double time, double dt, SimulationState& state) const {
 
 void PinPaths::set_last_velocities(double time, double dt, Points& velocities) const {
   for (const Path& path : paths_) {
-    Placing now(*this, path, time);
-    Placing before(*this, path, time - dt);
+    Placing now(path, time);
+    Placing before(path, time - dt);
     for (const Held& held : path.particles) {
-      const double begin = held.step == kNone ? 0.0 : time_of(held.step);
-      if (time - 0.5 * dt > begin) velocities.col(held.particle) = (now(held) - before(held)) / dt;
+      if (time - 0.5 * dt > held.begin.value_or(0.0)) velocities.col(held.particle) = (now(held) - before(held)) / dt;
     }
   }
 }

@@ -5,6 +5,7 @@
 #include "collision/shapes/surface_anchor.h"
 #include "network/model/simulation_state.h"
 
+#include <optional>
 #include <vector>
 
 namespace sprung {
@@ -30,9 +31,9 @@ class PinPaths {
  private:
   struct Held {
     Index particle;
-    std::int64_t step;      ///< at which the pin took the particle; kNone: it moves from its position in the network
-    Vector3 start;          ///< position there [m]
-    SurfaceAnchor surface;  ///< on a deforming obstacle, in its frame
+    std::optional<double> begin;  ///< when the pin took the particle [s]; none: it moves from its position in the network
+    Vector3 start;                ///< position then [m]
+    SurfaceAnchor surface;        ///< on a deforming obstacle, in its frame
   };
   struct Path {
     const Pin* pin;
@@ -46,7 +47,6 @@ class PinPaths {
   };
   class Placing;
 
-  [[nodiscard]] double time_of(std::int64_t step) const { return static_cast<double>(step) * step_length_; }
   std::vector<PinAnchor> anchors_of(const Path& path, const SimulationState& state, bool& is_new) const;
 
   const SpringNetwork& network_;

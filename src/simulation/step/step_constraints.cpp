@@ -125,7 +125,8 @@ std::optional<int> StepConstraints::solve_limit(SimulationState& state) {
 // hangs over a tip would stretch by the same amount, which in few passes is a fifth of its length and more.
 void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
   const bool projects = projects_contacts();
-  const std::optional<int> solves = limit_ && !repeats_ ? solve_limit(state) : std::nullopt;
+  const std::optional<int> solves = limit_ && global_limit_ ? solve_limit(state) : std::nullopt;
+  if (limit_ && global_limit_) report.deformation = limit_->deformation();
   report.limit_solves = solves.value_or(0);
   const int limit_passes = limit_ ? limit_->settings().iterations + (solves ? 1 : 0) : 0;  // the first after a solve only measures
   const int passes = std::max(limit_passes, constraint_passes());

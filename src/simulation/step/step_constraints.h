@@ -7,7 +7,7 @@
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "simulation/settings/simulator_settings.h"
-#include "simulation/step/step_report.h"
+#include "simulation/step/step_plan.h"
 
 #include <optional>
 
@@ -30,11 +30,10 @@ class StepConstraints {
     contacts_.roll_back(permitted);
     if (limit_) limit_->forget_solves();
   }
-  /// While a step with infeasible particles is repeated, contacts are found farther ahead, and passes alone enforce the limit: a
-  /// global solve does not know contacts and moves particles far.
-  void look_ahead(bool ahead) {
-    contacts_.look_ahead(ahead);
-    repeats_ = ahead;
+  /// Makes the substeps that follow as planned.
+  void follow(const StepPlan& plan) {
+    contacts_.look_ahead(plan.look_ahead);
+    global_limit_ = plan.global_limit;
   }
 
   /// Adds a constraint that passes restore in each step.
@@ -99,7 +98,7 @@ class StepConstraints {
   Points responded_;                   ///< positions after that call
   double dt_ = 0.0;
   ImpulseRecorder recorder_;
-  bool repeats_ = false;
+  bool global_limit_ = true;  ///< see StepPlan
 };
 
 }  // namespace sprung

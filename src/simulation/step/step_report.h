@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/types.h"
+#include "network/model/simulation_state.h"
 
 #include <stdexcept>
 
@@ -9,14 +10,15 @@ namespace sprung {
 
 /// Counts of one step, summed over its substeps, and the largest excess.
 struct StepReport {
-  int substeps = 0;             ///< number of substeps
-  int iterations = 0;           ///< passes over stretch limit and contact
-  int limit_solves = 0;         ///< linear systems solved for the stretch limit
-  double stretch_excess = 0.0;  ///< largest at the end of a substep [fraction of the rest length]
-  Index truncated = 0;          ///< particles that truncation stopped
-  Index infeasible = 0;         ///< particles without an admissible position
-  Index max_infeasible = 0;     ///< the most in one substep
-  double turn = 0.0;            ///< rotation in a substep of the present length; see StretchLimit::turn
+  int substeps = 0;                       ///< number of substeps
+  int iterations = 0;                     ///< passes over stretch limit and contact
+  int limit_solves = 0;                   ///< linear systems solved for the stretch limit
+  double stretch_excess = 0.0;            ///< largest at the end of a substep [fraction of the rest length]
+  Index truncated = 0;                    ///< particles that truncation stopped
+  Index infeasible = 0;                   ///< particles without an admissible position
+  Index max_infeasible = 0;               ///< the most in one substep
+  double deformation = 0.0;               ///< of the last substep; see StretchLimit::deformation
+  PlanReason reason = PlanReason::first;  ///< why the step has its substeps
 
   StepReport& operator+=(const StepReport& substep);
 };

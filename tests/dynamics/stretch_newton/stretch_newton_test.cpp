@@ -322,16 +322,16 @@ TEST(StretchLimit, FollowsTheTurnWhereGlobalSolvesEnforceAllSprings) {
   using Solver = StretchLimitSettings::Solver;
   const SpringNetwork cloth = make_test_cloth(4, 0.0, 0.0);
   const SpringNetwork rope = make_test_rope(4, 0.0);
-  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::newton}).follows_turn());
-  EXPECT_TRUE(StretchLimit(rope, {.solver = Solver::automatic}).follows_turn());
-  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).follows_turn());
-  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_turn());
-  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_turn({{.solved_since = 0}})) << "left to global solves";
-  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).may_follow_turn());
-  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::newton}).may_follow_turn()) << "it follows the turn already";
-  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).may_follow_turn());
-  EXPECT_FALSE(StretchLimit(cloth, {.max_compression = 0.5, .solver = Solver::newton}).follows_turn()) << "left to passes";
-  EXPECT_FALSE(StretchLimit(rope, {.kinds = {SpringKind::shear}, .solver = Solver::newton}).follows_turn()) << "limits nothing";
+  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::newton}).follows_deformation());
+  EXPECT_TRUE(StretchLimit(rope, {.solver = Solver::automatic}).follows_deformation());
+  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).follows_deformation());
+  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_deformation());
+  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_deformation({{.solved_since = 0}})) << "left to global solves";
+  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).may_follow_deformation());
+  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::newton}).may_follow_deformation()) << "it follows the turn already";
+  EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).may_follow_deformation());
+  EXPECT_FALSE(StretchLimit(cloth, {.max_compression = 0.5, .solver = Solver::newton}).follows_deformation()) << "left to passes";
+  EXPECT_FALSE(StretchLimit(rope, {.kinds = {SpringKind::shear}, .solver = Solver::newton}).follows_deformation()) << "limits nothing";
 }
 
 // A rope between two pins farther apart than its length: the unavoidable excess is distributed evenly and reported.

@@ -15,12 +15,12 @@ namespace {
 constexpr double kWindow = 0.25;  // [s]
 constexpr double kMost = 2.5e-3;  // displacement at rest on earth [m], and times four the slowest speed that is not slow
 
-/// A cloth of 1 m whose springs of 5 cm are too long to matter, and its patches of 64 particles.
+/// A cloth of 1 m whose springs of 5 cm are too long to matter, and its groups of 64 particles.
 class Rest : public ::testing::Test {
  protected:
-  /// Moves the particles of a patch by `distance` [m] in a window, at whose end they have `speed` [m/s].
-  void move(Index patch, double distance, double speed = 0.0) {
-    for (const Index i : patches_.patches[patch].particles) {
+  /// Moves the particles of a group by `distance` [m] in a window, at whose end they have `speed` [m/s].
+  void move(Index group, double distance, double speed = 0.0) {
+    for (const Index i : groups_.groups[group].particles) {
       state_.x(0, i) += distance;
       state_.v(0, i) = speed;
     }
@@ -32,13 +32,13 @@ class Rest : public ::testing::Test {
     detector_.end_window(time_, restless_, beside.empty() ? none_ : beside, state_);
   }
 
-  [[nodiscard]] bool rests(Index patch) const { return state_.rest.histories[patch].is_at_rest; }
+  [[nodiscard]] bool rests(Index group) const { return state_.rest.histories[group].is_at_rest; }
 
   SpringNetwork network_ = cloth(20, 0.0);
-  SleepPatches patches_{network_};
-  RestDetector detector_{network_, patches_, nullptr, kGravity};
+  SleepGroups groups_{network_};
+  RestDetector detector_{network_, groups_, nullptr, kGravity};
   SimulationState state_ = initial_state(network_);
-  const std::vector<char> none_ = std::vector<char>(patches_.patches.size(), 0);
+  const std::vector<char> none_ = std::vector<char>(groups_.groups.size(), 0);
   std::vector<char> restless_ = none_;
   double time_ = -kWindow;
 };
@@ -55,7 +55,7 @@ TEST_F(Rest, BeginsAfterTwoQuietWindows) {
 TEST_F(Rest, IsSlowerThanOneCentimetreASecond) {
   for (const double speed : {0.0097, 0.0099}) {  // g times a millisecond is 9.81 mm/s
     for (int window = 0; window < 3; ++window) {
-      for (Index p = 0; p < patches_.count(); ++p) move(p, 0.0, speed);
+      for (Index p = 0; p < groups_.count(); ++p) move(p, 0.0, speed);
       end_window();
     }
     EXPECT_EQ(rests(0), speed < 0.0098);
@@ -79,19 +79,19 @@ TEST_F(Rest, NeedsTwoWindowsAfterTheLastRestlessOne) {
 TEST_F(Rest, DoesNotMoveFartherAndFarther) {
   for (int window = 0; window < 3; ++window) end_window();
   for (const double distance : {0.05, 0.08, 0.11}) {
-    for (Index p = 0; p < patches_.count(); ++p) move(p, distance * kMost);
+    for (Index p = 0; p < groups_.count(); ++p) move(p, distance * kMost);
     end_window();
   }
   EXPECT_TRUE(rests(0));
-  for (Index p = 0; p < patches_.count(); ++p) move(p, 0.01 * kMost);
+  for (Index p = 0; p < groups_.count(); ++p) move(p, 0.01 * kMost);
   end_window();
-  for (Index p = 0; p < patches_.count(); ++p) move(p, 0.11 * kMost);
+  for (Index p = 0; p < groups_.count(); ++p) move(p, 0.11 * kMost);
   end_window();
   EXPECT_FALSE(rests(0)) << "eleven times as far";
 }
 
-// One of seven patches moves by 0.3 of the largest displacement, the body by 0.3 / sqrt(7) = 0.113 as root mean square.
-TEST_F(Rest, OfABodyAsAWholeIsThatOfAllItsPatches) {
+// One of seven groups moves by 0.3 of the largest displacement, the body by 0.3 / sqrt(7) = 0.113 as root mean square.
+TEST_F(Rest, OfABodyAsAWholeIsThatOfAllItsGroups) {
   for (int window = 0; window < 3; ++window) {
     move(0, 0.3 * kMost);
     end_window();
@@ -106,7 +106,7 @@ TEST_F(Rest, OfABodyAsAWholeIsThatOfAllItsPatches) {
 }
 
 TEST_F(Rest, BesideASleeperDisplacementsAddUp) {
-  const std::vector<char> all(patches_.patches.size(), 1);
+  const std::vector<char> all(groups_.groups.size(), 1);
   for (const bool beside : {false, true}) {
     end_window();
     for (int window = 0; window < 3; ++window) {
@@ -121,14 +121,14 @@ TEST_F(Rest, BesideASleeperDisplacementsAddUp) {
 // A tenth of the weight of 64 particles of 0.5 g is 31 mN; border springs of 200 N/m get it from 20 um each.
 TEST_F(Rest, EndsBesideASleeperWhoseSpringsPullMore) {
   std::vector<char> asleep(static_cast<std::size_t>(network_.particle_count()), 0);
-  for (const Index i : patches_.patches[0].particles) asleep[i] = 1;
+  for (const Index i : groups_.groups[0].particles) asleep[i] = 1;
   set_asleep(asleep, network_);
-  const RestDetector detector(network_, patches_, nullptr, kGravity);
+  const RestDetector detector(network_, groups_, nullptr, kGravity);
   detector.end_window(0.0, none_, none_, state_);
-  const auto pull = [&](double distance) {  // all other particles away from the middle of the patch
+  const auto pull = [&](double distance) {  // all other particles away from the middle of the group
     Vector3 middle = Vector3::Zero();
-    for (const Index i : patches_.patches[0].particles) middle += network_.positions.col(i);
-    middle /= static_cast<double>(patches_.patches[0].particles.size());
+    for (const Index i : groups_.groups[0].particles) middle += network_.positions.col(i);
+    middle /= static_cast<double>(groups_.groups[0].particles.size());
     for (Index i = 0; i < network_.particle_count(); ++i) {
       if (asleep[i] == 0) state_.x.col(i) += distance * (network_.positions.col(i) - middle).normalized();
     }
@@ -139,8 +139,8 @@ TEST_F(Rest, EndsBesideASleeperWhoseSpringsPullMore) {
   EXPECT_TRUE(pull(2.0e-4));
 }
 
-// The ball is beside the middle of a face whose corners are in two patches, farther than its thickness from the boxes of both.
-TEST(Surroundings, FacesBetweenPatchesReachTheirNeighbours) {
+// The ball is beside the middle of a face whose corners are in two groups, farther than its thickness from the boxes of both.
+TEST(Surroundings, FacesBetweenGroupsReachTheirNeighbours) {
   BodyShape shape = make_cloth({.size = {19.0, 19.0}, .resolution = {20, 20}}, {.structural = SpringMaterial{.value = 100.0}});
   set_total_mass(shape, 1.0);
   NetworkBuilder builder;
@@ -148,19 +148,19 @@ TEST(Surroundings, FacesBetweenPatchesReachTheirNeighbours) {
   builder.begin_body("ball", {.thickness = 0.01});
   const Index ball = builder.add_particle(Vector3::Zero(), 0.1);
   SpringNetwork network = builder.build();
-  const SleepPatches patches(network);
+  const SleepGroups groups(network);
   const Environment environment;
-  const Surroundings surroundings(network, environment, patches, 1.0e-3, kGravity);
+  const Surroundings surroundings(network, environment, groups, 1.0e-3, kGravity);
   SimulationState state = initial_state(network);
   int faces = 0;
   for (const auto& triangle : network.bodies.front().surface.triangles.colwise()) {
-    const Index patch = patches.patch_of[triangle[0]];
-    if (patches.patch_of[triangle[1]] == patch && patches.patch_of[triangle[2]] == patch) continue;
+    const Index group = groups.group_of[triangle[0]];
+    if (groups.group_of[triangle[1]] == group && groups.group_of[triangle[2]] == group) continue;
     ++faces;
     state.x.col(ball) = (state.x.col(triangle[0]) + state.x.col(triangle[1]) + state.x.col(triangle[2])) / 3.0;
-    const std::vector<PatchPair> pairs = surroundings.find(state).pairs;
+    const std::vector<GroupPair> pairs = surroundings.find(state).pairs;
     for (const Index corner : triangle) {
-      EXPECT_TRUE(std::ranges::find(pairs, PatchPair(patches.patch_of[corner], patches.patch_of[ball])) != pairs.end());
+      EXPECT_TRUE(std::ranges::find(pairs, GroupPair(groups.group_of[corner], groups.group_of[ball])) != pairs.end());
     }
   }
   EXPECT_GT(faces, 0);

@@ -1,5 +1,5 @@
-// Patches divide the particles of ropes and cloths, and those that sleep change nothing but the time.
-#include "simulation/sleep/sleep_patch.h"
+// Groups divide the particles of ropes and cloths, and those that sleep change nothing but the time.
+#include "simulation/sleep/sleep_group.h"
 
 #include "base/parallel.h"
 #include "simulation/scenes.h"
@@ -21,40 +21,40 @@ constexpr Index kParticles = 401;
 
 const ContactMaterial kRough{.thickness = 0.5 * kGap, .friction = 0.4, .static_friction = 0.4};
 
-TEST(SleepPatches, EachParticleIsInOnePatchAndSpringsJoinOnlyAdjacentOnes) {
+TEST(SleepGroups, EachParticleIsInOneGroupAndSpringsJoinOnlyAdjacentOnes) {
   const SpringNetwork network = cloth(20, 0.0);
-  const SleepPatches patches(network);
-  EXPECT_EQ(patches.count(), 7) << "the fewest of at most 64 particles";
+  const SleepGroups groups(network);
+  EXPECT_EQ(groups.count(), 7) << "the fewest of at most 64 particles";
   std::vector<Index> found;
-  for (const SleepPatch& patch : patches.patches) {
-    EXPECT_LE(patch.particles.size(), 64U);
-    EXPECT_TRUE(std::ranges::includes(patch.reached, patch.particles));
-    found.insert(found.end(), patch.particles.begin(), patch.particles.end());
+  for (const SleepGroup& group : groups.groups) {
+    EXPECT_LE(group.particles.size(), 64U);
+    EXPECT_TRUE(std::ranges::includes(group.reached, group.particles));
+    found.insert(found.end(), group.particles.begin(), group.particles.end());
   }
   std::ranges::sort(found);
   std::vector<Index> all(static_cast<std::size_t>(network.particle_count()));
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Index>(i);
   EXPECT_EQ(found, all);
-  const std::set<PatchPair> adjacent(patches.adjacent.begin(), patches.adjacent.end());
+  const std::set<GroupPair> adjacent(groups.adjacent.begin(), groups.adjacent.end());
   for (Index s = 0; s < network.springs.count(); ++s) {
-    const auto [a, b] = std::minmax(patches.patch_of[network.springs.first[s]], patches.patch_of[network.springs.second[s]]);
+    const auto [a, b] = std::minmax(groups.group_of[network.springs.first[s]], groups.group_of[network.springs.second[s]]);
     EXPECT_TRUE(a == b || adjacent.contains({a, b}));
   }
   for (const auto& triangle : network.bodies.front().surface.triangles.colwise()) {
     for (const Index corner : triangle) {
-      const std::vector<Index>& reached = patches.patches[patches.patch_of[corner]].reached;
+      const std::vector<Index>& reached = groups.groups[groups.group_of[corner]].reached;
       EXPECT_TRUE(std::ranges::all_of(triangle, [&](Index i) { return std::ranges::binary_search(reached, i); }));
     }
   }
 }
 
-TEST(SleepPatches, ASolidIsOnePatch) {
+TEST(SleepGroups, ASolidIsOneGroup) {
   BodyShape shape = make_solid({.size = {1.0, 1.0, 1.0}, .resolution = {5, 5, 5}}, {.structural = SpringMaterial{.value = 100.0}});
   set_total_mass(shape, 1.0);
   NetworkBuilder builder;
   builder.add_body("solid", shape);
   builder.add_body("another", shape);
-  EXPECT_EQ(SleepPatches(builder.build()).count(), 2);
+  EXPECT_EQ(SleepGroups(builder.build()).count(), 2);
 }
 
 const SimulatorSettings kWithLimit{.step = 1.0e-3, .stretch_limit = StretchLimitSettings{.max_stretch = 0.0, .tolerance = 1.0e-3}};
@@ -88,7 +88,7 @@ double strain(const Simulator& simulator) {
 }
 
 // The begin of the rope is lifted by 5 cm and put down again, for 4 s.
-TEST(SleepPatches, TheEndOfARopeSleepsWhileItsBeginMoves) {
+TEST(SleepGroups, TheEndOfARopeSleepsWhileItsBeginMoves) {
   Motion up_and_down;
   for (int k = 0; k < 9; ++k) {
     up_and_down.keyframes.push_back({.time = 0.5 * k, .position = {0.02 * (k % 2), 0.05 * (k % 2), 0.0}});
@@ -119,7 +119,7 @@ TEST(SleepPatches, TheEndOfARopeSleepsWhileItsBeginMoves) {
 }
 
 // What wakes may have lost its support: so may the rest of its body.
-TEST(SleepPatches, WhatReachesAPatchWakesAllOfTheBody) {
+TEST(SleepGroups, WhatReachesAGroupWakesAllOfTheBody) {
   const Obstacle box{.name = "box",
                      .geometry = BoxGeometry{.size = {0.1, 0.1, 0.1}},
                      .rest_pose = RigidTransform(Eigen::Translation3d(7.0, 0.065, 0.0)),
@@ -136,9 +136,9 @@ TEST(SleepPatches, WhatReachesAPatchWakesAllOfTheBody) {
   EXPECT_EQ(asleep, 0);
 }
 
-// The pin takes off with 3 m/s. If patches woke one by one, those awake would be stretched by 3 mm in each step. With the limit and
+// The pin takes off with 3 m/s. If groups woke one by one, those awake would be stretched by 3 mm in each step. With the limit and
 // with implicit Euler, all of the rope feels the pull in one step.
-TEST(SleepPatches, APullWakesARopeBeforeItStretches) {
+TEST(SleepGroups, APullWakesARopeBeforeItStretches) {
   const Motion pull{.keyframes = {{.time = 2.0}, {.time = 2.5, .position = {-1.5, 0.0, 0.0}}}};
   for (const bool limited : {true, false}) {
     Simulator simulator = limited ? lying_rope(pull) : lying_rope(pull, true, kImplicit, 1.0e5);
@@ -161,9 +161,9 @@ TEST(SleepPatches, APullWakesARopeBeforeItStretches) {
 }
 
 // The pin pulls with 0.8 mm/s, which moves no particle by the millimetre that wakes its neighbours in a window. If the rest of the
-// rope stayed asleep, the two patches that are awake would be stretched by all of the 5 mm, 0.45 %. Without a limit, the
+// rope stayed asleep, the two groups that are awake would be stretched by all of the 5 mm, 0.45 %. Without a limit, the
 // friction of 1.6 N stretches bonds of 100 kN/m by 0.16 %, and a tenth of that more wakes the rope.
-TEST(SleepPatches, ASlowPullAddsUp) {
+TEST(SleepGroups, ASlowPullAddsUp) {
   const Motion pull{.keyframes = {{.time = 1.0}, {.time = 7.25, .position = {-0.005, 0.0, 0.0}}}};
   for (const bool limited : {true, false}) {
     Simulator simulator = limited ? lying_rope(pull) : lying_rope(pull, true, kImplicit, 1.0e5);

@@ -1,6 +1,4 @@
-// The number and length of substeps. Time and motion do not depend on them.
-#include "simulation/step/step_refinement.h"
-
+// What substeps do. Time and motion do not depend on their number and length.
 #include "base/error.h"
 #include "base/parallel.h"
 #include "dynamics/forces/gravity_and_drag.h"
@@ -28,54 +26,8 @@ StretchLimitSettings both_ways() {
           .tethers = true};
 }
 
-/// The number of substeps after steps that left these excesses.
-int substeps_after(const std::vector<double>& excesses, int most = 8) {
-  const StepRefinement refinement(both_ways(), most);
-  SimulationState state;
-  for (const double excess : excesses) refinement.choose(excess, state);
-  return state.substeps;
-}
-
-TEST(StepRefinement, HalvesUntilTheExpectedExcessIsSmallEnough) {
-  EXPECT_EQ(substeps_after({0.029}), 1);
-  EXPECT_EQ(substeps_after({0.031}), 2);
-  EXPECT_EQ(substeps_after({0.061}), 4);
-  EXPECT_EQ(substeps_after({0.031, 0.031}), 4);
-  EXPECT_EQ(substeps_after({1.0}), 8);
-  EXPECT_EQ(substeps_after({1.0}, 4), 4);
-}
-
-TEST(StepRefinement, DoublesAgainAfterSeveralCalmStepsInARow) {
-  const std::vector<double> calm(7, 0.007);
-  const auto after = [&](std::vector<double> between) {
-    std::vector<double> excesses{0.061};
-    excesses.insert(excesses.end(), calm.begin(), calm.end());
-    excesses.insert(excesses.end(), between.begin(), between.end());
-    return substeps_after(excesses);
-  };
-  EXPECT_EQ(after({}), 4);
-  EXPECT_EQ(after({0.007}), 2);
-  EXPECT_EQ(after({0.008, 0.007}), 4) << "a step in between was not calm enough";
-  EXPECT_EQ(substeps_after(std::vector<double>(30, 0.0)), 1);
-}
-
-TEST(StepRefinement, ChoosesSubstepsThatTurnLittleEnough) {
-  const StepRefinement refinement(both_ways(), 8);
-  SimulationState state;
-  const auto substeps_after_turn = [&](double turn) {
-    refinement.choose_by_turn(turn, state);
-    return state.substeps;
-  };
-  EXPECT_EQ(substeps_after_turn(1.0 / 71.0), 1);
-  EXPECT_EQ(substeps_after_turn(1.0 / 69.0), 2);
-  EXPECT_EQ(substeps_after_turn(1.0 / 69.0), 3) << "the turn of one of two substeps";
-  EXPECT_EQ(substeps_after_turn(1.0 / 106.0), 2) << "the turn of one of three substeps";
-  EXPECT_EQ(substeps_after_turn(0.0), 1);
-  EXPECT_EQ(substeps_after_turn(10.0), 8);
-}
-
 // Verlet's positions lie on the parabola of free flight at any step.
-TEST(StepRefinement, KeepsVerletOnTheParabola) {
+TEST(Substeps, KeepsVerletOnTheParabola) {
   const SpringNetwork ball = testing::one_particle(Vector3::Zero(), {}, Vector3(1.0, 2.0, 0.0));
   const Vector3 g(0.0, -testing::kGravity, 0.0);
   Forces forces;
@@ -128,7 +80,7 @@ Swing swing(const SpringNetwork& network, int steps_a_frame, int max_substeps, c
   return swing;
 }
 
-TEST(StepRefinement, KeepsTheLimitAndTheEnergyOfASwingingCloth) {
+TEST(Substeps, KeepsTheLimitAndTheEnergyOfASwingingCloth) {
   const SpringNetwork cloth = swinging_cloth(16);
   const Swing coarse = swing(cloth, 8, 1);
   const Swing refined = swing(cloth, 8, 8);
@@ -142,7 +94,7 @@ TEST(StepRefinement, KeepsTheLimitAndTheEnergyOfASwingingCloth) {
 }
 
 // A global solve keeps the limit at any step, but loses kinetic energy of the fall.
-TEST(StepRefinement, KeepsTheEnergyOfATurningCloth) {
+TEST(Substeps, KeepsTheEnergyOfATurningCloth) {
   const StretchLimitSettings limit{.max_stretch = 0.0, .tolerance = 0.01, .solver = StretchLimitSettings::Solver::newton};
   const SpringNetwork cloth = swinging_cloth(16);
   const Swing coarse = swing(cloth, 1, 1, limit);
@@ -155,7 +107,7 @@ TEST(StepRefinement, KeepsTheEnergyOfATurningCloth) {
   EXPECT_NEAR(refined.energy, fine.energy, 0.1 * fall);
 }
 
-TEST(StepRefinement, BeginsWithTheSmallestSubstepsIfBodiesMove) {
+TEST(Substeps, BeginsWithTheSmallestSubstepsIfBodiesMove) {
   NetworkBuilder builder;
   const Vector3 velocity(0.0, 0.0, 10.0);
   const Index first = builder.add_particle({0.0, 0.0, 0.0}, 1.0, velocity);
@@ -178,7 +130,7 @@ TEST(StepRefinement, BeginsWithTheSmallestSubstepsIfBodiesMove) {
 
 // Eight substeps equal eight steps. This includes Verlet's first step and penalty friction, which stops a sliding particle within
 // a step if it can.
-TEST(StepRefinement, TheFirstSubstepsAreStepsOfTheirLength) {
+TEST(Substeps, TheFirstSubstepsAreStepsOfTheirLength) {
   const ContactMaterial rough{.thickness = 0.01, .friction = 100.0, .static_friction = 100.0};
   NetworkBuilder builder;
   builder.begin_body("stick", rough);
@@ -199,7 +151,7 @@ TEST(StepRefinement, TheFirstSubstepsAreStepsOfTheirLength) {
 }
 
 // The cloth starts unstretched, so it bounces at first. Smaller steps would only make it bounce higher.
-TEST(StepRefinement, DoesNotRefineAHangingCloth) {
+TEST(Substeps, DoesNotRefineAHangingCloth) {
   SpringNetwork cloth = swinging_cloth(64);
   cloth.positions.row(1) = -cloth.positions.row(2);
   cloth.positions.row(2).setZero();
@@ -209,7 +161,7 @@ TEST(StepRefinement, DoesNotRefineAHangingCloth) {
 
 // Dampers depend on the pin's velocity. The longer the step, the longer the chord of the circular path, and the more inward it
 // points.
-TEST(StepRefinement, PinsHaveTheVelocityOfTheNextSubstep) {
+TEST(Substeps, PinsHaveTheVelocityOfTheNextSubstep) {
   SpringNetwork cloth = swinging_cloth(16);
   Pin& pin = cloth.pins.front();
   pin.motion.spin = Vector3(0.0, 0.0, 90.0);
@@ -232,7 +184,7 @@ TEST(StepRefinement, PinsHaveTheVelocityOfTheNextSubstep) {
   EXPECT_GT(changes, 1);
 }
 
-TEST(StepRefinement, DoesNotDependOnTheNumberOfThreads) {
+TEST(Substeps, DoesNotDependOnTheNumberOfThreads) {
   const SpringNetwork cloth = swinging_cloth(40);
   const auto positions = [&](int threads) {
     const ThreadLimit limit(threads);
@@ -241,7 +193,7 @@ TEST(StepRefinement, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(positions(1), positions(2));
 }
 
-TEST(StepRefinement, AnInvalidNumberOfSubstepsIsRefused) {
+TEST(Substeps, AnInvalidNumberOfSubstepsIsRefused) {
   for (const int substeps : {0, kMaxSubsteps + 1}) {
     try {
       const Simulator simulator(testing::one_particle(Vector3::Zero()), {.max_substeps = substeps});

@@ -1,4 +1,4 @@
-#include "simulation/sleep/sleep_patch.h"
+#include "simulation/sleep/sleep_group.h"
 
 #include "collision/core/spatial_partition.h"
 
@@ -8,18 +8,18 @@
 namespace sprung {
 namespace {
 
-// 8 x 8 particles of a cloth. Smaller patches fall asleep and wake more often, which costs as much as ten steps each time.
+// 8 x 8 particles of a cloth. Smaller groups fall asleep and wake more often, which costs as much as ten steps each time.
 constexpr std::size_t kMostParticles = 64;
 
 }  // namespace
 
-SleepPatches::SleepPatches(const SpringNetwork& network) : patch_of(static_cast<std::size_t>(network.particle_count()), kNone) {
+SleepGroups::SleepGroups(const SpringNetwork& network) : group_of(static_cast<std::size_t>(network.particle_count()), kNone) {
   divide(network);
   find_adjacent(network);
 }
 
-void SleepPatches::divide(const SpringNetwork& network) {
-  std::vector<Index> order(patch_of.size());
+void SleepGroups::divide(const SpringNetwork& network) {
+  std::vector<Index> order(group_of.size());
   std::iota(order.begin(), order.end(), Index{0});
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
     const Body& body = network.bodies[b];
@@ -31,18 +31,18 @@ void SleepPatches::divide(const SpringNetwork& network) {
     bisect(network.positions, whole ? particles : kMostParticles, order, begin, begin + particles, starts);
     starts.push_back(begin + particles);
     for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
-      SleepPatch& patch = patches.emplace_back();
-      patch.body = b;
+      SleepGroup& group = groups.emplace_back();
+      group.body = b;
       for (std::size_t i = starts[k]; i < starts[k + 1]; ++i) {
-        patch.particles.push_back(order[i]);
-        patch_of[order[i]] = count() - 1;
+        group.particles.push_back(order[i]);
+        group_of[order[i]] = count() - 1;
       }
-      patch.reached = patch.particles;
+      group.reached = group.particles;
     }
   }
 }
 
-void SleepPatches::find_adjacent(const SpringNetwork& network) {
+void SleepGroups::find_adjacent(const SpringNetwork& network) {
   const Springs& springs = network.springs;
   for (Index s = 0; s < springs.count(); ++s) join(springs.first[s], springs.second[s]);
   const AngleBends& bends = network.angle_bends;
@@ -65,22 +65,22 @@ void SleepPatches::find_adjacent(const SpringNetwork& network) {
     for (const auto& ends : body.surface.segments.colwise()) reach(first + ends[0], first + ends[1]);
   }
   sort_unique(adjacent);
-  for (SleepPatch& patch : patches) sort_unique(patch.reached);
+  for (SleepGroup& group : groups) sort_unique(group.reached);
 }
 
-void SleepPatches::reach(Index particle, Index other) {
-  if (patch_of[particle] == patch_of[other]) return;
-  patches[patch_of[particle]].reached.push_back(other);
-  patches[patch_of[other]].reached.push_back(particle);
+void SleepGroups::reach(Index particle, Index other) {
+  if (group_of[particle] == group_of[other]) return;
+  groups[group_of[particle]].reached.push_back(other);
+  groups[group_of[other]].reached.push_back(particle);
   join(particle, other);
 }
 
-void SleepPatches::join(Index particle, Index other) {
-  const auto [first, second] = std::minmax(patch_of[particle], patch_of[other]);
+void SleepGroups::join(Index particle, Index other) {
+  const auto [first, second] = std::minmax(group_of[particle], group_of[other]);
   if (first != second) adjacent.emplace_back(first, second);
 }
 
-std::vector<char> with_neighbours(const std::vector<char>& marked, const std::vector<PatchPair>& pairs) {
+std::vector<char> with_neighbours(const std::vector<char>& marked, const std::vector<GroupPair>& pairs) {
   std::vector<char> result = marked;
   for (const auto& [a, b] : pairs) {
     if (marked[a] != 0) result[b] = 1;

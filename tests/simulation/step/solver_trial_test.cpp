@@ -1,6 +1,4 @@
 // The handover of a stretch limit from passes to a global solve, and its effect.
-#include "simulation/step/limit_handover.h"
-
 #include "base/parallel.h"
 #include "simulation/scenes.h"
 
@@ -58,70 +56,7 @@ Outcome run(const SpringNetwork& network, Solver solver, int steps, const std::v
   return outcome;
 }
 
-TEST(LimitHandover, IsDueAfterEnoughMissedStepsInARow) {
-  const SpringNetwork network = limp_cloth(4, true);
-  const StretchLimit limit(network, limit_of(Solver::automatic));
-  SimulationState state = initial_state(network);
-  const double most = wanted_excess(limit.settings());
-  const auto is_due_after = [&](double stretch, int times) {
-    state.x = (1.0 + limit.settings().max_stretch + stretch) * network.positions;
-    for (int k = 0; k < times; ++k, ++state.step) note_missed(network, limit, limit.excess(state.x), state);
-    return body_to_compare(state).has_value();
-  };
-  EXPECT_FALSE(is_due_after(1.01 * most, kFirstPatience - 1));
-  EXPECT_FALSE(is_due_after(0.99 * most, 1));
-  EXPECT_FALSE(is_due_after(1.01 * most, kFirstPatience - 1));
-  EXPECT_TRUE(is_due_after(1.01 * most, 1));
-}
-
-TEST(LimitHandover, WaitsTwiceAsLongAfterAComparisonThatChangedNothing) {
-  SimulationState state = initial_state(limp_cloth(4, true));
-  state.stretch_handovers[0].missed_steps = kFirstPatience;
-  note_comparison(0, false, state);
-  EXPECT_FALSE(body_to_compare(state));
-  state.stretch_handovers[0].missed_steps = 2 * kFirstPatience - 1;
-  EXPECT_FALSE(body_to_compare(state));
-  ++state.stretch_handovers[0].missed_steps;
-  EXPECT_EQ(body_to_compare(state), 0);
-  note_comparison(0, true, state);
-  EXPECT_EQ(state.stretch_handovers[0].patience, kFirstPatience);
-}
-
-TEST(LimitHandover, GoesThereAndBack) {
-  SimulationState state = initial_state(limp_cloth(4, true));
-  state.step = 5;
-  change_solver(0, state);
-  EXPECT_EQ(state.stretch_handovers[0].solved_since, 5);
-  change_solver(0, state);
-  EXPECT_FALSE(state.stretch_handovers[0].solved_since);
-}
-
-TEST(LimitHandover, IsWorthItWhereNewtonLeavesFourFifthsOrPassesHoldItAsWell) {
-  EXPECT_TRUE(is_worth_changing(true, 0.1, 0.079));
-  EXPECT_FALSE(is_worth_changing(true, 0.1, 0.081));
-  EXPECT_TRUE(is_worth_changing(false, 0.1, 0.1));
-  EXPECT_FALSE(is_worth_changing(false, 0.1, 0.11));
-}
-
-TEST(LimitHandover, CountsPerBody) {
-  NetworkBuilder builder;
-  const SpringMaterials materials{.structural = SpringMaterial{}, .shear = {}, .bend = {}};
-  for (const char* name : {"first", "second"}) {
-    BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {3, 3}}, materials);
-    set_total_mass(shape, 0.2);
-    builder.add_body(name, shape);
-  }
-  const SpringNetwork network = builder.build();
-  const StretchLimit limit(network, limit_of(Solver::automatic));
-  SimulationState state = initial_state(network);
-  state.x.rightCols(9) *= 1.5;
-  EXPECT_EQ(limit.excess(state.x, network.bodies[0]), 0.0);
-  EXPECT_EQ(limit.excess(state.x, network.bodies[1]), limit.excess(state.x));
-  for (int step = 0; step < 100; ++step) note_missed(network, limit, limit.excess(state.x), state);
-  EXPECT_EQ(body_to_compare(state), 1);
-}
-
-TEST(LimitHandover, ExcludesSolidsCompressionLimitsAndExplicitPasses) {
+TEST(SolverTrial, ExcludesSolidsCompressionLimitsAndExplicitPasses) {
   BodyShape shape =
       make_solid({.size = {1.0, 1.0, 1.0}, .resolution = {3, 3, 3}}, {.structural = SpringMaterial{}, .shear = {}, .bend = {}});
   set_total_mass(shape, 1.0);
@@ -138,7 +73,7 @@ TEST(LimitHandover, ExcludesSolidsCompressionLimitsAndExplicitPasses) {
       << "Newton solves it from the start";
 }
 
-TEST(LimitHandover, AutomaticEqualsNewtonWithoutContact) {
+TEST(SolverTrial, AutomaticEqualsNewtonWithoutContact) {
   const SpringNetwork cloth = limp_cloth(16, true);
   for (const int substeps : {1, 8}) {
     const Outcome automatic = run(cloth, Solver::automatic, 60, {}, substeps);
@@ -147,7 +82,7 @@ TEST(LimitHandover, AutomaticEqualsNewtonWithoutContact) {
   }
 }
 
-TEST(LimitHandover, AutomaticEqualsPassesWhereTheySuffice) {
+TEST(SolverTrial, AutomaticEqualsPassesWhereTheySuffice) {
   const SpringNetwork cloth = limp_cloth(8, false, {.thickness = 0.01, .friction = 0.3, .static_friction = 0.3});
   const std::vector<Obstacle> below{ball(-0.32, 0.3)};
   const Outcome automatic = run(cloth, Solver::automatic, 120, below);

@@ -1,0 +1,206 @@
+#include "simulation/step/step_planner.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+// Largest rotation of an obstacle or a pin in a substep [degrees]. In the frame of a rotating obstacle, particles are assumed to
+// move straight in a substep: after half a turn, through its center.
+constexpr double kMaxRotation = 45.0;
+
+// Factors on the substeps of repeated steps, in this order. Rotation asks for no more than the last one.
+constexpr std::array<int, 3> kRetryFactors{4, 16, 64};
+
+// A hanging body bounces at first, to 1.5 times the wanted excess. A smaller step would remove the excess faster and increase the
+// bounce, so only a larger excess, which needs motion, halves the step.
+constexpr double kMargin = 3.0;
+
+// Twice the step gives two to four times the excess: the step is doubled below this fraction of the bound.
+constexpr double kRoom = 0.25;
+constexpr int kCalmSteps = 8;
+
+constexpr double kMaxDeformation = 1.0 / 70.0;
+
+// The longest wait without repetitions [steps]. It ends after kLeastFree steps without infeasible particles plus 1 / kForgetting of
+// the wait: a cause that returns every few steps is treated as one that persists.
+constexpr int kMaxWait = 1024;
+constexpr int kLeastFree = 4;
+constexpr int kForgetting = 16;
+
+// Newton's method takes several steps from a large excess to the limit. Measured in its first step: 0.58 of what passes leave, both
+// for a cloth that then keeps its limit and for one that soon misses it again.
+constexpr double kWorthwhile = 0.8;
+constexpr int kMostPatience = 1 << 20;  // steps
+
+bool may_repeat(Index infeasible, const SimulationState& begin) {
+  const PlannerMemory& memory = begin.planner;
+  return infeasible > 0 && (begin.step >= memory.retry_from || infeasible > memory.retry_infeasible);
+}
+
+bool is_worth_changing(const SolverTrial& trial, double excess, double excess_of_other) {
+  return excess_of_other <= (trial.newton ? kWorthwhile : 1.0) * excess;
+}
+
+}  // namespace
+
+StepPlanner::StepPlanner(const SpringNetwork& network, const SimulatorSettings& settings, const StretchLimit* limit)
+    : network_(network),
+      limit_(limit),
+      max_substeps_(limit != nullptr ? settings.max_substeps : 1),
+      awaits_newton_(limit != nullptr && limit->may_follow_deformation()) {}
+
+void StepPlanner::start(bool moves, SimulationState& state) const {
+  if (max_substeps_ == 1 || !(awaits_newton_ || (limit_->follows_deformation() && moves))) return;
+  state.substeps = max_substeps_;
+  state.planner.reason = awaits_newton_ ? PlanReason::excess : PlanReason::deformation;
+}
+
+void StepPlanner::note_change(bool restrains, SimulationState& state) const {
+  state.substeps = restrains ? max_substeps_ : std::min(state.substeps, max_substeps_);
+  if (restrains && max_substeps_ > 1) state.planner.reason = PlanReason::excess;
+}
+
+StepPlan StepPlanner::first(const SimulationState& begin, double rotation) const {
+  const int most = std::min(kRetryFactors.back(), kMaxSubsteps / begin.substeps);
+  const double needed = std::ceil(rotation / (kMaxRotation * begin.substeps));
+  const int factor = static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(most)));
+  const PlanReason reason = begin.substeps > 1 ? begin.planner.reason : PlanReason::first;
+  return {.contact_steps = factor * begin.substeps, .reason = factor > 1 ? PlanReason::rotation : reason};
+}
+
+std::optional<StepPlan> StepPlanner::next(std::span<const StepTrial> tried, const SimulationState& begin) const {
+  if (tried.back().plan.trial) return std::nullopt;
+  if (auto plan = repetition(tried, begin)) return plan;
+  // Excess from different steps cannot be compared, so both solvers make the same step.
+  const StepTrial& best = tried[this->best(tried)];
+  const auto body = body_to_compare(begin);
+  if (!body || !best.plan.global_limit) return std::nullopt;
+  StepPlan plan = best.plan;
+  plan.trial = {.body = *body, .newton = !begin.stretch_handovers[*body].solved_since};
+  plan.abandon_at = best.report.max_infeasible + 1;
+  plan.reason = PlanReason::solver_trial;
+  return plan;
+}
+
+std::optional<StepPlan> StepPlanner::repetition(std::span<const StepTrial> tried, const SimulationState& begin) const {
+  const Index infeasible = tried[best(tried)].report.max_infeasible;
+  if (infeasible == 0 || !may_repeat(tried.front().report.max_infeasible, begin)) return std::nullopt;
+  for (const int factor : kRetryFactors) {
+    if (begin.substeps > kMaxSubsteps / factor) break;
+    if (factor * begin.substeps <= tried.back().plan.contact_steps) continue;
+    return StepPlan{.contact_steps = factor * begin.substeps,
+                    .look_ahead = true,
+                    .global_limit = false,  // a global solve does not know contacts and moves particles far
+                    .abandon_at = (infeasible + 1) / 2,
+                    .reason = PlanReason::infeasible};
+  }
+  return std::nullopt;
+}
+
+std::size_t StepPlanner::best(std::span<const StepTrial> tried) const {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < tried.size(); ++k) {
+    const StepTrial& trial = tried[k];
+    if (!trial.is_complete) continue;
+    if (trial.plan.trial && !is_worth_changing(*trial.plan.trial, tried[best].body_excess, trial.body_excess)) continue;
+    best = k;
+  }
+  return best;
+}
+
+void StepPlanner::learn(std::span<const StepTrial> tried, SimulationState& state) const {
+  const StepReport& report = tried[best(tried)].report;
+  learn_of_repetitions(tried, state);
+  learn_of_trial(tried, state);
+  choose_substeps(tried, state);
+  if (limit_ != nullptr) count_missed(report.stretch_excess, state);
+}
+
+void StepPlanner::learn_of_repetitions(std::span<const StepTrial> tried, SimulationState& state) const {
+  PlannerMemory& memory = state.planner;
+  const StepReport& kept = tried[best(tried)].report;
+  if (std::ranges::any_of(tried, [](const StepTrial& trial) { return trial.plan.reason == PlanReason::infeasible; })) {
+    if (kept.max_infeasible == 0) {
+      memory.retry_wait = 0;
+    } else if (kept.max_infeasible == tried.front().report.max_infeasible) {
+      memory.retry_wait = std::clamp(2 * memory.retry_wait, 1, kMaxWait);
+    }
+    memory.retry_from = state.step + memory.retry_wait;
+    memory.retry_infeasible = kept.max_infeasible > 0 ? std::max(memory.retry_infeasible, kept.max_infeasible) : 0;
+  }
+  memory.feasible_steps = kept.infeasible > 0 ? 0 : std::min(memory.feasible_steps + 1, kMaxWait);
+  if (memory.feasible_steps <= kLeastFree + memory.retry_wait / kForgetting) return;
+  memory.retry_wait = 0;
+  memory.retry_from = state.step;
+  memory.retry_infeasible = 0;
+}
+
+void StepPlanner::learn_of_trial(std::span<const StepTrial> tried, SimulationState& state) const {
+  if (!tried.back().plan.trial) return;
+  StretchHandover& handover = state.stretch_handovers[tried.back().plan.trial->body];
+  const bool changes = best(tried) + 1 == tried.size();
+  handover.missed_steps = 0;
+  handover.patience = changes ? kFirstPatience : std::min(2 * handover.patience, kMostPatience);
+}
+
+void StepPlanner::choose_substeps(std::span<const StepTrial> tried, SimulationState& state) const {
+  if (max_substeps_ == 1) return;
+  if (limit_->follows_deformation(state.stretch_handovers)) {
+    // Passes alone measure no deformation: then the first attempt tells it.
+    const StepTrial& kept = tried[best(tried)];
+    const StepTrial& measured = kept.plan.global_limit ? kept : tried.front();
+    choose_by_deformation(measured.report.deformation * measured.plan.substeps(), state);
+  } else if (awaits_newton_) {
+    state.substeps = max_substeps_;  // which the solve did not need before the body came back
+    state.planner.reason = PlanReason::excess;
+  } else {
+    choose_by_excess(tried[best(tried)].report.stretch_excess, state);
+  }
+}
+
+void StepPlanner::choose_by_excess(double excess, SimulationState& state) const {
+  const double bound = kMargin * wanted_excess(limit_->settings());
+  PlannerMemory& memory = state.planner;
+  if (excess > bound) {
+    const int halvings = 1 + std::ilogb(excess / bound);
+    state.substeps = static_cast<int>(std::min(std::ldexp(state.substeps, halvings), static_cast<double>(max_substeps_)));
+    memory.reason = PlanReason::excess;
+    memory.calm_steps = 0;
+    return;
+  }
+  memory.calm_steps = excess < kRoom * bound ? memory.calm_steps + 1 : 0;
+  if (memory.calm_steps < kCalmSteps || state.substeps == 1) return;
+  state.substeps /= 2;
+  memory.calm_steps = 0;
+}
+
+/// `deformation` is that of the whole step, if each substep deforms bodies alike.
+void StepPlanner::choose_by_deformation(double deformation, SimulationState& state) const {
+  const double needed = std::ceil(deformation / kMaxDeformation);
+  state.substeps =
+      needed > 1.0 ? static_cast<int>(std::min(needed, static_cast<double>(max_substeps_))) : 1;  // also if not a number
+  state.planner.reason = PlanReason::deformation;
+}
+
+/// Counts for each eligible body the steps in a row that ended with more excess than wanted.
+void StepPlanner::count_missed(double excess, SimulationState& state) const {
+  const double wanted = wanted_excess(limit_->settings());
+  for (std::size_t b = 0; b < network_.bodies.size(); ++b) {
+    if (!limit_->may_be_handed_over(b)) continue;
+    StretchHandover& handover = state.stretch_handovers[b];
+    const bool missed = excess > wanted && limit_->excess(state.x, network_.bodies[b]) > wanted;
+    handover.missed_steps = missed ? handover.missed_steps + 1 : 0;
+  }
+}
+
+std::optional<std::size_t> StepPlanner::body_to_compare(const SimulationState& begin) const {
+  const auto due = std::ranges::find_if(begin.stretch_handovers,
+                                        [](const StretchHandover& handover) { return handover.missed_steps >= handover.patience; });
+  if (due == begin.stretch_handovers.end()) return std::nullopt;
+  return static_cast<std::size_t>(due - begin.stretch_handovers.begin());
+}
+
+}  // namespace sprung

@@ -1,0 +1,69 @@
+// Decides into how many substeps a step is divided, whether it is repeated, and which attempt counts.
+#pragma once
+
+#include "dynamics/stretch_limit/stretch_limit.h"
+#include "simulation/settings/simulator_settings.h"
+#include "simulation/step/step_plan.h"
+
+#include <optional>
+#include <span>
+
+namespace sprung {
+
+/// All that divides or repeats a step:
+/// - Excess: the substeps are halved as soon as a step ends with more excess over the stretch limit than the bound, and doubled
+///   after several steps in a row with far less. The excess of a swinging body is proportional to the substep, that of a hanging
+///   body to its square, so twice the substep is safe below a quarter of the bound.
+/// - Deformation: where global solves keep the limit at any step, a substep of the same motion deforms or turns bodies by at most
+///   1/70, as the projection at its end damps motion in proportion to it.
+/// - Rotation: no obstacle or pin rotates by more than 45 degrees in a substep.
+/// - Infeasible: a step with infeasible particles is repeated with 4, 16 and 64 times the substeps until there are none: a long
+///   step can miss an admissible position near a pin or before a fast obstacle. An attempt that does not halve their number is
+///   abandoned, as it could take hundreds of times longer. After a repetition without effect, no step is repeated for a waiting
+///   time, which doubles each time and ends after enough feasible steps. A step with more infeasible particles than any during the
+///   wait is repeated nevertheless, as its cause may be another.
+/// - Solver trial: a body whose solver missed the limit in several steps in a row tries the other solver on the same step, and
+///   keeps it if it leaves less excess. Newton's method costs more, so it must leave at most four fifths of that of the passes. A
+///   body that keeps its solver waits twice as long as before.
+class StepPlanner {
+ public:
+  /// `limit` is null without a stretch limit; references to it and to the network are kept.
+  StepPlanner(const SpringNetwork& network, const SimulatorSettings& settings, const StretchLimit* limit);
+
+  /// Sets the substeps of the first step. `moves`: whether anything moves at the start, when no deformation is known yet.
+  void start(bool moves, SimulationState& state) const;
+
+  /// Sets the substeps after a change between two steps; `restrains`: pins began or ended.
+  void note_change(bool restrains, SimulationState& state) const;
+
+  /// The plan of a step that begins at a state. An obstacle or pin rotates by `rotation` [degrees] in it.
+  [[nodiscard]] StepPlan first(const SimulationState& begin, double rotation) const;
+
+  /// The plan of the next attempt at the step after those that were tried; none if they are enough.
+  [[nodiscard]] std::optional<StepPlan> next(std::span<const StepTrial> tried, const SimulationState& begin) const;
+
+  /// The number of the attempt that counts: the last complete one, unless it is a trial of a solver that is not worth the change.
+  [[nodiscard]] std::size_t best(std::span<const StepTrial> tried) const;
+
+  /// Records a step, whose state is that of its best attempt, and sets the substeps of the next one.
+  void learn(std::span<const StepTrial> tried, SimulationState& state) const;
+
+  /// The body whose solvers a step that begins at this state compares.
+  [[nodiscard]] std::optional<std::size_t> body_to_compare(const SimulationState& begin) const;
+
+ private:
+  [[nodiscard]] std::optional<StepPlan> repetition(std::span<const StepTrial> tried, const SimulationState& begin) const;
+  void learn_of_repetitions(std::span<const StepTrial> tried, SimulationState& state) const;
+  void learn_of_trial(std::span<const StepTrial> tried, SimulationState& state) const;
+  void choose_substeps(std::span<const StepTrial> tried, SimulationState& state) const;
+  void choose_by_excess(double excess, SimulationState& state) const;
+  void choose_by_deformation(double deformation, SimulationState& state) const;
+  void count_missed(double excess, SimulationState& state) const;
+
+  const SpringNetwork& network_;
+  const StretchLimit* limit_;
+  int max_substeps_;    ///< that excess and deformation may ask for; 1 without a limit
+  bool awaits_newton_;  ///< see StretchLimit::may_follow_deformation
+};
+
+}  // namespace sprung
