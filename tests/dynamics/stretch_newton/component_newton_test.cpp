@@ -128,7 +128,7 @@ TEST(ComponentNewton, ReportsTheRelativeDeformation) {
       ComponentNewton newton(component_of(network), {.max_stretch = max_stretch});
       Points target = x.array() + move;
       newton.solve(network.positions, target, kFall);
-      EXPECT_NEAR(newton.turn(), turned / std::numbers::sqrt2, 1.0e-13);
+      EXPECT_NEAR(newton.deformation(), turned / std::numbers::sqrt2, 1.0e-13);
     }
   }
 }

@@ -242,7 +242,7 @@ TEST(StretchNewton, ReportsTheLargestDeformationOfAComponent) {
     Points target = springs.positions;
     target(1, end) += 0.1;
     newton.solve(springs.positions, target, 1.0e-3);
-    EXPECT_EQ(newton.turn(), 0.1) << end;
+    EXPECT_EQ(newton.deformation(), 0.1) << end;
   }
 }
 
