@@ -43,7 +43,7 @@ RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int thre
 
 void announce(const LoadedScene& loaded) {
   const SpringNetwork& network = loaded.simulator.network();
-  const std::size_t obstacles = loaded.simulator.environment().obstacles().size();
+  const std::size_t obstacles = loaded.simulator.obstacles().size();
   print_message(fmt::format("{}: {} of {}, {}, {}, {}", loaded.scene.file.string(), counted(loaded.frames, "frame"),
                             describe_steps(loaded), counted(network.particle_count(), "particle"),
                             counted(network.springs.count(), "spring"), counted(obstacles, "obstacle")));

@@ -47,7 +47,7 @@ double thinnest_gap(const std::vector<Body>& bodies, const std::vector<Obstacle>
 
 bool moves_anything(const Simulator& simulator) {
   return has_moving_pin(simulator.network()) ||
-         std::ranges::any_of(simulator.environment().obstacles(), [](const Obstacle& obstacle) { return obstacle.motion.moves(); });
+         std::ranges::any_of(simulator.obstacles(), [](const Obstacle& obstacle) { return obstacle.motion.moves(); });
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ RunWatch::RunWatch(const Simulator& simulator, RunOutput& output, bool quiet)
     : simulator_(simulator),
       output_(output),
       quiet_(quiet),
-      energy_(simulator.network(), simulator.settings(), simulator.environment().obstacles()) {}
+      energy_(simulator.network(), simulator.settings(), simulator.obstacles()) {}
 
 void RunWatch::note_frame(const FrameDiagnostics& frame) {
   note_infeasible(frame);
@@ -204,7 +204,7 @@ void RunWatch::warn_of_thin_bodies() {
   if (truncated_frames_ < kManyFrames * frames_) return;
   const SimulatorSettings& settings = simulator_.settings();
   const double least = kFallsWithinGap * settings.gravity.norm() * settings.step * settings.step;
-  const double gap = thinnest_gap(simulator_.network().bodies, simulator_.environment().obstacles());
+  const double gap = thinnest_gap(simulator_.network().bodies, simulator_.obstacles());
   if (gap >= least) return;
   // No step is small enough for a gap of 0.
   const auto step = gap > 0.0 ? step_to_type(settings.frame_rate, settings.step * std::sqrt(gap / least)) : std::nullopt;

@@ -97,7 +97,7 @@ std::string contents(const LoadedScene& loaded) {
     text += text_row("stretch", "solved by " + solver);
   for (const Body& body : network.bodies)
     text += body_rows(network, body, material_of(loaded.scene, body)) + stiffness_rows(loaded.simulator, body);
-  for (const Obstacle& obstacle : loaded.simulator.environment().obstacles()) text += obstacle_row(obstacle);
+  for (const Obstacle& obstacle : loaded.simulator.obstacles()) text += obstacle_row(obstacle);
   for (const NamedReport& mesh : loaded.meshes) text += mesh_row(mesh);
   for (const StepAdjustment& adjustment : loaded.adjustments) text += text_row("adjusted", describe(adjustment));
   for (const std::string& note : loaded.simulator.notes()) text += text_row("start", note);

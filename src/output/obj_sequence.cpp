@@ -84,7 +84,7 @@ ObjSequence body_sequence(const Simulator& simulator, std::size_t number, const 
 ObjSequence obstacle_sequence(const Obstacle& obstacle, Index number, const Box3& scene, int frames) {
   const TriangleMesh mesh = surface_mesh(obstacle, scene);
   const auto vertices = [number, local = mesh.vertices](const Simulator& simulator) -> Points {
-    const Obstacle& present = simulator.environment().obstacles()[static_cast<std::size_t>(number)];
+    const Obstacle& present = simulator.obstacles()[static_cast<std::size_t>(number)];
     const RigidTransform pose = present.motion.pose(present.rest_pose, simulator.time());
     if (!std::holds_alternative<SequenceGeometry>(present.geometry)) return pose * local;
     return pose * obstacle_mesh(present.geometry, 0.0, simulator.time()).vertices;
@@ -146,7 +146,7 @@ void check_output_names(const Simulator& simulator) {
   std::vector<std::string> bodies;
   std::vector<std::string> obstacles;
   for (const Body& body : simulator.network().bodies) bodies.push_back(body.name);
-  for (const Obstacle& obstacle : simulator.environment().obstacles()) obstacles.push_back(obstacle.name);
+  for (const Obstacle& obstacle : simulator.obstacles()) obstacles.push_back(obstacle.name);
   std::vector<Problem> problems;
   check_names("body", bodies, problems);
   check_names("obstacle", obstacles, problems);
@@ -161,7 +161,7 @@ std::vector<ObjSequence> obj_sequences(const Simulator& simulator, const ObjSour
   for (std::size_t i = 0; i < simulator.network().bodies.size(); ++i) {
     sequences.push_back(body_sequence(simulator, i, sources, frames));
   }
-  const std::vector<Obstacle>& obstacles = simulator.environment().obstacles();
+  const std::vector<Obstacle>& obstacles = simulator.obstacles();
   const Box3 scene = scene_bounds(simulator);
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     sequences.push_back(obstacle_sequence(obstacles[i], static_cast<Index>(i), scene, frames));

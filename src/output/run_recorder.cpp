@@ -60,7 +60,7 @@ RunRecorder::RunRecorder(const Simulator& simulator, const ObjSources& sources, 
   }
   model_.attachments = network.attachments;
   const Box3 scene = scene_bounds(simulator);
-  for (const Obstacle& obstacle : simulator.environment().obstacles()) model_.obstacles.push_back(recorded(obstacle, scene));
+  for (const Obstacle& obstacle : simulator.obstacles()) model_.obstacles.push_back(recorded(obstacle, scene));
   const Springs& springs = network.springs;
   model_.springs.ends.resize(Eigen::NoChange, springs.count());
   model_.springs.rest_lengths = springs.rest_length;
@@ -98,7 +98,7 @@ RecordedFrame RunRecorder::frame(const Simulator& simulator) {
     }
   }
   for (const Index particle : simulator.contact_particles()) frame.states[particle] |= kInContact;
-  for (const Obstacle& obstacle : simulator.environment().obstacles()) {
+  for (const Obstacle& obstacle : simulator.obstacles()) {
     frame.poses.push_back(obstacle.changes() ? obstacle.motion.pose(obstacle.rest_pose, simulator.time())
                                              : RigidTransform::Identity());
     if (obstacle.deforms()) frame.deformed.push_back(obstacle_mesh(obstacle.geometry, 0.0, simulator.time()).vertices);

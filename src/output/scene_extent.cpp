@@ -21,7 +21,7 @@ double half_space_extent(const Box3& scene, const Obstacle& half_space) {
 
 Box3 scene_bounds(const Simulator& simulator) {
   Box3 box = bounds(simulator.positions());
-  for (const Obstacle& obstacle : simulator.environment().obstacles()) {
+  for (const Obstacle& obstacle : simulator.obstacles()) {
     if (std::holds_alternative<HalfSpaceGeometry>(obstacle.geometry)) continue;
     const RigidTransform pose = obstacle.motion.pose(obstacle.rest_pose, simulator.time());
     box.extend(bounds(pose * obstacle_mesh(obstacle.geometry, 0.0, simulator.time()).vertices));

@@ -10,7 +10,7 @@ namespace {
 double distance_range(const Simulator& simulator) {
   double thickest = 0.0;
   for (const Body& body : simulator.network().bodies) thickest = std::max(thickest, body.material.thickness);
-  for (const Obstacle& obstacle : simulator.environment().obstacles()) thickest = std::max(thickest, obstacle.material.thickness);
+  for (const Obstacle& obstacle : simulator.obstacles()) thickest = std::max(thickest, obstacle.material.thickness);
   const Box3 covered = bounds(simulator.positions()).merged(bounds(simulator.network().positions));
   return covered.diagonal().norm() + 10.0 * thickest;
 }
@@ -34,8 +34,8 @@ FrameDiagnostics measure(const Simulator& simulator, int frame) {
   diagnostics.max_stretch = max_stretch(simulator);
   diagnostics.contacts = simulator.contact_count();
   diagnostics.inverted_cells = inverted_cells(simulator);
-  diagnostics.min_distance = simulator.environment().min_distance(contact_positions(simulator.network(), simulator.positions()),
-                                                                  distance_range(simulator));
+  diagnostics.min_distance = simulator.obstacle_frame().min_distance(contact_positions(simulator.network(), simulator.positions()),
+                                                                     distance_range(simulator));
   return diagnostics;
 }
 

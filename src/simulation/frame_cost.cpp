@@ -100,7 +100,7 @@ double neighbour_count(const SpringNetwork& network, const Body& body, double ve
 /// Time [s] that contact of all vertices adds to a substep of `dt` [s], with one thread.
 double contact_time(const Simulator& simulator, double dt) {
   const SpringNetwork& network = simulator.network();
-  const bool obstacles = !simulator.environment().obstacles().empty();
+  const bool obstacles = !simulator.obstacles().empty();
   const bool several = std::ranges::count_if(network.bodies, [](const Body& body) { return body.contact.others; }) > 1;
   const double long_step = 1.0 + dt / kLongStep;
   double time = 0.0;

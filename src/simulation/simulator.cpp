@@ -1,6 +1,6 @@
 #include "simulation/simulator.h"
 
-#include "collision/obstacles/obstacle_set.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/constraints/carried_surface.h"
 #include "dynamics/constraints/cell_volume.h"
 #include "dynamics/constraints/enclosed_volume.h"
@@ -23,26 +23,26 @@
 
 namespace sprung {
 
-Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared,
+Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<ObstacleSet> shared,
                                           External added)
     : network(std::move(model)),
       settings(checked_settings(std::move(chosen))),
-      shared_environment(std::move(shared)),
-      environment(*shared_environment),
+      shared_obstacles(std::move(shared)),
+      obstacles(*shared_obstacles),
       external(std::move(added)),
-      bounds(simulation_bounds(network, settings, !environment.obstacles().empty(), external.forces)),
+      bounds(simulation_bounds(network, settings, !obstacles.empty(), external.forces)),
       warnings(check_step(settings, bounds)),
       forces(
           network_forces(network, settings, splits_dampers(settings, bounds) ? MaterialDampers::apart : MaterialDampers::within)),
       integrator(make_integrator(settings.integrator, network)),
-      constraints(network, settings, steady_acceleration(network, settings), environment, *integrator),
-      pin_paths(network, environment.obstacles(), settings.step),
+      constraints(network, settings, steady_acceleration(network, settings), obstacles, *integrator),
+      pin_paths(network, obstacles.obstacles(), settings.step),
       planner(network, settings, constraints.limit()),
       divergence(network),
-      energy_watch(network, settings, environment.obstacles(), forces),
+      energy_watch(network, settings, obstacles.obstacles(), forces),
       groups(network),
       rest(network, groups, constraints.limit(), settings.gravity.norm()),
-      surroundings(network, environment, groups, settings.step, settings.gravity.norm()),
+      surroundings(network, obstacles, groups, settings.step, settings.gravity.norm()),
       state(initial_state(network)) {
   state.rest.sleepers = sleeping_groups();
   state.steps_per_frame = settings.steps_per_frame;
@@ -50,7 +50,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   if (settings.perturb) symmetry.emplace(network, settings.seed);
   if (!network.attachments.empty()) {
     const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
-    attachments.emplace(network, environment, settings.step, implicit);
+    attachments.emplace(network, obstacles, settings.step, implicit);
   }
   if (splits_dampers(settings, bounds)) {
     const double most = most_damping_rate(settings.step);
@@ -58,7 +58,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   }
   add_forces();
   add_constraints();
-  for (const auto& more : {unused_settings(settings, network, environment.obstacles()), weak_springs(settings, network)}) {
+  for (const auto& more : {unused_settings(settings, network, obstacles.obstacles()), weak_springs(settings, network)}) {
     warnings.insert(warnings.end(), more.begin(), more.end());
   }
 }
@@ -71,8 +71,8 @@ void Simulator::Implementation::add_forces() {
     surface_air = force.get();
     forces.push_back(std::move(force));
   }
-  if (settings.contact.response == ContactSettings::Response::penalty && !environment.obstacles().empty()) {
-    auto force = std::make_unique<PenaltyContact>(network, environment, settings.contact.stiffness, settings.contact.damping, dt());
+  if (settings.contact.response == ContactSettings::Response::penalty && !obstacles.empty()) {
+    auto force = std::make_unique<PenaltyContact>(network, obstacles, settings.contact.stiffness, settings.contact.damping, dt());
     penalty = force.get();
     forces.push_back(std::move(force));
   }
@@ -92,16 +92,15 @@ void Simulator::Implementation::add_constraints() {
   for (const std::shared_ptr<Constraint>& constraint : external.constraints) constraints.add(constraint);
 }
 
-Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles)
-    : Implementation(std::move(model), std::move(chosen), std::make_shared<Environment>(std::move(obstacles)), {}) {
-  environment.set_interval(0.0, 0.0);
+Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> given)
+    : Implementation(std::move(model), std::move(chosen), std::make_shared<ObstacleSet>(std::move(given)), {}) {
   pin_paths.take(state);
   move_pins(0.0);
-  Start start = find_start(network, environment, settings.contact, state.x);
+  Start start = find_start(network, obstacles_now(), settings.contact, state.x);
   state.x = std::move(start.positions);
   warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
   notes = std::move(start.notes);
-  if (constraints.violation(state.x) > 1.0) constraints.correct_positions(state, dt());
+  if (constraints.violation(state.x) > 1.0) constraints.correct_positions(obstacles_now(), state, dt());
   if (attachments) attachments->update(state);
   const std::vector<std::string> of_links = unlikely_lengths(network, state.links);
   warnings.insert(warnings.end(), of_links.begin(), of_links.end());
@@ -167,7 +166,8 @@ void Simulator::stop_when(std::function<bool()> stops) { implementation_->stops 
 const SpringNetwork& Simulator::network() const { return implementation_->network; }
 const SimulatorSettings& Simulator::settings() const { return implementation_->settings; }
 const SimulationState& Simulator::state() const { return implementation_->state; }
-const Environment& Simulator::environment() const { return implementation_->environment; }
+const std::vector<Obstacle>& Simulator::obstacles() const { return implementation_->obstacles.obstacles(); }
+ObstacleFrame Simulator::obstacle_frame() const { return implementation_->obstacles_now(); }
 const std::vector<std::string>& Simulator::warnings() const { return implementation_->warnings; }
 
 const std::vector<std::string>& Simulator::notes() const { return implementation_->notes; }

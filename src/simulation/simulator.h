@@ -1,7 +1,7 @@
-// The simulator: a network, its forces, its environment, and the step.
+// The simulator: a network, its forces, its obstacles, and the step.
 #pragma once
 
-#include "collision/obstacles/environment.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/constraints/constraint.h"
 #include "dynamics/forces/force.h"
 #include "dynamics/integrators/stable_step.h"
@@ -108,7 +108,8 @@ class Simulator {
   [[nodiscard]] const SpringNetwork& network() const;
   [[nodiscard]] const SimulatorSettings& settings() const;
   [[nodiscard]] const SimulationState& state() const;
-  [[nodiscard]] const Environment& environment() const;
+  [[nodiscard]] const std::vector<Obstacle>& obstacles() const;
+  [[nodiscard]] ObstacleFrame obstacle_frame() const;  ///< the obstacles at time()
   [[nodiscard]] const std::vector<std::string>& warnings() const;
   /// Changes that the settings asked for, such as bodies that `push_out` moved; a sentence each.
   [[nodiscard]] const std::vector<std::string>& notes() const;

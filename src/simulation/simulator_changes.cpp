@@ -93,13 +93,13 @@ void check_number(const std::string& key, double number, ProblemList& problems) 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, External added,
                                           const Implementation& before)
     : Implementation(with_pins_of(std::move(model), whole_steps(before.state), before.settings.step), std::move(chosen),
-                     before.shared_environment, std::move(added)) {
+                     before.shared_obstacles, std::move(added)) {
   take_state(before);
 }
 
-Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles,
+Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> given,
                                           const SimulationState& former)
-    : Implementation(std::move(model), accepted(std::move(chosen)), std::make_shared<Environment>(std::move(obstacles)), {}) {
+    : Implementation(std::move(model), accepted(std::move(chosen)), std::make_shared<ObstacleSet>(std::move(given)), {}) {
   return_to({former, {}});
   pin_paths.take(state);
   integrator->resume(state, forces, dt());
@@ -156,13 +156,13 @@ void Simulator::Implementation::take_state(const Implementation& before) {
     if (constraints.limit() == nullptr || !constraints.limit()->may_be_handed_over(b)) state.stretch_handovers[b] = {};
   }
   constraints.roll_back(before.constraints.permitted_crossings());
-  environment.set_interval(time(), time());
+  if (penalty != nullptr) penalty->prepare(time());
   drop_unknown_links(before.network, network, state);
   if (attachments) attachments->take(state, time());
   const bool limits_more = network.asleep == before.network.asleep &&
                            (excess_of(constraints, state.x) > excess_of(before.constraints, state.x) ||
                             constraints.violation(state.x) > std::max(1.0, before.constraints.violation(state.x)));
-  if (limits_more) constraints.correct_positions(state, before.dt());
+  if (limits_more) constraints.correct_positions(obstacles_now(), state, before.dt());
   if (before.settings.integrator.index() == settings.integrator.index()) {
     integrator->resume(state, forces, before.dt());
   } else {
@@ -197,10 +197,10 @@ std::unique_ptr<Simulator::Implementation> Simulator::rebuild(std::vector<char> 
   return rebuild(std::move(network), all_springs);
 }
 
-Simulator Simulator::resume(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles,
+Simulator Simulator::resume(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> given,
                             const SimulationState& state) {
   const StabilityCheck stability = settings.stability;
-  auto resumed = std::make_unique<Implementation>(std::move(network), std::move(settings), std::move(obstacles), state);
+  auto resumed = std::make_unique<Implementation>(std::move(network), std::move(settings), std::move(given), state);
   resumed->settings.stability = stability;
   return Simulator(std::move(resumed));
 }
@@ -267,11 +267,11 @@ void Simulator::set_body_material(std::size_t body, const ContactMaterial& mater
 }
 
 void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMaterial& material) {
-  Environment& environment = implementation_->environment;
+  ObstacleSet& obstacles = implementation_->obstacles;
   ProblemList problems;
-  check_material("obstacles." + environment.obstacles().at(obstacle).name, material, problems);
+  check_material("obstacles." + obstacles.obstacles().at(obstacle).name, material, problems);
   problems.throw_if_any();
-  environment.set_material(static_cast<Index>(obstacle), material);
+  obstacles.set_material(static_cast<Index>(obstacle), material);
   continue_with(implementation_->network, implementation_->settings);
 }
 

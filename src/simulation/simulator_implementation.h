@@ -1,6 +1,7 @@
 // The members of the simulator. Internal to simulation/.
 #pragma once
 
+#include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/attachments/attachments.h"
 #include "dynamics/contact/penalty_contact.h"
 #include "dynamics/forces/surface_air_force.h"
@@ -39,13 +40,13 @@ struct Simulator::External {
 
 struct Simulator::Implementation {
   /// At time 0.
-  Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles);
+  Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> given);
   /// In the state of another simulator of the same particles and obstacles.
   Implementation(SpringNetwork model, SimulatorSettings chosen, External added, const Implementation& before);
   /// Continues from a state of the same network.
-  Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> obstacles, const SimulationState& former);
+  Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> given, const SimulationState& former);
   /// Without a state.
-  Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<Environment> shared, External added);
+  Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<ObstacleSet> shared, External added);
 
   void add_forces();
   void add_constraints();
@@ -95,13 +96,14 @@ struct Simulator::Implementation {
   void check_state();
   void check_energy(const Energies& now) const;
   void fail(StepFailure failure) const;
+  [[nodiscard]] ObstacleFrame obstacles_now() const { return {obstacles, time(), time()}; }
   [[nodiscard]] double dt() const { return settings.step / state.substeps; }
   [[nodiscard]] double time() const { return steps_done(state) * settings.step; }
 
   SpringNetwork network;
   SimulatorSettings settings;
-  std::shared_ptr<Environment> shared_environment;  ///< shared while a change is made
-  Environment& environment;
+  std::shared_ptr<ObstacleSet> shared_obstacles;  ///< shared while a change is made
+  ObstacleSet& obstacles;
   External external;
   SpectralBounds bounds;
   std::vector<std::string> warnings;

@@ -1,6 +1,6 @@
 // The step: its attempts, their substeps, and the check of the state.
 #include "base/error.h"
-#include "collision/obstacles/obstacle_set.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "network/model/spring_failure.h"
 #include "simulation/simulator_implementation.h"
 #include "simulation/step/step_check.h"
@@ -24,10 +24,9 @@ std::optional<StepReport> Simulator::Implementation::step(PlanReason reason) {
   if (all_sleep()) {
     const RecordedImpulses impulses_before = state.impulses;
     count_step(state);
-    if (environment.set().moves()) environment.set_interval(time(), time());
     add_impulses_of_sleepers(impulses_before);
     record_attachments();
-    if (environment.set().moves()) choose_sleepers();
+    if (obstacles.moves()) choose_sleepers();
     return StepReport{};
   }
   begin = {state, constraints.permitted_crossings()};
@@ -82,7 +81,7 @@ void Simulator::Implementation::return_to(const StepState& former) {
   state = former.state;
   constraints.roll_back(former.crossings);
   step_length_changed();
-  environment.set_interval(time(), time());
+  if (penalty != nullptr) penalty->prepare(time());
   if (attachments) attachments->take(state, time());
 }
 
@@ -144,7 +143,7 @@ void Simulator::Implementation::record_attachments() {
 double Simulator::Implementation::rotation_in_step() const {
   const double now = time();
   double largest = 0.0;
-  for (const Obstacle& obstacle : environment.obstacles()) {
+  for (const Obstacle& obstacle : obstacles.obstacles()) {
     largest = std::max(largest, obstacle.motion.turn(now, now + settings.step));
   }
   for (const Pin& pin : network.pins) {
@@ -159,18 +158,18 @@ StepReport Simulator::Implementation::make_substep() {
       (static_cast<double>(whole_steps(state)) + static_cast<double>(state.substep + 1) / state.substeps) * settings.step;
   constraints.begin(state);
   integrator->advance(state, forces, dt());
-  environment.set_interval(t, t_end);
+  const ObstacleFrame frame(obstacles, t, t_end);
   move_pins(t_end);
-  energy_watch.note_obstacle(environment.set().max_displacement(state.x) / dt(), state.energy);
+  energy_watch.note_obstacle(frame.max_displacement(state.x) / dt(), state.energy);
 
   StepReport report{.substeps = 1};
-  constraints.apply(state, forces, dt(), t_end, report);
+  constraints.apply(frame, state, forces, dt(), report);
   if (attachments) attachments->note_substep(dt(), t_end, state);
   if (++state.substep == state.substeps) {
     count_step(state);
     state.substep = 0;
   }
-  if (penalty != nullptr) environment.set_interval(t_end, t_end);
+  if (penalty != nullptr) penalty->prepare(t_end);
   check_state();
   return report;
 }

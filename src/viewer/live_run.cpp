@@ -102,13 +102,13 @@ bool LiveRun::change(const std::vector<std::string>& overrides) {
 /// A simulator refuses what it cannot take over: then the changed scene begins anew.
 bool LiveRun::continue_with(LoadedScene& changed) try {
   Simulator& simulator = loaded_.simulator;
-  const std::vector<Obstacle>& obstacles = changed.simulator.environment().obstacles();
+  const std::vector<Obstacle>& obstacles = changed.simulator.obstacles();
   SpringNetwork network = changed.simulator.network();
   change_pins(network, due_before(whole_steps(simulator.state()), simulator.settings().step));  // before what the user did since
   set_pins(network);
   simulator.continue_with(std::move(network), with_step(simulator.settings().step, changed.simulator.settings()));
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
-    if (obstacles[k].material != simulator.environment().obstacles()[k].material) {
+    if (obstacles[k].material != simulator.obstacles()[k].material) {
       simulator.set_obstacle_material(k, obstacles[k].material);
     }
   }
@@ -209,7 +209,7 @@ Topology LiveRun::topology() const {
     topology.kinds.push_back(static_cast<std::uint32_t>(springs.kind[s]));
   }
   const Box3 scene = scene_bounds(simulator);
-  for (const Obstacle& obstacle : simulator.environment().obstacles()) {
+  for (const Obstacle& obstacle : simulator.obstacles()) {
     TriangleMesh mesh = surface_mesh(obstacle, scene);
     if (!obstacle.changes()) mesh.vertices = obstacle.rest_pose * mesh.vertices;
     topology.obstacles.push_back(std::move(mesh));
@@ -228,7 +228,7 @@ FrameState LiveRun::state() const {
     for (const Index i : pin.particles) state.states[static_cast<std::size_t>(i)] |= kPinned;
   }
   for (const Index i : simulator.contact_particles()) state.states[static_cast<std::size_t>(i)] |= kInContact;
-  for (const Obstacle& obstacle : simulator.environment().obstacles()) {
+  for (const Obstacle& obstacle : simulator.obstacles()) {
     if (!obstacle.changes()) continue;
     const RigidTransform pose = obstacle.motion.pose(obstacle.rest_pose, simulator.time());
     if (obstacle.deforms()) {

@@ -27,7 +27,7 @@ Json bodies_of(const SpringNetwork& network) {
 
 Json obstacles_of(const Simulator& simulator) {
   Json obstacles = Json::array();
-  for (const Obstacle& obstacle : simulator.environment().obstacles()) {
+  for (const Obstacle& obstacle : simulator.obstacles()) {
     obstacles.push_back({{"name", obstacle.name}, {"motion", kObstacleMotionNames[static_cast<std::size_t>(motion_of(obstacle))]}});
   }
   return obstacles;

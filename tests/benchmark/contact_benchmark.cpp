@@ -27,7 +27,9 @@ struct Cloth {
 };
 
 Cloth cloth_on(const TriangleMesh& mesh) {
-  Environment environment({Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  const ObstacleSet obstacles(
+      {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  const ObstacleFrame frame(obstacles, 0.0, 0.0);
   const Box3 box = bounds(mesh.vertices);
   test::Random random(1);
   Cloth cloth{Points(3, kParticles), Points(3, kParticles)};
@@ -38,7 +40,7 @@ Cloth cloth_on(const TriangleMesh& mesh) {
     above.col(i) = box.min() + box.sizes().cwiseProduct(Vector3(0.25 + 0.5 * u, 2.0, 0.25 + 0.5 * v));
     cloth.before.col(i) = above.col(i) - Vector3(0.0, 3.0 * box.sizes().y(), 0.0);
   }
-  for (const Contact& contact : environment.contacts({above, cloth.before, cloth.thickness, 0.0})) {
+  for (const Contact& contact : frame.contacts({above, cloth.before, cloth.thickness, 0.0})) {
     cloth.before.col(contact.particles[0]) = contact.point + random.between(0.5, 1.5) * kThickness * contact.normal;
   }
   cloth.after = cloth.before;
@@ -57,26 +59,30 @@ void report(benchmark::State& state, std::size_t contacts) {
 void contact_search_near(benchmark::State& state) {
   const TriangleMesh& mesh = benchmarks::bunny(static_cast<Index>(state.range(0)));
   const ThreadLimit limit(static_cast<int>(state.range(1)));
-  Environment environment({Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  const ObstacleSet obstacles(
+      {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  const ObstacleFrame frame(obstacles, 0.0, 0.0);
   const Cloth cloth = cloth_on(mesh);
   std::size_t contacts = 0;
-  for (auto _ : state) contacts = environment.contacts({cloth.before, cloth.after, cloth.thickness, kMargin}).size();
+  for (auto _ : state) contacts = frame.contacts({cloth.before, cloth.after, cloth.thickness, kMargin}).size();
   report(state, contacts);
 }
 
 void truncation_near(benchmark::State& state) {
   const TriangleMesh& mesh = benchmarks::bunny(static_cast<Index>(state.range(0)));
   const ThreadLimit limit(static_cast<int>(state.range(1)));
-  Environment environment({Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  const ObstacleSet obstacles(
+      {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  const ObstacleFrame frame(obstacles, 0.0, 0.0);
   const Cloth cloth = cloth_on(mesh);
-  StepTruncation space(environment,
+  StepTruncation space(obstacles,
                        make_collision_surface({}, cloth.before, std::vector<Index>(kParticles, 0), cloth.thickness,
                                               std::vector<char>(kParticles, 0), {0}, {0}),
                        cloth.before, kMargin);
   TruncationResult truncation;
   for (auto _ : state) {
     Points after = cloth.after;
-    truncation = space.truncate(cloth.before, after);
+    truncation = space.truncate(frame, cloth.before, after);
   }
   report(state, static_cast<std::size_t>(truncation.truncated));
 }
@@ -84,12 +90,14 @@ void truncation_near(benchmark::State& state) {
 void contact_search_far(benchmark::State& state) {
   const TriangleMesh& mesh = benchmarks::bunny(static_cast<Index>(state.range(0)));
   const ThreadLimit limit(static_cast<int>(state.range(1)));
-  Environment environment({Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  const ObstacleSet obstacles(
+      {Obstacle{.name = "bunny", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(mesh), true}}});
+  const ObstacleFrame frame(obstacles, 0.0, 0.0);
   Cloth cloth = cloth_on(mesh);
   cloth.before.row(1).array() += 3.0;
   cloth.after.row(1).array() += 3.0;
   std::size_t contacts = 0;
-  for (auto _ : state) contacts = environment.contacts({cloth.before, cloth.after, cloth.thickness, kMargin}).size();
+  for (auto _ : state) contacts = frame.contacts({cloth.before, cloth.after, cloth.thickness, kMargin}).size();
   report(state, contacts);
 }
 

@@ -1,4 +1,4 @@
-// Single particles as elements, and their truncation before the obstacles of an environment.
+// Single particles as elements, and their truncation before obstacles.
 #pragma once
 
 #include "collision/obstacles/obstacle_intersections.h"
@@ -15,18 +15,17 @@ inline CollisionSurface particle_surface(const std::vector<char>& pinned) {
                                 {0});
 }
 
-inline StepTruncation single_particles(Environment& environment, const std::vector<char>& pinned, double margin = 0.0) {
-  return StepTruncation(environment, particle_surface(pinned), Points::Zero(3, static_cast<Index>(pinned.size())), margin);
+inline StepTruncation single_particles(const ObstacleSet& obstacles, const std::vector<char>& pinned, double margin = 0.0) {
+  return StepTruncation(obstacles, particle_surface(pinned), Points::Zero(3, static_cast<Index>(pinned.size())), margin);
 }
 
-inline StepTruncation single_particles(Environment& environment, Index count) {
-  return single_particles(environment, std::vector<char>(static_cast<std::size_t>(count), 0));
+inline StepTruncation single_particles(const ObstacleSet& obstacles, Index count) {
+  return single_particles(obstacles, std::vector<char>(static_cast<std::size_t>(count), 0));
 }
 
 /// The particles inside obstacles.
-inline Intersections intersections(const Environment& environment, const Points& positions) {
-  return find_intersections(environment.set(), particle_surface(std::vector<char>(static_cast<std::size_t>(positions.cols()), 0)),
-                            positions);
+inline Intersections intersections(const ObstacleFrame& frame, const Points& positions) {
+  return find_intersections(frame, particle_surface(std::vector<char>(static_cast<std::size_t>(positions.cols()), 0)), positions);
 }
 
 }  // namespace sprung::test

@@ -202,7 +202,7 @@ TEST(Floors, AFolderWithoutFloorIsReported) {
 }
 
 TEST(Floors, AHigherSubFloorIsReported) {
-  EXPECT_THAT(problems_of(parse_source("collision/core/a.h", "#include \"collision/obstacles/environment.h\"\n")),
+  EXPECT_THAT(problems_of(parse_source("collision/core/a.h", "#include \"collision/obstacles/obstacle_set.h\"\n")),
               ElementsAre(HasSubstr("its sub-folder may not")));
   EXPECT_THAT(problems_of(parse_source("simulation/step/a.h", "#include \"simulation/simulator.h\"\n")),
               ElementsAre(HasSubstr("its sub-folder may not")));

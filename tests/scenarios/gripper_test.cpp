@@ -17,7 +17,7 @@ TEST(Gripper, ItClosesLiftsAndLetsGo) {
   Points last;
   double lowest_when_lifted = 0.0;
   const Watch watch = [&](const Simulator& simulator, const FrameDiagnostics& frame) {
-    const Obstacle& finger = simulator.environment().obstacles().front();
+    const Obstacle& finger = simulator.obstacles().front();
     Points on_finger(3, static_cast<Eigen::Index>(held.size()));
     const RigidTransform to_finger = finger.motion.pose(finger.rest_pose, frame.time).inverse();
     for (std::size_t k = 0; k < held.size(); ++k)

@@ -27,7 +27,7 @@ TEST_P(Moving, AClothDoesNotSlipOnARisingRotatingPlate) {
   Points start;
   double slip = 0.0;
   const Watch watch = [&](const Simulator& simulator, const FrameDiagnostics& frame) {
-    const Obstacle& plate = simulator.environment().obstacles().front();
+    const Obstacle& plate = simulator.obstacles().front();
     const Points on_plate = plate.motion.pose(plate.rest_pose, frame.time).inverse() * simulator.positions();
     if (frame.frame == 1) start = on_plate;
     slip = std::max(slip, (on_plate - start).colwise().norm().maxCoeff());

@@ -47,7 +47,7 @@ ResumeCheck::ResumeCheck(int frames, int steps_per_frame) : steps_per_frame_(ste
 void ResumeCheck::look(int frame, const Simulator& simulator) {
   if (frame == begin_) {
     resumed_ = std::make_unique<Simulator>(
-        Simulator::resume(simulator.network(), simulator.settings(), simulator.environment().obstacles(), simulator.state()));
+        Simulator::resume(simulator.network(), simulator.settings(), simulator.obstacles(), simulator.state()));
   }
   if (frame <= begin_ || frame > begin_ + kComparedFrames || first_different_ != 0) return;
   try {

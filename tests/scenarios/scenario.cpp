@@ -37,7 +37,7 @@ class FrameJudge {
   FrameJudge(const Simulator& simulator, Judge judge)
       : simulator_(simulator), elements_(judged_elements(simulator.network())), self_(judge == Judge::obstacles_and_self) {
     if (judge == Judge::nothing) return;
-    for (const Obstacle& obstacle : simulator.environment().obstacles()) judges_.push_back(judge_of(obstacle.geometry));
+    for (const Obstacle& obstacle : simulator.obstacles()) judges_.push_back(judge_of(obstacle.geometry));
   }
 
   void look(int frame, ScenarioReport& report) {
@@ -49,7 +49,7 @@ class FrameJudge {
     Index inside = 0;
     Index crossings = 0;
     for (std::size_t k = 0; k < judges_.size(); ++k) {
-      const Obstacle& obstacle = simulator_.environment().obstacles()[k];
+      const Obstacle& obstacle = simulator_.obstacles()[k];
       if (std::holds_alternative<SequenceGeometry>(obstacle.geometry)) judges_[k] = judge_of(obstacle.geometry, simulator_.time());
       const Points local = local_positions(obstacle, simulator_);
       inside += judges_[k]->count_inside(contact_positions(simulator_.network(), local));
@@ -170,7 +170,7 @@ std::string json_text(const Vector3& v) {
 
 double least_distance(const Simulator& simulator) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Obstacle& obstacle : simulator.environment().obstacles()) {
+  for (const Obstacle& obstacle : simulator.obstacles()) {
     const auto judge = judge_of(obstacle.geometry, simulator.time());
     const Points local = local_positions(obstacle, simulator);
     for (const auto& position : local.colwise()) least = std::min(least, judge->distance(position));

@@ -55,7 +55,7 @@ TEST_P(Sharp, ARopeHangsOverAKnife) {
 /// The number of passages of the rope through the hole of the torus: those from below to above minus those from above to below.
 int passages_through_torus(const Simulator& simulator) {
   constexpr double kRing = 0.5;  // [m]
-  const Obstacle& torus = simulator.environment().obstacles().front();
+  const Obstacle& torus = simulator.obstacles().front();
   const Points x = torus.motion.pose(torus.rest_pose, simulator.time()).inverse() * simulator.positions();
   int passages = 0;
   for (Index i = 0; i + 1 < x.cols(); ++i) {

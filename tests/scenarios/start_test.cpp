@@ -76,7 +76,7 @@ SimulatorSettings pushing_out() {
 }
 
 void expect_free(const Simulator& simulator) {
-  for (const Obstacle& in : simulator.environment().obstacles()) {
+  for (const Obstacle& in : simulator.obstacles()) {
     const auto judge = judge_of(in.geometry);
     const Points local = in.rest_pose.inverse() * simulator.positions();
     EXPECT_EQ(judge->count_inside(local), 0);

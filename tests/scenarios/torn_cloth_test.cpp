@@ -79,7 +79,7 @@ TEST(TornCloth, TheSpikeStandsInAHoleOfItsSize) {
     ASSERT_EQ(simulator.network().particle_count(), whole.particle_count());
     if (torn == 0) stretch_of_whole = frame.max_stretch;
     if (std::abs(frame.time - 1.3) > 1e-6) return;  // when the spike is up
-    const Obstacle& spike = simulator.environment().obstacles()[0];
+    const Obstacle& spike = simulator.obstacles()[0];
     tip = spike.motion.pose(spike.rest_pose, frame.time) * Vector3(0.0, 0.25, 0.0);
     end = simulator.network();
     last = simulator.positions();

@@ -337,7 +337,7 @@ TEST_P(Attached, ARodFollowsThePointOfARigidObstacle) {
     builder.add_particle({0.5, -1.5, 0.3}, 0.1);
     builder.add_attachment({.name = "leash", .particles = {0}, .second = ObstacleEnd{0}, .from = from});
     Simulator simulator(builder.build(), settings(0.0), {turning_ball()});
-    const Obstacle& ball = simulator.environment().obstacles()[0];
+    const Obstacle& ball = simulator.obstacles()[0];
     const auto pose = [&] { return ball.motion.pose(ball.rest_pose, simulator.time()); };
     run(simulator, from);
     const Vector3 local = pose().inverse() * Vector3(simulator.positions().col(0));

@@ -118,7 +118,7 @@ TEST_P(Pins, ParticlesKeepTheirPlaceOnARigidObstacleThatTheyFollow) {
     Pin pin = pin_of({0, 1, 2}, from);
     pin.obstacle = 1;
     Simulator simulator(pinned_particles(positions, {pin}), settings(), {ground({}, 0.0), turning_ball()});
-    const Obstacle& ball = simulator.environment().obstacles()[1];
+    const Obstacle& ball = simulator.obstacles()[1];
     const auto on_ball = [&] {
       return Points(ball.motion.pose(ball.rest_pose, simulator.time()).inverse() * simulator.positions());
     };

@@ -194,7 +194,7 @@ TEST(SimulatorChanges, FrictionChangesUnderABody) {
 template <class Change>
 void expect_refused(const std::string& key, const Change& change) {
   Simulator simulator(moving_cloth(), {.step = kStep}, {ground({.thickness = 0.01})});
-  Simulator untouched(simulator.network(), simulator.settings(), simulator.environment().obstacles());
+  Simulator untouched(simulator.network(), simulator.settings(), simulator.obstacles());
   run(simulator, 0.02);
   run(untouched, 0.02);
   try {

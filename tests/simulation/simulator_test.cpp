@@ -599,7 +599,7 @@ TEST(Simulator, ContactConvergesInAGrooveWithASinglePassOfTheLimit) {
                       {ground({}, kSteep), ground({}, -kSteep)});
   for (int step = 0; step < 20; ++step) {
     simulator.step();
-    const double distance = *simulator.environment().min_distance(simulator.positions(), 1.0);
+    const double distance = *simulator.obstacle_frame().min_distance(simulator.positions(), 1.0);
     ASSERT_NEAR(distance, kGap, 2e-3 * kGap) << step;
   }
 }

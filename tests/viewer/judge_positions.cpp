@@ -33,7 +33,7 @@ int judge(const std::string& scene, const std::string& file) {
   const auto elements = judged_elements(network);
   const std::vector<Points> frames = read_frames(file, network.particle_count());
   Index wrong = 0;
-  for (const Obstacle& obstacle : loaded.simulator.environment().obstacles()) {
+  for (const Obstacle& obstacle : loaded.simulator.obstacles()) {
     const auto of_obstacle = judge_of(obstacle.geometry);
     const RigidTransform to_obstacle = obstacle.motion.pose(obstacle.rest_pose, 0.0).inverse();
     for (std::size_t k = 0; k < frames.size(); ++k) {

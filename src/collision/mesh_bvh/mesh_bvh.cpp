@@ -4,8 +4,6 @@
 #include "collision/mesh_bvh/sah_splitter.h"
 #include "collision/mesh_bvh/wide_bvh_collapse.h"
 
-#include <fcl/math/bv/utility.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +12,6 @@ namespace sprung {
 
 namespace {
 
-constexpr Index kNodesPerTask = 512;
 constexpr Index kBlocksPerTask = 1024;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -26,12 +23,32 @@ float rounded_down(double value) {
 
 float rounded_up(double value) { return -rounded_down(-value); }
 
-void fill_lanes(const TriangleMesh& mesh, TrianglePacket& block) {
+void fill_lanes(const Points& vertices, const Triangles& triangles, TrianglePacket& block) {
   for (int lane = 0; lane < kSimdWidth; ++lane) {
-    const auto corner = mesh.triangles.col(block.triangle[lane]);
+    const auto corner = triangles.col(block.triangle[lane]);
     for (int k = 0; k < 3; ++k) {
-      for (int axis = 0; axis < 3; ++axis) block.corner[k][axis][lane] = mesh.vertices(axis, corner[k]);
+      for (int axis = 0; axis < 3; ++axis) block.corner[k][axis][lane] = vertices(axis, corner[k]);
     }
+  }
+}
+
+/// The box around the triangles of a block while their vertices are between `from` and `to` [m].
+Box3 swept_box(const TrianglePacket& block, const Triangles& triangles, const Points& from, const Points& to) {
+  Box3 box;
+  for (int lane = 0; lane < block.count; ++lane) {
+    for (const Index vertex : triangles.col(block.triangle[lane])) {
+      box.extend(Vector3(from.col(vertex)));
+      box.extend(Vector3(to.col(vertex)));
+    }
+  }
+  return box;
+}
+
+/// Sets the box of a lane, rounded outward.
+void set_box(const Box3& box, int lane, MeshBvh::Node& node) {
+  for (int axis = 0; axis < 3; ++axis) {
+    node.min[axis][lane] = rounded_down(box.min()[axis]);
+    node.max[axis][lane] = rounded_up(box.max()[axis]);
   }
 }
 
@@ -54,87 +71,89 @@ std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> build_model(const TriangleMesh
 
 }  // namespace
 
-MeshBvh::MeshBvh(const TriangleMesh& mesh) : model_(build_model(mesh)), magnitude_(mesh.vertices.cwiseAbs().maxCoeff()) {
-  slots_.resize(static_cast<std::size_t>(mesh.triangles.cols()));
-  add_node(WideBvhCollapse(*model_), 0, 1);
-  set_positions(mesh);
+MeshBvh::MeshBvh(const TriangleMesh& mesh) {
+  auto topology = std::make_shared<Topology>();
+  topology->model = build_model(mesh);
+  topology->slots.resize(static_cast<std::size_t>(mesh.triangles.cols()));
+  std::vector<Node> nodes;
+  add_node(WideBvhCollapse(*topology->model), 0, 1, *topology, nodes);
+  topology->node_count = nodes.size();
+  topology_ = std::move(topology);
+  fit_boxes(mesh.triangles, mesh.vertices, mesh.vertices, std::move(nodes));
+  magnitude_ = mesh.vertices.cwiseAbs().maxCoeff();
+  set_positions(mesh.vertices, mesh.triangles);
 }
 
 std::array<Vector3, 3> MeshBvh::corners(Index triangle) const {
-  const Slot& slot = slots_[static_cast<std::size_t>(triangle)];
+  const Slot& slot = topology_->slots[static_cast<std::size_t>(triangle)];
   return block(slot.block).corners(slot.lane);
 }
 
-Box3 MeshBvh::bounds() const {
-  const fcl::AABB<double>& root = model_->getBV(0).bv;
-  return {root.min_, root.max_};
+void MeshBvh::refit(const Triangles& triangles, const Points& from, const Points& to) {
+  fit_boxes(triangles, from, to, std::vector<Node>(nodes_.get(), nodes_.get() + topology_->node_count));
+  magnitude_ = bounds_.min().cwiseAbs().cwiseMax(bounds_.max().cwiseAbs()).maxCoeff();
 }
 
-// FCL refits the model of a moving mesh to the vertices of two frames, the previous and the present one.
-void MeshBvh::refit(const Points& from, const Points& to) {
-  model_->beginUpdateModel();
-  for (Index i = 0; i < from.cols(); ++i) {
-    model_->prev_vertices[i] = from.col(i);
-    model_->updateVertex(to.col(i));
-  }
-  model_->endUpdateModel();
-  const Box3 box = bounds();
-  magnitude_ = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
-  parallel_chunks(static_cast<Index>(nodes_.size()), kNodesPerTask, [&](Index begin, Index end) {
-    for (Index node = begin; node < end; ++node) fit_boxes(static_cast<std::size_t>(node));
-  });
-}
-
-void MeshBvh::take_boxes(const MeshBvh& refitted) {
-  nodes_ = refitted.nodes_;
-  magnitude_ = refitted.magnitude_;
-}
-
-void MeshBvh::set_positions(const TriangleMesh& mesh) {
+void MeshBvh::set_positions(const Points& vertices, const Triangles& triangles) {
   parallel_chunks(static_cast<Index>(blocks_.size()), kBlocksPerTask, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) fill_lanes(mesh, blocks_[static_cast<std::size_t>(i)]);
+    for (Index i = begin; i < end; ++i) fill_lanes(vertices, triangles, blocks_[static_cast<std::size_t>(i)]);
   });
 }
 
-void MeshBvh::fit_boxes(std::size_t node) {
-  for (int lane = 0; lane < kFloatSimdWidth; ++lane) {
-    const Index volume = volumes_[node][static_cast<std::size_t>(lane)];
-    for (int axis = 0; axis < 3; ++axis) {
-      nodes_[node].min[axis][lane] = volume != kNone ? rounded_down(model_->getBV(volume).bv.min_[axis]) : kInfinity;
-      nodes_[node].max[axis][lane] = volume != kNone ? rounded_up(model_->getBV(volume).bv.max_[axis]) : -kInfinity;
+void MeshBvh::fit_boxes(const Triangles& triangles, const Points& from, const Points& to, std::vector<Node> nodes) {
+  std::vector<Box3> of_blocks(blocks_.size());
+  parallel_chunks(static_cast<Index>(blocks_.size()), kBlocksPerTask, [&](Index begin, Index end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      of_blocks[i] = swept_box(blocks_[i], triangles, from, to);
+    }
+  });
+  std::vector<Box3> of_nodes(nodes.size());
+  for (std::size_t i = nodes.size(); i-- > 0;) {  // children first
+    for (int lane = 0; lane < kFloatSimdWidth; ++lane) {
+      const std::int32_t child = nodes[i].child[lane];
+      if (child == 0) continue;
+      const Box3& box = child < 0 ? of_blocks[static_cast<std::size_t>(~child)] : of_nodes[static_cast<std::size_t>(child)];
+      set_box(box, lane, nodes[i]);
+      of_nodes[i].extend(box);
     }
   }
+  bounds_ = of_nodes.front();
+  const auto owner = std::make_shared<const std::vector<Node>>(std::move(nodes));
+  nodes_ = {owner, owner->data()};
 }
 
-std::int32_t MeshBvh::add_node(const WideBvhCollapse& collapse, int volume, int depth) {
-  const auto number = nodes_.size();
+std::int32_t MeshBvh::add_node(const WideBvhCollapse& collapse, int volume, int depth, Topology& topology,
+                               std::vector<Node>& nodes) {
+  const auto number = nodes.size();
   const std::vector<int> children = collapse.is_block(volume) ? std::vector<int>{volume} : collapse.children(volume);
-  nodes_.emplace_back();
-  volumes_.emplace_back().fill(kNone);
-  std::copy(children.begin(), children.end(), volumes_.back().begin());
-  fit_boxes(number);
+  Node& node = nodes.emplace_back();
+  for (int axis = 0; axis < 3; ++axis) {
+    node.min[axis] = Float8{} + kInfinity;
+    node.max[axis] = Float8{} - kInfinity;
+  }
   // A traversal leaves all lanes of a node but one on the stack, at each level. A push writes up to all lanes past the top.
-  stack_size_ = std::max(stack_size_, static_cast<std::size_t>((depth + 1) * kFloatSimdWidth));
+  topology.stack_size = std::max(topology.stack_size, static_cast<std::size_t>((depth + 1) * kFloatSimdWidth));
   for (std::size_t lane = 0; lane < children.size(); ++lane) {
     const int below = children[lane];
-    const std::int32_t child = collapse.is_block(below) ? ~add_block(below) : add_node(collapse, below, depth + 1);
-    nodes_[number].child[lane] = child;
+    const std::int32_t child =
+        collapse.is_block(below) ? ~add_block(below, topology) : add_node(collapse, below, depth + 1, topology, nodes);
+    nodes[number].child[lane] = child;
   }
   return static_cast<std::int32_t>(number);
 }
 
-std::int32_t MeshBvh::add_block(int volume) {
+std::int32_t MeshBvh::add_block(int volume, Topology& topology) {
   const auto number = static_cast<std::int32_t>(blocks_.size());
   TrianglePacket& block = blocks_.emplace_back();
   for (std::vector<int> waiting{volume}; !waiting.empty();) {
-    const int first_child = model_->getBV(waiting.back()).first_child;
+    const int first_child = topology.model->getBV(waiting.back()).first_child;
     waiting.pop_back();
     if (first_child >= 0) {
       waiting.insert(waiting.end(), {first_child + 1, first_child});
       continue;
     }
     const Index triangle = -first_child - 1;
-    slots_[static_cast<std::size_t>(triangle)] = {number, block.count};
+    topology.slots[static_cast<std::size_t>(triangle)] = {number, block.count};
     block.triangle[block.count++] = triangle;
   }
   // Lanes beyond `count` repeat the last triangle.

@@ -21,7 +21,7 @@ class WideBvhCollapse;
 /// FCL builds a binary tree of AABBs. The queries read a copy of it, with up to eight children per node and boxes in single
 /// precision, rounded outward. Requires a valid mesh: at least one triangle, indices in range, positions below 1e18 [m], so that
 /// squares fit single precision. A mesh that deforms keeps the tree of its first positions; only the boxes and the triangles
-/// change.
+/// change. Copies share the tree, and the boxes until one of them is refitted.
 ///
 /// Node 0 is the root, and each node comes before its children. Each triangle is in one block. Each block, and each node except
 /// the root, is the child of one node.
@@ -29,18 +29,15 @@ class MeshBvh {
  public:
   explicit MeshBvh(const TriangleMesh& mesh);
 
-  /// Refits all boxes, FCL's and the copy's, so that each contains its triangles while every vertex is between `from` and `to`
-  /// [m]. Not thread-safe.
-  void refit(const Points& from, const Points& to);
+  /// Fits all boxes to contain their triangles while every vertex is between `from` and `to` [m]. Requires the triangles of the
+  /// tree.
+  void refit(const Triangles& triangles, const Points& from, const Points& to);
 
-  /// Copies the boxes of `refitted`, a copy of this tree after refit().
-  void take_boxes(const MeshBvh& refitted);
-
-  /// Sets the positions of the triangles, which must be within the boxes. Requires the triangles of the tree. Not thread-safe.
-  void set_positions(const TriangleMesh& mesh);
+  /// Sets the positions of the triangles, which must be within the boxes. Requires the triangles of the tree.
+  void set_positions(const Points& vertices, const Triangles& triangles);
 
   /// The box around all boxes [m].
-  [[nodiscard]] Box3 bounds() const;
+  [[nodiscard]] const Box3& bounds() const { return bounds_; }
 
   struct Nearest {
     Index triangle = kNone;
@@ -58,11 +55,11 @@ class MeshBvh {
   /// belong to all their triangles. Of triangles crossed at the same fraction, the one with the lowest index.
   [[nodiscard]] std::optional<Hit> first_hit(const Vector3& a, const Vector3& b, CrossingSides sides) const;
 
-  /// FCL's model, for the broad phase.
-  [[nodiscard]] const std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>>& model() const { return model_; }
+  /// FCL's model of the mesh that the tree was built from, for the broad phase.
+  [[nodiscard]] const std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>>& model() const { return topology_->model; }
 
-  /// Boxes around the children, one lane per child. A child is the number of a node, or ~i for block i. A lane without a child has
-  /// an empty box.
+  /// Boxes around the children, one lane per child. A child is the number of a node, or ~i for block i. A lane without a child is 0
+  /// and has an empty box.
   struct alignas(64) Node {
     Float8 min[3];
     Float8 max[3];
@@ -70,32 +67,35 @@ class MeshBvh {
   };
 
   // For traversals.
-  [[nodiscard]] const Node& node(std::int32_t i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const Node& node(std::int32_t i) const { return nodes_.get()[i]; }
   [[nodiscard]] const TrianglePacket& block(std::int32_t i) const { return blocks_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] std::size_t stack_size() const { return stack_size_; }  ///< upper bound of the entries in a traversal
-  [[nodiscard]] double magnitude() const { return magnitude_; }         ///< largest absolute coordinate [m]
+  [[nodiscard]] std::size_t stack_size() const { return topology_->stack_size; }  ///< upper bound of the entries in a traversal
+  [[nodiscard]] double magnitude() const { return magnitude_; }                   ///< largest absolute coordinate [m]
   [[nodiscard]] std::array<Vector3, 3> corners(Index triangle) const;
 
  private:
-  /// For each lane of a node, the number of FCL's bounding volume; kNone for a lane without one.
-  using Volumes = std::array<Index, kFloatSimdWidth>;
-
   /// The block and the lane that contain a triangle.
   struct Slot {
     std::int32_t block;
     int lane;
   };
+  /// What copies share.
+  struct Topology {
+    std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> model;
+    std::size_t node_count = 0;
+    std::vector<Slot> slots;  ///< of each triangle
+    std::size_t stack_size = 0;
+  };
 
-  std::int32_t add_node(const WideBvhCollapse& collapse, int volume, int depth);
-  std::int32_t add_block(int volume);
-  void fit_boxes(std::size_t node);
+  std::int32_t add_node(const WideBvhCollapse& collapse, int volume, int depth, Topology& topology, std::vector<Node>& nodes);
+  std::int32_t add_block(int volume, Topology& topology);
+  /// Fits the nodes' boxes, and makes them those of the tree.
+  void fit_boxes(const Triangles& triangles, const Points& from, const Points& to, std::vector<Node> nodes);
 
-  std::shared_ptr<fcl::BVHModel<fcl::AABB<double>>> model_;
-  std::vector<Node> nodes_;
-  std::vector<Volumes> volumes_;  ///< of each node
+  std::shared_ptr<const Topology> topology_;
+  std::shared_ptr<const Node> nodes_;  ///< the first of them
   std::vector<TrianglePacket> blocks_;
-  std::vector<Slot> slots_;  ///< of each triangle
-  std::size_t stack_size_ = 0;
+  Box3 bounds_;
   double magnitude_ = 0.0;
 };
 

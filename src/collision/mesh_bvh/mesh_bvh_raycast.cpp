@@ -76,7 +76,7 @@ std::optional<MeshBvh::Hit> MeshBvh::first_hit(const Vector3& a, const Vector3& 
   const Box3 box(a.cwiseMin(b), a.cwiseMax(b));
   std::optional<Hit> best;
   float bound = 1.0F;
-  TraversalStack stack(stack_size_);
+  TraversalStack stack(stack_size());
   stack.push({0.0F, 0});
   while (!stack.empty()) {
     const TraversalEntry entry = stack.pop();

@@ -49,18 +49,18 @@ FreshContacts ObstacleSafeRegions::find_contacts_around(const std::vector<Index>
 
 void ObstacleSafeRegions::find_contacts_of(const std::vector<Index>& patches, const StepPaths& paths,
                                            std::vector<Contact>& contacts) {
-  const double by_obstacles = paths.obstacles_rest ? 0.0 : set_.max_displacement(paths.from);
+  const double by_obstacles = paths.at_end ? 0.0 : paths.obstacles.max_displacement(paths.from);
   parallel_chunks(static_cast<Index>(patches.size()), kPatchChunk, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       const Index p = patches[at(k)];
       Patch& patch = patches_[at(p)];
       patch.contacts.clear();
-      if (patch.regions.empty() || patch.rests) continue;
+      if (patch.regions.empty() || patch.is_at_rest) continue;
       const double motion = by_obstacles + largest_motion(paths, particles_of(p));
       for (PatchSafeRegions& regions : patch.regions) {
         const RegionDemand demanded = demand(patch, regions.obstacle(), paths);
         const double margin = std::min(margin_, margin_of_step(demanded.gap, motion));
-        const double spread = set_.shape(regions.obstacle()).largest_displacement();
+        const double spread = paths.obstacles.shape(regions.obstacle()).largest_displacement();
         append_particle_contacts(p, regions, paths, margin, std::max(motion, demanded.gap + margin + spread));
         append_element_contacts(p, regions, paths, demanded, margin);
       }
@@ -80,14 +80,14 @@ void ObstacleSafeRegions::append_particle_contacts(Index p, PatchSafeRegions& re
   const Index k = regions.obstacle();
   Patch& patch = patches_[at(p)];
   const std::vector<Index>& particles = particles_of(p);
-  regions.find_close({paths.to, particles, set_.into_after(k)}, reach, patch.close);
+  regions.find_close({paths.to, particles, paths.obstacles.into_after(k)}, reach, patch.close);
   for (const Index slot : patch.close) {
     const Index i = particles[at(slot)];
     if (patch.own[at(slot)] == 0 || is_permitted(k, i)) continue;
     const Vector3 from = paths.from.col(i);
     const Vector3 to = paths.to.col(i);
     if (!from.allFinite() || !to.allFinite()) continue;
-    const auto contact = find_contact(set_, k, {i, from, to, surface_.thickness[i], margin}, regions.memory(slot));
+    const auto contact = find_contact(paths.obstacles, k, {i, from, to, surface_.thickness[i], margin}, regions.memory(slot));
     if (contact) patch.contacts.push_back(*contact);
   }
 }
@@ -95,12 +95,12 @@ void ObstacleSafeRegions::append_particle_contacts(Index p, PatchSafeRegions& re
 void ObstacleSafeRegions::append_element_contacts(Index p, PatchSafeRegions& regions, const StepPaths& paths,
                                                   const RegionDemand& demand, double margin) {
   const Index k = regions.obstacle();
-  const RigidTransform& pose = set_.after(k);
+  const RigidTransform& pose = paths.obstacles.after(k);
   const ElementPatch& patch = surface_.patches[at(p)];
   const PatchPaths local = patch_paths(p, k, paths);
   for (const Index e : regions.near_elements()) {
     if (regions.region(e).broken) continue;
-    const SafeRegion& region = regions.renew_closest_points(set_.shape(k), patches_[at(p)].topology, local, demand, e);
+    const SafeRegion& region = regions.renew_closest_points(paths.obstacles.shape(k), patches_[at(p)].topology, local, demand, e);
     if (region.weights.maxCoeff() > kAtCorner) continue;
     const Element& element = surface_.elements[at(patch.first_element + e)];
     Vector3 sum = Vector3::Zero();
@@ -113,8 +113,8 @@ void ObstacleSafeRegions::append_element_contacts(Index p, PatchSafeRegions& reg
     const Vector3 point = pose * region.point;
     const Vector3 normal = pose.linear() * region.normal;
     const double distance = normal.dot(sum - point);
-    const double clearance = set_.clearance(k, sum, sum);
-    const double gap = std::max(thickness + set_.obstacle(k).material.thickness, clearance);
+    const double clearance = paths.obstacles.clearance(k, sum, sum);
+    const double gap = std::max(thickness + paths.obstacles.obstacle(k).material.thickness, clearance);
     const auto corners = corners_of(element);
     const auto may_cross = [&](Index i) { return is_permitted(k, i); };
     if (!(distance < gap + margin) || std::any_of(corners.begin(), corners.end(), may_cross)) continue;

@@ -21,15 +21,15 @@ void keep_nearest(std::vector<Corner>& corners) {
 
 }  // namespace
 
-ObstacleMotion::ObstacleMotion(const ObstacleSafeRegions& regions)
-    : regions_(regions), set_(regions.set_), surface_(regions.surface_) {}
+ObstacleMotion::ObstacleMotion(const ObstacleSafeRegions& regions, const ObstacleFrame& obstacles)
+    : regions_(regions), obstacles_(obstacles), surface_(regions.surface_) {}
 
 std::vector<ParticleDisplacement> ObstacleMotion::displacements(const Points& from) const {
   std::vector<ParticleDisplacement> particles;
-  if (!set_.moves()) return particles;
+  if (!obstacles_.set().moves()) return particles;
   for (Index i = 0; i < static_cast<Index>(from.cols()); ++i) {
     const Index k = touched_obstacle(i);
-    if (k != kNone) particles.push_back({i, set_.moved_position(k, from.col(i)) - from.col(i)});
+    if (k != kNone) particles.push_back({i, obstacles_.moved_position(k, from.col(i)) - from.col(i)});
   }
   return particles;
 }
@@ -37,7 +37,7 @@ std::vector<ParticleDisplacement> ObstacleMotion::displacements(const Points& fr
 Index ObstacleMotion::touched_obstacle(Index particle) const {
   for (const PatchSlot& entry : regions_.slots_of(particle)) {
     for (const PatchSafeRegions& regions : regions_.patches_[at(entry.patch)].regions) {
-      if (regions.may_touch(entry.slot) && !set_.rests(regions.obstacle())) return regions.obstacle();
+      if (regions.may_touch(entry.slot) && !obstacles_.is_at_rest(regions.obstacle())) return regions.obstacle();
     }
   }
   return kNone;
@@ -48,13 +48,13 @@ KinematicAnchor ObstacleMotion::anchor(Index particle, const Vector3& from, cons
   for (const PatchSlot& entry : regions_.slots_of(particle)) {
     for (const PatchSafeRegions& regions : regions_.patches_[at(entry.patch)].regions) {
       const Index k = regions.obstacle();
-      if (set_.rests(k) || regions.allow(entry.slot, set_.local(k, position))) continue;
+      if (obstacles_.is_at_rest(k) || regions.allow(entry.slot, obstacles_.local(k, position))) continue;
       anchor.obstacle = k;
-      anchor.motion = set_.after(k) * set_.before(k).inverse();
-      anchor.surface = set_.shape(k).moved_triangle(set_.local_before(k, from));
+      anchor.motion = obstacles_.after(k) * obstacles_.before(k).inverse();
+      anchor.surface = obstacles_.shape(k).moved_triangle(obstacles_.local_before(k, from));
       if (!anchor.surface) return anchor;
-      for (Vector3& corner : anchor.surface->before) corner = set_.before(k) * corner;
-      for (Vector3& corner : anchor.surface->after) corner = set_.after(k) * corner;
+      for (Vector3& corner : anchor.surface->before) corner = obstacles_.before(k) * corner;
+      for (Vector3& corner : anchor.surface->after) corner = obstacles_.after(k) * corner;
       return anchor;
     }
   }
@@ -73,16 +73,16 @@ std::vector<Index> ObstacleMotion::near_obstacles(Index particle) const {
 
 void ObstacleMotion::append_moved(Index particle, const Vector3& from, std::vector<Vector3>& positions) const {
   for (const Index k : near_obstacles(particle)) {
-    if (!set_.rests(k)) positions.push_back(set_.moved_position(k, from));
+    if (!obstacles_.is_at_rest(k)) positions.push_back(obstacles_.moved_position(k, from));
   }
 }
 
 std::optional<Vector3> ObstacleMotion::moved(Index particle, const Vector3& from) const {
   for (const Index k : near_obstacles(particle)) {
-    if (set_.rests(k)) continue;
-    const auto moved = set_.shape(k).moved_element({.x = {set_.local_before(k, from)}, .count = 1}, 0.0);
+    if (obstacles_.is_at_rest(k)) continue;
+    const auto moved = obstacles_.shape(k).moved_element({.x = {obstacles_.local_before(k, from)}, .count = 1}, 0.0);
     if (!moved) return std::nullopt;
-    const Vector3 position = set_.after(k) * moved->corners.x[0];
+    const Vector3 position = obstacles_.after(k) * moved->corners.x[0];
     if (!crosses_another(k, particle, from, position)) return position;
   }
   return std::nullopt;
@@ -93,8 +93,8 @@ bool ObstacleMotion::crosses_another(Index k, Index particle, const Vector3& fro
   const std::vector<Index> near = near_obstacles(particle);
   return std::any_of(near.begin(), near.end(), [&](Index other) {
     if (other == k) return false;
-    const auto moved = set_.shape(other).moved_element({.x = {set_.local_before(other, from)}, .count = 1}, 0.0);
-    return !moved || set_.shape(other).first_crossing(moved->corners.x[0], set_.local(other, position));
+    const auto moved = obstacles_.shape(other).moved_element({.x = {obstacles_.local_before(other, from)}, .count = 1}, 0.0);
+    return !moved || obstacles_.shape(other).first_crossing(moved->corners.x[0], obstacles_.local(other, position));
   });
 }
 
@@ -102,15 +102,15 @@ void ObstacleMotion::append_moved_elements(Index p, const Points& from, double l
   const ElementPatch& patch = surface_.patches[at(p)];
   for (const PatchSafeRegions& regions : regions_.patches_[at(p)].regions) {
     const Index k = regions.obstacle();
-    for (Index e = 0; e < regions_.patches_[at(p)].topology.element_count() && !set_.rests(k); ++e) {
+    for (Index e = 0; e < regions_.patches_[at(p)].topology.element_count() && !obstacles_.is_at_rest(k); ++e) {
       if (!regions.region(e).broken) continue;
       const Element& element = surface_.elements[at(patch.first_element + e)];
       ElementCorners local{.count = element.corners};
-      for (std::size_t c = 0; c < at(element.corners); ++c) local.x[c] = set_.local_before(k, from.col(element.particles[c]));
-      const auto moved = set_.shape(k).moved_element(local, lift);
+      for (std::size_t c = 0; c < at(element.corners); ++c) local.x[c] = obstacles_.local_before(k, from.col(element.particles[c]));
+      const auto moved = obstacles_.shape(k).moved_element(local, lift);
       for (std::size_t c = 0; c < at(element.corners) && moved; ++c) {
         const Index i = element.particles[c];
-        const Vector3 position = set_.after(k) * moved->corners.x[c];
+        const Vector3 position = obstacles_.after(k) * moved->corners.x[c];
         if (!crosses_another(k, i, from.col(i), position)) corners.push_back({i, moved->distance, position});
       }
     }
@@ -131,12 +131,12 @@ void ObstacleMotion::append_pushes(Index p, const PatchSafeRegions& regions, con
   for (Index e = 0; e < topology.element_count(); ++e) {
     const SafeRegion& region = regions.region(e);
     if (!topology.corners(e).pinned || region.broken || !std::isfinite(region.distance)) continue;
-    const Vector3 normal = set_.before(k).linear() * region.normal;
+    const Vector3 normal = obstacles_.before(k).linear() * region.normal;
     const auto corners = corners_of(surface_.elements[at(surface_.patches[at(p)].first_element + e)]);
     double approach = 0.0;
     for (const Index i : corners) {
       if (surface_.pinned[at(i)] == 0) continue;
-      approach = std::max(approach, normal.dot(set_.moved_position(k, paths.from.col(i)) - paths.to.col(i)));
+      approach = std::max(approach, normal.dot(obstacles_.moved_position(k, paths.from.col(i)) - paths.to.col(i)));
     }
     for (const Index i : corners) {
       if (surface_.pinned[at(i)] == 0 && approach > 0.0)

@@ -27,8 +27,8 @@ struct Push {
 /// nothing. Positions are [m]; `from` is where particles are at the begin of the interval, as a matrix 3 x n.
 class ObstacleMotion {
  public:
-  /// Keeps a reference to the regions.
-  explicit ObstacleMotion(const ObstacleSafeRegions& regions);
+  /// Keeps references to both. Requires regions that were last updated or renewed for this frame.
+  ObstacleMotion(const ObstacleSafeRegions& regions, const ObstacleFrame& obstacles);
 
   /// The particles that may touch a moving obstacle, ascending, with the displacement that it gives them.
   [[nodiscard]] std::vector<ParticleDisplacement> displacements(const Points& from) const;
@@ -40,7 +40,8 @@ class ObstacleMotion {
   /// Appends the positions to which the moving obstacles near the particle move it.
   void append_moved(Index particle, const Vector3& from, std::vector<Vector3>& positions) const;
 
-  /// The particle anchored to the first moving obstacle whose regions do not contain `position`; a resting anchor if there is none.
+  /// The particle anchored to the first moving obstacle whose regions do not contain `position`; an anchor at rest if there is
+  /// none.
   [[nodiscard]] KinematicAnchor anchor(Index particle, const Vector3& from, const Vector3& position) const;
 
   /// The corners of elements that moving obstacles cross, moved as whole elements, and higher by `lift` (see
@@ -62,7 +63,7 @@ class ObstacleMotion {
   void append_pushes(Index patch, const PatchSafeRegions& regions, const StepPaths& paths, std::vector<Push>& pushes) const;
 
   const ObstacleSafeRegions& regions_;
-  const ObstacleSet& set_;
+  const ObstacleFrame& obstacles_;
   const CollisionSurface& surface_;
 };
 

@@ -23,8 +23,7 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 ObstacleSafeRegions::ObstacleSafeRegions(const ObstacleSet& set, const CollisionSurface& surface, const Points& rest, double margin)
-    : set_(set),
-      surface_(surface),
+    : surface_(surface),
       margin_(margin),
       rest_(rest),
       permitted_(set.obstacles().size(), std::vector<char>(surface.pinned.size(), 0)) {
@@ -44,18 +43,19 @@ ObstacleSafeRegions::ObstacleSafeRegions(const ObstacleSet& set, const Collision
 }
 
 void ObstacleSafeRegions::update(const StepPaths& paths) {
-  if (set_.obstacles().empty()) return;
-  const double max_displacement = paths.obstacles_rest ? 0.0 : set_.max_displacement(paths.from);
+  const ObstacleFrame& obstacles = paths.obstacles;
+  if (obstacles.set().empty()) return;
+  const double max_displacement = paths.at_end ? 0.0 : obstacles.max_displacement(paths.from);
   parallel_chunks(static_cast<Index>(patches_.size()), kPatchChunk, [&](Index begin, Index end) {
     for (Index p = begin; p < end; ++p) {
       Patch& patch = patches_[at(p)];
       patch.leaving.clear();
-      patch.rests = stands_still(p, paths);
-      if (patch.rests) continue;
+      patch.is_at_rest = stands_still(p, paths);
+      if (patch.is_at_rest) continue;
       find_near(p, paths, max_displacement);
       for (PatchSafeRegions& regions : patch.regions) {
-        const ObstacleShape& shape = set_.shape(regions.obstacle());
-        if (!regions.find_leaving(shape, {paths.to, particles_of(p), set_.into_after(regions.obstacle())})) continue;
+        const ObstacleShape& shape = obstacles.shape(regions.obstacle());
+        if (!regions.find_leaving(shape, {paths.to, particles_of(p), obstacles.into_after(regions.obstacle())})) continue;
         regions.update(shape, patch.topology, patch_paths(p, regions.obstacle(), paths), demand(patch, regions.obstacle(), paths));
         append_leaving(p, regions);
       }
@@ -65,12 +65,12 @@ void ObstacleSafeRegions::update(const StepPaths& paths) {
 
 bool ObstacleSafeRegions::stands_still(Index p, const StepPaths& paths) const {
   const Patch& patch = patches_[at(p)];
-  return !set_.moves() && patch.pinned && !patch.known.isEmpty() &&
+  return !paths.obstacles.set().moves() && patch.pinned && !patch.known.isEmpty() &&
          std::ranges::all_of(particles_of(p), [&](Index i) { return paths.from.col(i) == paths.to.col(i); });
 }
 
-bool ObstacleSafeRegions::rests(Index particle) const {
-  return std::ranges::all_of(slots_of(particle), [&](const PatchSlot& entry) { return patches_[at(entry.patch)].rests; });
+bool ObstacleSafeRegions::is_at_rest(Index particle) const {
+  return std::ranges::all_of(slots_of(particle), [&](const PatchSlot& entry) { return patches_[at(entry.patch)].is_at_rest; });
 }
 
 void ObstacleSafeRegions::find_near(Index p, const StepPaths& paths, double max_displacement) {
@@ -79,14 +79,14 @@ void ObstacleSafeRegions::find_near(Index p, const StepPaths& paths, double max_
   patch.box = finite_bounds(paths.from, particles).merged(finite_bounds(paths.to, particles));
   std::vector<Index> near;
   if (!patch.box.isEmpty()) {
-    const double gap = std::max(patch.thickness + set_.max_thickness(), set_.max_clearance(patch.box));
+    const double gap = std::max(patch.thickness + paths.obstacles.set().max_thickness(), paths.obstacles.max_clearance(patch.box));
     // Twice, because in the frame of an approaching obstacle the path is longer by its motion, and another obstacle may move the
     // particle.
     const double detour = kDetour * patch.box.diagonal().norm();
     const double reach = gap + margin_ + 2.0 * max_displacement + detour;
-    if (!set_.moves() && patch.known.contains(grown(patch.box, reach))) return;
+    if (!paths.obstacles.set().moves() && patch.known.contains(grown(patch.box, reach))) return;
     patch.known = grown(patch.box, reach + kReserve * patch.box.diagonal().norm());
-    set_.find_near(patch.known, near);
+    paths.obstacles.find_near(patch.known, near);
   }
   if (std::equal(near.begin(), near.end(), patch.regions.begin(), patch.regions.end(),
                  [](Index k, const PatchSafeRegions& regions) { return k == regions.obstacle(); })) {
@@ -118,17 +118,18 @@ std::vector<Index> ObstacleSafeRegions::leaving() const {
 }
 
 PatchPaths ObstacleSafeRegions::patch_paths(Index p, Index k, const StepPaths& paths) const {
-  const RigidTransform& before = paths.obstacles_rest ? set_.into_after(k) : set_.into_before(k);
-  return {{paths.from, particles_of(p), before}, {paths.to, particles_of(p), set_.into_after(k)}};
+  const RigidTransform& into_after = paths.obstacles.into_after(k);
+  const RigidTransform& before = paths.at_end ? into_after : paths.obstacles.into_before(k);
+  return {{paths.from, particles_of(p), before}, {paths.to, particles_of(p), into_after}};
 }
 
 RegionDemand ObstacleSafeRegions::demand(const Patch& patch, Index k, const StepPaths& paths) const {
   RegionDemand demand{.size = patch.size,
-                      .gap = patch.thickness + set_.obstacle(k).material.thickness,
+                      .gap = patch.thickness + paths.obstacles.obstacle(k).material.thickness,
                       .margin = margin_,
-                      .at_end = paths.obstacles_rest,
+                      .at_end = paths.at_end,
                       .ahead = ahead_};
-  demand.clearance = patch.box.isEmpty() ? 0.0 : set_.clearance(k, patch.box.min(), patch.box.max());
+  demand.clearance = patch.box.isEmpty() ? 0.0 : paths.obstacles.clearance(k, patch.box.min(), patch.box.max());
   demand.gap = std::max(demand.gap, demand.clearance);
   return demand;
 }
@@ -146,38 +147,39 @@ void ObstacleSafeRegions::renew_around(const std::vector<Index>& particles, cons
     for (Index k = begin; k < end; ++k) {
       const Index p = around[at(k)];
       for (PatchSafeRegions& regions : patches_[at(p)].regions) {
-        const ObstacleShape& shape = set_.shape(regions.obstacle());
+        const ObstacleShape& shape = paths.obstacles.shape(regions.obstacle());
         const RegionDemand demanded = demand(patches_[at(p)], regions.obstacle(), paths);
         regions.renew(shape, patches_[at(p)].topology, patch_paths(p, regions.obstacle(), paths), demanded, slots[at(k)]);
-        regions.find_leaving(shape, {paths.to, particles_of(p), set_.into_after(regions.obstacle())});
+        regions.find_leaving(shape, {paths.to, particles_of(p), paths.obstacles.into_after(regions.obstacle())});
         append_leaving(p, regions);
       }
     }
   });
 }
 
-bool ObstacleSafeRegions::allow(Index particle, const Vector3& position) const {
+bool ObstacleSafeRegions::allow(const ObstacleFrame& obstacles, Index particle, const Vector3& position) const {
   for (const auto& [p, slot] : slots_of(particle)) {
     const Patch& patch = patches_[at(p)];
     if (!patch.known.isEmpty() && !patch.known.contains(position)) return false;
     for (const PatchSafeRegions& regions : patch.regions) {
-      if (!is_permitted(regions.obstacle(), particle) && !regions.allow(slot, set_.local(regions.obstacle(), position)))
+      if (!is_permitted(regions.obstacle(), particle) && !regions.allow(slot, obstacles.local(regions.obstacle(), position)))
         return false;
     }
   }
   return true;
 }
 
-bool ObstacleSafeRegions::planes_allow(Index particle, const Vector3& position) const {
+bool ObstacleSafeRegions::planes_allow(const ObstacleFrame& obstacles, Index particle, const Vector3& position) const {
   return std::ranges::all_of(slots_of(particle), [&](const PatchSlot& entry) {
     return std::ranges::all_of(patches_[at(entry.patch)].regions, [&](const PatchSafeRegions& regions) {
       return is_permitted(regions.obstacle(), particle) ||
-             regions.planes_allow(entry.slot, set_.local(regions.obstacle(), position));
+             regions.planes_allow(entry.slot, obstacles.local(regions.obstacle(), position));
     });
   });
 }
 
-void ObstacleSafeRegions::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
+void ObstacleSafeRegions::append_half_spaces(const ObstacleFrame& obstacles, Index particle,
+                                             std::vector<HalfSpace>& half_spaces) const {
   for (const auto& [p, slot] : slots_of(particle)) {
     const Patch& patch = patches_[at(p)];
     for (int axis = 0; axis < 3 && !patch.known.isEmpty(); ++axis) {
@@ -186,7 +188,7 @@ void ObstacleSafeRegions::append_half_spaces(Index particle, std::vector<HalfSpa
     }
     for (const PatchSafeRegions& regions : patch.regions) {
       if (is_permitted(regions.obstacle(), particle)) continue;
-      regions.append_half_spaces(slot, set_.after(regions.obstacle()), half_spaces);
+      regions.append_half_spaces(slot, obstacles.after(regions.obstacle()), half_spaces);
     }
   }
 }

@@ -6,7 +6,7 @@
 #include "collision/obstacle_regions/patch_safe_regions.h"
 #include "collision/obstacle_regions/permitted_crossing.h"
 #include "collision/obstacle_regions/step_paths.h"
-#include "collision/obstacles/obstacle_set.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "collision/surface/collision_surface.h"
 
 #include <vector>
@@ -17,8 +17,8 @@ namespace sprung {
 /// move particles.
 class ObstacleSafeRegions {
  public:
-  /// Contacts are found up to `margin` [m] beyond their gap. No spring is stretched at `rest` [m], 3 x n. Keeps references to set
-  /// and surface.
+  /// Contacts are found up to `margin` [m] beyond their gap. No spring is stretched at `rest` [m], 3 x n. Keeps a reference to the
+  /// surface. Frames in later calls must be those of `set`.
   ObstacleSafeRegions(const ObstacleSet& set, const CollisionSurface& surface, const Points& rest, double margin);
 
   /// Makes regions for elements near obstacles that have none, or leave theirs on these paths.
@@ -43,23 +43,25 @@ class ObstacleSafeRegions {
   /// that an obstacle crosses; ascending.
   [[nodiscard]] std::vector<Index> leaving() const;
 
-  /// Appends contacts of particles (see Environment::contacts), then contacts of obstacles with the inside of edges and faces, at
+  /// Appends contacts of particles (see ObstacleFrame::contacts), then contacts of obstacles with the inside of edges and faces, at
   /// the regions' closest points; patch by patch. Patches that hardly move have a smaller margin. Requires update() for the same
   /// paths.
   void find_contacts(const StepPaths& paths, std::vector<Contact>& contacts);
   /// Finds the contacts of the patches of these particles alone.
   [[nodiscard]] FreshContacts find_contacts_around(const std::vector<Index>& particles, const StepPaths& paths);
 
+  // `obstacles` are those of the last update() or renew_around().
+
   /// Whether the regions of all elements around the particle contain the position at the end of the interval.
-  [[nodiscard]] bool allow(Index particle, const Vector3& position) const;
-  /// Whether the particle and its neighbours are pinned and rested in the last update(), and so did all obstacles: nothing is to be
-  /// tested.
-  [[nodiscard]] bool rests(Index particle) const;
+  [[nodiscard]] bool allow(const ObstacleFrame& obstacles, Index particle, const Vector3& position) const;
+  /// Whether the particle and its neighbours are pinned and did not move in the last update(), and no obstacle ever moves: nothing
+  /// is to be tested.
+  [[nodiscard]] bool is_at_rest(Index particle) const;
   /// Whether the planes of these regions allow the position, whatever the boxes are. If so, no known obstacle is between the
   /// particle and the position.
-  [[nodiscard]] bool planes_allow(Index particle, const Vector3& position) const;
+  [[nodiscard]] bool planes_allow(const ObstacleFrame& obstacles, Index particle, const Vector3& position) const;
   /// Appends the half-spaces that the particle has to stay in at the end of the interval.
-  void append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const;
+  void append_half_spaces(const ObstacleFrame& obstacles, Index particle, std::vector<HalfSpace>& half_spaces) const;
 
   /// Whether an obstacle crosses any element.
   [[nodiscard]] bool any_crossed() const;
@@ -81,7 +83,7 @@ class ObstacleSafeRegions {
     double size = 0.0;                        ///< of its elements [m]
     double thickness = 0.0;                   ///< largest of its particles [m]
     bool pinned = true;                       ///< whether all its particles are
-    bool rests = false;                       ///< whether it is pinned and known, and nothing moved in the last update()
+    bool is_at_rest = false;                  ///< whether it is pinned and known, and nothing moved in the last update()
   };
 
   void set_permitted(PermittedCrossings crossings);
@@ -106,7 +108,6 @@ class ObstacleSafeRegions {
     return surface_.patches[static_cast<std::size_t>(patch)].particles;
   }
 
-  const ObstacleSet& set_;
   const CollisionSurface& surface_;
   double margin_;
   bool ahead_ = false;  ///< see look_ahead

@@ -2,14 +2,16 @@
 #pragma once
 
 #include "collision/core/sphere_set.h"
+#include "collision/obstacles/obstacle_frame.h"
 
 namespace sprung {
 
-/// The straight paths of all particles in a step or a substep [m], 3 x n. Refers to both.
+/// The straight paths of all particles in a step or a substep [m], 3 x n, and the obstacles in it. Refers to all of them.
 struct StepPaths {
-  const Points& from;           ///< start positions, where nothing crosses
-  const Points& to;             ///< target positions at the end of the obstacles' interval
-  bool obstacles_rest = false;  ///< obstacles are at the end of the interval during the whole path
+  const ObstacleFrame& obstacles;
+  const Points& from;   ///< start positions, where nothing crosses
+  const Points& to;     ///< target positions at the end of the obstacles' interval
+  bool at_end = false;  ///< obstacles are at the end of their interval during the whole path
 };
 
 /// The paths of a patch's particles in an obstacle's frame, by slot. Refers to the positions, particles and poses it is made from.

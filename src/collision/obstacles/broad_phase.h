@@ -1,48 +1,40 @@
-// Broad phase (FCL): finds the obstacles near a box.
+// Broad phase: finds the obstacles near a box.
 #pragma once
 
 #include "collision/shapes/obstacle.h"
 #include "collision/shapes/obstacle_shape.h"
 
-#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
-
 #include <memory>
+#include <variant>
 #include <vector>
 
 namespace sprung {
 
-/// A dynamic AABB tree (FCL) over the obstacles. Half-spaces are not in the tree, because their boxes are infinite (FCL's largest
-/// double overflows in the sums of the tree). They are tested one by one.
+/// What bounds an obstacle in world coordinates [m]: a box, or the plane of a half-space, whose box would be infinite.
+struct ObstacleBound {
+  Index obstacle = kNone;
+  std::variant<Box3, HalfSpaceGeometry> bound;
+};
+
+/// FCL's dynamic AABB tree over the obstacles that never change. The bounds of the others, and of half-spaces (FCL's largest double
+/// overflows in the sums of the tree), are tested one by one. Const after construction, thread-safe.
 class BroadPhase {
  public:
-  /// Requires one shape per obstacle, built from its geometry. Keeps references to both. `poses` are the initial poses.
-  BroadPhase(const std::vector<Obstacle>& obstacles, const std::vector<std::unique_ptr<ObstacleShape>>& shapes,
+  /// Requires one shape per obstacle, built from its geometry, and the poses of the obstacles that never change.
+  BroadPhase(const std::vector<Obstacle>& obstacles, const std::vector<std::shared_ptr<const ObstacleShape>>& shapes,
              const std::vector<RigidTransform>& poses);
+  ~BroadPhase();
 
-  /// Updates the poses of the obstacles and the boxes of deforming shapes. Not thread-safe.
-  void move(const std::vector<RigidTransform>& poses);
+  /// The bound of obstacle k at a pose. Requires an obstacle that changes, and its shape in the interval that ends there.
+  [[nodiscard]] ObstacleBound bound_at(Index k, const RigidTransform& pose, const ObstacleShape& shape) const;
 
-  /// Replaces `found` by the obstacles whose box intersects `box`, in ascending order. The result may contain more, never fewer.
-  /// Thread-safe.
-  void find_near(const Box3& box, std::vector<Index>& found) const;
+  /// Replaces `found` by the obstacles whose bound intersects `box`, in ascending order; `changing` are the bounds of those that
+  /// change. The result may contain more, never fewer.
+  void find_near(const Box3& box, const std::vector<ObstacleBound>& changing, std::vector<Index>& found) const;
 
  private:
-  struct Object {
-    std::unique_ptr<fcl::CollisionObject<double>> object;
-    std::shared_ptr<fcl::CollisionGeometry<double>> geometry;
-    const ObstacleShape* shape;
-    RigidTransform rotation;  ///< from FCL's frame of the shape, with axis z, to the obstacle's
-    Index obstacle;
-  };
-  struct Plane {
-    HalfSpaceGeometry local;
-    HalfSpaceGeometry world;
-    Index obstacle;
-  };
-
-  std::vector<Object> objects_;
-  std::vector<Plane> planes_;
-  fcl::DynamicAABBTreeCollisionManager<double> manager_;
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace sprung

@@ -1,7 +1,7 @@
 #include "collision/obstacles/obstacle_intersections.h"
 
 #include "base/parallel.h"
-#include "collision/obstacles/obstacle_set.h"
+#include "collision/obstacles/obstacle_frame.h"
 
 #include <algorithm>
 #include <limits>
@@ -16,17 +16,17 @@ constexpr double kTouching = 0x1p-10;
 
 class PatchSearch {
  public:
-  PatchSearch(const ObstacleSet& obstacles, const CollisionSurface& surface, const Points& positions)
-      : obstacles_(obstacles), surface_(surface), positions_(positions) {}
+  PatchSearch(const ObstacleFrame& frame, const CollisionSurface& surface, const Points& positions)
+      : frame_(frame), surface_(surface), positions_(positions) {}
 
   /// A particle is tested only in the first patch that contains it.
   void search(Index patch_number, Intersections& found) const {
     const ElementPatch& patch = surface_.patches[static_cast<std::size_t>(patch_number)];
     Box3 box;
     for (const Index i : patch.particles) box.extend(positions_.col(i));
-    const double margin = kTouching * obstacles_.max_clearance(box);
+    const double margin = kTouching * frame_.max_clearance(box);
     std::vector<Index> near;
-    obstacles_.find_near({box.min().array() - margin, box.max().array() + margin}, near);
+    frame_.find_near({box.min().array() - margin, box.max().array() + margin}, near);
     for (const Index k : near) {
       for (const Index i : patch.particles) {
         const Index first_slot = surface_.first_slot[static_cast<std::size_t>(i)];
@@ -40,14 +40,14 @@ class PatchSearch {
   [[nodiscard]] bool is_pinned(Index particle) const { return surface_.pinned[static_cast<std::size_t>(particle)] != 0; }
 
   [[nodiscard]] double tolerance(const Vector3& position, Index k) const {
-    return kTouching * obstacles_.clearance(k, position, position);
+    return kTouching * frame_.clearance(k, position, position);
   }
 
   void find_inside(Index particle, Index k, Intersections& found) const {
     if (is_pinned(particle)) return;
-    const Vector3 p = obstacles_.local(k, positions_.col(particle));
-    if (!obstacles_.shape(k).contains(p)) return;
-    const auto surface = obstacles_.shape(k).nearest(p, std::numeric_limits<double>::infinity());
+    const Vector3 p = frame_.local(k, positions_.col(particle));
+    if (!frame_.shape(k).contains(p)) return;
+    const auto surface = frame_.shape(k).nearest(p, std::numeric_limits<double>::infinity());
     found.inside.push_back({particle, k, std::abs(surface->distance)});
   }
 
@@ -58,34 +58,32 @@ class PatchSearch {
     int pinned = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(element.corners); ++i) {
       const Vector3 x = positions_.col(element.particles[i]);
-      corners.x[i] = obstacles_.local(k, x);
+      corners.x[i] = frame_.local(k, x);
       within = std::max(within, tolerance(x, k));
       pinned += is_pinned(element.particles[i]) ? 1 : 0;
     }
-    if (pinned == element.corners || !obstacles_.shape(k).touches(corners, within)) return;
+    if (pinned == element.corners || !frame_.shape(k).touches(corners, within)) return;
     if (pinned == 0 || !hangs_from_pin_in(element, k)) found.crossings.push_back({e, k});
   }
 
   [[nodiscard]] bool hangs_from_pin_in(const Element& element, Index k) const {
     return std::any_of(element.particles.begin(), element.particles.begin() + element.corners, [&](Index i) {
       if (!is_pinned(i)) return false;
-      const Vector3 p = obstacles_.local(k, positions_.col(i));
-      return obstacles_.shape(k).contains(p) ||
-             obstacles_.shape(k).touches({.x = {p}, .count = 1}, tolerance(positions_.col(i), k));
+      const Vector3 p = frame_.local(k, positions_.col(i));
+      return frame_.shape(k).contains(p) || frame_.shape(k).touches({.x = {p}, .count = 1}, tolerance(positions_.col(i), k));
     });
   }
 
-  const ObstacleSet& obstacles_;
+  const ObstacleFrame& frame_;
   const CollisionSurface& surface_;
   const Points& positions_;
 };
 
 }  // namespace
 
-Intersections find_intersections(const ObstacleSet& obstacles, const CollisionSurface& surface, const Points& positions,
-                                 Index body) {
-  if (obstacles.obstacles().empty()) return {};
-  const PatchSearch search(obstacles, surface, positions);
+Intersections find_intersections(const ObstacleFrame& frame, const CollisionSurface& surface, const Points& positions, Index body) {
+  if (frame.set().empty()) return {};
+  const PatchSearch search(frame, surface, positions);
   std::vector<Intersections> of_patches(surface.patches.size());
   parallel_chunks(static_cast<Index>(of_patches.size()), 1, [&](Index begin, Index end) {
     for (Index p = begin; p < end; ++p) {

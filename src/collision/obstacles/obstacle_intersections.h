@@ -7,7 +7,7 @@
 
 namespace sprung {
 
-class ObstacleSet;
+class ObstacleFrame;
 
 struct Intersections {
   /// A particle inside a closed obstacle.
@@ -28,11 +28,11 @@ struct Intersections {
   [[nodiscard]] bool empty() const { return inside.empty() && crossings.empty(); }
 };
 
-/// Finds all intersections at the end of the obstacles' interval. `positions` [m] must be finite. Crossings of meshes and
+/// Finds all intersections at the end of the frame's interval. `positions` [m] must be finite. Crossings of meshes and
 /// particles inside are decided exactly, touching with a tolerance of 2^-40 of the coordinates. If the result is empty, every
 /// element has a safe region. Not reported are pinned particles, elements with only pinned particles, and elements with a pin in
 /// or on the same obstacle. `body` limits the search to one body. The result does not depend on the number of threads.
-[[nodiscard]] Intersections find_intersections(const ObstacleSet& obstacles, const CollisionSurface& surface,
-                                               const Points& positions, Index body = kNone);
+[[nodiscard]] Intersections find_intersections(const ObstacleFrame& frame, const CollisionSurface& surface, const Points& positions,
+                                               Index body = kNone);
 
 }  // namespace sprung

@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "base/problem_list.h"
-#include "collision/core/block_bounds.h"
-#include "collision/core/contact_constants.h"
+#include "collision/obstacles/broad_phase.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "geometry/motion/motion_check.h"
 
 #include <algorithm>
@@ -26,8 +26,8 @@ std::unique_ptr<ObstacleShape> checked_shape(const std::string& key, const Obsta
   }
 }
 
-std::vector<std::unique_ptr<ObstacleShape>> checked_shapes(const std::vector<Obstacle>& obstacles) {
-  std::vector<std::unique_ptr<ObstacleShape>> shapes;
+std::vector<std::shared_ptr<const ObstacleShape>> checked_shapes(const std::vector<Obstacle>& obstacles) {
+  std::vector<std::shared_ptr<const ObstacleShape>> shapes;
   ProblemList problems;
   for (const Obstacle& obstacle : obstacles) {
     const std::string key = "obstacles." + obstacle.name;
@@ -42,22 +42,32 @@ std::vector<std::unique_ptr<ObstacleShape>> checked_shapes(const std::vector<Obs
   return shapes;
 }
 
+PosedObstacle posed_in(const Obstacle& obstacle, std::shared_ptr<const ObstacleShape> shape, double begin, double end) {
+  PosedObstacle posed;
+  posed.before = obstacle.motion.pose(obstacle.rest_pose, begin);
+  posed.after = obstacle.motion.pose(obstacle.rest_pose, end);
+  posed.into_before = posed.before.inverse();
+  posed.into_after = posed.after.inverse();
+  posed.magnitude = shape->magnitude() + std::max(largest(posed.before.translation()), largest(posed.after.translation()));
+  posed.is_at_rest = posed.before.matrix() == posed.after.matrix() && shape->largest_displacement() == 0.0;
+  posed.shape = std::move(shape);
+  return posed;
+}
+
 }  // namespace
 
 ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move(obstacles)), shapes_(checked_shapes(obstacles_)) {
-  for (const Obstacle& obstacle : obstacles_) {
-    before_.push_back(obstacle.motion.pose(obstacle.rest_pose, 0.0));
-    into_before_.push_back(before_.back().inverse());
-    max_thickness_ = std::max(max_thickness_, obstacle.material.thickness);
-  }
-  after_ = before_;
-  into_after_ = into_before_;
-  magnitude_.resize(obstacles_.size());
+  auto at_start = std::make_shared<PosedObstacles>();
+  std::vector<RigidTransform> poses;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const PosedObstacle& posed = at_start->each.emplace_back(posed_in(obstacles_[k], shapes_[k], 0.0, 0.0));
+    poses.push_back(posed.after);
+    at_start->max_magnitude = std::max(at_start->max_magnitude, posed.magnitude);
+    max_thickness_ = std::max(max_thickness_, obstacles_[k].material.thickness);
     moves_ = moves_ || changes(k);
-    update_magnitude(k);
   }
-  broad_phase_ = std::make_unique<BroadPhase>(obstacles_, shapes_, after_);
+  broad_phase_ = std::make_shared<const BroadPhase>(obstacles_, shapes_, poses);
+  at_start_ = std::move(at_start);
 }
 
 void ObstacleSet::set_material(Index k, const ContactMaterial& material) {
@@ -66,58 +76,22 @@ void ObstacleSet::set_material(Index k, const ContactMaterial& material) {
   for (const Obstacle& obstacle : obstacles_) max_thickness_ = std::max(max_thickness_, obstacle.material.thickness);
 }
 
-void ObstacleSet::set_interval(double t, double t_end) {
-  if (!moves_) return;
+std::shared_ptr<const PosedObstacles> ObstacleSet::posed(double begin, double end) const {
+  if (!moves_) return at_start_;
+  auto posed = std::make_shared<PosedObstacles>();
+  posed->each = at_start_->each;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    if (shapes_[k]->deforms()) shapes_[k]->set_interval(t, t_end);
-    if (!obstacles_[k].motion.moves()) continue;
-    before_[k] = obstacles_[k].motion.pose(obstacles_[k].rest_pose, t);
-    after_[k] = obstacles_[k].motion.pose(obstacles_[k].rest_pose, t_end);
-    into_before_[k] = before_[k].inverse();
-    into_after_[k] = after_[k].inverse();
-    update_magnitude(k);
+    PosedObstacle& own = posed->each[k];
+    if (changes(k)) {
+      const auto number = static_cast<Index>(k);
+      own = posed_in(obstacles_[k], shapes_[k]->deforms() ? shapes_[k]->in_interval(begin, end) : shapes_[k], begin, end);
+      posed->changing.push_back(broad_phase_->bound_at(number, own.after, *own.shape));
+    }
+    posed->max_magnitude = std::max(posed->max_magnitude, own.magnitude);
   }
-  broad_phase_->move(after_);
+  return posed;
 }
 
-void ObstacleSet::update_magnitude(std::size_t k) {
-  magnitude_[k] = shapes_[k]->magnitude() + std::max(largest(before_[k].translation()), largest(after_[k].translation()));
-}
-
-double ObstacleSet::clearance(Index k, const Vector3& from, const Vector3& to) const {
-  return kClearance * std::max({magnitude_[static_cast<std::size_t>(k)], largest(from), largest(to)});
-}
-
-double ObstacleSet::max_clearance(const Box3& box) const {
-  const double of_obstacles = magnitude_.empty() ? 0.0 : *std::max_element(magnitude_.begin(), magnitude_.end());
-  return kClearance * std::max({of_obstacles, largest(box.min()), largest(box.max())});
-}
-
-Vector3 ObstacleSet::moved_position(Index k, const Vector3& from) const {
-  if (rests(k)) return from;
-  const Vector3 before = local_before(k, from);
-  const auto moved = shape(k).moved_element({.x = {before}, .count = 1}, 0.0);
-  return after(k) * (moved ? moved->corners.x[0] : Vector3(before + shape(k).displacement(before)));
-}
-
-Vector3 ObstacleSet::drift(Index k, const Vector3& position, double t, double t_end) const {
-  if (!shape(k).deforms()) return Vector3::Zero();
-  return after(k).linear() * shape(k).displacement(local(k, position), t, t_end);
-}
-
-double ObstacleSet::max_displacement(const Points& positions) const {
-  if (!moves_) return 0.0;
-  const Box3 box = finite_bounds(positions, 0, static_cast<Index>(positions.cols()));
-  if (box.isEmpty()) return 0.0;
-  double farthest = 0.0;
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    if (!changes(k)) continue;
-    const RigidTransform motion = after_[k] * into_before_[k];
-    const double at_centre = (motion * box.center() - box.center()).norm();
-    const double around = (motion.linear() - Matrix3::Identity()).norm() * 0.5 * box.diagonal().norm();
-    farthest = std::max(farthest, at_centre + around + shapes_[k]->largest_displacement());
-  }
-  return farthest;
-}
+bool ObstacleSet::changes(std::size_t k) const { return obstacles_[k].motion.moves() || shapes_[k]->deforms(); }
 
 }  // namespace sprung

@@ -39,15 +39,15 @@ std::optional<LocalContact> find_local(const ObstacleShape& shape, const LocalPa
 }
 
 template <class Nearest>
-std::optional<Contact> find_with(const ObstacleSet& set, Index k, const VertexPath& path, const Nearest& nearest) {
-  const double clearance = set.clearance(k, path.before, path.after);
-  const double gap = std::max(path.thickness + set.obstacle(k).material.thickness, clearance);
-  const LocalPath local = set.local_path(k, path.before, path.after);
+std::optional<Contact> find_with(const ObstacleFrame& frame, Index k, const VertexPath& path, const Nearest& nearest) {
+  const double clearance = frame.clearance(k, path.before, path.after);
+  const double gap = std::max(path.thickness + frame.obstacle(k).material.thickness, clearance);
+  const LocalPath local = frame.local_path(k, path.before, path.after);
   const auto found =
-      find_local(set.shape(k), local, gap + path.margin, [&](const Vector3& p, double reach) { return nearest(p, reach, gap); });
+      find_local(frame.shape(k), local, gap + path.margin, [&](const Vector3& p, double reach) { return nearest(p, reach, gap); });
   if (!found) return std::nullopt;
-  Contact contact = particle_contact(path.particle, k, set.after(k) * found->point, set.after(k).linear() * found->normal);
-  contact.drift = set.after(k).linear() * local.shift;
+  Contact contact = particle_contact(path.particle, k, frame.after(k) * found->point, frame.after(k).linear() * found->normal);
+  contact.drift = frame.after(k).linear() * local.shift;
   contact.distance = contact.normal.dot(path.after - contact.point);
   contact.clearance = clearance;
   return contact;
@@ -55,13 +55,13 @@ std::optional<Contact> find_with(const ObstacleSet& set, Index k, const VertexPa
 
 }  // namespace
 
-std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const VertexPath& path) {
-  return find_with(set, k, path, [&](const Vector3& p, double reach, double) { return set.shape(k).nearest(p, reach); });
+std::optional<Contact> find_contact(const ObstacleFrame& frame, Index k, const VertexPath& path) {
+  return find_with(frame, k, path, [&](const Vector3& p, double reach, double) { return frame.shape(k).nearest(p, reach); });
 }
 
-std::optional<Contact> find_contact(const ObstacleSet& set, Index k, const VertexPath& path, SurfaceMemory& memory) {
-  return find_with(set, k, path, [&](const Vector3& p, double reach, double gap) {
-    return set.shape(k).nearest_cached(p, reach, kReuseFraction * gap, memory);
+std::optional<Contact> find_contact(const ObstacleFrame& frame, Index k, const VertexPath& path, SurfaceMemory& memory) {
+  return find_with(frame, k, path, [&](const Vector3& p, double reach, double gap) {
+    return frame.shape(k).nearest_cached(p, reach, kReuseFraction * gap, memory);
   });
 }
 

@@ -2,87 +2,24 @@
 
 #include "geometry/queries/closest_pair.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace sprung {
 
-namespace {
-
-constexpr double kMaxSegments = 1024.0;
-
-double mean_edge_length(const Points& vertices, const Triangles& triangles) {
-  double sum = 0.0;
-  for (const auto& corner : triangles.colwise()) {
-    for (int k = 0; k < 3; ++k) sum += (vertices.col(corner[(k + 1) % 3]) - vertices.col(corner[k])).norm();
-  }
-  return sum / static_cast<double>(triangles.size());
-}
-
-}  // namespace
-
-DeformingMesh::DeformingMesh(std::shared_ptr<const MeshSequence> sequence)
-    : sequence_(std::move(sequence)),
-      around_(triangles_around_vertices(sequence_->triangles, static_cast<Index>(sequence_->frames.front().cols()))),
-      edge_length_(mean_edge_length(sequence_->frames.front(), sequence_->triangles)),
-      before_{{}, sequence_->triangles},
-      after_{{}, sequence_->triangles} {}
-
-void DeformingMesh::set_interval(double t, double t_end) {
-  begin_ = t;
-  end_ = t_end;
-  const MeshSequence::Moment begin = sequence_->at(t);
-  const MeshSequence::Moment end = sequence_->at(t_end);
-  sequence_->positions(begin, before_.vertices);
-  sequence_->positions(end, after_.vertices);
-  largest_displacement_ = std::sqrt((after_.vertices - before_.vertices).colwise().squaredNorm().maxCoeff());
-
-  fit_span(begin, end);
-}
-
-void DeformingMesh::fit_span(const MeshSequence::Moment& begin, const MeshSequence::Moment& end) {
-  const bool at_next = end.frame == begin.next && end.fraction == 0.0 && begin.fraction > 0.0;
-  if (end.frame != begin.frame && !at_next) {
-    span_ = {};
-    sweep_is_new_ = true;
-    return;
-  }
-  const bool same_frames = span_.frame == begin.frame && span_.next == begin.next;
-  Span span{.frame = begin.frame, .next = begin.next};
-  span.segments = same_frames ? span_.segments : segment_count(span.frame, span.next);
-  const double low = std::min(begin.fraction, at_next ? 1.0 : end.fraction);
-  const double high = std::max(begin.fraction, at_next ? 1.0 : end.fraction);
-  span.first = std::min(static_cast<int>(low * span.segments), span.segments - 1);
-  span.last = std::max(static_cast<int>(std::ceil(high * span.segments)), span.first + 1);
-  sweep_is_new_ = span != span_;
-  if (!sweep_is_new_) return;
-  span_ = span;
-  const auto set_positions = [&](int segment, Points& positions) {
-    const double fraction = static_cast<double>(segment) / span.segments;
-    if (segment < span.segments) sequence_->positions({span.frame, span.next, fraction}, positions);
-    if (segment == span.segments) positions = sequence_->frames[span.next];
-  };
-  set_positions(span.first, sweep_from_);
-  set_positions(span.last, sweep_to_);
-}
-
-int DeformingMesh::segment_count(Index frame, Index next) const {
-  const double farthest2 = (sequence_->frames[next] - sequence_->frames[frame]).colwise().squaredNorm().maxCoeff();
-  const double segments = std::ceil(std::sqrt(farthest2) / edge_length_);
-  return std::isfinite(segments) ? static_cast<int>(std::clamp(segments, 1.0, kMaxSegments)) : 1;
-}
-
-DeformingMesh::Sweep DeformingMesh::sweep() const {
-  if (span_.segments == 0) return {before_.vertices, after_.vertices};
-  return {sweep_from_, sweep_to_};
+DeformingMesh::DeformingMesh(std::shared_ptr<const MeshSequence> sequence, std::shared_ptr<const VertexTriangles> around,
+                             double begin, double end)
+    : sequence_(std::move(sequence)), around_(std::move(around)), after_{{}, sequence_->triangles}, begin_(begin), end_(end) {
+  sequence_->positions(sequence_->at(begin), before_);
+  sequence_->positions(sequence_->at(end), after_.vertices);
+  largest_displacement_ = std::sqrt((after_.vertices - before_).colwise().squaredNorm().maxCoeff());
 }
 
 Vector3 DeformingMesh::displacement(Index triangle, const Vector3& weights) const {
   Vector3 sum = Vector3::Zero();
   for (int k = 0; k < 3; ++k) {
     const Index vertex = after_.triangles(k, triangle);
-    sum += weights[k] * (after_.vertices.col(vertex) - before_.vertices.col(vertex));
+    sum += weights[k] * (after_.vertices.col(vertex) - before_.col(vertex));
   }
   return sum;
 }
@@ -100,18 +37,18 @@ Vector3 DeformingMesh::displacement(Index triangle, const Vector3& weights, doub
 
 SurfaceMotion DeformingMesh::motion(Index triangle, const Vector3& point) const {
   const auto corner = after_.triangles.col(triangle);
-  const Vector3 a = before_.vertices.col(corner[0]);
-  const Vector3 b = before_.vertices.col(corner[1]);
-  const Vector3 c = before_.vertices.col(corner[2]);
+  const Vector3 a = before_.col(corner[0]);
+  const Vector3 b = before_.col(corner[1]);
+  const Vector3 c = before_.col(corner[2]);
   const Vector3 weights = barycentric(closest_point_on_triangle(point, a, b, c), a, b, c);
-  const auto axes = [&](const TriangleMesh& mesh) {
-    const Vector3 origin = mesh.vertices.col(corner[0]);
+  const auto axes = [&](const Points& vertices) {
+    const Vector3 origin = vertices.col(corner[0]);
     Matrix3 columns;
-    columns << mesh.vertices.col(corner[1]) - origin, mesh.vertices.col(corner[2]) - origin,
-        area_normal(mesh, triangle).normalized();
+    columns << vertices.col(corner[1]) - origin, vertices.col(corner[2]) - origin,
+        area_normal(origin, vertices.col(corner[1]), vertices.col(corner[2])).normalized();
     return columns;
   };
-  SurfaceMotion motion{.after = point + displacement(triangle, weights), .linear = axes(after_) * axes(before_).inverse()};
+  SurfaceMotion motion{.after = point + displacement(triangle, weights), .linear = axes(after_.vertices) * axes(before_).inverse()};
   if (!motion.linear.allFinite()) motion.linear.setIdentity();  // the triangle has no area
   return motion;
 }

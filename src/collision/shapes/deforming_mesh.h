@@ -17,28 +17,18 @@ struct SurfaceMotion {
 };
 
 /// A mesh whose vertices move along straight lines within an interval, between their positions in the sequence at its begin and
-/// end.
+/// end. Const after construction.
 class DeformingMesh {
  public:
-  /// Requires a sequence with frames and triangles. Call set_interval() before any query.
-  explicit DeformingMesh(std::shared_ptr<const MeshSequence> sequence);
+  /// In the interval from `begin` to `end` [s]. Requires a sequence with frames and triangles, and the triangles around its
+  /// vertices.
+  DeformingMesh(std::shared_ptr<const MeshSequence> sequence, std::shared_ptr<const VertexTriangles> around, double begin,
+                double end);
 
-  /// Not thread-safe.
-  void set_interval(double t, double t_end);
-
-  /// The mesh at the interval's begin and end.
-  [[nodiscard]] const TriangleMesh& before() const { return before_; }
-  [[nodiscard]] const TriangleMesh& after() const { return after_; }
-
-  /// Positions that bound the path of each vertex in the interval. The path between two frames is divided into segments, about as
-  /// long as an edge. An interval between two frames has the sweep of the segments that contain it, so the sweep rarely changes.
-  struct Sweep {
-    const Points& from;
-    const Points& to;
-  };
-  [[nodiscard]] Sweep sweep() const;
-  /// Whether the sweep differs from the sweep of the previous interval.
-  [[nodiscard]] bool sweep_is_new() const { return sweep_is_new_; }
+  /// Positions of the vertices at the interval's begin and end [m].
+  [[nodiscard]] const Points& before() const { return before_; }
+  [[nodiscard]] const Points& after() const { return after_.vertices; }
+  [[nodiscard]] const Triangles& triangles() const { return after_.triangles; }
 
   /// The largest displacement of a vertex in the interval [m].
   [[nodiscard]] double largest_displacement() const { return largest_displacement_; }
@@ -56,36 +46,16 @@ class DeformingMesh {
 
   // Normals at the interval's end.
   [[nodiscard]] Vector3 normal_at(Index triangle, TriangleFeature feature) const {
-    return pseudonormal(after_, around_, triangle, feature);
+    return pseudonormal(after_, *around_, triangle, feature);
   }
   /// Unit length. A triangle without area has the mean of the normals at its corners.
   [[nodiscard]] Vector3 face_normal(Index triangle) const;
 
  private:
   std::shared_ptr<const MeshSequence> sequence_;
-  VertexTriangles around_;
-  double edge_length_ = 0.0;  ///< mean, in the first frame [m]
-  TriangleMesh before_;
+  std::shared_ptr<const VertexTriangles> around_;
+  Points before_;
   TriangleMesh after_;
-
-  /// Segments `first` up to and without `last` of the `segments` between `frame` and `next`. Without segments the sweep is from
-  /// before_ to after_.
-  struct Span {
-    Index frame = kNone;
-    Index next = kNone;
-    int segments = 0;
-    int first = 0;
-    int last = 0;
-
-    bool operator==(const Span&) const = default;
-  };
-  void fit_span(const MeshSequence::Moment& begin, const MeshSequence::Moment& end);
-  [[nodiscard]] int segment_count(Index frame, Index next) const;
-
-  Span span_;
-  Points sweep_from_;
-  Points sweep_to_;
-  bool sweep_is_new_ = false;
   double largest_displacement_ = 0.0;
   double begin_ = 0.0;
   double end_ = 0.0;

@@ -42,30 +42,33 @@ MeshShape::MeshShape(const MeshGeometry& geometry) : rigid_(geometry.mesh), clos
   pseudonormals_ = pseudonormals(*rigid_);
 }
 
-// The tree is always built from the first frame, so a simulation that starts later uses the same tree.
 MeshShape::MeshShape(const SequenceGeometry& geometry) : closed_(geometry.closed) {
   if (!geometry.sequence) throw InputError(Problem{.key = "sequence", .rule = "must be given"});
   const MeshSequence& sequence = *geometry.sequence;
   require_usable(sequence);
   for (const Points& frame : sequence.frames) magnitude_ = std::max(magnitude_, largest_coordinate(frame));
-  tree_.emplace(TriangleMesh{sequence.frames.front(), sequence.triangles});
-  tree_before_.emplace(*tree_);
-  deforming_.emplace(geometry.sequence);
+  sequence_ = std::make_shared<const SequenceTree>(geometry.sequence);
   deforms_ = sequence.deforms();
-  set_interval(0.0, 0.0);
+  fit_to(0.0, 0.0);
 }
 
-void MeshShape::set_interval(double t, double t_end) {
-  if (!deforming_) return;
-  deforming_->set_interval(t, t_end);
-  if (deforming_->sweep_is_new()) {
-    const auto [from, to] = deforming_->sweep();
-    tree_->refit(from, to);
-    tree_before_->take_boxes(*tree_);
-  }
-  tree_->set_positions(deforming_->after());
-  tree_before_->set_positions(deforming_->before());
+MeshShape::MeshShape(const MeshShape& shape, double begin, double end)
+    : sequence_(shape.sequence_), deforms_(shape.deforms_), closed_(shape.closed_), magnitude_(shape.magnitude_) {
+  fit_to(begin, end);
+}
+
+void MeshShape::fit_to(double begin, double end) {
+  deforming_.emplace(sequence_->mesh(begin, end));
+  tree_.emplace(sequence_->tree(*deforming_));
+  tree_before_.emplace(*tree_);
+  tree_->set_positions(deforming_->after(), deforming_->triangles());
+  tree_before_->set_positions(deforming_->before(), deforming_->triangles());
   bounds_ = tree_->bounds();
+}
+
+std::shared_ptr<const ObstacleShape> MeshShape::in_interval(double begin, double end) const {
+  if (!deforms_) return nullptr;
+  return std::shared_ptr<const MeshShape>(new MeshShape(*this, begin, end));
 }
 
 Vector3 MeshShape::displacement(const Vector3& p) const {

@@ -4,6 +4,7 @@
 #include "collision/mesh_bvh/mesh_bvh.h"
 #include "collision/shapes/deforming_mesh.h"
 #include "collision/shapes/obstacle_shape.h"
+#include "collision/shapes/sequence_tree.h"
 #include "geometry/mesh/pseudonormal.h"
 
 namespace sprung {
@@ -13,12 +14,12 @@ class MeshShape final : public ObstacleShape {
   /// Throws InputError, which names every problem, if the mesh is missing, has no triangles, has a position that is not finite or
   /// has an index out of range.
   explicit MeshShape(const MeshGeometry& geometry);
-  /// Throws InputError, which names every problem, if the sequence is missing or has no frames, or if a frame is invalid as above
-  /// or differs from the first in its number of vertices.
+  /// The sequence at time 0. Throws InputError, which names every problem, if the sequence is missing or has no frames, or if a
+  /// frame is invalid as above or differs from the first in its number of vertices.
   explicit MeshShape(const SequenceGeometry& geometry);
 
   [[nodiscard]] bool deforms() const override { return deforms_; }
-  void set_interval(double t, double t_end) override;
+  [[nodiscard]] std::shared_ptr<const ObstacleShape> in_interval(double begin, double end) const override;
   [[nodiscard]] double largest_displacement() const override { return deforms_ ? deforming_->largest_displacement() : 0.0; }
   [[nodiscard]] Vector3 displacement(const Vector3& p) const override;
   [[nodiscard]] Vector3 displacement(const Vector3& p, double t, double t_end) const override;
@@ -42,6 +43,9 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] const MeshBvh& tree() const { return *tree_; }
 
  private:
+  /// Another interval of a sequence.
+  MeshShape(const MeshShape& shape, double begin, double end);
+  void fit_to(double begin, double end);
   void move_with_surface(SafeRegion& region) const;
   static void set_triangle_weights(const MeshBvh& tree, SafeRegion& region);
   /// A point of the surface: a triangle and the weights of its corners.
@@ -55,7 +59,8 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] Vector3 pseudonormal(Index triangle, TriangleFeature feature) const;
   [[nodiscard]] SurfacePoint surface_point(const Vector3& p, const MeshBvh::Nearest& found) const;
 
-  std::shared_ptr<const TriangleMesh> rigid_;  ///< null for a sequence
+  std::shared_ptr<const TriangleMesh> rigid_;     ///< null for a sequence
+  std::shared_ptr<const SequenceTree> sequence_;  ///< null for a rigid mesh
   std::optional<DeformingMesh> deforming_;
   bool deforms_ = false;
   bool closed_;

@@ -38,6 +38,7 @@ struct Crossing {
   Vector3 normal;  ///< unit length, on the side where the path comes from
 };
 
+/// Const and thread-safe. A shape that deforms is the one of an interval: queries refer to its end unless stated otherwise.
 class ObstacleShape {
  public:
   virtual ~ObstacleShape() = default;
@@ -45,8 +46,8 @@ class ObstacleShape {
   /// Whether the surface ever moves within its own frame.
   [[nodiscard]] virtual bool deforms() const { return false; }
 
-  /// Sets the interval from t to t_end [s]. Queries refer to its end unless stated otherwise. Not thread-safe.
-  virtual void set_interval(double /*t*/, double /*t_end*/) {}
+  /// The shape in the interval from `begin` to `end` [s]. Null if the shape does not deform: it then is the same at all times.
+  [[nodiscard]] virtual std::shared_ptr<const ObstacleShape> in_interval(double /*begin*/, double /*end*/) const { return nullptr; }
 
   /// Largest displacement [m] of a surface point in the interval, in the shape's frame.
   [[nodiscard]] virtual double largest_displacement() const { return 0.0; }

@@ -10,10 +10,10 @@ constexpr double kLifts[] = {0.0, 0.0, 1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};
 
 }  // namespace
 
-void move_infeasible(ObstacleSafeRegions& regions, const std::vector<Index>& particles, const Points& before, Points& after,
-                     Outcomes& outcomes) {
+void move_infeasible(ObstacleSafeRegions& regions, const ObstacleFrame& obstacles, const std::vector<Index>& particles,
+                     const Points& before, Points& after, Outcomes& outcomes) {
   if (count(outcomes, Outcome::infeasible) == 0) return;
-  const ObstacleMotion motion(regions);
+  const ObstacleMotion motion(regions, obstacles);
   std::vector<std::size_t> number(static_cast<std::size_t>(after.cols()), particles.size());
   std::vector<char> crossed_before(particles.size(), 0);
   std::vector<Index> moved;
@@ -28,7 +28,7 @@ void move_infeasible(ObstacleSafeRegions& regions, const std::vector<Index>& par
     outcomes[n] = Outcome::stopped;
     moved.push_back(i);
   }
-  regions.renew_around(moved, {after, after, true});
+  regions.renew_around(moved, {obstacles, after, after, true});
   for (const double lift : kLifts) {
     if (moved.empty()) break;
     moved.clear();
@@ -39,7 +39,7 @@ void move_infeasible(ObstacleSafeRegions& regions, const std::vector<Index>& par
       outcomes[n] = Outcome::stopped;
       moved.push_back(i);
     }
-    regions.renew_around(moved, {after, after, true});
+    regions.renew_around(moved, {obstacles, after, after, true});
   }
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (crossed_before[n] == 0 && regions.is_crossed(particles[n])) outcomes[n] = Outcome::infeasible;

@@ -9,7 +9,7 @@ namespace sprung {
 /// would be crossed otherwise. Changes `after` and the outcomes. Particles that move together with one obstacle stay on their side
 /// of it, even if the planes of the regions are no longer sharp enough to prove it. So new regions at `after` decide: particles
 /// with a crossed element there are infeasible.
-void move_infeasible(ObstacleSafeRegions& regions, const std::vector<Index>& particles, const Points& before, Points& after,
-                     Outcomes& outcomes);
+void move_infeasible(ObstacleSafeRegions& regions, const ObstacleFrame& obstacles, const std::vector<Index>& particles,
+                     const Points& before, Points& after, Outcomes& outcomes);
 
 }  // namespace sprung

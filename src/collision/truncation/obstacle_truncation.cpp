@@ -40,8 +40,8 @@ void add_free(std::vector<Index> all, std::vector<Index>& particles, Outcomes& o
 
 }  // namespace
 
-ObstacleTruncation::ObstacleTruncation(Environment& environment, const CollisionSurface& surface, ObstacleSafeRegions& regions)
-    : environment_(environment), set_(environment.set()), surface_(surface), regions_(regions), truncation_(regions) {
+ObstacleTruncation::ObstacleTruncation(const CollisionSurface& surface, ObstacleSafeRegions& regions)
+    : surface_(surface), regions_(regions), truncation_(regions) {
   for (std::size_t i = 0; i < surface.pinned.size(); ++i) {
     if (surface.pinned[i] != 0) pinned_.push_back(static_cast<Index>(i));
   }
@@ -50,18 +50,18 @@ ObstacleTruncation::ObstacleTruncation(Environment& environment, const Collision
 TruncationResult ObstacleTruncation::clip_all(const StepPaths& paths, Points& after) {
   regions_.update(paths);
   record_crossed();
-  regions_.renew_around(leaving_pins(paths.to), paths);
+  regions_.renew_around(leaving_pins(paths.obstacles, paths.to), paths);
   std::vector<Index> particles = movable(regions_.leaving(), paths);
   Outcomes outcomes = clip_with_fresh_regions(particles, paths, after);
   bool subdivided = false;
-  const bool path_checked = check_pins(particles, after, outcomes);
-  if (!paths.obstacles_rest && (!path_checked || (is_kinematic(paths) && count(outcomes, Outcome::infeasible) > 0))) {
+  const bool path_checked = check_pins(paths.obstacles, particles, after, outcomes);
+  if (!paths.at_end && (!path_checked || (is_kinematic(paths) && count(outcomes, Outcome::infeasible) > 0))) {
     add_free(all_movable(paths), particles, outcomes);
-    if (path_checked) move_infeasible(regions_, particles, paths.from, after, outcomes);
+    if (path_checked) move_infeasible(regions_, paths.obstacles, particles, paths.from, after, outcomes);
     subdivided = !path_checked || count(outcomes, Outcome::infeasible) > 0;
     if (subdivided) {
-      outcomes = clip_in_substeps(environment_, paths, after,
-                                  [&](const StepPaths& substep, Points& x) { return clip_substep(particles, substep, x); });
+      outcomes =
+          clip_in_substeps(paths, after, [&](const StepPaths& substep, Points& x) { return clip_substep(particles, substep, x); });
     }
   }
   TruncationResult truncation = continue_stopped(particles, outcomes, paths, after);
@@ -92,7 +92,7 @@ ClippedSubstep ObstacleTruncation::clip_substep(std::vector<Index>& particles, c
   ClippedSubstep clipped = clip_anew(particles, paths, after);
   if (pinned_.empty() || count(clipped.outcomes, Outcome::infeasible) == 0) return clipped;
   regions_.renew_around(pinned_, paths);
-  const std::vector<Push> pushes = ObstacleMotion(regions_).pushes_at_pins(paths);
+  const std::vector<Push> pushes = ObstacleMotion(regions_, paths.obstacles).pushes_at_pins(paths);
   if (pushes.empty()) return clip_anew(particles, paths, after);
   for (const double lever : kLevers) {
     Points goals = paths.to;
@@ -115,29 +115,28 @@ ClippedSubstep ObstacleTruncation::clip_anew(std::vector<Index>& particles, cons
   regions_.renew_around(pinned_, paths);
   regions_.renew_around(particles, paths);
   ClippedSubstep clipped{clip_with_fresh_regions(particles, paths, after)};
-  move_infeasible(regions_, particles, paths.from, after, clipped.outcomes);
-  clipped.path_checked = check_pins(particles, after, clipped.outcomes);
+  move_infeasible(regions_, paths.obstacles, particles, paths.from, after, clipped.outcomes);
+  clipped.path_checked = check_pins(paths.obstacles, particles, after, clipped.outcomes);
   return clipped;
 }
 
-// First the particles move while obstacles and pins rest at the begin of the interval. Then all move.
+// First the particles move while obstacles and pins stay at the begin of the interval. Then all move.
 ClippedSubstep ObstacleTruncation::clip_ahead(std::vector<Index>& particles, const StepPaths& paths, const Points& goals,
                                               Points& after) {
-  const auto [begin, end] = environment_.interval();
+  const ObstacleFrame at_begin = paths.obstacles.part(paths.obstacles.begin(), paths.obstacles.begin());
   Points first_goals = goals;
   for (const Index i : pinned_) first_goals.col(i) = paths.from.col(i);
   Points ahead = first_goals;
-  const StepPaths first{paths.from, first_goals, true};
-  environment_.set_interval(begin, begin);
+  const StepPaths first{at_begin, paths.from, first_goals, true};
   regions_.update(first);
   regions_.renew_around(particles, first);
   truncation_.clip(particles, first, ahead);
-  environment_.set_interval(begin, end);
-  return clip_anew(particles, {ahead, goals}, after);
+  return clip_anew(particles, {paths.obstacles, ahead, goals}, after);
 }
 
 bool ObstacleTruncation::is_kinematic(const StepPaths& paths) const {
-  return set_.moves() || std::any_of(pinned_.begin(), pinned_.end(), [&](Index i) { return paths.from.col(i) != paths.to.col(i); });
+  return paths.obstacles.set().moves() ||
+         std::any_of(pinned_.begin(), pinned_.end(), [&](Index i) { return paths.from.col(i) != paths.to.col(i); });
 }
 
 void ObstacleTruncation::record_crossed() {
@@ -148,18 +147,20 @@ void ObstacleTruncation::record_crossed() {
   }
 }
 
-std::vector<Index> ObstacleTruncation::leaving_pins(const Points& positions) const {
+std::vector<Index> ObstacleTruncation::leaving_pins(const ObstacleFrame& obstacles, const Points& positions) const {
   std::vector<Index> leaving;
   for (const Index i : pinned_) {
-    if (!regions_.rests(i) && positions.col(i).allFinite() && !regions_.allow(i, positions.col(i))) leaving.push_back(i);
+    if (!regions_.is_at_rest(i) && positions.col(i).allFinite() && !regions_.allow(obstacles, i, positions.col(i)))
+      leaving.push_back(i);
   }
   return leaving;
 }
 
 // Pins are not clipped. If one leaves its regions, crossings are known only for its end position.
-bool ObstacleTruncation::check_pins(const std::vector<Index>& particles, const Points& after, Outcomes& outcomes) {
-  const std::vector<Index> leaving = leaving_pins(after);
-  if (!leaving.empty()) regions_.renew_around(leaving, {after, after, true});
+bool ObstacleTruncation::check_pins(const ObstacleFrame& obstacles, const std::vector<Index>& particles, const Points& after,
+                                    Outcomes& outcomes) {
+  const std::vector<Index> leaving = leaving_pins(obstacles, after);
+  if (!leaving.empty()) regions_.renew_around(leaving, {obstacles, after, after, true});
   if (!regions_.any_crossed()) return leaving.empty();
   for (std::size_t n = 0; n < particles.size(); ++n) {
     const Index i = particles[n];
@@ -180,18 +181,18 @@ TruncationResult ObstacleTruncation::continue_stopped(const std::vector<Index>& 
   list_infeasible(particles, outcomes);
   truncation.infeasible = static_cast<Index>(infeasible_.size());
   std::erase_if(stopped, [&](Index i) { return !can_continue(i, paths, after); });
-  for (int round = 1; round < kRounds && !stopped.empty(); ++round) truncation.truncated -= continue_once(stopped, paths.to, after);
+  for (int round = 1; round < kRounds && !stopped.empty(); ++round) truncation.truncated -= continue_once(stopped, paths, after);
   return truncation;
 }
 
-Index ObstacleTruncation::continue_once(std::vector<Index>& stopped, const Points& target, Points& after) {
+Index ObstacleTruncation::continue_once(std::vector<Index>& stopped, const StepPaths& paths, Points& after) {
   const Points from = after;
-  const StepPaths paths{from, target, true};
-  regions_.renew_around(stopped, paths);
-  const Outcomes outcomes = truncation_.clip(stopped, paths, after);
+  const StepPaths remaining{paths.obstacles, from, paths.to, true};
+  regions_.renew_around(stopped, remaining);
+  const Outcomes outcomes = truncation_.clip(stopped, remaining, after);
   std::vector<Index> still;
   for (std::size_t n = 0; n < stopped.size(); ++n) {
-    if (outcomes[n] != Outcome::free && can_continue(stopped[n], paths, after)) still.push_back(stopped[n]);
+    if (outcomes[n] != Outcome::free && can_continue(stopped[n], remaining, after)) still.push_back(stopped[n]);
   }
   stopped = std::move(still);
   return count(outcomes, Outcome::free);
@@ -201,7 +202,8 @@ bool ObstacleTruncation::can_continue(Index i, const StepPaths& paths, const Poi
   const double length = (paths.to.col(i) - paths.from.col(i)).norm();
   const double moved = (now.col(i) - paths.from.col(i)).norm();
   const double left = (paths.to.col(i) - now.col(i)).norm();
-  return moved > kMinProgress * length && (left <= kMaxRemaining * length || regions_.planes_allow(i, paths.to.col(i)));
+  return moved > kMinProgress * length &&
+         (left <= kMaxRemaining * length || regions_.planes_allow(paths.obstacles, i, paths.to.col(i)));
 }
 
 // Corners of crossed elements are listed even if they are pinned or were not clipped.

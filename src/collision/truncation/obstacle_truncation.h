@@ -1,7 +1,6 @@
 // Clips all particles before obstacles.
 #pragma once
 
-#include "collision/obstacles/environment.h"
 #include "collision/truncation/time_subdivision.h"
 #include "collision/truncation/truncation_result.h"
 
@@ -11,8 +10,8 @@ namespace sprung {
 
 class ObstacleTruncation {
  public:
-  /// Keeps references to all.
-  ObstacleTruncation(Environment& environment, const CollisionSurface& surface, ObstacleSafeRegions& regions);
+  /// Keeps references to both.
+  ObstacleTruncation(const CollisionSurface& surface, ObstacleSafeRegions& regions);
 
   /// Sets `after` [m], 3 x n, to the targets of the paths, or to nearby admissible positions. Regions that stop a particle are
   /// renewed so that it can continue. Infeasible particles move with the obstacles; if that is not enough, the interval is
@@ -25,13 +24,13 @@ class ObstacleTruncation {
   /// Particles that were stopped at first in the last clip_all(), ascending, even if they reached their targets in later rounds.
   [[nodiscard]] const std::vector<Index>& stopped() const { return stopped_; }
 
-  /// Clips these movable particles in a substep of the environment's interval.
+  /// Clips these movable particles in a substep.
   ClippedSubstep clip_substep(std::vector<Index>& particles, const StepPaths& paths, Points& after);
 
-  /// Renews the regions of pins that left theirs. Makes a particle infeasible if an obstacle crosses one of its elements and
-  /// crossed none of them at the start of the path. Returns whether no pin left its regions; otherwise crossings are known for
-  /// `after` only.
-  bool check_pins(const std::vector<Index>& particles, const Points& after, Outcomes& outcomes);
+  /// Renews the regions of pins that left theirs by `after` [m], 3 x n, at the end of the interval. Makes a particle infeasible if
+  /// an obstacle crosses one of its elements and crossed none of them at the start of the path. Returns whether no pin left its
+  /// regions; otherwise crossings are known for `after` only.
+  bool check_pins(const ObstacleFrame& obstacles, const std::vector<Index>& particles, const Points& after, Outcomes& outcomes);
 
   /// Whether obstacles or pins move. If none does, the start of a path is an admissible position.
   [[nodiscard]] bool is_kinematic(const StepPaths& paths) const;
@@ -50,17 +49,15 @@ class ObstacleTruncation {
 
   void record_crossed();
   /// Pins that are outside of their regions at these positions.
-  [[nodiscard]] std::vector<Index> leaving_pins(const Points& positions) const;
+  [[nodiscard]] std::vector<Index> leaving_pins(const ObstacleFrame& obstacles, const Points& positions) const;
 
   TruncationResult continue_stopped(const std::vector<Index>& particles, const Outcomes& outcomes, const StepPaths& paths,
                                     Points& after);
   /// Keeps in `stopped` the particles that may still move on. Returns how many reached their target.
-  Index continue_once(std::vector<Index>& stopped, const Points& target, Points& after);
+  Index continue_once(std::vector<Index>& stopped, const StepPaths& paths, Points& after);
   [[nodiscard]] bool can_continue(Index particle, const StepPaths& paths, const Points& now) const;
   void list_infeasible(const std::vector<Index>& particles, const Outcomes& outcomes);
 
-  Environment& environment_;
-  const ObstacleSet& set_;
   const CollisionSurface& surface_;
   ObstacleSafeRegions& regions_;
   VertexTruncation truncation_;

@@ -24,15 +24,16 @@ std::vector<Index> find_infeasible(const std::vector<Index>& particles, const Ou
 
 }  // namespace
 
-PairTruncation::PairTruncation(ObstacleSafeRegions& regions, PairSeparation& pairs, const std::vector<Index>& movable)
-    : regions_(regions), pairs_(pairs), movable_(movable) {}
+PairTruncation::PairTruncation(const ObstacleFrame& obstacles, ObstacleSafeRegions& regions, PairSeparation& pairs,
+                               const std::vector<Index>& movable)
+    : obstacles_(obstacles), regions_(regions), pairs_(pairs), movable_(movable) {}
 
 // The loop ends: each round makes at least one particle an anchor, or a resting anchor move, and neither is undone.
 Outcomes PairTruncation::clip(const Points& before, Points& after) {
   const Points allowed = after;
   Outcomes outcomes = clip_constrained(before, after);
   if (count(outcomes, Outcome::infeasible) > 0) {
-    const StepPaths paths{before, allowed};
+    const StepPaths paths{obstacles_, before, allowed};
     for (int round = 0; anchor_infeasible(outcomes, before, after); ++round) {
       if (round == 0) regions_.update(paths);
       regions_.renew_around(round < kLocalRounds ? blocked_by_obstacles(outcomes) : movable_, paths);
@@ -48,9 +49,9 @@ Outcomes PairTruncation::clip(const Points& before, Points& after) {
 
 Outcomes PairTruncation::clip_constrained(const Points& before, Points& after) {
   const Points targets = after;
-  displacements_.moved = ObstacleMotion(regions_).displacements(before);
+  displacements_.moved = ObstacleMotion(regions_, obstacles_).displacements(before);
   constrained_ = pairs_.constrain(before, targets, displacements_);
-  return VertexTruncation(regions_, &pairs_).clip(constrained_, {before, targets}, after);
+  return VertexTruncation(regions_, &pairs_).clip(constrained_, {obstacles_, before, targets}, after);
 }
 
 // Regions that are renewed around infeasible particles may exclude their neighbours, which are then renewed too.
@@ -68,7 +69,7 @@ void PairTruncation::clip_before_obstacles(const StepPaths& paths, Points& after
 bool PairTruncation::anchor_infeasible(const Outcomes& outcomes, const Points& before, const Points& after) {
   bool changed = false;
   for (const Index i : blocked_by_obstacles(outcomes)) {
-    const KinematicAnchor anchor = ObstacleMotion(regions_).anchor(i, before.col(i), after.col(i));
+    const KinematicAnchor anchor = ObstacleMotion(regions_, obstacles_).anchor(i, before.col(i), after.col(i));
     const auto found = find_anchor(i);
     if (found == displacements_.anchors.end() || found->particle != i) {
       displacements_.anchors.insert(found, anchor);
@@ -91,7 +92,7 @@ void PairTruncation::accept_anchored(const Points& after, Outcomes& outcomes) {
     if (anchor != displacements_.anchors.end() && anchor->particle == i && anchor->surface) anchored.push_back(i);
   }
   if (anchored.empty()) return;
-  regions_.renew_around(anchored, {after, after, true});
+  regions_.renew_around(anchored, {obstacles_, after, after, true});
   for (const Index i : anchored) {
     const auto n = std::lower_bound(constrained_.begin(), constrained_.end(), i) - constrained_.begin();
     if (!regions_.is_crossed(i)) outcomes[static_cast<std::size_t>(n)] = Outcome::stopped;
@@ -102,7 +103,7 @@ void PairTruncation::accept_anchored(const Points& after, Outcomes& outcomes) {
 // another obstacle or through another section of the same one.
 void PairTruncation::check_unplaced(const Points& after, Outcomes& outcomes) {
   if (unplaced_.empty()) return;
-  regions_.renew_around(unplaced_, {after, after, true});
+  regions_.renew_around(unplaced_, {obstacles_, after, after, true});
   for (std::size_t k = 0; k < movable_.size(); ++k) {
     if (std::binary_search(unplaced_.begin(), unplaced_.end(), movable_[k]) && regions_.is_crossed(movable_[k])) {
       outcomes[k] = Outcome::infeasible;

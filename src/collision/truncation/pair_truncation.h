@@ -12,7 +12,8 @@ namespace sprung {
 class PairTruncation {
  public:
   /// Keeps references to all. `movable`, ascending, are the particles that the step may move.
-  PairTruncation(ObstacleSafeRegions& regions, PairSeparation& pairs, const std::vector<Index>& movable);
+  PairTruncation(const ObstacleFrame& obstacles, ObstacleSafeRegions& regions, PairSeparation& pairs,
+                 const std::vector<Index>& movable);
 
   /// Clips `after` [m], 3 x n, which is admissible before obstacles, to positions that are admissible before obstacles and for all
   /// pairs. Returns the outcomes of the movable particles. Requires PairSeparation::begin_step() or begin_substep() with the same
@@ -20,9 +21,9 @@ class PairTruncation {
   ///
   /// Where the two exclude each other, regions are renewed at `before`, and the infeasible particles become anchors: their motion
   /// groups move with the obstacle that blocks them. This repeats until no anchor is new. It finds an admissible position for every
-  /// particle that no pin drives if the obstacles rest, or a single rigid one moves; mostly if a single one deforms; with several
-  /// moving obstacles if groups are small, that is in small substeps. A particle without one stays with its group, since a particle
-  /// can leave an obstacle again, but a knot in a cloth stays.
+  /// particle that no pin drives if the obstacles are at rest, or a single rigid one moves; mostly if a single one deforms; with
+  /// several moving obstacles if groups are small, that is in small substeps. A particle without one stays with its group, since a
+  /// particle can leave an obstacle again, but a knot in a cloth stays.
   Outcomes clip(const Points& before, Points& after);
 
  private:
@@ -39,6 +40,7 @@ class PairTruncation {
   /// The particle's anchor or, if it has none, the first anchor after it.
   [[nodiscard]] std::vector<KinematicAnchor>::iterator find_anchor(Index particle);
 
+  const ObstacleFrame& obstacles_;
   ObstacleSafeRegions& regions_;
   PairSeparation& pairs_;
   const std::vector<Index>& movable_;

@@ -21,21 +21,19 @@ bool network_collides(const CollisionSurface& surface) {
 }  // namespace
 
 struct StepTruncation::Implementation {
-  Implementation(Environment& world, CollisionSurface elements, const Points& rest, double margin)
-      : environment(world),
-        set(world.set()),
+  Implementation(const ObstacleSet& obstacles, CollisionSurface elements, const Points& rest, double margin)
+      : has_obstacles(!obstacles.empty()),
         surface(std::move(elements)),
-        regions(set, surface, rest, margin),
-        obstacle_truncation(environment, surface, regions) {
+        regions(obstacles, surface, rest, margin),
+        obstacle_truncation(surface, regions) {
     if (network_collides(surface)) pairs.emplace(surface, rest, margin);
   }
 
   void begin_pairs(const Points& before, const Points& after);
-  TruncationResult truncate(const Points& before, Points& after, const Relax& relax);
-  void separate_pairs(const Points& before, Points& after, TruncationResult& truncation);
+  TruncationResult truncate(const ObstacleFrame& obstacles, const Points& before, Points& after, const Relax& relax);
+  void separate_pairs(const ObstacleFrame& obstacles, const Points& before, Points& after, TruncationResult& truncation);
 
-  Environment& environment;
-  const ObstacleSet& set;
+  bool has_obstacles;
   CollisionSurface surface;
   ObstacleSafeRegions regions;
   ObstacleTruncation obstacle_truncation;
@@ -46,20 +44,21 @@ struct StepTruncation::Implementation {
   bool pairs_begun = false;
 };
 
-StepTruncation::StepTruncation(Environment& environment, CollisionSurface surface, const Points& rest, double margin)
-    : implementation_(std::make_unique<Implementation>(environment, std::move(surface), rest, margin)) {}
+StepTruncation::StepTruncation(const ObstacleSet& obstacles, CollisionSurface surface, const Points& rest, double margin)
+    : implementation_(std::make_unique<Implementation>(obstacles, std::move(surface), rest, margin)) {}
 StepTruncation::~StepTruncation() = default;
 StepTruncation::StepTruncation(StepTruncation&&) noexcept = default;
 StepTruncation& StepTruncation::operator=(StepTruncation&&) noexcept = default;
 
-bool StepTruncation::can_collide() const { return implementation_->pairs.has_value() || !implementation_->set.obstacles().empty(); }
+bool StepTruncation::can_collide() const { return implementation_->pairs.has_value() || implementation_->has_obstacles; }
 
 bool StepTruncation::bodies_can_collide() const { return bodies_collide(implementation_->surface); }
 
-void StepTruncation::begin_step(const Points& before, const Points& after) {
-  implementation_->regions.update({before, after});
+void StepTruncation::begin_step(const ObstacleFrame& obstacles, const Points& before, const Points& after) {
+  const StepPaths paths{obstacles, before, after};
+  implementation_->regions.update(paths);
   implementation_->regions.permit_crossings(before);
-  if (implementation_->ahead) implementation_->regions.renew_around(implementation_->obstacle_truncation.pinned(), {before, after});
+  if (implementation_->ahead) implementation_->regions.renew_around(implementation_->obstacle_truncation.pinned(), paths);
   if (implementation_->pairs) implementation_->begin_pairs(before, after);
 }
 
@@ -75,33 +74,34 @@ void StepTruncation::look_ahead(bool ahead) {
   implementation_->regions.look_ahead(ahead);
 }
 
-const std::vector<Contact>& StepTruncation::contacts(const Points& before, const Points& after) {
+const std::vector<Contact>& StepTruncation::contacts(const ObstacleFrame& obstacles, const Points& before, const Points& after) {
   implementation_->contacts.clear();
-  implementation_->regions.find_contacts({before, after}, implementation_->contacts);
+  implementation_->regions.find_contacts({obstacles, before, after}, implementation_->contacts);
   const std::vector<Contact>& between_elements = implementation_->pair_contacts;
   implementation_->contacts.insert(implementation_->contacts.end(), between_elements.begin(), between_elements.end());
   return implementation_->contacts;
 }
 
-FreshContacts StepTruncation::renewed_contacts(const Points& before, const Points& after) {
-  return implementation_->regions.find_contacts_around(implementation_->obstacle_truncation.stopped(), {before, after});
+FreshContacts StepTruncation::renewed_contacts(const ObstacleFrame& obstacles, const Points& before, const Points& after) {
+  return implementation_->regions.find_contacts_around(implementation_->obstacle_truncation.stopped(), {obstacles, before, after});
 }
 
-TruncationResult StepTruncation::truncate(const Points& before, Points& after, const Relax& relax) {
+TruncationResult StepTruncation::truncate(const ObstacleFrame& obstacles, const Points& before, Points& after, const Relax& relax) {
   TruncationResult truncation;
-  if (!implementation_->set.obstacles().empty()) truncation = implementation_->truncate(before, after, relax);
-  if (implementation_->pairs_begun) implementation_->separate_pairs(before, after, truncation);
+  if (implementation_->has_obstacles) truncation = implementation_->truncate(obstacles, before, after, relax);
+  if (implementation_->pairs_begun) implementation_->separate_pairs(obstacles, before, after, truncation);
   return truncation;
 }
 
 // A state with infeasible particles is not safe to continue from. Otherwise the loop ends when `relax` returns false.
-TruncationResult StepTruncation::Implementation::truncate(const Points& before, Points& after, const Relax& relax) {
+TruncationResult StepTruncation::Implementation::truncate(const ObstacleFrame& obstacles, const Points& before, Points& after,
+                                                          const Relax& relax) {
   Points target = after;
-  TruncationResult truncation = obstacle_truncation.clip_all({before, target}, after);
+  TruncationResult truncation = obstacle_truncation.clip_all({obstacles, before, target}, after);
   if (truncation.truncated == 0 || !relax) return truncation;
   for (Points safe = after; truncation.infeasible == 0 && relax(after); safe = after) {
     target = after;
-    truncation = obstacle_truncation.clip_all({safe, target, true}, after);
+    truncation = obstacle_truncation.clip_all({obstacles, safe, target, true}, after);
   }
   return truncation;
 }
@@ -112,30 +112,34 @@ void StepTruncation::Implementation::begin_pairs(const Points& before, const Poi
   if (pairs_begun) pairs->begin_step(before, after, pair_contacts);
 }
 
-void StepTruncation::Implementation::separate_pairs(const Points& before, Points& after, TruncationResult& truncation) {
+void StepTruncation::Implementation::separate_pairs(const ObstacleFrame& obstacles, const Points& before, Points& after,
+                                                    TruncationResult& truncation) {
   if (!after.allFinite()) return;
-  std::vector<Index> particles = obstacle_truncation.all_movable({before, after});
+  std::vector<Index> particles = obstacle_truncation.all_movable({obstacles, before, after});
   const Points allowed = after;
   const auto record_moved = [&] {
     const std::vector<Index>& moved = pairs->anchored();
     truncation.moved_with_obstacles.insert(truncation.moved_with_obstacles.end(), moved.begin(), moved.end());
   };
-  Outcomes outcomes = PairTruncation(regions, *pairs, particles).clip(before, after);
+  Outcomes outcomes = PairTruncation(obstacles, regions, *pairs, particles).clip(before, after);
   record_moved();
   std::vector<Index> infeasible = pairs->passing_pins();
-  const bool path_checked = obstacle_truncation.check_pins(particles, after, outcomes);
-  if (!path_checked || (obstacle_truncation.is_kinematic({before, allowed}) && count(outcomes, Outcome::infeasible) > 0)) {
+  const bool path_checked = obstacle_truncation.check_pins(obstacles, particles, after, outcomes);
+  if (!path_checked ||
+      (obstacle_truncation.is_kinematic({obstacles, before, allowed}) && count(outcomes, Outcome::infeasible) > 0)) {
     infeasible.clear();
     truncation.subdivided = true;
     truncation.moved_with_obstacles.clear();
-    outcomes = clip_in_substeps(environment, {before, allowed}, after, [&](const StepPaths& paths, Points& x) {
+    outcomes = clip_in_substeps({obstacles, before, allowed}, after, [&](const StepPaths& paths, Points& x) {
       const ClippedSubstep before_obstacles = obstacle_truncation.clip_substep(particles, paths, x);
       pairs->begin_substep(paths.from, x);
-      ClippedSubstep clipped{PairTruncation(regions, *pairs, particles).clip(paths.from, x), before_obstacles.path_checked};
+      ClippedSubstep clipped{PairTruncation(paths.obstacles, regions, *pairs, particles).clip(paths.from, x),
+                             before_obstacles.path_checked};
       record_moved();
       const std::vector<Index> pins = pairs->passing_pins();
       infeasible.insert(infeasible.end(), pins.begin(), pins.end());
-      clipped.path_checked = obstacle_truncation.check_pins(particles, x, clipped.outcomes) && clipped.path_checked;
+      clipped.path_checked =
+          obstacle_truncation.check_pins(paths.obstacles, particles, x, clipped.outcomes) && clipped.path_checked;
       keep_infeasible(before_obstacles.outcomes, clipped.outcomes);
       return clipped;
     });

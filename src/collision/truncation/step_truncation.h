@@ -7,7 +7,7 @@
 
 #include "collision/core/contact.h"
 #include "collision/obstacle_regions/permitted_crossing.h"
-#include "collision/obstacles/environment.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "collision/surface/collision_surface.h"
 #include "collision/truncation/truncation_result.h"
 
@@ -20,8 +20,8 @@ namespace sprung {
 class StepTruncation {
  public:
   /// Finds contacts up to `margin` [m] beyond their gap. Elements of one body that are near at `rest` [m], 3 x n, may stay as near.
-  /// Keeps a reference to the environment.
-  StepTruncation(Environment& environment, CollisionSurface surface, const Points& rest, double margin);
+  /// Frames in later calls must be those of `obstacles`.
+  StepTruncation(const ObstacleSet& obstacles, CollisionSurface surface, const Points& rest, double margin);
   ~StepTruncation();
   StepTruncation(StepTruncation&&) noexcept;
   StepTruncation& operator=(StepTruncation&&) noexcept;
@@ -32,9 +32,11 @@ class StepTruncation {
   /// Whether elements of two bodies may touch.
   [[nodiscard]] bool bodies_can_collide() const;
 
-  /// Begins a step from `before`, where nothing crosses, to `after`, the target at the end of the environment's interval [m], 3 x
-  /// n: updates safe regions, permitted crossings and the contacts between elements.
-  void begin_step(const Points& before, const Points& after);
+  // `obstacles` is the frame of the step.
+
+  /// Begins a step from `before`, where nothing crosses, to `after`, the target at the end of the step [m], 3 x n: updates safe
+  /// regions, permitted crossings and the contacts between elements.
+  void begin_step(const ObstacleFrame& obstacles, const Points& before, const Points& after);
 
   /// Crossings that are permitted because a pin pulls an element through an obstacle.
   [[nodiscard]] const PermittedCrossings& permitted_crossings() const;
@@ -45,13 +47,13 @@ class StepTruncation {
   /// step that failed is tried again like this; it is not the default, because many of these contacts would never touch.
   void look_ahead(bool ahead);
 
-  /// The contacts of the step: of particles with obstacles (see Environment::contacts), of obstacles with the inside of edges and
+  /// The contacts of the step: of particles with obstacles (see ObstacleFrame::contacts), of obstacles with the inside of edges and
   /// faces, and of the network's elements with each other. The same order for any number of threads. Requires begin_step() with the
   /// same positions. Valid until the next call.
-  [[nodiscard]] const std::vector<Contact>& contacts(const Points& before, const Points& after);
+  [[nodiscard]] const std::vector<Contact>& contacts(const ObstacleFrame& obstacles, const Points& before, const Points& after);
 
   /// Finds the contacts with obstacles again around the particles that the last truncate() stopped. For use inside `relax`.
-  [[nodiscard]] FreshContacts renewed_contacts(const Points& before, const Points& after);
+  [[nodiscard]] FreshContacts renewed_contacts(const ObstacleFrame& obstacles, const Points& before, const Points& after);
 
   /// Moves particles after some were stopped [m]. Returns false when it has nothing left to move, which ends truncate().
   using Relax = std::function<bool(Points& positions)>;
@@ -64,7 +66,7 @@ class StepTruncation {
   /// While obstacles stop particles, `relax` may move all particles again; they are then clipped from where they are safe. The
   /// result describes the last round. May be called again in a step with other positions, but not after the step was subdivided.
   /// Requires begin_step() if elements of the network may touch.
-  TruncationResult truncate(const Points& before, Points& after, const Relax& relax = {});
+  TruncationResult truncate(const ObstacleFrame& obstacles, const Points& before, Points& after, const Relax& relax = {});
 
  private:
   struct Implementation;

@@ -53,12 +53,12 @@ Outcome VertexTruncation::clip(Index particle, const StepPaths& paths, Points& p
     position = pairs_->safe_position(particle);
     return Outcome::infeasible;
   }
-  if (allows(particle, target)) {
+  if (allows(paths.obstacles, particle, target)) {
     position = target;
     return Outcome::free;
   }
   std::vector<HalfSpace> bounds;
-  regions_.append_half_spaces(particle, bounds);
+  regions_.append_half_spaces(paths.obstacles, particle, bounds);
   const std::size_t region_bounds = bounds.size();
   if (pairs_ != nullptr) pairs_->append_half_spaces(particle, bounds);
   const std::vector<Vector3> safe = safe_positions(particle, paths);
@@ -69,7 +69,7 @@ Outcome VertexTruncation::clip(Index particle, const StepPaths& paths, Points& p
     }
     // The sphere is not among the half-spaces: the shortened displacement may violate them.
     const Vector3 shortened = within_sphere(particle, *found);
-    if (allows(particle, shortened)) {
+    if (allows(paths.obstacles, particle, shortened)) {
       position = shortened;
       return Outcome::stopped;
     }
@@ -78,16 +78,16 @@ Outcome VertexTruncation::clip(Index particle, const StepPaths& paths, Points& p
   return is_feasible({bounds.data(), region_bounds}, safe.front()) ? Outcome::stopped : Outcome::infeasible;
 }
 
-bool VertexTruncation::allows(Index particle, const Vector3& position) const {
-  return (pairs_ == nullptr || pairs_->allows(particle, position)) && regions_.allow(particle, position);
+bool VertexTruncation::allows(const ObstacleFrame& obstacles, Index particle, const Vector3& position) const {
+  return (pairs_ == nullptr || pairs_->allows(particle, position)) && regions_.allow(obstacles, particle, position);
 }
 
 std::vector<Vector3> VertexTruncation::safe_positions(Index particle, const StepPaths& paths) const {
   std::vector<Vector3> safe;
   if (pairs_ != nullptr) {
     safe.push_back(pairs_->safe_position(particle));
-  } else if (!paths.obstacles_rest) {
-    ObstacleMotion(regions_).append_moved(particle, paths.from.col(particle), safe);
+  } else if (!paths.at_end) {
+    ObstacleMotion(regions_, paths.obstacles).append_moved(particle, paths.from.col(particle), safe);
   }
   safe.emplace_back(paths.from.col(particle));
   return safe;

@@ -36,7 +36,7 @@ class VertexTruncation {
 
  private:
   [[nodiscard]] Outcome clip(Index particle, const StepPaths& paths, Points& positions) const;
-  [[nodiscard]] bool allows(Index particle, const Vector3& position) const;
+  [[nodiscard]] bool allows(const ObstacleFrame& obstacles, Index particle, const Vector3& position) const;
   /// Positions that are admissible unless surfaces close in on the particle. The first is the fallback.
   [[nodiscard]] std::vector<Vector3> safe_positions(Index particle, const StepPaths& paths) const;
   [[nodiscard]] Vector3 within_sphere(Index particle, const Vector3& position) const;

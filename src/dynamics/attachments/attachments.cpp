@@ -29,16 +29,15 @@ bool joins_sleeping_particle(const SpringNetwork& network, const Link& link) {
 
 }  // namespace
 
-Attachments::Attachments(const SpringNetwork& network, const Environment& environment, double step_length, bool implicit)
-    : network_(network), environment_(environment), step_length_(step_length) {
-  const std::vector<Obstacle>& obstacles = environment.obstacles();
-  check_obstacles(network.attachments, obstacles.size());
-  rods_ = std::make_shared<Rods>(network, obstacles, step_length);
-  springs_ = std::make_shared<AttachmentSprings>(network, obstacles, step_length, implicit);
+Attachments::Attachments(const SpringNetwork& network, const ObstacleSet& obstacles, double step_length, bool implicit)
+    : network_(network), obstacles_(obstacles), step_length_(step_length) {
+  check_obstacles(network.attachments, obstacles.obstacles().size());
+  rods_ = std::make_shared<Rods>(network, obstacles.obstacles(), step_length);
+  springs_ = std::make_shared<AttachmentSprings>(network, obstacles.obstacles(), step_length, implicit);
 }
 
 bool Attachments::update(SimulationState& state) {
-  if (!update_links(network_, environment_, step_length_, state)) return false;
+  if (!update_links(network_, obstacles_, step_length_, state)) return false;
   take(state, steps_done(state) * step_length_);
   return true;
 }

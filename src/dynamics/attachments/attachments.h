@@ -1,7 +1,7 @@
 // The attachments of a simulation: when they engage, their rods and springs, and when they break.
 #pragma once
 
-#include "collision/obstacles/environment.h"
+#include "collision/obstacles/obstacle_set.h"
 #include "dynamics/attachments/attachment_springs.h"
 #include "dynamics/attachments/rods.h"
 #include "network/model/simulation_state.h"
@@ -15,7 +15,7 @@ class Attachments {
  public:
   /// Keeps references to both. Throws InputError if an attachment is to an obstacle that does not exist. `implicit`: whether the
   /// integrator solves for forces.
-  Attachments(const SpringNetwork& network, const Environment& environment, double step_length, bool implicit);
+  Attachments(const SpringNetwork& network, const ObstacleSet& obstacles, double step_length, bool implicit);
 
   /// The constraint and the force, which belong to this.
   [[nodiscard]] std::shared_ptr<Rods> rods() const { return rods_; }
@@ -44,7 +44,7 @@ class Attachments {
 
  private:
   const SpringNetwork& network_;
-  const Environment& environment_;
+  const ObstacleSet& obstacles_;
   double step_length_;
   std::shared_ptr<Rods> rods_;
   std::shared_ptr<AttachmentSprings> springs_;

@@ -1,6 +1,5 @@
 #include "dynamics/attachments/engagement.h"
 
-#include "collision/obstacles/obstacle_set.h"
 #include "collision/shapes/obstacle_shape.h"
 #include "collision/shapes/surface_anchor.h"
 #include "dynamics/attachments/link_ends.h"
@@ -71,15 +70,15 @@ class NearestEnd {
 };
 
 /// Sets the second end of a link to the point of an obstacle that is nearest to `point` [m] at a time [s].
-void put_on(const Environment& environment, const ObstacleEnd& end, const Vector3& point, double time, Link& link) {
-  const Obstacle& obstacle = environment.obstacles()[static_cast<std::size_t>(end.obstacle)];
+void put_on(const ObstacleSet& obstacles, const ObstacleEnd& end, const Vector3& point, double time, Link& link) {
+  const Obstacle& obstacle = obstacles.obstacle(end.obstacle);
   const Vector3 local = obstacle.motion.pose(obstacle.rest_pose, time).inverse() * point;
   if (obstacle.deforms()) {
     const MeshSequence& sequence = *std::get<SequenceGeometry>(obstacle.geometry).sequence;
     link.triangle = nearest_triangles(sequence, time, {local}).front();
     link.weights = anchored(sequence, link.triangle, time, local).weights;
   } else {
-    const auto nearest = environment.set().shape(end.obstacle).nearest(local, kInfinity);
+    const auto nearest = obstacles.shape(end.obstacle).nearest(local, kInfinity);
     link.anchor = nearest ? nearest->point : local;
   }
 }
@@ -98,7 +97,7 @@ Link link_to_body(const SpringNetwork& network, const Points& positions, std::si
   return link;
 }
 
-bool update_links(const SpringNetwork& network, const Environment& environment, double step_length, SimulationState& state) {
+bool update_links(const SpringNetwork& network, const ObstacleSet& obstacles, double step_length, SimulationState& state) {
   const double due = due_before(whole_steps(state), step_length);
   const double now = steps_done(state) * step_length;
   const bool ended = std::erase_if(state.links, [&](const Link& link) {
@@ -116,9 +115,9 @@ bool update_links(const SpringNetwork& network, const Environment& environment, 
       Link& link = added.emplace_back(link_to_body(network, state.x, a, particle));
       link.time = now;
       if (const auto* end = std::get_if<ObstacleEnd>(&attachment.second)) {
-        put_on(environment, *end, state.x.col(particle), now, link);
+        put_on(obstacles, *end, state.x.col(particle), now, link);
       }
-      const LinkEnds ends(network, environment.obstacles(), link);
+      const LinkEnds ends(network, obstacles.obstacles(), link);
       link.distance = (ends.sum(state.x) - ends.anchor(now)).norm();
       if (link.distance < coincident) link.distance = 0.0;
       link.length = attachment.rest_length.value_or(link.distance);

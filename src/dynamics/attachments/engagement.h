@@ -1,7 +1,7 @@
 // When attachments engage, and at which points.
 #pragma once
 
-#include "collision/obstacles/environment.h"
+#include "collision/obstacles/obstacle_set.h"
 #include "network/model/simulation_state.h"
 
 namespace sprung {
@@ -9,7 +9,7 @@ namespace sprung {
 /// Ends and engages attachments that are due at the state's step, of `step_length` [s]: removes the links of those that end, and
 /// adds missing links of those that have begun, from each particle to the nearest second end at the positions of the state. Broken
 /// links stay, so that they do not engage again. Returns whether anything changed. Requires that the obstacles exist.
-bool update_links(const SpringNetwork& network, const Environment& environment, double step_length, SimulationState& state);
+bool update_links(const SpringNetwork& network, const ObstacleSet& obstacles, double step_length, SimulationState& state);
 
 /// The link of an attachment to a body from one of its particles: to the nearest second end at these positions [m], 3 x n. Without
 /// its step and lengths.

@@ -25,17 +25,17 @@ double margin_of(const SpringNetwork& network, const std::vector<Obstacle>& obst
 
 }  // namespace
 
-ContactProjection::ContactProjection(const SpringNetwork& network, Environment& environment)
-    : solver_(network, environment),
-      truncation_(environment, contact_surface(network), network.positions, margin_of(network, environment.obstacles())) {}
+ContactProjection::ContactProjection(const SpringNetwork& network, const ObstacleSet& obstacles)
+    : solver_(network, obstacles),
+      truncation_(obstacles, contact_surface(network), network.positions, margin_of(network, obstacles.obstacles())) {}
 
-void ContactProjection::find(const StepMotion& motion) {
-  truncation_.begin_step(motion.before, motion.advanced);
-  solver_.start(truncation_.contacts(motion.before, motion.advanced), motion);
+void ContactProjection::find(const ObstacleFrame& frame, const StepMotion& motion) {
+  truncation_.begin_step(frame, motion.before, motion.advanced);
+  solver_.start(frame, truncation_.contacts(frame, motion.before, motion.advanced), motion);
 }
 
-void ContactProjection::find_again(const StepMotion& motion, const Points& positions) {
-  solver_.renew(truncation_.renewed_contacts(motion.before, positions), motion);
+void ContactProjection::find_again(const ObstacleFrame& frame, const StepMotion& motion, const Points& positions) {
+  solver_.renew(truncation_.renewed_contacts(frame, motion.before, positions), motion);
 }
 
 ContactProjection::PushOut ContactProjection::push_out(Points& positions, int max_passes) {
@@ -48,10 +48,11 @@ ContactProjection::PushOut ContactProjection::push_out(Points& positions, int ma
   return done;
 }
 
-void ContactProjection::truncate(const StepMotion& motion, Points& positions, const StepTruncation::Relax& relax) {
+void ContactProjection::truncate(const ObstacleFrame& frame, const StepMotion& motion, Points& positions,
+                                 const StepTruncation::Relax& relax) {
   added_.clear();
-  TruncationResult result = truncation_.bodies_can_collide() ? truncate_bodies(motion, positions, relax)
-                                                             : truncation_.truncate(motion.before, positions, relax);
+  TruncationResult result = truncation_.bodies_can_collide() ? truncate_bodies(frame, motion, positions, relax)
+                                                             : truncation_.truncate(frame, motion.before, positions, relax);
   moved_with_obstacles_ = std::move(result.moved_with_obstacles);
   truncated_ = result.truncated;
   infeasible_ = result.infeasible;
@@ -70,18 +71,18 @@ void ContactProjection::limit_speed_of_moved(const StepMotion& motion, Simulatio
 // Truncation stops each of two bodies without regard to their masses: a cube that hits a light cloth would stop in mid-air, and a
 // cube that rests on it would be thrown up. The contacts that truncation found are therefore solved before it is repeated. `relax`
 // keeps state of its own, so it is called only once the bodies are apart.
-TruncationResult ContactProjection::truncate_bodies(const StepMotion& motion, Points& positions,
+TruncationResult ContactProjection::truncate_bodies(const ObstacleFrame& frame, const StepMotion& motion, Points& positions,
                                                     const StepTruncation::Relax& relax) {
   Points solved = positions;
-  TruncationResult result = truncation_.truncate(motion.before, positions);
+  TruncationResult result = truncation_.truncate(frame, motion.before, positions);
   for (int round = 0; round < kBodyRounds && add_body_contacts(result.body_contacts, motion); ++round) {
     if (!push_out(solved).moved()) break;
     positions = solved;
-    result = truncation_.truncate(motion.before, positions);
+    result = truncation_.truncate(frame, motion.before, positions);
   }
   if (!relax || result.truncated == 0 || result.infeasible > 0 || result.subdivided) return result;
   positions = solved;
-  return truncation_.truncate(motion.before, positions, relax);
+  return truncation_.truncate(frame, motion.before, positions, relax);
 }
 
 /// Adds the contacts that are new in this step to the solver. Returns whether there are any.

@@ -1,7 +1,7 @@
 // Contact by projection: detects the contacts of a step, solves them for positions and velocities, and truncates the step.
 #pragma once
 
-#include "collision/obstacles/environment.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "collision/truncation/step_truncation.h"
 #include "dynamics/contact/contact_solver.h"
 #include "dynamics/integrators/integrator.h"
@@ -36,18 +36,20 @@ class ContactProjection {
     [[nodiscard]] bool moved() const { return largest > 0.0; }
   };
 
-  /// Keeps references to the network and the environment.
-  ContactProjection(const SpringNetwork& network, Environment& environment);
+  /// Keeps references to the network and the obstacles. Frames in later calls must be theirs.
+  ContactProjection(const SpringNetwork& network, const ObstacleSet& obstacles);
 
   /// Whether the network can collide with anything: an obstacle, another body, or itself.
   [[nodiscard]] bool can_collide() const { return truncation_.can_collide(); }
 
-  /// Detects the contacts of a step. Requires that the environment's interval is the step's.
-  void find(const StepMotion& motion);
+  // `frame` has the obstacles in the interval of the step.
+
+  /// Detects the contacts of a step.
+  void find(const ObstacleFrame& frame, const StepMotion& motion);
 
   /// Detects the contacts near truncated particles again, at the present positions [m]. Call it during the relaxation of
   /// truncate(); requires that the positions lie in their safe regions. Accumulated pushes are kept.
-  void find_again(const StepMotion& motion, const Points& positions);
+  void find_again(const ObstacleFrame& frame, const StepMotion& motion, const Points& positions);
 
   /// See StepTruncation.
   [[nodiscard]] const PermittedCrossings& permitted_crossings() const { return truncation_.permitted_crossings(); }
@@ -75,7 +77,7 @@ class ContactProjection {
   /// Clips positions [m] so that no element crosses a surface that it did not cross at the beginning of the step. If two bodies
   /// block each other, the contacts between them are solved first, which conserves momentum. `relax` may then move truncated
   /// particles and their neighbours (see StepTruncation::truncate).
-  void truncate(const StepMotion& motion, Points& positions, const StepTruncation::Relax& relax = {});
+  void truncate(const ObstacleFrame& frame, const StepMotion& motion, Points& positions, const StepTruncation::Relax& relax = {});
 
   /// Limits the speed of particles that truncation moved with obstacles to the speed that forces gave them: a lever would
   /// otherwise throw a particle far from the axis of a rotating obstacle. Contact accelerates the particles that touch it. Requires
@@ -87,7 +89,8 @@ class ContactProjection {
   [[nodiscard]] Index infeasible_count() const { return infeasible_; }
 
  private:
-  [[nodiscard]] TruncationResult truncate_bodies(const StepMotion& motion, Points& positions, const StepTruncation::Relax& relax);
+  [[nodiscard]] TruncationResult truncate_bodies(const ObstacleFrame& frame, const StepMotion& motion, Points& positions,
+                                                 const StepTruncation::Relax& relax);
   [[nodiscard]] bool add_body_contacts(const std::vector<Contact>& contacts, const StepMotion& motion);
 
   ContactSolver solver_;

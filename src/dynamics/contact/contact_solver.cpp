@@ -85,17 +85,16 @@ Lever lever(const ContactConstraint<n>& row, const Points& positions) {
 
 }  // namespace
 
-ContactSolver::ContactSolver(const SpringNetwork& network, const Environment& environment)
+ContactSolver::ContactSolver(const SpringNetwork& network, const ObstacleSet& obstacles)
     : network_(network),
-      environment_(environment),
-      materials_(network, environment.obstacles()),
+      obstacles_(obstacles),
+      materials_(network, obstacles.obstacles()),
       first_row_(static_cast<std::size_t>(network.particle_count()), kNone) {}
 
-void ContactSolver::start(const std::vector<Contact>& contacts, const StepMotion& motion) {
+void ContactSolver::start(const ObstacleFrame& frame, const std::vector<Contact>& contacts, const StepMotion& motion) {
   obstacle_motions_.clear();
-  for (std::size_t k = 0; k < environment_.obstacles().size(); ++k) {
-    const auto obstacle = static_cast<Index>(k);
-    obstacle_motions_.push_back(environment_.pose_after(obstacle) * environment_.pose_before(obstacle).inverse());
+  for (Index k = 0; k < static_cast<Index>(obstacles_.obstacles().size()); ++k) {
+    obstacle_motions_.push_back(frame.after(k) * frame.into_before(k));
   }
   for_each_set(sets_, [&](auto& set) { fill(set, 0, contacts, motion); });
 }
@@ -166,14 +165,13 @@ void ContactSolver::fill_one(const Contact& contact, const ContactMaterial& pair
 // Exactly `from` for an obstacle at rest, and between elements.
 Vector3 ContactSolver::moved_with_obstacle(const Contact& contact, const Vector3& from) const {
   if (contact.obstacle == kNone) return from;
-  const auto k = static_cast<std::size_t>(contact.obstacle);
-  if (!environment_.obstacles()[k].motion.moves()) return from + contact.drift;
-  return obstacle_motions_[k] * from + contact.drift;
+  if (!obstacles_.obstacle(contact.obstacle).motion.moves()) return from + contact.drift;
+  return obstacle_motions_[static_cast<std::size_t>(contact.obstacle)] * from + contact.drift;
 }
 
 Vector3 ContactSolver::turned_with_obstacle(Index obstacle, const Vector3& direction) const {
-  const auto k = static_cast<std::size_t>(obstacle);
-  return environment_.obstacles()[k].motion.moves() ? obstacle_motions_[k].linear() * direction : direction;
+  if (!obstacles_.obstacle(obstacle).motion.moves()) return direction;
+  return obstacle_motions_[static_cast<std::size_t>(obstacle)].linear() * direction;
 }
 
 double ContactSolver::project(Points& positions) {

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "collision/core/contact.h"
-#include "collision/obstacles/environment.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/contact/contact_constraint_set.h"
 #include "dynamics/contact/contact_materials.h"
 #include "dynamics/integrators/constrained_directions.h"
@@ -26,14 +26,13 @@ namespace sprung {
 
 class ContactSolver {
  public:
-  /// Keeps references to the network and the environment.
-  ContactSolver(const SpringNetwork& network, const Environment& environment);
+  /// Keeps references to the network and the obstacles.
+  ContactSolver(const SpringNetwork& network, const ObstacleSet& obstacles);
 
-  /// Begins a step with these contacts. Contacts of few particles are solved first, those of equal count in the given order.
-  /// Contacts of pinned particles alone are dropped, and so are contacts closer than the gap whose weight is nearly all on pins.
-  /// No contact with an obstacle turns an element about its pins by more than a radian. Requires that the environment's interval
-  /// is the step's.
-  void start(const std::vector<Contact>& contacts, const StepMotion& motion);
+  /// Begins a step with these contacts; `frame` has the obstacles in its interval. Contacts of few particles are solved first,
+  /// those of equal count in the given order. Contacts of pinned particles alone are dropped, and so are contacts closer than the
+  /// gap whose weight is nearly all on pins. No contact with an obstacle turns an element about its pins by more than a radian.
+  void start(const ObstacleFrame& frame, const std::vector<Contact>& contacts, const StepMotion& motion);
 
   /// Replaces the contacts of some patches within the step. A contact between the same particles and obstacle as before keeps its
   /// accumulated push and friction.
@@ -86,7 +85,7 @@ class ContactSolver {
   [[nodiscard]] Vector3 turned_with_obstacle(Index obstacle, const Vector3& direction) const;
 
   const SpringNetwork& network_;
-  const Environment& environment_;
+  const ObstacleSet& obstacles_;
   ContactMaterials materials_;
   std::vector<RigidTransform> obstacle_motions_;  ///< of each obstacle, from the beginning of the step to its end
   using Sets = std::tuple<ContactConstraintSet<1>, ContactConstraintSet<2>, ContactConstraintSet<3>, ContactConstraintSet<4>>;

@@ -8,14 +8,15 @@
 namespace sprung {
 namespace {
 
-// The thickness of particles that carry a surface, which do not collide. The environment finds those that are inside an obstacle.
+// The thickness of particles that carry a surface, which do not collide. Obstacles find those that are inside.
 constexpr double kNoContact = -std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-PenaltyContact::PenaltyContact(const SpringNetwork& network, Environment& environment, double stiffness, double damping, double dt)
+PenaltyContact::PenaltyContact(const SpringNetwork& network, const ObstacleSet& obstacles, double stiffness, double damping,
+                               double dt)
     : network_(network),
-      environment_(environment),
+      obstacles_(obstacles, 0.0, 0.0),
       stiffness_(stiffness),
       damping_(damping),
       dt_(dt),
@@ -27,14 +28,13 @@ PenaltyContact::PenaltyContact(const SpringNetwork& network, Environment& enviro
 }
 
 std::vector<Contact> PenaltyContact::contacts(const Points& positions) const {
-  std::vector<Contact> found = environment_.contacts({positions, positions, thickness_});
+  std::vector<Contact> found = obstacles_.contacts({positions, positions, thickness_});
   std::erase_if(found, [&](const Contact& contact) { return thickness_[contact.particles[0]] == kNoContact; });
   return found;
 }
 
 void PenaltyContact::prepare(double time) {
-  const Environment::Interval interval = environment_.interval();
-  if (interval.begin != time || interval.end != time) environment_.set_interval(time, time);
+  if (obstacles_.end() != time) obstacles_ = ObstacleFrame(obstacles_.set(), time, time);
 }
 
 /// The force of an obstacle on a particle: push * normal - rub * along.
@@ -46,14 +46,13 @@ struct PenaltyContact::Touch {
 };
 
 ContactMaterial PenaltyContact::pair_of(const Contact& contact) const {
-  const Obstacle& obstacle = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)];
-  return combine(network_.body_of(contact.particles[0]).material, obstacle.material);
+  return combine(network_.body_of(contact.particles[0]).material, obstacles_.obstacle(contact.obstacle).material);
 }
 
 PenaltyContact::Touch PenaltyContact::touch(const Contact& contact, const Kinematics& at) const {
   const Index i = contact.particles[0];
   const ContactMaterial pair = pair_of(contact);
-  const Vector3 relative = at.v.col(i) - environment_.surface_velocity(contact.obstacle, at.x.col(i), at.time, dt_);
+  const Vector3 relative = at.v.col(i) - obstacles_.surface_velocity(contact.obstacle, at.x.col(i), at.time, dt_);
   const double speed = contact.normal.dot(relative);
   Touch touch;
   touch.push = std::max(0.0, stiffness_ * (pair.thickness - contact.distance) - damping_ * speed);

@@ -1,7 +1,7 @@
 // Penalty contact, the OpenGL page's f_coll in f = f_g + f_coll + sum of spring forces.
 #pragma once
 
-#include "collision/obstacles/environment.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/forces/force.h"
 #include "network/model/simulation_state.h"
 #include "network/model/spring_network.h"
@@ -12,15 +12,16 @@ namespace sprung {
 /// friction times that force, and at most what stops the particle within a step.
 class PenaltyContact final : public Force {
  public:
-  /// `stiffness` k [N/m] > 0, `damping` c [N s/m] >= 0, `dt` [s] is the step. Keeps references to the network and the environment.
-  PenaltyContact(const SpringNetwork& network, Environment& environment, double stiffness, double damping, double dt);
+  /// `stiffness` k [N/m] > 0, `damping` c [N s/m] >= 0, `dt` [s] is the step. Keeps references to the network and the obstacles,
+  /// which are at time 0 until prepare().
+  PenaltyContact(const SpringNetwork& network, const ObstacleSet& obstacles, double stiffness, double damping, double dt);
 
   /// Steps are `dt` [s] long from now on.
   void set_step(double dt) { dt_ = dt; }
 
   [[nodiscard]] std::string name() const override { return "penalty contact"; }
 
-  /// Moves the obstacles to `time`: the environment's interval becomes (time, time).
+  /// Takes the obstacles at `time` [s] for all following calls.
   void prepare(double time) override;
   void add(const Kinematics& at, Points& forces) const override;
 
@@ -30,14 +31,14 @@ class PenaltyContact final : public Force {
 
   void append_elements(std::vector<LinearElement>& elements) const override;
 
-  /// The energy k p^2 / 2 of all penetrations at the obstacles' present positions [J].
+  /// The energy k p^2 / 2 of all penetrations at the time of the last prepare() [J].
   [[nodiscard]] double energy(const Points& positions) const override;
   [[nodiscard]] EnergyKind energy_kind() const override { return EnergyKind::contact; }
 
-  /// Particles nearer to an obstacle than their gap, ascending.
+  /// Particles nearer to an obstacle than their gap at that time, ascending.
   [[nodiscard]] std::vector<Index> touching(const Points& positions) const;
 
-  /// The normals of obstacles at these particles.
+  /// The normals of obstacles at these particles, at that time.
   [[nodiscard]] std::vector<ContactNormal> normals(const Points& positions) const;
 
  private:
@@ -48,7 +49,7 @@ class PenaltyContact final : public Force {
   [[nodiscard]] Touch touch(const Contact& contact, const Kinematics& at) const;
 
   const SpringNetwork& network_;
-  Environment& environment_;
+  ObstacleFrame obstacles_;
   double stiffness_;
   double damping_;
   double dt_;

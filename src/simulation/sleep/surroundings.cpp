@@ -1,7 +1,7 @@
 #include "simulation/sleep/surroundings.h"
 
 #include "collision/core/block_bounds.h"
-#include "collision/obstacles/obstacle_set.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/attachments/attachments.h"
 
 #include <algorithm>
@@ -23,10 +23,10 @@ double displacement(const RigidTransform& motion, const Box3& box) {
 
 }  // namespace
 
-Surroundings::Surroundings(const SpringNetwork& network, const Environment& environment, const SleepGroups& groups, double step,
+Surroundings::Surroundings(const SpringNetwork& network, const ObstacleSet& obstacles, const SleepGroups& groups, double step,
                            double gravity)
     : network_(network),
-      environment_(environment),
+      obstacles_(obstacles),
       groups_(groups),
       step_(step),
       gravity_(gravity),
@@ -82,7 +82,7 @@ std::vector<Index> Surroundings::groups_of_body(std::size_t body) const {
 }
 
 double Surroundings::end_of_obstacle(Index obstacle) const {
-  const Obstacle& followed = environment_.obstacles()[static_cast<std::size_t>(obstacle)];
+  const Obstacle& followed = obstacles_.obstacle(obstacle);
   return followed.deforms() ? std::numeric_limits<double>::infinity() : followed.motion.end();
 }
 
@@ -117,8 +117,9 @@ bool Surroundings::may_collide(const SleepGroup& a, const SleepGroup& b) const {
 }
 
 std::vector<char> Surroundings::driven(const Found& found, double time) const {
+  const ObstacleFrame now(obstacles_, time, time);
   std::vector<char> driven;
-  for (std::size_t p = 0; p < ends_.size(); ++p) driven.push_back(time < ends_[p] || is_reached(found.boxes[p], time) ? 1 : 0);
+  for (std::size_t p = 0; p < ends_.size(); ++p) driven.push_back(time < ends_[p] || is_reached(found.boxes[p], now) ? 1 : 0);
   return driven;
 }
 
@@ -132,16 +133,16 @@ Box3 Surroundings::box_in_step(const SleepGroup& group, const SimulationState& s
 }
 
 /// A box that a half-space contains is in its reach too.
-bool Surroundings::is_reached(const Box3& box, double time) const {
+bool Surroundings::is_reached(const Box3& box, const ObstacleFrame& now) const {
+  const double time = now.end();
   std::vector<Index> found;
-  for (std::size_t k = 0; k < environment_.obstacles().size(); ++k) {
-    const Obstacle& obstacle = environment_.obstacles()[k];
-    if (end_of_obstacle(static_cast<Index>(k)) <= time) continue;
+  for (Index k = 0; k < static_cast<Index>(obstacles_.obstacles().size()); ++k) {
+    const Obstacle& obstacle = obstacles_.obstacle(k);
+    if (end_of_obstacle(k) <= time) continue;
     if (obstacle.deforms() || obstacle.motion.turn(time, time + step_) > kMaxTurn) return true;
-    const RigidTransform now = obstacle.motion.pose(obstacle.rest_pose, time);
     const RigidTransform then = obstacle.motion.pose(obstacle.rest_pose, time + step_);
-    environment_.set().find_near(grown(box, obstacle.material.thickness + displacement(now * then.inverse(), box)), found);
-    if (std::ranges::binary_search(found, static_cast<Index>(k))) return true;
+    now.find_near(grown(box, obstacle.material.thickness + displacement(now.after(k) * then.inverse(), box)), found);
+    if (std::ranges::binary_search(found, k)) return true;
   }
   return false;
 }

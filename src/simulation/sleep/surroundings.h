@@ -1,7 +1,7 @@
 // Surroundings: which groups may act on each other in the next step, and what from outside drives them.
 #pragma once
 
-#include "collision/obstacles/environment.h"
+#include "collision/obstacles/obstacle_set.h"
 #include "network/model/simulation_state.h"
 #include "simulation/sleep/sleep_group.h"
 
@@ -9,10 +9,12 @@
 
 namespace sprung {
 
+class ObstacleFrame;
+
 class Surroundings {
  public:
-  /// Keeps references to the network, the environment and the groups. `step` in s, `gravity` in m/s^2.
-  Surroundings(const SpringNetwork& network, const Environment& environment, const SleepGroups& groups, double step,
+  /// Keeps references to the network, the obstacles and the groups. `step` in s, `gravity` in m/s^2.
+  Surroundings(const SpringNetwork& network, const ObstacleSet& obstacles, const SleepGroups& groups, double step,
                double gravity);
 
   struct Found {
@@ -40,11 +42,11 @@ class Surroundings {
   [[nodiscard]] std::vector<Index> groups_of_body(std::size_t body) const;
   [[nodiscard]] bool may_collide(const SleepGroup& a, const SleepGroup& b) const;
   [[nodiscard]] Box3 box_in_step(const SleepGroup& group, const SimulationState& state) const;
-  [[nodiscard]] bool is_reached(const Box3& box, double time) const;
+  [[nodiscard]] bool is_reached(const Box3& box, const ObstacleFrame& now) const;
   [[nodiscard]] double end_of_obstacle(Index obstacle) const;
 
   const SpringNetwork& network_;
-  const Environment& environment_;
+  const ObstacleSet& obstacles_;
   const SleepGroups& groups_;
   double step_;
   double gravity_;

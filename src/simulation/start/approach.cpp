@@ -36,10 +36,11 @@ SpringNetwork only_moving(SpringNetwork network, Index body) {
 
 }  // namespace
 
-Approach::Approach(const SpringNetwork& network, Environment& environment, Index body)
+Approach::Approach(const SpringNetwork& network, const ObstacleFrame& obstacles, Index body)
     : network_(only_moving(network, body)),
       length_(contact_surface(network_).element_size[static_cast<std::size_t>(body)]),
-      contacts_(network_, environment) {}
+      obstacles_(obstacles),
+      contacts_(network_, obstacles.set()) {}
 
 double Approach::stride(Points& x, const Points& advanced) {
   const Points before = x;
@@ -47,9 +48,9 @@ double Approach::stride(Points& x, const Points& advanced) {
   const Points none = Points::Zero(3, x.cols());
   const Slip no_slip{.displacement = none, .obstacle = std::vector<Index>(static_cast<std::size_t>(x.cols()), kNone)};
   const StepMotion motion{before, none, no_slip, advanced, 1.0};
-  contacts_.find(motion);
+  contacts_.find(obstacles_, motion);
   contacts_.push_out(x);
-  contacts_.truncate(motion, x);
+  contacts_.truncate(obstacles_, motion, x);
   return (x - before).colwise().norm().maxCoeff();
 }
 

@@ -7,8 +7,8 @@ namespace sprung {
 
 class Approach {
  public:
-  /// Only this body moves. Keeps a reference to the environment.
-  Approach(const SpringNetwork& network, Environment& environment, Index body);
+  /// Only this body moves. Keeps a reference to the frame.
+  Approach(const SpringNetwork& network, const ObstacleFrame& obstacles, Index body);
 
   /// Positions [m] after an approach from `free`, where the body intersects nothing, towards `wanted`. The body moves in strides of
   /// its element size. Particles that touch a surface slide along it; the others reach their wanted positions exactly.
@@ -20,6 +20,7 @@ class Approach {
 
   SpringNetwork network_;  ///< without friction, all other bodies pinned
   double length_ = 0.0;    ///< of a stride [m]; 0 for a body without segments and faces
+  const ObstacleFrame& obstacles_;
   ContactProjection contacts_;
 };
 

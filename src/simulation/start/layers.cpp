@@ -143,7 +143,7 @@ std::set<BodyPair> crossing_bodies(const CollisionSurface& surface, const Points
   return pairs;
 }
 
-std::optional<Points> lifted_off(const SpringNetwork& network, const Environment& environment, const CollisionSurface& surface,
+std::optional<Points> lifted_off(const SpringNetwork& network, const ObstacleFrame& obstacles, const CollisionSurface& surface,
                                  Index body, const std::vector<Index>& below, const Points& wanted) {
   const Lift lift(network, surface, body, wanted);
   Points lifted = wanted;
@@ -153,7 +153,7 @@ std::optional<Points> lifted_off(const SpringNetwork& network, const Environment
     const auto crossed =
         std::find_if(below.begin(), below.end(), [&](Index other) { return crossing.contains(pair_of(body, other)); });
     if (crossed == below.end()) {
-      const bool free = !crossing.contains({body, body}) && find_intersections(environment.set(), surface, lifted, body).empty();
+      const bool free = !crossing.contains({body, body}) && find_intersections(obstacles, surface, lifted, body).empty();
       return free ? std::optional(lifted) : std::nullopt;
     }
     const auto next = lift.off(*crossed, lifted);

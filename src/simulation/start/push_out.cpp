@@ -48,9 +48,9 @@ bool stays_whole(const SpringNetwork& network, Index body) {
 
 class FreePosition {
  public:
-  FreePosition(const SpringNetwork& network, const Environment& environment, const CollisionSurface& surface, Index body,
+  FreePosition(const SpringNetwork& network, const ObstacleFrame& obstacles, const CollisionSurface& surface, Index body,
                const Points& wanted)
-      : environment_(environment),
+      : obstacles_(obstacles),
         surface_(surface),
         body_(body),
         wanted_(wanted),
@@ -83,9 +83,7 @@ class FreePosition {
   }
 
  private:
-  [[nodiscard]] Intersections intersections(const Points& x) const {
-    return find_intersections(environment_.set(), surface_, x, body_);
-  }
+  [[nodiscard]] Intersections intersections(const Points& x) const { return find_intersections(obstacles_, surface_, x, body_); }
 
   [[nodiscard]] bool is_outside_obstacles(const Points& x) const { return intersections(x).empty(); }
 
@@ -100,10 +98,10 @@ class FreePosition {
   /// The wanted positions, with particles closer to a surface than gap + `beyond` [m], or inside it, moved to that distance.
   [[nodiscard]] Points moved_off(double beyond, double depth) const {
     Points moved = wanted_;
-    for (const Contact& contact : environment_.contacts({wanted_, wanted_, surface_.thickness, beyond + depth})) {
+    for (const Contact& contact : obstacles_.contacts({wanted_, wanted_, surface_.thickness, beyond + depth})) {
       const Index i = contact.particles[0];
       if (movable_[static_cast<std::size_t>(i)] == 0) continue;
-      const ContactMaterial& material = environment_.obstacles()[static_cast<std::size_t>(contact.obstacle)].material;
+      const ContactMaterial& material = obstacles_.obstacle(contact.obstacle).material;
       const double gap = std::max(surface_.thickness[i] + material.thickness, 2.0 * contact.clearance);
       const double height = contact.normal.dot(moved.col(i) - contact.point);
       if (height < gap + beyond) moved.col(i) += (gap + beyond - height) * contact.normal;
@@ -126,7 +124,7 @@ class FreePosition {
     return std::nullopt;
   }
 
-  const Environment& environment_;
+  const ObstacleFrame& obstacles_;
   const CollisionSurface& surface_;
   Index body_;
   const Points& wanted_;
@@ -157,7 +155,7 @@ std::vector<Index> joined(std::vector<Index> first, const std::vector<Index>& se
 
 /// Layers are put on one after another, in the given order: each body is lifted off those before it that it crosses. Those after it
 /// do not matter yet.
-void put_on(const SpringNetwork& network, Environment& environment, const CollisionSurface& surface,
+void put_on(const SpringNetwork& network, const ObstacleFrame& obstacles, const CollisionSurface& surface,
             const std::vector<Index>& order, Points& positions) {
   std::set<BodyPair> crossing = crossing_bodies(surface, positions);
   SpringNetwork worn = network;
@@ -168,8 +166,8 @@ void put_on(const SpringNetwork& network, Environment& environment, const Collis
     worn.bodies[number].contact.others = network.bodies[number].contact.others;
     const auto crosses = [&](Index other) { return crossing.contains(std::minmax(body, other)); };
     if (!stays_whole(network, body) && std::any_of(below.begin(), below.end(), crosses)) {
-      if (const auto free = lifted_off(network, environment, surface, body, below, positions)) {
-        positions = Approach(worn, environment, body).run(*free, positions);
+      if (const auto free = lifted_off(network, obstacles, surface, body, below, positions)) {
+        positions = Approach(worn, obstacles, body).run(*free, positions);
         crossing = crossing_bodies(surface, positions);
       }
     }
@@ -179,28 +177,28 @@ void put_on(const SpringNetwork& network, Environment& environment, const Collis
 
 }  // namespace
 
-Points push_out(const SpringNetwork& network, Environment& environment, const CollisionSurface& surface, const Points& wanted,
+Points push_out(const SpringNetwork& network, const ObstacleFrame& obstacles, const CollisionSurface& surface, const Points& wanted,
                 bool apart) {
   Points positions = wanted;
   const auto approach_from = [&](Index body, const std::optional<Points>& free) {
     if (!free) return;
-    positions = stays_whole(network, body) ? *free : Approach(network, environment, body).run(*free, positions);
+    positions = stays_whole(network, body) ? *free : Approach(network, obstacles, body).run(*free, positions);
   };
   for (Index body = 0; body < static_cast<Index>(network.bodies.size()); ++body) {
-    if (find_intersections(environment.set(), surface, positions, body).empty()) continue;
-    approach_from(body, FreePosition(network, environment, surface, body, positions).outside_obstacles());
+    if (find_intersections(obstacles, surface, positions, body).empty()) continue;
+    approach_from(body, FreePosition(network, obstacles, surface, body, positions).outside_obstacles());
   }
   if (!apart) return positions;
   auto [unpinned, pinned] = ranks_of(network);
-  put_on(network, environment, surface, joined(pinned, unpinned), positions);
+  put_on(network, obstacles, surface, joined(pinned, unpinned), positions);
   // A body that could not be lifted off one that should rather stay: now the other way round.
   std::reverse(unpinned.begin(), unpinned.end());
   std::reverse(pinned.begin(), pinned.end());
-  put_on(network, environment, surface, joined(pinned, unpinned), positions);
+  put_on(network, obstacles, surface, joined(pinned, unpinned), positions);
   std::set<BodyPair> crossing = crossing_bodies(surface, positions);
   for (const Index body : joined(unpinned, pinned)) {
     if (!crosses_another(crossing, body)) continue;
-    approach_from(body, FreePosition(network, environment, surface, body, positions).outside_all());
+    approach_from(body, FreePosition(network, obstacles, surface, body, positions).outside_all());
     crossing = crossing_bodies(surface, positions);
   }
   return positions;

@@ -16,9 +16,9 @@ namespace sprung {
 
 namespace {
 
-StartIntersections find_all(const Environment& environment, const CollisionSurface& surface, const ContactSettings& contact,
+StartIntersections find_all(const ObstacleFrame& obstacles, const CollisionSurface& surface, const ContactSettings& contact,
                             const Points& positions) {
-  StartIntersections found = find_start_intersections(environment, surface, positions);
+  StartIntersections found = find_start_intersections(obstacles, surface, positions);
   // Penalty contact does not act between bodies.
   if (contact.response == ContactSettings::Response::penalty) found.with_each_other.clear();
   return found;
@@ -44,16 +44,16 @@ std::vector<std::string> describe_moved(const SpringNetwork& network, const Poin
 
 /// The obstacles that a body intersects, or "another body" if there is none.
 std::string intersected_by(Index body, const StartIntersections& found, const CollisionSurface& surface,
-                           const SpringNetwork& network, const Environment& environment) {
-  std::set<Index> obstacles;
+                           const SpringNetwork& network, const ObstacleFrame& obstacles) {
+  std::set<Index> intersected;
   for (const auto& crossing : found.with_obstacles.crossings) {
-    if (surface.elements[static_cast<std::size_t>(crossing.element)].body == body) obstacles.insert(crossing.obstacle);
+    if (surface.elements[static_cast<std::size_t>(crossing.element)].body == body) intersected.insert(crossing.obstacle);
   }
   for (const auto& inside : found.with_obstacles.inside) {
-    if (&network.body_of(inside.particle) == &network.bodies[static_cast<std::size_t>(body)]) obstacles.insert(inside.obstacle);
+    if (&network.body_of(inside.particle) == &network.bodies[static_cast<std::size_t>(body)]) intersected.insert(inside.obstacle);
   }
   std::vector<std::string> names;
-  for (const Index k : obstacles) names.push_back(environment.obstacles()[static_cast<std::size_t>(k)].name);
+  for (const Index k : intersected) names.push_back(obstacles.obstacle(k).name);
   return names.empty() ? "another body" : names_text("obstacle", "obstacles", names);
 }
 
@@ -78,7 +78,7 @@ LengthRatios length_ratios(const SpringNetwork& network, const Body& body, const
 
 /// Whether push_out would be a remedy: bodies are no deeper in obstacles than their elements are large, and it deforms them little.
 /// A body that push_out wraps round an obstacle or flattens may have inverted cells, cross itself or miss its stretch limit.
-bool push_out_helps(const SpringNetwork& network, Environment& environment, const CollisionSurface& surface,
+bool push_out_helps(const SpringNetwork& network, const ObstacleFrame& obstacles, const CollisionSurface& surface,
                     const ContactSettings& contact, const Points& positions, const StartIntersections& wanted) {
   constexpr double kLittle = 0.25;
   constexpr Index kMostParticles = 10'000;  // above this, push_out takes seconds where bodies intersect
@@ -89,8 +89,8 @@ bool push_out_helps(const SpringNetwork& network, Environment& environment, cons
   };
   if (std::ranges::any_of(wanted.with_obstacles.inside, is_deep)) return false;
   const bool apart = contact.response == ContactSettings::Response::projection;
-  const Points moved = push_out(network, environment, surface, positions, apart);
-  if (!find_all(environment, surface, contact, moved).empty()) return false;
+  const Points moved = push_out(network, obstacles, surface, positions, apart);
+  if (!find_all(obstacles, surface, contact, moved).empty()) return false;
   return std::ranges::all_of(network.bodies, [&](const Body& body) {
     const LengthRatios ratios = length_ratios(network, body, positions, moved);
     return ratios.largest <= 1.0 + kLittle && ratios.smallest >= 1.0 - kLittle;
@@ -98,7 +98,7 @@ bool push_out_helps(const SpringNetwork& network, Environment& environment, cons
 }
 
 /// Bodies that push_out stretched so much that their springs will throw them off: those that an obstacle pierces, for example.
-std::vector<std::string> describe_lengthened(const SpringNetwork& network, const Environment& environment,
+std::vector<std::string> describe_lengthened(const SpringNetwork& network, const ObstacleFrame& obstacles,
                                              const CollisionSurface& surface, const StartIntersections& found, const Points& from,
                                              const Points& to) {
   constexpr double kMuch = 0.5;
@@ -108,7 +108,7 @@ std::vector<std::string> describe_lengthened(const SpringNetwork& network, const
     const double most = length_ratios(network, body, from, to).largest - 1.0;
     if (most <= kMuch) continue;
     lines.push_back("body \"" + body.name + "\": \"push_out\" moved it off " +
-                    intersected_by(number, found, surface, network, environment) + " and made an edge " +
+                    intersected_by(number, found, surface, network, obstacles) + " and made an edge " +
                     format_number(100.0 * most, 3) +
                     " % longer, so that its springs will throw it off. Start it elsewhere: change \"place\".");
   }
@@ -116,10 +116,10 @@ std::vector<std::string> describe_lengthened(const SpringNetwork& network, const
 }
 
 /// Bodies with an obstacle deep in their gap: contact will accelerate them out of it.
-std::vector<std::string> describe_too_near(const SpringNetwork& network, const Environment& environment, const Points& positions) {
+std::vector<std::string> describe_too_near(const SpringNetwork& network, const ObstacleFrame& obstacles, const Points& positions) {
   constexpr double kDeep = 0.5;  // of the gap
   double obstacle_thickness = std::numeric_limits<double>::infinity();
-  for (const Obstacle& obstacle : environment.obstacles()) {
+  for (const Obstacle& obstacle : obstacles.set().obstacles()) {
     obstacle_thickness = std::min(obstacle_thickness, obstacle.material.thickness);
   }
   struct TooNear {
@@ -134,7 +134,7 @@ std::vector<std::string> describe_too_near(const SpringNetwork& network, const E
     for (Index i = body.first_particle; i < body.first_particle + body.contact_vertex_count(); ++i) {
       if (!network.is_pinned(i)) free.push_back(i);
     }
-    const auto nearest = environment.min_distance(positions(Eigen::all, free), gap);
+    const auto nearest = obstacles.min_distance(positions(Eigen::all, free), gap);
     if (!nearest || *nearest >= kDeep * gap) continue;
     TooNear& found = of_gaps[gap];
     found.bodies.push_back(body.name);
@@ -151,24 +151,25 @@ std::vector<std::string> describe_too_near(const SpringNetwork& network, const E
 
 }  // namespace
 
-Start find_start(const SpringNetwork& network, Environment& environment, const ContactSettings& contact, const Points& positions) {
+Start find_start(const SpringNetwork& network, const ObstacleFrame& obstacles, const ContactSettings& contact,
+                 const Points& positions) {
   const CollisionSurface surface = contact_surface(network);
-  const StartIntersections wanted = find_all(environment, surface, contact, positions);
-  if (wanted.empty()) return {positions, describe_too_near(network, environment, positions), {}};
+  const StartIntersections wanted = find_all(obstacles, surface, contact, positions);
+  if (wanted.empty()) return {positions, describe_too_near(network, obstacles, positions), {}};
   if (contact.start == ContactSettings::Start::push_out) {
     const Points start =
-        push_out(network, environment, surface, positions, contact.response == ContactSettings::Response::projection);
-    const StartIntersections left = find_all(environment, surface, contact, start);
+        push_out(network, obstacles, surface, positions, contact.response == ContactSettings::Response::projection);
+    const StartIntersections left = find_all(obstacles, surface, contact, start);
     if (!left.empty()) {
       const std::string remedy = "\"push_out\" found no free position: move one of them by \"place\"";
-      throw InputError(start_problems(left, network, environment, surface, start, remedy));
+      throw InputError(start_problems(left, network, obstacles, surface, start, remedy));
     }
-    return {start, describe_lengthened(network, environment, surface, wanted, positions, start),
+    return {start, describe_lengthened(network, obstacles, surface, wanted, positions, start),
             describe_moved(network, positions, start)};
   }
   std::string remedy = "move one of them by \"place\"";
-  if (push_out_helps(network, environment, surface, contact, positions, wanted)) remedy += ", or set contact.start to \"push_out\"";
-  throw InputError(start_problems(wanted, network, environment, surface, positions, remedy));
+  if (push_out_helps(network, obstacles, surface, contact, positions, wanted)) remedy += ", or set contact.start to \"push_out\"";
+  throw InputError(start_problems(wanted, network, obstacles, surface, positions, remedy));
 }
 
 }  // namespace sprung

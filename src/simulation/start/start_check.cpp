@@ -86,11 +86,11 @@ std::map<NumberPair, InObstacle> by_body_and_obstacle(const Intersections& found
 }
 
 /// For each body and obstacle that intersect: the first pinned particle of the body that is inside the obstacle.
-std::map<NumberPair, Index> pins_inside(const Environment& environment, const SpringNetwork& network, CollisionSurface surface,
+std::map<NumberPair, Index> pins_inside(const ObstacleFrame& obstacles, const SpringNetwork& network, CollisionSurface surface,
                                         const Points& positions) {
   std::ranges::fill(surface.pinned, char{0});
   std::map<NumberPair, Index> pins;
-  for (const auto& [particle, obstacle, depth] : find_intersections(environment.set(), surface, positions).inside) {
+  for (const auto& [particle, obstacle, depth] : find_intersections(obstacles, surface, positions).inside) {
     const auto body = static_cast<Index>(&network.body_of(particle) - network.bodies.data());
     if (network.is_pinned(particle)) pins.try_emplace({body, obstacle}, particle);
   }
@@ -119,20 +119,20 @@ Problem problem_of(const std::vector<std::string>& pairs, const std::string& bod
 
 }  // namespace
 
-StartIntersections find_start_intersections(const Environment& environment, const CollisionSurface& surface,
+StartIntersections find_start_intersections(const ObstacleFrame& obstacles, const CollisionSurface& surface,
                                             const Points& positions) {
-  return {find_intersections(environment.set(), surface, positions), find_self_intersections(surface, positions)};
+  return {find_intersections(obstacles, surface, positions), find_self_intersections(surface, positions)};
 }
 
-std::vector<Problem> start_problems(const StartIntersections& found, const SpringNetwork& network, const Environment& environment,
+std::vector<Problem> start_problems(const StartIntersections& found, const SpringNetwork& network, const ObstacleFrame& obstacles,
                                     const CollisionSurface& surface, const Points& positions, const std::string& remedy) {
   const ElementText text(network, positions);
   const auto body_name = [&](Index number) { return network.bodies[static_cast<std::size_t>(number)].name; };
   std::vector<Problem> problems;
   const auto with_obstacles = by_body_and_obstacle(found.with_obstacles, network, surface, text);
-  const auto pins = with_obstacles.empty() ? std::map<NumberPair, Index>{} : pins_inside(environment, network, surface, positions);
+  const auto pins = with_obstacles.empty() ? std::map<NumberPair, Index>{} : pins_inside(obstacles, network, surface, positions);
   for (const auto& [numbers, entry] : with_obstacles) {
-    const std::string& obstacle = environment.obstacles()[static_cast<std::size_t>(numbers.second)].name;
+    const std::string& obstacle = obstacles.obstacle(numbers.second).name;
     const auto pin = pins.find(numbers);
     const std::string own_remedy =
         pin == pins.end()

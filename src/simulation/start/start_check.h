@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/error.h"
-#include "collision/obstacles/environment.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "collision/obstacles/obstacle_intersections.h"
 #include "collision/surface/collision_surface.h"
 #include "collision/surface/self_intersections.h"
@@ -23,15 +23,15 @@ struct StartIntersections {
   [[nodiscard]] bool empty() const { return with_obstacles.empty() && with_each_other.empty(); }
 };
 
-/// All intersections at `positions` [m] and the end of the environment's interval: of elements and particles with obstacles, except
+/// All intersections at `positions` [m] and the end of the frame's interval: of elements and particles with obstacles, except
 /// pinned ones, and between elements of bodies that collide with themselves or each other.
-[[nodiscard]] StartIntersections find_start_intersections(const Environment& environment, const CollisionSurface& surface,
+[[nodiscard]] StartIntersections find_start_intersections(const ObstacleFrame& obstacles, const CollisionSurface& surface,
                                                           const Points& positions);
 
 /// One problem for each body and obstacle and each pair of bodies: number of intersections, depth [m], positions and remedy.
 /// `remedy` applies to all except self-intersections and bodies that a pin holds in an obstacle, which have their own.
 [[nodiscard]] std::vector<Problem> start_problems(const StartIntersections& found, const SpringNetwork& network,
-                                                  const Environment& environment, const CollisionSurface& surface,
+                                                  const ObstacleFrame& obstacles, const CollisionSurface& surface,
                                                   const Points& positions, const std::string& remedy);
 
 }  // namespace sprung

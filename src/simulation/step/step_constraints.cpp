@@ -49,10 +49,10 @@ constexpr double kCorrected = 1.0e-6;
 }  // namespace
 
 StepConstraints::StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, double steady_acceleration,
-                                 Environment& environment, Integrator& integrator)
-    : settings_(settings), steady_acceleration_(steady_acceleration), integrator_(integrator), contacts_(network, environment) {
+                                 const ObstacleSet& obstacles, Integrator& integrator)
+    : settings_(settings), steady_acceleration_(steady_acceleration), integrator_(integrator), contacts_(network, obstacles) {
   if (!settings.stretch_limit) return;
-  limit_.emplace(network, *settings.stretch_limit, limit_use(network, settings, !environment.obstacles().empty()));
+  limit_.emplace(network, *settings.stretch_limit, limit_use(network, settings, !obstacles.empty()));
 }
 
 void StepConstraints::begin(const SimulationState& state) {
@@ -62,19 +62,20 @@ void StepConstraints::begin(const SimulationState& state) {
   slip_before_ = state.slip;
 }
 
-void StepConstraints::apply(SimulationState& state, const Forces& forces, double dt, double time, StepReport& report) {
+void StepConstraints::apply(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, double dt,
+                            StepReport& report) {
   if (!contacts_.can_collide() && !limit_ && constraints_.empty()) return;
-  for (const auto& constraint : constraints_) constraint->prepare(time);
+  for (const auto& constraint : constraints_) constraint->prepare(frame.end());
   if (contacts_.can_collide() || integrator_.needs_advanced()) advanced_ = state.x;
   dt_ = dt;
   record(ImpulseRecorder(state.impulses, dt));
-  project(state, forces, report);
+  project(frame, state, forces, report);
   report.stretch_excess = limit_ ? limit_->excess(state.x) : 0.0;
-  truncate(state, forces, report);
+  truncate(frame, state, forces, report);
   record({});
 }
 
-void StepConstraints::correct_positions(SimulationState& state, double dt) {
+void StepConstraints::correct_positions(const ObstacleFrame& frame, SimulationState& state, double dt) {
   dt_ = dt;
   record({});  // velocities stay as they are
   const auto excess = [&](const Points& x) { return limit_ ? limit_->excess(x) : 0.0; };
@@ -83,7 +84,7 @@ void StepConstraints::correct_positions(SimulationState& state, double dt) {
     slip_before_.displacement.setZero();  // this is no step: friction takes nothing back
     const Points start = state.x;
     advanced_ = start;
-    if (projects_contacts()) contacts_.find(motion());
+    if (projects_contacts()) contacts_.find(frame, motion());
     StepReport report;
     make_passes(state, report);
     const int passes = std::max(limit_ ? limit_->settings().iterations : 0, constraint_passes());
@@ -97,15 +98,15 @@ void StepConstraints::correct_positions(SimulationState& state, double dt) {
     const double excess_left = excess(state.x);
     const double violation_left = violation(state.x);
     const StepTruncation::Relax relax_again = [&](Points& positions) {
-      return rounds++ < max_relax_rounds() && relax(positions, excess_left, violation_left);
+      return rounds++ < max_relax_rounds() && relax(frame, positions, excess_left, violation_left);
     };
-    if (contacts_.can_collide()) contacts_.truncate(motion(), state.x, relax_again);
+    if (contacts_.can_collide()) contacts_.truncate(frame, motion(), state.x, relax_again);
     state.x_previous += state.x - start;
   }
 }
 
-void StepConstraints::project(SimulationState& state, const Forces& forces, StepReport& report) {
-  if (projects_contacts()) contacts_.find(motion());
+void StepConstraints::project(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report) {
+  if (projects_contacts()) contacts_.find(frame, motion());
   if (projects_contacts() && integrator_.responds_to_contact()) respond_to_contact(state, forces);
   make_passes(state, report);
 }
@@ -164,7 +165,7 @@ void StepConstraints::respond_to_contact(SimulationState& state, const Forces& f
   }
 }
 
-void StepConstraints::truncate(SimulationState& state, const Forces& forces, StepReport& report) {
+void StepConstraints::truncate(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report) {
   const bool can_collide = contacts_.can_collide();
   const bool responds = !limit_ && constraints_.empty() && integrator_.responds_to_contact() && projects_contacts();
   const int max_rounds = responds ? kTruncationResponses : max_relax_rounds();
@@ -172,10 +173,10 @@ void StepConstraints::truncate(SimulationState& state, const Forces& forces, Ste
   int rounds = 0;
   const StepTruncation::Relax relax_again = [&](Points& positions) {
     if (rounds++ >= max_rounds) return false;
-    return responds ? respond_to_truncation(state, forces) : relax(positions, report.stretch_excess, violation_before);
+    return responds ? respond_to_truncation(state, forces) : relax(frame, positions, report.stretch_excess, violation_before);
   };
   if (responds) responded_ = state.x;
-  if (can_collide) contacts_.truncate(motion(), state.x, relax_again);
+  if (can_collide) contacts_.truncate(frame, motion(), state.x, relax_again);
   integrator_.recover_velocities(state, forces, positions_before(state), advanced_, dt_);
   if (can_collide) contacts_.limit_speed_of_moved(motion(), state, integrator_);
   if (can_collide) contacts_.settle_velocities(motion(), state, integrator_);
@@ -198,13 +199,13 @@ int StepConstraints::constraint_passes() const {
 // Truncation stopped particles at surfaces for which no contact was found; find_again() finds these. Excess from before truncation
 // is not relaxed here, unless it exceeds max_stretch: then further passes are needed in any case. With constraints they are not:
 // springs and cells hold each other, and the excess that passes leave is the same in each step.
-bool StepConstraints::relax(Points& positions, double excess_before, double violation_before) {
+bool StepConstraints::relax(const ObstacleFrame& frame, Points& positions, double excess_before, double violation_before) {
   const auto permitted = [&](const StretchLimitSettings& settings) {
     return std::max(settings.tolerance, constraints_.empty() ? std::min(excess_before, settings.max_stretch) : excess_before);
   };
   const bool stretched = limit_ && limit_->excess(positions) > permitted(limit_->settings());
   if (!stretched && violation(positions) <= std::max(1.0, violation_before)) return false;
-  if (projects_contacts()) contacts_.find_again(motion(), positions);
+  if (projects_contacts()) contacts_.find_again(frame, motion(), positions);
   for (int pass = 0; pass < kRelaxPasses; ++pass) {
     if (projects_contacts()) contacts_.project(positions);
     sprung::project(constraints_, before_, positions);

@@ -15,10 +15,10 @@ namespace sprung {
 
 class StepConstraints {
  public:
-  /// Keeps references to the network, the settings, the environment and the integrator. `steady_acceleration` [m/s^2] is the
+  /// Keeps references to the network, the settings, the obstacles and the integrator. `steady_acceleration` [m/s^2] is the
   /// largest acceleration by gravity and wind.
   StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, double steady_acceleration,
-                  Environment& environment, Integrator& integrator);
+                  const ObstacleSet& obstacles, Integrator& integrator);
 
   /// Stores positions and velocities at the beginning of a step. Call it before forces and pins move the state.
   void begin(const SimulationState& state);
@@ -46,14 +46,14 @@ class StepConstraints {
   }
 
   /// Projects the advanced state onto contact, constraints and the stretch limit, truncates it, and recovers the velocities at the
-  /// end of the step of `dt` [s], which ends at `time` [s]. Adds counts and the remaining stretch to the report. Requires begin(),
-  /// and that the environment's interval is the step's.
-  void apply(SimulationState& state, const Forces& forces, double dt, double time, StepReport& report);
+  /// end of the step of `dt` [s], in the interval of `frame`. Adds counts and the remaining stretch to the report. Requires
+  /// begin().
+  void apply(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, double dt, StepReport& report);
 
   /// Moves particles from rest onto the stretch limit and the constraints, as far as obstacles and other bodies permit. Velocities
   /// stay as they are. Call it at the start, and when a limit or constraint changed: a step would give particles the velocity of
-  /// that motion (pre-stabilization: Macklin et al. 2014). Requires that the environment's interval is the present time.
-  void correct_positions(SimulationState& state, double dt);
+  /// that motion (pre-stabilization: Macklin et al. 2014). `frame` has the obstacles at the present time.
+  void correct_positions(const ObstacleFrame& frame, SimulationState& state, double dt);
 
   /// The largest residual of the constraints that were added (see Constraint).
   [[nodiscard]] double violation(const Points& positions) const { return residual(constraints_, positions); }
@@ -67,14 +67,14 @@ class StepConstraints {
   [[nodiscard]] const ContactProjection& contacts() const { return contacts_; }
 
  private:
-  void project(SimulationState& state, const Forces& forces, StepReport& report);
+  void project(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report);
   [[nodiscard]] std::optional<int> solve_limit(SimulationState& state);
   void make_passes(SimulationState& state, StepReport& report);
   void respond_to_contact(SimulationState& state, const Forces& forces);
-  void truncate(SimulationState& state, const Forces& forces, StepReport& report);
+  void truncate(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report);
   [[nodiscard]] int max_relax_rounds() const;
   [[nodiscard]] int constraint_passes() const;
-  [[nodiscard]] bool relax(Points& positions, double excess_before, double violation_before);
+  [[nodiscard]] bool relax(const ObstacleFrame& frame, Points& positions, double excess_before, double violation_before);
   [[nodiscard]] bool respond_to_truncation(SimulationState& state, const Forces& forces);
   void record(const ImpulseRecorder& recorder);
   [[nodiscard]] bool projects_contacts() const;

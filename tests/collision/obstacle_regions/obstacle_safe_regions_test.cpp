@@ -18,20 +18,20 @@ namespace {
 TEST(ObstacleSafeRegions, AllowNoPositionOutsideOfTheSearchedBox) {
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.5}};
   ball.rest_pose.translation() = Vector3(10.0, 0.0, 0.0);
-  Environment environment({ball});
-  environment.set_interval(0.0, 0.01);
+  const ObstacleSet obstacles({ball});
+  const ObstacleFrame frame(obstacles, 0.0, 0.01);
   const CollisionSurface surface = test::particle_surface({0});
   const Points here = Points::Zero(3, 1);
-  ObstacleSafeRegions regions(environment.set(), surface, here, 0.01);
-  regions.update({here, here});
+  ObstacleSafeRegions regions(obstacles, surface, here, 0.01);
+  regions.update({frame, here, here});
   std::vector<HalfSpace> half_spaces;
-  regions.append_half_spaces(0, half_spaces);
+  regions.append_half_spaces(frame, 0, half_spaces);
   const auto is_within = [&](const Vector3& p) {
     return std::ranges::all_of(half_spaces, [&](const HalfSpace& bound) { return bound.normal.dot(p) >= bound.offset; });
   };
-  EXPECT_TRUE(regions.allow(0, here.col(0)));
+  EXPECT_TRUE(regions.allow(frame, 0, here.col(0)));
   EXPECT_TRUE(is_within(here.col(0)));
-  EXPECT_FALSE(regions.allow(0, ball.rest_pose.translation()));
+  EXPECT_FALSE(regions.allow(frame, 0, ball.rest_pose.translation()));
   EXPECT_FALSE(is_within(ball.rest_pose.translation()));
 }
 
@@ -44,23 +44,23 @@ TEST(ObstacleSafeRegions, ListEveryParticleWhoseTargetANewRegionExcludes) {
   test::Random random(1);
   const TriangleMesh ground = test::terrain(12, [&](Index, Index) { return random.between(0.0, 1.0); });
   const Obstacle obstacle{.name = "ground", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(ground), false}};
-  Environment environment({obstacle});
-  environment.set_interval(0.0, 0.01);
+  const ObstacleSet obstacles({obstacle});
+  const ObstacleFrame frame(obstacles, 0.0, 0.01);
   test::SelfNetwork cloth;
   cloth.add_cloth(kSide, {-4.0, 1.1, -4.0}, {0.8, 0.0, 0.0}, {0.0, 0.0, 0.8});
   const CollisionSurface surface = cloth.surface(0.05);
-  ObstacleSafeRegions regions(environment.set(), surface, cloth.positions, 0.05);
+  ObstacleSafeRegions regions(obstacles, surface, cloth.positions, 0.05);
   Points from = cloth.positions;
   for (int step = 0; step < kSteps; ++step) {
     Points to = from;
     for (Index i = 0; i < cloth.count(); ++i) {
       to.col(i) += random.between(0.0, kMaxStep) * random.direction() - Vector3(0.0, 0.2 * kMaxStep, 0.0);
     }
-    regions.update({from, to});
+    regions.update({frame, from, to});
     const std::vector<Index> leaving = regions.leaving();
     for (Index i = 0; i < cloth.count(); ++i) {
       if (std::ranges::binary_search(leaving, i)) continue;
-      ASSERT_TRUE(regions.allow(i, to.col(i))) << "particle " << i << " in step " << step;
+      ASSERT_TRUE(regions.allow(frame, i, to.col(i))) << "particle " << i << " in step " << step;
       from.col(i) = to.col(i);
     }
   }
@@ -99,21 +99,24 @@ TriangleMesh spikes(const std::vector<Vector3>& tips) {
 
 /// A square above an obstacle, with one corner here and sides along x and z.
 struct SquareAbove {
-  SquareAbove(const Obstacle& obstacle, const Vector3& corner) : environment({obstacle}) {
+  SquareAbove(const Obstacle& obstacle, const Vector3& corner) : obstacles({obstacle}) {
     square.add_cloth(1, corner, Vector3::UnitX(), Vector3::UnitZ());
     surface = square.surface(kGap);
-    regions.emplace(environment.set(), surface, square.positions, 0.5 * kGap);
+    regions.emplace(obstacles, surface, square.positions, 0.5 * kGap);
   }
 
-  std::vector<Contact> step(const Points& from, const Points& to) {
-    regions->update({from, to});
+  /// In a step that ends at `time` [s].
+  std::vector<Contact> step(const Points& from, const Points& to, double time = kStep) {
+    const ObstacleFrame frame(obstacles, time - kStep, time);
+    regions->update({frame, from, to});
     std::vector<Contact> contacts;
-    regions->find_contacts({from, to}, contacts);
+    regions->find_contacts({frame, from, to}, contacts);
     return contacts;
   }
 
-  static constexpr double kGap = 0.05;  // [m]
-  Environment environment;
+  static constexpr double kGap = 0.05;   // [m]
+  static constexpr double kStep = 0.01;  // [s]
+  ObstacleSet obstacles;
   test::SelfNetwork square;
   CollisionSurface surface;
   std::optional<ObstacleSafeRegions> regions;
@@ -133,7 +136,6 @@ TEST_P(ElementOverTop, HasItsContactAtTheCurrentClosestPoint) {
   Obstacle obstacle{.name = "top", .geometry = GetParam().geometry};
   if (std::holds_alternative<SphereGeometry>(obstacle.geometry)) obstacle.rest_pose.translation() = Vector3(0.0, -0.5, 0.0);
   SquareAbove above(obstacle, {-0.6, 0.9 * kGap, -0.4});
-  above.environment.set_interval(0.0, 0.01);
   Points from = above.square.positions;
   for (int step = 0; step < 200; ++step) {
     Points to = from;
@@ -151,7 +153,7 @@ TEST_P(ElementOverTop, HasItsContactAtTheCurrentClosestPoint) {
 // is the tip's displacement.
 TEST(ElementOverTops, HasAContactThatMovesWithADeformingTip) {
   constexpr double kGap = SquareAbove::kGap;
-  constexpr double kStep = 0.01;
+  constexpr double kStep = SquareAbove::kStep;
   const Vector3 displacement(0.1 * kGap, 0.02 * kGap, 0.0);  // of the tip in a step
   const TriangleMesh first = spikes({Vector3::Zero()});
   MeshSequence sequence{.triangles = first.triangles, .frames = {}, .frame_rate = 1.0 / kStep};
@@ -161,9 +163,8 @@ TEST(ElementOverTops, HasAContactThatMovesWithADeformingTip) {
   SquareAbove above(obstacle, {-0.6, 0.9 * kGap, -0.4});
   Points from = above.square.positions;
   for (int step = 0; step < 30; ++step) {
-    above.environment.set_interval(kStep * step, kStep * (step + 1));
     const Points to = from.colwise() + Vector3(1.5 * displacement.x(), displacement.y(), 0.0);
-    const std::vector<Contact> contacts = above.step(from, to);
+    const std::vector<Contact> contacts = above.step(from, to, kStep * (step + 1));
     const auto is_at_tip = [&](const Contact& contact) {
       const Vector3 between = element_point(contact, from) - (contact.point - contact.drift);  // at the begin of the interval
       return contact.point.isApprox((step + 1) * displacement, 1e-9) && contact.drift.isApprox(displacement, 1e-9) &&
@@ -181,7 +182,6 @@ TEST(ElementOverTops, HasAContactWithTheNextTipAfterItLeftTheFirst) {
   const Obstacle obstacle{.name = "tops",
                           .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(spikes({Vector3::Zero(), next})), false}};
   SquareAbove above(obstacle, {-0.02, 0.9 * kGap, -0.5});
-  above.environment.set_interval(0.0, 0.01);
   const auto touches = [&](const Points& from, const Points& to, const Vector3& tip) {
     const std::vector<Contact> contacts = above.step(from, to);
     return std::ranges::any_of(contacts, [&](const Contact& contact) { return contact.point.isApprox(tip, 1e-12); });

@@ -13,19 +13,19 @@ constexpr double kGap = 0.01;  // [m]
 /// Number of contacts with a floor of this gap. Particles end at `heights` [gaps] after a descent of `falls` [gaps]. The margin is
 /// half a gap.
 std::size_t contacts(const std::vector<double>& heights, const std::vector<double>& falls) {
-  Environment environment({{.name = "floor",
-                            .geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = 0.0},
-                            .material = {.thickness = kGap}}});
-  environment.set_interval(0.0, 0.01);
-  StepTruncation truncation = test::single_particles(environment, std::vector<char>(heights.size(), 0), 0.5 * kGap);
+  const ObstacleSet obstacles({{.name = "floor",
+                                .geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = 0.0},
+                                .material = {.thickness = kGap}}});
+  const ObstacleFrame frame(obstacles, 0.0, 0.01);
+  StepTruncation truncation = test::single_particles(obstacles, std::vector<char>(heights.size(), 0), 0.5 * kGap);
   Points after = Points::Zero(3, static_cast<Index>(heights.size()));
   Points before = after;
   for (std::size_t i = 0; i < heights.size(); ++i) {
     after(1, static_cast<Index>(i)) = heights[i] * kGap;
     before(1, static_cast<Index>(i)) = (heights[i] + falls[i]) * kGap;
   }
-  truncation.begin_step(before, after);
-  return truncation.contacts(before, after).size();
+  truncation.begin_step(frame, before, after);
+  return truncation.contacts(frame, before, after).size();
 }
 
 /// The largest height [gaps], from 1 in steps of 0.01, at which a particle has a contact after a descent of `fall` [gaps]. A
@@ -57,26 +57,26 @@ TEST(ContactMargin, TheMarginIncludesTheMotionOfNeighbours) {
 // first one is searched again.
 TEST(RenewedContacts, AreFoundInThePatchOfATruncatedParticle) {
   constexpr Index kParticles = 40;  // more than fit in one patch, so there are two halves
-  Environment environment({{.name = "floor",
-                            .geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = 0.0},
-                            .material = {.thickness = kGap}}});
-  environment.set_interval(0.0, 0.01);
-  StepTruncation truncation = test::single_particles(environment, std::vector<char>(kParticles, 0), 0.5 * kGap);
+  const ObstacleSet obstacles({{.name = "floor",
+                                .geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = 0.0},
+                                .material = {.thickness = kGap}}});
+  const ObstacleFrame frame(obstacles, 0.0, 0.01);
+  StepTruncation truncation = test::single_particles(obstacles, std::vector<char>(kParticles, 0), 0.5 * kGap);
   Points before = Points::Zero(3, kParticles);
   before.row(1).setConstant(kGap);
   Points after = before;
   after(1, 0) = -kGap;
-  truncation.begin_step(before, after);
-  const std::vector<Contact>& found = truncation.contacts(before, after);
+  truncation.begin_step(frame, before, after);
+  const std::vector<Contact>& found = truncation.contacts(frame, before, after);
   EXPECT_EQ(found.size(), kParticles);
   EXPECT_EQ(std::ranges::count(found, 0, &Contact::patch), kParticles / 2);
   EXPECT_EQ(std::ranges::count(found, 1, &Contact::patch), kParticles / 2);
   std::vector<Contact> renewed;
   std::vector<Index> patches;
-  truncation.truncate(before, after, [&](Points& positions) {
+  truncation.truncate(frame, before, after, [&](Points& positions) {
     if (!renewed.empty()) return false;
     positions.row(1).tail(kParticles - 1).array() += 4.0 * kGap;
-    FreshContacts fresh = truncation.renewed_contacts(before, positions);
+    FreshContacts fresh = truncation.renewed_contacts(frame, before, positions);
     renewed = std::move(fresh.contacts);
     patches = std::move(fresh.patches);
     return true;

@@ -1,7 +1,7 @@
 #include "collision/obstacles/obstacle_intersections.h"
 
 #include "base/parallel.h"
-#include "collision/obstacles/obstacle_set.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "collision/sample_meshes.h"
 #include "collision/surface/self_intersections.h"
 #include "geometry/queries/simplex_crossing.h"
@@ -86,6 +86,7 @@ TEST(Intersections, ElementsThatCrossAMeshIntersectOneOfItsTriangles) {
   Obstacle torus = obstacle(mesh_geometry(mesh, true), Vector3(5.0, -2.0, 1.0));
   torus.rest_pose.linear() = Eigen::AngleAxisd(0.7, Vector3(1, 2, 2) / 3.0).toRotationMatrix();
   const ObstacleSet set({torus});
+  const ObstacleFrame frame(set, 0.0, 0.0);
 
   Points positions = network.positions();
   for (Eigen::Index i = 0; i < positions.cols(); ++i) positions.col(i) = torus.rest_pose * positions.col(i);
@@ -93,7 +94,7 @@ TEST(Intersections, ElementsThatCrossAMeshIntersectOneOfItsTriangles) {
   for (const Element& element : network.elements) {
     Simplex simplex{.count = element.corners};
     for (std::size_t k = 0; k < static_cast<std::size_t>(element.corners); ++k) {
-      simplex.x[k] = set.local(0, positions.col(element.particles[k]));
+      simplex.x[k] = frame.local(0, positions.col(element.particles[k]));
     }
     for (Index t = 0; t < mesh.triangles.cols(); ++t) {
       const auto corner = mesh.triangles.col(t);
@@ -106,9 +107,9 @@ TEST(Intersections, ElementsThatCrossAMeshIntersectOneOfItsTriangles) {
   EXPECT_GT(expected.size(), 100U);
 
   const CollisionSurface surface = network.surface();
-  EXPECT_EQ(crossing(find_intersections(set, surface, positions), surface), expected);
+  EXPECT_EQ(crossing(find_intersections(frame, surface, positions), surface), expected);
   const ThreadLimit one(1);
-  EXPECT_EQ(crossing(find_intersections(set, surface, positions), surface), expected);
+  EXPECT_EQ(crossing(find_intersections(frame, surface, positions), surface), expected);
 }
 
 TEST(Intersections, ParticlesInsideAreFoundOnceWithTheirDepth) {
@@ -117,12 +118,13 @@ TEST(Intersections, ParticlesInsideAreFoundOnceWithTheirDepth) {
   const Network network = confetti(mesh, 600, 0.05, random);
   const Points positions = network.positions();
   const ObstacleSet set({obstacle(mesh_geometry(mesh, true)), obstacle(SphereGeometry{0.9})});
+  const ObstacleFrame frame(set, 0.0, 0.0);
   std::vector<std::pair<Index, Index>> expected;
   for (Index i = 0; i < positions.cols(); ++i) {
     if (test::winding_number(mesh, positions.col(i)) > 0.5) expected.emplace_back(i, 0);
     if (positions.col(i).norm() < 0.9) expected.emplace_back(i, 1);
   }
-  const Intersections found = find_intersections(set, network.surface(), positions);
+  const Intersections found = find_intersections(frame, network.surface(), positions);
   std::vector<std::pair<Index, Index>> inside;
   for (const auto& [particle, k, depth] : found.inside) {
     inside.emplace_back(particle, k);
@@ -143,12 +145,13 @@ TEST(Intersections, TouchingElementsAreReported) {
     const bool is_box = std::holds_alternative<BoxGeometry>(floor) ||
                         (std::holds_alternative<MeshGeometry>(floor) && std::get<MeshGeometry>(floor).closed);
     const ObstacleSet set({obstacle(floor, is_box ? Vector3(-Vector3::UnitY()) : Vector3::Zero())});
+    const ObstacleFrame frame(set, 0.0, 0.0);
     for (const double height : {0.0, 0x1p-30, 0.1}) {
       Network network;
       network.add(0, {Vector3(0.1, height, 0.2), Vector3(0.9, height, 0.3), Vector3(0.5, height, 0.9)});
       network.add(0, {Vector3(1.1, height, 0.2), Vector3(1.9, height + 1.0, 0.3)});
       network.add(0, {Vector3(2.1, height, 0.2)});
-      const auto found = find_intersections(set, network.surface(), network.positions());
+      const auto found = find_intersections(frame, network.surface(), network.positions());
       EXPECT_EQ(found.crossings.size(), height == 0.0 ? 3U : 0U) << height;
       EXPECT_THAT(found.inside, IsEmpty());
     }
@@ -161,7 +164,8 @@ TEST(Intersections, ASpikeThroughAFaceIsReportedWithoutAParticleInside) {
        {ObstacleGeometry(spike), ObstacleGeometry(mesh_geometry(obstacle_mesh(spike, 0.0), true))}) {
     Network network;
     network.add(0, {Vector3(-1, 0, -1), Vector3(2, 0, -1), Vector3(-1, 0, 2)});
-    const auto found = find_intersections(ObstacleSet({obstacle(geometry)}), network.surface(), network.positions());
+    const ObstacleSet set({obstacle(geometry)});
+    const auto found = find_intersections(ObstacleFrame(set, 0.0, 0.0), network.surface(), network.positions());
     EXPECT_THAT(found.inside, IsEmpty());
     ASSERT_EQ(found.crossings.size(), 1U);
     EXPECT_EQ(found.crossings[0].element, 0);
@@ -171,6 +175,7 @@ TEST(Intersections, ASpikeThroughAFaceIsReportedWithoutAParticleInside) {
 
 TEST(Intersections, ElementsPinnedInAnObstacleAreNotReported) {
   const ObstacleSet set({obstacle(BoxGeometry{Vector3(2, 2, 2)})});
+  const ObstacleFrame frame(set, 0.0, 0.0);
   Network network;
   network.add(0, {Vector3(0, 0.5, 0), Vector3(0, 2, 0)});      // hangs from a pin inside
   network.add(0, {Vector3(0.5, 1.0, 0), Vector3(0.5, 2, 0)});  // hangs from a pin on the surface
@@ -179,7 +184,7 @@ TEST(Intersections, ElementsPinnedInAnObstacleAreNotReported) {
   network.add(0, {Vector3(0, 0, 0.3)});
   CollisionSurface surface = network.surface();
   surface.pinned = {1, 0, 1, 0, 1, 0, 1, 1, 1};
-  const Intersections found = find_intersections(set, surface, network.positions());
+  const Intersections found = find_intersections(frame, surface, network.positions());
   EXPECT_THAT(found.inside, IsEmpty());
   EXPECT_THAT(crossing(found, surface), ElementsAre(4));
 }

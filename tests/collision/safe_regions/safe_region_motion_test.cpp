@@ -52,8 +52,8 @@ struct Tally {
 /// Checks that an element never crosses a deforming surface if its corners end in its safe region. Surface and corners move along
 /// straight lines.
 Tally expect_no_crossing(const Transition& transition, double begin, double end, int trials) {
-  MeshShape shape = transition.shape();
-  shape.set_interval(begin, end);
+  const auto in_interval = transition.shape().in_interval(begin, end);
+  const ObstacleShape& shape = *in_interval;
   const TriangleMesh before = transition.at(begin);
   Random random(18);
   Tally tally;
@@ -122,8 +122,8 @@ TEST(SafeRegionMotion, ATranslatedSurfaceTranslatesTheRegion) {
   Transition moving = still;
   moving.to.vertices.colwise() += drift;
   const MeshShape rigid(MeshGeometry{std::make_shared<const TriangleMesh>(still.from), true});
-  MeshShape shape = moving.shape();
-  shape.set_interval(0.0, 1.0);
+  const auto in_interval = moving.shape().in_interval(0.0, 1.0);
+  const ObstacleShape& shape = *in_interval;
   Random random(19);
   for (int trial = 0; trial < 200; ++trial) {
     const ElementCorners element = test::random_element(still.from, random, 1 + trial % 3, 0.2, 0.2);
@@ -147,8 +147,8 @@ TEST(SafeRegionMotion, ATranslatedSurfaceTranslatesTheRegion) {
 
 TEST(SafeRegionMotion, ARegionBuiltForTheEndDoesNotMove) {
   const Transition transition = wobbling_torus({0.7, -0.5, 0.3}, 0.05);
-  MeshShape shape = transition.shape();
-  shape.set_interval(0.0, 1.0);
+  const auto in_interval = transition.shape().in_interval(0.0, 1.0);
+  const ObstacleShape& shape = *in_interval;
   Random random(20);
   for (int trial = 0; trial < 200; ++trial) {
     const ElementCorners element = test::random_element(transition.to, random, 3, 0.2, 0.2);
@@ -164,20 +164,18 @@ TEST(SafeRegionMotion, ClosestPointsMoveWithTheSurface) {
   // The sheet is stretched to twice its size along x. A point moves by its distance from the middle.
   Transition stretching{test::flat_sheet(4), test::flat_sheet(4)};
   stretching.to.vertices.row(0) *= 2.0;
-  MeshShape shape = stretching.shape();
-  shape.set_interval(0.0, 0.25);
+  const MeshShape shape = stretching.shape();
   ElementCorners element{.count = 1};
   element.x[0] = Vector3(1.2, 0.1, 0.3);
   SafeRegion region;
-  shape.find_region(element, {.reach = 0.5, .gap = 0.1, .clearance = 1e-9, .exact = 0.3}, region);
+  shape.in_interval(0.0, 0.25)->find_region(element, {.reach = 0.5, .gap = 0.1, .clearance = 1e-9, .exact = 0.3}, region);
   EXPECT_LT((region.point - Vector3(1.5, 0.0, 0.3)).norm(), 1e-15);
-  shape.set_interval(0.25, 0.5);
-  ASSERT_TRUE(shape.advance_region(region));
+  const auto next = shape.in_interval(0.25, 0.5);
+  ASSERT_TRUE(next->advance_region(region));
   EXPECT_LT((region.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15);
-  ASSERT_TRUE(shape.advance_region(region));
+  ASSERT_TRUE(next->advance_region(region));
   EXPECT_LT((region.point - Vector3(1.8, 0.0, 0.3)).norm(), 1e-15) << "a region advances once per interval";
-  shape.set_interval(0.75, 1.0);
-  EXPECT_FALSE(shape.advance_region(region)) << "the region skipped an interval";
+  EXPECT_FALSE(shape.in_interval(0.75, 1.0)->advance_region(region)) << "the region skipped an interval";
 }
 
 }  // namespace

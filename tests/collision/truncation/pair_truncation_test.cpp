@@ -65,18 +65,17 @@ void expect_feasible(const Obstacle& obstacle, double kick, std::uint64_t seed) 
   network.add_cloth(5, {-0.025, 0.012, -0.025}, kEdge * kX, kEdge * kZ);
   network.add_cloth(5, {-0.024, 0.016, -0.026}, kEdge * kX, kEdge * kZ);
   network.add_rope(6, {-0.03, 0.02, 0.001}, kEdge * kX);
-  Environment environment({obstacle});
-  environment.set_interval(0.0, 0.0);
-  StepTruncation truncation(environment, network.surface(0.0), network.positions, kMargin);
+  const ObstacleSet obstacles({obstacle});
+  StepTruncation truncation(obstacles, network.surface(0.0), network.positions, kMargin);
   Random random(seed);
   Points x = network.positions;
   for (int step = 0; step < 30; ++step) {
-    environment.set_interval(0.01 * step, 0.01 * (step + 1));
-    const RigidTransform& pose = environment.pose_after(0);
+    const ObstacleFrame frame(obstacles, 0.01 * step, 0.01 * (step + 1));
+    const RigidTransform& pose = frame.after(0);
     Points after = x;
     for (auto p : after.colwise()) p += random.between(0.0, kick) * random.direction() + 0.3 * (pose.translation() - p);
-    truncation.begin_step(x, after);
-    EXPECT_EQ(truncation.truncate(x, after).infeasible, 0) << "step " << step;
+    truncation.begin_step(frame, x, after);
+    EXPECT_EQ(truncation.truncate(frame, x, after).infeasible, 0) << "step " << step;
     ASSERT_EQ(test::count_crossings(network.elements, after), 0) << "step " << step;
     ASSERT_EQ(count_crossings(network.elements, pose.inverse() * after, obstacle_mesh(obstacle.geometry, 0.0, 0.01 * (step + 1))),
               0)

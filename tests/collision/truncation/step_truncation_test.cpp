@@ -39,7 +39,7 @@ Obstacle mesh_obstacle(const TriangleMesh& mesh, bool closed) {
 /// Moves particles at random around an obstacle, within `range` of its centre in its own frame. Each has to stay on its side: below
 /// or above an open mesh, outside of a closed one.
 void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double kick, double range) {
-  Environment environment({obstacle});
+  const ObstacleSet obstacles({obstacle});
   const TriangleMesh& mesh = *std::get<MeshGeometry>(obstacle.geometry).mesh;
   const bool closed = std::get<MeshGeometry>(obstacle.geometry).closed;
   const auto within = [range](const Vector3& p) { return Vector3(p.cwiseMax(-range).cwiseMin(range)); };
@@ -53,11 +53,11 @@ void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double
     odd[static_cast<std::size_t>(i)] = triangles_above(mesh, p) % 2 == 1;
     x.col(i) = start * p;
   }
-  StepTruncation truncation = test::single_particles(environment, count);
+  StepTruncation truncation = test::single_particles(obstacles, count);
   Index stopped = 0;
   for (int step = 0; step < steps; ++step) {
-    environment.set_interval(0.01 * step, 0.01 * (step + 1));
-    const RigidTransform& pose = environment.pose_after(0);
+    const ObstacleFrame frame(obstacles, 0.01 * step, 0.01 * (step + 1));
+    const RigidTransform& pose = frame.after(0);
     Points after = x;
     for (Index i = 0; i < count; ++i) {
       // Most move straight towards a vertex and beyond.
@@ -66,7 +66,7 @@ void expect_no_crossing(const Obstacle& obstacle, Index count, int steps, double
       after.col(i) += i % 3 == 0 ? Vector3(kick * random.direction()) : Vector3(random.between(0.0, 2.0) * at);
       after.col(i) = pose * within(pose.inverse() * after.col(i));
     }
-    const TruncationResult result = truncation.truncate(x, after);
+    const TruncationResult result = truncation.truncate(frame, x, after);
     stopped += result.truncated;
     ASSERT_EQ(result.infeasible, 0);
     for (Index i = 0; i < count; ++i) {
@@ -104,8 +104,9 @@ void expect_no_element_crosses(const TriangleMesh& mesh, bool closed, int steps)
   for (const double z : {-1.5, 1.5}) network.add_rope(8, Vector3(-1.2, 0.0, z), Vector3(0.3, 0.0, 0.0));
   const Index count = network.count();
   const std::vector<char> alone(static_cast<std::size_t>(network.bodies), 0);
-  Environment environment({mesh_obstacle(mesh, closed)});
-  StepTruncation truncation(environment,
+  const ObstacleSet obstacles({mesh_obstacle(mesh, closed)});
+  const ObstacleFrame frame(obstacles, 0.0, 0.0);
+  StepTruncation truncation(obstacles,
                             make_collision_surface(network.elements, network.positions, network.body_of, Scalars::Zero(count),
                                                    network.pinned, alone, alone),
                             network.positions, 0.0);
@@ -130,7 +131,7 @@ void expect_no_element_crosses(const TriangleMesh& mesh, bool closed, int steps)
       const bool far = random.below(8) == 0;
       after.col(i) += far ? Vector3(random.between(0.0, 1.5) * (at - x.col(i))) : Vector3(0.01 * random.direction());
     }
-    const TruncationResult result = truncation.truncate(x, after);
+    const TruncationResult result = truncation.truncate(frame, x, after);
     stopped += result.truncated;
     ASSERT_EQ(result.infeasible, 0);
     ASSERT_EQ(crossings(after), 0) << "in step " << step;
@@ -144,35 +145,38 @@ TEST(StepTruncation, NoElementCrossesNeedles) { expect_no_element_crosses(test::
 TEST(StepTruncation, NoElementCrossesARing) { expect_no_element_crosses(test::torus(0.8, 0.1, 16, 6), true, 300); }
 
 TEST(StepTruncation, AThinSheetStopsParticlesAt500MetresPerSecondFromEitherSide) {
-  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
+  const ObstacleSet obstacles({mesh_obstacle(test::flat_sheet(4), false)});
+  const ObstacleFrame frame(obstacles, 0.0, 0.0);
   constexpr double kMove = 500.0 / 60.0;
   Points before(3, 4);
   before << 0.3, 0.3, 0.0, 0.5, 0.01, -0.01, 0.01, -0.01, 0.4, 0.4, 0.0, 0.5;  // the last two over a vertex and an edge
   Points after = before;
   after.row(1) -= Eigen::RowVector4d(kMove, -kMove, kMove, -kMove);
-  const TruncationResult result = test::single_particles(environment, 4).truncate(before, after);
+  const TruncationResult result = test::single_particles(obstacles, 4).truncate(frame, before, after);
   EXPECT_EQ(result.truncated, 4);
   EXPECT_EQ(result.infeasible, 0);
   for (Index i = 0; i < 4; ++i) EXPECT_GT(after(1, i) * before(1, i), 0.0) << i;
 }
 
 TEST(StepTruncation, AParticlePressedForLongStaysInFront) {
-  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
-  StepTruncation truncation = test::single_particles(environment, 1);
+  const ObstacleSet obstacles({mesh_obstacle(test::flat_sheet(4), false)});
+  const ObstacleFrame frame(obstacles, 0.0, 0.0);
+  StepTruncation truncation = test::single_particles(obstacles, 1);
   Points x = Vector3(0.3, 0.01, 0.4);
   for (int step = 0; step < 10000; ++step) {
     Points after = x;
     after(1, 0) -= 0.05;
     after(0, 0) += 0.01 * ((step / 50) % 2 == 0 ? 1 : -1);
-    ASSERT_EQ(truncation.truncate(x, after).infeasible, 0);
+    ASSERT_EQ(truncation.truncate(frame, x, after).infeasible, 0);
     x = after;
     ASSERT_GT(x(1, 0), 0.0) << step;
   }
 }
 
 TEST(StepTruncation, RelaxMovesStoppedParticlesFromTheirSafePositions) {
-  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
-  StepTruncation truncation = test::single_particles(environment, 2);
+  const ObstacleSet obstacles({mesh_obstacle(test::flat_sheet(4), false)});
+  const ObstacleFrame frame(obstacles, 0.0, 0.0);
+  StepTruncation truncation = test::single_particles(obstacles, 2);
   Points before(3, 2);
   before << 0.3, -0.3, 0.01, 0.5, 0.4, 0.4;
   Points after = before;
@@ -185,7 +189,7 @@ TEST(StepTruncation, RelaxMovesStoppedParticlesFromTheirSafePositions) {
     if (times == 4) x.col(0) = Vector3(0.5, 0.5, 0.4);
     return times <= 4;
   };
-  const TruncationResult result = truncation.truncate(before, after, relax);
+  const TruncationResult result = truncation.truncate(frame, before, after, relax);
   EXPECT_EQ(times, 5);
   EXPECT_EQ(result.truncated, 0);
   EXPECT_EQ(after.col(0), Vector3(0.5, 0.5, 0.4));
@@ -193,9 +197,10 @@ TEST(StepTruncation, RelaxMovesStoppedParticlesFromTheirSafePositions) {
 }
 
 TEST(StepTruncation, RelaxIsNotCalledIfNothingIsStopped) {
-  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
+  const ObstacleSet obstacles({mesh_obstacle(test::flat_sheet(4), false)});
+  const ObstacleFrame frame(obstacles, 0.0, 0.0);
   Points after = Vector3(0.3, 0.02, 0.4);
-  test::single_particles(environment, 1).truncate(Vector3(0.3, 0.01, 0.4), after, [](Points&) {
+  test::single_particles(obstacles, 1).truncate(frame, Vector3(0.3, 0.01, 0.4), after, [](Points&) {
     ADD_FAILURE() << "nothing was stopped";
     return false;
   });
@@ -206,11 +211,11 @@ TEST(StepTruncation, AnApproachingObstacleMovesARestingParticle) {
   Obstacle sheet = mesh_obstacle(test::flat_sheet(4), false);
   sheet.rest_pose.translation() = Vector3(0.0, -1.0, 0.0);
   sheet.motion.keyframes = {{0.0}, {0.1, Vector3(0.0, 50.0, 0.0)}};
-  Environment environment({sheet});
-  environment.set_interval(0.0, 0.1);
+  const ObstacleSet obstacles({sheet});
+  const ObstacleFrame frame(obstacles, 0.0, 0.1);
   const Points rest = Vector3(0.1, 0.0, 0.2);
   Points after = rest;
-  const TruncationResult result = test::single_particles(environment, 1).truncate(rest, after);
+  const TruncationResult result = test::single_particles(obstacles, 1).truncate(frame, rest, after);
   EXPECT_EQ(result.truncated, 1);
   EXPECT_EQ(result.infeasible, 0);
   EXPECT_GT(after(1, 0), 49.0);
@@ -218,14 +223,15 @@ TEST(StepTruncation, AnApproachingObstacleMovesARestingParticle) {
 }
 
 TEST(StepTruncation, PinnedAndFreeParticlesKeepEveryBit) {
-  Environment environment({mesh_obstacle(test::flat_sheet(4), false)});
+  const ObstacleSet obstacles({mesh_obstacle(test::flat_sheet(4), false)});
+  const ObstacleFrame frame(obstacles, 0.0, 0.0);
   Points before(3, 2);
   before << 0.3, 0.3, 1.0, 1.0, 0.4, 0.4;
   Points after = before;
   after(1, 0) = -1.0;
   after(1, 1) = 0.1 / 3.0;
   const Points wanted = after;
-  EXPECT_EQ(test::single_particles(environment, std::vector<char>{1, 0}).truncate(before, after).truncated, 0);
+  EXPECT_EQ(test::single_particles(obstacles, std::vector<char>{1, 0}).truncate(frame, before, after).truncated, 0);
   EXPECT_EQ(after, wanted);
 }
 
@@ -236,11 +242,11 @@ TEST(StepTruncation, ReportsAParticleBetweenObstaclesThatPassEachOther) {
   lower.rest_pose.translation() = Vector3(0.0, -1.0, 0.0);
   upper.motion.keyframes = {{0.0}, {1.0, Vector3(0.0, -1.5, 0.0)}};
   lower.motion.keyframes = {{0.0}, {1.0, Vector3(0.0, 1.5, 0.0)}};
-  Environment environment({upper, lower});
-  environment.set_interval(0.0, 1.0);
+  const ObstacleSet obstacles({upper, lower});
+  const ObstacleFrame frame(obstacles, 0.0, 1.0);
   const Points rest = Vector3(0.1, 0.0, 0.2);
   Points after = rest;
-  const TruncationResult result = test::single_particles(environment, 1).truncate(rest, after);
+  const TruncationResult result = test::single_particles(obstacles, 1).truncate(frame, rest, after);
   EXPECT_EQ(result.truncated, 1);
   EXPECT_EQ(result.infeasible, 1);
 }
@@ -255,9 +261,9 @@ Obstacle deforming_obstacle(const TriangleMesh& mesh, const Deform& deform) {
 
 // The surface rotates by 45 degrees in one step: no plane above it at the begin is above it at the end.
 TEST(StepTruncation, ParticlesMoveWithARotatingSurface) {
-  Environment environment(
+  const ObstacleSet obstacles(
       {deforming_obstacle(test::flat_sheet(8), [](const Vector3& x) { return Vector3(x.x(), x.x() + 0.1 * x.z(), x.z()); })});
-  environment.set_interval(0.0, 1.0);
+  const ObstacleFrame frame(obstacles, 0.0, 1.0);
   constexpr Index kCount = 100;
   Random random(35);
   Points rest(3, kCount);
@@ -266,7 +272,7 @@ TEST(StepTruncation, ParticlesMoveWithARotatingSurface) {
         std::exp2(-20.0 * random.between(0.1, 1.0)) * Vector3::UnitY();
   }
   Points after = rest;
-  EXPECT_EQ(test::single_particles(environment, kCount).truncate(rest, after).infeasible, 0);
+  EXPECT_EQ(test::single_particles(obstacles, kCount).truncate(frame, rest, after).infeasible, 0);
   for (const auto& p : after.colwise()) EXPECT_GT(p.y(), p.x() + 0.1 * p.z());
 }
 
@@ -277,11 +283,11 @@ TEST(StepTruncation, ParticlesStayBetweenSheetsOfOneMesh) {
   TriangleMesh sheets{Points(3, 2 * vertices), Triangles(3, 2 * sheet.triangles.cols())};
   sheets.vertices << sheet.vertices, sheet.vertices.colwise() + Vector3::UnitY();
   sheets.triangles << sheet.triangles, (sheet.triangles.array() + static_cast<Index>(vertices)).matrix();
-  Environment environment({deforming_obstacle(sheets, [](const Vector3& x) { return Vector3(x.x(), 0.2 * x.y(), x.z()); })});
-  environment.set_interval(0.0, 1.0);
+  const ObstacleSet obstacles({deforming_obstacle(sheets, [](const Vector3& x) { return Vector3(x.x(), 0.2 * x.y(), x.z()); })});
+  const ObstacleFrame frame(obstacles, 0.0, 1.0);
   const Points rest = Vector3(0.1, 0.4, 0.2);
   Points after = rest;
-  EXPECT_EQ(test::single_particles(environment, 1).truncate(rest, after).infeasible, 0);
+  EXPECT_EQ(test::single_particles(obstacles, 1).truncate(frame, rest, after).infeasible, 0);
   EXPECT_GT(after(1, 0), 0.0);
   EXPECT_LT(after(1, 0), 0.2);
 }
@@ -290,18 +296,18 @@ TEST(StepTruncation, ReportsAnElementThatAPinPullsThroughAnObstacleInTheSameStep
   Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.2}};
   ball.rest_pose.translation() = Vector3(-1.0, 0.0, 0.0);
   ball.motion.keyframes = {{0.0}, {1.0, Vector3(1.0, 0.0, 0.0)}, {2.0, Vector3(1.0, 1.0, 0.0)}};
-  Environment environment({ball});
+  const ObstacleSet obstacles({ball});
   test::SelfNetwork segment;
   segment.add_rope(1, Vector3::Zero(), Vector3(0.6, 0.0, 0.0));
   segment.pinned[0] = 1;
   StepTruncation truncation(
-      environment,
+      obstacles,
       make_collision_surface(segment.elements, segment.positions, segment.body_of, Scalars::Zero(2), segment.pinned, {0}, {0}),
       segment.positions, 0.0);
   const auto infeasible_until = [&](double time) {
-    environment.set_interval(time - 1.0, time);
+    const ObstacleFrame frame(obstacles, time - 1.0, time);
     Points after = segment.positions;
-    return truncation.truncate(segment.positions, after).infeasible;
+    return truncation.truncate(frame, segment.positions, after).infeasible;
   };
   EXPECT_EQ(infeasible_until(1.0), 2) << "both ends of the segment that the ball crosses";
   infeasible_until(2.0);
@@ -313,16 +319,17 @@ TEST(StepTruncation, AParticleInAWedgeOfTwoObstaclesIsNeverInfeasible) {
   Obstacle right = left;
   left.rest_pose.linear() = rotation_from_degrees(Vector3(0.0, 0.0, -60.0));
   right.rest_pose.linear() = rotation_from_degrees(Vector3(0.0, 0.0, 60.0));
-  Environment environment({left, right});
+  const ObstacleSet obstacles({left, right});
+  const ObstacleFrame frame(obstacles, 0.0, 0.0);
   Random random(33);
-  StepTruncation truncation = test::single_particles(environment, 1);
+  StepTruncation truncation = test::single_particles(obstacles, 1);
   Points x = Vector3(0.0, 1.0, 0.1);
   for (int step = 0; step < 1000; ++step) {
     Points after = x + 0.5 * random.direction() - 0.3 * Vector3::UnitY();
     after(2, 0) = std::clamp(after(2, 0), -1.0, 1.0);
-    ASSERT_EQ(truncation.truncate(x, after).infeasible, 0);
+    ASSERT_EQ(truncation.truncate(frame, x, after).infeasible, 0);
     for (Index k = 0; k < 2; ++k) {
-      ASSERT_GT((environment.pose_after(k).inverse() * after.col(0)).y(), 0.0) << step;
+      ASSERT_GT((frame.after(k).inverse() * after.col(0)).y(), 0.0) << step;
     }
     x = after;
   }

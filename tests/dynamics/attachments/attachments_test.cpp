@@ -62,8 +62,8 @@ TEST_F(RandomLinks, APassMovesNoCentreOfMassAndGivesTheSameBitsForAnyNumberOfThr
   NetworkBuilder builder = bodies(count);
   builder.add_attachment({.name = "rods", .particles = first_particles(count), .second = SurfaceEnd{1}});
   const SpringNetwork network = builder.build();
-  const Environment environment;
-  Attachments attachments(network, environment, 1e-3, false);
+  const ObstacleSet obstacles;
+  Attachments attachments(network, obstacles, 1e-3, false);
   const SimulationState state = engaged(network, attachments);
   ASSERT_EQ(state.links.size(), static_cast<std::size_t>(count));
   const Points start = state.x + 0.01 * network.velocities;
@@ -84,8 +84,8 @@ TEST_F(RandomLinks, OnePassRestoresARodOnItsOwn) {
     NetworkBuilder builder = bodies(3);
     builder.add_attachment({.name = "rod", .particles = {0}, .second = SurfaceEnd{1}});
     const SpringNetwork network = builder.build();
-    const Environment environment;
-    Attachments attachments(network, environment, 1e-3, false);
+    const ObstacleSet obstacles;
+    Attachments attachments(network, obstacles, 1e-3, false);
     const SimulationState state = engaged(network, attachments);
     // Up to a half turn and more: then it moves along the present line between the ends.
     Points after = state.x + 0.1 * (1 + trial % 30) * network.velocities;
@@ -103,8 +103,8 @@ TEST_F(RandomLinks, DerivativesOfSpringsAreThoseOfTheirForces) {
   builder.add_attachment(
       {.name = "point", .particles = {1}, .second = ParticleEnds{{4}}, .stiffness = 30.0, .damping = 5.0, .rest_length = 0.0});
   const SpringNetwork network = builder.build();
-  const Environment environment;
-  Attachments attachments(network, environment, 1e-3, false);
+  const ObstacleSet obstacles;
+  Attachments attachments(network, obstacles, 1e-3, false);
   const SimulationState state = engaged(network, attachments);
   const Points& x = state.x;
   const Points v = Points::Zero(3, x.cols());  // a damper's force depends on positions too, but for particles at rest

@@ -26,12 +26,11 @@ class World {
         double step_length = kStep, const Motion& of_floor = {})
       : dt(step_length),
         network(std::move(model)),
-        environment({{.name = "floor", .geometry = HalfSpaceGeometry{}, .motion = of_floor, .material = floor}}),
-        solver(network, environment),
+        obstacles({{.name = "floor", .geometry = HalfSpaceGeometry{}, .motion = of_floor, .material = floor}}),
+        solver(network, obstacles),
         integrator(make_integrator(scheme, network)),
         state(initial_state(network)) {
     forces.push_back(std::make_unique<Gravity>(network, Vector3(0.0, -gravity, 0.0)));
-    environment.set_interval(0.0, dt);
     integrator->start(state, forces, dt);
   }
 
@@ -43,7 +42,7 @@ class World {
     const Points advanced = state.x;
     const Slip slip_before = state.slip;
     const StepMotion motion{before, v_before, slip_before, advanced, dt};
-    solver.start(contacts, motion);
+    solver.start(ObstacleFrame(obstacles, 0.0, dt), contacts, motion);
     for (int pass = 0; pass < passes; ++pass) {
       if (2 * pass == passes && !again.empty()) solver.renew({{0}, again}, motion);
       solver.project(state.x);
@@ -56,7 +55,7 @@ class World {
 
   double dt;  ///< [s]
   SpringNetwork network;
-  Environment environment;
+  ObstacleSet obstacles;
   ContactSolver solver;
   std::unique_ptr<Integrator> integrator;
   Forces forces;
@@ -350,7 +349,7 @@ TEST(ContactSolver, AContactThatIsNotFoundAgainIsRemoved) {
   in_other_patch.patch = 1;
   const Points before = world.state.x;
   const StepMotion motion{before, world.state.v, world.state.slip, before, world.dt};
-  world.solver.start({on_floor({1.0}), in_other_patch}, motion);
+  world.solver.start(ObstacleFrame(world.obstacles, 0.0, world.dt), {on_floor({1.0}), in_other_patch}, motion);
   world.solver.renew({.patches = {0}}, motion);
   world.solver.project(world.state.x);
   EXPECT_EQ(world.state.x(1, 0), 0.0);

@@ -193,18 +193,17 @@ TEST(ForceDerivatives, OfStillAirOnFacesAreFinite) {
 /// A particle that penetrates the gap of a tilted floor by a tenth.
 struct OnTheFloor {
   explicit OnTheFloor(const Vector3& velocity, double friction)
-      : environment({{.name = "floor",
-                      .geometry = HalfSpaceGeometry{.normal = Vector3(0.6, 0.8, 0.0), .offset = 0.0},
-                      .material = {.friction = friction, .static_friction = friction}}}) {
+      : obstacles({{.name = "floor",
+                    .geometry = HalfSpaceGeometry{.normal = Vector3(0.6, 0.8, 0.0), .offset = 0.0},
+                    .material = {.friction = friction, .static_friction = friction}}}) {
     NetworkBuilder builder;
     builder.begin_body("ball", {.thickness = 0.1, .friction = friction, .static_friction = friction});
     builder.add_particle(0.09 * Vector3(0.6, 0.8, 0.0), 0.5, velocity);
     network = builder.build();
-    environment.set_interval(0.0, 0.0);
   }
-  [[nodiscard]] Case contact() { return Case(network, std::in_place_type<PenaltyContact>, environment, 200.0, 1.5, 1.0 / 64.0); }
+  [[nodiscard]] Case contact() { return Case(network, std::in_place_type<PenaltyContact>, obstacles, 200.0, 1.5, 1.0 / 64.0); }
 
-  Environment environment;
+  ObstacleSet obstacles;
   SpringNetwork network;
 };
 
@@ -243,13 +242,13 @@ TEST(ForceDerivatives, AreZeroWithoutContact) {
 TEST(PenaltyContact, UsesObstaclePosesAtTheTimeOfEvaluation) {
   Obstacle floor{.name = "floor", .geometry = HalfSpaceGeometry{}};
   floor.motion.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {0.0, 1.0, 0.0}}};
-  Environment environment({floor});
+  const ObstacleSet obstacles({floor});
   NetworkBuilder builder;
   builder.begin_body("ball", {.thickness = 0.1});
   builder.add_particle(Vector3(0.0, 0.5, 0.0), 0.5);
   const SpringNetwork network = builder.build();
   Forces forces;
-  forces.push_back(std::make_unique<PenaltyContact>(network, environment, 200.0, 0.0, 0.125));
+  forces.push_back(std::make_unique<PenaltyContact>(network, obstacles, 200.0, 0.0, 0.125));
   Points total;
   for (const double time : {0.5, 0.25, 0.4375}) {
     sum_forces(forces, {.x = network.positions, .v = network.velocities, .time = time}, total);

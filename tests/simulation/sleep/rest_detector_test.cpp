@@ -149,8 +149,8 @@ TEST(Surroundings, FacesBetweenGroupsReachTheirNeighbours) {
   const Index ball = builder.add_particle(Vector3::Zero(), 0.1);
   SpringNetwork network = builder.build();
   const SleepGroups groups(network);
-  const Environment environment;
-  const Surroundings surroundings(network, environment, groups, 1.0e-3, kGravity);
+  const ObstacleSet obstacles;
+  const Surroundings surroundings(network, obstacles, groups, 1.0e-3, kGravity);
   SimulationState state = initial_state(network);
   int faces = 0;
   for (const auto& triangle : network.bodies.front().surface.triangles.colwise()) {

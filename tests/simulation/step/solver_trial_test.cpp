@@ -49,7 +49,7 @@ Outcome run(const SpringNetwork& network, Solver solver, int steps, const std::v
   for (int step = 0; step < steps; ++step) {
     const StepReport report = simulator.step();
     if (step >= steps * 3 / 4) outcome.worst_excess = std::max(outcome.worst_excess, report.stretch_excess);
-    outcome.nearest = std::min(outcome.nearest, simulator.environment().min_distance(simulator.positions(), 1.0).value_or(1.0));
+    outcome.nearest = std::min(outcome.nearest, simulator.obstacle_frame().min_distance(simulator.positions(), 1.0).value_or(1.0));
   }
   outcome.x = simulator.positions();
   outcome.solved_since = simulator.state().stretch_handovers.front().solved_since;
