@@ -9,7 +9,13 @@ namespace sprung {
 
 DeformingMesh::DeformingMesh(std::shared_ptr<const MeshSequence> sequence, std::shared_ptr<const VertexTriangles> around,
                              double begin, double end)
-    : sequence_(std::move(sequence)), around_(std::move(around)), after_{{}, sequence_->triangles}, begin_(begin), end_(end) {
+    : sequence_(std::move(sequence)), around_(std::move(around)), after_{{}, sequence_->triangles} {
+  move_to(begin, end);
+}
+
+void DeformingMesh::move_to(double begin, double end) {
+  begin_ = begin;
+  end_ = end;
   sequence_->positions(sequence_->at(begin), before_);
   sequence_->positions(sequence_->at(end), after_.vertices);
   largest_displacement_ = std::sqrt((after_.vertices - before_).colwise().squaredNorm().maxCoeff());

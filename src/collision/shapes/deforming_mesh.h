@@ -17,13 +17,16 @@ struct SurfaceMotion {
 };
 
 /// A mesh whose vertices move along straight lines within an interval, between their positions in the sequence at its begin and
-/// end. Const after construction.
+/// end.
 class DeformingMesh {
  public:
   /// In the interval from `begin` to `end` [s]. Requires a sequence with frames and triangles, and the triangles around its
   /// vertices.
   DeformingMesh(std::shared_ptr<const MeshSequence> sequence, std::shared_ptr<const VertexTriangles> around, double begin,
                 double end);
+
+  /// Another interval; reuses the memory. Not thread-safe.
+  void move_to(double begin, double end);
 
   /// Positions of the vertices at the interval's begin and end [m].
   [[nodiscard]] const Points& before() const { return before_; }

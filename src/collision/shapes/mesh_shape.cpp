@@ -12,6 +12,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 namespace sprung {
 
@@ -29,9 +32,31 @@ constexpr double kSearchFactor = 2.0;
 // Far above the relative rounding error of a sum of distances.
 constexpr double kClearFraction = 1.0 - 0x1p-20;
 
+// Intervals that a substep has at once: its own, its begin, and one of a subdivision.
+constexpr std::size_t kMaxSpares = 3;
+
 double largest_coordinate(const Points& vertices) { return vertices.cwiseAbs().maxCoeff(); }
 
 }  // namespace
+
+/// Shapes of former intervals, whose memory new ones reuse: it is as large as the mesh, and a substep needs one or more.
+struct MeshShape::Spares {
+  std::unique_ptr<MeshShape> take() {
+    const std::lock_guard lock(mutex);
+    if (shapes.empty()) return nullptr;
+    std::unique_ptr<MeshShape> last = std::move(shapes.back());
+    shapes.pop_back();
+    return last;
+  }
+
+  void add(std::unique_ptr<MeshShape> shape) {
+    const std::lock_guard lock(mutex);
+    if (shapes.size() < kMaxSpares) shapes.push_back(std::move(shape));
+  }
+
+  std::mutex mutex;
+  std::vector<std::unique_ptr<MeshShape>> shapes;
+};
 
 MeshShape::MeshShape(const MeshGeometry& geometry) : rigid_(geometry.mesh), closed_(geometry.closed) {
   if (!rigid_) throw InputError(Problem{.key = "mesh", .rule = "must be given"});
@@ -48,6 +73,7 @@ MeshShape::MeshShape(const SequenceGeometry& geometry) : closed_(geometry.closed
   require_usable(sequence);
   for (const Points& frame : sequence.frames) magnitude_ = std::max(magnitude_, largest_coordinate(frame));
   sequence_ = std::make_shared<const SequenceTree>(geometry.sequence);
+  spares_ = std::make_shared<Spares>();
   deforms_ = sequence.deforms();
   fit_to(0.0, 0.0);
 }
@@ -58,9 +84,10 @@ MeshShape::MeshShape(const MeshShape& shape, double begin, double end)
 }
 
 void MeshShape::fit_to(double begin, double end) {
-  deforming_.emplace(sequence_->mesh(begin, end));
-  tree_.emplace(sequence_->tree(*deforming_));
-  tree_before_.emplace(*tree_);
+  if (deforming_) deforming_->move_to(begin, end);
+  if (!deforming_) deforming_.emplace(sequence_->mesh(begin, end));
+  sequence_->fit(*deforming_, tree_);
+  tree_before_ = tree_;
   tree_->set_positions(deforming_->after(), deforming_->triangles());
   tree_before_->set_positions(deforming_->before(), deforming_->triangles());
   bounds_ = tree_->bounds();
@@ -68,7 +95,13 @@ void MeshShape::fit_to(double begin, double end) {
 
 std::shared_ptr<const ObstacleShape> MeshShape::in_interval(double begin, double end) const {
   if (!deforms_) return nullptr;
-  return std::shared_ptr<const MeshShape>(new MeshShape(*this, begin, end));
+  std::unique_ptr<MeshShape> shape = spares_ ? spares_->take() : nullptr;
+  if (shape) shape->fit_to(begin, end);
+  if (!shape) shape.reset(new MeshShape(*this, begin, end));
+  return std::shared_ptr<MeshShape>(shape.release(), [spares = spares_](MeshShape* unused) {
+    std::unique_ptr<MeshShape> spare(unused);
+    if (spares) spares->add(std::move(spare));
+  });
 }
 
 Vector3 MeshShape::displacement(const Vector3& p) const {

@@ -46,6 +46,7 @@ class MeshShape final : public ObstacleShape {
   /// Another interval of a sequence.
   MeshShape(const MeshShape& shape, double begin, double end);
   void fit_to(double begin, double end);
+  struct Spares;
   void move_with_surface(SafeRegion& region) const;
   static void set_triangle_weights(const MeshBvh& tree, SafeRegion& region);
   /// A point of the surface: a triangle and the weights of its corners.
@@ -61,6 +62,7 @@ class MeshShape final : public ObstacleShape {
 
   std::shared_ptr<const TriangleMesh> rigid_;     ///< null for a sequence
   std::shared_ptr<const SequenceTree> sequence_;  ///< null for a rigid mesh
+  std::shared_ptr<Spares> spares_;                ///< of the shape that makes those of other intervals; else null
   std::optional<DeformingMesh> deforming_;
   bool deforms_ = false;
   bool closed_;

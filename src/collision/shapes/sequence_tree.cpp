@@ -26,15 +26,15 @@ SequenceTree::SequenceTree(std::shared_ptr<const MeshSequence> sequence)
       edge_length_(mean_edge_length(sequence_->frames.front(), sequence_->triangles)),
       fitted_(TriangleMesh{sequence_->frames.front(), sequence_->triangles}) {}
 
-MeshBvh SequenceTree::tree(const DeformingMesh& mesh) const {
+void SequenceTree::fit(const DeformingMesh& mesh, std::optional<MeshBvh>& tree) const {
   const MeshSequence::Moment begin = sequence_->at(mesh.begin());
   const MeshSequence::Moment end = sequence_->at(mesh.end());
   const bool at_next = end.frame == begin.next && end.fraction == 0.0 && begin.fraction > 0.0;
   const std::lock_guard lock(mutex_);
   if (end.frame != begin.frame && !at_next) {
-    MeshBvh tree = fitted_;
-    tree.refit(mesh.triangles(), mesh.before(), mesh.after());
-    return tree;
+    tree = fitted_;
+    tree->refit(mesh.triangles(), mesh.before(), mesh.after());
+    return;
   }
   Span span{.frame = begin.frame, .next = begin.next};
   const bool same_frames = last_.frame == span.frame && last_.next == span.next;
@@ -47,7 +47,7 @@ MeshBvh SequenceTree::tree(const DeformingMesh& mesh) const {
     fitted_.refit(mesh.triangles(), positions(span, span.first), positions(span, span.last));
     last_ = span;
   }
-  return fitted_;
+  tree = fitted_;
 }
 
 Points SequenceTree::positions(const Span& span, int segment) const {

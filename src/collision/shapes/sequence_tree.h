@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 
 namespace sprung {
 
@@ -20,9 +21,9 @@ class SequenceTree {
 
   [[nodiscard]] DeformingMesh mesh(double begin, double end) const { return {sequence_, around_, begin, end}; }
 
-  /// The tree with boxes that contain each triangle throughout the interval of `mesh`. The positions of its triangles are
-  /// unspecified.
-  [[nodiscard]] MeshBvh tree(const DeformingMesh& mesh) const;
+  /// Replaces `tree` by the tree with boxes that contain each triangle throughout the interval of `mesh`; reuses its memory. The
+  /// positions of its triangles are unspecified.
+  void fit(const DeformingMesh& mesh, std::optional<MeshBvh>& tree) const;
 
  private:
   /// Segments `first` up to and without `last` of the `segments` between `frame` and `next`.
