@@ -1,4 +1,5 @@
 // A force of one's own: a magnet lifts the end of a hanging chain of iron beads.
+#include "dynamics/forces/force.h"
 #include "network/network_builder.h"
 #include "simulation/simulator.h"
 

@@ -1,4 +1,5 @@
 // A constraint of one's own: a pearl slides down a straight wire, and pulls a thread behind it.
+#include "dynamics/constraints/constraint.h"
 #include "network/network_builder.h"
 #include "simulation/simulator.h"
 

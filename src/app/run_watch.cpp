@@ -6,6 +6,7 @@
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "network/model/pin_schedule.h"
 #include "simulation/monitoring/self_crossings.h"
+#include "simulation/simulator.h"
 #include "simulation/step/frame_steps.h"
 
 #include <fmt/format.h>

@@ -2,13 +2,15 @@
 #pragma once
 
 #include "geometry/obj_source/obj_source.h"
-#include "simulation/simulator.h"
 
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace sprung {
+
+struct Body;
+class Simulator;
 
 /// OBJ text of a body or an obstacle for each frame.
 class ObjSequence {

@@ -1,11 +1,13 @@
 #include "output/run_output.h"
 
 #include "base/error.h"
+#include "network/model/simulation_state.h"
 #include "output/diagnostics_csv.h"
 #include "output/file_pattern.h"
 #include "output/forces_csv.h"
 #include "output/record/record_encoding.h"
 #include "output/record/record_format.h"
+#include "simulation/simulator.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -6,7 +6,6 @@
 #include "output/run_recorder.h"
 #include "output/run_summary.h"
 #include "simulation/diagnostics.h"
-#include "simulation/simulator.h"
 
 #include <chrono>
 #include <optional>
@@ -14,6 +13,8 @@
 #include <vector>
 
 namespace sprung {
+
+class Simulator;
 
 /// Writes one frame after the other. A frame is complete (OBJ files of all bodies, its part of record.bin, rows of diagnostics.csv
 /// and forces.csv) or absent. run.json is updated with each frame.

@@ -3,7 +3,6 @@
 
 #include "geometry/obj_source/obj_source.h"
 #include "output/record/recorded_model.h"
-#include "simulation/simulator.h"
 
 #include <map>
 #include <string>
@@ -11,6 +10,9 @@
 #include <vector>
 
 namespace sprung {
+
+struct Obstacle;
+class Simulator;
 
 /// How the record describes the obstacle's motion.
 [[nodiscard]] ObstacleMotion motion_of(const Obstacle& obstacle);

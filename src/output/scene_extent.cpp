@@ -1,5 +1,6 @@
 #include "output/scene_extent.h"
 
+
 #include <algorithm>
 
 namespace sprung {

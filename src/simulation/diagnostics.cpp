@@ -1,5 +1,8 @@
 #include "simulation/diagnostics.h"
 
+#include "simulation/simulator.h"
+#include "simulation/step/step_report.h"
+
 #include <algorithm>
 #include <chrono>
 

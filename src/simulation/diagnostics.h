@@ -1,11 +1,14 @@
 // Diagnostics of a frame, and the loop that computes frames.
 #pragma once
 
-#include "simulation/simulator.h"
+#include "base/types.h"
 
+#include <cstdint>
 #include <optional>
 
 namespace sprung {
+
+class Simulator;
 
 /// Sums are over the steps of the frame.
 struct FrameDiagnostics {

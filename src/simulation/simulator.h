@@ -1,10 +1,7 @@
 // The simulator: a network, its forces, its obstacles, and the step.
 #pragma once
 
-#include "collision/obstacles/obstacle_frame.h"
-#include "dynamics/constraints/constraint.h"
-#include "dynamics/forces/force.h"
-#include "dynamics/integrators/stable_step.h"
+#include "collision/shapes/obstacle.h"
 #include "network/model/simulation_state.h"
 #include "network/model/spring_network.h"
 #include "simulation/reaction.h"
@@ -17,6 +14,10 @@
 #include <vector>
 
 namespace sprung {
+
+class Constraint;
+class ObstacleFrame;
+class Force;
 
 /// A rod or spring that broke.
 struct BrokenLink {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "output/record/recorded_model.h"
-#include "simulation/simulator.h"
 
 #include <cstdint>
 #include <memory>

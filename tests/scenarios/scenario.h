@@ -3,6 +3,7 @@
 
 #include "scene/building/scene_builder.h"
 #include "simulation/diagnostics.h"
+#include "simulation/simulator.h"
 
 #include <functional>
 #include <iosfwd>

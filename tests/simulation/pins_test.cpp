@@ -1,5 +1,6 @@
 // Laws of pins that follow obstacles, begin during a run, and end.
 #include "base/error.h"
+#include "dynamics/integrators/stable_step.h"
 #include "dynamics/network_bounds.h"
 #include "simulation/scenes.h"
 

@@ -1,5 +1,6 @@
 // Laws of changes to a simulation under way.
 #include "base/error.h"
+#include "dynamics/constraints/constraint.h"
 #include "dynamics/forces/pull_force.h"
 #include "simulation/scenes.h"
 

@@ -2,6 +2,8 @@
 
 #include "dynamics/attachments/engagement.h"
 #include "dynamics/attachments/rods.h"
+#include "dynamics/forces/force_derivatives.h"
+#include "dynamics/numerics/block_matrix.h"
 
 #include <algorithm>
 

@@ -6,6 +6,8 @@
 
 namespace sprung {
 
+struct SpringNetwork;
+
 /// Ends and engages attachments that are due at the state's step, of `step_length` [s]: removes the links of those that end, and
 /// adds missing links of those that have begun, from each particle to the nearest second end at the positions of the state. Broken
 /// links stay, so that they do not engage again. Returns whether anything changed. Requires that the obstacles exist.

@@ -1,6 +1,8 @@
 #include "dynamics/contact/contact_solver.h"
 
 #include "base/parallel.h"
+#include "network/model/recorded_impulses.h"
+#include "network/model/simulation_state.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "dynamics/contact/penalty_contact.h"
 
 #include "dynamics/contact/contact_materials.h"
+#include "dynamics/forces/force_derivatives.h"
 
 #include <algorithm>
 #include <limits>

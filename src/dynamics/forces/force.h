@@ -1,10 +1,11 @@
 // The interface of forces on particles.
 #pragma once
 
-#include "dynamics/numerics/block_matrix.h"
-#include "network/model/simulation_state.h"
+#include "base/types.h"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,17 +13,14 @@
 
 namespace sprung {
 
+struct ForceDerivatives;
+struct ParticlePair;
+
 /// The state at which forces are evaluated.
 struct Kinematics {
   const Points& x;    ///< positions [m], 3 x n
   const Points& v;    ///< velocities [m/s], 3 x n
   double time = 0.0;  ///< [s]
-};
-
-/// The derivatives of forces for implicit schemes: symmetric matrices without positive eigenvalues.
-struct ForceDerivatives {
-  BlockMatrix by_position;  ///< dF/dx [N/m]
-  BlockMatrix by_velocity;  ///< dF/dv [N s/m]
 };
 
 /// A spring and a damper on one weighted sum w_1 u_1 + w_2 u_2 + ... of displacements u [m]: stiffness k and damping c have the
@@ -101,11 +99,5 @@ using Forces = std::vector<std::unique_ptr<Force>>;
 
 /// Writes the sum of all forces [N], 3 x n, to `total`.
 void sum_forces(const Forces& forces, const Kinematics& at, Points& total);
-
-/// Zero derivatives with the pairs of all forces, and with further ones, for `differentiate`.
-[[nodiscard]] ForceDerivatives make_derivatives(const Forces& forces, Index particles, std::vector<ParticlePair> pairs = {});
-
-/// Writes the derivatives of the sum of all forces to `derivatives`, which `make_derivatives` made for the same forces.
-void differentiate(const Forces& forces, const Kinematics& at, ForceDerivatives& derivatives);
 
 }  // namespace sprung

@@ -1,6 +1,7 @@
 #include "dynamics/forces/gravity_and_drag.h"
 
 #include "base/parallel.h"
+#include "dynamics/forces/force_derivatives.h"
 
 #include <utility>
 

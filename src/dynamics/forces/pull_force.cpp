@@ -1,5 +1,7 @@
 #include "dynamics/forces/pull_force.h"
 
+#include "dynamics/forces/force_derivatives.h"
+
 #include <algorithm>
 
 namespace sprung {

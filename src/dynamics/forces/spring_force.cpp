@@ -1,8 +1,10 @@
 #include "dynamics/forces/spring_force.h"
 
 #include "base/parallel.h"
+#include "dynamics/forces/force_derivatives.h"
 #include "dynamics/forces/material_dampers.h"
 #include "dynamics/forces/spring_plan.h"
+#include "dynamics/numerics/block_matrix.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,10 @@
 #include "dynamics/forces/surface_air_force.h"
 
 #include "base/parallel.h"
+#include "dynamics/forces/force_derivatives.h"
+#include "dynamics/numerics/block_matrix.h"
 #include "geometry/mesh/triangle_mesh.h"
+#include "network/model/spring_network.h"
 
 #include <algorithm>
 #include <cmath>

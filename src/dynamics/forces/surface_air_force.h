@@ -1,24 +1,17 @@
 // The force of the air on faces.
 #pragma once
 
+#include "base/types.h"
+#include "dynamics/air/surface_drag.h"
 #include "dynamics/air/wind.h"
 #include "dynamics/forces/force.h"
-#include "network/model/spring_network.h"
 
 #include <string>
 #include <vector>
 
 namespace sprung {
 
-/// Coefficients of SurfaceAirForce: by area and speed [kg/(m^2 s)], or, if quadratic, by area and squared speed [kg/m^3], as half
-/// the density of the air times a drag coefficient.
-struct SurfaceDrag {
-  double normal = 0.0;      ///< of the velocity across a face, >= 0
-  double tangential = 0.0;  ///< of the velocity along it, >= 0
-  bool quadratic = false;
-
-  [[nodiscard]] bool is_zero() const { return normal == 0.0 && tangential == 0.0; }
-};
+struct SpringNetwork;
 
 /// Each triangle of a body's surface feels the air that flows across it and along it. Its area is A, its unit normal n, and u is
 /// the velocity of the air minus its own, both as means of its corners. With u_n = n (n . u) and u_t = u - u_n the force is A

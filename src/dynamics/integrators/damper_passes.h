@@ -7,12 +7,15 @@
 // schemes are stable up to the bound of their springs alone. Momentum and spin stay, as they do with each damper's force.
 #pragma once
 
+#include "base/types.h"
 #include "dynamics/forces/force.h"
-#include "network/model/spring_network.h"
 
 #include <vector>
 
 namespace sprung {
+
+struct SimulationState;
+struct SpringNetwork;
 
 /// Most steps of dampers in a step: it bounds their cost.
 inline constexpr int kMostDamperSteps = 16;

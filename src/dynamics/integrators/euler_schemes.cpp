@@ -1,4 +1,6 @@
 #include "dynamics/integrators/schemes.h"
+#include "network/model/simulation_state.h"
+#include "network/model/spring_network.h"
 
 namespace sprung {
 namespace {

@@ -1,6 +1,9 @@
+#include "dynamics/forces/force_derivatives.h"
 #include "dynamics/integrators/implicit_friction.h"
 #include "dynamics/integrators/implicit_system.h"
 #include "dynamics/integrators/schemes.h"
+#include "dynamics/integrators/step_motion.h"
+#include "network/model/simulation_state.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,7 @@
 #include "dynamics/integrators/implicit_system.h"
 
+#include "dynamics/forces/force_derivatives.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <limits>

@@ -3,6 +3,8 @@
 
 #include "base/parallel.h"
 #include "dynamics/integrators/integrator.h"
+#include "network/model/simulation_state.h"
+#include "network/model/spring_network.h"
 
 namespace sprung {
 

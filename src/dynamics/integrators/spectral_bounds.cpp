@@ -1,5 +1,7 @@
 #include "dynamics/integrators/spectral_bounds.h"
 
+#include "dynamics/forces/force.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>

@@ -1,12 +1,14 @@
 // Bounds on the fastest modes of a network.
 #pragma once
 
-#include "dynamics/forces/force.h"
+#include "base/types.h"
 
 #include <string>
 #include <vector>
 
 namespace sprung {
+
+struct LinearElement;
 
 /// A damping below this fraction of critical does not outweigh the energy that resonance with the step feeds in. Measured: cloths
 /// crumpled at three times their wave speed explode at half of it, and calm down at this value.

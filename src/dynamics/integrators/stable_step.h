@@ -1,7 +1,7 @@
 // The largest stable step of explicit schemes.
 #pragma once
 
-#include "dynamics/integrators/integrator.h"
+#include "dynamics/integrators/integrator_settings.h"
 #include "dynamics/integrators/spectral_bounds.h"
 
 namespace sprung {

@@ -1,9 +1,11 @@
 // The motion of a step before constraints and contact respond.
 #pragma once
 
-#include "network/model/simulation_state.h"
+#include "base/types.h"
 
 namespace sprung {
+
+struct Slip;
 
 /// A step of `dt` [s] that begins at positions `before` [m] with velocities `v_before` [m/s] and the state's slip `slip_before`;
 /// forces alone would end it at `advanced` [m].

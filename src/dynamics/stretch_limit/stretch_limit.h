@@ -1,10 +1,9 @@
 // Projection-based limits on how far springs stretch or shrink (Provot 1995; Jakobsen 2001; Mueller et al. 2007).
 #pragma once
 
-#include "dynamics/constraints/rod_row.h"
+#include "base/types.h"
 #include "dynamics/tethers/stretch_limit_settings.h"
 #include "network/model/simulation_state.h"
-#include "network/model/spring_network.h"
 
 #include <memory>
 #include <optional>
@@ -14,9 +13,12 @@
 
 namespace sprung {
 
-struct SpringBatches;
-class StretchNewton;
+struct Body;
 class LongRangeAttachments;
+struct RodRow;
+struct SpringBatches;
+struct SpringNetwork;
+class StretchNewton;
 
 /// The relative excess over the limit that automatic steps are chosen for: half of `max_stretch` plus `tolerance`, and at least
 /// 0.001.

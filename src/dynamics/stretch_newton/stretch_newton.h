@@ -12,9 +12,11 @@
 
 namespace sprung {
 
+struct Body;
 class ComponentImpulses;
 class ComponentNewton;
 class ComponentSolver;
+struct SpringNetwork;
 struct StretchComponent;
 
 /// Newton's method on each component of limited springs: chains and trees by elimination, others by a sparse factor, large cloths

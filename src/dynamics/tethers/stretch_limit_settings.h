@@ -1,9 +1,10 @@
 // The settings of the stretch limit.
 #pragma once
 
-#include "network/model/spring_network.h"
+#include "network/model/springs.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 namespace sprung {

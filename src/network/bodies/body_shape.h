@@ -1,8 +1,13 @@
 // Ropes, cloths, solids and meshes as particles and springs, in their own frame.
 #pragma once
 
+#include "base/types.h"
+#include "geometry/mesh/polygon_mesh.h"
 #include "geometry/mesh/triangle_mesh.h"
-#include "network/model/spring_network.h"
+#include "network/model/body.h"
+#include "network/model/cells.h"
+#include "network/model/face_bends.h"
+#include "network/model/springs.h"
 
 #include <array>
 #include <limits>

@@ -1,5 +1,7 @@
 #include "network/model/simulation_state.h"
 
+#include "network/model/spring_network.h"
+
 namespace sprung {
 
 SimulationState initial_state(const SpringNetwork& network) {

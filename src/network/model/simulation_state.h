@@ -1,13 +1,17 @@
 // All that a step changes. Time is counted in frames, steps and substeps, never accumulated.
 #pragma once
 
+#include "base/types.h"
+#include "network/model/attachment.h"
 #include "network/model/recorded_impulses.h"
-#include "network/model/spring_network.h"
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace sprung {
+
+struct SpringNetwork;
 
 /// Passes remove the excess of an impact in fewer steps than this, and substeps have reached their smallest length by then.
 inline constexpr int kFirstPatience = 16;

@@ -4,7 +4,7 @@
 #include "geometry/mesh/polygon_mesh.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "network/model/attachment.h"
-#include "network/model/spring_network.h"
+#include "network/model/springs.h"
 
 #include <array>
 #include <cstdint>

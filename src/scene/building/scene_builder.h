@@ -3,9 +3,11 @@
 
 #include "geometry/import/mesh_import.h"
 #include "geometry/obj_source/obj_source.h"
+#include "network/model/spring_network.h"
 #include "network/step_adjustment.h"
 #include "scene/format/scene.h"
 #include "scene/format/text_problems.h"
+#include "simulation/settings/simulator_settings.h"
 
 #include <filesystem>
 #include <map>

@@ -1,9 +1,14 @@
 // A scene file as plain data: the user's values, with defaults filled in.
 #pragma once
 
+#include "base/contact_material.h"
+#include "base/types.h"
 #include "collision/shapes/obstacle.h"
+#include "geometry/motion/motion.h"
 #include "network/bodies/body_shape.h"
-#include "simulation/simulator.h"
+#include "network/model/body.h"
+#include "network/model/springs.h"
+#include "simulation/settings/simulator_settings.h"
 
 #include <array>
 #include <filesystem>

@@ -1,6 +1,7 @@
 #include "scene/step_choice/step_choice.h"
 
 #include "base/format.h"
+#include "dynamics/stretch_limit/stretch_limit.h"
 #include "network/model/pin_schedule.h"
 #include "scene/step_choice/many_steps.h"
 #include "simulation/step/frame_steps.h"

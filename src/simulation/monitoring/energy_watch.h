@@ -13,6 +13,8 @@
 
 namespace sprung {
 
+struct SpringNetwork;
+
 /// Energies of a state [J].
 struct Energies {
   double kinetic = 0.0;

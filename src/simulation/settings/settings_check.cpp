@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/format.h"
 #include "base/grouped_warnings.h"
+#include "network/model/spring_network.h"
 
 #include <algorithm>
 #include <cmath>

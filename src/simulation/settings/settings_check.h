@@ -1,12 +1,15 @@
 // Rules for simulation settings made in code. The scene reader has its own rules, which name the keys of the file.
 #pragma once
 
+#include "network/model/attachment.h"
 #include "simulation/settings/simulator_settings.h"
 
 #include <string>
 #include <vector>
 
 namespace sprung {
+
+struct SpringNetwork;
 
 /// Returns the settings. Throws InputError that names every setting that is not finite or is out of its bounds. `check_step` checks
 /// the step.

@@ -1,10 +1,11 @@
 // Settings of a simulation.
 #pragma once
 
+#include "base/types.h"
+#include "dynamics/air/surface_drag.h"
 #include "dynamics/air/wind.h"
-#include "dynamics/forces/surface_air_force.h"
-#include "dynamics/integrators/integrator.h"
-#include "dynamics/stretch_limit/stretch_limit.h"
+#include "dynamics/integrators/integrator_settings.h"
+#include "dynamics/tethers/stretch_limit_settings.h"
 
 #include <cstdint>
 #include <optional>

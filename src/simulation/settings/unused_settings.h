@@ -9,6 +9,8 @@
 
 namespace sprung {
 
+struct SpringNetwork;
+
 /// Warnings about settings without effect on this network and these obstacles: a stretch limit of kinds that no spring has,
 /// springs that it leaves out because they yield or break, tethers without pins, wind and gusts without drag, drag of surfaces
 /// without faces or coefficients, penalty contact without thickness and what it ignores, and friction whose partners have none.

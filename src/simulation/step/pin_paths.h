@@ -3,12 +3,15 @@
 
 #include "collision/shapes/obstacle.h"
 #include "collision/shapes/surface_anchor.h"
+#include "network/model/pin.h"
 #include "network/model/simulation_state.h"
 
 #include <optional>
 #include <vector>
 
 namespace sprung {
+
+struct SpringNetwork;
 
 /// The particles of a pin with a motion of its own, or which follows a rigid obstacle, move rigidly. Those of a pin that follows a
 /// deforming obstacle each move with the triangle that was nearest when the pin began.

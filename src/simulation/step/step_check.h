@@ -12,6 +12,9 @@
 
 namespace sprung {
 
+class Force;
+struct SpringNetwork;
+
 /// The bounds of all forces, among them penalty contact if there are obstacles, and external ones. They hold for every set of pins
 /// that are active together.
 [[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles,

@@ -4,6 +4,7 @@
 #include "base/test_seed.h"
 #include "dynamics/constraints/same_bits.h"
 #include "dynamics/dense_matrix.h"
+#include "dynamics/forces/force_derivatives.h"
 #include "network/network_builder.h"
 
 #include <gmock/gmock.h>

@@ -4,6 +4,7 @@
 #include "dynamics/all_integrators.h"
 #include "dynamics/contact/contact_constraint_set.h"
 #include "dynamics/forces/gravity_and_drag.h"
+#include "network/model/simulation_state.h"
 #include "network/network_builder.h"
 
 #include <gtest/gtest.h>

@@ -1,13 +1,16 @@
 // Derivatives of forces compared with differences of the forces.
+#include "dynamics/forces/force_derivatives.h"
 #include "dynamics/contact/penalty_contact.h"
 #include "dynamics/dense_matrix.h"
 #include "dynamics/forces/bending_angle_force.h"
 #include "dynamics/forces/gravity_and_drag.h"
 #include "dynamics/forces/spring_force.h"
 #include "dynamics/forces/surface_air_force.h"
+#include "dynamics/integrators/integrator.h"
 #include "dynamics/integrators/stable_step.h"
 #include "dynamics/network_bounds.h"
 #include "dynamics/networks.h"
+#include "network/model/simulation_state.h"
 
 #include <gmock/gmock.h>
 #include <Eigen/Eigenvalues>

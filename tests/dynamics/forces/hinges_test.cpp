@@ -2,6 +2,7 @@
 #include "base/parallel.h"
 #include "dynamics/dense_matrix.h"
 #include "dynamics/forces/bending_helpers.h"
+#include "dynamics/forces/force_derivatives.h"
 #include "dynamics/forces/hinge_angle.h"
 #include "dynamics/forces/material_dampers.h"
 #include "network/network_builder.h"

@@ -1,5 +1,6 @@
 #include "dynamics/integrators/implicit_system.h"
 
+#include "dynamics/forces/force_derivatives.h"
 #include "dynamics/forces/gravity_and_drag.h"
 #include "dynamics/forces/spring_force.h"
 #include "dynamics/networks.h"

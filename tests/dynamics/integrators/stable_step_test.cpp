@@ -3,6 +3,7 @@
 #include "dynamics/forces/bending_angle_force.h"
 #include "dynamics/forces/gravity_and_drag.h"
 #include "dynamics/forces/spring_force.h"
+#include "dynamics/integrators/integrator.h"
 #include "dynamics/network_bounds.h"
 #include "dynamics/networks.h"
 #include "network/model/simulation_state.h"

@@ -1,8 +1,11 @@
 #include "scene/building/scene_builder.h"
 
 #include "geometry/mesh/polygon_mesh.h"
+#include "network/model/pin.h"
+#include "network/model/spring_network.h"
 #include "scene/building/mesh_finder.h"
 #include "scene/scene_text.h"
+#include "simulation/simulator.h"
 
 #include <gmock/gmock.h>
 

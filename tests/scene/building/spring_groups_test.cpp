@@ -1,6 +1,8 @@
 // Springs of OBJ groups, objects and materials with values of their own; cables, yield and break of a scene.
+#include "network/model/spring_network.h"
 #include "scene/building/scene_builder.h"
 #include "scene/scene_text.h"
+#include "simulation/simulator.h"
 
 #include <gmock/gmock.h>
 

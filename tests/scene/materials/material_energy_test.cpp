@@ -3,6 +3,7 @@
 #include "scene/materials/materials.h"
 #include "scene/scene_text.h"
 #include "simulation/diagnostics.h"
+#include "simulation/simulator.h"
 
 #include <gtest/gtest.h>
 

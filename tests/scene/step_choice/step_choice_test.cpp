@@ -1,5 +1,6 @@
 #include "scene/step_choice/step_choice.h"
 #include "base/format.h"
+#include "dynamics/stretch_limit/stretch_limit.h"
 #include "scene/building/scene_builder.h"
 #include "scene/scene_text.h"
 

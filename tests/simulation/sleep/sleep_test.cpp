@@ -1,4 +1,5 @@
 // What rests in contact sleeps, nothing else does, and any change wakes it.
+#include "dynamics/constraints/constraint.h"
 #include "dynamics/forces/pull_force.h"
 #include "simulation/scenes.h"
 
