@@ -115,7 +115,7 @@ void RunWatch::note_stretch(const FrameDiagnostics& frame) {
 }
 
 void RunWatch::note_handovers() {
-  const std::vector<StretchHandover>& handovers = simulator_.state().stretch_handovers;
+  const std::vector<StretchHandover>& handovers = simulator_.state().limit.handovers;
   handed_over_.resize(handovers.size(), false);
   std::map<std::int64_t, std::vector<std::string>> bodies;  // by step
   std::vector<std::string> back;

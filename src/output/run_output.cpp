@@ -1,7 +1,7 @@
 #include "output/run_output.h"
 
 #include "base/error.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "output/diagnostics_csv.h"
 #include "output/file_pattern.h"
 #include "output/forces_csv.h"
@@ -37,7 +37,7 @@ std::string content_of(const MaterialFile& file) {
 std::vector<NewtonFrom> handed_over(const Simulator& simulator) {
   std::vector<NewtonFrom> bodies;
   for (std::size_t b = 0; b < simulator.network().bodies.size(); ++b) {
-    const StretchHandover& handover = simulator.state().stretch_handovers[b];
+    const StretchHandover& handover = simulator.state().limit.handovers[b];
     if (handover.solved_since) bodies.push_back({.body = simulator.network().bodies[b].name, .step = *handover.solved_since});
   }
   return bodies;

@@ -1,5 +1,6 @@
 #include "simulation/diagnostics.h"
 
+#include "collision/obstacles/obstacle_frame.h"
 #include "simulation/simulator.h"
 #include "simulation/step/step_report.h"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/types.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
 // The impulses of pins and attachments since the last reading.
 #pragma once
 
-#include "network/model/recorded_impulses.h"
+#include "dynamics/state/recorded_impulses.h"
 #include "network/model/spring_network.h"
 #include "simulation/reaction.h"
 

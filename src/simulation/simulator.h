@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/shapes/obstacle.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "network/model/spring_network.h"
 #include "simulation/reaction.h"
 #include "simulation/settings/simulator_settings.h"

@@ -100,7 +100,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> given,
                                           const SimulationState& former)
     : Implementation(std::move(model), accepted(std::move(chosen)), std::make_shared<ObstacleSet>(std::move(given)), {}) {
-  return_to({former, {}});
+  return_to(former);
   pin_paths.take(state);
   integrator->resume(state, forces, dt());
 }
@@ -153,9 +153,9 @@ void Simulator::Implementation::take_state(const Implementation& before) {
   const bool pins_changed = take_pins(before);
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
     if (is_held(network, network.bodies[b])) continue;
-    if (constraints.limit() == nullptr || !constraints.limit()->may_be_handed_over(b)) state.stretch_handovers[b] = {};
+    if (constraints.limit() == nullptr || !constraints.limit()->may_be_handed_over(b)) state.limit.handovers[b] = {};
   }
-  constraints.roll_back(before.constraints.permitted_crossings());
+  constraints.roll_back(state.contact.permitted_crossings);
   if (penalty != nullptr) penalty->prepare(time());
   drop_unknown_links(before.network, network, state);
   if (attachments) attachments->take(state, time());

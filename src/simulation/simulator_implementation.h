@@ -9,7 +9,7 @@
 #include "dynamics/forces/surface_air_force.h"
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/integrators/spectral_bounds.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "network/model/spring_network.h"
 #include "simulation/monitoring/divergence.h"
 #include "simulation/monitoring/energy_watch.h"
@@ -31,12 +31,6 @@
 #include <vector>
 
 namespace sprung {
-
-/// A state of a step to which it can return.
-struct StepState {
-  SimulationState state;
-  PermittedCrossings crossings;
-};
 
 struct Simulator::External {
   std::vector<std::shared_ptr<Force>> forces;
@@ -65,7 +59,7 @@ struct Simulator::Implementation {
   StepTrial make_trial(const StepPlan& plan);
   StepTrial repeat(const StepPlan& plan);
   void finish_step(std::span<const StepTrial> tried);
-  void return_to(const StepState& former);
+  void return_to(const SimulationState& former);
   void prepare_step();
   [[nodiscard]] double rotation_in_step() const;
   StepReport make_substep();
@@ -130,8 +124,8 @@ struct Simulator::Implementation {
   RestDetector rest;
   Surroundings surroundings;
   SimulationState state;
-  StepState begin;            ///< of the step
-  StepState best;             ///< the end of its best attempt, while others are made
+  SimulationState begin;                     ///< of the step
+  SimulationState best;                      ///< the end of its best attempt, while others are made
   ReactionRecord reactions;   ///< of attachments, and of pins before the last change of the simulator, in the present interval
   double forces_since = 0.0;  ///< begin of that interval [s]
 };

@@ -29,7 +29,7 @@ std::optional<StepReport> Simulator::Implementation::step(PlanReason reason) {
     if (obstacles.moves()) choose_sleepers();
     return StepReport{};
   }
-  begin = {state, constraints.permitted_crossings()};
+  begin = state;
   try {
     return step_from_begin(reason);
   } catch (...) {
@@ -49,8 +49,8 @@ std::optional<StepReport> Simulator::Implementation::step_from_begin(PlanReason 
     state.rest.sleepers = sleepers;
     return std::nullopt;
   }
-  while (const auto next = planner.next(tried, begin.state)) {
-    if (planner.best(tried) + 1 == tried.size()) best = {state, constraints.permitted_crossings()};
+  while (const auto next = planner.next(tried, begin)) {
+    if (planner.best(tried) + 1 == tried.size()) best = state;
     return_to(begin);
     tried.push_back(repeat(*next));
   }
@@ -71,15 +71,15 @@ void Simulator::Implementation::finish_step(std::span<const StepTrial> tried) {
   record_attachments();
   const bool breaks = attachments && attachments->break_overloaded(state);
   if (breaks) integrator->resume(state, forces, dt());
-  add_impulses_of_sleepers(begin.state.impulses);
+  add_impulses_of_sleepers(begin.impulses);
   choose_sleepers();
   if (breaks) wake_all();
 }
 
 /// Continues from a former state of this step.
-void Simulator::Implementation::return_to(const StepState& former) {
-  state = former.state;
-  constraints.roll_back(former.crossings);
+void Simulator::Implementation::return_to(const SimulationState& former) {
+  state = former;
+  constraints.roll_back(state.contact.permitted_crossings);
   step_length_changed();
   if (penalty != nullptr) penalty->prepare(time());
   if (attachments) attachments->take(state, time());
@@ -96,7 +96,7 @@ StepTrial Simulator::Implementation::repeat(const StepPlan& plan) {
 /// Throws StepError if it diverges.
 StepTrial Simulator::Implementation::make_trial(const StepPlan& plan) {
   if (plan.trial) {
-    state.stretch_handovers[plan.trial->body].solved_since = plan.trial->newton ? std::optional(state.step) : std::nullopt;
+    state.limit.handovers[plan.trial->body].solved_since = plan.trial->newton ? std::optional(state.step) : std::nullopt;
   }
   constraints.follow(plan);
   prepare_step();
@@ -110,7 +110,7 @@ StepTrial Simulator::Implementation::make_trial(const StepPlan& plan) {
   note_contacts();
   set_substeps(planned);
   trial.is_complete = trial.report.max_infeasible < plan.abandon_at;
-  const auto body = planner.body_to_compare(begin.state);
+  const auto body = planner.body_to_compare(begin);
   if (body) trial.body_excess = constraints.limit()->excess(state.x, network.bodies[*body]);
   return trial;
 }
@@ -232,6 +232,7 @@ void Simulator::Implementation::note_contacts() {
   state.contact.pushed.clear();
   std::ranges::merge(constraints.contacts().pushed(), asleep, std::back_inserter(state.contact.pushed));
   state.contact.normals = constraints.contacts().normals();
+  state.contact.permitted_crossings = constraints.permitted_crossings();
 }
 
 void Simulator::Implementation::check_state() {

@@ -5,7 +5,7 @@
 #include "dynamics/forces/spring_force.h"
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/networks.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <cmath>
 

@@ -1,6 +1,5 @@
 #include "network/network_builder.h"
 
-#include "network/model/simulation_state.h"
 #include "network/network_helpers.h"
 
 #include <gmock/gmock.h>
@@ -114,17 +113,6 @@ TEST(NetworkBuilder, AWholeBodyAcceptsFurtherSprings) {
   EXPECT_EQ(network.bodies[1].spring_count, 3);
   EXPECT_EQ(network.springs.first[4], 3);
   EXPECT_EQ(network.springs.second[4], 5);
-}
-
-TEST(NetworkBuilder, TheInitialStateHasThePositionsAndVelocitiesOfTheNetwork) {
-  NetworkBuilder builder;
-  builder.add_particle(Vector3(1, 2, 3), 1.0, Vector3(4, 5, 6));
-  const SpringNetwork network = builder.build();
-  const SimulationState state = initial_state(network);
-  EXPECT_EQ(state.step, 0);
-  EXPECT_EQ(state.x, network.positions);
-  EXPECT_EQ(state.v, network.velocities);
-  EXPECT_EQ(state.x_previous, network.positions);
 }
 
 // A pinned particle with a velocity would drag its neighbours along by their dampers.

@@ -377,7 +377,7 @@ TEST_F(RunOutputFiles, SummaryReportsTheHandoverToNewton) {
     if (solves == 0 && next.limit_solves > 0) {
       EXPECT_EQ(summary()["newton_from"],
                 nlohmann::json::parse(R"([{"body": "cloth", "step": )" +
-                                      std::to_string(*simulator_.state().stretch_handovers[0].solved_since) + R"(, "frame": )" +
+                                      std::to_string(*simulator_.state().limit.handovers[0].solved_since) + R"(, "frame": )" +
                                       std::to_string(frame) + "}]"));
     }
     solves += next.limit_solves;

@@ -1,6 +1,7 @@
 // Laws of a whole step: pins, stability, divergence, determinism, stretch.
 #include "base/error.h"
 #include "base/parallel.h"
+#include "collision/obstacles/obstacle_frame.h"
 #include "simulation/diagnostics.h"
 #include "simulation/scenes.h"
 #include "simulation/step/step_check.h"

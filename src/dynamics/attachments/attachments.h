@@ -4,7 +4,7 @@
 #include "collision/obstacles/obstacle_set.h"
 #include "dynamics/attachments/attachment_springs.h"
 #include "dynamics/attachments/rods.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <memory>
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/obstacles/obstacle_set.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 namespace sprung {
 

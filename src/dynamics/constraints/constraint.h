@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/types.h"
-#include "network/model/recorded_impulses.h"
+#include "dynamics/state/recorded_impulses.h"
 
 #include <memory>
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include "dynamics/contact/collision_surface_builder.h"
 #include "dynamics/contact/contact_materials.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <algorithm>
 #include <utility>

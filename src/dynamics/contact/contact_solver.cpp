@@ -1,8 +1,8 @@
 #include "dynamics/contact/contact_solver.h"
 
 #include "base/parallel.h"
-#include "network/model/recorded_impulses.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/recorded_impulses.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -198,8 +198,8 @@ void ContactSolver::settle_velocities(const StepMotion& motion, SimulationState&
 
 void ContactSolver::note_slip(const StepMotion& motion, SimulationState& state) const {
   std::vector<double> largest_bound(static_cast<std::size_t>(state.x.cols()), 0.0);
-  state.slip.displacement.setZero();
-  std::ranges::fill(state.slip.obstacle, kNone);
+  state.contact.slip.displacement.setZero();
+  std::ranges::fill(state.contact.slip.obstacle, kNone);
   for_each_set(sets_, [&](const auto& set) {
     set.for_pushed([&](Index particle, const auto& row, const ContactGoal& goal) {
       const auto i = static_cast<std::size_t>(particle);
@@ -211,8 +211,8 @@ void ContactSolver::note_slip(const StepMotion& motion, SimulationState& state) 
       const Vector3 moved = goal.origin + turned_with_obstacle(row.obstacle, stuck - row.sum(motion.before));
       const Vector3 slip = across(row.normal, state.x.col(particle) - moved);
       const double length = slip.norm();
-      state.slip.displacement.col(particle) = length > bound ? bound / length * slip : slip;
-      state.slip.obstacle[i] = row.obstacle;
+      state.contact.slip.displacement.col(particle) = length > bound ? bound / length * slip : slip;
+      state.contact.slip.obstacle[i] = row.obstacle;
     });
   });
 }

@@ -3,7 +3,7 @@
 
 #include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/forces/force.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "network/model/spring_network.h"
 
 namespace sprung {

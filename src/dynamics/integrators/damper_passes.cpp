@@ -1,7 +1,7 @@
 #include "dynamics/integrators/damper_passes.h"
 
 #include "dynamics/integrators/schemes.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <cmath>
 #include <numbers>

@@ -3,7 +3,7 @@
 #include "dynamics/integrators/implicit_system.h"
 #include "dynamics/integrators/schemes.h"
 #include "dynamics/integrators/step_motion.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -3,7 +3,7 @@
 #include "dynamics/integrators/constrained_directions.h"
 #include "dynamics/integrators/schemes.h"
 #include "dynamics/integrators/step_motion.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "network/model/spring_network.h"
 
 namespace sprung {

@@ -1,5 +1,5 @@
 #include "dynamics/integrators/schemes.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "network/model/spring_network.h"
 
 #include <array>

@@ -3,7 +3,7 @@
 
 #include "base/parallel.h"
 #include "dynamics/integrators/integrator.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "network/model/spring_network.h"
 
 namespace sprung {

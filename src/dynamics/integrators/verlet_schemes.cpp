@@ -1,6 +1,6 @@
 #include "dynamics/integrators/schemes.h"
 #include "dynamics/integrators/verlet_kernel.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "network/model/spring_network.h"
 
 #include <cmath>

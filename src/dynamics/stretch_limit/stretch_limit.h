@@ -3,7 +3,7 @@
 
 #include "base/types.h"
 #include "dynamics/tethers/stretch_limit_settings.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <memory>
 #include <optional>

@@ -4,7 +4,7 @@
 #include "dynamics/numerics/block_cholesky.h"
 #include "dynamics/stretch_newton/stretch_component.h"
 #include "dynamics/tethers/stretch_limit_settings.h"
-#include "network/model/recorded_impulses.h"
+#include "dynamics/state/recorded_impulses.h"
 
 #include <memory>
 

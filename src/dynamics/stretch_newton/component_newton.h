@@ -4,7 +4,7 @@
 #include "dynamics/stretch_newton/component_solver.h"
 #include "dynamics/stretch_newton/stretch_energy.h"
 #include "dynamics/stretch_newton/stretch_system.h"
-#include "network/model/recorded_impulses.h"
+#include "dynamics/state/recorded_impulses.h"
 
 #include <limits>
 #include <memory>

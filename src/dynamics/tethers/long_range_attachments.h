@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dynamics/tethers/lra_kernel.h"
-#include "network/model/recorded_impulses.h"
+#include "dynamics/state/recorded_impulses.h"
 #include "network/model/spring_network.h"
 
 #include <vector>

@@ -1,4 +1,4 @@
-// The network: masses, springs, bodies and pins. Most of what a step changes is in `simulation_state.h`.
+// The network: masses, springs, bodies and pins. Most of what a step changes is in SimulationState.
 #pragma once
 
 #include "base/types.h"

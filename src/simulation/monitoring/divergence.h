@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/error.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "network/model/spring_network.h"
 
 #include <optional>

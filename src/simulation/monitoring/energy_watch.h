@@ -3,7 +3,7 @@
 
 #include "collision/shapes/obstacle.h"
 #include "dynamics/forces/force.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "simulation/settings/simulator_settings.h"
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "dynamics/stretch_limit/stretch_limit.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "simulation/sleep/sleep_group.h"
 
 #include <array>

@@ -1,7 +1,7 @@
 #include "simulation/start/approach.h"
 
 #include "dynamics/contact/collision_surface_builder.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <algorithm>
 #include <cmath>

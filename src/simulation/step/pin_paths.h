@@ -4,7 +4,7 @@
 #include "collision/shapes/obstacle.h"
 #include "collision/shapes/surface_anchor.h"
 #include "network/model/pin.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <optional>
 #include <vector>

@@ -59,7 +59,7 @@ void StepConstraints::begin(const SimulationState& state) {
   if (copies_positions()) before_ = state.x;
   if (!contacts_.can_collide()) return;
   v_before_ = state.v;
-  slip_before_ = state.slip;
+  slip_before_ = state.contact.slip;
 }
 
 void StepConstraints::apply(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, double dt,
@@ -113,10 +113,10 @@ void StepConstraints::project(const ObstacleFrame& frame, SimulationState& state
 
 std::optional<int> StepConstraints::solve_limit(SimulationState& state) {
   const double fall = steady_acceleration_ * dt_ * dt_;
-  if (!rods_) return limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers, recorder_);
+  if (!rods_) return limit_->solve(positions_before(state), state.x, fall, state.limit.handovers, recorder_);
   std::vector<Vector3> pushes(rods_->rows().size(), Vector3::Zero());
   const std::optional<int> solves =
-      limit_->solve(positions_before(state), state.x, fall, state.stretch_handovers, rods_->rows(), pushes, recorder_);
+      limit_->solve(positions_before(state), state.x, fall, state.limit.handovers, rods_->rows(), pushes, recorder_);
   rods_->add_pushes(pushes);
   return solves;
 }

@@ -1,7 +1,7 @@
 // How a step is made, and what came of it.
 #pragma once
 
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "simulation/step/step_report.h"
 
 #include <cstddef>

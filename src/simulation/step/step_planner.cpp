@@ -1,5 +1,7 @@
 #include "simulation/step/step_planner.h"
 
+#include "network/model/spring_network.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -79,7 +81,7 @@ std::optional<StepPlan> StepPlanner::next(std::span<const StepTrial> tried, cons
   const auto body = body_to_compare(begin);
   if (!body || !best.plan.global_limit) return std::nullopt;
   StepPlan plan = best.plan;
-  plan.trial = {.body = *body, .newton = !begin.stretch_handovers[*body].solved_since};
+  plan.trial = {.body = *body, .newton = !begin.limit.handovers[*body].solved_since};
   plan.abandon_at = best.report.max_infeasible + 1;
   plan.reason = PlanReason::solver_trial;
   return plan;
@@ -140,7 +142,7 @@ void StepPlanner::learn_of_repetitions(std::span<const StepTrial> tried, Simulat
 
 void StepPlanner::learn_of_trial(std::span<const StepTrial> tried, SimulationState& state) const {
   if (!tried.back().plan.trial) return;
-  StretchHandover& handover = state.stretch_handovers[tried.back().plan.trial->body];
+  StretchHandover& handover = state.limit.handovers[tried.back().plan.trial->body];
   const bool changes = best(tried) + 1 == tried.size();
   handover.missed_steps = 0;
   handover.patience = changes ? kFirstPatience : std::min(2 * handover.patience, kMostPatience);
@@ -148,7 +150,7 @@ void StepPlanner::learn_of_trial(std::span<const StepTrial> tried, SimulationSta
 
 void StepPlanner::choose_substeps(std::span<const StepTrial> tried, SimulationState& state) const {
   if (max_substeps_ == 1) return;
-  if (limit_->follows_deformation(state.stretch_handovers)) {
+  if (limit_->follows_deformation(state.limit.handovers)) {
     // Passes alone measure no deformation: then the first attempt tells it.
     const StepTrial& kept = tried[best(tried)];
     const StepTrial& measured = kept.plan.global_limit ? kept : tried.front();
@@ -190,17 +192,17 @@ void StepPlanner::count_missed(double excess, SimulationState& state) const {
   const double wanted = wanted_excess(limit_->settings());
   for (std::size_t b = 0; b < network_.bodies.size(); ++b) {
     if (!limit_->may_be_handed_over(b)) continue;
-    StretchHandover& handover = state.stretch_handovers[b];
+    StretchHandover& handover = state.limit.handovers[b];
     const bool missed = excess > wanted && limit_->excess(state.x, network_.bodies[b]) > wanted;
     handover.missed_steps = missed ? handover.missed_steps + 1 : 0;
   }
 }
 
 std::optional<std::size_t> StepPlanner::body_to_compare(const SimulationState& begin) const {
-  const auto due = std::ranges::find_if(begin.stretch_handovers,
+  const auto due = std::ranges::find_if(begin.limit.handovers,
                                         [](const StretchHandover& handover) { return handover.missed_steps >= handover.patience; });
-  if (due == begin.stretch_handovers.end()) return std::nullopt;
-  return static_cast<std::size_t>(due - begin.stretch_handovers.begin());
+  if (due == begin.limit.handovers.end()) return std::nullopt;
+  return static_cast<std::size_t>(due - begin.limit.handovers.begin());
 }
 
 }  // namespace sprung

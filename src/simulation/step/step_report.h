@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/types.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <stdexcept>
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "dynamics/integrators/integrator.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "network/model/spring_network.h"
 
 #include <array>

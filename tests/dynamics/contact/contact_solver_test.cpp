@@ -4,7 +4,7 @@
 #include "dynamics/all_integrators.h"
 #include "dynamics/contact/contact_constraint_set.h"
 #include "dynamics/forces/gravity_and_drag.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "network/network_builder.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ class World {
     const Points v_before = state.v;
     integrator->advance(state, forces, dt);
     const Points advanced = state.x;
-    const Slip slip_before = state.slip;
+    const Slip slip_before = state.contact.slip;
     const StepMotion motion{before, v_before, slip_before, advanced, dt};
     solver.start(ObstacleFrame(obstacles, 0.0, dt), contacts, motion);
     for (int pass = 0; pass < passes; ++pass) {
@@ -100,8 +100,8 @@ World after_slip(const Vector3& slip, Index obstacle, const Motion& of_floor = {
   NetworkBuilder builder;
   add_body(builder, "ball", {{0.0, kGap, 0.0}}, {0.1}, Vector3::Zero(), rough);
   World world(builder.build(), kGravity, {.friction = 0.5, .static_friction = 0.5}, VerletSettings{}, kStep, of_floor);
-  world.state.slip.displacement.col(0) = slip;
-  world.state.slip.obstacle[0] = obstacle;
+  world.state.contact.slip.displacement.col(0) = slip;
+  world.state.contact.slip.obstacle[0] = obstacle;
   world.step({on_floor({1.0})});
   return world;
 }
@@ -112,14 +112,14 @@ constexpr double kRounding = 1.0e-17;
 TEST(FrictionThatRemembers, TakesBackATenthOfTheSlipOnItsObstacle) {
   const World world = after_slip({1.0e-5, 0.0, 0.0}, 0);
   EXPECT_NEAR(world.state.x(0, 0), -1.0e-6, kRounding);
-  EXPECT_NEAR(world.state.slip.displacement(0, 0), 0.9e-5, kRounding);
-  EXPECT_EQ(world.state.slip.obstacle[0], 0);
+  EXPECT_NEAR(world.state.contact.slip.displacement(0, 0), 0.9e-5, kRounding);
+  EXPECT_EQ(world.state.contact.slip.obstacle[0], 0);
 }
 
 TEST(FrictionThatRemembers, KnowsNothingOfAnotherObstacle) {
   const World world = after_slip({1.0e-5, 0.0, 0.0}, 1);
   EXPECT_EQ(world.state.x(0, 0), 0.0);
-  EXPECT_EQ(world.state.slip.displacement(0, 0), 0.0);
+  EXPECT_EQ(world.state.contact.slip.displacement(0, 0), 0.0);
 }
 
 // The floor turns x to -z about the place where the particle stands.
@@ -127,7 +127,7 @@ TEST(FrictionThatRemembers, TurnsTheSlipWithItsObstacle) {
   const World world = after_slip({1.0e-5, 0.0, 0.0}, 0, {.spin = {0.0, 90.0 / kStep, 0.0}});
   EXPECT_NEAR(world.state.x(0, 0), 0.0, kRounding);
   EXPECT_NEAR(world.state.x(2, 0), 1.0e-6, kRounding);
-  EXPECT_NEAR(world.state.slip.displacement(2, 0), -0.9e-5, kRounding);
+  EXPECT_NEAR(world.state.contact.slip.displacement(2, 0), -0.9e-5, kRounding);
 }
 
 // The first step from rest presses the particle by g dt^2 / 2 into the floor. Friction moves it by at most mu times that.
@@ -135,14 +135,14 @@ TEST(FrictionThatRemembers, StaysWithinCoulombsBound) {
   const World world = after_slip({1.0, 0.0, 0.0}, 0);
   const double bound = 0.5 * 0.5 * kGravity * kStep * kStep;
   EXPECT_NEAR(world.state.x(0, 0), -bound, kRounding);
-  EXPECT_NEAR(world.state.slip.displacement(0, 0), bound, kRounding);
+  EXPECT_NEAR(world.state.contact.slip.displacement(0, 0), bound, kRounding);
 }
 
 TEST(FrictionThatRemembers, ForgetsWhatLeavesItsObstacle) {
   World world = after_slip({1.0e-5, 0.0, 0.0}, 0);
   world.step({});
-  EXPECT_EQ(world.state.slip.displacement(0, 0), 0.0);
-  EXPECT_EQ(world.state.slip.obstacle[0], kNone);
+  EXPECT_EQ(world.state.contact.slip.displacement(0, 0), 0.0);
+  EXPECT_EQ(world.state.contact.slip.obstacle[0], kNone);
 }
 
 class ContactSolverLaws : public ::testing::TestWithParam<std::size_t> {
@@ -349,7 +349,7 @@ TEST(ContactSolver, AContactThatIsNotFoundAgainIsRemoved) {
   Contact in_other_patch = on_floor({1.0}, 1);
   in_other_patch.patch = 1;
   const Points before = world.state.x;
-  const StepMotion motion{before, world.state.v, world.state.slip, before, world.dt};
+  const StepMotion motion{before, world.state.v, world.state.contact.slip, before, world.dt};
   world.solver.start(ObstacleFrame(world.obstacles, 0.0, world.dt), {on_floor({1.0}), in_other_patch}, motion);
   world.solver.renew({.patches = {0}}, motion);
   world.solver.project(world.state.x);

@@ -10,7 +10,7 @@
 #include "dynamics/integrators/stable_step.h"
 #include "dynamics/network_bounds.h"
 #include "dynamics/networks.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <gmock/gmock.h>
 #include <Eigen/Eigenvalues>

@@ -1,6 +1,6 @@
 // The times at which schemes evaluate forces: under a force m t^p alone, v is a quadrature rule.
 #include "dynamics/integrators/integrator.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 #include "network/network_builder.h"
 
 #include <gtest/gtest.h>

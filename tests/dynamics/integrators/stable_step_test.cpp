@@ -6,7 +6,7 @@
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/network_bounds.h"
 #include "dynamics/networks.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <gmock/gmock.h>
 #include <Eigen/Eigenvalues>

@@ -4,7 +4,7 @@
 #include "dynamics/forces/gravity_and_drag.h"
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/networks.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <gmock/gmock.h>
 

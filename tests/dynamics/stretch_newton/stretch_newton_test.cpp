@@ -9,7 +9,7 @@
 #include "dynamics/stretch_newton/component_newton.h"
 #include "dynamics/stretch_newton/pcg_solver.h"
 #include "dynamics/stretch_newton/stretch_energy.h"
-#include "network/model/simulation_state.h"
+#include "dynamics/state/simulation_state.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>

@@ -1,5 +1,7 @@
 // The handover of a stretch limit from passes to a global solve, and its effect.
 #include "base/parallel.h"
+#include "collision/obstacles/obstacle_frame.h"
+#include "dynamics/stretch_limit/stretch_limit.h"
 #include "simulation/scenes.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +54,7 @@ Outcome run(const SpringNetwork& network, Solver solver, int steps, const std::v
     outcome.nearest = std::min(outcome.nearest, simulator.obstacle_frame().min_distance(simulator.positions(), 1.0).value_or(1.0));
   }
   outcome.x = simulator.positions();
-  outcome.solved_since = simulator.state().stretch_handovers.front().solved_since;
+  outcome.solved_since = simulator.state().limit.handovers.front().solved_since;
   return outcome;
 }
 
@@ -109,14 +111,14 @@ TEST_F(ClothOverAPost, KeepsItsPassesWhereTheSolveIsNoBetter) {
   Simulator cloth = simulator(10, Solver::automatic, 1, 1);
   for (int step = 0; step < 60; ++step) {
     cloth.step();
-    ASSERT_FALSE(cloth.state().stretch_handovers[0].solved_since) << step;
+    ASSERT_FALSE(cloth.state().limit.handovers[0].solved_since) << step;
   }
-  EXPECT_GT(cloth.state().stretch_handovers[0].patience, kFirstPatience) << "solves were tried";
+  EXPECT_GT(cloth.state().limit.handovers[0].patience, kFirstPatience) << "solves were tried";
 }
 
 TEST_F(ClothOverAPost, ComesBackToPassesAndTheirSubsteps) {
   Simulator cloth = simulator(18, Solver::automatic, 1, 8);
-  const auto solved_since = [&] { return cloth.state().stretch_handovers[0].solved_since; };
+  const auto solved_since = [&] { return cloth.state().limit.handovers[0].solved_since; };
   for (int step = 0; step < 120 && !solved_since(); ++step) cloth.step();
   ASSERT_TRUE(solved_since());
   for (int step = 0; step < 120 && solved_since(); ++step) cloth.step();
@@ -159,7 +161,7 @@ TEST_F(ClothOverABall, NeedsNoSubstepsAfterTheHandover) {
   Simulator simulator(cloth_, {.step = 1.0 / kRate, .stretch_limit = limit, .max_substeps = 4}, ball_);
   std::vector<int> substeps;
   for (int step = 0; step < 60; ++step) substeps.push_back(simulator.step().substeps);
-  const auto since = simulator.state().stretch_handovers.front().solved_since;
+  const auto since = simulator.state().limit.handovers.front().solved_since;
   ASSERT_TRUE(since);
   for (int step = 0; step <= *since; ++step) EXPECT_EQ(substeps[static_cast<std::size_t>(step)], 4) << step;
   EXPECT_EQ(substeps.back(), 1);

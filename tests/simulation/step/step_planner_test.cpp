@@ -267,7 +267,7 @@ class SolverTrials : public ::testing::Test {
       if (!trial) continue;
       last_ = tried.back();
       if (planned_.best() + 1 == tried.size()) {
-        planned_.state().stretch_handovers[0].solved_since = trial->newton ? std::optional(planned_.state().step) : std::nullopt;
+        planned_.state().limit.handovers[0].solved_since = trial->newton ? std::optional(planned_.state().step) : std::nullopt;
       }
       return step;
     }
@@ -293,7 +293,7 @@ TEST_F(SolverTrials, ChangeTheSolverIfNewtonLeavesFourFifthsOrPassesAsMuch) {
   EXPECT_EQ(planned_.best(), 0U) << "0.81 of the excess";
   steps_to_trial(0.21);
   EXPECT_EQ(planned_.best(), 1U);
-  EXPECT_EQ(planned_.state().stretch_handovers[0].patience, kFirstPatience);
+  EXPECT_EQ(planned_.state().limit.handovers[0].patience, kFirstPatience);
   steps_to_trial(-0.01);
   EXPECT_FALSE(last_.plan.trial->newton);
   EXPECT_EQ(planned_.best(), 0U) << "1.01 of the excess";

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "base/types.h"
+#include "collision/obstacle_regions/permitted_crossing.h"
+#include "dynamics/state/recorded_impulses.h"
 #include "network/model/attachment.h"
-#include "network/model/recorded_impulses.h"
 
 #include <cstdint>
 #include <optional>
@@ -23,6 +24,10 @@ struct StretchHandover {
   std::optional<std::int64_t> solved_since;  ///< the step after which the global solve took over; none: passes enforce the limit
 };
 
+struct LimitMemory {
+  std::vector<StretchHandover> handovers{};  ///< one entry per body
+};
+
 /// The motion of a sleep group or a body in the last windows, see RestDetector.
 struct MotionHistory {
   double displacement = 0.0;  ///< root mean square of the particles' displacements in the window before [m]
@@ -39,16 +44,24 @@ struct RestMemory {
   std::vector<char> sleepers{};            ///< whether each sleep group sleeps in the next step
 };
 
+/// What friction with obstacles remembers of each particle.
+struct Slip {
+  Points displacement;          ///< along the obstacle since the particle stuck to it [m], 3 x n; zero without a contact
+  std::vector<Index> obstacle;  ///< that the particle touches, n; kNone without a contact
+};
+
 /// A touching contact at a particle.
 struct ContactNormal {
   Index particle = kNone;
   Vector3 normal = Vector3::Zero();  ///< unit length
 };
 
-/// The contacts at the end of the last step, by projection.
+/// What contact remembers, by projection.
 struct ContactMemory {
-  std::vector<Index> pushed{};           ///< particles that contact pushed, ascending; particles that sleep keep theirs
-  std::vector<ContactNormal> normals{};  ///< of touching contacts, for each particle that they can move
+  Slip slip{};                             ///< since particles stuck to obstacles
+  std::vector<Index> pushed{};             ///< particles that contact pushed in the last step, ascending; those that sleep stay
+  std::vector<ContactNormal> normals{};    ///< of touching contacts at its end, for each particle that they can move
+  PermittedCrossings permitted_crossings;  ///< of elements that a pin pulled through an obstacle
 };
 
 /// The energies and speeds so far that bound the energy that can have been supplied, see EnergyWatch.
@@ -58,12 +71,6 @@ struct EnergyMemory {
   double stored = 0.0;           ///< energy of springs that was supplied slowly [J]
   double max_kinetic = 0.0;      ///< [J]
   double fastest_drive = 0.0;    ///< of pins and obstacles [m/s]
-};
-
-/// What friction with obstacles remembers of each particle.
-struct Slip {
-  Points displacement;          ///< along the obstacle since the particle stuck to it [m], 3 x n; zero without a contact
-  std::vector<Index> obstacle;  ///< that the particle touches, n; kNone without a contact
 };
 
 /// Where a pin took a particle.
@@ -106,11 +113,10 @@ struct SimulationState {
   Points x;           ///< positions [m], 3 x n
   Points v;           ///< velocities [m/s], 3 x n
   Points x_previous;  ///< Verlet's positions one step ago [m], 3 x n
-  Slip slip;          ///< since particles stuck to obstacles
   ContactMemory contact{};
   RestMemory rest{};
   EnergyMemory energy{};
-  std::vector<StretchHandover> stretch_handovers;  ///< one entry per body
+  LimitMemory limit{};
   std::vector<PinAnchor> anchors{};  ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle
   std::vector<Link> links{};         ///< of attachments that have engaged and not ended, by attachment; broken ones too
   RecordedImpulses impulses{};       ///< empty unless the settings ask for forces
