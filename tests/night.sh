@@ -72,12 +72,16 @@ if build_preset $total release; then
   while [[ $SECONDS -lt $total ]]; do
     seed=$(od -An -N4 -tu4 /dev/urandom | tr -d ' ')
     log=$logs/seed_$seed.txt
-    SPRUNG_TEST_SEED=$seed until_second $total ctest --preset release --parallel "$(nproc)" \
-      --tests-regex '^(RandomScenes|RandomLoads|PairSeparation)\.' > "$log" 2>&1
+    scenes=$seed-$((seed + 99)) # 100 of each scheme
+    SPRUNG_TEST_SEED=$seed SPRUNG_RANDOM_SCENES=$scenes until_second $total ctest --preset release --parallel "$(nproc)" \
+      --tests-regex '^(Blocks/RandomScenes|RandomLoads|PairSeparation)\.' > "$log" 2>&1
     code=$?
     if [[ $code -eq 0 ]]; then rm "$log"; fi
     if [[ $code -ne 124 && $code -ne 125 ]]; then seeds=$((seeds + 1)); fi
-    if [[ $code -ne 0 && $code -ne 124 && $code -ne 125 ]]; then failed_tests "$log" "SPRUNG_TEST_SEED=$seed " release; fi
+    if [[ $code -ne 0 && $code -ne 124 && $code -ne 125 ]]; then
+      grep --only-matching 'SPRUNG_RANDOM_SCENES=[0-9]* .*' "$log" # a scene each
+      failed_tests "$log" "SPRUNG_TEST_SEED=$seed SPRUNG_RANDOM_SCENES=$scenes " release
+    fi
   done
 fi
 echo "random tests: $seeds new seeds"

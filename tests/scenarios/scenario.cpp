@@ -136,20 +136,34 @@ std::ostream& operator<<(std::ostream& stream, const ScenarioReport& report) {
 }
 
 ScenarioReport run_scenario(BuiltScene scene, const Watch& watch, Judge judge) {
+  ScenarioReport report = run_until_divergence(std::move(scene), watch, judge, {});
+  if (report.divergence) throw StepError(*report.divergence);
+  return report;
+}
+
+ScenarioReport run_until_divergence(BuiltScene scene, const Watch& watch, Judge judge, const std::function<bool()>& stops) {
   Simulator simulator(std::move(scene.network), scene.settings, std::move(scene.obstacles));
+  if (stops) simulator.stop_when(stops);
   FrameRunner runner(simulator, scene.steps_per_frame);
   FrameJudge frame_judge(simulator, judge);
   HashRecord record;
   ResumeCheck resume(scene.frames, scene.steps_per_frame);
   ScenarioReport report{.step = scene.settings.step};
   for (int number = 1; number <= scene.frames; ++number) {
-    const FrameDiagnostics frame = number == 1 ? runner.first_frame() : runner.next_frame();
+    FrameDiagnostics frame;
+    try {
+      frame = number == 1 ? runner.first_frame() : runner.next_frame();
+    } catch (const StepError& error) {
+      report.divergence = error.failure();
+      return report;
+    }
     report.frames = number;
     record.add(simulator.positions());
     resume.look(number, simulator);
     report.max_stretch = std::max(report.max_stretch, frame.max_stretch);
     report.truncated += frame.truncated;
     report.infeasible += frame.infeasible;
+    if (frame.infeasible > 0 && report.first_infeasible_frame == 0) report.first_infeasible_frame = number;
     report.simulation_seconds += 1e-3 * frame.frame_ms;
     frame_judge.look(number, report);
     if (watch) watch(simulator, frame);

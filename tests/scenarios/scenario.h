@@ -1,12 +1,14 @@
 // Runs scenes with the real simulator and judges every frame.
 #pragma once
 
+#include "base/error.h"
 #include "scene/building/scene_builder.h"
 #include "simulation/diagnostics.h"
 #include "simulation/simulator.h"
 
 #include <functional>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,12 +33,14 @@ struct ScenarioReport {
   Index self_crossings = 0;
   int first_wrong_frame = 0;  ///< 0: none is wrong
   int last_wrong_frame = 0;
+  int first_infeasible_frame = 0;  ///< 0: none has infeasible particles
   double max_stretch = 0.0;
   Index truncated = 0;
   Index infeasible = 0;
   Index inverted = 0;  ///< cells that end inside out in bodies that preserve their volume
   double simulation_seconds = 0.0;
   double judge_seconds = 0.0;
+  std::optional<StepFailure> divergence{};  ///< after the last frame
 
   [[nodiscard]] bool is_free() const { return first_wrong_frame == 0; }
 };
@@ -50,6 +54,10 @@ using Watch = std::function<void(const Simulator& simulator, const FrameDiagnost
 
 /// Throws StepError when the network diverges, InputError when it cannot start.
 ScenarioReport run_scenario(BuiltScene scene, const Watch& watch = {}, Judge judge = Judge::obstacles);
+
+/// Ends with the last frame before a divergence. Throws InputError when the network cannot start, StoppedError when `stops` is
+/// true.
+ScenarioReport run_until_divergence(BuiltScene scene, const Watch& watch, Judge judge, const std::function<bool()>& stops);
 
 /// A vector as JSON.
 [[nodiscard]] std::string json_text(const Vector3& v);
