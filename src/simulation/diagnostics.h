@@ -30,9 +30,9 @@ struct FrameDiagnostics {
   Index inverted_cells = 0;            ///< cells of solids that are inside out
   std::int64_t substeps = 0;           ///< number of substeps
   PlanReason reason = PlanReason::first;  ///< why the step with the most substeps has so many
-  double smallest_step = 0.0;          ///< length of the shortest substep [s]; 0 without steps
-  std::int64_t limit_solves = 0;       ///< linear systems solved for the stretch limit, summed
-  double frame_ms = 0.0;               ///< wall time of computing the frame
+  double smallest_step = 0.0;             ///< length of the shortest substep [s]; 0 without steps
+  std::int64_t limit_solves = 0;          ///< linear systems solved for the stretch limit, summed
+  double frame_ms = 0.0;                  ///< wall time of computing the frame
 };
 
 /// [J]

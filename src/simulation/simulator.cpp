@@ -45,6 +45,7 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
       surroundings(network, obstacles, groups, settings.step, settings.gravity.norm()),
       state(initial_state(network)) {
   state.rest.sleepers = sleeping_groups();
+  if (!constraints.contacts().can_collide()) state.contact.slip = {};  // each step copies the state
   state.steps_per_frame = settings.steps_per_frame;
   planner.start(anything_moves(), state);
   if (settings.perturb) symmetry.emplace(network, settings.seed);

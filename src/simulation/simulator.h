@@ -65,9 +65,8 @@ class Simulator {
   // throws InputError that names every problem; the simulation then continues as before.
 
   /// Continues with another network and other settings. Requires a network that NetworkBuilder made with the same bodies and the
-  /// same particles. The start of contact cannot change, nor what collides (Body::contact) or how (response). The step may change with
-  /// steps_per_frame at the end of a frame.
-  /// Springs that broke stay broken, and springs that yielded keep their rest lengths.
+  /// same particles. The start of contact cannot change, nor what collides (Body::contact) or how (response). The step may change
+  /// with steps_per_frame at the end of a frame. Springs that broke stay broken, and springs that yielded keep their rest lengths.
   void continue_with(SpringNetwork network, SimulatorSettings settings);
 
   /// Wakes all particles.

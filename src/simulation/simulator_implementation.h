@@ -124,8 +124,8 @@ struct Simulator::Implementation {
   RestDetector rest;
   Surroundings surroundings;
   SimulationState state;
-  SimulationState begin;                     ///< of the step
-  SimulationState best;                      ///< the end of its best attempt, while others are made
+  SimulationState begin;      ///< of the step
+  SimulationState best;       ///< the end of its best attempt, while others are made
   ReactionRecord reactions;   ///< of attachments, and of pins before the last change of the simulator, in the present interval
   double forces_since = 0.0;  ///< begin of that interval [s]
 };

@@ -52,7 +52,7 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"dynamics/forces", {"numerics", "air", "state"}},
     {"dynamics/integrators", {"numerics", "state", "forces"}},
     {"dynamics/constraints", {"state"}},
-    {"dynamics/attachments", {"state", "forces", "constraints"}},
+    {"dynamics/attachments", {"numerics", "state", "forces", "constraints"}},
     {"dynamics/contact", {"state", "forces", "integrators"}},
     {"dynamics/tethers", {"numerics", "state"}},
     {"dynamics/stretch_newton", {"numerics", "state", "constraints", "tethers"}},

@@ -1,8 +1,8 @@
 // The impulses that a pass of the stretch limit gives to springs and pins.
 #pragma once
 
-#include "dynamics/stretch_limit/stretch_kernel.h"
 #include "dynamics/state/recorded_impulses.h"
+#include "dynamics/stretch_limit/stretch_kernel.h"
 #include "network/model/spring_network.h"
 
 namespace sprung {

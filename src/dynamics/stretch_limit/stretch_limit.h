@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/types.h"
-#include "dynamics/tethers/stretch_limit_settings.h"
 #include "dynamics/state/simulation_state.h"
+#include "dynamics/tethers/stretch_limit_settings.h"
 
 #include <memory>
 #include <optional>
@@ -91,8 +91,8 @@ class StretchLimit {
   /// but removes more motion the larger the relative deformation in a step, so that steps are chosen by `deformation`.
   [[nodiscard]] bool follows_deformation(const std::vector<StretchHandover>& handovers = {}) const;
 
-  /// Whether follows_deformation() will be true once all bodies that may be handed over are; the small steps of passes are then no longer
-  /// needed.
+  /// Whether follows_deformation() will be true once all bodies that may be handed over are; the small steps of passes are then no
+  /// longer needed.
   [[nodiscard]] bool may_follow_deformation() const;
 
   /// Largest relative deformation in the last solve() [1]: per component, the largest displacement minus the common displacement,

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "dynamics/numerics/block_cholesky.h"
+#include "dynamics/state/recorded_impulses.h"
 #include "dynamics/stretch_newton/stretch_component.h"
 #include "dynamics/tethers/stretch_limit_settings.h"
-#include "dynamics/state/recorded_impulses.h"
 
 #include <memory>
 

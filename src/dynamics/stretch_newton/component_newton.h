@@ -1,10 +1,10 @@
 // Newton's method for the stretch limit of one component.
 #pragma once
 
+#include "dynamics/state/recorded_impulses.h"
 #include "dynamics/stretch_newton/component_solver.h"
 #include "dynamics/stretch_newton/stretch_energy.h"
 #include "dynamics/stretch_newton/stretch_system.h"
-#include "dynamics/state/recorded_impulses.h"
 
 #include <limits>
 #include <memory>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "dynamics/constraints/rod_row.h"
-#include "dynamics/tethers/stretch_limit_settings.h"
 #include "dynamics/state/simulation_state.h"
+#include "dynamics/tethers/stretch_limit_settings.h"
 
 #include <memory>
 #include <optional>

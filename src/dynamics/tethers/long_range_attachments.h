@@ -1,8 +1,8 @@
 // Long range attachments: particles stay within reach of their pins (Kim, Chentanez and Mueller-Fischer 2012).
 #pragma once
 
-#include "dynamics/tethers/lra_kernel.h"
 #include "dynamics/state/recorded_impulses.h"
+#include "dynamics/tethers/lra_kernel.h"
 #include "network/model/spring_network.h"
 
 #include <vector>

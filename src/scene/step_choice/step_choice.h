@@ -14,8 +14,8 @@ struct SpringNetwork;
 
 /// The largest automatic step [s] if stability does not bound it: after a fall of one second, a particle moves by 4 cm in such a
 /// step. If no contact is possible, a step may be as large as a frame with implicit Euler, which is made for large steps, and with
-/// a global solve of all limited springs (see StretchLimit::follows_deformation); but not with implicit Euler and a stretch limit if
-/// springs have stiffness.
+/// a global solve of all limited springs (see StretchLimit::follows_deformation); but not with implicit Euler and a stretch limit
+/// if springs have stiffness.
 inline constexpr double kLargestAutoStep = 1.0 / 240.0;
 
 /// Largest number of substeps of an automatic step that misses the stretch limit or turns too much. It may be larger if passes

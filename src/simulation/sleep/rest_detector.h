@@ -5,8 +5,8 @@
 // windows of a quarter of a second.
 #pragma once
 
-#include "dynamics/stretch_limit/stretch_limit.h"
 #include "dynamics/state/simulation_state.h"
+#include "dynamics/stretch_limit/stretch_limit.h"
 #include "simulation/sleep/sleep_group.h"
 
 #include <array>

@@ -25,12 +25,7 @@ double displacement(const RigidTransform& motion, const Box3& box) {
 
 Surroundings::Surroundings(const SpringNetwork& network, const ObstacleSet& obstacles, const SleepGroups& groups, double step,
                            double gravity)
-    : network_(network),
-      obstacles_(obstacles),
-      groups_(groups),
-      step_(step),
-      gravity_(gravity),
-      ends_(groups.groups.size(), 0.0) {
+    : network_(network), obstacles_(obstacles), groups_(groups), step_(step), gravity_(gravity), ends_(groups.groups.size(), 0.0) {
   for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
     for (const Pin& pin : *pins) note(pin);
   }

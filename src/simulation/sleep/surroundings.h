@@ -14,8 +14,7 @@ class ObstacleFrame;
 class Surroundings {
  public:
   /// Keeps references to the network, the obstacles and the groups. `step` in s, `gravity` in m/s^2.
-  Surroundings(const SpringNetwork& network, const ObstacleSet& obstacles, const SleepGroups& groups, double step,
-               double gravity);
+  Surroundings(const SpringNetwork& network, const ObstacleSet& obstacles, const SleepGroups& groups, double step, double gravity);
 
   struct Found {
     std::vector<Box3> boxes;       ///< of each group, grown by its displacement in the next step, by speed and gravity

@@ -3,8 +3,8 @@
 
 #include "collision/shapes/obstacle.h"
 #include "collision/shapes/surface_anchor.h"
-#include "network/model/pin.h"
 #include "dynamics/state/simulation_state.h"
+#include "network/model/pin.h"
 
 #include <optional>
 #include <vector>

@@ -34,7 +34,7 @@ double velocity_after_a_second(const IntegratorSettings& settings, double power)
   const auto integrator = make_integrator(settings, network);
   SimulationState state = initial_state(network);
   integrator->start(state, forces, kStep);
-  for (; state.step < kSteps; ++state.step) integrator->advance(state, forces, kStep);
+  for (; state.step < kSteps; count_step(state)) integrator->advance(state, forces, kStep);
   return state.v(0, 0);
 }
 

@@ -5,11 +5,11 @@
 #include "dynamics/forces/gravity_and_drag.h"
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/networks.h"
+#include "dynamics/state/simulation_state.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "dynamics/stretch_newton/component_newton.h"
 #include "dynamics/stretch_newton/pcg_solver.h"
 #include "dynamics/stretch_newton/stretch_energy.h"
-#include "dynamics/state/simulation_state.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
@@ -326,12 +326,14 @@ TEST(StretchLimit, FollowsTheTurnWhereGlobalSolvesEnforceAllSprings) {
   EXPECT_TRUE(StretchLimit(rope, {.solver = Solver::automatic}).follows_deformation());
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).follows_deformation());
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_deformation());
-  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_deformation({{.solved_since = 0}})) << "left to global solves";
+  EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).follows_deformation({{.solved_since = 0}}))
+      << "left to global solves";
   EXPECT_TRUE(StretchLimit(cloth, {.solver = Solver::automatic}).may_follow_deformation());
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::newton}).may_follow_deformation()) << "it follows the turn already";
   EXPECT_FALSE(StretchLimit(cloth, {.solver = Solver::gauss_seidel}).may_follow_deformation());
   EXPECT_FALSE(StretchLimit(cloth, {.max_compression = 0.5, .solver = Solver::newton}).follows_deformation()) << "left to passes";
-  EXPECT_FALSE(StretchLimit(rope, {.kinds = {SpringKind::shear}, .solver = Solver::newton}).follows_deformation()) << "limits nothing";
+  EXPECT_FALSE(StretchLimit(rope, {.kinds = {SpringKind::shear}, .solver = Solver::newton}).follows_deformation())
+      << "limits nothing";
 }
 
 // A rope between two pins farther apart than its length: the unavoidable excess is distributed evenly and reported.
