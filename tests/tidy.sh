@@ -60,7 +60,8 @@ check() {
     rm -f "$cache/$form.findings"
   else
     touch "$cache/$form.findings"
-    grep -vE '^[0-9]+ warnings? |^Suppressed |^Use -header-filter|^[0-9]+ warnings? treated as errors' "$work/$form" > "$work/findings/$form"
+    grep -vE '^[0-9]+ warnings? |^Suppressed |^Use -header-filter|^[0-9]+ warnings? treated as errors' "$work/$form" > "$work/findings/$form" ||
+      echo "$source: clang-tidy ended with $status" > "$work/findings/$form"
   fi
   echo "$source"
 }

@@ -5,7 +5,6 @@
 #include "output/record/recorded_model.h"
 
 #include <map>
-#include <string>
 #include <tuple>
 #include <vector>
 

@@ -1,7 +1,5 @@
 #include "output/scene_extent.h"
 
-#include <algorithm>
-
 namespace sprung {
 namespace {
 

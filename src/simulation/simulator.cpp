@@ -17,8 +17,6 @@
 #include "simulation/step/step_check.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace sprung {
@@ -95,13 +93,13 @@ void Simulator::Implementation::add_constraints() {
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> given)
     : Implementation(std::move(model), std::move(chosen), std::make_shared<ObstacleSet>(std::move(given)), {}) {
-  pin_paths.take(state);
+  pin_paths.register_pins(state);
   move_pins(0.0);
   Start start = find_start(network, obstacles_now(), settings.contact, state.x);
   state.x = std::move(start.positions);
   warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
   notes = std::move(start.notes);
-  if (constraints.violation(state.x) > 1.0) constraints.correct_positions(obstacles_now(), state, dt());
+  if (constraints.violation(state.x) > 1.0) correct_positions(dt());
   if (attachments) attachments->update(state);
   const std::vector<std::string> of_links = unlikely_lengths(network, state.links);
   warnings.insert(warnings.end(), of_links.begin(), of_links.end());
@@ -109,6 +107,11 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   note_change();
   if (attachments) EnergyWatch::note_pin(attachments->winch_speed(state), state.energy);
   begin_recording();
+}
+
+void Simulator::Implementation::correct_positions(double dt) {
+  constraints.correct_positions(obstacles_now(), state, dt);
+  state.contact.permitted_crossings = constraints.permitted_crossings();
 }
 
 /// Before this, pins take the speed with which they begin, which is no impulse.
@@ -157,6 +160,7 @@ StepReport Simulator::step_and_rebuild(std::unique_ptr<Implementation>& before) 
   std::optional<StepReport> report = implementation_->step(PlanReason::first);
   while (!report) {
     std::unique_ptr<Implementation> asleep = rebuild(implementation_->particles_to_sleep());
+    asleep->state = asleep->begin;  // with its sleepers, in case the repeated step throws
     if (!before) before = std::move(asleep);
     report = implementation_->step(PlanReason::wake);
   }

@@ -33,9 +33,11 @@ class Simulator {
   /// were moved out of intersections.
   explicit Simulator(SpringNetwork network, SimulatorSettings settings = {}, std::vector<Obstacle> obstacles = {});
 
-  /// Continues from a state: `network` and `state` are copies of network() and state() of a simulator with the same settings and
-  /// obstacles. Results may differ in their last digits from those of that simulator, which has caches of former steps. Throws
-  /// InputError as the constructor does, but for the stability of the step, which was accepted, and intersections.
+  /// Continues from a state. Requires copies of network() and state() of a simulator with the same settings and obstacles. Forces,
+  /// constraints and stop_when() that were added are not part of the state: add them again. A new interval of forces begins (see
+  /// reset_forces()). Results may differ in their last digits from those of that simulator, which has caches of former steps.
+  /// Throws InputError as the constructor does, but does not check the stability of the step and intersections; and if the state
+  /// is not one of the network.
   [[nodiscard]] static Simulator resume(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles,
                                         const SimulationState& state);
   ~Simulator();
@@ -49,9 +51,9 @@ class Simulator {
   /// - if pins begin or end, which is at the step nearest to their time;
   /// - if springs break, as they are longer than their break length: network() then lacks them and the faces that tore
   ///   (Surface::torn);
-  /// - if patches fall asleep or wake (see RestDetector and Surroundings): their particles then have no inverse masses
-  ///   (SpringNetwork::asleep). If all sleep, a step changes the time alone. If a step makes the neighbour of a patch that sleeps
-  ///   restless, it is made again with the patch awake.
+  /// - if groups of particles fall asleep or wake (see RestDetector and Surroundings): their particles then have no inverse masses
+  ///   (SpringNetwork::asleep). If all sleep, a step changes the time alone. If a step makes a neighbour of a sleeping group
+  ///   restless, the body of that group wakes and the step is repeated.
   /// Last, springs that yield get new rest lengths in network().
   StepReport step();
 
@@ -114,7 +116,7 @@ class Simulator {
   /// Changes that the settings asked for, such as bodies that `push_out` moved; a sentence each.
   [[nodiscard]] const std::vector<std::string>& notes() const;
 
-  /// state().step * settings().step [s], between steps
+  /// Time [s], between steps: whole_steps(state()) * settings().step.
   [[nodiscard]] double time() const;
 
   /// Positions [m], 3 x n.

@@ -94,24 +94,26 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
                                           const Implementation& before)
     : Implementation(with_pins_of(std::move(model), whole_steps(before.state), before.settings.step), std::move(chosen),
                      before.shared_obstacles, std::move(added)) {
-  take_state(before);
+  inherit_state(before);
 }
 
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> given,
                                           const SimulationState& former)
     : Implementation(std::move(model), accepted(std::move(chosen)), std::make_shared<ObstacleSet>(std::move(given)), {}) {
   return_to(former);
-  pin_paths.take(state);
+  pin_paths.register_pins(state);
   integrator->resume(state, forces, dt());
+  if (!settings.record_forces || !state.last_impulses.on()) state.impulses = state.last_impulses = {};
+  begin_recording();
 }
 
 /// Lets pins begin and end. A particle that becomes free gets its pin's mean velocity over the last `dt`. Returns whether a pin
 /// changed.
-bool Simulator::Implementation::take_pins(const Implementation& before) {
+bool Simulator::Implementation::inherit_pins(const Implementation& before) {
   const Points v_before = state.v;
   Points last_velocities = state.v;
   before.pin_paths.set_last_velocities(time(), before.dt(), last_velocities);
-  bool changed = pin_paths.take(state);
+  bool changed = pin_paths.register_pins(state);
   for (Index i = 0; i < network.particle_count(); ++i) {
     if (network.is_asleep(i) != before.network.is_asleep(i)) continue;
     if (network.is_pinned(i) == before.network.is_pinned(i)) continue;
@@ -134,7 +136,7 @@ bool Simulator::Implementation::take_pins(const Implementation& before) {
 }
 
 /// A body stays handed over to a global solve only if the limit may still hand it over.
-void Simulator::Implementation::take_state(const Implementation& before) {
+void Simulator::Implementation::inherit_state(const Implementation& before) {
   stops = before.stops;
   state = before.state;
   state.steps_per_frame = settings.steps_per_frame;
@@ -148,21 +150,22 @@ void Simulator::Implementation::take_state(const Implementation& before) {
     state.impulses.of_springs.setZero(network.springs.count());
     state.last_impulses.of_springs.setZero(network.springs.count());
   }
-  take_sleep(before);
+  inherit_sleep(before);
   state.rest.sleepers = sleeping_groups();
-  const bool pins_changed = take_pins(before);
+  const bool pins_changed = inherit_pins(before);
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
-    if (is_held(network, network.bodies[b])) continue;
-    if (constraints.limit() == nullptr || !constraints.limit()->may_be_handed_over(b)) state.limit.handovers[b] = {};
+    const StretchLimit* limit = constraints.limit();
+    if (limit != nullptr && (is_held(network, network.bodies[b]) || limit->may_be_handed_over(b))) continue;
+    state.limit.handovers[b] = {};
   }
   constraints.roll_back(state.contact.permitted_crossings);
   if (penalty != nullptr) penalty->prepare(time());
   drop_unknown_links(before.network, network, state);
-  if (attachments) attachments->take(state, time());
+  if (attachments) attachments->load(state, time());
   const bool limits_more = network.asleep == before.network.asleep &&
                            (excess_of(constraints, state.x) > excess_of(before.constraints, state.x) ||
                             constraints.violation(state.x) > std::max(1.0, before.constraints.violation(state.x)));
-  if (limits_more) constraints.correct_positions(obstacles_now(), state, before.dt());
+  if (limits_more) correct_positions(before.dt());
   if (before.settings.integrator.index() == settings.integrator.index()) {
     integrator->resume(state, forces, before.dt());
   } else {
@@ -215,7 +218,7 @@ void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings)
   wake();
   const Implementation& now = *implementation_;
   if (network.broken.count() < now.network.broken.count()) tear_as(now.network, network);
-  take_rest_lengths(now.network, network);
+  copy_rest_lengths(now.network, network);
   implementation_ = std::make_unique<Implementation>(awake(std::move(network)), std::move(settings), now.external, now);
   implementation_->note_change();
 }

@@ -27,7 +27,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace sprung {
@@ -50,10 +49,10 @@ struct Simulator::Implementation {
 
   void add_forces();
   void add_constraints();
-  void take_state(const Implementation& before);
+  void inherit_state(const Implementation& before);
   [[nodiscard]] bool anything_moves() const;
-  /// None if the step must be made again without the sleep of some groups. The state is then that of its begin, without these among
-  /// the sleepers. If it throws, the state is that of its begin.
+  /// Makes a step. Returns nothing if it has to be made again because it disturbs sleeping groups; the state is then that at the
+  /// begin of the step, without these groups in `rest.sleepers`. If it throws, the state is that at the begin of the step.
   std::optional<StepReport> step(PlanReason reason);
   std::optional<StepReport> step_from_begin(PlanReason reason);
   StepTrial make_trial(const StepPlan& plan);
@@ -79,13 +78,14 @@ struct Simulator::Implementation {
   [[nodiscard]] bool disturbs_sleep(const std::vector<GroupPair>& pairs);
   [[nodiscard]] bool all_sleep() const;
   void add_impulses_of_sleepers(const RecordedImpulses& before);
-  void take_sleep(const Implementation& before);
+  void inherit_sleep(const Implementation& before);
   [[nodiscard]] double air_step() const;
   void move_pins(double time);
   void record_gain(Index particle, const Vector3& velocity_before);
+  void correct_positions(double dt);
   void begin_recording();
   void note_change() { EnergyWatch::note_change(energies(), state.energy); }
-  bool take_pins(const Implementation& before);
+  bool inherit_pins(const Implementation& before);
   void update_attachments();
   void record_attachments();
   [[nodiscard]] double energy(EnergyKind kind) const { return energy_of(forces, kind, state.x); }

@@ -99,8 +99,8 @@ std::vector<Index> Simulator::Implementation::steady_groups(const std::vector<ch
   return steady;
 }
 
-/// If a group wakes that was `asleep`, all of its body wakes: it may have lost its support. What an attachment joins to a free
-/// group sleeps only if that does.
+/// If a group of `asleep` wakes, its whole body wakes: it may have lost its support. A group that an attachment joins to a free
+/// group sleeps only if the free group sleeps.
 void Simulator::Implementation::wake_with_bodies(const std::vector<char>& asleep) {
   std::vector<char> woken(network.bodies.size(), 0);
   bool changes = true;
@@ -167,8 +167,8 @@ void Simulator::Implementation::add_impulses_of_sleepers(const RecordedImpulses&
   }
 }
 
-/// Particles that fall asleep or wake have no speed. What wakes has to come to rest anew.
-void Simulator::Implementation::take_sleep(const Implementation& before) {
+/// Particles that fall asleep or wake have no speed. A group that wakes has to come to rest again.
+void Simulator::Implementation::inherit_sleep(const Implementation& before) {
   for (Index i = 0; i < network.particle_count(); ++i) {
     if (network.is_asleep(i) == before.network.is_asleep(i)) continue;
     if (!state.rest.histories.empty() && !network.is_asleep(i)) {

@@ -82,7 +82,7 @@ void Simulator::Implementation::return_to(const SimulationState& former) {
   constraints.roll_back(state.contact.permitted_crossings);
   step_length_changed();
   if (penalty != nullptr) penalty->prepare(time());
-  if (attachments) attachments->take(state, time());
+  if (attachments) attachments->load(state, time());
 }
 
 StepTrial Simulator::Implementation::repeat(const StepPlan& plan) {
@@ -144,10 +144,10 @@ double Simulator::Implementation::rotation_in_step() const {
   const double now = time();
   double largest = 0.0;
   for (const Obstacle& obstacle : obstacles.obstacles()) {
-    largest = std::max(largest, obstacle.motion.turn(now, now + settings.step));
+    largest = std::max(largest, obstacle.motion.rotation(now, now + settings.step));
   }
   for (const Pin& pin : network.pins) {
-    if (pin.obstacle == kNone) largest = std::max(largest, pin.motion.turn(now, now + settings.step));
+    if (pin.obstacle == kNone) largest = std::max(largest, pin.motion.rotation(now, now + settings.step));
   }
   return largest;
 }

@@ -7,7 +7,6 @@
 #include "simulation/diagnostics.h"
 
 #include <algorithm>
-#include <array>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
@@ -61,8 +60,10 @@ void free(Index particle, SpringNetwork& network) {
   network.inverse_masses[particle] = 1.0 / network.masses[particle];
 }
 
-SimulatorSettings with_step(double step, SimulatorSettings settings) {
-  settings.step = step;
+/// Continues with the steps of the run.
+SimulatorSettings with_steps_of(const SimulatorSettings& run, SimulatorSettings settings) {
+  settings.step = run.step;
+  settings.steps_per_frame = run.steps_per_frame;
   return settings;
 }
 
@@ -106,7 +107,7 @@ bool LiveRun::continue_with(LoadedScene& changed) try {
   SpringNetwork network = changed.simulator.network();
   change_pins(network, due_before(whole_steps(simulator.state()), simulator.settings().step));  // before what the user did since
   set_pins(network);
-  simulator.continue_with(std::move(network), with_step(simulator.settings().step, changed.simulator.settings()));
+  simulator.continue_with(std::move(network), with_steps_of(simulator.settings(), changed.simulator.settings()));
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     if (obstacles[k].material != simulator.obstacles()[k].material) {
       simulator.set_obstacle_material(k, obstacles[k].material);

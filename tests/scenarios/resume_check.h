@@ -8,7 +8,7 @@
 namespace sprung::testing {
 
 /// Chooses a frame of a run at random, resumes a copy of the run there with new caches, and compares the positions and velocities
-/// of both in the frames that follow. Suites whose runs may differ stand in known_resumes.txt, which may only become shorter.
+/// of both in the frames that follow. Suites whose runs may differ are listed in known_resumes.txt, which may only become shorter.
 class ResumeCheck {
  public:
   /// The run has `frames` frames of `steps_per_frame` steps.

@@ -39,7 +39,7 @@ void expect_equal(const SimulationState& a, const SimulationState& b) {
   EXPECT_EQ(a.step, b.step);
   EXPECT_EQ(a.substeps, b.substeps);
   EXPECT_EQ(a.substep, b.substep);
-  EXPECT_EQ(a.anchors.size(), b.anchors.size());
+  EXPECT_EQ(a.grips.size(), b.grips.size());
   EXPECT_EQ(a.impulses.on_pinned, b.impulses.on_pinned);
 }
 

@@ -5,7 +5,6 @@
 #include "collision/obstacles/vertex_contact.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace sprung {
 

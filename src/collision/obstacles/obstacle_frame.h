@@ -46,12 +46,12 @@ struct PosedObstacles {
   double max_magnitude = 0.0;           ///< [m]
 };
 
-/// A value: what one frame answers depends on the set and the interval alone. All functions are const and thread-safe. Frames of
-/// obstacles that never move share all data; others cost one copy of the poses, and of the meshes that deform. k is the number of
-/// an obstacle, positions are [m] in world coordinates.
+/// A value: its answers depend on the set and the interval alone. All functions are const and thread-safe. Frames of a set whose
+/// obstacles never move share all data; other frames copy the poses and each deforming mesh. k is the number of an obstacle,
+/// positions are [m] in world coordinates.
 class ObstacleFrame {
  public:
-  /// The interval from `begin` to `end` [s]. Keeps a reference to the set.
+  /// The interval from `begin` to `end` [s]. Keeps a reference to the set, and sees later changes of its materials.
   ObstacleFrame(const ObstacleSet& set, double begin, double end);
   ObstacleFrame(ObstacleSet&&, double, double) = delete;
 

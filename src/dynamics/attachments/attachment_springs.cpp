@@ -46,7 +46,7 @@ AttachmentSprings::AttachmentSprings(const SpringNetwork& network, const std::ve
   }
 }
 
-void AttachmentSprings::take(const std::vector<Link>& links) {
+void AttachmentSprings::load(const std::vector<Link>& links) {
   springs_.clear();
   for (std::size_t k = 0; k < links.size(); ++k) {
     const bool rigid = network_.attachments[links[k].attachment].is_rigid();

@@ -21,7 +21,7 @@ class AttachmentSprings final : public Force {
   AttachmentSprings(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length, bool implicit);
 
   /// Replaces the springs by those of the links that are not broken.
-  void take(const std::vector<Link>& links);
+  void load(const std::vector<Link>& links);
 
   /// The time of the state for `energy` [s].
   void set_time(double time) { time_ = time; }

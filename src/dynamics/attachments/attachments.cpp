@@ -38,13 +38,13 @@ Attachments::Attachments(const SpringNetwork& network, const ObstacleSet& obstac
 
 bool Attachments::update(SimulationState& state) {
   if (!update_links(network_, obstacles_, step_length_, state)) return false;
-  take(state, steps_done(state) * step_length_);
+  load(state, steps_done(state) * step_length_);
   return true;
 }
 
-void Attachments::take(const SimulationState& state, double time) {
-  rods_->take(state.links, time);
-  springs_->take(state.links);
+void Attachments::load(const SimulationState& state, double time) {
+  rods_->load(state.links, time);
+  springs_->load(state.links);
   springs_->set_time(time);
 }
 
@@ -66,7 +66,7 @@ bool Attachments::break_overloaded(SimulationState& state) {
     link.broken = state.step;
     any = true;
   }
-  if (any) take(state, steps_done(state) * step_length_);
+  if (any) load(state, steps_done(state) * step_length_);
   return any;
 }
 

@@ -26,7 +26,7 @@ class Attachments {
   bool update(SimulationState& state);
 
   /// Makes rods and springs those of the state, at `time` [s].
-  void take(const SimulationState& state, double time);
+  void load(const SimulationState& state, double time);
 
   /// Records the impulses of rods in a substep of `dt` [s] that ends at `time` [s]. A rod between particles that sleep keeps
   /// its last one. Call it before the substep is counted.

@@ -27,7 +27,7 @@ class NearestEnd {
   void operator()(const ObstacleEnd& /*end*/) {}
 
   void operator()(const ParticleEnds& ends) {
-    for (const Index particle : ends.particles) take(particle);
+    for (const Index particle : ends.particles) consider(particle);
   }
 
   void operator()(const SurfaceEnd& end) {
@@ -39,22 +39,22 @@ class NearestEnd {
       const Vector3 b = positions_.col(particles[1]);
       const Vector3 c = positions_.col(particles[2]);
       const ClosestPoint closest = closest_point_on_triangle(point_, a, b, c);
-      if (closest.squared_distance < nearest_) take(particles, barycentric(closest, a, b, c), closest.point);
+      if (closest.squared_distance < nearest_) consider(particles, barycentric(closest, a, b, c), closest.point);
     }
     for (const auto& ends : body.surface.segments.colwise()) {
       const Vector3 a = positions_.col(begin + ends[0]);
       const Vector3 b = positions_.col(begin + ends[1]);
       const double t = closest_points_of_segments(point_, point_, a, b).t;
-      take({begin + ends[0], begin + ends[1], kNone}, {1.0 - t, t, 0.0}, a + t * (b - a));
+      consider({begin + ends[0], begin + ends[1], kNone}, {1.0 - t, t, 0.0}, a + t * (b - a));
     }
     if (body.surface.triangles.cols() > 0 || body.surface.segments.cols() > 0) return;
-    for (Index i = begin; i < begin + body.contact_vertex_count(); ++i) take(i);
+    for (Index i = begin; i < begin + body.contact_vertex_count(); ++i) consider(i);
   }
 
  private:
-  void take(Index particle) { take({particle, kNone, kNone}, Vector3::UnitX(), positions_.col(particle)); }
+  void consider(Index particle) { consider({particle, kNone, kNone}, Vector3::UnitX(), positions_.col(particle)); }
 
-  void take(const std::array<Index, 3>& particles, const Vector3& weights, const Vector3& end) {
+  void consider(const std::array<Index, 3>& particles, const Vector3& weights, const Vector3& end) {
     const double squared_distance = (end - point_).squaredNorm();
     if (!(squared_distance < nearest_)) return;
     nearest_ = squared_distance;

@@ -46,7 +46,7 @@ Rods::Rods(const SpringNetwork& network, const std::vector<Obstacle>& obstacles,
       step_length_(step_length),
       joint_tolerance_(kTolerance * mean_spring_length(network)) {}
 
-void Rods::take(const std::vector<Link>& links, double time) {
+void Rods::load(const std::vector<Link>& links, double time) {
   rods_.clear();
   rows_.clear();
   for (std::size_t k = 0; k < links.size(); ++k) {

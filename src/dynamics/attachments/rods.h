@@ -26,7 +26,7 @@ class Rods final : public Constraint {
   Rods(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length);
 
   /// Replaces the rods by the rigid ones of the links that are not broken. Their second ends and lengths are those of `time` [s].
-  void take(const std::vector<Link>& links, double time);
+  void load(const std::vector<Link>& links, double time);
 
   void prepare(double time) override;
   double project(const Points& before, Points& positions) const override;
@@ -40,7 +40,7 @@ class Rods final : public Constraint {
   /// Adds what a solver outside of the passes pushed on the first ends of the rods, as masses times displacements [kg m].
   void add_pushes(const std::vector<Vector3>& pushes);
 
-  /// Adds the impulses of all passes since `prepare`, which began a step of `dt` [s], to the links that `take` took.
+  /// Adds the impulses of all passes since `prepare`, which began a step of `dt` [s], to the links that `load` got.
   void add_impulses(double dt, std::vector<Link>& links) const;
 
  private:

@@ -154,7 +154,7 @@ void ContactSolver::fill_one(const Contact& contact, const ContactMaterial& pair
     const Vector3 slip = row.sum_if(motion.slip_before.displacement, [&](Index i) {
       return motion.slip_before.obstacle[static_cast<std::size_t>(i)] == contact.obstacle;
     });
-    goal.slip_before = across(row.normal, turned_with_obstacle(contact.obstacle, slip));
+    goal.slip_before = across(row.normal, rotated_with_obstacle(contact.obstacle, slip));
   }
   goal.least = moves ? std::min(back, std::max(back - gap, 0.0) + recovery * gap) : kNothingToDo;
   if (!moves || contact.obstacle == kNone) return;
@@ -171,7 +171,7 @@ Vector3 ContactSolver::moved_with_obstacle(const Contact& contact, const Vector3
   return obstacle_motions_[static_cast<std::size_t>(contact.obstacle)] * from + contact.drift;
 }
 
-Vector3 ContactSolver::turned_with_obstacle(Index obstacle, const Vector3& direction) const {
+Vector3 ContactSolver::rotated_with_obstacle(Index obstacle, const Vector3& direction) const {
   if (!obstacles_.obstacle(obstacle).motion.moves()) return direction;
   return obstacle_motions_[static_cast<std::size_t>(obstacle)].linear() * direction;
 }
@@ -208,7 +208,7 @@ void ContactSolver::note_slip(const StepMotion& motion, SimulationState& state) 
       largest_bound[i] = bound;
       Vector3 stuck = motion.before.col(particle);
       if (motion.slip_before.obstacle[i] == row.obstacle) stuck -= motion.slip_before.displacement.col(particle);
-      const Vector3 moved = goal.origin + turned_with_obstacle(row.obstacle, stuck - row.sum(motion.before));
+      const Vector3 moved = goal.origin + rotated_with_obstacle(row.obstacle, stuck - row.sum(motion.before));
       const Vector3 slip = across(row.normal, state.x.col(particle) - moved);
       const double length = slip.norm();
       state.contact.slip.displacement.col(particle) = length > bound ? bound / length * slip : slip;

@@ -82,7 +82,7 @@ class ContactSolver {
   template <std::size_t n>
   [[nodiscard]] ElementContact element_contact(const ContactConstraint<n>& row, const ContactGoal& goal) const;
   [[nodiscard]] Vector3 moved_with_obstacle(const Contact& contact, const Vector3& from) const;
-  [[nodiscard]] Vector3 turned_with_obstacle(Index obstacle, const Vector3& direction) const;
+  [[nodiscard]] Vector3 rotated_with_obstacle(Index obstacle, const Vector3& direction) const;
 
   const SpringNetwork& network_;
   const ObstacleSet& obstacles_;

@@ -9,7 +9,7 @@
 namespace sprung {
 namespace {
 
-// The thickness of particles that carry a surface, which do not collide. Obstacles find those that are inside.
+// The thickness of particles that carry a surface, which do not collide. The query also returns those that are inside an obstacle.
 constexpr double kNoContact = -std::numeric_limits<double>::infinity();
 
 }  // namespace

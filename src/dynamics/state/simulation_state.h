@@ -58,8 +58,8 @@ struct ContactNormal {
 
 /// What contact remembers, by projection.
 struct ContactMemory {
-  Slip slip{};                             ///< since particles stuck to obstacles
-  std::vector<Index> pushed{};             ///< particles that contact pushed in the last step, ascending; those that sleep stay
+  Slip slip{};                  ///< since particles stuck to obstacles
+  std::vector<Index> pushed{};  ///< particles that contact pushed in the last step, ascending; a sleeping particle keeps its entry
   std::vector<ContactNormal> normals{};    ///< of touching contacts at its end, for each particle that they can move
   PermittedCrossings permitted_crossings;  ///< of elements that a pin pulled through an obstacle
 };
@@ -73,9 +73,10 @@ struct EnergyMemory {
   double fastest_drive = 0.0;    ///< of pins and obstacles [m/s]
 };
 
-/// Where a pin took a particle.
-struct PinAnchor {
+/// Position of a particle when its pin began.
+struct PinGrip {
   Index particle = kNone;
+  double from = 0.0;                   ///< Pin::from of its pin [s]
   double time = 0.0;                   ///< [s]
   Vector3 position = Vector3::Zero();  ///< [m]
   Index triangle = kNone;              ///< nearest then, of a deforming obstacle that the pin follows
@@ -85,7 +86,7 @@ struct PinAnchor {
 enum class PlanReason : std::uint8_t {
   first,         ///< it needs no more than one
   excess,        ///< former steps missed the stretch limit
-  deformation,   ///< bodies that a global solve keeps within the limit deform or turn
+  deformation,   ///< bodies that a global solve keeps within the limit deform or rotate
   rotation,      ///< an obstacle or pin rotates far
   infeasible,    ///< with fewer, particles had no admissible position
   solver_trial,  ///< another solver of the stretch limit was better
@@ -117,10 +118,10 @@ struct SimulationState {
   RestMemory rest{};
   EnergyMemory energy{};
   LimitMemory limit{};
-  std::vector<PinAnchor> anchors{};  ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle
+  std::vector<PinGrip> grips{};      ///< of pins that move and began after time 0 or follow a deforming obstacle; by particle
   std::vector<Link> links{};         ///< of attachments that have engaged and not ended, by attachment; broken ones too
   RecordedImpulses impulses{};       ///< empty unless the settings ask for forces
-  RecordedImpulses last_impulses{};  ///< of the last step; those of particles that sleep are added again in each step
+  RecordedImpulses last_impulses{};  ///< of the last step; a step adds those of sleeping particles again
 };
 
 /// The number of steps of the present length from time 0 to the begin of the current step. Times are this number, or a fraction

@@ -95,15 +95,15 @@ double StretchLimit::project(const Points& before, Points& positions, double rel
   return measured.excess(range);
 }
 
-std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double fall,
+std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double steady_displacement,
                                        const std::vector<StretchHandover>& handovers, const ImpulseRecorder& recorder) const {
-  return newton_ ? newton_->solve(before, positions, fall, handovers, recorder) : std::nullopt;
+  return newton_ ? newton_->solve(before, positions, steady_displacement, handovers, recorder) : std::nullopt;
 }
 
-std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double fall,
+std::optional<int> StretchLimit::solve(const Points& before, Points& positions, double steady_displacement,
                                        const std::vector<StretchHandover>& handovers, std::span<const RodRow> rods,
                                        std::vector<Vector3>& pushes, const ImpulseRecorder& recorder) const {
-  return newton_ ? newton_->solve(before, positions, fall, handovers, rods, pushes, recorder) : std::nullopt;
+  return newton_ ? newton_->solve(before, positions, steady_displacement, handovers, rods, pushes, recorder) : std::nullopt;
 }
 
 double StretchLimit::excess(const Points& positions) const {

@@ -47,15 +47,16 @@ class StretchLimit {
 
   /// Newton's method on all springs that are too long, for the components that `solver` chooses: moves free particles to positions
   /// where springs are within max_stretch, with the least weighted displacement. Compression and contact are left to the passes.
-  /// `before` are the positions at the beginning of the step. `fall` [m] is a dt^2 with the largest steady acceleration a of
-  /// gravity and wind. `handovers` says for each body whether it was handed over; it may be empty. Returns the largest number of
-  /// linear systems of a component; none if nothing was too long. A recorder gets the impulses of springs.
-  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers = {},
-                           const ImpulseRecorder& recorder = {}) const;
+  /// `before` are the positions at the beginning of the step. `steady_displacement` [m] is a dt^2 with the largest steady
+  /// acceleration a of gravity and wind. `handovers` says for each body whether it was handed over; it may be empty. Returns the
+  /// largest number of linear systems of a component; none if nothing was too long. A recorder gets the impulses of springs.
+  std::optional<int> solve(const Points& before, Points& positions, double steady_displacement,
+                           const std::vector<StretchHandover>& handovers = {}, const ImpulseRecorder& recorder = {}) const;
 
   /// The same with rods that join bodies; see StretchNewton. Adds what it pushed on the first ends of rods to `pushes` [kg m].
-  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers,
-                           std::span<const RodRow> rods, std::vector<Vector3>& pushes, const ImpulseRecorder& recorder) const;
+  std::optional<int> solve(const Points& before, Points& positions, double steady_displacement,
+                           const std::vector<StretchHandover>& handovers, std::span<const RodRow> rods,
+                           std::vector<Vector3>& pushes, const ImpulseRecorder& recorder) const;
 
   /// See StretchNewton::forget().
   void forget_solves() const;

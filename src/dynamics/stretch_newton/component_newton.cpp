@@ -78,7 +78,7 @@ ComponentNewton::ComponentNewton(StretchComponent component, const StretchLimitS
       mass_(std::accumulate(component_.masses.begin(), component_.masses.end(), 0.0)) {}
 ComponentNewton::~ComponentNewton() = default;
 
-std::optional<int> ComponentNewton::solve(const Points& before, Points& positions, double fall) {
+std::optional<int> ComponentNewton::solve(const Points& before, Points& positions, double steady_displacement) {
   gather(before, positions);
   set_initial_iterate();
   if (is_at_rest()) {
@@ -93,7 +93,7 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
     x_ = target_;
     return std::nullopt;
   }
-  const double load = link_load(fall);
+  const double load = link_load(steady_displacement);
   energy_.set_load(load);
   energy_.find_near(target_);
   // Ordering takes time, and a component that is never solved needs none.
@@ -166,9 +166,10 @@ Vector3 ComponentNewton::common_move() const {
 // The load follows from the acceleration. A particle that moves by u in a step on a circle of radius r has the centripetal
 // acceleration u^2 / r; without one, the excess of links gives it. A link that is too stiff for a small step would take more from
 // a swing than it stores: with a stiffness as large as the masses it stops the swing within a step.
-double ComponentNewton::link_load(double fall) const {
+double ComponentNewton::link_load(double steady_displacement) const {
   const double inwards = extent_ > 0.0 ? farthest_squared_ / extent_ : 0.0;
-  const double displacement = std::max({fall, inwards, energy_.give(), fall + inwards > 0.0 ? 0.0 : most_beyond()});
+  const double displacement =
+      std::max({steady_displacement, inwards, energy_.give(), steady_displacement + inwards > 0.0 ? 0.0 : most_beyond()});
   if (!component_.rods.empty()) return kLoadWithRods * component_.carried_mass * displacement;
   return mass_ / std::max(component_.pin_count(), Index{1}) * displacement;
 }
@@ -317,14 +318,14 @@ ComponentNewton::Descent ComponentNewton::descend(double& energy, double forecas
 double ComponentNewton::correct(double reached) {
   for (int correction = 0; correction < kMostCorrections; ++correction) {
     energy_.take_turning(x_, tried_, system_);
-    solver_->solve_again(system_, turn_);
-    turned_ = tried_;
-    turned_.leftCols(component_.free_count) += turn_;
-    const double next = energy_.value(turned_, target_);
+    solver_->solve_again(system_, correction_);
+    corrected_ = tried_;
+    corrected_.leftCols(component_.free_count) += correction_;
+    const double next = energy_.value(corrected_, target_);
     const bool goes_on = next < kWorthwhile * reached;
     if (next < reached) {
       reached = next;
-      tried_.swap(turned_);
+      tried_.swap(corrected_);
     }
     if (!goes_on) break;
   }

@@ -20,9 +20,9 @@ class ComponentNewton final : public ComponentSolver {
   ComponentNewton(const ComponentNewton&) = delete;
   ComponentNewton& operator=(const ComponentNewton&) = delete;
 
-  /// Solves to the minimum. Links are stiff enough to carry the component against `fall` and its own motion. In a chain or tree
-  /// that hangs on one link, no link exceeds the tolerance afterwards.
-  std::optional<int> solve(const Points& before, Points& positions, double fall) override;
+  /// Solves to the minimum. Links are stiff enough to carry the component against `steady_displacement` and its own motion. In a
+  /// chain or tree that hangs on one link, no link exceeds the tolerance afterwards.
+  std::optional<int> solve(const Points& before, Points& positions, double steady_displacement) override;
 
   void forget() override;
 
@@ -46,7 +46,7 @@ class ComponentNewton final : public ComponentSolver {
 
   void gather(const Points& before, const Points& positions);
   [[nodiscard]] Vector3 common_move() const;
-  [[nodiscard]] double link_load(double fall) const;
+  [[nodiscard]] double link_load(double steady_displacement) const;
   [[nodiscard]] double most_beyond() const;
   void set_initial_iterate();
   void write_to(Points& positions) const;
@@ -83,8 +83,8 @@ class ComponentNewton final : public ComponentSolver {
   Points x_;
   Points tried_;
   Points step_;
-  Points turn_;
-  Points turned_;
+  Points correction_;
+  Points corrected_;
   StretchSystem system_;
   StretchSystem tried_system_;
 };

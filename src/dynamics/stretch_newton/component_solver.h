@@ -19,10 +19,10 @@ class ComponentSolver {
   virtual ~ComponentSolver() = default;
 
   /// Moves the component's free particles from the target of the forces, `positions` [m], 3 x particles, to positions where no
-  /// link is much too long. `before` are the positions at the beginning of the step. `fall` [m] is the displacement of a particle
-  /// at rest by the largest steady acceleration in a step, |g| dt^2. Returns the number of linear systems solved; none if no link
-  /// was too long.
-  virtual std::optional<int> solve(const Points& before, Points& positions, double fall) = 0;
+  /// link is much too long. `before` are the positions at the beginning of the step. `steady_displacement` [m] is the displacement
+  /// of a particle at rest by the largest steady acceleration in a step, |g| dt^2. Returns the number of linear systems solved;
+  /// none if no link was too long.
+  virtual std::optional<int> solve(const Points& before, Points& positions, double steady_displacement) = 0;
 
   /// Discards what former solves left behind, such as a factor: the next solve is that of a new solver.
   virtual void forget() = 0;

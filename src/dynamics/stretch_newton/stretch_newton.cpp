@@ -79,28 +79,28 @@ void StretchNewton::join(std::span<const RodRow> rods) {
   make_components(rods);
 }
 
-std::optional<int> StretchNewton::solve(const Points& before, Points& positions, double fall,
+std::optional<int> StretchNewton::solve(const Points& before, Points& positions, double steady_displacement,
                                         const std::vector<StretchHandover>& handovers, std::span<const RodRow> rods,
                                         std::vector<Vector3>& pushes, const ImpulseRecorder& recorder) {
   join(settings_.max_compression < 1.0 ? std::span<const RodRow>() : rods);
   for (const SolvedComponent& component : components_) {
     if (component.with_rods != nullptr) component.with_rods->set_rods(rods);
   }
-  const auto solves = solve(before, positions, fall, handovers, recorder);
+  const auto solves = solve(before, positions, steady_displacement, handovers, recorder);
   for (const SolvedComponent& component : components_) {
     if (component.with_rods != nullptr) component.with_rods->record(recorder, pushes);
   }
   return solves;
 }
 
-std::optional<int> StretchNewton::solve(const Points& before, Points& positions, double fall,
+std::optional<int> StretchNewton::solve(const Points& before, Points& positions, double steady_displacement,
                                         const std::vector<StretchHandover>& handovers, const ImpulseRecorder& recorder) {
   const Points target = recorder.on() ? positions : Points();
   std::vector<std::optional<int>> iterations(components_.size());
   parallel_chunks(static_cast<Index>(components_.size()), 1, [&](Index begin, Index end) {
     for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p) {
       const SolvedComponent& component = components_[p];
-      if (component.is_solved(handovers)) iterations[p] = component.solver->solve(before, positions, fall);
+      if (component.is_solved(handovers)) iterations[p] = component.solver->solve(before, positions, steady_displacement);
     }
   });
   if (recorder.on()) record(target, positions, handovers, recorder);

@@ -33,17 +33,18 @@ class StretchNewton {
 
   /// Moves free particles from the target of the forces, `positions`, to positions where no limited spring is much too long, with
   /// the least weighted displacement. `before` are the positions at the beginning of the step; `positions` holds the final
-  /// positions of pins. `fall` is that of ComponentSolver. `handovers` has an entry per body or is empty. Returns the largest
-  /// number of linear systems of a component; none if nothing was too long. A recorder costs about a linear system per component
-  /// with several links to pins.
-  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers = {},
-                           const ImpulseRecorder& recorder = {});
+  /// positions of pins. `steady_displacement` is that of ComponentSolver. `handovers` has an entry per body or is empty. Returns
+  /// the largest number of linear systems of a component; none if nothing was too long. A recorder costs about a linear system per
+  /// component with several links to pins.
+  std::optional<int> solve(const Points& before, Points& positions, double steady_displacement,
+                           const std::vector<StretchHandover>& handovers = {}, const ImpulseRecorder& recorder = {});
 
   /// The same with rods, which join components: a body that hangs on a rope is part of its load. Such components are solved for
   /// from the start, unless springs may not shrink freely. Bodies that are left to passes take part with the particles of rods
   /// alone. Adds what the solve pushed on the first ends of rods to `pushes`, one per rod [kg m].
-  std::optional<int> solve(const Points& before, Points& positions, double fall, const std::vector<StretchHandover>& handovers,
-                           std::span<const RodRow> rods, std::vector<Vector3>& pushes, const ImpulseRecorder& recorder);
+  std::optional<int> solve(const Points& before, Points& positions, double steady_displacement,
+                           const std::vector<StretchHandover>& handovers, std::span<const RodRow> rods,
+                           std::vector<Vector3>& pushes, const ImpulseRecorder& recorder);
 
   /// Discards what former solves left behind: the next solve depends on its arguments alone. Call it after the state was rolled
   /// back.

@@ -44,13 +44,13 @@ TwoLevelNewton::TwoLevelNewton(const StretchComponent& component, CoarseCloth co
   }
 }
 
-std::optional<int> TwoLevelNewton::solve(const Points& before, Points& positions, double fall) {
+std::optional<int> TwoLevelNewton::solve(const Points& before, Points& positions, double steady_displacement) {
   gather(before, positions);
   coarse_x_ = coarse_target_;
-  const auto iterations = newton_.solve(coarse_before_, coarse_x_, fall);
+  const auto iterations = newton_.solve(coarse_before_, coarse_x_, steady_displacement);
   if (!iterations) return iterations;
   note_tautness();
-  interpolate_correction(fall);
+  interpolate_correction(steady_displacement);
   if (*iterations == 0 && rests()) {
     stay_still();
   } else if (flies_) {
@@ -91,7 +91,7 @@ void TwoLevelNewton::note_tautness() {
 }
 
 // Most fine links are half as long as coarse ones and carry half as much: their stiffness across is equal.
-void TwoLevelNewton::interpolate_correction(double fall) {
+void TwoLevelNewton::interpolate_correction(double steady_displacement) {
   x_.resizeLike(target_);
   for (Index n = 0; n < static_cast<Index>(x_.cols()); ++n) {
     const auto& [points, weights] = coarse_.interpolations[n];
@@ -109,7 +109,8 @@ void TwoLevelNewton::interpolate_correction(double fall) {
     const double slack = masses_[n] / (masses_[n] + taut);
     const Vector3 relative_move = target_.col(n) - before_.col(n) - target_move;
     const Vector3 straightening = (1.0 - slack) * (interpolated - before_.col(n));
-    x_.col(n) = before_.col(n) + solved_move + slack * relative_move + shortened(straightening, kStraightenedOfFall * fall);
+    x_.col(n) =
+        before_.col(n) + solved_move + slack * relative_move + shortened(straightening, kStraightenedOfFall * steady_displacement);
   }
 }
 

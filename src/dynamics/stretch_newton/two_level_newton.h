@@ -19,14 +19,14 @@ class TwoLevelNewton final : public ComponentSolver {
   /// For the component that the coarse cloth was made from.
   TwoLevelNewton(const StretchComponent& component, CoarseCloth coarse, const StretchLimitSettings& settings);
 
-  std::optional<int> solve(const Points& before, Points& positions, double fall) override;
+  std::optional<int> solve(const Points& before, Points& positions, double steady_displacement) override;
   void forget() override { newton_.forget(); }
   [[nodiscard]] double deformation() const override { return newton_.deformation(); }
 
  private:
   void gather(const Points& before, const Points& positions);
   void note_tautness();
-  void interpolate_correction(double fall);
+  void interpolate_correction(double steady_displacement);
   void stay_still();
   void keep_momentum();
   [[nodiscard]] bool rests() const;

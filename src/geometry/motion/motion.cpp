@@ -74,7 +74,7 @@ double Motion::end() const {
   return moves() ? keyframes.back().time : 0.0;
 }
 
-double Motion::turn(double begin, double end) const {
+double Motion::rotation(double begin, double end) const {
   double angles = spin.norm() * (end - begin);
   Keyframe last = keyframe_at(*this, begin);
   const auto turn_to = [&](const Keyframe& next) {

@@ -32,7 +32,7 @@ struct Motion {
   [[nodiscard]] double end() const;
 
   /// Upper bound of the angle turned between two times, forth and back added [degrees].
-  [[nodiscard]] double turn(double begin, double end) const;
+  [[nodiscard]] double rotation(double begin, double end) const;
 
   /// The pose at `time` [s] of an object that is placed at `placed`.
   [[nodiscard]] RigidTransform pose(const RigidTransform& placed, double time) const;

@@ -318,7 +318,7 @@ void tear_as(const SpringNetwork& torn, SpringNetwork& network) {
   remove_face_bends(network);
 }
 
-void take_rest_lengths(const SpringNetwork& from, SpringNetwork& network) {
+void copy_rest_lengths(const SpringNetwork& from, SpringNetwork& network) {
   const Springs& springs = from.springs;
   for (Index s = 0; s < std::min(springs.count(), network.springs.count()); ++s) {
     if (springs.law(s).yields() && network.springs.law(s).yields() && ends_of(springs, s) == ends_of(network.springs, s)) {

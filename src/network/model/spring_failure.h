@@ -33,6 +33,6 @@ void tear_as(const SpringNetwork& torn, SpringNetwork& network);
 
 /// Takes the rest lengths of springs that yield from another network, where both have a spring of this number between the same
 /// particles.
-void take_rest_lengths(const SpringNetwork& from, SpringNetwork& network);
+void copy_rest_lengths(const SpringNetwork& from, SpringNetwork& network);
 
 }  // namespace sprung

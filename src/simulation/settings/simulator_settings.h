@@ -35,7 +35,7 @@ inline constexpr int kMaxSubsteps = 1 << 16;
 
 struct SimulatorSettings {
   double step = 1.0e-3;              ///< dt [s]
-  int steps_per_frame = 1;           ///< >= 1; see SimulationState
+  int steps_per_frame = 1;           ///< number of steps of a frame, >= 1; the step may change at its end
   double frame_rate = 0.0;           ///< [1/s]; messages advise steps that divide a frame; 0: any step
   Vector3 gravity{0.0, -9.81, 0.0};  ///< [m/s^2]
   double air_drag = 0.0;             ///< by length of ropes [kg/(m s)], by area of surfaces [kg/(m^2 s)]
@@ -53,7 +53,7 @@ struct SimulatorSettings {
   /// Whether bodies that stand compressed, exactly in a line or plane, get a tiny push off it; see SymmetryBreaker.
   bool perturb = true;
   std::uint64_t seed = 0;  ///< of the directions of such pushes
-  /// Whether steps record the impulses of pins and springs, for Simulator::reactions and spring_tensions. Changes no other result.
+  /// Whether steps record the impulses of pins and springs, for Simulator::reactions and limit_tensions. Changes no other result.
   bool record_forces = false;
 
   /// Whether the air acts on bodies.

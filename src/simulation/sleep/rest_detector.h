@@ -23,7 +23,7 @@ class RestDetector {
   /// - A free particle has moved by more than 2.5 mm (on earth) or a tenth of the body's shortest spring. The displacement counts
   ///   from the begin of the window. While a neighbour sleeps, it counts from when the neighbour fell asleep.
   /// - Its springs pull a neighbour that sleeps, and their force on the neighbour has changed by more than a tenth of the weight of
-  ///   the neighbour since that fell asleep. Friction may not hold such a change.
+  ///   the neighbour since the neighbour fell asleep. Friction may not balance such a change.
   /// - A spring of the body misses the stretch limit by more than wanted_excess(). The limit may then need to move any group of the
   ///   body.
   [[nodiscard]] std::vector<char> restless(const SimulationState& state) const;
@@ -31,14 +31,14 @@ class RestDetector {
   /// Whether a window ends at `time` [s], or the first one begins.
   [[nodiscard]] static bool window_ends(double time, const SimulationState& state);
 
-  /// At the end of a window, sets MotionHistory::rests and begins the next one. A window is quiet for a group that is not in
-  /// `restless` if the root mean square of its displacements is at most an eighth of the largest at rest, and that of its speeds is
-  /// slow. A group rests after two quiet windows, unless it moved farther in the second: what begins to slide or to fall over is
-  /// slow at first. All groups of a body rest too if the same is true of the body as a whole, of which a few particles may move
-  /// more. `beside` are the groups that sleep, and their neighbours.
+  /// At the end of a window, sets MotionHistory::is_at_rest and begins the next window. A window is quiet for a group that is not
+  /// in `restless` if the root mean square of its displacements is at most an eighth of the largest at rest, and the root mean
+  /// square of its speeds is slow. A group is at rest after two quiet windows, unless it moved farther in the second: a body that
+  /// begins to slide or to fall over is slow at first. All groups of a body are at rest too if the body as a whole is, of which a
+  /// few particles may move more. `beside` are the sleeping groups and their neighbours.
   void end_window(double time, const std::vector<char>& restless, const std::vector<char>& beside, SimulationState& state) const;
 
-  /// Begins all rest anew.
+  /// Discards all that is known of rest: each group has to come to rest again.
   static void forget(SimulationState& state);
 
  private:

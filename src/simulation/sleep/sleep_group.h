@@ -1,4 +1,4 @@
-// Groups: groups of neighbouring particles that fall asleep and wake together.
+// Sleep groups: neighbouring particles that fall asleep and wake together.
 #pragma once
 
 #include "network/model/spring_network.h"

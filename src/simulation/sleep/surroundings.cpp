@@ -13,7 +13,7 @@ namespace sprung {
 namespace {
 
 // An obstacle that turns farther in a step may reach anything near it [degrees].
-constexpr double kMaxTurn = 45.0;
+constexpr double kMaxRotation = 45.0;
 
 /// An upper bound of the displacement [m] of any point of the box by a motion.
 double displacement(const RigidTransform& motion, const Box3& box) {
@@ -118,7 +118,7 @@ std::vector<char> Surroundings::driven(const Found& found, double time) const {
   return driven;
 }
 
-/// What sleeps moves only with the corners of its faces that are awake.
+/// A face with a waking corner moves; all others of a sleeping group are still.
 Box3 Surroundings::box_in_step(const SleepGroup& group, const SimulationState& state) const {
   double farthest = 0.0;
   for (const Index i : group.reached) {
@@ -134,7 +134,7 @@ bool Surroundings::is_reached(const Box3& box, const ObstacleFrame& now) const {
   for (Index k = 0; k < static_cast<Index>(obstacles_.obstacles().size()); ++k) {
     const Obstacle& obstacle = obstacles_.obstacle(k);
     if (end_of_obstacle(k) <= time) continue;
-    if (obstacle.deforms() || obstacle.motion.turn(time, time + step_) > kMaxTurn) return true;
+    if (obstacle.deforms() || obstacle.motion.rotation(time, time + step_) > kMaxRotation) return true;
     const RigidTransform then = obstacle.motion.pose(obstacle.rest_pose, time + step_);
     now.find_near(grown(box, obstacle.material.thickness + displacement(now.after(k) * then.inverse(), box)), found);
     if (std::ranges::binary_search(found, k)) return true;

@@ -3,7 +3,6 @@
 #include "dynamics/contact/collision_surface_builder.h"
 #include "dynamics/state/simulation_state.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace sprung {

@@ -28,8 +28,8 @@ const MeshSequence* sequence_of(const Obstacle& obstacle) {
   return obstacle.deforms() ? std::get<SequenceGeometry>(obstacle.geometry).sequence.get() : nullptr;
 }
 
-const PinAnchor* find(const std::vector<PinAnchor>& anchors, Index particle) {
-  const auto found = std::ranges::lower_bound(anchors, particle, {}, &PinAnchor::particle);
+const PinGrip* find(const std::vector<PinGrip>& anchors, Index particle) {
+  const auto found = std::ranges::lower_bound(anchors, particle, {}, &PinGrip::particle);
   return found != anchors.end() && found->particle == particle ? &*found : nullptr;
 }
 
@@ -78,8 +78,8 @@ PinPaths::PinPaths(const SpringNetwork& network, const std::vector<Obstacle>& ob
   }
 }
 
-bool PinPaths::take(SimulationState& state) {
-  std::vector<PinAnchor> all;
+bool PinPaths::register_pins(SimulationState& state) {
+  std::vector<PinGrip> all;
   bool is_new = false;
   for (Path& path : paths_) {
     path.particles.clear();
@@ -88,7 +88,7 @@ bool PinPaths::take(SimulationState& state) {
       for (const Index i : path.pin->particles) path.particles.push_back({i, begin, network_.positions.col(i), {}});
       continue;
     }
-    for (const PinAnchor& anchor : anchors_of(path, state, is_new)) {
+    for (const PinGrip& anchor : anchors_of(path, state, is_new)) {
       Held held{anchor.particle, anchor.time, anchor.position, {}};
       if (path.sequence != nullptr) {
         const double time = anchor.time;
@@ -98,21 +98,21 @@ bool PinPaths::take(SimulationState& state) {
       all.push_back(anchor);
     }
   }
-  std::ranges::sort(all, {}, &PinAnchor::particle);
-  state.anchors = std::move(all);
+  std::ranges::sort(all, {}, &PinGrip::particle);
+  state.grips = std::move(all);
   return is_new;
 }
 
 /// Those of the state that this pin made, and new ones for its other particles.
-std::vector<PinAnchor> PinPaths::anchors_of(const Path& path, const SimulationState& state, bool& is_new) const {
+std::vector<PinGrip> PinPaths::anchors_of(const Path& path, const SimulationState& state, bool& is_new) const {
   const double from = path.pin->from;
   const bool later = from > 0.0;
-  std::vector<PinAnchor> anchors;
+  std::vector<PinGrip> anchors;
   std::vector<std::size_t> added;
   std::vector<Vector3> points;  // of those, in the obstacle's frame
   for (const Index i : path.pin->particles) {
-    const PinAnchor* known = find(state.anchors, i);
-    if (known != nullptr && from < known->time + 0.5 * step_length_) {
+    const PinGrip* known = find(state.grips, i);
+    if (known != nullptr && known->from == from) {
       anchors.push_back(*known);
       continue;
     }
@@ -120,7 +120,7 @@ std::vector<PinAnchor> PinPaths::anchors_of(const Path& path, const SimulationSt
     const Vector3 position = later ? state.x.col(i) : network_.positions.col(i);
     added.push_back(anchors.size());
     points.push_back(path.pose(time).inverse() * position);
-    anchors.push_back({i, time, position, kNone});
+    anchors.push_back({.particle = i, .from = from, .time = time, .position = position});
   }
   if (added.empty()) return anchors;
   is_new = true;

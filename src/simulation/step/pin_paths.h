@@ -17,12 +17,12 @@ struct SpringNetwork;
 /// deforming obstacle each move with the triangle that was nearest when the pin began.
 class PinPaths {
  public:
-  /// Keeps references to both. Requires `take` before all else. Throws InputError if a pin follows an obstacle that does not exist.
-  /// `step_length` [s] is that of the simulation.
+  /// Keeps references to both. Requires `register_pins` before all else. Throws InputError if a pin follows an obstacle that does
+  /// not exist. `step_length` [s] is that of the simulation.
   PinPaths(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length);
 
   /// Records where pins that have begun took their particles, and drops the anchors of other pins. Returns whether anything is new.
-  bool take(SimulationState& state);
+  bool register_pins(SimulationState& state);
 
   /// Moves the particles to where they are at a time [s], and gives them the mean velocity of the following `dt` [s], which the
   /// dampers of their neighbours use. Returns the largest speed [m/s].
@@ -50,7 +50,7 @@ class PinPaths {
   };
   class Placing;
 
-  std::vector<PinAnchor> anchors_of(const Path& path, const SimulationState& state, bool& is_new) const;
+  std::vector<PinGrip> anchors_of(const Path& path, const SimulationState& state, bool& is_new) const;
 
   const SpringNetwork& network_;
   double step_length_;

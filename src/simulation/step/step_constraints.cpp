@@ -112,11 +112,11 @@ void StepConstraints::project(const ObstacleFrame& frame, SimulationState& state
 }
 
 std::optional<int> StepConstraints::solve_limit(SimulationState& state) {
-  const double fall = steady_acceleration_ * dt_ * dt_;
-  if (!rods_) return limit_->solve(positions_before(state), state.x, fall, state.limit.handovers, recorder_);
+  const double steady_displacement = steady_acceleration_ * dt_ * dt_;
+  if (!rods_) return limit_->solve(positions_before(state), state.x, steady_displacement, state.limit.handovers, recorder_);
   std::vector<Vector3> pushes(rods_->rows().size(), Vector3::Zero());
   const std::optional<int> solves =
-      limit_->solve(positions_before(state), state.x, fall, state.limit.handovers, rods_->rows(), pushes, recorder_);
+      limit_->solve(positions_before(state), state.x, steady_displacement, state.limit.handovers, rods_->rows(), pushes, recorder_);
   rods_->add_pushes(pushes);
   return solves;
 }

@@ -10,7 +10,7 @@ namespace sprung {
 namespace {
 
 // Largest rotation of an obstacle or a pin in a substep [degrees]. In the frame of a rotating obstacle, particles are assumed to
-// move straight in a substep: after half a turn, through its center.
+// move straight in a substep: after a rotation by 180 degrees, through its centre.
 constexpr double kMaxRotation = 45.0;
 
 // Factors on the substeps of repeated steps, in this order. Rotation asks for no more than the last one.

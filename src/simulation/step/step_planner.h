@@ -11,20 +11,21 @@
 namespace sprung {
 
 /// All that divides or repeats a step:
-/// - Excess: the substeps are halved as soon as a step ends with more excess over the stretch limit than the bound, and doubled
-///   after several steps in a row with far less. The excess of a swinging body is proportional to the substep, that of a hanging
-///   body to its square, so twice the substep is safe below a quarter of the bound.
-/// - Deformation: where global solves keep the limit at any step, a substep of the same motion deforms or turns bodies by at most
-///   1/70, as the projection at its end damps motion in proportion to it.
+/// - Excess: the length of the substeps is halved as soon as a step ends with more excess over the stretch limit than the bound,
+/// and
+///   doubled after eight steps in a row with less than a quarter of the bound. The excess of a swinging body grows with the length
+///   of the substep, the excess of a hanging body with its square.
+/// - Deformation: global solves satisfy the limit at any step, but their projection damps motion in proportion to the deformation
+///   in a substep. Each substep deforms or rotates a body by at most 1/70 (see StretchLimit::deformation).
 /// - Rotation: no obstacle or pin rotates by more than 45 degrees in a substep.
 /// - Infeasible: a step with infeasible particles is repeated with 4, 16 and 64 times the substeps until there are none: a long
-///   step can miss an admissible position near a pin or before a fast obstacle. An attempt that does not halve their number is
-///   abandoned, as it could take hundreds of times longer. After a repetition without effect, no step is repeated for a waiting
-///   time, which doubles each time and ends after enough feasible steps. A step with more infeasible particles than any during the
-///   wait is repeated nevertheless, as its cause may be another.
+///   step can miss an admissible position near a pin or before a fast obstacle. An attempt that does not halve the number
+///   of infeasible particles is abandoned, because it could take hundreds of times longer. After a repetition without effect, no
+///   step is repeated for a waiting time, which doubles each time and ends after enough feasible steps. A step with more infeasible
+///   particles than any during the wait is repeated nevertheless, as its cause may be another.
 /// - Solver trial: a body whose solver missed the limit in several steps in a row tries the other solver on the same step, and
-///   keeps it if it leaves less excess. Newton's method costs more, so it must leave at most four fifths of that of the passes. A
-///   body that keeps its solver waits twice as long as before.
+///   keeps it if it leaves less excess. Newton's method costs more, so it must leave at most four fifths of the
+///   excess that the passes leave. A body that keeps its solver waits twice as long for its next trial.
 class StepPlanner {
  public:
   /// `limit` is null without a stretch limit; references to it and to the network are kept.

@@ -111,11 +111,11 @@ TEST(Motion, SpinIsAnAngularVelocityVector) {
 TEST(Motion, TurnAddsUpBackAndForth) {
   const Motion motion{.keyframes = {{.time = 0.0}, {.time = 1.0, .rotation = {0.0, 80.0, 0.0}}, {.time = 2.0}},
                       .spin = {0.0, 30.0, 40.0}};
-  EXPECT_EQ(motion.turn(0.5, 0.75), 0.25 * (80.0 + 50.0));
-  EXPECT_EQ(motion.turn(0.5, 1.25), 0.75 * (80.0 + 50.0));
-  EXPECT_EQ(motion.turn(1.0, 2.0), 80.0 + 50.0);
-  EXPECT_EQ(motion.turn(3.0, 5.0), 2.0 * 50.0);
-  EXPECT_EQ(Motion{}.turn(0.0, 1.0), 0.0);
+  EXPECT_EQ(motion.rotation(0.5, 0.75), 0.25 * (80.0 + 50.0));
+  EXPECT_EQ(motion.rotation(0.5, 1.25), 0.75 * (80.0 + 50.0));
+  EXPECT_EQ(motion.rotation(1.0, 2.0), 80.0 + 50.0);
+  EXPECT_EQ(motion.rotation(3.0, 5.0), 2.0 * 50.0);
+  EXPECT_EQ(Motion{}.rotation(0.0, 1.0), 0.0);
 }
 
 TEST(Motion, EqualKeyframesDoNotMove) {

@@ -291,10 +291,10 @@ TEST(TakeRestLengths, TakesThoseOfSpringsThatYield) {
   SpringNetwork flowed = chain({0.0, 2.0, 4.0}, {.yield = 0.1});
   let_yield(flowed.springs, flowed.positions);
   SpringNetwork fresh = chain({0.0, 2.0, 4.0}, {.yield = 0.2});
-  take_rest_lengths(flowed, fresh);
+  copy_rest_lengths(flowed, fresh);
   EXPECT_EQ(fresh.springs.rest_length, flowed.springs.rest_length);
   SpringNetwork linear = chain({0.0, 2.0, 4.0}, {});
-  take_rest_lengths(flowed, linear);
+  copy_rest_lengths(flowed, linear);
   EXPECT_THAT(linear.springs.rest_length, ElementsAre(1.0, 1.0));
 }
 

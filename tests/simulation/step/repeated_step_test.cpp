@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace sprung {
@@ -64,7 +65,8 @@ TEST(RepeatedStep, KeepsTheNormalsOfTheAttemptThatIsKept) {
     ASSERT_EQ(normals.size(), 1U) << step;
     EXPECT_EQ(normals.front().particle, grain);
     const Vector3 expected = plane.motion.pose(plane.rest_pose, run.simulator.time()).linear() * Vector3::UnitY();
-    EXPECT_LT((normals.front().normal - expected).norm(), 1e-12) << step;
+    // The angle of the pose and the rotation of the normal: a few roundings of numbers up to 1.
+    EXPECT_LT((normals.front().normal - expected).norm(), 16 * std::numeric_limits<double>::epsilon()) << step;
   }
   EXPECT_GT(repeated, 0) << "the scene must repeat steps";
 }
@@ -83,18 +85,18 @@ TEST(RepeatedStep, LeavesNothingOfDiscardedSolves) {
                                    .stretch_limit = StretchLimitSettings{.solver = StretchLimitSettings::Solver::newton}};
   const std::vector<Obstacle> obstacles{rising_ball(1.0)};
   CountingRun run(builder.build(), settings, obstacles);
-  int repeated = 0;
+  int compared = 0;
   for (int step = 0; step < 120; ++step) {
     if (!run.step()) continue;
-    ++repeated;
     const Simulator& simulator = run.simulator;
     Simulator fresh = Simulator::resume(simulator.network(), settings, obstacles, simulator.state());
     if (run.step()) continue;
     fresh.step();
+    ++compared;
     EXPECT_EQ(fresh.positions(), simulator.positions()) << step;
     EXPECT_EQ(fresh.state().v, simulator.state().v) << step;
   }
-  EXPECT_GT(repeated, 1) << "the scene must repeat steps";
+  EXPECT_GT(compared, 0) << "the scene must make a step after a repeated one";
 }
 
 }  // namespace

@@ -128,6 +128,23 @@ TEST(Substeps, BeginsWithTheSmallestSubstepsIfBodiesMove) {
   EXPECT_EQ(Simulator(resting, settings).step().substeps, 8);
 }
 
+// A spring flies, slack and without forces. Its displacement in a substep is multiplied n times by the n-th root of 1 - damping.
+TEST(Substeps, TheDampingOfVerletIsThatOfAStep) {
+  constexpr double kDamping = 0.3;
+  NetworkBuilder builder;
+  const Vector3 velocity(0.0, 0.0, 10.0);
+  const Index first = builder.add_particle({0.0, 0.0, 0.0}, 1.0, velocity);
+  builder.add_spring(first, builder.add_particle({1.0, 0.0, 0.0}, 1.0, velocity), 0.0, 1.0, 0.0);
+  Simulator simulator(builder.build(), {.step = 1.0 / kRate,
+                                        .gravity = Vector3::Zero(),
+                                        .integrator = VerletSettings{.damping = kDamping},
+                                        .stretch_limit = StretchLimitSettings{},
+                                        .max_substeps = 8});
+  ASSERT_EQ(simulator.step().substeps, 8);
+  // Positions below 1 m are rounded before eight differences are divided by the substep.
+  EXPECT_NEAR(simulator.state().v(2, 0), (1.0 - kDamping) * velocity.z(), 8 * kEpsilon * 8 * kRate);
+}
+
 // Eight substeps equal eight steps. This includes Verlet's first step and penalty friction, which stops a sliding particle within
 // a step if it can.
 TEST(Substeps, TheFirstSubstepsAreStepsOfTheirLength) {
