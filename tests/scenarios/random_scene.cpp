@@ -77,7 +77,7 @@ RandomScene make_scene(const NetworkBuilder& builder, std::vector<Obstacle> obst
   scene.frames = kSteps + 1;
   const SpectralBounds bounds = simulation_bounds(scene.network, settings, true);
   scene.largest_stable_step = largest_stable_step(settings.integrator, bounds);
-  if (is_unstable(settings.step, scene.largest_stable_step) && random.below(8) > 0) {
+  if (is_unstable(settings.step, scene.largest_stable_step) && random.below(2) == 0) {
     scene.settings.step = advised_step(settings.integrator, bounds);
   }
   return made;

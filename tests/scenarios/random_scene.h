@@ -24,8 +24,8 @@ struct RandomScene {
   bool keeps_cells = false;  ///< whether no cell of a body that preserves its volume ends inside out
 };
 
-/// The scene of this seed with a scheme. It starts without intersections. Its step is beyond the largest stable one in one of eight
-/// scenes at most.
+/// The scene of this seed with a scheme. It starts without intersections. Half of the steps that are drawn beyond the largest
+/// stable one stay so; the others are made smaller.
 [[nodiscard]] RandomScene random_scene(std::uint64_t seed, const IntegratorSettings& integrator);
 
 /// Whether check_step accepts the scene's scheme and step without a warning, so that the scene must not diverge.
