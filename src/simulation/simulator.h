@@ -35,9 +35,9 @@ class Simulator {
 
   /// Continues from a state. Requires copies of network() and state() of a simulator with the same settings and obstacles. Forces,
   /// constraints and stop_when() that were added are not part of the state: add them again. A new interval of forces begins (see
-  /// reset_forces()). Results may differ in their last digits from those of that simulator, which has caches of former steps.
-  /// Throws InputError as the constructor does, but does not check the stability of the step and intersections; and if the state
-  /// is not one of the network.
+  /// reset_forces()). Results may differ from those of that simulator, which has caches of former steps: in last digits, or, where
+  /// fast bodies collide, in which contacts are found. Throws InputError as the constructor does, but does not check the stability
+  /// of the step and intersections; and if the state does not fit the network, the settings or the obstacles.
   [[nodiscard]] static Simulator resume(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles,
                                         const SimulationState& state);
   ~Simulator();

@@ -6,6 +6,7 @@
 #include "network/model/sleeping_particles.h"
 #include "network/model/spring_failure.h"
 #include "simulation/simulator_implementation.h"
+#include "simulation/state_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +101,11 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> given,
                                           const SimulationState& former)
     : Implementation(std::move(model), accepted(std::move(chosen)), std::make_shared<ObstacleSet>(std::move(given)), {}) {
+  check_resumed_state(
+      {.network = network, .settings = settings, .obstacles = obstacles.obstacles(), .sleep_groups = groups.count(),
+       .can_collide = constraints.contacts().can_collide()}, former);
   return_to(former);
+  keep_handovers();
   pin_paths.register_pins(state);
   integrator->resume(state, forces, dt());
   if (!settings.record_forces || !state.last_impulses.on()) state.impulses = state.last_impulses = {};
@@ -136,6 +141,15 @@ bool Simulator::Implementation::inherit_pins(const Implementation& before) {
 }
 
 /// A body stays handed over to a global solve only if the limit may still hand it over.
+void Simulator::Implementation::keep_handovers() {
+  for (std::size_t b = 0; b < network.bodies.size(); ++b) {
+    if (constraints.limit() != nullptr && (is_held(network, network.bodies[b]) || constraints.limit()->may_be_handed_over(b))) {
+      continue;
+    }
+    state.limit.handovers[b] = {};
+  }
+}
+
 void Simulator::Implementation::inherit_state(const Implementation& before) {
   stops = before.stops;
   state = before.state;
@@ -153,11 +167,7 @@ void Simulator::Implementation::inherit_state(const Implementation& before) {
   inherit_sleep(before);
   state.rest.sleepers = sleeping_groups();
   const bool pins_changed = inherit_pins(before);
-  for (std::size_t b = 0; b < network.bodies.size(); ++b) {
-    const StretchLimit* limit = constraints.limit();
-    if (limit != nullptr && (is_held(network, network.bodies[b]) || limit->may_be_handed_over(b))) continue;
-    state.limit.handovers[b] = {};
-  }
+  keep_handovers();
   constraints.roll_back(state.contact.permitted_crossings);
   if (penalty != nullptr) penalty->prepare(time());
   drop_unknown_links(before.network, network, state);

@@ -50,6 +50,7 @@ struct Simulator::Implementation {
   void add_forces();
   void add_constraints();
   void inherit_state(const Implementation& before);
+  void keep_handovers();
   [[nodiscard]] bool anything_moves() const;
   /// Makes a step. Returns nothing if it has to be made again because it disturbs sleeping groups; the state is then that at the
   /// begin of the step, without these groups in `rest.sleepers`. If it throws, the state is that at the begin of the step.

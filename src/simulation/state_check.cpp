@@ -1,0 +1,180 @@
+#include "simulation/state_check.h"
+
+#include "base/format.h"
+#include "base/problem_list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace sprung {
+namespace {
+
+const char* const kRemedy = "give copies of network() and state() of one simulator, with its settings and obstacles";
+
+class StateRules {
+ public:
+  StateRules(const StateOwner& owner, const SimulationState& state) : owner_(owner), state_(state) {}
+
+  void check_all() {
+    check_time();
+    check_motion();
+    check_contact();
+    check_rest();
+    check_grips();
+    check_links();
+    check_impulses();
+    problems_.throw_if_any();
+  }
+
+ private:
+  void check_time() {
+    const std::int64_t steps = owner_.settings.steps_per_frame;
+    require(state_.step >= 0, "step", state_.step, "must not be negative");
+    require(state_.frame >= 0, "frame", state_.frame, "must not be negative");
+    require(state_.steps_per_frame == steps, "steps_per_frame", state_.steps_per_frame, "must be that of the settings");
+    require(state_.step_in_frame >= 0 && state_.step_in_frame < steps, "step_in_frame", state_.step_in_frame,
+            "must be from 0 to one less than the steps of a frame");
+    require(state_.substeps >= 1 && state_.substeps <= kMaxSubsteps, "substeps", state_.substeps,
+            "must be from 1 to " + std::to_string(kMaxSubsteps));
+    require(state_.substep == 0, "substep", state_.substep, "must be 0, as between two steps");
+  }
+
+  void check_motion() {
+    require_points("x", state_.x);
+    require_points("v", state_.v);
+    require_points("x_previous", state_.x_previous);
+    require_size("limit.handovers", state_.limit.handovers.size(), owner_.network.bodies.size(), "bodies");
+    const EnergyMemory& energy = state_.energy;
+    const double sum = energy.start + energy.highest_gravity + energy.stored + energy.max_kinetic + energy.fastest_drive;
+    require(std::isfinite(sum), "energy", sum, "must be finite");
+  }
+
+  void check_contact() {
+    const ContactMemory& contact = state_.contact;
+    if (owner_.can_collide) {
+      require_points("contact.slip.displacement", contact.slip.displacement);
+      require_size("contact.slip.obstacle", contact.slip.obstacle.size(), particles(), "particles");
+    }
+    require_indices("contact.slip.obstacle", contact.slip.obstacle, [&](Index k) { return k == kNone || is_obstacle(k); });
+    require_indices("contact.pushed", contact.pushed, [&](Index i) { return is_particle(i); });
+    require_each("contact.normals", contact.normals,
+                 [&](const ContactNormal& touching) { return is_particle(touching.particle) && touching.normal.allFinite(); });
+    require_each("contact.permitted_crossings", contact.permitted_crossings, [&](const PermittedCrossing& crossing) {
+      return is_particle(crossing.particle) && is_obstacle(crossing.obstacle);
+    });
+  }
+
+  void check_rest() {
+    const RestMemory& rest = state_.rest;
+    const auto groups = static_cast<std::size_t>(owner_.sleep_groups);
+    require_size("rest.sleepers", rest.sleepers.size(), groups, "sleep groups");
+    const std::size_t histories = rest.window_begin ? groups + owner_.network.bodies.size() : 0;
+    require_size("rest.histories", rest.histories.size(), histories, "sleep groups and bodies, after the begin of a window");
+    if (!rest.window_begin) return;
+    require(std::isfinite(*rest.window_begin), "rest.window_begin", *rest.window_begin, "must be finite");
+    require_points("rest.x_at_begin", rest.x_at_begin);
+    require_points("rest.x_beside_sleep", rest.x_beside_sleep);
+  }
+
+  void check_grips() {
+    require_each("grips", state_.grips, [&](const PinGrip& grip) {
+      return is_particle(grip.particle) && std::isfinite(grip.time) && grip.position.allFinite();
+    });
+    require(std::ranges::is_sorted(state_.grips, {}, &PinGrip::particle), "grips", "", "must be sorted by particle");
+    for (const Pin& pin : owner_.network.pins) {
+      if (!is_obstacle(pin.obstacle)) continue;
+      for (const Index i : pin.particles) {
+        const auto known = std::ranges::lower_bound(state_.grips, i, {}, &PinGrip::particle);
+        if (known == state_.grips.end() || known->particle != i || has_triangle(pin.obstacle, known->triangle)) continue;
+        require(false, "grips." + pin.name + ".triangle", known->triangle, "must be a triangle of the obstacle");
+      }
+    }
+  }
+
+  void check_links() {
+    require_each("links", state_.links, [&](const Link& link) { return fits(link); });
+    require(std::ranges::is_sorted(state_.links, {}, &Link::attachment), "links", "", "must be sorted by attachment");
+  }
+
+  [[nodiscard]] bool fits(const Link& link) const {
+    if (link.attachment >= owner_.network.attachments.size() || !is_particle(link.first)) return false;
+    if (!std::ranges::all_of(link.second, [&](Index i) { return i == kNone || is_particle(i); })) return false;
+    const Attachment& attachment = owner_.network.attachments[link.attachment];
+    const auto* end = std::get_if<ObstacleEnd>(&attachment.second);
+    if (end != nullptr && is_obstacle(end->obstacle) && !has_triangle(end->obstacle, link.triangle)) return false;
+    return link.weights.allFinite() && link.anchor.allFinite() && link.impulse.allFinite() &&
+           std::isfinite(link.distance + link.length + link.time);
+  }
+
+  void check_impulses() {
+    for (const auto& [key, impulses] : {std::pair("impulses", &state_.impulses), {"last_impulses", &state_.last_impulses}}) {
+      if (!impulses->on()) continue;
+      require_points(std::string(key) + ".on_pinned", impulses->on_pinned);
+      const auto springs = static_cast<std::size_t>(owner_.network.springs.count());
+      require_size(std::string(key) + ".of_springs", static_cast<std::size_t>(impulses->of_springs.size()), springs, "springs");
+    }
+  }
+
+  [[nodiscard]] std::size_t particles() const { return static_cast<std::size_t>(owner_.network.particle_count()); }
+  [[nodiscard]] bool is_particle(Index i) const { return i >= 0 && i < owner_.network.particle_count(); }
+  [[nodiscard]] bool is_obstacle(Index k) const { return k >= 0 && static_cast<std::size_t>(k) < owner_.obstacles.size(); }
+
+  /// Rigid obstacles need none.
+  [[nodiscard]] bool has_triangle(Index obstacle, Index triangle) const {
+    const Obstacle& shape = owner_.obstacles[static_cast<std::size_t>(obstacle)];
+    if (!shape.deforms()) return true;
+    return triangle >= 0 && triangle < std::get<SequenceGeometry>(shape.geometry).sequence->triangles.cols();
+  }
+
+  void add(const std::string& key, const std::string& value, const std::string& rule) {
+    problems_.add("state." + key, value, rule, kRemedy);
+  }
+  void require(bool good, const std::string& key, const std::string& value, const std::string& rule) {
+    if (!good) add(key, value, rule);
+  }
+  template <std::integral Number>
+  void require(bool good, const std::string& key, Number value, const std::string& rule) {
+    if (!good) add(key, std::to_string(value), rule);
+  }
+  void require(bool good, const std::string& key, double value, const std::string& rule) {
+    if (!good) add(key, format_number(value), rule);
+  }
+  void require_size(const std::string& key, std::size_t size, std::size_t count, const std::string& what) {
+    const std::string rule = "must have " + std::to_string(count) + " entries, one for each of the " + what;
+    require(size == count, key, std::to_string(size) + " entries", rule);
+  }
+  void require_points(const std::string& key, const Points& points) {
+    require_size(key, static_cast<std::size_t>(points.cols()), particles(), "particles");
+    require(points.allFinite(), key, "", "must be finite");
+  }
+  template <class Good>
+  void require_indices(const std::string& key, const std::vector<Index>& indices, const Good& good) {
+    const auto text = [&](std::size_t entry) { return std::to_string(indices[entry]); };
+    problems_.require_each(indices.size(), [&](std::size_t entry) { return good(indices[entry]); }, text,
+                           {"state." + key, "must be the number of one of them", kRemedy});
+  }
+  template <class Entry, class Good>
+  void require_each(const std::string& key, const std::vector<Entry>& entries, const Good& good) {
+    problems_.require_each(
+        entries.size(), [&](std::size_t entry) { return good(entries[entry]); },
+        [](std::size_t /*entry*/) { return std::string(); },
+        {"state." + key, "must have finite numbers, and name particles, obstacles and attachments that exist", kRemedy});
+  }
+
+  const StateOwner& owner_;
+  const SimulationState& state_;
+  ProblemList problems_;
+};
+
+}  // namespace
+
+void check_resumed_state(const StateOwner& owner, const SimulationState& state) { StateRules(owner, state).check_all(); }
+
+}  // namespace sprung

@@ -1,0 +1,138 @@
+// What a simulator takes of a state that a program gives back.
+#include "base/error.h"
+#include "simulation/scenes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sprung {
+namespace {
+
+using testing::deforming_sheet;
+using testing::ground;
+using ::testing::HasSubstr;
+using testing::run;
+
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+
+/// A particle on the ground, which a rod holds to a deforming sheet that pulls another particle.
+class Resume : public ::testing::Test {
+ protected:
+  Resume() {
+    obstacles_[1].rest_pose.translation() = Vector3(4.0, 0.5, 0.0);
+    NetworkBuilder builder;
+    builder.add_particle({0.0, 0.001, 0.0}, 0.1);
+    builder.add_particle({1.0, 1.0, 0.0}, 0.1);
+    builder.add_spring(0, 1, 10.0, 1.4, 0.1);
+    Pin pin;
+    pin.name = "hand";
+    pin.particles = {1};
+    pin.obstacle = 1;
+    builder.add_pin(pin);
+    SpringNetwork network = builder.build();
+    network.attachments.push_back({.name = "rod", .particles = {0}, .second = ObstacleEnd{1}});
+    simulator_ = std::make_unique<Simulator>(network, settings_, obstacles_);
+    run(*simulator_, 0.6);  // rest is judged after windows of 0.25 s
+  }
+
+  [[nodiscard]] Simulator resume(const SimulationState& state) const {
+    return Simulator::resume(simulator_->network(), settings_, obstacles_, state);
+  }
+
+  SimulatorSettings settings_{.step = 2e-3, .record_forces = true};
+  std::vector<Obstacle> obstacles_{ground(), deforming_sheet(0.9 * Matrix3::Identity())};
+  std::unique_ptr<Simulator> simulator_;
+};
+
+TEST_F(Resume, RefusesAStateThatDoesNotFit) {
+  const std::vector<std::pair<std::string, std::function<void(SimulationState&)>>> faults{
+      {"state.x = 0 entries: must have 2 entries", [](SimulationState& state) { state = {}; }},
+      {"state.x: must be finite", [](SimulationState& state) { state.x(1, 0) = kNotANumber; }},
+      {"state.v: must be finite", [](SimulationState& state) { state.v(1, 0) = kNotANumber; }},
+      {"state.x_previous = 3 entries", [](SimulationState& state) { state.x_previous.setZero(3, 3); }},
+      {"state.frame = -1", [](SimulationState& state) { state.frame = -1; }},
+      {"state.steps_per_frame = 7", [](SimulationState& state) { state.steps_per_frame = 7; }},
+      {"state.step_in_frame = 1", [](SimulationState& state) { state.step_in_frame = 1; }},
+      {"state.substeps = 0", [](SimulationState& state) { state.substeps = 0; }},
+      {"state.substep = 3", [](SimulationState& state) { state.substep = 3; }},
+      {"state.energy = nan", [](SimulationState& state) { state.energy.stored = kNotANumber; }},
+      {"state.limit.handovers = 0 entries", [](SimulationState& state) { state.limit.handovers.clear(); }},
+      {"state.contact.slip.obstacle[0] = 2", [](SimulationState& state) { state.contact.slip.obstacle[0] = 2; }},
+      {"state.contact.pushed[0] = 2", [](SimulationState& state) { state.contact.pushed = {2}; }},
+      {"state.contact.normals[0]",
+       [](SimulationState& state) {
+         state.contact.normals = {{2, Vector3::UnitY()}};
+       }},
+      {"state.contact.permitted_crossings[0]",
+       [](SimulationState& state) {
+         state.contact.permitted_crossings = {{2, 0}};
+       }},
+      {"state.rest.sleepers = 9 entries", [](SimulationState& state) { state.rest.sleepers.assign(9, 0); }},
+      {"state.rest.histories = 1 entries", [](SimulationState& state) { state.rest.histories.resize(1); }},
+      {"state.rest.x_at_begin = 1 entries", [](SimulationState& state) { state.rest.x_at_begin.setZero(3, 1); }},
+      {"state.grips[0]", [](SimulationState& state) { state.grips.at(0).particle = 2; }},
+      {"state.grips.hand.triangle = 2", [](SimulationState& state) { state.grips.at(0).triangle = 2; }},
+      {"state.links[0]", [](SimulationState& state) { state.links.at(0).triangle = 2; }},
+      {"state.links[0]", [](SimulationState& state) { state.links.at(0).attachment = 1; }},
+      {"state.links[0]", [](SimulationState& state) { state.links.at(0).second[0] = 2; }},
+      {"state.impulses.on_pinned = 1 entries", [](SimulationState& state) { state.impulses.on_pinned.setZero(3, 1); }},
+      {"state.last_impulses.of_springs = 9 entries", [](SimulationState& state) { state.last_impulses.of_springs.setZero(9); }},
+  };
+  for (const auto& [problem, spoil] : faults) {
+    SimulationState state = simulator_->state();
+    spoil(state);
+    try {
+      (void)resume(state);
+      ADD_FAILURE() << "took a state with the fault " << problem;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(problem));
+    }
+  }
+}
+
+TEST_F(Resume, BeginsTheIntervalOfForcesAnew) {
+  Simulator resumed = resume(simulator_->state());
+  simulator_->reset_forces();
+  for (int step = 0; step < 10; ++step) {
+    simulator_->step();
+    resumed.step();
+  }
+  const std::vector<Reaction> expected = simulator_->reactions();
+  const std::vector<Reaction> reactions = resumed.reactions();
+  ASSERT_EQ(reactions.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_GT(expected[k].force.norm(), 0.0) << expected[k].name;
+    EXPECT_LT((reactions[k].force - expected[k].force).norm(), 1e-9 * expected[k].force.norm()) << expected[k].name;
+  }
+}
+
+TEST_F(Resume, RecordsAsItsSettingsSay) {
+  settings_.record_forces = false;
+  Simulator silent = resume(simulator_->state());
+  silent.step();
+  EXPECT_TRUE(silent.reactions().empty());
+  const SimulationState without = silent.state();
+  settings_.record_forces = true;
+  Simulator recording = resume(without);
+  recording.step();
+  EXPECT_EQ(recording.reactions().size(), 2U);
+}
+
+// Bodies that missed the limit wait for a comparison of solvers, which needs the limit.
+TEST_F(Resume, ForgetsTheStretchLimitWithoutIt) {
+  SimulationState state = simulator_->state();
+  for (StretchHandover& handover : state.limit.handovers) handover.missed_steps = handover.patience;
+  Simulator resumed = resume(state);
+  resumed.step();
+  EXPECT_EQ(resumed.state().limit.handovers.front().missed_steps, 0);
+}
+
+}  // namespace
+}  // namespace sprung
