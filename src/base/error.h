@@ -56,7 +56,7 @@ struct StepFailure {
   std::optional<double> smaller_step;
 };
 
-/// The simulation diverged. Its state must not be used any more.
+/// The simulation diverged. Simulator::step then leaves the simulator as it was before the step.
 class StepError : public std::runtime_error {
  public:
   explicit StepError(StepFailure failure);

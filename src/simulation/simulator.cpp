@@ -137,10 +137,12 @@ Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
 StepReport Simulator::step() {
   std::unique_ptr<Implementation> before;
+  const std::vector<char> sleepers = state().rest.sleepers;
   try {
     return step_and_rebuild(before);
   } catch (...) {
     if (before) implementation_ = std::move(before);
+    implementation_->state.rest.sleepers = sleepers;  // fewer, if the step was repeated with some of them awake
     throw;
   }
 }
@@ -160,7 +162,6 @@ StepReport Simulator::step_and_rebuild(std::unique_ptr<Implementation>& before) 
   std::optional<StepReport> report = implementation_->step(PlanReason::first);
   while (!report) {
     std::unique_ptr<Implementation> asleep = rebuild(implementation_->particles_to_sleep());
-    asleep->state = asleep->begin;  // with its sleepers, in case the repeated step throws
     if (!before) before = std::move(asleep);
     report = implementation_->step(PlanReason::wake);
   }

@@ -162,6 +162,7 @@ class Simulator {
   struct External;  ///< the forces and constraints that were added
   explicit Simulator(std::unique_ptr<Implementation> implementation);
   void continue_with_external(External external);
+  void change_awake(const std::function<std::unique_ptr<Implementation>(const Implementation& now)>& make);
   StepReport step_and_rebuild(std::unique_ptr<Implementation>& before);
   std::unique_ptr<Implementation> rebuild(SpringNetwork network, const std::vector<Index>& springs_left);
   std::unique_ptr<Implementation> rebuild(std::vector<char> asleep);

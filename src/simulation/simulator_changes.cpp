@@ -84,6 +84,12 @@ double excess_of(const StepConstraints& constraints, const Points& positions) {
   return constraints.limit() != nullptr ? constraints.limit()->excess(positions) : 0.0;
 }
 
+void check_entry(const std::string& key, std::size_t number, std::size_t count) {
+  if (number < count) return;
+  throw InputError(
+      {.key = key, .value = std::to_string(number), .rule = "there are only " + std::to_string(count), .remedy = "count from 0"});
+}
+
 void check_number(const std::string& key, double number, ProblemList& problems) {
   if (std::isfinite(number) && number >= 0.0) return;
   problems.add(key, format_number(number, 6), "must be finite and not negative", "");
@@ -101,9 +107,12 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
 Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> given,
                                           const SimulationState& former)
     : Implementation(std::move(model), accepted(std::move(chosen)), std::make_shared<ObstacleSet>(std::move(given)), {}) {
-  check_resumed_state(
-      {.network = network, .settings = settings, .obstacles = obstacles.obstacles(), .sleep_groups = groups.count(),
-       .can_collide = constraints.contacts().can_collide()}, former);
+  check_resumed_state({.network = network,
+                       .settings = settings,
+                       .obstacles = obstacles.obstacles(),
+                       .sleep_groups = groups.count(),
+                       .can_collide = constraints.contacts().can_collide()},
+                      former);
   return_to(former);
   keep_handovers();
   pin_paths.register_pins(state);
@@ -223,14 +232,29 @@ void Simulator::wake() {
   if (!network().asleep.empty()) rebuild(std::vector<char>());
 }
 
+/// Wakes all particles and continues with what `make` returns. If it throws, nothing has changed.
+void Simulator::change_awake(const std::function<std::unique_ptr<Implementation>(const Implementation& now)>& make) {
+  const RestMemory rest = state().rest;
+  std::unique_ptr<Implementation> asleep;
+  implementation_->wake_all();
+  if (!network().asleep.empty()) asleep = rebuild(std::vector<char>());
+  try {
+    implementation_ = make(*implementation_);
+  } catch (...) {
+    if (asleep) implementation_ = std::move(asleep);
+    implementation_->state.rest = rest;
+    throw;
+  }
+  implementation_->note_change();
+}
+
 void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings) {
   check_change(network, settings, implementation_->network, implementation_->settings, implementation_->state);
-  wake();
-  const Implementation& now = *implementation_;
-  if (network.broken.count() < now.network.broken.count()) tear_as(now.network, network);
-  copy_rest_lengths(now.network, network);
-  implementation_ = std::make_unique<Implementation>(awake(std::move(network)), std::move(settings), now.external, now);
-  implementation_->note_change();
+  change_awake([&](const Implementation& now) {
+    if (network.broken.count() < now.network.broken.count()) tear_as(now.network, network);
+    copy_rest_lengths(now.network, network);
+    return std::make_unique<Implementation>(awake(std::move(network)), std::move(settings), now.external, now);
+  });
 }
 
 void Simulator::set_gravity(const Vector3& acceleration) {
@@ -254,7 +278,8 @@ void Simulator::set_stretch_limit(const std::optional<StretchLimitSettings>& lim
 
 void Simulator::set_springs(std::size_t body, SpringKind kind, double stiffness, double damping) {
   SpringNetwork network = implementation_->network;
-  const Body& changed = network.bodies.at(body);
+  check_entry("bodies", body, network.bodies.size());
+  const Body& changed = network.bodies[body];
   const std::string key = "bodies." + changed.name + ".springs." + kSpringKindNames[static_cast<std::size_t>(kind)];
   ProblemList problems;
   check_number(key + ".stiffness", stiffness, problems);
@@ -271,7 +296,8 @@ void Simulator::set_springs(std::size_t body, SpringKind kind, double stiffness,
 
 void Simulator::set_body_material(std::size_t body, const ContactMaterial& material) {
   SpringNetwork network = implementation_->network;
-  Body& changed = network.bodies.at(body);
+  check_entry("bodies", body, network.bodies.size());
+  Body& changed = network.bodies[body];
   ProblemList problems;
   check_material("bodies." + changed.name, material, problems);
   problems.throw_if_any();
@@ -281,8 +307,9 @@ void Simulator::set_body_material(std::size_t body, const ContactMaterial& mater
 
 void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMaterial& material) {
   ObstacleSet& obstacles = implementation_->obstacles;
+  check_entry("obstacles", obstacle, obstacles.obstacles().size());
   ProblemList problems;
-  check_material("obstacles." + obstacles.obstacles().at(obstacle).name, material, problems);
+  check_material("obstacles." + obstacles.obstacles()[obstacle].name, material, problems);
   problems.throw_if_any();
   obstacles.set_material(static_cast<Index>(obstacle), material);
   continue_with(implementation_->network, implementation_->settings);
@@ -335,10 +362,9 @@ void Simulator::remove_constraint(const Constraint& constraint) {
 }
 
 void Simulator::continue_with_external(External external) {
-  wake();
-  const Implementation& now = *implementation_;
-  implementation_ = std::make_unique<Implementation>(now.network, now.settings, std::move(external), now);
-  implementation_->note_change();
+  change_awake([&](const Implementation& now) {
+    return std::make_unique<Implementation>(now.network, now.settings, std::move(external), now);
+  });
 }
 
 }  // namespace sprung

@@ -160,6 +160,29 @@ TEST(SleepGroups, APullWakesARopeBeforeItStretches) {
   }
 }
 
+// Each step is stopped before each of its substeps, and so in its repetition with the rope awake.
+TEST(SleepGroups, ARepetitionThatIsStoppedWakesNothing) {
+  const Motion pull{.keyframes = {{.time = 2.0}, {.time = 2.5, .position = {-1.5, 0.0, 0.0}}}};
+  Simulator simulator = lying_rope(pull, true, kImplicit, 1.0e5);
+  run(simulator, 1.999);
+  bool is_repeated = false;
+  for (int step = 0; step < 100 && !is_repeated; ++step) {
+    const std::vector<char> sleepers = simulator.state().rest.sleepers;
+    bool is_complete = false;
+    for (int stop = 0; !is_complete; ++stop) {
+      int substep = 0;
+      simulator.stop_when([&] { return substep++ == stop; });
+      try {
+        is_repeated = simulator.step().reason == PlanReason::wake;
+        is_complete = true;
+      } catch (const StoppedError&) {
+        ASSERT_EQ(simulator.state().rest.sleepers, sleepers) << step << ", " << stop;
+      }
+    }
+  }
+  EXPECT_TRUE(is_repeated);
+}
+
 // The pin pulls with 0.8 mm/s, which moves no particle by the millimetre that wakes its neighbours in a window. If the rest of the
 // rope stayed asleep, the two groups that are awake would be stretched by all of the 5 mm, 0.45 %. Without a limit, the
 // friction of 1.6 N stretches bonds of 100 kN/m by 0.16 %, and a tenth of that more wakes the rope.

@@ -1,4 +1,5 @@
 // What rests in contact sleeps, nothing else does, and any change wakes it.
+#include "base/error.h"
 #include "dynamics/constraints/constraint.h"
 #include "dynamics/forces/pull_force.h"
 #include "simulation/scenes.h"
@@ -48,6 +49,16 @@ TEST(RestDetector, AClothThatLiesStillSleepsAfterHalfASecondWithEachScheme) {
     EXPECT_EQ(simulator.positions(), positions);
     EXPECT_TRUE(simulator.state().v.isZero(0.0));
   }
+}
+
+TEST(RestDetector, ARefusedChangeWakesNothing) {
+  Simulator simulator = lying_cloth(settings_of());
+  run(simulator, 0.6);
+  ASSERT_TRUE(sleeps(simulator));
+  EXPECT_THROW(simulator.set_gravity(Vector3::Constant(std::numeric_limits<double>::quiet_NaN())), InputError);
+  EXPECT_THROW(simulator.set_obstacle_material(1, {}), InputError);
+  EXPECT_TRUE(sleeps(simulator));
+  EXPECT_EQ(simulator.step().substeps, 0);
 }
 
 TEST(RestDetector, TheSettingKeepsItAwake) {
