@@ -78,6 +78,7 @@ MeshBvh::MeshBvh(const TriangleMesh& mesh) {
   std::vector<Node> nodes;
   add_node(WideBvhCollapse(*topology->model), 0, 1, *topology, nodes);
   topology->node_count = nodes.size();
+  slots_ = topology->slots.data();
   topology_ = std::move(topology);
   fit_boxes(mesh.triangles, mesh.vertices, mesh.vertices, std::move(nodes));
   magnitude_ = mesh.vertices.cwiseAbs().maxCoeff();
@@ -85,7 +86,7 @@ MeshBvh::MeshBvh(const TriangleMesh& mesh) {
 }
 
 std::array<Vector3, 3> MeshBvh::corners(Index triangle) const {
-  const Slot& slot = topology_->slots[static_cast<std::size_t>(triangle)];
+  const Slot& slot = slots_[triangle];
   return block(slot.block).corners(slot.lane);
 }
 

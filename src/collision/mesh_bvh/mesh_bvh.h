@@ -93,6 +93,7 @@ class MeshBvh {
   void fit_boxes(const Triangles& triangles, const Points& from, const Points& to, std::vector<Node> nodes);
 
   std::shared_ptr<const Topology> topology_;
+  const Slot* slots_ = nullptr;        ///< those of the topology, at hand for queries
   std::shared_ptr<const Node> nodes_;  ///< the first of them
   std::vector<TrianglePacket> blocks_;
   Box3 bounds_;
