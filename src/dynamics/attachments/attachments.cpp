@@ -32,7 +32,7 @@ bool joins_sleeping_particle(const SpringNetwork& network, const Link& link) {
 Attachments::Attachments(const SpringNetwork& network, const ObstacleSet& obstacles, double step_length, bool implicit)
     : network_(network), obstacles_(obstacles), step_length_(step_length) {
   check_obstacles(network.attachments, obstacles.obstacles().size());
-  rods_ = std::make_shared<Rods>(network, obstacles.obstacles(), step_length);
+  rods_ = std::make_shared<Rods>(network, obstacles.obstacles());
   springs_ = std::make_shared<AttachmentSprings>(network, obstacles.obstacles(), step_length, implicit);
 }
 

@@ -40,11 +40,8 @@ double length_at(const Link& link, double time) {
   return link.length + (link.distance - link.length) * (left * left * (3.0 - 2.0 * left));
 }
 
-Rods::Rods(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length)
-    : network_(network),
-      obstacles_(obstacles),
-      step_length_(step_length),
-      joint_tolerance_(kTolerance * mean_spring_length(network)) {}
+Rods::Rods(const SpringNetwork& network, const std::vector<Obstacle>& obstacles)
+    : network_(network), obstacles_(obstacles), joint_tolerance_(kTolerance * mean_spring_length(network)) {}
 
 void Rods::load(const std::vector<Link>& links, double time) {
   rods_.clear();

@@ -23,7 +23,7 @@ inline constexpr double kWinchTime = 0.25;
 class Rods final : public Constraint {
  public:
   /// Keeps references to both.
-  Rods(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length);
+  Rods(const SpringNetwork& network, const std::vector<Obstacle>& obstacles);
 
   /// Replaces the rods by the rigid ones of the links that are not broken. Their second ends and lengths are those of `time` [s].
   void load(const std::vector<Link>& links, double time);
@@ -58,7 +58,6 @@ class Rods final : public Constraint {
 
   const SpringNetwork& network_;
   const std::vector<Obstacle>& obstacles_;
-  double step_length_;
   double joint_tolerance_;  ///< of rods of length 0 [m]
   std::vector<Rod> rods_;
   std::vector<RodRow> rows_;
