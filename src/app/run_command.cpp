@@ -28,7 +28,7 @@ RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int thre
   return {.scene = loaded.scene.resolved,
           .frame_rate = loaded.scene.frame_rate,
           .frames = loaded.frames,
-          .steps_per_frame = loaded.steps_per_frame,
+          .steps_per_frame = loaded.simulator.settings().steps_per_frame,
           .threads = threads,
           .stretch_solver = loaded.simulator.stretch_solver(),
           .seed = settings.perturb ? std::optional(settings.seed) : std::nullopt,
@@ -72,7 +72,7 @@ std::optional<FrameDiagnostics> next_frame(FrameRunner& runner) {
 
 /// Writes frames until all are written or the user interrupts. `written` counts them, also if an exception ends the run.
 void write_frames(LoadedScene& loaded, RunOutput& output, bool quiet, int& written) {
-  FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
+  FrameRunner runner(loaded.simulator);
   Progress progress(loaded.frames, quiet);
   RunWatch watch(loaded.simulator, output, quiet);
   loaded.simulator.stop_when(interrupted);

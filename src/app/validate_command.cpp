@@ -120,7 +120,7 @@ ExitCode validate(const ValidateOptions& options) {
   // Before the measurement, which advances the simulator.
   const std::string rows = contents(loaded);
   const std::string symmetry = symmetry_row(loaded.simulator);
-  const FrameCost cost = measure_frame_cost(loaded.simulator, loaded.steps_per_frame, threads);
+  const FrameCost cost = measure_frame_cost(loaded.simulator, loaded.simulator.settings().steps_per_frame, threads);
   if (cost.failure) loaded.warnings.push_back(*cost.failure);
 
   const bool loses_symmetry = cost.can_touch || loaded.simulator.settings().stretch_limit;

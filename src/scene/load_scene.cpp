@@ -43,7 +43,6 @@ LoadedScene load(const SceneSource& source) {
   LoadedScene loaded{.scene = std::move(scene),
                      .simulator = start(built),
                      .frames = built.frames,
-                     .steps_per_frame = built.steps_per_frame,
                      .largest_stable_step = built.largest_stable_step,
                      .meshes = std::move(built.meshes),
                      .sources = std::move(built.sources),

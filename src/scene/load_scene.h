@@ -25,7 +25,6 @@ struct LoadedScene {
   Scene scene;
   Simulator simulator;
   int frames = 1;
-  int steps_per_frame = 1;
   double largest_stable_step = 0.0;  ///< [s]; infinity without a bound
   std::vector<NamedReport> meshes;
   ObjSources sources;                       ///< the files of bodies

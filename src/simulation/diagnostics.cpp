@@ -61,7 +61,7 @@ double max_stretch(const Simulator& simulator) {
   return most;
 }
 
-FrameRunner::FrameRunner(Simulator& simulator, int steps_per_frame) : simulator_(simulator), steps_per_frame_(steps_per_frame) {}
+FrameRunner::FrameRunner(Simulator& simulator) : simulator_(simulator) {}
 
 FrameDiagnostics FrameRunner::first_frame() const { return measure(simulator_, 1); }
 
@@ -71,12 +71,12 @@ FrameDiagnostics FrameRunner::next_frame() {
   StepReport all;
   int max_substeps = 1;
   PlanReason reason = PlanReason::first;
-  for (int step = 0; step < steps_per_frame_; ++step) {
+  do {
     const StepReport report = simulator_.step();
-    if (step == 0 || report.substeps > max_substeps) reason = report.reason;
+    if (all.substeps == 0 || report.substeps > max_substeps) reason = report.reason;
     max_substeps = std::max(max_substeps, report.substeps);
     all += report;
-  }
+  } while (simulator_.state().step_in_frame != 0);
   simulator_.check();
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
 

@@ -44,18 +44,17 @@ struct FrameDiagnostics {
 /// Runs a simulator frame by frame. Keeps a reference to it.
 class FrameRunner {
  public:
-  /// Requires steps_per_frame >= 1.
-  FrameRunner(Simulator& simulator, int steps_per_frame);
+  explicit FrameRunner(Simulator& simulator);
 
   /// Diagnostics of the state at time 0.
   [[nodiscard]] FrameDiagnostics first_frame() const;
 
-  /// Runs the steps of the next frame. Forces of pins and springs are then means over the frame. Throws StepError.
+  /// Runs the steps to the end of the present frame (see SimulatorSettings::steps_per_frame). Forces of pins and springs are then
+  /// means over the frame. Throws StepError.
   FrameDiagnostics next_frame();
 
  private:
   Simulator& simulator_;
-  int steps_per_frame_;
   int frame_ = 1;
 };
 

@@ -117,6 +117,9 @@ Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings
   keep_handovers();
   pin_paths.register_pins(state);
   integrator->resume(state, forces, dt());
+  const double dt_before = dt();
+  planner.note_change(false, state);
+  substep_changed(dt_before);
   if (!settings.record_forces || !state.last_impulses.on()) state.impulses = state.last_impulses = {};
   begin_recording();
 }
@@ -236,9 +239,9 @@ void Simulator::wake() {
 void Simulator::change_awake(const std::function<std::unique_ptr<Implementation>(const Implementation& now)>& make) {
   const RestMemory rest = state().rest;
   std::unique_ptr<Implementation> asleep;
-  implementation_->wake_all();
-  if (!network().asleep.empty()) asleep = rebuild(std::vector<char>());
   try {
+    implementation_->wake_all();
+    if (!network().asleep.empty()) asleep = rebuild(std::vector<char>());
     implementation_ = make(*implementation_);
   } catch (...) {
     if (asleep) implementation_ = std::move(asleep);

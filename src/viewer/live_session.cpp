@@ -391,7 +391,7 @@ void LiveSession::publish_state() { publisher_->show_state(state_text(play_)); }
 
 /// Runs with different steps stay at the same time: `every` counts the steps of the first one.
 int LiveSession::steps_of_frame(const Shown& shown) const {
-  if (play_.every == 0) return shown.run.loaded().steps_per_frame;
+  if (play_.every == 0) return shown.run.loaded().simulator.settings().steps_per_frame;
   const double steps = play_.every * runs_.front()->run.simulator().settings().step / shown.run.simulator().settings().step;
   return static_cast<int>(std::clamp(std::round(steps), 1.0, static_cast<double>(kMostStepsShownAtOnce)));
 }

@@ -60,7 +60,7 @@ std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live
                   {"title", std::filesystem::path(run.source().file).filename().string()},
                   {"integrator", integrator.value("type", "verlet")},
                   {"step", loaded.simulator.settings().step},
-                  {"steps_per_frame", loaded.steps_per_frame},
+                  {"steps_per_frame", loaded.simulator.settings().steps_per_frame},
                   {"frame_rate", loaded.scene.frame_rate},
                   {"frames", loaded.frames},
                   {"largest_stable_step", or_null(loaded.largest_stable_step)},

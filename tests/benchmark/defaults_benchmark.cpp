@@ -53,7 +53,7 @@ void run(benchmark::State& state, const std::string& name, const std::vector<std
     double worst = 0.0;
     for (int frame = 1; frame <= measured.last; ++frame) {
       const double begin = processor_time();
-      for (int step = 0; step < built.steps_per_frame; ++step) simulator.step();
+      for (int step = 0; step < built.settings.steps_per_frame; ++step) simulator.step();
       const double taken = processor_time() - begin;
       if (frame == 1) first = taken;
       if (frame < measured.first) continue;
@@ -66,7 +66,7 @@ void run(benchmark::State& state, const std::string& name, const std::vector<std
     state.counters["first_ms"] = 1e3 * first;
     state.counters["99_in_100_%"] = 100.0 * percentile_99;
     state.counters["worst_%"] = 100.0 * worst;
-    state.counters["steps"] = built.steps_per_frame * built.settings.max_substeps;
+    state.counters["steps"] = built.settings.steps_per_frame * built.settings.max_substeps;
   }
 }
 

@@ -36,11 +36,11 @@ void cloth_on_bunny(benchmark::State& state) {
   scene.bodies.at(0).contact.self = false;
   BuiltScene built = build_scene(scene, {SPRUNG_TEST_MESHES});
   Simulator simulator(std::move(built.network), built.settings, std::move(built.obstacles));
-  FrameRunner frames(simulator, built.steps_per_frame);
+  FrameRunner frames(simulator);
   for (int frame = 0; frame < kFirstFrame; ++frame) frames.next_frame();
   double contacts = 0.0;
   for (auto _ : state) contacts += frames.next_frame().contacts;
-  state.counters["steps_per_frame"] = built.steps_per_frame;
+  state.counters["steps_per_frame"] = built.settings.steps_per_frame;
   state.counters["contacts"] = contacts / static_cast<double>(state.iterations());
 }
 

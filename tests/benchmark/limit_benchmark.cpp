@@ -111,7 +111,7 @@ Measured run(const SpringNetwork& network, const StepFrame& step_frame, const Po
 Measured run_sprung(const BuiltScene& built) {
   Simulator simulator(built.network, built.settings);
   const auto step_frame = [&] {
-    for (int step = 0; step < built.steps_per_frame; ++step) simulator.step();
+    for (int step = 0; step < built.settings.steps_per_frame; ++step) simulator.step();
   };
   return run(built.network, step_frame, [&]() -> const Points& { return simulator.positions(); });
 }
@@ -128,7 +128,7 @@ Measured report(benchmark::State& state, const BuiltScene& built) {
   state.SetIterationTime(sprung.seconds);
   state.counters["worst_%"] = 100.0 * sprung.worst;
   state.counters["end_%"] = 100.0 * sprung.end;
-  state.counters["steps"] = built.steps_per_frame;
+  state.counters["steps"] = built.settings.steps_per_frame;
   state.counters["ns_a_particle"] = 1e9 * sprung.seconds / built.network.particle_count();
   return sprung;
 }
@@ -161,7 +161,7 @@ double energy_after(const BuiltScene& built, int frames, int divisor, int max_su
   settings.step /= divisor;
   settings.max_substeps = max_substeps;
   Simulator simulator(built.network, settings);
-  for (int step = 0; step < frames * built.steps_per_frame * divisor; ++step) simulator.step();
+  for (int step = 0; step < frames * built.settings.steps_per_frame * divisor; ++step) simulator.step();
   return 0.5 * built.network.masses.dot(simulator.state().v.colwise().squaredNorm().transpose()) + simulator.gravity_energy();
 }
 

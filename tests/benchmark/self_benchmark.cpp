@@ -46,7 +46,7 @@ double twist(bool self_contact) {
   BuiltScene built = build_scene(scene, {});
   Simulator simulator(std::move(built.network), built.settings);
   return seconds_a_frame(kTwistFrames, [&] {
-    for (int step = 0; step < built.steps_per_frame; ++step) simulator.step();
+    for (int step = 0; step < built.settings.steps_per_frame; ++step) simulator.step();
   });
 }
 

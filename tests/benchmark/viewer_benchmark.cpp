@@ -32,7 +32,7 @@ SceneSource bunny_scene(std::vector<std::string> overrides = {}) {
 void live_view(benchmark::State& state) {
   for ([[maybe_unused]] auto _ : state) {
     LiveRun run(bunny_scene());
-    const int steps = run.loaded().steps_per_frame;
+    const int steps = run.loaded().simulator.settings().steps_per_frame;
     double simulating = 0.0;
     double publishing = 0.0;
     for (int frame = 0; frame < kFrames; ++frame) {
@@ -71,7 +71,7 @@ void record(const std::filesystem::path& folder) {
   RunOutput output(OutputFolder(folder.string(), true),
                    {.scene = loaded.scene.resolved, .frame_rate = 100.0, .frames = kReplayFrames, .steps_per_frame = 1},
                    loaded.simulator);
-  FrameRunner runner(loaded.simulator, 1);
+  FrameRunner runner(loaded.simulator);
   for (int frame = 1; frame <= kReplayFrames; ++frame) {
     output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
   }

@@ -29,7 +29,7 @@ class RecordedWorld : public ::testing::Test {
     facts.steps_per_frame = 2;
     Simulator simulator = small_world();
     RunOutput output(OutputFolder(scratch_ / "out", true), facts, simulator);
-    FrameRunner runner(simulator, 2);
+    FrameRunner runner(simulator);
     for (int frame = 1; frame <= kFrames; ++frame) {
       output.write_frame(simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
       states_.push_back(simulator.state());
@@ -120,7 +120,7 @@ TEST(RecordSize, IsAtMostAFifthMoreThanPositionsAndVelocities) {
   const ScratchFolder scratch;
   constexpr int kManyFrames = 30;  // a second
   RunOutput output(OutputFolder(scratch / "out", false), {.frames = kManyFrames, .write_obj = false}, simulator);
-  FrameRunner runner(simulator, 1);
+  FrameRunner runner(simulator);
   for (int frame = 1; frame <= kManyFrames; ++frame) {
     output.write_frame(simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
   }

@@ -76,7 +76,7 @@ class RunOutputFiles : public ::testing::Test {
   }
   void run(int frames) {
     RunOutput output = open(frames);
-    FrameRunner runner(simulator_, 2);
+    FrameRunner runner(simulator_);
     output.write_frame(simulator_, runner.first_frame());
     for (int frame = 2; frame <= frames; ++frame) output.write_frame(simulator_, runner.next_frame());
     output.finish("done");
@@ -99,7 +99,7 @@ TEST_F(RunOutputFiles, AreThoseOfTheContract) {
 
 TEST_F(RunOutputFiles, FrameOneIsTheStateAtTimeZeroAndEachNumberReadsBackEqual) {
   RunOutput output = open(3);
-  FrameRunner runner(simulator_, 2);
+  FrameRunner runner(simulator_);
   for (int frame = 1; frame <= 3; ++frame) {
     output.write_frame(simulator_, frame == 1 ? runner.first_frame() : runner.next_frame());
     for (const Body& body : simulator_.network().bodies) {
@@ -192,7 +192,7 @@ TEST(TornBodies, LoseFacesAndKeepVertices) {
                                          ObjSource{.file = ObjTemplate(text, ObjTemplate::Normals::as_given), .particle_of = {}})}};
   constexpr int kFrames = 12;
   RunOutput output(OutputFolder(scratch / "out", false), {.frames = kFrames, .steps_per_frame = 1, .sources = sources}, simulator);
-  FrameRunner runner(simulator, 1);
+  FrameRunner runner(simulator);
   std::map<std::string, std::vector<Index>> torn;
   nlohmann::json expected = nlohmann::json::array();
   for (int frame = 1; frame <= kFrames; ++frame) {
@@ -240,14 +240,14 @@ Simulator world_of_a_deforming_obstacle() {
   sequence.frames[1] << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 3;
   Obstacle obstacle = still("heart", SequenceGeometry{std::make_shared<const MeshSequence>(sequence), true}, {0.0, 0.0, 0.0});
   obstacle.motion.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {8.0, 0.0, 0.0}}};
-  return Simulator(builder.build(), {.step = 1.0 / 16.0}, {obstacle});
+  return Simulator(builder.build(), {.step = 1.0 / 16.0, .steps_per_frame = 2}, {obstacle});
 }
 
 TEST(RunOutput, DeformingObstaclesAreWrittenAsTheyAreInEachFrame) {
   const ScratchFolder scratch;
   Simulator simulator = world_of_a_deforming_obstacle();
   RunOutput output(OutputFolder(scratch / "out", false), {.frames = 3, .steps_per_frame = 2, .threads = 1}, simulator);
-  FrameRunner runner(simulator, 2);
+  FrameRunner runner(simulator);
   // Eighths of a second: the tip goes 1 m and the whole 1 m in each frame, in numbers that are exact.
   for (int frame = 1; frame <= 3; ++frame) {
     output.write_frame(simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
@@ -306,7 +306,7 @@ TEST_F(RunOutputFiles, FloorReachesUnderTheWholeScene) {
 
 TEST_F(RunOutputFiles, DigitsGrowWithTheNumberOfFrames) {
   RunOutput output = open(100'000);
-  output.write_frame(simulator_, FrameRunner(simulator_, 1).first_frame());
+  output.write_frame(simulator_, FrameRunner(simulator_).first_frame());
   EXPECT_TRUE(std::filesystem::exists(file("rope/rope.000001.obj")));
 }
 
@@ -332,7 +332,7 @@ TEST_F(RunOutputFiles, SummaryReportsTheProgressOfTheRun) {
   RunOutput output = open(3, R"({"duration": 0.1, "bodies": {}})");
   EXPECT_EQ(summary()["outcome"], "running");
   EXPECT_EQ(summary()["frames_written"], 0);
-  FrameRunner runner(simulator_, 2);
+  FrameRunner runner(simulator_);
   output.write_frame(simulator_, runner.first_frame());
   output.write_frame(simulator_, runner.next_frame());
   EXPECT_EQ(summary()["outcome"], "running");
@@ -358,7 +358,7 @@ Simulator hanging_cloth() {
   builder.add_body("cloth", shape);
   builder.pin({56, 63});
   const StretchLimitSettings limit{.iterations = 1, .solver = StretchLimitSettings::Solver::automatic};
-  return Simulator(builder.build(), {.step = 0.01, .stretch_limit = limit},
+  return Simulator(builder.build(), {.step = 0.01, .steps_per_frame = 4, .stretch_limit = limit},
                    {still("ball", SphereGeometry{.radius = 1.0}, {0.0, -9.0, 0.0})});
 }
 
@@ -366,7 +366,7 @@ TEST_F(RunOutputFiles, SummaryReportsTheHandoverToNewton) {
   simulator_ = hanging_cloth();
   RunOutput output(OutputFolder(scratch_ / "out", false),
                    {.frames = 9, .steps_per_frame = 4, .stretch_solver = simulator_.stretch_solver()}, simulator_);
-  FrameRunner runner(simulator_, 4);
+  FrameRunner runner(simulator_);
   output.write_frame(simulator_, runner.first_frame());
   EXPECT_EQ(summary()["stretch_solver"], "gauss_seidel, then newton for what keeps missing the limit");
   EXPECT_THAT(summary()["newton_from"], IsEmpty());
@@ -388,7 +388,7 @@ TEST_F(RunOutputFiles, SummaryReportsTheHandoverToNewton) {
 
 TEST_F(RunOutputFiles, ThatFitNoMoreTakeTheirWholeFrameBack) {
   RunOutput output = open(3);
-  FrameRunner runner(simulator_, 2);
+  FrameRunner runner(simulator_);
   output.write_frame(simulator_, runner.first_frame());
   const std::vector<std::string> before = listing(scratch_ / "out");
   const std::string rows = read_text(file("diagnostics.csv"));
@@ -406,7 +406,7 @@ TEST_F(RunOutputFiles, ThatFitNoMoreTakeTheirWholeFrameBack) {
 
 TEST_F(RunOutputFiles, FrameWhoseRowFitsNoMoreIsTakenBack) {
   RunOutput output = open(3);
-  FrameRunner runner(simulator_, 2);
+  FrameRunner runner(simulator_);
   output.write_frame(simulator_, runner.first_frame());
   const std::vector<std::string> before = listing(scratch_ / "out");
   const std::uintmax_t room = std::filesystem::file_size(file("diagnostics.csv"));
@@ -429,7 +429,7 @@ Simulator hanging_particle() {
   NetworkBuilder builder;
   builder.add_particle(Vector3::Zero(), 0.5);
   builder.add_pin({.particles = {0}, .motion = {}, .name = "hook"});
-  return Simulator(builder.build(), {.step = 0.01, .gravity = {0.0, -8.0, 0.0}, .record_forces = true});
+  return Simulator(builder.build(), {.step = 0.01, .steps_per_frame = 2, .gravity = {0.0, -8.0, 0.0}, .record_forces = true});
 }
 
 TEST_F(RunOutputFiles, ForcesAreWrittenOnRequestAndReplacedWithTheRun) {
@@ -448,7 +448,7 @@ TEST_F(RunOutputFiles, ForcesAreWrittenOnRequestAndReplacedWithTheRun) {
 TEST_F(RunOutputFiles, ForcesOfAFrameWhoseRowFitsNoMoreAreTakenBack) {
   simulator_ = hanging_particle();
   RunOutput output = open(3);
-  FrameRunner runner(simulator_, 2);
+  FrameRunner runner(simulator_);
   output.write_frame(simulator_, runner.first_frame());
   const std::string forces = read_text(file("forces.csv"));
   std::filesystem::resize_file(file("diagnostics.csv"), 100'000);
@@ -474,7 +474,7 @@ TEST_F(RunOutputFiles, RunWithTheSameNamesReplacesThemWhenAsked) {
   simulator_ = small_world();
   {
     RunOutput output(OutputFolder(scratch_ / "out", true), {.frames = 1}, simulator_);
-    output.write_frame(simulator_, FrameRunner(simulator_, 1).first_frame());
+    output.write_frame(simulator_, FrameRunner(simulator_).first_frame());
   }
   EXPECT_THAT(listing(scratch_ / "out"), Not(Contains("rope/rope.0002.obj")));
   EXPECT_THAT(listing(scratch_ / "out"), Not(Contains(kAnimationFile)));

@@ -53,6 +53,7 @@ inline Simulator small_world() {
   add("house", make_mesh_body(quad_with_uvs(), kSoft), {6.0, 2.0, 0.0});
   SimulatorSettings settings;
   settings.step = 0.01;
+  settings.steps_per_frame = 2;
   return Simulator(
       builder.build(), settings,
       {still("ball", SphereGeometry{0.2}, {0.0, 0.3, 5.0}), rising("lift", BoxGeometry{{0.2, 0.2, 0.2}}, {3.0, 0.5, 5.0}),

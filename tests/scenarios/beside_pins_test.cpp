@@ -55,7 +55,7 @@ TEST(LiftedBesidePins, AnInfeasibleStepIsRepeatedInSubsteps) {
   const std::vector<std::string> overrides = {"bodies.cloth.shape.resolution=[8, 3]",
                                               "obstacles.bar.motion.keyframes[1].time=0.05"};
   BuiltScene scene = load_scenario("lifted_beside_pins", overrides);
-  const std::int64_t steps = static_cast<std::int64_t>(scene.frames - 1) * scene.steps_per_frame;
+  const std::int64_t steps = static_cast<std::int64_t>(scene.frames - 1) * scene.settings.steps_per_frame;
   std::int64_t substeps = 0;
   const ScenarioReport report =
       run_scenario(std::move(scene), [&](const Simulator&, const FrameDiagnostics& frame) { substeps += frame.substeps; });

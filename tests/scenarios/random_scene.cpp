@@ -83,7 +83,7 @@ RandomScene make_scene(const NetworkBuilder& builder, std::vector<Obstacle> obst
   return made;
 }
 
-double duration(const BuiltScene& scene) { return (scene.frames - 1) * scene.steps_per_frame * scene.settings.step; }
+double duration(const BuiltScene& scene) { return (scene.frames - 1) * scene.settings.steps_per_frame * scene.settings.step; }
 
 bool deforms(const BuiltScene& scene) { return std::holds_alternative<SequenceGeometry>(scene.obstacles.front().geometry); }
 

@@ -36,7 +36,7 @@ struct Seeds {
   std::uint64_t last = 50;
 };
 
-constexpr std::uint64_t kBlocks = 2;  // of each scheme
+constexpr std::uint64_t kBlocks = 10;  // of each scheme: blocks of 50 of the seeds 1 to 500
 
 Seeds chosen_seeds() {
   const char* text = std::getenv("SPRUNG_RANDOM_SCENES");

@@ -38,7 +38,7 @@ bool are_equal(const Simulator& a, const Simulator& b) { return a.positions() ==
 
 }  // namespace
 
-ResumeCheck::ResumeCheck(int frames, int steps_per_frame) : steps_per_frame_(steps_per_frame) {
+ResumeCheck::ResumeCheck(int frames) {
   const std::string run = std::string(current_test().name()) + std::to_string(number_of_run());
   test::Random random(test::seeded(std::hash<std::string>{}(run)));
   begin_ = 1 + random.below(std::max(1, frames - kComparedFrames));
@@ -51,7 +51,9 @@ void ResumeCheck::look(int frame, const Simulator& simulator) {
   }
   if (!resumed_ || frame <= begin_ || frame > begin_ + kComparedFrames || first_different_ != 0) return;
   try {
-    for (int step = 0; step < steps_per_frame_; ++step) resumed_->step();
+    do {
+      resumed_->step();
+    } while (resumed_->state().step_in_frame != 0);
     if (are_equal(*resumed_, simulator)) return;
   } catch (const StepError&) {
   }

@@ -11,8 +11,8 @@ namespace sprung::testing {
 /// of both in the frames that follow. Suites whose runs may differ are listed in known_resumes.txt, which may only become shorter.
 class ResumeCheck {
  public:
-  /// The run has `frames` frames of `steps_per_frame` steps.
-  ResumeCheck(int frames, int steps_per_frame);
+  /// The run has so many frames.
+  explicit ResumeCheck(int frames);
 
   /// Call it after each frame, whose number counts from 1.
   void look(int frame, const Simulator& simulator);
@@ -21,7 +21,6 @@ class ResumeCheck {
   void judge() const;
 
  private:
-  int steps_per_frame_;
   int begin_;  ///< frame after which the copy is made
   std::unique_ptr<Simulator> resumed_;
   int first_different_ = 0;  ///< frame; 0: none

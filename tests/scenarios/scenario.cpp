@@ -113,7 +113,7 @@ BuiltScene load_scenario(const std::string& name, const std::vector<std::string>
   BuiltScene built = build_scene(read_scene(file, changes), meshes);
   built.settings.step *= step_factor;
   if (step_factor < 1.0) {
-    built.steps_per_frame = static_cast<int>(std::lround(built.steps_per_frame / step_factor));
+    built.settings.steps_per_frame = static_cast<int>(std::lround(built.settings.steps_per_frame / step_factor));
   } else {
     built.frames = static_cast<int>((built.frames - 1) / step_factor) + 1;
   }
@@ -144,10 +144,10 @@ ScenarioReport run_scenario(BuiltScene scene, const Watch& watch, Judge judge) {
 ScenarioReport run_until_divergence(BuiltScene scene, const Watch& watch, Judge judge, const std::function<bool()>& stops) {
   Simulator simulator(std::move(scene.network), scene.settings, std::move(scene.obstacles));
   if (stops) simulator.stop_when(stops);
-  FrameRunner runner(simulator, scene.steps_per_frame);
+  FrameRunner runner(simulator);
   FrameJudge frame_judge(simulator, judge);
   HashRecord record;
-  ResumeCheck resume(scene.frames, scene.steps_per_frame);
+  ResumeCheck resume(scene.frames);
   ScenarioReport report{.step = scene.settings.step};
   for (int number = 1; number <= scene.frames; ++number) {
     FrameDiagnostics frame;

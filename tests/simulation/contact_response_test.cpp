@@ -211,8 +211,8 @@ TEST(PenaltyContact, ABounceConservesTheEnergy) {
 }
 
 TEST(ContactCount, CountsSupportedParticles) {
-  Simulator simulator(testing::cloth(5, 0.005, {.thickness = 0.005}), {.step = 2.5e-4}, {ground()});
-  FrameRunner frames(simulator, 100);
+  Simulator simulator(testing::cloth(5, 0.005, {.thickness = 0.005}), {.step = 2.5e-4, .steps_per_frame = 100}, {ground()});
+  FrameRunner frames(simulator);
   EXPECT_EQ(frames.next_frame().contacts, 25);
   const FrameDiagnostics frame = frames.next_frame();
   ASSERT_TRUE(frame.min_distance.has_value());

@@ -72,6 +72,25 @@ inline SpringNetwork cloth(Index n, double height, const ContactMaterial& materi
   return builder.build();
 }
 
+/// A rod of one spring of 0.3 m.
+inline NetworkBuilder rod() {
+  NetworkBuilder builder;
+  BodyShape shape = make_rope({.points = {{0.0, 0.0, 0.0}, {0.3, 0.0, 0.0}}, .particles = 2, .length = {}},
+                              {.structural = SpringMaterial{.value = 0.0}, .shear = {}, .bend = {}});
+  set_total_mass(shape, 0.02);
+  builder.add_body("rod", shape, {.thickness = 0.002});
+  return builder;
+}
+
+/// A ball of radius 1 cm waits [s] and then rises in 0.1 s at 3 cm from the rod's first end, from 5 cm below it to 5 cm above it.
+/// If both ends of the rod are pinned, no number of substeps makes the step feasible in which it meets the rod.
+inline Obstacle rising_ball(double wait = 0.0) {
+  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.01}};
+  ball.rest_pose.translation() = Vector3(0.03, -0.05, 0.0);
+  ball.motion.keyframes = {{.time = wait}, {.time = wait + 0.1, .position = {0.0, 0.1, 0.0}}};
+  return ball;
+}
+
 inline void run(Simulator& simulator, double seconds) {
   const auto steps = static_cast<int>(std::lround(seconds / simulator.settings().step));
   for (int i = 0; i < steps; ++i) simulator.step();

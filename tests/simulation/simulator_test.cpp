@@ -20,6 +20,8 @@ using testing::ground;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::one_particle;
+using testing::rising_ball;
+using testing::rod;
 using testing::run;
 
 SpringNetwork two_masses(double stiffness, double damping = 0.0) {
@@ -417,8 +419,10 @@ TEST(Simulator, AStretchLimitAloneSupportsAHangingChain) {
   for (int i = 0; i + 1 < 10; ++i) builder.add_spring(i, i + 1, 0.0, 0.1);
   builder.pin(0);
   const StretchLimitSettings limit{.max_stretch = 0.02, .iterations = 64, .tolerance = 1e-3};
-  Simulator simulator(builder.build(), {.step = 1e-3, .integrator = VerletSettings{.damping = 0.002}, .stretch_limit = limit});
-  FrameRunner frames(simulator, 1000);
+  Simulator simulator(
+      builder.build(),
+      {.step = 1e-3, .steps_per_frame = 1000, .integrator = VerletSettings{.damping = 0.002}, .stretch_limit = limit});
+  FrameRunner frames(simulator);
   frames.next_frame();
   const FrameDiagnostics frame = frames.next_frame();
   EXPECT_LE(frame.stretch_excess, 2e-3);
@@ -434,8 +438,8 @@ TEST(Simulator, NewtonKeepsTheLimitOfALongSwingingRope) {
   for (int i = 0; i + 1 < kParticles; ++i) builder.add_spring(i, i + 1, 0.0, 0.0025);
   builder.pin(0);
   const StretchLimitSettings limit{.max_stretch = 0.002, .solver = StretchLimitSettings::Solver::newton};
-  Simulator simulator(builder.build(), {.step = 1.0 / 240.0, .stretch_limit = limit});
-  FrameRunner frames(simulator, 4);
+  Simulator simulator(builder.build(), {.step = 1.0 / 240.0, .steps_per_frame = 4, .stretch_limit = limit});
+  FrameRunner frames(simulator);
   for (int frame = 0; frame < 60; ++frame) ASSERT_LE(frames.next_frame().stretch_excess, limit.tolerance) << frame;
 }
 
@@ -448,11 +452,13 @@ TEST(Simulator, TethersDoNotPullThroughObstacles) {
   for (int i = 0; i < kParticles; ++i) builder.add_particle({0.05 * i, 1.02, 0.0}, 0.01);
   for (int i = 0; i + 1 < kParticles; ++i) builder.add_spring(i, i + 1, 0.0, 0.05);
   builder.pin(0);
-  Simulator simulator(
-      builder.build(),
-      {.step = 1e-3, .integrator = VerletSettings{.damping = 0.002}, .stretch_limit = StretchLimitSettings{.tethers = true}},
-      {{.name = "ball", .geometry = SphereGeometry{.radius = 1.0}}});
-  FrameRunner frames(simulator, 50);
+  Simulator simulator(builder.build(),
+                      {.step = 1e-3,
+                       .steps_per_frame = 50,
+                       .integrator = VerletSettings{.damping = 0.002},
+                       .stretch_limit = StretchLimitSettings{.tethers = true}},
+                      {{.name = "ball", .geometry = SphereGeometry{.radius = 1.0}}});
+  FrameRunner frames(simulator);
   for (int frame = 0; frame < 60; ++frame) {
     const FrameDiagnostics diagnostics = frames.next_frame();
     ASSERT_GE(*diagnostics.min_distance, 0.0) << frame;
@@ -479,24 +485,6 @@ TEST(Simulator, TheStretchLimitOverridesTheContactGap) {
       ASSERT_GT(simulator.positions()(1, 1), 0.0) << passes << " passes";
     }
   }
-}
-
-/// A rod of one spring of 0.3 m.
-NetworkBuilder rod() {
-  NetworkBuilder builder;
-  BodyShape shape = make_rope({.points = {{0.0, 0.0, 0.0}, {0.3, 0.0, 0.0}}, .particles = 2, .length = {}},
-                              {.structural = SpringMaterial{.value = 0.0}, .shear = {}, .bend = {}});
-  set_total_mass(shape, 0.02);
-  builder.add_body("rod", shape, {.thickness = 0.002});
-  return builder;
-}
-
-/// A ball of radius 1 cm rises in 0.1 s at 3 cm from the rod's pin, from 5 cm below it to 5 cm above it.
-Obstacle rising_ball() {
-  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.01}};
-  ball.rest_pose.translation() = Vector3(0.03, -0.05, 0.0);
-  ball.motion.keyframes = {{.time = 0.0}, {.time = 0.1, .position = {0.0, 0.1, 0.0}}};
-  return ball;
 }
 
 TEST(Simulator, ABallThatRisesBesideAPinDoesNotPassTheRodOnIt) {
@@ -611,8 +599,8 @@ TEST(Simulator, EnergyOfAnUndampedSpringStaysBounded) {
   const Index bob = builder.add_particle({1.2, 0.0, 0.0}, 1.0);
   builder.add_spring(hook, bob, 100.0, 1.0);
   builder.pin(hook);
-  Simulator simulator(builder.build(), {.step = 1e-3, .integrator = SymplecticEulerSettings{}});
-  FrameRunner frames(simulator, 100);
+  Simulator simulator(builder.build(), {.step = 1e-3, .steps_per_frame = 100, .integrator = SymplecticEulerSettings{}});
+  FrameRunner frames(simulator);
   const auto total = [](const FrameDiagnostics& frame) {
     return frame.kinetic_energy + frame.elastic_energy + frame.gravity_energy;
   };

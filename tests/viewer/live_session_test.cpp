@@ -112,7 +112,7 @@ TEST_F(LiveViewer, FramesHaveThePositionsOfTheSimulator) {
   LoadedScene loaded = load_scene({.file = (folder_.path() / "scene.json").string()});
   for (int frame = 2; frame <= 4; ++frame) {
     page.send({{"do", "frame"}});
-    for (int step = 0; step < loaded.steps_per_frame; ++step) loaded.simulator.step();
+    for (int step = 0; step < loaded.simulator.settings().steps_per_frame; ++step) loaded.simulator.step();
     const Received shown =
         page.frame([&](const Received& message) { return message.frame() == static_cast<std::uint32_t>(frame); });
     EXPECT_EQ(shown.time(), loaded.simulator.time());
@@ -331,6 +331,28 @@ TEST_F(LiveViewer, AChangeOfTheFileMeanwhileDoesNotChangeTheRun) {
   EXPECT_EQ(page.text("scene")["bodies"][0]["name"], "rope");
   page.send({{"do", "set"}, {"key", "gravity"}, {"value", {0, 1, 0}}});
   EXPECT_TRUE(page.text("scene")["live"]);
+}
+
+// Softer springs permit longer automatic steps. The run keeps its own, which are stable too.
+TEST_F(LiveViewer, AChangeThatWouldHaveOtherStepsKeepsThoseOfTheRun) {
+  Json scene = Json::parse(kScene);
+  scene["step"] = "auto";
+  serve(scene.dump());
+  const auto steps_with = [&](const std::vector<std::string>& overrides) {
+    return load_scene({.file = (folder_.path() / "scene.json").string(), .overrides = overrides})
+        .simulator.settings()
+        .steps_per_frame;
+  };
+  const int steps = steps_with({});
+  ASSERT_LT(steps_with({"bodies.rope.springs.structural.stiffness=10"}), steps);
+  PausedPage page(server_->port());
+  page.send({{"do", "frame"}});
+  page.frame([](const Received& message) { return message.time() > 0.0; });
+  page.send({{"do", "set"}, {"run", 0}, {"key", "bodies.rope.springs.structural.stiffness"}, {"value", 10}});
+  const Json changed = page.text("scene");
+  EXPECT_TRUE(changed["live"]);
+  EXPECT_EQ(changed["steps_per_frame"], steps);
+  EXPECT_EQ(page.frame().time(), 0.02);
 }
 
 // The ball's mesh is gone when the run is to begin anew.

@@ -37,10 +37,11 @@ TEST(Replay, SpringsAndPinsOfAWeldedMeshAreAtItsVertices) {
                             mesh + R"(", "weld": 0}, "mass": 1, "pins": [{"indices": [1]}],
                "springs": {"structural": {"stiffness": 10}}}}})";
   LoadedScene loaded = load_scene({.file = folder.write("scene.json", scene).string()});
-  RunOutput output(OutputFolder((folder.path() / "run").string(), false),
-                   {.scene = loaded.scene.resolved, .steps_per_frame = loaded.steps_per_frame, .sources = loaded.sources},
-                   loaded.simulator);
-  output.write_frame(loaded.simulator, FrameRunner(loaded.simulator, loaded.steps_per_frame).first_frame());
+  RunOutput output(
+      OutputFolder((folder.path() / "run").string(), false),
+      {.scene = loaded.scene.resolved, .steps_per_frame = loaded.simulator.settings().steps_per_frame, .sources = loaded.sources},
+      loaded.simulator);
+  output.write_frame(loaded.simulator, FrameRunner(loaded.simulator).first_frame());
   const Replay replay(folder.path() / "run");
   EXPECT_THAT(replay.scene_text(), HasSubstr("\"complete\":true"));
   const Topology topology = replay.topology();
@@ -72,10 +73,10 @@ TEST(Replay, ShowsTheOtherBodiesOfALatticeAndPinsWhileTheyHold) {
                    {.scene = loaded.scene.resolved,
                     .frame_rate = 10.0,
                     .frames = kFrames,
-                    .steps_per_frame = loaded.steps_per_frame,
+                    .steps_per_frame = loaded.simulator.settings().steps_per_frame,
                     .sources = loaded.sources},
                    loaded.simulator);
-  FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
+  FrameRunner runner(loaded.simulator);
   for (int frame = 1; frame <= kFrames; ++frame) {
     output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
   }
@@ -107,11 +108,13 @@ TEST(Replay, TellsWhichTrianglesAreGoneFromAFrameOn) {
                 "pins": [{"indices": [0, 1, 2, 3, 4]}]}}})";
   LoadedScene loaded = load_scene({.file = folder.write("scene.json", scene).string()});
   constexpr int kShown = 20;
-  RunOutput output(
-      OutputFolder((folder.path() / "run").string(), false),
-      {.scene = loaded.scene.resolved, .frame_rate = 25.0, .frames = kShown, .steps_per_frame = loaded.steps_per_frame},
-      loaded.simulator);
-  FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
+  RunOutput output(OutputFolder((folder.path() / "run").string(), false),
+                   {.scene = loaded.scene.resolved,
+                    .frame_rate = 25.0,
+                    .frames = kShown,
+                    .steps_per_frame = loaded.simulator.settings().steps_per_frame},
+                   loaded.simulator);
+  FrameRunner runner(loaded.simulator);
   std::vector<Eigen::Index> left;  // triangles of the cloth
   for (int frame = 1; frame <= kShown; ++frame) {
     output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
@@ -143,11 +146,13 @@ class RecordedCloth : public ::testing::Test {
                              "motion": {"keyframes": [{"time": 0}, {"time": 1, "position": [1, 0, 0]}]}},
                     "floor": {"shape": {"type": "half_space"}, "place": {"position": [0, -1, 0]}}}})";
     LoadedScene loaded = load_scene({.file = folder_.write("scene.json", scene).string()});
-    RunOutput output(
-        OutputFolder(run_folder().string(), false),
-        {.scene = loaded.scene.resolved, .frame_rate = 25.0, .frames = kFrames, .steps_per_frame = loaded.steps_per_frame},
-        loaded.simulator);
-    FrameRunner runner(loaded.simulator, loaded.steps_per_frame);
+    RunOutput output(OutputFolder(run_folder().string(), false),
+                     {.scene = loaded.scene.resolved,
+                      .frame_rate = 25.0,
+                      .frames = kFrames,
+                      .steps_per_frame = loaded.simulator.settings().steps_per_frame},
+                     loaded.simulator);
+    FrameRunner runner(loaded.simulator);
     for (int frame = 1; frame <= kFrames; ++frame) {
       output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
       positions_.push_back(loaded.simulator.positions());

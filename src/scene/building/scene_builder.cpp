@@ -214,7 +214,6 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
     built.settings.step = choice.step;
     built.settings.max_substeps = choice.max_substeps;
     built.settings.steps_per_frame = choice.steps_per_frame;
-    built.steps_per_frame = choice.steps_per_frame;
     built.largest_stable_step = choice.largest_stable;
     step_warning = std::move(choice.warning);
     built.network = std::move(*network);

@@ -26,9 +26,8 @@ struct NamedReport {
 struct BuiltScene {
   SpringNetwork network;
   std::vector<Obstacle> obstacles;
-  SimulatorSettings settings;  ///< with the chosen step
-  int frames = 1;              ///< floor(duration * frame_rate + 1e-9) + 1
-  int steps_per_frame = 1;
+  SimulatorSettings settings;        ///< with the chosen step
+  int frames = 1;                    ///< floor(duration * frame_rate + 1e-9) + 1
   double largest_stable_step = 0.0;  ///< [s]; infinity if every step is stable
   std::vector<NamedReport> meshes;
   ObjSources sources;                                ///< the files of bodies

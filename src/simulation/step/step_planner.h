@@ -12,9 +12,8 @@ namespace sprung {
 
 /// All that divides or repeats a step:
 /// - Excess: the length of the substeps is halved as soon as a step ends with more excess over the stretch limit than the bound,
-/// and
-///   doubled after eight steps in a row with less than a quarter of the bound. The excess of a swinging body grows with the length
-///   of the substep, the excess of a hanging body with its square.
+///   and doubled after eight steps in a row with less than a quarter of the bound. The excess of a swinging body grows with the
+///   length of the substep, the excess of a hanging body with its square.
 /// - Deformation: global solves satisfy the limit at any step, but their projection damps motion in proportion to the deformation
 ///   in a substep. Each substep deforms or rotates a body by at most 1/70 (see StretchLimit::deformation).
 /// - Rotation: no obstacle or pin rotates by more than 45 degrees in a substep.

@@ -88,7 +88,7 @@ TEST(SceneBuilder, BuiltSceneRuns) {
   const SceneFolder folder;
   BuiltScene built = build(folder, {});
   Simulator simulator(std::move(built.network), built.settings, std::move(built.obstacles));
-  for (int step = 0; step < built.steps_per_frame; ++step) simulator.step();
+  for (int step = 0; step < built.settings.steps_per_frame; ++step) simulator.step();
   // One frame of 1/30 s, up to the rounding of step * dt.
   EXPECT_NEAR(simulator.time(), 1.0 / 30.0, 1e-15);
 }

@@ -44,7 +44,7 @@ TEST_P(EnergyOfMaterial, DoesNotGrowInTenSecondsOfAutomaticSteps) {
   const SceneFolder folder;
   const BuiltScene scene = held(folder, *find_material(GetParam()));
   Simulator simulator(scene.network, scene.settings);
-  FrameRunner frames(simulator, scene.steps_per_frame);
+  FrameRunner frames(simulator);
   const auto energy = [](const FrameDiagnostics& frame) {
     return frame.kinetic_energy + frame.elastic_energy + frame.gravity_energy;
   };

@@ -55,7 +55,7 @@ TEST(StepChoice, AutoUsesTheFewestStepsWithinNineTenthsOfTheStableStep) {
   for (const double stiffness : {100.0, 1000.0, 54321.0, 1e6}) {
     const double damping = 0.05 * std::sqrt(stiffness);
     const BuiltScene built = build(stiffness, {"bodies.pair.springs.structural.damping=" + std::to_string(damping)});
-    const int n = built.steps_per_frame;
+    const int n = built.settings.steps_per_frame;
     EXPECT_EQ(built.settings.step, 1.0 / (10.0 * n));
     EXPECT_LE(built.settings.step, 0.9 * built.largest_stable_step);
     if (n > 1) {
@@ -95,15 +95,15 @@ TEST(StepChoice, DampersOfAMaterialNeedNoSmallerStepThanItsSprings) {
     const std::string change = std::string(R"(integrator={"type": ")") + integrator + "\"}";
     std::vector<std::string> without = undamped;
     without.push_back(change);
-    EXPECT_LE(cotton(0.1, {change}).steps_per_frame, cotton(0.1, without).steps_per_frame) << integrator;
+    EXPECT_LE(cotton(0.1, {change}).settings.steps_per_frame, cotton(0.1, without).settings.steps_per_frame) << integrator;
   }
-  EXPECT_LE(cotton(0.1).steps_per_frame, 1200);
-  EXPECT_GT(cotton(0.001).steps_per_frame, 1000) << "is not refused";
+  EXPECT_LE(cotton(0.1).settings.steps_per_frame, 1200);
+  EXPECT_GT(cotton(0.001).settings.steps_per_frame, 1000) << "is not refused";
 }
 
 TEST(StepChoice, DampersThatTheSceneGivesBoundTheStep) {
   const BuiltScene given = cotton(0.1, {"bodies.cloth.springs.bend.damping_time=0.00101"});
-  EXPECT_GT(given.steps_per_frame, 2000);
+  EXPECT_GT(given.settings.steps_per_frame, 2000);
 }
 
 /// Lines of an OBJ file: a square of triangles with n x n vertices, which begins at x = `from` [m].
@@ -138,7 +138,7 @@ TEST(StepChoice, OneShortEdgeOfAMaterialDoesNotSlowTheScene) {
   ASSERT_EQ(adjusted.adjustments.size(), 1);
   EXPECT_EQ(adjusted.adjustments[0].body, "sheet");
   EXPECT_NEAR(adjusted.adjustments[0].length, 0.0001, 1e-6);
-  EXPECT_LE(adjusted.steps_per_frame, 100);
+  EXPECT_LE(adjusted.settings.steps_per_frame, 100);
   EXPECT_TRUE(silk(mesh, R"("frame_rate": 100, "step": 1e-5, "stability": "warn", )").adjustments.empty())
       << "the scene sets the step";
 }
@@ -152,7 +152,7 @@ TEST(StepChoice, AutoNamesWhatPreventsMassScaling) {
               ElementsAre(HasSubstr("merge the two vertices, or leave the mass to the material, which permits \"mass_scaling\".")));
   const BuiltScene scaled = silk(mesh);
   EXPECT_THAT(scaled.warnings, testing::IsEmpty());
-  EXPECT_LE(scaled.steps_per_frame, 150) << "instead of more than 1,000";
+  EXPECT_LE(scaled.settings.steps_per_frame, 150) << "instead of more than 1,000";
 }
 
 // Vertex 5 is 0.1 mm from vertex 3.
@@ -198,7 +198,7 @@ TEST(StepChoice, AutoKeepsUndampedSpringsFromResonance) {
     const double resonant = 1.0 / std::sqrt(stiffness);
     const BuiltScene built = build(stiffness);
     EXPECT_LE(built.settings.step, resonant);
-    EXPECT_GT(1.0 / (10.0 * (built.steps_per_frame - 1)), resonant * (1.0 - kBoundSlack));
+    EXPECT_GT(1.0 / (10.0 * (built.settings.steps_per_frame - 1)), resonant * (1.0 - kBoundSlack));
   }
 }
 
@@ -208,7 +208,7 @@ TEST(StepChoice, AutoLimitsTheGrowthOfExplicitEulerWithinTheScene) {
   // duration of 1 s for dt = 2 / k.
   const BuiltScene built = build(1000.0, {explicit_euler});
   EXPECT_LE(built.settings.step, 2.0 / 1000.0);
-  EXPECT_GT(1.0 / (10.0 * (built.steps_per_frame - 1)), 2.0 / 1000.0 * (1.0 - 2.0 * kBoundSlack));
+  EXPECT_GT(1.0 / (10.0 * (built.settings.steps_per_frame - 1)), 2.0 / 1000.0 * (1.0 - 2.0 * kBoundSlack));
 }
 
 // Half a period of the penalty spring, pi sqrt(m / k), with 1 kg, takes three steps, damped or not, with any explicit scheme.
@@ -222,7 +222,7 @@ TEST(StepChoice, APenaltyBounceTakesThreeAutoSteps) {
   for (const std::string scheme : {"verlet", "symplectic_euler", "velocity_verlet", "rk4"}) {
     for (const std::string damping : {"0", "10"}) {
       EXPECT_LE(penalty(scheme, damping).settings.step, third) << scheme;
-      EXPECT_GT(1.0 / (10.0 * (penalty(scheme, damping).steps_per_frame - 1)), third) << scheme;
+      EXPECT_GT(1.0 / (10.0 * (penalty(scheme, damping).settings.steps_per_frame - 1)), third) << scheme;
     }
   }
   EXPECT_GT(penalty("implicit_euler", "0").settings.step, third);
@@ -236,7 +236,7 @@ TEST(StepChoice, AutoRespectsTheStretchLimit) {
   EXPECT_LT(limited.settings.step, free.settings.step);
   const StretchLimit limit(limited.network, *limited.settings.stretch_limit);
   EXPECT_LE(limited.settings.step, limit.suggested_step(9.81));
-  EXPECT_GT(1.0 / (10.0 * (limited.steps_per_frame - 1)), limit.suggested_step(9.81));
+  EXPECT_GT(1.0 / (10.0 * (limited.settings.steps_per_frame - 1)), limit.suggested_step(9.81));
 }
 
 // Layers of a cloth that falls by its own extent L reach a speed of sqrt(g L). In a step they move by half their thickness at most,
@@ -252,7 +252,7 @@ TEST(StepChoice, AutoRespectsLayersOfAClothWithoutStiffness) {
   const double bound = 0.5 * 0.002 / std::sqrt(9.81 * 2.0);
   const BuiltScene layers = built({});
   EXPECT_LE(layers.settings.step, bound);
-  EXPECT_GT(1.0 / (10.0 * (layers.steps_per_frame - 1)), bound);
+  EXPECT_GT(1.0 / (10.0 * (layers.settings.steps_per_frame - 1)), bound);
   EXPECT_GT(built({"bodies.cloth.self_contact=false"}).settings.step, 2.0 * bound);
   EXPECT_GT(built({"bodies.cloth.springs.structural.stiffness=0.001"}).settings.step, 2.0 * bound);
 }
@@ -283,17 +283,18 @@ TEST(StepChoice, AutoIsAFrameUnderAGlobalSolveWithoutContact) {
     return build_scene(folder.read(text, changes));
   };
   for (const std::string solver : {"newton", "auto"}) {
-    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).steps_per_frame, 1);
+    EXPECT_EQ(built({"stretch_limit.solver=" + solver}).settings.steps_per_frame, 1);
     EXPECT_EQ(built({"stretch_limit.solver=" + solver}).settings.max_substeps, kAutoSubsteps);
   }
-  EXPECT_EQ(built({"obstacles.floor.shape={\"type\":\"half_space\",\"offset\":-5}"}).steps_per_frame, 8);
-  EXPECT_EQ(built({"bodies.cloth.self_contact=true"}).steps_per_frame, 8);
-  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).steps_per_frame, 8) << "damping acts on each step";
+  EXPECT_EQ(built({"obstacles.floor.shape={\"type\":\"half_space\",\"offset\":-5}"}).settings.steps_per_frame, 8);
+  EXPECT_EQ(built({"bodies.cloth.self_contact=true"}).settings.steps_per_frame, 8);
+  EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).settings.steps_per_frame, 8)
+      << "damping acts on each step";
   EXPECT_EQ(built({R"(integrator={"type": "verlet", "damping": 0.01})"}).settings.max_substeps, 1);
   const std::string second = R"(bodies.other={"shape": {"type": "cloth", "size": [1, 1], "resolution": [2, 2]}, "mass": 1,
       "place": {"position": [0, 0, 1]}, "springs": {"structural": {"stiffness": 0}})";
-  EXPECT_EQ(built({second + "}"}).steps_per_frame, 8);
-  EXPECT_EQ(built({second + R"(, "body_contact": false})"}).steps_per_frame, 1);
+  EXPECT_EQ(built({second + "}"}).settings.steps_per_frame, 8);
+  EXPECT_EQ(built({second + R"(, "body_contact": false})"}).settings.steps_per_frame, 1);
 }
 
 // Passes need the substeps. After a handover to the global solve, the whole step suffices.
@@ -309,42 +310,43 @@ TEST(StepChoice, AutoUsesSubstepsForPassesThatMayBeReplaced) {
   const BuiltScene passes = built({"stretch_limit.solver=gauss_seidel"});
   const BuiltScene automatic = built({});
   const int substeps = automatic.settings.max_substeps;
-  const int at_least = built({"stretch_limit.solver=newton"}).steps_per_frame;
+  const int at_least = built({"stretch_limit.solver=newton"}).settings.steps_per_frame;
   EXPECT_EQ(passes.settings.max_substeps, 1);
   EXPECT_GT(substeps, 1);
-  EXPECT_GE(automatic.steps_per_frame, at_least);
-  EXPECT_LT(automatic.steps_per_frame, 2 * at_least);
-  EXPECT_GE(automatic.steps_per_frame * substeps, passes.steps_per_frame);
-  EXPECT_LT((automatic.steps_per_frame - 1) * substeps, passes.steps_per_frame);
+  EXPECT_GE(automatic.settings.steps_per_frame, at_least);
+  EXPECT_LT(automatic.settings.steps_per_frame, 2 * at_least);
+  EXPECT_GE(automatic.settings.steps_per_frame * substeps, passes.settings.steps_per_frame);
+  EXPECT_LT((automatic.settings.steps_per_frame - 1) * substeps, passes.settings.steps_per_frame);
   const std::string damping = R"(integrator={"type": "verlet", "damping": 0.01})";
   EXPECT_EQ(built({damping}).settings.max_substeps, 1) << "damping acts on each step";
-  EXPECT_EQ(built({damping}).steps_per_frame, passes.steps_per_frame);
+  EXPECT_EQ(built({damping}).settings.steps_per_frame, passes.settings.steps_per_frame);
 }
 
 TEST(StepChoice, WithoutAnyBoundAutoIsAtMostTheDocumentedStep) {
   const BuiltScene built = build(0.0);
   EXPECT_TRUE(std::isinf(built.largest_stable_step));
-  EXPECT_EQ(built.steps_per_frame, 24);  // 10 frames a second of 24 steps: 1/240 s
+  EXPECT_EQ(built.settings.steps_per_frame, 24);  // 10 frames a second of 24 steps: 1/240 s
 }
 
 // A frame is a tenth of a second.
 TEST(StepChoice, AutoOfImplicitEulerIsSmallerWithContactOrALimitBesideSprings) {
   const std::string implicit = R"(integrator={"type": "implicit_euler"})";
-  EXPECT_EQ(build(1.0e6, {implicit, R"(obstacles.ball={"shape": {"type": "sphere", "radius": 0.1}})"}).steps_per_frame, 24);
+  EXPECT_EQ(build(1.0e6, {implicit, R"(obstacles.ball={"shape": {"type": "sphere", "radius": 0.1}})"}).settings.steps_per_frame,
+            24);
   const std::string newton = R"(stretch_limit={"solver": "newton"})";
-  EXPECT_EQ(build(0.0, {implicit, newton}).steps_per_frame, 1);
-  EXPECT_EQ(build(1.0e6, {implicit, newton}).steps_per_frame, 24);
+  EXPECT_EQ(build(0.0, {implicit, newton}).settings.steps_per_frame, 1);
+  EXPECT_EQ(build(1.0e6, {implicit, newton}).settings.steps_per_frame, 24);
 }
 
 TEST(StepChoice, AutoOfImplicitEulerIsAFrameOrTheStepOfTheStretchLimit) {
   const std::string implicit = R"(integrator={"type": "implicit_euler"})";
   const BuiltScene free = build(1.0e6, {implicit});
   EXPECT_TRUE(std::isinf(free.largest_stable_step));
-  EXPECT_EQ(free.steps_per_frame, 1);
-  EXPECT_EQ(build(1.0e6, {implicit, "step=0.1"}).steps_per_frame, 1) << "a given step is never refused";
+  EXPECT_EQ(free.settings.steps_per_frame, 1);
+  EXPECT_EQ(build(1.0e6, {implicit, "step=0.1"}).settings.steps_per_frame, 1) << "a given step is never refused";
   const BuiltScene limited =
       build(0.0, {implicit, "bodies.pair.shape.particles=50", "stretch_limit={\"iterations\":1,\"solver\":\"gauss_seidel\"}"});
-  EXPECT_GT(limited.steps_per_frame, 1);
+  EXPECT_GT(limited.settings.steps_per_frame, 1);
   EXPECT_LE(limited.settings.step, StretchLimit(limited.network, *limited.settings.stretch_limit).suggested_step(9.81));
 }
 
@@ -355,7 +357,7 @@ TEST(StepChoice, StepBeyondTheStableOneIsRefusedNamingTheLargestPossibleOne) {
                                           Field(&Problem::rule, HasSubstr("is beyond the largest stable step, 0.06")),
                                           Field(&Problem::remedy, AllOf(HasSubstr("use a step of at most 0.025 s, or \"auto\""),
                                                                         HasSubstr("\"stability\": \"warn\""))))));
-  EXPECT_EQ(build(1000.0, {"step=0.05"}).steps_per_frame, 2);
+  EXPECT_EQ(build(1000.0, {"step=0.05"}).settings.steps_per_frame, 2);
   // 2 / sqrt(8200) = 0.0221: 1 / 120 likewise, told in three digits.
   EXPECT_THAT(problems_of([] {
                 (void)build(8200.0, {"frame_rate=30", "step=0.03333333333333333"});
@@ -382,7 +384,7 @@ TEST(StepChoice, AStepThatDividesNoFrameIsRefusedNamingStableOnes) {
 TEST(StepChoice, StepBeyondTheStableOneRunsWithAWarning) {
   const BuiltScene built = build(1000.0, {"step=0.1", "stability=warn"});
   EXPECT_EQ(built.settings.step, 0.1);
-  EXPECT_EQ(built.steps_per_frame, 1);
+  EXPECT_EQ(built.settings.steps_per_frame, 1);
 }
 
 TEST(StepChoice, PenaltyContactCountsAsASpringToTheGround) {

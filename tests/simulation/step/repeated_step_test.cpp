@@ -10,24 +10,7 @@
 namespace sprung {
 namespace {
 
-/// A ball cannot pass a rod that is pinned at both ends: no number of substeps makes the step feasible, so that it is repeated.
-NetworkBuilder rod_before_a_ball() {
-  NetworkBuilder builder;
-  BodyShape rod = make_rope({.points = {{0.0, 0.0, 0.0}, {0.3, 0.0, 0.0}}, .particles = 2, .length = {}},
-                            {.structural = SpringMaterial{.value = 0.0}});
-  set_total_mass(rod, 0.02);
-  builder.add_body("rod", rod, {.thickness = 0.002});
-  builder.pin({0, 1});
-  return builder;
-}
-
-/// It waits before it rises.
-Obstacle rising_ball(double wait = 0.0) {
-  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.01}};
-  ball.rest_pose.translation() = Vector3(0.03, -0.05, 0.0);
-  ball.motion.keyframes = {{.time = wait}, {.time = wait + 0.1, .position = {0.0, 0.1, 0.0}}};
-  return ball;
-}
+using testing::rising_ball;
 
 /// Steps a simulator and counts the substeps of all attempts.
 class CountingRun {
@@ -50,9 +33,10 @@ class CountingRun {
   int made_ = 0;
 };
 
-// A particle lies on a plane that turns. An attempt that is abandoned ends within the step, where the plane has another normal.
+// A particle lies on a plane that rotates. An attempt that is abandoned ends within the step, where the plane has another normal.
 TEST(RepeatedStep, KeepsTheNormalsOfTheAttemptThatIsKept) {
-  NetworkBuilder builder = rod_before_a_ball();
+  NetworkBuilder builder = testing::rod();
+  builder.pin({0, 1});
   builder.begin_body("grain", {.thickness = 0.002});
   const Index grain = builder.add_particle({0.0, -4.998, 0.0}, 0.1);
   Obstacle plane{.name = "plane", .geometry = HalfSpaceGeometry{.offset = -5.0}};
@@ -74,7 +58,8 @@ TEST(RepeatedStep, KeepsTheNormalsOfTheAttemptThatIsKept) {
 // A solver keeps the factor of a cloth that hangs nearly still, which changes last digits. A discarded attempt leaves none: the
 // next step is that of a simulator that begins there.
 TEST(RepeatedStep, LeavesNothingOfDiscardedSolves) {
-  NetworkBuilder builder = rod_before_a_ball();
+  NetworkBuilder builder = testing::rod();
+  builder.pin({0, 1});
   BodyShape cloth = make_cloth({.size = {1.0, 1.0}, .resolution = {10, 10}},
                                {.structural = SpringMaterial{.value = 0.0}, .shear = SpringMaterial{.value = 0.0}});
   set_total_mass(cloth, 0.2);
