@@ -125,13 +125,32 @@ TEST_F(Resume, RecordsAsItsSettingsSay) {
   EXPECT_EQ(recording.reactions().size(), 2U);
 }
 
-// Bodies that missed the limit wait for a comparison of solvers, which needs the limit.
+// Bodies that missed the limit wait for a comparison of solvers, which needs the limit, and steps had substeps for it.
 TEST_F(Resume, ForgetsTheStretchLimitWithoutIt) {
   SimulationState state = simulator_->state();
   for (StretchHandover& handover : state.limit.handovers) handover.missed_steps = handover.patience;
+  state.substeps = 4;
   Simulator resumed = resume(state);
-  resumed.step();
+  EXPECT_EQ(resumed.step().substeps, 1);
   EXPECT_EQ(resumed.state().limit.handovers.front().missed_steps, 0);
+}
+
+// A pin pulls a rod through a plate that holds back the rod's other end. The crossing is permitted from then on; a run that forgot
+// it would count the rod as infeasible again.
+TEST(ResumedCrossing, StaysPermitted) {
+  NetworkBuilder builder = testing::rod();
+  builder.pin(0, {.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {0.0, 1.0, 0.0}}}});
+  Obstacle plate{.name = "plate", .geometry = BoxGeometry{.size = {2.0, 0.02, 2.0}}};
+  plate.rest_pose.translation() = Vector3(0.0, 0.3, 0.0);
+  const SimulatorSettings settings{.step = 1e-2};
+  Simulator simulator(builder.build(), settings, {plate});
+  for (int step = 0; step < 100 && simulator.state().contact.permitted_crossings.empty(); ++step) simulator.step();
+  ASSERT_FALSE(simulator.state().contact.permitted_crossings.empty());
+  Simulator resumed = Simulator::resume(simulator.network(), settings, {plate}, simulator.state());
+  for (int step = 0; step < 10; ++step) {
+    EXPECT_EQ(resumed.step().infeasible, simulator.step().infeasible) << step;
+    EXPECT_EQ(resumed.positions(), simulator.positions()) << step;
+  }
 }
 
 }  // namespace

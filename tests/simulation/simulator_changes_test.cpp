@@ -239,6 +239,8 @@ TEST(SimulatorChanges, TheStepChangesAtTheEndOfAFrame) {
   EXPECT_EQ(simulator.state().frame, 3);
   EXPECT_EQ(simulator.state().step_in_frame, 0);
   EXPECT_NEAR(simulator.time(), 3 * kFrame, kEpsilon);
+  ASSERT_EQ(simulator.state().grips.size(), 1U);
+  EXPECT_EQ(simulator.state().grips[0].time, 0.05) << "the pin has not begun anew";
   change_steps(2);
   for (int step = 0; step < 3; ++step) simulator.step();
   EXPECT_EQ(simulator.state().frame, 4);

@@ -79,6 +79,24 @@ TEST(Simulator, StopsBetweenTheSubstepsOfAStep) {
   expect_equal(simulator.state(), whole.state());
 }
 
+// The pin rotates by 45 degrees in the first step, and twice as far in the second.
+TEST(FrameRunner, NamesTheReasonOfTheStepWithTheMostSubsteps) {
+  NetworkBuilder builder;
+  const Index hook = builder.add_particle({1.0, 0.0, 0.0}, 1.0);
+  builder.add_particle({1.0, -1.0, 0.0}, 1.0);
+  builder.pin(
+      hook,
+      {.keyframes = {{.time = 0.0}, {.time = 0.01, .rotation = {0.0, 45.0, 0.0}}, {.time = 0.02, .rotation = {0.0, 135.0, 0.0}}}});
+  Simulator simulator(builder.build(), {.step = 0.01, .steps_per_frame = 3});
+  FrameRunner frames(simulator);
+  const FrameDiagnostics turning = frames.next_frame();
+  EXPECT_EQ(turning.substeps, 1 + 2 + 1);
+  EXPECT_EQ(turning.reason, PlanReason::rotation);
+  const FrameDiagnostics still = frames.next_frame();
+  EXPECT_EQ(still.substeps, 3);
+  EXPECT_EQ(still.reason, PlanReason::first);
+}
+
 // A spring breaks and a pin begins before the step, which is stopped before its second substep.
 TEST(Simulator, AStepThatIsStoppedChangesNothing) {
   NetworkBuilder builder;
