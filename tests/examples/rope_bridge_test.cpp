@@ -56,13 +56,13 @@ double turn(const Points& before, const Points& after) {
 
 class RopeBridge : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() { run_ = std::make_unique<ExampleRun>("rope_bridge"); }
-  static void TearDownTestSuite() { run_.reset(); }
-  void SetUp() override { ASSERT_EQ(run_->exit_code(), 0) << run_->messages(); }
+  static void SetUpTestSuite() { run = std::make_unique<ExampleRun>("rope_bridge"); }
+  static void TearDownTestSuite() { run.reset(); }
+  void SetUp() override { ASSERT_EQ(run->exit_code(), 0) << run->messages(); }
 
-  static std::unique_ptr<ExampleRun> run_;
+  static std::unique_ptr<ExampleRun> run;
 };
-std::unique_ptr<ExampleRun> RopeBridge::run_;
+std::unique_ptr<ExampleRun> RopeBridge::run;
 
 // A rod leads to a point of the rope, so the rope is never farther than the rod is long.
 TEST_F(RopeBridge, ThePlanksStayOnTheirRopes) {
@@ -70,13 +70,13 @@ TEST_F(RopeBridge, ThePlanksStayOnTheirRopes) {
     const std::string plank = "plank_" + std::string(letter);
     const auto distances = [&](int frame) {
       std::array<double, 4> of_corners{};
-      const std::array<Vector3, 4> corners = corners_of(run_->positions(plank, frame));
+      const std::array<Vector3, 4> corners = corners_of(run->positions(plank, frame));
       for (std::size_t k = 0; k < corners.size(); ++k)
-        of_corners[k] = distance(corners[k], run_->positions(k < 2 ? "rope_left" : "rope_right", frame));
+        of_corners[k] = distance(corners[k], run->positions(k < 2 ? "rope_left" : "rope_right", frame));
       return of_corners;
     };
     const std::array<double, 4> lengths = distances(1);
-    for (int frame = 2; frame <= run_->frames(); ++frame) {
+    for (int frame = 2; frame <= run->frames(); ++frame) {
       const std::array<double, 4> now = distances(frame);
       for (std::size_t k = 0; k < now.size(); ++k) EXPECT_LE(now[k], 1.001 * lengths[k]) << plank << ", frame " << frame;
     }
@@ -87,23 +87,23 @@ TEST_F(RopeBridge, TheBallRollsOverThemToTheOtherSide) {
   double path = 0.0;
   double turned = 0.0;
   double lowest_under_ball = std::numeric_limits<double>::infinity();
-  Points before = run_->positions("ball", 1);
-  for (int frame = 2; frame <= run_->frames(); ++frame) {
-    const Points ball = run_->positions("ball", frame);
+  Points before = run->positions("ball", 1);
+  for (int frame = 2; frame <= run->frames(); ++frame) {
+    const Points ball = run->positions("ball", frame);
     const Vector3 centre = ball.rowwise().mean();
     const Vector3 moved = centre - before.rowwise().mean();
     if (std::abs(centre.x()) < 0.8) {
-      EXPECT_GT(centre.y(), height_at(centre.x(), run_->positions("rope_left", frame)) + kBall) << "frame " << frame;
+      EXPECT_GT(centre.y(), height_at(centre.x(), run->positions("rope_left", frame)) + kBall) << "frame " << frame;
       path += moved.norm();
       turned += turn(before, ball);
     }
     if (std::abs(centre.x()) < 0.1)
-      lowest_under_ball = std::min(lowest_under_ball, run_->positions("plank_f", frame).row(1).mean());
+      lowest_under_ball = std::min(lowest_under_ball, run->positions("plank_f", frame).row(1).mean());
     before = ball;
   }
   EXPECT_GT(before.row(0).mean(), 1.0) << "it reaches the other pier";
   EXPECT_NEAR(turned * kBall, path, 0.1 * path) << "it rolls";
-  EXPECT_LT(lowest_under_ball, run_->positions("plank_f", run_->frames()).row(1).mean() - 0.01) << "the bridge sags under it";
+  EXPECT_LT(lowest_under_ball, run->positions("plank_f", run->frames()).row(1).mean() - 0.01) << "the bridge sags under it";
 }
 
 }  // namespace

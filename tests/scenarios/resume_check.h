@@ -14,6 +14,10 @@ class ResumeCheck {
   /// The run has so many frames.
   explicit ResumeCheck(int frames);
 
+  /// Call it before each frame after the first. In the chosen frame it makes the steps up to the chosen one, adds their report, and
+  /// resumes the copy. Throws StepError.
+  void begin(int frame, Simulator& simulator, StepReport& report);
+
   /// Call it after each frame, whose number counts from 1.
   void look(int frame, const Simulator& simulator);
 
@@ -21,7 +25,8 @@ class ResumeCheck {
   void judge() const;
 
  private:
-  int begin_;  ///< frame after which the copy is made
+  int begin_;        ///< frame in which the copy is made
+  double fraction_;  ///< of the frame's steps that it makes before
   std::unique_ptr<Simulator> resumed_;
   int first_different_ = 0;  ///< frame; 0: none
 };

@@ -151,7 +151,9 @@ ScenarioReport run_until_divergence(BuiltScene scene, const Watch& watch, Judge 
   ScenarioReport report{.step = scene.settings.step};
   for (int number = 1; number <= scene.frames; ++number) {
     FrameDiagnostics frame;
+    StepReport before;
     try {
+      if (number > 1) resume.begin(number, simulator, before);
       frame = number == 1 ? runner.first_frame() : runner.next_frame();
     } catch (const StepError& error) {
       report.divergence = error.failure();
@@ -161,6 +163,9 @@ ScenarioReport run_until_divergence(BuiltScene scene, const Watch& watch, Judge 
     record.add(simulator.positions());
     resume.look(number, simulator);
     report.max_stretch = std::max(report.max_stretch, frame.max_stretch);
+    frame.truncated += before.truncated;
+    frame.infeasible += before.infeasible;
+    frame.substeps += before.substeps;
     report.truncated += frame.truncated;
     report.infeasible += frame.infeasible;
     if (frame.infeasible > 0 && report.first_infeasible_frame == 0) report.first_infeasible_frame = number;

@@ -48,12 +48,17 @@ void StretchNewton::make_components(std::span<const RodRow> rods) {
       left_.insert(left_.end(), component.points.begin(), component.points.begin() + component.free_count);
     }
     if (taken == Taken::never) continue;
-    std::unique_ptr<ComponentNewton> with_rods;
-    if (!component.rods.empty()) with_rods = std::make_unique<ComponentNewton>(std::move(component), settings_);
-    ComponentNewton* const rods_solver = with_rods.get();
-    components_.push_back({.solver = with_rods ? std::unique_ptr<ComponentSolver>(std::move(with_rods))
-                                               : make_component_solver(network_, std::move(component), settings_, use_),
-                           .with_rods = rods_solver,
+    std::unique_ptr<ComponentSolver> solver;
+    ComponentNewton* with_rods = nullptr;
+    if (component.rods.empty()) {
+      solver = make_component_solver(network_, std::move(component), settings_, use_);
+    } else {
+      auto newton = std::make_unique<ComponentNewton>(std::move(component), settings_);
+      with_rods = newton.get();
+      solver = std::move(newton);
+    }
+    components_.push_back({.solver = std::move(solver),
+                           .with_rods = with_rods,
                            .body = static_cast<std::size_t>(&body - network_.bodies.data()),
                            .from_start = taken == Taken::from_start,
                            .number = of_component});
