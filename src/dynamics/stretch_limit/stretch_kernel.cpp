@@ -165,8 +165,8 @@ template <class Widest, class Body>
 [[gnu::always_inline]] inline void for_batches(const SpringBatches& batches, const BatchRange& batch_range, const Body& body) {
   for (Index p = batch_range.begin; p < batch_range.end; ++p) {
     const Batch& batch = batches.batch[p];
-    switch (batch.layout) {  // NOLINT(bugprone-branch-clone): two are alike where the widest vectors hold four
-      case Layout::runs_of_eight:
+    switch (batch.layout) {
+      case Layout::runs_of_eight:  // NOLINT(bugprone-branch-clone): two are alike where the widest vectors hold four
         body.template operator()<RunGroup<Widest>, RunGroup<PackedVectors4>>(batch);
         break;
       case Layout::runs_of_four:
