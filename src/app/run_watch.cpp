@@ -4,7 +4,7 @@
 #include "base/format.h"
 #include "base/grouped_warnings.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
-#include "network/model/pin_schedule.h"
+#include "network/model/activity.h"
 #include "simulation/monitoring/self_crossings.h"
 #include "simulation/simulator.h"
 #include "simulation/step/frame_steps.h"
@@ -47,7 +47,7 @@ double thinnest_gap(const std::vector<Body>& bodies, const std::vector<Obstacle>
 }
 
 bool moves_anything(const Simulator& simulator) {
-  return has_moving_pin(simulator.network()) ||
+  return has_moving_pin(simulator.network().pins) ||
          std::ranges::any_of(simulator.obstacles(), [](const Obstacle& obstacle) { return obstacle.motion.moves(); });
 }
 

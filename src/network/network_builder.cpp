@@ -1,7 +1,7 @@
 #include "network/network_builder.h"
 
 #include "network/damping_ratio.h"
-#include "network/model/pin_schedule.h"
+#include "network/model/activity.h"
 #include "network/network_check.h"
 
 #include <algorithm>
@@ -235,11 +235,12 @@ SpringNetwork NetworkBuilder::build() const {
                               draft.shape.has_material_dampers});
   }
   network.inverse_masses = network.masses.cwiseInverse();
-  for (const Pin& pin : pins) network.pin_names.push_back(pin.name);
-  network.later_pins = std::move(pins);
-  change_pins(network, std::numeric_limits<double>::min());  // those that begin at time 0
-  for (const Pin& pin : network.pins) {
-    for (const Index particle : pin.particles) network.velocities.col(particle).setZero();
+  network.pins = std::move(pins);
+  Activity activity = all_free(network);
+  change_pins(network.pins, std::numeric_limits<double>::min(), activity);  // those that begin at time 0
+  set_activity(std::move(activity), network);
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (network.activity.is_pinned(i)) network.velocities.col(i).setZero();
   }
   network.attachments = std::move(attachments);
   for (std::size_t b = 0; b < drafts.size(); ++b) damp_by_ratio(drafts[b].shape.damping_ratios, network.bodies[b], network);

@@ -2,7 +2,7 @@
 
 #include "base/format.h"
 #include "geometry/motion/motion_check.h"
-#include "network/model/pin_schedule.h"
+#include "network/model/activity.h"
 
 #include <algorithm>
 #include <array>

@@ -77,7 +77,7 @@ ObjSequence body_sequence(const Simulator& simulator, std::size_t number, const 
   }
   return {pattern, [number, elements = element_lines(body)](const Simulator& present) {
             const Body& now = present.network().bodies[number];
-            return surface_text(present, now, present.network().broken.count() == 0 ? elements : element_lines(now));
+            return surface_text(present, now, present.state().springs.broken_count() == 0 ? elements : element_lines(now));
           }};
 }
 

@@ -45,7 +45,7 @@ std::vector<NewtonFrom> handed_over(const Simulator& simulator) {
 
 /// Adds the faces of bodies that are gone and not yet listed.
 void list_torn(const Simulator& simulator, int frame, std::vector<TornFaces>& torn_faces) {
-  if (simulator.network().broken.count() == 0) return;
+  if (simulator.state().springs.broken_count() == 0) return;
   for (const Body& body : simulator.network().bodies) {
     std::vector<Index> listed;
     for (const TornFaces& torn : torn_faces) {

@@ -1,7 +1,9 @@
 #include "output/run_recorder.h"
 
-#include "network/model/pin_schedule.h"
+#include "network/model/activity.h"
 #include "output/scene_extent.h"
+#include "simulation/model.h"
+#include "simulation/simulator.h"
 
 #include <algorithm>
 #include <numeric>
@@ -52,12 +54,10 @@ ObstacleMotion motion_of(const Obstacle& obstacle) {
 }
 
 RunRecorder::RunRecorder(const Simulator& simulator, const ObjSources& sources, const BodyMaterials& materials) {
-  const SpringNetwork& network = simulator.network();
+  const SpringNetwork& network = simulator.model()->network();
   model_.particle_count = network.particle_count();
   for (const Body& body : network.bodies) model_.bodies.push_back(recorded(body, sources, materials));
-  for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
-    for (const Pin& pin : *pins) model_.pins.push_back(recorded(pin));
-  }
+  for (const Pin& pin : network.pins) model_.pins.push_back(recorded(pin));
   model_.attachments = network.attachments;
   const Box3 scene = scene_bounds(simulator);
   for (const Obstacle& obstacle : simulator.obstacles()) model_.obstacles.push_back(recorded(obstacle, scene));
@@ -66,36 +66,20 @@ RunRecorder::RunRecorder(const Simulator& simulator, const ObjSources& sources, 
   model_.springs.rest_lengths = springs.rest_length;
   model_.springs.kinds = springs.kind;
   for (Index s = 0; s < springs.count(); ++s) model_.springs.ends.col(s) << springs.first[s], springs.second[s];
-  noted_ = network.broken.count();
-  if (!std::ranges::any_of(springs.laws, &SpringLaw::breaks)) return;
-  broken_.resize(static_cast<std::size_t>(springs.count()));
-  for (Index s = 0; s < springs.count(); ++s) breakable_.insert({{springs.first[s], springs.second[s], springs.kind[s]}, s});
 }
 
-void RunRecorder::note_broken(const Springs& broken) {
-  for (; noted_ < broken.count(); ++noted_) {
-    const auto spring = breakable_.find({broken.first[noted_], broken.second[noted_], broken.kind[noted_]});
-    if (spring == breakable_.end()) continue;
-    broken_[spring->second] = 1;
-    breakable_.erase(spring);
-  }
-}
-
-RecordedFrame RunRecorder::frame(const Simulator& simulator) {
+RecordedFrame RunRecorder::frame(const Simulator& simulator) const {
   const SpringNetwork& network = simulator.network();
-  note_broken(network.broken);
   RecordedFrame frame{.time = simulator.time(),
                       .positions = simulator.positions(),
                       .velocities = simulator.state().v,
                       .states = std::vector<std::uint8_t>(static_cast<std::size_t>(network.particle_count())),
-                      .broken = broken_};
+                      .broken = simulator.state().springs.broken};
   // Pins that are due begin and end at the begin of the next step, but count from their time on.
   const double due = due_before(whole_steps(simulator.state()), simulator.settings().step);
-  for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
-    for (const Pin& pin : *pins) {
-      if (!holds_at(pin, due)) continue;
-      for (const Index particle : pin.particles) frame.states[particle] |= kPinned;
-    }
+  for (const Pin& pin : network.pins) {
+    if (!holds_at(pin, due)) continue;
+    for (const Index particle : pin.particles) frame.states[particle] |= kPinned;
   }
   for (const Index particle : simulator.contact_particles()) frame.states[particle] |= kInContact;
   for (const Obstacle& obstacle : simulator.obstacles()) {

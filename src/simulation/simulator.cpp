@@ -1,202 +1,350 @@
 #include "simulation/simulator.h"
 
-#include "collision/obstacles/obstacle_frame.h"
-#include "dynamics/constraints/carried_surface.h"
-#include "dynamics/constraints/cell_volume.h"
-#include "dynamics/constraints/enclosed_volume.h"
-#include "dynamics/forces/material_dampers.h"
-#include "dynamics/forces/shared_force.h"
-#include "network/model/pin_schedule.h"
-#include "network/model/sleeping_particles.h"
+#include "base/format.h"
+#include "base/problem_list.h"
 #include "network/model/spring_failure.h"
-#include "simulation/settings/settings_check.h"
-#include "simulation/settings/unused_settings.h"
-#include "simulation/simulator_implementation.h"
-#include "simulation/start/start.h"
-#include "simulation/step/network_forces.h"
+#include "simulation/reaction_record.h"
+#include "simulation/state_check.h"
 #include "simulation/step/step_check.h"
+#include "simulation/stepper.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace sprung {
+namespace {
 
-Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::shared_ptr<ObstacleSet> shared,
-                                          External added)
-    : network(std::move(model)),
-      settings(checked_settings(std::move(chosen))),
-      shared_obstacles(std::move(shared)),
-      obstacles(*shared_obstacles),
-      external(std::move(added)),
-      bounds(simulation_bounds(network, settings, !obstacles.empty(), external.forces)),
-      warnings(check_step(settings, bounds)),
-      forces(
-          network_forces(network, settings, splits_dampers(settings, bounds) ? MaterialDampers::apart : MaterialDampers::within)),
-      integrator(make_integrator(settings.integrator, network)),
-      constraints(network, settings, steady_acceleration(network, settings), obstacles, *integrator),
-      pin_paths(network, obstacles.obstacles(), settings.step),
-      planner(network, settings, constraints.limit()),
-      divergence(network),
-      energy_watch(network, settings, obstacles.obstacles(), forces),
-      groups(network),
-      rest(network, groups, constraints.limit(), settings.gravity.norm()),
-      surroundings(network, obstacles, groups, settings.step, settings.gravity.norm()),
-      state(initial_state(network)) {
-  state.rest.sleepers = sleeping_groups();
-  if (!constraints.contacts().can_collide()) state.contact.slip = {};  // each step copies the state
-  state.steps_per_frame = settings.steps_per_frame;
-  planner.start(anything_moves(), state);
-  if (settings.perturb) symmetry.emplace(network, settings.seed);
-  if (!network.attachments.empty()) {
-    const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
-    attachments.emplace(network, obstacles, settings.step, implicit);
-  }
-  if (splits_dampers(settings, bounds)) {
-    const double most = most_damping_rate(settings.step);
-    integrator->set_dampers(material_dampers(network, most), std::min(most, bounds.material_damping));
-  }
-  add_forces();
-  add_constraints();
-  for (const auto& more : {unused_settings(settings, network, obstacles.obstacles()), weak_springs(settings, network)}) {
-    warnings.insert(warnings.end(), more.begin(), more.end());
+bool have_same_bodies(const SpringNetwork& a, const SpringNetwork& b) {
+  return std::ranges::equal(a.bodies, b.bodies, [](const Body& first, const Body& second) {
+    return first.name == second.name && first.first_particle == second.first_particle &&
+           first.particle_count == second.particle_count;
+  });
+}
+
+bool collide_alike(const SpringNetwork& a, const SpringNetwork& b) {
+  return std::ranges::equal(a.bodies, b.bodies, [](const Body& first, const Body& second) {
+    return first.contact.self == second.contact.self && first.contact.others == second.contact.others;
+  });
+}
+
+bool have_same_pins(const SpringNetwork& a, const SpringNetwork& b) {
+  return std::ranges::equal(a.pins, b.pins, [](const Pin& first, const Pin& second) {
+    return first.name == second.name && first.particles == second.particles && first.from == second.from &&
+           first.until == second.until;
+  });
+}
+
+// Time is counted in frames, and within a frame in steps.
+void check_step_change(const SimulatorSettings& settings, const SimulatorSettings& before, const SimulationState& state,
+                       ProblemList& problems) {
+  if (settings.step == before.step && settings.steps_per_frame == before.steps_per_frame) return;
+  const double frame = before.step * before.steps_per_frame;
+  constexpr double kRounding = 1.0e-9;
+  if (std::abs(settings.step * settings.steps_per_frame - frame) > kRounding * frame) {
+    problems.add("step", format_number(settings.step, 6),
+                 "times steps_per_frame must stay a frame of " + format_number(frame, 6) + " s, as the run goes on",
+                 "change both, or begin a new run");
+  } else if (state.step_in_frame != 0) {
+    problems.add("step", format_number(settings.step, 6), "may change at the end of a frame alone, as the run goes on",
+                 "make the other steps of the frame first");
   }
 }
 
-/// Those that network_forces() does not make.
-void Simulator::Implementation::add_forces() {
-  if (acts_on_faces(network, settings)) {
-    auto force =
-        std::make_unique<SurfaceAirForce>(network, settings.air_surface, settings.wind, settings.gravity.norm(), air_step());
-    surface_air = force.get();
-    forces.push_back(std::move(force));
+// The cached contacts and permitted crossings of a run belong to its elements.
+void check_change(const SpringNetwork& network, const SimulatorSettings& settings, const Model& before,
+                  const SimulationState& state) {
+  const std::string restart = "begin a new run";
+  ProblemList problems;
+  if (!have_same_bodies(network, before.network())) {
+    problems.add("bodies", "", "must have the same names and particles as before, as the run goes on", restart);
+  } else if (!collide_alike(network, before.network())) {
+    problems.add("contact", "", "must be asked for between the same bodies as before, as the run goes on", restart);
   }
-  if (settings.contact.response == ContactSettings::Response::penalty && !obstacles.empty()) {
-    auto force = std::make_unique<PenaltyContact>(network, obstacles, settings.contact.stiffness, settings.contact.damping, dt());
-    penalty = force.get();
-    forces.push_back(std::move(force));
+  check_step_change(settings, before.settings(), state, problems);
+  if (settings.contact.response != before.settings().contact.response) {
+    problems.add("contact.response", "", "must stay as it is, as the run goes on", restart);
   }
-  if (attachments) forces.push_back(std::make_unique<SharedForce>(attachments->springs()));
-  for (const std::shared_ptr<Force>& force : external.forces) forces.push_back(std::make_unique<SharedForce>(force));
+  problems.throw_if_any();
 }
 
-void Simulator::Implementation::add_constraints() {
-  if (std::ranges::any_of(network.bodies, [](const Body& body) { return !body.carried.empty(); })) {
-    constraints.add(std::make_unique<CarriedSurface>(network));
+void check_entry(const std::string& key, std::size_t number, std::size_t count) {
+  if (number < count) return;
+  throw InputError(
+      {.key = key, .value = std::to_string(number), .rule = "there are only " + std::to_string(count), .remedy = "count from 0"});
+}
+
+void check_number(const std::string& key, double number, ProblemList& problems) {
+  if (std::isfinite(number) && number >= 0.0) return;
+  problems.add(key, format_number(number, 6), "must be finite and not negative", "");
+}
+
+}  // namespace
+
+struct Simulator::Implementation {
+  Implementation(std::shared_ptr<const Model> shared, Control chosen, const SimulationState& from)
+      : model(std::move(shared)), control(std::move(chosen)), state(from) {
+    scratch = std::make_unique<Scratch>(*model, control, state);
+    stepper().enter();
   }
-  if (std::ranges::any_of(network.bodies, &Body::preserve_volume)) constraints.add(std::make_unique<CellVolume>(network));
-  if (std::ranges::any_of(network.bodies, [](const Body& body) { return body.volume_factor != 0.0; })) {
-    constraints.add(std::make_unique<EnclosedVolume>(network));
+  /// At the start.
+  Implementation(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles)
+      : model(Model::build(std::move(network), std::move(settings), std::move(obstacles), scratch)),
+        state(model->initial_state()) {}
+
+  Stepper stepper() { return {*model, control, state, *scratch}; }
+  [[nodiscard]] const SpringNetwork& network() const { return scratch->network; }
+
+  void wake();
+  template <class Change>
+  void change_awake(const Change& change);
+  void change_activity(const Activity& activity);
+  void change_model(std::shared_ptr<const Model> next);
+  void change_control(Control next);
+
+  std::unique_ptr<Scratch> scratch;
+  std::shared_ptr<const Model> model;
+  Control control;
+  SimulationState state;
+};
+
+void Simulator::Implementation::wake() {
+  stepper().wake_all();
+  if (state.activity.asleep.empty()) return;
+  const BeforeTransition before = stepper().before_transition();
+  state.activity.asleep.clear();
+  stepper().make_transition(before);
+}
+
+/// Wakes all particles and makes a change. If it throws, nothing has changed.
+template <class Change>
+void Simulator::Implementation::change_awake(const Change& change) {
+  const SimulationState before = state;
+  try {
+    wake();
+    change();
+  } catch (...) {
+    stepper().restore(before);
+    throw;
   }
-  if (attachments && std::ranges::any_of(network.attachments, &Attachment::is_rigid)) constraints.add_rods(attachments->rods());
-  for (const std::shared_ptr<Constraint>& constraint : external.constraints) constraints.add(constraint);
+  stepper().note_change();
 }
 
-Simulator::Implementation::Implementation(SpringNetwork model, SimulatorSettings chosen, std::vector<Obstacle> given)
-    : Implementation(std::move(model), std::move(chosen), std::make_shared<ObstacleSet>(std::move(given)), {}) {
-  pin_paths.register_pins(state);
-  move_pins(0.0);
-  Start start = find_start(network, obstacles_now(), settings.contact, state.x);
-  state.x = std::move(start.positions);
-  warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
-  notes = std::move(start.notes);
-  if (constraints.violation(state.x) > 1.0) correct_positions(dt());
-  if (attachments) attachments->update(state);
-  const std::vector<std::string> of_links = unlikely_lengths(network, state.links);
-  warnings.insert(warnings.end(), of_links.begin(), of_links.end());
-  integrator->start(state, forces, dt());
-  note_change();
-  if (attachments) EnergyWatch::note_pin(attachments->winch_speed(state), state.energy);
-  begin_recording();
+void Simulator::Implementation::change_activity(const Activity& activity) {
+  const BeforeTransition before = stepper().before_transition();
+  state.activity = activity;
+  stepper().make_transition(before);
 }
 
-void Simulator::Implementation::correct_positions(double dt) {
-  constraints.correct_positions(obstacles_now(), state, dt);
-  state.contact.permitted_crossings = constraints.permitted_crossings();
+void Simulator::Implementation::change_model(std::shared_ptr<const Model> next) {
+  const BeforeTransition before = stepper().before_transition();
+  SimulationState continued = state;
+  continued.springs = carried_over(model->network(), state.springs, next->network());
+  if (!have_same_pins(model->network(), next->network())) {
+    Activity activity = all_free(next->network());
+    for (std::size_t i = 0; i < activity.pin_of.size(); ++i) {
+      if (state.activity.pin_of[i] == kFixedInPlace) activity.pin_of[i] = kFixedInPlace;
+    }
+    change_pins(next->network().pins, due_before(whole_steps(state), model->settings().step), activity);
+    continued.activity = std::move(activity);
+  }
+  auto its_scratch = std::make_unique<Scratch>(*next, control, continued);
+  Stepper(*next, control, continued, *its_scratch).inherit(before, *model);
+  model = std::move(next);
+  scratch = std::move(its_scratch);
+  state = continued;
 }
 
-/// Before this, pins take the speed with which they begin, which is no impulse.
-void Simulator::Implementation::begin_recording() {
-  if (!settings.record_forces) return;
-  reactions.reset();
-  forces_since = time();
-  state.impulses = {.on_pinned = Points::Zero(3, network.particle_count()), .of_springs = Scalars::Zero(network.springs.count())};
-  if (!state.last_impulses.on()) state.last_impulses = state.impulses;
-}
-
-/// Whether anything moves at the start, when the rotation in a step is not known yet.
-bool Simulator::Implementation::anything_moves() const {
-  return !network.velocities.isZero(0.0) || std::ranges::any_of(network.pins, &Pin::moves);
+void Simulator::Implementation::change_control(Control next) {
+  const BeforeTransition before = stepper().before_transition();
+  SimulationState continued = state;
+  auto its_scratch = std::make_unique<Scratch>(*model, next, continued);
+  Stepper(*model, next, continued, *its_scratch).inherit(before, *model);
+  control = std::move(next);
+  scratch = std::move(its_scratch);
+  state = continued;
 }
 
 Simulator::Simulator(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles)
     : implementation_(std::make_unique<Implementation>(std::move(network), std::move(settings), std::move(obstacles))) {}
-Simulator::Simulator(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
+Simulator::Simulator(const std::shared_ptr<const Model>& model)
+    : implementation_(std::make_unique<Implementation>(model, Control(), model->initial_state())) {}
+Simulator::Simulator(const Simulator& other)
+    : implementation_(std::make_unique<Implementation>(other.implementation_->model, other.implementation_->control,
+                                                       other.implementation_->state)) {}
+Simulator& Simulator::operator=(const Simulator& other) {
+  if (this != &other) *this = Simulator(other);
+  return *this;
+}
 Simulator::~Simulator() = default;
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
-StepReport Simulator::step() {
-  std::unique_ptr<Implementation> before;
-  const std::vector<char> sleepers = state().rest.sleepers;
-  try {
-    return step_and_rebuild(before);
-  } catch (...) {
-    if (before) implementation_ = std::move(before);
-    implementation_->state.rest.sleepers = sleepers;  // fewer, if the step was repeated with some of them awake
-    throw;
-  }
+void Simulator::restore(const SimulationState& state) {
+  const Workspace& work = *implementation_->scratch->work;
+  check_state({.model = *model(), .sleep_groups = work.groups.count(), .can_collide = work.constraints.contacts().can_collide()},
+              state);
+  implementation_->stepper().restore(state);
+  if (settings().record_forces == state.impulses.on()) return;
+  implementation_->state.impulses = implementation_->state.last_impulses = {};
+  implementation_->stepper().begin_recording();
 }
 
-/// A rebuilt simulator leaves the first one in `before`.
-StepReport Simulator::step_and_rebuild(std::unique_ptr<Implementation>& before) {
-  const Implementation& now = *implementation_;
-  const std::vector<Index> broken = breaking_springs(now.network, now.state.x);
-  if (!broken.empty() || now.state.rest.sleepers != now.sleeping_groups() ||
-      have_pins_changed(now.network, due_before(whole_steps(now.state), now.settings.step))) {
-    SpringNetwork network = now.network;
-    set_asleep(broken.empty() ? now.particles_to_sleep() : std::vector<char>(), network);
-    const std::vector<Index> left = tear(network, broken);
-    before = rebuild(std::move(network), left);
-    if (!broken.empty()) implementation_->wake_all();
-  }
-  std::optional<StepReport> report = implementation_->step(PlanReason::first);
-  while (!report) {
-    std::unique_ptr<Implementation> asleep = rebuild(implementation_->particles_to_sleep());
-    if (!before) before = std::move(asleep);
-    report = implementation_->step(PlanReason::wake);
-  }
-  return *report;
+StepReport Simulator::step() { return implementation_->stepper().step(); }
+
+void Simulator::stop_when(std::function<bool()> stops) { implementation_->control.stops = std::move(stops); }
+
+void Simulator::wake() { implementation_->wake(); }
+
+void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings) {
+  check_change(network, settings, *model(), state());
+  implementation_->change_awake([&] {
+    implementation_->change_model(
+        Model::changed(*model(), std::move(network), std::move(settings), implementation_->control.forces));
+  });
 }
 
-void Simulator::stop_when(std::function<bool()> stops) { implementation_->stops = std::move(stops); }
-const SpringNetwork& Simulator::network() const { return implementation_->network; }
-const SimulatorSettings& Simulator::settings() const { return implementation_->settings; }
+void Simulator::set_gravity(const Vector3& acceleration) {
+  SimulatorSettings settings = model()->settings();
+  settings.gravity = acceleration;
+  continue_with(model()->network(), std::move(settings));
+}
+
+void Simulator::set_air(double drag, const Wind& wind) {
+  SimulatorSettings settings = model()->settings();
+  settings.air_drag = drag;
+  settings.wind = wind;
+  continue_with(model()->network(), std::move(settings));
+}
+
+void Simulator::set_stretch_limit(const std::optional<StretchLimitSettings>& limit) {
+  SimulatorSettings settings = model()->settings();
+  settings.stretch_limit = limit;
+  continue_with(model()->network(), std::move(settings));
+}
+
+void Simulator::set_springs(std::size_t body, SpringKind kind, double stiffness, double damping) {
+  SpringNetwork network = model()->network();
+  check_entry("bodies", body, network.bodies.size());
+  const Body& changed = network.bodies[body];
+  const std::string key = "bodies." + changed.name + ".springs." + kSpringKindNames[static_cast<std::size_t>(kind)];
+  ProblemList problems;
+  check_number(key + ".stiffness", stiffness, problems);
+  check_number(key + ".damping", damping, problems);
+  problems.throw_if_any();
+  Springs& springs = network.springs;
+  for (Index s = changed.first_spring; s < changed.first_spring + changed.spring_count; ++s) {
+    if (springs.kind[s] != kind) continue;
+    springs.stiffness[s] = stiffness;
+    springs.damping[s] = damping;
+  }
+  continue_with(std::move(network), model()->settings());
+}
+
+void Simulator::set_body_material(std::size_t body, const ContactMaterial& material) {
+  SpringNetwork network = model()->network();
+  check_entry("bodies", body, network.bodies.size());
+  Body& changed = network.bodies[body];
+  ProblemList problems;
+  check_material("bodies." + changed.name, material, problems);
+  problems.throw_if_any();
+  changed.material = material;
+  continue_with(std::move(network), model()->settings());
+}
+
+void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMaterial& material) {
+  check_entry("obstacles", obstacle, obstacles().size());
+  ProblemList problems;
+  check_material("obstacles." + obstacles()[obstacle].name, material, problems);
+  problems.throw_if_any();
+  Control control = implementation_->control;
+  control.obstacle_materials.clear();
+  for (const Obstacle& present : obstacles()) control.obstacle_materials.push_back(present.material);
+  control.obstacle_materials[obstacle] = material;
+  implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+}
+
+void Simulator::pin(Index particle) {
+  if (state().activity.is_pinned(particle)) return;
+  Activity activity = state().activity;
+  activity.asleep.clear();
+  activity.pin_of[particle] = kFixedInPlace;
+  implementation_->change_awake([&] { implementation_->change_activity(activity); });
+}
+
+void Simulator::release(Index particle) {
+  const Index pin = state().activity.pin_of[particle];
+  if (pin == kNone) return;
+  Activity activity = state().activity;
+  activity.asleep.clear();
+  activity.pin_of[particle] = kNone;
+  if (pin != kFixedInPlace && network().pins[pin].holds_always()) {  // the largest stable step counts on this pin
+    SpringNetwork freed = model()->network();
+    set_activity(activity, freed);
+    check_step(settings(), simulation_bounds(freed, settings(), !obstacles().empty(), implementation_->control.forces));
+  }
+  implementation_->change_awake([&] { implementation_->change_activity(activity); });
+}
+
+void Simulator::add_force(std::shared_ptr<Force> force) {
+  Control control = implementation_->control;
+  control.forces.push_back(std::move(force));
+  std::vector<LinearElement> elements;
+  control.forces.back()->append_elements(elements);
+  if (!elements.empty()) {
+    check_step(settings(), simulation_bounds(model()->network(), settings(), !obstacles().empty(), control.forces));
+  }
+  implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+}
+
+void Simulator::remove_force(const Force& force) {
+  Control control = implementation_->control;
+  const auto is_it = [&](const std::shared_ptr<Force>& added) { return added.get() == &force; };
+  if (std::erase_if(control.forces, is_it) == 0) return;
+  implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+}
+
+void Simulator::add_constraint(std::shared_ptr<Constraint> constraint) {
+  Control control = implementation_->control;
+  control.constraints.push_back(std::move(constraint));
+  implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+}
+
+void Simulator::remove_constraint(const Constraint& constraint) {
+  Control control = implementation_->control;
+  const auto is_it = [&](const std::shared_ptr<Constraint>& added) { return added.get() == &constraint; };
+  if (std::erase_if(control.constraints, is_it) == 0) return;
+  implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+}
+
+const std::shared_ptr<const Model>& Simulator::model() const { return implementation_->model; }
+const SpringNetwork& Simulator::network() const { return implementation_->network(); }
+const SimulatorSettings& Simulator::settings() const { return model()->settings(); }
 const SimulationState& Simulator::state() const { return implementation_->state; }
-const std::vector<Obstacle>& Simulator::obstacles() const { return implementation_->obstacles.obstacles(); }
-ObstacleFrame Simulator::obstacle_frame() const { return implementation_->obstacles_now(); }
-const std::vector<std::string>& Simulator::warnings() const { return implementation_->warnings; }
-
-const std::vector<std::string>& Simulator::notes() const { return implementation_->notes; }
-double Simulator::time() const { return implementation_->time(); }
-double Simulator::gravity_energy() const { return implementation_->energy(EnergyKind::gravity); }
-double Simulator::elastic_energy() const { return implementation_->energy(EnergyKind::elastic); }
-double Simulator::contact_energy() const { return implementation_->energy(EnergyKind::contact); }
+const std::vector<Obstacle>& Simulator::obstacles() const { return implementation_->scratch->obstacles.obstacles(); }
+ObstacleFrame Simulator::obstacle_frame() const { return implementation_->stepper().obstacles_now(); }
+const std::vector<std::string>& Simulator::warnings() const { return model()->warnings(); }
+const std::vector<std::string>& Simulator::notes() const { return model()->notes(); }
+double Simulator::time() const { return implementation_->stepper().time(); }
+double Simulator::gravity_energy() const { return implementation_->stepper().energy(EnergyKind::gravity); }
+double Simulator::elastic_energy() const { return implementation_->stepper().energy(EnergyKind::elastic); }
+double Simulator::contact_energy() const { return implementation_->stepper().energy(EnergyKind::contact); }
 
 std::vector<Reaction> Simulator::reactions() const {
   if (!state().impulses.on()) return {};
-  return implementation_->reactions.reactions(network(), state().impulses, time() - implementation_->forces_since);
+  return mean_reactions(network(), state(), time() - state().reactions.since);
 }
 
 Scalars Simulator::limit_tensions() const {
-  const double duration = time() - implementation_->forces_since;
+  const double duration = time() - state().reactions.since;
   if (!state().impulses.on() || duration <= 0.0) return Scalars::Zero(network().springs.count());
   return state().impulses.of_springs / duration;
 }
 
-void Simulator::reset_forces() { implementation_->begin_recording(); }
+void Simulator::reset_forces() { implementation_->stepper().begin_recording(); }
 
 std::string Simulator::stretch_solver() const {
-  const StretchLimit* limit = implementation_->constraints.limit();
+  const StretchLimit* limit = implementation_->scratch->work->constraints.limit();
   return limit != nullptr ? limit->chosen_solver() : std::string();
 }
 
@@ -208,12 +356,8 @@ std::vector<BrokenLink> Simulator::broken_links() const {
   return broken;
 }
 
-std::vector<Index> Simulator::contact_particles() const { return implementation_->contacts(); }
+std::vector<Index> Simulator::contact_particles() const { return implementation_->stepper().contacts(); }
 Index Simulator::contact_count() const { return static_cast<Index>(contact_particles().size()); }
-
-void Simulator::check() const {
-  if (const auto failure = implementation_->divergence.overstretched(state().x)) implementation_->fail(*failure);
-  if (implementation_->external.empty()) implementation_->check_energy(implementation_->energies());
-}
+void Simulator::check() const { implementation_->stepper().check(); }
 
 }  // namespace sprung

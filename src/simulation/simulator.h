@@ -16,8 +16,9 @@
 namespace sprung {
 
 class Constraint;
-class ObstacleFrame;
 class Force;
+class Model;
+class ObstacleFrame;
 
 /// A rod or spring that broke.
 struct BrokenLink {
@@ -26,49 +27,55 @@ struct BrokenLink {
   std::int64_t step = 0;   ///< number of the step after which it broke
 };
 
+/// The model and its state, with steps and changes. A copy shares the model and the added forces and constraints, and goes on from
+/// the same state; it costs about as much as a few dozen steps. Simulators do not share anything else: several may step at the same
+/// time. The const members of one simulator may be called at the same time.
 class Simulator {
  public:
-  /// Throws InputError if a setting is out of its bounds, if the step is not positive or beyond the largest stable one (with
-  /// `stability` warn, `warnings` reports the latter), or if intersections remain at the start. `notes` reports bodies that
-  /// were moved out of intersections.
+  /// Throws as Model::build, and costs as much.
   explicit Simulator(SpringNetwork network, SimulatorSettings settings = {}, std::vector<Obstacle> obstacles = {});
 
-  /// Continues from a state. Requires copies of network() and state() of a simulator with the same settings and obstacles. Forces,
-  /// constraints and stop_when() that were added are not part of the state: add them again. A new interval of forces begins (see
-  /// reset_forces()). Results may differ from those of that simulator, which has caches of former steps: in last digits, or, where
-  /// fast bodies collide, in which contacts are found. Throws InputError as the constructor does, but does not check the stability
-  /// of the step and intersections; and if the state does not fit the network, the settings or the obstacles.
-  [[nodiscard]] static Simulator resume(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles,
-                                        const SimulationState& state);
+  /// At the start of a model, which others may share. Costs as much as a copy.
+  explicit Simulator(const std::shared_ptr<const Model>& model);
+
   ~Simulator();
+  Simulator(const Simulator& other);
+  Simulator& operator=(const Simulator& other);
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
   /// Advances by one step. StepPlanner divides it into substeps, and may repeat it with others. Throws StepError if the network
   /// diverged; the simulator then is as it was before the call.
   ///
-  /// A step first rebuilds what follows from the network, as changes do (below),
-  /// - if pins begin or end, which is at the step nearest to their time;
-  /// - if springs break, as they are longer than their break length: network() then lacks them and the faces that tore
-  ///   (Surface::torn);
-  /// - if groups of particles fall asleep or wake (see RestDetector and Surroundings): their particles then have no inverse masses
-  ///   (SpringNetwork::asleep). If all sleep, a step changes the time alone. If a step makes a neighbour of a sleeping group
-  ///   restless, the body of that group wakes and the step is repeated.
+  /// Before a step,
+  /// - pins begin and end, at the step nearest to their time;
+  /// - springs break that are longer than their break length: network() then lacks them and the faces that tore (Surface::torn);
+  /// - groups of particles fall asleep or wake (see RestDetector and Surroundings): particles that sleep have no inverse masses. If
+  ///   all sleep, a step changes the time alone. If a step makes a neighbour of a sleeping group restless, the body of that group
+  ///   wakes and the step is repeated.
   /// Last, springs that yield get new rest lengths in network().
   StepReport step();
+
+  /// Continues from a state of this simulator, of a copy of it, or of another simulator of the same network, settings and
+  /// obstacles. Forces, constraints and stop_when() that were added are not part of the state. Results may differ from those of the
+  /// simulator that had the state, which has caches of former steps: in last digits, or, where fast bodies collide, in which
+  /// contacts are found. Costs about as much as a few steps. Throws InputError if the state does not fit the network, the settings
+  /// or the obstacles; the simulation then continues as before.
+  void restore(const SimulationState& state);
 
   /// Lets step() call `stops` before each substep and throw StoppedError if it returns true; the simulator then is as it was before
   /// the step. A step with many infeasible particles can take minutes.
   void stop_when(std::function<bool()> stops);
 
-  // Changes between two steps. Each of them rebuilds what follows from network and settings (forces, batches, factors, cached safe
-  // regions), which takes about as long as the constructor without its obstacles. The state remains: positions, velocities, time,
-  // and bodies that a global solve took over. All particles wake. References to network() and settings() become invalid. Each
-  // throws InputError that names every problem; the simulation then continues as before.
+  // Changes between two steps. The state remains: positions, velocities, time, and bodies that a global solve took over. All
+  // particles wake. References to network() and settings() become invalid. Each throws InputError that names every problem; the
+  // simulation then continues as before. pin(), release(), set_obstacle_material(), and forces and constraints cost about as much
+  // as a few steps. The others make a new model, which takes about as long as the constructor without its obstacles.
 
   /// Continues with another network and other settings. Requires a network that NetworkBuilder made with the same bodies and the
   /// same particles. The start of contact cannot change, nor what collides (Body::contact) or how (response). The step may change
   /// with steps_per_frame at the end of a frame. Springs that broke stay broken, and springs that yielded keep their rest lengths.
+  /// If the pins are the same, particles that pin() and release() changed stay so.
   void continue_with(SpringNetwork network, SimulatorSettings settings);
 
   /// Wakes all particles.
@@ -93,8 +100,8 @@ class Simulator {
   void release(Index particle);
 
   /// Adds an external force. The caller may change its parameters between steps. The force must not keep references to network().
-  /// The largest stable step accounts for the elements that the force appends. Throws InputError if the step is beyond it. The
-  /// energy is not checked while there are external forces, as they may supply any amount.
+  /// The largest stable step accounts for the elements that the force appends: it is found anew if there are any. Throws InputError
+  /// if the step is beyond it. The energy is not checked while there are external forces, as they may supply any amount.
   void add_force(std::shared_ptr<Force> force);
 
   /// Adds a constraint, which the passes of each step restore. The caller may change its parameters between steps. The constraint
@@ -107,6 +114,9 @@ class Simulator {
   /// Removes an external force. Does nothing if it was not added.
   void remove_force(const Force& force);
 
+  /// What no step changes. Any thread may use it.
+  [[nodiscard]] const std::shared_ptr<const Model>& model() const;
+  /// The network as it is now: without springs that broke, with the present rest lengths, pins and sleepers.
   [[nodiscard]] const SpringNetwork& network() const;
   [[nodiscard]] const SimulatorSettings& settings() const;
   [[nodiscard]] const SimulationState& state() const;
@@ -159,14 +169,6 @@ class Simulator {
 
  private:
   struct Implementation;
-  struct External;  ///< the forces and constraints that were added
-  explicit Simulator(std::unique_ptr<Implementation> implementation);
-  void continue_with_external(External external);
-  void change_awake(const std::function<std::unique_ptr<Implementation>(const Implementation& now)>& make);
-  StepReport step_and_rebuild(std::unique_ptr<Implementation>& before);
-  std::unique_ptr<Implementation> rebuild(SpringNetwork network, const std::vector<Index>& springs_left);
-  std::unique_ptr<Implementation> rebuild(std::vector<char> asleep);
-
   std::unique_ptr<Implementation> implementation_;
 };
 

@@ -16,7 +16,7 @@
 namespace sprung {
 namespace {
 
-const char* const kRemedy = "give copies of network() and state() of one simulator, with its settings and obstacles";
+const char* const kRemedy = "give the state of a simulator of the same scene";
 
 class StateRules {
  public:
@@ -25,6 +25,8 @@ class StateRules {
   void check_all() {
     check_time();
     check_motion();
+    check_activity();
+    check_springs();
     check_contact();
     check_rest();
     check_grips();
@@ -35,14 +37,16 @@ class StateRules {
 
  private:
   void check_time() {
-    const std::int64_t steps = owner_.settings.steps_per_frame;
+    const std::int64_t steps = owner_.model.settings().steps_per_frame;
     require(state_.step >= 0, "step", state_.step, "must not be negative");
     require(state_.frame >= 0, "frame", state_.frame, "must not be negative");
     require(state_.steps_per_frame == steps, "steps_per_frame", state_.steps_per_frame, "must be that of the settings");
     require(state_.step_in_frame >= 0 && state_.step_in_frame < steps, "step_in_frame", state_.step_in_frame,
             "must be from 0 to one less than the steps of a frame");
-    require(state_.substeps >= 1 && state_.substeps <= kMaxSubsteps, "substeps", state_.substeps,
-            "must be from 1 to " + std::to_string(kMaxSubsteps));
+    const SimulatorSettings& settings = owner_.model.settings();
+    const int most = settings.stretch_limit ? settings.max_substeps : 1;
+    require(state_.substeps >= 1 && state_.substeps <= most, "substeps", state_.substeps,
+            "must be from 1 to " + std::to_string(most) + ", as the settings say");
     require(state_.substep == 0, "substep", state_.substep, "must be 0, as between two steps");
   }
 
@@ -50,10 +54,34 @@ class StateRules {
     require_points("x", state_.x);
     require_points("v", state_.v);
     require_points("x_previous", state_.x_previous);
-    require_size("limit.handovers", state_.limit.handovers.size(), owner_.network.bodies.size(), "bodies");
+    require_size("limit.handovers", state_.limit.handovers.size(), network().bodies.size(), "bodies");
+    require_each("limit.handovers", state_.limit.handovers, [&](const StretchHandover& handover) {
+      return owner_.model.settings().stretch_limit.has_value() || handover.missed_steps == 0;
+    });
     const EnergyMemory& energy = state_.energy;
     const double sum = energy.start + energy.highest_gravity + energy.stored + energy.max_kinetic + energy.fastest_drive;
     require(std::isfinite(sum), "energy", sum, "must be finite");
+  }
+
+  void check_activity() {
+    const Activity& activity = state_.activity;
+    require_size("activity.phases", activity.phases.size(), network().pins.size(), "pins");
+    require_size("activity.pin_of", activity.pin_of.size(), particles(), "particles");
+    if (!activity.asleep.empty()) require_size("activity.asleep", activity.asleep.size(), particles(), "particles");
+    const auto pins = std::min(activity.phases.size(), network().pins.size());
+    require_indices("activity.pin_of", activity.pin_of, [&](Index pin) {
+      return pin == kNone || pin == kFixedInPlace || (pin >= 0 && static_cast<std::size_t>(pin) < pins);
+    });
+  }
+
+  void check_springs() {
+    const SpringState start = initial_springs(network().springs);
+    const SpringState& springs = state_.springs;
+    require_size("springs.rest_lengths", springs.rest_lengths.size(), start.rest_lengths.size(), "springs, if any yields");
+    require_size("springs.broken", springs.broken.size(), start.broken.size(), "springs, if any breaks");
+    const bool valid =
+        std::ranges::all_of(springs.rest_lengths, [](double length) { return std::isfinite(length) && length >= 0.0; });
+    require(valid, "springs.rest_lengths", "", "must be finite and not negative");
   }
 
   void check_contact() {
@@ -75,7 +103,7 @@ class StateRules {
     const RestMemory& rest = state_.rest;
     const auto groups = static_cast<std::size_t>(owner_.sleep_groups);
     require_size("rest.sleepers", rest.sleepers.size(), groups, "sleep groups");
-    const std::size_t histories = rest.window_begin ? groups + owner_.network.bodies.size() : 0;
+    const std::size_t histories = rest.window_begin ? groups + network().bodies.size() : 0;
     require_size("rest.histories", rest.histories.size(), histories, "sleep groups and bodies, after the begin of a window");
     if (!rest.window_begin) return;
     require(std::isfinite(*rest.window_begin), "rest.window_begin", *rest.window_begin, "must be finite");
@@ -88,9 +116,11 @@ class StateRules {
       return is_particle(grip.particle) && std::isfinite(grip.time) && grip.position.allFinite();
     });
     require(std::ranges::is_sorted(state_.grips, {}, &PinGrip::particle), "grips", "", "must be sorted by particle");
-    for (const Pin& pin : owner_.network.pins) {
-      if (!is_obstacle(pin.obstacle)) continue;
+    for (std::size_t p = 0; p < network().pins.size(); ++p) {
+      const Pin& pin = network().pins[p];
+      if (!is_obstacle(pin.obstacle) || state_.activity.pin_of.size() != particles()) continue;
       for (const Index i : pin.particles) {
+        if (state_.activity.pin_of[i] != static_cast<Index>(p)) continue;
         const auto known = std::ranges::lower_bound(state_.grips, i, {}, &PinGrip::particle);
         if (known == state_.grips.end() || known->particle != i || has_triangle(pin.obstacle, known->triangle)) continue;
         require(false, "grips." + pin.name + ".triangle", known->triangle, "must be a triangle of the obstacle");
@@ -104,9 +134,9 @@ class StateRules {
   }
 
   [[nodiscard]] bool fits(const Link& link) const {
-    if (link.attachment >= owner_.network.attachments.size() || !is_particle(link.first)) return false;
+    if (link.attachment >= network().attachments.size() || !is_particle(link.first)) return false;
     if (!std::ranges::all_of(link.second, [&](Index i) { return i == kNone || is_particle(i); })) return false;
-    const Attachment& attachment = owner_.network.attachments[link.attachment];
+    const Attachment& attachment = network().attachments[link.attachment];
     const auto* end = std::get_if<ObstacleEnd>(&attachment.second);
     if (end != nullptr && is_obstacle(end->obstacle) && !has_triangle(end->obstacle, link.triangle)) return false;
     return link.weights.allFinite() && link.anchor.allFinite() && link.impulse.allFinite() &&
@@ -117,18 +147,22 @@ class StateRules {
     for (const auto& [key, impulses] : {std::pair("impulses", &state_.impulses), {"last_impulses", &state_.last_impulses}}) {
       if (!impulses->on()) continue;
       require_points(std::string(key) + ".on_pinned", impulses->on_pinned);
-      const auto springs = static_cast<std::size_t>(owner_.network.springs.count());
-      require_size(std::string(key) + ".of_springs", static_cast<std::size_t>(impulses->of_springs.size()), springs, "springs");
+      const auto springs = static_cast<std::size_t>(network().springs.count() - state_.springs.broken_count());
+      require_size(std::string(key) + ".of_springs", static_cast<std::size_t>(impulses->of_springs.size()), springs,
+                   "springs that are left");
     }
   }
 
-  [[nodiscard]] std::size_t particles() const { return static_cast<std::size_t>(owner_.network.particle_count()); }
-  [[nodiscard]] bool is_particle(Index i) const { return i >= 0 && i < owner_.network.particle_count(); }
-  [[nodiscard]] bool is_obstacle(Index k) const { return k >= 0 && static_cast<std::size_t>(k) < owner_.obstacles.size(); }
+  [[nodiscard]] const SpringNetwork& network() const { return owner_.model.network(); }
+  [[nodiscard]] std::size_t particles() const { return static_cast<std::size_t>(network().particle_count()); }
+  [[nodiscard]] bool is_particle(Index i) const { return i >= 0 && i < network().particle_count(); }
+  [[nodiscard]] bool is_obstacle(Index k) const {
+    return k >= 0 && static_cast<std::size_t>(k) < owner_.model.obstacles().obstacles().size();
+  }
 
   /// Rigid obstacles need none.
   [[nodiscard]] bool has_triangle(Index obstacle, Index triangle) const {
-    const Obstacle& shape = owner_.obstacles[static_cast<std::size_t>(obstacle)];
+    const Obstacle& shape = owner_.model.obstacles().obstacles()[static_cast<std::size_t>(obstacle)];
     if (!shape.deforms()) return true;
     return triangle >= 0 && triangle < std::get<SequenceGeometry>(shape.geometry).sequence->triangles.cols();
   }
@@ -175,6 +209,6 @@ class StateRules {
 
 }  // namespace
 
-void check_resumed_state(const StateOwner& owner, const SimulationState& state) { StateRules(owner, state).check_all(); }
+void check_state(const StateOwner& owner, const SimulationState& state) { StateRules(owner, state).check_all(); }
 
 }  // namespace sprung

@@ -1,25 +1,19 @@
 // The rules for a state with which a simulator continues.
 #pragma once
 
-#include "collision/shapes/obstacle.h"
 #include "dynamics/state/simulation_state.h"
-#include "network/model/spring_network.h"
-#include "simulation/settings/simulator_settings.h"
-
-#include <vector>
+#include "simulation/model.h"
 
 namespace sprung {
 
 /// What the state must fit.
 struct StateOwner {
-  const SpringNetwork& network;
-  const SimulatorSettings& settings;
-  const std::vector<Obstacle>& obstacles;
+  const Model& model;
   Index sleep_groups = 0;    ///< their number
   bool can_collide = false;  ///< whether there is anything that the network may touch
 };
 
 /// Throws InputError with every number of the state that is not finite, and every count or index that does not fit its owner.
-void check_resumed_state(const StateOwner& owner, const SimulationState& state);
+void check_state(const StateOwner& owner, const SimulationState& state);
 
 }  // namespace sprung

@@ -1,10 +1,10 @@
 #include "viewer/live_run.h"
 
 #include "base/error.h"
-#include "network/model/pin_schedule.h"
 #include "output/scene_extent.h"
 #include "scene/json/overrides.h"
 #include "simulation/diagnostics.h"
+#include "simulation/model.h"
 
 #include <algorithm>
 #include <initializer_list>
@@ -46,18 +46,6 @@ bool is_live(std::string_view key) {
 bool is_replaced(const std::string& override_text, std::string_view key) {
   const std::string_view own = key_of(override_text);
   return own.starts_with(key) && (own.size() == key.size() || own[key.size()] == '.' || own[key.size()] == '[');
-}
-
-void pin(Index particle, SpringNetwork& network) {
-  if (network.is_pinned(particle)) return;
-  network.pins.push_back({{particle}, Vector3::Zero(), {}});
-  network.inverse_masses[particle] = 0.0;
-}
-
-void free(Index particle, SpringNetwork& network) {
-  if (!network.is_pinned(particle)) return;
-  for (Pin& pinned : network.pins) std::erase(pinned.particles, particle);
-  network.inverse_masses[particle] = 1.0 / network.masses[particle];
 }
 
 /// Continues with the steps of the run.
@@ -104,10 +92,7 @@ bool LiveRun::change(const std::vector<std::string>& overrides) {
 bool LiveRun::continue_with(LoadedScene& changed) try {
   Simulator& simulator = loaded_.simulator;
   const std::vector<Obstacle>& obstacles = changed.simulator.obstacles();
-  SpringNetwork network = changed.simulator.network();
-  change_pins(network, due_before(whole_steps(simulator.state()), simulator.settings().step));  // before what the user did since
-  set_pins(network);
-  simulator.continue_with(std::move(network), with_steps_of(simulator.settings(), changed.simulator.settings()));
+  simulator.continue_with(changed.simulator.model()->network(), with_steps_of(simulator.settings(), changed.simulator.settings()));
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     if (obstacles[k].material != simulator.obstacles()[k].material) {
       simulator.set_obstacle_material(k, obstacles[k].material);
@@ -121,17 +106,10 @@ bool LiveRun::continue_with(LoadedScene& changed) try {
   return false;
 }
 
-void LiveRun::set_pins(SpringNetwork& network) const {
-  for (const Index particle : released_) free(particle, network);
-  for (const Index particle : pinned_) pin(particle, network);
-}
-
 void LiveRun::forget_interaction() {
   failure_.reset();
   pull_.reset();
   pulled_ = kNone;
-  pinned_.clear();
-  released_.clear();
   infeasible_ = 0;
   loaded_.simulator.stop_when(stops_);
 }
@@ -160,9 +138,8 @@ bool LiveRun::may_change(Index particle) const {
 }
 
 void LiveRun::grab(Index particle) {
-  if (!may_change(particle)) return;
-  loaded_.simulator.wake();  // a particle that sleeps counts as pinned
-  if (simulator().network().is_pinned(particle)) return;
+  if (!may_change(particle) || simulator().state().activity.is_pinned(particle)) return;
+  loaded_.simulator.wake();  // a particle that sleeps has no inverse mass
   drop(false);
   Simulator& simulator = loaded_.simulator;
   pull_ = std::make_shared<PullForce>(simulator.network(), simulator.positions(), particle, simulator.settings().step);
@@ -178,19 +155,11 @@ void LiveRun::drop(bool pin) {
   const std::shared_ptr<PullForce> pull = std::exchange(pull_, nullptr);
   if (!pull || failure_) return;
   loaded_.simulator.remove_force(*pull);
-  if (!pin) return;
-  loaded_.simulator.pin(pulled_);
-  pinned_.insert(pulled_);
-  released_.erase(pulled_);
+  if (pin) loaded_.simulator.pin(pulled_);
 }
 
 void LiveRun::release(Index particle) {
-  if (!may_change(particle)) return;
-  loaded_.simulator.wake();
-  if (!simulator().network().is_pinned(particle)) return;
-  loaded_.simulator.release(particle);
-  released_.insert(particle);
-  pinned_.erase(particle);
+  if (may_change(particle)) loaded_.simulator.release(particle);
 }
 
 Topology LiveRun::topology() const {
@@ -225,8 +194,8 @@ FrameState LiveRun::state() const {
   state.positions = simulator.positions();
   state.speeds = simulator.state().v.colwise().norm().transpose();
   state.states.assign(static_cast<std::size_t>(network.particle_count()), 0);
-  for (const Pin& pin : network.pins) {
-    for (const Index i : pin.particles) state.states[static_cast<std::size_t>(i)] |= kPinned;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (network.activity.is_pinned(i)) state.states[static_cast<std::size_t>(i)] |= kPinned;
   }
   for (const Index i : simulator.contact_particles()) state.states[static_cast<std::size_t>(i)] |= kInContact;
   for (const Obstacle& obstacle : simulator.obstacles()) {

@@ -8,7 +8,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -58,7 +57,6 @@ class LiveRun {
 
  private:
   bool continue_with(LoadedScene& changed);
-  void set_pins(SpringNetwork& network) const;
   void forget_interaction();
   [[nodiscard]] bool may_change(Index particle) const;
 
@@ -68,9 +66,6 @@ class LiveRun {
   std::optional<StepFailure> failure_;
   std::shared_ptr<PullForce> pull_;
   Index pulled_ = kNone;
-  // Pins that the pages set and freed.
-  std::set<Index> pinned_;
-  std::set<Index> released_;
   Index infeasible_ = 0;  ///< in the last step
 };
 

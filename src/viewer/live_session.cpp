@@ -335,7 +335,7 @@ void LiveSession::begin_run(std::uint32_t number, bool live) {
   shown.generation = next_generation_++;
   shown.told_divergence = false;
   shown.measured_from = {};
-  shown.broken_springs = shown.run.simulator().network().broken.count();
+  shown.broken_springs = shown.run.simulator().state().springs.broken_count();
   due_ = Clock::now();
   shown.run.stop_when([this] { return is_ending(); });
   const MessageHeader header{
@@ -357,7 +357,7 @@ void LiveSession::advance(Shown& shown, int steps) {
   }
   for (int k = 0; k < steps; ++k) shown.run.step();
   shown.frame_ms = 1e3 * seconds_between(begin, Clock::now());
-  if (!shown.run.failure() && shown.run.simulator().network().broken.count() != shown.broken_springs) {
+  if (!shown.run.failure() && shown.run.simulator().state().springs.broken_count() != shown.broken_springs) {
     return begin_run(shown.number, true);  // with the topology that is left
   }
   publish_frame(shown);

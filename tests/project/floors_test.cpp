@@ -62,7 +62,8 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"simulation/monitoring", {"settings"}},
     {"simulation/sleep", {}},
     {"simulation/start", {"settings"}},
-    {"simulation/step", {"settings"}},
+    {"simulation/model", {"settings"}},
+    {"simulation/step", {"model", "settings"}},
 
     {"output/record", {}},
 

@@ -11,8 +11,8 @@ namespace {
 
 TEST(Gripper, ItClosesLiftsAndLetsGo) {
   BuiltScene scene = load_scenario(std::string(SPRUNG_SOURCE_DIR) + "/examples/gripper");
-  ASSERT_EQ(scene.network.later_pins.size(), 1U);
-  const std::vector<Index> held = scene.network.later_pins[0].particles;
+  ASSERT_EQ(scene.network.pins.size(), 1U);
+  const std::vector<Index> held = scene.network.pins[0].particles;
   Points place;
   Points last;
   double lowest_when_lifted = 0.0;

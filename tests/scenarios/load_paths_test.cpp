@@ -187,7 +187,7 @@ Record run(const std::string& text, double damping_rate, double duration) {
     record.weight = network.masses.sum() * simulator.settings().gravity.norm();
     double carried = 0.0;
     for (const Reaction& reaction : simulator.reactions()) {
-      if (std::ranges::find(network.pin_names, reaction.name) != network.pin_names.end()) carried += reaction.force.y();
+      if (std::ranges::find(network.pins, reaction.name, &Pin::name) != network.pins.end()) carried += reaction.force.y();
     }
     record.carried.push_back(carried);
     record.total.push_back(frame.kinetic_energy + frame.elastic_energy + frame.gravity_energy);

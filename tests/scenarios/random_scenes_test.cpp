@@ -150,14 +150,12 @@ TEST(RandomSceneTest, SeedsDrawEverything) {
       if (law.yields()) seen.insert("yield");
       if (law.breaks()) seen.insert("break");
     }
-    for (const auto* pins : {&scene.network.pins, &scene.network.later_pins}) {
-      for (const Pin& pin : *pins) {
-        if (pin.from > 0.0) seen.insert("pin that begins");
-        if (std::isfinite(pin.until)) seen.insert("pin that ends");
-        if (pin.holds_always()) seen.insert("pin that stays");
-        if (pin.obstacle != kNone) seen.insert("pin that follows");
-        if (pin.motion.moves()) seen.insert("pin that moves");
-      }
+    for (const Pin& pin : scene.network.pins) {
+      if (pin.from > 0.0) seen.insert("pin that begins");
+      if (std::isfinite(pin.until)) seen.insert("pin that ends");
+      if (pin.holds_always()) seen.insert("pin that stays");
+      if (pin.obstacle != kNone) seen.insert("pin that follows");
+      if (pin.motion.moves()) seen.insert("pin that moves");
     }
     for (const Attachment& attachment : scene.network.attachments) seen.insert(attachment.is_rigid() ? "rod" : "spring");
   }

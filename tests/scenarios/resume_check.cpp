@@ -49,8 +49,7 @@ void ResumeCheck::begin(int frame, Simulator& simulator, StepReport& report) {
   if (frame != begin_ || is_known_to_differ(current_test().test_suite_name())) return;
   const int steps = static_cast<int>(fraction_ * simulator.settings().steps_per_frame);
   for (int step = 0; step < steps; ++step) report += simulator.step();
-  resumed_ = std::make_unique<Simulator>(
-      Simulator::resume(simulator.network(), simulator.settings(), simulator.obstacles(), simulator.state()));
+  resumed_ = std::make_unique<Simulator>(simulator);
 }
 
 void ResumeCheck::look(int frame, const Simulator& simulator) {

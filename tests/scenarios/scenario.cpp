@@ -42,8 +42,8 @@ class FrameJudge {
 
   void look(int frame, ScenarioReport& report) {
     const auto begin = Clock::now();
-    if (broken_springs_ != simulator_.network().broken.count()) {
-      broken_springs_ = simulator_.network().broken.count();
+    if (broken_springs_ != simulator_.state().springs.broken_count()) {
+      broken_springs_ = simulator_.state().springs.broken_count();
       elements_ = judged_elements(simulator_.network());
     }
     Index inside = 0;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dynamics/all_integrators.h"
-#include "network/model/sleeping_particles.h"
+#include "network/model/activity.h"
 #include "network/network_builder.h"
 #include "simulation/simulator.h"
 

@@ -325,7 +325,7 @@ TEST(Simulator, AnExplosionIsFoundWhileSpringsBreak) {
     EXPECT_THAT(error.what(), HasSubstr("the energy exploded"));
     EXPECT_EQ(error.failure().step, 64);
   }
-  EXPECT_GT(simulator.network().broken.count(), 60);
+  EXPECT_GT(simulator.state().springs.broken_count(), 60);
 }
 
 TEST(Simulator, UnexplainedEnergyStopsTheRun) {

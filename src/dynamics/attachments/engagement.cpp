@@ -4,7 +4,7 @@
 #include "collision/shapes/surface_anchor.h"
 #include "dynamics/attachments/link_ends.h"
 #include "geometry/queries/closest_pair.h"
-#include "network/model/pin_schedule.h"
+#include "network/model/activity.h"
 
 #include <algorithm>
 #include <limits>

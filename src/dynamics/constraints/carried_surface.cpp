@@ -1,7 +1,7 @@
 #include "dynamics/constraints/carried_surface.h"
 
 #include "base/parallel.h"
-#include "network/model/sleeping_particles.h"
+#include "network/model/activity.h"
 
 #include <algorithm>
 

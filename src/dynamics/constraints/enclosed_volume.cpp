@@ -1,7 +1,7 @@
 #include "dynamics/constraints/enclosed_volume.h"
 
 #include "geometry/mesh/triangle_mesh.h"
-#include "network/model/sleeping_particles.h"
+#include "network/model/activity.h"
 
 #include <algorithm>
 #include <cmath>

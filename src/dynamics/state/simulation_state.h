@@ -4,10 +4,14 @@
 #include "base/types.h"
 #include "collision/obstacle_regions/permitted_crossing.h"
 #include "dynamics/state/recorded_impulses.h"
+#include "network/model/activity.h"
 #include "network/model/attachment.h"
+#include "network/model/springs.h"
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace sprung {
@@ -103,6 +107,12 @@ struct PlannerMemory {
   Index retry_infeasible = 0;  ///< exception: steps with more infeasible particles than this are repeated despite the wait
 };
 
+/// The impulses in the present interval of records, see ReactionRecord.
+struct ReactionMemory {
+  std::map<std::string, Vector3> impulses{};  ///< of attachments, and of pins before the last change of pins, by name [N s]
+  double since = 0.0;                         ///< begin of the interval [s]
+};
+
 struct SimulationState {
   std::int64_t step = 0;    ///< number of completed steps
   std::int64_t frame = 0;   ///< number of completed frames
@@ -114,6 +124,8 @@ struct SimulationState {
   Points x;           ///< positions [m], 3 x n
   Points v;           ///< velocities [m/s], 3 x n
   Points x_previous;  ///< Verlet's positions one step ago [m], 3 x n
+  Activity activity{};
+  SpringState springs{};
   ContactMemory contact{};
   RestMemory rest{};
   EnergyMemory energy{};
@@ -122,6 +134,7 @@ struct SimulationState {
   std::vector<Link> links{};         ///< of attachments that have engaged and not ended, by attachment; broken ones too
   RecordedImpulses impulses{};       ///< empty unless the settings ask for forces
   RecordedImpulses last_impulses{};  ///< of the last step; a step adds those of sleeping particles again
+  ReactionMemory reactions{};
 };
 
 /// The number of steps of the present length from time 0 to the begin of the current step. Times are this number, or a fraction

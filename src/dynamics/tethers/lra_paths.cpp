@@ -84,7 +84,8 @@ class Search {
 }  // namespace
 
 std::vector<Tether> find_tethers(const SpringNetwork& network, const std::vector<SpringKind>& kinds) {
-  if (network.pins.empty()) return {};
+  const std::vector<Index>& pin_of = network.activity.pin_of;
+  if (std::ranges::count(pin_of, kNone) == static_cast<std::ptrdiff_t>(pin_of.size())) return {};
   const SpringGraph graph(network, measurable_springs(network, kinds));
   std::vector<Tether> tethers = Search(network, graph).all();
   std::ranges::sort(tethers, {}, [](const Tether& tether) { return std::pair(tether.particle, tether.group); });
@@ -95,10 +96,10 @@ bool are_pins_taut(const SpringNetwork& network, const Body& body, const std::ve
   constexpr double kRounding = 1.0 + 1.0e-9;  // covers the rounding of sums of lengths
   const auto is_of_body = [&](Index i) { return i >= body.first_particle && i < body.first_particle + body.particle_count; };
   // A pin that began after time 0 may be anywhere.
-  const auto leaves_place = [&](const Pin& pin) {
-    return (pin.moves() || pin.from > 0.0) && std::ranges::any_of(pin.particles, is_of_body);
-  };
-  if (std::ranges::any_of(network.pins, leaves_place)) return false;
+  for (std::size_t p = 0; p < network.pins.size(); ++p) {
+    const bool leaves_place = network.pins[p].moves() || network.pins[p].from > 0.0;
+    if (leaves_place && std::ranges::any_of(held_particles(network, p), is_of_body)) return false;
+  }
 
   const auto path_length = [](const Tether& a, const Tether& b) { return a.length + b.length; };
   std::map<std::pair<Index, Index>, std::pair<Tether, Tether>> shortest;

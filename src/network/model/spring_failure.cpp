@@ -60,26 +60,6 @@ Pairs spanned(const Springs& springs, const std::vector<Index>& broken) {
   return pairs;
 }
 
-/// Whether each spring goes.
-std::vector<char> find_gone(const Springs& springs, const std::vector<Index>& broken) {
-  std::vector<char> gone(static_cast<std::size_t>(springs.count()), 0);
-  for (const Index s : broken) gone[s] = 1;
-  const Pairs pairs = spanned(springs, broken);
-  for (Index s = 0; s < springs.count(); ++s) {
-    if (springs.kind[s] != SpringKind::structural && pairs.contains(ends_of(springs, s))) gone[s] = 1;
-  }
-  return gone;
-}
-
-/// The pairs of particles that broken structural springs joined.
-Pairs structural_pairs(const Springs& springs, const std::vector<Index>& broken) {
-  Pairs pairs;
-  for (const Index s : broken) {
-    if (springs.kind[s] == SpringKind::structural) pairs.insert(ends_of(springs, s));
-  }
-  return pairs;
-}
-
 /// Erases the same entries of several arrays.
 template <class... Arrays>
 void erase_gone(const std::vector<char>& gone, Arrays&... arrays) {
@@ -108,11 +88,6 @@ void remove_springs(SpringNetwork& network, const std::vector<char>& gone) {
     if (body.spring_count < before) body.resolution = {};  // it is no whole grid any more
   }
   Springs& springs = network.springs;
-  for (Index s = 0; s < springs.count(); ++s) {
-    if (gone[s] == 0) continue;
-    network.broken.append(springs.first[s], springs.second[s], springs.rest_length[s], springs.stiffness[s], springs.damping[s],
-                          springs.kind[s], springs.law(s));
-  }
   erase_gone(gone, springs.first, springs.second, springs.rest_length, springs.stiffness, springs.damping, springs.kind,
              springs.laws);
 }
@@ -157,21 +132,23 @@ void remove_face_bends(SpringNetwork& network) {
   erase_gone(gone, bends.hinges, bends.curvature, bends.stiffness, bends.damping);
 }
 
-/// Tears one body's surface, in the numbering of the body.
+/// Tears the surface of a body, in the numbering of the body. `gone` are the pairs of particles whose structural or shear spring is
+/// gone, `structural` those that a structural one joins.
 class SurfaceTearing {
  public:
-  /// `gone` are the pairs of particles whose structural or shear spring is gone, `structural` those that a structural one joins.
   SurfaceTearing(Surface& surface, const Pairs& gone, const Pairs& structural)
       : surface_(surface), gone_(gone), structural_(structural) {}
 
   void tear() {
     remove_segments();
-    const std::vector<Index> torn = find_torn();
-    if (torn.empty()) return;
-    surface_.torn.insert(surface_.torn.end(), torn.begin(), torn.end());
+    const std::vector<Index> before = surface_.torn;
+    for (Index face = 0; face < surface_.faces.face_count(); ++face) {
+      if (!std::ranges::binary_search(before, face) && has_gone_pair(corners(face))) surface_.torn.push_back(face);
+    }
+    if (surface_.torn.size() == before.size()) return;
     std::ranges::sort(surface_.torn);
     surface_.triangles = triangulate(without_faces(surface_.faces, surface_.torn));
-    add_threads(torn);
+    add_threads();
   }
 
  private:
@@ -182,8 +159,6 @@ class SurfaceTearing {
                  static_cast<std::size_t>(faces.corner_begin[face + 1] - faces.corner_begin[face]));
   }
 
-  [[nodiscard]] bool is_torn_already(Index face) const { return std::ranges::binary_search(surface_.torn, face); }
-
   [[nodiscard]] bool has_gone_pair(std::span<const Index> corners) const {
     for (std::size_t i = 0; i < corners.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
@@ -191,14 +166,6 @@ class SurfaceTearing {
       }
     }
     return false;
-  }
-
-  [[nodiscard]] std::vector<Index> find_torn() const {
-    std::vector<Index> torn;
-    for (Index face = 0; face < surface_.faces.face_count(); ++face) {
-      if (!is_torn_already(face) && has_gone_pair(corners(face))) torn.push_back(face);
-    }
-    return torn;
   }
 
   void remove_segments() {
@@ -209,9 +176,9 @@ class SurfaceTearing {
     if (static_cast<Index>(kept.size()) < surface_.segments.cols()) surface_.segments = Edges(surface_.segments(Eigen::all, kept));
   }
 
-  void add_threads(const std::vector<Index>& torn) {
+  void add_threads() {
     Pairs threads;
-    for (const Index face : torn) {
+    for (const Index face : surface_.torn) {
       const std::span<const Index> around = corners(face);
       for (std::size_t i = 0; i < around.size(); ++i) {
         const Pair side = pair_of(around[i], around[(i + 1) % around.size()]);
@@ -232,11 +199,30 @@ class SurfaceTearing {
   const Pairs& structural_;
 };
 
+/// The pairs of particles that the springs of a body join for which `wanted` is true, in the numbering of the body.
+template <class Wanted>
+Pairs pairs_of(const Body& body, const Springs& springs, const Wanted& wanted) {
+  Pairs pairs;
+  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+    if (wanted(s)) pairs.insert({springs.first[s] - body.first_particle, springs.second[s] - body.first_particle});
+  }
+  return pairs;
+}
+
 }  // namespace
 
-void let_yield(Springs& springs, const Points& positions) {
-  if (springs.laws.empty()) return;
-  for (Index s = 0; s < springs.count(); ++s) {
+Index SpringState::broken_count() const { return static_cast<Index>(broken.size() - std::ranges::count(broken, 0)); }
+
+SpringState initial_springs(const Springs& springs) {
+  SpringState state;
+  if (std::ranges::any_of(springs.laws, &SpringLaw::yields)) state.rest_lengths = springs.rest_length;
+  if (std::ranges::any_of(springs.laws, &SpringLaw::breaks)) state.broken.assign(static_cast<std::size_t>(springs.count()), 0);
+  return state;
+}
+
+std::vector<Index> let_yield(Springs& springs, const Points& positions) {
+  std::vector<Index> changed;
+  for (Index s = 0; s < static_cast<Index>(springs.laws.size()); ++s) {
     const SpringLaw& law = springs.laws[s];
     double& rest = springs.rest_length[s];
     if (!law.yields() || rest == 0.0) continue;
@@ -246,8 +232,12 @@ void let_yield(Springs& springs, const Points& positions) {
       rest = length / (1.0 + law.yield);
     } else if (strain < -law.yield && !law.tension_only && length > 0.0) {
       rest = length / (1.0 - law.yield);
+    } else {
+      continue;
     }
+    changed.push_back(s);
   }
+  return changed;
 }
 
 std::vector<Index> breaking_springs(const SpringNetwork& network, const Points& positions) {
@@ -271,60 +261,57 @@ std::vector<Index> breaking_springs(const SpringNetwork& network, const Points& 
   return breaking;
 }
 
-std::vector<Index> tear(SpringNetwork& network, const std::vector<Index>& broken) {
-  const Springs& springs = network.springs;
-  const std::vector<char> gone = find_gone(springs, broken);
-  std::vector<Index> left;
+std::vector<char> with_dependents(const Springs& springs, const std::vector<Index>& broken) {
+  std::vector<char> gone(static_cast<std::size_t>(springs.count()), 0);
+  for (const Index s : broken) gone[s] = 1;
+  const Pairs pairs = spanned(springs, broken);
   for (Index s = 0; s < springs.count(); ++s) {
-    if (gone[s] == 0) left.push_back(s);
+    if (springs.kind[s] != SpringKind::structural && pairs.contains(ends_of(springs, s))) gone[s] = 1;
   }
-  if (broken.empty()) return left;
-  const Pairs gone_structural = structural_pairs(springs, broken);
+  return gone;
+}
+
+void tear(SpringNetwork& network, const std::vector<char>& gone) {
+  if (std::ranges::count(gone, 0) == static_cast<std::ptrdiff_t>(gone.size())) return;
+  const Springs& springs = network.springs;
+  Pairs gone_structural;
   for (Body& body : network.bodies) {
-    Pairs gone_pairs;
-    for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
-      if (gone[s] == 0 || springs.kind[s] == SpringKind::bend) continue;
-      gone_pairs.insert({springs.first[s] - body.first_particle, springs.second[s] - body.first_particle});
+    const bool loses = std::any_of(gone.begin() + body.first_spring, gone.begin() + body.first_spring + body.spring_count,
+                                   [](char is_gone) { return is_gone != 0; });
+    if (!loses) continue;
+    const auto is_structural = [&](Index s) { return springs.kind[s] == SpringKind::structural; };
+    const Pairs pairs = pairs_of(body, springs, [&](Index s) { return gone[s] != 0 && springs.kind[s] != SpringKind::bend; });
+    const Pairs left = pairs_of(body, springs, [&](Index s) { return gone[s] == 0 && is_structural(s); });
+    SurfaceTearing(body.surface, pairs, left).tear();
+    for (const auto& [a, b] : pairs_of(body, springs, [&](Index s) { return gone[s] != 0 && is_structural(s); })) {
+      gone_structural.insert({a + body.first_particle, b + body.first_particle});
     }
-    if (gone_pairs.empty()) continue;
-    Pairs structural;
-    for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
-      if (gone[s] != 0 || springs.kind[s] != SpringKind::structural) continue;
-      structural.insert({springs.first[s] - body.first_particle, springs.second[s] - body.first_particle});
-    }
-    SurfaceTearing(body.surface, gone_pairs, structural).tear();
   }
   remove_angle_bends(network, gone_structural);
   remove_face_bends(network);
   remove_springs(network, gone);
-  return left;
 }
 
-void tear_as(const SpringNetwork& torn, SpringNetwork& network) {
-  const Springs& springs = network.springs;
+SpringState carried_over(const SpringNetwork& from, const SpringState& state, const SpringNetwork& to) {
   const auto key_of = [](const Springs& of, Index s) { return std::pair(ends_of(of, s), of.kind[s]); };
   std::map<std::pair<Pair, SpringKind>, Index> missing;  // numbers of springs
-  for (Index s = 0; s < torn.broken.count(); ++s) ++missing[key_of(torn.broken, s)];
+  for (Index s = 0; s < from.springs.count(); ++s) {
+    if (state.is_broken(s)) ++missing[key_of(from.springs, s)];
+  }
   std::vector<Index> broken;
-  for (Index s = 0; s < springs.count(); ++s) {
-    const auto found = missing.find(key_of(springs, s));
+  for (Index s = 0; s < to.springs.count(); ++s) {
+    const auto found = missing.find(key_of(to.springs, s));
     if (found != missing.end() && found->second-- > 0) broken.push_back(s);
   }
-  const std::vector<char> gone = find_gone(springs, broken);
-  remove_angle_bends(network, structural_pairs(springs, broken));
-  remove_springs(network, gone);
-  network.broken = torn.broken;
-  for (std::size_t b = 0; b < network.bodies.size(); ++b) network.bodies[b].surface = torn.bodies[b].surface;
-  remove_face_bends(network);
-}
-
-void copy_rest_lengths(const SpringNetwork& from, SpringNetwork& network) {
-  const Springs& springs = from.springs;
-  for (Index s = 0; s < std::min(springs.count(), network.springs.count()); ++s) {
-    if (springs.law(s).yields() && network.springs.law(s).yields() && ends_of(springs, s) == ends_of(network.springs, s)) {
-      network.springs.rest_length[s] = springs.rest_length[s];
+  SpringState carried = initial_springs(to.springs);
+  if (!broken.empty()) carried.broken = with_dependents(to.springs, broken);
+  const Index common = std::min(from.springs.count(), to.springs.count());
+  for (Index s = 0; s < common; ++s) {
+    if (from.springs.law(s).yields() && to.springs.law(s).yields() && ends_of(from.springs, s) == ends_of(to.springs, s)) {
+      carried.rest_lengths[s] = state.rest_lengths[s];
     }
   }
+  return carried;
 }
 
 }  // namespace sprung

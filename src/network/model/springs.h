@@ -43,6 +43,19 @@ struct Springs {
   void append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind, const SpringLaw& law = {});
 };
 
+/// What steps change of springs, in the order of the springs at time 0.
+struct SpringState {
+  std::vector<double> rest_lengths{};  ///< [m]; empty unless a spring may yield
+  std::vector<char> broken{};          ///< whether each is gone; empty unless a spring may break
+
+  [[nodiscard]] bool is_broken(Index spring) const { return !broken.empty() && broken[spring] != 0; }
+  [[nodiscard]] Index broken_count() const;
+  [[nodiscard]] bool operator==(const SpringState&) const = default;
+};
+
+/// The state at time 0.
+[[nodiscard]] SpringState initial_springs(const Springs& springs);
+
 /// Elements that keep three particles in line, as arrays; entry a of each array belongs to element a. The bond middle - after
 /// deviates from the direction of the bond before - middle by an angle theta, from 0 (in line) to pi (folded back). The energy is
 /// 1/2 k theta^2 [J].

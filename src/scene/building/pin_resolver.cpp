@@ -1,7 +1,7 @@
 #include "scene/building/pin_resolver.h"
 
 #include "base/problem_list.h"
-#include "network/model/pin_schedule.h"
+#include "network/model/activity.h"
 #include "scene/building/particle_selector.h"
 #include "scene/json/json_text.h"
 

@@ -127,7 +127,7 @@ std::optional<Vector3> normal_of_sheet(const SpringNetwork& network, const Body&
 
 bool has_moving_pin(const SpringNetwork& network, const Body& body) {
   const auto moves = [&](const Pin& pin) { return pin.moves() && &network.body_of(pin.particles.front()) == &body; };
-  return std::ranges::any_of(network.pins, moves) || std::ranges::any_of(network.later_pins, moves);
+  return std::ranges::any_of(network.pins, moves);
 }
 
 bool has_springs(const SpringNetwork& network, const Body& body, SpringKind kind) {

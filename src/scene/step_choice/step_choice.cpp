@@ -2,7 +2,7 @@
 
 #include "base/format.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
-#include "network/model/pin_schedule.h"
+#include "network/model/activity.h"
 #include "scene/step_choice/many_steps.h"
 #include "simulation/step/frame_steps.h"
 #include "simulation/step/step_check.h"
@@ -12,6 +12,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -132,12 +133,14 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
   if (scene.step) return given_step(scene, bounds, problems);
   StepChoice automatic = automatic_step(scene, network, bounds, problems);
   automatic.largest_stable = largest_stable_step(scene.settings.integrator, bounds);
-  const std::vector<double> changes = pin_changes(network);
+  const std::vector<double> changes = pin_changes(network.pins);
   if (changes.empty()) return automatic;
   SpringNetwork later = network;
   for (const double time : changes) {
     if (!problems.empty()) break;
-    change_pins(later, std::nextafter(time, std::numeric_limits<double>::infinity()));
+    Activity activity = later.activity;
+    change_pins(later.pins, std::nextafter(time, std::numeric_limits<double>::infinity()), activity);
+    set_activity(std::move(activity), later);
     StepChoice other = automatic_step(scene, later, bounds, problems);
     other.largest_stable = automatic.largest_stable;
     other.max_substeps = automatic.max_substeps = std::max(automatic.max_substeps, other.max_substeps);

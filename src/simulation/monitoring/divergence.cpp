@@ -3,7 +3,7 @@
 #include "base/finite.h"
 #include "base/format.h"
 #include "base/parallel.h"
-#include "network/model/pin_schedule.h"
+#include "network/model/activity.h"
 
 #include <algorithm>
 #include <atomic>
@@ -90,8 +90,8 @@ std::optional<StepFailure> DivergenceCheck::overstretched(const Points& position
   const Index a = springs.first[static_cast<std::size_t>(worst)];
   const Index b = springs.second[static_cast<std::size_t>(worst)];
   StepFailure failure = blame(network_.is_pinned(a) ? b : a, worst, positions);
-  failure.remedy = has_moving_pin(network_) ? "use more stiffness, a \"stretch_limit\" or slower pins"
-                                            : "use more stiffness or a \"stretch_limit\"";
+  failure.remedy = has_moving_pin(network_.pins) ? "use more stiffness, a \"stretch_limit\" or slower pins"
+                                                 : "use more stiffness or a \"stretch_limit\"";
   return failure;
 }
 

@@ -2,7 +2,7 @@
 
 #include "base/format.h"
 #include "dynamics/attachments/attachments.h"
-#include "network/model/pin_schedule.h"
+#include "network/model/activity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,8 @@ double rounding_speed(const Points& positions, double step) {
 bool is_undriven(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
   const bool wind = settings.has_air() && !settings.wind.is_calm();
   return !wind && !do_work(network.attachments) && !std::holds_alternative<ExplicitEulerSettings>(settings.integrator) &&
-         !has_moving_pin(network) && std::ranges::none_of(obstacles, [](const Obstacle& obstacle) { return obstacle.changes(); });
+         !has_moving_pin(network.pins) &&
+         std::ranges::none_of(obstacles, [](const Obstacle& obstacle) { return obstacle.changes(); });
 }
 
 }  // namespace

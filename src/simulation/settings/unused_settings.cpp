@@ -55,7 +55,7 @@ class Finder {
                           " %, but stretch_limit.max_stretch is " + format_number(100.0 * limit.max_stretch, 3) +
                           " %. Use a smaller factor, or a larger max_stretch.");
     }
-    if (limit.tethers && network_.pins.empty() && network_.later_pins.empty()) {
+    if (limit.tethers && network_.pins.empty()) {
       warnings_.emplace_back(
           "stretch_limit.tethers has no effect without pins: tethers hold particles to pins. Remove it, or add pins.");
     }

@@ -26,18 +26,18 @@ double displacement(const RigidTransform& motion, const Box3& box) {
 Surroundings::Surroundings(const SpringNetwork& network, const ObstacleSet& obstacles, const SleepGroups& groups, double step,
                            double gravity)
     : network_(network), obstacles_(obstacles), groups_(groups), step_(step), gravity_(gravity), ends_(groups.groups.size(), 0.0) {
-  for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
-    for (const Pin& pin : *pins) note(pin);
-  }
+  for (std::size_t p = 0; p < network.pins.size(); ++p) note(p);
   for (const Attachment& attachment : network.attachments) note(attachment);
   sort_unique(attached_);
 }
 
-void Surroundings::note(const Pin& pin) {
+void Surroundings::note(std::size_t number) {
+  const Pin& pin = network_.pins[number];
   const double until = std::isfinite(pin.until) ? pin.until + step_ : 0.0;  // rounded to a step
   const double motion = pin.obstacle != kNone ? end_of_obstacle(pin.obstacle) : pin.motion.end();
   const double end = std::max({pin.from > 0.0 ? pin.from + step_ : 0.0, until, std::min(motion, pin.until)});
-  for (const Index p : groups_of(pin.particles)) ends_[p] = std::max(ends_[p], end);
+  const bool waits = network_.activity.phases[number] == PinPhase::waiting;
+  for (const Index p : groups_of(waits ? pin.particles : held_particles(network_, number))) ends_[p] = std::max(ends_[p], end);
 }
 
 void Surroundings::note(const Attachment& attachment) {

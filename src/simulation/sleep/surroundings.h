@@ -35,7 +35,7 @@ class Surroundings {
   [[nodiscard]] const std::vector<GroupPair>& attached() const { return attached_; }
 
  private:
-  void note(const Pin& pin);
+  void note(std::size_t pin);
   void note(const Attachment& attachment);
   [[nodiscard]] std::vector<Index> groups_of(const std::vector<Index>& particles) const;
   [[nodiscard]] std::vector<Index> groups_of_body(std::size_t body) const;

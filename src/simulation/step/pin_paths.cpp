@@ -1,7 +1,7 @@
 #include "simulation/step/pin_paths.h"
 
 #include "base/problem_list.h"
-#include "network/model/pin_schedule.h"
+#include "network/model/spring_network.h"
 
 #include <algorithm>
 #include <optional>
@@ -13,13 +13,11 @@ namespace {
 
 void check_obstacles(const SpringNetwork& network, std::size_t count) {
   ProblemList problems;
-  for (const std::vector<Pin>* pins : {&network.pins, &network.later_pins}) {
-    for (std::size_t p = 0; p < pins->size(); ++p) {
-      const Index obstacle = (*pins)[p].obstacle;
-      if (obstacle == kNone || (obstacle >= 0 && static_cast<std::size_t>(obstacle) < count)) continue;
-      problems.add(entry_key("pins", p) + ".obstacle", std::to_string(obstacle),
-                   "must be the number of an obstacle; there are " + std::to_string(count), "count obstacles from 0");
-    }
+  for (std::size_t p = 0; p < network.pins.size(); ++p) {
+    const Index obstacle = network.pins[p].obstacle;
+    if (obstacle == kNone || (obstacle >= 0 && static_cast<std::size_t>(obstacle) < count)) continue;
+    problems.add(entry_key("pins", p) + ".obstacle", std::to_string(obstacle),
+                 "must be the number of an obstacle; there are " + std::to_string(count), "count obstacles from 0");
   }
   problems.throw_if_any();
 }
@@ -67,9 +65,10 @@ class PinPaths::Placing {
 PinPaths::PinPaths(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length)
     : network_(network), step_length_(step_length) {
   check_obstacles(network, obstacles.size());
-  for (const Pin& pin : network.pins) {
-    if (!pin.moves()) continue;
-    Path path{.pin = &pin};
+  for (std::size_t p = 0; p < network.pins.size(); ++p) {
+    const Pin& pin = network.pins[p];
+    if (!pin.moves() || network.activity.phases[p] != PinPhase::holding) continue;
+    Path path{.pin = &pin, .held = held_particles(network, p)};
     if (pin.obstacle != kNone) {
       path.obstacle = &obstacles[static_cast<std::size_t>(pin.obstacle)];
       path.sequence = sequence_of(*path.obstacle);
@@ -85,7 +84,7 @@ bool PinPaths::register_pins(SimulationState& state) {
     path.particles.clear();
     if (!path.needs_anchors()) {
       const std::optional<double> begin = path.obstacle != nullptr ? std::optional(0.0) : std::nullopt;
-      for (const Index i : path.pin->particles) path.particles.push_back({i, begin, network_.positions.col(i), {}});
+      for (const Index i : path.held) path.particles.push_back({i, begin, network_.positions.col(i), {}});
       continue;
     }
     for (const PinGrip& anchor : anchors_of(path, state, is_new)) {
@@ -110,7 +109,7 @@ std::vector<PinGrip> PinPaths::anchors_of(const Path& path, const SimulationStat
   std::vector<PinGrip> anchors;
   std::vector<std::size_t> added;
   std::vector<Vector3> points;  // of those, in the obstacle's frame
-  for (const Index i : path.pin->particles) {
+  for (const Index i : path.held) {
     const PinGrip* known = find(state.grips, i);
     if (known != nullptr && known->from == from) {
       anchors.push_back(*known);

@@ -40,6 +40,7 @@ class PinPaths {
   };
   struct Path {
     const Pin* pin;
+    std::vector<Index> held{};               ///< the particles that it holds
     const Obstacle* obstacle = nullptr;      ///< that the pin follows
     const MeshSequence* sequence = nullptr;  ///< of the obstacle, if it deforms
     std::vector<Held> particles{};

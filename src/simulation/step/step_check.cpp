@@ -4,9 +4,9 @@
 #include "dynamics/attachments/attachment_springs.h"
 #include "dynamics/contact/penalty_contact.h"
 #include "dynamics/forces/surface_air_force.h"
-#include "network/model/pin_schedule.h"
+#include "network/model/activity.h"
+#include "simulation/model/network_forces.h"
 #include "simulation/step/frame_steps.h"
-#include "simulation/step/network_forces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -134,7 +134,7 @@ SpectralBounds bounds_of(const SpringNetwork& network, const SimulatorSettings& 
 
 SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles,
                                  const std::vector<std::shared_ptr<Force>>& external) {
-  const bool change = !network.later_pins.empty() || !std::ranges::all_of(network.pins, &Pin::holds_always);
+  const bool change = !std::ranges::all_of(network.pins, &Pin::holds_always);
   return bounds_of(change ? freest(network) : network, settings, has_obstacles, external);
 }
 

@@ -1,5 +1,5 @@
 // Forces leave out elements of which all particles sleep, and no others.
-#include "network/model/sleeping_particles.h"
+#include "network/model/activity.h"
 
 #include "dynamics/forces/bending_angle_force.h"
 #include "dynamics/forces/spring_force.h"

@@ -108,6 +108,10 @@ SpringNetwork two_cloths() {
   return builder.build();
 }
 
+void break_springs(SpringNetwork& network, const std::vector<Index>& broken) {
+  tear(network, with_dependents(network.springs, broken));
+}
+
 // Numbers of the particles:
 //   12 13 14 15
 //    8  9 10 11
@@ -116,7 +120,7 @@ SpringNetwork two_cloths() {
 TEST(Tear, AnEdgeInsideAClothTakesTheCellsOnBothSides) {
   const SpringNetwork whole = two_cloths();
   SpringNetwork network = whole;
-  tear(network, {spring_between(network, 5, 6)});
+  break_springs(network, {spring_between(network, 5, 6)});
   const auto lost = [&](SpringKind kind) {
     std::set<Pair> pairs = pairs_of(whole, kind);
     for (const Pair& pair : pairs_of(network, kind)) EXPECT_EQ(pairs.erase(pair), 1U);
@@ -125,7 +129,6 @@ TEST(Tear, AnEdgeInsideAClothTakesTheCellsOnBothSides) {
   EXPECT_THAT(lost(SpringKind::structural), ElementsAre(Pair(5, 6)));
   EXPECT_THAT(lost(SpringKind::shear), ElementsAre(Pair(1, 6), Pair(2, 5), Pair(5, 10), Pair(6, 9)));
   EXPECT_THAT(lost(SpringKind::bend), ElementsAre(Pair(4, 6), Pair(5, 7)));
-  EXPECT_EQ(network.broken.count(), 7);
   EXPECT_EQ(network.springs.count() + 7, whole.springs.count());
 
   // Cells are numbered along x, two triangles each: those below and above the edge are cells 1 and 4.
@@ -148,18 +151,19 @@ TEST(Tear, AnEdgeInsideAClothTakesTheCellsOnBothSides) {
 
 TEST(Tear, ATornThreadIsGone) {
   SpringNetwork network = two_cloths();
-  tear(network, {spring_between(network, 5, 6)});
-  tear(network, {spring_between(network, 1, 2)});
+  break_springs(network, {spring_between(network, 5, 6)});
+  break_springs(network, {spring_between(network, 1, 2)});
   EXPECT_EQ(network.bodies[0].surface.segments.cols(), 0);
   EXPECT_THAT(network.bodies[0].surface.torn, ElementsAre(2, 3, 8, 9));
-  tear(network, {spring_between(network, 13, 14)});
+  break_springs(network, {spring_between(network, 13, 14)});
   EXPECT_THAT(network.bodies[0].surface.torn, ElementsAre(2, 3, 8, 9, 14, 15)) << "the rest of the faces still count as before";
 }
 
 TEST(Tear, BendSpringsAloneTakeNoFace) {
   SpringNetwork network = two_cloths();
-  tear(network, {spring_between(network, 4, 6, SpringKind::bend)});
-  EXPECT_EQ(network.broken.count(), 1);
+  const Index before = network.springs.count();
+  break_springs(network, {spring_between(network, 4, 6, SpringKind::bend)});
+  EXPECT_EQ(network.springs.count(), before - 1);
   EXPECT_THAT(network.bodies[0].surface.torn, IsEmpty());
 }
 
@@ -174,7 +178,7 @@ TEST(Tear, TrianglesAreNotHeldTogetherAcrossATornEdge) {
   builder.add_body("kite", shape);
   SpringNetwork network = builder.build();
   ASSERT_NE(spring_between(network, 1, 3, SpringKind::bend), kNone);
-  tear(network, {spring_between(network, 0, 2)});
+  break_springs(network, {spring_between(network, 0, 2)});
   EXPECT_EQ(spring_between(network, 1, 3, SpringKind::bend), kNone);
   EXPECT_THAT(network.bodies[0].surface.torn, ElementsAre(0, 1));
   EXPECT_EQ(network.bodies[0].surface.segments.cols(), 4) << "the sides are threads";
@@ -188,7 +192,7 @@ TEST(Tear, ARopeLosesTheSegmentAndTheAnglesOverIt) {
   builder.add_body("torn", shape);
   builder.add_body("whole", shape);
   SpringNetwork network = builder.build();
-  tear(network, {1});  // from particle 1 to 2
+  break_springs(network, {1});  // from particle 1 to 2
   EXPECT_THAT(network.angle_bends.middle, ElementsAre(3, 6, 7, 8));
   EXPECT_EQ(network.bodies[0].angle_bend_count, 1);
   EXPECT_EQ(network.bodies[1].first_angle_bend, 1);
@@ -210,7 +214,7 @@ TEST(Tear, AMeshLosesTheFaceBendsOfTornTrianglesAndTheirNeighbours) {
   builder.add_body("whole", shape);
   SpringNetwork network = builder.build();
   ASSERT_EQ(network.bodies[0].face_bend_count, 6);
-  tear(network, {spring_between(network, 1, 2)});
+  break_springs(network, {spring_between(network, 1, 2)});
   EXPECT_THAT(network.bodies[0].surface.torn, ElementsAre(0, 1));
   EXPECT_EQ(network.bodies[0].face_bend_count, 3);
   EXPECT_EQ(network.bodies[1].first_face_bend, 3);
@@ -223,7 +227,6 @@ void expect_equal(const SpringNetwork& a, const SpringNetwork& b) {
   EXPECT_EQ(a.springs.second, b.springs.second);
   EXPECT_EQ(a.springs.kind, b.springs.kind);
   EXPECT_EQ(a.springs.laws, b.springs.laws);
-  EXPECT_EQ(a.broken.first, b.broken.first);
   EXPECT_EQ(a.angle_bends.middle, b.angle_bends.middle);
   for (std::size_t k = 0; k < a.bodies.size(); ++k) {
     EXPECT_EQ(a.bodies[k].first_spring, b.bodies[k].first_spring);
@@ -237,37 +240,84 @@ void expect_equal(const SpringNetwork& a, const SpringNetwork& b) {
   }
 }
 
-TEST(TearAs, AWholeNetworkBecomesTheTornOne) {
-  const SpringNetwork whole = two_cloths();
-  SpringNetwork torn = whole;
-  for (const Pair& pair : {Pair(5, 6), {21, 25}, {1, 2}, {13, 14}, {4, 5}}) {
-    const SpringNetwork before = torn;
-    tear(torn, {spring_between(torn, pair.first, pair.second)});
-    for (SpringNetwork network : {whole, before, torn}) {
-      tear_as(torn, network);
-      expect_equal(network, torn);
-    }
-  }
-  tear(torn, {spring_between(torn, 8, 10, SpringKind::bend), spring_between(torn, 24, 29, SpringKind::shear)});
-  SpringNetwork network = whole;
-  tear_as(torn, network);
-  expect_equal(network, torn);
+/// Threads come in the order in which they tore, or in that of their particles.
+Edges sorted_columns(const Edges& edges) {
+  std::vector<Pair> pairs;
+  for (const auto& edge : edges.colwise()) pairs.emplace_back(edge[0], edge[1]);
+  std::ranges::sort(pairs);
+  Edges sorted(2, edges.cols());
+  for (std::size_t k = 0; k < pairs.size(); ++k) sorted.col(static_cast<Index>(k)) << pairs[k].first, pairs[k].second;
+  return sorted;
 }
 
-TEST(TearAs, OfSpringsBetweenTheSameParticlesAsManyGoAsBroke) {
+/// A network as a simulator tears it: the springs that are gone are marked in a state.
+class TornNetwork {
+ public:
+  explicit TornNetwork(const SpringNetwork& whole) : whole_(whole), state_(initial_springs(whole.springs)) {
+    state_.broken.resize(static_cast<std::size_t>(whole.springs.count()), 0);
+  }
+
+  void break_springs(const std::vector<Index>& broken) {
+    const SpringNetwork present = network();
+    const std::vector<char> gone = with_dependents(present.springs, broken);
+    std::size_t number = 0;
+    for (char& is_broken : state_.broken) {
+      if (is_broken == 0) is_broken = gone[number++];
+    }
+  }
+
+  [[nodiscard]] SpringNetwork network() const { return torn(whole_, state_); }
+  [[nodiscard]] const SpringState& state() const { return state_; }
+
+  static SpringNetwork torn(SpringNetwork network, const SpringState& state) {
+    tear(network, state.broken);
+    return network;
+  }
+
+ private:
+  SpringNetwork whole_;
+  SpringState state_;
+};
+
+TEST(Tear, DoesNotDependOnTheOrderInWhichSpringsBroke) {
+  const SpringNetwork whole = two_cloths();
+  SpringNetwork one_by_one = whole;
+  TornNetwork at_once(whole);
+  for (const Pair& pair : {Pair(5, 6), {21, 25}, {1, 2}, {13, 14}, {4, 5}}) {
+    break_springs(one_by_one, {spring_between(one_by_one, pair.first, pair.second)});
+    at_once.break_springs({spring_between(at_once.network(), pair.first, pair.second)});
+    SpringNetwork now = at_once.network();
+    for (SpringNetwork* network : {&one_by_one, &now}) {
+      for (Body& body : network->bodies) body.surface.segments = sorted_columns(body.surface.segments);
+    }
+    expect_equal(now, one_by_one);
+  }
+}
+
+TEST(CarriedOver, AWholeNetworkBecomesTheTornOne) {
+  const SpringNetwork whole = two_cloths();
+  TornNetwork torn(whole);
+  torn.break_springs({spring_between(whole, 5, 6), spring_between(whole, 21, 25)});
+  torn.break_springs(
+      {spring_between(torn.network(), 8, 10, SpringKind::bend), spring_between(torn.network(), 24, 29, SpringKind::shear)});
+  const SpringState carried = carried_over(whole, torn.state(), whole);
+  EXPECT_EQ(carried, torn.state());
+}
+
+TEST(CarriedOver, OfSpringsBetweenTheSameParticlesAsManyGoAsBroke) {
   NetworkBuilder builder;
   for (int i = 0; i < 3; ++i) builder.add_particle({1.0 * i, 0.0, 0.0}, 1.0);
   for (int k = 0; k < 2; ++k) builder.add_spring(0, 1, 100.0, 1.0);
   builder.add_angle_bend(0, 1, 2, 1.0);
-  SpringNetwork network = builder.build();
-  SpringNetwork torn = network;
-  tear(torn, {0});
-  tear_as(torn, network);
-  expect_equal(network, torn);
-  EXPECT_EQ(network.springs.count(), 1);
+  const SpringNetwork network = builder.build();
+  TornNetwork torn(network);
+  torn.break_springs({0});
+  const SpringState carried = carried_over(network, torn.state(), network);
+  EXPECT_EQ(carried.broken_count(), 1);
+  expect_equal(TornNetwork::torn(network, carried), torn.network());
 }
 
-TEST(TearAs, SpringsOfAnotherKindGoWhereTheySpanAGap) {
+TEST(CarriedOver, SpringsOfAnotherKindGoWhereTheySpanAGap) {
   const auto cloth = [](const std::optional<SpringMaterial>& shear) {
     BodyShape shape = make_cloth({.size = {3.0, 3.0}, .resolution = {4, 4}}, {.structural = stiff(10.0), .shear = shear});
     set_total_mass(shape, 1.0);
@@ -275,27 +325,26 @@ TEST(TearAs, SpringsOfAnotherKindGoWhereTheySpanAGap) {
     builder.add_body("cloth", shape);
     return builder.build();
   };
-  SpringNetwork torn = cloth({});
-  tear(torn, {spring_between(torn, 5, 6)});
-  SpringNetwork network = cloth(stiff(5.0));
-  const std::set<Pair> before = pairs_of(network, SpringKind::shear);
-  tear_as(torn, network);
-  EXPECT_EQ(pairs_of(network, SpringKind::structural), pairs_of(torn, SpringKind::structural));
+  const SpringNetwork without = cloth({});
+  TornNetwork torn(without);
+  torn.break_springs({spring_between(without, 5, 6)});
+  const SpringNetwork with = cloth(stiff(5.0));
+  const SpringNetwork network = TornNetwork::torn(with, carried_over(without, torn.state(), with));
+  EXPECT_EQ(pairs_of(network, SpringKind::structural), pairs_of(torn.network(), SpringKind::structural));
+  const std::set<Pair> before = pairs_of(with, SpringKind::shear);
   const std::set<Pair> after = pairs_of(network, SpringKind::shear);
   std::vector<Pair> lost;
   std::ranges::set_difference(before, after, std::back_inserter(lost));
   EXPECT_THAT(lost, ElementsAre(Pair(1, 6), Pair(2, 5), Pair(5, 10), Pair(6, 9)));
 }
 
-TEST(TakeRestLengths, TakesThoseOfSpringsThatYield) {
+TEST(CarriedOver, SpringsThatYieldKeepTheirRestLengths) {
   SpringNetwork flowed = chain({0.0, 2.0, 4.0}, {.yield = 0.1});
-  let_yield(flowed.springs, flowed.positions);
-  SpringNetwork fresh = chain({0.0, 2.0, 4.0}, {.yield = 0.2});
-  copy_rest_lengths(flowed, fresh);
-  EXPECT_EQ(fresh.springs.rest_length, flowed.springs.rest_length);
-  SpringNetwork linear = chain({0.0, 2.0, 4.0}, {});
-  copy_rest_lengths(flowed, linear);
-  EXPECT_THAT(linear.springs.rest_length, ElementsAre(1.0, 1.0));
+  SpringState state = initial_springs(flowed.springs);
+  EXPECT_THAT(let_yield(flowed.springs, flowed.positions), ElementsAre(0, 1));
+  state.rest_lengths = flowed.springs.rest_length;
+  EXPECT_EQ(carried_over(flowed, state, chain({0.0, 2.0, 4.0}, {.yield = 0.2})).rest_lengths, state.rest_lengths);
+  EXPECT_THAT(carried_over(flowed, state, chain({0.0, 2.0, 4.0}, {})).rest_lengths, IsEmpty());
 }
 
 }  // namespace

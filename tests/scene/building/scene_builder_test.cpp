@@ -167,7 +167,9 @@ TEST(SceneBuilder, AParticleOfSeveralRestingPinsBelongsToTheFirstAndMovingPinsTu
   EXPECT_EQ(pins[1].origin, Vector3(0, 2, 0));
   EXPECT_EQ(pins[1].motion.spin, Vector3(0, 90, 0));
   EXPECT_THAT(pins[2].particles, ElementsAre(2));
-  EXPECT_THAT(built.network.pin_names, ElementsAre("banner.pins[0]", "banner.pins[1]", "banner.pins[3]"));
+  EXPECT_EQ(pins[0].name, "banner.pins[0]");
+  EXPECT_EQ(pins[1].name, "banner.pins[1]");
+  EXPECT_EQ(pins[2].name, "banner.pins[3]");
 }
 
 // A quad per group, object or material; welded, its corners are particles of both.
@@ -239,17 +241,18 @@ TEST(SceneBuilder, PinsKnowTheirTimesAndTheNumberOfTheObstacleThatTheyFollow) {
   const BuiltScene built = build(folder, {R"(obstacles.hand={"shape":{"type":"sphere","radius":0.1},"place":{"position":[9,9,9]}})",
                                           R"(bodies.banner.pins=[{"indices":[0],"follow":"hand","from":0.25,"until":0.5},
                                              {"indices":[0,1],"from":0.5},{"indices":[2],"follow":"hand","until":0.5}])"});
-  ASSERT_EQ(built.network.pins.size(), 1U);
-  EXPECT_THAT(built.network.pins[0].particles, ElementsAre(2));
-  EXPECT_EQ(built.network.pins[0].obstacle, 1);
-  EXPECT_EQ(built.network.pins[0].until, 0.5);
-  ASSERT_EQ(built.network.later_pins.size(), 2U);
-  EXPECT_EQ(built.network.later_pins[0].obstacle, 1);
-  EXPECT_EQ(built.network.later_pins[0].from, 0.25);
-  EXPECT_EQ(built.network.later_pins[1].obstacle, kNone);
-  EXPECT_THAT(built.network.later_pins[1].particles, ElementsAre(0, 1));
-  EXPECT_THAT(built.network.pin_names, ElementsAre("banner.pins[0]", "banner.pins[1]", "banner.pins[2]"));
-  EXPECT_EQ(built.network.later_pins[1].name, "banner.pins[1]");
+  const std::vector<Pin>& pins = built.network.pins;
+  ASSERT_EQ(pins.size(), 3U);
+  EXPECT_EQ(pins[0].obstacle, 1);
+  EXPECT_EQ(pins[0].from, 0.25);
+  EXPECT_EQ(pins[0].name, "banner.pins[0]");
+  EXPECT_EQ(pins[1].obstacle, kNone);
+  EXPECT_THAT(pins[1].particles, ElementsAre(0, 1));
+  EXPECT_EQ(pins[1].name, "banner.pins[1]");
+  EXPECT_THAT(held_particles(built.network, 2), ElementsAre(2)) << "the only one that begins at time 0";
+  EXPECT_EQ(pins[2].obstacle, 1);
+  EXPECT_EQ(pins[2].until, 0.5);
+  EXPECT_EQ(pins[2].name, "banner.pins[2]");
 }
 
 constexpr const char* kLine =

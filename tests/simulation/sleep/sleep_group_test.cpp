@@ -76,7 +76,7 @@ Simulator lying_rope(const Motion& of_pin, bool may_sleep = true, SimulatorSetti
 }
 
 Index sleeping(const Simulator& simulator) {
-  const std::vector<char>& asleep = simulator.network().asleep;
+  const std::vector<char>& asleep = simulator.network().activity.asleep;
   return static_cast<Index>(std::ranges::count(asleep, 1));
 }
 

@@ -74,7 +74,7 @@ TEST(RepeatedStep, LeavesNothingOfDiscardedSolves) {
   for (int step = 0; step < 120; ++step) {
     if (!run.step()) continue;
     const Simulator& simulator = run.simulator;
-    Simulator fresh = Simulator::resume(simulator.network(), settings, obstacles, simulator.state());
+    Simulator fresh = simulator;
     if (run.step()) continue;
     fresh.step();
     ++compared;

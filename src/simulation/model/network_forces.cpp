@@ -1,4 +1,4 @@
-#include "simulation/step/network_forces.h"
+#include "simulation/model/network_forces.h"
 
 #include "dynamics/forces/bending_angle_force.h"
 #include "dynamics/forces/gravity_and_drag.h"

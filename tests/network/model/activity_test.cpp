@@ -1,4 +1,4 @@
-#include "network/model/sleeping_particles.h"
+#include "network/model/activity.h"
 
 #include "network/network_builder.h"
 
@@ -22,8 +22,9 @@ TEST(SleepingParticles, HaveNoInverseMassUntilTheyWakeAndPinsStay) {
   EXPECT_TRUE(is_asleep(network, network.bodies[1]));
   set_asleep({0, 1, 1, 0}, network);
   EXPECT_EQ(network.inverse_masses, Scalars({{2.0, 0.0, 0.0, 2.0}}).transpose());
-  EXPECT_EQ(awake(network).inverse_masses, before);
-  EXPECT_FALSE(awake(network).is_asleep(1));
+  set_asleep({}, network);
+  EXPECT_EQ(network.inverse_masses, before);
+  EXPECT_FALSE(network.is_asleep(1));
 }
 
 }  // namespace

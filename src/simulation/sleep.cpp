@@ -1,0 +1,173 @@
+#include "geometry/mesh/union_find.h"
+#include "simulation/stepper.h"
+
+#include <algorithm>
+
+namespace sprung {
+
+bool Stepper::sleeps(Index group) const { return network().is_asleep(groups().groups[group].particles.front()); }
+
+/// Whether it has particles that are not pinned, though they may sleep.
+bool Stepper::is_free(Index group) const {
+  return sleeps(group) || std::ranges::any_of(groups().groups[group].particles, [&](Index i) { return !network().is_pinned(i); });
+}
+
+std::vector<char> Stepper::sleeping_groups() const {
+  std::vector<char> asleep;
+  for (Index p = 0; p < groups().count(); ++p) asleep.push_back(sleeps(p) ? 1 : 0);
+  return asleep;
+}
+
+/// Whether each particle sleeps in the next step; empty: none does.
+std::vector<char> Stepper::particles_to_sleep() const {
+  std::vector<char> asleep;
+  if (std::ranges::count(state_.rest.sleepers, 0) == static_cast<std::ptrdiff_t>(state_.rest.sleepers.size())) return asleep;
+  for (const Index p : groups().group_of) asleep.push_back(state_.rest.sleepers[p]);
+  return asleep;
+}
+
+/// External forces may change at any time, and so may wind. Bodies sink into a penalty for long, and are not at rest while they do.
+bool Stepper::may_sleep() const {
+  return settings().sleep && work().penalty == nullptr && constraints().contacts().can_collide() && !control_.adds_any() &&
+         state_.planner.feasible_steps > 0 && (!settings().has_air() || time() >= settings().wind.end());
+}
+
+/// After each step. A restless group wakes its neighbours. Groups fall asleep at the end of a window.
+void Stepper::choose_sleepers() {
+  if (!may_sleep()) {
+    wake_all();
+    return;
+  }
+  const bool window_ends = RestDetector::window_ends(time(), state_);
+  if (network().activity.asleep.empty() && !window_ends) return;
+  const Surroundings::Found found = work().surroundings.find(state_);
+  const std::vector<char> asleep = sleeping_groups();
+  std::vector<char> restless = work().rest.restless(state_);
+  const std::vector<char> driven = work().surroundings.driven(found, time());
+  for (std::size_t p = 0; p < restless.size(); ++p) restless[p] = restless[p] != 0 || driven[p] != 0 ? 1 : 0;
+  const std::vector<char> disturbed = with_neighbours(restless, found.pairs);
+  for (std::size_t p = 0; p < state_.rest.sleepers.size(); ++p)
+    state_.rest.sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;
+  if (window_ends) {
+    work().rest.end_window(time(), restless, with_neighbours(asleep, found.pairs), state_);
+    add_sleepers(found.pairs, disturbed);
+  }
+  wake_with_bodies(asleep);
+}
+
+void Stepper::wake_all() {
+  std::ranges::fill(state_.rest.sleepers, 0);
+  RestDetector::forget(state_);
+}
+
+/// A group at rest falls asleep if its neighbours are at rest too, and if it touches something, or a group does that is joined to
+/// it through others that sleep. Without contact nothing sleeps: a pendulum is slow at the end of each swing.
+void Stepper::add_sleepers(const std::vector<GroupPair>& pairs, const std::vector<char>& disturbed) {
+  std::vector<char> awake;
+  for (Index p = 0; p < groups().count(); ++p)
+    awake.push_back(!sleeps(p) && is_free(p) && !state_.rest.histories[p].is_at_rest ? 1 : 0);
+  const std::vector<char> beside_awake = with_neighbours(awake, pairs);
+  std::vector<char> candidates = state_.rest.sleepers;
+  std::vector<char> bodies(network().bodies.size(), 0);  // of new candidates
+  for (Index p = 0; p < groups().count(); ++p) {
+    if (sleeps(p) || !is_free(p) || disturbed[p] != 0 || beside_awake[p] != 0) continue;
+    candidates[p] = 1;
+    bodies[groups().groups[p].body] = 1;
+  }
+  UnionFind joined(groups().count());
+  for (const auto& [a, b] : groups().adjacent) {
+    if (candidates[a] != 0 && candidates[b] != 0) joined.join(a, b);
+  }
+  std::vector<char> supported(candidates.size(), 0);  // by root
+  for (Index p = 0; p < groups().count(); ++p) supported[joined.root(p)] |= state_.rest.sleepers[p];
+  for (const Index p : steady_groups(bodies)) supported[joined.root(p)] = 1;
+  for (Index p = 0; p < groups().count(); ++p) {
+    if (candidates[p] != 0) state_.rest.sleepers[p] = supported[joined.root(p)];
+  }
+}
+
+/// The groups of these bodies that touch something, without bodies that stand on their edge.
+std::vector<Index> Stepper::steady_groups(const std::vector<char>& bodies) const {
+  std::vector<std::vector<ContactNormal>> contacts(network().bodies.size());
+  for (const ContactNormal& contact : contact_normals()) {
+    const std::size_t body = groups().groups[groups().group_of[contact.particle]].body;
+    if (bodies[body] != 0) contacts[body].push_back(contact);
+  }
+  std::vector<Index> steady;
+  for (const std::vector<ContactNormal>& of_body : contacts) {
+    if (work().symmetry && work().symmetry->has_standing(of_body, state_.x)) continue;
+    for (const ContactNormal& contact : of_body) steady.push_back(groups().group_of[contact.particle]);
+  }
+  return steady;
+}
+
+/// If a group of `asleep` wakes, its whole body wakes: it may have lost its support. A group that an attachment joins to a free
+/// group sleeps only if the free group sleeps.
+void Stepper::wake_with_bodies(const std::vector<char>& asleep) {
+  std::vector<char> woken(network().bodies.size(), 0);
+  bool changes = true;
+  while (changes) {
+    changes = false;
+    for (Index p = 0; p < groups().count(); ++p) {
+      if (asleep[p] != 0 && state_.rest.sleepers[p] == 0) woken[groups().groups[p].body] = 1;
+    }
+    const auto wake = [&](Index p) {
+      changes = changes || state_.rest.sleepers[p] != 0;
+      state_.rest.sleepers[p] = 0;
+    };
+    for (Index p = 0; p < groups().count(); ++p) {
+      if (woken[groups().groups[p].body] != 0) wake(p);
+    }
+    for (const auto& [a, b] : work().surroundings.attached()) {
+      if (state_.rest.sleepers[a] == 0 && is_free(a)) wake(b);
+      if (state_.rest.sleepers[b] == 0 && is_free(b)) wake(a);
+    }
+  }
+}
+
+/// Whether the step made a neighbour of a sleeping group restless: the step has to be made again without the sleepers that this
+/// removes from the state_.
+bool Stepper::disturbs_sleep(const std::vector<GroupPair>& pairs) {
+  if (network().activity.asleep.empty()) return false;
+  const std::vector<char> asleep = sleeping_groups();
+  const std::vector<char> disturbed = with_neighbours(work().rest.restless(state_), pairs);
+  for (std::size_t p = 0; p < state_.rest.sleepers.size(); ++p)
+    state_.rest.sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;
+  wake_with_bodies(asleep);
+  return state_.rest.sleepers != asleep;
+}
+
+/// Whether a step changes nothing but the time: some groups sleep, and pins hold all others at rest.
+bool Stepper::all_sleep() const {
+  bool any = false;
+  for (Index p = 0; p < groups().count(); ++p) {
+    const bool asleep = sleeps(p);
+    any = any || asleep;
+    if (!asleep && (is_free(p) || time() < work().surroundings.end_of_motions(p))) return false;
+  }
+  return any;
+}
+
+/// Adds the last recorded impulses of sleeping particles again.
+void Stepper::add_impulses_of_sleepers(const RecordedImpulses& before) {
+  if (!state_.impulses.on()) return;
+  RecordedImpulses& last = state_.last_impulses;
+  const bool all = all_sleep();
+  for (Index i = 0; i < network().particle_count(); ++i) {
+    if (all || network().is_asleep(i)) {
+      state_.impulses.on_pinned.col(i) = before.on_pinned.col(i) + last.on_pinned.col(i);
+    } else {
+      last.on_pinned.col(i) = state_.impulses.on_pinned.col(i) - before.on_pinned.col(i);
+    }
+  }
+  const Springs& springs = network().springs;
+  for (Index s = 0; s < springs.count(); ++s) {
+    if (all || (network().is_asleep(springs.first[s]) && network().is_asleep(springs.second[s]))) {
+      state_.impulses.of_springs[s] = before.of_springs[s] + last.of_springs[s];
+    } else {
+      last.of_springs[s] = state_.impulses.of_springs[s] - before.of_springs[s];
+    }
+  }
+}
+
+}  // namespace sprung

@@ -1,0 +1,119 @@
+// Makes the steps of a simulation. Internal to simulation/.
+#pragma once
+
+#include "simulation/scratch.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace sprung {
+
+/// What a transition needs of the time before it.
+struct BeforeTransition {
+  Activity activity;
+  Points last_velocities;  ///< of pinned particles, mean of the last step [m/s], 3 x n
+  double dt = 0.0;         ///< [s]
+  double excess = 0.0;     ///< over the stretch limit
+  double violation = 0.0;  ///< of constraints
+};
+
+/// The steps as functions of a model, a control and a state. It keeps references to all, and nothing else. Requires that the
+/// scratch follows the state.
+class Stepper {
+ public:
+  Stepper(const Model& model, const Control& control, SimulationState& state, Scratch& scratch)
+      : model_(model), control_(control), state_(state), scratch_(scratch) {}
+
+  /// Makes the state at time 0: pins take their particles, bodies leave intersections, attachments engage. Appends messages.
+  void start(std::vector<std::string>& warnings, std::vector<std::string>& notes);
+
+  /// Makes a step. If it throws, the state is that at its begin.
+  StepReport step();
+
+  /// Continues from a former state of the model. Costs as much as a transition if its springs or its activity differ.
+  void restore(const SimulationState& former);
+
+  /// Lets a new workspace begin with the state.
+  void enter();
+
+  [[nodiscard]] BeforeTransition before_transition() const;
+  /// Lets the scratch follow a state whose springs, pins or sleepers changed.
+  void make_transition(const BeforeTransition& before);
+  /// Takes a state over from a former model of the same particles, or a former control.
+  void inherit(const BeforeTransition& before, const Model& former);
+
+  void wake_all();
+  void begin_recording();
+  void note_change() { EnergyWatch::note_change(energies(), state_.energy); }
+
+  [[nodiscard]] double dt() const { return settings().step / state_.substeps; }
+  [[nodiscard]] double time() const { return steps_done(state_) * settings().step; }
+  [[nodiscard]] ObstacleFrame obstacles_now() const { return {obstacles(), time(), time()}; }
+  [[nodiscard]] double energy(EnergyKind kind) const { return energy_of(work().forces, kind, state_.x); }
+  [[nodiscard]] std::vector<Index> contacts() const;
+  void check() const;
+
+ private:
+  // The step.
+  void begin_step(const std::vector<Index>& broken, double due);
+  std::optional<StepReport> attempt(PlanReason reason);
+  StepTrial make_trial(const StepPlan& plan);
+  StepTrial repeat(const StepPlan& plan);
+  void finish_step(std::span<const StepTrial> tried);
+  void return_to(const SimulationState& former);
+  void load();
+  void prepare_step();
+  [[nodiscard]] double rotation_in_step() const;
+  StepReport make_substep();
+  void set_substeps(int substeps);
+  void substep_changed(double dt_before);
+  void step_length_changed();
+  void move_pins(double time);
+  void record_gain(Index particle, const Vector3& velocity_before);
+  void update_attachments();
+  void record_attachments();
+  void note_contacts();
+  void correct_positions(double dt);
+  [[nodiscard]] Energies energies() const;
+  [[nodiscard]] std::vector<ContactNormal> contact_normals() const;
+  void check_state();
+  void check_energy(const Energies& now) const;
+  void fail(StepFailure failure) const;
+
+  // Transitions.
+  void finish_transition(const BeforeTransition& before, bool restarts);
+  void change_sleep(const BeforeTransition& before);
+  [[nodiscard]] bool change_pins(const BeforeTransition& before);
+  void keep_handovers();
+
+  // Sleep.
+  [[nodiscard]] bool may_sleep() const;
+  [[nodiscard]] bool sleeps(Index group) const;
+  [[nodiscard]] bool is_free(Index group) const;
+  [[nodiscard]] std::vector<char> sleeping_groups() const;
+  [[nodiscard]] std::vector<char> particles_to_sleep() const;
+  void choose_sleepers();
+  void add_sleepers(const std::vector<GroupPair>& pairs, const std::vector<char>& disturbed);
+  [[nodiscard]] std::vector<Index> steady_groups(const std::vector<char>& bodies) const;
+  void wake_with_bodies(const std::vector<char>& asleep);
+  [[nodiscard]] bool disturbs_sleep(const std::vector<GroupPair>& pairs);
+  [[nodiscard]] bool all_sleep() const;
+  void add_impulses_of_sleepers(const RecordedImpulses& before);
+
+  [[nodiscard]] const SpringNetwork& network() const { return scratch_.network; }
+  [[nodiscard]] const SimulatorSettings& settings() const { return model_.settings(); }
+  [[nodiscard]] const ObstacleSet& obstacles() const { return scratch_.obstacles; }
+  [[nodiscard]] Workspace& work() const { return *scratch_.work; }
+  [[nodiscard]] Integrator& integrator() const { return *work().integrator; }
+  [[nodiscard]] StepConstraints& constraints() const { return work().constraints; }
+  [[nodiscard]] const SleepGroups& groups() const { return work().groups; }
+
+  const Model& model_;
+  const Control& control_;
+  SimulationState& state_;
+  Scratch& scratch_;
+  bool has_begun_ = false;  ///< whether `begin` of the scratch is the begin of the present step
+};
+
+}  // namespace sprung
