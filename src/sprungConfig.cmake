@@ -1,9 +1,11 @@
-# What those who link an installed Sprung need besides it.
+# What those who link an installed Sprung need besides it: its headers include Eigen alone, static libraries link what they use.
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4 NO_MODULE)
-find_dependency(TBB)
-find_dependency(assimp)
-find_dependency(tinyobjloader)
-find_dependency(fcl)
+if(NOT "@BUILD_SHARED_LIBS@")
+  find_dependency(TBB)
+  find_dependency(assimp)
+  find_dependency(tinyobjloader)
+  find_dependency(fcl)
+endif()
 
 include(${CMAKE_CURRENT_LIST_DIR}/sprungTargets.cmake)
