@@ -22,7 +22,8 @@ void parallel_chunks(Index count, Index chunk, Body&& body) {
       const_cast<void*>(static_cast<const void*>(&body)));
 }
 
-/// Limits parallel loops to this number of threads during its lifetime. Requires threads >= 1.
+/// Limits all parallel loops of the process to this number of threads during its lifetime; of several limits the least holds.
+/// Requires threads >= 1.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);

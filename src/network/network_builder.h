@@ -11,6 +11,8 @@ namespace sprung {
 
 class ProblemList;
 
+/// Collects particles, springs, bodies, pins and attachments. Const members may be called from several threads at the same time. To
+/// add something takes time in proportion to its size. build() is costly: it copies and checks everything and sorts the springs.
 class NetworkBuilder {
  public:
   /// Adds a particle of `mass` [kg] > 0 at `position` [m] and returns its number. Particles and springs added one by one belong

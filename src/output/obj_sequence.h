@@ -12,7 +12,8 @@ namespace sprung {
 struct Body;
 class Simulator;
 
-/// OBJ text of a body or an obstacle for each frame.
+/// OBJ text of a body or an obstacle for each frame. Const members may be called from several threads at the same time, but not
+/// during a step of the simulator. text() is costly: it formats all vertices, in parallel.
 class ObjSequence {
  public:
   /// `pattern` names the files relative to the run's folder (see `file_pattern.h`). A pattern without `#` names one file, of the

@@ -27,6 +27,9 @@ struct BrokenSprings {
 /// A run that was written into a folder. Everything comes from its files, so the folder can be moved. Model and frames come from
 /// record.bin. Without it they come from the OBJ files: each vertex then counts as a particle, and missing() says what is not
 /// known.
+///
+/// Const members may be called from several threads at the same time. Construction reads the model and the diagnostics. frame()
+/// reads one frame from the disk in each call, broken_springs() a part of each frame; all others take constant time.
 class RecordedRun {
  public:
   /// Throws InputError that names what a folder lacks to be a run with at least one frame: keys of run.json, or both record.bin
@@ -55,7 +58,7 @@ class RecordedRun {
   [[nodiscard]] const std::string& missing() const { return missing_; }
 
   /// A frame, counted from 1, at most frames(). Throws FileError if a file cannot be read, InputError if it does not fit the
-  /// model. Thread-safe.
+  /// model.
   [[nodiscard]] RecordedFrame frame(int number) const;
 
  private:

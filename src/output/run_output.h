@@ -17,7 +17,8 @@ namespace sprung {
 class Simulator;
 
 /// Writes one frame after the other. A frame is complete (OBJ files of all bodies, its part of record.bin, rows of diagnostics.csv
-/// and forces.csv) or absent. run.json is updated with each frame.
+/// and forces.csv) or absent. run.json is updated with each frame. Not for several threads at the same time. write_frame() is
+/// costly: it formats and writes all positions; it reads the simulator, which must not step meanwhile.
 class RunOutput {
  public:
   /// Writes run.json and the heads of record.bin, diagnostics.csv and, if the simulator records forces, forces.csv. Throws

@@ -32,7 +32,8 @@ struct LoadedScene {
   std::vector<std::string> warnings;        ///< without duplicates
 };
 
-/// Throws FileError if the scene cannot be read, and InputError with every problem, each with its file.
+/// Throws FileError if the scene cannot be read, and InputError with every problem, each with its file. Several threads may load
+/// scenes at the same time. Costly: imports meshes, builds bodies, estimates the stable step and checks the start.
 [[nodiscard]] LoadedScene load_scene(const SceneSource& source);
 
 }  // namespace sprung

@@ -35,13 +35,16 @@ struct FrameDiagnostics {
   double frame_ms = 0.0;                  ///< wall time of computing the frame
 };
 
+// These read the simulator, over all particles or springs, and may run in several threads at the same time, but not during a step.
+
 /// [J]
 [[nodiscard]] double kinetic_energy(const Simulator& simulator);
 
 /// Largest (|s| - d) / d of structural springs; 0 if none is longer than at rest.
 [[nodiscard]] double max_stretch(const Simulator& simulator);
 
-/// Runs a simulator frame by frame. Keeps a reference to it.
+/// Runs a simulator frame by frame. Keeps a reference to it. Not for several threads at the same time. Beside the steps, a frame
+/// costs a search for the obstacle that is nearest to each particle, and one pass over springs and cells.
 class FrameRunner {
  public:
   explicit FrameRunner(Simulator& simulator);

@@ -12,7 +12,9 @@ class BroadPhase;
 class ObstacleShape;
 struct PosedObstacles;
 
-/// Const after construction, except for the materials. Copies share shapes and broad phase.
+/// Const after construction, except for the materials. Const members may be called from several threads at the same time, and take
+/// constant time. Construction is costly: it checks each mesh and builds a tree of its n triangles, O(n log n). Copies share shapes
+/// and broad phase.
 class ObstacleSet {
  public:
   /// Throws InputError, which names every problem of every obstacle: invalid shapes, poses that are not finite, keyframes that are

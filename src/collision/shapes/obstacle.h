@@ -55,6 +55,8 @@ struct HalfSpaceGeometry {
 using ObstacleGeometry = std::variant<MeshGeometry, SequenceGeometry, SphereGeometry, BoxGeometry, CapsuleGeometry,
                                       CylinderGeometry, ConeGeometry, EllipsoidGeometry, HalfSpaceGeometry>;
 
+/// Copies share the data of meshes and sequences, so they are cheap. Const members may be called from several threads at the same
+/// time; deforms() compares the frames of a sequence until two differ.
 struct Obstacle {
   std::string name{};
   ObstacleGeometry geometry{};                            ///< scale applied
@@ -69,7 +71,7 @@ struct Obstacle {
 };
 
 /// Triangles of the surface at a time [s] in the obstacle's own frame, for export. Primitives are tessellated; a half-space is a
-/// square of side 2 * `extent` [m]. The vertex indices are the same at all times.
+/// square of side 2 * `extent` [m]. The vertex indices are the same at all times. Makes a new mesh in each call. Thread-safe.
 [[nodiscard]] TriangleMesh obstacle_mesh(const ObstacleGeometry& geometry, double extent, double time = 0.0);
 
 }  // namespace sprung

@@ -11,6 +11,9 @@ namespace sprung {
 
 /// A condition on positions that the passes of a step restore, beside contact and the stretch limit, after forces have moved the
 /// particles (position-based dynamics: Mueller et al. 2007). Displacements become velocities at the end of the step.
+///
+/// A constraint belongs to one simulator, which calls it from one thread at a time and sets its recorder. Change its parameters
+/// between steps. A substep calls project() and residual() once per pass, up to some dozen times.
 class Constraint {
  public:
   virtual ~Constraint() = default;

@@ -46,6 +46,10 @@ struct LinearElement {
 /// The column of diagnostics in which the energy of a force counts.
 enum class EnergyKind : std::uint8_t { elastic, gravity, contact };
 
+/// A force on particles. A simulator calls a force from one thread at a time. If none of its members changes it, `prepare` and
+/// `note_solution` included, it may belong to several simulators that run at the same time. Change its parameters while none of
+/// them runs. A substep calls `add` once or more (Runge-Kutta four times) and, with implicit Euler, `add_derivatives`: these two
+/// decide what a force costs.
 class Force {
  public:
   virtual ~Force() = default;

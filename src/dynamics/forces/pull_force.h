@@ -14,6 +14,9 @@ namespace sprung {
 /// the displacement u from the target and k = m' / s^2, c = 2 m' / s for the particle's share m' of the body's mass (critical
 /// damping, with a time of s = 0.1 s), and c >= 2 k dt, which explicit Euler needs. The displacement and velocity of a particle
 /// then change by less than themselves in a step, so no pull makes a step unstable.
+///
+/// Const members may be called from several threads at the same time. Call set_target() between steps. The force costs a few
+/// operations per attached particle.
 class PullForce final : public Force {
  public:
   /// Attaches to particles of the body at `positions` [m] that are within a twentieth of the body's extent of `particle`. Pinned

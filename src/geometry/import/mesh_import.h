@@ -23,7 +23,8 @@ struct ImportedMesh {
 /// those of the format (glTF: Y up; others: as stored). A position from a text file is the double nearest to its text (glTF has
 /// floats). Throws InputError that names the
 /// file if it is missing, unreadable, truncated, damaged, of another format, has no triangle with an area, or contains a position
-/// that is not finite or an index out of range. `mesh_check.h` keeps away files on which assimp asserts or crashes.
+/// that is not finite or an index out of range. `mesh_check.h` keeps away files on which assimp asserts or crashes. Thread-safe,
+/// but assimp reads one file at a time.
 [[nodiscard]] ImportedMesh import_mesh(const std::filesystem::path& file);
 
 }  // namespace sprung
